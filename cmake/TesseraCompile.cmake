@@ -1,0 +1,36 @@
+# Compiler settings, and the function that declares one floor of the house.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+
+# Carried by every target of this project, and by none of its users.
+add_library(tessera_compile INTERFACE)
+target_compile_options(tessera_compile INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wold-style-cast -Wnon-virtual-dtor
+  # Results must not depend on what the compiler fuses, and NaN and infinity keep their meaning.
+  -ffp-contract=off -fno-math-errno)
+if(TESSERA_WARNINGS_AS_ERRORS)
+  target_compile_options(tessera_compile INTERFACE -Werror)
+endif()
+if(TESSERA_SANITIZE)
+  target_compile_options(tessera_compile INTERFACE -fsanitize=${TESSERA_SANITIZE} -fno-omit-frame-pointer
+    -fno-sanitize-recover=all)
+  target_link_options(tessera_compile INTERFACE -fsanitize=${TESSERA_SANITIZE})
+endif()
+
+# tessera_floor(NAME SOURCES... BELOW floors...): the target tessera_NAME, compiled from engine/src/NAME. A floor sees
+# the public headers, its own folder and those below it, all as <folder>/<file>; tests/house checks every #include.
+function(tessera_floor name)
+  cmake_parse_arguments(FLOOR "" "" "SOURCES;BELOW" ${ARGN})
+  add_library(tessera_${name} OBJECT ${FLOOR_SOURCES})
+  target_include_directories(tessera_${name} PRIVATE ${PROJECT_SOURCE_DIR}/engine/include ${PROJECT_SOURCE_DIR}/engine/src)
+  target_link_libraries(tessera_${name} PRIVATE tessera_compile)
+  foreach(below IN LISTS FLOOR_BELOW)
+    add_dependencies(tessera_${name} tessera_${below})
+  endforeach()
+endfunction()

@@ -1,0 +1,27 @@
+# Where each dependency comes from. All are packages of Debian 12; tools/setup.sh installs them.
+#   oneTBB            libtbb-dev 2021.8           the core: threads (engine/src/parallel alone includes it)
+#   xsimd             libxsimd-dev 8.1            the core: SIMD batches (engine/src/kernel alone; headers only)
+#   Embree            libembree-dev 3.13          tessera::ray (engine/src/ray alone)
+#   CLI11             libcli11-dev 2.1            the command line
+#   nlohmann-json     nlohmann-json3-dev 3.11     the command line: --json
+#   libpng            libpng-dev 1.6              the command line: pictures
+#   GoogleTest        libgtest-dev 1.12           tests
+#   Google Benchmark  libbenchmark-dev 1.7        benchmarks
+
+find_package(TBB 2021 REQUIRED)
+find_package(xsimd 8 REQUIRED)
+find_package(Threads REQUIRED)
+if(TESSERA_BUILD_RAY)
+  find_package(embree 3 REQUIRED)
+endif()
+if(TESSERA_BUILD_TOOLS)
+  find_package(CLI11 2 REQUIRED)
+  find_package(nlohmann_json 3 REQUIRED)
+  find_package(PNG REQUIRED)
+endif()
+if(TESSERA_BUILD_TESTS)
+  find_package(GTest REQUIRED)
+endif()
+if(TESSERA_BUILD_BENCH)
+  find_package(benchmark REQUIRED)
+endif()

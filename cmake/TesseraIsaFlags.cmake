@@ -1,0 +1,7 @@
+# Flags of the units that hold one instruction set each. They stand here and nowhere else. Optimised in every
+# configuration, so that small inline functions don't stay behind as symbols that the linker could merge into the baseline.
+set(kernel_flags -O3 -fno-trapping-math)
+set_source_files_properties(src/kernel/isa_sse2.cpp PROPERTIES COMPILE_OPTIONS "${kernel_flags};-msse2")
+set_source_files_properties(src/kernel/isa_avx2_fma.cpp PROPERTIES COMPILE_OPTIONS "${kernel_flags};-mavx2;-mfma")
+set_source_files_properties(src/kernel/isa_avx512.cpp PROPERTIES COMPILE_OPTIONS
+  "${kernel_flags};-mavx512f;-mavx512dq;-mavx512bw;-mavx512vl;-mavx2;-mfma;-mprefer-vector-width=512")

@@ -1,0 +1,84 @@
+#pragma once
+// Tensor-product Bezier patches, polynomial and rational, in double: the form to which every surface is
+// converted. With the scalar reference evaluators that the fast kernels are tested against.
+
+#include <span>
+#include <vector>
+
+#include "tessera/domain.h"
+#include "tessera/status.h"
+#include "tessera/vec.h"
+
+namespace tessera {
+
+/// Degrees run from 1 to this in each direction.
+inline constexpr int max_degree = 15;
+
+/// r(u,v) = sum_ij B_{i,m}(u) B_{j,n}(v) V_ij on [0,1]^2, or, rational with weights w_ij > 0,
+/// r = sum B B w_ij V_ij / sum B B w_ij  (Farin, Curves and Surfaces for CAGD, 5th ed., ch. 14 and 16).
+/// Points are stored [i][j], i along u: V_ij is points()[i * (degree_v() + 1) + j]. Immutable but for assignment.
+class BezierPatch {
+ public:
+  /// `points`: (degree_u + 1) * (degree_v + 1) finite points in the order above.
+  /// Errors: unsupported_degree, count_mismatch, non_finite (index = the offending point).
+  static Result<BezierPatch> polynomial(int degree_u, int degree_v, std::span<const Vec3> points);
+  /// `weights`: one finite weight > 0 a point; `points` are not premultiplied. If all weights are equal by == they are
+  /// dropped and the patch is polynomial. Errors: as above, and invalid_weight (index = the offending weight).
+  static Result<BezierPatch> rational(int degree_u, int degree_v, std::span<const Vec3> points,
+                                      std::span<const double> weights);
+
+  int degree_u() const { return degree_u_; }
+  int degree_v() const { return degree_v_; }
+  bool is_rational() const { return !weights_.empty(); }
+  std::span<const Vec3> points() const { return points_; }
+  std::span<const double> weights() const { return weights_; }  ///< empty for a polynomial patch
+  const Vec3& point(int i, int j) const { return points_[index(i, j)]; }
+  double weight(int i, int j) const { return weights_.empty() ? 1.0 : weights_[index(i, j)]; }
+
+  /// The box of the control points, which contains the patch.
+  Box3 hull_box() const;
+  /// The edges whose control points all coincide (by ==): there the patch has a pole.
+  EdgeMask collapsed_edges() const;
+
+ private:
+  BezierPatch() = default;
+  std::size_t index(int i, int j) const { return static_cast<std::size_t>(i * (degree_v_ + 1) + j); }
+
+  int degree_u_ = 0, degree_v_ = 0;
+  std::vector<Vec3> points_;
+  std::vector<double> weights_;
+};
+
+/// Position and partial derivatives at one (u,v).
+struct SurfaceJet {
+  Vec3 position, du, dv, duu, duv, dvv;
+};
+
+// Reference evaluators: one point at a time, in double, any finite (u,v), inside [0,1]^2 or not. Slow and plain.
+
+/// De Casteljau along the u-lines, then along v (Farin, sec. 14.3). Rational patches in homogeneous form.
+Vec3 de_casteljau(const BezierPatch& patch, double u, double v);
+/// The bilinear de Casteljau algorithm: min(m,n) bilinear steps, then curve steps in the direction of the higher degree
+/// (Farin, sec. 14.1). Rational patches in homogeneous form.
+Vec3 de_casteljau_bilinear(const BezierPatch& patch, double u, double v);
+/// Rational de Casteljau on the u-lines, then along v: each step interpolates the points themselves by weighted
+/// ratios, so every intermediate point stays in the hull (Farin, sec. 13.3).
+Vec3 de_casteljau_rational(const BezierPatch& patch, double u, double v);
+/// Position, first and second derivatives; rational ones by the quotient rule (Piegl and Tiller, The NURBS Book, eq. 4.20).
+SurfaceJet evaluate_jet(const BezierPatch& patch, double u, double v);
+
+/// How a unit normal was found.
+enum class NormalKind : std::uint8_t {
+  regular,    ///< r_u x r_v / |r_u x r_v|
+  limit,      ///< the limit at a degenerate point (a collapsed edge, parallel tangents)
+  undefined,  ///< there is none; the vector is zero
+};
+struct UnitNormal {
+  Vec3 direction;
+  NormalKind kind = NormalKind::undefined;
+};
+/// The unit normal at (u,v) in [0,1]^2. Where r_u x r_v vanishes: the one-sided limit from inside the patch along the
+/// parameter that leads away from the collapsed edge (from r_u and r_uv, or r_v and r_uv).
+UnitNormal unit_normal(const BezierPatch& patch, double u, double v);
+
+}  // namespace tessera

@@ -1,0 +1,34 @@
+#pragma once
+// Parameter rectangles and their edges.
+
+#include <cstdint>
+
+namespace tessera {
+
+/// The rectangle [u0, u1] x [v0, v1] of parameters, u0 < u1 and v0 < v1.
+struct Domain {
+  double u0 = 0, u1 = 1, v0 = 0, v1 = 1;
+
+  /// From local parameters in [0,1]^2 to this rectangle; exact at 0 and 1.
+  double u_at(double s) const { return s == 1 ? u1 : u0 + s * (u1 - u0); }
+  double v_at(double t) const { return t == 1 ? v1 : v0 + t * (v1 - v0); }
+  /// From this rectangle to local parameters; exact at the ends.
+  double local_u(double u) const { return u == u1 ? 1 : (u - u0) / (u1 - u0); }
+  double local_v(double v) const { return v == v1 ? 1 : (v - v0) / (v1 - v0); }
+  bool contains(double u, double v) const { return u >= u0 && u <= u1 && v >= v0 && v <= v1; }
+
+  friend bool operator==(const Domain&, const Domain&) = default;
+};
+
+/// The four edges of a patch, as bits of a mask.
+enum class Edge : std::uint8_t { u0 = 1, u1 = 2, v0 = 4, v1 = 8 };
+
+/// A set of edges.
+struct EdgeMask {
+  std::uint8_t bits = 0;
+  bool has(Edge edge) const { return (bits & static_cast<std::uint8_t>(edge)) != 0; }
+  void add(Edge edge) { bits = static_cast<std::uint8_t>(bits | static_cast<std::uint8_t>(edge)); }
+  bool any() const { return bits != 0; }
+};
+
+}  // namespace tessera

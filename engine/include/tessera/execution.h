@@ -1,0 +1,36 @@
+#pragma once
+// How long calls run: cancellation, progress, stores. Work runs in the caller's current TBB arena.
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+
+#include "tessera/isa.h"
+
+namespace tessera {
+
+/// How results are written to memory.
+enum class Stores : std::uint8_t {
+  automatic,  ///< streaming where the output is larger than a third of the last-level cache, plain otherwise
+  plain,
+  streaming,  ///< non-temporal, past the caches
+};
+
+/// What a call did.
+struct ExecutionReport {
+  Isa isa = Isa::sse2;          ///< as stated by the kernel that ran
+  bool streaming = false;       ///< whether non-temporal stores were used
+  std::size_t tasks = 0;        ///< pieces of work handed to threads
+};
+
+/// Options of long calls. Everything is optional.
+struct Execution {
+  const std::atomic<bool>* cancel = nullptr;  ///< seen between tasks; the call then returns StatusCode::cancelled
+  /// Called with the share done, 0 to 1, from any thread, one call at a time, seldom.
+  std::function<void(double)> progress;
+  Stores stores = Stores::automatic;
+  ExecutionReport* report = nullptr;  ///< filled if not null
+};
+
+}  // namespace tessera

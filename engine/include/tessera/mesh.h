@@ -1,0 +1,59 @@
+#pragma once
+// Indexed triangle meshes.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tessera/status.h"
+#include "tessera/vec.h"
+#include "tessera/views.h"
+
+namespace tessera {
+
+/// What a mesh needs, in records.
+struct MeshCapacity {
+  std::size_t vertices = 0;
+  std::size_t triangles = 0;
+};
+
+/// Where a mesh is written. Empty views are not wanted; positions and indices are required.
+struct MeshViews {
+  View3<float> position;            ///< relative to the origin of the patch set
+  View3<float> normal;              ///< unit, or zero where undefined
+  View2<float> parameter;           ///< (u,v) of the patch, in [0,1]^2
+  std::span<std::uint32_t> patch;   ///< the patch of each triangle
+  std::span<std::uint32_t> indices; ///< three a triangle, counter-clockwise seen from where r_u x r_v points
+};
+
+/// A mesh that owns its memory, interleaved by attribute: 3 floats a position or normal, 2 a parameter.
+struct Mesh {
+  Vec3 origin;                          ///< add it to positions to get the model's coordinates
+  std::vector<float> positions;
+  std::vector<float> normals;           ///< empty, or as long as positions
+  std::vector<float> parameters;        ///< empty, or two a vertex
+  std::vector<std::uint32_t> patches;   ///< empty, or one a triangle
+  std::vector<std::uint32_t> indices;
+
+  std::size_t vertex_count() const { return positions.size() / 3; }
+  std::size_t triangle_count() const { return indices.size() / 3; }
+  MeshViews views();
+};
+
+/// What is wrong with a mesh, if anything. Vertices at bit-equal positions count as one.
+struct MeshReport {
+  std::size_t vertices = 0;              ///< as stored
+  std::size_t distinct_positions = 0;
+  std::size_t triangles = 0;
+  std::size_t open_edges = 0;            ///< edges of one triangle
+  std::size_t non_manifold_edges = 0;    ///< edges of three triangles or more
+  std::size_t inconsistent_edges = 0;    ///< edges whose two triangles run along it the same way
+  std::size_t degenerate_triangles = 0;  ///< two corners in one place, or no area; not counted in edges
+  std::size_t non_finite_vertices = 0;   ///< NaN or infinity in a position or a normal
+  bool closed() const { return open_edges == 0 && non_manifold_edges == 0; }
+};
+
+/// Counts. Errors: invalid_argument (an index out of range, with its place; counts that don't fit).
+Result<MeshReport> check(const Mesh& mesh);
+
+}  // namespace tessera

@@ -1,0 +1,92 @@
+#pragma once
+// A set of Bezier patches, packed for evaluation.
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "tessera/bezier_patch.h"
+#include "tessera/domain.h"
+#include "tessera/status.h"
+#include "tessera/vec.h"
+
+namespace tessera {
+
+/// In which numbers, and over which basis, the coefficients of the blocks are held.
+enum class Precision : std::uint8_t { single_precision, double_precision };
+enum class Representation : std::uint8_t {
+  bernstein,  ///< the default: backward stable on [0,1]
+  power,      ///< monomials u^i v^j; loses up to 58 / 2,950 / 135,000 ULP at degrees 3 / 5 / 7
+};
+
+/// Which blocks a set holds. Each kind costs (m+1)(n+1) * (3 or 4) coefficients a patch.
+struct BlockKinds {
+  bool float_bernstein = true;
+  bool double_bernstein = false;
+  bool float_power = false;
+  bool double_power = false;
+};
+
+struct PatchSetOptions {
+  BlockKinds blocks;
+  /// Coefficients of float blocks are relative to this point. By default the centre of the set's box.
+  std::optional<Vec3> origin;
+};
+
+/// Where a patch came from: a surface of the model, and the rectangle of that surface's parameters that it covers.
+struct PatchSource {
+  std::uint32_t surface = 0;
+  Domain domain;
+};
+
+/// Owns patches and their SoA blocks: patches of equal degrees and rationality lie together, 16 to a block, coefficients
+/// `[i][j][component][lane]` (x, y, z, and w for rational ones, homogeneous, relative to the origin; unused lanes repeat a patch).
+/// Positions in float are relative to origin(); positions in double are absolute.
+/// Threads: const calls from any number of threads; an edit excludes every other call.
+class PatchSet {
+ public:
+  static constexpr int lanes = 16;  ///< patches in a block
+
+  /// One surface a patch, each on [0,1]^2. Errors: invalid_argument (no patch), out_of_memory, and
+  /// non_finite if a patch does not fit float after the origin is taken off (index = the patch).
+  static Result<PatchSet> from(std::span<const BezierPatch> patches, const PatchSetOptions& options = {});
+  /// The same with the source of each patch given; sources.size() == patches.size().
+  static Result<PatchSet> from(std::span<const BezierPatch> patches, std::span<const PatchSource> sources,
+                               const PatchSetOptions& options = {});
+
+  PatchSet(PatchSet&&) noexcept;
+  PatchSet& operator=(PatchSet&&) noexcept;
+  ~PatchSet();
+
+  std::size_t patch_count() const;
+  std::size_t surface_count() const;
+  const BezierPatch& patch(std::size_t index) const;      ///< index < patch_count()
+  const PatchSource& source(std::size_t index) const;     ///< index < patch_count()
+  Vec3 origin() const;
+  const Box3& box() const;            ///< of all control points
+  const BlockKinds& blocks() const;
+  std::size_t block_count() const;
+  /// Where a patch lies in block-interleaved output. index < patch_count().
+  struct Slot {
+    std::uint32_t block = 0;
+    std::uint32_t lane = 0;
+  };
+  Slot slot(std::size_t index) const;
+  std::size_t memory_bytes() const;   ///< patches and blocks
+
+  /// Grows by one with each edit. What was made from another revision is stale.
+  std::uint64_t revision() const;
+  /// New control points for one patch, as many as before, weights kept; repacks its lane of each block.
+  /// Errors: invalid_argument (no such patch), count_mismatch, non_finite; the set is then unchanged.
+  Status set_control_points(std::size_t index, std::span<const Vec3> points);
+
+  class Impl;
+  const Impl& impl() const { return *impl_; }  ///< for the library's own use
+
+ private:
+  explicit PatchSet(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace tessera

@@ -1,0 +1,94 @@
+#pragma once
+// Ray queries on a patch set.
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "tessera/execution.h"
+#include "tessera/isa.h"
+#include "tessera/patch_set.h"
+#include "tessera/status.h"
+#include "tessera/vec.h"
+
+namespace tessera {
+
+/// Points origin + t * direction, tnear <= t <= tfar, in the model's coordinates. The direction need not be a unit vector.
+/// Valid: finite origin and direction, direction not zero, 0 <= tnear <= tfar, tfar may be infinite.
+struct Ray {
+  Vec3 origin, direction;
+  double tnear = 0;
+  double tfar = std::numeric_limits<double>::infinity();
+};
+
+enum class HitKind : std::uint8_t {
+  miss,
+  hit,
+  invalid_ray,  ///< treated as a miss
+};
+
+/// What is to be known about a hit beside its numbers.
+struct HitFlags {
+  bool unrefined : 1 = false;         ///< Newton did not converge inside the patch: t, position, u, v are those of the facet
+  bool degenerate_normal : 1 = false; ///< the normal is a limit at a degenerate point, or undefined (zero)
+};
+
+struct Hit {
+  HitKind kind = HitKind::miss;
+  HitFlags flags;
+  std::uint32_t surface = 0, patch = 0;
+  double t = std::numeric_limits<double>::infinity();
+  double u = 0, v = 0;              ///< in the surface's domain
+  double patch_u = 0, patch_v = 0;  ///< in the patch, [0,1]^2
+  Vec3 position;                    ///< on the surface at (u,v)
+  Vec3 normal;                      ///< unit, along r_u x r_v
+  double residual = 0;              ///< distance from the position to the ray
+};
+
+enum class RayMode : std::uint8_t {
+  grid,  ///< evaluated grids in an Embree BVH, then Newton on the surface: every hit lies on it, a silhouette may be missed
+};
+
+struct RaySceneOptions {
+  RayMode mode = RayMode::grid;
+  int rate = 8;              ///< grid segments a patch and direction, 1 to 4096
+  bool refine = true;        ///< false leaves hits on the facets (for comparison)
+  std::optional<Isa> isa;
+};
+
+/// A patch set ready for rays. Keeps a reference to the set's inner state: the set must outlive the scene (it may be moved).
+/// Threads: const calls from any number of threads; refit and edits of the set exclude them.
+class RayScene {
+ public:
+  /// Errors: invalid_argument, unsupported (no float Bernstein blocks), isa_unavailable, out_of_memory, internal (Embree's own).
+  static Result<RayScene> make(const PatchSet& set, const RaySceneOptions& options = {}, const Execution& execution = {});
+
+  RayScene(RayScene&&) noexcept;
+  RayScene& operator=(RayScene&&) noexcept;
+  ~RayScene();
+
+  /// The closest hit of each ray; hits.size() >= rays.size(). A ray that is not valid is a miss with HitKind::invalid_ray.
+  /// Errors: buffer_too_small, stale (the set was edited; call refit), cancelled.
+  Status closest(std::span<const Ray> rays, std::span<Hit> hits, const Execution& execution = {}) const;
+  /// 1 where anything lies on the ray, 0 where not or where the ray is not valid; occluded.size() >= rays.size().
+  Status occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded, const Execution& execution = {}) const;
+  /// One ray. A stale scene gives a miss with HitKind::invalid_ray.
+  Hit closest(const Ray& ray) const;
+  bool occluded(const Ray& ray) const;
+
+  /// After edits of the set: evaluates the grids anew and rebuilds the BVH.
+  Status refit(const Execution& execution = {});
+
+  std::uint64_t revision() const;      ///< of the set, when the scene was made or last refitted
+  std::size_t memory_bytes() const;    ///< grids and BVH
+
+  class Impl;
+
+ private:
+  explicit RayScene(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace tessera

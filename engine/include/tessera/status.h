@@ -1,0 +1,81 @@
+#pragma once
+// Errors as values. No exception leaves the library.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace tessera {
+
+/// What kind of thing went wrong. The message says the rest.
+enum class StatusCode : std::uint8_t {
+  ok,
+  invalid_argument,    ///< a value outside its stated range
+  non_finite,          ///< NaN or infinity where a finite number is wanted
+  invalid_weight,      ///< a rational weight that is not positive
+  unsupported_degree,  ///< a degree below 1 or above max_degree
+  count_mismatch,      ///< a list whose length does not fit the others
+  buffer_too_small,    ///< an output view with less room than the call needs
+  unsupported,         ///< valid, but not available here (a kind of block, a file format)
+  isa_unavailable,     ///< an instruction set that is unknown or that this machine lacks
+  stale,               ///< made from a state of the patch set that has since changed
+  parse_error,         ///< a file whose content is not what its format says
+  io_error,            ///< a file that cannot be opened, read or written
+  out_of_memory,
+  cancelled,           ///< the caller's cancellation flag was seen; outputs are partly written
+  internal,            ///< a fault of the library or of a dependency
+};
+
+/// The code's name as written above, for messages and logs.
+std::string_view name(StatusCode code);
+
+/// Success, or what went wrong: a code, a sentence, and the index of the offending element if there is one.
+class [[nodiscard]] Status {
+ public:
+  static constexpr std::ptrdiff_t no_index = -1;
+
+  Status() = default;  ///< success; never allocates
+  Status(StatusCode code, std::string message, std::ptrdiff_t index = no_index)
+      : code_(code), index_(index), message_(std::move(message)) {}
+
+  bool ok() const { return code_ == StatusCode::ok; }
+  StatusCode code() const { return code_; }
+  const std::string& message() const { return message_; }
+  std::ptrdiff_t index() const { return index_; }
+
+ private:
+  StatusCode code_ = StatusCode::ok;
+  std::ptrdiff_t index_ = no_index;
+  std::string message_;
+};
+
+/// A value, or the Status that says why there is none. Reading the value of a failed Result is a
+/// precondition violation (asserted by std::optional's hardened modes; undefined otherwise).
+template <class T>
+class [[nodiscard]] Result {
+ public:
+  Result(T value) : value_(std::move(value)) {}
+  Result(Status status) : status_(std::move(status)) {}
+
+  bool ok() const { return value_.has_value(); }
+  explicit operator bool() const { return ok(); }
+  const Status& status() const { return status_; }
+
+  T& value() & { return *value_; }
+  const T& value() const& { return *value_; }
+  T&& value() && { return *std::move(value_); }
+  T& operator*() & { return *value_; }
+  const T& operator*() const& { return *value_; }
+  T&& operator*() && { return *std::move(value_); }
+  T* operator->() { return &*value_; }
+  const T* operator->() const { return &*value_; }
+
+ private:
+  std::optional<T> value_;
+  Status status_;
+};
+
+}  // namespace tessera

@@ -1,0 +1,51 @@
+#pragma once
+// Patches to triangles.
+
+#include <memory>
+#include <optional>
+
+#include "tessera/execution.h"
+#include "tessera/isa.h"
+#include "tessera/mesh.h"
+#include "tessera/patch_set.h"
+#include "tessera/status.h"
+
+namespace tessera {
+
+struct TessellationOptions {
+  int rate_u = 8;  ///< segments along u of every patch, 1 to 4096
+  int rate_v = 8;  ///< segments along v
+  std::optional<Isa> isa;
+};
+
+/// Uniform tessellation: every patch at the same rates. Layout of the vertices: `[patch][iu][iv]`, so vertex
+/// (patch * (rate_u + 1) + iu) * (rate_v + 1) + iv. Border vertices are duplicated, one a patch; where two patches share
+/// the border's control points and run at equal rates, they are the same bits. Triangles that collapse at a pole are left out.
+class TessellationPlan {
+ public:
+  /// Errors: invalid_argument (a rate out of range, counts that overflow 32-bit indices), isa_unavailable, unsupported
+  /// (the set has no float Bernstein blocks).
+  static Result<TessellationPlan> make(const PatchSet& set, const TessellationOptions& options = {});
+
+  TessellationPlan(TessellationPlan&&) noexcept;
+  TessellationPlan& operator=(TessellationPlan&&) noexcept;
+  ~TessellationPlan();
+
+  MeshCapacity capacity() const;  ///< exact
+  int rate_u() const;
+  int rate_v() const;
+  /// A mesh of the right size with all attributes.
+  Result<Mesh> allocate() const;
+  /// Writes the mesh. `set` is the one that the plan was made for, at any revision that collapses the same edges.
+  /// Errors: buffer_too_small, stale, invalid_argument, cancelled. Nothing is written on any but cancelled.
+  /// The same bytes for any number of threads. Allocates nothing after the first call.
+  Status run(const PatchSet& set, const MeshViews& out, const Execution& execution = {}) const;
+
+  class Impl;
+
+ private:
+  explicit TessellationPlan(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace tessera

@@ -1,0 +1,61 @@
+#pragma once
+// Points and vectors of space, in double.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tessera {
+
+/// A point or a vector. Lengths are in the model's own unit.
+struct Vec3 {
+  double x = 0, y = 0, z = 0;
+
+  friend bool operator==(const Vec3&, const Vec3&) = default;
+  Vec3& operator+=(const Vec3& b) { return *this = {x + b.x, y + b.y, z + b.z}; }
+};
+
+inline Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Vec3 operator-(const Vec3& a) { return {-a.x, -a.y, -a.z}; }
+inline Vec3 operator*(double s, const Vec3& a) { return {s * a.x, s * a.y, s * a.z}; }
+inline Vec3 operator*(const Vec3& a, double s) { return s * a; }
+inline double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Vec3 cross(const Vec3& a, const Vec3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+inline double length(const Vec3& a) { return std::sqrt(dot(a, a)); }
+inline bool is_finite(const Vec3& a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
+/// The largest absolute component.
+inline double max_abs(const Vec3& a) { return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
+/// a / |a|, or the zero vector where a is zero.
+inline Vec3 normalized(const Vec3& a) {
+  const double scale = max_abs(a);
+  if (!(scale > 0)) return {};
+  const Vec3 b = (1 / scale) * a;
+  return (1 / length(b)) * b;
+}
+
+/// An axis-parallel box; empty (lower > upper) by default.
+struct Box3 {
+  Vec3 lower{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
+             std::numeric_limits<double>::infinity()};
+  Vec3 upper{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
+             -std::numeric_limits<double>::infinity()};
+
+  bool empty() const { return !(lower.x <= upper.x && lower.y <= upper.y && lower.z <= upper.z); }
+  void extend(const Vec3& p) {
+    lower = {std::min(lower.x, p.x), std::min(lower.y, p.y), std::min(lower.z, p.z)};
+    upper = {std::max(upper.x, p.x), std::max(upper.y, p.y), std::max(upper.z, p.z)};
+  }
+  void extend(const Box3& b) {
+    if (b.empty()) return;
+    extend(b.lower);
+    extend(b.upper);
+  }
+  Vec3 centre() const { return 0.5 * lower + 0.5 * upper; }
+  /// The length of the diagonal; 0 for an empty box. "The size" of a model means this.
+  double diagonal() const { return empty() ? 0 : length(upper - lower); }
+};
+
+}  // namespace tessera
