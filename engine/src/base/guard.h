@@ -1,0 +1,31 @@
+#pragma once
+// No exception leaves the library: public entry points run their body in here.
+
+#include <exception>
+#include <new>
+#include <string>
+#include <utility>
+
+#include "tessera/status.h"
+
+namespace tessera {
+
+/// Calls body() and returns what it returns; an exception becomes a Status. R is Status or Result<T>.
+template <class Body>
+auto guarded(Body&& body) noexcept -> decltype(body()) {
+  try {
+    try {
+      return std::forward<Body>(body)();
+    } catch (const std::bad_alloc&) {
+      return Status(StatusCode::out_of_memory, "out of memory");
+    } catch (const std::exception& error) {
+      return Status(StatusCode::internal, error.what());
+    } catch (...) {
+      return Status(StatusCode::internal, "unknown exception");
+    }
+  } catch (...) {  // not even the message could be stored
+    return Status(StatusCode::out_of_memory, {});
+  }
+}
+
+}  // namespace tessera

@@ -1,0 +1,66 @@
+#include "parallel/parallel_for.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/partitioner.h>
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+
+#include "base/guard.h"
+
+namespace tessera {
+namespace {
+
+/// Counts pieces and tells the caller, one call at a time and about a hundred times in all.
+class Progress {
+ public:
+  Progress(const Execution& execution, std::size_t pieces) : execution_(execution), pieces_(pieces) {}
+
+  void piece_done() {
+    if (!execution_.progress) return;
+    const std::size_t done = ++done_;
+    if (done != pieces_ && done * 100 / pieces_ == (done - 1) * 100 / pieces_) return;
+    const std::lock_guard lock(mutex_);
+    if (done <= told_) return;  // a later piece was faster
+    told_ = done;
+    execution_.progress(static_cast<double>(done) / static_cast<double>(pieces_));
+  }
+
+ private:
+  const Execution& execution_;
+  std::size_t pieces_;
+  std::atomic<std::size_t> done_{0};
+  std::size_t told_ = 0;
+  std::mutex mutex_;
+};
+
+}  // namespace
+
+Status parallel_for(std::size_t count, std::size_t grain, const Execution& execution,
+                    FunctionRef<void(std::size_t, std::size_t)> body) {
+  return guarded([&]() -> Status {
+    grain = std::max<std::size_t>(grain, 1);
+    const std::size_t pieces = count / grain + (count % grain != 0);
+    if (execution.report) execution.report->tasks = pieces;
+    Progress progress(execution, pieces);
+    const auto cancelled = [&] { return execution.cancel && execution.cancel->load(std::memory_order_relaxed); };
+    const auto run_piece = [&](std::size_t piece) {
+      if (cancelled()) return;
+      body(piece * grain, std::min(count, (piece + 1) * grain));
+      progress.piece_done();
+    };
+    if (pieces <= 1) {
+      if (pieces == 1) run_piece(0);
+    } else {
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pieces, 1), [&](const tbb::blocked_range<std::size_t>& range) {
+        for (std::size_t piece = range.begin(); piece != range.end(); ++piece) run_piece(piece);
+      });
+    }
+    if (cancelled()) return Status(StatusCode::cancelled, "cancelled by the caller");
+    return {};
+  });
+}
+
+}  // namespace tessera
