@@ -1,0 +1,102 @@
+// The kernels for AVX2 with FMA.
+
+#include <immintrin.h>
+
+#include <cstddef>
+#include <xsimd/xsimd.hpp>
+
+#include "kernel/kernel_table.h"
+
+namespace tessera::kernel {
+namespace isa_avx2 {
+namespace {
+
+constexpr Isa this_isa = Isa::avx2;
+
+/// The few operations that xsimd lacks.
+template <class T>
+struct Lanes;
+
+template <>
+struct Lanes<float> {
+  using Scalar = float;
+  using Batch = xsimd::batch<float, xsimd::avx2>;
+  static constexpr int width = 8;
+  static Batch broadcast(float x) { return Batch(x); }
+  static Batch load(const float* p) { return Batch::load_aligned(p); }
+  static void store(float* p, Batch a) { a.store_aligned(p); }
+  static void stream(float* p, Batch a) { _mm256_stream_ps(p, a); }
+  static Batch fma(Batch a, Batch b, Batch c) { return _mm256_fmadd_ps(a, b, c); }    // a b + c
+  static Batch fms(Batch a, Batch b, Batch c) { return _mm256_fmsub_ps(a, b, c); }    // a b - c
+  static Batch fnma(Batch a, Batch b, Batch c) { return _mm256_fnmadd_ps(a, b, c); }  // c - a b
+  static Batch where_positive(Batch test, Batch a) {
+    return _mm256_and_ps(_mm256_cmp_ps(test, _mm256_setzero_ps(), _CMP_GT_OQ), a);
+  }
+  static void store_first(float* p, Batch a, int count) {
+    if (count == width) {
+      _mm256_storeu_ps(p, a);
+    } else {
+      const __m256i index = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+      _mm256_maskstore_ps(p, _mm256_cmpgt_epi32(_mm256_set1_epi32(count), index), a);
+    }
+  }
+  static void transpose(Batch (&row)[width]) {
+    __m256 a[8], b[8];
+    for (int i = 0; i < 8; i += 2) {
+      a[i] = _mm256_unpacklo_ps(row[i], row[i + 1]);
+      a[i + 1] = _mm256_unpackhi_ps(row[i], row[i + 1]);
+    }
+    for (int i = 0; i < 8; i += 4) {  // b[i + c] holds column 4 h + c in its half h
+      b[i] = _mm256_shuffle_ps(a[i], a[i + 2], 0x44);
+      b[i + 1] = _mm256_shuffle_ps(a[i], a[i + 2], 0xee);
+      b[i + 2] = _mm256_shuffle_ps(a[i + 1], a[i + 3], 0x44);
+      b[i + 3] = _mm256_shuffle_ps(a[i + 1], a[i + 3], 0xee);
+    }
+    for (int c = 0; c < 4; ++c) {
+      row[c] = _mm256_permute2f128_ps(b[c], b[4 + c], 0x20);
+      row[4 + c] = _mm256_permute2f128_ps(b[c], b[4 + c], 0x31);
+    }
+  }
+};
+
+template <>
+struct Lanes<double> {
+  using Scalar = double;
+  using Batch = xsimd::batch<double, xsimd::avx2>;
+  static constexpr int width = 4;
+  static Batch broadcast(double x) { return Batch(x); }
+  static Batch load(const double* p) { return Batch::load_aligned(p); }
+  static void store(double* p, Batch a) { a.store_aligned(p); }
+  static void stream(double* p, Batch a) { _mm256_stream_pd(p, a); }
+  static Batch fma(Batch a, Batch b, Batch c) { return _mm256_fmadd_pd(a, b, c); }
+  static Batch fms(Batch a, Batch b, Batch c) { return _mm256_fmsub_pd(a, b, c); }
+  static Batch fnma(Batch a, Batch b, Batch c) { return _mm256_fnmadd_pd(a, b, c); }
+  static Batch where_positive(Batch test, Batch a) {
+    return _mm256_and_pd(_mm256_cmp_pd(test, _mm256_setzero_pd(), _CMP_GT_OQ), a);
+  }
+  static void store_first(double* p, Batch a, int count) {
+    if (count == width) {
+      _mm256_storeu_pd(p, a);
+    } else {
+      const __m256i index = _mm256_setr_epi64x(0, 1, 2, 3);
+      _mm256_maskstore_pd(p, _mm256_cmpgt_epi64(_mm256_set1_epi64x(count), index), a);
+    }
+  }
+  static void transpose(Batch (&row)[width]) {
+    const __m256d a = _mm256_unpacklo_pd(row[0], row[1]), b = _mm256_unpackhi_pd(row[0], row[1]);
+    const __m256d c = _mm256_unpacklo_pd(row[2], row[3]), d = _mm256_unpackhi_pd(row[2], row[3]);
+    row[0] = _mm256_permute2f128_pd(a, c, 0x20);
+    row[1] = _mm256_permute2f128_pd(b, d, 0x20);
+    row[2] = _mm256_permute2f128_pd(a, c, 0x31);
+    row[3] = _mm256_permute2f128_pd(b, d, 0x31);
+  }
+};
+
+#include "kernel/kernel_set.inl.h"
+
+}  // namespace
+}  // namespace isa_avx2
+
+const KernelTable& avx2_kernels() { return isa_avx2::table; }
+
+}  // namespace tessera::kernel

@@ -1,0 +1,115 @@
+// The kernels for AVX-512 (F, DQ, BW, VL).
+
+#include <immintrin.h>
+
+#include <cstddef>
+#include <xsimd/xsimd.hpp>
+
+#include "kernel/kernel_table.h"
+
+namespace tessera::kernel {
+namespace isa_avx512 {
+namespace {
+
+constexpr Isa this_isa = Isa::avx512;
+template <class T>
+using BatchOf = xsimd::batch<T, xsimd::avx512f>;
+
+/// The few operations that xsimd lacks, or (fma on AVX-512 before 12.1) does not fuse.
+template <class T>
+struct Lanes;
+
+template <>
+struct Lanes<float> {
+  using Scalar = float;
+  using Batch = BatchOf<float>;
+  static constexpr int width = 16;
+  static Batch broadcast(float x) { return Batch(x); }
+  static Batch load(const float* p) { return Batch::load_aligned(p); }
+  static void store(float* p, Batch a) { a.store_aligned(p); }
+  static void stream(float* p, Batch a) { _mm512_stream_ps(p, a); }
+  static Batch fma(Batch a, Batch b, Batch c) { return _mm512_fmadd_ps(a, b, c); }    // a b + c
+  static Batch fms(Batch a, Batch b, Batch c) { return _mm512_fmsub_ps(a, b, c); }    // a b - c
+  static Batch fnma(Batch a, Batch b, Batch c) { return _mm512_fnmadd_ps(a, b, c); }  // c - a b
+  static Batch where_positive(Batch test, Batch a) {
+    return _mm512_maskz_mov_ps(_mm512_cmp_ps_mask(test, _mm512_setzero_ps(), _CMP_GT_OQ), a);
+  }
+  static void store_first(float* p, Batch a, int count) {
+    if (count == width) {
+      _mm512_storeu_ps(p, a);
+    } else {
+      _mm512_mask_storeu_ps(p, static_cast<__mmask16>((1u << count) - 1u), a);
+    }
+  }
+  static void transpose(Batch (&row)[width]) {
+    __m512 a[16], b[16];
+    for (int i = 0; i < 16; i += 2) {  // pairs of rows
+      a[i] = _mm512_unpacklo_ps(row[i], row[i + 1]);
+      a[i + 1] = _mm512_unpackhi_ps(row[i], row[i + 1]);
+    }
+    for (int i = 0; i < 16; i += 4) {  // fours of rows: b[i + c] holds column 4 q + c in its quarter q
+      b[i] = _mm512_shuffle_ps(a[i], a[i + 2], 0x44);
+      b[i + 1] = _mm512_shuffle_ps(a[i], a[i + 2], 0xee);
+      b[i + 2] = _mm512_shuffle_ps(a[i + 1], a[i + 3], 0x44);
+      b[i + 3] = _mm512_shuffle_ps(a[i + 1], a[i + 3], 0xee);
+    }
+    for (int c = 0; c < 4; ++c) {  // quarters of 128 bits
+      const __m512 even_low = _mm512_shuffle_f32x4(b[c], b[4 + c], 0x88), odd_low = _mm512_shuffle_f32x4(b[c], b[4 + c], 0xdd);
+      const __m512 even_high = _mm512_shuffle_f32x4(b[8 + c], b[12 + c], 0x88);
+      const __m512 odd_high = _mm512_shuffle_f32x4(b[8 + c], b[12 + c], 0xdd);
+      row[c] = _mm512_shuffle_f32x4(even_low, even_high, 0x88);
+      row[8 + c] = _mm512_shuffle_f32x4(even_low, even_high, 0xdd);
+      row[4 + c] = _mm512_shuffle_f32x4(odd_low, odd_high, 0x88);
+      row[12 + c] = _mm512_shuffle_f32x4(odd_low, odd_high, 0xdd);
+    }
+  }
+};
+
+template <>
+struct Lanes<double> {
+  using Scalar = double;
+  using Batch = BatchOf<double>;
+  static constexpr int width = 8;
+  static Batch broadcast(double x) { return Batch(x); }
+  static Batch load(const double* p) { return Batch::load_aligned(p); }
+  static void store(double* p, Batch a) { a.store_aligned(p); }
+  static void stream(double* p, Batch a) { _mm512_stream_pd(p, a); }
+  static Batch fma(Batch a, Batch b, Batch c) { return _mm512_fmadd_pd(a, b, c); }
+  static Batch fms(Batch a, Batch b, Batch c) { return _mm512_fmsub_pd(a, b, c); }
+  static Batch fnma(Batch a, Batch b, Batch c) { return _mm512_fnmadd_pd(a, b, c); }
+  static Batch where_positive(Batch test, Batch a) {
+    return _mm512_maskz_mov_pd(_mm512_cmp_pd_mask(test, _mm512_setzero_pd(), _CMP_GT_OQ), a);
+  }
+  static void store_first(double* p, Batch a, int count) {
+    if (count == width) {
+      _mm512_storeu_pd(p, a);
+    } else {
+      _mm512_mask_storeu_pd(p, static_cast<__mmask8>((1u << count) - 1u), a);
+    }
+  }
+  static void transpose(Batch (&row)[width]) {
+    __m512d a[8];
+    for (int i = 0; i < 8; i += 2) {
+      a[i] = _mm512_unpacklo_pd(row[i], row[i + 1]);
+      a[i + 1] = _mm512_unpackhi_pd(row[i], row[i + 1]);
+    }
+    for (int c = 0; c < 2; ++c) {  // a[2 i + c] holds column 2 q + c of rows 2 i, 2 i + 1 in its quarter q
+      const __m512d even_low = _mm512_shuffle_f64x2(a[c], a[2 + c], 0x88), odd_low = _mm512_shuffle_f64x2(a[c], a[2 + c], 0xdd);
+      const __m512d even_high = _mm512_shuffle_f64x2(a[4 + c], a[6 + c], 0x88);
+      const __m512d odd_high = _mm512_shuffle_f64x2(a[4 + c], a[6 + c], 0xdd);
+      row[c] = _mm512_shuffle_f64x2(even_low, even_high, 0x88);
+      row[4 + c] = _mm512_shuffle_f64x2(even_low, even_high, 0xdd);
+      row[2 + c] = _mm512_shuffle_f64x2(odd_low, odd_high, 0x88);
+      row[6 + c] = _mm512_shuffle_f64x2(odd_low, odd_high, 0xdd);
+    }
+  }
+};
+
+#include "kernel/kernel_set.inl.h"
+
+}  // namespace
+}  // namespace isa_avx512
+
+const KernelTable& avx512_kernels() { return isa_avx512::table; }
+
+}  // namespace tessera::kernel

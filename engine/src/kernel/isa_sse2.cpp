@@ -1,0 +1,86 @@
+// The kernels for SSE2, the baseline of x86-64. There is no fused multiply-add: results differ in their last bits from
+// those of the other units, within the same stated bounds.
+
+#include <emmintrin.h>
+
+#include <cstddef>
+#include <xsimd/xsimd.hpp>
+
+#include "kernel/kernel_table.h"
+
+namespace tessera::kernel {
+namespace isa_sse2 {
+namespace {
+
+constexpr Isa this_isa = Isa::sse2;
+
+template <class T>
+struct Lanes;
+
+template <>
+struct Lanes<float> {
+  using Scalar = float;
+  using Batch = xsimd::batch<float, xsimd::sse2>;
+  static constexpr int width = 4;
+  static Batch broadcast(float x) { return Batch(x); }
+  static Batch load(const float* p) { return Batch::load_aligned(p); }
+  static void store(float* p, Batch a) { a.store_aligned(p); }
+  static void stream(float* p, Batch a) { _mm_stream_ps(p, a); }
+  static Batch fma(Batch a, Batch b, Batch c) { return a * b + c; }
+  static Batch fms(Batch a, Batch b, Batch c) { return a * b - c; }
+  static Batch fnma(Batch a, Batch b, Batch c) { return c - a * b; }
+  static Batch where_positive(Batch test, Batch a) { return _mm_and_ps(_mm_cmpgt_ps(test, _mm_setzero_ps()), a); }
+  static void store_first(float* p, Batch a, int count) {
+    if (count == width) {
+      _mm_storeu_ps(p, a);
+    } else {
+      alignas(16) float values[width];
+      a.store_aligned(values);
+      for (int i = 0; i < count; ++i) p[i] = values[i];
+    }
+  }
+  static void transpose(Batch (&row)[width]) {
+    __m128 a = row[0], b = row[1], c = row[2], d = row[3];
+    _MM_TRANSPOSE4_PS(a, b, c, d);
+    row[0] = a;
+    row[1] = b;
+    row[2] = c;
+    row[3] = d;
+  }
+};
+
+template <>
+struct Lanes<double> {
+  using Scalar = double;
+  using Batch = xsimd::batch<double, xsimd::sse2>;
+  static constexpr int width = 2;
+  static Batch broadcast(double x) { return Batch(x); }
+  static Batch load(const double* p) { return Batch::load_aligned(p); }
+  static void store(double* p, Batch a) { a.store_aligned(p); }
+  static void stream(double* p, Batch a) { _mm_stream_pd(p, a); }
+  static Batch fma(Batch a, Batch b, Batch c) { return a * b + c; }
+  static Batch fms(Batch a, Batch b, Batch c) { return a * b - c; }
+  static Batch fnma(Batch a, Batch b, Batch c) { return c - a * b; }
+  static Batch where_positive(Batch test, Batch a) { return _mm_and_pd(_mm_cmpgt_pd(test, _mm_setzero_pd()), a); }
+  static void store_first(double* p, Batch a, int count) {
+    if (count == width) {
+      _mm_storeu_pd(p, a);
+    } else {
+      _mm_store_sd(p, a);
+    }
+  }
+  static void transpose(Batch (&row)[width]) {
+    const __m128d a = row[0], b = row[1];
+    row[0] = _mm_unpacklo_pd(a, b);
+    row[1] = _mm_unpackhi_pd(a, b);
+  }
+};
+
+#include "kernel/kernel_set.inl.h"
+
+}  // namespace
+}  // namespace isa_sse2
+
+const KernelTable& sse2_kernels() { return isa_sse2::table; }
+
+}  // namespace tessera::kernel

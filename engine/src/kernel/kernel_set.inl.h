@@ -1,0 +1,19 @@
+// All kernels over this unit's Lanes, and their table. The last include of each isa_*.cpp.
+
+inline constexpr int max_order = 16;  // coefficients of the highest degree
+
+#include "kernel/grid_kernel.inl.h"
+#include "kernel/border_kernel.inl.h"
+#include "kernel/memory_kernels.inl.h"
+
+constexpr KernelTable table = {
+    this_isa,
+    evaluate_grid<Lanes<float>>,
+    evaluate_grid<Lanes<double>>,
+    evaluate_border<Lanes<float>>,
+    scatter<Lanes<float>>,
+    scatter<Lanes<double>>,
+    fma_rate<Lanes<float>>,
+    fma_rate<Lanes<double>>,
+    fill_memory<Lanes<float>>,
+};

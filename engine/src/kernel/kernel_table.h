@@ -1,0 +1,81 @@
+#pragma once
+// What a kernel is given, and the table of the kernels of one instruction set: plain function pointers over raw memory.
+// Callers validate; kernels assume. One table an ISA, each in a translation unit of its own.
+
+#include <cstddef>
+
+#include "tessera/isa.h"
+
+namespace tessera::kernel {
+
+/// Patches in a block: one a lane.
+inline constexpr int block_lanes = 16;
+
+/// A block of patches over a grid of tabulated weights. T is float or double.
+template <class T>
+struct GridJob {
+  const T* net = nullptr;        ///< `[i][j][component][lane]`, 64-byte aligned; 3 components, or 4 if rational (homogeneous)
+  int degree_u = 0, degree_v = 0;
+  bool rational = false;
+  const T* u_weights = nullptr;  ///< `[iu][order][i]`: values, then derivatives, degree_u + 1 of each
+  const T* v_weights = nullptr;  ///< `[iv][order][j]`
+  int u_begin = 0, u_end = 0;    ///< the part of the grid to evaluate
+  int v_begin = 0, v_end = 0;
+  /// Outputs `[sample][component][lane]`, samples in the order of the part, v fastest, `sample_step` elements apart;
+  /// null where not wanted. Aligned to the vector width (64 bytes is enough for all).
+  T* position = nullptr;
+  T* du = nullptr;
+  T* dv = nullptr;
+  T* normal = nullptr;
+  std::ptrdiff_t sample_step = 3 * block_lanes;
+  T offset[3] = {0, 0, 0};       ///< added to positions (doubles only: floats stay relative to the origin)
+  T normal_scale = 1;            ///< a power of two that keeps the squared length of r_u x r_v within range
+  bool streaming = false;        ///< non-temporal stores
+};
+
+/// Border curves of a block, evaluated so that the direction of the parameter does not change a bit.
+template <class T>
+struct BorderJob {
+  const T* control = nullptr;    ///< the first control point, `[component][lane]`
+  std::ptrdiff_t control_step = 0;  ///< elements from one control point of the border to the next
+  int degree = 0;
+  bool rational = false;
+  const T* weights = nullptr;    ///< `[k][degree + 1]`, bitwise symmetric: weights[k][i] == weights[count-1-k][degree-i]
+  int count = 0;
+  T* position = nullptr;         ///< `[k][component][lane]`
+};
+
+/// Moves rows of a block's output, `[row][lane]` with `row_step` elements between rows, to one place a lane.
+template <class T>
+struct ScatterJob {
+  const T* rows = nullptr;       ///< aligned to 64 bytes
+  std::ptrdiff_t row_step = block_lanes;
+  std::size_t count = 0;         ///< rows
+  T* const* lane = nullptr;      ///< block_lanes destinations; row k of lane l goes to lane[l][k * stride]
+  int lane_count = block_lanes;  ///< lanes beyond it are left out
+  std::ptrdiff_t stride = 1;
+};
+
+/// Kernels return their unit's own ISA, which the report hands to the caller.
+struct KernelTable {
+  Isa isa;
+  Isa (*grid_f32)(const GridJob<float>&);
+  Isa (*grid_f64)(const GridJob<double>&);
+  void (*border_f32)(const BorderJob<float>&);
+  void (*scatter_f32)(const ScatterJob<float>&);
+  void (*scatter_f64)(const ScatterJob<double>&);
+  /// For limits.h: `rounds` times 16 independent fused multiply-adds of whole vectors; returns the lanes of a vector.
+  int (*fma_f32)(std::size_t rounds, float* sink);
+  int (*fma_f64)(std::size_t rounds, double* sink);
+  /// For limits.h: fills bytes (a multiple of 64, aligned to 64) with full-width stores.
+  void (*fill)(void* memory, std::size_t bytes, bool streaming);
+};
+
+const KernelTable& sse2_kernels();
+const KernelTable& avx2_kernels();
+const KernelTable& avx512_kernels();
+
+/// The kernels of an ISA. Call it only for one that available_isas() lists.
+const KernelTable& kernels(Isa isa);
+
+}  // namespace tessera::kernel

@@ -1,0 +1,53 @@
+// Kernels that move rather than compute, and the probes of the machine's limits. Included by isa_*.cpp as grid_kernel.inl.h is.
+
+/// Rows to lanes. Runs of `width` rows are transposed in registers and stored as one vector a lane.
+template <class L>
+void scatter(const ScatterJob<typename L::Scalar>& job) {
+  using T = typename L::Scalar;
+  if (job.stride != 1) {
+    for (std::size_t k = 0; k < job.count; ++k)
+      for (int lane = 0; lane < job.lane_count; ++lane)
+        job.lane[lane][static_cast<std::ptrdiff_t>(k) * job.stride] = job.rows[static_cast<std::ptrdiff_t>(k) * job.row_step + lane];
+    return;
+  }
+  typename L::Batch tile[L::width];
+  for (std::size_t k = 0; k < job.count; k += L::width) {
+    const T* rows = job.rows + static_cast<std::ptrdiff_t>(k) * job.row_step;
+    const int count = job.count - k < L::width ? static_cast<int>(job.count - k) : int{L::width};
+    for (int lane = 0; lane < job.lane_count; lane += L::width) {
+      for (int row = 0; row < L::width; ++row) tile[row] = L::load(rows + (row < count ? row : 0) * job.row_step + lane);
+      L::transpose(tile);
+      const int lanes = job.lane_count - lane < L::width ? job.lane_count - lane : int{L::width};
+      for (int l = 0; l < lanes; ++l) L::store_first(job.lane[lane + l] + k, tile[l], count);
+    }
+  }
+}
+
+/// 16 independent chains hide the latency of the multiply-adds; the sum of all keeps the compiler from dropping them.
+template <class L>
+int fma_rate(std::size_t rounds, typename L::Scalar* sink) {
+  typename L::Batch chain[16];
+  for (int i = 0; i < 16; ++i) chain[i] = L::broadcast(static_cast<typename L::Scalar>(i));
+  const auto a = L::broadcast(static_cast<typename L::Scalar>(0.999));
+  const auto b = L::broadcast(static_cast<typename L::Scalar>(0.001));
+  for (std::size_t round = 0; round < rounds; ++round) {
+#pragma GCC unroll 16
+    for (int i = 0; i < 16; ++i) chain[i] = L::fma(chain[i], a, b);
+  }
+  for (int i = 1; i < 16; ++i) chain[0] = chain[0] + chain[i];
+  L::store_first(sink, chain[0], 1);
+  return L::width;
+}
+
+template <class L>
+void fill_memory(void* memory, std::size_t bytes, bool streaming) {
+  auto* out = static_cast<typename L::Scalar*>(memory);
+  const auto value = L::broadcast(1);
+  const std::size_t count = bytes / sizeof(typename L::Scalar);
+  if (streaming) {
+    for (std::size_t k = 0; k < count; k += L::width) L::stream(out + k, value);
+    _mm_sfence();
+  } else {
+    for (std::size_t k = 0; k < count; k += L::width) L::store(out + k, value);
+  }
+}
