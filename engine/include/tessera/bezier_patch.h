@@ -22,8 +22,9 @@ class BezierPatch {
   /// `points`: (degree_u + 1) * (degree_v + 1) finite points in the order above.
   /// Errors: unsupported_degree, count_mismatch, non_finite (index = the offending point).
   static Result<BezierPatch> polynomial(int degree_u, int degree_v, std::span<const Vec3> points);
-  /// `weights`: one finite weight > 0 a point; `points` are not premultiplied. If all weights are equal by == they are
-  /// dropped and the patch is polynomial. Errors: as above, and invalid_weight (index = the offending weight).
+  /// `weights`: one finite weight > 0 a point, at least 1e-100 of the largest; `points` are not premultiplied. If all
+  /// weights are equal by == they are dropped and the patch is polynomial. Errors: as above, and invalid_weight
+  /// (index = the offending weight).
   static Result<BezierPatch> rational(int degree_u, int degree_v, std::span<const Vec3> points,
                                       std::span<const double> weights);
 

@@ -32,7 +32,7 @@ inline double max_abs(const Vec3& a) { return std::max({std::abs(a.x), std::abs(
 inline Vec3 normalized(const Vec3& a) {
   const double scale = max_abs(a);
   if (!(scale > 0)) return {};
-  const Vec3 b = (1 / scale) * a;
+  const Vec3 b{a.x / scale, a.y / scale, a.z / scale};  // the reciprocal of a subnormal scale is infinite
   return (1 / length(b)) * b;
 }
 

@@ -1,0 +1,54 @@
+#include "basis/bernstein.h"
+
+#include <algorithm>
+
+namespace tessera {
+namespace {
+
+/// values[0..degree] of one degree -> the same lifted by the difference v_{i-1} - v_i, one value longer, times `factor`.
+void difference_and_scale(int degree, double factor, double* values) {
+  values[degree + 1] = factor * values[degree];
+  for (int i = degree; i > 0; --i) values[i] = factor * (values[i - 1] - values[i]);
+  values[0] *= -factor;
+}
+
+}  // namespace
+
+double binomial(int n, int k) {
+  if (k < 0 || k > n) return 0;
+  double value = 1;
+  for (int i = 1; i <= std::min(k, n - k); ++i) value = value * (n - i + 1) / i;  // each quotient is C(n, i)
+  return value;
+}
+
+// The recurrence B_{i,k} = (1-t) B_{i,k-1} + t B_{i-1,k-1} (Farin, Curves and Surfaces for CAGD, 5th ed., eq. 5.2).
+void bernstein_values(int degree, double t, double* values) {
+  const double s = 1 - t;
+  values[0] = 1;
+  for (int k = 1; k <= degree; ++k) {
+    values[k] = t * values[k - 1];
+    for (int i = k - 1; i > 0; --i) values[i] = s * values[i] + t * values[i - 1];
+    values[0] *= s;
+  }
+}
+
+// Farin, sec. 5.3: the derivatives are differences of the polynomials of lower degree.
+void bernstein_derivatives(int degree, double t, double* values) {
+  if (degree < 1) {
+    std::fill_n(values, degree + 1, 0.0);
+    return;
+  }
+  bernstein_values(degree - 1, t, values);
+  difference_and_scale(degree - 1, degree, values);
+}
+
+void bernstein_second_derivatives(int degree, double t, double* values) {
+  if (degree < 2) {
+    std::fill_n(values, degree + 1, 0.0);
+    return;
+  }
+  bernstein_derivatives(degree - 1, t, values);
+  difference_and_scale(degree - 1, degree, values);
+}
+
+}  // namespace tessera

@@ -1,0 +1,19 @@
+#pragma once
+// Bernstein polynomials B_{i,n}(t) = C(n,i) t^i (1-t)^(n-i) and their derivatives, all of one degree at one parameter.
+
+namespace tessera {
+
+/// C(n, k), exact up to n = 56; 0 for k outside 0..n.
+double binomial(int n, int k);
+
+// Each writes degree + 1 values, i = 0..degree, of degree >= 0. Any finite t; on [0,1] the values are not negative and
+// nothing cancels in them (relative error at most 2 * degree units of 2^-53).
+
+/// B_{i,n}(t): exactly 1 and 0 at t = 0 and t = 1.
+void bernstein_values(int degree, double t, double* values);
+/// d/dt of each: n (B_{i-1,n-1} - B_{i,n-1}).
+void bernstein_derivatives(int degree, double t, double* values);
+/// d2/dt2 of each: n (n-1) (B_{i-2,n-2} - 2 B_{i-1,n-2} + B_{i,n-2}).
+void bernstein_second_derivatives(int degree, double t, double* values);
+
+}  // namespace tessera

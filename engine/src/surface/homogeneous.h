@@ -1,0 +1,51 @@
+#pragma once
+// Control nets in homogeneous form, for the reference evaluators.
+
+#include <array>
+
+#include "tessera/bezier_patch.h"
+
+namespace tessera {
+
+/// (w x, w y, w z, w). Left uninitialised by default: nets of the largest degree live on the stack.
+struct Homogeneous {
+  double x, y, z, w;
+
+  Vec3 vector() const { return {x, y, z}; }
+  Vec3 project() const { return {x / w, y / w, z / w}; }
+};
+inline Homogeneous operator+(const Homogeneous& a, const Homogeneous& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z, a.w + b.w};
+}
+inline Homogeneous operator-(const Homogeneous& a, const Homogeneous& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z, a.w - b.w};
+}
+inline Homogeneous operator*(double s, const Homogeneous& a) { return {s * a.x, s * a.y, s * a.z, s * a.w}; }
+
+/// A patch's net relative to `origin`, with points and weights divided by powers of two that bring the largest near 1:
+/// sums and products then neither overflow nor underflow, and the scaling itself rounds nothing.
+/// Polynomial patches have weight 1.
+struct HomogeneousNet {
+  /// Relative to zero.
+  explicit HomogeneousNet(const BezierPatch& patch) : HomogeneousNet(patch, Vec3{}) {}
+  /// Relative to one of the patch's points.
+  HomogeneousNet(const BezierPatch& patch, const Vec3& origin);
+
+  const Homogeneous& at(int i, int j) const { return points[static_cast<std::size_t>(i * (degree_v + 1) + j)]; }
+  std::size_t size() const { return static_cast<std::size_t>((degree_u + 1) * (degree_v + 1)); }
+  /// From this net's scale and origin to the patch's.
+  Vec3 absolute(const Vec3& p) const { return scale * (p + scaled_origin); }
+
+  int degree_u, degree_v;
+  double scale;        ///< times a vector of this net is a vector of the patch
+  Vec3 scaled_origin;  ///< the origin in this net's scale
+  std::array<Homogeneous, (max_degree + 1) * (max_degree + 1)> points;
+};
+
+/// The corner whose quarter of [0,1]^2 holds (u,v). Relative to it, points of a collapsed edge are exact zeros, and the
+/// corner itself evaluates exactly.
+inline const Vec3& nearest_corner(const BezierPatch& patch, double u, double v) {
+  return patch.point(u > 0.5 ? patch.degree_u() : 0, v > 0.5 ? patch.degree_v() : 0);
+}
+
+}  // namespace tessera
