@@ -1,0 +1,205 @@
+#include "tessera/patch_set.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string>
+#include <tuple>
+
+#include "base/guard.h"
+#include "block/pack.h"
+#include "block/patch_set_impl.h"
+
+namespace tessera {
+namespace {
+
+/// Patches of equal key share blocks.
+auto block_key(const BezierPatch& patch) { return std::tuple(patch.degree_u(), patch.degree_v(), patch.is_rational()); }
+
+/// Assigns patches to groups, blocks and lanes, in the patches' order within a group.
+void lay_out(PatchSet::Impl& set) {
+  std::vector<std::uint32_t> order(set.patches.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](auto a, auto b) { return block_key(set.patches[a]) < block_key(set.patches[b]); });
+  constexpr std::size_t lanes = PatchSet::lanes;
+  set.slots.resize(order.size());
+  std::size_t next_value = 0;
+  for (std::size_t begin = 0; begin < order.size();) {
+    const BezierPatch& first = set.patches[order[begin]];
+    std::size_t end = begin;
+    while (end < order.size() && block_key(set.patches[order[end]]) == block_key(first)) ++end;
+    BlockGroup group{first.degree_u(), first.degree_v(), first.is_rational(), set.lane_counts.size(),
+                     (end - begin + lanes - 1) / lanes, next_value,
+                     block_values(first.degree_u(), first.degree_v(), first.is_rational())};
+    next_value += group.block_count * group.block_values;
+    for (std::size_t block = begin; block < end; block += lanes) {
+      const std::size_t used = std::min(lanes, end - block);
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
+        set.lane_patches.push_back(order[block + (lane < used ? lane : 0)]);
+        if (lane < used)
+          set.slots[order[block + lane]] = {static_cast<std::uint32_t>(set.lane_counts.size()), static_cast<std::uint32_t>(lane)};
+      }
+      set.lane_counts.push_back(static_cast<std::uint8_t>(used));
+    }
+    set.groups.push_back(group);
+    begin = end;
+  }
+  if (set.kinds.float_bernstein) set.single.bernstein.resize(next_value);
+  if (set.kinds.float_power) set.single.power.resize(next_value);
+  if (set.kinds.double_bernstein) set.twice.bernstein.resize(next_value);
+  if (set.kinds.double_power) set.twice.power.resize(next_value);
+}
+
+/// 1 where the squared length of r_u x r_v stays within float's range by itself, else about 1 / magnitude.
+float choose_normal_scale(const PatchSet::Impl& set) {
+  const double magnitude = std::max(max_abs(set.box.lower - set.origin), max_abs(set.box.upper - set.origin));
+  const int exponent = magnitude > 0 ? std::ilogb(magnitude) : 0;
+  return std::abs(exponent) <= 20 ? 1.0f : std::ldexp(1.0f, -std::clamp(exponent, -120, 120));
+}
+
+Status too_large(std::size_t patch) {
+  return Status(StatusCode::non_finite,
+                "patch " + std::to_string(patch) + ": a coefficient relative to the set's origin is outside the range of its blocks' numbers",
+                static_cast<std::ptrdiff_t>(patch));
+}
+
+Status check_sources(std::span<const BezierPatch> patches, std::span<const PatchSource> sources) {
+  if (patches.empty()) return Status(StatusCode::invalid_argument, "a patch set needs at least one patch");
+  if (patches.size() > std::numeric_limits<std::uint32_t>::max())
+    return Status(StatusCode::invalid_argument, "a patch set holds at most 2^32 - 1 patches, not " + std::to_string(patches.size()));
+  if (sources.size() != patches.size())
+    return Status(StatusCode::count_mismatch, std::to_string(patches.size()) + " patches need as many sources, not " +
+                                                  std::to_string(sources.size()));
+  for (std::size_t k = 0; k < sources.size(); ++k) {
+    const Domain& d = sources[k].domain;
+    if (!(d.u0 < d.u1 && d.v0 < d.v1) || !std::isfinite(d.u1 - d.u0) || !std::isfinite(d.v1 - d.v0))
+      return Status(StatusCode::invalid_argument, "the domain of patch " + std::to_string(k) + " is not a finite rectangle",
+                    static_cast<std::ptrdiff_t>(k));
+  }
+  return {};
+}
+
+}  // namespace
+
+const BlockGroup& PatchSet::Impl::group_of_block(std::size_t block) const {
+  return *std::prev(std::upper_bound(groups.begin(), groups.end(), block,
+                                     [](std::size_t b, const BlockGroup& group) { return b < group.first_block; }));
+}
+
+bool PatchSet::Impl::has(Precision precision, Representation representation) const {
+  const bool bernstein = representation == Representation::bernstein;
+  if (precision == Precision::single_precision) return bernstein ? kinds.float_bernstein : kinds.float_power;
+  return bernstein ? kinds.double_bernstein : kinds.double_power;
+}
+
+bool PatchSet::Impl::pack(std::size_t patch, std::vector<double>& scratch) {
+  const Slot slot = slots[patch];
+  const BlockGroup& group = group_of_block(slot.block);
+  const std::size_t first = group.first_value + (slot.block - group.first_block) * group.block_values;
+  const auto write = [&](auto& coefficients) {
+    auto* block = coefficients.data() + first;
+    write_lane(scratch, block, slot.lane);
+    if (slot.lane == 0)
+      for (std::uint32_t lane = lane_counts[slot.block]; lane < lanes; ++lane) write_lane(scratch, block, lane);
+  };
+  for (const auto representation : {Representation::bernstein, Representation::power}) {
+    const bool in_float = has(Precision::single_precision, representation);
+    const bool in_double = has(Precision::double_precision, representation);
+    if (!in_float && !in_double) continue;
+    relative_coefficients(patches[patch], origin, representation, scratch);
+    const double limit = in_float ? double{std::numeric_limits<float>::max()} : std::numeric_limits<double>::max();
+    for (const double value : scratch)
+      if (!(std::abs(value) <= limit)) return false;
+    const bool bernstein = representation == Representation::bernstein;
+    if (in_float) write(bernstein ? single.bernstein : single.power);
+    if (in_double) write(bernstein ? twice.bernstein : twice.power);
+  }
+  return true;
+}
+
+Result<PatchSet> PatchSet::from(std::span<const BezierPatch> patches, const PatchSetOptions& options) {
+  return guarded([&]() -> Result<PatchSet> {
+    std::vector<PatchSource> sources(patches.size());
+    for (std::size_t k = 0; k < sources.size(); ++k) sources[k].surface = static_cast<std::uint32_t>(k);
+    return from(patches, sources, options);
+  });
+}
+
+Result<PatchSet> PatchSet::from(std::span<const BezierPatch> patches, std::span<const PatchSource> sources,
+                                const PatchSetOptions& options) {
+  return guarded([&]() -> Result<PatchSet> {
+    if (Status status = check_sources(patches, sources); !status.ok()) return status;
+    if (options.origin && !is_finite(*options.origin))
+      return Status(StatusCode::non_finite, "the origin of a patch set must be finite");
+    auto set = std::make_unique<Impl>();
+    set->patches.assign(patches.begin(), patches.end());
+    set->sources.assign(sources.begin(), sources.end());
+    set->kinds = options.blocks;
+    for (const BezierPatch& patch : patches) {
+      set->box.extend(patch.hull_box());
+      set->collapsed.push_back(patch.collapsed_edges());
+    }
+    for (const PatchSource& source : sources) set->surface_count = std::max(set->surface_count, std::size_t{source.surface} + 1);
+    set->origin = options.origin.value_or(set->box.centre());
+    set->normal_scale = choose_normal_scale(*set);
+    lay_out(*set);
+    std::vector<double> scratch;
+    for (std::size_t k = 0; k < patches.size(); ++k)
+      if (!set->pack(k, scratch)) return too_large(k);
+    return PatchSet(std::move(set));
+  });
+}
+
+PatchSet::PatchSet(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+PatchSet::PatchSet(PatchSet&&) noexcept = default;
+PatchSet& PatchSet::operator=(PatchSet&&) noexcept = default;
+PatchSet::~PatchSet() = default;
+
+std::size_t PatchSet::patch_count() const { return impl_->patches.size(); }
+std::size_t PatchSet::surface_count() const { return impl_->surface_count; }
+const BezierPatch& PatchSet::patch(std::size_t index) const { return impl_->patches[index]; }
+const PatchSource& PatchSet::source(std::size_t index) const { return impl_->sources[index]; }
+Vec3 PatchSet::origin() const { return impl_->origin; }
+const Box3& PatchSet::box() const { return impl_->box; }
+const BlockKinds& PatchSet::blocks() const { return impl_->kinds; }
+std::size_t PatchSet::block_count() const { return impl_->lane_counts.size(); }
+PatchSet::Slot PatchSet::slot(std::size_t index) const { return impl_->slots[index]; }
+std::uint64_t PatchSet::revision() const { return impl_->revision; }
+
+std::size_t PatchSet::memory_bytes() const {
+  const auto bytes = [](const auto& vector) { return vector.capacity() * sizeof(vector[0]); };
+  std::size_t total = sizeof(Impl) + bytes(impl_->patches) + bytes(impl_->sources) + bytes(impl_->slots) + bytes(impl_->collapsed) +
+                      bytes(impl_->groups) + bytes(impl_->lane_patches) + bytes(impl_->lane_counts) + bytes(impl_->single.bernstein) +
+                      bytes(impl_->single.power) + bytes(impl_->twice.bernstein) + bytes(impl_->twice.power);
+  for (const BezierPatch& patch : impl_->patches) total += patch.points().size_bytes() + patch.weights().size_bytes();
+  return total;
+}
+
+Status PatchSet::set_control_points(std::size_t index, std::span<const Vec3> points) {
+  return guarded([&]() -> Status {
+    if (index >= patch_count())
+      return Status(StatusCode::invalid_argument,
+                    "there is no patch " + std::to_string(index) + " in a set of " + std::to_string(patch_count()),
+                    static_cast<std::ptrdiff_t>(index));
+    const BezierPatch& old = patch(index);
+    auto edited = old.is_rational() ? BezierPatch::rational(old.degree_u(), old.degree_v(), points, old.weights())
+                                    : BezierPatch::polynomial(old.degree_u(), old.degree_v(), points);
+    if (!edited) return edited.status();
+    std::vector<double> scratch;
+    std::swap(impl_->patches[index], *edited);
+    if (!impl_->pack(index, scratch)) {
+      std::swap(impl_->patches[index], *edited);
+      (void)impl_->pack(index, scratch);  // it fitted before
+      return too_large(index);
+    }
+    impl_->collapsed[index] = impl_->patches[index].collapsed_edges();
+    impl_->box.extend(impl_->patches[index].hull_box());
+    impl_->normal_scale = choose_normal_scale(*impl_);
+    ++impl_->revision;
+    return {};
+  });
+}
+
+}  // namespace tessera

@@ -1,0 +1,64 @@
+#pragma once
+// The inside of a PatchSet: groups of blocks, for the floors that evaluate them.
+
+#include <cstdint>
+#include <vector>
+
+#include "base/aligned.h"
+#include "tessera/patch_set.h"
+
+namespace tessera {
+
+/// Blocks of equal degrees and rationality, one after the other.
+struct BlockGroup {
+  int degree_u = 0, degree_v = 0;
+  bool rational = false;
+  std::size_t first_block = 0, block_count = 0;
+  std::size_t first_value = 0;    ///< in the coefficient arrays, which all have the same layout
+  std::size_t block_values = 0;   ///< values a block
+};
+
+/// The coefficients of all groups in one precision, over either basis; empty where not asked for.
+template <class T>
+struct Coefficients {
+  AlignedVector<T> bernstein, power;
+  const AlignedVector<T>& of(Representation representation) const {
+    return representation == Representation::bernstein ? bernstein : power;
+  }
+};
+
+class PatchSet::Impl {
+ public:
+  std::vector<BezierPatch> patches;
+  std::vector<PatchSource> sources;
+  std::vector<Slot> slots;                  ///< of each patch
+  std::vector<EdgeMask> collapsed;          ///< of each patch
+  std::vector<BlockGroup> groups;           ///< by degree_u, degree_v, rational
+  std::vector<std::uint32_t> lane_patches;  ///< `[block][lane]`: the patch there
+  std::vector<std::uint8_t> lane_counts;    ///< of each block: lanes in use; the others repeat its first patch
+  Coefficients<float> single;
+  Coefficients<double> twice;
+  BlockKinds kinds;
+  Vec3 origin;
+  Box3 box;
+  std::size_t surface_count = 0;
+  std::uint64_t revision = 0;
+  float normal_scale = 1;                   ///< a power of two; see GridJob::normal_scale
+
+  const BlockGroup& group_of_block(std::size_t block) const;
+  template <class T>
+  const Coefficients<T>& coefficients() const {
+    if constexpr (sizeof(T) == 4) {
+      return single;
+    } else {
+      return twice;
+    }
+  }
+  bool has(Precision precision, Representation representation) const;
+
+  /// Writes a patch into its lane of every kind of block, and into the unused lanes that repeat it.
+  /// False if a coefficient does not fit float; `scratch` is reused between calls.
+  bool pack(std::size_t patch, std::vector<double>& scratch);
+};
+
+}  // namespace tessera

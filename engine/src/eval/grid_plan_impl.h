@@ -1,0 +1,53 @@
+#pragma once
+// The inside of a GridPlan: parameters, and the weights of each degree at them.
+
+#include <array>
+#include <vector>
+
+#include "base/aligned.h"
+#include "kernel/kernel_table.h"
+#include "tessera/evaluate.h"
+
+namespace tessera {
+
+/// `[k][order][i]` for parameter k: values, then derivatives, degree + 1 of each; one table a degree in use.
+template <class T>
+using WeightTables = std::array<AlignedVector<T>, max_degree + 1>;
+
+/// The tables of one precision.
+template <class T>
+struct GridWeights {
+  WeightTables<T> u, v;
+};
+
+/// Degrees and rationality of a group, and its patches: what a plan must find again in the set that it runs over.
+struct PlannedGroup {
+  int degree_u, degree_v;
+  bool rational;
+  std::size_t blocks, patches;
+};
+
+class GridPlan::Impl {
+ public:
+  std::vector<double> u, v;
+  GridPlanOptions options;
+  Isa isa = Isa::sse2;
+  std::vector<PlannedGroup> groups;
+  std::size_t patch_count = 0, block_count = 0;
+  GridWeights<float> single;
+  GridWeights<double> twice;
+  /// Whether any parameter lies on the edges u = 0, u = 1, v = 0, v = 1: only there can a collapsed edge be met.
+  EdgeMask edges;
+
+  std::size_t samples() const { return u.size() * v.size(); }
+  template <class T>
+  const GridWeights<T>& weights() const {
+    if constexpr (sizeof(T) == 4) {
+      return single;
+    } else {
+      return twice;
+    }
+  }
+};
+
+}  // namespace tessera
