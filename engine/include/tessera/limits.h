@@ -17,10 +17,9 @@ struct Work {
   bool double_precision = false;
 };
 
-/// Rates of one thread, or of `threads` threads together.
+/// Rates of one thread.
 struct Limits {
   Isa isa = Isa::sse2;
-  int threads = 1;
   double float_operations_per_second = 0;   ///< fused multiply-adds, one float each (SSE2: multiply and add)
   double double_operations_per_second = 0;
   double store_bytes_per_second = 0;        ///< the better of plain and streaming fill at the size asked for

@@ -63,6 +63,10 @@ class StagedBlock {
     return -1;
   }
 
+  static bool packed(const View3<T>& view) {
+    return view.component[1] == view.component[0] + 1 && view.component[2] == view.component[0] + 2;
+  }
+
   /// One record holds all views if they share a stride of 3 values a view and fill it without a gap.
   void find_record() {
     T* first = views_[0].component[0];
@@ -71,8 +75,7 @@ class StagedBlock {
     for (int k = 0; k < wanted_; ++k) {
       const View3<T>& view = views_[k];
       const std::ptrdiff_t offset = view.component[0] - first;
-      const bool packed = view.component[1] == view.component[0] + 1 && view.component[2] == view.component[0] + 2;
-      if (!packed || view.stride != 3 * wanted_ || offset % 3 != 0 || offset / 3 >= wanted_ || filled[offset / 3]) return;
+      if (!packed(view) || view.stride != 3 * wanted_ || offset % 3 != 0 || offset / 3 >= wanted_ || filled[offset / 3]) return;
       filled[offset / 3] = true;
       field_[k] = static_cast<int>(offset / 3);
     }
@@ -99,8 +102,14 @@ class StagedBlock {
     }
     for (int k = 0; k < wanted_; ++k) {
       const View3<T>& view = views_[k];
+      const T* rows = stage_.data() + k * vector_values * samples_staged;
+      if (packed(view) && view.stride == 3) {
+        move({.rows = rows, .row_step = lanes, .count = 3 * count, .lane_count = lane_count}, lane_patches,
+             [&](std::size_t patch) { return view.component[0] + (patch * samples + first) * 3; });
+        continue;
+      }
       for (int c = 0; c < 3; ++c) {
-        move({.rows = stage_.data() + k * vector_values * samples_staged + c * lanes,
+        move({.rows = rows + c * lanes,
               .row_step = vector_values,
               .count = count,
               .lane_count = lane_count,

@@ -1,8 +1,11 @@
 #pragma once
 // Uniform grids whose borders agree between neighbouring patches, for meshes and for ray scenes.
 
+#include <array>
 #include <optional>
+#include <utility>
 
+#include "base/aligned.h"
 #include "tessera/evaluate.h"
 
 namespace tessera {
@@ -27,6 +30,8 @@ class UniformGrid {
 
   GridPlan plan_;
   int rate_u_, rate_v_;
+  /// Of each degree in use along u and v: `[k][i]`, see BorderJob::weights.
+  std::array<AlignedVector<float>, max_degree + 1> border_weights_u_, border_weights_v_;
 };
 
 }  // namespace tessera

@@ -1,0 +1,118 @@
+#include "eval/uniform_grid.h"
+
+#include <algorithm>
+#include <array>
+
+#include "base/aligned.h"
+#include "basis/bernstein.h"
+#include "block/patch_set_impl.h"
+#include "eval/grid_plan_impl.h"
+#include "kernel/kernel_table.h"
+#include "parallel/parallel_for.h"
+
+namespace tessera {
+namespace {
+
+/// Bernstein weights at k / rate whose bits do not depend on the direction: B_i = C(n,i) (t^i s^(n-i)) with t = k / rate
+/// and s = (rate - k) / rate, so that B_i at k is B_{n-i} at rate - k.
+AlignedVector<float> symmetric_weights(int degree, int rate) {
+  AlignedVector<float> weights;
+  weights.reserve(static_cast<std::size_t>((rate + 1) * (degree + 1)));
+  for (int k = 0; k <= rate; ++k) {
+    std::array<double, max_degree + 1> t{1}, s{1};
+    for (std::size_t i = 1; i <= static_cast<std::size_t>(degree); ++i) {
+      t[i] = t[i - 1] * (static_cast<double>(k) / rate);
+      s[i] = s[i - 1] * (static_cast<double>(rate - k) / rate);
+    }
+    for (int i = 0; i <= degree; ++i)
+      weights.push_back(static_cast<float>(binomial(degree, i) * (t[static_cast<std::size_t>(i)] * s[static_cast<std::size_t>(degree - i)])));
+  }
+  return weights;
+}
+
+/// Where one edge of a patch lies in its net and in its grid.
+struct EdgePlace {
+  Edge edge;
+  bool along_u;         ///< the curve's parameter is u
+  bool at_end;          ///< the other parameter is 1
+};
+constexpr EdgePlace edge_places[] = {
+    {Edge::v0, true, false}, {Edge::v1, true, true}, {Edge::u0, false, false}, {Edge::u1, false, true}};
+
+/// Evaluates the borders of one block and writes them to the records of its patches.
+class BorderWriter {
+ public:
+  BorderWriter(const PatchSet::Impl& set, const kernel::KernelTable& kernels, int rate_u, int rate_v, const View3<float>& out,
+               std::span<const AlignedVector<float>> weights_u, std::span<const AlignedVector<float>> weights_v)
+      : set_(set), kernels_(kernels), rate_u_(rate_u), rate_v_(rate_v), out_(out), weights_u_(weights_u), weights_v_(weights_v) {}
+
+  void run(std::size_t block, AlignedVector<float>& stage) const {
+    const BlockGroup& group = set_.group_of_block(block);
+    const float* net = set_.single.bernstein.data() + group.first_value + (block - group.first_block) * group.block_values;
+    const std::ptrdiff_t coefficient = (group.rational ? 4 : 3) * PatchSet::lanes;
+    const std::ptrdiff_t row = coefficient * (group.degree_v + 1);
+    for (const EdgePlace& place : edge_places) {
+      kernel::BorderJob<float> job;
+      job.degree = place.along_u ? group.degree_u : group.degree_v;
+      job.control_step = place.along_u ? row : coefficient;
+      job.control = net + (place.at_end ? (place.along_u ? coefficient * group.degree_v : row * group.degree_u) : 0);
+      job.rational = group.rational;
+      job.weights = (place.along_u ? weights_u_ : weights_v_)[static_cast<std::size_t>(job.degree)].data();
+      job.count = (place.along_u ? rate_u_ : rate_v_) + 1;
+      stage.resize(static_cast<std::size_t>(job.count) * 3 * PatchSet::lanes);
+      job.position = stage.data();
+      kernels_.border_f32(job);
+      for (std::size_t lane = 0; lane < set_.lane_counts[block]; ++lane)
+        write(set_.lane_patches[block * PatchSet::lanes + lane], lane, place, job.count, stage.data());
+    }
+  }
+
+ private:
+  void write(std::size_t patch, std::size_t lane, const EdgePlace& place, int count, const float* stage) const {
+    const bool collapsed = set_.collapsed[patch].has(place.edge);
+    const std::size_t columns = static_cast<std::size_t>(rate_v_) + 1;
+    for (int k = 0; k < count; ++k) {
+      const std::size_t iu = static_cast<std::size_t>(place.along_u ? k : place.at_end ? rate_u_ : 0);
+      const std::size_t iv = static_cast<std::size_t>(place.along_u ? (place.at_end ? rate_v_ : 0) : k);
+      const std::size_t record = (patch * (static_cast<std::size_t>(rate_u_) + 1) + iu) * columns + iv;
+      const float* point = stage + (collapsed ? 0 : k) * 3 * PatchSet::lanes + lane;  // a pole is one point: the corner's
+      for (int c = 0; c < 3; ++c) out_.at(record, c) = point[c * PatchSet::lanes];
+    }
+  }
+
+  const PatchSet::Impl& set_;
+  const kernel::KernelTable& kernels_;
+  int rate_u_, rate_v_;
+  const View3<float>& out_;
+  std::span<const AlignedVector<float>> weights_u_, weights_v_;
+};
+
+}  // namespace
+
+Result<UniformGrid> UniformGrid::make(const PatchSet& set, int rate_u, int rate_v, std::optional<Isa> isa) {
+  const auto u = uniform_parameters(rate_u + 1), v = uniform_parameters(rate_v + 1);
+  auto plan = GridPlan::make(set, u, v, {.isa = isa});
+  if (!plan) return plan.status();
+  UniformGrid grid(std::move(*plan), rate_u, rate_v);
+  for (const BlockGroup& group : set.impl().groups) {
+    auto& along_u = grid.border_weights_u_[static_cast<std::size_t>(group.degree_u)];
+    auto& along_v = grid.border_weights_v_[static_cast<std::size_t>(group.degree_v)];
+    if (along_u.empty()) along_u = symmetric_weights(group.degree_u, rate_u);
+    if (along_v.empty()) along_v = symmetric_weights(group.degree_v, rate_v);
+  }
+  return grid;
+}
+
+Status UniformGrid::run(const PatchSet& set, const GridViews<float>& out, const Execution& execution) const {
+  if (Status status = evaluate(set, plan_, out, execution); !status.ok()) return status;
+  if (out.position.empty()) return {};
+  const BorderWriter borders(set.impl(), kernel::kernels(plan_.isa()), rate_u_, rate_v_, out.position, border_weights_u_, border_weights_v_);
+  const std::size_t border_points = static_cast<std::size_t>(2 * (rate_u_ + rate_v_)) * PatchSet::lanes;
+  const std::size_t grain = std::max<std::size_t>(1, 16384 / border_points);
+  return parallel_for(set.block_count(), grain, {.cancel = execution.cancel}, [&](std::size_t begin, std::size_t end) {
+    thread_local AlignedVector<float> stage;  // kept, so that a repeated call allocates nothing
+    for (std::size_t block = begin; block < end; ++block) borders.run(block, stage);
+  });
+}
+
+}  // namespace tessera
