@@ -46,7 +46,7 @@ class BorderWriter {
                std::span<const AlignedVector<float>> weights_u, std::span<const AlignedVector<float>> weights_v)
       : set_(set), kernels_(kernels), rate_u_(rate_u), rate_v_(rate_v), out_(out), weights_u_(weights_u), weights_v_(weights_v) {}
 
-  void run(std::size_t block, AlignedVector<float>& stage) const {
+  void run(std::size_t block) const {
     const BlockGroup& group = set_.group_of_block(block);
     const float* net = set_.single.bernstein.data() + group.first_value + (block - group.first_block) * group.block_values;
     const std::ptrdiff_t coefficient = (group.rational ? 4 : 3) * PatchSet::lanes;
@@ -57,26 +57,40 @@ class BorderWriter {
       job.control_step = place.along_u ? row : coefficient;
       job.control = net + (place.at_end ? (place.along_u ? coefficient * group.degree_v : row * group.degree_u) : 0);
       job.rational = group.rational;
-      job.weights = (place.along_u ? weights_u_ : weights_v_)[static_cast<std::size_t>(job.degree)].data();
-      job.count = (place.along_u ? rate_u_ : rate_v_) + 1;
-      stage.resize(static_cast<std::size_t>(job.count) * 3 * PatchSet::lanes);
-      job.position = stage.data();
-      kernels_.border_f32(job);
-      for (std::size_t lane = 0; lane < set_.lane_counts[block]; ++lane)
-        write(set_.lane_patches[block * PatchSet::lanes + lane], lane, place, job.count, stage.data());
+      evaluate_edge(block, place, job);
     }
   }
 
  private:
-  void write(std::size_t patch, std::size_t lane, const EdgePlace& place, int count, const float* stage) const {
-    const bool collapsed = set_.collapsed[patch].has(place.edge);
-    const std::size_t columns = static_cast<std::size_t>(rate_v_) + 1;
-    for (int k = 0; k < count; ++k) {
-      const std::size_t iu = static_cast<std::size_t>(place.along_u ? k : place.at_end ? rate_u_ : 0);
-      const std::size_t iv = static_cast<std::size_t>(place.along_u ? (place.at_end ? rate_v_ : 0) : k);
-      const std::size_t record = (patch * (static_cast<std::size_t>(rate_u_) + 1) + iu) * columns + iv;
-      const float* point = stage + (collapsed ? 0 : k) * 3 * PatchSet::lanes + lane;  // a pole is one point: the corner's
-      for (int c = 0; c < 3; ++c) out_.at(record, c) = point[c * PatchSet::lanes];
+  static constexpr int piece = 64;  ///< points staged at once
+
+  void evaluate_edge(std::size_t block, const EdgePlace& place, kernel::BorderJob<float> job) const {
+    alignas(cache_line) std::array<float, static_cast<std::size_t>(piece) * 3 * PatchSet::lanes> stage;
+    const float* weights = (place.along_u ? weights_u_ : weights_v_)[static_cast<std::size_t>(job.degree)].data();
+    const int count = (place.along_u ? rate_u_ : rate_v_) + 1;
+    job.position = stage.data();
+    for (int first = 0; first < count; first += piece) {
+      job.weights = weights + std::ptrdiff_t{first} * (job.degree + 1);
+      job.count = std::min(piece, count - first);
+      kernels_.border_f32(job);
+      for (std::size_t lane = 0; lane < set_.lane_counts[block]; ++lane) {
+        const std::uint32_t patch = set_.lane_patches[block * PatchSet::lanes + lane];
+        if (!set_.collapsed[patch].has(place.edge)) {
+          write(patch, place, first, job.count, stage.data() + lane, 3 * PatchSet::lanes);
+        } else if (first == 0) {
+          write(patch, place, 0, count, stage.data() + lane, 0);  // a pole is one point: the corner's
+        }
+      }
+    }
+  }
+
+  /// Points first .. first + count - 1 of an edge, `step` values apart in the stage.
+  void write(std::size_t patch, const EdgePlace& place, int first, int count, const float* stage, std::ptrdiff_t step) const {
+    for (int k = 0; k < count; ++k, stage += step) {
+      const auto iu = static_cast<std::size_t>(place.along_u ? first + k : place.at_end ? rate_u_ : 0);
+      const auto iv = static_cast<std::size_t>(place.along_u ? (place.at_end ? rate_v_ : 0) : first + k);
+      const std::size_t record = (patch * static_cast<std::size_t>(rate_u_ + 1) + iu) * static_cast<std::size_t>(rate_v_ + 1) + iv;
+      for (int c = 0; c < 3; ++c) out_.at(record, c) = stage[c * PatchSet::lanes];
     }
   }
 
@@ -109,9 +123,10 @@ Status UniformGrid::run(const PatchSet& set, const GridViews<float>& out, const 
   const BorderWriter borders(set.impl(), kernel::kernels(plan_.isa()), rate_u_, rate_v_, out.position, border_weights_u_, border_weights_v_);
   const std::size_t border_points = static_cast<std::size_t>(2 * (rate_u_ + rate_v_)) * PatchSet::lanes;
   const std::size_t grain = std::max<std::size_t>(1, 16384 / border_points);
-  return parallel_for(set.block_count(), grain, {.cancel = execution.cancel}, [&](std::size_t begin, std::size_t end) {
-    thread_local AlignedVector<float> stage;  // kept, so that a repeated call allocates nothing
-    for (std::size_t block = begin; block < end; ++block) borders.run(block, stage);
+  Execution quiet;  // progress and the report are evaluate()'s
+  quiet.cancel = execution.cancel;
+  return parallel_for(set.block_count(), grain, quiet, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t block = begin; block < end; ++block) borders.run(block);
   });
 }
 

@@ -22,19 +22,37 @@ inline void combine(const typename L::Scalar* weights, int count, const typename
   }
 }
 
-/// The row curves of one u: curve[component][j] = sum_i weights[i] net[i][j][component].
-template <class L, int Components, int Capacity>
+/// `Count` neighbouring row curves from index j: independent sums, so that the multiply-adds overlap.
+template <class L, int Count, int Components, int Capacity>
+inline void row_curves_from(int j, const typename L::Scalar* net, const typename L::Scalar* weights, int count_u,
+                            std::ptrdiff_t row, typename L::Batch (&curve)[Components][Capacity]) {
+  const auto* coefficient = net + j * Components * block_lanes;
+  typename L::Batch sum[Count][Components];
+  const auto first = L::broadcast(weights[0]);
+  for (int k = 0; k < Count; ++k)
+    for (int c = 0; c < Components; ++c) sum[k][c] = first * L::load(coefficient + (k * Components + c) * block_lanes);
+  for (int i = 1; i < count_u; ++i) {
+    const auto weight = L::broadcast(weights[i]);
+    coefficient += row;
+    for (int k = 0; k < Count; ++k)
+      for (int c = 0; c < Components; ++c)
+        sum[k][c] = L::fma(weight, L::load(coefficient + (k * Components + c) * block_lanes), sum[k][c]);
+  }
+  for (int k = 0; k < Count; ++k)
+    for (int c = 0; c < Components; ++c) curve[c][j + k] = sum[k][c];
+}
+
+/// The row curves of one u: curve[component][j] = sum_i weights[i] net[i][j][component], i ascending.
+template <class L, int DegreeV, int Components, int Capacity>
 inline void row_curves(const typename L::Scalar* net, const typename L::Scalar* weights, int count_u, int count_v,
                        typename L::Batch (&curve)[Components][Capacity]) {
   const std::ptrdiff_t row = std::ptrdiff_t{count_v} * Components * block_lanes;
-#pragma GCC unroll 4
-  for (int j = 0; j < count_v; ++j) {
-    for (int c = 0; c < Components; ++c) {
-      const auto* coefficient = net + (j * Components + c) * block_lanes;
-      auto sum = L::broadcast(weights[0]) * L::load(coefficient);
-      for (int i = 1; i < count_u; ++i) sum = L::fma(L::broadcast(weights[i]), L::load(coefficient + i * row), sum);
-      curve[c][j] = sum;
-    }
+  if constexpr (DegreeV > 0) {
+    row_curves_from<L, DegreeV + 1>(0, net, weights, count_u, row, curve);
+  } else {
+    int j = 0;
+    for (; j + 4 <= count_v; j += 4) row_curves_from<L, 4>(j, net, weights, count_u, row, curve);
+    for (; j < count_v; ++j) row_curves_from<L, 1>(j, net, weights, count_u, row, curve);
   }
 }
 
@@ -86,69 +104,95 @@ inline void store(typename L::Scalar* memory, const typename L::Batch (&vector)[
   }
 }
 
-/// One vector of patches over the job's part of the grid. DegreeV 0 reads the degree from the job.
-template <class L, int DegreeV, bool Rational, bool Derivatives, bool Streaming>
+/// The row curves of one u for one vector of patches.
+template <class L, int Components, int Capacity>
+struct RowCurves {
+  typename L::Batch value[Components][Capacity], du[Components][Capacity];
+};
+
+/// One sample from the row curves.
+template <class L, int DegreeV, bool Derivatives, int Components, int Capacity>
+inline Sample<L> evaluate_sample(const RowCurves<L, Components, Capacity>& curves, const typename L::Scalar* weights, int count_v,
+                                 const typename L::Scalar (&offset)[3]) {
+  typename L::Batch point[Components], point_u[Components], point_v[Components];
+  Sample<L> sample;
+  combine<L>(weights, count_v, curves.value, point);
+  if constexpr (Derivatives) {
+    combine<L>(weights, count_v, curves.du, point_u);
+    combine<L>(weights + count_v, count_v, curves.value, point_v);
+  }
+  if constexpr (Components == 4) {
+    divide_by_weight<L, Derivatives>(point, point_u, point_v, sample);
+  } else {
+    for (int c = 0; c < 3; ++c) {
+      sample.position[c] = point[c];
+      if constexpr (Derivatives) {
+        sample.du[c] = point_u[c];
+        sample.dv[c] = point_v[c];
+      }
+    }
+  }
+  if constexpr (sizeof(typename L::Scalar) == 8) {
+    for (int c = 0; c < 3; ++c) sample.position[c] = sample.position[c] + L::broadcast(offset[c]);
+  }
+  return sample;
+}
+
+template <class L, bool Derivatives, bool Streaming>
+inline void store_sample(const GridJob<typename L::Scalar>& job, std::ptrdiff_t out, const Sample<L>& sample) {
+  if constexpr (!Derivatives) {
+    store<L, Streaming>(job.position + out, sample.position);
+  } else {
+    if (job.position) store<L, Streaming>(job.position + out, sample.position);
+    if (job.du) store<L, Streaming>(job.du + out, sample.du);
+    if (job.dv) store<L, Streaming>(job.dv + out, sample.dv);
+    if (job.normal) {
+      typename L::Batch normal[3];
+      unit_normal<L>(sample, job.normal_scale, normal);
+      store<L, Streaming>(job.normal + out, normal);
+    }
+  }
+}
+
+/// `Groups` neighbouring vectors of patches, from `lane`, over the job's part of the grid. DegreeV 0 reads the degree from the job.
+template <class L, int DegreeV, bool Rational, bool Derivatives, bool Streaming, int Groups>
 void evaluate_lanes(const GridJob<typename L::Scalar>& job, int lane) {
   using T = typename L::Scalar;
   constexpr int components = Rational ? 4 : 3;
   constexpr int capacity = DegreeV > 0 ? DegreeV + 1 : max_order;
   const int count_u = job.degree_u + 1;
   const int count_v = DegreeV > 0 ? DegreeV + 1 : job.degree_v + 1;
-  const T* net = job.net + lane;
   std::ptrdiff_t out = lane;
 
-  typename L::Batch curve[components][capacity], curve_u[components][capacity];
-  typename L::Batch point[components], point_u[components], point_v[components];
+  RowCurves<L, components, capacity> curves[Groups];
   for (int iu = job.u_begin; iu < job.u_end; ++iu) {
     const T* u_weights = job.u_weights + std::ptrdiff_t{iu} * 2 * count_u;
-    row_curves<L>(net, u_weights, count_u, count_v, curve);
-    if constexpr (Derivatives) row_curves<L>(net, u_weights + count_u, count_u, count_v, curve_u);
+    for (int group = 0; group < Groups; ++group) {
+      const T* net = job.net + lane + group * L::width;
+      row_curves<L, DegreeV>(net, u_weights, count_u, count_v, curves[group].value);
+      if constexpr (Derivatives) row_curves<L, DegreeV>(net, u_weights + count_u, count_u, count_v, curves[group].du);
+    }
     for (int iv = job.v_begin; iv < job.v_end; ++iv, out += job.sample_step) {
       const T* v_weights = job.v_weights + std::ptrdiff_t{iv} * 2 * count_v;
-      Sample<L> sample;
-      combine<L>(v_weights, count_v, curve, point);
-      if constexpr (Derivatives) {
-        combine<L>(v_weights, count_v, curve_u, point_u);
-        combine<L>(v_weights + count_v, count_v, curve, point_v);
-      }
-      if constexpr (Rational) {
-        divide_by_weight<L, Derivatives>(point, point_u, point_v, sample);
-      } else {
-        for (int c = 0; c < 3; ++c) {
-          sample.position[c] = point[c];
-          if constexpr (Derivatives) {
-            sample.du[c] = point_u[c];
-            sample.dv[c] = point_v[c];
-          }
-        }
-      }
-      if constexpr (sizeof(T) == 8) {
-        for (int c = 0; c < 3; ++c) sample.position[c] = sample.position[c] + L::broadcast(job.offset[c]);
-      }
-      if constexpr (Derivatives) {
-        if (job.position) store<L, Streaming>(job.position + out, sample.position);
-        if (job.du) store<L, Streaming>(job.du + out, sample.du);
-        if (job.dv) store<L, Streaming>(job.dv + out, sample.dv);
-        if (job.normal) {
-          typename L::Batch normal[3];
-          unit_normal<L>(sample, job.normal_scale, normal);
-          store<L, Streaming>(job.normal + out, normal);
-        }
-      } else {
-        store<L, Streaming>(job.position + out, sample.position);
+      for (int group = 0; group < Groups; ++group) {
+        const Sample<L> sample = evaluate_sample<L, DegreeV, Derivatives>(curves[group], v_weights, count_v, job.offset);
+        store_sample<L, Derivatives, Streaming>(job, out + group * L::width, sample);
       }
     }
   }
 }
 
+/// Plain stores take one vector of patches after the other; streaming stores take whole cache lines, since a line that is streamed
+/// in parts goes to memory in parts.
 template <class L, int DegreeV, bool Rational, bool Derivatives>
 void evaluate_block(const GridJob<typename L::Scalar>& job) {
-  for (int lane = 0; lane < block_lanes; lane += L::width) {
-    if (job.streaming) {
-      evaluate_lanes<L, DegreeV, Rational, Derivatives, true>(job, lane);
-    } else {
-      evaluate_lanes<L, DegreeV, Rational, Derivatives, false>(job, lane);
-    }
+  constexpr int line = 64 / static_cast<int>(sizeof(typename L::Scalar));
+  if (job.streaming) {
+    for (int lane = 0; lane < block_lanes; lane += line)
+      evaluate_lanes<L, DegreeV, Rational, Derivatives, true, line / L::width>(job, lane);
+  } else {
+    for (int lane = 0; lane < block_lanes; lane += L::width)
+      evaluate_lanes<L, DegreeV, Rational, Derivatives, false, 1>(job, lane);
   }
 }
 
