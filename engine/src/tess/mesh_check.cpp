@@ -72,13 +72,15 @@ Status check_counts(const Mesh& mesh) {
     return bad(std::to_string(mesh.parameters.size()) + " numbers in parameters for " +
                std::to_string(mesh.vertex_count()) + " vertices");
   if (!fits(mesh.patches, mesh.triangle_count()))
-    return bad(std::to_string(mesh.patches.size()) + " patches for " + std::to_string(mesh.triangle_count()) + " triangles");
+    return bad(std::to_string(mesh.patches.size()) + " patches for " + std::to_string(mesh.triangle_count()) +
+               " triangles");
   return {};
 }
 
 Status check_indices(const Mesh& mesh) {
   const std::size_t vertices = mesh.vertex_count();
-  const auto bad = std::find_if(mesh.indices.begin(), mesh.indices.end(), [&](std::uint32_t k) { return k >= vertices; });
+  const auto bad =
+      std::find_if(mesh.indices.begin(), mesh.indices.end(), [&](std::uint32_t k) { return k >= vertices; });
   if (bad == mesh.indices.end()) return {};
   const std::ptrdiff_t place = bad - mesh.indices.begin();
   return {StatusCode::invalid_argument,
@@ -95,8 +97,8 @@ std::size_t count_non_finite(const Mesh& mesh) {
   return count;
 }
 
-/// Whether the corners of a triangle lie on one line. Products of differences of floats are exact in double unless their
-/// exponents lie far apart, so this is no matter of tolerance.
+/// Whether the corners of a triangle lie on one line. Products of differences of floats are exact in double unless
+/// their exponents lie far apart, so this is no matter of tolerance.
 bool has_no_area(const Mesh& mesh, const std::uint32_t* corners) {
   const auto point = [&](int k) {
     const float* p = &mesh.positions[3 * std::size_t{corners[k]}];

@@ -19,8 +19,8 @@ bool depends_on_one_parameter(const BezierPatch& patch) {
 // A cell with corners 00, 10, 11, 01 (first digit along u) is split from 00 to 11 into these two triangles.
 enum CellTriangle : unsigned { lower = 1, upper = 2 };  // 00 10 11 and 00 11 01
 
-/// Those left of a cell some of whose edges have collapsed to points. Two collapsed edges that meet at 01 or at 10 make one
-/// point of 00 and 11 as well.
+/// Those left of a cell some of whose edges have collapsed to points. Two collapsed edges that meet at 01 or at 10 make
+/// one point of 00 and 11 as well.
 unsigned remaining(EdgeMask cell) {
   const bool u0 = cell.has(Edge::u0), u1 = cell.has(Edge::u1), v0 = cell.has(Edge::v0), v1 = cell.has(Edge::v1);
   const bool keeps_lower = !v0 && !u1 && !(u0 && v1);

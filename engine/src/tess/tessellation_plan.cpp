@@ -27,15 +27,15 @@ Status check_rate(int rate, const char* direction) {
 
 Status check_vertices(std::size_t patches, Rates rates) {
   if (patches <= most_vertices / rates.vertices()) return {};
-  return invalid(std::to_string(patches) + " patches at rates " + std::to_string(rates.u) + " x " + std::to_string(rates.v) +
-                 " have " + std::to_string(patches * rates.vertices()) + " vertices, 32-bit indices reach " +
-                 std::to_string(most_vertices));
+  return invalid(std::to_string(patches) + " patches at rates " + std::to_string(rates.u) + " x " +
+                 std::to_string(rates.v) + " have " + std::to_string(patches * rates.vertices()) +
+                 " vertices, 32-bit indices reach " + std::to_string(most_vertices));
 }
 
 Status check_size(const char* name, std::size_t size, std::size_t wanted, const char* what) {
   if (size >= wanted) return {};
-  return {StatusCode::buffer_too_small, std::string("the ") + name + " view holds " + std::to_string(size) + " " + what +
-                                            ", " + std::to_string(wanted) + " are needed"};
+  return {StatusCode::buffer_too_small, std::string("the ") + name + " view holds " + std::to_string(size) + " " +
+                                            what + ", " + std::to_string(wanted) + " are needed"};
 }
 
 template <int N>
@@ -44,7 +44,8 @@ Status check_view(const char* name, const VectorView<float, N>& view, std::size_
   if (std::find(view.component.begin(), view.component.end(), nullptr) != view.component.end())
     return invalid(std::string("a component of the ") + name + " view is null");
   if (view.stride < 1)
-    return invalid("the " + std::string(name) + " view's stride is " + std::to_string(view.stride) + ", it must be at least 1");
+    return invalid("the " + std::string(name) + " view's stride is " + std::to_string(view.stride) +
+                   ", it must be at least 1");
   return check_size(name, view.size, vertices, "vertices");
 }
 
@@ -60,7 +61,10 @@ std::vector<float> parameters(int rate) {
 class TessellationPlan::Impl {
  public:
   Impl(const PatchSet& set, UniformGrid grid)
-      : grid_(std::move(grid)), rates_{grid_.rate_u(), grid_.rate_v()}, u_(parameters(rates_.u)), v_(parameters(rates_.v)),
+      : grid_(std::move(grid)),
+        rates_{grid_.rate_u(), grid_.rate_v()},
+        u_(parameters(rates_.u)),
+        v_(parameters(rates_.v)),
         origin_(set.origin()) {
     shapes_.reserve(set.patch_count());
     first_triangle_.reserve(set.patch_count() + 1);
@@ -99,7 +103,8 @@ class TessellationPlan::Impl {
     if (Status status = check_view("position", out.position, wanted.vertices); !status.ok()) return status;
     if (Status status = check_view("normal", out.normal, wanted.vertices); !status.ok()) return status;
     if (Status status = check_view("parameter", out.parameter, wanted.vertices); !status.ok()) return status;
-    if (Status status = check_size("indices", out.indices.size(), 3 * wanted.triangles, "indices"); !status.ok()) return status;
+    if (Status status = check_size("indices", out.indices.size(), 3 * wanted.triangles, "indices"); !status.ok())
+      return status;
     if (out.patch.empty()) return {};
     return check_size("patch", out.patch.size(), wanted.triangles, "triangles");
   }
@@ -112,13 +117,15 @@ class TessellationPlan::Impl {
     const auto compare = [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         if (PatchShape::of(set.patch(k)) == shapes_[k]) continue;
-        for (std::size_t least = changed; k < least && !changed.compare_exchange_weak(least, k);) {}
+        for (std::size_t least = changed; k < least && !changed.compare_exchange_weak(least, k);) {
+        }
         return;
       }
     };
     if (Status status = parallel_for(shapes_.size(), 16 * patches_a_piece, {}, compare); !status.ok()) return status;
     if (changed == shapes_.size()) return {};
-    return {StatusCode::stale, "patch " + std::to_string(changed) + " has other degrees or collapsed edges than when the plan was made",
+    return {StatusCode::stale,
+            "patch " + std::to_string(changed) + " has other degrees or collapsed edges than when the plan was made",
             static_cast<std::ptrdiff_t>(changed.load())};
   }
 
@@ -172,7 +179,8 @@ Result<TessellationPlan> TessellationPlan::make(const PatchSet& set, const Tesse
   return guarded([&]() -> Result<TessellationPlan> {
     if (Status status = check_rate(options.rate_u, "u"); !status.ok()) return status;
     if (Status status = check_rate(options.rate_v, "v"); !status.ok()) return status;
-    if (Status status = check_vertices(set.patch_count(), {options.rate_u, options.rate_v}); !status.ok()) return status;
+    if (Status status = check_vertices(set.patch_count(), {options.rate_u, options.rate_v}); !status.ok())
+      return status;
     Result<UniformGrid> grid = UniformGrid::make(set, options.rate_u, options.rate_v, options.isa);
     if (!grid) return grid.status();
     return TessellationPlan(std::make_unique<Impl>(set, std::move(*grid)));
