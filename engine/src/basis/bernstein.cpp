@@ -5,7 +5,7 @@
 namespace tessera {
 namespace {
 
-/// values[0..degree] of one degree -> the same lifted by the difference v_{i-1} - v_i, one value longer, times `factor`.
+/// values[0..degree] -> factor * (v_{i-1} - v_i), one value more.
 void difference_and_scale(int degree, double factor, double* values) {
   values[degree + 1] = factor * values[degree];
   for (int i = degree; i > 0; --i) values[i] = factor * (values[i - 1] - values[i]);

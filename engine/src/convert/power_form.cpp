@@ -9,7 +9,8 @@ namespace tessera {
 namespace {
 
 /// One direction: `count` curves of the given degree whose point i is the `width` values at curve * next + i * step.
-void transform_curves(int degree, double* values, std::size_t step, std::size_t width, std::size_t count, std::size_t next) {
+void transform_curves(int degree, double* values, std::size_t step, std::size_t width, std::size_t count,
+                      std::size_t next) {
   for (std::size_t curve = 0; curve < count; ++curve) {
     double* net = values + curve * next;
     const auto at = [&](int i) { return net + static_cast<std::size_t>(i) * step; };

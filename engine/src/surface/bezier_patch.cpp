@@ -53,7 +53,8 @@ Status check_points(int degree_v, std::span<const Vec3> points) {
 
 Status check_weights(int degree_v, std::span<const double> weights) {
   const auto bad = [&](std::size_t k, const std::string& wanted) {
-    return Status(StatusCode::invalid_weight, "weight " + place(k, degree_v) + " is " + text(weights[k]) + ", " + wanted,
+    return Status(StatusCode::invalid_weight,
+                  "weight " + place(k, degree_v) + " is " + text(weights[k]) + ", " + wanted,
                   static_cast<std::ptrdiff_t>(k));
   };
   double largest = 0;

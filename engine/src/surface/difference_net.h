@@ -1,6 +1,6 @@
 #pragma once
 // Derivatives of a net as Bezier patches of lower degree on its difference nets (Farin, Curves and Surfaces for CAGD,
-// 5th ed., sec. 14.5). Differences are taken on the given points, before any sum, so that nothing is lost far from zero.
+// 5th ed., sec. 14.5). Differences come before any sum: what is small stays accurate.
 
 #include <algorithm>
 

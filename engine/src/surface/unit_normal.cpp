@@ -32,8 +32,8 @@ Bounded bounded_derivative(const HomogeneousNet& net, const LoweredBernstein& u,
   return {derivative<A, B>(net, u, v).vector(), unit * derivative_magnitude<A, B>(net, u, v)};
 }
 
-/// Moves a rational net so that the point at the parameters is zero. Then r vanishes from the quotient rule, and numerators
-/// alone give the direction of r_u x r_v, and where that vanishes those of D_u and D_v.
+/// Moves a rational net so that the point at the parameters is zero. Then r vanishes from the quotient rule, and
+/// numerators alone give the direction of r_u x r_v, and where that vanishes those of D_u and D_v.
 void move_to_point(HomogeneousNet& net, const LoweredBernstein& u, const LoweredBernstein& v) {
   const Vec3 r = derivative<0, 0>(net, u, v).project();
   for (std::size_t k = 0; k < net.size(); ++k) {

@@ -1,0 +1,175 @@
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "base/guard.h"
+#include "tessera/mesh.h"
+
+namespace tessera {
+namespace {
+
+/// Edges keep a vertex and a direction in 32 bits.
+constexpr std::size_t most_vertices = std::size_t{1} << 31;
+
+using Bits3 = std::array<std::uint32_t, 3>;
+
+/// The bits of a position, -0 taken as 0.
+Bits3 position_bits(const Mesh& mesh, std::size_t vertex) {
+  const float* p = &mesh.positions[3 * vertex];
+  return {std::bit_cast<std::uint32_t>(p[0] + 0.0f), std::bit_cast<std::uint32_t>(p[1] + 0.0f),
+          std::bit_cast<std::uint32_t>(p[2] + 0.0f)};
+}
+
+std::size_t hash(const Bits3& bits) {
+  std::uint64_t h = bits[0] * 0x9E3779B97F4A7C15u;
+  h = (h ^ (h >> 32) ^ bits[1]) * 0xC2B2AE3D27D4EB4Fu;
+  h = (h ^ (h >> 32) ^ bits[2]) * 0x165667B19E3779F9u;
+  return static_cast<std::size_t>(h ^ (h >> 29));
+}
+
+struct Welded {
+  std::vector<std::uint32_t> place;  ///< of each vertex, 0 .. count - 1
+  std::size_t count = 0;
+};
+
+/// Numbers the distinct positions, by an open hash table of the first vertex at each.
+Welded weld(const Mesh& mesh) {
+  constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+  Welded welded;
+  welded.place.resize(mesh.vertex_count());
+  std::vector<std::uint32_t> table(std::bit_ceil(2 * mesh.vertex_count() + 1), none);
+  const std::size_t mask = table.size() - 1;
+  for (std::size_t k = 0; k < mesh.vertex_count(); ++k) {
+    const Bits3 bits = position_bits(mesh, k);
+    std::size_t slot = hash(bits) & mask;
+    while (table[slot] != none && position_bits(mesh, table[slot]) != bits) slot = (slot + 1) & mask;
+    if (table[slot] == none) {
+      table[slot] = static_cast<std::uint32_t>(k);
+      welded.place[k] = static_cast<std::uint32_t>(welded.count++);
+    } else {
+      welded.place[k] = welded.place[table[slot]];
+    }
+  }
+  return welded;
+}
+
+Status check_counts(const Mesh& mesh) {
+  const auto bad = [](std::string message) { return Status(StatusCode::invalid_argument, std::move(message)); };
+  const auto fits = [](const auto& values, std::size_t wanted) { return values.empty() || values.size() == wanted; };
+  if (mesh.positions.size() % 3 != 0)
+    return bad(std::to_string(mesh.positions.size()) + " numbers in positions are not three a vertex");
+  if (mesh.indices.size() % 3 != 0)
+    return bad(std::to_string(mesh.indices.size()) + " indices are not three a triangle");
+  if (mesh.vertex_count() > most_vertices)
+    return bad(std::to_string(mesh.vertex_count()) + " vertices are more than " + std::to_string(most_vertices));
+  if (!fits(mesh.normals, mesh.positions.size()))
+    return bad(std::to_string(mesh.normals.size()) + " numbers in normals, " + std::to_string(mesh.positions.size()) +
+               " in positions");
+  if (!fits(mesh.parameters, 2 * mesh.vertex_count()))
+    return bad(std::to_string(mesh.parameters.size()) + " numbers in parameters for " +
+               std::to_string(mesh.vertex_count()) + " vertices");
+  if (!fits(mesh.patches, mesh.triangle_count()))
+    return bad(std::to_string(mesh.patches.size()) + " patches for " + std::to_string(mesh.triangle_count()) +
+               " triangles");
+  return {};
+}
+
+Status check_indices(const Mesh& mesh) {
+  const std::size_t vertices = mesh.vertex_count();
+  const auto bad =
+      std::find_if(mesh.indices.begin(), mesh.indices.end(), [&](std::uint32_t k) { return k >= vertices; });
+  if (bad == mesh.indices.end()) return {};
+  const std::ptrdiff_t place = bad - mesh.indices.begin();
+  return {StatusCode::invalid_argument,
+          "corner " + std::to_string(place % 3) + " of triangle " + std::to_string(place / 3) + " is vertex " +
+              std::to_string(*bad) + ", the mesh has " + std::to_string(vertices),
+          place};
+}
+
+std::size_t count_non_finite(const Mesh& mesh) {
+  const auto finite = [](const float* p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); };
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < mesh.vertex_count(); ++k)
+    count += !finite(&mesh.positions[3 * k]) || (!mesh.normals.empty() && !finite(&mesh.normals[3 * k]));
+  return count;
+}
+
+/// Whether the corners of a triangle lie on one line. Products of differences of floats are exact in double unless
+/// their exponents lie far apart, so this is no matter of tolerance.
+bool has_no_area(const Mesh& mesh, const std::uint32_t* corners) {
+  const auto point = [&](int k) {
+    const float* p = &mesh.positions[3 * std::size_t{corners[k]}];
+    return Vec3{p[0], p[1], p[2]};
+  };
+  return cross(point(1) - point(0), point(2) - point(0)) == Vec3{};
+}
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+/// The edges of triangles, gathered by their lower vertex: each as twice the upper one, plus 1 if it runs downwards.
+class EdgeTable {
+ public:
+  EdgeTable(const std::vector<Triangle>& triangles, std::size_t vertices) : first_(vertices + 1) {
+    for (const Triangle& t : triangles)
+      for (std::size_t k = 0; k < 3; ++k) ++first_[std::min(t[k], t[(k + 1) % 3]) + 1];
+    for (std::size_t k = 0; k < vertices; ++k) first_[k + 1] += first_[k];
+    edges_.resize(first_[vertices]);
+    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+    for (const Triangle& t : triangles)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t a = t[k], b = t[(k + 1) % 3];
+        edges_[next[std::min(a, b)]++] = 2 * std::max(a, b) + (a > b);
+      }
+  }
+
+  void count_into(MeshReport& report) {
+    for (std::size_t k = 0; k + 1 < first_.size(); ++k) {
+      const std::span<std::uint32_t> edges(edges_.data() + first_[k], first_[k + 1] - first_[k]);
+      std::sort(edges.begin(), edges.end());
+      for (std::size_t from = 0, to = 0; from < edges.size(); from = to) {
+        while (to < edges.size() && edges[to] / 2 == edges[from] / 2) ++to;
+        report.open_edges += to - from == 1;
+        report.inconsistent_edges += to - from == 2 && edges[from] == edges[from + 1];
+        report.non_manifold_edges += to - from > 2;
+      }
+    }
+  }
+
+ private:
+  std::vector<std::size_t> first_;
+  std::vector<std::uint32_t> edges_;
+};
+
+MeshReport count(const Mesh& mesh) {
+  MeshReport report;
+  const Welded welded = weld(mesh);
+  report.vertices = mesh.vertex_count();
+  report.distinct_positions = welded.count;
+  report.triangles = mesh.triangle_count();
+  report.non_finite_vertices = count_non_finite(mesh);
+  std::vector<Triangle> sound;
+  sound.reserve(report.triangles);
+  for (std::size_t k = 0; k < report.triangles; ++k) {
+    const std::uint32_t* corners = &mesh.indices[3 * k];
+    const Triangle t{welded.place[corners[0]], welded.place[corners[1]], welded.place[corners[2]]};
+    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0] && !has_no_area(mesh, corners)) sound.push_back(t);
+  }
+  report.degenerate_triangles = report.triangles - sound.size();
+  EdgeTable(sound, welded.count).count_into(report);
+  return report;
+}
+
+}  // namespace
+
+Result<MeshReport> check(const Mesh& mesh) {
+  return guarded([&]() -> Result<MeshReport> {
+    if (Status status = check_counts(mesh); !status.ok()) return status;
+    if (Status status = check_indices(mesh); !status.ok()) return status;
+    return count(mesh);
+  });
+}
+
+}  // namespace tessera

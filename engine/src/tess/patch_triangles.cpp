@@ -1,0 +1,90 @@
+#include "tess/patch_triangles.h"
+
+#include <initializer_list>
+
+namespace tessera {
+namespace {
+
+bool depends_on_one_parameter(const BezierPatch& patch) {
+  const int m = patch.degree_u(), n = patch.degree_v();
+  bool constant_u = true, constant_v = true;
+  for (int i = 0; i <= m; ++i)
+    for (int j = 0; j <= n; ++j) {
+      constant_u = constant_u && patch.point(i, j) == patch.point(0, j);
+      constant_v = constant_v && patch.point(i, j) == patch.point(i, 0);
+    }
+  return constant_u || constant_v;
+}
+
+// A cell with corners 00, 10, 11, 01 (first digit along u) is split from 00 to 11 into these two triangles.
+enum CellTriangle : unsigned { lower = 1, upper = 2 };  // 00 10 11 and 00 11 01
+
+/// Those left of a cell some of whose edges have collapsed to points. Two collapsed edges that meet at 01 or at 10 make
+/// one point of 00 and 11 as well.
+unsigned remaining(EdgeMask cell) {
+  const bool u0 = cell.has(Edge::u0), u1 = cell.has(Edge::u1), v0 = cell.has(Edge::v0), v1 = cell.has(Edge::v1);
+  const bool keeps_lower = !v0 && !u1 && !(u0 && v1);
+  const bool keeps_upper = !u0 && !v1 && !(v0 && u1);
+  return (keeps_lower ? lower : 0u) | (keeps_upper ? upper : 0u);
+}
+
+/// The patch's collapsed edges that a cell lies at.
+EdgeMask edges_of_cell(EdgeMask patch, Rates rates, int iu, int iv) {
+  EdgeMask at;
+  if (iu == 0) at.add(Edge::u0);
+  if (iu == rates.u - 1) at.add(Edge::u1);
+  if (iv == 0) at.add(Edge::v0);
+  if (iv == rates.v - 1) at.add(Edge::v1);
+  return {static_cast<std::uint8_t>(at.bits & patch.bits)};
+}
+
+std::uint32_t* write(std::uint32_t* to, std::initializer_list<std::uint32_t> corners) {
+  for (const std::uint32_t corner : corners) *to++ = corner;
+  return to;
+}
+
+}  // namespace
+
+PatchShape PatchShape::of(const BezierPatch& patch) {
+  PatchShape shape;
+  shape.degree_u = static_cast<std::uint8_t>(patch.degree_u());
+  shape.degree_v = static_cast<std::uint8_t>(patch.degree_v());
+  shape.collapsed = patch.collapsed_edges();
+  shape.is_curve = shape.collapsed.any() && depends_on_one_parameter(patch);
+  return shape;
+}
+
+std::size_t triangle_count(const PatchShape& shape, Rates rates) {
+  if (shape.is_curve) return 0;
+  std::size_t count = 2 * static_cast<std::size_t>(rates.u) * static_cast<std::size_t>(rates.v);
+  if (!shape.collapsed.any()) return count;
+  const auto take_off = [&](int iu, int iv) {
+    const unsigned left = remaining(edges_of_cell(shape.collapsed, rates, iu, iv));
+    count -= 2 - ((left & lower) != 0) - ((left & upper) != 0);
+  };
+  for (int iu = 0; iu < rates.u; ++iu) {  // the cells of the border, each once
+    take_off(iu, 0);
+    if (rates.v > 1) take_off(iu, rates.v - 1);
+  }
+  for (int iv = 1; iv < rates.v - 1; ++iv) {
+    take_off(0, iv);
+    if (rates.u > 1) take_off(rates.u - 1, iv);
+  }
+  return count;
+}
+
+std::uint32_t* write_triangles(const PatchShape& shape, Rates rates, std::uint32_t first, std::uint32_t* indices) {
+  if (shape.is_curve) return indices;
+  const std::uint32_t row = static_cast<std::uint32_t>(rates.v) + 1;
+  for (int iu = 0; iu < rates.u; ++iu, first += row)
+    for (int iv = 0; iv < rates.v; ++iv) {
+      const std::uint32_t p00 = first + static_cast<std::uint32_t>(iv), p10 = p00 + row;
+      const unsigned left =
+          shape.collapsed.any() ? remaining(edges_of_cell(shape.collapsed, rates, iu, iv)) : unsigned{lower | upper};
+      if (left & lower) indices = write(indices, {p00, p10, p10 + 1});
+      if (left & upper) indices = write(indices, {p00, p10 + 1, p00 + 1});
+    }
+  return indices;
+}
+
+}  // namespace tessera

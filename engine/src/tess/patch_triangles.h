@@ -1,0 +1,36 @@
+#pragma once
+// The triangles of one patch on a uniform grid, without those that collapse.
+
+#include <cstddef>
+#include <cstdint>
+
+#include "tessera/bezier_patch.h"
+
+namespace tessera {
+
+/// What of a patch decides which triangles it has.
+struct PatchShape {
+  std::uint8_t degree_u = 0, degree_v = 0;
+  EdgeMask collapsed;
+  bool is_curve = false;  ///< it does not depend on u, or not on v: no triangle has an area
+
+  static PatchShape of(const BezierPatch& patch);
+  friend bool operator==(const PatchShape& a, const PatchShape& b) {
+    return a.degree_u == b.degree_u && a.degree_v == b.degree_v && a.collapsed.bits == b.collapsed.bits &&
+           a.is_curve == b.is_curve;
+  }
+};
+
+struct Rates {
+  int u = 1, v = 1;
+  std::size_t vertices() const { return static_cast<std::size_t>(u + 1) * static_cast<std::size_t>(v + 1); }
+};
+
+/// How many triangles a patch has.
+std::size_t triangle_count(const PatchShape& shape, Rates rates);
+
+/// Writes their corners, three indices a triangle, vertex [iu][iv] being `first` + iu * (rates.v + 1) + iv;
+/// counter-clockwise seen from where r_u x r_v points. Returns the end of what it wrote.
+std::uint32_t* write_triangles(const PatchShape& shape, Rates rates, std::uint32_t first, std::uint32_t* indices);
+
+}  // namespace tessera

@@ -1,0 +1,207 @@
+#include <algorithm>
+#include <atomic>
+#include <string>
+
+#include "base/guard.h"
+#include "eval/uniform_grid.h"
+#include "parallel/parallel_for.h"
+#include "tess/patch_triangles.h"
+#include "tessera/tessellate.h"
+
+namespace tessera {
+namespace {
+
+constexpr int most_rate = 4096;
+constexpr std::uint64_t most_vertices = std::uint64_t{1} << 32;  // 32-bit indices
+constexpr std::size_t patches_a_piece = 64;
+/// Share of the time that vertices take, for progress.
+constexpr double vertex_share = 0.7;
+
+Status invalid(std::string message) { return {StatusCode::invalid_argument, std::move(message)}; }
+
+Status check_rate(int rate, const char* direction) {
+  if (rate >= 1 && rate <= most_rate) return {};
+  return invalid(std::string("rate ") + direction + " is " + std::to_string(rate) + ", it must be 1 to " +
+                 std::to_string(most_rate));
+}
+
+Status check_vertices(std::size_t patches, Rates rates) {
+  if (patches <= most_vertices / rates.vertices()) return {};
+  return invalid(std::to_string(patches) + " patches at rates " + std::to_string(rates.u) + " x " +
+                 std::to_string(rates.v) + " have " + std::to_string(patches * rates.vertices()) +
+                 " vertices, 32-bit indices reach " + std::to_string(most_vertices));
+}
+
+Status check_size(const char* name, std::size_t size, std::size_t wanted, const char* what) {
+  if (size >= wanted) return {};
+  return {StatusCode::buffer_too_small, std::string("the ") + name + " view holds " + std::to_string(size) + " " +
+                                            what + ", " + std::to_string(wanted) + " are needed"};
+}
+
+template <int N>
+Status check_view(const char* name, const VectorView<float, N>& view, std::size_t vertices) {
+  if (view.empty()) return {};
+  if (std::find(view.component.begin(), view.component.end(), nullptr) != view.component.end())
+    return invalid(std::string("a component of the ") + name + " view is null");
+  if (view.stride < 1)
+    return invalid("the " + std::string(name) + " view's stride is " + std::to_string(view.stride) +
+                   ", it must be at least 1");
+  return check_size(name, view.size, vertices, "vertices");
+}
+
+std::vector<float> parameters(int rate) {
+  const std::vector<double> exact = uniform_parameters(rate + 1);
+  std::vector<float> rounded(exact.size());
+  std::transform(exact.begin(), exact.end(), rounded.begin(), [](double t) { return static_cast<float>(t); });
+  return rounded;
+}
+
+}  // namespace
+
+class TessellationPlan::Impl {
+ public:
+  Impl(const PatchSet& set, UniformGrid grid)
+      : grid_(std::move(grid)),
+        rates_{grid_.rate_u(), grid_.rate_v()},
+        u_(parameters(rates_.u)),
+        v_(parameters(rates_.v)),
+        origin_(set.origin()) {
+    shapes_.reserve(set.patch_count());
+    first_triangle_.reserve(set.patch_count() + 1);
+    first_triangle_.push_back(0);
+    for (std::size_t k = 0; k < set.patch_count(); ++k) {
+      shapes_.push_back(PatchShape::of(set.patch(k)));
+      first_triangle_.push_back(first_triangle_.back() + triangle_count(shapes_.back(), rates_));
+    }
+  }
+
+  Rates rates() const { return rates_; }
+  MeshCapacity capacity() const { return {shapes_.size() * rates_.vertices(), first_triangle_.back()}; }
+
+  Mesh allocate() const {
+    Mesh mesh;
+    mesh.origin = origin_;
+    mesh.positions.resize(3 * capacity().vertices);
+    mesh.normals.resize(3 * capacity().vertices);
+    mesh.parameters.resize(2 * capacity().vertices);
+    mesh.patches.resize(capacity().triangles);
+    mesh.indices.resize(3 * capacity().triangles);
+    return mesh;
+  }
+
+  Status run(const PatchSet& set, const MeshViews& out, const Execution& execution) const {
+    if (Status status = check_views(out); !status.ok()) return status;
+    if (Status status = check_shapes(set); !status.ok()) return status;
+    if (Status status = write_vertices(set, out, execution); !status.ok()) return status;
+    return write_rest(out, execution);
+  }
+
+ private:
+  Status check_views(const MeshViews& out) const {
+    const MeshCapacity wanted = capacity();
+    if (out.position.empty()) return invalid("the position view is empty, it is required");
+    if (Status status = check_view("position", out.position, wanted.vertices); !status.ok()) return status;
+    if (Status status = check_view("normal", out.normal, wanted.vertices); !status.ok()) return status;
+    if (Status status = check_view("parameter", out.parameter, wanted.vertices); !status.ok()) return status;
+    if (Status status = check_size("indices", out.indices.size(), 3 * wanted.triangles, "indices"); !status.ok())
+      return status;
+    if (out.patch.empty()) return {};
+    return check_size("patch", out.patch.size(), wanted.triangles, "triangles");
+  }
+
+  Status check_shapes(const PatchSet& set) const {
+    if (set.patch_count() != shapes_.size())
+      return {StatusCode::stale, "the plan is for " + std::to_string(shapes_.size()) + " patches, the set has " +
+                                     std::to_string(set.patch_count())};
+    std::atomic<std::size_t> changed = shapes_.size();  // the first one, so that the message does not depend on threads
+    const auto compare = [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        if (PatchShape::of(set.patch(k)) == shapes_[k]) continue;
+        for (std::size_t least = changed; k < least && !changed.compare_exchange_weak(least, k);) {
+        }
+        return;
+      }
+    };
+    if (Status status = parallel_for(shapes_.size(), 16 * patches_a_piece, {}, compare); !status.ok()) return status;
+    if (changed == shapes_.size()) return {};
+    return {StatusCode::stale,
+            "patch " + std::to_string(changed) + " has other degrees or collapsed edges than when the plan was made",
+            static_cast<std::ptrdiff_t>(changed.load())};
+  }
+
+  Status write_vertices(const PatchSet& set, const MeshViews& out, const Execution& execution) const {
+    GridViews<float> grid;
+    grid.position = out.position;
+    grid.normal = out.normal;
+    Execution part{.cancel = execution.cancel, .progress = {}, .stores = execution.stores, .report = execution.report};
+    if (execution.progress) part.progress = [&](double done) { execution.progress(vertex_share * done); };
+    return grid_.run(set, grid, part);
+  }
+
+  /// Parameters, indices and patch numbers.
+  Status write_rest(const MeshViews& out, const Execution& execution) const {
+    ExecutionReport report;
+    Execution part{.cancel = execution.cancel, .progress = {}, .stores = execution.stores, .report = &report};
+    if (execution.progress)
+      part.progress = [&](double done) { execution.progress(vertex_share + (1 - vertex_share) * done); };
+    Status status = parallel_for(shapes_.size(), patches_a_piece, part, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        if (!out.parameter.empty()) write_parameters(k, out.parameter);
+        write_triangles(shapes_[k], rates_, static_cast<std::uint32_t>(k * rates_.vertices()),
+                        out.indices.data() + 3 * first_triangle_[k]);
+        if (!out.patch.empty())
+          std::fill(out.patch.data() + first_triangle_[k], out.patch.data() + first_triangle_[k + 1],
+                    static_cast<std::uint32_t>(k));
+      }
+    });
+    if (execution.report) execution.report->tasks += report.tasks;
+    return status;
+  }
+
+  void write_parameters(std::size_t patch, const View2<float>& view) const {
+    std::size_t vertex = patch * rates_.vertices();
+    for (const float u : u_)
+      for (const float v : v_) {
+        view.at(vertex, 0) = u;
+        view.at(vertex++, 1) = v;
+      }
+  }
+
+  UniformGrid grid_;
+  Rates rates_;
+  std::vector<float> u_, v_;
+  Vec3 origin_;
+  std::vector<PatchShape> shapes_;
+  std::vector<std::size_t> first_triangle_;  ///< of each patch, and the number of all
+};
+
+Result<TessellationPlan> TessellationPlan::make(const PatchSet& set, const TessellationOptions& options) {
+  return guarded([&]() -> Result<TessellationPlan> {
+    if (Status status = check_rate(options.rate_u, "u"); !status.ok()) return status;
+    if (Status status = check_rate(options.rate_v, "v"); !status.ok()) return status;
+    if (Status status = check_vertices(set.patch_count(), {options.rate_u, options.rate_v}); !status.ok())
+      return status;
+    Result<UniformGrid> grid = UniformGrid::make(set, options.rate_u, options.rate_v, options.isa);
+    if (!grid) return grid.status();
+    return TessellationPlan(std::make_unique<Impl>(set, std::move(*grid)));
+  });
+}
+
+TessellationPlan::TessellationPlan(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+TessellationPlan::TessellationPlan(TessellationPlan&&) noexcept = default;
+TessellationPlan& TessellationPlan::operator=(TessellationPlan&&) noexcept = default;
+TessellationPlan::~TessellationPlan() = default;
+
+MeshCapacity TessellationPlan::capacity() const { return impl_->capacity(); }
+int TessellationPlan::rate_u() const { return impl_->rates().u; }
+int TessellationPlan::rate_v() const { return impl_->rates().v; }
+
+Result<Mesh> TessellationPlan::allocate() const {
+  return guarded([&]() -> Result<Mesh> { return impl_->allocate(); });
+}
+
+Status TessellationPlan::run(const PatchSet& set, const MeshViews& out, const Execution& execution) const {
+  return guarded([&] { return impl_->run(set, out, execution); });
+}
+
+}  // namespace tessera
