@@ -74,8 +74,10 @@ struct GridViews {
 /// Evaluates all patches. Outputs may share memory by interleaving but must not overlap otherwise.
 /// Errors: buffer_too_small, invalid_argument (a plan of other precision, or for other patches; a stride of 0),
 /// cancelled. Nothing is written on any error but cancelled. The same bytes for any number of threads, and on
-/// AVX2 and AVX-512. Error bounds, in units of 2^-23 (2^-52 in double) times the largest |coefficient| relative to the
-/// origin: positions 2, rational 4, derivatives 16 times the degree, for the Bernstein representation.
+/// AVX2 and AVX-512. Error bounds for the Bernstein representation, in units of 2^-23 (2^-52 in double) times the largest
+/// |V - origin| of the patch: positions 2, rational 4, derivatives 16 times the degree; for derivatives of rational patches the
+/// largest |w (V - origin)| over the weight at the point takes its place, since the derivative itself grows with that ratio. Normals: 8 times the
+/// degree, times that size over |r_u x r_v| / max(|r_u|, |r_v|), the sine of the tangents' angle times the shorter tangent.
 Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<float>& out, const Execution& execution = {});
 Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<double>& out, const Execution& execution = {});
 

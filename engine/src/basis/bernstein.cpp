@@ -6,7 +6,8 @@ namespace tessera {
 namespace {
 
 /// values[0..degree] -> factor * (v_{i-1} - v_i), one value more.
-void difference_and_scale(int degree, double factor, double* values) {
+template <class Real>
+void difference_and_scale(int degree, Real factor, Real* values) {
   values[degree + 1] = factor * values[degree];
   for (int i = degree; i > 0; --i) values[i] = factor * (values[i - 1] - values[i]);
   values[0] *= -factor;
@@ -22,8 +23,9 @@ double binomial(int n, int k) {
 }
 
 // The recurrence B_{i,k} = (1-t) B_{i,k-1} + t B_{i-1,k-1} (Farin, Curves and Surfaces for CAGD, 5th ed., eq. 5.2).
-void bernstein_values(int degree, double t, double* values) {
-  const double s = 1 - t;
+template <class Real>
+void bernstein_values(int degree, Real t, Real* values) {
+  const Real s = 1 - t;
   values[0] = 1;
   for (int k = 1; k <= degree; ++k) {
     values[k] = t * values[k - 1];
@@ -33,22 +35,31 @@ void bernstein_values(int degree, double t, double* values) {
 }
 
 // Farin, sec. 5.3: the derivatives are differences of the polynomials of lower degree.
-void bernstein_derivatives(int degree, double t, double* values) {
+template <class Real>
+void bernstein_derivatives(int degree, Real t, Real* values) {
   if (degree < 1) {
-    std::fill_n(values, degree + 1, 0.0);
+    std::fill_n(values, degree + 1, Real{0});
     return;
   }
   bernstein_values(degree - 1, t, values);
-  difference_and_scale(degree - 1, degree, values);
+  difference_and_scale(degree - 1, static_cast<Real>(degree), values);
 }
 
-void bernstein_second_derivatives(int degree, double t, double* values) {
+template <class Real>
+void bernstein_second_derivatives(int degree, Real t, Real* values) {
   if (degree < 2) {
-    std::fill_n(values, degree + 1, 0.0);
+    std::fill_n(values, degree + 1, Real{0});
     return;
   }
   bernstein_derivatives(degree - 1, t, values);
-  difference_and_scale(degree - 1, degree, values);
+  difference_and_scale(degree - 1, static_cast<Real>(degree), values);
 }
+
+template void bernstein_values(int, double, double*);
+template void bernstein_values(int, long double, long double*);
+template void bernstein_derivatives(int, double, double*);
+template void bernstein_derivatives(int, long double, long double*);
+template void bernstein_second_derivatives(int, double, double*);
+template void bernstein_second_derivatives(int, long double, long double*);
 
 }  // namespace tessera

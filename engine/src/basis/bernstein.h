@@ -7,13 +7,17 @@ namespace tessera {
 double binomial(int n, int k);
 
 // Each writes degree + 1 values, i = 0..degree, of degree >= 0. Any finite t; on [0,1] the values are not negative and
-// nothing cancels in them (relative error at most 2 * degree units of 2^-53).
+// nothing cancels in them (relative error at most 2 * degree roundings). Real is double, or long double for tables that are
+// to be right to the last bit of a double.
 
 /// B_{i,n}(t): exactly 1 and 0 at t = 0 and t = 1.
-void bernstein_values(int degree, double t, double* values);
+template <class Real>
+void bernstein_values(int degree, Real t, Real* values);
 /// d/dt of each: n (B_{i-1,n-1} - B_{i,n-1}).
-void bernstein_derivatives(int degree, double t, double* values);
+template <class Real>
+void bernstein_derivatives(int degree, Real t, Real* values);
 /// d2/dt2 of each: n (n-1) (B_{i-2,n-2} - 2 B_{i-1,n-2} + B_{i,n-2}).
-void bernstein_second_derivatives(int degree, double t, double* values);
+template <class Real>
+void bernstein_second_derivatives(int degree, Real t, Real* values);
 
 }  // namespace tessera

@@ -3,11 +3,13 @@
 
 namespace tessera {
 
-// Each writes degree + 1 values, i = 0..degree, of degree >= 0. Any finite t; 0^0 = 1.
+// Each writes degree + 1 values, i = 0..degree, of degree >= 0. Any finite t; 0^0 = 1. Real is double or long double.
 
 /// t^i.
-void power_values(int degree, double t, double* values);
+template <class Real>
+void power_values(int degree, Real t, Real* values);
 /// i t^(i-1).
-void power_derivatives(int degree, double t, double* values);
+template <class Real>
+void power_derivatives(int degree, Real t, Real* values);
 
 }  // namespace tessera

@@ -11,13 +11,13 @@
 namespace tessera {
 namespace {
 
-/// Values and derivatives of one basis at each parameter, computed in double and rounded once.
+/// Values and derivatives of one basis at each parameter, computed in long double and rounded once.
 template <class T>
 AlignedVector<T> tabulate(int degree, std::span<const double> parameters, Representation representation) {
   AlignedVector<T> table;
   table.reserve(parameters.size() * 2 * static_cast<std::size_t>(degree + 1));
-  std::array<double, max_degree + 1> values{}, derivatives{};
-  for (const double t : parameters) {
+  std::array<long double, max_degree + 1> values{}, derivatives{};
+  for (const long double t : parameters) {
     if (representation == Representation::bernstein) {
       bernstein_values(degree, t, values.data());
       bernstein_derivatives(degree, t, derivatives.data());

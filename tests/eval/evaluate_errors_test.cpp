@@ -1,0 +1,90 @@
+// Bad input: a Status, and nothing written.
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "support/grids.h"
+
+namespace tessera::test {
+namespace {
+
+class EvaluateErrors : public ::testing::Test {
+ protected:
+  Random random{41};
+  PatchSet set = set_of(mixed_patches(random, 2));
+  std::vector<double> t = uniform_parameters(4);
+  GridPlan plan = must(GridPlan::make(set, t, t));
+  GridBuffers<float> out{plan};
+  GridBuffers<float> untouched{plan};
+
+  void expect_error(StatusCode code, const GridViews<float>& views) {
+    const Status status = evaluate(set, plan, views);
+    EXPECT_EQ(status.code(), code) << status.message();
+    EXPECT_TRUE(out == untouched);
+  }
+};
+
+TEST_F(EvaluateErrors, EachShortView) {
+  for (int output = 0; output < 4; ++output) {
+    GridViews<float> views = out.views();
+    View3<float>* view[] = {&views.position, &views.du, &views.dv, &views.normal};
+    view[output]->size = plan.capacity() - 1;
+    expect_error(StatusCode::buffer_too_small, views);
+  }
+}
+
+TEST_F(EvaluateErrors, StridesAndMissingComponents) {
+  GridViews<float> views = out.views();
+  views.normal.stride = 0;
+  expect_error(StatusCode::invalid_argument, views);
+  views = out.views();
+  views.position.stride = -3;
+  expect_error(StatusCode::invalid_argument, views);
+  views = out.views();
+  views.dv.component[2] = nullptr;
+  expect_error(StatusCode::invalid_argument, views);
+  expect_error(StatusCode::invalid_argument, {});
+}
+
+TEST_F(EvaluateErrors, BlockMemory) {
+  AlignedVector<float> memory(plan.block_capacity() + 1, -7.0f);
+  const std::span<float> all = memory;
+  EXPECT_EQ(evaluate(set, plan, GridBlocks<float>{.position = all.first(plan.block_capacity() - 1)}).code(), StatusCode::buffer_too_small);
+  EXPECT_EQ(evaluate(set, plan, GridBlocks<float>{.position = all.subspan(1)}).code(), StatusCode::invalid_argument);
+  EXPECT_EQ(evaluate(set, plan, GridBlocks<float>{}).code(), StatusCode::invalid_argument);
+  EXPECT_TRUE(std::ranges::all_of(memory, [](float x) { return x == -7.0f; }));
+}
+
+TEST_F(EvaluateErrors, PlanOfAnotherPrecisionOrSet) {
+  GridBuffers<double> doubles(plan);
+  EXPECT_EQ(evaluate(set, plan, doubles.views()).code(), StatusCode::invalid_argument);
+  const PatchSet other = set_of({random_polynomial(random, 3, 3)});
+  EXPECT_EQ(evaluate(other, plan, out.views()).code(), StatusCode::invalid_argument);
+}
+
+TEST_F(EvaluateErrors, Parameters) {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  const auto code = [&](std::vector<double> u, std::vector<double> v) { return GridPlan::make(set, u, v).status(); };
+  EXPECT_EQ(code({}, t).code(), StatusCode::invalid_argument);
+  EXPECT_EQ(code(t, {0, nan}).code(), StatusCode::non_finite);
+  EXPECT_EQ(code(t, {0, nan}).index(), 1);
+  EXPECT_EQ(code({infinity}, t).code(), StatusCode::non_finite);
+  EXPECT_EQ(code({-0.001}, t).code(), StatusCode::invalid_argument);
+  EXPECT_EQ(code({0, 1, 1.001}, t).index(), 2);
+}
+
+TEST_F(EvaluateErrors, BlocksThatTheSetLacks) {
+  EXPECT_EQ(GridPlan::make(set, t, t, {.precision = Precision::double_precision}).status().code(), StatusCode::unsupported);
+  EXPECT_EQ(GridPlan::make(set, t, t, {.representation = Representation::power}).status().code(), StatusCode::unsupported);
+}
+
+TEST_F(EvaluateErrors, CancelledBeforeTheFirstTask) {
+  const std::atomic<bool> cancel = true;
+  Execution execution;
+  execution.cancel = &cancel;
+  EXPECT_EQ(evaluate(set, plan, out.views(), execution).code(), StatusCode::cancelled);
+}
+
+}  // namespace
+}  // namespace tessera::test

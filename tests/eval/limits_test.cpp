@@ -1,0 +1,53 @@
+// The machine's limits and the work of a plan.
+
+#include <gtest/gtest.h>
+
+#include "support/grids.h"
+#include "tessera/limits.h"
+
+namespace tessera::test {
+namespace {
+
+TEST(Limits, AreMeasuredForEachIsa) {
+  for (const Isa isa : available_isas()) {
+    const Limits limits = must(measure_limits({.isa = isa, .store_bytes = 1 << 20}));
+    EXPECT_EQ(limits.isa, isa);
+    // A processor with SSE2 does more than 0.1 G a second of anything here, and none does 10 T.
+    for (const double rate : {limits.float_operations_per_second, limits.double_operations_per_second,
+                              limits.plain_store_bytes_per_second, limits.streaming_store_bytes_per_second}) {
+      EXPECT_GT(rate, 1e8);
+      EXPECT_LT(rate, 1e13);
+    }
+    EXPECT_EQ(limits.store_bytes_per_second, std::max(limits.plain_store_bytes_per_second, limits.streaming_store_bytes_per_second));
+  }
+}
+
+/// 12, 36 and 50 operations a point of a bicubic; in proportion to the order; 4/3 and 4 more if rational.
+TEST(Limits, WorkFollowsTheStatedCounts) {
+  Random random(61);
+  const auto u = uniform_parameters(5), v = uniform_parameters(8);
+  const auto work = [&](const BezierPatch& patch, GridOutputs outputs) {
+    return must(GridPlan::make(set_of({patch}), u, v)).work(outputs);
+  };
+  const BezierPatch cubic = random_polynomial(random, 3, 3);
+  EXPECT_EQ(work(cubic, {}).lane_operations, 40 * 12);
+  EXPECT_EQ(work(cubic, {}).bytes_written, 40 * 12);
+  EXPECT_EQ(work(cubic, {.du = true, .dv = true}).lane_operations, 40 * 36);
+  EXPECT_EQ(work(cubic, {.normal = true}).lane_operations, 40 * 50);
+  EXPECT_EQ(work(cubic, {.normal = true}).bytes_written, 40 * 24);
+  EXPECT_EQ(work(random_polynomial(random, 1, 1), {}).lane_operations, 40 * 6);
+  EXPECT_EQ(work(random_rational(random, 3, 3), {}).lane_operations, 40 * 20);
+}
+
+TEST(Limits, TheSlowerOfComputingAndStoringCounts) {
+  Limits limits;
+  limits.float_operations_per_second = 100;
+  limits.double_operations_per_second = 50;
+  limits.store_bytes_per_second = 10;
+  EXPECT_DOUBLE_EQ(seconds_at_limit(limits, {.lane_operations = 1000, .bytes_written = 20}), 10);
+  EXPECT_DOUBLE_EQ(seconds_at_limit(limits, {.lane_operations = 1000, .bytes_written = 20, .double_precision = true}), 20);
+  EXPECT_DOUBLE_EQ(seconds_at_limit(limits, {.lane_operations = 10, .bytes_written = 20}), 2);
+}
+
+}  // namespace
+}  // namespace tessera::test

@@ -1,0 +1,70 @@
+#include "parallel/parallel_for.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <stdexcept>
+#include <vector>
+
+namespace tessera::test {
+namespace {
+
+TEST(ParallelFor, CoversEachIndexOnce) {
+  for (const std::size_t count : {0u, 1u, 7u, 64u, 1000u})
+    for (const std::size_t grain : {0u, 1u, 3u, 64u, 5000u}) {
+      std::vector<std::atomic<int>> seen(count);
+      ExecutionReport report;
+      Execution execution;
+      execution.report = &report;
+      ASSERT_TRUE(parallel_for(count, grain, execution, [&](std::size_t begin, std::size_t end) {
+                    EXPECT_LE(end - begin, std::max<std::size_t>(grain, 1));
+                    for (; begin < end; ++begin) ++seen[begin];
+                  }).ok());
+      for (const auto& times : seen) EXPECT_EQ(times, 1);
+      const std::size_t step = std::max<std::size_t>(grain, 1);
+      EXPECT_EQ(report.tasks, (count + step - 1) / step);
+    }
+}
+
+TEST(ParallelFor, ExceptionsBecomeStatuses) {
+  for (const std::size_t count : {1u, 1000u}) {
+    const auto run = [&](auto&& thrower) {
+      return parallel_for(count, 1, {}, [&](std::size_t begin, std::size_t) {
+        if (begin == count / 2) thrower();
+      });
+    };
+    EXPECT_EQ(run([] { throw std::runtime_error("boom"); }).message(), "boom");
+    EXPECT_EQ(run([] { throw std::bad_alloc(); }).code(), StatusCode::out_of_memory);
+    EXPECT_EQ(run([] { throw 1; }).code(), StatusCode::internal);
+  }
+}
+
+TEST(ParallelFor, StopsWhenCancelled) {
+  std::atomic<bool> cancel = false;
+  std::atomic<std::size_t> pieces = 0;
+  Execution execution;
+  execution.cancel = &cancel;
+  const Status status = parallel_for(100000, 1, execution, [&](std::size_t, std::size_t) {
+    if (++pieces == 10) cancel = true;
+  });
+  EXPECT_EQ(status.code(), StatusCode::cancelled);
+  EXPECT_LT(pieces, 1000u);
+}
+
+TEST(ParallelFor, ProgressRisesToOne) {
+  double last = 0;
+  int calls = 0;
+  Execution execution;
+  execution.progress = [&](double share) {
+    EXPECT_GT(share, last);
+    last = share;
+    ++calls;
+  };
+  ASSERT_TRUE(parallel_for(5000, 1, execution, [](std::size_t, std::size_t) {}).ok());
+  EXPECT_EQ(last, 1);
+  EXPECT_GE(calls, 2);
+  EXPECT_LE(calls, 101);
+}
+
+}  // namespace
+}  // namespace tessera::test
