@@ -1,14 +1,11 @@
 #include "parallel/parallel_for.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/partitioner.h>
-
 #include <algorithm>
 #include <atomic>
 #include <mutex>
 
 #include "base/guard.h"
+#include "parallel/tbb_loop.h"
 
 namespace tessera {
 namespace {
@@ -54,9 +51,7 @@ Status parallel_for(std::size_t count, std::size_t grain, const Execution& execu
     if (pieces <= 1) {
       if (pieces == 1) run_piece(0);
     } else {
-      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pieces, 1), [&](const tbb::blocked_range<std::size_t>& range) {
-        for (std::size_t piece = range.begin(); piece != range.end(); ++piece) run_piece(piece);
-      });
+      tbb_loop(pieces, run_piece);
     }
     if (cancelled()) return Status(StatusCode::cancelled, "cancelled by the caller");
     return {};

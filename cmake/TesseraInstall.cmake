@@ -1,0 +1,46 @@
+# What `cmake --install` lays down: the libraries, the public headers, the command line, and the package that
+# find_package(tessera) reads. Each component has its own file of targets, so that the core never looks for Embree.
+
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/tessera)
+
+# tessera_install_component(NAME TARGET): the library TARGET as tessera::NAME, in tessera_NAME_targets.cmake.
+function(tessera_install_component name target)
+  # The name of a shared library changes where the interface may.
+  set_target_properties(${target} PROPERTIES
+    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  install(TARGETS ${target} EXPORT tessera_${name}
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+    RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
+    INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  install(EXPORT tessera_${name} FILE tessera_${name}_targets.cmake NAMESPACE tessera:: DESTINATION ${package_dir})
+endfunction()
+
+# The headers of a component that is not built stay out.
+set(left_out)
+tessera_install_component(core tessera)
+if(TESSERA_BUILD_RAY)
+  tessera_install_component(ray tessera_ray_library)
+else()
+  list(APPEND left_out PATTERN "ray_*.h" EXCLUDE)
+endif()
+if(TESSERA_BUILD_IO)
+  tessera_install_component(io tessera_io_library)
+else()
+  list(APPEND left_out PATTERN "io.h" EXCLUDE)
+endif()
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/engine/include/tessera DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+  FILES_MATCHING PATTERN "*.h" ${left_out})
+if(TESSERA_BUILD_TOOLS)
+  install(TARGETS tessera_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/licenses/tessera)
+
+configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/tesseraConfig.cmake.in
+  ${PROJECT_BINARY_DIR}/tesseraConfig.cmake INSTALL_DESTINATION ${package_dir})
+# Before 1.0 a minor version may change the interface.
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/tesseraConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/tesseraConfig.cmake ${PROJECT_BINARY_DIR}/tesseraConfigVersion.cmake
+  DESTINATION ${package_dir})

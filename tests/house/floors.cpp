@@ -1,0 +1,82 @@
+#include "house/floors.h"
+
+#include <algorithm>
+#include <sstream>
+
+namespace tessera::house {
+namespace {
+
+using Words = std::vector<std::string>;
+
+Words split(const std::string& line) {
+  std::istringstream stream(line.substr(0, line.find('#')));
+  Words words;
+  for (std::string word; stream >> word;) words.push_back(word);
+  return words;
+}
+
+// One line of the table; false where it has none of the three forms.
+bool parse_line(const Words& words, FloorTable& table, std::vector<std::string>& faults) {
+  if (words.size() < 2) return false;
+  if (words[0] == "floor" && (words.size() == 2 || (words.size() > 3 && words[2] == "on"))) {
+    const Names below(words.begin() + (words.size() == 2 ? 2 : 3), words.end());
+    // Only floors that were already stated may stand below, so there is no circle.
+    for (const std::string& name : below) {
+      if (!table.on.contains(name))
+        faults.push_back(words[1] + " stands on " + name + ", which is not stated above it");
+    }
+    if (!table.on.emplace(words[1], below).second) faults.push_back("floor " + words[1] + " is stated twice");
+    return true;
+  }
+  if (words[0] == "header" && words.size() == 4 && words[2] == "of") {
+    if (!table.on.contains(words[3])) faults.push_back(words[1] + " belongs to the unknown floor " + words[3]);
+    if (!table.floor_of.emplace(words[1], words[3]).second) faults.push_back("header " + words[1] + " is stated twice");
+    return true;
+  }
+  if (words[0] == "outside") {
+    const auto divider = std::find(words.begin(), words.end(), "for");
+    if (divider == words.end() || divider + 1 == words.end()) return false;
+    for (auto prefix = words.begin() + 1; prefix != divider; ++prefix) {
+      for (auto place = divider + 1; place != words.end(); ++place) {
+        if (!table.on.contains(*place) && !table.floor_of.contains(*place)) {
+          faults.push_back(*prefix + " is for " + *place + ", which is neither a floor nor a header");
+        }
+        table.outside[*prefix].insert(*place);
+      }
+    }
+    return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Names FloorTable::reachable(std::string_view floor) const {
+  Names seen{std::string(floor)};
+  std::vector<std::string> open{std::string(floor)};
+  while (!open.empty()) {
+    const auto found = on.find(open.back());
+    open.pop_back();
+    if (found == on.end()) continue;
+    for (const std::string& below : found->second) {
+      if (seen.insert(below).second) open.push_back(below);
+    }
+  }
+  return seen;
+}
+
+FloorTable parse_floors(std::string_view text, std::vector<std::string>& faults) {
+  FloorTable table;
+  std::istringstream stream{std::string(text)};
+  int number = 0;
+  for (std::string line; std::getline(stream, line);) {
+    ++number;
+    const Words words = split(line);
+    if (!words.empty() && !parse_line(words, table, faults)) {
+      faults.push_back("line " + std::to_string(number) + " has none of the known forms: " + line);
+    }
+  }
+  return table;
+}
+
+}  // namespace tessera::house

@@ -1,0 +1,27 @@
+#pragma once
+// The table of floors (floors.txt): which parts of engine/ may include which.
+
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tessera::house {
+
+using Names = std::set<std::string, std::less<>>;
+
+struct FloorTable {
+  std::map<std::string, Names, std::less<>> on;              ///< floor -> the floors that it stands directly on
+  std::map<std::string, std::string, std::less<>> floor_of;  ///< public header's file name -> its floor
+  std::map<std::string, Names, std::less<>> outside;         ///< prefix of a path between <> -> floors and headers
+
+  /// The floor itself and all that it stands on, however deep.
+  Names reachable(std::string_view floor) const;
+};
+
+/// Reads the table. What is wrong with it (a line of another form, an unknown or repeated name, floors that stand on each
+/// other in a circle) is appended to `faults`.
+FloorTable parse_floors(std::string_view text, std::vector<std::string>& faults);
+
+}  // namespace tessera::house

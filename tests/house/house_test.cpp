@@ -1,0 +1,69 @@
+// Rules of the house that a text search can hold: the length of files, and where instruction sets may be named.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <regex>
+
+#include "house/tree.h"
+
+namespace tessera::house {
+namespace {
+
+// "About 400 lines at the most": a file that needs more holds more than one idea.
+constexpr std::ptrdiff_t longest_file = 420;
+
+TEST(House, NoFileOfTheEngineIsTooLong) {
+  for (const std::string& path : files_under("engine")) {
+    const std::string text = read_text(path);
+    EXPECT_LE(std::count(text.begin(), text.end(), '\n'), longest_file) << path;
+  }
+}
+
+// A flag that chooses instructions, in a build file or a script.
+bool names_instructions(const std::string& text) {
+  static const std::regex flag(
+      R"re((^|[\s"';=])-m(arch|tune|cpu|sse|ssse|avx|fma|bmi|f16c|popcnt|lzcnt|adx|prefer-vector)[\w.=-]*)re");
+  return std::regex_search(text, flag);
+}
+
+TEST(House, SearchForInstructionFlagsFindsThem) {
+  for (const char* text : {"set(f -mavx2)", "\"-march=native\"", "CXXFLAGS=-mfma", "a\n-msse4.1;", "x;-mavx512f"}) {
+    EXPECT_TRUE(names_instructions(text)) << text;
+  }
+  for (const char* text : {"cmake -m", "mkdir -mode", "a-mavx2", "-Wall -fno-math-errno"}) {
+    EXPECT_FALSE(names_instructions(text)) << text;
+  }
+}
+
+TEST(House, InstructionFlagsStandInOneFile) {
+  std::vector<std::string> files{"CMakeLists.txt", "CMakePresets.json"};
+  for (const char* folder : {"cmake", "engine", "tests", "tools", "bench"}) {
+    for (const std::string& path : files_under(folder)) {
+      if (path.ends_with("CMakeLists.txt") || path.ends_with(".cmake") || path.ends_with(".sh")) files.push_back(path);
+    }
+  }
+  bool found = false;
+  for (const std::string& path : files) {
+    const bool names = names_instructions(read_text(path));
+    if (path == "cmake/TesseraIsaFlags.cmake")
+      found = names;
+    else
+      EXPECT_FALSE(names) << path << " names an instruction set; only cmake/TesseraIsaFlags.cmake may";
+  }
+  EXPECT_TRUE(found) << "cmake/TesseraIsaFlags.cmake names no instruction set: has it moved?";
+}
+
+TEST(House, NoFunctionChoosesInstructionsForItself) {
+  static const std::regex attribute(
+      R"re(\btarget(_clones)?\s*\(\s*"|#\s*pragma\s+(GCC|clang)\s+(push_)?(target|attribute))re");
+  for (const std::string& path : files_under("engine")) {
+    if (path == "engine/CMakeLists.txt") continue;
+    EXPECT_FALSE(std::regex_search(read_text(path), attribute)) << path;
+  }
+  EXPECT_TRUE(std::regex_search(std::string("__attribute__((target(\"avx2\")))"), attribute));
+  EXPECT_TRUE(std::regex_search(std::string("#pragma GCC target(\"avx2\")"), attribute));
+}
+
+}  // namespace
+}  // namespace tessera::house

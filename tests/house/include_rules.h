@@ -1,0 +1,26 @@
+#pragma once
+// Checks the #include lines of one file of engine/ against the table of floors.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "house/floors.h"
+
+namespace tessera::house {
+
+/// A file of the engine by its path relative to engine/, with its content.
+struct SourceFile {
+  std::string path;  ///< "src/FLOOR/..." or "include/tessera/NAME.h"
+  std::string text;
+};
+
+/// What breaks the rules, a sentence each: "src/io/ply.cpp:7: <tbb/...> is not for io". `known` holds the paths of all files,
+/// against which "floor/file.h" and "tessera/file.h" are resolved.
+std::vector<std::string> check_includes(const SourceFile& file, const FloorTable& table, const Names& known);
+
+/// Floors that the call tessera_floor(NAME SOURCES ... BELOW ...) in a CMake file states, by floor. They only order the
+/// build, but must not tell another story than the table.
+std::map<std::string, Names, std::less<>> floors_of_cmake(const std::string& text);
+
+}  // namespace tessera::house

@@ -1,0 +1,64 @@
+#!/usr/bin/env bash
+# The main job from a fresh clone: installs what is missing, builds, and turns the Utah teapot into a mesh and a picture.
+set -euo pipefail
+
+if (($#)); then
+  if [[ $1 == -h || $1 == --help ]]; then
+    cat <<'TEXT'
+tools/demo.sh
+
+Installs what is missing (tools/setup.sh --for demo), builds the command line in build/demo, prints a summary of the
+Utah teapot and writes out/teapot.ply and out/teapot.png. Says how long each step took.
+TEXT
+    exit 0
+  fi
+  echo "demo: takes no arguments (see --help)" >&2
+  exit 2
+fi
+cd "$(dirname -- "${BASH_SOURCE[0]}")/.."
+
+model=tools/models/teapot.bpt
+mesh=out/teapot.ply
+picture=out/teapot.png
+tessera=build/demo/tools/tessera
+names=()
+times=()
+
+microseconds() { printf '%s' "${EPOCHREALTIME/[.,]/}"; }
+
+# step NAME COMMAND...: runs the command and keeps how long it took.
+step() {
+  local name=$1 start
+  shift
+  printf '\n== %s\n' "$name"
+  start=$(microseconds)
+  "$@"
+  names+=("$name")
+  times+=($(($(microseconds) - start)))
+}
+
+build() {
+  if [[ -z ${CMAKE_CXX_COMPILER_LAUNCHER:-} ]] && command -v ccache >/dev/null; then
+    export CMAKE_CXX_COMPILER_LAUNCHER=ccache
+  fi
+  cmake --preset demo
+  cmake --build --preset demo
+}
+
+write_mesh() {
+  "$tessera" tessellate "$model" -o "$mesh" --grid 16x16
+  "$tessera" check "$mesh"
+}
+
+step "set-up" tools/setup.sh --for demo
+step "build" build
+mkdir -p out
+step "summary" "$tessera" info "$model"
+step "mesh" write_mesh
+step "picture" "$tessera" raycast "$model" -o "$picture" --size 1280x800
+
+printf '\nThe teapot as a mesh:    %s\n' "$PWD/$mesh"
+printf 'The teapot as a picture: %s\n\n' "$PWD/$picture"
+for i in "${!names[@]}"; do
+  printf '%-8s %4d.%03d s\n' "${names[i]}" $((times[i] / 1000000)) $((times[i] / 1000 % 1000))
+done

@@ -1,0 +1,89 @@
+#!/usr/bin/env bash
+# Installs what is missing of the Debian 12 packages that Tessera is built with. Silent work on a machine that has all.
+set -euo pipefail
+
+usage() {
+  cat <<'TEXT'
+tools/setup.sh [--for demo|test]
+
+Installs, from Debian's packages and by apt-get, what is missing to build Tessera: for the demo (the libraries and the
+command line), or for the tests as well (the default). As root directly, otherwise by sudo. Says what it installs.
+Where nothing is missing it does nothing and needs neither network nor rights.
+TEXT
+}
+
+fail() {
+  printf 'setup: %s\n' "$*" >&2
+  exit 1
+}
+
+# What each package is for stands in cmake/TesseraDependencies.cmake.
+demo_packages=(g++ cmake ninja-build libtbb-dev libxsimd-dev libembree-dev libcli11-dev nlohmann-json3-dev libpng-dev)
+test_packages=(binutils libgtest-dev libbenchmark-dev)
+
+purpose='test'
+while (($#)); do
+  case $1 in
+    --for)
+      (($# >= 2)) || fail "--for wants a word after it: demo or test"
+      purpose=$2
+      shift 2
+      ;;
+    --for=*)
+      purpose=${1#--for=}
+      shift
+      ;;
+    -h | --help)
+      usage
+      exit 0
+      ;;
+    *) fail "unknown argument '$1' (see --help)" ;;
+  esac
+done
+case $purpose in
+  demo) packages=("${demo_packages[@]}") ;;
+  test) packages=("${demo_packages[@]}" "${test_packages[@]}") ;;
+  *) fail "--for $purpose: no such purpose; there are demo and test" ;;
+esac
+
+if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
+  fail "this is not Debian (no apt-get). Install what these Debian packages hold, then build with CMake: ${packages[*]}"
+fi
+
+# True where the package is installed and configured.
+is_installed() {
+  [[ $(dpkg-query -W -f='${db:Status-Abbrev}' "$1" 2>/dev/null) == ii* ]]
+}
+
+missing=()
+for package in "${packages[@]}"; do
+  is_installed "$package" || missing+=("$package")
+done
+if ((${#missing[@]} == 0)); then
+  echo "setup: nothing is missing"
+  exit 0
+fi
+
+# shellcheck source=/dev/null
+if [[ -r /etc/os-release ]] && ! (. /etc/os-release && [[ ${ID:-} == debian && ${VERSION_ID:-} == 12 ]]); then
+  echo "setup: this is not Debian 12, for which the package names are written; trying them all the same"
+fi
+
+as_root=()
+if ((EUID != 0)); then
+  command -v sudo >/dev/null ||
+    fail "missing: ${missing[*]}. Installing them needs root, and there is no sudo: run as root 'apt-get install ${missing[*]}'"
+  as_root=(sudo)
+fi
+apt() {
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y -o DPkg::Lock::Timeout=300 "$@"
+}
+
+echo "setup: installs ${missing[*]}"
+apt update || echo "setup: apt-get update failed; going on with the package lists that are here" >&2
+apt install --no-install-recommends "${missing[@]}" ||
+  fail "apt-get could not install ${missing[*]}: what it says above is why (no network, perhaps?)"
+for package in "${missing[@]}"; do
+  is_installed "$package" || fail "apt-get reported success, but $package is not installed"
+done
+echo "setup: installed ${missing[*]}"
