@@ -54,13 +54,13 @@ struct Entry {
 
 }  // namespace
 
-Adjacency::Adjacency(const SetView& set) : links_(set.patch_count()), collapsed_(set.patch_count()) {
+Adjacency::Adjacency(const SetView& set) : links_(set.patch_count()) {
   std::vector<Entry> entries;
   entries.reserve(4 * set.patch_count());
   for (std::uint32_t k = 0; k < set.patch_count(); ++k) {
-    collapsed_[k] = set.patch(k).collapsed_edges();
+    const EdgeMask collapsed = set.collapsed_edges(k);
     for (std::uint8_t edge = 0; edge < 4; ++edge) {
-      if (!collapsed_[k].has(all_edges[edge])) entries.push_back({hash({&set.patch(k), edge}), k, edge});
+      if (!collapsed.has(all_edges[edge])) entries.push_back({hash({&set.patch(k), edge}), k, edge});
     }
   }
   std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {

@@ -32,14 +32,10 @@ class Adjacency {
   explicit Adjacency(const SetView& set);
 
   const EdgeLink& across(std::uint32_t patch, int edge) const { return links_[patch][static_cast<std::size_t>(edge)]; }
-  EdgeMask collapsed(std::uint32_t patch) const { return collapsed_[patch]; }
-  std::size_t memory_bytes() const {
-    return links_.capacity() * sizeof(links_[0]) + collapsed_.capacity() * sizeof(EdgeMask);
-  }
+  std::size_t memory_bytes() const { return links_.capacity() * sizeof(links_[0]); }
 
  private:
   std::vector<std::array<EdgeLink, 4>> links_;
-  std::vector<EdgeMask> collapsed_;
 };
 
 }  // namespace tessera

@@ -91,7 +91,7 @@ class RayScene::Impl {
 Status RayScene::Impl::evaluate_grids(const Execution& execution) {
   positions_.resize(3 * grid_.capacity() + padding);
   const auto vertices = View3<float>::interleaved(std::span(positions_).first(3 * grid_.capacity()));
-  return grid_.run(set_.set(), GridViews<float>{.position = vertices, .du = {}, .dv = {}, .normal = {}}, execution);
+  return grid_.run(set_.impl(), GridViews<float>{.position = vertices, .du = {}, .dv = {}, .normal = {}}, execution);
 }
 
 /// What the rays need to know of the set: neighbours, box, and how far facets lie from the surface.

@@ -82,7 +82,7 @@ Refiner::Refiner(const SetView& set, const Adjacency& adjacency, int rate)
 
 Refiner::Leash Refiner::leash(std::uint32_t patch, double u, double v) const {
   // Near a pole the parameter that runs around it says little: there it is free.
-  const EdgeMask collapsed = adjacency_.collapsed(patch);
+  const EdgeMask collapsed = set_.collapsed_edges(patch);
   const double du = collapsed.has(Edge::v0) || collapsed.has(Edge::v1) ? 1 : cells_;
   const double dv = collapsed.has(Edge::u0) || collapsed.has(Edge::u1) ? 1 : cells_;
   return {{std::max(u - du, -overshoot), std::min(u + du, 1 + overshoot), std::max(v - dv, -overshoot),
@@ -138,7 +138,7 @@ Refiner::Outcome Refiner::newton(const RaySegment& segment, SurfaceRoot& root) c
 
 void Refiner::push_neighbours(const SurfaceRoot& root, Frontier& frontier) const {
   const std::array<double, 4> excess{-root.u, root.u - 1, -root.v, root.v - 1};
-  const EdgeMask collapsed = adjacency_.collapsed(root.patch);
+  const EdgeMask collapsed = set_.collapsed_edges(root.patch);
   const bool over_pole = (collapsed.has(Edge::u0) && excess[0] > 0) || (collapsed.has(Edge::u1) && excess[1] > 0) ||
                          (collapsed.has(Edge::v0) && excess[2] > 0) || (collapsed.has(Edge::v1) && excess[3] > 0);
   std::array<int, 4> order{0, 1, 2, 3};  // the edge that was left by most comes first
