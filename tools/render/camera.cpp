@@ -9,8 +9,9 @@ namespace tessera::render {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
-constexpr double azimuth = -64 * degree, elevation = 24 * degree;  // of the eye, seen from the model
-constexpr double fill = 0.86;                                      // of the picture, by the box
+constexpr double azimuth = -62 * degree, elevation = 14 * degree;  // of the eye, seen from the model
+constexpr double fill = 0.84;                                      // of the picture, by the box
+constexpr double lowered = 0.07;                                   // by this share of half the height: room for the sky
 
 struct Axes {
   Vec3 right, up, back;
@@ -51,7 +52,8 @@ Camera fit_camera(const Box3& box, int width, int height) {
   }
   const double distance = std::max({(right + left) / (2 * tangent_x), (top + bottom) / (2 * tangent_y),
                                     nearest + 1e-3 * box.diagonal()});
-  camera.target = box.centre() + 0.5 * (right - left) * axes.right + 0.5 * (top - bottom) * axes.up;
+  const double rise = 0.5 * (top - bottom) + lowered * distance * tangent_y;
+  camera.target = box.centre() + 0.5 * (right - left) * axes.right + rise * axes.up;
   camera.eye = camera.target + distance * back;
   return camera;
 }

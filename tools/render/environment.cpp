@@ -5,12 +5,12 @@
 namespace tessera::render {
 namespace {
 
-const Vec3 zenith{0.16, 0.30, 0.58}, middle{0.52, 0.66, 0.86}, horizon{1.04, 0.83, 0.64};
+const Vec3 zenith{0.13, 0.26, 0.54}, middle{0.36, 0.53, 0.80}, horizon{1.12, 0.84, 0.60};
 const Vec3 glow{1.0, 0.78, 0.52};
-const Vec3 floor_albedo{0.50, 0.44, 0.38};
-const Vec3 sun{2.35, 2.05, 1.65};
-const Vec3 to_sun = normalized({-0.80, -0.62, 0.95});
-constexpr double haze_begins = 1.1, haze_length = 5;  // in sizes of the model
+const Vec3 floor_albedo{0.31, 0.25, 0.21};
+const Vec3 sun{1.9, 1.58, 1.2};
+const Vec3 to_sun = normalized({-0.86, -0.52, 0.80});
+constexpr double haze_begins = 1.5, haze_length = 9;  // in sizes of the model
 
 }  // namespace
 
@@ -23,7 +23,7 @@ double Environment::sun_tangent() const { return 0.07; }
 
 Vec3 Environment::sky(const Vec3& direction) const {
   const double rise = std::max(direction.z, 0.0);
-  const double high = 1 - std::exp(-2.2 * rise), low = std::exp(-7 * rise);
+  const double high = 1 - std::exp(-2.2 * rise), low = std::exp(-11 * rise);
   const double towards = std::max(dot(direction, to_sun), 0.0);
   const Vec3 clear = mix(mix(middle, zenith, high), horizon, low);
   return clear + (0.25 * std::pow(towards, 6) + 1.6 * std::pow(towards, 60)) * glow;

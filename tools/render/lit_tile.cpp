@@ -11,7 +11,7 @@
 namespace tessera::render {
 namespace {
 
-const Vec3 porcelain{0.80, 0.79, 0.77};
+const Vec3 porcelain{0.76, 0.78, 0.78};
 const Vec3 shaded_neighbour{0.34, 0.31, 0.28};  // stands for light that comes from the model itself
 constexpr double facet_distance = 1.5e-3;       // of the size: how far above the surface secondary rays begin
 constexpr double glaze_at_right_angle = 0.05;   // reflectance of a glaze of refractive index 1.6

@@ -14,9 +14,9 @@
 namespace tessera::render {
 namespace {
 
-constexpr int tile_side = 32;
+constexpr int tile_side = 16;
 constexpr int largest_side = 32768, most_samples = 16;
-constexpr double exposure = 0.72;
+constexpr double exposure = 0.58;
 
 Status check(const Settings& settings, const Box3& box) {
   const auto bad = [](const char* why) { return Status(StatusCode::invalid_argument, why); };

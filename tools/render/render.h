@@ -16,7 +16,7 @@ namespace tessera::render {
 /// A pinhole. The field of view spans the picture's shorter side.
 struct Camera {
   Vec3 eye, target;
-  double fov_degrees = 30;
+  double fov_degrees = 40;
   Vec3 up{0, 0, 1};
 };
 
