@@ -39,19 +39,19 @@ std::size_t blocks_per_task(const GridPlan::Impl& plan, bool derivatives) {
 }
 
 template <class T>
-Status check_plan(const PatchSet& set, const GridPlan& plan) {
+Status check_plan(const PatchSet::Impl& set, const GridPlan& plan) {
   const bool twice = plan.precision() == Precision::double_precision;
   if (twice != (sizeof(T) == 8))
     return Status(StatusCode::invalid_argument, "the plan's precision is not that of the outputs");
   const auto& planned = plan.impl().groups;
-  const auto& groups = set.impl().groups;
-  const bool same = plan.impl().patch_count == set.patch_count() &&
+  const auto& groups = set.groups;
+  const bool same = plan.impl().patch_count == set.patches.size() &&
                     std::equal(planned.begin(), planned.end(), groups.begin(), groups.end(),
                                [](const PlannedGroup& a, const BlockGroup& b) {
                                  return a.degree_u == b.degree_u && a.degree_v == b.degree_v && a.rational == b.rational &&
                                         a.blocks == b.block_count;
                                });
-  if (!same || !set.impl().has(plan.precision(), plan.impl().options.representation))
+  if (!same || !set.has(plan.precision(), plan.impl().options.representation))
     return Status(StatusCode::invalid_argument, "the plan was made for another patch set: counts, degrees or blocks differ");
   return {};
 }
@@ -130,7 +130,7 @@ void write_pole_normals(const PatchSet::Impl& set, const GridPlan::Impl& plan, s
 
 template <class T>
 Status evaluate_blocks(const PatchSet& set, const GridPlan& plan, const GridBlocks<T>& out, const Execution& execution) {
-  if (Status status = check_plan<T>(set, plan); !status.ok()) return status;
+  if (Status status = check_plan<T>(set.impl(), plan); !status.ok()) return status;
   if (Status status = check_blocks(plan, out); !status.ok()) return status;
   const PatchSet::Impl& patches = set.impl();
   const GridPlan::Impl& inner = plan.impl();
@@ -194,10 +194,9 @@ void write_pole_normals(const PatchSet::Impl& set, const GridPlan::Impl& plan, s
 }
 
 template <class T>
-Status evaluate_views(const PatchSet& set, const GridPlan& plan, const GridViews<T>& out, const Execution& execution) {
-  if (Status status = check_plan<T>(set, plan); !status.ok()) return status;
+Status evaluate_views(const PatchSet::Impl& patches, const GridPlan& plan, const GridViews<T>& out, const Execution& execution) {
+  if (Status status = check_plan<T>(patches, plan); !status.ok()) return status;
   if (Status status = check_views(plan, out); !status.ok()) return status;
-  const PatchSet::Impl& patches = set.impl();
   const GridPlan::Impl& inner = plan.impl();
   const auto& kernels = kernel::kernels(inner.isa);
   const bool derivatives = !out.du.empty() || !out.dv.empty() || !out.normal.empty();
@@ -225,9 +224,13 @@ Status evaluate(const PatchSet& set, const GridPlan& plan, const GridBlocks<doub
   return guarded([&] { return evaluate_blocks(set, plan, out, execution); });
 }
 Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<float>& out, const Execution& execution) {
-  return guarded([&] { return evaluate_views(set, plan, out, execution); });
+  return guarded([&] { return evaluate_views(set.impl(), plan, out, execution); });
 }
 Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<double>& out, const Execution& execution) {
+  return guarded([&] { return evaluate_views(set.impl(), plan, out, execution); });
+}
+
+Status evaluate(const PatchSet::Impl& set, const GridPlan& plan, const GridViews<float>& out, const Execution& execution) {
   return guarded([&] { return evaluate_views(set, plan, out, execution); });
 }
 

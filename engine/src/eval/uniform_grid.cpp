@@ -117,15 +117,15 @@ Result<UniformGrid> UniformGrid::make(const PatchSet& set, int rate_u, int rate_
   return grid;
 }
 
-Status UniformGrid::run(const PatchSet& set, const GridViews<float>& out, const Execution& execution) const {
+Status UniformGrid::run(const PatchSet::Impl& set, const GridViews<float>& out, const Execution& execution) const {
   if (Status status = evaluate(set, plan_, out, execution); !status.ok()) return status;
   if (out.position.empty()) return {};
-  const BorderWriter borders(set.impl(), kernel::kernels(plan_.isa()), rate_u_, rate_v_, out.position, border_weights_u_, border_weights_v_);
+  const BorderWriter borders(set, kernel::kernels(plan_.isa()), rate_u_, rate_v_, out.position, border_weights_u_, border_weights_v_);
   const std::size_t border_points = static_cast<std::size_t>(2 * (rate_u_ + rate_v_)) * PatchSet::lanes;
   const std::size_t grain = std::max<std::size_t>(1, 16384 / border_points);
   Execution quiet;  // progress and the report are evaluate()'s
   quiet.cancel = execution.cancel;
-  return parallel_for(set.block_count(), grain, quiet, [&](std::size_t begin, std::size_t end) {
+  return parallel_for(plan_.impl().block_count, grain, quiet, [&](std::size_t begin, std::size_t end) {
     for (std::size_t block = begin; block < end; ++block) borders.run(block);
   });
 }

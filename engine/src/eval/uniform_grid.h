@@ -23,7 +23,11 @@ class UniformGrid {
   /// Records that each view must hold: patch_count * (rate_u + 1) * (rate_v + 1), in the order `[patch][iu][iv]`.
   std::size_t capacity() const { return plan_.capacity(); }
   /// Evaluates all patches. Errors: those of evaluate().
-  Status run(const PatchSet& set, const GridViews<float>& out, const Execution& execution) const;
+  Status run(const PatchSet& set, const GridViews<float>& out, const Execution& execution) const {
+    return run(set.impl(), out, execution);
+  }
+  /// The same for those who keep the set's inner state, which stays in place when the set is moved.
+  Status run(const PatchSet::Impl& set, const GridViews<float>& out, const Execution& execution) const;
 
  private:
   UniformGrid(GridPlan plan, int rate_u, int rate_v) : plan_(std::move(plan)), rate_u_(rate_u), rate_v_(rate_v) {}

@@ -1,0 +1,216 @@
+#include "ray/embree_scene.h"
+
+#include <embree3/rtcore.h>
+#include <immintrin.h>
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tessera {
+namespace {
+
+constexpr unsigned flush_and_denormals_are_zero = 0x8040;
+constexpr unsigned all_exceptions_masked = 0x1f80;
+
+struct SceneRelease {
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+struct DeviceRelease {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct GeometryRelease {
+  void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
+};
+template <class Handle, class Release>
+using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
+
+StatusCode status_code(RTCError error) {
+  switch (error) {
+    case RTC_ERROR_OUT_OF_MEMORY: return StatusCode::out_of_memory;
+    case RTC_ERROR_CANCELLED: return StatusCode::cancelled;
+    case RTC_ERROR_UNSUPPORTED_CPU: return StatusCode::unsupported;
+    default: return StatusCode::internal;
+  }
+}
+
+/// What Embree reports through its callbacks, from any thread.
+struct Monitor {
+  std::atomic<std::ptrdiff_t> bytes{0};
+  std::mutex mutex;
+  RTCError error = RTC_ERROR_NONE;  // the first since it was last taken
+  std::string message;
+
+  static void on_error(void* self, RTCError code, const char* text) {
+    auto& monitor = *static_cast<Monitor*>(self);
+    const std::lock_guard lock(monitor.mutex);
+    if (monitor.error != RTC_ERROR_NONE) return;
+    monitor.error = code;
+    try {
+      monitor.message = text ? text : "";
+    } catch (...) {  // the code alone must do
+    }
+  }
+  static bool on_memory(void* self, ssize_t bytes, bool) {
+    static_cast<Monitor*>(self)->bytes += bytes;
+    return true;
+  }
+  Status take() {
+    const std::lock_guard lock(mutex);
+    const RTCError code = std::exchange(error, RTC_ERROR_NONE);
+    if (code == RTC_ERROR_NONE) return {};
+    if (code == RTC_ERROR_CANCELLED) return Status(StatusCode::cancelled, "cancelled by the caller");
+    return Status(status_code(code), "Embree: " + std::exchange(message, {}));
+  }
+};
+
+bool not_cancelled(void* cancel, double) {
+  return !static_cast<const std::atomic<bool>*>(cancel)->load(std::memory_order_relaxed);
+}
+
+RTCIntersectContext context_for(RTCIntersectContextFlags flags) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = flags;
+  return context;
+}
+
+RTCRay to_embree(const FacetRay& ray) {
+  RTCRay out{};
+  out.org_x = ray.origin[0], out.org_y = ray.origin[1], out.org_z = ray.origin[2];
+  out.dir_x = ray.direction[0], out.dir_y = ray.direction[1], out.dir_z = ray.direction[2];
+  out.tnear = ray.tnear, out.tfar = ray.tfar;
+  out.mask = ~0u;
+  return out;
+}
+
+using Lanes = std::array<int, EmbreeScene::packet>;  // -1: active, 0: not
+
+/// Fills the lanes of a packet; returns which are active. Idle lanes repeat the first ray.
+Lanes to_embree(std::span<const FacetRay> rays, RTCRay16& out) {
+  Lanes valid{};
+  for (std::size_t k = 0; k < EmbreeScene::packet; ++k) {
+    const FacetRay& ray = rays[k < rays.size() ? k : 0];
+    valid[k] = k < rays.size() ? -1 : 0;
+    out.org_x[k] = ray.origin[0], out.org_y[k] = ray.origin[1], out.org_z[k] = ray.origin[2];
+    out.dir_x[k] = ray.direction[0], out.dir_y[k] = ray.direction[1], out.dir_z[k] = ray.direction[2];
+    out.tnear[k] = ray.tnear, out.tfar[k] = ray.tfar;
+    out.time[k] = 0, out.mask[k] = ~0u, out.id[k] = 0, out.flags[k] = 0;
+  }
+  return valid;
+}
+
+}  // namespace
+
+FlushDenormals::FlushDenormals() : saved_(_mm_getcsr()) {
+  _mm_setcsr(saved_ | flush_and_denormals_are_zero | all_exceptions_masked);
+}
+FlushDenormals::~FlushDenormals() { _mm_setcsr(saved_); }
+
+struct EmbreeScene::State {
+  Monitor monitor;                           // outlives the device, which calls it
+  std::vector<RTCGrid> grids;                // borrowed by the geometry
+  Owned<RTCDevice, DeviceRelease> device;
+  Owned<RTCScene, SceneRelease> scene;
+};
+
+EmbreeScene::EmbreeScene(std::unique_ptr<State> state) : state_(std::move(state)) {}
+EmbreeScene::EmbreeScene(EmbreeScene&&) noexcept = default;
+EmbreeScene& EmbreeScene::operator=(EmbreeScene&&) noexcept = default;
+EmbreeScene::~EmbreeScene() = default;
+
+Result<EmbreeScene> EmbreeScene::make() {
+  auto state = std::make_unique<State>();
+  // No thread is started or bound to a core: the work runs in the caller's arena.
+  state->device.reset(rtcNewDevice("verbose=0,start_threads=0,set_affinity=0"));
+  if (!state->device) return Status(status_code(rtcGetDeviceError(nullptr)), "Embree: no device could be made");
+  rtcSetDeviceErrorFunction(state->device.get(), &Monitor::on_error, &state->monitor);
+  rtcSetDeviceMemoryMonitorFunction(state->device.get(), &Monitor::on_memory, &state->monitor);
+  return EmbreeScene(std::move(state));
+}
+
+Status EmbreeScene::build(const GridVertices& vertices, const Execution& execution) {
+  State& state = *state_;
+  state.scene.reset();
+  const std::size_t per_grid = static_cast<std::size_t>(vertices.height) * static_cast<std::size_t>(vertices.width);
+  if (vertices.height > max_vertices_a_side || vertices.width > max_vertices_a_side ||
+      vertices.grids > std::numeric_limits<std::uint32_t>::max() / per_grid)
+    return Status(StatusCode::unsupported, std::to_string(vertices.grids) + " grids of " + std::to_string(per_grid) +
+                                               " vertices are more than the 2^32 vertices of one ray scene");
+  state.grids.resize(vertices.grids);
+  for (std::size_t k = 0; k < vertices.grids; ++k) {
+    state.grids[k] = {static_cast<unsigned>(k * per_grid), static_cast<unsigned>(vertices.width),
+                      static_cast<unsigned short>(vertices.width), static_cast<unsigned short>(vertices.height)};
+  }
+
+  RTCDevice device = state.device.get();
+  const Owned<RTCGeometry, GeometryRelease> geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_GRID));
+  Owned<RTCScene, SceneRelease> scene(rtcNewScene(device));
+  if (!geometry || !scene) return state.monitor.take();
+  rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_GRID, 0, RTC_FORMAT_GRID, state.grids.data(), 0,
+                             sizeof(RTCGrid), state.grids.size());
+  rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices.data, 0,
+                             3 * sizeof(float), vertices.grids * per_grid);
+  rtcCommitGeometry(geometry.get());
+  rtcAttachGeometry(scene.get(), geometry.get());
+  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+  if (execution.cancel) {
+    rtcSetSceneProgressMonitorFunction(scene.get(), &not_cancelled, const_cast<std::atomic<bool>*>(execution.cancel));
+  }
+  // Not rtcJoinCommitScene: with TBB that one works in an arena of Embree's own, this one in the caller's.
+  rtcCommitScene(scene.get());
+  rtcSetSceneProgressMonitorFunction(scene.get(), nullptr, nullptr);
+  if (Status status = state.monitor.take(); !status.ok()) return status;
+  state.scene = std::move(scene);
+  return {};
+}
+
+FacetHit EmbreeScene::closest(const FacetRay& ray) const {
+  RTCIntersectContext context = context_for(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+  RTCRayHit query{};
+  query.ray = to_embree(ray);
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(state_->scene.get(), &context, &query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+  return {query.hit.primID, query.ray.tfar, query.hit.v, query.hit.u};  // Embree's u runs along the width
+}
+
+bool EmbreeScene::occluded(const FacetRay& ray) const {
+  RTCIntersectContext context = context_for(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+  RTCRay query = to_embree(ray);
+  rtcOccluded1(state_->scene.get(), &context, &query);
+  return query.tfar < 0;  // -infinity where something was met
+}
+
+void EmbreeScene::closest(std::span<const FacetRay> rays, std::span<FacetHit> hits) const {
+  RTCIntersectContext context = context_for(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
+  RTCRayHit16 query;
+  alignas(64) const Lanes valid = to_embree(rays, query.ray);
+  std::fill(std::begin(query.hit.geomID), std::end(query.hit.geomID), RTC_INVALID_GEOMETRY_ID);
+  std::fill(std::begin(query.hit.instID[0]), std::end(query.hit.instID[0]), RTC_INVALID_GEOMETRY_ID);
+  rtcIntersect16(valid.data(), state_->scene.get(), &context, &query);
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    hits[k] = {};
+    if (query.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
+    hits[k] = {query.hit.primID[k], query.ray.tfar[k], query.hit.v[k], query.hit.u[k]};
+  }
+}
+
+void EmbreeScene::occluded(std::span<const FacetRay> rays, std::span<std::uint8_t> occluded) const {
+  RTCIntersectContext context = context_for(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
+  RTCRay16 query;
+  alignas(64) const Lanes valid = to_embree(rays, query);
+  rtcOccluded16(valid.data(), state_->scene.get(), &context, &query);
+  for (std::size_t k = 0; k < rays.size(); ++k) occluded[k] = query.tfar[k] < 0;
+}
+
+std::size_t EmbreeScene::memory_bytes() const {
+  const auto bytes = static_cast<std::size_t>(std::max<std::ptrdiff_t>(state_->monitor.bytes.load(), 0));
+  return bytes + state_->grids.capacity() * sizeof(RTCGrid);
+}
+
+}  // namespace tessera

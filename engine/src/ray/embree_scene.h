@@ -1,0 +1,83 @@
+#pragma once
+// Embree's side of a ray scene: one grid geometry over borrowed vertices, and the tracing of single rays and packets.
+// Embree's types stay in embree_scene.cpp.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+
+#include "tessera/execution.h"
+#include "tessera/status.h"
+
+namespace tessera {
+
+/// Grids of height x width vertices each, one after the other, 3 floats a vertex, rows (of equal height index) contiguous.
+struct GridVertices {
+  const float* data = nullptr;  ///< one float more than 3 * vertices must be readable: the last vertex is read as 16 bytes
+  std::size_t grids = 0;
+  int height = 0, width = 0;
+};
+
+/// A ray as Embree takes it: every number finite, 0 <= tnear <= tfar, direction not zero.
+struct FacetRay {
+  std::array<float, 3> origin{}, direction{};
+  float tnear = 0, tfar = 0;
+};
+
+/// Where a ray meets a facet. u runs along the grid's height, v along its width, both from 0 to 1.
+struct FacetHit {
+  static constexpr std::uint32_t nothing = std::numeric_limits<std::uint32_t>::max();
+  std::uint32_t grid = nothing;
+  float t = 0, u = 0, v = 0;
+  bool hit() const { return grid != nothing; }
+};
+
+/// Flush-to-zero and denormals-are-zero for this thread (and floating-point exceptions masked), as Embree wants them
+/// for speed; the caller's state comes back at the end of the scope. Doubles are affected too: only tracing belongs inside.
+class FlushDenormals {
+ public:
+  FlushDenormals();
+  ~FlushDenormals();
+  FlushDenormals(const FlushDenormals&) = delete;
+  FlushDenormals& operator=(const FlushDenormals&) = delete;
+
+ private:
+  unsigned saved_;
+};
+
+/// Owns device, scene and geometry. Const calls from any number of threads, each inside a FlushDenormals.
+class EmbreeScene {
+ public:
+  static constexpr std::size_t packet = 16;
+  /// Embree checks none of this before 4.4.1.
+  static constexpr int max_vertices_a_side = 32767;
+
+  /// Errors: internal and out_of_memory, from Embree.
+  static Result<EmbreeScene> make();
+  EmbreeScene(EmbreeScene&&) noexcept;
+  EmbreeScene& operator=(EmbreeScene&&) noexcept;
+  ~EmbreeScene();
+
+  /// Builds the BVH, in the caller's arena; what was built before is dropped. `vertices` must stay in place and unchanged
+  /// while the scene is used. On errors the scene is empty. Errors: unsupported (too many vertices), cancelled, Embree's own.
+  Status build(const GridVertices& vertices, const Execution& execution);
+
+  FacetHit closest(const FacetRay& ray) const;
+  bool occluded(const FacetRay& ray) const;
+  /// At most `packet` rays at once; quicker than one by one where they are coherent.
+  void closest(std::span<const FacetRay> rays, std::span<FacetHit> hits) const;
+  void occluded(std::span<const FacetRay> rays, std::span<std::uint8_t> occluded) const;
+
+  /// What Embree has allocated.
+  std::size_t memory_bytes() const;
+
+ private:
+  struct State;
+  explicit EmbreeScene(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace tessera

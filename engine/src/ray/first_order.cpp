@@ -1,0 +1,89 @@
+#include "ray/first_order.h"
+
+#include <array>
+
+namespace tessera {
+namespace {
+
+using Values = std::array<double, max_degree + 1>;
+
+/// B_{i,n}(t) and their derivatives, by B_{i,n} = (1-t) B_{i,n-1} + t B_{i-1,n-1} and
+/// B'_{i,n} = n (B_{i-1,n-1} - B_{i,n-1}) (Farin, Curves and Surfaces for CAGD, 5th ed., eqs. 5.2 and 5.23).
+struct Basis {
+  Values value, derivative;
+
+  Basis(int degree, double t) {
+    const double s = 1 - t;
+    value[0] = 1;
+    for (int n = 1; n < degree; ++n) raise(n, s, t);
+    double before = 0;
+    for (int i = 0; i < degree; ++i) {
+      derivative[at(i)] = degree * (before - value[at(i)]);
+      before = value[at(i)];
+    }
+    derivative[at(degree)] = degree * before;
+    raise(degree, s, t);
+  }
+
+  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+ private:
+  /// From degree n - 1 to n, in place.
+  void raise(int n, double s, double t) {
+    value[at(n)] = t * value[at(n - 1)];
+    for (int i = n - 1; i > 0; --i) value[at(i)] = s * value[at(i)] + t * value[at(i - 1)];
+    value[0] *= s;
+  }
+};
+
+FirstOrder polynomial(const BezierPatch& patch, const Basis& u, const Basis& v) {
+  FirstOrder out;
+  const Vec3* point = patch.points().data();
+  for (int i = 0; i <= patch.degree_u(); ++i) {
+    Vec3 row, row_dv;
+    for (int j = 0; j <= patch.degree_v(); ++j, ++point) {
+      row += v.value[Basis::at(j)] * *point;
+      row_dv += v.derivative[Basis::at(j)] * *point;
+    }
+    out.position += u.value[Basis::at(i)] * row;
+    out.du += u.derivative[Basis::at(i)] * row;
+    out.dv += u.value[Basis::at(i)] * row_dv;
+  }
+  return out;
+}
+
+/// Quotient rule (Piegl and Tiller, The NURBS Book, eq. 4.20): r_u = (A_u - w_u r) / w.
+FirstOrder rational(const BezierPatch& patch, const Basis& u, const Basis& v) {
+  FirstOrder out;
+  double w = 0, w_u = 0, w_v = 0;
+  const Vec3* point = patch.points().data();
+  const double* weight = patch.weights().data();
+  for (int i = 0; i <= patch.degree_u(); ++i) {
+    Vec3 row, row_dv;
+    double weight_row = 0, weight_dv = 0;
+    for (int j = 0; j <= patch.degree_v(); ++j, ++point, ++weight) {
+      const double b = v.value[Basis::at(j)] * *weight, b_dv = v.derivative[Basis::at(j)] * *weight;
+      row += b * *point, row_dv += b_dv * *point;
+      weight_row += b, weight_dv += b_dv;
+    }
+    const double a = u.value[Basis::at(i)], a_du = u.derivative[Basis::at(i)];
+    out.position += a * row, out.du += a_du * row, out.dv += a * row_dv;
+    w += a * weight_row, w_u += a_du * weight_row, w_v += a * weight_dv;
+  }
+  out.valid = w > 0;
+  if (!out.valid) return out;
+  const double inverse = 1 / w;
+  out.position = inverse * out.position;
+  out.du = inverse * (out.du - w_u * out.position);
+  out.dv = inverse * (out.dv - w_v * out.position);
+  return out;
+}
+
+}  // namespace
+
+FirstOrder first_order(const BezierPatch& patch, double u, double v) {
+  const Basis basis_u(patch.degree_u(), u), basis_v(patch.degree_v(), v);
+  return patch.is_rational() ? rational(patch, basis_u, basis_v) : polynomial(patch, basis_u, basis_v);
+}
+
+}  // namespace tessera

@@ -1,0 +1,111 @@
+// tnear and tfar hold for the refined t, in double; any hit and closest hit agree.
+
+#include <cmath>
+
+#include "ray_support.h"
+
+namespace tessera::test {
+namespace {
+
+class Interval : public testing::Test {
+ protected:
+  PatchSet set_ = set_of(sphere());
+  RayScene scene_ = scene_of(set_, 5);  // coarse: facets lie well inside the sphere
+};
+
+TEST_F(Interval, EndsAtTheHitAreInclusive) {
+  Random random(21);
+  for (int k = 0; k < 500; ++k) {
+    const Vec3 target = normalized(random_direction(random));
+    Ray one = ray(3 * target + 0.5 * random_direction(random), {});
+    one.direction = target - one.origin;
+    const Hit first = scene_.closest(one);
+    ASSERT_EQ(first.kind, HitKind::hit);
+    one.tfar = first.t;
+    EXPECT_EQ(scene_.closest(one).kind, HitKind::hit);
+    EXPECT_EQ(scene_.closest(one).t, first.t);
+    one.tfar = first.t * (1 - 1e-9);
+    EXPECT_EQ(scene_.closest(one).kind, HitKind::miss);
+  }
+}
+
+TEST_F(Interval, BeginsBehindTheHit) {
+  // From just behind the first hit on, the far side is the answer; the facet before and behind it doesn't matter.
+  Random random(22);
+  for (int k = 0; k < 500; ++k) {
+    const Vec3 origin = 3 * normalized(random_direction(random));
+    Ray one = ray(origin, 0.4 * random_direction(random) - origin);
+    const Hit near = scene_.closest(one);
+    ASSERT_EQ(near.kind, HitKind::hit);
+    for (const double step : {1e-9, 1e-6, 1e-3}) {
+      one.tnear = near.t + step;
+      const Hit far = scene_.closest(one);
+      ASSERT_EQ(far.kind, HitKind::hit) << step;
+      EXPECT_GE(far.t, one.tnear);
+      const double unit = length(one.direction), b = dot(one.origin, one.direction) / unit;
+      const double exit = (-b + std::sqrt(b * b - dot(one.origin, one.origin) + 1)) / unit;
+      EXPECT_NEAR(far.t, exit, 1e-9) << step;
+    }
+    one.tnear = near.t - 1e-9;
+    EXPECT_NEAR(scene_.closest(one).t, near.t, 1e-12);
+  }
+}
+
+TEST_F(Interval, OriginOnTheSurface) {
+  Random random(23);
+  for (int k = 0; k < 1000; ++k) {
+    const Vec3 point = normalized(random_direction(random)), direction = normalized(random_direction(random));
+    if (std::abs(dot(point, direction)) < 0.3) continue;  // a shorter chord may pass between facets and surface
+    Ray one = ray(point, direction);
+    one.tnear = 1e-9;
+    const Hit hit = scene_.closest(one);
+    const double chord = -2 * dot(point, direction);
+    if (chord > 0) {
+      ASSERT_EQ(hit.kind, HitKind::hit);
+      EXPECT_NEAR(hit.t, chord, 1e-9);
+    } else {
+      EXPECT_EQ(hit.kind, HitKind::miss);
+    }
+  }
+}
+
+TEST_F(Interval, OccludedAgreesWithClosest) {
+  Random random(24);
+  std::vector<Ray> rays;
+  for (int k = 0; k < 20000; ++k) {
+    Ray one = ray(uniform_vector(random, -2, 2), random_direction(random));
+    one.tfar = uniform(random, 0, 4);
+    one.tnear = uniform(random, 0, one.tfar);
+    rays.push_back(one);
+  }
+  const std::vector<Hit> hits = closest(scene_, rays);
+  std::vector<std::uint8_t> occluded(rays.size());
+  ASSERT_TRUE(scene_.occluded(rays, occluded).ok());
+  std::size_t differ = 0, met = 0;
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    differ += (hits[k].kind == HitKind::hit) != (occluded[k] != 0);
+    met += occluded[k];
+  }
+  // Only where facets and surface lie on different sides of an end or of a silhouette.
+  EXPECT_LT(differ, rays.size() / 25);
+  EXPECT_GT(met, rays.size() / 20);
+}
+
+TEST_F(Interval, SingleRaysAgreeWithBatches) {
+  Random random(25);
+  std::vector<Ray> rays;
+  for (int k = 0; k < 3000; ++k) {
+    const Vec3 target = uniform_vector(random, -0.8, 0.8);
+    rays.push_back(ray({4, 0, 0}, target - Vec3{4, 0, 0}));  // coherent enough for packets
+  }
+  const std::vector<Hit> hits = closest(scene_, rays);
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    const Hit one = scene_.closest(rays[k]);
+    ASSERT_EQ(one.kind, hits[k].kind);
+    if (one.kind != HitKind::hit || one.flags.unrefined || hits[k].flags.unrefined) continue;
+    EXPECT_NEAR(one.t, hits[k].t, 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace tessera::test

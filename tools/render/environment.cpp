@@ -1,0 +1,54 @@
+#include "render/environment.h"
+
+#include <cmath>
+
+namespace tessera::render {
+namespace {
+
+const Vec3 zenith{0.13, 0.26, 0.54}, middle{0.36, 0.53, 0.80}, horizon{1.12, 0.84, 0.60};
+const Vec3 glow{1.0, 0.78, 0.52};
+const Vec3 floor_albedo{0.31, 0.25, 0.21};
+const Vec3 sun{1.9, 1.58, 1.2};
+const Vec3 to_sun = normalized({-0.86, -0.52, 0.80});
+constexpr double haze_begins = 1.5, haze_length = 9;  // in sizes of the model
+
+}  // namespace
+
+Environment::Environment(const Box3& box, const Vec3& eye)
+    : centre_(box.centre()), height_(box.lower.z), size_(box.diagonal()), has_floor_(eye.z > box.lower.z) {}
+
+Vec3 Environment::sun_direction() const { return to_sun; }
+Vec3 Environment::sun_light() const { return sun; }
+double Environment::sun_tangent() const { return 0.07; }
+
+Vec3 Environment::sky(const Vec3& direction) const {
+  const double rise = std::max(direction.z, 0.0);
+  const double high = 1 - std::exp(-2.2 * rise), low = std::exp(-11 * rise);
+  const double towards = std::max(dot(direction, to_sun), 0.0);
+  const Vec3 clear = mix(mix(middle, zenith, high), horizon, low);
+  return clear + (0.25 * std::pow(towards, 6) + 1.6 * std::pow(towards, 60)) * glow;
+}
+
+std::optional<double> Environment::floor(const Vec3& origin, const Vec3& direction, double farthest) const {
+  if (!has_floor_ || !(direction.z < 0)) return {};
+  const double t = (height_ - origin.z) / direction.z;
+  // What lies in the floor is seen before it.
+  if (!(t > 0 && t < farthest * (1 - 1e-6))) return {};
+  return t;
+}
+
+Vec3 Environment::floor_colour() const { return floor_albedo; }
+
+Vec3 Environment::in_haze(const Vec3& radiance, const Vec3& position, const Vec3& direction) const {
+  const double distance = std::hypot(position.x - centre_.x, position.y - centre_.y) / size_;
+  const double depth = std::max(distance - haze_begins, 0.0) / haze_length;
+  return mix(radiance, sky({direction.x, direction.y, 0}), 1 - std::exp(-depth));
+}
+
+Vec3 Environment::surroundings(const Vec3& direction) const {
+  if (!has_floor_ || direction.z >= 0) return sky(direction);
+  const Vec3 lit = multiply(floor_albedo, to_sun.z * sun + Vec3{0.5, 0.55, 0.6});
+  return mix(lit, horizon, std::exp(8 * direction.z));
+}
+
+}  // namespace tessera::render

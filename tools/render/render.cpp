@@ -1,0 +1,152 @@
+#include "render/render.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <mutex>
+#include <new>
+
+#include "render/random.h"
+#include "render/tile.h"
+
+namespace tessera::render {
+namespace {
+
+constexpr int tile_side = 16;
+constexpr int largest_side = 32768, most_samples = 16;
+constexpr double exposure = 0.58;
+
+Status check(const Settings& settings, const Box3& box) {
+  const auto bad = [](const char* why) { return Status(StatusCode::invalid_argument, why); };
+  if (box.empty() || !is_finite(box.lower) || !is_finite(box.upper)) return bad("there is nothing to draw: the box is empty");
+  if (std::min(settings.width, settings.height) < 1 || std::max(settings.width, settings.height) > largest_side)
+    return bad("a picture's sides run from 1 to 32768 pixels");
+  if (settings.samples < 1 || settings.samples > most_samples) return bad("samples run from 1 to 16");
+  return settings.camera ? render::check(*settings.camera) : Status();
+}
+
+/// The curve of Narkowicz, ACES filmic tone mapping curve, 2016.
+double tone(double x) {
+  x *= exposure;
+  return std::clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0);
+}
+
+/// IEC 61966-2-1.
+double to_srgb(double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055; }
+
+/// The mean of a pixel's samples. Bright samples are mapped before they are averaged, or edges in front of the
+/// sky would keep their steps.
+Vec3 average(const Vec3* colours, int count, bool lit) {
+  Vec3 sum;
+  for (int k = 0; k < count; ++k) {
+    const Vec3& c = colours[k];
+    sum += lit ? Vec3{tone(c.x), tone(c.y), tone(c.z)} : c;
+  }
+  sum = (1.0 / count) * sum;
+  return lit ? Vec3{to_srgb(sum.x), to_srgb(sum.y), to_srgb(sum.z)} : sum;
+}
+
+std::uint8_t to_byte(double x) { return static_cast<std::uint8_t>(std::clamp(x, 0.0, 1.0) * 255 + 0.5); }
+
+Status draw(const View& view, const Tile& tile, Image& image) {
+  TracedTile traced;
+  if (Status status = trace(view, tile, traced); !status.ok()) return status;
+  std::vector<Vec3> colours;
+  const bool lit = view.settings.shade == Shade::lambert;
+  if (lit) {
+    if (Status status = shade_lit(view, traced, colours); !status.ok()) return status;
+  } else {
+    shade_flat(view, traced, colours);
+  }
+  const int count = view.settings.samples * view.settings.samples;
+  const Vec3* next = colours.data();
+  for (int y = tile.y; y < tile.y + tile.height; ++y) {
+    for (int x = tile.x; x < tile.x + tile.width; ++x, next += count) {
+      const Vec3 colour = average(next, count, lit);
+      const std::size_t at = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                                  static_cast<std::size_t>(x));
+      image.rgb[at] = to_byte(colour.x), image.rgb[at + 1] = to_byte(colour.y), image.rgb[at + 2] = to_byte(colour.z);
+    }
+  }
+  return {};
+}
+
+/// Draws all tiles, on all threads of the caller's arena; the first failure ends it.
+class Drawing {
+ public:
+  Drawing(const View& view, const Execution& execution, Image& image)
+      : view_(view), execution_(execution), image_(image), columns_((image.width + tile_side - 1) / tile_side),
+        tiles_(columns_ * ((image.height + tile_side - 1) / tile_side)) {}
+
+  Status run() {
+    tbb::parallel_for(0, tiles_, [this](int index) { draw_tile(index); });
+    if (execution_.cancel && execution_.cancel->load()) return Status(StatusCode::cancelled, "cancelled by the caller");
+    return status_;
+  }
+
+ private:
+  void draw_tile(int index) {
+    if (failed_ || (execution_.cancel && execution_.cancel->load(std::memory_order_relaxed))) return;
+    Tile tile{index % columns_ * tile_side, index / columns_ * tile_side, 0, 0};
+    tile.width = std::min(tile_side, image_.width - tile.x);
+    tile.height = std::min(tile_side, image_.height - tile.y);
+    Status status = draw(view_, tile, image_);
+    const std::lock_guard lock(mutex_);
+    if (!status.ok()) {
+      if (!failed_) status_ = std::move(status);
+      failed_ = true;
+      return;
+    }
+    ++done_;
+    if (execution_.progress) execution_.progress(static_cast<double>(done_) / tiles_);
+  }
+
+  const View& view_;
+  const Execution& execution_;
+  Image& image_;
+  int columns_, tiles_;
+  std::mutex mutex_;
+  std::atomic<bool> failed_ = false;
+  Status status_;
+  int done_ = 0;
+};
+
+}  // namespace
+
+Status trace(const View& view, const Tile& tile, TracedTile& out) {
+  const int side = view.settings.samples;
+  for (int y = tile.y; y < tile.y + tile.height; ++y) {
+    for (int x = tile.x; x < tile.x + tile.width; ++x) {
+      const auto pixel = static_cast<std::uint32_t>(y * view.settings.width + x);
+      for (int k = 0; k < side * side; ++k) {
+        const Point2 at = stratified(pixel, k, side, Purpose::pixel);
+        out.samples.push_back({pixel, k});
+        out.rays.push_back(view.camera.through(x + at.x, y + at.y));
+      }
+    }
+  }
+  out.hits.resize(out.rays.size());
+  return view.scene.closest(out.rays, out.hits, Execution{.cancel = view.cancel, .progress = {}});
+}
+
+Result<Image> render(const RayScene& scene, const Box3& box, const Settings& settings, const Execution& execution) {
+  if (Status status = check(settings, box); !status.ok()) return status;
+  try {
+    Image image{settings.width, settings.height, {}};
+    image.rgb.resize(3 * static_cast<std::size_t>(settings.width) * static_cast<std::size_t>(settings.height));
+    const Camera camera = settings.camera ? *settings.camera : fit_camera(box, settings.width, settings.height);
+    const Environment environment(box, camera.eye);
+    const PixelRays rays(camera, settings.width, settings.height);
+    const View view{scene, environment, rays, settings, box.diagonal(), execution.cancel};
+    if (Status status = Drawing(view, execution, image).run(); !status.ok()) return status;
+    return image;
+  } catch (const std::bad_alloc&) {
+    return Status(StatusCode::out_of_memory, "out of memory");
+  } catch (const std::exception& error) {
+    return Status(StatusCode::internal, error.what());
+  }
+}
+
+}  // namespace tessera::render

@@ -1,0 +1,54 @@
+#pragma once
+// Pictures of ray scenes: camera, shading, PNG.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "tessera/execution.h"
+#include "tessera/ray_scene.h"
+#include "tessera/status.h"
+#include "tessera/vec.h"
+
+namespace tessera::render {
+
+/// A pinhole. The field of view spans the picture's shorter side.
+struct Camera {
+  Vec3 eye, target;
+  double fov_degrees = 40;
+  Vec3 up{0, 0, 1};
+};
+
+/// A three-quarter view from above that frames the whole box in a picture of any shape; z is up.
+Camera fit_camera(const Box3& box);
+
+enum class Shade : std::uint8_t {
+  lambert,  ///< glazed porcelain on a floor under a sky: sun with soft shadow, ambient light, one reflection
+  normals,  ///< the unit normal, (n + 1) / 2 as red, green, blue
+  uv,       ///< patch parameters: u red, v green, a checkerboard of eighths
+  patch,    ///< a colour a patch
+};
+
+struct Settings {
+  int width = 1280, height = 800;  ///< 1 to 32768
+  Shade shade = Shade::lambert;
+  std::optional<Camera> camera;    ///< one that fits the box to the picture if empty
+  int samples = 4;                 ///< samples x samples a pixel, 1 to 16
+};
+
+/// Rows from the top, three bytes a pixel, sRGB.
+struct Image {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgb;
+};
+
+/// `box`: that of the scene's patch set. The same bytes for any number of threads.
+/// Errors: invalid_argument (an empty box, settings out of range), cancelled, and those of RayScene::closest.
+Result<Image> render(const RayScene& scene, const Box3& box, const Settings& settings, const Execution& execution = {});
+
+/// The file appears whole or not at all: it is written beside its place, then renamed.
+/// Errors: invalid_argument (an image whose bytes don't fit its size), io_error.
+Status write_png(const Image& image, const std::filesystem::path& path);
+
+}  // namespace tessera::render
