@@ -134,7 +134,7 @@ TEST(Model, SurfacesBecomeSources) {
   Random random(77);
   Model model;
   for (int k = 0; k < 5; ++k) model.surfaces.push_back({"patch " + std::to_string(k), random_polynomial(random, 3, 3)});
-  const PatchSet set = must(make_patch_set(model));
+  const PatchSet set = value_of(make_patch_set(model));
   EXPECT_EQ(set.surface_count(), 5u);
   for (std::uint32_t k = 0; k < 5; ++k) EXPECT_EQ(set.source(k).surface, k);
   EXPECT_EQ(make_patch_set({}).status().code(), StatusCode::invalid_argument);

@@ -77,7 +77,7 @@ void check_bounds(Isa isa, Representation representation) {
       patches.push_back(k % 4 < 2 ? random_polynomial(random, m, n) : random_rational(random, m, n));
     }
     const PatchSet set = set_of(patches, options);
-    const GridPlan plan = must(GridPlan::make(set, u, v, {precision_of<T>, representation, isa}));
+    const GridPlan plan = value_of(GridPlan::make(set, u, v, {precision_of<T>, representation, isa}));
     const Errors errors = errors_of<T>(set, plan, u, v);
     if (representation == Representation::bernstein) {
       EXPECT_LE(errors.polynomial, 2) << "degree " << degree;
@@ -105,7 +105,7 @@ TEST_P(Accuracy, FarFromZero) {
   for (int k = 0; k < 17; ++k) patches.push_back(random_polynomial(random, 3, 3, far, 5));
   const PatchSet set = set_of(patches);
   const std::vector<double> t = uniform_parameters(5);
-  const GridPlan plan = must(GridPlan::make(set, t, t, {.isa = GetParam()}));
+  const GridPlan plan = value_of(GridPlan::make(set, t, t, {.isa = GetParam()}));
   EXPECT_LE(errors_of<float>(set, plan, t, t).polynomial, 2);
 }
 
@@ -118,7 +118,7 @@ TEST_P(Accuracy, NormalsAtAnyScale) {
     std::vector<Vec3> scaled = points;
     for (Vec3& p : scaled) p = scale * p;
     const PatchSet set = set_of({polynomial(3, 3, scaled)}, {.origin = Vec3{}});
-    const GridPlan plan = must(GridPlan::make(set, t, t, {.isa = GetParam()}));
+    const GridPlan plan = value_of(GridPlan::make(set, t, t, {.isa = GetParam()}));
     GridBuffers<float> out(plan);
     ASSERT_TRUE(evaluate(set, plan, out.views()).ok());
     for (std::size_t k = 0; k < 16; ++k)

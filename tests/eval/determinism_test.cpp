@@ -16,7 +16,7 @@ bool available(Isa isa) { return std::ranges::count(available_isas(), isa) > 0; 
 template <class T>
 GridBuffers<T> run(const PatchSet& set, Isa isa, int threads, ExecutionReport* report = nullptr) {
   const auto u = uniform_parameters(9), v = uniform_parameters(14);
-  const GridPlan plan = must(GridPlan::make(set, u, v, {.precision = precision_of<T>, .isa = isa}));
+  const GridPlan plan = value_of(GridPlan::make(set, u, v, {.precision = precision_of<T>, .isa = isa}));
   GridBuffers<T> out(plan);
   // The arena may be larger than the machine; without this limit TBB would make no second worker on one core.
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
@@ -59,11 +59,11 @@ TEST(Determinism, Sse2RoundsDifferently) {
 TEST(Isa, EnvironmentForcesOne) {
   for (const Isa isa : available_isas()) {
     setenv("TESSERA_ISA", std::string(name(isa)).c_str(), 1);
-    EXPECT_EQ(must(default_isa()), isa);
+    EXPECT_EQ(value_of(default_isa()), isa);
     Random random(23);
     const PatchSet set = set_of({random_polynomial(random, 3, 3)});
     const auto t = uniform_parameters(3);
-    const GridPlan plan = must(GridPlan::make(set, t, t));
+    const GridPlan plan = value_of(GridPlan::make(set, t, t));
     GridBuffers<float> out(plan);
     ExecutionReport report;
     Execution execution;
@@ -79,9 +79,9 @@ TEST(Isa, EnvironmentForcesOne) {
   const auto t = uniform_parameters(3);
   EXPECT_EQ(GridPlan::make(set, t, t).status().code(), StatusCode::isa_unavailable);
   setenv("TESSERA_ISA", "", 1);
-  EXPECT_EQ(must(default_isa()), available_isas().back());
+  EXPECT_EQ(value_of(default_isa()), available_isas().back());
   unsetenv("TESSERA_ISA");
-  EXPECT_EQ(must(default_isa()), available_isas().back());
+  EXPECT_EQ(value_of(default_isa()), available_isas().back());
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ class EvaluateErrors : public ::testing::Test {
   Random random{41};
   PatchSet set = set_of(mixed_patches(random, 2));
   std::vector<double> t = uniform_parameters(4);
-  GridPlan plan = must(GridPlan::make(set, t, t));
+  GridPlan plan = value_of(GridPlan::make(set, t, t));
   GridBuffers<float> out{plan};
   GridBuffers<float> untouched{plan};
 

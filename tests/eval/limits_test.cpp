@@ -10,7 +10,7 @@ namespace {
 
 TEST(Limits, AreMeasuredForEachIsa) {
   for (const Isa isa : available_isas()) {
-    const Limits limits = must(measure_limits({.isa = isa, .store_bytes = 1 << 20}));
+    const Limits limits = value_of(measure_limits({.isa = isa, .store_bytes = 1 << 20}));
     EXPECT_EQ(limits.isa, isa);
     // A processor with SSE2 does more than 0.1 G a second of anything here, and none does 10 T.
     for (const double rate : {limits.float_operations_per_second, limits.double_operations_per_second,
@@ -27,7 +27,7 @@ TEST(Limits, WorkFollowsTheStatedCounts) {
   Random random(61);
   const auto u = uniform_parameters(5), v = uniform_parameters(8);
   const auto work = [&](const BezierPatch& patch, GridOutputs outputs) {
-    return must(GridPlan::make(set_of({patch}), u, v)).work(outputs);
+    return value_of(GridPlan::make(set_of({patch}), u, v)).work(outputs);
   };
   const BezierPatch cubic = random_polynomial(random, 3, 3);
   EXPECT_EQ(work(cubic, {}).lane_operations, 40 * 12);

@@ -21,7 +21,7 @@ TEST(Poles, NormalIsTheLimitInEveryLayoutAndOrientation) {
   for (int way = 0; way < 8; ++way) {
     const BezierPatch patch = reoriented(cap(), way);
     const PatchSet set = set_of({patch});
-    const GridPlan plan = must(GridPlan::make(set, t, t));
+    const GridPlan plan = value_of(GridPlan::make(set, t, t));
     GridBuffers<float> out(plan);
     ASSERT_TRUE(evaluate(set, plan, out.views()).ok());
     AlignedVector<float> blocks(plan.block_capacity());
@@ -47,7 +47,7 @@ TEST(Poles, NormalIsTheLimitInEveryLayoutAndOrientation) {
 TEST(Poles, APatchThatIsAPointHasNoNormal) {
   const PatchSet set = set_of({polynomial(1, 1, {{1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}})});
   const auto t = uniform_parameters(3);
-  const GridPlan plan = must(GridPlan::make(set, t, t));
+  const GridPlan plan = value_of(GridPlan::make(set, t, t));
   GridBuffers<float> out(plan);
   ASSERT_TRUE(evaluate(set, plan, out.views()).ok());
   for (const float x : out.normal) EXPECT_EQ(x, 0);
@@ -69,7 +69,7 @@ TEST(SharedBorders, AreTheSameBits) {
           const BezierPatch first = is_rational ? rational(2, degree, a, wa) : polynomial(2, degree, a);
           const BezierPatch second = is_rational ? rational(3, degree, b, wb) : polynomial(3, degree, b);
           const PatchSet set = set_of({first, reoriented(second, way)});
-          const UniformGrid grid = must(UniformGrid::make(set, rate, rate, std::nullopt));
+          const UniformGrid grid = value_of(UniformGrid::make(set, rate, rate, std::nullopt));
           std::vector<float> positions(3 * grid.capacity());
           ASSERT_TRUE(grid.run(set, {.position = View3<float>::interleaved(positions)}, {}).ok());
           const auto n = static_cast<std::size_t>(rate), side = n + 1;
@@ -88,7 +88,7 @@ TEST(SharedBorders, AreTheSameBits) {
 TEST(SharedBorders, StayWithinTheErrorBound) {
   Random random(52);
   const PatchSet set = set_of(mixed_patches(random, 5));
-  const UniformGrid grid = must(UniformGrid::make(set, 6, 9, std::nullopt));
+  const UniformGrid grid = value_of(UniformGrid::make(set, 6, 9, std::nullopt));
   std::vector<float> positions(3 * grid.capacity());
   ASSERT_TRUE(grid.run(set, {.position = View3<float>::interleaved(positions)}, {}).ok());
   for (std::size_t record = 0; record < grid.capacity(); ++record) {
@@ -102,7 +102,7 @@ TEST(SharedBorders, StayWithinTheErrorBound) {
 TEST(SharedBorders, ACollapsedBorderIsOnePoint) {
   for (int way = 0; way < 8; ++way) {
     const PatchSet set = set_of({reoriented(cap(), way)});
-    const UniformGrid grid = must(UniformGrid::make(set, 100, 100, std::nullopt));
+    const UniformGrid grid = value_of(UniformGrid::make(set, 100, 100, std::nullopt));
     std::vector<float> positions(3 * grid.capacity());
     ASSERT_TRUE(grid.run(set, {.position = View3<float>::interleaved(positions)}, {}).ok());
     const Vec3 pole = Vec3{0, 0, 1} - set.origin();

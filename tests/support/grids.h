@@ -3,12 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
+#include <algorithm>
 #include <string>
 #include <vector>
 
 #include "base/aligned.h"
 #include "support/random_patches.h"
+#include "support/synthetic_sets.h"
 #include "tessera/evaluate.h"
 
 namespace tessera::test {
@@ -16,18 +17,8 @@ namespace tessera::test {
 template <class T>
 constexpr Precision precision_of = sizeof(T) == 4 ? Precision::single_precision : Precision::double_precision;
 
-/// The value of a result that must be good.
-template <class T>
-T must(Result<T> result) {
-  if (!result) {
-    ADD_FAILURE() << result.status().message();
-    std::abort();
-  }
-  return *std::move(result);
-}
-
 inline PatchSet set_of(const std::vector<BezierPatch>& patches, PatchSetOptions options = {}) {
-  return must(PatchSet::from(patches, options));
+  return value_of(PatchSet::from(patches, options));
 }
 
 /// Patches of every mix of degrees up to `degree`, polynomial and rational, in shuffled order: several groups, partial blocks.
