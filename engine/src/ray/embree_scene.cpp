@@ -1,7 +1,7 @@
 #include "ray/embree_scene.h"
 
 #include <embree3/rtcore.h>
-#include <immintrin.h>
+#include <xmmintrin.h>
 
 #include <algorithm>
 #include <atomic>
