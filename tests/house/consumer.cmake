@@ -63,9 +63,9 @@ if(WAY STREQUAL "package")
   build_consumer(no_embree ${package} -D CONSUMER_RAYS=OFF)
   run_in(no_embree tessellate_only)
 elseif(WAY STREQUAL "subdirectory")
-  # No build type: Tessera must not choose one for a project that left it open.
+  # No build type: Tessera must not choose one for a project that left it open. It also compiles fastest.
   set(TARGETS consumer tessellate_only)
-  build_consumer(subdirectory -D TESSERA_SOURCE=${SOURCE} -D CMAKE_BUILD_TYPE= -D CMAKE_CXX_FLAGS=-O1)
+  build_consumer(subdirectory -D TESSERA_SOURCE=${SOURCE} -D CMAKE_BUILD_TYPE=)
   run_in(subdirectory consumer)
   run_in(subdirectory tessellate_only)
   needs_embree(${WORK}/subdirectory/tessellate_only no)

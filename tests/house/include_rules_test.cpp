@@ -61,36 +61,34 @@ struct Breach {
   const char* message;
 };
 
-class Breaches : public testing::TestWithParam<Breach> {};
+constexpr Breach breaches[] = {
+    {"src/base/a.cpp", "#include \"surface/casteljau.h\"", "not below base"},             // a floor above
+    {"src/surface/a.cpp", "#include \"eval/plan.h\"", "not below surface"},               // a floor above
+    {"src/io/a.cpp", "#include \"ray/scene.h\"", "not below io"},                         // the other wing
+    {"src/io/a.cpp", "#include \"tessera/ray_scene.h\"", "belongs to ray"},               // its public header
+    {"include/tessera/patch.h", "#include \"tessera/ray_scene.h\"", "belongs to ray"},    // a header above
+    {"include/tessera/patch.h", "#include \"base/guard.h\"", "is private"},               // a private header
+    {"include/tessera/patch.h", "#include <tbb/parallel_for.h>", "not for patch.h"},      // TBB in public
+    {"include/tessera/ray_scene.h", "#include <embree3/rtcore.h>", "not for ray_scene"},  // Embree in public
+    {"src/eval/a.cpp", "#include <tbb/parallel_for.h>", "not for eval"},                  // TBB above parallel
+    {"src/eval/a.cpp", "#  include  <embree3/rtcore.h>", "not for eval"},
+    {"src/eval/a.cpp", "#include <fcntl.h> // POSIX", "not for eval"},
+    {"src/eval/a.cpp", "#include <boost/any.hpp>", "in no line"},  // a new dependency
+    {"src/eval/a.cpp", "#include \"plan.h\"", "floor/file.h"},     // relative
+    {"src/eval/a.cpp", "#include \"../surface/casteljau.h\"", "floor/file.h"},
+    {"src/eval/a.cpp", "#include \"surface/missing.h\"", "does not exist"},
+    {"src/eval/a.cpp", "#include \"tessera/unlisted.h\"", "not a public header"},
+    {"src/eval/a.cpp", "#include HEADER", "neither"},
+};
 
-TEST_P(Breaches, AreFound) {
-  const auto [path, line, message] = GetParam();
-  const auto faults = faults_of(path, std::string("// engine/src/*.cpp \"/*\"\n/* a */ \n") + line + "\n");
-  ASSERT_EQ(faults.size(), 1u) << path << " " << line;
-  EXPECT_EQ(faults[0].rfind(std::string(path) + ":3: ", 0), 0u) << faults[0];
-  EXPECT_NE(faults[0].find(message), std::string::npos) << faults[0];
+TEST(IncludeRules, EachBreachIsFound) {
+  for (const auto& [path, line, message] : breaches) {
+    const auto faults = faults_of(path, std::string("// engine/src/*.cpp \"/*\"\n/* a */ \n") + line + "\n");
+    ASSERT_EQ(faults.size(), 1u) << path << " " << line;
+    EXPECT_EQ(faults[0].rfind(std::string(path) + ":3: ", 0), 0u) << faults[0];
+    EXPECT_NE(faults[0].find(message), std::string::npos) << faults[0];
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    Each, Breaches,
-    testing::Values(
-        Breach{"src/base/a.cpp", "#include \"surface/casteljau.h\"", "not below base"},             // a floor above
-        Breach{"src/surface/a.cpp", "#include \"eval/plan.h\"", "not below surface"},               // a floor above
-        Breach{"src/io/a.cpp", "#include \"ray/scene.h\"", "not below io"},                         // the other wing
-        Breach{"src/io/a.cpp", "#include \"tessera/ray_scene.h\"", "belongs to ray"},               // its public header
-        Breach{"include/tessera/patch.h", "#include \"tessera/ray_scene.h\"", "belongs to ray"},    // a header above
-        Breach{"include/tessera/patch.h", "#include \"base/guard.h\"", "is private"},               // a private header
-        Breach{"include/tessera/patch.h", "#include <tbb/parallel_for.h>", "not for patch.h"},      // TBB in public
-        Breach{"include/tessera/ray_scene.h", "#include <embree3/rtcore.h>", "not for ray_scene"},  // Embree in public
-        Breach{"src/eval/a.cpp", "#include <tbb/parallel_for.h>", "not for eval"},  // TBB above parallel
-        Breach{"src/eval/a.cpp", "#  include  <embree3/rtcore.h>", "not for eval"},
-        Breach{"src/eval/a.cpp", "#include <fcntl.h> // POSIX", "not for eval"},
-        Breach{"src/eval/a.cpp", "#include <boost/any.hpp>", "in no line"},  // a new dependency
-        Breach{"src/eval/a.cpp", "#include \"plan.h\"", "floor/file.h"},     // relative
-        Breach{"src/eval/a.cpp", "#include \"../surface/casteljau.h\"", "floor/file.h"},
-        Breach{"src/eval/a.cpp", "#include \"surface/missing.h\"", "does not exist"},
-        Breach{"src/eval/a.cpp", "#include \"tessera/unlisted.h\"", "not a public header"},
-        Breach{"src/eval/a.cpp", "#include HEADER", "neither"}));
 
 TEST(IncludeRules, FilesOfNoFloorAreFound) {
   EXPECT_EQ(faults_of("src/attic/a.cpp", "").size(), 1u);
