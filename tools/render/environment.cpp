@@ -5,9 +5,9 @@
 namespace tessera::render {
 namespace {
 
-const Vec3 zenith{0.13, 0.26, 0.54}, middle{0.36, 0.53, 0.80}, horizon{1.12, 0.84, 0.60};
+const Vec3 zenith{0.12, 0.25, 0.54}, middle{0.30, 0.49, 0.84}, horizon{1.14, 0.86, 0.62};
 const Vec3 glow{1.0, 0.78, 0.52};
-const Vec3 floor_albedo{0.31, 0.25, 0.21};
+const Vec3 floor_albedo{0.34, 0.265, 0.21};
 const Vec3 sun{1.9, 1.58, 1.2};
 const Vec3 to_sun = normalized({-0.86, -0.52, 0.80});
 constexpr double haze_begins = 1.5, haze_length = 9;  // in sizes of the model
@@ -23,7 +23,7 @@ double Environment::sun_tangent() const { return 0.07; }
 
 Vec3 Environment::sky(const Vec3& direction) const {
   const double rise = std::max(direction.z, 0.0);
-  const double high = 1 - std::exp(-2.2 * rise), low = std::exp(-11 * rise);
+  const double high = 1 - std::exp(-2.2 * rise), low = std::exp(-17 * rise);
   const double towards = std::max(dot(direction, to_sun), 0.0);
   const Vec3 clear = mix(mix(middle, zenith, high), horizon, low);
   return clear + (0.25 * std::pow(towards, 6) + 1.6 * std::pow(towards, 60)) * glow;

@@ -35,10 +35,10 @@ Vec3 colour(const Hit& hit, const Vec3& direction, Shade shade) {
 
 }  // namespace
 
-void shade_flat(const View& view, const TracedTile& traced, std::vector<Vec3>& colours) {
-  colours.resize(traced.rays.size());
-  for (std::size_t k = 0; k < colours.size(); ++k) {
-    colours[k] = colour(traced.hits[k], traced.rays[k].direction, view.settings.shade);
+void shade_flat(const View& view, Workspace& work) {
+  work.colours.resize(work.rays.size());
+  for (std::size_t k = 0; k < work.colours.size(); ++k) {
+    work.colours[k] = colour(work.hits[k], work.rays[k].direction, view.settings.shade);
   }
 }
 

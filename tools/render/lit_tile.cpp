@@ -17,19 +17,10 @@ constexpr double facet_distance = 1.5e-3;       // of the size: how far above th
 constexpr double glaze_at_right_angle = 0.05;   // reflectance of a glaze of refractive index 1.6
 constexpr double highlight_roughness = 0.12;
 
-/// A point to be lit.
-struct Point {
-  std::size_t sample = 0;  ///< in the tile
-  Vec3 position;
-  Vec3 normal;             ///< towards the viewer
-  Vec3 direction;          ///< of the ray that came here
-  bool on_model = false;
-};
-
 class LitTile {
  public:
-  LitTile(const View& view, const TracedTile& traced) : view_(view), world_(view.environment), traced_(traced) {}
-  Status shade(std::vector<Vec3>& colours);
+  LitTile(const View& view, Workspace& work) : view_(view), world_(view.environment), work_(work) {}
+  Status shade();
 
  private:
   /// What a ray meets: a point of model or floor, or nothing.
@@ -39,15 +30,13 @@ class LitTile {
   Status sunlight(const std::vector<Point>& points, Purpose purpose, std::vector<Vec3>& light);
   Status ambient(const std::vector<Point>& points, std::vector<Vec3>& light);
   Status reflections(const std::vector<Point>& points, std::vector<Vec3>& light);
+  Status trace_mirrors(const std::vector<Point>& points);
   Status occluded();
   Vec3 albedo(const Point& point) const { return point.on_model ? porcelain : world_.floor_colour(); }
 
   const View& view_;
   const Environment& world_;
-  const TracedTile& traced_;
-  std::vector<Ray> rays_;                 // secondary ones, reused
-  std::vector<std::uint8_t> occluded_;
-  std::vector<double> highlights_;
+  Workspace& work_;
 };
 
 /// Schlick, An inexpensive BRDF model for physically-based rendering, 1994.
@@ -90,26 +79,26 @@ Ray LitTile::leave(const Point& point, const Vec3& direction) const {
 }
 
 Point2 LitTile::random(const Point& point, Purpose purpose) const {
-  const Sample& sample = traced_.samples[point.sample];
+  const Sample& sample = work_.samples[point.sample];
   return stratified(sample.pixel, sample.index, view_.settings.samples, purpose);
 }
 
 Status LitTile::occluded() {
-  occluded_.resize(rays_.size());
-  return view_.scene.occluded(rays_, occluded_, Execution{.cancel = view_.cancel, .progress = {}});
+  work_.occluded.resize(work_.secondary_rays.size());
+  return view_.scene.occluded(work_.secondary_rays, work_.occluded, Execution{.cancel = view_.cancel, .progress = {}});
 }
 
 /// Adds diffuse light and highlight of the sun, each with a ray to one place on its disc.
 Status LitTile::sunlight(const std::vector<Point>& points, Purpose purpose, std::vector<Vec3>& light) {
-  rays_.clear();
+  work_.secondary_rays.clear();
   for (const Point& point : points) {
-    rays_.push_back(leave(point, cone_direction(world_.sun_direction(), world_.sun_tangent(), random(point, purpose))));
+    work_.secondary_rays.push_back(leave(point, cone_direction(world_.sun_direction(), world_.sun_tangent(), random(point, purpose))));
   }
   if (Status status = occluded(); !status.ok()) return status;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const Point& point = points[k];
-    const double cosine = dot(point.normal, rays_[k].direction);
-    if (occluded_[k] || cosine <= 0) continue;
+    const double cosine = dot(point.normal, work_.secondary_rays[k].direction);
+    if (work_.occluded[k] || cosine <= 0) continue;
     light[k] += cosine * multiply(albedo(point), world_.sun_light());
     if (point.on_model) {
       light[k] += highlight(point.normal, -point.direction, world_.sun_direction()) * world_.sun_light();
@@ -120,85 +109,91 @@ Status LitTile::sunlight(const std::vector<Point>& points, Purpose purpose, std:
 
 /// Adds diffuse light of everything else, from one direction a sample.
 Status LitTile::ambient(const std::vector<Point>& points, std::vector<Vec3>& light) {
-  rays_.clear();
+  work_.secondary_rays.clear();
   for (const Point& point : points) {
-    rays_.push_back(leave(point, cosine_direction(point.normal, random(point, Purpose::ambient))));
+    work_.secondary_rays.push_back(leave(point, cosine_direction(point.normal, random(point, Purpose::ambient))));
   }
   if (Status status = occluded(); !status.ok()) return status;
   for (std::size_t k = 0; k < points.size(); ++k) {
-    const Vec3 from = occluded_[k] ? shaded_neighbour : world_.surroundings(rays_[k].direction);
+    const Vec3 from = work_.occluded[k] ? shaded_neighbour : world_.surroundings(work_.secondary_rays[k].direction);
     light[k] += multiply(albedo(points[k]), from);
   }
   return {};
 }
 
-/// Mirrors the surroundings in the glaze.
-Status LitTile::reflections(const std::vector<Point>& points, std::vector<Vec3>& light) {
-  rays_.clear();
-  std::vector<std::size_t> owners;
+/// The mirrored rays of the points on the model, and what they meet.
+Status LitTile::trace_mirrors(const std::vector<Point>& points) {
+  work_.secondary_rays.clear();
+  work_.mirrors.clear();
   for (std::size_t k = 0; k < points.size(); ++k) {
     const Point& point = points[k];
     if (!point.on_model) continue;
-    owners.push_back(k);
-    rays_.push_back(leave(point, point.direction - 2 * dot(point.normal, point.direction) * point.normal));
+    work_.mirrors.push_back(k);
+    work_.secondary_rays.push_back(leave(point, point.direction - 2 * dot(point.normal, point.direction) * point.normal));
   }
-  std::vector<Hit> hits(rays_.size());
-  Status status = view_.scene.closest(rays_, hits, Execution{.cancel = view_.cancel, .progress = {}});
-  if (!status.ok()) return status;
-
-  std::vector<Point> met;
-  std::vector<std::size_t> met_by;
-  std::vector<Vec3> mirrored(owners.size());
-  for (std::size_t k = 0; k < owners.size(); ++k) {
+  work_.secondary_hits.resize(work_.secondary_rays.size());
+  Status status = view_.scene.closest(work_.secondary_rays, work_.secondary_hits, Execution{.cancel = view_.cancel, .progress = {}});
+  work_.mirrored.assign(work_.mirrors.size(), {});
+  work_.mirrored_points.clear();
+  work_.mirrored_by.clear();
+  for (std::size_t k = 0; k < work_.mirrors.size(); ++k) {
     Point point;
-    if (meet(points[owners[k]].sample, rays_[k], hits[k], point)) {
-      met.push_back(point);
-      met_by.push_back(k);
+    if (meet(points[work_.mirrors[k]].sample, work_.secondary_rays[k], work_.secondary_hits[k], point)) {
+      work_.mirrored_points.push_back(point);
+      work_.mirrored_by.push_back(k);
     } else {
-      mirrored[k] = world_.sky(rays_[k].direction);
+      work_.mirrored[k] = world_.sky(work_.secondary_rays[k].direction);
     }
   }
-  std::vector<Vec3> met_light(met.size());
-  if (status = sunlight(met, Purpose::bounce_sun, met_light); !status.ok()) return status;
+  return status;
+}
+
+/// Mirrors the surroundings in the glaze; what is mirrored is lit by the sun and by half of what lies around it.
+Status LitTile::reflections(const std::vector<Point>& points, std::vector<Vec3>& light) {
+  if (Status status = trace_mirrors(points); !status.ok()) return status;
+  const std::vector<Point>& met = work_.mirrored_points;
+  work_.mirrored_light.assign(met.size(), {});
+  if (Status status = sunlight(met, Purpose::bounce_sun, work_.mirrored_light); !status.ok()) return status;
   for (std::size_t k = 0; k < met.size(); ++k) {
     const Point& point = met[k];
-    const Vec3 all = met_light[k] + multiply(albedo(point), mix(shaded_neighbour, world_.surroundings(point.normal), 0.5));
-    mirrored[met_by[k]] = point.on_model ? all : world_.in_haze(all, point.position, point.direction);
+    const Vec3 around = mix(shaded_neighbour, world_.surroundings(point.normal), 0.5);
+    const Vec3 all = work_.mirrored_light[k] + multiply(albedo(point), around);
+    work_.mirrored[work_.mirrored_by[k]] = point.on_model ? all : world_.in_haze(all, point.position, point.direction);
   }
-  for (std::size_t k = 0; k < owners.size(); ++k) {
-    const Point& point = points[owners[k]];
-    const double share = fresnel(-dot(point.normal, point.direction));
-    light[owners[k]] = mix(light[owners[k]], mirrored[k], share);
+  for (std::size_t k = 0; k < work_.mirrors.size(); ++k) {
+    const Point& point = points[work_.mirrors[k]];
+    Vec3& own = light[work_.mirrors[k]];
+    own = mix(own, work_.mirrored[k], fresnel(-dot(point.normal, point.direction)));
   }
   return {};
 }
 
-Status LitTile::shade(std::vector<Vec3>& colours) {
-  colours.resize(traced_.rays.size());
-  std::vector<Point> points;
-  for (std::size_t k = 0; k < traced_.rays.size(); ++k) {
+Status LitTile::shade() {
+  work_.colours.resize(work_.rays.size());
+  work_.points.clear();
+  for (std::size_t k = 0; k < work_.rays.size(); ++k) {
     Point point;
-    if (meet(k, traced_.rays[k], traced_.hits[k], point)) {
-      points.push_back(point);
+    if (meet(k, work_.rays[k], work_.hits[k], point)) {
+      work_.points.push_back(point);
     } else {
-      colours[k] = world_.sky(traced_.rays[k].direction);
+      work_.colours[k] = world_.sky(work_.rays[k].direction);
     }
   }
-  std::vector<Vec3> light(points.size());
+  const std::vector<Point>& points = work_.points;
+  std::vector<Vec3>& light = work_.light;
+  light.assign(points.size(), {});
   if (Status status = ambient(points, light); !status.ok()) return status;
   if (Status status = sunlight(points, Purpose::sun, light); !status.ok()) return status;
   if (Status status = reflections(points, light); !status.ok()) return status;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const Point& point = points[k];
-    colours[point.sample] = point.on_model ? light[k] : world_.in_haze(light[k], point.position, point.direction);
+    work_.colours[point.sample] = point.on_model ? light[k] : world_.in_haze(light[k], point.position, point.direction);
   }
   return {};
 }
 
 }  // namespace
 
-Status shade_lit(const View& view, const TracedTile& traced, std::vector<Vec3>& colours) {
-  return LitTile(view, traced).shade(colours);
-}
+Status shade_lit(const View& view, Workspace& work) { return LitTile(view, work).shade(); }
 
 }  // namespace tessera::render

@@ -1,6 +1,8 @@
 #include "render/render.h"
 
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
@@ -14,7 +16,7 @@
 namespace tessera::render {
 namespace {
 
-constexpr int tile_side = 16;
+constexpr int tile_side = 8;
 constexpr int largest_side = 32768, most_samples = 16;
 constexpr double exposure = 0.58;
 
@@ -50,18 +52,16 @@ Vec3 average(const Vec3* colours, int count, bool lit) {
 
 std::uint8_t to_byte(double x) { return static_cast<std::uint8_t>(std::clamp(x, 0.0, 1.0) * 255 + 0.5); }
 
-Status draw(const View& view, const Tile& tile, Image& image) {
-  TracedTile traced;
-  if (Status status = trace(view, tile, traced); !status.ok()) return status;
-  std::vector<Vec3> colours;
+Status draw(const View& view, const Tile& tile, Workspace& work, Image& image) {
+  if (Status status = trace(view, tile, work); !status.ok()) return status;
   const bool lit = view.settings.shade == Shade::lambert;
   if (lit) {
-    if (Status status = shade_lit(view, traced, colours); !status.ok()) return status;
+    if (Status status = shade_lit(view, work); !status.ok()) return status;
   } else {
-    shade_flat(view, traced, colours);
+    shade_flat(view, work);
   }
   const int count = view.settings.samples * view.settings.samples;
-  const Vec3* next = colours.data();
+  const Vec3* next = work.colours.data();
   for (int y = tile.y; y < tile.y + tile.height; ++y) {
     for (int x = tile.x; x < tile.x + tile.width; ++x, next += count) {
       const Vec3 colour = average(next, count, lit);
@@ -92,7 +92,8 @@ class Drawing {
     Tile tile{index % columns_ * tile_side, index / columns_ * tile_side, 0, 0};
     tile.width = std::min(tile_side, image_.width - tile.x);
     tile.height = std::min(tile_side, image_.height - tile.y);
-    Status status = draw(view_, tile, image_);
+    // Isolated: while this thread waits for rays, it must not begin another tile in the same workspace.
+    Status status = tbb::this_task_arena::isolate([&] { return draw(view_, tile, workspaces_.local(), image_); });
     const std::lock_guard lock(mutex_);
     if (!status.ok()) {
       if (!failed_) status_ = std::move(status);
@@ -106,6 +107,7 @@ class Drawing {
   const View& view_;
   const Execution& execution_;
   Image& image_;
+  tbb::enumerable_thread_specific<Workspace> workspaces_;
   int columns_, tiles_;
   std::mutex mutex_;
   std::atomic<bool> failed_ = false;
@@ -115,20 +117,22 @@ class Drawing {
 
 }  // namespace
 
-Status trace(const View& view, const Tile& tile, TracedTile& out) {
+Status trace(const View& view, const Tile& tile, Workspace& work) {
   const int side = view.settings.samples;
+  work.samples.clear();
+  work.rays.clear();
   for (int y = tile.y; y < tile.y + tile.height; ++y) {
     for (int x = tile.x; x < tile.x + tile.width; ++x) {
       const auto pixel = static_cast<std::uint32_t>(y * view.settings.width + x);
       for (int k = 0; k < side * side; ++k) {
         const Point2 at = stratified(pixel, k, side, Purpose::pixel);
-        out.samples.push_back({pixel, k});
-        out.rays.push_back(view.camera.through(x + at.x, y + at.y));
+        work.samples.push_back({pixel, k});
+        work.rays.push_back(view.camera.through(x + at.x, y + at.y));
       }
     }
   }
-  out.hits.resize(out.rays.size());
-  return view.scene.closest(out.rays, out.hits, Execution{.cancel = view.cancel, .progress = {}});
+  work.hits.resize(work.rays.size());
+  return view.scene.closest(work.rays, work.hits, Execution{.cancel = view.cancel, .progress = {}});
 }
 
 Result<Image> render(const RayScene& scene, const Box3& box, const Settings& settings, const Execution& execution) {

@@ -1,6 +1,8 @@
 #pragma once
 // A rectangle of pixels: what it is traced with, and the two ways to colour it.
 
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -30,16 +32,35 @@ struct Sample {
   int index = 0;            ///< 0 .. samples * samples - 1
 };
 
-/// A tile's rays, and what they meet.
-struct TracedTile {
-  std::vector<Sample> samples;  ///< pixel by pixel, row by row
-  std::vector<Ray> rays;
-  std::vector<Hit> hits;
+/// A point to be lit.
+struct Point {
+  std::size_t sample = 0;  ///< in the tile
+  Vec3 position;
+  Vec3 normal;             ///< towards the viewer
+  Vec3 direction;          ///< of the ray that came here
+  bool on_model = false;
 };
-Status trace(const View& view, const Tile& tile, TracedTile& out);
 
-/// A colour a sample: linear radiances, and colours for the screen as they are.
-Status shade_lit(const View& view, const TracedTile& traced, std::vector<Vec3>& colours);
-void shade_flat(const View& view, const TracedTile& traced, std::vector<Vec3>& colours);
+/// What one tile needs, kept from tile to tile. Nothing in it carries over but memory.
+struct Workspace {
+  std::vector<Sample> samples;  ///< pixel by pixel, row by row
+  std::vector<Ray> rays;        ///< one a sample
+  std::vector<Hit> hits;        ///< and what it meets
+  std::vector<Vec3> colours;    ///< of each sample: linear radiances for lit tiles, as on the screen for flat ones
+
+  std::vector<Point> points, mirrored_points;
+  std::vector<Vec3> light, mirrored, mirrored_light;
+  std::vector<std::size_t> mirrors, mirrored_by;
+  std::vector<Ray> secondary_rays;
+  std::vector<Hit> secondary_hits;
+  std::vector<std::uint8_t> occluded;
+};
+
+/// Fills samples, rays and hits.
+Status trace(const View& view, const Tile& tile, Workspace& work);
+
+/// Fill colours from them.
+Status shade_lit(const View& view, Workspace& work);
+void shade_flat(const View& view, Workspace& work);
 
 }  // namespace tessera::render

@@ -11,11 +11,13 @@ namespace {
 /// Narrows [near, far] to where origin + s * direction lies in [lower, upper].
 void clip(double origin, double direction, double lower, double upper, double& near, double& far) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  if (direction == 0) {
+  constexpr double parallel = 1e-300;  // of a unit vector: the reciprocal is finite
+  if (std::abs(direction) < parallel) {
     if (origin < lower || origin > upper) far = -infinity;
     return;
   }
-  double enter = (lower - origin) / direction, leave = (upper - origin) / direction;
+  const double inverse = 1 / direction;
+  double enter = (lower - origin) * inverse, leave = (upper - origin) * inverse;
   if (enter > leave) std::swap(enter, leave);
   near = std::max(near, enter);
   far = std::min(far, leave);

@@ -1,0 +1,197 @@
+// Rays a second: the teapot and 20,000 patches, a camera's rays and rays at random, closest hit and any hit, one thread
+// and all. Each run is checked against a ray caster that shares no code before its speed counts.
+
+#include <benchmark/benchmark.h>
+#include <tbb/task_arena.h>
+
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "support/reference_rays.h"
+#include "support/synthetic_sets.h"
+#include "tessera/io.h"
+#include "tessera/ray_scene.h"
+
+namespace {
+
+using namespace tessera;
+
+constexpr int rate = 8;
+
+struct Workload {
+  std::vector<BezierPatch> patches;
+  std::vector<Ray> camera, random;
+  std::size_t checked = 0;  ///< rays compared with the reference
+  std::optional<PatchSet> set;
+  std::optional<RayScene> scene;
+};
+
+double uniform(std::mt19937_64& random, double from, double to) {
+  return from + (to - from) * static_cast<double>(random() >> 11) * 0x1p-53;
+}
+
+Vec3 in_box(std::mt19937_64& random, const Box3& box) {
+  const double x = uniform(random, box.lower.x, box.upper.x), y = uniform(random, box.lower.y, box.upper.y);
+  return {x, y, uniform(random, box.lower.z, box.upper.z)};
+}
+
+/// side x side rays from one eye in rows of pixels, over the whole box.
+std::vector<Ray> camera_rays(const Box3& box, int side) {
+  const Vec3 back = normalized({0.4, -0.8, 0.6}), right = normalized({0.8, 0.4, 0}), up = cross(back, right);
+  const Vec3 eye = box.centre() + 1.2 * box.diagonal() * back;
+  std::vector<Ray> rays;
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
+      Ray ray;
+      ray.origin = eye;
+      ray.direction = -back + 0.8 * ((x + 0.5) / side - 0.5) * right - 0.8 * ((y + 0.5) / side - 0.5) * up;
+      rays.push_back(ray);
+    }
+  }
+  return rays;
+}
+
+/// From anywhere in the box to anywhere in it, and on.
+std::vector<Ray> random_rays(const Box3& box, std::size_t count) {
+  std::mt19937_64 random(7);
+  std::vector<Ray> rays(count);
+  for (Ray& ray : rays) {
+    ray.origin = in_box(random, box);
+    ray.direction = in_box(random, box) - ray.origin;
+  }
+  return rays;
+}
+
+std::unique_ptr<Workload> make_workload(std::vector<BezierPatch> patches, std::size_t checked) {
+  auto work = std::make_unique<Workload>();
+  work->patches = std::move(patches);
+  work->checked = checked;
+  work->set.emplace(test::value_of(PatchSet::from(work->patches)));
+  RaySceneOptions options;
+  options.rate = rate;
+  work->scene.emplace(test::value_of(RayScene::make(*work->set, options)));
+  work->camera = camera_rays(work->set->box(), 256);
+  work->random = random_rays(work->set->box(), 65536);
+  return work;
+}
+
+const Workload& teapot() {
+  static const std::unique_ptr<Workload> work = [] {
+    const Model model = test::value_of(read_model(std::filesystem::path(TESSERA_SOURCE_DIR) / "tools/models/teapot.bpt"));
+    std::vector<BezierPatch> patches;
+    for (const ModelSurface& surface : model.surfaces) patches.push_back(surface.patch);
+    return make_workload(std::move(patches), 1000);
+  }();
+  return *work;
+}
+
+const Workload& set20000() {
+  static const std::unique_ptr<Workload> work = make_workload(test::wavy_field(200, 100), 100);
+  return *work;
+}
+
+/// Shares of a sample of rays whose answer is not the reference's: what grid mode allows is a silhouette here and there.
+struct Check {
+  std::size_t wrong = 0, sample = 0;
+  bool good() const { return wrong * 50 <= sample; }
+};
+
+template <class IsWrong>
+Check check(const Workload& work, const std::vector<Ray>& rays, IsWrong is_wrong) {
+  Check out;
+  const std::size_t step = rays.size() / work.checked;
+  for (std::size_t k = step / 2; k < rays.size(); k += step) {
+    out.wrong += is_wrong(k, test::reference_closest(work.patches, rays[k]));
+    ++out.sample;
+  }
+  return out;
+}
+
+void report(benchmark::State& state, const Workload& work, const std::vector<Ray>& rays, const Check& checked) {
+  if (!checked.good()) {
+    state.SkipWithError((std::to_string(checked.wrong) + " of " + std::to_string(checked.sample) + " answers are wrong").c_str());
+    return;
+  }
+  state.counters["rays_per_second"] =
+      benchmark::Counter(static_cast<double>(rays.size()), benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["wrong_of_checked"] = static_cast<double>(checked.wrong) / static_cast<double>(checked.sample);
+  state.counters["bytes_per_patch"] = static_cast<double>(work.scene->memory_bytes()) / static_cast<double>(work.patches.size());
+}
+
+tbb::task_arena arena(const benchmark::State& state) { return tbb::task_arena(static_cast<int>(state.range(0))); }
+
+void closest(benchmark::State& state, const Workload& work, const std::vector<Ray>& rays) {
+  std::vector<Hit> hits(rays.size());
+  Status status;
+  arena(state).execute([&] {
+    for ([[maybe_unused]] auto _ : state) status = work.scene->closest(rays, hits);
+  });
+  if (!status.ok()) return state.SkipWithError(status.message().c_str());
+  const double tolerance = 1e-9 * work.set->box().diagonal();
+  const Check checked = check(work, rays, [&](std::size_t k, const test::ReferenceHit& expected) {
+    const bool hit = hits[k].kind == HitKind::hit;
+    return hit != expected.hit() || (hit && !(std::abs(hits[k].t - expected.t) * length(rays[k].direction) <= tolerance));
+  });
+  report(state, work, rays, checked);
+}
+
+void occluded(benchmark::State& state, const Workload& work, const std::vector<Ray>& rays) {
+  std::vector<std::uint8_t> occluded(rays.size());
+  Status status;
+  arena(state).execute([&] {
+    for ([[maybe_unused]] auto _ : state) status = work.scene->occluded(rays, occluded);
+  });
+  if (!status.ok()) return state.SkipWithError(status.message().c_str());
+  const Check checked = check(work, rays, [&](std::size_t k, const test::ReferenceHit& expected) {
+    return (occluded[k] != 0) != expected.hit();
+  });
+  report(state, work, rays, checked);
+}
+
+/// Grids and BVH anew.
+void refit(benchmark::State& state, const Workload& work, const std::vector<Ray>& rays) {
+  RaySceneOptions options;
+  options.rate = rate;
+  RayScene scene = test::value_of(RayScene::make(*work.set, options));
+  Status status;
+  arena(state).execute([&] {
+    for ([[maybe_unused]] auto _ : state) status = scene.refit();
+  });
+  const Ray& ray = rays[rays.size() / 2 + 128];  // in the middle of the picture
+  const Hit hit = scene.closest(ray);
+  if (!status.ok() || hit.kind != HitKind::hit || hit.t != work.scene->closest(ray).t)
+    return state.SkipWithError("the refitted scene differs");
+  state.counters["patches_per_second"] =
+      benchmark::Counter(static_cast<double>(work.patches.size()), benchmark::Counter::kIsIterationInvariantRate);
+}
+
+using Run = void (*)(benchmark::State&, const Workload&, const std::vector<Ray>&);
+
+/// The workloads are built when first run: a filter that leaves them out doesn't pay for them.
+void add(const std::string& name, Run run, const Workload& (*work)(), std::vector<Ray> Workload::*rays) {
+  auto* benchmark = benchmark::RegisterBenchmark(
+      name.c_str(), [=](benchmark::State& state) { run(state, work(), work().*rays); });
+  benchmark->ArgName("threads")->Arg(1)->UseRealTime()->Unit(benchmark::kMillisecond);
+  if (const unsigned all = std::thread::hardware_concurrency(); all > 1) benchmark->Arg(all);
+}
+
+[[maybe_unused]] const bool registered = [] {
+  add("ray/closest/teapot/camera", closest, teapot, &Workload::camera);
+  add("ray/closest/teapot/random", closest, teapot, &Workload::random);
+  add("ray/closest/set20000/camera", closest, set20000, &Workload::camera);
+  add("ray/closest/set20000/random", closest, set20000, &Workload::random);
+  add("ray/occluded/teapot/camera", occluded, teapot, &Workload::camera);
+  add("ray/occluded/teapot/random", occluded, teapot, &Workload::random);
+  add("ray/occluded/set20000/camera", occluded, set20000, &Workload::camera);
+  add("ray/occluded/set20000/random", occluded, set20000, &Workload::random);
+  add("ray/refit/set20000", refit, set20000, &Workload::camera);
+  return true;
+}();
+
+}  // namespace
