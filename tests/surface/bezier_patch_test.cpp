@@ -65,8 +65,7 @@ TEST(BezierPatch, RefusesPointsThatAreNotFinite) {
                   StatusCode::non_finite);
       }
   expect_error(BezierPatch::polynomial(1, 2, std::vector<Vec3>{{}, {}, {}, {}, {0.5, infinity, 1e300}, {}}),
-               StatusCode::non_finite, 4,
-               "control point [1][1] is (0.5, inf, 1e+300), its coordinates must be finite");
+               StatusCode::non_finite, 4, "control point [1][1] is (0.5, inf, 1e+300), its coordinates must be finite");
 }
 
 TEST(BezierPatch, RefusesWeights) {
@@ -113,8 +112,8 @@ TEST(BezierPatch, CollapsedEdges) {
     std::vector<Vec3> points = random_points(random, 3, 2);
     for (int i = 0; i <= 3; ++i)
       for (int j = 0; j <= 2; ++j) {
-        const bool collapsed = ((edges & 1) && i == 0) || ((edges & 2) && i == 3) || ((edges & 4) && j == 0) ||
-                               ((edges & 8) && j == 2);
+        const bool collapsed =
+            ((edges & 1) && i == 0) || ((edges & 2) && i == 3) || ((edges & 4) && j == 0) || ((edges & 8) && j == 2);
         if (collapsed) points[static_cast<std::size_t>(3 * i + j)] = {-0.0, 1, 2};
       }
     points[0] = points[0] == Vec3{0, 1, 2} ? Vec3{0, 1, 2} : points[0];  // by ==: 0 and -0 are one

@@ -10,8 +10,9 @@ namespace tessera::test {
 namespace {
 
 using Evaluator = Vec3 (*)(const BezierPatch&, double, double);
-constexpr Evaluator evaluators[] = {de_casteljau, de_casteljau_bilinear, de_casteljau_rational,
-                                    [](const BezierPatch& p, double u, double v) { return evaluate_jet(p, u, v).position; }};
+constexpr Evaluator evaluators[] = {
+    de_casteljau, de_casteljau_bilinear, de_casteljau_rational,
+    [](const BezierPatch& p, double u, double v) { return evaluate_jet(p, u, v).position; }};
 
 /// Calls body(patch, u, v) with patches of every degree, polynomial and rational, at random parameters.
 template <class Body>
@@ -140,7 +141,8 @@ TEST(Evaluators, DerivativesLoseNothingFarFromZero) {
       near.push_back((1.0 / 1024) * Vec3{std::floor(p.x), std::floor(p.y), std::floor(p.z)});
       far.push_back(near.back() + Vec3{1e6, -2e9, 3e5});
     }
-    const std::vector<double> weights = with_weights ? random_weights(random, 3, 3, 0.5, 2) : std::vector<double>(16, 1);
+    const std::vector<double> weights =
+        with_weights ? random_weights(random, 3, 3, 0.5, 2) : std::vector<double>(16, 1);
     const BezierPatch here = rational(3, 3, near, weights), there = rational(3, 3, far, weights);
     for (int k = 0; k < 100; ++k) {
       const double u = uniform(random, 0, 1), v = uniform(random, 0, 1);
@@ -181,7 +183,9 @@ TEST(Evaluators, DerivativesArePatchesOnDifferenceNets) {
     for (int j = 0; j <= n; ++j) {
       along_u.push_back(m * (patch.point(i + 1, j) - patch.point(i, j)));
       if (j < n)
-        mixed.push_back(m * n * ((patch.point(i + 1, j + 1) - patch.point(i + 1, j)) - (patch.point(i, j + 1) - patch.point(i, j))));
+        mixed.push_back(
+            m * n *
+            ((patch.point(i + 1, j + 1) - patch.point(i + 1, j)) - (patch.point(i, j + 1) - patch.point(i, j))));
     }
   const BezierPatch du = polynomial(m - 1, n, along_u), duv = polynomial(m - 1, n - 1, mixed);
   for (int k = 0; k < 50; ++k) {
@@ -217,7 +221,8 @@ TEST(Evaluators, FiniteInputGivesNoNaN) {
           for (const double v : {0.0, 5e-324, 1e-160, 0.3, 1 - 0x1p-53, 1.0}) {
             for (const Evaluator evaluate : evaluators) {
               const Vec3 p = evaluate(patch, u, v);
-              EXPECT_TRUE(is_finite(p) && max_abs(p) <= 1.0001 * size) << size << " " << heaviest << " " << u << " " << v;
+              EXPECT_TRUE(is_finite(p) && max_abs(p) <= 1.0001 * size)
+                  << size << " " << heaviest << " " << u << " " << v;
             }
             const SurfaceJet jet = evaluate_jet(patch, u, v);
             for (const Vec3& d : {jet.du, jet.dv, jet.duu, jet.duv, jet.dvv}) EXPECT_FALSE(has_nan(d)) << size;

@@ -38,7 +38,8 @@ BezierPatch octant() {
   std::vector<double> weights;
   for (const double a : w)
     for (const double b : w) weights.push_back(a * b);
-  return rational(2, 2, {{1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}},
+  return rational(2, 2,
+                  {{1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}},
                   weights);
 }
 

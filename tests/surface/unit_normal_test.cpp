@@ -13,7 +13,8 @@ constexpr Vec3 pole{0.25, -0.5, 1};
 BezierPatch random_pole_patch(Random& random, int m, int n, bool with_weights) {
   std::vector<Vec3> points = random_points(random, m, n);
   for (int j = 0; j <= n; ++j) points[static_cast<std::size_t>(j)] = pole;
-  return rational(m, n, points, with_weights ? random_weights(random, m, n, 0.5, 2) : std::vector<double>(points.size(), 1));
+  return rational(m, n, points,
+                  with_weights ? random_weights(random, m, n, 0.5, 2) : std::vector<double>(points.size(), 1));
 }
 
 /// From (u,v), the parameter a little further inside the patch along one direction.
@@ -122,7 +123,9 @@ TEST(UnitNormal, ThinPatchesAreRegular) {
 TEST(UnitNormal, ParallelTangentsAtACorner) {
   // V_00, V_10 and V_01 on one line. In a plane both sides agree; bent out of it they need not.
   const auto corner = [](double height) {
-    return polynomial(2, 2, {{0, 0, 0}, {2, 0, 0}, {4, 3, 0}, {1, 0, 0}, {3, -1, 0}, {5, 1, 1}, {2, -3, height}, {5, -3, 0}, {7, 0, 0}});
+    return polynomial(
+        2, 2,
+        {{0, 0, 0}, {2, 0, 0}, {4, 3, 0}, {1, 0, 0}, {3, -1, 0}, {5, 1, 1}, {2, -3, height}, {5, -3, 0}, {7, 0, 0}});
   };
   const UnitNormal flat = unit_normal(corner(0), 0, 0);
   EXPECT_EQ(flat.kind, NormalKind::limit);

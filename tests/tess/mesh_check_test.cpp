@@ -153,7 +153,8 @@ TEST(MeshCheck, TorusGridIsClosed) {
   for (std::uint32_t i = 0; i < n; ++i)
     for (std::uint32_t j = 0; j < m; ++j) {
       const double a = 6.283185307179586 * i / n, b = 6.283185307179586 * j / m, r = 2 + std::cos(b);
-      for (const double x : {r * std::cos(a), r * std::sin(a), std::sin(b)}) mesh.positions.push_back(static_cast<float>(x));
+      for (const double x : {r * std::cos(a), r * std::sin(a), std::sin(b)})
+        mesh.positions.push_back(static_cast<float>(x));
       const std::uint32_t k = i * m + j, right = (i + 1) % n * m + j, up = i * m + (j + 1) % m,
                           both = (i + 1) % n * m + (j + 1) % m;
       mesh.indices.insert(mesh.indices.end(), {k, right, both, k, both, up});

@@ -18,7 +18,8 @@ BezierPatch with_collapsed_edges(Random& random, int m, int n, int edges, bool w
       for (std::size_t e = 0; e < 4; ++e)
         if ((edges >> e & 1) && on[e]) points[static_cast<std::size_t>(i * (n + 1) + j)] = meet ? joint : pole[e];
     }
-  return rational(m, n, points, with_weights ? random_weights(random, m, n, 0.5, 2) : std::vector<double>(points.size(), 1));
+  return rational(m, n, points,
+                  with_weights ? random_weights(random, m, n, 0.5, 2) : std::vector<double>(points.size(), 1));
 }
 
 /// Triangles of the whole grid that have three distinct corners.
@@ -91,7 +92,8 @@ TEST(Poles, PointsAndCurvesHaveNoTriangles) {
 /// The sphere as eight rational octants, with poles at +z and -z, all r_u x r_v inwards.
 std::vector<BezierPatch> sphere() {
   const double h = std::sqrt(0.5), w[] = {1, h, 1};
-  const Vec3 octant[] = {{1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+  const Vec3 octant[] = {{1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1, 0, 1}, {1, 1, 1},
+                         {0, 1, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
   std::vector<double> weights;
   for (const double a : w)
     for (const double b : w) weights.push_back(a * b);

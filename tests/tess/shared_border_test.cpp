@@ -32,8 +32,7 @@ TEST(SharedBorders, AreTheSameBitsInEveryOrientation) {
       for (int way = 0; way < 64; ++way) {
         const Neighbours pair = neighbours(random, m, k, n, with_weights);
         const int rate = 1 + way % 9;
-        const Mesh mesh =
-            tessellate({reoriented(pair.first, way % 8), reoriented(pair.second, way / 8)}, rate, rate);
+        const Mesh mesh = tessellate({reoriented(pair.first, way % 8), reoriented(pair.second, way / 8)}, rate, rate);
         const MeshReport report = good(check(mesh));
         const std::size_t r = static_cast<std::size_t>(rate);
         EXPECT_EQ(report.distinct_positions, 2 * (r + 1) * (r + 1) - (r + 1))
@@ -54,8 +53,15 @@ TEST(SharedBorders, ClosedBodyFarFromZero) {
       std::vector<Vec3> points;
       for (int i = 0; i < 4; ++i)
         for (int j = 0; j < 4; ++j) {
-          const int at[3] = {axis == 0 ? side : axis == 1 ? j : i, axis == 1 ? side : axis == 2 ? j : i,
-                             axis == 2 ? side : axis == 0 ? j : i};
+          const int at[3] = {axis == 0   ? side
+                             : axis == 1 ? j
+                                         : i,
+                             axis == 1   ? side
+                             : axis == 2 ? j
+                                         : i,
+                             axis == 2   ? side
+                             : axis == 0 ? j
+                                         : i};
           const bool inner = i % 3 != 0 && j % 3 != 0;
           points.push_back(corner(at[0], at[1], at[2]) + (inner ? uniform_vector(random, -0.2, 0.2) : Vec3{}));
         }

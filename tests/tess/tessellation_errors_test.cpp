@@ -15,9 +15,10 @@ using ::testing::HasSubstr;
 TEST(TessellationErrors, RatesOutOfRange) {
   Random random(1);
   const PatchSet set = set_of({random_polynomial(random, 3, 3)});
-  for (const auto& [u, v, message] :
-       {std::tuple{0, 8, "rate u is 0, it must be 1 to 4096"}, {8, 0, "rate v is 0, it must be 1 to 4096"},
-        {-5, 8, "rate u is -5, it must be 1 to 4096"}, {8, 4097, "rate v is 4097, it must be 1 to 4096"}}) {
+  for (const auto& [u, v, message] : {std::tuple{0, 8, "rate u is 0, it must be 1 to 4096"},
+                                      {8, 0, "rate v is 0, it must be 1 to 4096"},
+                                      {-5, 8, "rate u is -5, it must be 1 to 4096"},
+                                      {8, 4097, "rate v is 4097, it must be 1 to 4096"}}) {
     const auto plan = TessellationPlan::make(set, {.rate_u = u, .rate_v = v, .isa = {}});
     ASSERT_FALSE(plan.ok());
     EXPECT_EQ(plan.status().code(), StatusCode::invalid_argument);
@@ -34,8 +35,9 @@ TEST(TessellationErrors, VerticesBeyond32Bits) {
   EXPECT_EQ(plan.status().message(),
             "256 patches at rates 4096 x 4096 have 4297064704 vertices, 32-bit indices reach 4294967296");
   const std::vector<BezierPatch> fewer(patches.begin(), patches.end() - 1);
-  EXPECT_EQ(good(TessellationPlan::make(set_of(fewer), {.rate_u = 4096, .rate_v = 4096, .isa = {}})).capacity().vertices,
-            4280279295u);
+  EXPECT_EQ(
+      good(TessellationPlan::make(set_of(fewer), {.rate_u = 4096, .rate_v = 4096, .isa = {}})).capacity().vertices,
+      4280279295u);
 }
 
 TEST(TessellationErrors, NoFloatBlocks) {
@@ -52,7 +54,8 @@ TEST(TessellationErrors, NoFloatBlocks) {
 class Untouched {
  public:
   explicit Untouched(const TessellationPlan& plan) : mesh_(good(plan.allocate())) {
-    for (auto* floats : {&mesh_.positions, &mesh_.normals, &mesh_.parameters}) std::fill(floats->begin(), floats->end(), -77.0f);
+    for (auto* floats : {&mesh_.positions, &mesh_.normals, &mesh_.parameters})
+      std::fill(floats->begin(), floats->end(), -77.0f);
     for (auto* integers : {&mesh_.patches, &mesh_.indices}) std::fill(integers->begin(), integers->end(), 77777777u);
   }
   MeshViews views() { return mesh_.views(); }
@@ -88,7 +91,8 @@ class BadViews : public ::testing::Test {
 };
 
 TEST_F(BadViews, OneTooShort) {
-  const std::string vertices = std::to_string(plan_.capacity().vertices), fewer = std::to_string(plan_.capacity().vertices - 1);
+  const std::string vertices = std::to_string(plan_.capacity().vertices),
+                    fewer = std::to_string(plan_.capacity().vertices - 1);
   const std::size_t triangles = plan_.capacity().triangles;
   MeshViews views = mesh_.views();
   --views.position.size;

@@ -68,13 +68,15 @@ TEST(Tessellation, VerticesLieWhereTheirParametersSay) {
   for (std::size_t p = 0; p < patches.size(); ++p)
     for (int i = 0; i <= rate_u; ++i)
       for (int j = 0; j <= rate_v; ++j) {
-        const std::size_t k = (p * (rate_u + 1) + static_cast<std::size_t>(i)) * (rate_v + 1) + static_cast<std::size_t>(j);
+        const std::size_t k =
+            (p * (rate_u + 1) + static_cast<std::size_t>(i)) * (rate_v + 1) + static_cast<std::size_t>(j);
         EXPECT_EQ(mesh.parameters[2 * k], static_cast<float>(i / 5.0));
         EXPECT_EQ(mesh.parameters[2 * k + 1], static_cast<float>(j / 3.0));
         const Vec3 position{mesh.positions[3 * k], mesh.positions[3 * k + 1], mesh.positions[3 * k + 2]};
         const double unit = float_unit * largest_coefficient(patches[p], set.origin());
         const Vec3 expected = reference_position(patches[p], i / 5.0, j / 3.0) - set.origin();
-        EXPECT_TRUE(within_units(position, expected, unit, patches[p].is_rational() ? 4 : 2)) << p << " " << i << " " << j;
+        EXPECT_TRUE(within_units(position, expected, unit, patches[p].is_rational() ? 4 : 2))
+            << p << " " << i << " " << j;
         const Vec3 normal{mesh.normals[3 * k], mesh.normals[3 * k + 1], mesh.normals[3 * k + 2]};
         EXPECT_LT(max_abs(normal - reference_normal(patches[p], i / 5.0, j / 3.0)), 1e-3) << p << " " << i << " " << j;
       }
