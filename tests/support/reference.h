@@ -44,8 +44,8 @@ inline Real reference_bernstein(int n, int i, Real t, int order = 0) {
   };
   if (order == 0) return binomial * term(1, i, j);
   if (order == 1) return binomial * (term(i, i - 1, j) - term(j, i, j - 1));
-  return binomial * (term(Real(i) * (i - 1), i - 2, j) - 2 * term(Real(i) * j, i - 1, j - 1) +
-                     term(Real(j) * (j - 1), i, j - 2));
+  return binomial *
+         (term(Real(i) * (i - 1), i - 2, j) - 2 * term(Real(i) * j, i - 1, j - 1) + term(Real(j) * (j - 1), i, j - 2));
 }
 
 /// Derivative of order (a, b) of the numerator, and of the denominator in `weight`.

@@ -3,11 +3,11 @@
 
 namespace tessera {
 
-/// C(n, k), exact up to n = 56; 0 for k outside 0..n.
+/// C(n, k), exact up to n = 30; 0 for k outside 0..n.
 double binomial(int n, int k);
 
 // Each writes degree + 1 values, i = 0..degree, of degree >= 0. Any finite t; on [0,1] the values are not negative and
-// nothing cancels in them (relative error at most 2 * degree roundings). Real is double, or long double for tables that are
+// nothing cancels in them (relative error at most 3 * degree roundings). Real is double, or long double for tables that are
 // to be right to the last bit of a double.
 
 /// B_{i,n}(t): exactly 1 and 0 at t = 0 and t = 1.

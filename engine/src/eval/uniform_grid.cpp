@@ -59,6 +59,8 @@ class BorderWriter {
       job.rational = group.rational;
       evaluate_edge(block, place, job);
     }
+    for (std::size_t lane = 0; lane < set_.lane_counts[block]; ++lane)
+      write_corners(set_.lane_patches[block * PatchSet::lanes + lane]);
   }
 
  private:
@@ -75,23 +77,44 @@ class BorderWriter {
       kernels_.border_f32(job);
       for (std::size_t lane = 0; lane < set_.lane_counts[block]; ++lane) {
         const std::uint32_t patch = set_.lane_patches[block * PatchSet::lanes + lane];
-        if (!set_.collapsed[patch].has(place.edge)) {
-          write(patch, place, first, job.count, stage.data() + lane, 3 * PatchSet::lanes);
-        } else if (first == 0) {
-          write(patch, place, 0, count, stage.data() + lane, 0);  // a pole is one point: the corner's
-        }
+        if (!set_.collapsed[patch].has(place.edge)) write(patch, place, first, job.count, stage.data() + lane);
       }
     }
   }
 
-  /// Points first .. first + count - 1 of an edge, `step` values apart in the stage.
-  void write(std::size_t patch, const EdgePlace& place, int first, int count, const float* stage, std::ptrdiff_t step) const {
-    for (int k = 0; k < count; ++k, stage += step) {
-      const auto iu = static_cast<std::size_t>(place.along_u ? first + k : place.at_end ? rate_u_ : 0);
-      const auto iv = static_cast<std::size_t>(place.along_u ? (place.at_end ? rate_v_ : 0) : first + k);
-      const std::size_t record = (patch * static_cast<std::size_t>(rate_u_ + 1) + iu) * static_cast<std::size_t>(rate_v_ + 1) + iv;
-      for (int c = 0; c < 3; ++c) out_.at(record, c) = stage[c * PatchSet::lanes];
+  /// Points first .. first + count - 1 of an edge.
+  void write(std::size_t patch, const EdgePlace& place, int first, int count, const float* stage) const {
+    for (int k = first; k < first + count; ++k, stage += 3 * PatchSet::lanes) {
+      const std::size_t at = record(patch, place, k);
+      for (int c = 0; c < 3; ++c) out_.at(at, c) = stage[c * PatchSet::lanes];
     }
+  }
+
+  /// Corners and poles are the control points themselves: w p / w would depend on the weight.
+  void write_corners(std::size_t patch) const {
+    const BezierPatch& net = set_.patches[patch];
+    for (const EdgePlace& place : edge_places) {
+      const int i = place.at_end && !place.along_u ? net.degree_u() : 0, j = place.at_end && place.along_u ? net.degree_v() : 0;
+      const int last = place.along_u ? rate_u_ : rate_v_;
+      write_point(record(patch, place, 0), net.point(i, j));
+      if (set_.collapsed[patch].has(place.edge))
+        for (int k = 1; k <= last; ++k) write_point(record(patch, place, k), net.point(i, j));
+    }
+    write_point(record(patch, edge_places[1], rate_u_), net.point(net.degree_u(), net.degree_v()));
+  }
+
+  void write_point(std::size_t at, const Vec3& point) const {
+    const Vec3 p = point - set_.origin + Vec3{};  // as packed: adding +0 turns -0 into +0
+    out_.at(at, 0) = static_cast<float>(p.x);
+    out_.at(at, 1) = static_cast<float>(p.y);
+    out_.at(at, 2) = static_cast<float>(p.z);
+  }
+
+  /// The record of an edge's point k.
+  std::size_t record(std::size_t patch, const EdgePlace& place, int k) const {
+    const auto iu = static_cast<std::size_t>(place.along_u ? k : place.at_end ? rate_u_ : 0);
+    const auto iv = static_cast<std::size_t>(place.along_u ? (place.at_end ? rate_v_ : 0) : k);
+    return (patch * static_cast<std::size_t>(rate_u_ + 1) + iu) * static_cast<std::size_t>(rate_v_ + 1) + iv;
   }
 
   const PatchSet::Impl& set_;

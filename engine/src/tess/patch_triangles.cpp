@@ -5,15 +5,19 @@
 namespace tessera {
 namespace {
 
-bool depends_on_one_parameter(const BezierPatch& patch) {
+/// Whether the patch is a curve or a point. Where the points do not depend on one parameter but the weights do, three
+/// points and more are mixed to an area, and two to a segment.
+bool has_no_area(const BezierPatch& patch) {
   const int m = patch.degree_u(), n = patch.degree_v();
-  bool constant_u = true, constant_v = true;
+  bool points_u = true, points_v = true, weights_u = true, weights_v = true;  // constant along it
   for (int i = 0; i <= m; ++i)
     for (int j = 0; j <= n; ++j) {
-      constant_u = constant_u && patch.point(i, j) == patch.point(0, j);
-      constant_v = constant_v && patch.point(i, j) == patch.point(i, 0);
+      points_u = points_u && patch.point(i, j) == patch.point(0, j);
+      points_v = points_v && patch.point(i, j) == patch.point(i, 0);
+      weights_u = weights_u && patch.weight(i, j) == patch.weight(0, j);
+      weights_v = weights_v && patch.weight(i, j) == patch.weight(i, 0);
     }
-  return constant_u || constant_v;
+  return (points_u && points_v) || (points_u && (weights_u || n == 1)) || (points_v && (weights_v || m == 1));
 }
 
 // A cell with corners 00, 10, 11, 01 (first digit along u) is split from 00 to 11 into these two triangles.
@@ -50,7 +54,7 @@ PatchShape PatchShape::of(const BezierPatch& patch) {
   shape.degree_u = static_cast<std::uint8_t>(patch.degree_u());
   shape.degree_v = static_cast<std::uint8_t>(patch.degree_v());
   shape.collapsed = patch.collapsed_edges();
-  shape.is_curve = shape.collapsed.any() && depends_on_one_parameter(patch);
+  shape.is_curve = shape.collapsed.any() && has_no_area(patch);
   return shape;
 }
 

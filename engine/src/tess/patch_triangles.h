@@ -12,7 +12,7 @@ namespace tessera {
 struct PatchShape {
   std::uint8_t degree_u = 0, degree_v = 0;
   EdgeMask collapsed;
-  bool is_curve = false;  ///< it does not depend on u, or not on v: no triangle has an area
+  bool is_curve = false;  ///< a curve or a point: no triangle has an area
 
   static PatchShape of(const BezierPatch& patch);
   friend bool operator==(const PatchShape& a, const PatchShape& b) {
