@@ -13,10 +13,10 @@ using Values = std::array<double, max_degree + 1>;
 TEST(Power, ExactAtZeroOneAndTwo) {
   for (int n = 0; n <= max_degree; ++n) {
     Values at_0{}, at_1{}, at_2{}, slope{};
-    power_values(n, 0, at_0.data());
-    power_values(n, 1, at_1.data());
-    power_values(n, 2, at_2.data());
-    power_derivatives(n, 2, slope.data());
+    power_values(n, 0.0, at_0.data());
+    power_values(n, 1.0, at_1.data());
+    power_values(n, 2.0, at_2.data());
+    power_derivatives(n, 2.0, slope.data());
     for (int i = 0; i <= n; ++i) {
       const std::size_t k = static_cast<std::size_t>(i);
       EXPECT_EQ(at_0[k], i == 0);

@@ -1,0 +1,65 @@
+#pragma once
+// Surfaces as grids of Bezier patches, and the map between a surface's parameters and its patches'.
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tessera/bezier_patch.h"
+#include "tessera/domain.h"
+#include "tessera/patch_set.h"
+#include "tessera/status.h"
+
+namespace tessera {
+
+/// A place in a grid of patches.
+struct PatchLocation {
+  std::size_t patch = 0;    ///< index into PatchGrid::patches()
+  double u = 0, v = 0;      ///< local parameters, in [0,1]
+};
+
+/// How far the patches may lie from the surface that they stand for.
+struct FitError {
+  double distance = 0;      ///< 0 for an exact conversion, which is right to rounding
+  bool certified = true;    ///< proven, not only sampled
+};
+
+/// One surface as patches over the rectangles between breakpoints: patch (a, b) covers [breaks_u[a], breaks_u[a+1]] x
+/// [breaks_v[b], breaks_v[b+1]] and has the index a * count_v() + b. Every conversion ends in one. Neighbours share their border's
+/// control points (and weights) by ==.
+class PatchGrid {
+ public:
+  /// Breakpoints: at least two each way, finite, strictly increasing; (breaks_u - 1) * (breaks_v - 1) patches.
+  /// Errors: invalid_argument, non_finite (index = the breakpoint), count_mismatch.
+  static Result<PatchGrid> make(std::vector<double> breaks_u, std::vector<double> breaks_v, std::vector<BezierPatch> patches,
+                                FitError error = {});
+
+  std::size_t count_u() const { return breaks_u_.size() - 1; }
+  std::size_t count_v() const { return breaks_v_.size() - 1; }
+  std::span<const double> breaks_u() const { return breaks_u_; }
+  std::span<const double> breaks_v() const { return breaks_v_; }
+  std::span<const BezierPatch> patches() const { return patches_; }
+  const BezierPatch& patch(std::size_t a, std::size_t b) const { return patches_[a * count_v() + b]; }
+  Domain domain() const { return {breaks_u_.front(), breaks_u_.back(), breaks_v_.front(), breaks_v_.back()}; }
+  Domain patch_domain(std::size_t patch) const;   ///< patch < patches().size()
+  const FitError& fit_error() const { return error_; }
+
+  /// The patch that holds (u,v) and the local parameters there. At an inner breakpoint the patch on its right; at the end
+  /// of the domain the last one. Nothing for (u,v) outside the domain or NaN.
+  std::optional<PatchLocation> locate(double u, double v) const;
+  /// Position and derivatives by the surface's own parameters, at (u,v) as located. Nothing outside the domain.
+  std::optional<SurfaceJet> evaluate_jet(double u, double v) const;
+
+ private:
+  PatchGrid() = default;
+  std::vector<double> breaks_u_, breaks_v_;
+  std::vector<BezierPatch> patches_;
+  FitError error_;
+};
+
+/// The patches of several surfaces in one set; source(k).surface is the index into `grids`, source(k).domain the patch's
+/// rectangle. Errors: those of PatchSet::from.
+Result<PatchSet> make_patch_set(std::span<const PatchGrid> grids, const PatchSetOptions& options = {});
+
+}  // namespace tessera

@@ -1,0 +1,80 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "base/guard.h"
+#include "tessera/convert.h"
+
+namespace tessera {
+namespace {
+
+Status check_breaks(std::span<const double> breaks, const char* direction) {
+  const auto bad = [&](StatusCode code, std::size_t k, const char* what) {
+    return Status(code, std::string("breakpoint ") + direction + "[" + std::to_string(k) + "] = " + std::to_string(breaks[k]) + what,
+                  static_cast<std::ptrdiff_t>(k));
+  };
+  if (breaks.size() < 2)
+    return Status(StatusCode::invalid_argument, std::string("a patch grid needs at least two breakpoints along ") + direction);
+  for (std::size_t k = 0; k < breaks.size(); ++k) {
+    if (!std::isfinite(breaks[k])) return bad(StatusCode::non_finite, k, " is not finite");
+    if (k > 0 && !(breaks[k] > breaks[k - 1])) return bad(StatusCode::invalid_argument, k, " is not above the one before it");
+    if (k > 0 && !std::isfinite(breaks[k] - breaks[k - 1])) return bad(StatusCode::non_finite, k, " is too far from the one before it");
+  }
+  return {};
+}
+
+/// The interval that holds t, from the right; the last one at the end.
+std::size_t interval(std::span<const double> breaks, double t) {
+  const auto above = std::upper_bound(breaks.begin(), breaks.end(), t);
+  return std::min<std::size_t>(static_cast<std::size_t>(above - breaks.begin()) - 1, breaks.size() - 2);
+}
+
+}  // namespace
+
+Result<PatchGrid> PatchGrid::make(std::vector<double> breaks_u, std::vector<double> breaks_v, std::vector<BezierPatch> patches,
+                                  FitError error) {
+  return guarded([&]() -> Result<PatchGrid> {
+    if (Status status = check_breaks(breaks_u, "u"); !status.ok()) return status;
+    if (Status status = check_breaks(breaks_v, "v"); !status.ok()) return status;
+    const std::size_t wanted = (breaks_u.size() - 1) * (breaks_v.size() - 1);
+    if (patches.size() != wanted)
+      return Status(StatusCode::count_mismatch, "these breakpoints make " + std::to_string(wanted) + " patches, not " +
+                                                    std::to_string(patches.size()));
+    if (!(error.distance >= 0) || !std::isfinite(error.distance))
+      return Status(StatusCode::invalid_argument, "a fit error is finite and not negative");
+    PatchGrid grid;
+    grid.breaks_u_ = std::move(breaks_u);
+    grid.breaks_v_ = std::move(breaks_v);
+    grid.patches_ = std::move(patches);
+    grid.error_ = error;
+    return grid;
+  });
+}
+
+Domain PatchGrid::patch_domain(std::size_t patch) const {
+  const std::size_t a = patch / count_v(), b = patch % count_v();
+  return {breaks_u_[a], breaks_u_[a + 1], breaks_v_[b], breaks_v_[b + 1]};
+}
+
+std::optional<PatchLocation> PatchGrid::locate(double u, double v) const {
+  if (!domain().contains(u, v)) return std::nullopt;
+  const std::size_t patch = interval(breaks_u_, u) * count_v() + interval(breaks_v_, v);
+  const Domain d = patch_domain(patch);
+  return PatchLocation{patch, d.local_u(u), d.local_v(v)};
+}
+
+std::optional<SurfaceJet> PatchGrid::evaluate_jet(double u, double v) const {
+  const auto place = locate(u, v);
+  if (!place) return std::nullopt;
+  const Domain d = patch_domain(place->patch);
+  const double a = 1 / (d.u1 - d.u0), b = 1 / (d.v1 - d.v0);  // chain rule
+  SurfaceJet jet = tessera::evaluate_jet(patches_[place->patch], place->u, place->v);
+  jet.du = a * jet.du;
+  jet.dv = b * jet.dv;
+  jet.duu = (a * a) * jet.duu;
+  jet.duv = (a * b) * jet.duv;
+  jet.dvv = (b * b) * jet.dvv;
+  return jet;
+}
+
+}  // namespace tessera
