@@ -1,7 +1,5 @@
 #include "tess/patch_triangles.h"
 
-#include <initializer_list>
-
 namespace tessera {
 namespace {
 
@@ -42,8 +40,19 @@ EdgeMask edges_of_cell(EdgeMask patch, Rates rates, int iu, int iv) {
   return {static_cast<std::uint8_t>(at.bits & patch.bits)};
 }
 
-std::uint32_t* write(std::uint32_t* to, std::initializer_list<std::uint32_t> corners) {
-  for (const std::uint32_t corner : corners) *to++ = corner;
+std::uint32_t* write(std::uint32_t* to, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  to[0] = a;
+  to[1] = b;
+  to[2] = c;
+  return to + 3;
+}
+
+/// Both triangles of each of `count` cells in a row, p00 being vertices first, first + 1, ..
+std::uint32_t* write_whole_cells(std::uint32_t first, std::uint32_t row, int count, std::uint32_t* to) {
+  for (std::uint32_t p00 = first; p00 != first + static_cast<std::uint32_t>(count); ++p00) {
+    to = write(to, p00, p00 + row, p00 + row + 1);
+    to = write(to, p00, p00 + row + 1, p00 + 1);
+  }
   return to;
 }
 
@@ -80,14 +89,18 @@ std::size_t triangle_count(const PatchShape& shape, Rates rates) {
 std::uint32_t* write_triangles(const PatchShape& shape, Rates rates, std::uint32_t first, std::uint32_t* indices) {
   if (shape.is_curve) return indices;
   const std::uint32_t row = static_cast<std::uint32_t>(rates.v) + 1;
-  for (int iu = 0; iu < rates.u; ++iu, first += row)
+  for (int iu = 0; iu < rates.u; ++iu, first += row) {
+    if (!shape.collapsed.any()) {
+      indices = write_whole_cells(first, row, rates.v, indices);
+      continue;
+    }
     for (int iv = 0; iv < rates.v; ++iv) {
       const std::uint32_t p00 = first + static_cast<std::uint32_t>(iv), p10 = p00 + row;
-      const unsigned left =
-          shape.collapsed.any() ? remaining(edges_of_cell(shape.collapsed, rates, iu, iv)) : unsigned{lower | upper};
-      if (left & lower) indices = write(indices, {p00, p10, p10 + 1});
-      if (left & upper) indices = write(indices, {p00, p10 + 1, p00 + 1});
+      const unsigned left = remaining(edges_of_cell(shape.collapsed, rates, iu, iv));
+      if (left & lower) indices = write(indices, p00, p10, p10 + 1);
+      if (left & upper) indices = write(indices, p00, p10 + 1, p00 + 1);
     }
+  }
   return indices;
 }
 
