@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <set>
 
 #include "block/patch_set_impl.h"
+#include "surface/homogeneous.h"
 #include "support/grids.h"
 #include "support/reference.h"
 #include "tessera/model.h"
@@ -40,10 +42,11 @@ TEST(PatchSet, BlocksHoldTheRelativeNets) {
     const PatchSet::Slot slot = set.slot(k);
     const BlockGroup& group = set.impl().group_of_block(slot.block);
     const std::size_t first = group.first_value + (slot.block - group.first_block) * group.block_values + slot.lane;
+    const double scale = patch.is_rational() ? power_of_two_near(std::ranges::max(patch.weights())) : 1;
     std::size_t value = first;
     for (int i = 0; i <= patch.degree_u(); ++i)
       for (int j = 0; j <= patch.degree_v(); ++j) {
-        const double w = patch.weight(i, j);
+        const double w = patch.weight(i, j) / scale;
         const Vec3 p = w * (patch.point(i, j) - set.origin());
         std::vector<double> expected = {p.x, p.y, p.z};
         if (patch.is_rational()) expected.push_back(w);

@@ -151,6 +151,32 @@ TEST(Tessellation, SameBytesForAnyNumberOfThreads) {
   }
 }
 
+TEST(Tessellation, WeightsOfAnySize) {
+  Random random(9);
+  const std::vector<Vec3> points = random_points(random, 3, 3);
+  const std::vector<double> weights = random_weights(random, 3, 3, 0.5, 2);
+  const auto scaled = [&](double factor) {
+    std::vector<double> product = weights;
+    for (double& w : product) w *= factor;
+    return rational(3, 3, points, product);
+  };
+  const Mesh expected = tessellate({scaled(1)}, 4, 4);
+  for (const double factor : {0x1p-900, 0x1p-150, 0x1p-30, 0x1p10, 0x1p140, 0x1p900}) {
+    EXPECT_EQ(tessellate({scaled(factor)}, 4, 4).positions, expected.positions) << factor;
+    EXPECT_EQ(tessellate({scaled(factor)}, 4, 4).normals, expected.normals) << factor;
+  }
+  std::vector<double> far_apart = weights;
+  far_apart[0] = 1e-10;  // float cannot hold its fourth power beside the others
+  const Result<PatchSet> set = PatchSet::from(std::vector{rational(3, 3, points, far_apart)});
+  EXPECT_EQ(set.status().code(), StatusCode::non_finite);
+  far_apart[0] = 3e-9;
+  const BezierPatch patch = rational(3, 3, points, far_apart);
+  const Mesh mesh = tessellate({patch}, 4, 4);
+  EXPECT_EQ(good(check(mesh)).non_finite_vertices, 0u);
+  const Vec3 normal{mesh.normals[0], mesh.normals[1], mesh.normals[2]};
+  EXPECT_LT(max_abs(normal - unit_normal(patch, 0, 0).direction), 1e-4);
+}
+
 TEST(Tessellation, EditsThatKeepThePolesNeedNoNewPlan) {
   std::vector<BezierPatch> patches = random_patches(6, 20);
   PatchSet set = set_of(patches);

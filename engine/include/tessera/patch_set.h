@@ -49,7 +49,8 @@ class PatchSet {
   static constexpr int lanes = 16;  ///< patches in a block
 
   /// One surface a patch, each on [0,1]^2. Errors: invalid_argument (no patch), out_of_memory, and
-  /// non_finite if a patch does not fit float after the origin is taken off (index = the patch).
+  /// non_finite if a patch does not fit float after the origin is taken off, or its smallest weight is below 1e-9 of the
+  /// largest (1e-70 if there are double blocks alone) (index = the patch).
   static Result<PatchSet> from(std::span<const BezierPatch> patches, const PatchSetOptions& options = {});
   /// The same with the source of each patch given; sources.size() == patches.size().
   static Result<PatchSet> from(std::span<const BezierPatch> patches, std::span<const PatchSource> sources,

@@ -19,7 +19,8 @@ constexpr std::size_t block_values(int degree_u, int degree_v, bool rational) {
 }
 
 /// The coefficients of `patch` relative to `origin`, `[i][j][component]`: (V - o, or w (V - o) and w) in the Bernstein
-/// basis, or the same in powers of u and v.
+/// basis, or the same in powers of u and v. Weights are divided by a power of two that brings the largest near 1: they fit
+/// float whatever their size, and borders shared by patches keep their bits.
 void relative_coefficients(const BezierPatch& patch, const Vec3& origin, Representation representation,
                            std::vector<double>& net);
 

@@ -59,9 +59,12 @@ float choose_normal_scale(const PatchSet::Impl& set) {
   return std::abs(exponent) <= 20 ? 1.0f : std::ldexp(1.0f, -std::clamp(exponent, -120, 120));
 }
 
+/// Weights below these shares of the largest: the squared length of r_u x r_v holds their fourth power, and underflows.
+constexpr double least_weight_in_float = 1e-9, least_weight_in_double = 1e-70;
+
 Status too_large(std::size_t patch) {
   return Status(StatusCode::non_finite,
-                "patch " + std::to_string(patch) + ": a coefficient relative to the set's origin is outside the range of its blocks' numbers",
+                "patch " + std::to_string(patch) + ": a coefficient relative to the set's origin, or a weight relative to the largest, is outside the range of its blocks' numbers",
                 static_cast<std::ptrdiff_t>(patch));
 }
 
@@ -104,6 +107,8 @@ bool PatchSet::Impl::pack(std::size_t patch, std::vector<double>& scratch) {
     if (slot.lane == 0)
       for (std::uint32_t lane = lane_counts[slot.block]; lane < lanes; ++lane) write_lane(scratch, block, lane);
   };
+  const auto weights = patches[patch].weights();
+  const double lightest = weights.empty() ? 1 : std::ranges::min(weights) / std::ranges::max(weights);
   for (const auto representation : {Representation::bernstein, Representation::power}) {
     const bool in_float = has(Precision::single_precision, representation);
     const bool in_double = has(Precision::double_precision, representation);
@@ -112,6 +117,7 @@ bool PatchSet::Impl::pack(std::size_t patch, std::vector<double>& scratch) {
     const double limit = in_float ? double{std::numeric_limits<float>::max()} : std::numeric_limits<double>::max();
     for (const double value : scratch)
       if (!(std::abs(value) <= limit)) return false;
+    if (lightest < (in_float ? least_weight_in_float : least_weight_in_double)) return false;
     const bool bernstein = representation == Representation::bernstein;
     if (in_float) write(bernstein ? single.bernstein : single.power);
     if (in_double) write(bernstein ? twice.bernstein : twice.power);

@@ -4,17 +4,13 @@
 #include <cmath>
 
 namespace tessera {
-namespace {
 
-/// A power of two near x whose reciprocal is one as well; 1 for x = 0.
 double power_of_two_near(double x) {
   if (!(x > 0)) return 1;
   int exponent = 0;
   std::frexp(x, &exponent);
   return std::ldexp(1.0, std::clamp(exponent, -1000, 1000));
 }
-
-}  // namespace
 
 HomogeneousNet::HomogeneousNet(const BezierPatch& patch, const Vec3& origin)
     : degree_u(patch.degree_u()), degree_v(patch.degree_v()) {

@@ -22,6 +22,9 @@ inline Homogeneous operator-(const Homogeneous& a, const Homogeneous& b) {
 }
 inline Homogeneous operator*(double s, const Homogeneous& a) { return {s * a.x, s * a.y, s * a.z, s * a.w}; }
 
+/// A power of two near x whose reciprocal is one as well; 1 for x = 0.
+double power_of_two_near(double x);
+
 /// A patch's net relative to `origin`, with points and weights divided by powers of two that bring the largest near 1:
 /// sums and products then neither overflow nor underflow, and the scaling itself rounds nothing.
 /// Polynomial patches have weight 1.
