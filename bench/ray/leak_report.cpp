@@ -1,5 +1,6 @@
-// What grid mode promises, counted: rays from inside closed bodies that meet nothing, and how far t is from a ray caster's
-// that shares no code, with and without refinement. Exit status 1 if a random ray leaks or the refined median is above 1e-6.
+// What grid mode promises, counted: rays from inside closed bodies that meet nothing, and how far t is from a ray
+// caster's that shares no code, with and without refinement. Exit status 1 if a random ray leaks or the refined
+// median is above 1e-6.
 
 #include <algorithm>
 #include <cmath>
@@ -59,17 +60,20 @@ std::size_t misses(const std::vector<Hit>& hits) {
 }
 
 std::size_t unrefined(const std::vector<Hit>& hits) {
-  return static_cast<std::size_t>(std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return hit.flags.unrefined; }));
+  return static_cast<std::size_t>(
+      std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return hit.flags.unrefined; }));
 }
 
 struct Distribution {
   double median = 0, largest = 0;
 };
 
-Distribution errors(const std::vector<Hit>& hits, const std::vector<Ray>& rays, const std::vector<double>& expected, double size) {
+Distribution errors(const std::vector<Hit>& hits, const std::vector<Ray>& rays, const std::vector<double>& expected,
+                    double size) {
   std::vector<double> all;
   for (std::size_t k = 0; k < expected.size(); ++k) {
-    if (hits[k].kind == HitKind::hit) all.push_back(std::abs(hits[k].t - expected[k]) * length(rays[k].direction) / size);
+    if (hits[k].kind == HitKind::hit)
+      all.push_back(std::abs(hits[k].t - expected[k]) * length(rays[k].direction) / size);
   }
   std::sort(all.begin(), all.end());
   return all.empty() ? Distribution{INFINITY, INFINITY} : Distribution{all[all.size() / 2], all.back()};
@@ -100,10 +104,13 @@ bool report(const Case& body, int rate) {
   const Distribution exact = errors(hits, body.rays, body.expected, size);
   const Distribution coarse = errors(facet_hits, body.rays, body.expected, size);
 
-  std::printf("  %d x %d cells a patch: leaks: %zu of %zu random rays; %zu of %zu rays aimed at grid vertices; unrefined: %zu\n", rate,
-              rate, misses(hits), hits.size(), misses(trace(refined, vertex_rays)), vertex_rays.size(), unrefined(hits));
-  std::printf("    |t - t_reference| / size over %zu rays: median %.2g, largest %.2g; facets: median %.2g, largest %.2g\n",
-              body.expected.size(), exact.median, exact.largest, coarse.median, coarse.largest);
+  std::printf(
+      "  %d x %d cells a patch: leaks: %zu of %zu random rays; %zu of %zu rays aimed at grid vertices; unrefined: "
+      "%zu\n",
+      rate, rate, misses(hits), hits.size(), misses(trace(refined, vertex_rays)), vertex_rays.size(), unrefined(hits));
+  std::printf(
+      "    |t - t_reference| / size over %zu rays: median %.2g, largest %.2g; facets: median %.2g, largest %.2g\n",
+      body.expected.size(), exact.median, exact.largest, coarse.median, coarse.largest);
   return misses(hits) == 0 && exact.median <= 1e-6;
 }
 

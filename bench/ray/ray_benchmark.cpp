@@ -5,17 +5,15 @@
 #include <tbb/task_arena.h>
 
 #include <cmath>
-#include <filesystem>
-#include <memory>
-#include <optional>
 #include <random>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
+#include "sets.h"
 #include "support/reference_rays.h"
 #include "support/synthetic_sets.h"
-#include "tessera/io.h"
 #include "tessera/ray_scene.h"
 
 namespace {
@@ -25,11 +23,11 @@ using namespace tessera;
 constexpr int rate = 8;
 
 struct Workload {
-  std::vector<BezierPatch> patches;
+  const PatchSet& set;
+  RayScene scene;
+  std::vector<BezierPatch> patches;  ///< for the reference
   std::vector<Ray> camera, random;
   std::size_t checked = 0;  ///< rays compared with the reference
-  std::optional<PatchSet> set;
-  std::optional<RayScene> scene;
 };
 
 double uniform(std::mt19937_64& random, double from, double to) {
@@ -68,35 +66,32 @@ std::vector<Ray> random_rays(const Box3& box, std::size_t count) {
   return rays;
 }
 
-std::unique_ptr<Workload> make_workload(std::vector<BezierPatch> patches, std::size_t checked) {
-  auto work = std::make_unique<Workload>();
-  work->patches = std::move(patches);
-  work->checked = checked;
-  work->set.emplace(test::value_of(PatchSet::from(work->patches)));
+Workload make_workload(std::string_view name, std::size_t checked) {
+  const PatchSet& set = bench::set_named(name);
   RaySceneOptions options;
   options.rate = rate;
-  work->scene.emplace(test::value_of(RayScene::make(*work->set, options)));
-  work->camera = camera_rays(work->set->box(), 256);
-  work->random = random_rays(work->set->box(), 65536);
+  Workload work{set,
+                test::value_of(RayScene::make(set, options)),
+                {},
+                camera_rays(set.box(), 256),
+                random_rays(set.box(), 65536),
+                checked};
+  for (std::size_t k = 0; k < set.patch_count(); ++k) work.patches.push_back(set.patch(k));
   return work;
 }
 
 const Workload& teapot() {
-  static const std::unique_ptr<Workload> work = [] {
-    const Model model = test::value_of(read_model(std::filesystem::path(TESSERA_SOURCE_DIR) / "tools/models/teapot.bpt"));
-    std::vector<BezierPatch> patches;
-    for (const ModelSurface& surface : model.surfaces) patches.push_back(surface.patch);
-    return make_workload(std::move(patches), 1000);
-  }();
-  return *work;
+  static const Workload work = make_workload("teapot", 1000);
+  return work;
 }
 
-const Workload& set20000() {
-  static const std::unique_ptr<Workload> work = make_workload(test::wavy_field(200, 100), 100);
-  return *work;
+const Workload& bicubic20000() {
+  static const Workload work = make_workload("bicubic20000", 100);
+  return work;
 }
 
-/// Shares of a sample of rays whose answer is not the reference's: what grid mode allows is a silhouette here and there.
+/// Shares of a sample of rays whose answer is not the reference's: what grid mode allows is a silhouette here and
+/// there.
 struct Check {
   std::size_t wrong = 0, sample = 0;
   bool good() const { return wrong * 50 <= sample; }
@@ -115,13 +110,15 @@ Check check(const Workload& work, const std::vector<Ray>& rays, IsWrong is_wrong
 
 void report(benchmark::State& state, const Workload& work, const std::vector<Ray>& rays, const Check& checked) {
   if (!checked.good()) {
-    state.SkipWithError((std::to_string(checked.wrong) + " of " + std::to_string(checked.sample) + " answers are wrong").c_str());
+    state.SkipWithError(
+        (std::to_string(checked.wrong) + " of " + std::to_string(checked.sample) + " answers are wrong").c_str());
     return;
   }
   state.counters["rays_per_second"] =
       benchmark::Counter(static_cast<double>(rays.size()), benchmark::Counter::kIsIterationInvariantRate);
   state.counters["wrong_of_checked"] = static_cast<double>(checked.wrong) / static_cast<double>(checked.sample);
-  state.counters["bytes_per_patch"] = static_cast<double>(work.scene->memory_bytes()) / static_cast<double>(work.patches.size());
+  state.counters["bytes_per_patch"] =
+      static_cast<double>(work.scene.memory_bytes()) / static_cast<double>(work.patches.size());
 }
 
 tbb::task_arena arena(const benchmark::State& state) { return tbb::task_arena(static_cast<int>(state.range(0))); }
@@ -130,13 +127,14 @@ void closest(benchmark::State& state, const Workload& work, const std::vector<Ra
   std::vector<Hit> hits(rays.size());
   Status status;
   arena(state).execute([&] {
-    for ([[maybe_unused]] auto _ : state) status = work.scene->closest(rays, hits);
+    for ([[maybe_unused]] auto _ : state) status = work.scene.closest(rays, hits);
   });
   if (!status.ok()) return state.SkipWithError(status.message().c_str());
-  const double tolerance = 1e-9 * work.set->box().diagonal();
+  const double tolerance = 1e-9 * work.set.box().diagonal();
   const Check checked = check(work, rays, [&](std::size_t k, const test::ReferenceHit& expected) {
     const bool hit = hits[k].kind == HitKind::hit;
-    return hit != expected.hit() || (hit && !(std::abs(hits[k].t - expected.t) * length(rays[k].direction) <= tolerance));
+    return hit != expected.hit() ||
+           (hit && !(std::abs(hits[k].t - expected.t) * length(rays[k].direction) <= tolerance));
   });
   report(state, work, rays, checked);
 }
@@ -145,7 +143,7 @@ void occluded(benchmark::State& state, const Workload& work, const std::vector<R
   std::vector<std::uint8_t> occluded(rays.size());
   Status status;
   arena(state).execute([&] {
-    for ([[maybe_unused]] auto _ : state) status = work.scene->occluded(rays, occluded);
+    for ([[maybe_unused]] auto _ : state) status = work.scene.occluded(rays, occluded);
   });
   if (!status.ok()) return state.SkipWithError(status.message().c_str());
   const Check checked = check(work, rays, [&](std::size_t k, const test::ReferenceHit& expected) {
@@ -158,14 +156,14 @@ void occluded(benchmark::State& state, const Workload& work, const std::vector<R
 void refit(benchmark::State& state, const Workload& work, const std::vector<Ray>& rays) {
   RaySceneOptions options;
   options.rate = rate;
-  RayScene scene = test::value_of(RayScene::make(*work.set, options));
+  RayScene scene = test::value_of(RayScene::make(work.set, options));
   Status status;
   arena(state).execute([&] {
     for ([[maybe_unused]] auto _ : state) status = scene.refit();
   });
   const Ray& ray = rays[rays.size() / 2 + 128];  // in the middle of the picture
   const Hit hit = scene.closest(ray);
-  if (!status.ok() || hit.kind != HitKind::hit || hit.t != work.scene->closest(ray).t)
+  if (!status.ok() || hit.kind != HitKind::hit || hit.t != work.scene.closest(ray).t)
     return state.SkipWithError("the refitted scene differs");
   state.counters["patches_per_second"] =
       benchmark::Counter(static_cast<double>(work.patches.size()), benchmark::Counter::kIsIterationInvariantRate);
@@ -175,8 +173,8 @@ using Run = void (*)(benchmark::State&, const Workload&, const std::vector<Ray>&
 
 /// The workloads are built when first run: a filter that leaves them out doesn't pay for them.
 void add(const std::string& name, Run run, const Workload& (*work)(), std::vector<Ray> Workload::*rays) {
-  auto* benchmark = benchmark::RegisterBenchmark(
-      name.c_str(), [=](benchmark::State& state) { run(state, work(), work().*rays); });
+  auto* benchmark =
+      benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) { run(state, work(), work().*rays); });
   benchmark->ArgName("threads")->Arg(1)->UseRealTime()->Unit(benchmark::kMillisecond);
   if (const unsigned all = std::thread::hardware_concurrency(); all > 1) benchmark->Arg(all);
 }
@@ -184,13 +182,13 @@ void add(const std::string& name, Run run, const Workload& (*work)(), std::vecto
 [[maybe_unused]] const bool registered = [] {
   add("ray/closest/teapot/camera", closest, teapot, &Workload::camera);
   add("ray/closest/teapot/random", closest, teapot, &Workload::random);
-  add("ray/closest/set20000/camera", closest, set20000, &Workload::camera);
-  add("ray/closest/set20000/random", closest, set20000, &Workload::random);
+  add("ray/closest/bicubic20000/camera", closest, bicubic20000, &Workload::camera);
+  add("ray/closest/bicubic20000/random", closest, bicubic20000, &Workload::random);
   add("ray/occluded/teapot/camera", occluded, teapot, &Workload::camera);
   add("ray/occluded/teapot/random", occluded, teapot, &Workload::random);
-  add("ray/occluded/set20000/camera", occluded, set20000, &Workload::camera);
-  add("ray/occluded/set20000/random", occluded, set20000, &Workload::random);
-  add("ray/refit/set20000", refit, set20000, &Workload::camera);
+  add("ray/occluded/bicubic20000/camera", occluded, bicubic20000, &Workload::camera);
+  add("ray/occluded/bicubic20000/random", occluded, bicubic20000, &Workload::random);
+  add("ray/refit/bicubic20000", refit, bicubic20000, &Workload::camera);
   return true;
 }();
 

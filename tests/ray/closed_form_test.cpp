@@ -84,7 +84,8 @@ TEST(ClosedForm, SphereFromInside) {
   const RayScene scene = scene_of(set);
   Random random(3);
   std::vector<Ray> rays;
-  for (int k = 0; k < 50000; ++k) rays.push_back(ray(0.8 * random_direction(random), normalized(random_direction(random))));
+  for (int k = 0; k < 50000; ++k)
+    rays.push_back(ray(0.8 * random_direction(random), normalized(random_direction(random))));
   const std::vector<Hit> hits = closest(scene, rays);
   std::size_t unrefined = 0;
   for (std::size_t k = 0; k < rays.size(); ++k) {

@@ -8,7 +8,8 @@ namespace tessera::test {
 namespace {
 
 TEST(Lifetime, StaleUntilRefit) {
-  const std::vector<Vec3> low{{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}}, high{{0, 0, 2}, {0, 1, 2}, {1, 0, 2}, {1, 1, 2}};
+  const std::vector<Vec3> low{{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}},
+      high{{0, 0, 2}, {0, 1, 2}, {1, 0, 2}, {1, 1, 2}};
   PatchSet set = set_of({polynomial(1, 1, low)});
   RayScene scene = scene_of(set);
   const Ray down = ray({0.3, 0.6, 5}, {0, 0, -1});

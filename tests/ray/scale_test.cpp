@@ -47,7 +47,8 @@ TEST_P(Places, NothingLeaks) {
   const RayScene scene = scene_of(set);
   Random random(32);
   std::vector<Ray> rays;
-  for (int k = 0; k < 20000; ++k) rays.push_back(ray(shift + 0.3 * scale * random_direction(random), random_direction(random)));
+  for (int k = 0; k < 20000; ++k)
+    rays.push_back(ray(shift + 0.3 * scale * random_direction(random), random_direction(random)));
   std::size_t missed = 0;
   for (const Hit& hit : closest(scene, rays)) missed += hit.kind != HitKind::hit;
   EXPECT_EQ(missed, 0u);

@@ -11,7 +11,9 @@ namespace tessera::test {
 namespace {
 
 bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
-bool same_bits(const Vec3& a, const Vec3& b) { return same_bits(a.x, b.x) && same_bits(a.y, b.y) && same_bits(a.z, b.z); }
+bool same_bits(const Vec3& a, const Vec3& b) {
+  return same_bits(a.x, b.x) && same_bits(a.y, b.y) && same_bits(a.z, b.z);
+}
 
 TEST(Threads, SameBytes) {
   const tbb::global_control four(tbb::global_control::max_allowed_parallelism, 4);
@@ -19,7 +21,8 @@ TEST(Threads, SameBytes) {
   Random random(41);
   std::vector<Ray> rays;
   for (int k = 0; k < 30000; ++k) {
-    const Vec3 origin = k < 15000 ? Vec3{6, -8, 9} : Vec3{uniform(random, 0, 12), uniform(random, 0, 9), uniform(random, -2, 2)};
+    const Vec3 origin =
+        k < 15000 ? Vec3{6, -8, 9} : Vec3{uniform(random, 0, 12), uniform(random, 0, 9), uniform(random, -2, 2)};
     const Vec3 target{uniform(random, -1, 13), uniform(random, -1, 10), 0};
     rays.push_back(ray(origin, target - origin));
   }
@@ -39,9 +42,10 @@ TEST(Threads, SameBytes) {
     EXPECT_EQ(occluded_one, occluded_many);
     for (std::size_t k = 0; k < rays.size(); ++k) {
       const Hit &a = one[k], &b = many[k];
-      ASSERT_TRUE(a.kind == b.kind && a.flags.unrefined == b.flags.unrefined && a.patch == b.patch && same_bits(a.t, b.t) &&
-                  same_bits(a.u, b.u) && same_bits(a.v, b.v) && same_bits(a.position, b.position) &&
-                  same_bits(a.normal, b.normal) && same_bits(a.residual, b.residual))
+      ASSERT_TRUE(a.kind == b.kind && a.flags.unrefined == b.flags.unrefined && a.patch == b.patch &&
+                  same_bits(a.t, b.t) && same_bits(a.u, b.u) && same_bits(a.v, b.v) &&
+                  same_bits(a.position, b.position) && same_bits(a.normal, b.normal) &&
+                  same_bits(a.residual, b.residual))
           << k;
     }
   }

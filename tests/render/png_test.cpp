@@ -85,7 +85,8 @@ TEST_F(PngFiles, ImagesThatDoNotFitTheirSize) {
   image.rgb.pop_back();
   EXPECT_EQ(write_png(image, folder_ / "a.png").code(), StatusCode::invalid_argument);
   EXPECT_EQ(write_png(Image{}, folder_ / "a.png").code(), StatusCode::invalid_argument);
-  EXPECT_EQ(write_png(Image{-1, -3, {1, 2, 3, 4, 5, 6, 7, 8, 9}}, folder_ / "a.png").code(), StatusCode::invalid_argument);
+  EXPECT_EQ(write_png(Image{-1, -3, {1, 2, 3, 4, 5, 6, 7, 8, 9}}, folder_ / "a.png").code(),
+            StatusCode::invalid_argument);
   EXPECT_EQ(files(), 0u);
 }
 

@@ -98,14 +98,15 @@ class ProjectedNet {
   std::vector<Point> points_;
 };
 
-/// Newton's method with difference quotients, on a net so small that it is nearly bilinear. Roots up to a hundredth outside count:
-/// the neighbouring net finds them too.
+/// Newton's method with difference quotients, on a net so small that it is nearly bilinear. Roots up to a hundredth
+/// outside count: the neighbouring net finds them too.
 inline bool solve(const ProjectedNet& net, double& s, double& t) {
   s = t = 0.5;
   double last = std::numeric_limits<double>::infinity();
   for (int step = 0; step < 30; ++step) {
     constexpr double h = 1e-5;
-    const auto f = net.at(s, t), fs1 = net.at(s + h, t), fs0 = net.at(s - h, t), ft1 = net.at(s, t + h), ft0 = net.at(s, t - h);
+    const auto f = net.at(s, t), fs1 = net.at(s + h, t), fs0 = net.at(s - h, t), ft1 = net.at(s, t + h),
+               ft0 = net.at(s, t - h);
     const double a = (fs1[0] - fs0[0]) / (2 * h), b = (ft1[0] - ft0[0]) / (2 * h);
     const double c = (fs1[1] - fs0[1]) / (2 * h), d = (ft1[1] - ft0[1]) / (2 * h);
     const double determinant = a * d - b * c;
@@ -120,7 +121,8 @@ inline bool solve(const ProjectedNet& net, double& s, double& t) {
   return last < 1e-6 && std::abs(s - 0.5) <= 0.51 && std::abs(t - 0.5) <= 0.51;
 }
 
-inline void reference_roots(const ProjectedNet& net, int depth, std::uint32_t patch, double scale, const Ray& ray, ReferenceHit& best) {
+inline void reference_roots(const ProjectedNet& net, int depth, std::uint32_t patch, double scale, const Ray& ray,
+                            ReferenceHit& best) {
   if (!net.may_meet()) return;
   constexpr int shallow = 12, deepest = 44;  // halvings: 6 and 22 in each direction
   if (depth >= shallow) {

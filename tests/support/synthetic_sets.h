@@ -28,8 +28,9 @@ inline std::vector<BezierPatch> placed(const std::vector<BezierPatch>& patches, 
   for (const BezierPatch& patch : patches) {
     std::vector<Vec3> points(patch.points().begin(), patch.points().end());
     for (Vec3& p : points) p = scale * p + shift;
-    out.push_back(patch.is_rational() ? value_of(BezierPatch::rational(patch.degree_u(), patch.degree_v(), points, patch.weights()))
-                                      : value_of(BezierPatch::polynomial(patch.degree_u(), patch.degree_v(), points)));
+    out.push_back(patch.is_rational()
+                      ? value_of(BezierPatch::rational(patch.degree_u(), patch.degree_v(), points, patch.weights()))
+                      : value_of(BezierPatch::polynomial(patch.degree_u(), patch.degree_v(), points)));
   }
   return out;
 }
@@ -38,7 +39,8 @@ inline std::vector<BezierPatch> placed(const std::vector<BezierPatch>& patches, 
 /// (a, b) has the index a * nv + b. Neighbours share the control points of their border.
 inline std::vector<BezierPatch> wavy_field(int nu, int nv) {
   const auto height = [](double x, double y) {
-    return 0.5 * std::sin(0.9 * x + 0.3 * y) + 0.35 * std::cos(0.7 * y - 0.2 * x) + 0.15 * std::sin(2.1 * x) * std::cos(1.9 * y);
+    return 0.5 * std::sin(0.9 * x + 0.3 * y) + 0.35 * std::cos(0.7 * y - 0.2 * x) +
+           0.15 * std::sin(2.1 * x) * std::cos(1.9 * y);
   };
   std::vector<BezierPatch> patches;
   for (int a = 0; a < nu; ++a) {
@@ -56,8 +58,8 @@ inline std::vector<BezierPatch> wavy_field(int nu, int nv) {
   return patches;
 }
 
-/// Six bicubic patches over the faces of a cube, blown up and dented: a closed body of size about 3 that holds the ball of
-/// radius 0.5 about zero. Faces share border points; their parameters run in various directions.
+/// Six bicubic patches over the faces of a cube, blown up and dented: a closed body of size about 3 that holds the
+/// ball of radius 0.5 about zero. Faces share border points; their parameters run in various directions.
 inline std::vector<BezierPatch> closed_body() {
   const auto place = [](int ix, int iy, int iz) -> Vec3 {
     const Vec3 cube{(ix - 1.5) / 1.5, (iy - 1.5) / 1.5, (iz - 1.5) / 1.5};

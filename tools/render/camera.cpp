@@ -36,7 +36,8 @@ std::array<Vec3, 8> corners(const Box3& box) {
 
 Camera fit_camera(const Box3& box, int width, int height) {
   Camera camera;
-  const Vec3 back{std::cos(azimuth) * std::cos(elevation), std::sin(azimuth) * std::cos(elevation), std::sin(elevation)};
+  const Vec3 back{std::cos(azimuth) * std::cos(elevation), std::sin(azimuth) * std::cos(elevation),
+                  std::sin(elevation)};
   const Axes axes(back, {}, camera.up);
   const double tangent = fill * std::tan(camera.fov_degrees / 2 * degree), shorter = std::min(width, height);
   const double tangent_x = tangent * width / shorter, tangent_y = tangent * height / shorter;
@@ -50,8 +51,8 @@ Camera fit_camera(const Box3& box, int width, int height) {
     top = std::max(top, y + tangent_y * z), bottom = std::max(bottom, -y + tangent_y * z);
     nearest = std::max(nearest, z);
   }
-  const double distance = std::max({(right + left) / (2 * tangent_x), (top + bottom) / (2 * tangent_y),
-                                    nearest + 1e-3 * box.diagonal()});
+  const double distance =
+      std::max({(right + left) / (2 * tangent_x), (top + bottom) / (2 * tangent_y), nearest + 1e-3 * box.diagonal()});
   const double rise = 0.5 * (top - bottom) + lowered * distance * tangent_y;
   camera.target = box.centre() + 0.5 * (right - left) * axes.right + rise * axes.up;
   camera.eye = camera.target + distance * back;
@@ -64,8 +65,9 @@ Status check(const Camera& camera) {
   const bool good = is_finite(camera.eye) && is_finite(camera.target) && !(camera.eye == camera.target) &&
                     is_finite(camera.up) && camera.fov_degrees > 0 && camera.fov_degrees < 180;
   if (good) return {};
-  return Status(StatusCode::invalid_argument,
-                "a camera needs finite points, a target other than the eye, and a field of view between 0 and 180 degrees");
+  return Status(
+      StatusCode::invalid_argument,
+      "a camera needs finite points, a target other than the eye, and a field of view between 0 and 180 degrees");
 }
 
 PixelRays::PixelRays(const Camera& camera, int width, int height) : eye_(camera.eye) {

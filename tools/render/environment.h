@@ -15,9 +15,9 @@ class Environment {
   /// A floor at the height of the box's bottom. From below it is not seen.
   Environment(const Box3& box, const Vec3& eye);
 
-  Vec3 sun_direction() const;   ///< towards it, a unit vector
-  Vec3 sun_light() const;       ///< what a white wall across the light reflects
-  double sun_tangent() const;   ///< of half the sun's angle
+  Vec3 sun_direction() const;  ///< towards it, a unit vector
+  Vec3 sun_light() const;      ///< what a white wall across the light reflects
+  double sun_tangent() const;  ///< of half the sun's angle
 
   Vec3 sky(const Vec3& direction) const;
 

@@ -1,5 +1,5 @@
-// Glazed porcelain on a floor, under a sun and a sky. For each sample: a shadow ray, a ray for ambient light, and on the
-// model a mirrored ray with a shadow ray of its own.
+// Glazed porcelain on a floor, under a sun and a sky. For each sample: a shadow ray, a ray for ambient light, and on
+// the model a mirrored ray with a shadow ray of its own.
 
 #include <algorithm>
 #include <array>
@@ -92,7 +92,8 @@ Status LitTile::occluded() {
 Status LitTile::sunlight(const std::vector<Point>& points, Purpose purpose, std::vector<Vec3>& light) {
   work_.secondary_rays.clear();
   for (const Point& point : points) {
-    work_.secondary_rays.push_back(leave(point, cone_direction(world_.sun_direction(), world_.sun_tangent(), random(point, purpose))));
+    work_.secondary_rays.push_back(
+        leave(point, cone_direction(world_.sun_direction(), world_.sun_tangent(), random(point, purpose))));
   }
   if (Status status = occluded(); !status.ok()) return status;
   for (std::size_t k = 0; k < points.size(); ++k) {
@@ -129,10 +130,12 @@ Status LitTile::trace_mirrors(const std::vector<Point>& points) {
     const Point& point = points[k];
     if (!point.on_model) continue;
     work_.mirrors.push_back(k);
-    work_.secondary_rays.push_back(leave(point, point.direction - 2 * dot(point.normal, point.direction) * point.normal));
+    work_.secondary_rays.push_back(
+        leave(point, point.direction - 2 * dot(point.normal, point.direction) * point.normal));
   }
   work_.secondary_hits.resize(work_.secondary_rays.size());
-  Status status = view_.scene.closest(work_.secondary_rays, work_.secondary_hits, Execution{.cancel = view_.cancel, .progress = {}});
+  Status status = view_.scene.closest(work_.secondary_rays, work_.secondary_hits,
+                                      Execution{.cancel = view_.cancel, .progress = {}});
   work_.mirrored.assign(work_.mirrors.size(), {});
   work_.mirrored_points.clear();
   work_.mirrored_by.clear();

@@ -25,7 +25,8 @@ inline std::uint64_t scramble(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-/// Sample `index` of side x side in the unit square, one in each cell of a grid; each pixel and purpose has its own order.
+/// Sample `index` of side x side in the unit square, one in each cell of a grid; each pixel and purpose has its own
+/// order.
 inline Point2 stratified(std::uint32_t pixel, int index, int side, Purpose purpose) {
   const std::uint64_t key = scramble((std::uint64_t{pixel} << 8) | static_cast<std::uint64_t>(purpose));
   const auto count = static_cast<std::uint64_t>(side * side);

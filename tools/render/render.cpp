@@ -22,7 +22,8 @@ constexpr double exposure = 0.58;
 
 Status check(const Settings& settings, const Box3& box) {
   const auto bad = [](const char* why) { return Status(StatusCode::invalid_argument, why); };
-  if (box.empty() || !is_finite(box.lower) || !is_finite(box.upper)) return bad("there is nothing to draw: the box is empty");
+  if (box.empty() || !is_finite(box.lower) || !is_finite(box.upper))
+    return bad("there is nothing to draw: the box is empty");
   if (std::min(settings.width, settings.height) < 1 || std::max(settings.width, settings.height) > largest_side)
     return bad("a picture's sides run from 1 to 32768 pixels");
   if (settings.samples < 1 || settings.samples > most_samples) return bad("samples run from 1 to 16");
@@ -65,8 +66,8 @@ Status draw(const View& view, const Tile& tile, Workspace& work, Image& image) {
   for (int y = tile.y; y < tile.y + tile.height; ++y) {
     for (int x = tile.x; x < tile.x + tile.width; ++x, next += count) {
       const Vec3 colour = average(next, count, lit);
-      const std::size_t at = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
-                                  static_cast<std::size_t>(x));
+      const std::size_t at =
+          3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x));
       image.rgb[at] = to_byte(colour.x), image.rgb[at + 1] = to_byte(colour.y), image.rgb[at + 2] = to_byte(colour.z);
     }
   }
@@ -77,7 +78,10 @@ Status draw(const View& view, const Tile& tile, Workspace& work, Image& image) {
 class Drawing {
  public:
   Drawing(const View& view, const Execution& execution, Image& image)
-      : view_(view), execution_(execution), image_(image), columns_((image.width + tile_side - 1) / tile_side),
+      : view_(view),
+        execution_(execution),
+        image_(image),
+        columns_((image.width + tile_side - 1) / tile_side),
         tiles_(columns_ * ((image.height + tile_side - 1) / tile_side)) {}
 
   Status run() {

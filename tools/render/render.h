@@ -33,8 +33,8 @@ enum class Shade : std::uint8_t {
 struct Settings {
   int width = 1280, height = 800;  ///< 1 to 32768
   Shade shade = Shade::lambert;
-  std::optional<Camera> camera;    ///< one that fits the box to the picture if empty
-  int samples = 4;                 ///< samples x samples a pixel, 1 to 16
+  std::optional<Camera> camera;  ///< one that fits the box to the picture if empty
+  int samples = 4;               ///< samples x samples a pixel, 1 to 16
 };
 
 /// Rows from the top, three bytes a pixel, sRGB.

@@ -18,7 +18,7 @@ struct View {
   const Environment& environment;
   const PixelRays& camera;
   const Settings& settings;
-  double size = 0;                            ///< of the model
+  double size = 0;  ///< of the model
   const std::atomic<bool>* cancel = nullptr;
 };
 
@@ -36,8 +36,8 @@ struct Sample {
 struct Point {
   std::size_t sample = 0;  ///< in the tile
   Vec3 position;
-  Vec3 normal;             ///< towards the viewer
-  Vec3 direction;          ///< of the ray that came here
+  Vec3 normal;     ///< towards the viewer
+  Vec3 direction;  ///< of the ray that came here
   bool on_model = false;
 };
 

@@ -16,7 +16,8 @@
 namespace tessera {
 
 /// Points origin + t * direction, tnear <= t <= tfar, in the model's coordinates. The direction need not be a unit vector.
-/// Valid: finite origin and direction, direction not zero, 0 <= tnear <= tfar, tfar may be infinite.
+/// Valid: finite origin and direction with components of at most 1.844e18, direction not zero, 0 <= tnear <= tfar;
+/// tfar may be infinite. Both ends belong to the interval and hold for the refined t, in double.
 struct Ray {
   Vec3 origin, direction;
   double tnear = 0;
@@ -44,11 +45,14 @@ struct Hit {
   double patch_u = 0, patch_v = 0;  ///< in the patch, [0,1]^2
   Vec3 position;                    ///< on the surface at (u,v)
   Vec3 normal;                      ///< unit, along r_u x r_v
-  double residual = 0;              ///< distance from the position to the ray
+  double residual = 0;  ///< distance from the position to the ray; of an unrefined hit, to the surface at (u,v)
 };
 
 enum class RayMode : std::uint8_t {
-  grid,  ///< evaluated grids in an Embree BVH, then Newton on the surface: every hit lies on it, a silhouette may be missed
+  /// Evaluated grids in an Embree BVH, then Newton on the surface: every hit that is not flagged lies on it. Facets decide
+  /// what is met and in which order: a silhouette may be missed or flagged, and of two surfaces nearer to each other than
+  /// to their facets the farther one may come first.
+  grid,
 };
 
 struct RaySceneOptions {
@@ -62,7 +66,9 @@ struct RaySceneOptions {
 /// Threads: const calls from any number of threads; refit and edits of the set exclude them.
 class RayScene {
  public:
-  /// Errors: invalid_argument, unsupported (no float Bernstein blocks), isa_unavailable, out_of_memory, internal (Embree's own).
+  /// Errors: invalid_argument (the rate), unsupported (no float Bernstein blocks; a box with a diagonal below 1e-9 or
+  /// reaching further than 1e12 from the set's origin; more than 2^32 grid points), isa_unavailable, cancelled,
+  /// out_of_memory, internal (Embree's own).
   static Result<RayScene> make(const PatchSet& set, const RaySceneOptions& options = {}, const Execution& execution = {});
 
   RayScene(RayScene&&) noexcept;
@@ -73,12 +79,14 @@ class RayScene {
   /// Errors: buffer_too_small, stale (the set was edited; call refit), cancelled.
   Status closest(std::span<const Ray> rays, std::span<Hit> hits, const Execution& execution = {}) const;
   /// 1 where anything lies on the ray, 0 where not or where the ray is not valid; occluded.size() >= rays.size().
+  /// The facets decide, not the surface: a ray that leaves the surface must begin further off than they lie.
   Status occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded, const Execution& execution = {}) const;
   /// One ray. A stale scene gives a miss with HitKind::invalid_ray.
   Hit closest(const Ray& ray) const;
   bool occluded(const Ray& ray) const;
 
-  /// After edits of the set: evaluates the grids anew and rebuilds the BVH.
+  /// After edits of the set: evaluates the grids anew and rebuilds the BVH. Errors: those of make; the scene then stays
+  /// stale until a refit succeeds.
   Status refit(const Execution& execution = {});
 
   std::uint64_t revision() const;      ///< of the set, when the scene was made or last refitted

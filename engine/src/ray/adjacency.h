@@ -19,13 +19,13 @@ inline constexpr std::array<Edge, 4> all_edges{Edge::u0, Edge::u1, Edge::v0, Edg
 struct EdgeLink {
   static constexpr std::uint32_t no_patch = std::numeric_limits<std::uint32_t>::max();
   std::uint32_t patch = no_patch;
-  std::uint8_t edge = 0;     ///< index into all_edges
-  bool reversed = false;     ///< the two run along the edge in opposite directions
+  std::uint8_t edge = 0;  ///< index into all_edges
+  bool reversed = false;  ///< the two run along the edge in opposite directions
   bool exists() const { return patch != no_patch; }
 };
 
-/// Two edges are linked where they, and no third one, have the same control points and weights (by ==), in either order.
-/// Collapsed edges are not linked.
+/// Two edges are linked where they, and no third one, have the same control points and weights (by ==), in either
+/// order. Collapsed edges are not linked.
 class Adjacency {
  public:
   Adjacency() = default;

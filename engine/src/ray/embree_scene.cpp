@@ -30,10 +30,14 @@ using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
 
 StatusCode status_code(RTCError error) {
   switch (error) {
-    case RTC_ERROR_OUT_OF_MEMORY: return StatusCode::out_of_memory;
-    case RTC_ERROR_CANCELLED: return StatusCode::cancelled;
-    case RTC_ERROR_UNSUPPORTED_CPU: return StatusCode::unsupported;
-    default: return StatusCode::internal;
+    case RTC_ERROR_OUT_OF_MEMORY:
+      return StatusCode::out_of_memory;
+    case RTC_ERROR_CANCELLED:
+      return StatusCode::cancelled;
+    case RTC_ERROR_UNSUPPORTED_CPU:
+      return StatusCode::unsupported;
+    default:
+      return StatusCode::internal;
   }
 }
 
@@ -111,8 +115,8 @@ FlushDenormals::FlushDenormals() : saved_(_mm_getcsr()) {
 FlushDenormals::~FlushDenormals() { _mm_setcsr(saved_); }
 
 struct EmbreeScene::State {
-  Monitor monitor;                           // outlives the device, which calls it
-  std::vector<RTCGrid> grids;                // borrowed by the geometry
+  Monitor monitor;             // outlives the device, which calls it
+  std::vector<RTCGrid> grids;  // borrowed by the geometry
   Owned<RTCDevice, DeviceRelease> device;
   Owned<RTCScene, SceneRelease> scene;
 };

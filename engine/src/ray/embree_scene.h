@@ -14,9 +14,11 @@
 
 namespace tessera {
 
-/// Grids of height x width vertices each, one after the other, 3 floats a vertex, rows (of equal height index) contiguous.
+/// Grids of height x width vertices each, one after the other, 3 floats a vertex, rows (of equal height index)
+/// contiguous.
 struct GridVertices {
-  const float* data = nullptr;  ///< one float more than 3 * vertices must be readable: the last vertex is read as 16 bytes
+  const float* data =
+      nullptr;  ///< one float more than 3 * vertices must be readable: the last vertex is read as 16 bytes
   std::size_t grids = 0;
   int height = 0, width = 0;
 };
@@ -36,7 +38,8 @@ struct FacetHit {
 };
 
 /// Flush-to-zero and denormals-are-zero for this thread (and floating-point exceptions masked), as Embree wants them
-/// for speed; the caller's state comes back at the end of the scope. Doubles are affected too: only tracing belongs inside.
+/// for speed; the caller's state comes back at the end of the scope. Doubles are affected too: only tracing belongs
+/// inside.
 class FlushDenormals {
  public:
   FlushDenormals();
@@ -61,8 +64,9 @@ class EmbreeScene {
   EmbreeScene& operator=(EmbreeScene&&) noexcept;
   ~EmbreeScene();
 
-  /// Builds the BVH, in the caller's arena; what was built before is dropped. `vertices` must stay in place and unchanged
-  /// while the scene is used. On errors the scene is empty. Errors: unsupported (too many vertices), cancelled, Embree's own.
+  /// Builds the BVH, in the caller's arena; what was built before is dropped. `vertices` must stay in place and
+  /// unchanged while the scene is used. On errors the scene is empty. Errors: unsupported (too many vertices),
+  /// cancelled, Embree's own.
   Status build(const GridVertices& vertices, const Execution& execution);
 
   FacetHit closest(const FacetRay& ray) const;

@@ -1,5 +1,6 @@
 #pragma once
-// Position and first derivatives of a Bezier patch, as quickly as scalar double code gives them: what Newton's method asks for.
+// Position and first derivatives of a Bezier patch, as quickly as scalar double code gives them: what Newton's method
+// asks for.
 
 #include "tessera/bezier_patch.h"
 

@@ -25,8 +25,8 @@ constexpr std::size_t rays_a_task = 512;
 constexpr std::size_t padding = 1;  // floats behind the last vertex, which Embree reads as 16 bytes
 // Products of three lengths must stay in float's range on a facet far smaller than the model, and on the whole model.
 constexpr double smallest_size = 1e-9, largest_size = 1e12;
-// Facets lie before or behind the surface: so far are rays traced beyond their ends, in units of the bound on the distance,
-// for rays that meet the surface at less than a right angle.
+// Facets lie before or behind the surface: so far are rays traced beyond their ends, in units of the bound on the
+// distance, for rays that meet the surface at less than a right angle.
 constexpr double margin_deviations = 4;
 constexpr double float_rounding = 1e-6;  // of the size: positions, origins and directions in float
 
@@ -42,7 +42,9 @@ bool coherent(std::span<const RaySegment> segments, double size) {
   return true;
 }
 
-Status stale() { return Status(StatusCode::stale, "the patch set was edited after this ray scene was made: call refit"); }
+Status stale() {
+  return Status(StatusCode::stale, "the patch set was edited after this ray scene was made: call refit");
+}
 
 Status short_output(std::size_t rays, std::size_t room) {
   return Status(StatusCode::buffer_too_small,
@@ -81,11 +83,11 @@ class RayScene::Impl {
   RaySceneOptions options_;
   AlignedVector<float> positions_;  // `[patch][iu][iv]`, borrowed by scene_
   Adjacency adjacency_;
-  Box3 box_;             // relative to the origin, a little larger than the set's
+  Box3 box_;  // relative to the origin, a little larger than the set's
   double size_ = 0;
   double margin_ = 0;
   std::uint64_t revision_ = 0;
-  bool ready_ = false;   // false after a build that failed
+  bool ready_ = false;  // false after a build that failed
 };
 
 Status RayScene::Impl::evaluate_grids(const Execution& execution) {
@@ -264,7 +266,8 @@ Result<RayScene> RayScene::make(const PatchSet& set, const RaySceneOptions& opti
     if (options.mode != RayMode::grid) return Status(StatusCode::unsupported, "no such ray mode");
     if (options.rate < 1 || options.rate > max_rate) {
       return Status(StatusCode::invalid_argument, "the rate of a ray scene must lie between 1 and " +
-                                                      std::to_string(max_rate) + ", not " + std::to_string(options.rate));
+                                                      std::to_string(max_rate) + ", not " +
+                                                      std::to_string(options.rate));
     }
     Result<UniformGrid> grid = UniformGrid::make(set, options.rate, options.rate, options.isa);
     if (!grid) return grid.status();
@@ -280,7 +283,8 @@ Status RayScene::closest(std::span<const Ray> rays, std::span<Hit> hits, const E
   return guarded([&] { return impl_->closest(rays, hits, execution); });
 }
 
-Status RayScene::occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded, const Execution& execution) const {
+Status RayScene::occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded,
+                          const Execution& execution) const {
   return guarded([&] { return impl_->occluded(rays, occluded, execution); });
 }
 

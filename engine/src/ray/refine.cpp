@@ -10,9 +10,9 @@
 namespace tessera {
 namespace {
 
-constexpr double leash_cells = 3;      // a facet of a tame grid lies within one cell of its root
-constexpr double overshoot = 0.25;     // how far outside [0,1] Newton may wander before it comes back or changes the patch
-constexpr int most_steps = 16;         // quadratic convergence takes 2 to 4
+constexpr double leash_cells = 3;   // a facet of a tame grid lies within one cell of its root
+constexpr double overshoot = 0.25;  // how far outside [0,1] Newton may wander before it comes back or changes the patch
+constexpr int most_steps = 16;      // quadratic convergence takes 2 to 4
 constexpr int most_halvings = 6;
 constexpr std::size_t most_patches = 8;  // visited for one hit: all around a vertex of usual valence
 
@@ -46,7 +46,8 @@ struct Refiner::Leash {
   double v(double value) const { return std::clamp(value, box.v0, box.v1); }
 };
 
-/// Patches still to be tried, each with a start, in the order found and no place twice (a closed patch is its own neighbour).
+/// Patches still to be tried, each with a start, in the order found and no place twice (a closed patch is its own
+/// neighbour).
 class Refiner::Frontier {
  public:
   struct Start {

@@ -11,8 +11,8 @@ namespace tessera {
 struct SurfaceRoot {
   std::uint32_t patch = 0;
   double u = 0, v = 0;
-  double s = 0;         ///< arc length along the segment of the position's foot on the ray
-  Vec3 position;        ///< absolute
+  double s = 0;   ///< arc length along the segment of the position's foot on the ray
+  Vec3 position;  ///< absolute
   Vec3 du, dv;
   double residual = 0;  ///< distance from the position to the ray
 };
@@ -20,14 +20,16 @@ struct SurfaceRoot {
 /// Moves hits onto the surface of one patch set.
 class Refiner {
  public:
-  /// `rate`: grid cells a patch and direction, which bound how far a root may lie from its facet. The adjacency must outlive this.
+  /// `rate`: grid cells a patch and direction, which bound how far a root may lie from its facet. The adjacency must
+  /// outlive this.
   Refiner(const SetView& set, const Adjacency& adjacency, int rate);
 
   /// The root near (u,v) on `patch` or, where it lies over a seam, on the patches behind. False if there is none within
   /// a few grid cells: the ray grazes the surface, or the surface is too crooked for its grid.
   bool refine(const RaySegment& segment, std::uint32_t patch, double u, double v, SurfaceRoot& root) const;
 
-  /// Position and derivatives at (u,v), with s and residual towards the segment. False where there are none (first_order.h).
+  /// Position and derivatives at (u,v), with s and residual towards the segment. False where there are none
+  /// (first_order.h).
   bool evaluate(const RaySegment& segment, std::uint32_t patch, double u, double v, SurfaceRoot& root) const;
 
   /// The residual up to which a point of the surface counts as a root.
@@ -46,8 +48,8 @@ class Refiner {
 
   SetView set_;
   const Adjacency& adjacency_;
-  double cells_;      ///< the leash, in parameters
-  double rounding_;   ///< a residual of this size is as good as it gets
+  double cells_;     ///< the leash, in parameters
+  double rounding_;  ///< a residual of this size is as good as it gets
   double tolerance_;
 };
 
