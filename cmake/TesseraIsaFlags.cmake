@@ -9,4 +9,4 @@ set_source_files_properties(src/kernel/isa_sse2.cpp PROPERTIES COMPILE_OPTIONS "
 set_source_files_properties(src/kernel/isa_avx2_fma.cpp PROPERTIES COMPILE_OPTIONS "${kernel_flags};-mavx2;-mfma")
 # gcc 12 warns of its own _mm512_undefined_ps (its bug 105593).
 set_source_files_properties(src/kernel/isa_avx512.cpp PROPERTIES COMPILE_OPTIONS
-  "${kernel_flags};-mavx512f;-mavx512dq;-mavx512bw;-mavx512vl;-mavx2;-mfma;-mprefer-vector-width=512;$<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>")
+  "${kernel_flags};-mavx512f;-mavx512dq;-mavx512bw;-mavx512vl;-mavx2;-mfma;-mprefer-vector-width=512;$<$<CXX_COMPILER_ID:GNU>:-Wno-uninitialized;-Wno-maybe-uninitialized>")
