@@ -1,0 +1,170 @@
+// Wavefront OBJ, the polygons of it ("Object Files (.obj)", Appendix B1 of the Advanced Visualizer manual).
+
+#include <array>
+#include <limits>
+#include <string>
+
+#include "io/mesh_formats.h"
+#include "io/text_cursor.h"
+
+namespace tessera {
+namespace {
+
+void write_record(OutputFile& out, std::string_view keyword, std::span<const float> values) {
+  out.write(keyword);
+  for (const float value : values) {
+    out.write(' ');
+    out.write_number(value);
+  }
+  out.write('\n');
+}
+
+/// "a", "a/a", "a//a" or "a/a/a", one-based.
+void write_corner(OutputFile& out, std::uint64_t index, bool parameters, bool normals) {
+  out.write(' ');
+  out.write_number(index + 1);
+  if (parameters || normals) out.write('/');
+  if (parameters) out.write_number(index + 1);
+  if (normals) {
+    out.write('/');
+    out.write_number(index + 1);
+  }
+}
+
+/// What stands for "no such index" in a corner.
+constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+/// Position, parameter and normal of one corner of a polygon, zero-based.
+using Corner = std::array<std::uint32_t, 3>;
+
+class ObjReader {
+ public:
+  ObjReader(std::string_view text, std::string_view name) : cursor_(text, name, '#', '/') {}
+
+  Result<Mesh> read() {
+    for (cursor_.skip_space(); !cursor_.at_end(); cursor_.skip_space()) {
+      const Status status = read_line();
+      if (!status.ok()) return status;
+      if (!cursor_.take_line_end()) return cursor_.expected("the end of the line");
+    }
+    if (mesh_.positions.empty()) return cursor_.expected("vertices (v x y z)");
+    if (mesh_.vertex_count() >= none)
+      return cursor_.failure("there are more vertices than 32-bit indices can tell apart");
+    if (!one_normal_a_vertex_ || mesh_.normals.size() != mesh_.positions.size()) mesh_.normals.clear();
+    if (!one_parameter_a_vertex_ || mesh_.parameters.size() / 2 != mesh_.vertex_count()) mesh_.parameters.clear();
+    return std::move(mesh_);
+  }
+
+ private:
+  Status read_line() {
+    const std::string_view keyword = cursor_.peek_token();
+    if (keyword == "v") return read_values(keyword, 3, 6, mesh_.positions);  // a weight or a colour may follow
+    if (keyword == "vt") return read_values(keyword, 2, 3, mesh_.parameters);
+    if (keyword == "vn") return read_values(keyword, 3, 3, mesh_.normals);
+    if (keyword == "f") return read_face();
+    for (const std::string_view ignored : {"g", "o", "s", "usemtl", "mtllib", "p", "l"}) {
+      if (keyword == ignored) return skip_line();
+    }
+    return cursor_.expected("a line of a mesh (v, vt, vn, f, g, o, s, usemtl, mtllib)");
+  }
+
+  Status skip_line() {
+    for (cursor_.skip_blanks(); !cursor_.at_line_end(); cursor_.skip_blanks()) {
+      if (!cursor_.take('/')) cursor_.skip(cursor_.peek_token());
+    }
+    return {};
+  }
+
+  /// Appends the first `kept` numbers of `kept` to `most`.
+  Status read_values(std::string_view keyword, int kept, int most, std::vector<float>& values) {
+    cursor_.skip(keyword);
+    for (int k = 0; k < most; ++k) {
+      cursor_.skip_blanks();
+      if (k >= kept && cursor_.at_line_end()) break;
+      double value = 0;
+      if (!cursor_.take_number(value)) {
+        return cursor_.expected(std::to_string(kept) + " numbers after " + std::string(keyword));
+      }
+      if (k < kept) values.push_back(static_cast<float>(value));
+    }
+    return {};
+  }
+
+  Status read_face() {
+    cursor_.skip("f");
+    Corner first{}, last{}, corner{};
+    int corners = 0;
+    for (cursor_.skip_blanks(); !cursor_.at_line_end(); cursor_.skip_blanks()) {
+      const Status status = read_corner(corner);
+      if (!status.ok()) return status;
+      if (corners == 0) first = corner;
+      if (corners >= 2) {
+        for (const Corner& c : {first, last, corner}) mesh_.indices.push_back(c[0]);
+      }
+      last = corner;
+      ++corners;
+    }
+    if (corners < 3) return cursor_.expected("at least 3 corners after f");
+    return {};
+  }
+
+  Status read_corner(Corner& corner) {
+    const std::array<std::size_t, 3> counts{mesh_.positions.size() / 3, mesh_.parameters.size() / 2,
+                                            mesh_.normals.size() / 3};
+    constexpr std::array<std::string_view, 3> kinds{"vertices", "vt lines", "vn lines"};
+    corner = {none, none, none};
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (k > 0 && !cursor_.take('/')) break;
+      if (k == 1 && !cursor_.at_end() && *cursor_.position() == '/') continue;  // a//c
+      const Status status = read_index(kinds[k], static_cast<std::int64_t>(counts[k]), corner[k]);
+      if (!status.ok()) return status;
+    }
+    one_parameter_a_vertex_ &= corner[1] == corner[0];
+    one_normal_a_vertex_ &= corner[2] == corner[0];
+    return {};
+  }
+
+  /// An index into the `count` records above, from 1, or from -1 backwards.
+  Status read_index(std::string_view kind, std::int64_t count, std::uint32_t& index) {
+    const TextCursor before = cursor_;
+    std::int64_t number = 0;
+    if (!cursor_.take_number(number)) return before.expected("an index of a corner");
+    if (number == 0 || number > count || number < -count) {
+      const std::string above = std::to_string(count) + " " + std::string(kind) + " above";
+      if (count == 0) return before.expected("no index, as there are " + above);
+      const std::string last = std::to_string(count);
+      return before.expected("an index into the " + above + ", 1 to " + last + " or -" + last + " to -1");
+    }
+    index = static_cast<std::uint32_t>(number > 0 ? number - 1 : count + number);
+    return {};
+  }
+
+  TextCursor cursor_;
+  Mesh mesh_;
+  bool one_parameter_a_vertex_ = true, one_normal_a_vertex_ = true;
+};
+
+}  // namespace
+
+void write_obj(const Mesh& mesh, OutputFile& out) {
+  const bool normals = !mesh.normals.empty(), parameters = !mesh.parameters.empty();
+  out.write("# Tessera: " + std::to_string(mesh.vertex_count()) + " vertices, " +
+            std::to_string(mesh.triangle_count()) + " triangles\n");
+  for (std::size_t k = 0; k < mesh.vertex_count() && !out.failed(); ++k) {
+    const float* const p = mesh.positions.data() + 3 * k;
+    const std::array<float, 3> position{file_coordinate(mesh.origin.x, p[0]), file_coordinate(mesh.origin.y, p[1]),
+                                        file_coordinate(mesh.origin.z, p[2])};
+    write_record(out, "v", position);
+    if (parameters) write_record(out, "vt", std::span(mesh.parameters).subspan(2 * k, 2));
+    if (normals) write_record(out, "vn", std::span(mesh.normals).subspan(3 * k, 3));
+  }
+  for (std::size_t k = 0; k < mesh.triangle_count() && !out.failed(); ++k) {
+    out.write('f');
+    for (std::size_t c = 0; c < 3; ++c) write_corner(out, mesh.indices[3 * k + c], parameters, normals);
+    out.write('\n');
+  }
+}
+
+Result<Mesh> parse_obj(std::string_view text, std::string_view name) { return ObjReader(text, name).read(); }
+
+}  // namespace tessera

@@ -1,0 +1,69 @@
+#pragma once
+// Files that appear whole or not at all.
+
+#include <charconv>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/descriptor.h"
+#include "tessera/status.h"
+
+namespace tessera {
+
+/// Writes beside the place of a file, then renames: `commit` is the moment at which the file appears, and without it
+/// nothing stays behind. What is no regular file (a pipe, a terminal, /dev/stdout) is written to directly. Memory: 1
+/// MiB, whatever is written. A failed write is remembered, later ones are dropped, and commit reports the first.
+class OutputFile {
+ public:
+  /// Errors: io_error (a directory, a missing folder, no permission).
+  static Result<OutputFile> create(const std::filesystem::path& path);
+  /// The process's standard output.
+  static OutputFile standard_output();
+
+  OutputFile(OutputFile&& other) noexcept;
+  OutputFile& operator=(OutputFile&&) = delete;
+  ~OutputFile();
+
+  void write(std::string_view bytes);
+  void write(char c) {
+    if (buffer_.size() - used_ < 1) flush();
+    buffer_[used_++] = c;
+  }
+  /// Integers, and floats in the shortest form that reads back as the same number.
+  template <class Number>
+  void write_number(Number value) {
+    char* const begin = room(32);
+    used_ += static_cast<std::size_t>(std::to_chars(begin, begin + 32, value).ptr - begin);
+  }
+  /// `digits` <= 17 significant digits.
+  void write_number(double value, int digits) {
+    char* const begin = room(32);
+    used_ += static_cast<std::size_t>(std::to_chars(begin, begin + 32, value, std::chars_format::general, digits).ptr -
+                                      begin);
+  }
+
+  /// Whether any write has failed: a long writer may stop early.
+  bool failed() const { return !status_.ok(); }
+  /// Writes what is buffered, closes, renames. Errors: io_error. To be called once, as the last thing.
+  Status commit();
+
+ private:
+  OutputFile(Descriptor file, std::filesystem::path target, std::filesystem::path temporary);
+  char* room(std::size_t bytes) {
+    if (buffer_.size() - used_ < bytes) flush();
+    return buffer_.data() + used_;
+  }
+  void flush();
+  void send(std::string_view bytes);
+
+  Descriptor file_;
+  std::filesystem::path target_, temporary_;  // no temporary: written directly
+  std::vector<char> buffer_;
+  std::size_t used_ = 0;
+  Status status_;
+};
+
+}  // namespace tessera

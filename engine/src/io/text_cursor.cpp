@@ -1,0 +1,148 @@
+#include "io/text_cursor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <system_error>
+
+namespace tessera {
+namespace {
+
+/// Whether a decimal number that std::from_chars found out of range is too small rather than too large.
+bool underflows(std::string_view number) {
+  const std::size_t exponent_at = number.find_first_of("eE");
+  const std::string_view mantissa = number.substr(0, exponent_at);
+  const std::size_t first = mantissa.find_first_of("123456789");
+  if (first == std::string_view::npos) return true;
+  const std::size_t point = std::min(mantissa.find('.'), mantissa.size());
+  // The decimal exponent of the first significant digit, but for one.
+  auto exponent = static_cast<std::int64_t>(point) - static_cast<std::int64_t>(first);
+  if (exponent_at != std::string_view::npos) {
+    const std::string_view digits = number.substr(exponent_at + 1);
+    std::int64_t stated = 0;
+    const char* const begin = digits.data() + (!digits.empty() && digits.front() == '+');
+    const auto [end, error] = std::from_chars(begin, digits.data() + digits.size(), stated);
+    if (error == std::errc::result_out_of_range) return digits.front() == '-';
+    exponent += stated;
+  }
+  return exponent < 0;
+}
+
+/// std::from_chars over a whole token, with a leading + allowed.
+template <class Number>
+std::errc parse(std::string_view token, Number& value) {
+  if (token.size() > 1 && token[0] == '+' && token[1] != '-') token.remove_prefix(1);
+  const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);
+  return end == token.data() + token.size() ? error : std::errc::invalid_argument;
+}
+
+}  // namespace
+
+TextCursor::TextCursor(std::string_view text, std::string_view name, char comment, char separator)
+    : begin_(text.data()),
+      at_(begin_),
+      end_(begin_ + text.size()),
+      name_(name),
+      comment_(comment),
+      separator_(separator) {
+  if (text.starts_with("\xEF\xBB\xBF")) at_ += 3;
+}
+
+void TextCursor::skip_blanks() {
+  while (at_ != end_ && (*at_ == ' ' || *at_ == '\t' || *at_ == '\r')) ++at_;
+  if (at_ != end_ && comment_ != 0 && *at_ == comment_) at_ = std::find(at_, end_, '\n');
+}
+
+void TextCursor::skip_space() {
+  for (skip_blanks(); at_ != end_ && *at_ == '\n'; skip_blanks()) ++at_;
+}
+
+bool TextCursor::take_line_end() {
+  skip_blanks();
+  if (!at_line_end()) return false;
+  if (at_ != end_) ++at_;
+  return true;
+}
+
+std::string_view TextCursor::peek_token() const {
+  const char* token_end = at_;
+  while (token_end != end_ && !ends_token(*token_end)) ++token_end;
+  return {at_, static_cast<std::size_t>(token_end - at_)};
+}
+
+bool TextCursor::take_number(double& value) {
+  const std::string_view token = peek_token();
+  double parsed = 0;
+  const std::errc error = parse(token, parsed);
+  if (error == std::errc::result_out_of_range) {
+    const bool negative = token.front() == '-';
+    parsed = underflows(token) ? 0 : HUGE_VAL;
+    if (negative) parsed = -parsed;
+  } else if (error != std::errc()) {
+    return false;
+  }
+  value = parsed;
+  skip(token);
+  return true;
+}
+
+bool TextCursor::take_number(std::int64_t& value) {
+  const std::string_view token = peek_token();
+  std::int64_t parsed = 0;
+  if (parse(token, parsed) != std::errc()) return false;
+  value = parsed;
+  skip(token);
+  return true;
+}
+
+bool TextCursor::take_finite(double& value) {
+  const char* const before = at_;
+  double parsed = 0;
+  if (!take_number(parsed)) return false;
+  if (!std::isfinite(parsed)) {
+    at_ = before;
+    return false;
+  }
+  value = parsed;
+  return true;
+}
+
+Status TextCursor::expected(std::string_view what) const {
+  std::string sentence = "expected " + std::string(what) + ", found ";
+  std::string_view token = peek_token();
+  if (token.empty() && at_ != end_ && separator_ != 0 && *at_ == separator_) token = {at_, 1};
+  if (!token.empty()) {
+    sentence += quote(token);
+  } else {
+    sentence += at_ == end_ ? "the end of the file" : "the end of the line";
+  }
+  return failure(sentence);
+}
+
+Status TextCursor::failure(std::string_view sentence) const {
+  return Status(StatusCode::parse_error,
+                std::string(name_) + ":" + std::to_string(line()) + ": " + std::string(sentence));
+}
+
+std::size_t TextCursor::line() const {
+  auto line = static_cast<std::size_t>(std::count(begin_, at_, '\n')) + 1;
+  // At the end of a text whose last line is complete, that line is meant, not one that the file does not have.
+  if (at_ == end_ && at_ != begin_ && at_[-1] == '\n') --line;
+  return line;
+}
+
+std::string quote(std::string_view text) {
+  constexpr std::size_t limit = 40;
+  constexpr char digits[] = "0123456789abcdef";
+  std::string result = "\"";
+  for (const char c : text.substr(0, limit)) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 0x20 && byte != 0x7f && byte < 0x80) {
+      result += c;
+    } else {
+      result += {'\\', 'x', digits[byte >> 4], digits[byte & 15]};
+    }
+  }
+  return result + (text.size() > limit ? "...\"" : "\"");
+}
+
+}  // namespace tessera

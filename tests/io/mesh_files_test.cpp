@@ -1,0 +1,160 @@
+// What is written is read back, in each format; what cannot be written is refused.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "io/mesh_formats.h"
+#include "io/mesh_samples.h"
+#include "support/scratch_folder.h"
+#include "tessera/io.h"
+
+namespace tessera {
+namespace {
+
+using test::Attributes;
+using test::random_mesh;
+using test::ScratchFolder;
+
+class MeshFiles : public testing::TestWithParam<std::string> {
+ protected:
+  std::string path(std::string_view stem = "mesh") const { return folder_ / (std::string(stem) + GetParam()); }
+  ScratchFolder folder_;
+};
+INSTANTIATE_TEST_SUITE_P(Formats, MeshFiles, testing::Values(".obj", ".ply", ".PLY"),
+                         [](const auto& format) { return format.param.substr(1); });
+
+TEST_P(MeshFiles, EveryBitComesBack) {
+  for (const bool normals : {false, true}) {
+    for (const bool parameters : {false, true}) {
+      const Mesh mesh = random_mesh(50, 80, {normals, parameters, false});
+      ASSERT_TRUE(write_mesh(mesh, path()).ok());
+      const Result<Mesh> read = read_mesh(path());
+      ASSERT_TRUE(read.ok()) << read.status().message();
+      EXPECT_EQ(read->positions, mesh.positions);
+      EXPECT_EQ(read->normals, mesh.normals);
+      EXPECT_EQ(read->parameters, mesh.parameters);
+      EXPECT_EQ(read->indices, mesh.indices);
+      EXPECT_EQ(read->origin, Vec3{});
+    }
+  }
+  EXPECT_EQ(folder_.names().size(), 1u);
+}
+
+TEST_P(MeshFiles, ExtremeFloatsComeBack) {
+  Mesh mesh = random_mesh(4, 2, {false, false, false});
+  const float denormal = std::numeric_limits<float>::denorm_min();
+  mesh.positions = {0,
+                    -0.0f,
+                    1,
+                    std::numeric_limits<float>::max(),
+                    -std::numeric_limits<float>::max(),
+                    std::numeric_limits<float>::min(),
+                    denormal,
+                    -denormal,
+                    16777217.0f,
+                    0.1f,
+                    1.0f / 3,
+                    -3e-39f};
+  ASSERT_TRUE(write_mesh(mesh, path()).ok());
+  const Result<Mesh> read = read_mesh(path());
+  ASSERT_TRUE(read.ok()) << read.status().message();
+  EXPECT_EQ(read->positions, mesh.positions);
+}
+
+TEST_P(MeshFiles, TheOriginIsAddedInDoubleAndRoundedOnce) {
+  const Mesh mesh = random_mesh(20, 10, {}, {1000.1, -2e6, 1e-3});
+  ASSERT_TRUE(write_mesh(mesh, path()).ok());
+  const Result<Mesh> read = read_mesh(path());
+  ASSERT_TRUE(read.ok()) << read.status().message();
+  for (std::size_t k = 0; k < mesh.positions.size(); ++k) {
+    const double origin = k % 3 == 0 ? 1000.1 : k % 3 == 1 ? -2e6 : 1e-3;
+    EXPECT_EQ(read->positions[k], static_cast<float>(origin + static_cast<double>(mesh.positions[k])));
+  }
+}
+
+TEST_P(MeshFiles, LargerThanTheBuffer) {
+  const Mesh mesh = random_mesh(60000, 120000);
+  ASSERT_TRUE(write_mesh(mesh, path()).ok());
+  const Result<Mesh> read = read_mesh(path());
+  ASSERT_TRUE(read.ok()) << read.status().message();
+  EXPECT_EQ(read->positions, mesh.positions);
+  EXPECT_EQ(read->indices, mesh.indices);
+}
+
+TEST_P(MeshFiles, BadMeshesAreRefusedAndNothingAppears) {
+  std::vector<std::pair<StatusCode, Mesh>> cases;
+  const Mesh good = random_mesh(5, 4);
+  for (int k = 0; k < 8; ++k) cases.emplace_back(StatusCode::count_mismatch, good);
+  cases[0].second.positions.pop_back();
+  cases[1].second.normals.pop_back();
+  cases[2].second.parameters.pop_back();
+  cases[3].second.indices.pop_back();
+  cases[4].second.patches.pop_back();
+  cases[5].second.indices[7] = 5;
+  cases[5].first = StatusCode::invalid_argument;
+  cases[6].second.positions[4] = std::numeric_limits<float>::quiet_NaN();
+  cases[6].first = StatusCode::non_finite;
+  cases[7].second.origin.x = 1e39;
+  cases[7].first = StatusCode::non_finite;
+  for (const auto& [code, mesh] : cases) {
+    const Status status = write_mesh(mesh, path());
+    EXPECT_EQ(status.code(), code) << status.message();
+    EXPECT_EQ(status.message().rfind(path() + ": ", 0), 0u) << status.message();
+  }
+  EXPECT_EQ(write_mesh(cases[5].second, path()).index(), 7);
+  EXPECT_EQ(write_mesh(cases[6].second, path()).index(), 1);
+  EXPECT_TRUE(folder_.names().empty());
+}
+
+TEST_P(MeshFiles, OutputsThatCannotBeWrittenAreErrors) {
+  const Mesh mesh = random_mesh(5, 4);
+  EXPECT_EQ(write_mesh(mesh, path("none/mesh")).code(), StatusCode::io_error);
+  std::filesystem::create_directory(path("folder"));
+  EXPECT_EQ(write_mesh(mesh, path("folder")).code(), StatusCode::io_error);
+  std::filesystem::create_symlink("/dev/full", path("full"));
+  EXPECT_EQ(write_mesh(mesh, path("full")).code(), StatusCode::io_error);
+  EXPECT_EQ(folder_.names().size(), 2u);
+}
+
+TEST_P(MeshFiles, TruncatedFilesNeverCrashNorGiveMoreThanTheyHold) {
+  const Mesh mesh = random_mesh(6, 5);
+  ASSERT_TRUE(write_mesh(mesh, path()).ok());
+  const std::string bytes = test::content_of(path());
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    const bool obj = GetParam() == ".obj";
+    const std::string_view cut = std::string_view(bytes).substr(0, size);
+    const Result<Mesh> read = obj ? parse_obj(cut, "cut") : parse_ply(cut, "cut");
+    if (obj) {  // states no counts: a cut text may be a shorter mesh
+      EXPECT_TRUE(!read.ok() || read->triangle_count() <= mesh.triangle_count());
+    } else {
+      EXPECT_FALSE(read.ok()) << "cut at byte " << size;
+    }
+  }
+}
+
+TEST(Formats, UnknownOnesAreNamedWithThoseThatAreKnown) {
+  const ScratchFolder folder;
+  const std::string model = folder.file("a.k3d", "x"), none = folder.file("plain", "x"),
+                    mesh = folder.file("b.stl", "x");
+  EXPECT_EQ(read_model(model).status().message(), model + ": unsupported format \".k3d\": surfaces are read as .bpt");
+  EXPECT_EQ(read_model(model).status().code(), StatusCode::unsupported);
+  EXPECT_EQ(read_model(none).status().message(), none + ": unsupported format \"\": surfaces are read as .bpt");
+  EXPECT_EQ(read_mesh(mesh).status().message(), mesh + ": unsupported format \".stl\": meshes are read as .obj, .ply");
+  EXPECT_EQ(write_mesh(random_mesh(3, 1), mesh).message(),
+            mesh + ": unsupported format \".stl\": meshes are written as .obj, .ply");
+  EXPECT_EQ(test::content_of(mesh), "x");
+}
+
+TEST(Formats, WhatCannotBeOpenedIsSaidFirst) {
+  const ScratchFolder folder;
+  EXPECT_EQ(read_model(folder / "missing.k3d").status().code(), StatusCode::io_error);
+  EXPECT_EQ(read_model(folder.path()).status().message(), folder.path().string() + ": is a directory, not a file");
+  EXPECT_EQ(read_mesh(folder / "missing.ply").status().message(),
+            (folder / "missing.ply") + ": cannot be opened: No such file or directory");
+  EXPECT_EQ(read_mesh(folder.file("empty.obj", "")).status().message(), (folder / "empty.obj") + ": the file is empty");
+}
+
+}  // namespace
+}  // namespace tessera

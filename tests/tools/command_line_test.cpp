@@ -1,0 +1,121 @@
+// The command line as such: help, version, what it refuses.
+
+#include "tools/tool_test.h"
+
+namespace tessera::test {
+namespace {
+
+using CommandLine = ToolTest;
+
+TEST_F(CommandLine, HelpAndVersion) {
+  const std::string help = output_of({"--help"});
+  for (const char* command : {"info", "eval", "tessellate", "raycast", "check"}) {
+    EXPECT_NE(help.find(command), std::string::npos);
+    const std::string words = output_of({command, "--help"});
+    EXPECT_NE(words.find(std::string("\n  tessera ") + command), std::string::npos) << "no example: " << words;
+  }
+  EXPECT_EQ(output_of({"--version"}).rfind("tessera ", 0), 0u);
+}
+
+TEST_F(CommandLine, EveryOptionIsInTheHelp) {
+  const std::vector<std::pair<std::string, std::vector<std::string>>> commands{
+      {"info", {"MODEL", "--json"}},
+      {"eval", {"MODEL", "--grid", "--params", "--derivs", "--format", "--output"}},
+      {"tessellate", {"MODEL", "--output", "--grid", "--json"}},
+      {"raycast", {"MODEL", "--output", "--size", "--shade", "--camera", "--rays", "--hits"}},
+      {"check", {"MESH", "--json"}}};
+  for (const auto& [command, options] : commands) {
+    const std::string help = output_of({command, "--help"});
+    for (const std::string& option : options)
+      EXPECT_NE(help.find(option), std::string::npos) << command << ' ' << option;
+  }
+}
+
+TEST_F(CommandLine, WhatIsNoCommandLineEndsWithTwo) {
+  expect_failure({}, 2, "expected a command (info, eval, tessellate, raycast, check), found none");
+  expect_failure({"paint"}, 2, "paint");
+  expect_failure({"info"}, 2, "MODEL");
+  expect_failure({"info", teapot, "--colour"}, 2, "--colour");
+  expect_failure({"info", teapot, "another"}, 2, "another");
+  expect_failure({"eval", teapot}, 2, "");
+  expect_failure({"eval", teapot, "--grid", "3x3", "--params", "p.csv"}, 2, "");
+  expect_failure({"eval", teapot, "--grid", "3x3", "--derivs", "3"}, 2, "--derivs");
+  expect_failure({"eval", teapot, "--grid", "3x3", "--format", "xml"}, 2, "--format");
+  expect_failure({"tessellate", teapot, "--grid", "3x3"}, 2, "--output");
+  expect_failure({"tessellate", teapot, "-o", "a.ply"}, 2, "--grid");
+  expect_failure({"tessellate", teapot, "-o", "a.stl", "--grid", "3x3"}, 2, "meshes are written as .obj, .ply");
+  expect_failure({"raycast", teapot}, 2, "expected -o");
+  expect_failure({"raycast", teapot, "-o", "a.gif"}, 2, "pictures are written as .png");
+  expect_failure({"raycast", teapot, "--rays", "a.csv"}, 2, "--hits");
+  expect_failure({"raycast", teapot, "--hits", "a.csv"}, 2, "--rays");
+  expect_failure({"raycast", teapot, "-o", "a.png", "--rays", "a.csv", "--hits", "b.csv"}, 2, "--rays");
+  expect_failure({"raycast", teapot, "-o", "a.png", "--shade", "toon"}, 2, "--shade");
+}
+
+TEST_F(CommandLine, NumbersOfOptionsAreChecked) {
+  for (const char* grid :
+       {"3", "3x", "x3", "3x3x3", "0x3", "3x0", "-3x3", "3.5x3", "3 x 3", "axb", "3x4097", "99999999999x3", ""}) {
+    expect_failure({"tessellate", teapot, "-o", "a.ply", "--grid", grid}, 2, "--grid");
+  }
+  expect_failure({"eval", teapot, "--grid", "1x2"}, 2, "from 2 to 65536");
+  for (const char* size : {"0x10", "10x16385", "10"}) {
+    expect_failure({"raycast", teapot, "-o", "a.png", "--size", size}, 2, "from 1 to 16384");
+  }
+  for (const char* camera : {"1,2,3", "1,2,3,4,5,6,7,8", "1,2,3,4,5,6,x", "1,2,3,4,5,6,nan", "0,0,0,1e999,0,0,40",
+                             "1,2,3,1,2,3,40", "1,2,3,4,5,6,0", "1,2,3,4,5,6,180", "1,2,3,4,5,6,"}) {
+    expect_failure({"raycast", teapot, "-o", "a.png", "--camera", camera}, 2, "--camera");
+  }
+}
+
+TEST_F(CommandLine, InstructionSetsAreForcedByTheEnvironment) {
+  const ToolRun forced = run({"info", teapot, "--json"}, {"TESSERA_ISA=sse2"});
+  ASSERT_EQ(forced.status, 0) << forced.errors;
+  EXPECT_EQ(nlohmann::json::parse(forced.output)["isa"]["used"], "sse2");
+  const ToolRun unknown = run({"info", teapot}, {"TESSERA_ISA=mmx"});
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_NE(unknown.errors.find("mmx"), std::string::npos) << unknown.errors;
+  EXPECT_EQ(unknown.output, "");
+}
+
+TEST_F(CommandLine, BadModelsEndWithOne) {
+  const std::string good = content_of(teapot);
+  expect_failure({"info", "missing.bpt"}, 1, "tessera: missing.bpt: cannot be opened: No such file or directory");
+  expect_failure({"info", "."}, 1, "is a directory, not a file");
+  folder_.file("empty.bpt", "");
+  expect_failure({"info", "empty.bpt"}, 1, "tessera: empty.bpt: the file is empty");
+  folder_.file("huge.bpt", "4000000000\n3 3\n0 0 0\n");
+  expect_failure({"info", "huge.bpt"}, 1, "tessera: huge.bpt:3: the file ends after 1 of 16 control points of patch 1");
+  folder_.file("cut.bpt", good.substr(0, good.size() / 2));
+  expect_failure({"info", "cut.bpt"}, 1, "tessera: cut.bpt:");
+  folder_.file("nan.bpt", "1\n1 1\n0 0 0\n0 1 nan\n1 0 0\n1 1 0\n");
+  expect_failure({"info", "nan.bpt"}, 1, "tessera: nan.bpt:4: expected 3 finite numbers");
+  folder_.file("inf.bpt", "1\n1 1\n0 0 0\n0 1 0\n1 inf 0\n1 1 0\n");
+  expect_failure({"tessellate", "inf.bpt", "-o", "a.ply", "--grid", "2x2"}, 1, "tessera: inf.bpt:5:");
+  folder_.file("degree0.bpt", "1\n0 1\n0 0 0\n0 1 0\n");
+  expect_failure({"eval", "degree0.bpt", "--grid", "2x2"}, 1, "tessera: degree0.bpt:2: expected the degree along u");
+  folder_.file("degree16.bpt", "1\n16 1\n0 0 0\n");
+  expect_failure({"raycast", "degree16.bpt", "-o", "a.png"}, 1, "tessera: degree16.bpt:2: expected the degree along u");
+  folder_.file("more.bpt", good + "1 2 3\n");
+  expect_failure({"info", "more.bpt"}, 1, "expected the end of the file after 32 patches");
+  folder_.file("large.bpt", "1\n1 1\n0 0 0\n0 1 0\n1 0 0\n1e300 1 0\n");
+  expect_failure({"info", "large.bpt"}, 1, "tessera: large.bpt: ");
+  folder_.file("scene.k3d", "<k3dml/>");
+  expect_failure({"info", "scene.k3d"}, 1, "unsupported format \".k3d\": surfaces are read as .bpt");
+}
+
+TEST_F(CommandLine, OutputsThatCannotBeWrittenEndWithOne) {
+  std::filesystem::create_directory(folder_ / "folder.ply");
+  std::filesystem::create_directory(folder_ / "folder.png");
+  expect_failure({"tessellate", teapot, "-o", "none/a.ply", "--grid", "2x2"}, 1, "none/a.ply: cannot be written");
+  expect_failure({"tessellate", teapot, "-o", "folder.ply", "--grid", "2x2"}, 1,
+                 "folder.ply: cannot be written: it is a directory");
+  expect_failure({"eval", teapot, "--grid", "2x2", "-o", "none/a.csv"}, 1, "none/a.csv: cannot be written");
+  expect_failure({"eval", teapot, "--grid", "2x2", "-o", "/dev/full"}, 1, "No space left on device");
+  expect_failure({"raycast", teapot, "-o", "none/a.png", "--size", "8x8"}, 1, "none/a.png");
+  expect_failure({"raycast", teapot, "-o", "folder.png", "--size", "8x8"}, 1, "folder.png");
+  folder_.file("rays.csv", "ox,oy,oz,dx,dy,dz\n0,0,9,0,0,-1\n");
+  expect_failure({"raycast", teapot, "--rays", "rays.csv", "--hits", "none/a.csv"}, 1, "none/a.csv: cannot be written");
+}
+
+}  // namespace
+}  // namespace tessera::test

@@ -1,0 +1,149 @@
+// tessera raycast: pictures and hits.
+
+#include <charconv>
+#include <cmath>
+
+#include "tessera/io.h"
+#include "tessera/ray_scene.h"
+#include "tools/tool_test.h"
+
+namespace tessera::test {
+namespace {
+
+using RaycastTool = ToolTest;
+
+/// Width and height as the header of a PNG file states them, big endian (PNG specification, 11.2.2).
+std::pair<unsigned, unsigned> png_size(const std::string& bytes) {
+  EXPECT_EQ(bytes.substr(0, 8), "\x89PNG\r\n\x1a\n");
+  if (bytes.size() < 24) return {};
+  const auto number = [&](std::size_t at) {
+    unsigned value = 0;
+    for (std::size_t k = 0; k < 4; ++k) value = value << 8 | static_cast<unsigned char>(bytes[at + k]);
+    return value;
+  };
+  return {number(16), number(20)};
+}
+
+TEST_F(RaycastTool, PicturesHaveTheSizeAskedFor) {
+  for (const char* shade : {"lambert", "normals", "uv", "patch"}) {
+    const std::string name = std::string(shade) + ".png";
+    output_of({"raycast", teapot, "-o", name, "--size", "64x48", "--shade", shade});
+    EXPECT_EQ(png_size(content_of(folder_ / name)), (std::pair{64u, 48u}));
+  }
+  EXPECT_EQ(folder_.names(), (Names{"lambert.png", "normals.png", "patch.png", "uv.png"}));
+  EXPECT_NE(content_of(folder_ / "uv.png"), content_of(folder_ / "patch.png"));
+}
+
+TEST_F(RaycastTool, CamerasMatter) {
+  output_of({"raycast", teapot, "-o", "a.png", "--size", "32x32", "--shade", "normals"});
+  output_of(
+      {"raycast", teapot, "-o", "b.png", "--size", "32x32", "--shade", "normals", "--camera", "-9,3,4,0,0,1.5,40"});
+  EXPECT_NE(content_of(folder_ / "a.png"), content_of(folder_ / "b.png"));
+}
+
+TEST_F(RaycastTool, HitsLieOnTheirSurfacesAndRays) {
+  std::string table = "ox,oy,oz,dx,dy,dz\n";
+  std::vector<Ray> rays;
+  for (int k = 0; k < 400; ++k) {
+    const double angle = 0.7 * k, z = -0.5 + 4.0 * (k % 20) / 19;
+    Ray ray{.origin = {8 * std::cos(angle), 8 * std::sin(angle), z}};
+    ray.direction = Vec3{0.1, -0.2, 1.3} - ray.origin;
+    rays.push_back(ray);
+    const Vec3 &o = ray.origin, &d = ray.direction;
+    for (const double value : {o.x, o.y, o.z, d.x, d.y, d.z}) {
+      char text[32];
+      table.append(text, std::to_chars(text, text + sizeof text, value).ptr);
+      table += ',';
+    }
+    table.back() = '\n';
+  }
+  folder_.file("rays.csv", table);
+  output_of({"raycast", teapot, "--rays", "rays.csv", "--hits", "hits.csv"});
+  const auto rows = cells_of(content_of(folder_ / "hits.csv"));
+  ASSERT_EQ(rows.size(), rays.size() + 1);
+  EXPECT_EQ(rows[0], (Names{"ray", "hit", "t", "surface", "patch", "u", "v", "x", "y", "z", "nx", "ny", "nz"}));
+  const Result<Model> model = read_model(teapot);
+  ASSERT_TRUE(model.ok());
+  std::size_t hits = 0;
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    const std::vector<std::string>& row = rows[k + 1];
+    ASSERT_EQ(row.size(), 13u);
+    EXPECT_EQ(row[0], std::to_string(k));
+    if (row[1] != "1") {
+      EXPECT_EQ(row[1], "0");
+      for (std::size_t c = 2; c < 13; ++c) EXPECT_EQ(row[c], "");
+      continue;
+    }
+    ++hits;
+    const auto number = [&](std::size_t c) { return std::stod(row[c]); };
+    const Vec3 position{number(7), number(8), number(9)}, normal{number(10), number(11), number(12)};
+    const BezierPatch& patch = model->surfaces.at(std::stoul(row[3])).patch;
+    EXPECT_LE(length(de_casteljau(patch, number(5), number(6)) - position), 1e-6);
+    EXPECT_LE(length(rays[k].origin + number(2) * rays[k].direction - position), 1e-4);
+    EXPECT_NEAR(length(normal), 1, 1e-6);
+  }
+  EXPECT_GT(hits, rays.size() / 2);  // they aim at the middle of the pot; those that look in over the rim may leave
+}
+
+TEST_F(RaycastTool, RangesAndMissesAreKept) {
+  folder_.file("rays.csv",
+               "ox,oy,oz,dx,dy,dz,tnear,tfar\n"
+               "0.3,0.2,9,0,0,-1,0,inf\n"  // from above onto the lid
+               "0.3,0.2,9,0,0,-1,0,2\n"    // ends before it
+               "0.3,0.2,9,0,0,1,0,inf\n"   // away from it
+               "0.3,0.2,9,0,0,-2,0,inf\n");
+  output_of({"raycast", teapot, "--rays", "rays.csv", "--hits", "hits.csv"});
+  const auto rows = cells_of(content_of(folder_ / "hits.csv"));
+  ASSERT_EQ(rows.size(), 5u);
+  EXPECT_EQ(rows[1][1] + rows[2][1] + rows[3][1] + rows[4][1], "1001");
+  EXPECT_NEAR(std::stod(rows[1][2]), 2 * std::stod(rows[4][2]), 1e-9);
+}
+
+TEST_F(RaycastTool, RaysThatAreNotValidAreRefusedByLine) {
+  const std::string header = "ox,oy,oz,dx,dy,dz\n", ranged = "ox,oy,oz,dx,dy,dz,tnear,tfar\n";
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {"", "rays.csv: the file is empty"},
+      {"x,y,z\n1,2,3\n", "rays.csv:1: expected a header line ox,oy,oz,dx,dy,dz[,tnear,tfar], found \"x\""},
+      {header + "0,0,0,0,0\n", "rays.csv:2: expected 6 numbers (ox,oy,oz,dx,dy,dz), found the end of the line"},
+      {ranged + "0,0,0,0,0,1\n",
+       "rays.csv:2: expected 8 numbers (ox,oy,oz,dx,dy,dz,tnear,tfar), found the end of the line"},
+      {header + "0,0,9,0,0,-1\n\n0,nan,0,0,0,1\n", "rays.csv:4: a ray that is not valid: the origin is not finite"},
+      {header + "0,0,0,0,inf,1\n", "rays.csv:2: a ray that is not valid: the direction is not finite"},
+      {header + "0,0,0,0,0,1e400\n", "rays.csv:2: a ray that is not valid: the direction is not finite"},
+      {header + "0,0,0,0,-0,0\n", "rays.csv:2: a ray that is not valid: the direction is zero"},
+      {ranged + "0,0,0,0,0,1,-1,2\n", "rays.csv:2: a ray that is not valid: tnear is -1, it must be at least 0"},
+      {ranged + "0,0,0,0,0,1,nan,2\n", "rays.csv:2: a ray that is not valid: tnear is nan, it must be at least 0"},
+      {ranged + "0,0,0,0,0,1,3,2\n", "rays.csv:2: a ray that is not valid: tfar is 2, it must be at least tnear"},
+      {ranged + "0,0,0,0,0,1,0,nan\n", "rays.csv:2: a ray that is not valid: tfar is nan, it must be at least tnear"},
+      {ranged + "0,0,0,0,0,1,inf,inf\n", "rays.csv:2: a ray that is not valid: tnear is not finite"},
+  };
+  for (const auto& [text, message] : cases) {
+    folder_.file("rays.csv", text);
+    expect_failure({"raycast", teapot, "--rays", "rays.csv", "--hits", "hits.csv"}, 1, "tessera: " + message);
+  }
+}
+
+TEST_F(RaycastTool, EveryTeasetModelIsDrawn) {
+  const char* const data = std::getenv("TESSERA_TEST_DATA");
+  if (!data) GTEST_SKIP() << "TESSERA_TEST_DATA is not set";
+  int models = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(data) / "classic_teaset")) {
+    if (entry.path().extension() != ".bpt") continue;
+    output_of({"raycast", entry.path().string(), "-o", std::to_string(models++) + ".png", "--size", "64x64"});
+  }
+  ASSERT_GE(models, 2);
+  // The same pot from two sources is the same picture.
+  EXPECT_EQ(content_of(folder_ / "0.png"), content_of(folder_ / "1.png"));
+}
+
+TEST_F(RaycastTool, AnInterruptedPictureDoesNotAppear) {
+  // `timeout` interrupts the tool long before so large a picture is done, and says so by 124.
+  const ToolRun result = run_program(
+      folder_, {"timeout", "--signal=INT", "1", TESSERA_TOOL, "raycast", teapot, "-o", "a.png", "--size", "8192x8192"});
+  EXPECT_EQ(result.status, 124);
+  EXPECT_EQ(result.output, "");
+  EXPECT_TRUE(folder_.names().empty());
+}
+
+}  // namespace
+}  // namespace tessera::test

@@ -1,0 +1,52 @@
+#include "arguments.h"
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+
+#include "io/text_cursor.h"
+
+namespace tessera::cli {
+namespace {
+
+/// The integer at the front of `text`, which is taken off; false if there is none in range.
+bool take_integer(std::string_view& text, int least, int most, int& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || value < least || value > most) return false;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return true;
+}
+
+}  // namespace
+
+Extent parse_extent(const std::string& option, const std::string& text, int least, int most) {
+  Extent extent;
+  std::string_view rest = text;
+  bool good = take_integer(rest, least, most, extent.first) && !rest.empty() && (rest[0] == 'x' || rest[0] == 'X');
+  if (good) rest.remove_prefix(1);
+  good = good && take_integer(rest, least, most, extent.second) && rest.empty();
+  if (!good) {
+    throw CLI::ValidationError(option, "expected two numbers from " + std::to_string(least) + " to " +
+                                           std::to_string(most) + " like 16x16, found " + quote(text));
+  }
+  return extent;
+}
+
+std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count,
+                                  const std::string& form) {
+  std::vector<double> values;
+  TextCursor cursor(text, option, 0, ',');
+  do {
+    cursor.skip_blanks();
+    double value = 0;
+    if (!cursor.take_finite(value)) break;
+    values.push_back(value);
+    cursor.skip_blanks();
+  } while (cursor.take(','));
+  if (values.size() != count || !cursor.at_end()) {
+    throw CLI::ValidationError(
+        option, "expected " + std::to_string(count) + " finite numbers " + form + ", found " + quote(text));
+  }
+  return values;
+}
+
+}  // namespace tessera::cli

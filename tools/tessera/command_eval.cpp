@@ -1,0 +1,208 @@
+// tessera eval: points, derivatives and normals of surfaces as a table.
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "arguments.h"
+#include "commands.h"
+#include "console.h"
+#include "csv.h"
+#include "io/output_file.h"
+#include "tessera/evaluate.h"
+#include "tessera/io.h"
+
+namespace tessera::cli {
+namespace {
+
+struct Options {
+  std::string model, output, places, format = "csv";
+  std::optional<Extent> grid;
+  int derivatives = 0;
+};
+
+/// A vector of a row: its name in JSON, the begin of its columns' names in CSV, and the derivatives at which it is
+/// asked for.
+struct Column {
+  std::string_view name, prefix;
+  Vec3 SurfaceJet::*vector;
+  int derivatives;
+};
+constexpr std::array<Column, 6> columns{{{"position", "", &SurfaceJet::position, 0},
+                                         {"du", "du", &SurfaceJet::du, 1},
+                                         {"dv", "dv", &SurfaceJet::dv, 1},
+                                         {"duu", "duu", &SurfaceJet::duu, 2},
+                                         {"duv", "duv", &SurfaceJet::duv, 2},
+                                         {"dvv", "dvv", &SurfaceJet::dvv, 2}}};
+
+/// Rows as CSV or JSON, all numbers with 17 digits.
+class RowWriter {
+ public:
+  RowWriter(OutputFile& out, const Options& options)
+      : out_(out), json_(options.format == "json"), derivatives_(options.derivatives) {}
+
+  void begin() {
+    if (json_) return out_.write("{\"rows\": [");
+    out_.write("surface,u,v");
+    for (const Column& column : columns) {
+      if (column.derivatives <= derivatives_) write_names(column.prefix);
+    }
+    write_names("n");
+    out_.write('\n');
+  }
+
+  void write(const SurfacePlace& place, const SurfaceJet& jet, const UnitNormal& normal) {
+    if (json_) out_.write(first_ ? "\n{\"surface\": " : ",\n{\"surface\": ");
+    first_ = false;
+    out_.write_number(place.surface);
+    out_.write(json_ ? ", \"u\": " : ",");
+    out_.write_number(place.u, digits);
+    out_.write(json_ ? ", \"v\": " : ",");
+    out_.write_number(place.v, digits);
+    for (const Column& column : columns) {
+      if (column.derivatives <= derivatives_) write_vector(column.name, jet.*column.vector);
+    }
+    if (json_ && normal.kind == NormalKind::undefined) {
+      out_.write(", \"normal\": null");
+    } else {
+      write_vector("normal", normal.direction);
+    }
+    out_.write(json_ ? "}" : "\n");
+  }
+
+  void end() {
+    if (json_) out_.write("\n]}\n");
+  }
+
+ private:
+  static constexpr int digits = 17;
+
+  void write_names(std::string_view prefix) {
+    for (const char axis : {'x', 'y', 'z'}) {
+      out_.write(',');
+      out_.write(prefix);
+      out_.write(axis);
+    }
+  }
+
+  void write_vector(std::string_view name, const Vec3& v) {
+    if (json_) {
+      out_.write(", \"");
+      out_.write(name);
+      out_.write("\": [");
+    } else {
+      out_.write(',');
+    }
+    out_.write_number(v.x, digits);
+    out_.write(json_ ? ", " : ",");
+    out_.write_number(v.y, digits);
+    out_.write(json_ ? ", " : ",");
+    out_.write_number(v.z, digits);
+    if (json_) out_.write(']');
+  }
+
+  OutputFile& out_;
+  bool json_, first_ = true;
+  int derivatives_;
+};
+
+/// The places in question, by number, so that a large grid takes no memory.
+struct Places {
+  std::size_t count = 0;
+  std::function<SurfacePlace(std::size_t)> at;
+};
+
+Places grid_places(const Extent& grid, std::size_t surfaces) {
+  const auto count_u = static_cast<std::size_t>(grid.first), count_v = static_cast<std::size_t>(grid.second);
+  return {surfaces * count_u * count_v,
+          [count_u, count_v, u = uniform_parameters(grid.first), v = uniform_parameters(grid.second)](std::size_t k) {
+            return SurfacePlace{static_cast<std::uint32_t>(k / (count_u * count_v)), u[k / count_v % count_u],
+                                v[k % count_v]};
+          }};
+}
+
+Status write_rows(const Model& model, const Places& places, const Options& options, OutputFile& out) {
+  RowWriter rows(out, options);
+  Progress progress("evaluating");
+  rows.begin();
+  for (std::size_t k = 0; k < places.count && !out.failed(); ++k) {
+    if (k % 1024 == 0) {
+      if (interrupted()) return Status(StatusCode::cancelled, "interrupted");
+      progress.tell(static_cast<double>(k) / static_cast<double>(places.count));
+    }
+    const SurfacePlace place = places.at(k);
+    const BezierPatch& patch = model.surfaces[place.surface].patch;
+    const SurfaceJet jet = evaluate_jet(patch, place.u, place.v);
+    for (const Column& column : columns) {
+      if (!is_finite(jet.*column.vector)) {
+        return Status(StatusCode::non_finite, options.model + ": surface " + std::to_string(place.surface) +
+                                                  ": its points or derivatives are too large for double");
+      }
+    }
+    rows.write(place, jet, unit_normal(patch, place.u, place.v));
+  }
+  rows.end();
+  return out.commit();
+}
+
+Status run_eval(const Options& options) {
+  const Result<Model> model = read_model(options.model);
+  if (!model) return model.status();
+  Places places;
+  if (options.grid) {
+    places = grid_places(*options.grid, model->surfaces.size());
+  } else {
+    Result<std::vector<SurfacePlace>> read = read_places(options.places, model->surfaces.size());
+    if (!read) return read.status();
+    const std::size_t count = read->size();
+    places = {count, [list = *std::move(read)](std::size_t k) { return list[k]; }};
+  }
+  if (options.output.empty()) {
+    OutputFile out = OutputFile::standard_output();
+    return write_rows(*model, places, options, out);
+  }
+  Result<OutputFile> out = OutputFile::create(options.output);
+  if (!out) return out.status();
+  return write_rows(*model, places, options, *out);
+}
+
+constexpr const char* footer =
+    "--params takes a table with the header line surface,u,v; surfaces are counted from 0, u and v lie in the\n"
+    "surface's own domain ([0,1] for a Bezier patch); # begins a comment.\n"
+    "Rows: surface,u,v, the position x,y,z, with --derivs 1 dux,duy,duz,dvx,dvy,dvz, with --derivs 2 also\n"
+    "duux..duuz,duvx..duvz,dvvx..dvvz, then the unit normal nx,ny,nz, along r_u x r_v. 17 significant digits.\n"
+    "At a degenerate point (a pole) the normal is the limit; where there is none, it is 0,0,0 (null in JSON).\n"
+    "JSON: {\"rows\": [{\"surface\", \"u\", \"v\", \"position\", \"du\", \"dv\", \"duu\", \"duv\", \"dvv\", "
+    "\"normal\"}, ...]}\n"
+    "\nExamples:\n"
+    "  tessera eval teapot.bpt --grid 5x5 -o points.csv\n"
+    "  tessera eval teapot.bpt --params places.csv --derivs 2 --format json";
+
+}  // namespace
+
+void add_eval(CLI::App& app, Session& session) {
+  CLI::App* const command = app.add_subcommand("eval", "Evaluate surfaces: positions, derivatives, normals");
+  const auto options = std::make_shared<Options>();
+  command->add_option("MODEL", options->model, "The file of surfaces (.bpt)")->required()->type_name("FILE");
+  CLI::Option_group* const where = command->add_option_group("Where", "One of");
+  where->require_option(1);
+  where
+      ->add_option_function<std::string>(
+          "--grid", [options](const std::string& text) { options->grid = parse_extent("--grid", text, 2, 65536); },
+          "N x M points on every surface, from border to border, 2 to 65536 each")
+      ->type_name("NxM");
+  where->add_option("--params", options->places, "At the places of this table")->type_name("FILE.csv");
+  command->add_option("--derivs", options->derivatives, "Derivatives up to this order")
+      ->check(CLI::Range(0, 2))
+      ->capture_default_str();
+  command->add_option("--format", options->format, "csv or json")
+      ->check(CLI::IsMember({"csv", "json"}))
+      ->capture_default_str();
+  command->add_option("-o,--output", options->output, "Where to write; standard output if not given")
+      ->type_name("FILE");
+  command->footer(footer);
+  command->callback([options, &session] { session.command = [options] { return run_eval(*options); }; });
+}
+
+}  // namespace tessera::cli

@@ -1,0 +1,204 @@
+// tessera raycast: a picture of surfaces, or the hits of given rays.
+
+#include <cstdio>
+#include <map>
+#include <memory>
+
+#include "arguments.h"
+#include "commands.h"
+#include "console.h"
+#include "csv.h"
+#include "io/output_file.h"
+#include "render/render.h"
+#include "tessera/io.h"
+#include "tessera/ray_scene.h"
+
+namespace tessera::cli {
+namespace {
+
+struct Options {
+  std::string model, picture, rays, hits;
+  render::Settings settings;
+};
+
+/// Finer grids for smaller models: facets then are near the pixels' size, and a large model's scene still fits memory.
+int scene_rate(std::size_t patches) {
+  constexpr std::size_t segments = std::size_t{1} << 20;
+  int rate = 64;
+  while (rate > 8 && patches * static_cast<std::size_t>(rate * rate) > segments) rate /= 2;
+  return rate;
+}
+
+Result<RayScene> make_scene(const PatchSet& set) {
+  Progress progress("building the scene");
+  RaySceneOptions options;
+  options.rate = scene_rate(set.patch_count());
+  return RayScene::make(set, options, progress.execution());
+}
+
+Status draw(const Options& options, const PatchSet& set, const RayScene& scene, double scene_seconds) {
+  const Stopwatch drawing;
+  Result<render::Image> image = [&] {
+    Progress progress("casting rays");
+    return render::render(scene, set.box(), options.settings, progress.execution());
+  }();
+  if (!image) return image.status();
+  const double draw_seconds = drawing.seconds();
+  const Status status = render::write_png(*image, options.picture);
+  if (!status.ok()) return status;
+  return print(options.picture + ": " + std::to_string(image->width) + " x " + std::to_string(image->height) + ", " +
+               std::to_string(set.patch_count()) + " patches; scene built in " + readable_seconds(scene_seconds) +
+               ", picture cast in " + readable_seconds(draw_seconds) + "\n");
+}
+
+constexpr std::string_view hits_header = "ray,hit,t,surface,patch,u,v,x,y,z,nx,ny,nz\n";
+
+void write_hit(OutputFile& out, std::size_t ray, const Hit& hit) {
+  constexpr int digits = 17;
+  out.write_number(ray);
+  if (hit.kind != HitKind::hit) return out.write(",0,,,,,,,,,,,\n");
+  out.write(",1,");
+  out.write_number(hit.t, digits);
+  out.write(',');
+  out.write_number(hit.surface);
+  out.write(',');
+  out.write_number(hit.patch);
+  for (const double value :
+       {hit.u, hit.v, hit.position.x, hit.position.y, hit.position.z, hit.normal.x, hit.normal.y, hit.normal.z}) {
+    out.write(',');
+    out.write_number(value, digits);
+  }
+  out.write('\n');
+}
+
+Status write_hits(const Options& options, std::span<const Hit> hits) {
+  Result<OutputFile> out = OutputFile::create(options.hits);
+  if (!out) return out.status();
+  out->write(hits_header);
+  for (std::size_t k = 0; k < hits.size() && !out->failed(); ++k) write_hit(*out, k, hits[k]);
+  return out->commit();
+}
+
+Status trace(const Options& options, const RayScene& scene, std::span<const Ray> rays) {
+  std::vector<Hit> hits(rays.size());
+  const Stopwatch tracing;
+  Status status = [&] {
+    Progress progress("casting rays");
+    return scene.closest(rays, hits, progress.execution());
+  }();
+  if (!status.ok()) return status;
+  const double seconds = tracing.seconds();
+  status = write_hits(options, hits);
+  if (!status.ok()) return status;
+  std::size_t found = 0, unrefined = 0, not_traced = 0;
+  for (const Hit& hit : hits) {
+    found += hit.kind == HitKind::hit;
+    unrefined += hit.kind == HitKind::hit && hit.flags.unrefined;
+    not_traced += hit.kind == HitKind::invalid_ray;
+  }
+  if (not_traced != 0) {  // valid rays may still be too far away or too large
+    std::fprintf(stderr, "tessera: %s: %zu rays are beyond float's range; they count as misses\n", options.rays.c_str(),
+                 not_traced);
+  }
+  return print(options.hits + ": " + std::to_string(hits.size()) + " rays, " + std::to_string(found) + " hits, " +
+               std::to_string(unrefined) + " of them on facets only; cast in " + readable_seconds(seconds) + "\n");
+}
+
+Status run_raycast(const Options& options) {
+  const Result<Model> model = read_model(options.model);
+  if (!model) return model.status();
+  std::vector<Ray> rays;
+  if (!options.rays.empty()) {
+    Result<std::vector<Ray>> read = read_rays(options.rays);
+    if (!read) return read.status();
+    rays = *std::move(read);
+  }
+  const Result<PatchSet> set = make_patch_set(*model);
+  if (!set) return in_file(options.model, set.status());
+  const Stopwatch building;
+  const Result<RayScene> scene = make_scene(*set);
+  if (!scene) return in_file(options.model, scene.status());
+  if (!options.rays.empty()) return trace(options, *scene, rays);
+  return draw(options, *set, *scene, building.seconds());
+}
+
+render::Camera parse_camera(const std::string& text) {
+  const std::vector<double> n = parse_numbers("--camera", text, 7, "ex,ey,ez,tx,ty,tz,fovdeg");
+  render::Camera camera;
+  camera.eye = {n[0], n[1], n[2]};
+  camera.target = {n[3], n[4], n[5]};
+  camera.fov_degrees = n[6];
+  if (camera.eye == camera.target) throw CLI::ValidationError("--camera", "the eye and the target are the same point");
+  if (!(n[6] > 0 && n[6] < 180))
+    throw CLI::ValidationError("--camera", "the field of view must lie between 0 and 180 degrees");
+  return camera;
+}
+
+std::string fault_of_picture(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  if (extension == ".png") return {};
+  return path + ": unsupported format \"" + extension + "\": pictures are written as .png";
+}
+
+constexpr const char* footer =
+    "A picture: -o, with --size, --shade and --camera. The default camera fits the model; its up is the z axis.\n"
+    "Hits of given rays: --rays and --hits. Rays are a table with the header line ox,oy,oz,dx,dy,dz or\n"
+    "ox,oy,oz,dx,dy,dz,tnear,tfar: finite numbers, the direction not zero, 0 <= tnear <= tfar, tfar may be inf;\n"
+    "# begins a comment. Hits are the table ray,hit,t,surface,patch,u,v,x,y,z,nx,ny,nz, a row for each ray in the\n"
+    "order of the rays, counted from 0; a miss has hit = 0 and empty fields. 17 significant digits.\n"
+    "\nExamples:\n"
+    "  tessera raycast teapot.bpt -o teapot.png --size 1280x720\n"
+    "  tessera raycast teapot.bpt -o teapot.png --shade normals --camera=4,-8,5,0,0,1.5,40\n"
+    "  tessera raycast teapot.bpt --rays rays.csv --hits hits.csv";
+
+const std::map<std::string, render::Shade> shades{{"lambert", render::Shade::lambert},
+                                                  {"normals", render::Shade::normals},
+                                                  {"uv", render::Shade::uv},
+                                                  {"patch", render::Shade::patch}};
+
+/// The options that make sense with a picture alone.
+void add_picture_options(CLI::App& command, CLI::Option* picture, render::Settings& settings) {
+  const auto set_size = [&settings](const std::string& text) {
+    const Extent size = parse_extent("--size", text, 1, 16384);
+    settings.width = size.first;
+    settings.height = size.second;
+  };
+  const auto set_shade = [&settings](const std::string& text) { settings.shade = shades.at(text); };
+  const auto set_camera = [&settings](const std::string& text) { settings.camera = parse_camera(text); };
+  command.add_option_function<std::string>("--size", set_size, "Pixels of the picture, 1 to 16384 each [1280x800]")
+      ->type_name("WxH")
+      ->needs(picture);
+  command.add_option_function<std::string>("--shade", set_shade, "How surfaces are coloured [lambert]")
+      ->check(CLI::IsMember({"lambert", "normals", "uv", "patch"}))
+      ->needs(picture);
+  command
+      .add_option_function<std::string>("--camera", set_camera,
+                                        "Eye, target, field of view in degrees over the picture's shorter side")
+      ->type_name("ex,ey,ez,tx,ty,tz,fovdeg")
+      ->needs(picture);
+}
+
+}  // namespace
+
+void add_raycast(CLI::App& app, Session& session) {
+  CLI::App* const command = app.add_subcommand("raycast", "Draw a picture by rays, or find the hits of given rays");
+  const auto options = std::make_shared<Options>();
+  command->add_option("MODEL", options->model, "The file of surfaces (.bpt)")->required()->type_name("FILE");
+  CLI::Option* const picture = command->add_option("-o,--output", options->picture, "The picture to be written (.png)");
+  picture->check(fault_of_picture)->type_name("PICTURE.png");
+  add_picture_options(*command, picture, options->settings);
+  CLI::Option* const rays = command->add_option("--rays", options->rays, "The table of rays")->type_name("FILE.csv");
+  CLI::Option* const hits = command->add_option("--hits", options->hits, "The table of hits to be written");
+  hits->type_name("OUT.csv")->needs(rays);
+  rays->needs(hits)->excludes(picture);
+  command->footer(footer);
+  command->callback([options, &session] {
+    if (options->picture.empty() && options->rays.empty()) {
+      throw CLI::ValidationError("raycast", "expected -o PICTURE.png, or --rays FILE.csv and --hits OUT.csv");
+    }
+    session.command = [options] { return run_raycast(*options); };
+  });
+}
+
+}  // namespace tessera::cli

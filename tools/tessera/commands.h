@@ -1,0 +1,22 @@
+#pragma once
+// The commands of the tool: each adds its options to the command line, and itself to the session if it is chosen.
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+#include "tessera/status.h"
+
+namespace tessera::cli {
+
+/// What the command line asks for.
+struct Session {
+  std::function<Status()> command;
+};
+
+void add_info(CLI::App& app, Session& session);
+void add_eval(CLI::App& app, Session& session);
+void add_tessellate(CLI::App& app, Session& session);
+void add_raycast(CLI::App& app, Session& session);
+void add_check(CLI::App& app, Session& session);
+
+}  // namespace tessera::cli

@@ -1,0 +1,63 @@
+#pragma once
+// What the commands say and hear: standard output, progress, interruption, clocks.
+
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include "tessera/execution.h"
+#include "tessera/status.h"
+
+namespace tessera::cli {
+
+using Json = nlohmann::ordered_json;
+
+/// Writes to standard output. Errors: io_error.
+Status print(std::string_view text);
+/// One JSON object and the end of the line.
+Status print_json(const Json& object);
+
+/// `status` with the file's name before its message, for errors that do not know the file.
+Status in_file(const std::filesystem::path& file, const Status& status);
+
+/// From now on Ctrl-C and a request to terminate set the flag of `interrupted`; the second time they end the process.
+void catch_interrupts();
+const std::atomic<bool>& interrupted();
+/// Ends the process by the signal that was caught, as its caller expects; returns if there was none.
+void end_by_signal();
+
+/// Tells on standard error how far the work is, if that is a terminal; the line is removed at the end.
+class Progress {
+ public:
+  explicit Progress(std::string_view work);
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  ~Progress();
+
+  /// Options for a library call: its progress comes here, and an interrupt cancels it.
+  Execution execution();
+  void tell(double share);
+
+ private:
+  std::string work_;
+  bool terminal_;
+  int percent_ = -1;
+};
+
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
+
+ private:
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+/// A number for people, with so many significant digits.
+std::string readable(double value, int digits = 6);
+/// "0.0123 s".
+inline std::string readable_seconds(double seconds) { return readable(seconds, 3) + " s"; }
+
+}  // namespace tessera::cli

@@ -1,0 +1,71 @@
+// The command line: surfaces in, points, meshes, pictures and ray hits out.
+
+#include <cstdio>
+#include <exception>
+
+#include "commands.h"
+#include "console.h"
+#include "tessera/isa.h"
+
+namespace {
+
+constexpr int success = 0, bad_input = 1, bad_command_line = 2;
+
+void complain(const std::string& message) { std::fprintf(stderr, "tessera: %s\n", message.c_str()); }
+
+void describe(CLI::App& app) {
+  app.set_version_flag("--version", "tessera " TESSERA_VERSION);
+  app.require_subcommand(0, 1);  // none is seen after parsing, so that a wrong word is named first
+  app.failure_message([](const CLI::App*, const CLI::Error& error) {
+    return std::string("tessera: ") + error.what() + "\nTry tessera --help, or --help after a command.\n";
+  });
+  app.footer(
+      "Models are read as .bpt (Bezier patches; # begins a comment), meshes are written and read as .obj and .ply.\n"
+      "Surfaces, patches and rays are counted from 0.\n"
+      "TESSERA_ISA=sse2|avx2|avx512 in the environment forces an instruction set.\n"
+      "Exit status: 0 done, 1 the input is bad or the output cannot be written, 2 the command line is bad.\n"
+      "Outputs appear whole or not at all.\n"
+      "\nExample:\n  tessera raycast teapot.bpt -o teapot.png");
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Tessera: parametric surfaces to points, meshes and ray hits", "tessera");
+  tessera::cli::Session session;
+  describe(app);
+  tessera::cli::add_info(app, session);
+  tessera::cli::add_eval(app, session);
+  tessera::cli::add_tessellate(app, session);
+  tessera::cli::add_raycast(app, session);
+  tessera::cli::add_check(app, session);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? success : bad_command_line;
+  }
+  if (!session.command) {
+    complain("expected a command (info, eval, tessellate, raycast, check), found none\nTry tessera --help.");
+    return bad_command_line;
+  }
+  const tessera::Result<tessera::Isa> isa = tessera::default_isa();
+  if (!isa) {
+    complain(isa.status().message());
+    return bad_command_line;
+  }
+  tessera::cli::catch_interrupts();
+  const tessera::Status status = session.command();
+  if (status.ok()) return success;
+  if (status.code() == tessera::StatusCode::cancelled) tessera::cli::end_by_signal();
+  complain(status.message());
+  return bad_input;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    complain(error.what());
+    return bad_input;
+  }
+}
