@@ -1,6 +1,7 @@
-# What `cmake --install` lays down beside the command line: the libraries, the public headers, and the package that
+# What `cmake --install` lays down: the libraries, the public headers, the command line, and the package that
 # find_package(tessera) reads. Each component has its own file of targets, so that the core never looks for Embree.
 
+include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/tessera)
 
@@ -32,6 +33,9 @@ else()
 endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/engine/include/tessera DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
   FILES_MATCHING PATTERN "*.h" ${left_out})
+if(TESSERA_BUILD_TOOLS)
+  install(TARGETS tessera_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/licenses/tessera)
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/tesseraConfig.cmake.in

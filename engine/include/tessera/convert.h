@@ -8,7 +8,6 @@
 
 #include "tessera/bezier_patch.h"
 #include "tessera/domain.h"
-#include "tessera/patch_set.h"
 #include "tessera/status.h"
 
 namespace tessera {
@@ -57,9 +56,5 @@ class PatchGrid {
   std::vector<BezierPatch> patches_;
   FitError error_;
 };
-
-/// The patches of several surfaces in one set; source(k).surface is the index into `grids`, source(k).domain the patch's
-/// rectangle. Errors: those of PatchSet::from.
-Result<PatchSet> make_patch_set(std::span<const PatchGrid> grids, const PatchSetOptions& options = {});
 
 }  // namespace tessera

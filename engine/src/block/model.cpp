@@ -1,7 +1,6 @@
 #include "tessera/model.h"
 
 #include "base/guard.h"
-#include "tessera/convert.h"
 
 namespace tessera {
 
