@@ -13,8 +13,8 @@ endif()
 add_library(tessera_compile INTERFACE)
 target_compile_options(tessera_compile INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wold-style-cast -Wnon-virtual-dtor
-  # Designated initialisers leave members at their defaults on purpose; gcc 12 warns wrongly of string + string (its bug 105651).
-  -Wno-missing-field-initializers $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
+  # gcc 12 warns wrongly of string + string (its bug 105651).
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
   # Results must not depend on what the compiler fuses, and NaN and infinity keep their meaning.
   -ffp-contract=off -fno-math-errno)
 if(TESSERA_WARNINGS_AS_ERRORS)

@@ -141,8 +141,7 @@ void run(benchmark::State& state, const Case& c) {
 void add(const Case& c) {
   benchmark::RegisterBenchmark(c.name().c_str(), [c](benchmark::State& state) { run(state, c); })
       ->UseManualTime()
-      ->Unit(benchmark::kMillisecond)
-      ->MinTime(0.3);
+      ->Unit(benchmark::kMillisecond);
 }
 
 const bool registered = [] {

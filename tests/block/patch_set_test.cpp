@@ -140,7 +140,7 @@ TEST(Model, SurfacesBecomeSources) {
   const PatchSet set = value_of(make_patch_set(model));
   EXPECT_EQ(set.surface_count(), 5u);
   for (std::uint32_t k = 0; k < 5; ++k) EXPECT_EQ(set.source(k).surface, k);
-  EXPECT_EQ(make_patch_set({}).status().code(), StatusCode::invalid_argument);
+  EXPECT_EQ(make_patch_set(Model{}).status().code(), StatusCode::invalid_argument);
 }
 
 }  // namespace

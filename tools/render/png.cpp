@@ -1,10 +1,11 @@
 #include <png.h>
 
-#include <fstream>
-#include <new>
 #include <string>
-#include <system_error>
+#include <string_view>
+#include <vector>
 
+#include "base/guard.h"
+#include "io/output_file.h"
 #include "render/render.h"
 
 namespace tessera::render {
@@ -26,21 +27,6 @@ Status encode(const Image& image, std::vector<char>& bytes) {
   return {};
 }
 
-Status write_beside(const std::vector<char>& bytes, const std::filesystem::path& path) {
-  std::filesystem::path part = path;
-  part += ".part";
-  std::ofstream file(part, std::ios::binary | std::ios::trunc);
-  if (!file) return Status(StatusCode::io_error, path.string() + ": cannot be written");
-  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  std::error_code error;
-  if (file) std::filesystem::rename(part, path, error);
-  if (file && !error) return {};
-  std::error_code ignored;
-  std::filesystem::remove(part, ignored);
-  return Status(StatusCode::io_error, path.string() + ": " + (error ? error.message() : "cannot be written in full"));
-}
-
 }  // namespace
 
 Status write_png(const Image& image, const std::filesystem::path& path) {
@@ -48,15 +34,14 @@ Status write_png(const Image& image, const std::filesystem::path& path) {
       image.rgb.size() != 3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height)) {
     return Status(StatusCode::invalid_argument, "a picture's bytes don't fit its size");
   }
-  try {
+  return guarded([&]() -> Status {
     std::vector<char> bytes;
     if (Status status = encode(image, bytes); !status.ok()) return status;
-    return write_beside(bytes, path);
-  } catch (const std::bad_alloc&) {
-    return Status(StatusCode::out_of_memory, "out of memory");
-  } catch (const std::exception& error) {
-    return Status(StatusCode::io_error, path.string() + ": " + error.what());
-  }
+    Result<OutputFile> file = OutputFile::create(path);
+    if (!file) return file.status();
+    file->write({bytes.data(), bytes.size()});
+    return file->commit();
+  });
 }
 
 }  // namespace tessera::render

@@ -27,7 +27,7 @@ struct GridOutputs {
 struct GridPlanOptions {
   Precision precision = Precision::single_precision;
   Representation representation = Representation::bernstein;
-  std::optional<Isa> isa;  ///< default_isa() if empty
+  std::optional<Isa> isa = {};  ///< default_isa() if empty
 };
 
 /// The grid u_0..u_{N-1} x v_0..v_{M-1} of local parameters, with basis weights tabulated for every degree of a set.
@@ -68,7 +68,7 @@ class GridPlan {
 /// or zero where there is none.
 template <class T>
 struct GridViews {
-  View3<T> position, du, dv, normal;
+  View3<T> position = {}, du = {}, dv = {}, normal = {};
 };
 
 /// Evaluates all patches. Outputs may share memory by interleaving but must not overlap otherwise.
@@ -86,7 +86,7 @@ Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<doubl
 /// Memory aligned to 64 bytes is written fastest, and alone is eligible for streaming stores.
 template <class T>
 struct GridBlocks {
-  std::span<T> position, du, dv, normal;
+  std::span<T> position = {}, du = {}, dv = {}, normal = {};
 };
 Status evaluate(const PatchSet& set, const GridPlan& plan, const GridBlocks<float>& out, const Execution& execution = {});
 Status evaluate(const PatchSet& set, const GridPlan& plan, const GridBlocks<double>& out, const Execution& execution = {});

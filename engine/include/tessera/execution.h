@@ -28,7 +28,7 @@ struct ExecutionReport {
 struct Execution {
   const std::atomic<bool>* cancel = nullptr;  ///< seen between tasks; the call then returns StatusCode::cancelled
   /// Called with the share done, 0 to 1, from any thread, one call at a time, seldom.
-  std::function<void(double)> progress;
+  std::function<void(double)> progress = {};
   Stores stores = Stores::automatic;
   ExecutionReport* report = nullptr;  ///< filled if not null
 };

@@ -28,7 +28,7 @@ struct Limits {
 };
 
 struct LimitsOptions {
-  std::optional<Isa> isa;                       ///< default_isa() if empty
+  std::optional<Isa> isa = {};                       ///< default_isa() if empty
   std::size_t store_bytes = 160u << 20;         ///< size of the buffer that is filled: that of the output in question
 };
 

@@ -19,11 +19,11 @@ struct MeshCapacity {
 
 /// Where a mesh is written. Empty views are not wanted; positions and indices are required.
 struct MeshViews {
-  View3<float> position;            ///< relative to the origin of the patch set
-  View3<float> normal;              ///< unit, or zero where undefined
-  View2<float> parameter;           ///< (u,v) of the patch, in [0,1]^2
-  std::span<std::uint32_t> patch;   ///< the patch of each triangle
-  std::span<std::uint32_t> indices; ///< three a triangle, counter-clockwise seen from where r_u x r_v points
+  View3<float> position = {};            ///< relative to the origin of the patch set
+  View3<float> normal = {};              ///< unit, or zero where undefined
+  View2<float> parameter = {};           ///< (u,v) of the patch, in [0,1]^2
+  std::span<std::uint32_t> patch = {};   ///< the patch of each triangle
+  std::span<std::uint32_t> indices = {}; ///< three a triangle, counter-clockwise seen from where r_u x r_v points
 };
 
 /// A mesh that owns its memory, interleaved by attribute: 3 floats a position or normal, 2 a parameter.

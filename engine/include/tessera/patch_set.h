@@ -29,15 +29,15 @@ struct BlockKinds {
 };
 
 struct PatchSetOptions {
-  BlockKinds blocks;
+  BlockKinds blocks = {};
   /// Coefficients of float blocks are relative to this point. By default the centre of the set's box.
-  std::optional<Vec3> origin;
+  std::optional<Vec3> origin = {};
 };
 
 /// Where a patch came from: a surface of the model, and the rectangle of that surface's parameters that it covers.
 struct PatchSource {
   std::uint32_t surface = 0;
-  Domain domain;
+  Domain domain = {};
 };
 
 /// Owns patches and their SoA blocks: patches of equal degrees and rationality lie together, 16 to a block, coefficients

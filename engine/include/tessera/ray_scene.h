@@ -19,7 +19,7 @@ namespace tessera {
 /// Valid: finite origin and direction with components of at most 1.844e18, direction not zero, 0 <= tnear <= tfar;
 /// tfar may be infinite. Both ends belong to the interval and hold for the refined t, in double.
 struct Ray {
-  Vec3 origin, direction;
+  Vec3 origin = {}, direction = {};
   double tnear = 0;
   double tfar = std::numeric_limits<double>::infinity();
 };
@@ -59,7 +59,7 @@ struct RaySceneOptions {
   RayMode mode = RayMode::grid;
   int rate = 8;              ///< grid segments a patch and direction, 1 to 4096
   bool refine = true;        ///< false leaves hits on the facets (for comparison)
-  std::optional<Isa> isa;
+  std::optional<Isa> isa = {};
 };
 
 /// A patch set ready for rays. Keeps a reference to the set's inner state: the set must outlive the scene (it may be moved).

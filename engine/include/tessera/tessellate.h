@@ -15,7 +15,7 @@ namespace tessera {
 struct TessellationOptions {
   int rate_u = 8;  ///< segments along u of every patch, 1 to 4096
   int rate_v = 8;  ///< segments along v
-  std::optional<Isa> isa;
+  std::optional<Isa> isa = {};
 };
 
 /// Uniform tessellation: every patch at the same rates. Layout of the vertices: `[patch][iu][iv]`, so vertex
