@@ -5,7 +5,7 @@
 #   CLI11             libcli11-dev 2.1            the command line
 #   nlohmann-json     nlohmann-json3-dev 3.11     the command line: --json
 #   libpng            libpng-dev 1.6              the command line: pictures
-#   GoogleTest        libgtest-dev 1.12           tests
+#   GoogleTest        libgtest-dev 1.12           tests (and libgmock-dev: its matchers)
 #   Google Benchmark  libbenchmark-dev 1.7        benchmarks
 
 find_package(TBB 2021 REQUIRED)

@@ -126,6 +126,31 @@ TEST_P(Accuracy, NormalsAtAnyScale) {
   }
 }
 
+/// A patch a billionth of the others in size has unit normals as well, and does not change its neighbours' bits.
+TEST_P(Accuracy, NormalsOfTinyPatchesAmongLargeOnes) {
+  Random random(14);
+  const std::vector<double> t = uniform_parameters(3);
+  const BezierPatch large = random_polynomial(random, 3, 3);
+  const std::vector<Vec3> points = random_points(random, 3, 3);
+  const auto normals_of = [&](const std::vector<BezierPatch>& patches) {
+    const PatchSet set = set_of(patches, {.origin = Vec3{}});
+    const GridPlan plan = value_of(GridPlan::make(set, t, t, {.isa = GetParam()}));
+    GridBuffers<float> out(plan);
+    EXPECT_TRUE(evaluate(set, plan, out.views()).ok());
+    return out.normal;
+  };
+  const std::vector<float> alone = normals_of({large});
+  for (const double scale : {1e-3, 1e-9, 1e-11, 1e-12, 1e-20, 1e-30}) {
+    std::vector<Vec3> scaled = points;
+    for (Vec3& p : scaled) p = scale * p;
+    const BezierPatch tiny = polynomial(3, 3, scaled);
+    const std::vector<float> both = normals_of({large, tiny});
+    EXPECT_TRUE(std::equal(alone.begin(), alone.end(), both.begin()));
+    for (std::size_t k = 0; k < 9; ++k)
+      EXPECT_TRUE(within_units(vector_at(both, 9 + k), reference_normal(tiny, t[k / 3], t[k % 3]), 1e-4, 1)) << scale;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(EveryIsa, Accuracy, ::testing::ValuesIn(available_isas().begin(), available_isas().end()),
                          [](const auto& param) { return std::string(name(param.param)); });
 

@@ -74,6 +74,14 @@ TEST_F(EvaluateErrors, Parameters) {
   EXPECT_EQ(code({0, 1, 1.001}, t).index(), 2);
 }
 
+/// 2^24 x 2^24 parameters over 2^16 patches would be 2^64 points, and their count 0.
+TEST_F(EvaluateErrors, MorePointsThanMemoryCanAddress) {
+  const std::vector<BezierPatch> patches(1u << 16, random_polynomial(random, 1, 1));
+  const PatchSet many = set_of(patches);
+  const std::vector<double> zeros(1u << 24, 0.0);
+  EXPECT_EQ(GridPlan::make(many, zeros, zeros).status().code(), StatusCode::invalid_argument);
+}
+
 TEST_F(EvaluateErrors, BlocksThatTheSetLacks) {
   EXPECT_EQ(GridPlan::make(set, t, t, {.precision = Precision::double_precision}).status().code(), StatusCode::unsupported);
   EXPECT_EQ(GridPlan::make(set, t, t, {.representation = Representation::power}).status().code(), StatusCode::unsupported);

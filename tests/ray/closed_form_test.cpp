@@ -116,5 +116,26 @@ TEST(ClosedForm, SphereAtItsPoles) {
   }
 }
 
+/// One light weight makes a crater that the facets follow coarsely: rays at known points of the surface must still be answered there.
+TEST(ClosedForm, LightWeightsDoNotMoveTheRaysAway) {
+  for (const double weight : {1.0, 1e-2, 1e-4, 1e-6, 1e-7, 1e-8}) {
+    std::vector<Vec3> points;
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j) points.push_back({i / 3.0, j / 3.0, 0.1 * ((i * 7 + j * 5) % 3)});
+    std::vector<double> weights(16, 1.0);
+    weights[5] = weight;
+    const BezierPatch patch = value_of(BezierPatch::rational(3, 3, points, weights));
+    const PatchSet set = value_of(PatchSet::from(std::span(&patch, 1)));
+    const RayScene scene = value_of(RayScene::make(set));
+    for (int k = 0; k < 400; ++k) {
+      const double u = 0.02 + 0.96 * (k % 20) / 19, v = 0.02 + 0.96 * (k / 20) / 19;
+      const Vec3 target = de_casteljau(patch, u, v), direction{0.3 * u - 0.15, 0.15 - 0.3 * v, -1};
+      const Hit hit = scene.closest({.origin = target - 5 * direction, .direction = direction});
+      ASSERT_EQ(hit.kind, HitKind::hit) << weight;
+      EXPECT_LE(length(hit.position - target), 1e-9) << weight;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace tessera::test

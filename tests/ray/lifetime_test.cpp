@@ -86,5 +86,23 @@ TEST(Lifetime, MemoryIsTold) {
   EXPECT_LT(fine, 400u * 17 * 17 * 200);
 }
 
+/// A control point that goes far away and comes back leaves no trace.
+TEST(Lifetime, AnOutlierThatIsTakenBackIsForgotten) {
+  PatchSet set = value_of(PatchSet::from(closed_body()));
+  RayScene scene = value_of(RayScene::make(set));
+  const Ray ray{.origin = {}, .direction = {0.1, 0.2, 1}};
+  const Hit before = scene.closest(ray);
+  const std::vector<Vec3> points(set.patch(0).points().begin(), set.patch(0).points().end());
+  std::vector<Vec3> far = points;
+  far[5].x = 1e30;
+  ASSERT_TRUE(set.set_control_points(0, far).ok());
+  EXPECT_EQ(scene.refit().code(), StatusCode::unsupported);
+  ASSERT_TRUE(set.set_control_points(0, points).ok());
+  ASSERT_TRUE(scene.refit().ok());
+  const Hit after = scene.closest(ray);
+  EXPECT_EQ(after.t, before.t);
+  EXPECT_EQ(after.position, before.position);
+}
+
 }  // namespace
 }  // namespace tessera::test

@@ -40,7 +40,7 @@ TEST(MeshCheck, SoundTetrahedron) {
 TEST(MeshCheck, EmptyMesh) {
   const MeshReport report = report_of({});
   EXPECT_EQ(report.triangles, 0u);
-  EXPECT_TRUE(report.closed());
+  EXPECT_FALSE(report.closed());
 }
 
 TEST(MeshCheck, DuplicatedVerticesAreWelded) {

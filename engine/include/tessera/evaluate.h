@@ -34,7 +34,8 @@ struct GridPlanOptions {
 /// Immutable; reusable for as long as the set's degrees stay (edits of control points keep them).
 class GridPlan {
  public:
-  /// Parameters in [0,1], in any order, at least one each. Errors: invalid_argument or non_finite (index = the parameter),
+  /// Parameters in [0,1], in any order, 1 to 2^24 each way. Errors: invalid_argument or non_finite (index = the parameter),
+  /// invalid_argument (more points than memory can address),
   /// unsupported (the set lacks the blocks), isa_unavailable.
   static Result<GridPlan> make(const PatchSet& set, std::span<const double> u, std::span<const double> v,
                                const GridPlanOptions& options = {});
@@ -83,7 +84,7 @@ Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<doubl
 
 /// Block-interleaved outputs, `[block][iu][iv][component][lane]`: the kernels' own order, and the fastest.
 /// A patch's place is PatchSet::slot(); unused lanes of a last block repeat a patch. Empty spans are not computed.
-/// Memory aligned to 64 bytes is written fastest, and alone is eligible for streaming stores.
+/// Memory must be aligned to 64 bytes (invalid_argument otherwise).
 template <class T>
 struct GridBlocks {
   std::span<T> position = {}, du = {}, dv = {}, normal = {};

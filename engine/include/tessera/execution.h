@@ -10,7 +10,7 @@
 
 namespace tessera {
 
-/// How results are written to memory.
+/// How block-interleaved results are written to memory. Patch-contiguous views are always written by plain stores.
 enum class Stores : std::uint8_t {
   automatic,  ///< streaming where the output is larger than a third of the last-level cache, plain otherwise
   plain,

@@ -50,7 +50,8 @@ struct MeshReport {
   std::size_t inconsistent_edges = 0;    ///< edges whose two triangles run along it the same way
   std::size_t degenerate_triangles = 0;  ///< two corners in one place, or no area; not counted in edges
   std::size_t non_finite_vertices = 0;   ///< NaN or infinity in a position or a normal
-  bool closed() const { return open_edges == 0 && non_manifold_edges == 0; }
+  /// Whether its sound triangles, of which there are some, leave no border.
+  bool closed() const { return triangles > degenerate_triangles && open_edges == 0 && non_manifold_edges == 0; }
 };
 
 /// Counts. Errors: invalid_argument (an index out of range, with its place; counts that don't fit).

@@ -65,7 +65,7 @@ class PatchSet {
   const BezierPatch& patch(std::size_t index) const;      ///< index < patch_count()
   const PatchSource& source(std::size_t index) const;     ///< index < patch_count()
   Vec3 origin() const;
-  const Box3& box() const;            ///< contains all control points; an edit may widen it but never narrows it
+  Box3 box() const;                   ///< of all control points; looks at each of them
   const BlockKinds& blocks() const;
   std::size_t block_count() const;
   /// Where a patch lies in block-interleaved output. index < patch_count().

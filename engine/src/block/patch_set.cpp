@@ -52,14 +52,7 @@ void lay_out(PatchSet::Impl& set) {
   if (set.kinds.double_power) set.twice.power.resize(next_value);
 }
 
-/// 1 where the squared length of r_u x r_v stays within float's range by itself, else about 1 / magnitude.
-float choose_normal_scale(const PatchSet::Impl& set) {
-  const double magnitude = std::max(max_abs(set.box.lower - set.origin), max_abs(set.box.upper - set.origin));
-  const int exponent = magnitude > 0 ? std::ilogb(magnitude) : 0;
-  return std::abs(exponent) <= 20 ? 1.0f : std::ldexp(1.0f, -std::clamp(exponent, -120, 120));
-}
-
-/// Weights below these shares of the largest: the squared length of r_u x r_v holds their fourth power, and underflows.
+/// Weights below these shares of the largest: derivatives grow with the inverse of that share, and normals with its square.
 constexpr double least_weight_in_float = 1e-9, least_weight_in_double = 1e-70;
 
 Status too_large(std::size_t patch) {
@@ -89,6 +82,12 @@ Status check_sources(std::span<const BezierPatch> patches, std::span<const Patch
 const BlockGroup& PatchSet::Impl::group_of_block(std::size_t block) const {
   return *std::prev(std::upper_bound(groups.begin(), groups.end(), block,
                                      [](std::size_t b, const BlockGroup& group) { return b < group.first_block; }));
+}
+
+Box3 PatchSet::Impl::box() const {
+  Box3 box;
+  for (const BezierPatch& patch : patches) box.extend(patch.hull_box());
+  return box;
 }
 
 bool PatchSet::Impl::has(Precision precision, Representation representation) const {
@@ -143,13 +142,9 @@ Result<PatchSet> PatchSet::from(std::span<const BezierPatch> patches, std::span<
     set->patches.assign(patches.begin(), patches.end());
     set->sources.assign(sources.begin(), sources.end());
     set->kinds = options.blocks;
-    for (const BezierPatch& patch : patches) {
-      set->box.extend(patch.hull_box());
-      set->collapsed.push_back(patch.collapsed_edges());
-    }
+    for (const BezierPatch& patch : patches) set->collapsed.push_back(patch.collapsed_edges());
     for (const PatchSource& source : sources) set->surface_count = std::max(set->surface_count, std::size_t{source.surface} + 1);
-    set->origin = options.origin.value_or(set->box.centre());
-    set->normal_scale = choose_normal_scale(*set);
+    set->origin = options.origin ? *options.origin : set->box().centre();
     lay_out(*set);
     std::vector<double> scratch;
     for (std::size_t k = 0; k < patches.size(); ++k)
@@ -168,7 +163,7 @@ std::size_t PatchSet::surface_count() const { return impl_->surface_count; }
 const BezierPatch& PatchSet::patch(std::size_t index) const { return impl_->patches[index]; }
 const PatchSource& PatchSet::source(std::size_t index) const { return impl_->sources[index]; }
 Vec3 PatchSet::origin() const { return impl_->origin; }
-const Box3& PatchSet::box() const { return impl_->box; }
+Box3 PatchSet::box() const { return impl_->box(); }
 const BlockKinds& PatchSet::blocks() const { return impl_->kinds; }
 std::size_t PatchSet::block_count() const { return impl_->lane_counts.size(); }
 PatchSet::Slot PatchSet::slot(std::size_t index) const { return impl_->slots[index]; }
@@ -194,6 +189,7 @@ Status PatchSet::set_control_points(std::size_t index, std::span<const Vec3> poi
                                     : BezierPatch::polynomial(old.degree_u(), old.degree_v(), points);
     if (!edited) return edited.status();
     std::vector<double> scratch;
+    scratch.reserve((max_degree + 1) * (max_degree + 1) * 4);  // what follows must not fail half-way
     std::swap(impl_->patches[index], *edited);
     if (!impl_->pack(index, scratch)) {
       std::swap(impl_->patches[index], *edited);
@@ -201,8 +197,6 @@ Status PatchSet::set_control_points(std::size_t index, std::span<const Vec3> poi
       return too_large(index);
     }
     impl_->collapsed[index] = impl_->patches[index].collapsed_edges();
-    impl_->box.extend(impl_->patches[index].hull_box());
-    impl_->normal_scale = choose_normal_scale(*impl_);
     ++impl_->revision;
     return {};
   });

@@ -40,10 +40,8 @@ class PatchSet::Impl {
   Coefficients<double> twice;
   BlockKinds kinds;
   Vec3 origin;
-  Box3 box;
   std::size_t surface_count = 0;
   std::uint64_t revision = 0;
-  float normal_scale = 1;                   ///< a power of two; see GridJob::normal_scale
 
   const BlockGroup& group_of_block(std::size_t block) const;
   template <class T>
@@ -54,6 +52,7 @@ class PatchSet::Impl {
       return twice;
     }
   }
+  Box3 box() const;
   bool has(Precision precision, Representation representation) const;
 
   /// Writes a patch into its lane of every kind of block, and into the unused lanes that repeat it.

@@ -75,7 +75,6 @@ kernel::GridJob<T> block_job(const PatchSet::Impl& set, const GridPlan::Impl& pl
     job.offset[1] = set.origin.y;
     job.offset[2] = set.origin.z;
   }
-  job.normal_scale = static_cast<T>(set.normal_scale);
   return job;
 }
 

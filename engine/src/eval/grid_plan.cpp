@@ -53,6 +53,16 @@ Status check_parameters(std::span<const double> parameters, const char* directio
   return {};
 }
 
+/// Records, values and bytes of every output must be countable.
+Status check_size(const PatchSet& set, std::size_t count_u, std::size_t count_v) {
+  const double bytes = static_cast<double>(set.block_count()) * PatchSet::lanes * 3 * sizeof(double) * static_cast<double>(count_u) *
+                       static_cast<double>(count_v);
+  if (bytes < 0x1p62) return {};
+  return Status(StatusCode::invalid_argument, "a grid of " + std::to_string(count_u) + " x " + std::to_string(count_v) +
+                                                  " parameters over " + std::to_string(set.patch_count()) +
+                                                  " patches has more points than memory can address");
+}
+
 EdgeMask edges_met(const GridPlan::Impl& plan) {
   EdgeMask edges;
   for (const double u : plan.u) {
@@ -87,6 +97,7 @@ Result<GridPlan> GridPlan::make(const PatchSet& set, std::span<const double> u, 
     const Result<Isa> isa = options.isa ? parse_isa(name(*options.isa)) : default_isa();
     if (!isa) return isa.status();
 
+    if (Status status = check_size(set, u.size(), v.size()); !status.ok()) return status;
     auto plan = std::make_unique<Impl>();
     plan->u.assign(u.begin(), u.end());
     plan->v.assign(v.begin(), v.end());

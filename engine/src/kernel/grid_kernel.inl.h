@@ -70,27 +70,54 @@ inline void divide_by_weight(const typename L::Batch (&point)[4], const typename
   }
 }
 
-/// r_u x r_v / |r_u x r_v| by IEEE square root and division; zero where the cross product is zero.
 template <class L>
-inline void unit_normal(const Sample<L>& sample, typename L::Scalar scale, typename L::Batch (&normal)[3]) {
-  using Batch = typename L::Batch;
-  Batch a[3], b[3];
+inline typename L::Batch largest_component(const typename L::Batch (&a)[3]) {
+  return xsimd::max(xsimd::max(xsimd::abs(a[0]), xsimd::abs(a[1])), xsimd::abs(a[2]));
+}
+
+/// a x b, and its squared length.
+template <class L>
+inline typename L::Batch cross(const typename L::Batch (&a)[3], const typename L::Batch (&b)[3], typename L::Batch (&n)[3]) {
+  n[0] = L::fms(a[1], b[2], a[2] * b[1]);
+  n[1] = L::fms(a[2], b[0], a[0] * b[2]);
+  n[2] = L::fms(a[0], b[1], a[1] * b[0]);
+  return L::fma(n[2], n[2], L::fma(n[1], n[1], n[0] * n[0]));
+}
+
+/// Normals of lanes whose squared length left the range of the numbers: both tangents are divided by their largest component
+/// first. Zero where a tangent is zero, subnormal or infinite, or both are parallel. Other lanes keep what they have, so that
+/// a lane's bits don't depend on its neighbours.
+template <class L>
+void rescaled_normal(const Sample<L>& sample, const typename L::Batch& in_range, typename L::Batch (&normal)[3]) {
+  using Limits = std::numeric_limits<typename L::Scalar>;
+  const auto zero = L::broadcast(0), one = L::broadcast(1);
+  const auto lengths_u = largest_component<L>(sample.du), lengths_v = largest_component<L>(sample.dv);
+  const auto shorter = xsimd::min(lengths_u, lengths_v), longer = xsimd::max(lengths_u, lengths_v);
+  const auto defined = (shorter >= L::broadcast(Limits::min())) & (longer <= L::broadcast(Limits::max()));
+  typename L::Batch a[3], b[3], n[3];
   for (int c = 0; c < 3; ++c) {
-    a[c] = sample.du[c];
-    b[c] = sample.dv[c];
+    a[c] = sample.du[c] / lengths_u;
+    b[c] = sample.dv[c] / lengths_v;
   }
-  if (scale != 1) {
-    for (int c = 0; c < 3; ++c) {
-      a[c] = a[c] * L::broadcast(scale);
-      b[c] = b[c] * L::broadcast(scale);
-    }
+  const auto squared = cross<L>(a, b, n);
+  const auto reciprocal = one / xsimd::sqrt(squared);
+  for (int c = 0; c < 3; ++c) {
+    const auto rescaled = xsimd::select(defined & (squared > zero), n[c] * reciprocal, zero);
+    normal[c] = xsimd::select(in_range > zero, normal[c], rescaled);
   }
-  normal[0] = L::fms(a[1], b[2], a[2] * b[1]);
-  normal[1] = L::fms(a[2], b[0], a[0] * b[2]);
-  normal[2] = L::fms(a[0], b[1], a[1] * b[0]);
-  const Batch squared = L::fma(normal[2], normal[2], L::fma(normal[1], normal[1], normal[0] * normal[0]));
-  const Batch reciprocal = L::where_positive(squared, L::broadcast(1) / xsimd::sqrt(squared));
+}
+
+/// r_u x r_v / |r_u x r_v| by IEEE square root and division; zero where it is not defined.
+template <class L>
+inline void unit_normal(const Sample<L>& sample, typename L::Batch (&normal)[3]) {
+  constexpr bool is_float = sizeof(typename L::Scalar) == 4;
+  const auto lowest = L::broadcast(is_float ? 0x1p-80f : static_cast<typename L::Scalar>(0x1p-600));
+  const auto highest = L::broadcast(is_float ? 0x1p100f : static_cast<typename L::Scalar>(0x1p600));
+  const auto squared = cross<L>(sample.du, sample.dv, normal);
+  const auto reciprocal = L::broadcast(1) / xsimd::sqrt(squared);
   for (int c = 0; c < 3; ++c) normal[c] = normal[c] * reciprocal;
+  const auto in_range = (squared >= lowest) & (squared <= highest);
+  if (!xsimd::all(in_range)) rescaled_normal<L>(sample, xsimd::select(in_range, L::broadcast(1), L::broadcast(0)), normal);
 }
 
 template <class L, bool Streaming>
@@ -148,7 +175,7 @@ inline void store_sample(const GridJob<typename L::Scalar>& job, std::ptrdiff_t 
     if (job.dv) store<L, Streaming>(job.dv + out, sample.dv);
     if (job.normal) {
       typename L::Batch normal[3];
-      unit_normal<L>(sample, job.normal_scale, normal);
+      unit_normal<L>(sample, normal);
       store<L, Streaming>(job.normal + out, normal);
     }
   }

@@ -3,6 +3,7 @@
 #include <immintrin.h>
 
 #include <cstddef>
+#include <limits>
 #include <xsimd/xsimd.hpp>
 
 #include "kernel/kernel_table.h"
@@ -29,9 +30,6 @@ struct Lanes<float> {
   static Batch fma(Batch a, Batch b, Batch c) { return _mm256_fmadd_ps(a, b, c); }    // a b + c
   static Batch fms(Batch a, Batch b, Batch c) { return _mm256_fmsub_ps(a, b, c); }    // a b - c
   static Batch fnma(Batch a, Batch b, Batch c) { return _mm256_fnmadd_ps(a, b, c); }  // c - a b
-  static Batch where_positive(Batch test, Batch a) {
-    return _mm256_and_ps(_mm256_cmp_ps(test, _mm256_setzero_ps(), _CMP_GT_OQ), a);
-  }
   static void store_first(float* p, Batch a, int count) {
     if (count == width) {
       _mm256_storeu_ps(p, a);
@@ -71,9 +69,6 @@ struct Lanes<double> {
   static Batch fma(Batch a, Batch b, Batch c) { return _mm256_fmadd_pd(a, b, c); }
   static Batch fms(Batch a, Batch b, Batch c) { return _mm256_fmsub_pd(a, b, c); }
   static Batch fnma(Batch a, Batch b, Batch c) { return _mm256_fnmadd_pd(a, b, c); }
-  static Batch where_positive(Batch test, Batch a) {
-    return _mm256_and_pd(_mm256_cmp_pd(test, _mm256_setzero_pd(), _CMP_GT_OQ), a);
-  }
   static void store_first(double* p, Batch a, int count) {
     if (count == width) {
       _mm256_storeu_pd(p, a);

@@ -3,6 +3,7 @@
 #include <immintrin.h>
 
 #include <cstddef>
+#include <limits>
 #include <xsimd/xsimd.hpp>
 
 #include "kernel/kernel_table.h"
@@ -31,9 +32,6 @@ struct Lanes<float> {
   static Batch fma(Batch a, Batch b, Batch c) { return _mm512_fmadd_ps(a, b, c); }    // a b + c
   static Batch fms(Batch a, Batch b, Batch c) { return _mm512_fmsub_ps(a, b, c); }    // a b - c
   static Batch fnma(Batch a, Batch b, Batch c) { return _mm512_fnmadd_ps(a, b, c); }  // c - a b
-  static Batch where_positive(Batch test, Batch a) {
-    return _mm512_maskz_mov_ps(_mm512_cmp_ps_mask(test, _mm512_setzero_ps(), _CMP_GT_OQ), a);
-  }
   static void store_first(float* p, Batch a, int count) {
     if (count == width) {
       _mm512_storeu_ps(p, a);
@@ -77,9 +75,6 @@ struct Lanes<double> {
   static Batch fma(Batch a, Batch b, Batch c) { return _mm512_fmadd_pd(a, b, c); }
   static Batch fms(Batch a, Batch b, Batch c) { return _mm512_fmsub_pd(a, b, c); }
   static Batch fnma(Batch a, Batch b, Batch c) { return _mm512_fnmadd_pd(a, b, c); }
-  static Batch where_positive(Batch test, Batch a) {
-    return _mm512_maskz_mov_pd(_mm512_cmp_pd_mask(test, _mm512_setzero_pd(), _CMP_GT_OQ), a);
-  }
   static void store_first(double* p, Batch a, int count) {
     if (count == width) {
       _mm512_storeu_pd(p, a);

@@ -4,6 +4,7 @@
 #include <emmintrin.h>
 
 #include <cstddef>
+#include <limits>
 #include <xsimd/xsimd.hpp>
 
 #include "kernel/kernel_table.h"
@@ -29,7 +30,6 @@ struct Lanes<float> {
   static Batch fma(Batch a, Batch b, Batch c) { return a * b + c; }
   static Batch fms(Batch a, Batch b, Batch c) { return a * b - c; }
   static Batch fnma(Batch a, Batch b, Batch c) { return c - a * b; }
-  static Batch where_positive(Batch test, Batch a) { return _mm_and_ps(_mm_cmpgt_ps(test, _mm_setzero_ps()), a); }
   static void store_first(float* p, Batch a, int count) {
     if (count == width) {
       _mm_storeu_ps(p, a);
@@ -61,7 +61,6 @@ struct Lanes<double> {
   static Batch fma(Batch a, Batch b, Batch c) { return a * b + c; }
   static Batch fms(Batch a, Batch b, Batch c) { return a * b - c; }
   static Batch fnma(Batch a, Batch b, Batch c) { return c - a * b; }
-  static Batch where_positive(Batch test, Batch a) { return _mm_and_pd(_mm_cmpgt_pd(test, _mm_setzero_pd()), a); }
   static void store_first(double* p, Batch a, int count) {
     if (count == width) {
       _mm_storeu_pd(p, a);

@@ -29,7 +29,6 @@ struct GridJob {
   T* normal = nullptr;
   std::ptrdiff_t sample_step = 3 * block_lanes;
   T offset[3] = {0, 0, 0};       ///< added to positions (doubles only: floats stay relative to the origin)
-  T normal_scale = 1;            ///< a power of two that keeps the squared length of r_u x r_v within range
   bool streaming = false;        ///< non-temporal stores
 };
 

@@ -136,14 +136,20 @@ Result<EmbreeScene> EmbreeScene::make() {
   return EmbreeScene(std::move(state));
 }
 
-Status EmbreeScene::build(const GridVertices& vertices, const Execution& execution) {
-  State& state = *state_;
-  state.scene.reset();
+Status EmbreeScene::check_size(const GridVertices& vertices) {
   const std::size_t per_grid = static_cast<std::size_t>(vertices.height) * static_cast<std::size_t>(vertices.width);
   if (vertices.height > max_vertices_a_side || vertices.width > max_vertices_a_side ||
       vertices.grids > std::numeric_limits<std::uint32_t>::max() / per_grid)
     return Status(StatusCode::unsupported, std::to_string(vertices.grids) + " grids of " + std::to_string(per_grid) +
                                                " vertices are more than the 2^32 vertices of one ray scene");
+  return {};
+}
+
+Status EmbreeScene::build(const GridVertices& vertices, const Execution& execution) {
+  State& state = *state_;
+  state.scene.reset();
+  if (Status status = check_size(vertices); !status.ok()) return status;
+  const std::size_t per_grid = static_cast<std::size_t>(vertices.height) * static_cast<std::size_t>(vertices.width);
   state.grids.resize(vertices.grids);
   for (std::size_t k = 0; k < vertices.grids; ++k) {
     state.grids[k] = {static_cast<unsigned>(k * per_grid), static_cast<unsigned>(vertices.width),

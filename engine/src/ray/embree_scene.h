@@ -64,6 +64,8 @@ class EmbreeScene {
   EmbreeScene& operator=(EmbreeScene&&) noexcept;
   ~EmbreeScene();
 
+  /// Whether that many vertices fit one scene. Errors: unsupported.
+  static Status check_size(const GridVertices& vertices);
   /// Builds the BVH, in the caller's arena; what was built before is dropped. `vertices` must stay in place and
   /// unchanged while the scene is used. On errors the scene is empty. Errors: unsupported (too many vertices),
   /// cancelled, Embree's own.

@@ -30,20 +30,22 @@ double scalar_norm(double a) { return std::abs(a); }
 double facet_deviation(const BezierPatch& patch, int rate_u, int rate_v) {
   const int m = patch.degree_u(), n = patch.degree_v();
   const double h = 1.0 / rate_u, k = 1.0 / rate_v;
+  const Box3 hull = patch.hull_box();
+  const double farthest = hull.diagonal();  // facets and surface both lie in the hull
   if (!patch.is_rational()) {
-    return box_rule(
+    const double bound = box_rule(
         m, n, h, k, [&](int i, int j) { return patch.point(i, j); }, vector_norm);
+    return std::min(bound, farthest);
   }
   // With the bounds e_P of w (P - c) and e_w of w, about the hull's centre c with radius R, the quotient is off by at
   // most (e_P + R e_w) / min w.
-  const Box3 hull = patch.hull_box();
   const Vec3 centre = hull.centre();
   const double points = box_rule(
       m, n, h, k, [&](int i, int j) { return patch.weight(i, j) * (patch.point(i, j) - centre); }, vector_norm);
   const double weights = box_rule(
       m, n, h, k, [&](int i, int j) { return patch.weight(i, j); }, scalar_norm);
   const double lightest = *std::min_element(patch.weights().begin(), patch.weights().end());
-  return (points + 0.5 * hull.diagonal() * weights) / lightest;
+  return std::min((points + 0.5 * farthest * weights) / lightest, farthest);
 }
 
 }  // namespace tessera

@@ -83,6 +83,7 @@ class RayScene::Impl {
   RaySceneOptions options_;
   AlignedVector<float> positions_;  // `[patch][iu][iv]`, borrowed by scene_
   Adjacency adjacency_;
+  Box3 set_box_;         // in the model's coordinates
   Box3 box_;  // relative to the origin, a little larger than the set's
   double size_ = 0;
   double margin_ = 0;
@@ -104,7 +105,7 @@ void RayScene::Impl::measure() {
     deviation = std::max(deviation, facet_deviation(set_.patch(k), options_.rate, options_.rate));
   }
   const Vec3 origin = set_.origin();
-  box_ = {set_.box().lower - origin, set_.box().upper - origin};
+  box_ = {set_box_.lower - origin, set_box_.upper - origin};
   const double rounding = float_rounding * std::max(max_abs(box_.lower), max_abs(box_.upper));
   box_.lower += {-rounding, -rounding, -rounding};
   box_.upper += {rounding, rounding, rounding};
@@ -113,15 +114,18 @@ void RayScene::Impl::measure() {
 
 Status RayScene::Impl::build(const Execution& execution) {
   ready_ = false;
-  size_ = set_.box().diagonal();
-  const double reach = std::max(max_abs(set_.box().lower - set_.origin()), max_abs(set_.box().upper - set_.origin()));
+  set_box_ = set_.box();
+  size_ = set_box_.diagonal();
+  const double reach = std::max(max_abs(set_box_.lower - set_.origin()), max_abs(set_box_.upper - set_.origin()));
   if (!(size_ >= smallest_size && reach <= largest_size)) {
     return Status(StatusCode::unsupported, "a ray scene holds models of a size from 1e-9 to 1e12: scale the model");
   }
+  GridVertices vertices{nullptr, set_.patch_count(), options_.rate + 1, options_.rate + 1};
+  if (Status status = EmbreeScene::check_size(vertices); !status.ok()) return status;
   // Until the BVH stands again nothing may trace in it, so a failure on the way leaves the scene stale.
   if (Status status = evaluate_grids(execution); !status.ok()) return status;
   measure();
-  const GridVertices vertices{positions_.data(), set_.patch_count(), options_.rate + 1, options_.rate + 1};
+  vertices.data = positions_.data();
   if (Status status = scene_.build(vertices, execution); !status.ok()) return status;
   revision_ = set_.revision();
   ready_ = true;
@@ -183,7 +187,7 @@ Hit RayScene::Impl::resolve(const Ray& ray, const RaySegment& segment, FacetHit 
 }
 
 bool RayScene::Impl::accept(const Ray& ray, const RaySegment& segment, const FacetHit& facet, Hit& hit) const {
-  const Refiner refiner(set_, adjacency_, options_.rate);
+  const Refiner refiner(set_, adjacency_, set_box_, options_.rate);
   const double facet_u = std::clamp(facet.u, 0.0f, 1.0f), facet_v = std::clamp(facet.v, 0.0f, 1.0f);
   SurfaceRoot root;
   const bool refined = options_.refine && refiner.refine(segment, facet.grid, facet_u, facet_v, root);

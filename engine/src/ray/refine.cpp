@@ -73,9 +73,8 @@ class Refiner::Frontier {
   std::size_t count_ = 0, next_ = 0;
 };
 
-Refiner::Refiner(const SetView& set, const Adjacency& adjacency, int rate)
+Refiner::Refiner(const SetView& set, const Adjacency& adjacency, const Box3& box, int rate)
     : set_(set), adjacency_(adjacency), cells_(leash_cells / rate) {
-  const Box3& box = set.box();
   // Positions round by their absolute size. The tolerance is far above that for models near zero.
   rounding_ = 4 * std::numeric_limits<double>::epsilon() * std::max(max_abs(box.lower), max_abs(box.upper));
   tolerance_ = 1e-10 * box.diagonal() + 16 * rounding_;

@@ -22,7 +22,8 @@ class Refiner {
  public:
   /// `rate`: grid cells a patch and direction, which bound how far a root may lie from its facet. The adjacency must
   /// outlive this.
-  Refiner(const SetView& set, const Adjacency& adjacency, int rate);
+  /// `box`: the set's.
+  Refiner(const SetView& set, const Adjacency& adjacency, const Box3& box, int rate);
 
   /// The root near (u,v) on `patch` or, where it lies over a seam, on the patches behind. False if there is none within
   /// a few grid cells: the ray grazes the surface, or the surface is too crooked for its grid.

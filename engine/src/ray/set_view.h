@@ -15,7 +15,7 @@ class SetView {
   const PatchSource& source(std::size_t index) const { return set_->sources[index]; }
   EdgeMask collapsed_edges(std::size_t index) const { return set_->collapsed[index]; }
   Vec3 origin() const { return set_->origin; }
-  const Box3& box() const { return set_->box; }
+  Box3 box() const { return set_->box(); }  ///< looks at every control point
   std::uint64_t revision() const { return set_->revision; }
   const PatchSet::Impl& impl() const { return *set_; }
 
