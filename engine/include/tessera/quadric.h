@@ -1,0 +1,160 @@
+#pragma once
+// Quadrics: classification, canonical frame, pieces between ranges of the canonical parameters, and ray intersection.
+// The conversion of a piece needs tessera/convert.h as well.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "tessera/bezier_patch.h"
+#include "tessera/domain.h"
+#include "tessera/status.h"
+#include "tessera/vec.h"
+
+namespace tessera {
+
+class PatchGrid;
+
+/// a x^2 + b y^2 + c z^2 + 2 d xy + 2 e yz + 2 f xz + 2 g x + 2 h y + 2 j z + k = 0, that is P Q P^T = 0 with
+/// P = [x y z 1] and Q = [[a,d,f,g],[d,b,e,h],[f,e,c,j],[g,h,j,k]].
+struct QuadricCoefficients {
+  double a = 0, b = 0, c = 0, d = 0, e = 0, f = 0, g = 0, h = 0, j = 0, k = 0;
+};
+
+/// What a quadric is, with its equation in the canonical frame and the canonical parametrisation of its surface, where
+/// a, b, c = Quadric::size(), x2 is x squared, and s = 1 on sheet 0, -1 on sheet 1. Angles are in radians.
+enum class QuadricKind : std::uint8_t {
+  ellipsoid,               ///< x2/a2 + y2/b2 + z2/c2 = 1: (a cos u cos v, b sin u cos v, c sin v), |v| <= pi/2
+  hyperboloid_one_sheet,   ///< x2/a2 + y2/b2 - z2/c2 = 1: (a cos u cosh v, b sin u cosh v, c sinh v)
+  hyperboloid_two_sheets,  ///< -x2/a2 - y2/b2 + z2/c2 = 1: (a cos u sinh v, b sin u sinh v, s c cosh v)
+  elliptic_cone,           ///< x2/a2 + y2/b2 = z2: (a v cos u, b v sin u, v); c = 1
+  elliptic_paraboloid,     ///< x2/a2 + y2/b2 = z: (a v cos u, b v sin u, v^2); c = 1
+  hyperbolic_paraboloid,   ///< x2/a2 - y2/b2 = z: (a u, b v, u^2 - v^2); c = 1
+  elliptic_cylinder,       ///< x2/a2 + y2/b2 = 1: (a cos u, b sin u, v); c = 1
+  hyperbolic_cylinder,     ///< x2/a2 - y2/b2 = 1: (s a cosh u, b sinh u, v); c = 1
+  parabolic_cylinder,      ///< x2/a2 = z: (a u, v, u^2); b = c = 1
+  intersecting_planes,     ///< x2/a2 = y2/b2, a2 + b2 = 1: (a u, s b u, v); c = 1
+  parallel_planes,         ///< x2 = a2: (s a, u, v); b = c = 1
+  coincident_planes,       ///< x2 = 0: (0, u, v)
+  plane,                   ///< x = 0, from a linear equation: (0, u, v)
+  line,                    ///< imaginary intersecting planes, x2/a2 + y2/b2 = 0: the z axis
+  point,                   ///< an imaginary cone, x2/a2 + y2/b2 + z2/c2 = 0: the origin
+  imaginary_ellipsoid,     ///< x2/a2 + y2/b2 + z2/c2 = -1: empty
+  imaginary_cylinder,      ///< x2/a2 + y2/b2 = -1: empty
+  imaginary_planes,        ///< x2 = -a2: empty
+  empty,                   ///< k = 0 with k other than 0
+};
+std::string_view name(QuadricKind kind);
+/// Whether the real points of the kind form a surface.
+bool is_surface(QuadricKind kind);
+/// Two for two sheets, two planes and a hyperbolic cylinder, else one; 0 where there is no surface.
+int sheet_count(QuadricKind kind);
+
+struct QuadricOptions {
+  /// An eigenvalue of the quadratic part is 0 below this share of the largest one; the linear part along null
+  /// directions below this share of the largest of quadratic, linear and constant part at length L; the constant, taken
+  /// at the centre, below this share of the terms that it is the sum of. Units of length and a common factor of the
+  /// coefficients don't matter.
+  double tolerance = 1e-13;
+  /// L, the length at which terms of different degree are compared. 0: the largest at which the quadratic part equals
+  /// the linear or the constant one. Otherwise a part that is below `tolerance` of the largest at this length is 0
+  /// altogether: a plane with a trace of curvature needs it.
+  double length = 0;
+};
+
+/// A point of the model is origin + x axes[0] + y axes[1] + z axes[2]; the axes are a right-handed rotation.
+/// Where several frames fit, the axes lie as near to the model's own as can be.
+struct QuadricFrame {
+  Vec3 origin;  ///< centre or vertex; where there are many, the one nearest to zero
+  std::array<Vec3, 3> axes{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+
+  Vec3 vector(const Vec3& p) const { return p.x * axes[0] + p.y * axes[1] + p.z * axes[2]; }
+  Vec3 point(const Vec3& p) const { return origin + vector(p); }
+  Vec3 local_vector(const Vec3& d) const { return {dot(d, axes[0]), dot(d, axes[1]), dot(d, axes[2])}; }
+  Vec3 local(const Vec3& p) const { return local_vector(p - origin); }
+};
+
+/// A classified quadric. Immutable but for assignment.
+class Quadric {
+ public:
+  /// Sizes and origin are right to some units of 2^-52 times the ratio of the largest eigenvalue to their own.
+  /// Errors: non_finite (index = the coefficient, 0..9 for a..k; or the canonical form overflows), invalid_argument
+  /// (all coefficients are 0; tolerance not in (0, 0.01]; length negative).
+  static Result<Quadric> make(const QuadricCoefficients& coefficients, const QuadricOptions& options = {});
+
+  const QuadricCoefficients& coefficients() const { return coefficients_; }
+  QuadricKind kind() const { return kind_; }
+  const QuadricFrame& frame() const { return frame_; }
+  const Vec3& size() const { return size_; }  ///< a, b, c of QuadricKind; 1 where the kind has none
+
+  /// The canonical equation as squares . (x2, y2, z2) + linear . (x, y, z) + constant = 0.
+  struct Diagonal {
+    Vec3 squares, linear;
+    double constant = 0;
+  };
+  Diagonal diagonal() const;
+
+ private:
+  Quadric() = default;
+  QuadricCoefficients coefficients_;
+  QuadricKind kind_ = QuadricKind::empty;
+  QuadricFrame frame_;
+  Vec3 size_{1, 1, 1};
+};
+
+/// Where a ray meets a quadric.
+struct QuadricHits {
+  int count = 0;              ///< how many different t, 0 to 2
+  std::array<double, 2> t{};  ///< ascending; points are origin + t direction, t of either sign
+  bool tangent = false;       ///< two roots in one: the discriminant is 0 within its own rounding
+  bool contained = false;     ///< the whole line lies in the surface within rounding; count is then 0
+};
+/// All t on the line. Nothing for a zero or non-finite ray. Each t is a root of a quadratic that is within a few units
+/// of rounding of the true one about the line's point nearest to the centre (no cancellation for far origins); near
+/// tangency t itself has half the digits. A hit whose t overflows is left out.
+QuadricHits intersect(const Quadric& quadric, const Vec3& origin, const Vec3& direction);
+
+/// The canonical parameters of a point, and its sheet.
+struct QuadricParameters {
+  double u = 0, v = 0;
+  int sheet = 0;
+};
+
+/// A surface between ranges of the canonical parameters.
+class QuadricPiece {
+ public:
+  /// Angles u span at most 2 pi (to within 4e-15; then the piece closes) and |u| <= 100; latitudes of an ellipsoid lie
+  /// within [-pi/2, pi/2], arguments of cosh within [-300, 300]. Errors: unsupported (the kind has no surface),
+  /// non_finite, invalid_argument (a range that is empty, reversed or outside these limits; no such sheet).
+  static Result<QuadricPiece> make(const Quadric& quadric, const Domain& range, int sheet = 0);
+
+  const Quadric& quadric() const { return quadric_; }
+  const Domain& range() const { return range_; }
+  int sheet() const { return sheet_; }
+  /// Parameters of a point of the surface, if it lies in the piece; its borders have a margin of 1e-12 of the ranges.
+  std::optional<QuadricParameters> locate(const Vec3& point) const;
+
+ private:
+  explicit QuadricPiece(const Quadric& quadric) : quadric_(quadric) {}
+  Quadric quadric_;
+  Domain range_;
+  int sheet_ = 0;
+};
+
+/// Position and derivatives by the canonical parameters: the reference evaluator.
+SurfaceJet evaluate_jet(const QuadricPiece& piece, double u, double v);
+/// Those hits of the whole quadric that lie in the piece; contained lines are not cut.
+QuadricHits intersect(const QuadricPiece& piece, const Vec3& origin, const Vec3& direction);
+
+/// Rational patches, exact: degree 2 along circles, hyperbolas and parabolas, degree 1 along straight lines. Angular
+/// ranges are split into arcs of at most 90 degrees, ranges of cosh into pieces of at most 2. Breakpoints are canonical
+/// parameters; between two of them the patch covers the same strip at another pace, which grid_parameters() undoes.
+Result<PatchGrid> to_bezier(const QuadricPiece& piece);
+/// The canonical parameters of the point that to_bezier(piece) has at its own parameters (u, v) in the range: on an arc
+/// about m of half-width h, m + 2 atan(tan(h/2) s) with s from -1 to 1 (atanh, tanh for cosh); else u, v themselves.
+QuadricParameters canonical_parameters(const QuadricPiece& piece, double u, double v);
+/// The inverse: the parameters in the grid of the point with these canonical ones.
+QuadricParameters grid_parameters(const QuadricPiece& piece, double u, double v);
+
+}  // namespace tessera

@@ -1,0 +1,54 @@
+#pragma once
+// Rows of control points counted from an edge of a patch.
+
+#include <limits>
+#include <string>
+
+#include "tessera/bezier_patch.h"
+#include "tessera/domain.h"
+#include "tessera/join.h"
+
+namespace tessera {
+
+inline bool crosses_u(Edge edge) { return edge == Edge::u0 || edge == Edge::u1; }
+inline bool is_edge(Edge edge) { return crosses_u(edge) || edge == Edge::v0 || edge == Edge::v1; }
+
+/// Degrees and places seen from an edge: row 0 is the border, k runs along it (with the parameter, or against it).
+struct EdgeView {
+  EdgeView(int m, int n, Edge seen_from, bool against)
+      : edge(seen_from),
+        reversed(against),
+        across(crosses_u(seen_from) ? m : n),
+        along(crosses_u(seen_from) ? n : m),
+        degree_v(n) {}
+
+  std::size_t index(int row, int k) const {
+    const int place = reversed ? along - k : k;
+    const int depth = edge == Edge::u1 || edge == Edge::v1 ? across - row : row;
+    return static_cast<std::size_t>(crosses_u(edge) ? depth * (degree_v + 1) + place : place * (degree_v + 1) + depth);
+  }
+
+  Edge edge;
+  bool reversed;
+  int across, along, degree_v;
+};
+inline EdgeView edge_view(const BezierPatch& patch, Edge edge, bool reversed) {
+  return {patch.degree_u(), patch.degree_v(), edge, reversed};
+}
+
+/// The domain's length in the direction that crosses the edge.
+inline double width_across(const JoinSide& side) {
+  return crosses_u(side.edge) ? side.domain.u1 - side.domain.u0 : side.domain.v1 - side.domain.v0;
+}
+
+inline Status check_side(const JoinSide& side, const char* which) {
+  if (!is_edge(side.edge))
+    return {StatusCode::invalid_argument, std::string("the edge of patch ") + which + " is none of the four"};
+  const double width = side.domain.u1 - side.domain.u0, height = side.domain.v1 - side.domain.v0;
+  if (width > 0 && height > 0 && width < std::numeric_limits<double>::infinity() &&
+      height < std::numeric_limits<double>::infinity())
+    return {};
+  return {StatusCode::invalid_argument, std::string("the domain of patch ") + which + " is empty or not finite"};
+}
+
+}  // namespace tessera

@@ -1,0 +1,67 @@
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "base/guard.h"
+#include "basis/bernstein.h"
+#include "basis/double_double.h"
+#include "tessera/convert.h"
+#include "tessera/explicit_polynomial.h"
+
+// Control value k of degree n on [a, b] is the polar form at n - k times a and k times b; that of t^i is the elementary
+// symmetric polynomial e_i of these arguments over C(n, i) (Ramshaw, Blossoms are polar forms, 1989).
+
+namespace tessera {
+namespace {
+
+using PolarForms = std::array<DoubleDouble, max_degree + 1>;
+
+/// Polar forms of t^0 .. t^degree for control value k.
+PolarForms polar_forms(int degree, int k, double a, double b) {
+  PolarForms e{};
+  e[0] = {1, 0};
+  for (int argument = 0; argument < degree; ++argument) {
+    const double t = argument < degree - k ? a : b;
+    for (int i = argument + 1; i > 0; --i) {
+      const auto at = static_cast<std::size_t>(i);
+      e[at] = e[at] + e[at - 1] * t;
+    }
+  }
+  for (int i = 0; i <= degree; ++i)
+    e[static_cast<std::size_t>(i)] = e[static_cast<std::size_t>(i)] / binomial(degree, i);
+  return e;
+}
+
+double height(const ExplicitPolynomial& surface, const PolarForms& x, const PolarForms& y) {
+  DoubleDouble sum;
+  for (int i = 0; i <= surface.degree_x(); ++i) {
+    DoubleDouble row;
+    for (int j = 0; j <= surface.degree_y(); ++j)
+      row = row + y[static_cast<std::size_t>(j)] * surface.coefficient(i, j);
+    sum = sum + row * x[static_cast<std::size_t>(i)];
+  }
+  return sum.rounded();
+}
+
+}  // namespace
+
+Result<PatchGrid> to_bezier(const ExplicitPolynomial& surface) {
+  return guarded([&]() -> Result<PatchGrid> {
+    const Domain& r = surface.rectangle();
+    const int m = std::max(1, surface.degree_x()), n = std::max(1, surface.degree_y());
+    std::vector<Vec3> points;
+    for (int i = 0; i <= m; ++i) {
+      const PolarForms x = polar_forms(m, i, r.u0, r.u1);
+      for (int j = 0; j <= n; ++j)
+        points.push_back(
+            {r.u_at(double(i) / m), r.v_at(double(j) / n), height(surface, x, polar_forms(n, j, r.v0, r.v1))});
+    }
+    Result<BezierPatch> patch = BezierPatch::polynomial(m, n, points);
+    if (!patch) return patch.status();
+    std::vector<BezierPatch> patches;
+    patches.push_back(*std::move(patch));
+    return PatchGrid::make({r.u0, r.u1}, {r.v0, r.v1}, std::move(patches));
+  });
+}
+
+}  // namespace tessera

@@ -1,0 +1,94 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "base/guard.h"
+#include "basis/bernstein_net.h"
+#include "convert/edge_rows.h"
+#include "tessera/join.h"
+
+namespace tessera {
+namespace {
+
+/// One row of control points along an edge, with weights.
+struct Row {
+  std::vector<Vec3> points;
+  std::vector<double> weights;
+};
+
+/// A row raised to `degree` along the edge, in homogeneous form where the patch is rational.
+Row row_of(const BezierPatch& patch, const EdgeView& view, int row, int degree) {
+  BernsteinNet<Vec3> points(view.along, 0);
+  BernsteinNet<double> weights(view.along, 0);
+  for (int k = 0; k <= view.along; ++k) {
+    weights.at(k, 0) = patch.is_rational() ? patch.weights()[view.index(row, k)] : 1;
+    points.at(k, 0) = patch.points()[view.index(row, k)];
+  }
+  if (degree == view.along) return {points.values, weights.values};
+  if (!patch.is_rational())
+    return {elevated(points, degree, 0).values, std::vector<double>(static_cast<std::size_t>(degree) + 1, 1.0)};
+  for (int k = 0; k <= view.along; ++k) points.at(k, 0) = weights.at(k, 0) * points.at(k, 0);
+  Row result{elevated(points, degree, 0).values, elevated(weights, degree, 0).values};
+  for (std::size_t k = 0; k < result.points.size(); ++k) result.points[k] = (1 / result.weights[k]) * result.points[k];
+  return result;
+}
+
+/// The row that continues from `before` through `border`: border + factor (border - before), homogeneous.
+Result<Row> continued(const Row& before, const Row& border, double factor, bool rational) {
+  Row next = border;
+  for (std::size_t k = 0; k < next.points.size(); ++k) {
+    if (!rational) {
+      next.points[k] = border.points[k] + factor * (border.points[k] - before.points[k]);
+      continue;
+    }
+    const double w = border.weights[k], v = before.weights[k], weight = w + factor * (w - v);
+    if (!(weight > 0))
+      return Status(StatusCode::invalid_weight,
+                    "the join would need the weight " + std::to_string(weight) +
+                        " in its first row inside the patch, at " + std::to_string(k) +
+                        " along the edge: k is too small",
+                    static_cast<std::ptrdiff_t>(k));
+    // (w P + factor (w P - v B)) / weight, about P.
+    next.points[k] = border.points[k] + (factor * v / weight) * (border.points[k] - before.points[k]);
+    next.weights[k] = weight;
+  }
+  return next;
+}
+
+Result<BezierPatch> joined(const JoinSide& p, const JoinSide& q, double k, bool reversed) {
+  const EdgeView from = edge_view(p.patch, p.edge, false), to = edge_view(q.patch, q.edge, reversed);
+  const int along = std::max(from.along, to.along);
+  const double factor = (from.across * width_across(q)) / (k * to.across * width_across(p));
+  const bool rational = p.patch.is_rational() || q.patch.is_rational();
+  const Row border = row_of(p.patch, from, 0, along);
+  Result<Row> inside = continued(row_of(p.patch, from, 1, along), border, factor, p.patch.is_rational());
+  if (!inside) return inside.status();
+
+  const int m = crosses_u(q.edge) ? to.across : along, n = crosses_u(q.edge) ? along : to.across;
+  const EdgeView target(m, n, q.edge, reversed);
+  std::vector<Vec3> points(static_cast<std::size_t>((m + 1) * (n + 1)));
+  std::vector<double> weights(points.size());
+  for (int depth = 0; depth <= to.across; ++depth) {
+    const Row row = depth == 0 ? border : depth == 1 ? *inside : row_of(q.patch, to, depth, along);
+    for (int i = 0; i <= along; ++i) {
+      points[target.index(depth, i)] = row.points[static_cast<std::size_t>(i)];
+      weights[target.index(depth, i)] = row.weights[static_cast<std::size_t>(i)];
+    }
+  }
+  return rational ? BezierPatch::rational(m, n, points, weights) : BezierPatch::polynomial(m, n, points);
+}
+
+}  // namespace
+
+Result<BezierPatch> make_join(const JoinSide& p, const JoinSide& q, double k, bool reversed) {
+  return guarded([&]() -> Result<BezierPatch> {
+    if (Status status = check_side(p, "p"); !status.ok()) return status;
+    if (Status status = check_side(q, "q"); !status.ok()) return status;
+    if (!(k > 0) || !std::isfinite(k))
+      return Status(StatusCode::invalid_argument, "the factor k of a join must be finite and greater than 0");
+    return joined(p, q, k, reversed);
+  });
+}
+
+}  // namespace tessera
