@@ -3,7 +3,7 @@
 #   xsimd             libxsimd-dev 8.1            the core: SIMD batches (engine/src/kernel alone; headers only)
 #   Embree            libembree-dev 3.13          tessera::ray (engine/src/ray alone)
 #   CLI11             libcli11-dev 2.1            the command line
-#   nlohmann-json     nlohmann-json3-dev 3.11     the command line: --json
+#   nlohmann-json     nlohmann-json3-dev 3.11     the command line: --json; tests: values of peers
 #   libpng            libpng-dev 1.6              the command line: pictures
 #   GoogleTest        libgtest-dev 1.12           tests (and libgmock-dev: its matchers)
 #   Google Benchmark  libbenchmark-dev 1.7        benchmarks
@@ -21,6 +21,7 @@ if(TESSERA_BUILD_TOOLS)
 endif()
 if(TESSERA_BUILD_TESTS)
   find_package(GTest REQUIRED)
+  find_package(nlohmann_json 3 REQUIRED)
 endif()
 if(TESSERA_BUILD_BENCH)
   find_package(benchmark REQUIRED)

@@ -27,6 +27,10 @@ class BezierPatch {
   /// (index = the offending weight).
   static Result<BezierPatch> rational(int degree_u, int degree_v, std::span<const Vec3> points,
                                       std::span<const double> weights);
+  /// The same for a piece of a surface that is rational as a whole: the weights stay even if they are all equal here, so
+  /// that the pieces at a shared border are computed alike.
+  static Result<BezierPatch> rational_piece(int degree_u, int degree_v, std::span<const Vec3> points,
+                                            std::span<const double> weights);
 
   int degree_u() const { return degree_u_; }
   int degree_v() const { return degree_v_; }

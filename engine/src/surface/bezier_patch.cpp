@@ -1,36 +1,16 @@
 #include "tessera/bezier_patch.h"
 
-#include <array>
-#include <charconv>
 #include <string>
 
 #include "base/guard.h"
+#include "surface/validate.h"
 
 namespace tessera {
 namespace {
 
-/// Weights below this share of the largest one underflow in products and ratios of them.
-constexpr double smallest_weight_ratio = 1e-100;
-
-std::string text(double value) {
-  std::array<char, 32> digits;
-  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
-}
-
-std::string place(std::size_t index, int degree_v) {
-  const std::size_t row = static_cast<std::size_t>(degree_v) + 1;
-  return "[" + std::to_string(index / row) + "][" + std::to_string(index % row) + "]";
-}
-
 std::string size_text(int degree_u, int degree_v) {
   return "a patch of degree (" + std::to_string(degree_u) + ", " + std::to_string(degree_v) + ") has " +
          std::to_string(degree_u + 1) + " x " + std::to_string(degree_v + 1);
-}
-
-Status check_degree(int degree, const char* direction) {
-  if (degree >= 1 && degree <= max_degree) return {};
-  return {StatusCode::unsupported_degree, std::string("degree ") + direction + " is " + std::to_string(degree) +
-                                              ", it must be 1 to " + std::to_string(max_degree)};
 }
 
 Status check_count(int degree_u, int degree_v, std::size_t count, const char* what) {
@@ -39,47 +19,15 @@ Status check_count(int degree_u, int degree_v, std::size_t count, const char* wh
           size_text(degree_u, degree_v) + " " + what + ", " + std::to_string(count) + " were given"};
 }
 
-Status check_points(int degree_v, std::span<const Vec3> points) {
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    const Vec3& p = points[k];
-    if (is_finite(p)) continue;
-    return {StatusCode::non_finite,
-            "control point " + place(k, degree_v) + " is (" + text(p.x) + ", " + text(p.y) + ", " + text(p.z) +
-                "), its coordinates must be finite",
-            static_cast<std::ptrdiff_t>(k)};
-  }
-  return {};
-}
-
-Status check_weights(int degree_v, std::span<const double> weights) {
-  const auto bad = [&](std::size_t k, const std::string& wanted) {
-    return Status(StatusCode::invalid_weight,
-                  "weight " + place(k, degree_v) + " is " + text(weights[k]) + ", " + wanted,
-                  static_cast<std::ptrdiff_t>(k));
-  };
-  double largest = 0;
-  for (std::size_t k = 0; k < weights.size(); ++k) {
-    if (!(std::isfinite(weights[k]) && weights[k] > 0)) return bad(k, "it must be finite and greater than 0");
-    largest = std::max(largest, weights[k]);
-  }
-  for (std::size_t k = 0; k < weights.size(); ++k)
-    if (weights[k] < smallest_weight_ratio * largest)
-      return bad(k, "it must be at least " + text(smallest_weight_ratio) + " of the largest weight, " + text(largest));
-  return {};
-}
-
-bool all_equal(std::span<const double> weights) {
-  return std::all_of(weights.begin(), weights.end(), [&](double weight) { return weight == weights[0]; });
-}
-
 }  // namespace
 
 Result<BezierPatch> BezierPatch::polynomial(int degree_u, int degree_v, std::span<const Vec3> points) {
   return guarded([&]() -> Result<BezierPatch> {
-    if (Status status = check_degree(degree_u, "u"); !status.ok()) return status;
-    if (Status status = check_degree(degree_v, "v"); !status.ok()) return status;
+    if (Status status = check_degree(degree_u, "degree u"); !status.ok()) return status;
+    if (Status status = check_degree(degree_v, "degree v"); !status.ok()) return status;
     if (Status status = check_count(degree_u, degree_v, points.size(), "control points"); !status.ok()) return status;
-    if (Status status = check_points(degree_v, points); !status.ok()) return status;
+    const auto place = [&](std::size_t k) { return place_in_rows(k, static_cast<std::size_t>(degree_v) + 1); };
+    if (Status status = check_points(points, place); !status.ok()) return status;
     BezierPatch patch;
     patch.degree_u_ = degree_u;
     patch.degree_v_ = degree_v;
@@ -91,11 +39,21 @@ Result<BezierPatch> BezierPatch::polynomial(int degree_u, int degree_v, std::spa
 Result<BezierPatch> BezierPatch::rational(int degree_u, int degree_v, std::span<const Vec3> points,
                                           std::span<const double> weights) {
   return guarded([&]() -> Result<BezierPatch> {
+    Result<BezierPatch> patch = rational_piece(degree_u, degree_v, points, weights);
+    if (patch && all_equal(weights)) patch->weights_.clear();
+    return patch;
+  });
+}
+
+Result<BezierPatch> BezierPatch::rational_piece(int degree_u, int degree_v, std::span<const Vec3> points,
+                                                std::span<const double> weights) {
+  return guarded([&]() -> Result<BezierPatch> {
     Result<BezierPatch> patch = polynomial(degree_u, degree_v, points);
     if (!patch) return patch;
     if (Status status = check_count(degree_u, degree_v, weights.size(), "weights"); !status.ok()) return status;
-    if (Status status = check_weights(degree_v, weights); !status.ok()) return status;
-    if (!all_equal(weights)) patch->weights_.assign(weights.begin(), weights.end());
+    const auto place = [&](std::size_t k) { return place_in_rows(k, static_cast<std::size_t>(degree_v) + 1); };
+    if (Status status = check_weights(weights, place); !status.ok()) return status;
+    patch->weights_.assign(weights.begin(), weights.end());
     return patch;
   });
 }

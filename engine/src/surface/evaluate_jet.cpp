@@ -3,9 +3,6 @@
 
 namespace tessera {
 
-// With A the homogeneous numerator and w the denominator, r = A / w, and the derivatives of A = w r give
-//   r_u = (A_u - w_u r) / w,  r_uu = (A_uu - 2 w_u r_u - w_uu r) / w,  r_uv = (A_uv - w_u r_v - w_v r_u - w_uv r) / w
-// (Piegl and Tiller, The NURBS Book, eq. 4.20). Polynomial patches have w = 1, and derivatives of it vanish.
 SurfaceJet evaluate_jet(const BezierPatch& patch, double u, double v) {
   const HomogeneousNet net(patch, nearest_corner(patch, u, v));
   const LoweredBernstein bu(patch.degree_u(), u), bv(patch.degree_v(), v);
@@ -15,17 +12,7 @@ SurfaceJet evaluate_jet(const BezierPatch& patch, double u, double v) {
   const Homogeneous avv = derivative<0, 2>(net, bu, bv);
 
   SurfaceJet jet{a.vector(), au.vector(), av.vector(), auu.vector(), auv.vector(), avv.vector()};
-  if (patch.is_rational()) {
-    const double reciprocal = 1 / a.w;
-    const Vec3 r = a.project();
-    const Vec3 ru = reciprocal * (au.vector() - au.w * r), rv = reciprocal * (av.vector() - av.w * r);
-    jet = {r,
-           ru,
-           rv,
-           reciprocal * (auu.vector() - 2 * au.w * ru - auu.w * r),
-           reciprocal * (auv.vector() - au.w * rv - av.w * ru - auv.w * r),
-           reciprocal * (avv.vector() - 2 * av.w * rv - avv.w * r)};
-  }
+  if (patch.is_rational()) jet = project(a, au, av, auu, auv, avv);
   return {net.absolute(jet.position), net.scale * jet.du,  net.scale * jet.dv,
           net.scale * jet.duu,        net.scale * jet.duv, net.scale * jet.dvv};
 }

@@ -5,6 +5,19 @@
 
 namespace tessera {
 
+SurfaceJet project(const Homogeneous& a, const Homogeneous& au, const Homogeneous& av, const Homogeneous& auu,
+                   const Homogeneous& auv, const Homogeneous& avv) {
+  const double reciprocal = 1 / a.w;
+  const Vec3 r = a.project();
+  const Vec3 ru = reciprocal * (au.vector() - au.w * r), rv = reciprocal * (av.vector() - av.w * r);
+  return {r,
+          ru,
+          rv,
+          reciprocal * (auu.vector() - 2 * au.w * ru - auu.w * r),
+          reciprocal * (auv.vector() - au.w * rv - av.w * ru - auv.w * r),
+          reciprocal * (avv.vector() - 2 * av.w * rv - avv.w * r)};
+}
+
 double power_of_two_near(double x) {
   if (!(x > 0)) return 1;
   int exponent = 0;

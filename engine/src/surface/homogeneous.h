@@ -22,6 +22,12 @@ inline Homogeneous operator-(const Homogeneous& a, const Homogeneous& b) {
 }
 inline Homogeneous operator*(double s, const Homogeneous& a) { return {s * a.x, s * a.y, s * a.z, s * a.w}; }
 
+/// Position and derivatives of A / w from those of A = (w x, w y, w z, w). With r = A / w, A = w r gives
+///   r_u = (A_u - w_u r) / w,  r_uu = (A_uu - 2 w_u r_u - w_uu r) / w,  r_uv = (A_uv - w_u r_v - w_v r_u - w_uv r) / w
+/// (Piegl and Tiller, The NURBS Book, eq. 4.20).
+SurfaceJet project(const Homogeneous& a, const Homogeneous& au, const Homogeneous& av, const Homogeneous& auu,
+                   const Homogeneous& auv, const Homogeneous& avv);
+
 /// A power of two near x whose reciprocal is one as well; 1 for x = 0.
 double power_of_two_near(double x);
 

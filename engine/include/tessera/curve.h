@@ -1,0 +1,65 @@
+#pragma once
+// Bezier, B-spline and NURBS curves in double: profiles of revolution, borders of ruled surfaces and Coons patches.
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tessera/bezier_patch.h"
+#include "tessera/status.h"
+#include "tessera/vec.h"
+
+namespace tessera {
+
+/// An interval of a parameter, from < to.
+struct Interval {
+  double from = 0, to = 1;
+  friend bool operator==(const Interval&, const Interval&) = default;
+};
+
+/// c(t) = sum_i N_{i,p}(t) P_i or, rational, sum N w_i P_i / sum N w_i, of degree 1 to max_degree (Piegl and Tiller, The
+/// NURBS Book, 2nd ed., ch. 3 and 4). The knots t_0 .. t_{m+p+1} of points 0 .. m do not decrease; a knot within
+/// [t_p, t_{m+1}] stands at most p times (p-fold it breaks to C0), one at its ends or outside at most p + 1 times. Clamped
+/// or not; closed curves on periodic knots repeat their first p points at the end. Immutable but for assignment.
+class Curve {
+ public:
+  /// Of degree points.size() - 1, weights as below or none. Errors: as below.
+  static Result<Curve> bezier(std::span<const Vec3> points, std::span<const double> weights = {},
+                              const Interval& domain = {});
+  /// `knots`: points.size() + degree + 1. `domain`: [t_p, t_{m+1}] if empty, else within it.
+  /// Errors: unsupported_degree, count_mismatch, non_finite, invalid_argument (index = the point or knot).
+  static Result<Curve> b_spline(int degree, std::span<const Vec3> points, std::span<const double> knots,
+                                std::optional<Interval> domain = {});
+  /// `weights`: one finite weight > 0 a point, at least 1e-100 of the largest; zero and negative ones are refused even
+  /// where the denominator stays positive. If all are equal by == they are dropped. `points` are not premultiplied.
+  /// Errors: as above, and invalid_weight (index = the weight).
+  static Result<Curve> nurbs(int degree, std::span<const Vec3> points, std::span<const double> weights,
+                             std::span<const double> knots, std::optional<Interval> domain = {});
+
+  int degree() const { return degree_; }
+  bool is_rational() const { return !weights_.empty(); }
+  std::span<const Vec3> points() const { return points_; }
+  std::span<const double> weights() const { return weights_; }  ///< empty for a polynomial curve
+  double weight(std::size_t i) const { return weights_.empty() ? 1.0 : weights_[i]; }
+  std::span<const double> knots() const { return knots_; }
+  const Interval& domain() const { return domain_; }
+
+ private:
+  Curve() = default;
+  int degree_ = 0;
+  std::vector<Vec3> points_;
+  std::vector<double> weights_, knots_;
+  Interval domain_;
+};
+
+/// Position, first and second derivative by the curve's own parameter.
+struct CurveJet {
+  Vec3 position, first, second;
+};
+
+/// The reference evaluator: de Boor's algorithm, rational curves in homogeneous form. At a knot the span on its right
+/// counts, at the end of the domain the one on its left: so derivatives that jump there are those of that side. Outside
+/// the domain the first and the last piece go on. Any finite t.
+CurveJet evaluate_jet(const Curve& curve, double t);
+
+}  // namespace tessera

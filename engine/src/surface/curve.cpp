@@ -1,0 +1,89 @@
+#include "tessera/curve.h"
+
+#include <algorithm>
+#include <string>
+
+#include "base/guard.h"
+#include "surface/spline_lines.h"
+#include "surface/spline_window.h"
+#include "surface/validate.h"
+
+namespace tessera {
+namespace {
+
+constexpr auto place = [](std::size_t k) { return "[" + std::to_string(k) + "]"; };
+
+Status check_size(int degree, std::size_t points, std::size_t knots) {
+  const std::size_t wanted = points + static_cast<std::size_t>(degree) + 1;
+  if (knots == wanted) return {};
+  return {StatusCode::count_mismatch, std::to_string(points) + " points of degree " + std::to_string(degree) + " need " +
+                                          std::to_string(wanted) + " knots, " + std::to_string(knots) + " were given"};
+}
+
+}  // namespace
+
+Result<Curve> Curve::bezier(std::span<const Vec3> points, std::span<const double> weights, const Interval& domain) {
+  return guarded([&]() -> Result<Curve> {
+    const int degree = static_cast<int>(std::min<std::size_t>(points.size(), 1000)) - 1;
+    if (Status status = check_degree(degree, "the degree"); !status.ok()) return status;
+    std::vector<double> knots(points.size(), domain.from);
+    knots.resize(2 * points.size(), domain.to);
+    if (weights.empty()) return b_spline(degree, points, knots);
+    return nurbs(degree, points, weights, knots);
+  });
+}
+
+Result<Curve> Curve::b_spline(int degree, std::span<const Vec3> points, std::span<const double> knots,
+                              std::optional<Interval> domain) {
+  return guarded([&]() -> Result<Curve> {
+    if (Status status = check_degree(degree, "the degree"); !status.ok()) return status;
+    if (Status status = check_size(degree, points.size(), knots.size()); !status.ok()) return status;
+    if (Status status = check_knots(degree, knots, "knots"); !status.ok()) return status;
+    if (Status status = check_points(points, place); !status.ok()) return status;
+    const std::size_t p = static_cast<std::size_t>(degree);
+    const Interval used = domain.value_or(Interval{knots[p], knots[points.size()]});
+    if (Status status = check_range(degree, knots, used.from, used.to, "the domain"); !status.ok()) return status;
+    Curve curve;
+    curve.degree_ = degree;
+    curve.points_.assign(points.begin(), points.end());
+    curve.knots_.assign(knots.begin(), knots.end());
+    curve.domain_ = used;
+    return curve;
+  });
+}
+
+Result<Curve> Curve::nurbs(int degree, std::span<const Vec3> points, std::span<const double> weights,
+                           std::span<const double> knots, std::optional<Interval> domain) {
+  return guarded([&]() -> Result<Curve> {
+    Result<Curve> curve = b_spline(degree, points, knots, domain);
+    if (!curve) return curve;
+    if (weights.size() != points.size())
+      return Status(StatusCode::count_mismatch, std::to_string(points.size()) + " points need as many weights, " +
+                                                    std::to_string(weights.size()) + " were given");
+    if (Status status = check_weights(weights, place); !status.ok()) return status;
+    if (!all_equal(weights)) curve->weights_.assign(weights.begin(), weights.end());
+    return curve;
+  });
+}
+
+CurveJet evaluate_jet(const Curve& curve, double t) {
+  const KnotLine line = line_of(curve);
+  const std::size_t span = find_span(line, t), p = static_cast<std::size_t>(line.degree), first = span - p;
+  double largest = 0, largest_weight = 0;
+  for (std::size_t k = first; k <= span; ++k) {
+    largest = std::max(largest, max_abs(curve.points()[k]));
+    if (curve.is_rational()) largest_weight = std::max(largest_weight, curve.weight(k));
+  }
+  const double* at_span = &line.knots[span];
+  const Vec3 origin = curve.is_rational() ? curve.points()[first + nearer_end(line.degree, at_span, t)] : Vec3{};
+  const WindowFrame frame(largest, largest_weight, origin);
+  SplineWindow window;
+  for (std::size_t k = 0; k <= p; ++k) window[k] = frame.homogeneous(curve.points()[first + k], curve.weight(first + k));
+  const SplineJet a = spline_jet(line.degree, at_span, t, window);
+  if (!curve.is_rational()) return {frame.position(a[0].vector()), frame.vector(a[1].vector()), frame.vector(a[2].vector())};
+  const Homogeneous none{0, 0, 0, 0};
+  const SurfaceJet jet = project(a[0], a[1], none, a[2], none, none);
+  return {frame.position(jet.position), frame.vector(jet.du), frame.vector(jet.duu)};
+}
+
+}  // namespace tessera

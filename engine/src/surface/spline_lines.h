@@ -1,0 +1,20 @@
+#pragma once
+// The directions of curves and surfaces as knot lines.
+
+#include "basis/knots.h"
+#include "tessera/bspline_surface.h"
+#include "tessera/curve.h"
+
+namespace tessera {
+
+inline KnotLine line_of(const Curve& curve) {
+  return {curve.degree(), curve.knots(), curve.domain().from, curve.domain().to};
+}
+inline KnotLine line_u(const BSplineSurface& surface) {
+  return {surface.degree_u(), surface.knots_u(), surface.domain().u0, surface.domain().u1};
+}
+inline KnotLine line_v(const BSplineSurface& surface) {
+  return {surface.degree_v(), surface.knots_v(), surface.domain().v0, surface.domain().v1};
+}
+
+}  // namespace tessera

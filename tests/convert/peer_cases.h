@@ -1,0 +1,45 @@
+#pragma once
+// Surfaces and the values that other programs expect of them, read from JSON and from Wavefront free-form files.
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tessera/bezier_patch.h"
+#include "tessera/bspline_surface.h"
+
+namespace tessera::test {
+
+/// One expected value. Derivatives by name: "du", "duv" ... Components that are NaN are not stated by the peer.
+struct PeerEval {
+  double u = 0, v = 0;
+  std::optional<Vec3> point;
+  std::optional<Vec3> normal_up_to_sign;
+  std::map<std::string, Vec3> derivatives;
+  double point_tolerance = 0;
+  double first_tolerance = 0, second_tolerance = 0;  ///< absolute, per component
+};
+
+struct PeerSurface {
+  std::string name;
+  std::string kind;
+  int dimension = 3;  ///< planar surfaces leave z alone
+  /// The surface, or why the library refuses it.
+  Result<BSplineSurface> surface = Status();
+  /// The same as a patch of its own, where it is one.
+  std::optional<Result<BezierPatch>> patch;
+  std::vector<PeerEval> evals;
+};
+
+struct PeerFile {
+  std::string peer;
+  std::vector<PeerSurface> surfaces;
+  std::vector<std::string> elsewhere;  ///< what is no evaluation of a Bezier, B-spline or NURBS surface, and why
+};
+
+/// A file of peer_cases; `data` is the folder that holds it and the other test data. Throws on what it does not understand.
+PeerFile read_peer_file(const std::filesystem::path& data, const std::filesystem::path& file);
+
+}  // namespace tessera::test
