@@ -14,7 +14,8 @@ KnotLine line_over(int degree, const std::vector<double>& knots) {
   return {degree, knots, knots[p], knots[knots.size() - p - 1]};
 }
 
-const std::vector<KnotStyle> styles{{0, true, false}, {4, true, false}, {4, true, true}, {3, false, false}, {3, false, true}};
+const std::vector<KnotStyle> styles{
+    {0, true, false}, {4, true, false}, {4, true, true}, {3, false, false}, {3, false, true}};
 
 TEST(Knots, BasisIsAPartitionOfUnityAndEqualsTheRecursion) {
   Random random(1);
@@ -110,7 +111,8 @@ TEST(Knots, BadOnesAreNamed) {
   const Status falls = check(2, {0, 0, 0, 2, 1, 3, 3, 3});
   EXPECT_EQ(falls.code(), StatusCode::invalid_argument);
   EXPECT_EQ(falls.index(), 4);
-  EXPECT_NE(falls.message().find("knots u[4] = 1 is below the knot before it, 2"), std::string::npos) << falls.message();
+  EXPECT_NE(falls.message().find("knots u[4] = 1 is below the knot before it, 2"), std::string::npos)
+      << falls.message();
   EXPECT_EQ(check(1, {0, 0, nan, 1}).code(), StatusCode::non_finite);
   EXPECT_EQ(check(1, {0, 0, nan, 1}).index(), 2);
   EXPECT_EQ(check(1, {-1e308, -1e308, 1e308, 1e308}).code(), StatusCode::non_finite);
@@ -118,7 +120,7 @@ TEST(Knots, BadOnesAreNamed) {
   EXPECT_EQ(thrice.code(), StatusCode::invalid_argument);
   EXPECT_EQ(thrice.index(), 3);
   EXPECT_NE(thrice.message().find("stands 3 times"), std::string::npos) << thrice.message();
-  EXPECT_EQ(check(1, {0, 0, 0, 1, 1}).index(), 0);  // degree + 2 at the end
+  EXPECT_EQ(check(1, {0, 0, 0, 1, 1}).index(), 0);                               // degree + 2 at the end
   EXPECT_EQ(check(2, {0, 0, 1, 1, 1, 2}).code(), StatusCode::invalid_argument);  // an empty domain
   EXPECT_EQ(check(2, {1, 1, 1, 1, 1, 1}).code(), StatusCode::invalid_argument);
 

@@ -37,7 +37,8 @@ TEST(BezierExtraction, ReproducesTheSurface) {
       }
 }
 
-/// Bezier points in long double: f(a, .., b, ..) by de Boor's algorithm with one argument a step, on the definition's knots.
+/// Bezier points in long double: f(a, .., b, ..) by de Boor's algorithm with one argument a step, on the definition's
+/// knots.
 std::vector<Real> exact_weights(const BSplineSurface& s, std::size_t span, Real a, Real b, int i) {
   const int p = s.degree_u();
   std::vector<Real> result;
@@ -139,7 +140,8 @@ TEST(Figures, NurbsOfFivePointsMakesFourPatches) {
   const std::vector<double> knots{0, 0, 0, 0, 0.5, 1, 1, 1, 1};
   const std::vector<Vec3> points = random_cloud(random, 25);
   const BSplineSurface plain = value_of(BSplineSurface::polynomial(3, knots, 3, knots, points));
-  const BSplineSurface ones = value_of(BSplineSurface::rational(3, knots, 3, knots, points, std::vector<double>(25, 1.0)));
+  const BSplineSurface ones =
+      value_of(BSplineSurface::rational(3, knots, 3, knots, points, std::vector<double>(25, 1.0)));
   const PatchGrid grid = value_of(to_bezier(plain)), same = value_of(to_bezier(ones));
   ASSERT_EQ(grid.patches().size(), 4u);
   for (std::size_t k = 0; k < 4; ++k) {
@@ -148,16 +150,18 @@ TEST(Figures, NurbsOfFivePointsMakesFourPatches) {
     EXPECT_FALSE(same.patches()[k].is_rational());
     EXPECT_TRUE(std::ranges::equal(grid.patches()[k].points(), same.patches()[k].points()));
   }
-  const BSplineSurface nurbs = value_of(BSplineSurface::rational(3, knots, 3, knots, points, random_positive(random, 25)));
+  const BSplineSurface nurbs =
+      value_of(BSplineSurface::rational(3, knots, 3, knots, points, random_positive(random, 25)));
   expect_same(nurbs, value_of(to_bezier(nurbs)), random, 8);
 }
 
 TEST(Figures, UniformBSplinePatchConverts) {
   const std::vector<double> knots{-3, -2, -1, 0, 1, 2, 3, 4};
-  const PatchGrid grid = value_of(to_bezier(value_of(BSplineSurface::polynomial(3, knots, 3, knots, lecture_points()))));
+  const PatchGrid grid =
+      value_of(to_bezier(value_of(BSplineSurface::polynomial(3, knots, 3, knots, lecture_points()))));
   ASSERT_EQ(grid.patches().size(), 1u);
-  EXPECT_TRUE(within_units(grid.evaluate_jet(0.3, 0.6)->position, {3184649 / 4500000.0, 296411 / 375000.0, 149747 / 4500000.0},
-                           double_unit, 4));
+  EXPECT_TRUE(within_units(grid.evaluate_jet(0.3, 0.6)->position,
+                           {3184649 / 4500000.0, 296411 / 375000.0, 149747 / 4500000.0}, double_unit, 4));
   EXPECT_TRUE(within_units(grid.patch(0, 0).point(0, 0), {7 / 9.0, 5 / 6.0, -7 / 18.0}, double_unit, 2));
 }
 
@@ -196,15 +200,16 @@ TEST(BezierExtraction, TheParameterMapGoesBothWays) {
 
 TEST(BezierExtraction, AControlPointTouchesThePatchesItNames) {
   Random random(7);
-  for (const auto& [style_u, style_v] : {std::pair{KnotStyle{4}, KnotStyle{3, false, true}}, {KnotStyle{3, true, true}, KnotStyle{4, false}}}) {
+  for (const auto& [style_u, style_v] :
+       {std::pair{KnotStyle{4}, KnotStyle{3, false, true}}, {KnotStyle{3, true, true}, KnotStyle{4, false}}}) {
     const BSplineSurface s = random_surface(random, 3, 2, style_u, style_v, true);
     const PatchGrid before = value_of(to_bezier(s));
     for (std::size_t i = 0; i < s.count_u(); ++i)
       for (std::size_t j = 0; j < s.count_v(); ++j) {
         std::vector<Vec3> points(s.points().begin(), s.points().end());
         points[i * s.count_v() + j] += Vec3{1, 2, 3};
-        const PatchGrid after =
-            value_of(to_bezier(value_of(BSplineSurface::rational(3, s.knots_u(), 2, s.knots_v(), points, s.weights()))));
+        const PatchGrid after = value_of(
+            to_bezier(value_of(BSplineSurface::rational(3, s.knots_u(), 2, s.knots_v(), points, s.weights()))));
         const PatchRange range = value_of(touched_patches(s, i, j));
         EXPECT_LE((range.a1 - range.a0) * (range.b1 - range.b0), 4u * 3u);
         for (std::size_t a = 0; a < before.count_u(); ++a)

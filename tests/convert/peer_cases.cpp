@@ -13,7 +13,9 @@ namespace {
 using Json = nlohmann::json;
 
 /// A component that the peer leaves open is null in the file, NaN here.
-double number_from(const Json& json) { return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>(); }
+double number_from(const Json& json) {
+  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+}
 
 Vec3 vector_from(const Json& json) {
   return {number_from(json.at(0)), number_from(json.at(1)), json.size() > 2 ? number_from(json.at(2)) : 0};
@@ -70,7 +72,8 @@ PeerEval eval_from(const Json& json, const Json& surface) {
   return eval;
 }
 
-/// The one `surf` of a Wavefront file of kind bezier or bspline: enough of the format for the cases, none of its freedom.
+/// The one `surf` of a Wavefront file of kind bezier or bspline: enough of the format for the cases, none of its
+/// freedom.
 void read_obj(const std::filesystem::path& path, PeerSurface& out) {
   std::ifstream file(path);
   if (!file) throw std::runtime_error("no file " + path.string());
@@ -121,7 +124,8 @@ void read_obj_case(const std::filesystem::path& data, const Json& json, PeerFile
   surface.name = std::filesystem::path(json.at("file").get<std::string>()).stem();
   surface.kind = json.at("kind");
   if (!is_patch(surface.kind) && surface.kind != "bspline") {
-    out.elsewhere.push_back(surface.name + ": " + std::to_string(json.at("evals").size()) + " evaluations of kind " + surface.kind);
+    out.elsewhere.push_back(surface.name + ": " + std::to_string(json.at("evals").size()) + " evaluations of kind " +
+                            surface.kind);
     return;
   }
   read_obj(data / json.at("file").get<std::string>(), surface);
@@ -141,7 +145,8 @@ PeerFile read_peer_file(const std::filesystem::path& data, const std::filesystem
   }
   for (const Json& entry : json.at("surfaces")) {
     if (!entry.contains("evals")) {
-      result.elsewhere.push_back(entry.at("name").get<std::string>() + ": " + std::to_string(entry.at("rays").size()) + " rays");
+      result.elsewhere.push_back(entry.at("name").get<std::string>() + ": " + std::to_string(entry.at("rays").size()) +
+                                 " rays");
       continue;
     }
     PeerSurface surface;

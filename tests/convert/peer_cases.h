@@ -39,7 +39,8 @@ struct PeerFile {
   std::vector<std::string> elsewhere;  ///< what is no evaluation of a Bezier, B-spline or NURBS surface, and why
 };
 
-/// A file of peer_cases; `data` is the folder that holds it and the other test data. Throws on what it does not understand.
+/// A file of peer_cases; `data` is the folder that holds it and the other test data. Throws on what it does not
+/// understand.
 PeerFile read_peer_file(const std::filesystem::path& data, const std::filesystem::path& file);
 
 }  // namespace tessera::test

@@ -1,5 +1,5 @@
-// Values that other programs expect: every evaluation of a Bezier, B-spline or NURBS surface in the peers' files, points and
-// derivatives, each at its file's own tolerance, by the reference evaluator and through the Bezier patches.
+// Values that other programs expect: every evaluation of a Bezier, B-spline or NURBS surface in the peers' files,
+// points and derivatives, each at its file's own tolerance, by the reference evaluator and through the Bezier patches.
 
 #include <gtest/gtest.h>
 
@@ -60,14 +60,15 @@ bool agrees(const PeerSurface& surface, const PeerEval& eval, const SurfaceJet& 
       std::cout << "  differs: " << surface.name << " " << what << ": " << entry->reason << '\n';
       return;
     }
-    ADD_FAILURE() << surface.name << " by " << route << " at (" << eval.u << ", " << eval.v << "): " << what << " is (" << value.x
-                  << ", " << value.y << ", " << value.z << "), the peer has (" << expected.x << ", " << expected.y << ", "
-                  << expected.z << "), tolerance " << tolerance;
+    ADD_FAILURE() << surface.name << " by " << route << " at (" << eval.u << ", " << eval.v << "): " << what << " is ("
+                  << value.x << ", " << value.y << ", " << value.z << "), the peer has (" << expected.x << ", "
+                  << expected.y << ", " << expected.z << "), tolerance " << tolerance;
   };
   if (eval.point) compare("point", jet.position, *eval.point, eval.point_tolerance);
   if (eval.normal_up_to_sign) {
     const Vec3 normal = normalized(cross(jet.du, jet.dv));
-    compare("normal", (dot(normal, *eval.normal_up_to_sign) < 0 ? -1 : 1) * normal, *eval.normal_up_to_sign, eval.point_tolerance);
+    compare("normal", (dot(normal, *eval.normal_up_to_sign) < 0 ? -1 : 1) * normal, *eval.normal_up_to_sign,
+            eval.point_tolerance);
   }
   for (const auto& [name, expected] : eval.derivatives)
     compare(name, derivative(jet, name), expected, name.size() == 2 ? eval.first_tolerance : eval.second_tolerance);

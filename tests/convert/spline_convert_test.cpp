@@ -16,14 +16,16 @@ void expect_same(const Curve& a, const Curve& b, Random& random) {
   EXPECT_EQ(a.is_rational(), b.is_rational());
   const double unit = double_unit * largest_coefficient(a.points());
   for (const double t : sample_parameters(random, a.knots(), a.domain().from, a.domain().to, 5))
-    EXPECT_TRUE(within_units(evaluate_jet(b, t).position, evaluate_jet(a, t).position, unit, 8)) << a.degree() << " " << t;
+    EXPECT_TRUE(within_units(evaluate_jet(b, t).position, evaluate_jet(a, t).position, unit, 8))
+        << a.degree() << " " << t;
 }
 void expect_same(const BSplineSurface& a, const BSplineSurface& b, Random& random) {
   EXPECT_EQ(a.domain(), b.domain());
   const double unit = double_unit * largest_coefficient(a.points());
   for (const double u : sample_parameters(random, a.knots_u(), a.domain().u0, a.domain().u1, 2))
     for (const double v : sample_parameters(random, a.knots_v(), a.domain().v0, a.domain().v1, 2))
-      EXPECT_TRUE(within_units(evaluate_jet(b, u, v).position, evaluate_jet(a, u, v).position, unit, 8)) << u << " " << v;
+      EXPECT_TRUE(within_units(evaluate_jet(b, u, v).position, evaluate_jet(a, u, v).position, unit, 8))
+          << u << " " << v;
 }
 
 template <class Body>
@@ -52,7 +54,8 @@ TEST(SplineConvert, InsertionToFullMultiplicityGivesTheBezierPieces) {
     std::vector<double> knots;
     for (const double t : ends.knots())
       if (t > ends.domain().from && t < ends.domain().to && (knots.empty() || knots.back() != t))
-        for (std::size_t k = static_cast<std::size_t>(std::ranges::count(ends.knots(), t)); k < static_cast<std::size_t>(ends.degree()); ++k)
+        for (std::size_t k = static_cast<std::size_t>(std::ranges::count(ends.knots(), t));
+             k < static_cast<std::size_t>(ends.degree()); ++k)
           knots.push_back(t);
     const Curve pieces = value_of(refined(ends, knots));
     const BezierPieces expected = value_of(to_bezier(curve));
@@ -108,7 +111,8 @@ TEST(SplineConvert, DegreeElevationOfABezierCurveIsTheFormula) {
       const double share = i / (m + 1.0);
       const Vec3 before = i > 0 ? points[static_cast<std::size_t>(i - 1)] : Vec3{};
       const Vec3 after = i <= m ? points[static_cast<std::size_t>(i)] : Vec3{};
-      EXPECT_TRUE(within_units(higher.points()[static_cast<std::size_t>(i)], share * before + (1 - share) * after, double_unit, 2));
+      EXPECT_TRUE(within_units(higher.points()[static_cast<std::size_t>(i)], share * before + (1 - share) * after,
+                               double_unit, 2));
     }
   }
 }

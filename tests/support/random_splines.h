@@ -1,6 +1,6 @@
 #pragma once
-// Seeded random B-spline curves and surfaces, and their values in long double from the definition: the recursion of Cox and
-// de Boor, derivatives by differences of basis functions. Shares nothing with the library.
+// Seeded random B-spline curves and surfaces, and their values in long double from the definition: the recursion of Cox
+// and de Boor, derivatives by differences of basis functions. Shares nothing with the library.
 
 #include <algorithm>
 #include <vector>
@@ -41,7 +41,8 @@ inline std::vector<Vec3> random_cloud(Random& random, std::size_t count) {
   for (Vec3& p : points) p = uniform_vector(random, -1, 1);
   return points;
 }
-inline std::vector<double> random_positive(Random& random, std::size_t count, double lowest = 0.25, double highest = 4) {
+inline std::vector<double> random_positive(Random& random, std::size_t count, double lowest = 0.25,
+                                           double highest = 4) {
   std::vector<double> weights(count);
   for (double& w : weights) w = lowest * std::exp(uniform(random, 0, std::log(highest / lowest)));
   return weights;
@@ -58,7 +59,8 @@ inline Curve random_curve(Random& random, int degree, const KnotStyle& style, bo
 inline BSplineSurface random_surface(Random& random, int degree_u, int degree_v, const KnotStyle& style_u,
                                      const KnotStyle& style_v, bool rational) {
   const std::vector<double> u = random_knots(random, degree_u, style_u), v = random_knots(random, degree_v, style_v);
-  const std::size_t count = (u.size() - static_cast<std::size_t>(degree_u) - 1) * (v.size() - static_cast<std::size_t>(degree_v) - 1);
+  const std::size_t count =
+      (u.size() - static_cast<std::size_t>(degree_u) - 1) * (v.size() - static_cast<std::size_t>(degree_v) - 1);
   const std::vector<Vec3> points = random_cloud(random, count);
   if (!rational) return value_of(BSplineSurface::polynomial(degree_u, u, degree_v, v, points));
   return value_of(BSplineSurface::rational(degree_u, u, degree_v, v, points, random_positive(random, count)));
@@ -72,7 +74,8 @@ inline std::size_t reference_span(std::span<const double> knots, double t, doubl
   return span;
 }
 /// The derivative of the given order of N_{i,p} at t, of the polynomial that it is on the span.
-inline Real reference_basis(std::span<const double> knots, std::size_t span, std::size_t i, int p, Real t, int order = 0) {
+inline Real reference_basis(std::span<const double> knots, std::size_t span, std::size_t i, int p, Real t,
+                            int order = 0) {
   if (p == 0) return order == 0 && i == span ? 1 : 0;
   const std::size_t q = static_cast<std::size_t>(p);
   const Real a = Real(knots[i + q]) - knots[i], b = Real(knots[i + q + 1]) - knots[i + 1];
@@ -92,7 +95,8 @@ struct ReferenceBasis {
     const std::size_t span = reference_span(knots, t, to);
     first = span - static_cast<std::size_t>(degree);
     for (int order = 0; order < 3; ++order)
-      for (std::size_t i = first; i <= span; ++i) values[order].push_back(reference_basis(knots, span, i, degree, t, order));
+      for (std::size_t i = first; i <= span; ++i)
+        values[order].push_back(reference_basis(knots, span, i, degree, t, order));
   }
 };
 
@@ -160,7 +164,8 @@ inline double largest_coefficient(std::span<const Vec3> points) {
 }
 
 /// Parameters of the interval: its ends, its knots, and some between.
-inline std::vector<double> sample_parameters(Random& random, std::span<const double> knots, double from, double to, int count) {
+inline std::vector<double> sample_parameters(Random& random, std::span<const double> knots, double from, double to,
+                                             int count) {
   std::vector<double> parameters{from, to};
   for (const double t : knots)
     if (t > from && t < to) parameters.push_back(t);

@@ -21,12 +21,14 @@ TEST(BSplineSurface, EqualsTheDefinition) {
           for (const double v : sample_parameters(random, s.knots_v(), s.domain().v0, s.domain().v1, 1)) {
             const SurfaceJet jet = evaluate_jet(s, u, v);
             const RealJet expected = reference_jet(s, u, v);
-            EXPECT_TRUE(within_units(jet.position, expected.position.rounded(), double_unit, 8)) << p << q << " " << u << " " << v;
+            EXPECT_TRUE(within_units(jet.position, expected.position.rounded(), double_unit, 8))
+                << p << q << " " << u << " " << v;
             const double slope = 1 + std::max(max_abs(expected.du.rounded()), max_abs(expected.dv.rounded()));
             EXPECT_TRUE(within_units(jet.du, expected.du.rounded(), double_unit * slope, 400));
             EXPECT_TRUE(within_units(jet.dv, expected.dv.rounded(), double_unit * slope, 400));
-            const double bend = slope * slope + std::max({max_abs(expected.duu.rounded()), max_abs(expected.duv.rounded()),
-                                                          max_abs(expected.dvv.rounded())});
+            const double bend =
+                slope * slope + std::max({max_abs(expected.duu.rounded()), max_abs(expected.duv.rounded()),
+                                          max_abs(expected.dvv.rounded())});
             EXPECT_TRUE(within_units(jet.duu, expected.duu.rounded(), double_unit * bend, 4000));
             EXPECT_TRUE(within_units(jet.duv, expected.duv.rounded(), double_unit * bend, 4000));
             EXPECT_TRUE(within_units(jet.dvv, expected.dvv.rounded(), double_unit * bend, 4000));
@@ -51,15 +53,17 @@ TEST(Figures, UniformBSpline) {
   const std::vector<double> knots{-3, -2, -1, 0, 1, 2, 3, 4};
   const BSplineSurface s = value_of(BSplineSurface::polynomial(3, knots, 3, knots, lecture_points()));
   EXPECT_EQ(s.domain(), Domain{});
-  EXPECT_TRUE(within_units(evaluate_jet(s, 0.3, 0.6).position, {3184649 / 4500000.0, 296411 / 375000.0, 149747 / 4500000.0},
-                           double_unit, 4));
+  EXPECT_TRUE(within_units(evaluate_jet(s, 0.3, 0.6).position,
+                           {3184649 / 4500000.0, 296411 / 375000.0, 149747 / 4500000.0}, double_unit, 4));
   EXPECT_TRUE(within_units(evaluate_jet(s, 0, 0).position, {7 / 9.0, 5 / 6.0, -7 / 18.0}, double_unit, 2));
   // The border curve s(u,0) has the polygon (V_i0 + 4 V_i1 + V_i2) / 6.
   std::vector<Vec3> polygon;
-  for (std::size_t i = 0; i < 4; ++i) polygon.push_back((1 / 6.0) * (s.point(i, 0) + 4 * s.point(i, 1) + s.point(i, 2)));
+  for (std::size_t i = 0; i < 4; ++i)
+    polygon.push_back((1 / 6.0) * (s.point(i, 0) + 4 * s.point(i, 1) + s.point(i, 2)));
   const Curve border = value_of(Curve::b_spline(3, polygon, knots));
   for (int k = 0; k <= 10; ++k)
-    EXPECT_TRUE(within_units(evaluate_jet(s, k / 10.0, 0).position, evaluate_jet(border, k / 10.0).position, double_unit, 4));
+    EXPECT_TRUE(
+        within_units(evaluate_jet(s, k / 10.0, 0).position, evaluate_jet(border, k / 10.0).position, double_unit, 4));
 }
 
 TEST(BSplineSurface, UnitWeightsGiveTheSameBits) {
@@ -126,7 +130,8 @@ TEST(BSplineSurface, BadInputIsNamed) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::vector<double> u{0, 0, 0, 1, 1, 1}, v{0, 0, 1, 1};
   const std::vector<Vec3> points(6, Vec3{1, 2, 3});
-  const auto make = [&](int p, const std::vector<double>& ku, int q, const std::vector<double>& kv, const std::vector<Vec3>& net) {
+  const auto make = [&](int p, const std::vector<double>& ku, int q, const std::vector<double>& kv,
+                        const std::vector<Vec3>& net) {
     return BSplineSurface::polynomial(p, ku, q, kv, net).status();
   };
   EXPECT_TRUE(make(2, u, 1, v, points).ok());
@@ -136,19 +141,23 @@ TEST(BSplineSurface, BadInputIsNamed) {
   EXPECT_NE(make(2, u, 1, {0, 2, 1, 3}, points).message().find("knots v[2]"), std::string::npos);
   EXPECT_EQ(make(2, {0, 0, 0, 0, 1, 1, 1}, 1, v, std::vector<Vec3>(8)).code(), StatusCode::invalid_argument);
   EXPECT_EQ(make(2, u, 1, v, std::vector<Vec3>(5)).code(), StatusCode::count_mismatch);
-  EXPECT_NE(make(2, u, 1, v, std::vector<Vec3>(5)).message().find("3 x 2 control points, 5 were given"), std::string::npos);
+  EXPECT_NE(make(2, u, 1, v, std::vector<Vec3>(5)).message().find("3 x 2 control points, 5 were given"),
+            std::string::npos);
   std::vector<Vec3> hole = points;
   hole[3].z = nan;
   EXPECT_EQ(make(2, u, 1, v, hole).code(), StatusCode::non_finite);
   EXPECT_EQ(make(2, u, 1, v, hole).index(), 3);
   EXPECT_NE(make(2, u, 1, v, hole).message().find("[1][1]"), std::string::npos);
   for (const double bad : {0.0, -0.5, nan, std::numeric_limits<double>::infinity()}) {
-    const Status status = BSplineSurface::rational(2, u, 1, v, points, std::vector<double>{1, 1, 1, 1, bad, 1}).status();
+    const Status status =
+        BSplineSurface::rational(2, u, 1, v, points, std::vector<double>{1, 1, 1, 1, bad, 1}).status();
     EXPECT_EQ(status.code(), StatusCode::invalid_weight);
     EXPECT_NE(status.message().find("weight [2][0]"), std::string::npos) << status.message();
   }
-  EXPECT_EQ(BSplineSurface::rational(2, u, 1, v, points, std::vector<double>(7, 1)).status().code(), StatusCode::count_mismatch);
-  EXPECT_EQ(BSplineSurface::polynomial(2, u, 1, v, points, Domain{0, 1, 0.5, 1.5}).status().code(), StatusCode::invalid_argument);
+  EXPECT_EQ(BSplineSurface::rational(2, u, 1, v, points, std::vector<double>(7, 1)).status().code(),
+            StatusCode::count_mismatch);
+  EXPECT_EQ(BSplineSurface::polynomial(2, u, 1, v, points, Domain{0, 1, 0.5, 1.5}).status().code(),
+            StatusCode::invalid_argument);
 }
 
 }  // namespace

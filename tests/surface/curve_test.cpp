@@ -20,7 +20,8 @@ TEST(Curve, EqualsTheDefinition) {
           const CurveJet jet = evaluate_jet(curve, t);
           const RealJet expected = reference_jet(curve, t);
           EXPECT_TRUE(within_units(jet.position, expected.position.rounded(), double_unit, 8)) << degree << " " << t;
-          const double slope = 1 + max_abs(expected.du.rounded()), bend = slope * slope + max_abs(expected.duu.rounded());
+          const double slope = 1 + max_abs(expected.du.rounded()),
+                       bend = slope * slope + max_abs(expected.duu.rounded());
           EXPECT_TRUE(within_units(jet.first, expected.du.rounded(), double_unit * slope, 400)) << degree << " " << t;
           EXPECT_TRUE(within_units(jet.second, expected.duu.rounded(), double_unit * bend, 4000)) << degree << " " << t;
         }

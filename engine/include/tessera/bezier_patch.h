@@ -2,8 +2,8 @@
 // Tensor-product Bezier patches, polynomial and rational, in double: the form to which every surface is
 // converted. With the scalar reference evaluators that the fast kernels are tested against.
 
+#include <memory>
 #include <span>
-#include <vector>
 
 #include "tessera/domain.h"
 #include "tessera/status.h"
@@ -16,7 +16,8 @@ inline constexpr int max_degree = 15;
 
 /// r(u,v) = sum_ij B_{i,m}(u) B_{j,n}(v) V_ij on [0,1]^2, or, rational with weights w_ij > 0,
 /// r = sum B B w_ij V_ij / sum B B w_ij  (Farin, Curves and Surfaces for CAGD, 5th ed., ch. 14 and 16).
-/// Points are stored [i][j], i along u: V_ij is points()[i * (degree_v() + 1) + j]. Immutable but for assignment.
+/// Points are stored [i][j], i along u: V_ij is points()[i * (degree_v() + 1) + j]. Immutable but for assignment; copies
+/// share their points.
 class BezierPatch {
  public:
   /// `points`: (degree_u + 1) * (degree_v + 1) finite points in the order above.
@@ -27,18 +28,15 @@ class BezierPatch {
   /// (index = the offending weight).
   static Result<BezierPatch> rational(int degree_u, int degree_v, std::span<const Vec3> points,
                                       std::span<const double> weights);
-  /// The same for a piece of a surface that is rational as a whole: the weights stay even if they are all equal here, so
-  /// that the pieces at a shared border are computed alike.
-  static Result<BezierPatch> rational_piece(int degree_u, int degree_v, std::span<const Vec3> points,
-                                            std::span<const double> weights);
 
   int degree_u() const { return degree_u_; }
   int degree_v() const { return degree_v_; }
-  bool is_rational() const { return !weights_.empty(); }
-  std::span<const Vec3> points() const { return points_; }
-  std::span<const double> weights() const { return weights_; }  ///< empty for a polynomial patch
+  bool is_rational() const { return weights_ != nullptr; }
+  std::span<const Vec3> points() const { return {points_.get(), count()}; }
+  /// Empty for a polynomial patch. Pieces of one rational surface are rational all, even where their weights are equal.
+  std::span<const double> weights() const { return {weights_.get(), is_rational() ? count() : 0}; }
   const Vec3& point(int i, int j) const { return points_[index(i, j)]; }
-  double weight(int i, int j) const { return weights_.empty() ? 1.0 : weights_[index(i, j)]; }
+  double weight(int i, int j) const { return !is_rational() ? 1.0 : weights_[index(i, j)]; }
 
   /// The box of the control points, which contains the patch.
   Box3 hull_box() const;
@@ -47,11 +45,14 @@ class BezierPatch {
 
  private:
   BezierPatch() = default;
+  std::size_t count() const { return index(degree_u_, degree_v_) + 1; }
   std::size_t index(int i, int j) const { return static_cast<std::size_t>(i * (degree_v_ + 1) + j); }
 
   int degree_u_ = 0, degree_v_ = 0;
-  std::vector<Vec3> points_;
-  std::vector<double> weights_;
+  // Copies share them; so do the pieces of one surface, whose points lie in one array.
+  std::shared_ptr<const Vec3[]> points_;
+  std::shared_ptr<const double[]> weights_;
+  friend class PatchPieces;
 };
 
 /// Position and partial derivatives at one (u,v).

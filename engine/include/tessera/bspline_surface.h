@@ -12,16 +12,17 @@
 
 namespace tessera {
 
-/// s(u,v) = sum_ij N_{i,p}(u) N_{j,q}(v) P_ij or, rational, sum N N w_ij P_ij / sum N N w_ij, of degrees 1 to max_degree
-/// (Piegl and Tiller, The NURBS Book, 2nd ed., ch. 3 and 4). Each direction has its knots, as many as points, degree and 1:
-/// they do not decrease; a knot within the domain [u_p, u_{m+1}] stands at most p times (p-fold it breaks to C0), one
-/// at its ends or outside at most p + 1 times. So they may be clamped, unclamped, uniform; surfaces that close on periodic
-/// knots repeat their first p rows at the end. Points are stored [i][j], i along u. Immutable but for assignment.
+/// s(u,v) = sum_ij N_{i,p}(u) N_{j,q}(v) P_ij or, rational, sum N N w_ij P_ij / sum N N w_ij, of degrees 1 to
+/// max_degree (Piegl and Tiller, The NURBS Book, 2nd ed., ch. 3 and 4). Each direction has its knots, as many as
+/// points, degree and 1: they do not decrease; a knot within the domain [u_p, u_{m+1}] stands at most p times (p-fold
+/// it breaks to C0), one at its ends or outside at most p + 1 times. So they may be clamped, unclamped, uniform;
+/// surfaces that close on periodic knots repeat their first p rows at the end. Points are stored [i][j], i along u.
+/// Immutable but for assignment.
 class BSplineSurface {
  public:
   /// There are knots_u.size() - degree_u - 1 by knots_v.size() - degree_v - 1 points. `domain`: a part of the domain of
-  /// the knots; all of it if empty. Errors: unsupported_degree, count_mismatch, non_finite, invalid_argument (index = the
-  /// point or the knot).
+  /// the knots; all of it if empty. Errors: unsupported_degree, count_mismatch, non_finite, invalid_argument (index =
+  /// the point or the knot).
   static Result<BSplineSurface> polynomial(int degree_u, std::span<const double> knots_u, int degree_v,
                                            std::span<const double> knots_v, std::span<const Vec3> points,
                                            std::optional<Domain> domain = {});
@@ -53,9 +54,9 @@ class BSplineSurface {
   Domain domain_;
 };
 
-/// The reference evaluator, by the surface's own parameters: de Boor's algorithm, rational surfaces in homogeneous form. At
-/// a knot the span on its right counts, at the end of the domain the one on its left: so at a knot of full multiplicity
-/// derivatives are those of that side. Outside the domain the border pieces go on. Any finite (u,v).
+/// The reference evaluator, by the surface's own parameters: de Boor's algorithm, rational surfaces in homogeneous
+/// form. At a knot the span on its right counts, at the end of the domain the one on its left: so at a knot of full
+/// multiplicity derivatives are those of that side. Outside the domain the border pieces go on. Any finite (u,v).
 SurfaceJet evaluate_jet(const BSplineSurface& surface, double u, double v);
 
 }  // namespace tessera

@@ -17,10 +17,11 @@ struct Interval {
   friend bool operator==(const Interval&, const Interval&) = default;
 };
 
-/// c(t) = sum_i N_{i,p}(t) P_i or, rational, sum N w_i P_i / sum N w_i, of degree 1 to max_degree (Piegl and Tiller, The
-/// NURBS Book, 2nd ed., ch. 3 and 4). The knots t_0 .. t_{m+p+1} of points 0 .. m do not decrease; a knot within
-/// [t_p, t_{m+1}] stands at most p times (p-fold it breaks to C0), one at its ends or outside at most p + 1 times. Clamped
-/// or not; closed curves on periodic knots repeat their first p points at the end. Immutable but for assignment.
+/// c(t) = sum_i N_{i,p}(t) P_i or, rational, sum N w_i P_i / sum N w_i, of degree 1 to max_degree (Piegl and Tiller,
+/// The NURBS Book, 2nd ed., ch. 3 and 4). The knots t_0 .. t_{m+p+1} of points 0 .. m do not decrease; a knot within
+/// [t_p, t_{m+1}] stands at most p times (p-fold it breaks to C0), one at its ends or outside at most p + 1 times.
+/// Clamped or not; closed curves on periodic knots repeat their first p points at the end. Immutable but for
+/// assignment.
 class Curve {
  public:
   /// Of degree points.size() - 1, weights as below or none. Errors: as below.

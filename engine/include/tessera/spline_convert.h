@@ -1,5 +1,6 @@
 #pragma once
-// B-spline and NURBS curves and surfaces in other clothes, exactly: more knots, a higher degree, clamped ends, Bezier pieces.
+// B-spline and NURBS curves and surfaces in other clothes, exactly: more knots, a higher degree, clamped ends, Bezier
+// pieces.
 
 #include <span>
 #include <utility>
@@ -18,7 +19,8 @@ namespace tessera {
 /// domain, its ends not included, and not above the degree in multiplicity, those that stand already included.
 /// Errors: non_finite, invalid_argument (index = the knot).
 Result<Curve> refined(const Curve& curve, std::span<const double> knots);
-Result<BSplineSurface> refined(const BSplineSurface& surface, std::span<const double> knots_u, std::span<const double> knots_v);
+Result<BSplineSurface> refined(const BSplineSurface& surface, std::span<const double> knots_u,
+                               std::span<const double> knots_v);
 
 /// With knots that end where the domain ends, (degree + 1)-fold: what is unclamped or has a smaller domain than its
 /// knots becomes clamped, and its border curves come to have the border points as control points.
@@ -34,8 +36,8 @@ Result<BSplineSurface> degree_elevated(const BSplineSurface& surface, int by_u, 
 /// both stand). One may be rational and the other not. Errors: invalid_argument (they have not the same domain).
 Result<std::pair<Curve, Curve>> compatible(const Curve& a, const Curve& b);
 
-/// A curve as Bezier pieces that share their end points: piece k has the points k * degree .. (k + 1) * degree and covers
-/// [breaks[k], breaks[k+1]].
+/// A curve as Bezier pieces that share their end points: piece k has the points k * degree .. (k + 1) * degree and
+/// covers [breaks[k], breaks[k+1]].
 struct BezierPieces {
   int degree = 1;
   std::vector<double> breaks;
@@ -44,9 +46,10 @@ struct BezierPieces {
 };
 Result<BezierPieces> to_bezier(const Curve& curve);
 
-/// One patch a rectangle between distinct knots, within the domain. All patches are rational or none is, as the surface is.
-/// Control points are convex combinations of the surface's; those of full multiplicity are the same bits. Time and memory
-/// O(output). (Borden, Scott, Evans, Hughes 2011, Isogeometric finite element data structures based on Bezier extraction.)
+/// One patch a rectangle between distinct knots, within the domain. All patches are rational or none is, as the surface
+/// is. Control points are convex combinations of the surface's; those of full multiplicity are the same bits. Time and
+/// memory O(output). (Borden, Scott, Evans, Hughes 2011, Isogeometric finite element data structures based on Bezier
+/// extraction.)
 Result<PatchGrid> to_bezier(const BSplineSurface& surface);
 
 /// Patches (a, b) of a grid with a0 <= a < a1, b0 <= b < b1.
@@ -55,8 +58,8 @@ struct PatchRange {
   bool empty() const { return a0 >= a1 || b0 >= b1; }
   friend bool operator==(const PatchRange&, const PatchRange&) = default;
 };
-/// The patches of to_bezier(surface) that control point [i][j] touches: at most (degree_u + 1) (degree_v + 1). Empty for a
-/// point that acts outside the domain alone. Errors: invalid_argument (no such point).
+/// The patches of to_bezier(surface) that control point [i][j] touches: at most (degree_u + 1) (degree_v + 1). Empty
+/// for a point that acts outside the domain alone. Errors: invalid_argument (no such point).
 Result<PatchRange> touched_patches(const BSplineSurface& surface, std::size_t i, std::size_t j);
 
 }  // namespace tessera

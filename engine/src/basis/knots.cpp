@@ -38,8 +38,9 @@ Status check_multiplicity(int degree, std::span<const double> knots, const std::
     const bool inner = knots[k] > start && knots[k] < end;
     if (count > p + (inner ? 0 : 1))
       return {StatusCode::invalid_argument,
-              knot_text(knots, name, k) + " stands " + std::to_string(count) + " times; of degree " + std::to_string(degree) +
-                  (inner ? " an inner knot may stand " : " a knot may stand ") + std::to_string(p + (inner ? 0 : 1)) + " times",
+              knot_text(knots, name, k) + " stands " + std::to_string(count) + " times; of degree " +
+                  std::to_string(degree) + (inner ? " an inner knot may stand " : " a knot may stand ") +
+                  std::to_string(p + (inner ? 0 : 1)) + " times",
               static_cast<std::ptrdiff_t>(k)};
     k += count;
   }
@@ -51,8 +52,9 @@ Status check_multiplicity(int degree, std::span<const double> knots, const std::
 Status check_knots(int degree, std::span<const double> knots, const std::string& name) {
   const std::size_t p = static_cast<std::size_t>(degree);
   if (knots.size() < 2 * (p + 1))
-    return {StatusCode::count_mismatch, "degree " + std::to_string(degree) + " needs at least " + std::to_string(2 * (p + 1)) +
-                                            " " + name + ", " + std::to_string(knots.size()) + " were given"};
+    return {StatusCode::count_mismatch, "degree " + std::to_string(degree) + " needs at least " +
+                                            std::to_string(2 * (p + 1)) + " " + name + ", " +
+                                            std::to_string(knots.size()) + " were given"};
   if (Status status = check_order(knots, name); !status.ok()) return status;
   const std::size_t last = knots.size() - p - 1;
   if (!(knots[p] < knots[last]))
@@ -63,12 +65,14 @@ Status check_knots(int degree, std::span<const double> knots, const std::string&
 }
 
 Status check_range(int degree, std::span<const double> knots, double from, double to, const std::string& name) {
-  const double first = knots[static_cast<std::size_t>(degree)], last = knots[knots.size() - static_cast<std::size_t>(degree) - 1];
+  const double first = knots[static_cast<std::size_t>(degree)],
+               last = knots[knots.size() - static_cast<std::size_t>(degree) - 1];
   const std::string range = name + " [" + text(from) + ", " + text(to) + "]";
   if (!std::isfinite(from) || !std::isfinite(to)) return {StatusCode::non_finite, range + " must be finite"};
   if (!(from < to)) return {StatusCode::invalid_argument, range + " is empty"};
   if (from < first || to > last)
-    return {StatusCode::invalid_argument, range + " reaches outside that of the knots, [" + text(first) + ", " + text(last) + "]"};
+    return {StatusCode::invalid_argument,
+            range + " reaches outside that of the knots, [" + text(first) + ", " + text(last) + "]"};
   return {};
 }
 
@@ -82,7 +86,9 @@ std::size_t find_span(const KnotLine& line, double t) {
     return static_cast<std::size_t>(std::upper_bound(line.knots.begin(), line.knots.end(), x) - line.knots.begin());
   };
   if (t < line.to) return after(std::max(t, line.from)) - 1;
-  return static_cast<std::size_t>(std::lower_bound(line.knots.begin(), line.knots.end(), line.to) - line.knots.begin()) - 1;
+  return static_cast<std::size_t>(std::lower_bound(line.knots.begin(), line.knots.end(), line.to) -
+                                  line.knots.begin()) -
+         1;
 }
 
 std::vector<std::size_t> distinct_spans(const KnotLine& line) {
@@ -93,7 +99,8 @@ std::vector<std::size_t> distinct_spans(const KnotLine& line) {
 }
 
 template <class Real>
-void blossom_weights(int degree, std::span<const double> knots, std::size_t span, const Real* arguments, Real* weights) {
+void blossom_weights(int degree, std::span<const double> knots, std::size_t span, const Real* arguments,
+                     Real* weights) {
   assert(knots[span] < knots[span + 1]);
   weights[0] = 1;
   for (std::size_t r = 1; r <= static_cast<std::size_t>(degree); ++r) {

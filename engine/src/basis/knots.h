@@ -32,16 +32,17 @@ Status check_range(int degree, std::span<const double> knots, double from, doubl
 /// How many knots equal t.
 std::size_t multiplicity(std::span<const double> knots, double t);
 
-/// The k with u_k <= t < u_{k+1}: at a knot the span on its right, at the end of the interval the last one that it meets.
-/// For t outside the interval the first or the last. The span is not empty; points k-p .. k act on it.
+/// The k with u_k <= t < u_{k+1}: at a knot the span on its right, at the end of the interval the last one that it
+/// meets. For t outside the interval the first or the last. The span is not empty; points k-p .. k act on it.
 std::size_t find_span(const KnotLine& line, double t);
 /// The spans that the interval meets in more than a point, in order.
 std::vector<std::size_t> distinct_spans(const KnotLine& line);
 
-/// Weights c of the blossom on one span: f(t_1, .., t_p) = sum_j c_j P_{span-p+j}, f being the symmetric multiaffine form
-/// with f(t, .., t) = the curve (Ramshaw, Blossoming, 1987; Farin, Curves and Surfaces for CAGD, 5th ed., sec. 8.6). Any
-/// order of the arguments means the same; steps with an argument within the span are convex, and the last ones are the
-/// most forgiving of others. `arguments`: degree of them, `weights`: degree + 1. Real is double or long double.
+/// Weights c of the blossom on one span: f(t_1, .., t_p) = sum_j c_j P_{span-p+j}, f being the symmetric multiaffine
+/// form with f(t, .., t) = the curve (Ramshaw, Blossoming, 1987; Farin, Curves and Surfaces for CAGD, 5th ed., sec.
+/// 8.6). Any order of the arguments means the same; steps with an argument within the span are convex, and the last
+/// ones are the most forgiving of others. `arguments`: degree of them, `weights`: degree + 1. Real is double or long
+/// double.
 template <class Real>
 void blossom_weights(int degree, std::span<const double> knots, std::size_t span, const Real* arguments, Real* weights);
 

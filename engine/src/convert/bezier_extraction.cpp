@@ -1,11 +1,15 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
 #include <string>
 
 #include "base/guard.h"
 #include "convert/extraction.h"
 #include "convert/spline_net.h"
 #include "surface/homogeneous.h"
+#include "surface/patch_pieces.h"
 #include "surface/spline_lines.h"
 #include "tessera/spline_convert.h"
 
@@ -60,6 +64,12 @@ NetPoint project(const double* values, const Scales& scales) {
   return {scales.point * h.project(), scales.weight * h.w};
 }
 
+bool all_finite(std::span<const double> values) {
+  bool finite = true;
+  for (const double x : values) finite &= std::abs(x) <= std::numeric_limits<double>::max();
+  return finite;
+}
+
 /// The Bezier points of a surface, one strip of patches after the other, each point computed once: neighbours share it.
 class Strips {
  public:
@@ -73,66 +83,67 @@ class Strips {
       for (std::size_t r = 0; r < v_.rows.size(); ++r)
         apply(v_, v_.rows[r], &net[i * surface.count_v() * c], c, c, &along_v_[i * row_size() + r * c]);
     strip_.resize(order_u() * row_size());
+    if (!scales_) return;
+    projected_.resize(order_u() * v_.rows.size() * 3);
+    projected_weights_.resize(order_u() * v_.rows.size());
   }
 
   const Extraction& u() const { return u_; }
   const Extraction& v() const { return v_; }
 
-  /// Appends the patches of span `a` of u. Spans come in order.
-  Status append(std::size_t a, std::vector<BezierPatch>& patches) {
-    const std::size_t p = order_u() - 1, size = row_size();
+  /// Writes the patches of span `a` of u. Spans come in order.
+  Status write(std::size_t a, PatchPieces& pieces) {
+    const std::size_t p = order_u() - 1, size = row_size(), first = a > 0 ? 1 : 0;
     if (a > 0) std::copy_n(strip_.end() - static_cast<std::ptrdiff_t>(size), size, strip_.begin());
-    for (std::size_t i = a > 0 ? 1 : 0; i <= p; ++i)
+    for (std::size_t i = first; i <= p; ++i)
       apply(u_, u_.rows[a * p + i], along_v_.data(), size, size, &strip_[i * size]);
-    for (std::size_t b = 0; b < v_.span_count(); ++b) {
-      Result<BezierPatch> patch = scales_ ? rational_patch(a, b) : polynomial_patch(b);
-      if (!patch) return patch.status();
-      patches.push_back(*std::move(patch));
-    }
+    if (scales_) project_strip(a);
+    if (!all_finite(scales_ ? projected_ : strip_))
+      return {StatusCode::non_finite, "the control points are too large: a mean of them is not finite"};
+    for (std::size_t b = 0; b < v_.span_count(); ++b) write_patch(a * v_.span_count() + b, b, pieces);
     return {};
   }
 
  private:
-  static constexpr std::size_t most_points = (max_degree + 1) * (max_degree + 1);
-
   std::size_t components() const { return scales_ ? 4 : 3; }
   std::size_t row_size() const { return v_.rows.size() * components(); }
   std::size_t order_u() const { return static_cast<std::size_t>(surface_.degree_u()) + 1; }
   std::size_t order_v() const { return static_cast<std::size_t>(surface_.degree_v()) + 1; }
 
-  Result<BezierPatch> polynomial_patch(std::size_t b) {
-    const std::size_t order = order_v();
-    std::size_t k = 0;
-    for (std::size_t i = 0; i < order_u(); ++i) {
-      const double* from = &strip_[i * row_size() + b * (order - 1) * 3];
-      for (std::size_t j = 0; j < order; ++j, from += 3) points_[k++] = {from[0], from[1], from[2]};
-    }
-    return BezierPatch::polynomial(surface_.degree_u(), surface_.degree_v(), {points_.data(), k});
+  void project_strip(std::size_t a) {
+    const std::size_t p = order_u() - 1;
+    for (std::size_t i = 0; i <= p; ++i)
+      for (std::size_t r = 0; r < v_.rows.size(); ++r) {
+        const Extraction::Row &row = u_.rows[a * p + i], &column = v_.rows[r];
+        NetPoint at = project(&strip_[i * row_size() + r * 4], *scales_);
+        if (row.count == 1 && column.count == 1)  // keeps its bits, and its weight's
+          at = {surface_.point(row.first, column.first), surface_.weight(row.first, column.first)};
+        const std::size_t k = i * v_.rows.size() + r;
+        projected_[3 * k] = at.point.x;
+        projected_[3 * k + 1] = at.point.y;
+        projected_[3 * k + 2] = at.point.z;
+        projected_weights_[k] = at.weight;
+      }
   }
 
-  Result<BezierPatch> rational_patch(std::size_t a, std::size_t b) {
-    const std::size_t p = order_u() - 1, q = order_v() - 1;
-    std::size_t k = 0;
-    for (std::size_t i = 0; i <= p; ++i)
-      for (std::size_t j = 0; j <= q; ++j, ++k) {
-        const Extraction::Row &row = u_.rows[a * p + i], &column = v_.rows[b * q + j];
-        const bool copied = row.count == 1 && column.count == 1;  // keeps its bits, and its weight's
-        const NetPoint at = copied ? NetPoint{surface_.point(row.first, column.first),
-                                                        surface_.weight(row.first, column.first)}
-                                        : project(&strip_[i * row_size() + (b * q + j) * 4], *scales_);
-        points_[k] = at.point;
-        weights_[k] = at.weight;
-      }
-    return BezierPatch::rational_piece(surface_.degree_u(), surface_.degree_v(), {points_.data(), k}, {weights_.data(), k});
+  void write_patch(std::size_t patch, std::size_t b, PatchPieces& pieces) const {
+    const std::size_t order = order_v(), rows = v_.rows.size();
+    const std::vector<double>& points = scales_ ? projected_ : strip_;
+    for (std::size_t i = 0; i < order_u(); ++i) {
+      const std::size_t k = i * rows + b * (order - 1);
+      const double* from = &points[3 * k];
+      Vec3* to = pieces.points(patch) + i * order;
+      std::memcpy(static_cast<void*>(to), from, order * sizeof(Vec3));
+      if (scales_) std::copy_n(&projected_weights_[k], order, pieces.weights(patch) + i * order);
+    }
   }
 
   const BSplineSurface& surface_;
   const Extraction u_, v_;
-  std::optional<Scales> scales_;  ///< of rational surfaces
-  std::vector<double> along_v_;   ///< [control row][row of v_][component]
-  std::vector<double> strip_;     ///< [0 .. degree_u][row of v_][component]
-  std::array<Vec3, most_points> points_;
-  std::array<double, most_points> weights_;
+  std::optional<Scales> scales_;                       ///< of rational surfaces
+  std::vector<double> along_v_;                        ///< [control row][row of v_][component]
+  std::vector<double> strip_;                          ///< [0 .. degree_u][row of v_][component]
+  std::vector<double> projected_, projected_weights_;  ///< of rational surfaces: the strip as points and weights
 };
 
 /// The patches, of those between `breaks`, whose spans point i acts on: [u_i, u_{i+p+1}].
@@ -148,11 +159,11 @@ std::pair<std::size_t, std::size_t> touched(const KnotLine& line, std::size_t i)
 Result<PatchGrid> to_bezier(const BSplineSurface& surface) {
   return guarded([&]() -> Result<PatchGrid> {
     Strips strips(surface);
-    std::vector<BezierPatch> patches;
-    patches.reserve(strips.u().span_count() * strips.v().span_count());
+    PatchPieces pieces(surface.degree_u(), surface.degree_v(), strips.u().span_count() * strips.v().span_count(),
+                       surface.is_rational());
     for (std::size_t a = 0; a < strips.u().span_count(); ++a)
-      if (Status status = strips.append(a, patches); !status.ok()) return status;
-    return PatchGrid::make(strips.u().breaks, strips.v().breaks, std::move(patches));
+      if (Status status = strips.write(a, pieces); !status.ok()) return status;
+    return PatchGrid::make(strips.u().breaks, strips.v().breaks, pieces.take());
   });
 }
 
@@ -180,9 +191,9 @@ Result<BezierPieces> to_bezier(const Curve& curve) {
 Result<PatchRange> touched_patches(const BSplineSurface& surface, std::size_t i, std::size_t j) {
   return guarded([&]() -> Result<PatchRange> {
     if (i >= surface.count_u() || j >= surface.count_v())
-      return Status(StatusCode::invalid_argument, "there is no control point [" + std::to_string(i) + "][" + std::to_string(j) +
-                                                      "] in " + std::to_string(surface.count_u()) + " x " +
-                                                      std::to_string(surface.count_v()));
+      return Status(StatusCode::invalid_argument, "there is no control point [" + std::to_string(i) + "][" +
+                                                      std::to_string(j) + "] in " + std::to_string(surface.count_u()) +
+                                                      " x " + std::to_string(surface.count_v()));
     const auto [a0, a1] = touched(line_u(surface), i);
     const auto [b0, b1] = touched(line_v(surface), j);
     return PatchRange{a0, a1, b0, b1};

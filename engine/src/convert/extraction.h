@@ -1,6 +1,7 @@
 #pragma once
 // How the Bezier points of all spans of a spline direction come from its control points: the extraction operators of
-// Borden, Scott, Evans, Hughes 2011 (Isogeometric finite element data structures based on Bezier extraction), by blossoms.
+// Borden, Scott, Evans, Hughes 2011 (Isogeometric finite element data structures based on Bezier extraction), by
+// blossoms.
 
 #include <cstddef>
 #include <vector>
@@ -9,12 +10,12 @@
 
 namespace tessera {
 
-/// Row r of the operator, r = span * degree + i, gives Bezier point i of that span; the last of a span is the first of the
-/// next, one row. Each weight is >= 0 and right to half a unit in the last place.
+/// Row r of the operator, r = span * degree + i, gives Bezier point i of that span; the last of a span is the first of
+/// the next, one row. Each weight is >= 0 and right to half a unit in the last place.
 struct Extraction {
   struct Row {
-    std::size_t first = 0;  ///< the first control point that acts
-    std::size_t count = 0;  ///< how many do; 1: the Bezier point is that control point, with weight 1
+    std::size_t first = 0;    ///< the first control point that acts
+    std::size_t count = 0;    ///< how many do; 1: the Bezier point is that control point, with weight 1
     std::size_t weights = 0;  ///< where its weights begin
   };
   std::vector<double> breaks;  ///< of the spans: one more than these

@@ -32,7 +32,10 @@ struct PointsAndWeights {
 };
 
 SplineNet net_of(const Curve& curve) {
-  return {curve.degree(), curve.is_rational(), 1, {curve.knots().begin(), curve.knots().end()},
+  return {curve.degree(),
+          curve.is_rational(),
+          1,
+          {curve.knots().begin(), curve.knots().end()},
           net_points(curve.points(), curve.weights())};
 }
 
@@ -46,10 +49,16 @@ Result<Curve> curve_of(const SplineNet& net, const Interval& domain) {
 template <class AlongU, class AlongV>
 Result<BSplineSurface> changed(const BSplineSurface& surface, AlongU along_u, AlongV along_v) {
   const bool rational = surface.is_rational();
-  SplineNet u{surface.degree_u(), rational, surface.count_v(), {surface.knots_u().begin(), surface.knots_u().end()},
+  SplineNet u{surface.degree_u(),
+              rational,
+              surface.count_v(),
+              {surface.knots_u().begin(), surface.knots_u().end()},
               net_points(surface.points(), surface.weights())};
   along_u(u);
-  SplineNet v{surface.degree_v(), rational, u.count(), {surface.knots_v().begin(), surface.knots_v().end()},
+  SplineNet v{surface.degree_v(),
+              rational,
+              u.count(),
+              {surface.knots_v().begin(), surface.knots_v().end()},
               transposed(u.points, u.width)};
   along_v(v);
   const PointsAndWeights data(transposed(v.points, v.width), rational);
@@ -61,24 +70,24 @@ Result<BSplineSurface> changed(const BSplineSurface& surface, AlongU along_u, Al
 Status check_new_knots(const KnotLine& line, std::span<const double> knots, const std::string& name) {
   for (std::size_t k = 0; k < knots.size(); ++k) {
     const auto bad = [&](StatusCode code, const std::string& what) {
-      return Status(code, name + "[" + std::to_string(k) + "] = " + text(knots[k]) + what, static_cast<std::ptrdiff_t>(k));
+      return Status(code, name + "[" + std::to_string(k) + "] = " + text(knots[k]) + what,
+                    static_cast<std::ptrdiff_t>(k));
     };
     if (!std::isfinite(knots[k])) return bad(StatusCode::non_finite, ", it must be finite");
     if (!(knots[k] > line.from && knots[k] < line.to))
       return bad(StatusCode::invalid_argument,
                  " is not inside the domain, [" + text(line.from) + ", " + text(line.to) + "]");
-    const std::size_t count = multiplicity(line.knots, knots[k]) +
-                              static_cast<std::size_t>(std::count(knots.begin(), knots.end(), knots[k]));
+    const std::size_t count =
+        multiplicity(line.knots, knots[k]) + static_cast<std::size_t>(std::count(knots.begin(), knots.end(), knots[k]));
     if (count > static_cast<std::size_t>(line.degree))
-      return bad(StatusCode::invalid_argument, " would stand " + std::to_string(count) + " times, more than the degree, " +
-                                                   std::to_string(line.degree));
+      return bad(StatusCode::invalid_argument, " would stand " + std::to_string(count) +
+                                                   " times, more than the degree, " + std::to_string(line.degree));
   }
   return {};
 }
 
 Status check_elevation(int degree, int by, const char* name) {
-  if (by < 0)
-    return {StatusCode::invalid_argument, std::string(name) + " cannot be raised by " + std::to_string(by)};
+  if (by < 0) return {StatusCode::invalid_argument, std::string(name) + " cannot be raised by " + std::to_string(by)};
   return check_degree(by > max_degree ? by : degree + by, name);
 }
 
@@ -113,7 +122,8 @@ Result<Curve> refined(const Curve& curve, std::span<const double> knots) {
   });
 }
 
-Result<BSplineSurface> refined(const BSplineSurface& surface, std::span<const double> knots_u, std::span<const double> knots_v) {
+Result<BSplineSurface> refined(const BSplineSurface& surface, std::span<const double> knots_u,
+                               std::span<const double> knots_v) {
   return guarded([&]() -> Result<BSplineSurface> {
     if (Status status = check_new_knots(line_u(surface), knots_u, "new knots u"); !status.ok()) return status;
     if (Status status = check_new_knots(line_v(surface), knots_v, "new knots v"); !status.ok()) return status;
@@ -158,8 +168,8 @@ Result<std::pair<Curve, Curve>> compatible(const Curve& a, const Curve& b) {
   return guarded([&]() -> Result<std::pair<Curve, Curve>> {
     const Interval d = a.domain(), e = b.domain();
     if (!(d == e))
-      return Status(StatusCode::invalid_argument, "the curves have different domains, [" + text(d.from) + ", " + text(d.to) +
-                                                      "] and [" + text(e.from) + ", " + text(e.to) + "]");
+      return Status(StatusCode::invalid_argument, "the curves have different domains, [" + text(d.from) + ", " +
+                                                      text(d.to) + "] and [" + text(e.from) + ", " + text(e.to) + "]");
     SplineNet net_a = net_of(a), net_b = net_of(b);
     const int degree = std::max(a.degree(), b.degree());
     elevating(d.from, d.to, degree - a.degree())(net_a);

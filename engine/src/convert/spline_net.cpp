@@ -9,7 +9,8 @@
 namespace tessera {
 namespace {
 
-/// sum_j weights[j] rows[j], of each curve; rational ones with the weights as they act, so that the ratios stay in the hull.
+/// sum_j weights[j] rows[j], of each curve; rational ones with the weights as they act, so that the ratios stay in the
+/// hull.
 void combine(const SplineNet& net, std::size_t first, std::size_t count, const double* factors, NetPoint* out) {
   for (std::size_t c = 0; c < net.width; ++c) {
     const NetPoint* from = &net.points[first * net.width + c];
@@ -39,15 +40,13 @@ std::vector<double> raised_knots(const std::vector<double>& knots) {
 
 using Blossom = std::array<long double, max_degree + 1>;
 
-/// The mean of the blossoms of all but one of the degree + 1 `arguments`: that is the blossom of the curve seen as one of the
-/// next degree (Farin, sec. 8.7). Arguments near the span come first, where the steps are narrow.
+/// The mean of the blossoms of all but one of the degree + 1 `arguments`: that is the blossom of the curve seen as one
+/// of the next degree (Farin, sec. 8.7). Arguments near the span come first, where the steps are narrow.
 Blossom elevated_blossom(const SplineNet& net, std::size_t span, const double* arguments) {
   const std::size_t p = static_cast<std::size_t>(net.degree);
   Blossom sorted{};
   std::copy_n(arguments, p + 1, sorted.begin());
-  const auto distance = [&](long double t) {
-    return std::max({net.knots[span] - t, t - net.knots[span + 1], 0.0L});
-  };
+  const auto distance = [&](long double t) { return std::max({net.knots[span] - t, t - net.knots[span + 1], 0.0L}); };
   std::stable_sort(sorted.begin(), sorted.begin() + net.degree + 1,
                    [&](long double a, long double b) { return distance(a) < distance(b); });
   Blossom sum{};

@@ -1,5 +1,6 @@
 #pragma once
-// Knot insertion, clamping and degree elevation of many spline curves on the same knots at once: a surface in one direction.
+// Knot insertion, clamping and degree elevation of many spline curves on the same knots at once: a surface in one
+// direction.
 
 #include <cstddef>
 #include <vector>

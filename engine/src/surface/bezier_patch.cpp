@@ -1,5 +1,6 @@
 #include "tessera/bezier_patch.h"
 
+#include <algorithm>
 #include <string>
 
 #include "base/guard.h"
@@ -19,6 +20,13 @@ Status check_count(int degree_u, int degree_v, std::size_t count, const char* wh
           size_text(degree_u, degree_v) + " " + what + ", " + std::to_string(count) + " were given"};
 }
 
+template <class T>
+std::shared_ptr<const T[]> shared_copy(std::span<const T> values) {
+  auto copy = std::make_shared<T[]>(values.size());
+  std::copy(values.begin(), values.end(), copy.get());
+  return copy;
+}
+
 }  // namespace
 
 Result<BezierPatch> BezierPatch::polynomial(int degree_u, int degree_v, std::span<const Vec3> points) {
@@ -31,7 +39,7 @@ Result<BezierPatch> BezierPatch::polynomial(int degree_u, int degree_v, std::spa
     BezierPatch patch;
     patch.degree_u_ = degree_u;
     patch.degree_v_ = degree_v;
-    patch.points_.assign(points.begin(), points.end());
+    patch.points_ = shared_copy(points);
     return patch;
   });
 }
@@ -39,28 +47,19 @@ Result<BezierPatch> BezierPatch::polynomial(int degree_u, int degree_v, std::spa
 Result<BezierPatch> BezierPatch::rational(int degree_u, int degree_v, std::span<const Vec3> points,
                                           std::span<const double> weights) {
   return guarded([&]() -> Result<BezierPatch> {
-    Result<BezierPatch> patch = rational_piece(degree_u, degree_v, points, weights);
-    if (patch && all_equal(weights)) patch->weights_.clear();
-    return patch;
-  });
-}
-
-Result<BezierPatch> BezierPatch::rational_piece(int degree_u, int degree_v, std::span<const Vec3> points,
-                                                std::span<const double> weights) {
-  return guarded([&]() -> Result<BezierPatch> {
     Result<BezierPatch> patch = polynomial(degree_u, degree_v, points);
     if (!patch) return patch;
     if (Status status = check_count(degree_u, degree_v, weights.size(), "weights"); !status.ok()) return status;
     const auto place = [&](std::size_t k) { return place_in_rows(k, static_cast<std::size_t>(degree_v) + 1); };
     if (Status status = check_weights(weights, place); !status.ok()) return status;
-    patch->weights_.assign(weights.begin(), weights.end());
+    if (!all_equal(weights)) patch->weights_ = shared_copy(weights);
     return patch;
   });
 }
 
 Box3 BezierPatch::hull_box() const {
   Box3 box;
-  for (const Vec3& p : points_) box.extend(p);
+  for (const Vec3& p : points()) box.extend(p);
   return box;
 }
 

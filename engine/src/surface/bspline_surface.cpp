@@ -14,7 +14,8 @@ namespace {
 Status check_count(std::size_t count_u, std::size_t count_v, std::size_t count, const char* what) {
   if (count / count_u == count_v && count % count_u == 0) return {};
   return {StatusCode::count_mismatch, "these knots and degrees need " + std::to_string(count_u) + " x " +
-                                          std::to_string(count_v) + " " + what + ", " + std::to_string(count) + " were given"};
+                                          std::to_string(count_v) + " " + what + ", " + std::to_string(count) +
+                                          " were given"};
 }
 
 }  // namespace
@@ -33,8 +34,10 @@ Result<BSplineSurface> BSplineSurface::polynomial(int degree_u, std::span<const 
     const auto place = [&](std::size_t k) { return place_in_rows(k, count_v); };
     if (Status status = check_points(points, place); !status.ok()) return status;
     const Domain used = domain.value_or(Domain{knots_u[p], knots_u[count_u], knots_v[q], knots_v[count_v]});
-    if (Status status = check_range(degree_u, knots_u, used.u0, used.u1, "the domain in u"); !status.ok()) return status;
-    if (Status status = check_range(degree_v, knots_v, used.v0, used.v1, "the domain in v"); !status.ok()) return status;
+    if (Status status = check_range(degree_u, knots_u, used.u0, used.u1, "the domain in u"); !status.ok())
+      return status;
+    if (Status status = check_range(degree_v, knots_v, used.v0, used.v1, "the domain in v"); !status.ok())
+      return status;
     BSplineSurface surface;
     surface.degree_u_ = degree_u;
     surface.degree_v_ = degree_v;
@@ -53,7 +56,8 @@ Result<BSplineSurface> BSplineSurface::rational(int degree_u, std::span<const do
     Result<BSplineSurface> surface = polynomial(degree_u, knots_u, degree_v, knots_v, points, domain);
     if (!surface) return surface;
     const std::size_t count_v = surface->count_v();
-    if (Status status = check_count(surface->count_u(), count_v, weights.size(), "weights"); !status.ok()) return status;
+    if (Status status = check_count(surface->count_u(), count_v, weights.size(), "weights"); !status.ok())
+      return status;
     const auto place = [&](std::size_t k) { return place_in_rows(k, count_v); };
     if (Status status = check_weights(weights, place); !status.ok()) return status;
     if (!all_equal(weights)) surface->weights_.assign(weights.begin(), weights.end());

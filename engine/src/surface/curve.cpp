@@ -16,8 +16,9 @@ constexpr auto place = [](std::size_t k) { return "[" + std::to_string(k) + "]";
 Status check_size(int degree, std::size_t points, std::size_t knots) {
   const std::size_t wanted = points + static_cast<std::size_t>(degree) + 1;
   if (knots == wanted) return {};
-  return {StatusCode::count_mismatch, std::to_string(points) + " points of degree " + std::to_string(degree) + " need " +
-                                          std::to_string(wanted) + " knots, " + std::to_string(knots) + " were given"};
+  return {StatusCode::count_mismatch, std::to_string(points) + " points of degree " + std::to_string(degree) +
+                                          " need " + std::to_string(wanted) + " knots, " + std::to_string(knots) +
+                                          " were given"};
 }
 
 }  // namespace
@@ -78,9 +79,11 @@ CurveJet evaluate_jet(const Curve& curve, double t) {
   const Vec3 origin = curve.is_rational() ? curve.points()[first + nearer_end(line.degree, at_span, t)] : Vec3{};
   const WindowFrame frame(largest, largest_weight, origin);
   SplineWindow window;
-  for (std::size_t k = 0; k <= p; ++k) window[k] = frame.homogeneous(curve.points()[first + k], curve.weight(first + k));
+  for (std::size_t k = 0; k <= p; ++k)
+    window[k] = frame.homogeneous(curve.points()[first + k], curve.weight(first + k));
   const SplineJet a = spline_jet(line.degree, at_span, t, window);
-  if (!curve.is_rational()) return {frame.position(a[0].vector()), frame.vector(a[1].vector()), frame.vector(a[2].vector())};
+  if (!curve.is_rational())
+    return {frame.position(a[0].vector()), frame.vector(a[1].vector()), frame.vector(a[2].vector())};
   const Homogeneous none{0, 0, 0, 0};
   const SurfaceJet jet = project(a[0], a[1], none, a[2], none, none);
   return {frame.position(jet.position), frame.vector(jet.du), frame.vector(jet.duu)};

@@ -28,8 +28,10 @@ Result<Frame> frame_of(const Axis& axis) {
 }
 
 Status check_positive(double value, const char* name) {
-  if (!std::isfinite(value)) return {StatusCode::non_finite, std::string(name) + " is " + text(value) + ", it must be finite"};
-  if (!(value > 0)) return {StatusCode::invalid_argument, std::string(name) + " is " + text(value) + ", it must be above 0"};
+  if (!std::isfinite(value))
+    return {StatusCode::non_finite, std::string(name) + " is " + text(value) + ", it must be finite"};
+  if (!(value > 0))
+    return {StatusCode::invalid_argument, std::string(name) + " is " + text(value) + ", it must be above 0"};
   return {};
 }
 
@@ -43,7 +45,8 @@ UnitCircle unit_circle(CircleArcs arcs) {
   const double h = std::sqrt(3.0) / 2, r3 = std::sqrt(3.0);
   UnitCircle circle;
   if (arcs == CircleArcs::four)
-    circle.points = {{1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {-1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}, {0, -1, 0}, {1, -1, 0}, {1, 0, 0}};
+    circle.points = {{1, 0, 0},   {1, 1, 0},  {0, 1, 0},  {-1, 1, 0}, {-1, 0, 0},
+                     {-1, -1, 0}, {0, -1, 0}, {1, -1, 0}, {1, 0, 0}};
   else
     circle.points = {{1, 0, 0}, {1, r3, 0}, {-0.5, h, 0}, {-2, 0, 0}, {-0.5, -h, 0}, {1, -r3, 0}, {1, 0, 0}};
   const double inner = arcs == CircleArcs::four ? std::sqrt(0.5) : 0.5, count = arcs == CircleArcs::four ? 4 : 3;
@@ -83,7 +86,8 @@ Result<BSplineSurface> revolve(const Profile& profile, const Frame& frame, Circl
 Result<BSplineSurface> revolve_line(const Axis& axis, double bottom, double top, double height, CircleArcs arcs) {
   const Result<Frame> frame = frame_of(axis);
   if (!frame) return frame.status();
-  if (!std::isfinite(height)) return Status(StatusCode::non_finite, "the height is " + text(height) + ", it must be finite");
+  if (!std::isfinite(height))
+    return Status(StatusCode::non_finite, "the height is " + text(height) + ", it must be finite");
   if (height == 0) return Status(StatusCode::invalid_argument, "the height is 0");
   return revolve({1, {0, 0, 1, 1}, {{bottom, 0, 0}, {top, 0, height}}, {}, {}}, *frame, arcs);
 }
@@ -133,7 +137,8 @@ Result<BSplineSurface> nurbs_torus(const Axis& axis, double major, double minor,
     if (Status status = check_positive(major, "the major radius"); !status.ok()) return status;
     if (Status status = check_positive(minor, "the minor radius"); !status.ok()) return status;
     if (!(minor < major))
-      return Status(StatusCode::invalid_argument, "the minor radius, " + text(minor) + ", is not below the major, " + text(major));
+      return Status(StatusCode::invalid_argument,
+                    "the minor radius, " + text(minor) + ", is not below the major, " + text(major));
     const UnitCircle tube = unit_circle(arcs);
     std::vector<Vec3> points;
     for (const Vec3& p : tube.points) points.push_back({major + minor * p.x, 0, minor * p.y});

@@ -13,8 +13,8 @@ namespace tessera {
 using SplineWindow = std::array<Homogeneous, max_degree + 1>;
 
 /// Where the points of a window are homogeneous: points and weights are divided by powers of two that bring the largest
-/// near 1, so that nothing over- or underflows; rational windows are relative to one of their points, which shrinks what
-/// the rounding of the weights does, and makes that point evaluate exactly.
+/// near 1, so that nothing over- or underflows; rational windows are relative to one of their points, which shrinks
+/// what the rounding of the weights does, and makes that point evaluate exactly.
 struct WindowFrame {
   double scale = 1, weight_factor = 1;
   Vec3 scaled_origin;
@@ -53,8 +53,8 @@ inline Homogeneous de_boor(int degree, const double* span, double t, SplineWindo
   return points[static_cast<std::size_t>(degree)];
 }
 
-/// The points of the derivative, one fewer: p (P_{i+1} - P_i) / (u_{i+p+1} - u_{i+1}) (The NURBS Book, eq. 3.4). Of degree
-/// - 1 on the same knots, and the same span.
+/// The points of the derivative, one fewer: p (P_{i+1} - P_i) / (u_{i+p+1} - u_{i+1}) (The NURBS Book, eq. 3.4). Of
+/// degree - 1 on the same knots, and the same span.
 inline SplineWindow derivative_points(int degree, const double* span, const SplineWindow& points) {
   SplineWindow result{};
   for (int j = 0; j < degree; ++j) {
