@@ -83,6 +83,8 @@ class Strips {
       for (std::size_t r = 0; r < v_.rows.size(); ++r)
         apply(v_, v_.rows[r], &net[i * surface.count_v() * c], c, c, &along_v_[i * row_size() + r * c]);
     strip_.resize(order_u() * row_size());
+    for (const Vec3& p : surface.points())
+      may_overflow_ = may_overflow_ || max_abs(p) > std::numeric_limits<double>::max() / 2;
     if (!scales_) return;
     projected_.resize(order_u() * v_.rows.size() * 3);
     projected_weights_.resize(order_u() * v_.rows.size());
@@ -98,7 +100,7 @@ class Strips {
     for (std::size_t i = first; i <= p; ++i)
       apply(u_, u_.rows[a * p + i], along_v_.data(), size, size, &strip_[i * size]);
     if (scales_) project_strip(a);
-    if (!all_finite(scales_ ? projected_ : strip_))
+    if (may_overflow_ && !all_finite(scales_ ? projected_ : strip_))
       return {StatusCode::non_finite, "the control points are too large: a mean of them is not finite"};
     for (std::size_t b = 0; b < v_.span_count(); ++b) write_patch(a * v_.span_count() + b, b, pieces);
     return {};
@@ -143,6 +145,7 @@ class Strips {
   std::optional<Scales> scales_;                       ///< of rational surfaces
   std::vector<double> along_v_;                        ///< [control row][row of v_][component]
   std::vector<double> strip_;                          ///< [0 .. degree_u][row of v_][component]
+  bool may_overflow_ = false;                          ///< means of points are no larger than these but for rounding
   std::vector<double> projected_, projected_weights_;  ///< of rational surfaces: the strip as points and weights
 };
 

@@ -33,7 +33,8 @@ Extraction make_extraction(const KnotLine& line) {
   Extraction extraction;
   extraction.rows.reserve(spans.size() * p + 1);
   extraction.weights.reserve((spans.size() * p + 1) * (p + 1));
-  extraction.breaks = {line.from};
+  extraction.breaks.reserve(spans.size() + 1);
+  extraction.breaks.push_back(line.from);
   for (const std::size_t span : spans) {
     const double a = extraction.breaks.back(), b = std::min(line.knots[span + 1], line.to);
     for (std::size_t i = extraction.rows.empty() ? 0 : 1; i <= p; ++i) append_row(extraction, line, span, a, b, i);
