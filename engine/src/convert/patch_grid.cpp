@@ -3,25 +3,11 @@
 #include <string>
 
 #include "base/guard.h"
+#include "surface/checks.h"
 #include "tessera/convert.h"
 
 namespace tessera {
 namespace {
-
-Status check_breaks(std::span<const double> breaks, const char* direction) {
-  const auto bad = [&](StatusCode code, std::size_t k, const char* what) {
-    return Status(code, std::string("breakpoint ") + direction + "[" + std::to_string(k) + "] = " + std::to_string(breaks[k]) + what,
-                  static_cast<std::ptrdiff_t>(k));
-  };
-  if (breaks.size() < 2)
-    return Status(StatusCode::invalid_argument, std::string("a patch grid needs at least two breakpoints along ") + direction);
-  for (std::size_t k = 0; k < breaks.size(); ++k) {
-    if (!std::isfinite(breaks[k])) return bad(StatusCode::non_finite, k, " is not finite");
-    if (k > 0 && !(breaks[k] > breaks[k - 1])) return bad(StatusCode::invalid_argument, k, " is not above the one before it");
-    if (k > 0 && !std::isfinite(breaks[k] - breaks[k - 1])) return bad(StatusCode::non_finite, k, " is too far from the one before it");
-  }
-  return {};
-}
 
 /// The interval that holds t, from the right; the last one at the end.
 std::size_t interval(std::span<const double> breaks, double t) {
@@ -34,8 +20,8 @@ std::size_t interval(std::span<const double> breaks, double t) {
 Result<PatchGrid> PatchGrid::make(std::vector<double> breaks_u, std::vector<double> breaks_v, std::vector<BezierPatch> patches,
                                   FitError error) {
   return guarded([&]() -> Result<PatchGrid> {
-    if (Status status = check_breaks(breaks_u, "u"); !status.ok()) return status;
-    if (Status status = check_breaks(breaks_v, "v"); !status.ok()) return status;
+    if (Status status = check_increasing(breaks_u, "breakpoint", "u"); !status.ok()) return status;
+    if (Status status = check_increasing(breaks_v, "breakpoint", "v"); !status.ok()) return status;
     const std::size_t wanted = (breaks_u.size() - 1) * (breaks_v.size() - 1);
     if (patches.size() != wanted)
       return Status(StatusCode::count_mismatch, "these breakpoints make " + std::to_string(wanted) + " patches, not " +

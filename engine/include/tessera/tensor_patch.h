@@ -1,0 +1,97 @@
+#pragma once
+// Tensor-product patches over any polynomial bases, the two directions' own: Bezier, power, Hermite, uniform B-spline,
+// Catmull-Rom, or a matrix of the user's.
+
+#include <span>
+#include <vector>
+
+#include "tessera/bezier_patch.h"
+#include "tessera/domain.h"
+#include "tessera/status.h"
+#include "tessera/vec.h"
+
+namespace tessera {
+
+class PatchGrid;  // tessera/convert.h
+
+/// A basis of the polynomials of one degree on [0,1] by the matrix M that turns the geometry of a curve into its power
+/// coefficients: r(t) = [1 t .. t^n] M G, with the blending functions f_i(t) = sum_k t^k M_ki. Immutable but for
+/// assignment.
+class BasisMatrix {
+ public:
+  /// Bernstein polynomials. Error: unsupported_degree, as for all with a degree.
+  static Result<BasisMatrix> bezier(int degree);
+  /// Monomials: M is the identity.
+  static Result<BasisMatrix> power(int degree);
+  /// Cubic Hermite polynomials in the order position 0, tangent 0, tangent 1, position 1. Tangents are by the local
+  /// parameter, which runs over [0,1].
+  static Result<BasisMatrix> hermite();
+  /// One span of the uniform B-spline, f_0 the function that ends with the span (cubic: (1-t)^3/6 first, t^3/6 last).
+  static Result<BasisMatrix> uniform_b_spline(int degree);
+  /// Catmull-Rom cubics: of four points, from the second to the third, with tangents of half the chord of the
+  /// neighbours (Catmull and Rom, A class of local interpolating splines, 1974).
+  static Result<BasisMatrix> catmull_rom();
+  /// (degree + 1)^2 entries M_ki, row by row, row k the coefficients of t^k. A singular matrix is a basis to evaluate
+  /// and convert from, not to. Errors: unsupported_degree, count_mismatch, non_finite (index = the entry).
+  static Result<BasisMatrix> custom(int degree, std::span<const double> entries);
+
+  int degree() const { return degree_; }
+  /// M_ki: the coefficient of t^k in f_i.
+  double power_coefficient(int k, int i) const { return power_[index(k, i)]; }
+  /// The coefficient of B_{k,n} in f_i: the matrix M_B^{-1} M that turns geometry into Bezier points.
+  double bernstein_coefficient(int k, int i) const { return bernstein_[index(k, i)]; }
+  /// Whether other bases can be converted to this one: M has an inverse, to the rounding of its entries.
+  bool is_regular() const { return !from_bernstein_.empty(); }
+  /// The entry [i][k] of M^{-1} M_B, which turns Bezier points into geometry. is_regular() must hold.
+  double inverse_coefficient(int i, int k) const { return from_bernstein_[index(i, k)]; }
+
+  friend bool operator==(const BasisMatrix&, const BasisMatrix&) = default;
+
+ private:
+  BasisMatrix() = default;
+  std::size_t index(int k, int i) const { return static_cast<std::size_t>(k * (degree_ + 1) + i); }
+
+  int degree_ = 0;
+  std::vector<double> power_, bernstein_, from_bernstein_;
+};
+
+/// r(u,v) = U M_u G M_v^T V^T, U = [1 s .. s^m] and V = [1 t .. t^n], where s and t run over [0,1] as u and v run over
+/// the domain. G holds points, tangents or twists, as the bases want them: tangents by s and t. Immutable but for
+/// assignment.
+class TensorPatch {
+ public:
+  /// `geometry`: (m + 1) * (n + 1) vectors [i][j], i along u, of the degrees of the bases.
+  /// Errors: count_mismatch, non_finite (index = the offending element), invalid_argument (the domain).
+  static Result<TensorPatch> make(const BasisMatrix& basis_u, const BasisMatrix& basis_v,
+                                  std::span<const Vec3> geometry, const Domain& domain = {});
+
+  const BasisMatrix& basis_u() const { return basis_u_; }
+  const BasisMatrix& basis_v() const { return basis_v_; }
+  std::span<const Vec3> geometry() const { return geometry_; }
+  const Vec3& element(int i, int j) const {
+    return geometry_[static_cast<std::size_t>(i * (basis_v_.degree() + 1) + j)];
+  }
+  const Domain& domain() const { return domain_; }
+
+ private:
+  TensorPatch(const BasisMatrix& basis_u, const BasisMatrix& basis_v, std::span<const Vec3> geometry,
+              const Domain& domain)
+      : basis_u_(basis_u), basis_v_(basis_v), geometry_(geometry.begin(), geometry.end()), domain_(domain) {}
+
+  BasisMatrix basis_u_, basis_v_;
+  std::vector<Vec3> geometry_;
+  Domain domain_;
+};
+
+/// The reference evaluator: sum f_i(s) g_j(t) g_ij in long double, the blending functions in Bernstein form, since
+/// powers cancel. Derivatives by u and v of the domain. Any finite (u,v).
+SurfaceJet evaluate_jet(const TensorPatch& patch, double u, double v);
+
+/// The same surface in other bases, of the same degrees or higher ones: G' = M'^{-1} M G (..)^T, exact to rounding,
+/// which the new bases' condition magnifies. A direction whose basis stays keeps its numbers. Errors:
+/// unsupported_degree (a degree below the patch's), invalid_argument (a singular basis), non_finite.
+Result<TensorPatch> change_basis(const TensorPatch& patch, const BasisMatrix& basis_u, const BasisMatrix& basis_v);
+/// One Bezier patch over the patch's domain; exact to rounding. Error: non_finite (points too large).
+Result<PatchGrid> to_bezier(const TensorPatch& patch);
+
+}  // namespace tessera

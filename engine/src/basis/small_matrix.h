@@ -1,0 +1,40 @@
+#pragma once
+// Small dense matrices in long double: products and inverses that are to be right to the last bits of a double.
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tessera/vec.h"
+
+namespace tessera {
+
+/// `rows` x `columns` entries, zero at first.
+class Matrix {
+ public:
+  Matrix(int rows, int columns);
+  static Matrix identity(int size);
+
+  int rows() const { return rows_; }
+  int columns() const { return columns_; }
+  long double& operator()(int i, int j) { return entries_[static_cast<std::size_t>(i * columns_ + j)]; }
+  long double operator()(int i, int j) const { return entries_[static_cast<std::size_t>(i * columns_ + j)]; }
+
+ private:
+  int rows_, columns_;
+  std::vector<long double> entries_;
+};
+
+/// a b, where a.columns() == b.rows().
+Matrix operator*(const Matrix& a, const Matrix& b);
+
+/// The inverse of a square matrix by Gauss-Jordan elimination with row pivoting (Golub and Van Loan, Matrix
+/// Computations, 4th ed., sec. 3.4), columns scaled first. Nothing for a matrix that is singular to the rounding of
+/// entries in double:
+/// a pivot below rows * 2^-52 of its scaled column.
+std::optional<Matrix> inverse(const Matrix& matrix);
+
+/// a G b^T for a net G of a.columns() x b.columns() points [i][j]; rounded once, at the end.
+std::vector<Vec3> tensor_product(const Matrix& a, std::span<const Vec3> net, const Matrix& b);
+
+}  // namespace tessera

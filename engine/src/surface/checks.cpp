@@ -1,0 +1,57 @@
+#include "surface/checks.h"
+
+#include <cmath>
+
+#include "base/text.h"
+#include "surface/validate.h"
+
+namespace tessera {
+namespace {
+
+Status check_interval(double from, double to, const std::string& name) {
+  const std::string interval = "the domain along " + name + ", [" + text(from) + ", " + text(to) + "], ";
+  if (!std::isfinite(from) || !std::isfinite(to)) return {StatusCode::non_finite, interval + "must be finite"};
+  if (!(from < to)) return {StatusCode::invalid_argument, interval + "must have its start below its end"};
+  if (!std::isfinite(to - from) || !std::isfinite(1 / (to - from)))
+    return {StatusCode::invalid_argument, interval + "is too long or too short"};
+  return {};
+}
+
+}  // namespace
+
+Status check_vectors(std::span<const Vec3> vectors, std::size_t columns, const std::string& what) {
+  for (std::size_t k = 0; k < vectors.size(); ++k) {
+    const Vec3& p = vectors[k];
+    if (is_finite(p)) continue;
+    return {StatusCode::non_finite,
+            what + " " + place_in_rows(k, columns) + " is (" + text(p.x) + ", " + text(p.y) + ", " + text(p.z) +
+                "), its coordinates must be finite",
+            static_cast<std::ptrdiff_t>(k)};
+  }
+  return {};
+}
+
+Status check_increasing(std::span<const double> values, const std::string& what, const std::string& direction) {
+  if (values.size() < 2)
+    return {StatusCode::invalid_argument, "at least two " + what + "s are wanted along " + direction + ", " +
+                                              std::to_string(values.size()) + " were given"};
+  const auto bad = [&](StatusCode code, std::size_t k, const char* why) {
+    return Status(code, what + " " + direction + "[" + std::to_string(k) + "] = " + text(values[k]) + why,
+                  static_cast<std::ptrdiff_t>(k));
+  };
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (!std::isfinite(values[k])) return bad(StatusCode::non_finite, k, " is not finite");
+    if (k > 0 && !(values[k] > values[k - 1]))
+      return bad(StatusCode::invalid_argument, k, " is not above the one before it");
+    if (k > 0 && !std::isfinite(values[k] - values[k - 1]))
+      return bad(StatusCode::non_finite, k, " is too far from the one before it");
+  }
+  return {};
+}
+
+Status check_domain(const Domain& domain) {
+  if (Status status = check_interval(domain.u0, domain.u1, "u"); !status.ok()) return status;
+  return check_interval(domain.v0, domain.v1, "v");
+}
+
+}  // namespace tessera

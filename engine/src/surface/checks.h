@@ -1,0 +1,24 @@
+#pragma once
+// What the kinds of surfaces over geometry matrices and knots ask of their numbers, with messages that name the
+// offending one.
+
+#include <span>
+#include <string>
+
+#include "tessera/domain.h"
+#include "tessera/status.h"
+#include "tessera/vec.h"
+
+namespace tessera {
+
+/// Finite vectors in rows of `columns`; `what` names one ("geometry element"). Errors: non_finite (index = the vector).
+Status check_vectors(std::span<const Vec3> vectors, std::size_t columns, const std::string& what);
+/// At least two, finite, each above the one before it by a finite length; `what` and `direction` name one: "knot u[3] =
+/// 2".
+/// Errors: invalid_argument, non_finite (index = the value).
+Status check_increasing(std::span<const double> values, const std::string& what, const std::string& direction);
+/// Finite, u0 < u1 and v0 < v1, with lengths and their reciprocals that are finite too. Errors: invalid_argument,
+/// non_finite.
+Status check_domain(const Domain& domain);
+
+}  // namespace tessera
