@@ -80,7 +80,7 @@ inline RealJet reference_jet(const BezierPatch& patch, Real u, Real v) {
   return jet;
 }
 
-inline Vec3 reference_position(const BezierPatch& patch, double u, double v) {
+inline Vec3 reference_position(const BezierPatch& patch, Real u, Real v) {
   Real weight;
   const RealVec3 sum = reference_sum(patch, u, v, 0, 0, weight);
   return patch.is_rational() ? ((1 / weight) * sum).rounded() : sum.rounded();

@@ -1,0 +1,70 @@
+#pragma once
+// Operations on Bezier patches, polynomial and rational: curves on them, derivatives, subdivision, degree elevation,
+// reorientation; and makers of the simplest ones.
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "tessera/bezier_patch.h"
+#include "tessera/domain.h"
+#include "tessera/status.h"
+#include "tessera/vec.h"
+
+namespace tessera {
+
+/// A Bezier curve: degree + 1 points, and as many weights > 0, or none for a polynomial one.
+struct BezierPolygon {
+  std::vector<Vec3> points;
+  std::vector<double> weights;
+};
+
+// Results are right to rounding: each coordinate within 2 units of 2^-52 times the largest coordinate of the patch.
+// Points that coincide keep coinciding by ==, so poles stay poles. Patches that share a border by == share it after the
+// same operation.
+
+/// The u-line v = const, 0 <= v <= 1: W_i = sum_j V_ij B_j(v), in homogeneous form if the patch is rational.
+/// Errors: invalid_argument (the parameter, NaN included), out_of_memory.
+Result<BezierPolygon> u_line(const BezierPatch& patch, double v);
+/// The v-line u = const: Q_j = sum_i V_ij B_i(u).
+Result<BezierPolygon> v_line(const BezierPatch& patch, double u);
+/// A border of the net, which is the net of the border: u0 and u1 run along v, v0 and v1 along u.
+/// Error: invalid_argument (not one edge).
+Result<BezierPolygon> boundary_curve(const BezierPatch& patch, Edge edge);
+
+/// The derivative of order a in u and b in v as a Bezier patch, degree (m - a, n - b), on the differences of the net:
+/// (1,0) is r_u, (1,1) r_uv, (0,2) r_vv, any order. A direction in which the derivative is constant has degree 1, with
+/// two equal rows. Errors: unsupported (a rational patch), invalid_argument (a negative order), non_finite (too large).
+Result<BezierPatch> derivative_patch(const BezierPatch& patch, int order_u, int order_v);
+/// r_uv at r(0,0), r(0,1), r(1,0), r(1,1). For a polynomial patch m n (V11 - V10 - V01 + V00) and its like, which
+/// vanish where the four points at a corner are a parallelogram.
+std::array<Vec3, 4> corner_twists(const BezierPatch& patch);
+
+/// The parts over [0, t] and [t, 1], each on [0,1]^2 again, 0 <= t <= 1; at an end of the range one part is a curve.
+/// Their common border is shared by ==. Error: invalid_argument (the parameter).
+Result<std::pair<BezierPatch, BezierPatch>> split_u(const BezierPatch& patch, double t);
+Result<std::pair<BezierPatch, BezierPatch>> split_v(const BezierPatch& patch, double t);
+/// The part over a rectangle within [0,1]^2. Error: invalid_argument (the rectangle).
+Result<BezierPatch> sub_patch(const BezierPatch& patch, const Domain& rectangle);
+/// The same patch with higher degrees. Error: unsupported_degree (below the patch's, or above max_degree).
+Result<BezierPatch> elevate_degree(const BezierPatch& patch, int degree_u, int degree_v);
+
+/// r(v,u), r(1-u,v) and r(u,1-v): exact. The normal turns over. Error: out_of_memory.
+Result<BezierPatch> transpose(const BezierPatch& patch);
+Result<BezierPatch> reverse_u(const BezierPatch& patch);
+Result<BezierPatch> reverse_v(const BezierPatch& patch);
+
+// Makers: patches of degree (1,n), straight along u, a curve of degree n along v. Errors of all: those of BezierPatch
+// for the net that they make, whose rows are the curves.
+
+/// (1-u) C0(v) + u C1(v). Curves of unequal degrees are elevated. Rational ones must have the same weights by == once
+/// they have the same degree, else the surface is of a higher degree than this. Error: unsupported (other weights).
+Result<BezierPatch> make_ruled(const BezierPolygon& c0, const BezierPolygon& c1);
+/// The generalised cylinder C(v) + u d. Error: invalid_argument (d is zero).
+Result<BezierPatch> make_cylinder(const BezierPolygon& curve, const Vec3& direction);
+/// The generalised cone: the apex at u = 0, the curve at u = 1.
+Result<BezierPatch> make_cone(const Vec3& apex, const BezierPolygon& curve);
+/// The bilinear patch of four corners, a hyperbolic paraboloid unless they lie in a plane.
+Result<BezierPatch> make_hyperbolic_paraboloid(const Vec3& r00, const Vec3& r01, const Vec3& r10, const Vec3& r11);
+
+}  // namespace tessera

@@ -1,0 +1,78 @@
+#include <algorithm>
+#include <string>
+
+#include "base/guard.h"
+#include "convert/bezier_net.h"
+
+namespace tessera {
+namespace {
+
+/// What a curve must have before a net is laid out for it; the rest is checked by BezierPatch.
+Status check_curve(const BezierPolygon& curve) {
+  const std::size_t size = curve.points.size();
+  if (size < 2 || size > max_degree + 1)
+    return {StatusCode::unsupported_degree,
+            "a curve has 2 to " + std::to_string(max_degree + 1) + " points, " + std::to_string(size) + " were given"};
+  if (!curve.weights.empty() && curve.weights.size() != size)
+    return {StatusCode::count_mismatch, "a curve of " + std::to_string(size) + " points has as many weights or none, " +
+                                            std::to_string(curve.weights.size()) + " were given"};
+  return {};
+}
+
+BezierPolygon elevated(const BezierPolygon& curve, std::size_t points) {
+  if (points == curve.points.size()) return curve;
+  const int degree = static_cast<int>(curve.points.size()) - 1;
+  return transform_v(elevation_matrix(degree, static_cast<int>(points) - 1), BezierNet(curve)).polygon();
+}
+
+/// The patch whose rows are two curves with the weights of the first, polynomial if these are all equal.
+Result<BezierPatch> patch_of_rows(const BezierPolygon& c0, std::span<const Vec3> c1) {
+  const int degree = static_cast<int>(c0.points.size()) - 1;
+  std::vector<Vec3> points = c0.points;
+  points.insert(points.end(), c1.begin(), c1.end());
+  if (c0.weights.empty()) return BezierPatch::polynomial(1, degree, points);
+  std::vector<double> weights = c0.weights;
+  weights.insert(weights.end(), c0.weights.begin(), c0.weights.end());
+  return BezierPatch::rational(1, degree, points, weights);
+}
+
+}  // namespace
+
+Result<BezierPatch> make_ruled(const BezierPolygon& c0, const BezierPolygon& c1) {
+  return guarded([&]() -> Result<BezierPatch> {
+    for (const BezierPolygon* curve : {&c0, &c1}) {
+      if (Status status = check_curve(*curve); !status.ok()) return status;
+      if (const auto flat = patch_of_rows(*curve, curve->points); !flat) return flat;  // before it is elevated
+    }
+    const std::size_t points = std::max(c0.points.size(), c1.points.size());
+    const BezierPolygon row0 = elevated(c0, points), row1 = elevated(c1, points);
+    if (row0.weights != row1.weights)
+      return Status(StatusCode::unsupported,
+                    "the two curves have different weights: the ruled surface between them is of a higher degree");
+    return patch_of_rows(row0, row1.points);
+  });
+}
+
+Result<BezierPatch> make_cylinder(const BezierPolygon& curve, const Vec3& direction) {
+  return guarded([&]() -> Result<BezierPatch> {
+    if (Status status = check_curve(curve); !status.ok()) return status;
+    if (direction == Vec3{}) return Status(StatusCode::invalid_argument, "the direction of a cylinder is not zero");
+    std::vector<Vec3> moved;
+    for (const Vec3& p : curve.points) moved.push_back(p + direction);
+    return patch_of_rows(curve, moved);
+  });
+}
+
+Result<BezierPatch> make_cone(const Vec3& apex, const BezierPolygon& curve) {
+  return guarded([&]() -> Result<BezierPatch> {
+    if (Status status = check_curve(curve); !status.ok()) return status;
+    BezierPolygon pole{std::vector<Vec3>(curve.points.size(), apex), curve.weights};
+    return patch_of_rows(pole, curve.points);
+  });
+}
+
+Result<BezierPatch> make_hyperbolic_paraboloid(const Vec3& r00, const Vec3& r01, const Vec3& r10, const Vec3& r11) {
+  return BezierPatch::polynomial(1, 1, std::array{r00, r01, r10, r11});
+}
+
+}  // namespace tessera
