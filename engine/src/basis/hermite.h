@@ -1,0 +1,27 @@
+#pragma once
+// Cubic Hermite polynomials and their derivatives at one parameter, in the order position 0, tangent 0, tangent 1,
+// position 1: H0 = 1-3t^2+2t^3, H1 = t-2t^2+t^3, H2 = -t^2+t^3, H3 = 3t^2-2t^3 (Farin, Curves and Surfaces for CAGD,
+// 5th ed., sec. 7.5).
+
+#include <array>
+
+namespace tessera {
+
+// Any finite t. Written as products, which don't cancel on [0,1].
+
+/// H_i(t): exactly 0 and 1 at t = 0 and t = 1.
+inline std::array<double, 4> hermite_values(double t) {
+  const double s = 1 - t;
+  return {s * s * (1 + 2 * t), t * (s * s), -(t * t) * s, t * t * (3 - 2 * t)};
+}
+/// H_i'(t).
+inline std::array<double, 4> hermite_derivatives(double t) {
+  const double s = 1 - t;
+  return {-6 * (t * s), s * (1 - 3 * t), t * (3 * t - 2), 6 * (t * s)};
+}
+/// H_i''(t).
+inline std::array<double, 4> hermite_second_derivatives(double t) {
+  return {12 * t - 6, 6 * t - 4, 6 * t - 2, 6 - 12 * t};
+}
+
+}  // namespace tessera
