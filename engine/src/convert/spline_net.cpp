@@ -47,8 +47,8 @@ Blossom elevated_blossom(const SplineNet& net, std::size_t span, const double* a
   Blossom sorted{};
   std::copy_n(arguments, p + 1, sorted.begin());
   const auto distance = [&](long double t) { return std::max({net.knots[span] - t, t - net.knots[span + 1], 0.0L}); };
-  std::stable_sort(sorted.begin(), sorted.begin() + net.degree + 1,
-                   [&](long double a, long double b) { return distance(a) < distance(b); });
+  std::sort(sorted.begin(), sorted.begin() + net.degree + 1,
+            [&](long double a, long double b) { return distance(a) < distance(b); });
   Blossom sum{};
   for (std::size_t left_out = 0; left_out <= p; ++left_out) {
     Blossom others{}, weights{};
