@@ -17,12 +17,22 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t buffer_bytes = std::size_t{1} << 20;
 
-/// Where the file will lie: behind a symbolic link, so that the link stays one.
-fs::path behind_links(const fs::path& path) {
+/// Where the file will lie: behind symbolic links, so that they stay links, even those whose target does not exist yet.
+Result<fs::path> behind_links(const fs::path& path) {
   std::error_code error;
   if (!fs::is_symlink(path, error)) return path;
   fs::path target = fs::canonical(path, error);
-  return error ? path : target;
+  if (!error) return target;
+  // What exists under no path, such as the pipe behind /dev/stdout, is opened by the name given.
+  if (fs::exists(path, error)) return path;
+  constexpr int most_links = 40;  // the system's own limit (path_resolution(7))
+  target = path;
+  for (int link = 0; link < most_links; ++link) {
+    const fs::path next = fs::read_symlink(target, error);
+    if (error) return target;  // no link
+    target = target.parent_path() / next;
+  }
+  return io_failure(path, "cannot be written", ELOOP);
 }
 
 /// A name beside `target` that no other writer has, in this process or another.
@@ -51,7 +61,9 @@ OutputFile::~OutputFile() {
 }
 
 Result<OutputFile> OutputFile::create(const fs::path& path) {
-  const fs::path target = behind_links(path);
+  const Result<fs::path> place = behind_links(path);
+  if (!place) return place.status();
+  const fs::path& target = *place;
   struct stat facts {};
   const bool exists = ::stat(target.c_str(), &facts) == 0;
   if (exists && S_ISDIR(facts.st_mode)) {
