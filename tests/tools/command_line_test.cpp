@@ -17,6 +17,25 @@ TEST_F(CommandLine, HelpAndVersion) {
   EXPECT_EQ(output_of({"--version"}).rfind("tessera ", 0), 0u);
 }
 
+TEST_F(CommandLine, HelpThatCannotBeWrittenEndsWithOne) {
+  for (const char* option : {"--help", "--version"}) {
+    const ToolRun result = run_program(folder_, {"sh", "-c", "exec \"$@\" >/dev/full", "sh", TESSERA_TOOL, option});
+    EXPECT_EQ(result.status, 1);
+    EXPECT_EQ(result.errors, "tessera: standard output: cannot be written: No space left on device\n");
+  }
+}
+
+TEST_F(CommandLine, OutputsThatCannotBeWrittenAreRefusedBeforeTheWork) {
+  // The model would be an error, too: it is not even read.
+  for (const std::vector<std::string>& command :
+       {Names{"tessellate", "missing.bpt", "--grid", "2x2", "-o", "none/a.ply"},
+        Names{"eval", "missing.bpt", "--grid", "2x2", "-o", "none/a.csv"},
+        Names{"raycast", "missing.bpt", "-o", "none/a.png"},
+        Names{"raycast", "missing.bpt", "--rays", "missing.csv", "--hits", "none/a.csv"}}) {
+    expect_failure(command, 1, "tessera: " + command.back() + ": cannot be written: there is no folder none");
+  }
+}
+
 TEST_F(CommandLine, EveryOptionIsInTheHelp) {
   const std::vector<std::pair<std::string, std::vector<std::string>>> commands{
       {"info", {"MODEL", "--json"}},

@@ -9,7 +9,6 @@
 #include "commands.h"
 #include "console.h"
 #include "csv.h"
-#include "io/output_file.h"
 #include "tessera/evaluate.h"
 #include "tessera/io.h"
 
@@ -147,6 +146,8 @@ Status write_rows(const Model& model, const Places& places, const Options& optio
 }
 
 Status run_eval(const Options& options) {
+  Result<OutputFile> out = open_output(options.output);
+  if (!out) return out.status();
   const Result<Model> model = read_model(options.model);
   if (!model) return model.status();
   Places places;
@@ -158,12 +159,6 @@ Status run_eval(const Options& options) {
     const std::size_t count = read->size();
     places = {count, [list = *std::move(read)](std::size_t k) { return list[k]; }};
   }
-  if (options.output.empty()) {
-    OutputFile out = OutputFile::standard_output();
-    return write_rows(*model, places, options, out);
-  }
-  Result<OutputFile> out = OutputFile::create(options.output);
-  if (!out) return out.status();
   return write_rows(*model, places, options, *out);
 }
 

@@ -8,7 +8,7 @@
 #include "commands.h"
 #include "console.h"
 #include "csv.h"
-#include "io/output_file.h"
+#include "io/formats.h"
 #include "render/render.h"
 #include "tessera/io.h"
 #include "tessera/ray_scene.h"
@@ -36,15 +36,16 @@ Result<RayScene> make_scene(const PatchSet& set) {
   return RayScene::make(set, options, progress.execution());
 }
 
-Status draw(const Options& options, const PatchSet& set, const RayScene& scene, double scene_seconds) {
+Status draw(const Options& options, const PatchSet& set, const RayScene& scene, double scene_seconds, OutputFile& out) {
   const Stopwatch drawing;
   Result<render::Image> image = [&] {
     Progress progress("casting rays");
     return render::render(scene, set.box(), options.settings, progress.execution());
   }();
-  if (!image) return image.status();
+  if (!image) return in_file(options.picture, image.status());
   const double draw_seconds = drawing.seconds();
-  const Status status = render::write_png(*image, options.picture);
+  Status status = render::write_png(*image, out);
+  if (status.ok()) status = out.commit();
   if (!status.ok()) return status;
   return print(options.picture + ": " + std::to_string(image->width) + " x " + std::to_string(image->height) + ", " +
                std::to_string(set.patch_count()) + " patches; scene built in " + readable_seconds(scene_seconds) +
@@ -71,15 +72,7 @@ void write_hit(OutputFile& out, std::size_t ray, const Hit& hit) {
   out.write('\n');
 }
 
-Status write_hits(const Options& options, std::span<const Hit> hits) {
-  Result<OutputFile> out = OutputFile::create(options.hits);
-  if (!out) return out.status();
-  out->write(hits_header);
-  for (std::size_t k = 0; k < hits.size() && !out->failed(); ++k) write_hit(*out, k, hits[k]);
-  return out->commit();
-}
-
-Status trace(const Options& options, const RayScene& scene, std::span<const Ray> rays) {
+Status trace(const Options& options, const RayScene& scene, std::span<const Ray> rays, OutputFile& out) {
   std::vector<Hit> hits(rays.size());
   const Stopwatch tracing;
   Status status = [&] {
@@ -88,7 +81,9 @@ Status trace(const Options& options, const RayScene& scene, std::span<const Ray>
   }();
   if (!status.ok()) return status;
   const double seconds = tracing.seconds();
-  status = write_hits(options, hits);
+  out.write(hits_header);
+  for (std::size_t k = 0; k < hits.size() && !out.failed(); ++k) write_hit(out, k, hits[k]);
+  status = out.commit();
   if (!status.ok()) return status;
   std::size_t found = 0, unrefined = 0, not_traced = 0;
   for (const Hit& hit : hits) {
@@ -105,6 +100,8 @@ Status trace(const Options& options, const RayScene& scene, std::span<const Ray>
 }
 
 Status run_raycast(const Options& options) {
+  Result<OutputFile> out = open_output(options.rays.empty() ? options.picture : options.hits);
+  if (!out) return out.status();
   const Result<Model> model = read_model(options.model);
   if (!model) return model.status();
   std::vector<Ray> rays;
@@ -118,8 +115,8 @@ Status run_raycast(const Options& options) {
   const Stopwatch building;
   const Result<RayScene> scene = make_scene(*set);
   if (!scene) return in_file(options.model, scene.status());
-  if (!options.rays.empty()) return trace(options, *scene, rays);
-  return draw(options, *set, *scene, building.seconds());
+  if (!options.rays.empty()) return trace(options, *scene, rays, *out);
+  return draw(options, *set, *scene, building.seconds(), *out);
 }
 
 render::Camera parse_camera(const std::string& text) {
@@ -135,8 +132,7 @@ render::Camera parse_camera(const std::string& text) {
 }
 
 std::string fault_of_picture(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  const std::string extension = lower_extension(path);
   if (extension == ".png") return {};
   return path + ": unsupported format \"" + extension + "\": pictures are written as .png";
 }

@@ -51,6 +51,8 @@ Status report(const Options& options, const Mesh& mesh, const Times& times) {
 }
 
 Status run_tessellate(const Options& options) {
+  Result<OutputFile> out = open_output(options.output);
+  if (!out) return out.status();
   Times times;
   const Stopwatch reading;
   const Result<Model> model = read_model(options.model);
@@ -63,7 +65,8 @@ Status run_tessellate(const Options& options) {
   if (!mesh) return in_file(options.model, mesh.status());
   times.tessellate = tessellating.seconds();
   const Stopwatch writing;
-  const Status status = write_mesh(*mesh, options.output);
+  Status status = write_mesh(*mesh, options.output, *out);
+  if (status.ok()) status = out->commit();
   if (!status.ok()) return status;
   times.write = writing.seconds();
   return report(options, *mesh, times);
