@@ -81,7 +81,7 @@ TEST_F(CommandLine, NumbersOfOptionsAreChecked) {
     expect_failure({"raycast", teapot, "-o", "a.png", "--size", size}, 2, "from 1 to 16384");
   }
   for (const char* camera : {"1,2,3", "1,2,3,4,5,6,7,8", "1,2,3,4,5,6,x", "1,2,3,4,5,6,nan", "0,0,0,1e999,0,0,40",
-                             "1,2,3,1,2,3,40", "1,2,3,4,5,6,0", "1,2,3,4,5,6,180", "1,2,3,4,5,6,"}) {
+                             "1,2,3,1,2,3,40", "1,2,3,4,5,6,0", "1,2,3,4,5,6,180", "1,2,3,4,5,6,", "1e19,0,0,0,0,0,40", "0,0,0,0,-1e19,0,40"}) {
     expect_failure({"raycast", teapot, "-o", "a.png", "--camera", camera}, 2, "--camera");
   }
 }

@@ -1,6 +1,5 @@
 // tessera raycast: a picture of surfaces, or the hits of given rays.
 
-#include <cstdio>
 #include <map>
 #include <memory>
 
@@ -9,7 +8,7 @@
 #include "console.h"
 #include "csv.h"
 #include "io/formats.h"
-#include "render/render.h"
+#include "render/camera.h"
 #include "tessera/io.h"
 #include "tessera/ray_scene.h"
 
@@ -85,15 +84,10 @@ Status trace(const Options& options, const RayScene& scene, std::span<const Ray>
   for (std::size_t k = 0; k < hits.size() && !out.failed(); ++k) write_hit(out, k, hits[k]);
   status = out.commit();
   if (!status.ok()) return status;
-  std::size_t found = 0, unrefined = 0, not_traced = 0;
+  std::size_t found = 0, unrefined = 0;
   for (const Hit& hit : hits) {
     found += hit.kind == HitKind::hit;
     unrefined += hit.kind == HitKind::hit && hit.flags.unrefined;
-    not_traced += hit.kind == HitKind::invalid_ray;
-  }
-  if (not_traced != 0) {  // valid rays may still be too far away or too large
-    std::fprintf(stderr, "tessera: %s: %zu rays are beyond float's range; they count as misses\n", options.rays.c_str(),
-                 not_traced);
   }
   return print(options.hits + ": " + std::to_string(hits.size()) + " rays, " + std::to_string(found) + " hits, " +
                std::to_string(unrefined) + " of them on facets only; cast in " + readable_seconds(seconds) + "\n");
@@ -125,9 +119,8 @@ render::Camera parse_camera(const std::string& text) {
   camera.eye = {n[0], n[1], n[2]};
   camera.target = {n[3], n[4], n[5]};
   camera.fov_degrees = n[6];
-  if (camera.eye == camera.target) throw CLI::ValidationError("--camera", "the eye and the target are the same point");
-  if (!(n[6] > 0 && n[6] < 180))
-    throw CLI::ValidationError("--camera", "the field of view must lie between 0 and 180 degrees");
+  const Status status = render::check(camera);
+  if (!status.ok()) throw CLI::ValidationError("--camera", status.message());
   return camera;
 }
 
@@ -140,7 +133,7 @@ std::string fault_of_picture(const std::string& path) {
 constexpr const char* footer =
     "A picture: -o, with --size, --shade and --camera. The default camera fits the model; its up is the z axis.\n"
     "Hits of given rays: --rays and --hits. Rays are a table with the header line ox,oy,oz,dx,dy,dz or\n"
-    "ox,oy,oz,dx,dy,dz,tnear,tfar: finite numbers, the direction not zero, 0 <= tnear <= tfar, tfar may be inf;\n"
+    "ox,oy,oz,dx,dy,dz,tnear,tfar: numbers of at most 1.844e18, the direction not zero, 0 <= tnear <= tfar, tfar may be inf;\n"
     "# begins a comment. Hits are the table ray,hit,t,surface,patch,u,v,x,y,z,nx,ny,nz, a row for each ray in the\n"
     "order of the rays, counted from 0; a miss has hit = 0 and empty fields. 17 significant digits.\n"
     "\nExamples:\n"
