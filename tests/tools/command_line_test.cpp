@@ -116,8 +116,16 @@ TEST_F(CommandLine, BadModelsEndWithOne) {
   expect_failure({"raycast", "degree16.bpt", "-o", "a.png"}, 1, "tessera: degree16.bpt:2: expected the degree along u");
   folder_.file("more.bpt", good + "1 2 3\n");
   expect_failure({"info", "more.bpt"}, 1, "expected the end of the file after 32 patches");
-  folder_.file("large.bpt", "1\n1 1\n0 0 0\n0 1 0\n1 0 0\n1e300 1 0\n");
-  expect_failure({"info", "large.bpt"}, 1, "tessera: large.bpt: ");
+  folder_.file("large.bpt", "2\n1 1\n0 0 0\n0 1 0\n1 0 0\n1 1 0\n1 1\n0 0 0\n0 1 0\n1 0 0\n1e300 1 0\n");
+  for (const std::vector<std::string>& command :
+       {Names{"info", "large.bpt"}, Names{"tessellate", "large.bpt", "-o", "a.ply", "--grid", "2x2"},
+        Names{"raycast", "large.bpt", "-o", "a.png"}}) {
+    const ToolRun result = run(command);
+    EXPECT_EQ(result.status, 1);
+    EXPECT_TRUE(result.errors.starts_with("tessera: large.bpt: patch 1 of 2: ") ||
+                result.errors.starts_with("tessera: large.bpt: patch 2 of 2: "))
+        << result.errors;
+  }
   folder_.file("scene.k3d", "<k3dml/>");
   expect_failure({"info", "scene.k3d"}, 1, "unsupported format \".k3d\": surfaces are read as .bpt");
 }

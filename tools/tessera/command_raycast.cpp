@@ -105,7 +105,7 @@ Status run_raycast(const Options& options) {
     rays = *std::move(read);
   }
   const Result<PatchSet> set = make_patch_set(*model);
-  if (!set) return in_file(options.model, set.status());
+  if (!set) return in_model(options.model, model->surfaces.size(), set.status());
   const Stopwatch building;
   const Result<RayScene> scene = make_scene(*set);
   if (!scene) return in_file(options.model, scene.status());

@@ -58,7 +58,7 @@ Status run_tessellate(const Options& options) {
   const Result<Model> model = read_model(options.model);
   if (!model) return model.status();
   const Result<PatchSet> set = make_patch_set(*model);
-  if (!set) return in_file(options.model, set.status());
+  if (!set) return in_model(options.model, model->surfaces.size(), set.status());
   times.read = reading.seconds();
   const Stopwatch tessellating;
   const Result<Mesh> mesh = tessellate(options, *set);
