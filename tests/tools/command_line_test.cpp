@@ -80,10 +80,43 @@ TEST_F(CommandLine, NumbersOfOptionsAreChecked) {
   for (const char* size : {"0x10", "10x16385", "10"}) {
     expect_failure({"raycast", teapot, "-o", "a.png", "--size", size}, 2, "from 1 to 16384");
   }
-  for (const char* camera : {"1,2,3", "1,2,3,4,5,6,7,8", "1,2,3,4,5,6,x", "1,2,3,4,5,6,nan", "0,0,0,1e999,0,0,40",
-                             "1,2,3,1,2,3,40", "1,2,3,4,5,6,0", "1,2,3,4,5,6,180", "1,2,3,4,5,6,", "1e19,0,0,0,0,0,40", "0,0,0,0,-1e19,0,40"}) {
+  for (const char* camera :
+       {"1,2,3", "1,2,3,4,5,6,7,8", "1,2,3,4,5,6,x", "1,2,3,4,5,6,nan", "0,0,0,1e999,0,0,40", "1,2,3,1,2,3,40",
+        "1,2,3,4,5,6,0", "1,2,3,4,5,6,180", "1,2,3,4,5,6,", "1e19,0,0,0,0,0,40", "0,0,0,0,-1e19,0,40"}) {
     expect_failure({"raycast", teapot, "-o", "a.png", "--camera", camera}, 2, "--camera");
   }
+}
+
+TEST_F(CommandLine, InputsAreNotOverwritten) {
+  const std::string model = content_of(teapot), rays = "ox,oy,oz,dx,dy,dz\n0,0,9,0,0,-1\n",
+                    places = "surface,u,v\n0,0,0\n";
+  folder_.file("m.bpt", model);
+  folder_.file("rays.csv", rays);
+  folder_.file("places.csv", places);
+  std::filesystem::create_symlink("m.bpt", folder_ / "link.ply");
+  std::filesystem::create_hard_link(folder_ / "m.bpt", folder_ / "hard.png");
+  expect_failure({"raycast", "m.bpt", "--rays", "rays.csv", "--hits", "./rays.csv"}, 2,
+                 "--hits: ./rays.csv is the input");
+  expect_failure({"raycast", "m.bpt", "--rays", "rays.csv", "--hits", "m.bpt"}, 2, "--hits: m.bpt is the input");
+  expect_failure({"raycast", "m.bpt", "-o", "hard.png"}, 2, "--output: hard.png is the input m.bpt");
+  expect_failure({"eval", "m.bpt", "--grid", "2x2", "-o", "m.bpt"}, 2, "--output: m.bpt is the input m.bpt");
+  expect_failure({"eval", "m.bpt", "--params", "places.csv", "-o", "places.csv"}, 2,
+                 "--output: places.csv is the input");
+  expect_failure({"tessellate", "m.bpt", "--grid", "2x2", "-o", "link.ply"}, 2,
+                 "--output: link.ply is the input m.bpt");
+  EXPECT_EQ(content_of(folder_ / "m.bpt"), model);
+  EXPECT_EQ(content_of(folder_ / "rays.csv"), rays);
+  EXPECT_EQ(content_of(folder_ / "places.csv"), places);
+}
+
+TEST_F(CommandLine, EmptyFileNamesAreRefused) {
+  folder_.file("rays.csv", "ox,oy,oz,dx,dy,dz\n0,0,9,0,0,-1\n");
+  expect_failure({"eval", teapot, "--grid", "2x2", "-o", ""}, 2, "--output");
+  expect_failure({"eval", teapot, "--params", ""}, 2, "--params");
+  expect_failure({"tessellate", teapot, "--grid", "2x2", "-o", ""}, 2, "--output");
+  expect_failure({"raycast", teapot, "-o", ""}, 2, "--output");
+  expect_failure({"raycast", teapot, "--rays", "rays.csv", "--hits", ""}, 2, "--hits");
+  expect_failure({"raycast", teapot, "--rays", "", "--hits", "hits.csv"}, 2, "--rays");
 }
 
 TEST_F(CommandLine, InstructionSetsAreForcedByTheEnvironment) {

@@ -133,7 +133,8 @@ std::string fault_of_picture(const std::string& path) {
 constexpr const char* footer =
     "A picture: -o, with --size, --shade and --camera. The default camera fits the model; its up is the z axis.\n"
     "Hits of given rays: --rays and --hits. Rays are a table with the header line ox,oy,oz,dx,dy,dz or\n"
-    "ox,oy,oz,dx,dy,dz,tnear,tfar: numbers of at most 1.844e18, the direction not zero, 0 <= tnear <= tfar, tfar may be inf;\n"
+    "ox,oy,oz,dx,dy,dz,tnear,tfar: numbers of at most 1.844e18, the direction not zero, 0 <= tnear <= tfar, tfar may "
+    "be inf;\n"
     "# begins a comment. Hits are the table ray,hit,t,surface,patch,u,v,x,y,z,nx,ny,nz, a row for each ray in the\n"
     "order of the rays, counted from 0; a miss has hit = 0 and empty fields. 17 significant digits.\n"
     "\nExamples:\n"
@@ -177,15 +178,18 @@ void add_raycast(CLI::App& app, Session& session) {
   CLI::Option* const picture = command->add_option("-o,--output", options->picture, "The picture to be written (.png)");
   picture->check(fault_of_picture)->type_name("PICTURE.png");
   add_picture_options(*command, picture, options->settings);
-  CLI::Option* const rays = command->add_option("--rays", options->rays, "The table of rays")->type_name("FILE.csv");
+  CLI::Option* const rays = command->add_option("--rays", options->rays, "The table of rays");
+  rays->check(fault_of_name)->type_name("FILE.csv");
   CLI::Option* const hits = command->add_option("--hits", options->hits, "The table of hits to be written");
-  hits->type_name("OUT.csv")->needs(rays);
+  hits->check(fault_of_name)->type_name("OUT.csv")->needs(rays);
   rays->needs(hits)->excludes(picture);
   command->footer(footer);
   command->callback([options, &session] {
     if (options->picture.empty() && options->rays.empty()) {
       throw CLI::ValidationError("raycast", "expected -o PICTURE.png, or --rays FILE.csv and --hits OUT.csv");
     }
+    refuse_overwriting("--output", options->picture, {options->model});
+    refuse_overwriting("--hits", options->hits, {options->model, options->rays});
     session.command = [options] { return run_raycast(*options); };
   });
 }

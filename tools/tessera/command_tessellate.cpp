@@ -92,7 +92,10 @@ void add_tessellate(CLI::App& app, Session& session) {
   command->footer(
       "Positions, normals and parameters are written; neighbours share their borders bit for bit.\n"
       "\nExample:\n  tessera tessellate teapot.bpt -o teapot.ply --grid 16x16");
-  command->callback([options, &session] { session.command = [options] { return run_tessellate(*options); }; });
+  command->callback([options, &session] {
+    refuse_overwriting("--output", options->output, {options->model});
+    session.command = [options] { return run_tessellate(*options); };
+  });
 }
 
 }  // namespace tessera::cli
