@@ -152,6 +152,27 @@ TEST(OutputFile, LinksStayLinks) {
   EXPECT_EQ(static_cast<unsigned>(std::filesystem::status(folder / "target").permissions()), 0640u);
 }
 
+TEST(OutputFile, LinksToNothingGetTheirTarget) {
+  const ScratchFolder folder;
+  std::filesystem::create_directory(folder / "below");
+  std::filesystem::create_symlink("below/second", folder / "first");
+  std::filesystem::create_symlink("../target", folder / "below/second");
+  ASSERT_TRUE(write_text(folder / "first", "text").ok());
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "first"));
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "below/second"));
+  EXPECT_EQ(content_of(folder / "target"), "text");
+  EXPECT_EQ(folder.names(), (Names{"below", "first", "target"}));
+}
+
+TEST(OutputFile, LinksInACircleAreRefused) {
+  const ScratchFolder folder;
+  std::filesystem::create_symlink("b", folder / "a");
+  std::filesystem::create_symlink("a", folder / "b");
+  EXPECT_EQ(write_text(folder / "a", "text").message(),
+            (folder / "a") + ": cannot be written: Too many levels of symbolic links");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "a"));
+}
+
 TEST(OutputFile, AFullDeviceIsAnError) {
   const Status status = write_text("/dev/full", "text");
   EXPECT_EQ(status.code(), StatusCode::io_error);

@@ -135,6 +135,20 @@ TEST(Ply, ErrorsNameThePlace) {
             "m.ply:6: vertices have no x, y, z");
 }
 
+TEST(Ply, WhatIsDeclaredTwiceIsRefused) {
+  EXPECT_EQ(error_of(ascii + "format ascii 1.0\n" + vertex3 + "end_header\n0 0 0\n1 0 0\n0 1 0\n"),
+            "m.ply:3: the format is stated a second time");
+  EXPECT_EQ(error_of(ascii + vertex3 + vertex3 + "end_header\n0 0 0\n1 0 0\n0 1 0\n0 0 0\n1 0 0\n0 1 0\n"),
+            "m.ply:7: there is a second element \"vertex\"");
+  EXPECT_EQ(error_of(ascii + vertex3 + face1 + face1 + "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 1 2\n"),
+            "m.ply:9: there is a second element \"face\"");
+  EXPECT_EQ(error_of(ascii + vertex3 + face1 +
+                     "property list uchar int vertex_index\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 3 0 1 2\n"),
+            "m.ply:9: there is a second list of indices");
+  EXPECT_EQ(error_of(ascii + vertex3 + "property float x\nend_header\n0 0 0 1\n1 0 0 1\n0 1 0 1\n"),
+            "m.ply:7: there is a second property \"x\" of vertex");
+}
+
 TEST(Ply, SpoiledBytesNeverCrash) {
   const test::ScratchFolder folder;
   ASSERT_TRUE(write_mesh(test::random_mesh(10, 20), folder / "m.ply").ok());

@@ -45,11 +45,15 @@ TEST(TextCursor, EveryDoubleComesBack) {
 }
 
 TEST(TextCursor, WhatIsTooSmallIsZeroAndWhatIsTooLargeIsNotFinite) {
-  for (const char* tiny : {"1e-400", "123e-500", "0.1e-99999999999999999999"}) EXPECT_EQ(number_of(tiny), 0) << tiny;
+  for (const char* tiny :
+       {"1e-400", "123e-500", "0.1e-99999999999999999999", "1e-9223372036854775808", "0.01e-9223372036854775808"}) {
+    EXPECT_EQ(number_of(tiny), 0) << tiny;
+  }
   EXPECT_EQ(number_of("0." + std::string(400, '0') + "1"), 0);
   EXPECT_TRUE(std::signbit(number_of("-1e-400")));
   EXPECT_EQ(number_of("4.9406564584124654e-324"), std::numeric_limits<double>::denorm_min());
-  for (const char* huge : {"1e400", "0.001e500", "1e99999999999999999999"})
+  for (const char* huge :
+       {"1e400", "0.001e500", "1e99999999999999999999", "1e9223372036854775807", "10e+9223372036854775807"})
     EXPECT_EQ(number_of(huge), HUGE_VAL) << huge;
   EXPECT_EQ(number_of("-1e400"), -HUGE_VAL);
   for (const char* text : {"1e400", "-1e400", "inf", "-inf", "nan", "NaN", "Infinity"}) {

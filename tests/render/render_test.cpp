@@ -161,6 +161,14 @@ TEST(Render, BadSettings) {
             StatusCode::invalid_argument);
   EXPECT_EQ(code([](Settings& s) { s.camera = Camera{{1, 2, 3}, {}, 180, {0, 0, 1}}; }), StatusCode::invalid_argument);
   EXPECT_EQ(code([](Settings& s) { s.camera = Camera{{1, NAN, 3}, {}, 40, {0, 0, 1}}; }), StatusCode::invalid_argument);
+  EXPECT_EQ(code([](Settings& s) {
+              s.camera = Camera{{1e19, 2, 3}, {}, 40, {0, 0, 1}};
+            }),
+            StatusCode::invalid_argument);
+  EXPECT_EQ(code([](Settings& s) {
+              s.camera = Camera{{}, {1, -1e19, 3}, 40, {0, 0, 1}};
+            }),
+            StatusCode::invalid_argument);
   EXPECT_EQ(render(ball.scene, Box3{}, small()).status().code(), StatusCode::invalid_argument);
 }
 

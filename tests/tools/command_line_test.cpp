@@ -17,6 +17,25 @@ TEST_F(CommandLine, HelpAndVersion) {
   EXPECT_EQ(output_of({"--version"}).rfind("tessera ", 0), 0u);
 }
 
+TEST_F(CommandLine, HelpThatCannotBeWrittenEndsWithOne) {
+  for (const char* option : {"--help", "--version"}) {
+    const ToolRun result = run_program(folder_, {"sh", "-c", "exec \"$@\" >/dev/full", "sh", TESSERA_TOOL, option});
+    EXPECT_EQ(result.status, 1);
+    EXPECT_EQ(result.errors, "tessera: standard output: cannot be written: No space left on device\n");
+  }
+}
+
+TEST_F(CommandLine, OutputsThatCannotBeWrittenAreRefusedBeforeTheWork) {
+  // The model would be an error, too: it is not even read.
+  for (const std::vector<std::string>& command :
+       {Names{"tessellate", "missing.bpt", "--grid", "2x2", "-o", "none/a.ply"},
+        Names{"eval", "missing.bpt", "--grid", "2x2", "-o", "none/a.csv"},
+        Names{"raycast", "missing.bpt", "-o", "none/a.png"},
+        Names{"raycast", "missing.bpt", "--rays", "missing.csv", "--hits", "none/a.csv"}}) {
+    expect_failure(command, 1, "tessera: " + command.back() + ": cannot be written: there is no folder none");
+  }
+}
+
 TEST_F(CommandLine, EveryOptionIsInTheHelp) {
   const std::vector<std::pair<std::string, std::vector<std::string>>> commands{
       {"info", {"MODEL", "--json"}},
@@ -61,10 +80,43 @@ TEST_F(CommandLine, NumbersOfOptionsAreChecked) {
   for (const char* size : {"0x10", "10x16385", "10"}) {
     expect_failure({"raycast", teapot, "-o", "a.png", "--size", size}, 2, "from 1 to 16384");
   }
-  for (const char* camera : {"1,2,3", "1,2,3,4,5,6,7,8", "1,2,3,4,5,6,x", "1,2,3,4,5,6,nan", "0,0,0,1e999,0,0,40",
-                             "1,2,3,1,2,3,40", "1,2,3,4,5,6,0", "1,2,3,4,5,6,180", "1,2,3,4,5,6,"}) {
+  for (const char* camera :
+       {"1,2,3", "1,2,3,4,5,6,7,8", "1,2,3,4,5,6,x", "1,2,3,4,5,6,nan", "0,0,0,1e999,0,0,40", "1,2,3,1,2,3,40",
+        "1,2,3,4,5,6,0", "1,2,3,4,5,6,180", "1,2,3,4,5,6,", "1e19,0,0,0,0,0,40", "0,0,0,0,-1e19,0,40"}) {
     expect_failure({"raycast", teapot, "-o", "a.png", "--camera", camera}, 2, "--camera");
   }
+}
+
+TEST_F(CommandLine, InputsAreNotOverwritten) {
+  const std::string model = content_of(teapot), rays = "ox,oy,oz,dx,dy,dz\n0,0,9,0,0,-1\n",
+                    places = "surface,u,v\n0,0,0\n";
+  folder_.file("m.bpt", model);
+  folder_.file("rays.csv", rays);
+  folder_.file("places.csv", places);
+  std::filesystem::create_symlink("m.bpt", folder_ / "link.ply");
+  std::filesystem::create_hard_link(folder_ / "m.bpt", folder_ / "hard.png");
+  expect_failure({"raycast", "m.bpt", "--rays", "rays.csv", "--hits", "./rays.csv"}, 2,
+                 "--hits: ./rays.csv is the input");
+  expect_failure({"raycast", "m.bpt", "--rays", "rays.csv", "--hits", "m.bpt"}, 2, "--hits: m.bpt is the input");
+  expect_failure({"raycast", "m.bpt", "-o", "hard.png"}, 2, "--output: hard.png is the input m.bpt");
+  expect_failure({"eval", "m.bpt", "--grid", "2x2", "-o", "m.bpt"}, 2, "--output: m.bpt is the input m.bpt");
+  expect_failure({"eval", "m.bpt", "--params", "places.csv", "-o", "places.csv"}, 2,
+                 "--output: places.csv is the input");
+  expect_failure({"tessellate", "m.bpt", "--grid", "2x2", "-o", "link.ply"}, 2,
+                 "--output: link.ply is the input m.bpt");
+  EXPECT_EQ(content_of(folder_ / "m.bpt"), model);
+  EXPECT_EQ(content_of(folder_ / "rays.csv"), rays);
+  EXPECT_EQ(content_of(folder_ / "places.csv"), places);
+}
+
+TEST_F(CommandLine, EmptyFileNamesAreRefused) {
+  folder_.file("rays.csv", "ox,oy,oz,dx,dy,dz\n0,0,9,0,0,-1\n");
+  expect_failure({"eval", teapot, "--grid", "2x2", "-o", ""}, 2, "--output");
+  expect_failure({"eval", teapot, "--params", ""}, 2, "--params");
+  expect_failure({"tessellate", teapot, "--grid", "2x2", "-o", ""}, 2, "--output");
+  expect_failure({"raycast", teapot, "-o", ""}, 2, "--output");
+  expect_failure({"raycast", teapot, "--rays", "rays.csv", "--hits", ""}, 2, "--hits");
+  expect_failure({"raycast", teapot, "--rays", "", "--hits", "hits.csv"}, 2, "--rays");
 }
 
 TEST_F(CommandLine, InstructionSetsAreForcedByTheEnvironment) {
@@ -97,8 +149,16 @@ TEST_F(CommandLine, BadModelsEndWithOne) {
   expect_failure({"raycast", "degree16.bpt", "-o", "a.png"}, 1, "tessera: degree16.bpt:2: expected the degree along u");
   folder_.file("more.bpt", good + "1 2 3\n");
   expect_failure({"info", "more.bpt"}, 1, "expected the end of the file after 32 patches");
-  folder_.file("large.bpt", "1\n1 1\n0 0 0\n0 1 0\n1 0 0\n1e300 1 0\n");
-  expect_failure({"info", "large.bpt"}, 1, "tessera: large.bpt: ");
+  folder_.file("large.bpt", "2\n1 1\n0 0 0\n0 1 0\n1 0 0\n1 1 0\n1 1\n0 0 0\n0 1 0\n1 0 0\n1e300 1 0\n");
+  for (const std::vector<std::string>& command :
+       {Names{"info", "large.bpt"}, Names{"tessellate", "large.bpt", "-o", "a.ply", "--grid", "2x2"},
+        Names{"raycast", "large.bpt", "-o", "a.png"}}) {
+    const ToolRun result = run(command);
+    EXPECT_EQ(result.status, 1);
+    EXPECT_TRUE(result.errors.starts_with("tessera: large.bpt: patch 1 of 2: ") ||
+                result.errors.starts_with("tessera: large.bpt: patch 2 of 2: "))
+        << result.errors;
+  }
   folder_.file("scene.k3d", "<k3dml/>");
   expect_failure({"info", "scene.k3d"}, 1, "unsupported format \".k3d\": surfaces are read as .bpt");
 }

@@ -115,6 +115,10 @@ TEST_F(RaycastTool, RaysThatAreNotValidAreRefusedByLine) {
       {ranged + "0,0,0,0,0,1,nan,2\n", "rays.csv:2: a ray that is not valid: tnear is nan, it must be at least 0"},
       {ranged + "0,0,0,0,0,1,3,2\n", "rays.csv:2: a ray that is not valid: tfar is 2, it must be at least tnear"},
       {ranged + "0,0,0,0,0,1,0,nan\n", "rays.csv:2: a ray that is not valid: tfar is nan, it must be at least tnear"},
+      {header + "0,0,9,0,0,-1\n1e19,0,0,-1,0,0\n",
+       "rays.csv:3: a ray that is not valid: the origin or the direction has a component beyond 1.844e+18"},
+      {header + "0,0,9,0,0,-1.845e18\n",
+       "rays.csv:2: a ray that is not valid: the origin or the direction has a component beyond 1.844e+18"},
       {ranged + "0,0,0,0,0,1,inf,inf\n", "rays.csv:2: a ray that is not valid: tnear is not finite"},
   };
   for (const auto& [text, message] : cases) {

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -19,30 +20,61 @@ struct ToolRun {
   std::string output, errors;
 };
 
-/// A program, found as the shell would find it, with its arguments, in the folder `where`. `variables` ("NAME=value")
-/// come before the environment. Neither stream is a terminal.
+/// A program that runs: found as the shell would find it, with its arguments, in the folder `where`. `variables`
+/// ("NAME=value") come before the environment. Neither stream is a terminal, and no signal is ignored.
+class RunningProgram {
+ public:
+  RunningProgram(const ScratchFolder& where, const std::vector<std::string>& program,
+                 const std::vector<std::string>& variables = {}) {
+    std::vector<std::string> words{"/usr/bin/env", "-C", where.path().string()};
+    words.insert(words.end(), variables.begin(), variables.end());
+    words.insert(words.end(), program.begin(), program.end());
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output_.c_str(), O_WRONLY | O_CREAT, 0600);
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, errors_.c_str(), O_WRONLY | O_CREAT, 0600);
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    sigset_t all;
+    sigfillset(&all);
+    posix_spawnattr_setsigdefault(&attributes, &all);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
+    const int error = ::posix_spawn(&child_, argv[0], &actions, &attributes, argv.data(), environ);
+    posix_spawnattr_destroy(&attributes);
+    posix_spawn_file_actions_destroy(&actions);
+    if (error != 0) throw std::runtime_error("the program could not be started");
+  }
+  RunningProgram(const RunningProgram&) = delete;
+  RunningProgram& operator=(const RunningProgram&) = delete;
+  ~RunningProgram() {
+    if (child_ == 0) return;
+    ::kill(child_, SIGKILL);
+    ::waitpid(child_, nullptr, 0);
+  }
+
+  void signal(int number) const { ::kill(child_, number); }
+  ToolRun wait() {
+    int state = 0;
+    if (::waitpid(child_, &state, 0) != child_) throw std::runtime_error("the program is lost");
+    child_ = 0;
+    return {WIFEXITED(state) ? WEXITSTATUS(state) : 128 + WTERMSIG(state), content_of(output_), content_of(errors_)};
+  }
+
+ private:
+  ScratchFolder streams_;
+  std::string output_ = streams_ / "output", errors_ = streams_ / "errors";
+  pid_t child_ = 0;
+};
+
+/// Runs a program to its end.
 inline ToolRun run_program(const ScratchFolder& where, const std::vector<std::string>& program,
                            const std::vector<std::string>& variables = {}) {
-  const ScratchFolder streams;
-  const std::string output = streams / "output", errors = streams / "errors";
-  std::vector<std::string> words{"/usr/bin/env", "-C", where.path().string()};
-  words.insert(words.end(), variables.begin(), variables.end());
-  words.insert(words.end(), program.begin(), program.end());
-  std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
-  argv.push_back(nullptr);
-
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output.c_str(), O_WRONLY | O_CREAT, 0600);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, errors.c_str(), O_WRONLY | O_CREAT, 0600);
-  pid_t child = 0;
-  const int error = ::posix_spawn(&child, argv[0], &actions, nullptr, argv.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  int state = 0;
-  if (error != 0 || ::waitpid(child, &state, 0) != child) throw std::runtime_error("the tool could not be started");
-  return {WIFEXITED(state) ? WEXITSTATUS(state) : 128 + WTERMSIG(state), content_of(output), content_of(errors)};
+  return RunningProgram(where, program, variables).wait();
 }
 
 /// The built binary with these arguments.

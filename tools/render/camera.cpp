@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "ray/ray_segment.h"
+
 namespace tessera::render {
 namespace {
 
@@ -62,12 +64,17 @@ Camera fit_camera(const Box3& box, int width, int height) {
 Camera fit_camera(const Box3& box) { return fit_camera(box, 1, 1); }
 
 Status check(const Camera& camera) {
-  const bool good = is_finite(camera.eye) && is_finite(camera.target) && !(camera.eye == camera.target) &&
-                    is_finite(camera.up) && camera.fov_degrees > 0 && camera.fov_degrees < 180;
-  if (good) return {};
-  return Status(
-      StatusCode::invalid_argument,
-      "a camera needs finite points, a target other than the eye, and a field of view between 0 and 180 degrees");
+  const auto bad = [](const char* why) { return Status(StatusCode::invalid_argument, why); };
+  // Written so that NaN fails.
+  const auto in_range = [](const Vec3& v) { return is_finite(v) && max_abs(v) <= max_ray_component; };
+  if (!in_range(camera.eye) || !in_range(camera.target) || !is_finite(camera.up)) {
+    return bad("the eye and the target need coordinates of at most 1.844e18, as rays do, and up must be finite");
+  }
+  if (camera.eye == camera.target) return bad("the eye and the target are the same point");
+  if (!(camera.fov_degrees > 0 && camera.fov_degrees < 180)) {
+    return bad("the field of view must lie between 0 and 180 degrees");
+  }
+  return {};
 }
 
 PixelRays::PixelRays(const Camera& camera, int width, int height) : eye_(camera.eye) {

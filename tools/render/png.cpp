@@ -1,8 +1,9 @@
 #include <png.h>
 
+#include <array>
+#include <csetjmp>
+#include <cstdio>
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include "base/guard.h"
 #include "io/output_file.h"
@@ -11,36 +12,79 @@
 namespace tessera::render {
 namespace {
 
-Status encode(const Image& image, std::vector<char>& bytes) {
-  png_image header{};
-  header.version = PNG_IMAGE_VERSION;
-  header.width = static_cast<png_uint_32>(image.width);
-  header.height = static_cast<png_uint_32>(image.height);
-  header.format = PNG_FORMAT_RGB;
-  // A first call would ask for the size by encoding everything: the bound is enough.
-  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(header);
-  bytes.resize(size);
-  if (png_image_write_to_memory(&header, bytes.data(), &size, 0, image.rgb.data(), 0, nullptr) == 0) {
-    return Status(StatusCode::internal, std::string("libpng: ") + header.message);
+using Message = std::array<char, 200>;
+
+extern "C" void write_bytes(png_structp png, png_bytep bytes, std::size_t size) {
+  static_cast<OutputFile*>(png_get_io_ptr(png))->write({reinterpret_cast<const char*>(bytes), size});
+}
+
+extern "C" void flush_nothing(png_structp) {}
+
+extern "C" void keep_error(png_structp png, png_const_charp sentence) {
+  Message& message = *static_cast<Message*>(png_get_error_ptr(png));
+  std::snprintf(message.data(), message.size(), "%s", sentence);
+  png_longjmp(png, 1);
+}
+
+extern "C" void drop_warning(png_structp, png_const_charp) {}
+
+/// libpng's state of a picture that is being written.
+struct Encoder {
+  explicit Encoder(OutputFile& out)
+      : png(png_create_write_struct(PNG_LIBPNG_VER_STRING, &message, keep_error, drop_warning)) {
+    if (png == nullptr) return;
+    info = png_create_info_struct(png);
+    png_set_write_fn(png, &out, write_bytes, flush_nothing);
   }
-  bytes.resize(size);
-  return {};
+  Encoder(const Encoder&) = delete;
+  Encoder& operator=(const Encoder&) = delete;
+  ~Encoder() { png_destroy_write_struct(&png, &info); }
+
+  Message message{};
+  png_structp png;
+  png_infop info = nullptr;
+};
+
+/// False if libpng has failed. It comes back here by longjmp: nothing in this function may need a destructor.
+bool encode(Encoder& encoder, const Image& image, const OutputFile& out) {
+  const png_structp png = encoder.png;
+  if (setjmp(png_jmpbuf(png)) != 0) return false;
+  png_set_IHDR(png, encoder.info, static_cast<png_uint_32>(image.width), static_cast<png_uint_32>(image.height), 8,
+               PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_sRGB(png, encoder.info, PNG_sRGB_INTENT_PERCEPTUAL);
+  png_write_info(png, encoder.info);
+  const std::size_t row_bytes = 3 * static_cast<std::size_t>(image.width);
+  for (std::size_t at = 0; at < image.rgb.size(); at += row_bytes) {
+    if (out.failed()) return true;
+    png_write_row(png, image.rgb.data() + at);
+  }
+  png_write_end(png, nullptr);
+  return true;
 }
 
 }  // namespace
 
-Status write_png(const Image& image, const std::filesystem::path& path) {
+Status write_png(const Image& image, OutputFile& out) {
   if (image.width < 1 || image.height < 1 ||
       image.rgb.size() != 3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height)) {
     return Status(StatusCode::invalid_argument, "a picture's bytes don't fit its size");
   }
   return guarded([&]() -> Status {
-    std::vector<char> bytes;
-    if (Status status = encode(image, bytes); !status.ok()) return status;
-    Result<OutputFile> file = OutputFile::create(path);
-    if (!file) return file.status();
-    file->write({bytes.data(), bytes.size()});
-    return file->commit();
+    Encoder encoder(out);
+    if (encoder.png == nullptr || encoder.info == nullptr) {
+      return Status(StatusCode::out_of_memory, out.path().string() + ": out of memory");
+    }
+    if (encode(encoder, image, out)) return {};
+    return Status(StatusCode::internal, out.path().string() + ": libpng: " + encoder.message.data());
+  });
+}
+
+Status write_png(const Image& image, const std::filesystem::path& path) {
+  return guarded([&]() -> Status {
+    Result<OutputFile> out = OutputFile::create(path);
+    if (!out) return out.status();
+    Status status = write_png(image, *out);
+    return status.ok() ? out->commit() : status;
   });
 }
 

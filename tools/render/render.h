@@ -11,6 +11,10 @@
 #include "tessera/status.h"
 #include "tessera/vec.h"
 
+namespace tessera {
+class OutputFile;
+}
+
 namespace tessera::render {
 
 /// A pinhole. The field of view spans the picture's shorter side.
@@ -50,5 +54,8 @@ Result<Image> render(const RayScene& scene, const Box3& box, const Settings& set
 /// The file appears whole or not at all: it is written beside its place, then renamed.
 /// Errors: invalid_argument (an image whose bytes don't fit its size), io_error.
 Status write_png(const Image& image, const std::filesystem::path& path);
+/// Row by row into an open file; what is left to do is to commit it, which also says whether a write has failed.
+/// Errors: invalid_argument, out_of_memory, internal (libpng).
+Status write_png(const Image& image, OutputFile& out);
 
 }  // namespace tessera::render

@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 #include <charconv>
+#include <filesystem>
+#include <system_error>
 
 #include "io/text_cursor.h"
 
@@ -47,6 +49,18 @@ std::vector<double> parse_numbers(const std::string& option, const std::string& 
         option, "expected " + std::to_string(count) + " finite numbers " + form + ", found " + quote(text));
   }
   return values;
+}
+
+std::string fault_of_name(const std::string& name) { return name.empty() ? "expected the name of a file" : ""; }
+
+void refuse_overwriting(const std::string& option, const std::string& output, const std::vector<std::string>& inputs) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(output, error)) return;
+  for (const std::string& input : inputs) {
+    if (std::filesystem::equivalent(output, input, error)) {
+      throw CLI::ValidationError(option, output + " is the input " + input + ", which would be overwritten");
+    }
+  }
 }
 
 }  // namespace tessera::cli

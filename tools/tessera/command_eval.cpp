@@ -9,7 +9,6 @@
 #include "commands.h"
 #include "console.h"
 #include "csv.h"
-#include "io/output_file.h"
 #include "tessera/evaluate.h"
 #include "tessera/io.h"
 
@@ -147,6 +146,8 @@ Status write_rows(const Model& model, const Places& places, const Options& optio
 }
 
 Status run_eval(const Options& options) {
+  Result<OutputFile> out = open_output(options.output);
+  if (!out) return out.status();
   const Result<Model> model = read_model(options.model);
   if (!model) return model.status();
   Places places;
@@ -158,12 +159,6 @@ Status run_eval(const Options& options) {
     const std::size_t count = read->size();
     places = {count, [list = *std::move(read)](std::size_t k) { return list[k]; }};
   }
-  if (options.output.empty()) {
-    OutputFile out = OutputFile::standard_output();
-    return write_rows(*model, places, options, out);
-  }
-  Result<OutputFile> out = OutputFile::create(options.output);
-  if (!out) return out.status();
   return write_rows(*model, places, options, *out);
 }
 
@@ -192,7 +187,9 @@ void add_eval(CLI::App& app, Session& session) {
           "--grid", [options](const std::string& text) { options->grid = parse_extent("--grid", text, 2, 65536); },
           "N x M points on every surface, from border to border, 2 to 65536 each")
       ->type_name("NxM");
-  where->add_option("--params", options->places, "At the places of this table")->type_name("FILE.csv");
+  where->add_option("--params", options->places, "At the places of this table")
+      ->check(fault_of_name)
+      ->type_name("FILE.csv");
   command->add_option("--derivs", options->derivatives, "Derivatives up to this order")
       ->check(CLI::Range(0, 2))
       ->capture_default_str();
@@ -200,9 +197,13 @@ void add_eval(CLI::App& app, Session& session) {
       ->check(CLI::IsMember({"csv", "json"}))
       ->capture_default_str();
   command->add_option("-o,--output", options->output, "Where to write; standard output if not given")
+      ->check(fault_of_name)
       ->type_name("FILE");
   command->footer(footer);
-  command->callback([options, &session] { session.command = [options] { return run_eval(*options); }; });
+  command->callback([options, &session] {
+    refuse_overwriting("--output", options->output, {options->model, options->places});
+    session.command = [options] { return run_eval(*options); };
+  });
 }
 
 }  // namespace tessera::cli

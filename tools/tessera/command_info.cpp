@@ -89,7 +89,7 @@ Status run_info(const Options& options) {
   const Result<Model> model = read_model(options.model);
   if (!model) return model.status();
   const Result<PatchSet> set = make_patch_set(*model);
-  if (!set) return in_file(options.model, set.status());
+  if (!set) return in_model(options.model, model->surfaces.size(), set.status());
   const Result<Isa> used = default_isa();
   if (!used) return used.status();
   if (options.json) return print_json(as_json(options, *model, *set, *used));

@@ -1,6 +1,5 @@
 // tessera raycast: a picture of surfaces, or the hits of given rays.
 
-#include <cstdio>
 #include <map>
 #include <memory>
 
@@ -8,8 +7,8 @@
 #include "commands.h"
 #include "console.h"
 #include "csv.h"
-#include "io/output_file.h"
-#include "render/render.h"
+#include "io/formats.h"
+#include "render/camera.h"
 #include "tessera/io.h"
 #include "tessera/ray_scene.h"
 
@@ -36,15 +35,16 @@ Result<RayScene> make_scene(const PatchSet& set) {
   return RayScene::make(set, options, progress.execution());
 }
 
-Status draw(const Options& options, const PatchSet& set, const RayScene& scene, double scene_seconds) {
+Status draw(const Options& options, const PatchSet& set, const RayScene& scene, double scene_seconds, OutputFile& out) {
   const Stopwatch drawing;
   Result<render::Image> image = [&] {
     Progress progress("casting rays");
     return render::render(scene, set.box(), options.settings, progress.execution());
   }();
-  if (!image) return image.status();
+  if (!image) return in_file(options.picture, image.status());
   const double draw_seconds = drawing.seconds();
-  const Status status = render::write_png(*image, options.picture);
+  Status status = render::write_png(*image, out);
+  if (status.ok()) status = out.commit();
   if (!status.ok()) return status;
   return print(options.picture + ": " + std::to_string(image->width) + " x " + std::to_string(image->height) + ", " +
                std::to_string(set.patch_count()) + " patches; scene built in " + readable_seconds(scene_seconds) +
@@ -71,15 +71,7 @@ void write_hit(OutputFile& out, std::size_t ray, const Hit& hit) {
   out.write('\n');
 }
 
-Status write_hits(const Options& options, std::span<const Hit> hits) {
-  Result<OutputFile> out = OutputFile::create(options.hits);
-  if (!out) return out.status();
-  out->write(hits_header);
-  for (std::size_t k = 0; k < hits.size() && !out->failed(); ++k) write_hit(*out, k, hits[k]);
-  return out->commit();
-}
-
-Status trace(const Options& options, const RayScene& scene, std::span<const Ray> rays) {
+Status trace(const Options& options, const RayScene& scene, std::span<const Ray> rays, OutputFile& out) {
   std::vector<Hit> hits(rays.size());
   const Stopwatch tracing;
   Status status = [&] {
@@ -88,23 +80,22 @@ Status trace(const Options& options, const RayScene& scene, std::span<const Ray>
   }();
   if (!status.ok()) return status;
   const double seconds = tracing.seconds();
-  status = write_hits(options, hits);
+  out.write(hits_header);
+  for (std::size_t k = 0; k < hits.size() && !out.failed(); ++k) write_hit(out, k, hits[k]);
+  status = out.commit();
   if (!status.ok()) return status;
-  std::size_t found = 0, unrefined = 0, not_traced = 0;
+  std::size_t found = 0, unrefined = 0;
   for (const Hit& hit : hits) {
     found += hit.kind == HitKind::hit;
     unrefined += hit.kind == HitKind::hit && hit.flags.unrefined;
-    not_traced += hit.kind == HitKind::invalid_ray;
-  }
-  if (not_traced != 0) {  // valid rays may still be too far away or too large
-    std::fprintf(stderr, "tessera: %s: %zu rays are beyond float's range; they count as misses\n", options.rays.c_str(),
-                 not_traced);
   }
   return print(options.hits + ": " + std::to_string(hits.size()) + " rays, " + std::to_string(found) + " hits, " +
                std::to_string(unrefined) + " of them on facets only; cast in " + readable_seconds(seconds) + "\n");
 }
 
 Status run_raycast(const Options& options) {
+  Result<OutputFile> out = open_output(options.rays.empty() ? options.picture : options.hits);
+  if (!out) return out.status();
   const Result<Model> model = read_model(options.model);
   if (!model) return model.status();
   std::vector<Ray> rays;
@@ -114,12 +105,12 @@ Status run_raycast(const Options& options) {
     rays = *std::move(read);
   }
   const Result<PatchSet> set = make_patch_set(*model);
-  if (!set) return in_file(options.model, set.status());
+  if (!set) return in_model(options.model, model->surfaces.size(), set.status());
   const Stopwatch building;
   const Result<RayScene> scene = make_scene(*set);
   if (!scene) return in_file(options.model, scene.status());
-  if (!options.rays.empty()) return trace(options, *scene, rays);
-  return draw(options, *set, *scene, building.seconds());
+  if (!options.rays.empty()) return trace(options, *scene, rays, *out);
+  return draw(options, *set, *scene, building.seconds(), *out);
 }
 
 render::Camera parse_camera(const std::string& text) {
@@ -128,15 +119,13 @@ render::Camera parse_camera(const std::string& text) {
   camera.eye = {n[0], n[1], n[2]};
   camera.target = {n[3], n[4], n[5]};
   camera.fov_degrees = n[6];
-  if (camera.eye == camera.target) throw CLI::ValidationError("--camera", "the eye and the target are the same point");
-  if (!(n[6] > 0 && n[6] < 180))
-    throw CLI::ValidationError("--camera", "the field of view must lie between 0 and 180 degrees");
+  const Status status = render::check(camera);
+  if (!status.ok()) throw CLI::ValidationError("--camera", status.message());
   return camera;
 }
 
 std::string fault_of_picture(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  const std::string extension = lower_extension(path);
   if (extension == ".png") return {};
   return path + ": unsupported format \"" + extension + "\": pictures are written as .png";
 }
@@ -144,7 +133,8 @@ std::string fault_of_picture(const std::string& path) {
 constexpr const char* footer =
     "A picture: -o, with --size, --shade and --camera. The default camera fits the model; its up is the z axis.\n"
     "Hits of given rays: --rays and --hits. Rays are a table with the header line ox,oy,oz,dx,dy,dz or\n"
-    "ox,oy,oz,dx,dy,dz,tnear,tfar: finite numbers, the direction not zero, 0 <= tnear <= tfar, tfar may be inf;\n"
+    "ox,oy,oz,dx,dy,dz,tnear,tfar: numbers of at most 1.844e18, the direction not zero, 0 <= tnear <= tfar, tfar may "
+    "be inf;\n"
     "# begins a comment. Hits are the table ray,hit,t,surface,patch,u,v,x,y,z,nx,ny,nz, a row for each ray in the\n"
     "order of the rays, counted from 0; a miss has hit = 0 and empty fields. 17 significant digits.\n"
     "\nExamples:\n"
@@ -188,15 +178,18 @@ void add_raycast(CLI::App& app, Session& session) {
   CLI::Option* const picture = command->add_option("-o,--output", options->picture, "The picture to be written (.png)");
   picture->check(fault_of_picture)->type_name("PICTURE.png");
   add_picture_options(*command, picture, options->settings);
-  CLI::Option* const rays = command->add_option("--rays", options->rays, "The table of rays")->type_name("FILE.csv");
+  CLI::Option* const rays = command->add_option("--rays", options->rays, "The table of rays");
+  rays->check(fault_of_name)->type_name("FILE.csv");
   CLI::Option* const hits = command->add_option("--hits", options->hits, "The table of hits to be written");
-  hits->type_name("OUT.csv")->needs(rays);
+  hits->check(fault_of_name)->type_name("OUT.csv")->needs(rays);
   rays->needs(hits)->excludes(picture);
   command->footer(footer);
   command->callback([options, &session] {
     if (options->picture.empty() && options->rays.empty()) {
       throw CLI::ValidationError("raycast", "expected -o PICTURE.png, or --rays FILE.csv and --hits OUT.csv");
     }
+    refuse_overwriting("--output", options->picture, {options->model});
+    refuse_overwriting("--hits", options->hits, {options->model, options->rays});
     session.command = [options] { return run_raycast(*options); };
   });
 }

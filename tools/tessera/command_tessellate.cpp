@@ -51,19 +51,22 @@ Status report(const Options& options, const Mesh& mesh, const Times& times) {
 }
 
 Status run_tessellate(const Options& options) {
+  Result<OutputFile> out = open_output(options.output);
+  if (!out) return out.status();
   Times times;
   const Stopwatch reading;
   const Result<Model> model = read_model(options.model);
   if (!model) return model.status();
   const Result<PatchSet> set = make_patch_set(*model);
-  if (!set) return in_file(options.model, set.status());
+  if (!set) return in_model(options.model, model->surfaces.size(), set.status());
   times.read = reading.seconds();
   const Stopwatch tessellating;
   const Result<Mesh> mesh = tessellate(options, *set);
   if (!mesh) return in_file(options.model, mesh.status());
   times.tessellate = tessellating.seconds();
   const Stopwatch writing;
-  const Status status = write_mesh(*mesh, options.output);
+  Status status = write_mesh(*mesh, options.output, *out);
+  if (status.ok()) status = out->commit();
   if (!status.ok()) return status;
   times.write = writing.seconds();
   return report(options, *mesh, times);
@@ -89,7 +92,10 @@ void add_tessellate(CLI::App& app, Session& session) {
   command->footer(
       "Positions, normals and parameters are written; neighbours share their borders bit for bit.\n"
       "\nExample:\n  tessera tessellate teapot.bpt -o teapot.ply --grid 16x16");
-  command->callback([options, &session] { session.command = [options] { return run_tessellate(*options); }; });
+  command->callback([options, &session] {
+    refuse_overwriting("--output", options->output, {options->model});
+    session.command = [options] { return run_tessellate(*options); };
+  });
 }
 
 }  // namespace tessera::cli

@@ -5,8 +5,6 @@
 #include <csignal>
 #include <cstdio>
 
-#include "io/output_file.h"
-
 namespace tessera::cli {
 namespace {
 
@@ -14,14 +12,25 @@ std::atomic<bool> interrupt_flag{false};
 volatile std::sig_atomic_t caught_signal = 0;
 
 extern "C" void remember_signal(int signal) {
+  if (caught_signal != 0) {
+    remove_temporaries();
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);  // delivered on return from here
+    return;
+  }
   caught_signal = signal;
   interrupt_flag.store(true, std::memory_order_relaxed);
 }
 
 }  // namespace
 
+Result<OutputFile> open_output(const std::string& path) {
+  if (path.empty()) return OutputFile::standard_output(&interrupt_flag);
+  return OutputFile::create(path, &interrupt_flag);
+}
+
 Status print(std::string_view text) {
-  OutputFile out = OutputFile::standard_output();
+  OutputFile out = OutputFile::standard_output(&interrupt_flag);
   out.write(text);
   return out.commit();
 }
@@ -35,12 +44,19 @@ Status in_file(const std::filesystem::path& file, const Status& status) {
   return Status(status.code(), file.string() + ": " + status.message(), status.index());
 }
 
-void catch_interrupts() {
+Status in_model(const std::filesystem::path& file, std::size_t patches, const Status& status) {
+  const std::string from_zero = "patch " + std::to_string(status.index()) + ": ";
+  if (!status.message().starts_with(from_zero)) return in_file(file, status);
+  const std::string name = "patch " + std::to_string(status.index() + 1) + " of " + std::to_string(patches) + ": ";
+  return in_file(file, Status(status.code(), name + status.message().substr(from_zero.size()), status.index()));
+}
+
+void catch_signals() {
+  std::signal(SIGXFSZ, SIG_IGN);
   struct sigaction action {};
   action.sa_handler = remember_signal;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
   sigemptyset(&action.sa_mask);
-  for (const int signal : {SIGINT, SIGTERM}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction before {};
     // A process that was started with the signal ignored (nohup, a script's background) shall go on ignoring it.
     if (sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "io/output_file.h"
 #include "tessera/execution.h"
 #include "tessera/status.h"
 
@@ -15,7 +16,10 @@ namespace tessera::cli {
 
 using Json = nlohmann::ordered_json;
 
-/// Writes to standard output. Errors: io_error.
+/// The file to be written, or standard output if `path` is empty. An interrupt keeps it from appearing. To be opened
+/// before the work is done: a bad place is said at once. Errors: io_error.
+Result<OutputFile> open_output(const std::string& path);
+/// Writes to standard output. Errors: io_error, cancelled.
 Status print(std::string_view text);
 /// One JSON object and the end of the line.
 Status print_json(const Json& object);
@@ -23,8 +27,13 @@ Status print_json(const Json& object);
 /// `status` with the file's name before its message, for errors that do not know the file.
 Status in_file(const std::filesystem::path& file, const Status& status);
 
-/// From now on Ctrl-C and a request to terminate set the flag of `interrupted`; the second time they end the process.
-void catch_interrupts();
+/// in_file for errors of the patch set that a model of `patches` patches gives: the patch is named as the parser names
+/// it, "patch 1 of 2".
+Status in_model(const std::filesystem::path& file, std::size_t patches, const Status& status);
+
+/// From now on Ctrl-C, a request to terminate and a terminal that hangs up set the flag of `interrupted`; the second
+/// time they end the process, and no temporary stays. Files that grow beyond the limit become an error of writing.
+void catch_signals();
 const std::atomic<bool>& interrupted();
 /// Ends the process by the signal that was caught, as its caller expects; returns if there was none.
 void end_by_signal();

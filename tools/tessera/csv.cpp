@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "io/file.h"
+#include "ray/ray_segment.h"
 
 namespace tessera::cli {
 namespace {
@@ -64,6 +65,7 @@ std::string fault_of(const Ray& ray) {
   if (!(ray.tnear >= 0)) return "tnear is " + text_of(ray.tnear) + ", it must be at least 0";
   if (std::isinf(ray.tnear)) return "tnear is not finite";
   if (!(ray.tfar >= ray.tnear)) return "tfar is " + text_of(ray.tfar) + ", it must be at least tnear";
+  if (!is_valid(ray)) return "the origin or the direction has a component beyond " + text_of(max_ray_component);
   return {};
 }
 

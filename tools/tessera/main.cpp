@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <sstream>
 
 #include "commands.h"
 #include "console.h"
@@ -40,7 +41,15 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? success : bad_command_line;
+    std::ostringstream output, errors;
+    const int status = app.exit(error, output, errors);
+    const tessera::Status printed = tessera::cli::print(output.str());
+    if (!printed.ok()) {
+      complain(printed.message());
+      return bad_input;
+    }
+    std::fputs(errors.str().c_str(), stderr);
+    return status == 0 ? success : bad_command_line;
   }
   if (!session.command) {
     complain("expected a command (info, eval, tessellate, raycast, check), found none\nTry tessera --help.");
@@ -51,12 +60,11 @@ int run(int argc, char** argv) {
     complain(isa.status().message());
     return bad_command_line;
   }
-  tessera::cli::catch_interrupts();
+  tessera::cli::catch_signals();
   const tessera::Status status = session.command();
-  if (status.ok()) return success;
-  if (status.code() == tessera::StatusCode::cancelled) tessera::cli::end_by_signal();
-  complain(status.message());
-  return bad_input;
+  if (!status.ok() && status.code() != tessera::StatusCode::cancelled) complain(status.message());
+  tessera::cli::end_by_signal();
+  return status.ok() ? success : bad_input;
 }
 
 }  // namespace

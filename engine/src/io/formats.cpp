@@ -34,14 +34,6 @@ constexpr std::array<Format, 3> formats{{
 
 constexpr std::string_view mesh_writers = "meshes are written";
 
-std::string lower_extension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return extension;
-}
-
 /// The format that `path` names, if it has the ability `member`; otherwise an error that lists those that have.
 template <class Ability>
 Result<const Format*> find_format(const fs::path& path, Ability Format::*member, std::string_view what) {
@@ -102,6 +94,14 @@ Status validate(const Mesh& mesh) {
 
 }  // namespace
 
+std::string lower_extension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return extension;
+}
+
 Status check_mesh_format(const fs::path& path) { return find_format(path, &Format::write_mesh, mesh_writers).status(); }
 
 Result<Model> read_model(const fs::path& path) {
@@ -116,16 +116,25 @@ Result<Mesh> read_mesh(const fs::path& path) {
   return guarded([&] { return read_as<Mesh>(path, &Format::read_mesh, "meshes are read"); });
 }
 
-Status write_mesh(const Mesh& mesh, const fs::path& path) {
+Status write_mesh(const Mesh& mesh, const fs::path& path, OutputFile& out) {
   return guarded([&]() -> Status {
     const Result<const Format*> format = find_format(path, &Format::write_mesh, mesh_writers);
     if (!format) return format.status();
     Status status = validate(mesh);
     if (!status.ok()) return Status(status.code(), path.string() + ": " + status.message(), status.index());
+    (*format)->write_mesh(mesh, out);
+    return {};
+  });
+}
+
+Status write_mesh(const Mesh& mesh, const fs::path& path) {
+  return guarded([&]() -> Status {
+    Status status = check_mesh_format(path);
+    if (!status.ok()) return status;
     Result<OutputFile> out = OutputFile::create(path);
     if (!out) return out.status();
-    (*format)->write_mesh(mesh, *out);
-    return out->commit();
+    status = write_mesh(mesh, path, *out);
+    return status.ok() ? out->commit() : status;
   });
 }
 

@@ -3,8 +3,9 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 
-#include <atomic>
+#include <array>
 #include <cerrno>
+#include <climits>
 #include <cstring>
 #include <system_error>
 
@@ -17,12 +18,29 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t buffer_bytes = std::size_t{1} << 20;
 
-/// Where the file will lie: behind a symbolic link, so that the link stays one.
-fs::path behind_links(const fs::path& path) {
+/// The name of a temporary where a signal handler can read it: in memory that is never freed, behind no lock.
+struct NamePlace {
+  std::atomic<bool> taken = false, readable = false;
+  std::array<char, PATH_MAX> name{};
+};
+std::array<NamePlace, 8> name_places;  // more files at once are removed at their end all the same
+
+/// Where the file will lie: behind symbolic links, so that they stay links, even those whose target does not exist yet.
+Result<fs::path> behind_links(const fs::path& path) {
   std::error_code error;
   if (!fs::is_symlink(path, error)) return path;
   fs::path target = fs::canonical(path, error);
-  return error ? path : target;
+  if (!error) return target;
+  // What exists under no path, such as the pipe behind /dev/stdout, is opened by the name given.
+  if (fs::exists(path, error)) return path;
+  constexpr int most_links = 40;  // the system's own limit (path_resolution(7))
+  target = path;
+  for (int link = 0; link < most_links; ++link) {
+    const fs::path next = fs::read_symlink(target, error);
+    if (error) return target;  // no link
+    target = target.parent_path() / next;
+  }
+  return io_failure(path, "cannot be written", ELOOP);
 }
 
 /// A name beside `target` that no other writer has, in this process or another.
@@ -35,23 +53,47 @@ fs::path temporary_beside(const fs::path& target) {
 
 }  // namespace
 
-OutputFile::OutputFile(Descriptor file, fs::path target, fs::path temporary)
-    : file_(std::move(file)), target_(std::move(target)), temporary_(std::move(temporary)), buffer_(buffer_bytes) {}
-
-OutputFile::OutputFile(OutputFile&& other) noexcept
-    : file_(std::move(other.file_)),
-      target_(std::move(other.target_)),
-      temporary_(std::exchange(other.temporary_, fs::path())),
-      buffer_(std::move(other.buffer_)),
-      used_(std::exchange(other.used_, 0)),
-      status_(std::move(other.status_)) {}
-
-OutputFile::~OutputFile() {
-  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+void remove_temporaries() noexcept {
+  for (const NamePlace& place : name_places) {
+    if (place.readable.load()) ::unlink(place.name.data());
+  }
 }
 
-Result<OutputFile> OutputFile::create(const fs::path& path) {
-  const fs::path target = behind_links(path);
+TemporaryName::TemporaryName(fs::path path) : path_(std::move(path)) {
+  const std::string& name = path_.native();
+  for (std::size_t k = 0; k < name_places.size() && name.size() < PATH_MAX; ++k) {
+    if (name_places[k].taken.exchange(true)) continue;
+    std::memcpy(name_places[k].name.data(), name.c_str(), name.size() + 1);
+    name_places[k].readable = true;
+    place_ = k;
+    return;
+  }
+}
+
+TemporaryName::~TemporaryName() {
+  if (!empty()) ::unlink(c_str());
+  release();
+}
+
+void TemporaryName::release() {
+  path_.clear();
+  if (place_ == no_place) return;
+  name_places[place_].readable = false;
+  name_places[place_].taken = false;
+  place_ = no_place;
+}
+
+OutputFile::OutputFile(Descriptor file, fs::path target, TemporaryName temporary, const std::atomic<bool>* cancel)
+    : file_(std::move(file)),
+      target_(std::move(target)),
+      temporary_(std::move(temporary)),
+      cancel_(cancel),
+      buffer_(buffer_bytes) {}
+
+Result<OutputFile> OutputFile::create(const fs::path& path, const std::atomic<bool>* cancel) {
+  const Result<fs::path> place = behind_links(path);
+  if (!place) return place.status();
+  const fs::path& target = *place;
   struct stat facts {};
   const bool exists = ::stat(target.c_str(), &facts) == 0;
   if (exists && S_ISDIR(facts.st_mode)) {
@@ -60,15 +102,16 @@ Result<OutputFile> OutputFile::create(const fs::path& path) {
   if (exists && !S_ISREG(facts.st_mode)) {
     Descriptor file(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
     if (!file.is_open()) return io_failure(path, "cannot be written", errno);
-    return OutputFile(std::move(file), path, {});
+    return OutputFile(std::move(file), path, {}, cancel);
   }
   // A rename would replace a file that its owner has protected from writing.
   if (exists && ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0)
     return io_failure(path, "cannot be written", errno);
-  fs::path temporary = temporary_beside(target);
+  TemporaryName temporary(temporary_beside(target));
   Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
   if (!file.is_open()) {
     const int error = errno;
+    temporary.release();  // whatever has this name is another's
     const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
     if (error == ENOENT) {
       return Status(StatusCode::io_error, path.string() + ": cannot be written: there is no folder " + folder.string());
@@ -76,10 +119,12 @@ Result<OutputFile> OutputFile::create(const fs::path& path) {
     return io_failure(path, "cannot be written in " + folder.string(), error);
   }
   if (exists) ::fchmod(file.number(), facts.st_mode & 07777);  // at worst the file gets the usual mode
-  return OutputFile(std::move(file), target, std::move(temporary));
+  return OutputFile(std::move(file), target, std::move(temporary), cancel);
 }
 
-OutputFile OutputFile::standard_output() { return OutputFile(Descriptor(::dup(STDOUT_FILENO)), "standard output", {}); }
+OutputFile OutputFile::standard_output(const std::atomic<bool>* cancel) {
+  return OutputFile(Descriptor(::dup(STDOUT_FILENO)), "standard output", {}, cancel);
+}
 
 void OutputFile::write(std::string_view bytes) {
   if (bytes.size() > buffer_.size() - used_) {
@@ -97,10 +142,12 @@ void OutputFile::flush() {
 }
 
 void OutputFile::send(std::string_view bytes) {
+  see_cancel();
   while (!bytes.empty() && status_.ok()) {
     const ssize_t sent = ::write(file_.number(), bytes.data(), bytes.size());
-    if (sent < 0 && errno == EINTR) continue;
-    if (sent < 0) {
+    if (sent < 0 && errno == EINTR) {
+      see_cancel();
+    } else if (sent < 0) {
       status_ = io_failure(target_, "cannot be written", errno);
     } else {
       bytes.remove_prefix(static_cast<std::size_t>(sent));
@@ -108,13 +155,18 @@ void OutputFile::send(std::string_view bytes) {
   }
 }
 
+void OutputFile::see_cancel() {
+  if (status_.ok() && cancel_ && cancel_->load()) status_ = Status(StatusCode::cancelled, "cancelled by the caller");
+}
+
 Status OutputFile::commit() {
   flush();
+  see_cancel();
   const int error = file_.close();
   if (error != 0 && status_.ok()) status_ = io_failure(target_, "cannot be written", error);
   if (status_.ok() && !temporary_.empty()) {
     if (::rename(temporary_.c_str(), target_.c_str()) == 0) {
-      temporary_.clear();
+      temporary_.release();
     } else {
       status_ = io_failure(target_, "cannot be written", errno);
     }

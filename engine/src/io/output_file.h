@@ -1,11 +1,13 @@
 #pragma once
 // Files that appear whole or not at all.
 
+#include <atomic>
 #include <charconv>
 #include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "io/descriptor.h"
@@ -13,19 +15,42 @@
 
 namespace tessera {
 
+/// Unlinks the temporaries of all open OutputFiles. For signal handlers that end the process: async-signal-safe.
+void remove_temporaries() noexcept;
+
+/// The name of a file that is removed at the end, unless it is released; remove_temporaries knows it as long.
+class TemporaryName {
+ public:
+  TemporaryName() = default;
+  explicit TemporaryName(std::filesystem::path path);
+  TemporaryName(TemporaryName&& other) noexcept
+      : path_(std::exchange(other.path_, std::filesystem::path())), place_(std::exchange(other.place_, no_place)) {}
+  TemporaryName& operator=(TemporaryName&&) = delete;
+  ~TemporaryName();
+
+  bool empty() const { return path_.empty(); }
+  const char* c_str() const { return path_.c_str(); }
+  void release();
+
+ private:
+  static constexpr std::size_t no_place = ~std::size_t{0};
+  std::filesystem::path path_;
+  std::size_t place_ = no_place;  // among those that remove_temporaries sees
+};
+
 /// Writes beside the place of a file, then renames: `commit` is the moment at which the file appears, and without it
 /// nothing stays behind. What is no regular file (a pipe, a terminal, /dev/stdout) is written to directly. Memory: 1
 /// MiB, whatever is written. A failed write is remembered, later ones are dropped, and commit reports the first.
 class OutputFile {
  public:
   /// Errors: io_error (a directory, a missing folder, no permission).
-  static Result<OutputFile> create(const std::filesystem::path& path);
+  /// Once `cancel` is true, writes fail with cancelled, and the file does not appear.
+  static Result<OutputFile> create(const std::filesystem::path& path, const std::atomic<bool>* cancel = nullptr);
   /// The process's standard output.
-  static OutputFile standard_output();
+  static OutputFile standard_output(const std::atomic<bool>* cancel = nullptr);
 
-  OutputFile(OutputFile&& other) noexcept;
+  OutputFile(OutputFile&& other) = default;
   OutputFile& operator=(OutputFile&&) = delete;
-  ~OutputFile();
 
   void write(std::string_view bytes);
   void write(char c) {
@@ -45,22 +70,27 @@ class OutputFile {
                                       begin);
   }
 
+  /// Where the file will lie.
+  const std::filesystem::path& path() const { return target_; }
   /// Whether any write has failed: a long writer may stop early.
   bool failed() const { return !status_.ok(); }
-  /// Writes what is buffered, closes, renames. Errors: io_error. To be called once, as the last thing.
+  /// Writes what is buffered, closes, renames. Errors: io_error, cancelled. To be called once, as the last thing.
   Status commit();
 
  private:
-  OutputFile(Descriptor file, std::filesystem::path target, std::filesystem::path temporary);
+  OutputFile(Descriptor file, std::filesystem::path target, TemporaryName temporary, const std::atomic<bool>* cancel);
   char* room(std::size_t bytes) {
     if (buffer_.size() - used_ < bytes) flush();
     return buffer_.data() + used_;
   }
   void flush();
   void send(std::string_view bytes);
+  void see_cancel();
 
   Descriptor file_;
-  std::filesystem::path target_, temporary_;  // no temporary: written directly
+  std::filesystem::path target_;
+  TemporaryName temporary_;  // empty: written directly
+  const std::atomic<bool>* cancel_;
   std::vector<char> buffer_;
   std::size_t used_ = 0;
   Status status_;

@@ -181,8 +181,7 @@ class BodyReader {
       for (const PlyProperty& property : element.properties) {
         Status status;
         double ignored = 0;
-        const bool corners = property.is_list && (property.name == "vertex_indices" || property.name == "vertex_index");
-        if (corners) {
+        if (is_corner_list(property)) {
           status = read_polygon(property, element, k);
         } else if (!(property.is_list ? skip_list(property)
                                       : values_.take(property.type, property.name == "patch" ? patch : ignored))) {

@@ -1,5 +1,6 @@
 #include "io/ply_header.h"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -25,6 +26,11 @@ std::optional<PlyType> parse_type(std::string_view word) {
     if (word == entry.old_name || word == entry.new_name) return entry.type;
   }
   return std::nullopt;
+}
+
+template <class Named>
+bool has_name(const std::vector<Named>& list, std::string_view name) {
+  return std::any_of(list.begin(), list.end(), [name](const Named& entry) { return entry.name == name; });
 }
 
 class HeaderReader {
@@ -73,6 +79,7 @@ class HeaderReader {
   }
 
   Status read_format() {
+    if (format_seen_) return cursor_.failure("the format is stated a second time");
     const std::string_view format = next_word();
     if (format == "binary_big_endian") {
       return Status(StatusCode::unsupported, cursor_.failure("unsupported format binary_big_endian").message());
@@ -90,6 +97,7 @@ class HeaderReader {
     PlyElement element;
     element.name = next_word();
     if (element.name.empty()) return cursor_.expected("the name of an element");
+    if (has_name(header_.elements, element.name)) return second("element", element.name);
     take_word();
     cursor_.skip_blanks();
     const TextCursor before = cursor_;
@@ -99,6 +107,10 @@ class HeaderReader {
     element.count = static_cast<std::uint64_t>(count);
     header_.elements.push_back(std::move(element));
     return {};
+  }
+
+  Status second(const char* what, const std::string& name, const std::string& where = {}) const {
+    return cursor_.failure(std::string("there is a second ") + what + " " + quote(name) + where);
   }
 
   Status read_type(PlyType& type) {
@@ -122,8 +134,13 @@ class HeaderReader {
     if (!status.ok()) return status;
     property.name = next_word();
     if (property.name.empty()) return cursor_.expected("the name of a property");
+    PlyElement& element = header_.elements.back();
+    if (has_name(element.properties, property.name)) return second("property", property.name, " of " + element.name);
+    if (is_corner_list(property) && std::any_of(element.properties.begin(), element.properties.end(), is_corner_list)) {
+      return cursor_.failure("there is a second list of indices");
+    }
     take_word();
-    header_.elements.back().properties.push_back(std::move(property));
+    element.properties.push_back(std::move(property));
     return {};
   }
 
@@ -151,6 +168,10 @@ std::size_t size_of(PlyType type) {
       return 8;
   }
   return 0;
+}
+
+bool is_corner_list(const PlyProperty& property) {
+  return property.is_list && (property.name == "vertex_indices" || property.name == "vertex_index");
 }
 
 Result<PlyHeader> parse_ply_header(std::string_view bytes, std::string_view name) {

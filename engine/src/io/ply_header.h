@@ -22,6 +22,9 @@ struct PlyProperty {
   PlyType count_type = PlyType::uint8;  ///< of a list's length
 };
 
+/// Whether it holds the corners of a face: both names are in use.
+bool is_corner_list(const PlyProperty& property);
+
 struct PlyElement {
   std::string name;
   std::uint64_t count = 0;

@@ -22,7 +22,9 @@ bool underflows(std::string_view number) {
     const char* const begin = digits.data() + (!digits.empty() && digits.front() == '+');
     const auto [end, error] = std::from_chars(begin, digits.data() + digits.size(), stated);
     if (error == std::errc::result_out_of_range) return digits.front() == '-';
-    exponent += stated;
+    // No text is so long that its digits could make up for this, and the sum does not overflow.
+    constexpr std::int64_t limit = std::int64_t{1} << 62;
+    exponent += std::clamp(stated, -limit, limit);
   }
   return exponent < 0;
 }
