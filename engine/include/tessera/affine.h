@@ -1,0 +1,44 @@
+#pragma once
+// Affine maps of space.
+
+#include <array>
+#include <cmath>
+
+#include "tessera/vec.h"
+
+namespace tessera {
+
+/// p -> columns[0] p.x + columns[1] p.y + columns[2] p.z + translation.
+struct Affine {
+  std::array<Vec3, 3> columns{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+  Vec3 translation{};
+
+  static Affine translated(const Vec3& by) { return {.translation = by}; }
+  static Affine scaled(const Vec3& by) { return {.columns = {Vec3{by.x, 0, 0}, Vec3{0, by.y, 0}, Vec3{0, 0, by.z}}}; }
+  /// By `angle` radians about an axis through the origin, counter-clockwise as seen from its tip. The identity for an
+  /// axis of no length.
+  static Affine rotated(const Vec3& axis, double angle) {
+    const Vec3 n = normalized(axis);
+    if (n == Vec3{}) return {};
+    const double s = std::sin(angle), c = std::cos(angle);
+    const auto turned = [&](const Vec3& e) { return c * e + (1 - c) * dot(n, e) * n + s * cross(n, e); };  // Rodrigues
+    return {.columns = {turned({1, 0, 0}), turned({0, 1, 0}), turned({0, 0, 1})}};
+  }
+
+  Vec3 vector(const Vec3& d) const { return d.x * columns[0] + d.y * columns[1] + d.z * columns[2]; }
+  Vec3 point(const Vec3& p) const { return vector(p) + translation; }
+  /// A bound of |vector(d)| / |d|: the Frobenius norm.
+  double norm_bound() const {
+    return std::sqrt(dot(columns[0], columns[0]) + dot(columns[1], columns[1]) + dot(columns[2], columns[2]));
+  }
+  double determinant() const { return dot(columns[0], cross(columns[1], columns[2])); }
+
+  /// First b, then a.
+  friend Affine operator*(const Affine& a, const Affine& b) {
+    return {.columns = {a.vector(b.columns[0]), a.vector(b.columns[1]), a.vector(b.columns[2])},
+            .translation = a.point(b.translation)};
+  }
+  friend bool operator==(const Affine&, const Affine&) = default;
+};
+
+}  // namespace tessera

@@ -1,0 +1,85 @@
+#pragma once
+// Coons patches: the transfinite interpolation of four border curves.
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "tessera/parametric_curve.h"
+#include "tessera/parametric_surface.h"
+
+namespace tessera {
+
+/// The two blending functions of a direction, on [0,1]: f1 + f2 = 1, f1(0) = 1, f1(1) = 0. Immutable but for assignment.
+class Blend {
+ public:
+  static Blend linear();  ///< 1 - t, t: bilinearly blended patches
+  static Blend cubic();   ///< H0, H3: partially bicubic ones
+  /// Power coefficients, lowest first, of f1 and f2; degrees 1 to max_degree. The conditions must hold to 1e-12 (of the largest
+  /// coefficient). Errors: unsupported_degree, non_finite, invalid_argument (says which condition fails, and by how much).
+  static Result<Blend> polynomial(std::span<const double> first, std::span<const double> second);
+  /// Callables, checked at 0, 1 and 65 parameters, to 1e-9. Errors: as above (says where), invalid_argument (threw).
+  static Result<Blend> callable(std::function<double(double)> first, std::function<double(double)> second);
+
+  bool is_polynomial() const { return !first_.empty(); }
+  /// f1, f2 and their first and second derivatives at t in [0,1]: [k][a], k-th derivative of f_a; those of callables by
+  /// differences. Errors: non_finite, invalid_argument (threw).
+  Result<std::array<std::array<double, 2>, 3>> at(double t) const;
+  /// Power coefficients; empty for callables.
+  std::span<const double> first() const { return first_; }
+  std::span<const double> second() const { return second_; }
+
+ private:
+  Blend() = default;
+  std::vector<double> first_, second_;
+  std::function<double(double)> callables_[2];
+};
+
+/// C1 = r(u, v0), C2 = r(u, v1), D1 = r(u0, v), D2 = r(u1, v). Both C are on [u0, u1], both D on [v0, v1].
+struct CoonsBorders {
+  BorderCurve c1, c2, d1, d2;
+};
+
+struct CoonsOptions {
+  Blend f = Blend::linear();  ///< along u: weighs D1, D2
+  Blend g = Blend::linear();  ///< along v: weighs C1, C2
+  /// How far ends that should meet may be apart, as a share of the diagonal of the box of the eight ends.
+  double closing_tolerance = 1e-9;
+};
+
+/// r = [C1 C2] g(t) + f(s)^T [D1; D2] - f(s)^T [[r00, r01], [r10, r11]] g(t), where s and t run over [0,1] as u and v over
+/// the domain (Coons 1967; Farin, Curves and Surfaces for CAGD, 5th ed., ch. 22). The corners r_ab are the ends of C1, C2.
+/// Immutable but for assignment.
+class CoonsPatch {
+ public:
+  /// Errors: invalid_argument (curves on different intervals: says which; a border that does not close: names the
+  /// corner, the two curves and the gap), non_finite, those of functions.
+  static Result<CoonsPatch> make(const CoonsBorders& borders, const CoonsOptions& options = {});
+
+  const CoonsBorders& borders() const { return borders_; }
+  const Blend& f() const { return f_; }
+  const Blend& g() const { return g_; }
+  const Vec3& corner(int a, int b) const { return corners_[static_cast<std::size_t>(2 * a + b)]; }  ///< r(u_a, v_b)
+  Domain domain() const;
+  /// Borders are Bezier, B-spline or NURBS curves and blends polynomials: to_bezier() is exact.
+  bool is_exact() const;
+
+ private:
+  CoonsPatch(const CoonsBorders& borders, const Blend& f, const Blend& g) : borders_(borders), f_(f), g_(g) {}
+  CoonsBorders borders_;
+  Blend f_, g_;
+  std::array<Vec3, 4> corners_;
+};
+
+/// The reference evaluator, by the formula above. Errors: those of functions.
+Result<SurfaceJet> evaluate_jet(const CoonsPatch& patch, double u, double v);
+
+/// Exact where is_exact() (FitError 0): polynomial borders give bidegree (max(n_C, a), max(n_D, b)) over merged knots,
+/// blends of degree a in u and b in v; rational ones by clearing denominators, in general (p_C1 + p_C2 + a, p_D1 + p_D2 + b).
+/// Otherwise a fit by `options`, certified where all borders have bounds and the blends are polynomials.
+/// Errors: unsupported_degree (above max_degree: says which), non_finite, and those of a fit.
+Result<PatchGrid> to_bezier(const CoonsPatch& patch, const FitOptions& options = {});
+
+}  // namespace tessera

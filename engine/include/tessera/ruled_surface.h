@@ -1,0 +1,46 @@
+#pragma once
+// Ruled surfaces between two curves.
+
+#include <cstdint>
+
+#include "tessera/parametric_curve.h"
+#include "tessera/parametric_surface.h"
+
+namespace tessera {
+
+/// A direction of parameters.
+enum class Direction : std::uint8_t { u, v };
+
+/// r(u,v) = ((b - v) C1(u) + (v - a) C2(u)) / (b - a), v in [a, b]; or, with the straight lines along u, the same of
+/// D1(v), D2(v) and u. Immutable but for assignment.
+class RuledSurface {
+ public:
+  /// `straight`: the direction of the straight lines, over the interval `across`. Errors: invalid_argument (curves on
+  /// different intervals: says which; an interval that is empty or reversed), non_finite.
+  static Result<RuledSurface> make(const BorderCurve& first, const BorderCurve& second, const Interval& across = {},
+                                   Direction straight = Direction::v);
+
+  const BorderCurve& first() const { return first_; }
+  const BorderCurve& second() const { return second_; }
+  Direction straight() const { return straight_; }
+  Domain domain() const;
+  /// Both borders are Bezier, B-spline or NURBS curves: to_bezier() is exact.
+  bool is_exact() const;
+
+ private:
+  RuledSurface(const BorderCurve& first, const BorderCurve& second, const Interval& across, Direction straight)
+      : first_(first), second_(second), across_(across), straight_(straight) {}
+  BorderCurve first_, second_;
+  Interval across_;
+  Direction straight_;
+};
+
+/// The reference evaluator, by the formula above. Errors: those of functions.
+Result<SurfaceJet> evaluate_jet(const RuledSurface& surface, double u, double v);
+
+/// Exact for exact borders (FitError 0): made compatible; rational ones of different weight functions over the common
+/// denominator, numerators (1 - t) N1 w2 + t N2 w1 over w1 w2, of degree p1 + p2. Otherwise a fit by `options`.
+/// Errors: unsupported_degree (above max_degree), non_finite, and those of a fit.
+Result<PatchGrid> to_bezier(const RuledSurface& surface, const FitOptions& options = {});
+
+}  // namespace tessera
