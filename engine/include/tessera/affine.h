@@ -27,9 +27,13 @@ struct Affine {
 
   Vec3 vector(const Vec3& d) const { return d.x * columns[0] + d.y * columns[1] + d.z * columns[2]; }
   Vec3 point(const Vec3& p) const { return vector(p) + translation; }
-  /// A bound of |vector(d)| / |d|: the Frobenius norm.
+  /// A bound of |vector(d)| / |d|, sharp where the columns are orthogonal: the root of the largest row sum of M^T M.
   double norm_bound() const {
-    return std::sqrt(dot(columns[0], columns[0]) + dot(columns[1], columns[1]) + dot(columns[2], columns[2]));
+    double largest = 0;
+    for (const Vec3& a : columns)
+      largest =
+          std::max(largest, std::abs(dot(a, columns[0])) + std::abs(dot(a, columns[1])) + std::abs(dot(a, columns[2])));
+    return std::sqrt(largest);
   }
   double determinant() const { return dot(columns[0], cross(columns[1], columns[2])); }
 
@@ -40,5 +44,10 @@ struct Affine {
   }
   friend bool operator==(const Affine&, const Affine&) = default;
 };
+
+inline bool is_finite(const Affine& map) {
+  return is_finite(map.columns[0]) && is_finite(map.columns[1]) && is_finite(map.columns[2]) &&
+         is_finite(map.translation);
+}
 
 }  // namespace tessera

@@ -29,6 +29,10 @@ class BezierPatch {
   static Result<BezierPatch> rational(int degree_u, int degree_v, std::span<const Vec3> points,
                                       std::span<const double> weights);
 
+  /// The same with other control points, as many as before; weights and rationality stay.
+  /// Errors: count_mismatch, non_finite (index = the offending point).
+  Result<BezierPatch> with_points(std::span<const Vec3> points) const;
+
   int degree_u() const { return degree_u_; }
   int degree_v() const { return degree_v_; }
   bool is_rational() const { return weights_ != nullptr; }

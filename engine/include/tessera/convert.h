@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "tessera/affine.h"
 #include "tessera/bezier_patch.h"
 #include "tessera/domain.h"
 #include "tessera/status.h"
@@ -56,5 +57,10 @@ class PatchGrid {
   std::vector<BezierPatch> patches_;
   FitError error_;
 };
+
+/// The image of a grid, exact to rounding: control points are mapped, weights stay (affine invariance). What was shared
+/// or collapsed stays so, and a fit error grows with the map's norm. A map with a negative determinant turns normals over.
+/// Errors: non_finite (the map, or a point too large; index = the patch).
+Result<PatchGrid> transformed(const PatchGrid& grid, const Affine& map);
 
 }  // namespace tessera

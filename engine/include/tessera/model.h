@@ -5,17 +5,19 @@
 #include <string>
 #include <vector>
 
-#include "tessera/bezier_patch.h"
+#include "tessera/affine.h"
 #include "tessera/convert.h"
 #include "tessera/patch_set.h"
 #include "tessera/status.h"
+#include "tessera/surface.h"
 
 namespace tessera {
 
-/// A named surface. Bezier patches are the one kind yet.
+/// A named surface, and where it stands in the model.
 struct ModelSurface {
   std::string name;
-  BezierPatch patch;
+  Surface surface;
+  Affine placement = {};
 };
 
 struct Model {
@@ -23,8 +25,16 @@ struct Model {
   std::vector<ModelSurface> surfaces;
 };
 
-/// The patches of all surfaces; source(k).surface is the index into model.surfaces. Errors: those of PatchSet::from.
-Result<PatchSet> make_patch_set(const Model& model, const PatchSetOptions& options = {});
+/// Position and derivatives in the model, by the surface's own parameters. Errors: those of the kind.
+Result<SurfaceJet> evaluate_jet(const ModelSurface& surface, double u, double v);
+/// The patches in the model's space; a tolerance and the fit error are lengths there. Errors: those of the kind, and
+/// non_finite (the placement).
+Result<PatchGrid> to_bezier(const ModelSurface& surface, const FitOptions& options = {});
+
+/// The patches of all surfaces; source(k).surface is the index into model.surfaces, source(k).domain the patch's
+/// rectangle of the surface's parameters; PatchSet::fit_error() the largest of all, certified if all are. Errors: those
+/// of the conversions and of PatchSet::from, as "surface 3 (rim): ..." (index = the surface).
+Result<PatchSet> make_patch_set(const Model& model, const PatchSetOptions& options = {}, const FitOptions& fit = {});
 
 /// The patches of several surfaces in one set; source(k).surface is the index into `grids`, source(k).domain the patch's
 /// rectangle. Errors: those of PatchSet::from.

@@ -65,7 +65,7 @@ struct FitOptions {
   /// How far patches may lie from the surface at equal parameters, in the model's unit; 0 for 1e-6 of the diagonal of
   /// the box of the surface's points.
   double tolerance = 0;
-  int degree = 3;                              ///< of the patches, each way; 2 to max_degree
+  int degree = 3;  ///< of the patches, each way; 2 to max_degree
   std::size_t largest_patch_count = 1u << 16;
 };
 

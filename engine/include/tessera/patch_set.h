@@ -7,6 +7,7 @@
 #include <span>
 
 #include "tessera/bezier_patch.h"
+#include "tessera/convert.h"
 #include "tessera/domain.h"
 #include "tessera/status.h"
 #include "tessera/vec.h"
@@ -32,6 +33,8 @@ struct PatchSetOptions {
   BlockKinds blocks = {};
   /// Coefficients of float blocks are relative to this point. By default the centre of the set's box.
   std::optional<Vec3> origin = {};
+  /// How far the patches lie from the surfaces that they stand for.
+  FitError fit_error = {};
 };
 
 /// Where a patch came from: a surface of the model, and the rectangle of that surface's parameters that it covers.
@@ -66,6 +69,7 @@ class PatchSet {
   const PatchSource& source(std::size_t index) const;     ///< index < patch_count()
   Vec3 origin() const;
   Box3 box() const;                   ///< of all control points; looks at each of them
+  const FitError& fit_error() const;  ///< as given; 0 for patches that are exact
   const BlockKinds& blocks() const;
   std::size_t block_count() const;
   /// Where a patch lies in block-interleaved output. index < patch_count().

@@ -142,6 +142,7 @@ Result<PatchSet> PatchSet::from(std::span<const BezierPatch> patches, std::span<
     set->patches.assign(patches.begin(), patches.end());
     set->sources.assign(sources.begin(), sources.end());
     set->kinds = options.blocks;
+    set->fit_error = options.fit_error;
     for (const BezierPatch& patch : patches) set->collapsed.push_back(patch.collapsed_edges());
     for (const PatchSource& source : sources) set->surface_count = std::max(set->surface_count, std::size_t{source.surface} + 1);
     set->origin = options.origin ? *options.origin : set->box().centre();
@@ -164,6 +165,7 @@ const BezierPatch& PatchSet::patch(std::size_t index) const { return impl_->patc
 const PatchSource& PatchSet::source(std::size_t index) const { return impl_->sources[index]; }
 Vec3 PatchSet::origin() const { return impl_->origin; }
 Box3 PatchSet::box() const { return impl_->box(); }
+const FitError& PatchSet::fit_error() const { return impl_->fit_error; }
 const BlockKinds& PatchSet::blocks() const { return impl_->kinds; }
 std::size_t PatchSet::block_count() const { return impl_->lane_counts.size(); }
 PatchSet::Slot PatchSet::slot(std::size_t index) const { return impl_->slots[index]; }
@@ -184,9 +186,7 @@ Status PatchSet::set_control_points(std::size_t index, std::span<const Vec3> poi
       return Status(StatusCode::invalid_argument,
                     "there is no patch " + std::to_string(index) + " in a set of " + std::to_string(patch_count()),
                     static_cast<std::ptrdiff_t>(index));
-    const BezierPatch& old = patch(index);
-    auto edited = old.is_rational() ? BezierPatch::rational(old.degree_u(), old.degree_v(), points, old.weights())
-                                    : BezierPatch::polynomial(old.degree_u(), old.degree_v(), points);
+    Result<BezierPatch> edited = patch(index).with_points(points);
     if (!edited) return edited.status();
     std::vector<double> scratch;
     scratch.reserve((max_degree + 1) * (max_degree + 1) * 4);  // what follows must not fail half-way

@@ -39,6 +39,7 @@ class PatchSet::Impl {
   Coefficients<float> single;
   Coefficients<double> twice;
   BlockKinds kinds;
+  FitError fit_error;
   Vec3 origin;
   std::size_t surface_count = 0;
   std::uint64_t revision = 0;

@@ -17,8 +17,8 @@ std::size_t interval(std::span<const double> breaks, double t) {
 
 }  // namespace
 
-Result<PatchGrid> PatchGrid::make(std::vector<double> breaks_u, std::vector<double> breaks_v, std::vector<BezierPatch> patches,
-                                  FitError error) {
+Result<PatchGrid> PatchGrid::make(std::vector<double> breaks_u, std::vector<double> breaks_v,
+                                  std::vector<BezierPatch> patches, FitError error) {
   return guarded([&]() -> Result<PatchGrid> {
     if (Status status = check_increasing(breaks_u, "breakpoint", "u"); !status.ok()) return status;
     if (Status status = check_increasing(breaks_v, "breakpoint", "v"); !status.ok()) return status;
@@ -61,6 +61,30 @@ std::optional<SurfaceJet> PatchGrid::evaluate_jet(double u, double v) const {
   jet.duv = (a * b) * jet.duv;
   jet.dvv = (b * b) * jet.dvv;
   return jet;
+}
+
+Result<PatchGrid> transformed(const PatchGrid& grid, const Affine& map) {
+  return guarded([&]() -> Result<PatchGrid> {
+    if (!is_finite(map)) return Status(StatusCode::non_finite, "an affine map must be finite");
+    std::vector<BezierPatch> patches;
+    patches.reserve(grid.patches().size());
+    std::vector<Vec3> points;
+    for (const BezierPatch& patch : grid.patches()) {
+      points.clear();
+      for (const Vec3& p : patch.points()) points.push_back(map.point(p));
+      Result<BezierPatch> image = patch.with_points(points);
+      if (!image) {
+        const std::size_t k = patches.size();
+        return Status(image.status().code(), "patch " + std::to_string(k) + ", mapped: " + image.status().message(),
+                      static_cast<std::ptrdiff_t>(k));
+      }
+      patches.push_back(*std::move(image));
+    }
+    const FitError& error = grid.fit_error();
+    const auto copy = [](std::span<const double> breaks) { return std::vector<double>(breaks.begin(), breaks.end()); };
+    return PatchGrid::make(copy(grid.breaks_u()), copy(grid.breaks_v()), std::move(patches),
+                           {error.distance * map.norm_bound(), error.certified});
+  });
 }
 
 }  // namespace tessera

@@ -57,6 +57,14 @@ Result<BezierPatch> BezierPatch::rational(int degree_u, int degree_v, std::span<
   });
 }
 
+Result<BezierPatch> BezierPatch::with_points(std::span<const Vec3> points) const {
+  return guarded([&]() -> Result<BezierPatch> {
+    Result<BezierPatch> patch = polynomial(degree_u_, degree_v_, points);
+    if (patch) patch->weights_ = weights_;
+    return patch;
+  });
+}
+
 Box3 BezierPatch::hull_box() const {
   Box3 box;
   for (const Vec3& p : points()) box.extend(p);

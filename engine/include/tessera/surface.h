@@ -1,0 +1,37 @@
+#pragma once
+// A surface of any kind. The conversion needs tessera/convert.h as well.
+
+#include <array>
+#include <string_view>
+#include <variant>
+
+#include "tessera/bezier_patch.h"
+#include "tessera/bspline_surface.h"
+#include "tessera/coons_patch.h"
+#include "tessera/explicit_polynomial.h"
+#include "tessera/hermite_network.h"
+#include "tessera/hermite_patch.h"
+#include "tessera/parametric_surface.h"
+#include "tessera/quadric.h"
+#include "tessera/ruled_surface.h"
+#include "tessera/tensor_patch.h"
+
+namespace tessera {
+
+using Surface = std::variant<BezierPatch, TensorPatch, BSplineSurface, HermitePatch, HermiteNetwork, RuledSurface,
+                             CoonsPatch, ExplicitPolynomial, QuadricPiece, ParametricSurface>;
+
+/// "Bezier patch", "NURBS surface", and the like.
+std::string_view kind_name(const Surface& surface);
+/// The rectangle of the surface's own parameters; [0,1]^2 for a Bezier patch.
+Domain domain(const Surface& surface);
+/// By the kind's own reference evaluator. Errors: those of callables.
+Result<SurfaceJet> evaluate_jet(const Surface& surface, double u, double v);
+/// The surface's own parameters of the point that its patches have at (u,v) of to_bezier()'s grid. The same ones, but for
+/// quadrics, whose arcs are rational: see canonical_parameters().
+std::array<double, 2> own_parameters(const Surface& surface, double u, double v);
+
+/// By the kind's own conversion: exact, but for callables, which are fitted by `options`. Errors: those of the kind.
+Result<PatchGrid> to_bezier(const Surface& surface, const FitOptions& options = {});
+
+}  // namespace tessera
