@@ -35,7 +35,7 @@ bool same(const Model& a, const Model& b) {
 TEST(Bpt, PointsRunAlongVFirst) {
   const Result<Model> model = parse_bpt("1 1 2  0 0 7  0 1 7  0 2 7  1 0 7  1 1 7  1 2 7", "m.bpt");
   ASSERT_TRUE(model.ok()) << model.status().message();
-  const BezierPatch& patch = model->surfaces.at(0).patch;
+  const BezierPatch& patch = std::get<BezierPatch>(model->surfaces.at(0).surface);
   EXPECT_EQ(patch.degree_u(), 1);
   EXPECT_EQ(patch.degree_v(), 2);
   for (int i = 0; i <= 1; ++i) {
@@ -72,7 +72,7 @@ TEST(Bpt, EveryDegreeIsRead) {
       }
       const Result<Model> model = parse_bpt(text.str(), "m.bpt");
       ASSERT_TRUE(model.ok()) << model.status().message();
-      EXPECT_TRUE(std::ranges::equal(model->surfaces.at(0).patch.points(), points));
+      EXPECT_TRUE(std::ranges::equal(std::get<BezierPatch>(model->surfaces.at(0).surface).points(), points));
     }
   }
 }
@@ -165,10 +165,11 @@ TEST(Bpt, TheTeapotIsNewells) {
   int collapsed = 0;
   Box3 box;
   for (const ModelSurface& surface : model->surfaces) {
-    EXPECT_EQ(surface.patch.degree_u(), 3);
-    EXPECT_EQ(surface.patch.degree_v(), 3);
-    collapsed += surface.patch.collapsed_edges().any();
-    box.extend(surface.patch.hull_box());
+    const BezierPatch& patch = std::get<BezierPatch>(surface.surface);
+    EXPECT_EQ(patch.degree_u(), 3);
+    EXPECT_EQ(patch.degree_v(), 3);
+    collapsed += patch.collapsed_edges().any();
+    box.extend(patch.hull_box());
   }
   EXPECT_EQ(collapsed, 8);  // the knob's four patches and the bottom's four
   EXPECT_EQ(box.lower, (Vec3{-3, -2, 0}));

@@ -155,8 +155,8 @@ TEST_F(CommandLine, BadModelsEndWithOne) {
         Names{"raycast", "large.bpt", "-o", "a.png"}}) {
     const ToolRun result = run(command);
     EXPECT_EQ(result.status, 1);
-    EXPECT_TRUE(result.errors.starts_with("tessera: large.bpt: patch 1 of 2: ") ||
-                result.errors.starts_with("tessera: large.bpt: patch 2 of 2: "))
+    EXPECT_TRUE(result.errors.starts_with("tessera: large.bpt: surface 0: patch 0: ") ||
+                result.errors.starts_with("tessera: large.bpt: surface 1: patch 1: "))
         << result.errors;
   }
   folder_.file("scene.k3d", "<k3dml/>");

@@ -12,7 +12,9 @@ namespace {
 class EvalTool : public ToolTest {
  protected:
   EvalTool() : model_(read_model(teapot)) {}
-  const BezierPatch& patch(std::size_t surface) const { return model_->surfaces[surface].patch; }
+  const BezierPatch& patch(std::size_t surface) const {
+    return std::get<BezierPatch>(model_->surfaces[surface].surface);
+  }
   Result<Model> model_;
 };
 

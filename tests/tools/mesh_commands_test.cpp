@@ -16,8 +16,10 @@ TEST_F(MeshTools, InfoSaysWhatTheTeapotIs) {
   EXPECT_EQ(facts["name"], "teapot");
   EXPECT_EQ(facts["surfaces"], 32);
   EXPECT_EQ(facts["patches"], 32);
-  EXPECT_EQ(facts["degrees"], json::parse(R"([{"degree_u": 3, "degree_v": 3, "surfaces": 32}])"));
-  EXPECT_EQ(facts["rational_surfaces"], 0);
+  EXPECT_EQ(facts["kinds"], json::parse(R"({"Bezier patch": 32})"));
+  EXPECT_EQ(facts["fit_error"]["distance"], 0);
+  EXPECT_EQ(facts["degrees"], json::parse(R"([{"degree_u": 3, "degree_v": 3, "patches": 32}])"));
+  EXPECT_EQ(facts["rational_patches"], 0);
   EXPECT_EQ(facts["collapsed_edges"], 8);
   EXPECT_EQ(facts["control_points"], 512);
   EXPECT_EQ(facts["box"]["lower"], json::parse("[-3.0, -2.0, 0.0]"));
@@ -31,8 +33,8 @@ TEST_F(MeshTools, InfoSaysWhatTheTeapotIs) {
 TEST_F(MeshTools, InfoCountsDegrees) {
   folder_.file("m.bpt", "2\n1 1\n0 0 0 0 1 0 1 0 0 1 1 0\n1 2\n0 0 0 0 1 0 0 2 0 1 0 0 1 1 0 1 2 0\n");
   const json facts = json::parse(output_of({"info", "m.bpt", "--json"}));
-  EXPECT_EQ(facts["degrees"], json::parse(R"([{"degree_u": 1, "degree_v": 1, "surfaces": 1},
-                                              {"degree_u": 1, "degree_v": 2, "surfaces": 1}])"));
+  EXPECT_EQ(facts["degrees"], json::parse(R"([{"degree_u": 1, "degree_v": 1, "patches": 1},
+                                              {"degree_u": 1, "degree_v": 2, "patches": 1}])"));
   EXPECT_EQ(facts["control_points"], 10);
 }
 
@@ -61,7 +63,7 @@ TEST_F(MeshTools, VerticesLieOnTheSurfacesAtTheirPlace) {
   const Result<Model> model = read_model(teapot);
   ASSERT_TRUE(mesh.ok() && model.ok());
   for (std::size_t k = 0; k < mesh->vertex_count(); ++k) {
-    const BezierPatch& patch = model->surfaces[k / 24].patch;
+    const BezierPatch& patch = std::get<BezierPatch>(model->surfaces[k / 24].surface);
     const Vec3 expected = de_casteljau(patch, static_cast<double>(k / 6 % 4) / 3, static_cast<double>(k % 6) / 5);
     const Vec3 vertex{mesh->positions[3 * k], mesh->positions[3 * k + 1], mesh->positions[3 * k + 2]};
     EXPECT_LE(length(vertex - expected), 2e-6) << k;  // a few units of float, at coordinates up to 3.5

@@ -77,7 +77,7 @@ TEST_F(RaycastTool, HitsLieOnTheirSurfacesAndRays) {
     ++hits;
     const auto number = [&](std::size_t c) { return std::stod(row[c]); };
     const Vec3 position{number(7), number(8), number(9)}, normal{number(10), number(11), number(12)};
-    const BezierPatch& patch = model->surfaces.at(std::stoul(row[3])).patch;
+    const BezierPatch& patch = std::get<BezierPatch>(model->surfaces.at(std::stoul(row[3])).surface);
     EXPECT_LE(length(de_casteljau(patch, number(5), number(6)) - position), 1e-6);
     EXPECT_LE(length(rays[k].origin + number(2) * rays[k].direction - position), 1e-4);
     EXPECT_NEAR(length(normal), 1, 1e-6);

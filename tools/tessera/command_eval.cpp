@@ -9,6 +9,7 @@
 #include "commands.h"
 #include "console.h"
 #include "csv.h"
+#include "model_file.h"
 #include "tessera/evaluate.h"
 #include "tessera/io.h"
 
@@ -16,7 +17,8 @@ namespace tessera::cli {
 namespace {
 
 struct Options {
-  std::string model, output, places, format = "csv";
+  ModelFile model;
+  std::string output, places, format = "csv";
   std::optional<Extent> grid;
   int derivatives = 0;
 };
@@ -112,17 +114,59 @@ struct Places {
   std::function<SurfacePlace(std::size_t)> at;
 };
 
-Places grid_places(const Extent& grid, std::size_t surfaces) {
+Places grid_places(const Extent& grid, const Model& model) {
   const auto count_u = static_cast<std::size_t>(grid.first), count_v = static_cast<std::size_t>(grid.second);
-  return {surfaces * count_u * count_v,
-          [count_u, count_v, u = uniform_parameters(grid.first), v = uniform_parameters(grid.second)](std::size_t k) {
-            return SurfacePlace{static_cast<std::uint32_t>(k / (count_u * count_v)), u[k / count_v % count_u],
-                                v[k % count_v]};
+  return {model.surfaces.size() * count_u * count_v,
+          [=, &model, u = uniform_parameters(grid.first), v = uniform_parameters(grid.second)](std::size_t k) {
+            const std::size_t surface = k / (count_u * count_v);
+            const Domain d = domain(model.surfaces[surface].surface);
+            return SurfacePlace{static_cast<std::uint32_t>(surface), d.u_at(u[k / count_v % count_u]),
+                                d.v_at(v[k % count_v])};
           }};
 }
 
+/// Evaluates one surface after the other.
+class Evaluator {
+ public:
+  Evaluator(const Model& model, const FitOptions& fit) : model_(model), fit_(fit) {}
+
+  Result<SurfaceJet> jet(const SurfacePlace& place) const {
+    Result<SurfaceJet> jet = evaluate_jet(model_.surfaces[place.surface], place.u, place.v);
+    if (!jet) return jet;
+    for (const Column& column : columns) {
+      if (!is_finite(*jet.*column.vector))
+        return Status(StatusCode::non_finite, "its points or derivatives are too large for double");
+    }
+    return jet;
+  }
+
+  /// From the jet where tangents span a plane, else the limit on the surface's patches.
+  Result<UnitNormal> normal(const SurfacePlace& place, const SurfaceJet& jet) {
+    constexpr double least_sine = 1e-10;
+    const Vec3 du = normalized(jet.du), dv = normalized(jet.dv), across = cross(du, dv);
+    if (length(across) > least_sine) return UnitNormal{normalized(across), NormalKind::regular};
+    const ModelSurface& surface = model_.surfaces[place.surface];
+    if (!patches_ || converted_ != place.surface) {
+      Result<PatchGrid> patches = to_bezier(surface, fit_);
+      if (!patches) return patches.status();
+      patches_ = *std::move(patches);
+      converted_ = place.surface;
+    }
+    const auto at = grid_parameters(surface.surface, place.u, place.v);
+    const auto where = patches_->locate(at[0], at[1]);
+    return where ? unit_normal(patches_->patches()[where->patch], where->u, where->v) : UnitNormal{};
+  }
+
+ private:
+  const Model& model_;
+  FitOptions fit_;
+  std::optional<PatchGrid> patches_;
+  std::uint32_t converted_ = 0;
+};
+
 Status write_rows(const Model& model, const Places& places, const Options& options, OutputFile& out) {
   RowWriter rows(out, options);
+  Evaluator evaluator(model, options.model.fit);
   Progress progress("evaluating");
   rows.begin();
   for (std::size_t k = 0; k < places.count && !out.failed(); ++k) {
@@ -131,15 +175,10 @@ Status write_rows(const Model& model, const Places& places, const Options& optio
       progress.tell(static_cast<double>(k) / static_cast<double>(places.count));
     }
     const SurfacePlace place = places.at(k);
-    const BezierPatch& patch = model.surfaces[place.surface].patch;
-    const SurfaceJet jet = evaluate_jet(patch, place.u, place.v);
-    for (const Column& column : columns) {
-      if (!is_finite(jet.*column.vector)) {
-        return Status(StatusCode::non_finite, options.model + ": surface " + std::to_string(place.surface) +
-                                                  ": its points or derivatives are too large for double");
-      }
-    }
-    rows.write(place, jet, unit_normal(patch, place.u, place.v));
+    const Result<SurfaceJet> jet = evaluator.jet(place);
+    const Result<UnitNormal> normal = jet ? evaluator.normal(place, *jet) : jet.status();
+    if (!normal) return in_file(options.model.path, in_surface(model, place.surface, normal.status()));
+    rows.write(place, *jet, *normal);
   }
   rows.end();
   return out.commit();
@@ -148,13 +187,13 @@ Status write_rows(const Model& model, const Places& places, const Options& optio
 Status run_eval(const Options& options) {
   Result<OutputFile> out = open_output(options.output);
   if (!out) return out.status();
-  const Result<Model> model = read_model(options.model);
+  const Result<Model> model = read_model(options.model.path);
   if (!model) return model.status();
   Places places;
   if (options.grid) {
-    places = grid_places(*options.grid, model->surfaces.size());
+    places = grid_places(*options.grid, *model);
   } else {
-    Result<std::vector<SurfacePlace>> read = read_places(options.places, model->surfaces.size());
+    Result<std::vector<SurfacePlace>> read = read_places(options.places, *model);
     if (!read) return read.status();
     const std::size_t count = read->size();
     places = {count, [list = *std::move(read)](std::size_t k) { return list[k]; }};
@@ -164,7 +203,7 @@ Status run_eval(const Options& options) {
 
 constexpr const char* footer =
     "--params takes a table with the header line surface,u,v; surfaces are counted from 0, u and v lie in the\n"
-    "surface's own domain ([0,1] for a Bezier patch); # begins a comment.\n"
+    "surface's own domain ([0,1] for a Bezier patch; canonical parameters of a quadric); # begins a comment.\n"
     "Rows: surface,u,v, the position x,y,z, with --derivs 1 dux,duy,duz,dvx,dvy,dvz, with --derivs 2 also\n"
     "duux..duuz,duvx..duvz,dvvx..dvvz, then the unit normal nx,ny,nz, along r_u x r_v. 17 significant digits.\n"
     "At a degenerate point (a pole) the normal is the limit; where there is none, it is 0,0,0 (null in JSON).\n"
@@ -179,7 +218,7 @@ constexpr const char* footer =
 void add_eval(CLI::App& app, Session& session) {
   CLI::App* const command = app.add_subcommand("eval", "Evaluate surfaces: positions, derivatives, normals");
   const auto options = std::make_shared<Options>();
-  command->add_option("MODEL", options->model, "The file of surfaces (.bpt)")->required()->type_name("FILE");
+  add_model(*command, options->model);
   CLI::Option_group* const where = command->add_option_group("Where", "One of");
   where->require_option(1);
   where
@@ -201,7 +240,7 @@ void add_eval(CLI::App& app, Session& session) {
       ->type_name("FILE");
   command->footer(footer);
   command->callback([options, &session] {
-    refuse_overwriting("--output", options->output, {options->model, options->places});
+    refuse_overwriting("--output", options->output, {options->model.path, options->places});
     session.command = [options] { return run_eval(*options); };
   });
 }

@@ -8,6 +8,7 @@
 #include "console.h"
 #include "csv.h"
 #include "io/formats.h"
+#include "model_file.h"
 #include "render/camera.h"
 #include "tessera/io.h"
 #include "tessera/ray_scene.h"
@@ -16,7 +17,8 @@ namespace tessera::cli {
 namespace {
 
 struct Options {
-  std::string model, picture, rays, hits;
+  ModelFile model;
+  std::string picture, rays, hits;
   render::Settings settings;
 };
 
@@ -48,7 +50,7 @@ Status draw(const Options& options, const PatchSet& set, const RayScene& scene, 
   if (!status.ok()) return status;
   return print(options.picture + ": " + std::to_string(image->width) + " x " + std::to_string(image->height) + ", " +
                std::to_string(set.patch_count()) + " patches; scene built in " + readable_seconds(scene_seconds) +
-               ", picture cast in " + readable_seconds(draw_seconds) + "\n");
+               ", picture cast in " + readable_seconds(draw_seconds) + "\n" + fit_line(set));
 }
 
 constexpr std::string_view hits_header = "ray,hit,t,surface,patch,u,v,x,y,z,nx,ny,nz\n";
@@ -71,7 +73,8 @@ void write_hit(OutputFile& out, std::size_t ray, const Hit& hit) {
   out.write('\n');
 }
 
-Status trace(const Options& options, const RayScene& scene, std::span<const Ray> rays, OutputFile& out) {
+Status trace(const Options& options, const Model& model, const RayScene& scene, std::span<const Ray> rays,
+             OutputFile& out) {
   std::vector<Hit> hits(rays.size());
   const Stopwatch tracing;
   Status status = [&] {
@@ -81,7 +84,15 @@ Status trace(const Options& options, const RayScene& scene, std::span<const Ray>
   if (!status.ok()) return status;
   const double seconds = tracing.seconds();
   out.write(hits_header);
-  for (std::size_t k = 0; k < hits.size() && !out.failed(); ++k) write_hit(out, k, hits[k]);
+  for (std::size_t k = 0; k < hits.size() && !out.failed(); ++k) {
+    Hit& hit = hits[k];
+    if (hit.kind == HitKind::hit) {
+      const auto own = own_parameters(model.surfaces[hit.surface].surface, hit.u, hit.v);
+      hit.u = own[0];
+      hit.v = own[1];
+    }
+    write_hit(out, k, hit);
+  }
   status = out.commit();
   if (!status.ok()) return status;
   std::size_t found = 0, unrefined = 0;
@@ -96,7 +107,7 @@ Status trace(const Options& options, const RayScene& scene, std::span<const Ray>
 Status run_raycast(const Options& options) {
   Result<OutputFile> out = open_output(options.rays.empty() ? options.picture : options.hits);
   if (!out) return out.status();
-  const Result<Model> model = read_model(options.model);
+  const Result<Model> model = read_model(options.model.path);
   if (!model) return model.status();
   std::vector<Ray> rays;
   if (!options.rays.empty()) {
@@ -104,12 +115,12 @@ Status run_raycast(const Options& options) {
     if (!read) return read.status();
     rays = *std::move(read);
   }
-  const Result<PatchSet> set = make_patch_set(*model);
-  if (!set) return in_model(options.model, model->surfaces.size(), set.status());
+  const Result<PatchSet> set = make_patch_set(options.model, *model);
+  if (!set) return set.status();
   const Stopwatch building;
   const Result<RayScene> scene = make_scene(*set);
-  if (!scene) return in_file(options.model, scene.status());
-  if (!options.rays.empty()) return trace(options, *scene, rays, *out);
+  if (!scene) return in_file(options.model.path, scene.status());
+  if (!options.rays.empty()) return trace(options, *model, *scene, rays, *out);
   return draw(options, *set, *scene, building.seconds(), *out);
 }
 
@@ -174,7 +185,7 @@ void add_picture_options(CLI::App& command, CLI::Option* picture, render::Settin
 void add_raycast(CLI::App& app, Session& session) {
   CLI::App* const command = app.add_subcommand("raycast", "Draw a picture by rays, or find the hits of given rays");
   const auto options = std::make_shared<Options>();
-  command->add_option("MODEL", options->model, "The file of surfaces (.bpt)")->required()->type_name("FILE");
+  add_model(*command, options->model);
   CLI::Option* const picture = command->add_option("-o,--output", options->picture, "The picture to be written (.png)");
   picture->check(fault_of_picture)->type_name("PICTURE.png");
   add_picture_options(*command, picture, options->settings);
@@ -188,8 +199,8 @@ void add_raycast(CLI::App& app, Session& session) {
     if (options->picture.empty() && options->rays.empty()) {
       throw CLI::ValidationError("raycast", "expected -o PICTURE.png, or --rays FILE.csv and --hits OUT.csv");
     }
-    refuse_overwriting("--output", options->picture, {options->model});
-    refuse_overwriting("--hits", options->hits, {options->model, options->rays});
+    refuse_overwriting("--output", options->picture, {options->model.path});
+    refuse_overwriting("--hits", options->hits, {options->model.path, options->rays});
     session.command = [options] { return run_raycast(*options); };
   });
 }

@@ -6,6 +6,7 @@
 #include "commands.h"
 #include "console.h"
 #include "io/formats.h"
+#include "model_file.h"
 #include "tessera/io.h"
 #include "tessera/tessellate.h"
 
@@ -13,7 +14,8 @@ namespace tessera::cli {
 namespace {
 
 struct Options {
-  std::string model, output;
+  ModelFile model;
+  std::string output;
   Extent grid;
   bool json = false;
 };
@@ -34,7 +36,7 @@ Result<Mesh> tessellate(const Options& options, const PatchSet& set) {
   return mesh;
 }
 
-Status report(const Options& options, const Mesh& mesh, const Times& times) {
+Status report(const Options& options, const PatchSet& set, const Mesh& mesh, const Times& times) {
   if (options.json) {
     return print_json(
         Json{{"output", options.output},
@@ -42,12 +44,13 @@ Status report(const Options& options, const Mesh& mesh, const Times& times) {
              {"triangles", mesh.triangle_count()},
              {"rate_u", options.grid.first},
              {"rate_v", options.grid.second},
+             {"fit_error", fit_json(set)},
              {"seconds", {{"read", times.read}, {"tessellate", times.tessellate}, {"write", times.write}}}});
   }
   return print(options.output + ": " + std::to_string(mesh.vertex_count()) + " vertices, " +
                std::to_string(mesh.triangle_count()) + " triangles; read in " + readable_seconds(times.read) +
                ", tessellated in " + readable_seconds(times.tessellate) + ", written in " +
-               readable_seconds(times.write) + "\n");
+               readable_seconds(times.write) + "\n" + fit_line(set));
 }
 
 Status run_tessellate(const Options& options) {
@@ -55,21 +58,21 @@ Status run_tessellate(const Options& options) {
   if (!out) return out.status();
   Times times;
   const Stopwatch reading;
-  const Result<Model> model = read_model(options.model);
+  const Result<Model> model = read_model(options.model.path);
   if (!model) return model.status();
-  const Result<PatchSet> set = make_patch_set(*model);
-  if (!set) return in_model(options.model, model->surfaces.size(), set.status());
+  const Result<PatchSet> set = make_patch_set(options.model, *model);
+  if (!set) return set.status();
   times.read = reading.seconds();
   const Stopwatch tessellating;
   const Result<Mesh> mesh = tessellate(options, *set);
-  if (!mesh) return in_file(options.model, mesh.status());
+  if (!mesh) return in_file(options.model.path, mesh.status());
   times.tessellate = tessellating.seconds();
   const Stopwatch writing;
   Status status = write_mesh(*mesh, options.output, *out);
   if (status.ok()) status = out->commit();
   if (!status.ok()) return status;
   times.write = writing.seconds();
-  return report(options, *mesh, times);
+  return report(options, *set, *mesh, times);
 }
 
 }  // namespace
@@ -77,7 +80,7 @@ Status run_tessellate(const Options& options) {
 void add_tessellate(CLI::App& app, Session& session) {
   CLI::App* const command = app.add_subcommand("tessellate", "Turn surfaces into a mesh");
   const auto options = std::make_shared<Options>();
-  command->add_option("MODEL", options->model, "The file of surfaces (.bpt)")->required()->type_name("FILE");
+  add_model(*command, options->model);
   command->add_option("-o,--output", options->output, "The mesh to be written (.obj, .ply)")
       ->required()
       ->type_name("MESH")
@@ -93,7 +96,7 @@ void add_tessellate(CLI::App& app, Session& session) {
       "Positions, normals and parameters are written; neighbours share their borders bit for bit.\n"
       "\nExample:\n  tessera tessellate teapot.bpt -o teapot.ply --grid 16x16");
   command->callback([options, &session] {
-    refuse_overwriting("--output", options->output, {options->model});
+    refuse_overwriting("--output", options->output, {options->model.path});
     session.command = [options] { return run_tessellate(*options); };
   });
 }

@@ -44,13 +44,6 @@ Status in_file(const std::filesystem::path& file, const Status& status) {
   return Status(status.code(), file.string() + ": " + status.message(), status.index());
 }
 
-Status in_model(const std::filesystem::path& file, std::size_t patches, const Status& status) {
-  const std::string from_zero = "patch " + std::to_string(status.index()) + ": ";
-  if (!status.message().starts_with(from_zero)) return in_file(file, status);
-  const std::string name = "patch " + std::to_string(status.index() + 1) + " of " + std::to_string(patches) + ": ";
-  return in_file(file, Status(status.code(), name + status.message().substr(from_zero.size()), status.index()));
-}
-
 void catch_signals() {
   std::signal(SIGXFSZ, SIG_IGN);
   struct sigaction action {};

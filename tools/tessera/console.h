@@ -27,10 +27,6 @@ Status print_json(const Json& object);
 /// `status` with the file's name before its message, for errors that do not know the file.
 Status in_file(const std::filesystem::path& file, const Status& status);
 
-/// in_file for errors of the patch set that a model of `patches` patches gives: the patch is named as the parser names
-/// it, "patch 1 of 2".
-Status in_model(const std::filesystem::path& file, std::size_t patches, const Status& status);
-
 /// From now on Ctrl-C, a request to terminate and a terminal that hangs up set the flag of `interrupted`; the second
 /// time they end the process, and no temporary stays. Files that grow beyond the limit become an error of writing.
 void catch_signals();

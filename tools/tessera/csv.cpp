@@ -94,17 +94,19 @@ Status read_csv(const std::filesystem::path& path, const ColumnNames& required, 
   return {};
 }
 
-Result<std::vector<SurfacePlace>> read_places(const std::filesystem::path& path, std::size_t surface_count) {
+Result<std::vector<SurfacePlace>> read_places(const std::filesystem::path& path, const Model& model) {
   std::vector<SurfacePlace> places;
   const Status status =
       read_csv(path, {"surface", "u", "v"}, {}, [&](std::span<const double> row, const TextCursor& at) {
         const double surface = row[0], u = row[1], v = row[2];
-        if (!(surface >= 0 && surface < static_cast<double>(surface_count) && surface == std::floor(surface))) {
-          return at.failure("expected a surface from 0 to " + std::to_string(surface_count - 1) + ", found " +
+        if (!(surface >= 0 && surface < static_cast<double>(model.surfaces.size()) && surface == std::floor(surface))) {
+          return at.failure("expected a surface from 0 to " + std::to_string(model.surfaces.size() - 1) + ", found " +
                             text_of(surface));
         }
-        if (!(u >= 0 && u <= 1 && v >= 0 && v <= 1)) {
-          return at.failure("expected u and v in the surface's domain [0,1] x [0,1], found " + text_of(u) + "," +
+        const Domain d = domain(model.surfaces[static_cast<std::size_t>(surface)].surface);
+        if (!d.contains(u, v)) {
+          return at.failure("expected u and v in the surface's domain [" + text_of(d.u0) + "," + text_of(d.u1) +
+                            "] x [" + text_of(d.v0) + "," + text_of(d.v1) + "], found " + text_of(u) + "," +
                             text_of(v));
         }
         places.push_back({static_cast<std::uint32_t>(surface), u, v});

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "io/text_cursor.h"
+#include "tessera/model.h"
 #include "tessera/ray_scene.h"
 #include "tessera/status.h"
 
@@ -28,8 +29,8 @@ struct SurfacePlace {
   std::uint32_t surface = 0;
   double u = 0, v = 0;
 };
-/// `surface,u,v`: surfaces from 0 to surface_count - 1, u and v in [0,1], the domain of a Bezier patch.
-Result<std::vector<SurfacePlace>> read_places(const std::filesystem::path& path, std::size_t surface_count);
+/// `surface,u,v`: surfaces of the model counted from 0, u and v in the domain of each.
+Result<std::vector<SurfacePlace>> read_places(const std::filesystem::path& path, const Model& model);
 
 /// `ox,oy,oz,dx,dy,dz[,tnear,tfar]`, each of them valid as tessera::Ray says; tfar may be inf.
 Result<std::vector<Ray>> read_rays(const std::filesystem::path& path);

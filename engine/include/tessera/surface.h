@@ -30,6 +30,8 @@ Result<SurfaceJet> evaluate_jet(const Surface& surface, double u, double v);
 /// The surface's own parameters of the point that its patches have at (u,v) of to_bezier()'s grid. The same ones, but for
 /// quadrics, whose arcs are rational: see canonical_parameters().
 std::array<double, 2> own_parameters(const Surface& surface, double u, double v);
+/// The inverse: the parameters in to_bezier()'s grid of the point at the surface's own (u,v).
+std::array<double, 2> grid_parameters(const Surface& surface, double u, double v);
 
 /// By the kind's own conversion: exact, but for callables, which are fitted by `options`. Errors: those of the kind.
 Result<PatchGrid> to_bezier(const Surface& surface, const FitOptions& options = {});

@@ -27,14 +27,15 @@ struct Gathered {
   }
 };
 
-Status in_surface(const Model& model, std::size_t k, const Status& status) {
-  const std::string& name = model.surfaces[k].name;
-  return Status(status.code(),
-                "surface " + std::to_string(k) + (name.empty() ? "" : " (" + name + ")") + ": " + status.message(),
-                static_cast<std::ptrdiff_t>(k));
-}
-
 }  // namespace
+
+Status in_surface(const Model& model, std::size_t surface, const Status& status) {
+  const std::string& name = model.surfaces[surface].name;
+  return Status(
+      status.code(),
+      "surface " + std::to_string(surface) + (name.empty() ? "" : " (" + name + ")") + ": " + status.message(),
+      static_cast<std::ptrdiff_t>(surface));
+}
 
 Result<SurfaceJet> evaluate_jet(const ModelSurface& surface, double u, double v) {
   Result<SurfaceJet> jet = evaluate_jet(surface.surface, u, v);

@@ -40,4 +40,11 @@ std::array<double, 2> own_parameters(const Surface& surface, double u, double v)
   return {canonical.u, canonical.v};
 }
 
+std::array<double, 2> grid_parameters(const Surface& surface, double u, double v) {
+  const QuadricPiece* const piece = std::get_if<QuadricPiece>(&surface);
+  if (!piece) return {u, v};
+  const QuadricParameters grid = grid_parameters(*piece, u, v);
+  return {grid.u, grid.v};
+}
+
 }  // namespace tessera

@@ -1,0 +1,39 @@
+#include "model_file.h"
+
+#include <cmath>
+
+#include "tessera/io.h"
+
+namespace tessera::cli {
+
+void add_model(CLI::App& command, ModelFile& file) {
+  command.add_option("MODEL", file.path, "The file of surfaces (.bpt, .json)")->required()->type_name("FILE");
+  command
+      .add_option("--fit-tolerance", file.fit.tolerance,
+                  "How far patches may lie from surfaces that are given by expressions, in the model's unit "
+                  "[1e-6 of the surface's size]")
+      ->check([](const std::string& text) {
+        double value = 0;
+        const bool good = CLI::detail::lexical_cast(text, value) && value > 0 && std::isfinite(value);
+        return good ? std::string() : "expected a number above 0, found \"" + text + "\"";
+      });
+}
+
+Result<PatchSet> make_patch_set(const ModelFile& file, const Model& model) {
+  Result<PatchSet> set = tessera::make_patch_set(model, {}, file.fit);
+  if (!set) return in_file(file.path, set.status());
+  return set;
+}
+
+std::string fit_line(const PatchSet& set) {
+  const FitError& error = set.fit_error();
+  if (error.distance == 0) return {};
+  return "  callables fitted to within " + readable(error.distance, 3) +
+         (error.certified ? ", proven\n" : ", sampled\n");
+}
+
+Json fit_json(const PatchSet& set) {
+  return {{"distance", set.fit_error().distance}, {"certified", set.fit_error().certified}};
+}
+
+}  // namespace tessera::cli

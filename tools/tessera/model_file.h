@@ -1,0 +1,27 @@
+#pragma once
+// The file of surfaces that a command is given, and how callables in it become patches.
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "console.h"
+#include "tessera/model.h"
+
+namespace tessera::cli {
+
+struct ModelFile {
+  std::string path;
+  FitOptions fit;
+};
+
+/// MODEL and --fit-tolerance.
+void add_model(CLI::App& command, ModelFile& file);
+
+/// Errors name the file.
+Result<PatchSet> make_patch_set(const ModelFile& file, const Model& model);
+
+/// A line that says how far fitted callables are off, or nothing where all is exact.
+std::string fit_line(const PatchSet& set);
+Json fit_json(const PatchSet& set);
+
+}  // namespace tessera::cli
