@@ -7,22 +7,34 @@
 
 #include "tessera/affine.h"
 #include "tessera/convert.h"
+#include "tessera/curve.h"
 #include "tessera/patch_set.h"
 #include "tessera/status.h"
 #include "tessera/surface.h"
 
 namespace tessera {
 
-/// A named surface, and where it stands in the model.
+/// A closed chain of curves in the surface's parameters (x = u, y = v, z = 0), each from where the one before it ends.
+/// What lies inside a hole is cut away; what lies outside of all other loops too.
+struct TrimLoop {
+  std::vector<Curve> curves;
+  bool hole = false;
+};
+
+/// A named surface, and where it stands in the model. Trims are kept for those who ask; neither patches, meshes nor rays
+/// honour them yet.
 struct ModelSurface {
   std::string name;
   Surface surface;
   Affine placement = {};
+  std::vector<TrimLoop> trims = {};
 };
 
 struct Model {
   std::string name;
   std::vector<ModelSurface> surfaces;
+  /// What a file holds and this model does not, a sentence each, with file and line: "part.obj:12: sp is not read".
+  std::vector<std::string> warnings = {};
 };
 
 /// `status` as "surface 3 (rim): ...", with the index 3.
