@@ -1,0 +1,96 @@
+// Every model that comes with the project goes through every command, and the commands agree with each other.
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+#include "support/random_patches.h"
+#include "tessera/io.h"
+#include "tools/tool_test.h"
+
+namespace tessera::test {
+namespace {
+
+using nlohmann::json;
+
+std::vector<std::string> model_files() {
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(TESSERA_SOURCE_DIR "/tools/models")) {
+    const std::string extension = entry.path().extension().string();
+    if (extension == ".json" || extension == ".bpt") files.push_back(entry.path().string());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+class Models : public ToolTest, public testing::WithParamInterface<std::string> {};
+
+double number(const std::string& cell) { return std::stod(cell); }
+Vec3 vector(const std::vector<std::string>& row, std::size_t first) {
+  return {number(row[first]), number(row[first + 1]), number(row[first + 2])};
+}
+
+TEST_P(Models, IsEvaluatedAndMeshedWhole) {
+  const json facts = json::parse(output_of({"info", GetParam(), "--json"}));
+  EXPECT_GE(facts["patches"], facts["surfaces"]);
+  const auto rows = cells_of(output_of({"eval", GetParam(), "--grid", "4x5", "--derivs", "2"}));
+  EXPECT_EQ(rows.size(), 1 + 20 * facts["surfaces"].get<std::size_t>());
+  for (std::size_t k = 1; k < rows.size(); ++k)
+    for (const std::string& cell : rows[k]) EXPECT_TRUE(std::isfinite(number(cell))) << "row " << k;
+  output_of({"tessellate", GetParam(), "-o", "a.ply", "--grid", "6x5"});
+  const json mesh = json::parse(output_of({"check", "a.ply", "--json"}));
+  EXPECT_EQ(mesh["non_finite_vertices"], 0);
+  EXPECT_EQ(mesh["degenerate_triangles"], 0);
+  EXPECT_EQ(mesh["non_manifold_edges"], 0);
+}
+
+TEST_P(Models, IsDrawn) {
+  output_of({"raycast", GetParam(), "-o", "a.png", "--size", "40x30"});
+  EXPECT_GT(content_of(folder_ / "a.png").size(), 200u);
+}
+
+/// Rays go down onto points of the surfaces along their normals: each must hit there or before, and where it says that
+/// it hit, evaluation must find the very point, but for the error of fitted callables.
+TEST_P(Models, HitsLieWhereEvaluationSaysThatTheyDo) {
+  const json facts = json::parse(output_of({"info", GetParam(), "--json"}));
+  const double size = facts["size"], fit = facts["fit_error"]["distance"];
+  const auto points = cells_of(output_of({"eval", GetParam(), "--grid", "6x6"}));
+  std::string rays = "ox,oy,oz,dx,dy,dz\n";
+  std::size_t count = 0;
+  for (std::size_t k = 1; k < points.size(); ++k) {
+    const std::size_t i = (k - 1) / 6 % 6, j = (k - 1) % 6;
+    const bool border = i == 0 || j == 0 || i == 5 || j == 5;
+    const Vec3 p = vector(points[k], 3), n = vector(points[k], 6);
+    if (border || n == Vec3{}) continue;
+    const Vec3 origin = p + size * n;
+    for (const double value : {origin.x, origin.y, origin.z, -n.x, -n.y}) rays += json(value).dump() + ",";
+    rays += json(-n.z).dump() + "\n";
+    ++count;
+  }
+  ASSERT_GT(count, 0u);
+  folder_.file("rays.csv", rays);
+  output_of({"raycast", GetParam(), "--rays", "rays.csv", "--hits", "hits.csv"});
+  const auto hits = cells_of(content_of(folder_ / "hits.csv"));
+  ASSERT_EQ(hits.size(), count + 1);
+  std::string places = "surface,u,v\n";
+  for (std::size_t k = 1; k < hits.size(); ++k) {
+    ASSERT_EQ(hits[k][1], "1") << "ray " << k;
+    EXPECT_LE(number(hits[k][2]), size + fit + 1e-9 * size) << "ray " << k;
+    places += hits[k][3] + "," + hits[k][5] + "," + hits[k][6] + "\n";
+  }
+  folder_.file("places.csv", places);
+  const auto found = cells_of(output_of({"eval", GetParam(), "--params", "places.csv"}));
+  ASSERT_EQ(found.size(), hits.size());
+  for (std::size_t k = 1; k < hits.size(); ++k)
+    EXPECT_LE(length(vector(found[k], 3) - vector(hits[k], 7)), fit + 1e-12 * size) << "ray " << k;
+}
+
+INSTANTIATE_TEST_SUITE_P(Tools, Models, testing::ValuesIn(model_files()), [](const auto& instance) {
+  std::string name = std::filesystem::path(instance.param).stem().string();
+  for (char& c : name)
+    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+  return name;
+});
+
+}  // namespace
+}  // namespace tessera::test
