@@ -95,6 +95,8 @@ struct FitOptions {
   double tolerance = 0;
   int degree = 3;                              ///< of the patches, each way; 2 to max_degree
   std::size_t largest_patch_count = 1u << 16;
+  /// By the surface's bounds, where it has them. Else by sampling, which takes fewer patches and more calls.
+  bool certify = true;
 };
 
 /// Patches that interpolate the surface at Chebyshev-Lobatto parameters, over breakpoints that are halved where the tolerance
