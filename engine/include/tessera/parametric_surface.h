@@ -30,6 +30,27 @@ struct Disc {
   double x = 0, y = 0, radius = 1;
 };
 
+/// The polar map of a disc: x = x0 + s rho cos(theta), y = y0 + s rho sin(theta), rho from 0 to the radius R and theta
+/// from 0 to 2 pi. The factor s is a little below 1, so that the points lie within the disc also after rounding: the rim
+/// is short of R by at most 6 units of 2^-52 of R and two of |x0| + |y0|, and R*R - (x - x0)*(x - x0) - (y - y0)*(y - y0)
+/// in doubles, in any order, is never negative. The centre is one point for all theta, and theta = 2 pi is theta = 0, by ==.
+class PolarMap {
+ public:
+  /// Errors: non_finite (the disc, or its box), invalid_argument (a radius that is not positive, or lost beside the centre).
+  static Result<PolarMap> make(const Disc& disc);
+  Domain domain() const;
+  const Disc& disc() const { return disc_; }
+  double scale() const { return scale_; }                        ///< s
+  std::array<double, 2> operator()(double rho, double theta) const;  ///< x and y
+  /// By rho and theta, from position and derivatives by x and y at the same point.
+  SurfaceJet chain_rule(const SurfaceJet& by_xy, double rho, double theta) const;
+
+ private:
+  PolarMap() = default;
+  Disc disc_;
+  double scale_ = 1;
+};
+
 /// p(u,v) on a rectangle. Immutable but for assignment; copies share their functions.
 class ParametricSurface {
  public:
@@ -37,10 +58,10 @@ class ParametricSurface {
   /// position at a corner). Functions made of expressions over any scalar type get all three by generic_surface() of
   /// tessera/generic_callable.h.
   static Result<ParametricSurface> make(SurfaceFunctions functions, const Domain& domain = {});
-  /// p over a disc by the polar map x = x0 + rho cos(theta), y = y0 + rho sin(theta): u is rho from 0 to the radius, v
-  /// theta from 0 to 2 pi. The map stays within the disc in rounded arithmetic: its rim is short of the radius by at most
-  /// 4 units of 2^-52, so that sqrt(R^2 - x^2 - y^2) is defined everywhere. The edge u = 0 is collapsed.
-  /// Derivatives given are by x and y; those of the map are put in. Errors: as above.
+  /// p(x,y) over a disc by its polar map: u is rho, v theta. The edge u = 0 is collapsed, v0 and v1 are one curve.
+  /// Derivatives given are by x and y; those of the map are put in. Bounds are left out, for those of pure derivatives
+  /// say nothing of the mixed ones that polar lines need (generic_surface_over_disc() finds them). Errors: as above, and
+  /// those of PolarMap.
   static Result<ParametricSurface> over_disc(SurfaceFunctions functions, const Disc& disc = {});
 
   const Domain& domain() const { return domain_; }
@@ -58,21 +79,35 @@ class ParametricSurface {
   friend Result<SurfaceJet> evaluate_jet(const ParametricSurface& surface, double u, double v);
 };
 
-/// By the caller's derivatives, else by differences that stay within the domain. Errors: as of position().
+/// By the caller's derivatives, else by differences within the domain: 64 calls. With L the domain's length along u (or
+/// v), h = L / 256, F a bound of |p| near (u,v) and F_ab one of |d^(a+b) p / du^a dv^b|, the errors are at most
+///   p_u: h^6 F_70 / 140 + 2^-42 F / L,  p_uu: h^6 F_80 / 560 + 2^-33 F / L^2,
+///   p_uv: h^6 F_71 / 140 + k^6 F_17 / 63 + 2^-33 F / (L_u L_v), k being v's h;
+/// within three steps of the domain's edges
+///   p_u: h^6 F_70 / 7 + 2^-39 F / L,  p_uu: 0.7 h^5 F_70 + 2^-29 F / L^2,
+///   p_uv: h^6 F_71 / 7 + 9 k^6 F_17 + 2^-25 F / (L_u L_v).
+/// Errors: as of position(); non_finite (a derivative: names it and (u,v)).
 Result<SurfaceJet> evaluate_jet(const ParametricSurface& surface, double u, double v);
 
 struct FitOptions {
   /// How far patches may lie from the surface at equal parameters, in the model's unit; 0 for 1e-6 of the diagonal of
-  /// the box of the surface's points.
+  /// the box of 17 x 17 points.
   double tolerance = 0;
   int degree = 3;  ///< of the patches, each way; 2 to max_degree
   std::size_t largest_patch_count = 1u << 16;
+  /// By the surface's bounds, where it has them. Else by sampling, which takes fewer patches and more calls.
+  bool certify = true;
 };
 
-/// Patches that interpolate the surface, over breakpoints that are halved where the tolerance is not kept. Neighbours
-/// share their borders. PatchGrid::fit_error() is a proven bound where the surface has bounds on its derivatives, else
-/// the largest deviation found by sampling. Errors: invalid_argument (options; the tolerance is not kept by the largest
-/// count of patches: says what was reached), and those of position().
+/// Patches that interpolate the surface at Chebyshev-Lobatto parameters, over breakpoints that are halved where the tolerance
+/// is not kept: towards a border where derivatives are infinite they get as close as it needs. Only positions are asked for.
+/// Neighbours share their borders by ==, and edges on which all positions are equal by == are collapsed.
+/// PatchGrid::fit_error() is a proven bound where the surface has bounds on its derivatives that suffice, taking the
+/// function's values as exact; then the function is called once for each of (n cu + 1)(n cv + 1) points of cu x cv patches
+/// of degree n. Else it is the largest deviation found at (3 n + 1)^2 points of every patch, with about fifteen to forty
+/// times as many calls. What is narrower than the gaps between these points can be missed: a caller who knows of
+/// such features fits sub-rectangles. Errors: invalid_argument (options; a tolerance below what rounding leaves; one that is
+/// not kept by the largest count of patches, or at a jump: says what was reached, and where), and those of position().
 Result<PatchGrid> to_bezier(const ParametricSurface& surface, const FitOptions& options = {});
 
 }  // namespace tessera

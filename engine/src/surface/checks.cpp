@@ -6,18 +6,15 @@
 #include "surface/validate.h"
 
 namespace tessera {
-namespace {
 
 Status check_interval(double from, double to, const std::string& name) {
-  const std::string interval = "the domain along " + name + ", [" + text(from) + ", " + text(to) + "], ";
+  const std::string interval = name + ", [" + text(from) + ", " + text(to) + "], ";
   if (!std::isfinite(from) || !std::isfinite(to)) return {StatusCode::non_finite, interval + "must be finite"};
   if (!(from < to)) return {StatusCode::invalid_argument, interval + "must have its start below its end"};
   if (!std::isfinite(to - from) || !std::isfinite(1 / (to - from)))
     return {StatusCode::invalid_argument, interval + "is too long or too short"};
   return {};
 }
-
-}  // namespace
 
 Status check_vectors(std::span<const Vec3> vectors, std::size_t columns, const std::string& what) {
   for (std::size_t k = 0; k < vectors.size(); ++k) {
@@ -50,8 +47,8 @@ Status check_increasing(std::span<const double> values, const std::string& what,
 }
 
 Status check_domain(const Domain& domain) {
-  if (Status status = check_interval(domain.u0, domain.u1, "u"); !status.ok()) return status;
-  return check_interval(domain.v0, domain.v1, "v");
+  if (Status status = check_interval(domain.u0, domain.u1, "the domain along u"); !status.ok()) return status;
+  return check_interval(domain.v0, domain.v1, "the domain along v");
 }
 
 }  // namespace tessera

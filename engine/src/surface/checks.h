@@ -17,6 +17,9 @@ Status check_vectors(std::span<const Vec3> vectors, std::size_t columns, const s
 /// 2".
 /// Errors: invalid_argument, non_finite (index = the value).
 Status check_increasing(std::span<const double> values, const std::string& what, const std::string& direction);
+/// Finite, from < to, with a length and its reciprocal that are finite too; `name` is "the domain along u" or the like.
+/// Errors: invalid_argument, non_finite.
+Status check_interval(double from, double to, const std::string& name);
 /// Finite, u0 < u1 and v0 < v1, with lengths and their reciprocals that are finite too. Errors: invalid_argument,
 /// non_finite.
 Status check_domain(const Domain& domain);

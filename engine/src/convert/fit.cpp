@@ -1,0 +1,215 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/guard.h"
+#include "base/text.h"
+#include "basis/chebyshev_lobatto.h"
+#include "convert/fit_error.h"
+#include "convert/tensor_refinement.h"
+#include "surface/patch_pieces.h"
+#include "tessera/convert.h"
+#include "tessera/parametric_surface.h"
+
+namespace tessera {
+namespace {
+
+/// The share of the tolerance for interpolation; the rest is for rounding, and for what lies between samples.
+constexpr double accepted_share = 0.8;
+
+Status check_options(const FitOptions& options) {
+  if (!(options.tolerance >= 0) || !std::isfinite(options.tolerance))
+    return {StatusCode::invalid_argument,
+            "the tolerance is " + text(options.tolerance) + ", it must be finite and not negative"};
+  if (options.degree < 2 || options.degree > max_degree)
+    return {StatusCode::invalid_argument, "the degree of the patches is " + std::to_string(options.degree) +
+                                              ", it must be 2 to " + std::to_string(max_degree)};
+  if (options.largest_patch_count == 0)
+    return {StatusCode::invalid_argument, "the largest count of patches is 0"};
+  return {};
+}
+
+/// The box of 17 x 17 points.
+Result<Box3> coarse_box(const ParametricSurface& surface) {
+  Box3 box;
+  for (int i = 0; i <= 16; ++i)
+    for (int j = 0; j <= 16; ++j) {
+      const auto point = surface.position(surface.domain().u_at(i / 16.0), surface.domain().v_at(j / 16.0));
+      if (!point) return point.status();
+      box.extend(*point);
+    }
+  if (!std::isfinite(box.diagonal()))
+    return Status(StatusCode::non_finite, "the surface's box is too large for distances in double");
+  return box;
+}
+
+/// The tolerance meant, or why it cannot be kept.
+Result<double> tolerance_of(const Box3& box, double wanted) {
+  const double size = std::max(max_abs(box.lower), max_abs(box.upper));
+  const double least = std::max(0x1p-48 * size, std::numeric_limits<double>::min());
+  if (wanted == 0) return std::max(1e-6 * box.diagonal(), least);
+  if (wanted < least)
+    return Status(StatusCode::invalid_argument, "the tolerance " + text(wanted) + " is below " + text(least) +
+                                                    ", which rounding leaves of coordinates as large as " + text(size));
+  return wanted;
+}
+
+/// The parameters of all nodes of one direction, ends of intervals once.
+std::vector<double> lattice(std::span<const double> breaks, std::span<const double> parameters) {
+  std::vector<double> lattice{breaks.front()};
+  for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
+    for (std::size_t i = 1; i < parameters.size(); ++i)
+      lattice.push_back(lobatto_parameter(parameters, i, breaks[k], breaks[k + 1]));
+  return lattice;
+}
+
+/// Patches from values on the lattice of nodes, each asked for once.
+class Interpolation {
+ public:
+  Interpolation(const ParametricSurface& surface, int degree, const TensorBreaks& breaks)
+      : surface_(surface),
+        degree_(degree),
+        to_bernstein_(lobatto_to_bernstein(degree)),
+        u_(lattice(breaks.u, lobatto_parameters(degree))),
+        v_(lattice(breaks.v, lobatto_parameters(degree))),
+        pieces_(degree, degree, (breaks.u.size() - 1) * (breaks.v.size() - 1), false),
+        values_(static_cast<std::size_t>(degree + 1) * v_.size()) {}
+
+  Result<std::vector<BezierPatch>> run() {
+    const std::size_t n = static_cast<std::size_t>(degree_), columns = (u_.size() - 1) / n, rows = (v_.size() - 1) / n;
+    if (Status status = sample_line(0, 0); !status.ok()) return status;
+    for (std::size_t a = 0; a < columns; ++a) {
+      for (std::size_t i = 1; i <= n; ++i)
+        if (Status status = sample_line(i, a * n + i); !status.ok()) return status;
+      for (std::size_t b = 0; b < rows; ++b)
+        if (Status status = make_patch(a * rows + b, b * n); !status.ok()) return status;
+      std::copy_n(values_.end() - static_cast<std::ptrdiff_t>(v_.size()), v_.size(), values_.begin());
+    }
+    return pieces_.take();
+  }
+
+  /// How far rounding may have moved a point of a patch: that of the points' coordinates, and that of the long doubles that
+  /// they were made in.
+  double rounding() const {
+    double norm = 0;
+    for (int i = 0; i <= degree_; ++i) {
+      double sum = 0;
+      for (int j = 0; j <= degree_; ++j) sum += static_cast<double>(std::abs(to_bernstein_(i, j)));
+      norm = std::max(norm, sum);
+    }
+    const double steps = 64 * (degree_ + 1) * norm * norm * static_cast<double>(std::numeric_limits<long double>::epsilon());
+    return 2 * (0x1p-53 * largest_point_ + steps * largest_value_);  // 2 for the three coordinates together
+  }
+
+ private:
+  /// Line i of the current column of patches.
+  Status sample_line(std::size_t i, std::size_t u_index) {
+    for (std::size_t j = 0; j < v_.size(); ++j) {
+      const auto point = surface_.position(u_[u_index], v_[j]);
+      if (!point) return point.status();
+      values_[i * v_.size() + j] = *point;
+      largest_value_ = std::max(largest_value_, max_abs(*point));
+    }
+    return {};
+  }
+
+  Status make_patch(std::size_t patch, std::size_t first_row) {
+    const std::size_t count = static_cast<std::size_t>(degree_) + 1;
+    net_.clear();
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t j = 0; j < count; ++j) net_.push_back(values_[i * v_.size() + first_row + j]);
+    std::vector<Vec3> points = tensor_product(to_bernstein_, net_, to_bernstein_);
+    collapse_edges(points);
+    for (const Vec3& p : points) {
+      if (!is_finite(p)) return {StatusCode::non_finite, "the surface is too large for control points in double"};
+      largest_point_ = std::max(largest_point_, max_abs(p));
+    }
+    std::copy(points.begin(), points.end(), pieces_.points(patch));
+    return {};
+  }
+
+  /// Edges on which all values are one point, so that poles are poles whatever the rounding.
+  void collapse_edges(std::vector<Vec3>& points) const {
+    const std::size_t count = static_cast<std::size_t>(degree_) + 1, last = count - 1;
+    const auto collapse = [&](std::size_t first, std::size_t step) {
+      const Vec3 pole = net_[first];
+      for (std::size_t k = 1; k < count; ++k)
+        if (!(net_[first + k * step] == pole)) return;
+      for (std::size_t k = 0; k < count; ++k) points[first + k * step] = pole;
+    };
+    collapse(0, 1);
+    collapse(last * count, 1);
+    collapse(0, count);
+    collapse(last, count);
+  }
+
+  const ParametricSurface& surface_;
+  int degree_;
+  Matrix to_bernstein_;
+  std::vector<double> u_, v_;
+  PatchPieces pieces_;
+  std::vector<Vec3> values_;  // n + 1 lines along v
+  std::vector<Vec3> net_;     // of one patch
+  double largest_value_ = 0, largest_point_ = 0;
+};
+
+/// What rounding adds to a proven error.
+double rounding_bound(const ProvenError& proven, const TensorBreaks& breaks, const Interpolation& interpolation) {
+  double largest = 0;
+  for (std::size_t a = 0; a + 1 < breaks.u.size(); ++a)
+    for (std::size_t b = 0; b + 1 < breaks.v.size(); ++b)
+      largest = std::max(largest, proven.rounding({breaks.u[a], breaks.u[a + 1], breaks.v[b], breaks.v[b + 1]}));
+  return largest + interpolation.rounding();
+}
+
+Result<PatchGrid> grid_of(TensorBreaks breaks, Result<std::vector<BezierPatch>> patches, const FitError& error) {
+  if (!patches) return patches.status();
+  return PatchGrid::make(std::move(breaks.u), std::move(breaks.v), *std::move(patches), error);
+}
+
+/// Nothing where bounds do not suffice.
+std::optional<Result<PatchGrid>> certified_fit(const ParametricSurface& surface, int degree,
+                                               const RefinementLimits& limits) {
+  const ProvenError proven(surface, degree);
+  auto breaks = refine(surface.domain(), limits, proven);
+  if (!breaks) return std::nullopt;
+  Interpolation interpolation(surface, degree, *breaks);
+  auto patches = interpolation.run();
+  const double distance = breaks->error + rounding_bound(proven, *breaks, interpolation);
+  if (!(distance <= limits.tolerance)) return std::nullopt;
+  return grid_of(*std::move(breaks), std::move(patches), {distance, true});
+}
+
+Result<PatchGrid> sampled_fit(const ParametricSurface& surface, int degree, const RefinementLimits& limits) {
+  SampledError sampled(surface, degree);
+  auto breaks = refine(surface.domain(), limits, sampled);
+  if (!breaks) return breaks.status();
+  Interpolation interpolation(surface, degree, *breaks);
+  auto patches = interpolation.run();
+  const double distance = breaks->error;
+  return grid_of(*std::move(breaks), std::move(patches), {distance, false});
+}
+
+}  // namespace
+
+Result<PatchGrid> to_bezier(const ParametricSurface& surface, const FitOptions& options) {
+  return guarded([&]() -> Result<PatchGrid> {
+    if (Status status = check_options(options); !status.ok()) return status;
+    const auto box = coarse_box(surface);
+    if (!box) return box.status();
+    const auto tolerance = tolerance_of(*box, options.tolerance);
+    if (!tolerance) return tolerance.status();
+    // The nodes next to an end are still eight doubles from it.
+    const double shortest = 0x1p-49 / lobatto_parameters(options.degree)[1];
+    const RefinementLimits limits{*tolerance, accepted_share * *tolerance, shortest, options.largest_patch_count};
+    if (surface.has_bounds() && options.certify)
+      if (auto fit = certified_fit(surface, options.degree, limits)) return *std::move(fit);
+    return sampled_fit(surface, options.degree, limits);
+  });
+}
+
+}  // namespace tessera

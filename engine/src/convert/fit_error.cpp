@@ -1,0 +1,93 @@
+#include "convert/fit_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "basis/chebyshev_lobatto.h"
+
+namespace tessera {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// factor h^(n+1) bound, 0 for a bound of 0.
+double interpolation_error(int degree, double h, double bound) {
+  return bound == 0 ? 0 : lobatto_error_factor(degree) * std::pow(h, degree + 1) * bound;
+}
+
+}  // namespace
+
+Result<CellError> ProvenError::operator()(const Domain& cell) const {
+  constexpr double longest_without = 1.0 / 64;
+  const auto bounds = surface_.derivative_bounds(cell, degree_ + 1);
+  const double u = interpolation_error(degree_, cell.u1 - cell.u0, bounds[0]);
+  const double v = interpolation_error(degree_, cell.v1 - cell.v0, bounds[1]);
+  const double total = u + v + (lobatto_lebesgue_constant(degree_) - 1) * std::min(u, v);
+  if (total < infinity) return CellError{total, u, v};
+  const Domain& domain = surface_.domain();
+  const bool long_u = cell.u1 - cell.u0 > longest_without * (domain.u1 - domain.u0);
+  const bool long_v = cell.v1 - cell.v0 > longest_without * (domain.v1 - domain.v0);
+  if (!long_u && !long_v) return Status(StatusCode::unsupported, "there is no bound of the surface's derivatives");
+  return CellError{infinity, long_u ? infinity : 0, long_v ? infinity : 0};
+}
+
+double ProvenError::rounding(const Domain& cell) const {
+  // A node's parameter is rounded three times, each by at most 2^-53 of the largest one.
+  const double u = 0x1p-51 * std::max(std::abs(cell.u0), std::abs(cell.u1));
+  const double v = 0x1p-51 * std::max(std::abs(cell.v0), std::abs(cell.v1));
+  const auto bounds = surface_.derivative_bounds(cell, 1);
+  const double lebesgue = lobatto_lebesgue_constant(degree_);
+  return lebesgue * lebesgue * ((bounds[0] == 0 ? 0 : u * bounds[0]) + (bounds[1] == 0 ? 0 : v * bounds[1]));
+}
+
+SampledError::SampledError(const ParametricSurface& surface, int degree)
+    : surface_(surface), nodes_(static_cast<std::size_t>(degree) + 1) {
+  const std::vector<double> nodes = lobatto_parameters(degree);
+  for (std::size_t i = 0; i + 1 < nodes_; ++i)
+    for (const double part : {0.0, 0.29, 0.68}) parameters_.push_back(nodes[i] + part * (nodes[i + 1] - nodes[i]));
+  parameters_.push_back(1);
+  const Matrix basis = lobatto_evaluation(degree, parameters_);
+  for (int a = 0; a < basis.rows(); ++a)
+    for (int i = 0; i < basis.columns(); ++i) basis_.push_back(static_cast<double>(basis(a, i)));
+  values_.resize(size() * size());
+  along_u_.resize(size() * size());
+}
+
+Status SampledError::sample(const Domain& cell) {
+  for (std::size_t a = 0; a < size(); ++a)
+    for (std::size_t b = 0; b < size(); ++b) {
+      const auto point = surface_.position(lobatto_parameter(parameters_, a, cell.u0, cell.u1),
+                                           lobatto_parameter(parameters_, b, cell.v0, cell.v1));
+      if (!point) return point.status();
+      values_[a * size() + b] = *point;
+    }
+  return {};
+}
+
+void SampledError::interpolate_along_u() {
+  std::fill(along_u_.begin(), along_u_.end(), Vec3{});
+  for (std::size_t a = 0; a < size(); ++a)
+    for (std::size_t i = 0; i < nodes_; ++i)
+      for (std::size_t b = 0; b < size(); ++b) along_u_[a * size() + b] += basis_[a * nodes_ + i] * value(3 * i, b);
+}
+
+Result<CellError> SampledError::operator()(const Domain& cell) {
+  if (Status status = sample(cell); !status.ok()) return status;
+  interpolate_along_u();
+  CellError error;
+  for (std::size_t a = 0; a < size(); ++a)
+    for (std::size_t b = 0; b < size(); ++b) {
+      Vec3 along_v, both;
+      for (std::size_t j = 0; j < nodes_; ++j) {
+        along_v += basis_[b * nodes_ + j] * value(a, 3 * j);
+        both += basis_[b * nodes_ + j] * along_u_[a * size() + 3 * j];
+      }
+      error.along_u = std::max(error.along_u, length(value(a, b) - along_u_[a * size() + b]));
+      error.along_v = std::max(error.along_v, length(value(a, b) - along_v));
+      error.total = std::max(error.total, length(value(a, b) - both));
+    }
+  return error;
+}
+
+}  // namespace tessera

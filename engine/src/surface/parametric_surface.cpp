@@ -1,0 +1,149 @@
+#include "tessera/parametric_surface.h"
+
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "base/guard.h"
+#include "base/text.h"
+#include "surface/callables.h"
+#include "surface/checks.h"
+#include "surface/differences.h"
+
+namespace tessera {
+namespace {
+
+std::string at(double u, double v) { return " at (u, v) = (" + text(u) + ", " + text(v) + ")"; }
+
+auto place_at(double u, double v) {
+  return [u, v] { return "the surface" + at(u, v); };
+}
+
+Status check_vector(const Vec3& p, const char* what, double u, double v) {
+  if (is_finite(p)) return {};
+  return {StatusCode::non_finite, what + at(u, v) + " is (" + text(p.x) + ", " + text(p.y) + ", " + text(p.z) +
+                                      "), it must be finite"};
+}
+
+Status check_jet(const SurfaceJet& jet, double u, double v) {
+  const std::pair<const Vec3*, const char*> vectors[] = {
+      {&jet.position, "the surface"},         {&jet.du, "the surface's derivative by u"},
+      {&jet.dv, "the surface's derivative by v"},  {&jet.duu, "the surface's second derivative by u"},
+      {&jet.duv, "the surface's mixed derivative"}, {&jet.dvv, "the surface's second derivative by v"}};
+  for (const auto& [vector, what] : vectors)
+    if (Status status = check_vector(*vector, what, u, v); !status.ok()) return status;
+  return {};
+}
+
+using Points = std::array<Vec3, DifferenceStencil::size>;
+
+/// At (u[k], v), or (u, v[k]).
+template <class Parameters>
+Result<Points> points_along(const ParametricSurface& surface, const Parameters& parameters) {
+  Points points;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const auto [u, v] = parameters(k);
+    const auto point = surface.position(u, v);
+    if (!point) return point.status();
+    points[k] = *point;
+  }
+  return points;
+}
+
+using Parameters = std::pair<double, double>;
+
+Result<SurfaceJet> jet_by_differences(const ParametricSurface& surface, double u, double v) {
+  const Domain& domain = surface.domain();
+  const DifferenceStencil along_u(u, domain.u0, domain.u1), along_v(v, domain.v0, domain.v1);
+  const auto middle = surface.position(u, v);
+  if (!middle) return middle.status();
+  const auto u_line = points_along(surface, [&](std::size_t k) { return Parameters(along_u.at[k], v); });
+  if (!u_line) return u_line.status();
+  const auto v_line = points_along(surface, [&](std::size_t k) { return Parameters(u, along_v.at[k]); });
+  if (!v_line) return v_line.status();
+  Points slopes;  // p_v at (u[i], v)
+  for (std::size_t i = 0; i < slopes.size(); ++i) {
+    const auto line = points_along(surface, [&](std::size_t k) { return Parameters(along_u.at[i], along_v.at[k]); });
+    if (!line) return line.status();
+    slopes[i] = DifferenceStencil::derivative(along_v.first, *line, (*u_line)[i]);
+  }
+  SurfaceJet jet;
+  jet.position = *middle;
+  jet.du = DifferenceStencil::derivative(along_u.first, *u_line, *middle);
+  jet.dv = DifferenceStencil::derivative(along_v.first, *v_line, *middle);
+  jet.duu = DifferenceStencil::derivative(along_u.second, *u_line, *middle);
+  jet.duv = DifferenceStencil::derivative(along_u.first, slopes, jet.dv);
+  jet.dvv = DifferenceStencil::derivative(along_v.second, *v_line, *middle);
+  return jet;
+}
+
+double bound_or_infinity(double bound) { return bound >= 0 ? bound : std::numeric_limits<double>::infinity(); }
+
+}  // namespace
+
+Result<ParametricSurface> ParametricSurface::make(SurfaceFunctions functions, const Domain& domain) {
+  return guarded([&]() -> Result<ParametricSurface> {
+    if (!functions.position)
+      return Status(StatusCode::invalid_argument, "the surface has no function for its position");
+    if (Status status = check_domain(domain); !status.ok()) return status;
+    ParametricSurface surface;
+    surface.functions_ = std::move(functions);
+    surface.domain_ = domain;
+    for (const double u : {domain.u0, domain.u1})
+      for (const double v : {domain.v0, domain.v1})
+        if (const auto corner = surface.position(u, v); !corner) return corner.status();
+    return surface;
+  });
+}
+
+Result<ParametricSurface> ParametricSurface::over_disc(SurfaceFunctions functions, const Disc& disc) {
+  return guarded([&]() -> Result<ParametricSurface> {
+    const auto map = PolarMap::make(disc);
+    if (!map) return map.status();
+    SurfaceFunctions polar;
+    if (functions.position)
+      polar.position = [map = *map, position = std::move(functions.position)](double rho, double theta) {
+        const auto [x, y] = map(rho, theta);
+        return position(x, y);
+      };
+    if (functions.jet)
+      polar.jet = [map = *map, jet = std::move(functions.jet)](double rho, double theta) {
+        const auto [x, y] = map(rho, theta);
+        return map.chain_rule(jet(x, y), rho, theta);
+      };
+    return make(std::move(polar), map->domain());
+  });
+}
+
+Result<Vec3> ParametricSurface::position(double u, double v) const {
+  return guarded([&]() -> Result<Vec3> {
+    Result<Vec3> point = called([&] { return functions_.position(u, v); }, place_at(u, v));
+    if (!point) return point;
+    if (Status status = check_vector(*point, "the surface", u, v); !status.ok()) return status;
+    return point;
+  });
+}
+
+std::array<double, 2> ParametricSurface::derivative_bounds(const Domain& part, int k) const {
+  constexpr double none = std::numeric_limits<double>::infinity();
+  if (!has_bounds()) return {none, none};
+  try {
+    const auto [along_u, along_v] = functions_.derivative_bounds(part, k);
+    return {bound_or_infinity(along_u), bound_or_infinity(along_v)};
+  } catch (...) {  // a bound is never needed: without one a fit is sampled
+    return {none, none};
+  }
+}
+
+Result<SurfaceJet> evaluate_jet(const ParametricSurface& surface, double u, double v) {
+  return guarded([&]() -> Result<SurfaceJet> {
+    Result<SurfaceJet> jet = surface.has_derivatives()
+                                 ? called([&] { return surface.functions_.jet(u, v); }, place_at(u, v))
+                                 : jet_by_differences(surface, u, v);
+    if (!jet) return jet;
+    if (Status status = check_jet(*jet, u, v); !status.ok()) return status;
+    return jet;
+  });
+}
+
+}  // namespace tessera
