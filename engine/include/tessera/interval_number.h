@@ -11,8 +11,8 @@ namespace tessera {
 /// All real numbers from lower() to upper(), or, where an operation is not defined or not bounded for all of them (the
 /// reciprocal of an interval with 0, the root of one with negative numbers), "no bound": both ends NaN, and so is all that
 /// is computed of it. Every operation's result holds that of every choice of numbers, whatever the rounding: the basic
-/// operations and sqrt go one double outwards (Moore, Kearfott and Cloud, Introduction to Interval Analysis, 2009); elementary
-/// functions go four, twice what the C library's documented errors need. There is no order: an expression with
+/// operations and sqrt go a double or two outwards (Moore, Kearfott and Cloud, Introduction to Interval Analysis, 2009);
+/// elementary functions go four or more, twice what the C library's documented errors need. There is no order: an expression with
 /// branches does not compile.
 class IntervalNumber {
  public:
@@ -33,16 +33,12 @@ class IntervalNumber {
     return largest >= 0 ? largest : std::numeric_limits<double>::infinity();
   }
 
-  /// From values rounded to nearest: their hull, `steps` doubles wider each way; no bound if one is NaN.
+  /// From values rounded to nearest: their hull, at least `steps` doubles wider each way; no bound if one is NaN.
   template <int steps = 1, class... Values>
   static IntervalNumber around(Values... values) {
     if ((std::isnan(values) || ...)) return none();
-    double low = std::min({values...}), high = std::max({values...});
-    for (int k = 0; k < steps; ++k) {
-      low = std::nextafter(low, -std::numeric_limits<double>::infinity());
-      high = std::nextafter(high, std::numeric_limits<double>::infinity());
-    }
-    return {low, high};
+    const double low = std::min({values...}), high = std::max({values...});
+    return {low - steps * a_step(low), high + steps * a_step(high)};
   }
 
   friend bool operator==(const IntervalNumber&, const IntervalNumber&) = default;
@@ -135,6 +131,8 @@ class IntervalNumber {
  private:
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
+  /// At least the distance to the next double; what is infinite becomes NaN in the end, no bound.
+  static double a_step(double x) { return std::abs(x) * 0x1p-52 + std::numeric_limits<double>::min(); }
   double magnitude_or_nan() const { return std::isnan(lower_) ? lower_ : magnitude(); }
   /// What is known besides: that the result lies in [low, high].
   static IntervalNumber clamped(const IntervalNumber& a, double low, double high) {

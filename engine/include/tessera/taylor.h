@@ -79,6 +79,9 @@ class Taylor {
   /// x^exponent by constant exponents; whole ones for any x (a negative one for x without 0), others for x > 0.
   friend Taylor pow(const Taylor& x, double exponent) {
     using std::pow;
+    // Multiples of 2^-32 stay exact when whole numbers are taken off; then powers are taken one by one, also at 0.
+    const bool exact = std::abs(exponent) < 0x1p20 && std::floor(exponent * 0x1p32) == exponent * 0x1p32;
+    if (!exact) return x.composed(power_series(x.value(), exponent, pow(x.value(), exponent)));
     Coefficients f;
     double binomial = 1;  // (exponent over k)
     for (int k = 0; k <= Order; ++k) {

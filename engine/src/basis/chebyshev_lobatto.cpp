@@ -1,7 +1,9 @@
 #include "basis/chebyshev_lobatto.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "basis/bernstein.h"
@@ -18,6 +20,17 @@ Matrix bernstein_matrix(int n, std::span<const double> parameters) {
     for (int j = 0; j <= n; ++j) matrix(i, j) = values[static_cast<std::size_t>(j)];
   }
   return matrix;
+}
+
+/// The largest sum of absolute entries of a row.
+double norm(const Matrix& matrix) {
+  long double largest = 0;
+  for (int i = 0; i < matrix.rows(); ++i) {
+    long double sum = 0;
+    for (int j = 0; j < matrix.columns(); ++j) sum += std::abs(matrix(i, j));
+    largest = std::max(largest, sum);
+  }
+  return static_cast<double>(largest);
 }
 
 }  // namespace
@@ -40,6 +53,15 @@ Matrix lobatto_to_bernstein(int n) {
   const auto matrix = inverse(bernstein_matrix(n, lobatto_parameters(n)));
   assert(matrix);  // of distinct parameters, and far from singular for every degree of a patch
   return *matrix;
+}
+
+double lobatto_to_bernstein_rounding(int n, double largest_value, double largest_point) {
+  const Matrix matrix = lobatto_to_bernstein(n);
+  Matrix residual = matrix * bernstein_matrix(n, lobatto_parameters(n));
+  for (int i = 0; i <= n; ++i) residual(i, i) -= 1;
+  const double roundings = (n + 2) * static_cast<double>(std::numeric_limits<long double>::epsilon() / 2);
+  const double size = norm(matrix), error = norm(residual) + 4 * roundings * size;  // the collocation matrix rounds too
+  return (0x1p-53 + 2 * error + error * error) * largest_point + 2 * roundings * size * size * largest_value;
 }
 
 Matrix lobatto_evaluation(int n, std::span<const double> parameters) {

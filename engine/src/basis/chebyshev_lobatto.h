@@ -17,6 +17,11 @@ double lobatto_parameter(std::span<const double> parameters, std::size_t i, doub
 /// From values at x_0..x_n to the Bernstein coefficients of the polynomial through them. The first and the last row are exactly
 /// those of the identity, so that ends stay ends.
 Matrix lobatto_to_bernstein(int n);
+/// How far rounding may move a coordinate of a tensor-product patch made by this matrix in both directions: of values at most
+/// `largest_value`, into control points at most `largest_point` (Higham, Accuracy and Stability of Numerical Algorithms, 2nd
+/// ed., ch. 3, for the inner products). With A the matrix as it came out, B the collocation matrix and A B = I + E,
+/// the points of A F A^T are (I + E) P (I + E)^T for the exact P, and the products add (n + 2) roundings of long doubles each.
+double lobatto_to_bernstein_rounding(int n, double largest_value, double largest_point);
 /// From values at x_0..x_n to those at `parameters` of the polynomial through them.
 Matrix lobatto_evaluation(int n, std::span<const double> parameters);
 

@@ -92,18 +92,8 @@ class Interpolation {
     return pieces_.take();
   }
 
-  /// How far rounding may have moved a point of a patch: that of the points' coordinates, and that of the long doubles that
-  /// they were made in.
-  double rounding() const {
-    double norm = 0;
-    for (int i = 0; i <= degree_; ++i) {
-      double sum = 0;
-      for (int j = 0; j <= degree_; ++j) sum += static_cast<double>(std::abs(to_bernstein_(i, j)));
-      norm = std::max(norm, sum);
-    }
-    const double steps = 64 * (degree_ + 1) * norm * norm * static_cast<double>(std::numeric_limits<long double>::epsilon());
-    return 2 * (0x1p-53 * largest_point_ + steps * largest_value_);  // 2 for the three coordinates together
-  }
+  /// How far rounding may have moved a point of a patch; 2 for the three coordinates together.
+  double rounding() const { return 2 * lobatto_to_bernstein_rounding(degree_, largest_value_, largest_point_); }
 
  private:
   /// Line i of the current column of patches.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "basis/chebyshev_lobatto.h"
 
@@ -43,9 +44,15 @@ double ProvenError::rounding(const Domain& cell) const {
 
 SampledError::SampledError(const ParametricSurface& surface, int degree)
     : surface_(surface), nodes_(static_cast<std::size_t>(degree) + 1) {
+  // In a gap the error of a smooth function is like sin(pi part), part being taken in the angle of the nodes.
   const std::vector<double> nodes = lobatto_parameters(degree);
-  for (std::size_t i = 0; i + 1 < nodes_; ++i)
-    for (const double part : {0.0, 0.29, 0.68}) parameters_.push_back(nodes[i] + part * (nodes[i + 1] - nodes[i]));
+  for (std::size_t i = 0; i + 1 < nodes_; ++i) {
+    parameters_.push_back(nodes[i]);
+    for (const double part : {0.46, 0.79}) {
+      const double sine = std::sin(std::numbers::pi / 2 * (static_cast<double>(i) + part) / degree);
+      parameters_.push_back(sine * sine);
+    }
+  }
   parameters_.push_back(1);
   const Matrix basis = lobatto_evaluation(degree, parameters_);
   for (int a = 0; a < basis.rows(); ++a)

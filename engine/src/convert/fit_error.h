@@ -27,7 +27,8 @@ class ProvenError {
   int degree_;
 };
 
-/// Found at the (3 n + 1)^2 points of a grid: the nodes, and two parameters in every gap between them, off its middle.
+/// Found at the (3 n + 1)^2 points of a grid: the nodes, and two parameters in every gap between them, one near
+/// the largest error of a smooth function, one off it.
 class SampledError {
  public:
   SampledError(const ParametricSurface& surface, int degree);

@@ -48,19 +48,20 @@ class Refinement {
   Result<TensorBreaks> run(CellErrorFunction error) {
     for (;;) {
       if (Status status = measure(error); !status.ok()) return status;
-      bool done = true;
+      bool marked = false;
       for (std::size_t a = 0; a < u_.count(); ++a)
         for (std::size_t b = 0; b < v_.count(); ++b) {
-          if (errors_[a * v_.count() + b]->total <= limits_.accepted) continue;
-          done = false;
-          if (Status status = mark(a, b); !status.ok()) return status;
+          const auto more = mark(a, b);
+          if (!more) return more.status();
+          marked = marked || *more;
         }
-      if (done) return TensorBreaks{u_.breaks, v_.breaks, errors_[worst()]->total};
-      if (u_.halved_count() > limits_.largest_count / v_.halved_count()) {
-        const std::size_t cell = worst();
+      const std::size_t cell = worst();
+      const bool full = u_.halved_count() > limits_.largest_count / v_.halved_count();
+      if (!marked || (full && errors_[cell]->total <= limits_.tolerance))
+        return TensorBreaks{u_.breaks, v_.breaks, errors_[cell]->total};
+      if (full)
         return failure("by " + std::to_string(limits_.largest_count) + " patches, the largest count", cell / v_.count(),
                        cell % v_.count());
-      }
       halve();
     }
   }
@@ -82,16 +83,21 @@ class Refinement {
     return {};
   }
 
-  Status mark(std::size_t a, std::size_t b) {
+  /// Whether the cell is to be halved.
+  Result<bool> mark(std::size_t a, std::size_t b) {
     const CellError& error = *errors_[a * v_.count() + b];
+    if (error.total <= limits_.accepted) return false;
     const double half = limits_.accepted / 2;
     const bool by_u = error.along_u >= error.along_v || error.along_u > half;
     const bool by_v = error.along_v > error.along_u || error.along_v > half;
-    if (by_u && u_.is_shorter(a, limits_.shortest)) return failure("on the shortest interval of u", a, b);
-    if (by_v && v_.is_shorter(b, limits_.shortest)) return failure("on the shortest interval of v", a, b);
+    const bool short_u = by_u && u_.is_shorter(a, limits_.shortest), short_v = by_v && v_.is_shorter(b, limits_.shortest);
+    if (short_u || short_v) {
+      if (error.total <= limits_.tolerance) return false;
+      return failure(short_u ? "on the shortest interval of u" : "on the shortest interval of v", a, b);
+    }
     if (by_u) u_.halve[a] = 1;
     if (by_v) v_.halve[b] = 1;
-    return {};
+    return true;
   }
 
   void halve() {

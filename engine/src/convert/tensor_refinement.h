@@ -18,7 +18,7 @@ using CellErrorFunction = FunctionRef<Result<CellError>(const Domain& cell)>;
 
 struct RefinementLimits {
   double tolerance = 0;             ///< for messages
-  double accepted = 0;              ///< the largest total error of a cell, at most the tolerance
+  double accepted = 0;              ///< the total error to which cells are halved; the tolerance is enough where limits end it
   double shortest = 0;              ///< a cell's length over its largest parameter is at least this
   std::size_t largest_count = 0;    ///< of cells
 };
