@@ -259,8 +259,26 @@ TEST(Fit, RefusesBadInput) {
   refused({.tolerance = 1e-300}, "below");
   refused({.degree = 1}, "degree of the patches is 1");
   refused({.degree = 16}, "degree of the patches is 16");
-  refused({.largest_patch_count = 0}, "count of patches is 0");
+  refused({.largest_patch_count = 0}, "count of patches, 0, is below");
+  refused({.largest_patch_count = 3, .breaks_u = {1}, .breaks_v = {1}}, "count of patches, 3, is below");
   refused({.tolerance = 1e-6, .largest_patch_count = 10}, "not kept by 10 patches, the largest count: the error is");
+}
+
+TEST(Fit, BreakpointsFromTheStart) {
+  // A crease along u = 1/3 and a kink of the tangents along v = 0.7: cubics between them.
+  const auto creased = [](double u, double v) {
+    return Vec3{u, v, std::abs(u - 1.0 / 3) * v * v + std::abs(v - 0.7)};
+  };
+  const ParametricSurface surface = value_of(ParametricSurface::make({.position = creased}));
+  const PatchGrid with = value_of(to_bezier(surface, {.tolerance = 1e-6, .breaks_u = {1.0 / 3}, .breaks_v = {0.7}}));
+  EXPECT_EQ(with.patches().size(), 4u);
+  EXPECT_LE(deviation(surface, with, 8), 1e-15);
+  const PatchGrid without = value_of(to_bezier(surface, {.tolerance = 1e-6}));
+  EXPECT_GT(without.patches().size(), 100u);
+  EXPECT_LE(deviation(surface, without, 8), 1.5e-6);  // the crease lies between samples
+  for (const std::vector<double>& breaks : std::vector<std::vector<double>>{{0}, {1}, {not_a_number}, {-1}, {0.5, 0.5}})
+    expect_refused(to_bezier(surface, {.breaks_v = breaks}), StatusCode::invalid_argument,
+                   static_cast<std::ptrdiff_t>(breaks.size()) - 1, "breakpoint v[");
 }
 
 TEST(Fit, NamesWhatGoesWrongInTheMiddle) {

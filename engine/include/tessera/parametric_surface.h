@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <vector>
 
 #include "tessera/bezier_patch.h"
 #include "tessera/domain.h"
@@ -97,6 +98,9 @@ struct FitOptions {
   std::size_t largest_patch_count = 1u << 16;
   /// By the surface's bounds, where it has them. Else by sampling, which takes fewer patches and more calls.
   bool certify = true;
+  /// Inner parameters at which the surface is not smooth: breakpoints from the start, so that no patch goes across. Finite,
+  /// increasing, within the open range of u (or v).
+  std::vector<double> breaks_u = {}, breaks_v = {};
 };
 
 /// Patches that interpolate the surface at Chebyshev-Lobatto parameters, over breakpoints that are halved where the tolerance

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "base/text.h"
 
@@ -13,7 +14,7 @@ namespace {
 /// The intervals between breakpoints of one direction.
 struct Line {
   std::vector<double> breaks;
-  std::vector<char> halve;  // which to halve next
+  std::vector<char> halve = std::vector<char>(breaks.size() - 1);  // which to halve next
 
   std::size_t count() const { return breaks.size() - 1; }
   std::size_t halved_count() const { return count() + static_cast<std::size_t>(std::count(halve.begin(), halve.end(), 1)); }
@@ -42,8 +43,8 @@ struct Line {
 
 class Refinement {
  public:
-  Refinement(const Domain& domain, const RefinementLimits& limits)
-      : limits_(limits), u_{{domain.u0, domain.u1}, {0}}, v_{{domain.v0, domain.v1}, {0}}, errors_(1) {}
+  Refinement(std::vector<double> u, std::vector<double> v, const RefinementLimits& limits)
+      : limits_(limits), u_{std::move(u)}, v_{std::move(v)}, errors_(u_.count() * v_.count()) {}
 
   Result<TensorBreaks> run(CellErrorFunction error) {
     for (;;) {
@@ -130,8 +131,9 @@ class Refinement {
 
 }  // namespace
 
-Result<TensorBreaks> refine(const Domain& domain, const RefinementLimits& limits, CellErrorFunction error) {
-  return Refinement(domain, limits).run(error);
+Result<TensorBreaks> refine(std::vector<double> u, std::vector<double> v, const RefinementLimits& limits,
+                            CellErrorFunction error) {
+  return Refinement(std::move(u), std::move(v), limits).run(error);
 }
 
 }  // namespace tessera

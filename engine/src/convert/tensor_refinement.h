@@ -28,9 +28,10 @@ struct TensorBreaks {
   double error = 0;                 ///< the largest total
 };
 
-/// Halves all columns and rows with a cell whose error is above what is accepted: in the direction of the larger part,
+/// From breakpoints at the start, the ends of the rectangle among them: halves all columns and rows with a cell whose error is above what is accepted: in the direction of the larger part,
 /// and in the other too if its part is above a half of that. Asks for the error of each cell that arises once: at most four
 /// times as many as there are in the end. Errors: invalid_argument (limits: says what was reached, and where), those of `error`.
-Result<TensorBreaks> refine(const Domain& domain, const RefinementLimits& limits, CellErrorFunction error);
+Result<TensorBreaks> refine(std::vector<double> u, std::vector<double> v, const RefinementLimits& limits,
+                            CellErrorFunction error);
 
 }  // namespace tessera
