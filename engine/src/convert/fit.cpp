@@ -43,7 +43,8 @@ Status check_options(const FitOptions& options) {
     return {StatusCode::invalid_argument, "the degree of the patches is " + std::to_string(options.degree) +
                                               ", it must be 2 to " + std::to_string(max_degree)};
   if (options.largest_patch_count / (options.breaks_u.size() + 1) < options.breaks_v.size() + 1)
-    return {StatusCode::invalid_argument, "the largest count of patches, " + std::to_string(options.largest_patch_count) +
+    return {StatusCode::invalid_argument, "the largest count of patches, " +
+                                              std::to_string(options.largest_patch_count) +
                                               ", is below what the breakpoints make"};
   return {};
 }
@@ -177,8 +178,8 @@ Result<PatchGrid> grid_of(TensorBreaks breaks, Result<std::vector<BezierPatch>> 
 }
 
 /// Nothing where bounds do not suffice.
-std::optional<Result<PatchGrid>> certified_fit(const ParametricSurface& surface, int degree,
-                                               const TensorBreaks& first, const RefinementLimits& limits) {
+std::optional<Result<PatchGrid>> certified_fit(const ParametricSurface& surface, int degree, const TensorBreaks& first,
+                                               const RefinementLimits& limits) {
   const ProvenError proven(surface, degree);
   auto breaks = refine(first.u, first.v, limits, proven);
   if (!breaks) return std::nullopt;
