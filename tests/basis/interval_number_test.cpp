@@ -105,12 +105,32 @@ TEST(IntervalNumber, IsNarrow) {
 
 TEST(IntervalNumber, SaysWhereThereIsNoBound) {
   const IntervalNumber with_zero(-1, 1), none = IntervalNumber::none();
-  for (const IntervalNumber& x :
-       {1 / with_zero, sqrt(with_zero), log(with_zero), log(IntervalNumber(0, 1)), 1 / IntervalNumber(0, 1),
-        tan(IntervalNumber(1, 2)), asin(IntervalNumber(0.5, 1.5)), acos(IntervalNumber(-2, 0)), pow(with_zero, -1),
-        pow(with_zero, 0.5), IntervalNumber(2, 1), IntervalNumber(not_a_number), none + 1, 0 * none, none * none,
-        none / 2, sqrt(none), abs(none), sin(none), cos(none), exp(none), atan(none), tanh(none), pow(none, 2),
-        cosh(none), exp(IntervalNumber(1000)) * IntervalNumber(0, 1)}) {
+  for (const IntervalNumber& x : {1 / with_zero,
+                                  sqrt(with_zero),
+                                  log(with_zero),
+                                  log(IntervalNumber(0, 1)),
+                                  1 / IntervalNumber(0, 1),
+                                  tan(IntervalNumber(1, 2)),
+                                  asin(IntervalNumber(0.5, 1.5)),
+                                  acos(IntervalNumber(-2, 0)),
+                                  pow(with_zero, -1),
+                                  pow(with_zero, 0.5),
+                                  IntervalNumber(2, 1),
+                                  IntervalNumber(not_a_number),
+                                  none + 1,
+                                  0 * none,
+                                  none * none,
+                                  none / 2,
+                                  sqrt(none),
+                                  abs(none),
+                                  sin(none),
+                                  cos(none),
+                                  exp(none),
+                                  atan(none),
+                                  tanh(none),
+                                  pow(none, 2),
+                                  cosh(none),
+                                  exp(IntervalNumber(1000)) * IntervalNumber(0, 1)}) {
     EXPECT_FALSE(x.is_bounded()) << x.lower() << " " << x.upper();
     EXPECT_EQ(x.magnitude(), infinity);
   }

@@ -119,12 +119,16 @@ TEST(Taylor, BoundsHoldTheSeriesWithin) {
   const std::function<Bound(Bound, Bound)> bounds[] = {
       [](Bound u, Bound v) { return exp(-(u * u)) * cos(3 * u * v) / sqrt(2 + v); },
       [](Bound u, Bound v) { return atan(u - 2 * v) + asin(u * v / 2) - tan(u / 2) * log(2 + v); },
-      [](Bound u, Bound v) { return pow(2 + u, 1.5) * sinh(v) + pow(0.91 + u, 0.3) - cosh(u) * tanh(v) + acos(v / 2) * pow(u, 4); },
+      [](Bound u, Bound v) {
+        return pow(2 + u, 1.5) * sinh(v) + pow(0.91 + u, 0.3) - cosh(u) * tanh(v) + acos(v / 2) * pow(u, 4);
+      },
       [](Bound u, Bound v) { return sin(u + v) / (3 + u * u) - abs(2 + u) * pow(1.5 + v, -3); }};
   const std::function<RealSeries(RealSeries, RealSeries)> series[] = {
       [](RealSeries u, RealSeries v) { return exp(-(u * u)) * cos(3 * u * v) / sqrt(2 + v); },
       [](RealSeries u, RealSeries v) { return atan(u - 2 * v) + asin(u * v / 2) - tan(u / 2) * log(2 + v); },
-      [](RealSeries u, RealSeries v) { return pow(2 + u, 1.5) * sinh(v) + pow(0.91 + u, 0.3) - cosh(u) * tanh(v) + acos(v / 2) * pow(u, 4); },
+      [](RealSeries u, RealSeries v) {
+        return pow(2 + u, 1.5) * sinh(v) + pow(0.91 + u, 0.3) - cosh(u) * tanh(v) + acos(v / 2) * pow(u, 4);
+      },
       [](RealSeries u, RealSeries v) { return sin(u + v) / (3 + u * u) - abs(2 + u) * pow(1.5 + v, -3); }};
   Random random(5);
   for (std::size_t f = 0; f < std::size(bounds); ++f)

@@ -12,7 +12,8 @@
 namespace tessera::test {
 namespace {
 
-/// The largest distance at equal parameters, on `count` x `count` points of every patch, off the places that fits sample.
+/// The largest distance at equal parameters, on `count` x `count` points of every patch, off the places that fits
+/// sample.
 double deviation(const ParametricSurface& surface, const PatchGrid& grid, int count) {
   double largest = 0;
   for (std::size_t k = 0; k < grid.patches().size(); ++k) {
@@ -153,7 +154,8 @@ TEST(Fit, ReproducesPolynomials) {
         functions.derivative_bounds = [n](const Domain&, int k) {
           return k > n ? std::array<double, 2>{0, 0} : std::array<double, 2>{100, 100};
         };
-      const auto grid = to_bezier(value_of(ParametricSurface::make(functions, domain)), {.tolerance = 1e-8, .degree = n});
+      const auto grid =
+          to_bezier(value_of(ParametricSurface::make(functions, domain)), {.tolerance = 1e-8, .degree = n});
       ASSERT_TRUE(grid.ok()) << grid.status().message();
       ASSERT_EQ(grid->patches().size(), 1u) << n;
       EXPECT_EQ(grid->fit_error().certified, bounds) << n;
@@ -259,8 +261,24 @@ TEST(Fit, RefusesBadInput) {
   refused({.tolerance = 1e-300}, "below");
   refused({.degree = 1}, "degree of the patches is 1");
   refused({.degree = 16}, "degree of the patches is 16");
-  refused({.largest_patch_count = 0}, "count of patches is 0");
+  refused({.largest_patch_count = 0}, "count of patches, 0, is below");
+  refused({.largest_patch_count = 3, .breaks_u = {1}, .breaks_v = {1}}, "count of patches, 3, is below");
   refused({.tolerance = 1e-6, .largest_patch_count = 10}, "not kept by 10 patches, the largest count: the error is");
+}
+
+TEST(Fit, BreakpointsFromTheStart) {
+  // A crease along u = 1/3 and a kink of the tangents along v = 0.7: cubics between them.
+  const auto creased = [](double u, double v) { return Vec3{u, v, std::abs(u - 1.0 / 3) * v * v + std::abs(v - 0.7)}; };
+  const ParametricSurface surface = value_of(ParametricSurface::make({.position = creased}));
+  const PatchGrid with = value_of(to_bezier(surface, {.tolerance = 1e-6, .breaks_u = {1.0 / 3}, .breaks_v = {0.7}}));
+  EXPECT_EQ(with.patches().size(), 4u);
+  EXPECT_LE(deviation(surface, with, 8), 1e-15);
+  const PatchGrid without = value_of(to_bezier(surface, {.tolerance = 1e-6}));
+  EXPECT_GT(without.patches().size(), 100u);
+  EXPECT_LE(deviation(surface, without, 8), 1.5e-6);  // the crease lies between samples
+  for (const std::vector<double>& breaks : std::vector<std::vector<double>>{{0}, {1}, {not_a_number}, {-1}, {0.5, 0.5}})
+    expect_refused(to_bezier(surface, {.breaks_v = breaks}), StatusCode::invalid_argument,
+                   static_cast<std::ptrdiff_t>(breaks.size()) - 1, "breakpoint v[");
 }
 
 TEST(Fit, NamesWhatGoesWrongInTheMiddle) {
@@ -281,7 +299,8 @@ TEST(Fit, NamesWhatGoesWrongInTheMiddle) {
   expect_refused(to_bezier(value_of(ParametricSurface::make({.position = jump}))), StatusCode::invalid_argument, -1,
                  "on the shortest interval of u: the error is");
   const auto huge = [](double u, double v) { return Vec3{1e300 * u, v, -1e300 * u * v}; };
-  expect_refused(to_bezier(value_of(ParametricSurface::make({.position = huge}))), StatusCode::non_finite, -1, "too large");
+  expect_refused(to_bezier(value_of(ParametricSurface::make({.position = huge}))), StatusCode::non_finite, -1,
+                 "too large");
 }
 
 }  // namespace

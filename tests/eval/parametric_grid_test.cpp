@@ -90,8 +90,8 @@ TEST(ParametricGrid, RefusesBadInput) {
 
 TEST(ParametricGrid, TheFirstFailureIsTold) {
   const auto fails = [](double u, double v) { return Vec3{u, v, u >= 0.5 && v >= 0.5 ? not_a_number : 1e300}; };
-  const ParametricSurface surface = value_of(ParametricSurface::make(
-      {.position = [&](double u, double v) { return u + v == 2 ? Vec3{} : fails(u, v); }}));
+  const ParametricSurface surface = value_of(
+      ParametricSurface::make({.position = [&](double u, double v) { return u + v == 2 ? Vec3{} : fails(u, v); }}));
   const auto u = parameters(64, 0, 1), v = parameters(64, 0, 1);
   std::vector<double> memory(3 * u.size() * v.size());
   for (const Calls calls : {Calls::one_thread, Calls::concurrent}) {

@@ -1,4 +1,5 @@
-// Functions of the caller's: what they return, what is refused, and derivatives by series, by differences and over discs.
+// Functions of the caller's: what they return, what is refused, and derivatives by series, by differences and over
+// discs.
 
 #include "tessera/parametric_surface.h"
 
@@ -76,7 +77,7 @@ TEST(ParametricSurface, SeriesGiveDerivatives) {
   for (int k = 0; k < 50; ++k) {
     const double u = uniform(random, 0, 2 * pi), v = uniform(random, 0, 2 * pi);
     const double c = std::cos(u), s = std::sin(u), r = 3 + std::cos(v), a = -std::sin(v), b = -std::cos(v);
-    const SurfaceJet expected{{r * c, r * s, std::sin(v)}, {-r * s, r * c, 0},  {a * c, a * s, std::cos(v)},
+    const SurfaceJet expected{{r * c, r * s, std::sin(v)}, {-r * s, r * c, 0}, {a * c, a * s, std::cos(v)},
                               {-r * c, -r * s, 0},         {-a * s, a * c, 0}, {b * c, b * s, -std::sin(v)}};
     expect_near(value_of(evaluate_jet(torus, u, v)), expected, 1e-15, 1e-15);
   }
@@ -202,14 +203,18 @@ TEST(ParametricSurface, RefusesBadInput) {
   expect_refused(Surface::make({.position = flat}, {0, 0, 0, 1}), StatusCode::invalid_argument, -1, "along u, [0, 0]");
   expect_refused(Surface::make({.position = flat}, {0, 1, 2, 1}), StatusCode::invalid_argument, -1, "along v, [2, 1]");
   expect_refused(Surface::make({.position = flat}, {0, not_a_number, 0, 1}), StatusCode::non_finite, -1, "along u");
-  expect_refused(Surface::make({.position = flat}, {-1e308, 1.5e308, 0, 1}), StatusCode::invalid_argument, -1, "too long");
+  expect_refused(Surface::make({.position = flat}, {-1e308, 1.5e308, 0, 1}), StatusCode::invalid_argument, -1,
+                 "too long");
   const auto log = [](double u, double v) { return Vec3{u, v, std::log(u)}; };
   expect_refused(Surface::make({.position = log}), StatusCode::non_finite, -1, "(u, v) = (0, 0) is (0, 0, -inf)");
   for (const double radius : {0.0, -1.0, 1e-320})
-    expect_refused(Surface::over_disc({.position = flat}, {.radius = radius}), StatusCode::invalid_argument, -1, "radius");
-  expect_refused(Surface::over_disc({.position = flat}, {.x = 1, .radius = 1e-16}), StatusCode::invalid_argument, -1, "lost");
+    expect_refused(Surface::over_disc({.position = flat}, {.radius = radius}), StatusCode::invalid_argument, -1,
+                   "radius");
+  expect_refused(Surface::over_disc({.position = flat}, {.x = 1, .radius = 1e-16}), StatusCode::invalid_argument, -1,
+                 "lost");
   expect_refused(Surface::over_disc({.position = flat}, {.x = infinity}), StatusCode::non_finite, -1, "finite");
-  expect_refused(Surface::over_disc({.position = flat}, {.radius = not_a_number}), StatusCode::non_finite, -1, "finite");
+  expect_refused(Surface::over_disc({.position = flat}, {.radius = not_a_number}), StatusCode::non_finite, -1,
+                 "finite");
 }
 
 TEST(ParametricSurface, FunctionsThatFailBecomeErrors) {
@@ -226,12 +231,11 @@ TEST(ParametricSurface, FunctionsThatFailBecomeErrors) {
   expect_refused(surface.position(0.75, 1), StatusCode::non_finite, -1, "(0.75, 1) is (0.75, 1, nan)");
   expect_refused(evaluate_jet(surface, 0.5, 0.1), StatusCode::invalid_argument, -1, "half");
   // A root's derivative at its zero: refused by name, not handed out.
-  const ParametricSurface root = value_of(generic_surface(
-      [](auto u, auto v) {
-        using std::sqrt;
-        using T = decltype(u);
-        return std::array<T, 3>{u, v, sqrt(u)};
-      }));
+  const ParametricSurface root = value_of(generic_surface([](auto u, auto v) {
+    using std::sqrt;
+    using T = decltype(u);
+    return std::array<T, 3>{u, v, sqrt(u)};
+  }));
   expect_refused(evaluate_jet(root, 0, 0.5), StatusCode::non_finite, -1, "derivative by u at (u, v) = (0, 0.5)");
   EXPECT_TRUE(root.position(0, 0.5).ok());
 }

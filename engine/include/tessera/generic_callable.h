@@ -1,6 +1,6 @@
 #pragma once
-// Curves and surfaces from one expression over any type of number: positions in double, derivatives and proven bounds of
-// them by the same expression over Taylor series.
+// Curves and surfaces from one expression over any type of number: positions in double, derivatives and proven bounds
+// of them by the same expression over Taylor series.
 //
 //   const auto torus = tessera::generic_surface([](auto u, auto v) {
 //     using std::cos, std::sin;                       // those of series are found by their argument
@@ -84,9 +84,7 @@ SurfaceFunctions surface_functions(const F& f) {
     const std::array<double, 3> p = f(u, v);
     return Vec3{p[0], p[1], p[2]};
   };
-  functions.jet = [f](double u, double v) {
-    return surface_jet<Dual>(f(Dual::variable(u, 0), Dual::variable(v, 1)));
-  };
+  functions.jet = [f](double u, double v) { return surface_jet<Dual>(f(Dual::variable(u, 0), Dual::variable(v, 1))); };
   functions.derivative_bounds = [f](const Domain& part, int k) {
     const IntervalNumber u(part.u0, part.u1), v(part.v0, part.v1);
     const auto along_u = [&](auto order) {
@@ -104,15 +102,16 @@ SurfaceFunctions surface_functions(const F& f) {
 
 }  // namespace generic
 
-/// c(t) = f(t). f takes T and returns std::array<T, 3>, for double, Taylor<double, 2, 1> and Taylor<IntervalNumber, N, 1>. It uses
-/// + - * / and the functions of taylor.h, and no branches; constants are doubles. Errors: those of ParametricCurve::make.
+/// c(t) = f(t). f takes T and returns std::array<T, 3>, for double, Taylor<double, 2, 1> and Taylor<IntervalNumber, N,
+/// 1>. It uses + - * / and the functions of taylor.h, and no branches; constants are doubles. Errors: those of
+/// ParametricCurve::make.
 template <class F>
 Result<ParametricCurve> generic_curve(const F& f, const Interval& domain = {}) {
   return ParametricCurve::make(generic::curve_functions(f), domain);
 }
 
-/// p(u,v) = f(u,v), f as above with two arguments, for double, Taylor<double, 2> and Taylor<IntervalNumber, N, 1>. Errors: those of
-/// ParametricSurface::make.
+/// p(u,v) = f(u,v), f as above with two arguments, for double, Taylor<double, 2> and Taylor<IntervalNumber, N, 1>.
+/// Errors: those of ParametricSurface::make.
 template <class F>
 Result<ParametricSurface> generic_surface(const F& f, const Domain& domain = {}) {
   return ParametricSurface::make(generic::surface_functions(f), domain);

@@ -9,11 +9,11 @@
 namespace tessera {
 
 /// All real numbers from lower() to upper(), or, where an operation is not defined or not bounded for all of them (the
-/// reciprocal of an interval with 0, the root of one with negative numbers), "no bound": both ends NaN, and so is all that
-/// is computed of it. Every operation's result holds that of every choice of numbers, whatever the rounding: the basic
-/// operations and sqrt go a double or two outwards (Moore, Kearfott and Cloud, Introduction to Interval Analysis, 2009);
-/// elementary functions go four or more, twice what the C library's documented errors need. There is no order: an expression with
-/// branches does not compile.
+/// reciprocal of an interval with 0, the root of one with negative numbers), "no bound": both ends NaN, and so is all
+/// that is computed of it. Every operation's result holds that of every choice of numbers, whatever the rounding: the
+/// basic operations and sqrt go a double or two outwards (Moore, Kearfott and Cloud, Introduction to Interval Analysis,
+/// 2009); elementary functions go four or more, twice what the C library's documented errors need. There is no order:
+/// an expression with branches does not compile.
 class IntervalNumber {
  public:
   IntervalNumber(double value = 0) : lower_(value), upper_(value) {}
@@ -139,7 +139,8 @@ class IntervalNumber {
     if (std::isnan(a.lower_)) return a;
     return {std::max(a.lower_, low), std::min(a.upper_, high)};
   }
-  /// Whether some phase + k period may lie within; the slack is far above the rounding of the quotients below 2^20 turns.
+  /// Whether some phase + k period may lie within; the slack is far above the rounding of the quotients below 2^20
+  /// turns.
   static bool holds_multiple(const IntervalNumber& a, double phase, double period) {
     if (!(a.magnitude() < 1e6)) return true;
     return std::floor((a.upper_ - phase) / period + 1e-8) >= std::ceil((a.lower_ - phase) / period - 1e-8);

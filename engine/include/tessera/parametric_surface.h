@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <vector>
 
 #include "tessera/bezier_patch.h"
 #include "tessera/domain.h"
@@ -15,7 +16,8 @@ namespace tessera {
 
 class PatchGrid;  // tessera/convert.h
 
-/// What the caller knows of a surface p(u,v). What functions throw becomes a Status.
+/// What the caller knows of a surface p(u,v). Functions are called from one thread at a time, or from several if const
+/// calls on the surface are; what they throw becomes a Status.
 struct SurfaceFunctions {
   std::function<Vec3(double u, double v)> position;
   /// Position and derivatives to the second order; by differences if empty.
@@ -31,16 +33,18 @@ struct Disc {
 };
 
 /// The polar map of a disc: x = x0 + s rho cos(theta), y = y0 + s rho sin(theta), rho from 0 to the radius R and theta
-/// from 0 to 2 pi. The factor s is a little below 1, so that the points lie within the disc also after rounding: the rim
-/// is short of R by at most 6 units of 2^-52 of R and two of |x0| + |y0|, and R*R - (x - x0)*(x - x0) - (y - y0)*(y - y0)
-/// in doubles, in any order, is never negative. The centre is one point for all theta, and theta = 2 pi is theta = 0, by ==.
+/// from 0 to 2 pi. The factor s is a little below 1, so that the points lie within the disc also after rounding: the
+/// rim is short of R by at most 6 units of 2^-52 of R and two of |x0| + |y0|, and R*R - dx*dx - dy*dy with dx = x - x0,
+/// dy = y - y0, in doubles and in any order, is never negative. (The root of it at the rim is noise below 1e-7 R.) The
+/// centre is one point for all theta, and theta = 2 pi is theta = 0, by ==.
 class PolarMap {
  public:
-  /// Errors: non_finite (the disc, or its box), invalid_argument (a radius that is not positive, or lost beside the centre).
+  /// Errors: non_finite (the disc, or its box), invalid_argument (a radius that is not positive, or lost beside the
+  /// centre).
   static Result<PolarMap> make(const Disc& disc);
   Domain domain() const;
   const Disc& disc() const { return disc_; }
-  double scale() const { return scale_; }                        ///< s
+  double scale() const { return scale_; }                            ///< s
   std::array<double, 2> operator()(double rho, double theta) const;  ///< x and y
   /// By rho and theta, from position and derivatives by x and y at the same point.
   SurfaceJet chain_rule(const SurfaceJet& by_xy, double rho, double theta) const;
@@ -60,8 +64,8 @@ class ParametricSurface {
   static Result<ParametricSurface> make(SurfaceFunctions functions, const Domain& domain = {});
   /// p(x,y) over a disc by its polar map: u is rho, v theta. The edge u = 0 is collapsed, v0 and v1 are one curve.
   /// Derivatives given are by x and y; those of the map are put in. Bounds are left out, for those of pure derivatives
-  /// say nothing of the mixed ones that polar lines need (generic_surface_over_disc() finds them). Errors: as above, and
-  /// those of PolarMap.
+  /// say nothing of the mixed ones that polar lines need (generic_surface_over_disc() finds them). Errors: as above,
+  /// and those of PolarMap.
   static Result<ParametricSurface> over_disc(SurfaceFunctions functions, const Disc& disc = {});
 
   const Domain& domain() const { return domain_; }
@@ -97,17 +101,21 @@ struct FitOptions {
   std::size_t largest_patch_count = 1u << 16;
   /// By the surface's bounds, where it has them. Else by sampling, which takes fewer patches and more calls.
   bool certify = true;
+  /// Inner parameters at which the surface is not smooth: breakpoints from the start, so that no patch goes across.
+  /// Finite, increasing, within the open range of u (or v).
+  std::vector<double> breaks_u = {}, breaks_v = {};
 };
 
-/// Patches that interpolate the surface at Chebyshev-Lobatto parameters, over breakpoints that are halved where the tolerance
-/// is not kept: towards a border where derivatives are infinite they get as close as it needs. Only positions are asked for.
-/// Neighbours share their borders by ==, and edges on which all positions are equal by == are collapsed.
+/// Patches that interpolate the surface at Chebyshev-Lobatto parameters, over breakpoints that are halved where the
+/// tolerance is not kept: towards a border where derivatives are infinite they get as close as it needs. Only positions
+/// are asked for. Neighbours share their borders by ==, and edges on which all positions are equal by == are collapsed.
 /// PatchGrid::fit_error() is a proven bound where the surface has bounds on its derivatives that suffice, taking the
-/// function's values as exact; then the function is called once for each of (n cu + 1)(n cv + 1) points of cu x cv patches
-/// of degree n. Else it is the largest deviation found at (3 n + 1)^2 points of every patch, with about fifteen to forty
-/// times as many calls. What is narrower than the gaps between these points can be missed: a caller who knows of
-/// such features fits sub-rectangles. Errors: invalid_argument (options; a tolerance below what rounding leaves; one that is
-/// not kept by the largest count of patches, or at a jump: says what was reached, and where), and those of position().
+/// function's values as exact; then the function is called once for each of (n cu + 1)(n cv + 1) points of cu x cv
+/// patches of degree n. Else it is the largest deviation found at (3 n + 1)^2 points of every patch, with about fifteen
+/// to forty times as many calls. What is narrower than the gaps between these points can be missed: a caller who knows
+/// of such features fits sub-rectangles. Errors: invalid_argument (options; a tolerance below what rounding leaves; one
+/// that is not kept by the largest count of patches, or at a jump: says what was reached, and where), and those of
+/// position().
 Result<PatchGrid> to_bezier(const ParametricSurface& surface, const FitOptions& options = {});
 
 }  // namespace tessera

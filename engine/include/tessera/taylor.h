@@ -13,10 +13,10 @@ namespace tessera {
 
 /// sum c_ij (u - u0)^i (v - v0)^j, i + j <= Order, of a function of one or two Variables, c_ij being its derivative of
 /// order (i,j) at (u0,v0) over i! j!. What is computed of series are the series of what is computed (Griewank and
-/// Walther, Evaluating Derivatives, 2nd ed., ch. 13). Scalar is double or, for bounds of the coefficients over all (u0,v0) of
-/// a rectangle, IntervalNumber. Where a derivative is infinite (sqrt at 0) or not defined (abs at 0), coefficients
-/// from its order on are infinite or NaN, or without bound; the value stays. There is no order: an expression with
-/// branches does not compile.
+/// Walther, Evaluating Derivatives, 2nd ed., ch. 13). Scalar is double or, for bounds of the coefficients over all
+/// (u0,v0) of a rectangle, IntervalNumber. Where a derivative is infinite (sqrt at 0) or not defined (abs at 0),
+/// coefficients from its order on are infinite or NaN, or without bound; the value stays. There is no order: an
+/// expression with branches does not compile.
 template <class Scalar, int Order, int Variables = 2>
 class Taylor {
   static_assert(Order >= 1 && (Variables == 1 || Variables == 2));
@@ -27,9 +27,7 @@ class Taylor {
   Taylor() : Taylor(0.0) {}
   Taylor(double constant) : Taylor(Scalar(constant), Filled{}) {}
   /// A constant.
-  explicit Taylor(const Scalar& constant)
-    requires(!std::is_same_v<Scalar, double>)
-      : Taylor(constant, Filled{}) {}
+  explicit Taylor(const Scalar& constant) requires(!std::is_same_v<Scalar, double>) : Taylor(constant, Filled{}) {}
   /// The variable u (0) or v (1) at `value`.
   static Taylor variable(const Scalar& value, int which = 0) {
     Taylor t(value, Filled{});

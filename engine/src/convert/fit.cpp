@@ -21,6 +21,20 @@ namespace {
 /// The share of the tolerance for interpolation; the rest is for rounding, and for what lies between samples.
 constexpr double accepted_share = 0.8;
 
+/// The range's ends and, between them, the breakpoints asked for.
+Result<std::vector<double>> first_breaks(double from, std::span<const double> inner, double to, const char* direction) {
+  std::vector<double> breaks{from};
+  breaks.insert(breaks.end(), inner.begin(), inner.end());
+  breaks.push_back(to);
+  for (std::size_t k = 0; k < inner.size(); ++k)
+    if (!(inner[k] > breaks[k] && inner[k] < to))
+      return Status(StatusCode::invalid_argument,
+                    std::string("breakpoint ") + direction + "[" + std::to_string(k) + "] = " + text(inner[k]) +
+                        " is not above the one before it and within the domain",
+                    static_cast<std::ptrdiff_t>(k));
+  return breaks;
+}
+
 Status check_options(const FitOptions& options) {
   if (!(options.tolerance >= 0) || !std::isfinite(options.tolerance))
     return {StatusCode::invalid_argument,
@@ -28,8 +42,10 @@ Status check_options(const FitOptions& options) {
   if (options.degree < 2 || options.degree > max_degree)
     return {StatusCode::invalid_argument, "the degree of the patches is " + std::to_string(options.degree) +
                                               ", it must be 2 to " + std::to_string(max_degree)};
-  if (options.largest_patch_count == 0)
-    return {StatusCode::invalid_argument, "the largest count of patches is 0"};
+  if (options.largest_patch_count / (options.breaks_u.size() + 1) < options.breaks_v.size() + 1)
+    return {StatusCode::invalid_argument, "the largest count of patches, " +
+                                              std::to_string(options.largest_patch_count) +
+                                              ", is below what the breakpoints make"};
   return {};
 }
 
@@ -162,10 +178,10 @@ Result<PatchGrid> grid_of(TensorBreaks breaks, Result<std::vector<BezierPatch>> 
 }
 
 /// Nothing where bounds do not suffice.
-std::optional<Result<PatchGrid>> certified_fit(const ParametricSurface& surface, int degree,
+std::optional<Result<PatchGrid>> certified_fit(const ParametricSurface& surface, int degree, const TensorBreaks& first,
                                                const RefinementLimits& limits) {
   const ProvenError proven(surface, degree);
-  auto breaks = refine(surface.domain(), limits, proven);
+  auto breaks = refine(first.u, first.v, limits, proven);
   if (!breaks) return std::nullopt;
   Interpolation interpolation(surface, degree, *breaks);
   auto patches = interpolation.run();
@@ -174,9 +190,10 @@ std::optional<Result<PatchGrid>> certified_fit(const ParametricSurface& surface,
   return grid_of(*std::move(breaks), std::move(patches), {distance, true});
 }
 
-Result<PatchGrid> sampled_fit(const ParametricSurface& surface, int degree, const RefinementLimits& limits) {
+Result<PatchGrid> sampled_fit(const ParametricSurface& surface, int degree, const TensorBreaks& first,
+                              const RefinementLimits& limits) {
   SampledError sampled(surface, degree);
-  auto breaks = refine(surface.domain(), limits, sampled);
+  auto breaks = refine(first.u, first.v, limits, sampled);
   if (!breaks) return breaks.status();
   Interpolation interpolation(surface, degree, *breaks);
   auto patches = interpolation.run();
@@ -189,6 +206,12 @@ Result<PatchGrid> sampled_fit(const ParametricSurface& surface, int degree, cons
 Result<PatchGrid> to_bezier(const ParametricSurface& surface, const FitOptions& options) {
   return guarded([&]() -> Result<PatchGrid> {
     if (Status status = check_options(options); !status.ok()) return status;
+    const Domain& domain = surface.domain();
+    const auto breaks_u = first_breaks(domain.u0, options.breaks_u, domain.u1, "u");
+    if (!breaks_u) return breaks_u.status();
+    const auto breaks_v = first_breaks(domain.v0, options.breaks_v, domain.v1, "v");
+    if (!breaks_v) return breaks_v.status();
+    const TensorBreaks first{*breaks_u, *breaks_v};
     const auto box = coarse_box(surface);
     if (!box) return box.status();
     const auto tolerance = tolerance_of(*box, options.tolerance);
@@ -197,8 +220,8 @@ Result<PatchGrid> to_bezier(const ParametricSurface& surface, const FitOptions& 
     const double shortest = 0x1p-49 / lobatto_parameters(options.degree)[1];
     const RefinementLimits limits{*tolerance, accepted_share * *tolerance, shortest, options.largest_patch_count};
     if (surface.has_bounds() && options.certify)
-      if (auto fit = certified_fit(surface, options.degree, limits)) return *std::move(fit);
-    return sampled_fit(surface, options.degree, limits);
+      if (auto fit = certified_fit(surface, options.degree, first, limits)) return *std::move(fit);
+    return sampled_fit(surface, options.degree, first, limits);
   });
 }
 

@@ -1,9 +1,10 @@
 #pragma once
-// How far tensor-product interpolation at Chebyshev-Lobatto parameters is from a surface on a cell: by bounds of derivatives, or
-// by sampling.
+// How far tensor-product interpolation at Chebyshev-Lobatto parameters is from a surface on a cell: by bounds of
+// derivatives, or by sampling.
 //
-// With Iu, Iv the interpolation in u and v, f - Iu Iv f = (f - Iu f) + Iu (f - Iv f), and the same with u and v exchanged, so
-// |f - Iu Iv f| <= eu + ev + (L - 1) min(eu, ev), where eu bounds |f - Iu f|, ev bounds |f - Iv f| and L is the Lebesgue constant.
+// With Iu, Iv the interpolation in u and v, f - Iu Iv f = (f - Iu f) + Iu (f - Iv f), and the same with u and v
+// exchanged, so |f - Iu Iv f| <= eu + ev + (L - 1) min(eu, ev), where eu bounds |f - Iu f|, ev bounds |f - Iv f| and L
+// is the Lebesgue constant.
 
 #include <array>
 #include <vector>
@@ -13,8 +14,8 @@
 
 namespace tessera {
 
-/// Proven, by bounds of the derivatives of order n + 1. Where there are none, the cell should be halved while it is longer
-/// than a 64th of the domain; then the error is `unsupported`.
+/// Proven, by bounds of the derivatives of order n + 1. Where there are none, the cell should be halved while it is
+/// longer than a 64th of the domain; then the error is `unsupported`.
 class ProvenError {
  public:
   ProvenError(const ParametricSurface& surface, int degree) : surface_(surface), degree_(degree) {}
@@ -42,10 +43,10 @@ class SampledError {
   const Vec3& value(std::size_t a, std::size_t b) const { return values_[a * size() + b]; }
 
   const ParametricSurface& surface_;
-  std::size_t nodes_;                   // n + 1; node i is parameter 3 i
-  std::vector<double> parameters_;      // in [0,1]
-  std::vector<double> basis_;           // [parameter][node]: Lagrange's polynomials
-  Grid values_, along_u_;               // f and Iu f, [a][b]
+  std::size_t nodes_;               // n + 1; node i is parameter 3 i
+  std::vector<double> parameters_;  // in [0,1]
+  std::vector<double> basis_;       // [parameter][node]: Lagrange's polynomials
+  Grid values_, along_u_;           // f and Iu f, [a][b]
 };
 
 }  // namespace tessera

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "base/text.h"
 
@@ -13,10 +14,12 @@ namespace {
 /// The intervals between breakpoints of one direction.
 struct Line {
   std::vector<double> breaks;
-  std::vector<char> halve;  // which to halve next
+  std::vector<char> halve = std::vector<char>(breaks.size() - 1);  // which to halve next
 
   std::size_t count() const { return breaks.size() - 1; }
-  std::size_t halved_count() const { return count() + static_cast<std::size_t>(std::count(halve.begin(), halve.end(), 1)); }
+  std::size_t halved_count() const {
+    return count() + static_cast<std::size_t>(std::count(halve.begin(), halve.end(), 1));
+  }
   bool is_shorter(std::size_t k, double shortest) const {
     const double a = breaks[k], b = breaks[k + 1];
     return (b - a) / 2 < shortest * std::max(std::abs(a), std::abs(b)) || !std::isnormal((b - a) / 2);
@@ -42,8 +45,8 @@ struct Line {
 
 class Refinement {
  public:
-  Refinement(const Domain& domain, const RefinementLimits& limits)
-      : limits_(limits), u_{{domain.u0, domain.u1}, {0}}, v_{{domain.v0, domain.v1}, {0}}, errors_(1) {}
+  Refinement(std::vector<double> u, std::vector<double> v, const RefinementLimits& limits)
+      : limits_(limits), u_{std::move(u)}, v_{std::move(v)}, errors_(u_.count() * v_.count()) {}
 
   Result<TensorBreaks> run(CellErrorFunction error) {
     for (;;) {
@@ -90,7 +93,8 @@ class Refinement {
     const double half = limits_.accepted / 2;
     const bool by_u = error.along_u >= error.along_v || error.along_u > half;
     const bool by_v = error.along_v > error.along_u || error.along_v > half;
-    const bool short_u = by_u && u_.is_shorter(a, limits_.shortest), short_v = by_v && v_.is_shorter(b, limits_.shortest);
+    const bool short_u = by_u && u_.is_shorter(a, limits_.shortest),
+               short_v = by_v && v_.is_shorter(b, limits_.shortest);
     if (short_u || short_v) {
       if (error.total <= limits_.tolerance) return false;
       return failure(short_u ? "on the shortest interval of u" : "on the shortest interval of v", a, b);
@@ -117,10 +121,10 @@ class Refinement {
 
   Status failure(const std::string& limit, std::size_t a, std::size_t b) const {
     const Domain d = cell(a, b);
-    return {StatusCode::invalid_argument,
-            "the tolerance " + text(limits_.tolerance) + " is not kept " + limit + ": the error is " +
-                text(errors_[a * v_.count() + b]->total) + " on [" + text(d.u0) + ", " + text(d.u1) + "] x [" +
-                text(d.v0) + ", " + text(d.v1) + "]"};
+    return {StatusCode::invalid_argument, "the tolerance " + text(limits_.tolerance) + " is not kept " + limit +
+                                              ": the error is " + text(errors_[a * v_.count() + b]->total) + " on [" +
+                                              text(d.u0) + ", " + text(d.u1) + "] x [" + text(d.v0) + ", " +
+                                              text(d.v1) + "]"};
   }
 
   const RefinementLimits& limits_;
@@ -130,8 +134,9 @@ class Refinement {
 
 }  // namespace
 
-Result<TensorBreaks> refine(const Domain& domain, const RefinementLimits& limits, CellErrorFunction error) {
-  return Refinement(domain, limits).run(error);
+Result<TensorBreaks> refine(std::vector<double> u, std::vector<double> v, const RefinementLimits& limits,
+                            CellErrorFunction error) {
+  return Refinement(std::move(u), std::move(v), limits).run(error);
 }
 
 }  // namespace tessera

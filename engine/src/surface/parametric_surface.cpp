@@ -21,15 +21,17 @@ auto place_at(double u, double v) {
 
 Status check_vector(const Vec3& p, const char* what, double u, double v) {
   if (is_finite(p)) return {};
-  return {StatusCode::non_finite, what + at(u, v) + " is (" + text(p.x) + ", " + text(p.y) + ", " + text(p.z) +
-                                      "), it must be finite"};
+  return {StatusCode::non_finite,
+          what + at(u, v) + " is (" + text(p.x) + ", " + text(p.y) + ", " + text(p.z) + "), it must be finite"};
 }
 
 Status check_jet(const SurfaceJet& jet, double u, double v) {
-  const std::pair<const Vec3*, const char*> vectors[] = {
-      {&jet.position, "the surface"},         {&jet.du, "the surface's derivative by u"},
-      {&jet.dv, "the surface's derivative by v"},  {&jet.duu, "the surface's second derivative by u"},
-      {&jet.duv, "the surface's mixed derivative"}, {&jet.dvv, "the surface's second derivative by v"}};
+  const std::pair<const Vec3*, const char*> vectors[] = {{&jet.position, "the surface"},
+                                                         {&jet.du, "the surface's derivative by u"},
+                                                         {&jet.dv, "the surface's derivative by v"},
+                                                         {&jet.duu, "the surface's second derivative by u"},
+                                                         {&jet.duv, "the surface's mixed derivative"},
+                                                         {&jet.dvv, "the surface's second derivative by v"}};
   for (const auto& [vector, what] : vectors)
     if (Status status = check_vector(*vector, what, u, v); !status.ok()) return status;
   return {};

@@ -29,13 +29,14 @@ Result<PolarMap> PolarMap::make(const Disc& disc) {
       return Status(StatusCode::non_finite, "the disc of radius " + text(disc.radius) + " about (" + text(disc.x) +
                                                 ", " + text(disc.y) + ") must be finite");
     if (!(disc.radius > 0) || !std::isfinite(1 / disc.radius))
-      return Status(StatusCode::invalid_argument, "the disc's radius is " + text(disc.radius) + ", it must be positive");
+      return Status(StatusCode::invalid_argument,
+                    "the disc's radius is " + text(disc.radius) + ", it must be positive");
     PolarMap map;
     map.disc_ = disc;
     map.scale_ = 1 - 0x1p-50 - 0x1p-52 * ((std::abs(disc.x) + std::abs(disc.y)) / disc.radius);
     if (!(map.scale_ > 0.5))
-      return Status(StatusCode::invalid_argument, "the disc's radius " + text(disc.radius) +
-                                                      " is lost in the rounding of its centre");
+      return Status(StatusCode::invalid_argument,
+                    "the disc's radius " + text(disc.radius) + " is lost in the rounding of its centre");
     return map;
   });
 }
