@@ -52,6 +52,8 @@ TEST(Affine, NothingIsStretchedBeyondTheBoundOfTheNorm) {
   const Affine rigid = Affine::translated({1, 2, 3}) * Affine::rotated({1, 2, 3}, 0.7);
   EXPECT_NEAR(rigid.norm_bound(), 1, 8 * double_unit);
   EXPECT_DOUBLE_EQ(Affine::scaled({2, -3, 0.5}).norm_bound(), 3);
+  EXPECT_DOUBLE_EQ(Affine::scaled({1e300, 1e-300, 1}).norm_bound(), 1e300);
+  EXPECT_EQ(Affine::scaled({}).norm_bound(), 0);
 }
 
 }  // namespace

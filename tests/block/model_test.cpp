@@ -17,7 +17,9 @@
 namespace tessera::test {
 namespace {
 
-Curve line(const Vec3& from, const Vec3& to) { return value_of(Curve::bezier(std::vector{from, to})); }
+Curve line(const Vec3& from, const Vec3& to, const Interval& interval = {}) {
+  return value_of(Curve::bezier(std::vector{from, to}, {}, interval));
+}
 
 BezierPatch unit_square() {
   return value_of(BezierPatch::polynomial(1, 1, std::vector<Vec3>{{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}}));
@@ -41,13 +43,14 @@ std::vector<Surface> exact_surfaces() {
   Random random(21);
   const auto knots = [&](std::size_t count) { return random_knots(random, count); };
   const std::vector<double> u = knots(3), v = knots(4);
+  const Curve wave = random_curve(random, 3, {}, false);
   return {random_rational(random, 3, 2),
           value_of(TensorPatch::make(value_of(BasisMatrix::catmull_rom()), value_of(BasisMatrix::power(2)),
                                      random_cloud(random, 12), {-1, 1, 0, 3})),
           random_surface(random, 3, 2, {}, {.multiple = true}, true),
           random_hermite(random, {1, 3, -1, 0}),
           value_of(HermiteNetwork::on_knots(u, v, random_nodes(random, 3, 4))),
-          value_of(RuledSurface::make(random_curve(random, 3, {}, false), line({0, 0, 0}, {1, 0, 0}))),
+          value_of(RuledSurface::make(wave, line({0, 0, 0}, {1, 0, 0}, wave.domain()))),
           value_of(CoonsPatch::make({line({0, 0, 0}, {1, 0, 0}), line({0, 1, 0}, {1, 1, 2}), line({0, 0, 0}, {0, 1, 0}),
                                      line({1, 0, 0}, {1, 1, 2})})),
           value_of(ExplicitPolynomial::make(2, 1, std::vector<double>{1, 2, 3, 4, 5, 6}, {-1, 2, 0, 2})),
@@ -132,7 +135,8 @@ TEST(Model, ErrorsNameTheSurface) {
   model.surfaces[1].placement.translation.y = not_a_number;
   expect_refused(make_patch_set(model), StatusCode::non_finite, 1, "surface 1 (rim): an affine map must be finite");
   model.surfaces[1].placement = Affine::scaled({1e200, 1e200, 1e200});
-  expect_refused(make_patch_set(model), StatusCode::non_finite, 0, "surface 0 (floor): patch 0: ");
+  expect_refused(make_patch_set(model), StatusCode::non_finite, 0,
+                 "surface 0 (floor): patch 0: ");  // far from the origin
   model.surfaces[1].placement = Affine::scaled({1e308, 1e308, 1e308}) * Affine::scaled({10, 10, 10});
   expect_refused(make_patch_set(model), StatusCode::non_finite, 1, "surface 1 (rim): ");
   expect_refused(make_patch_set(Model{}), StatusCode::invalid_argument, Status::no_index, "at least one patch");

@@ -29,11 +29,16 @@ struct Affine {
   Vec3 point(const Vec3& p) const { return vector(p) + translation; }
   /// A bound of |vector(d)| / |d|, sharp where the columns are orthogonal: the root of the largest row sum of M^T M.
   double norm_bound() const {
+    const double scale = std::max({max_abs(columns[0]), max_abs(columns[1]), max_abs(columns[2])});
+    if (!(scale > 0)) return 0;
+    const auto scaled = [scale](const Vec3& a) { return Vec3{a.x / scale, a.y / scale, a.z / scale}; };  // squares fit
     double largest = 0;
-    for (const Vec3& a : columns)
-      largest =
-          std::max(largest, std::abs(dot(a, columns[0])) + std::abs(dot(a, columns[1])) + std::abs(dot(a, columns[2])));
-    return std::sqrt(largest);
+    for (const Vec3& a : columns) {
+      double row = 0;
+      for (const Vec3& b : columns) row += std::abs(dot(scaled(a), scaled(b)));
+      largest = std::max(largest, row);
+    }
+    return scale * std::sqrt(largest);
   }
   double determinant() const { return dot(columns[0], cross(columns[1], columns[2])); }
 
