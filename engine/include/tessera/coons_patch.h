@@ -12,21 +12,27 @@
 
 namespace tessera {
 
-/// The two blending functions of a direction, on [0,1]: f1 + f2 = 1, f1(0) = 1, f1(1) = 0. Immutable but for assignment.
+/// The two blending functions of a direction, on [0,1]: f1 + f2 = 1, f1(0) = 1, f1(1) = 0. Immutable but for
+/// assignment.
 class Blend {
  public:
   static Blend linear();  ///< 1 - t, t: bilinearly blended patches
   static Blend cubic();   ///< H0, H3: partially bicubic ones
-  /// Power coefficients, lowest first, of f1 and f2; degrees 1 to max_degree. The conditions must hold to 1e-12 (of the largest
-  /// coefficient). Errors: unsupported_degree, non_finite, invalid_argument (says which condition fails, and by how much).
+  /// Power coefficients, lowest first, of f1 and f2; degrees 1 to max_degree, leading zeros apart; coefficients of at
+  /// most 1e6. The conditions must hold to 1e-12 times the largest coefficient. Errors: unsupported_degree, non_finite,
+  /// invalid_argument (index = the coefficient; or says which condition fails, and by how much).
   static Result<Blend> polynomial(std::span<const double> first, std::span<const double> second);
-  /// Callables, checked at 0, 1 and 65 parameters, to 1e-9. Errors: as above (says where), invalid_argument (threw).
+  /// Callables, checked at k / 64, k = 0 .. 64, to 1e-9. Errors: as above (says where), invalid_argument (threw).
   static Result<Blend> callable(std::function<double(double)> first, std::function<double(double)> second);
 
   bool is_polynomial() const { return !first_.empty(); }
-  /// f1, f2 and their first and second derivatives at t in [0,1]: [k][a], k-th derivative of f_a; those of callables by
-  /// differences. Errors: non_finite, invalid_argument (threw).
-  Result<std::array<std::array<double, 2>, 3>> at(double t) const;
+  /// [k][a]: the k-th derivative of f_a.
+  using Jet = std::array<std::array<double, 2>, 3>;
+  /// f1, f2 and their first and second derivatives at t in [0,1]; those of callables by differences. At 0 and 1 the
+  /// values are exactly 1 and 0. Errors: non_finite, invalid_argument (threw).
+  Result<Jet> at(double t) const;
+  /// The values alone: one call of each function. Errors: as above.
+  Result<std::array<double, 2>> values_at(double t) const;
   /// Power coefficients; empty for callables.
   std::span<const double> first() const { return first_; }
   std::span<const double> second() const { return second_; }
@@ -34,7 +40,7 @@ class Blend {
  private:
   Blend() = default;
   std::vector<double> first_, second_;
-  std::function<double(double)> callables_[2];
+  std::array<std::function<double(double)>, 2> callables_;
 };
 
 /// C1 = r(u, v0), C2 = r(u, v1), D1 = r(u0, v), D2 = r(u1, v). Both C are on [u0, u1], both D on [v0, v1].
@@ -49,13 +55,13 @@ struct CoonsOptions {
   double closing_tolerance = 1e-9;
 };
 
-/// r = [C1 C2] g(t) + f(s)^T [D1; D2] - f(s)^T [[r00, r01], [r10, r11]] g(t), where s and t run over [0,1] as u and v over
-/// the domain (Coons 1967; Farin, Curves and Surfaces for CAGD, 5th ed., ch. 22). The corners r_ab are the ends of C1, C2.
-/// Immutable but for assignment.
+/// r = [C1 C2] g(t) + f(s)^T [D1; D2] - f(s)^T [[r00, r01], [r10, r11]] g(t), where s and t run over [0,1] as u and v
+/// over the domain (Coons 1967; Farin, Curves and Surfaces for CAGD, 5th ed., ch. 22). The corners r_ab are the ends of
+/// C1, C2. Immutable but for assignment.
 class CoonsPatch {
  public:
   /// Errors: invalid_argument (curves on different intervals: says which; a border that does not close: names the
-  /// corner, the two curves and the gap), non_finite, those of functions.
+  /// corner, index = 2 a + b, the two curves and the gap), non_finite, those of functions.
   static Result<CoonsPatch> make(const CoonsBorders& borders, const CoonsOptions& options = {});
 
   const CoonsBorders& borders() const { return borders_; }
@@ -75,11 +81,14 @@ class CoonsPatch {
 
 /// The reference evaluator, by the formula above. Errors: those of functions.
 Result<SurfaceJet> evaluate_jet(const CoonsPatch& patch, double u, double v);
+/// Its position alone: one call of each function.
+Result<Vec3> position(const CoonsPatch& patch, double u, double v);
 
 /// Exact where is_exact() (FitError 0): polynomial borders give bidegree (max(n_C, a), max(n_D, b)) over merged knots,
-/// blends of degree a in u and b in v; rational ones by clearing denominators, in general (p_C1 + p_C2 + a, p_D1 + p_D2 + b).
-/// Otherwise a fit by `options`, certified where all borders have bounds and the blends are polynomials.
-/// Errors: unsupported_degree (above max_degree: says which), non_finite, and those of a fit.
+/// blends of degree a in u and b in v; rational ones by clearing denominators, in general (p_C1 + p_C2 + a, p_D1 + p_D2
+/// + b). Otherwise a fit by `options`, certified where all borders have bounds and the blends are polynomials. Errors:
+/// unsupported_degree (above max_degree: says which), non_finite, invalid_weight (products of weights below 1e-100 of
+/// their patch's largest), and those of a fit.
 Result<PatchGrid> to_bezier(const CoonsPatch& patch, const FitOptions& options = {});
 
 }  // namespace tessera

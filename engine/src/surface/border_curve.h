@@ -1,0 +1,29 @@
+#pragma once
+// What ruled surfaces and Coons patches ask of their borders.
+
+#include <string>
+
+#include "tessera/parametric_curve.h"
+
+namespace tessera {
+
+inline bool is_exact(const BorderCurve& border) { return std::holds_alternative<Curve>(border); }
+
+/// derivative_bound() may be finite.
+inline bool has_bounds(const BorderCurve& border) {
+  const auto* function = std::get_if<ParametricCurve>(&border);
+  return function == nullptr || function->has_bounds();
+}
+/// A bound of |d^k c / dt^k| over a part of the domain, k >= 0: of a function its own; of a polynomial curve the hull
+/// of its derivative's control points; infinity for derivatives of rational curves and across knots where they jump.
+double derivative_bound(const BorderCurve& border, const Interval& part, int k);
+
+/// As position() and evaluate_jet(), with messages that say which border.
+Result<Vec3> position(const BorderCurve& border, double t, const std::string& name);
+Result<CurveJet> evaluate_jet(const BorderCurve& border, double t, const std::string& name);
+
+/// Both on the same interval. Errors: invalid_argument (names both).
+Status check_same_interval(const BorderCurve& a, const std::string& name_a, const BorderCurve& b,
+                           const std::string& name_b);
+
+}  // namespace tessera

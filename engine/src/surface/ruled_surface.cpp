@@ -1,0 +1,80 @@
+#include "tessera/ruled_surface.h"
+
+#include "base/guard.h"
+#include "surface/border_curve.h"
+#include "surface/checks.h"
+
+namespace tessera {
+namespace {
+
+constexpr const char *first_name = "the first curve", *second_name = "the second curve";
+
+/// A point's parameter along the curves, and the shares of the two.
+struct Place {
+  Place(const RuledSurface& surface, double u, double v) {
+    const bool along_u = surface.straight() == Direction::v;
+    const Domain d = surface.domain();
+    const double across = along_u ? v : u, from = along_u ? d.v0 : d.u0, to = along_u ? d.v1 : d.u1;
+    along = along_u ? u : v;
+    length = to - from;
+    first = (to - across) / length;
+    second = (across - from) / length;
+  }
+  /// Exact at the ends.
+  Vec3 between(const Vec3& a, const Vec3& b) const { return first * a + second * b; }
+
+  double along, length, first, second;
+};
+
+}  // namespace
+
+Result<RuledSurface> RuledSurface::make(const BorderCurve& first, const BorderCurve& second, const Interval& across,
+                                        Direction straight) {
+  return guarded([&]() -> Result<RuledSurface> {
+    if (straight != Direction::u && straight != Direction::v)
+      return Status(StatusCode::invalid_argument, "the direction of the straight lines is neither u nor v");
+    if (Status status = check_same_interval(first, first_name, second, second_name); !status.ok()) return status;
+    const RuledSurface surface(first, second, across, straight);
+    if (Status status = check_domain(surface.domain()); !status.ok()) return status;
+    return surface;
+  });
+}
+
+Domain RuledSurface::domain() const {
+  const Interval& along = tessera::domain(first_);
+  if (straight_ == Direction::v) return {along.from, along.to, across_.from, across_.to};
+  return {across_.from, across_.to, along.from, along.to};
+}
+
+bool RuledSurface::is_exact() const { return tessera::is_exact(first_) && tessera::is_exact(second_); }
+
+Result<SurfaceJet> evaluate_jet(const RuledSurface& surface, double u, double v) {
+  return guarded([&]() -> Result<SurfaceJet> {
+    const Place place(surface, u, v);
+    const auto first = evaluate_jet(surface.first(), place.along, first_name);
+    if (!first) return first.status();
+    const auto second = evaluate_jet(surface.second(), place.along, second_name);
+    if (!second) return second.status();
+    SurfaceJet jet;
+    jet.position = place.between(first->position, second->position);
+    jet.du = place.between(first->first, second->first);
+    jet.dv = (1 / place.length) * (second->position - first->position);
+    jet.duu = place.between(first->second, second->second);
+    jet.duv = (1 / place.length) * (second->first - first->first);
+    if (surface.straight() == Direction::v) return jet;
+    return SurfaceJet{jet.position, jet.dv, jet.du, jet.dvv, jet.duv, jet.duu};
+  });
+}
+
+Result<Vec3> position(const RuledSurface& surface, double u, double v) {
+  return guarded([&]() -> Result<Vec3> {
+    const Place place(surface, u, v);
+    const auto first = position(surface.first(), place.along, first_name);
+    if (!first) return first.status();
+    const auto second = position(surface.second(), place.along, second_name);
+    if (!second) return second.status();
+    return place.between(*first, *second);
+  });
+}
+
+}  // namespace tessera
