@@ -1,36 +1,13 @@
 #include <algorithm>
-#include <array>
 #include <vector>
 
 #include "base/guard.h"
-#include "basis/bernstein.h"
-#include "basis/double_double.h"
+#include "convert/polar_forms.h"
 #include "tessera/convert.h"
 #include "tessera/explicit_polynomial.h"
 
-// Control value k of degree n on [a, b] is the polar form at n - k times a and k times b; that of t^i is the elementary
-// symmetric polynomial e_i of these arguments over C(n, i) (Ramshaw, Blossoms are polar forms, 1989).
-
 namespace tessera {
 namespace {
-
-using PolarForms = std::array<DoubleDouble, max_degree + 1>;
-
-/// Polar forms of t^0 .. t^degree for control value k.
-PolarForms polar_forms(int degree, int k, double a, double b) {
-  PolarForms e{};
-  e[0] = {1, 0};
-  for (int argument = 0; argument < degree; ++argument) {
-    const double t = argument < degree - k ? a : b;
-    for (int i = argument + 1; i > 0; --i) {
-      const auto at = static_cast<std::size_t>(i);
-      e[at] = e[at] + e[at - 1] * t;
-    }
-  }
-  for (int i = 0; i <= degree; ++i)
-    e[static_cast<std::size_t>(i)] = e[static_cast<std::size_t>(i)] / binomial(degree, i);
-  return e;
-}
 
 double height(const ExplicitPolynomial& surface, const PolarForms& x, const PolarForms& y) {
   DoubleDouble sum;

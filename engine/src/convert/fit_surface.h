@@ -1,0 +1,40 @@
+#pragma once
+// Surfaces of other kinds as functions, for the fit.
+
+#include <array>
+#include <functional>
+#include <stdexcept>
+#include <utility>
+
+#include "tessera/convert.h"
+#include "tessera/parametric_surface.h"
+
+namespace tessera {
+
+/// Bounds of derivatives as SurfaceFunctions has them; empty if there are none.
+using DerivativeBounds = std::function<std::array<double, 2>(const Domain& part, int k)>;
+
+/// Patches by a fit to a surface with position(surface, u, v) and evaluate_jet(surface, u, v), which may fail: the fit
+/// then fails with their Status.
+template <class Surface>
+Result<PatchGrid> fitted(const Surface& surface, DerivativeBounds bounds, const FitOptions& options) {
+  Status failure;
+  const auto value = [&failure](auto result) {
+    if (!result) {
+      failure = result.status();
+      throw std::runtime_error(failure.message());  // a function's only way out of a fit
+    }
+    return *std::move(result);
+  };
+  SurfaceFunctions functions;
+  functions.position = [&](double u, double v) { return value(position(surface, u, v)); };
+  functions.jet = [&](double u, double v) { return value(evaluate_jet(surface, u, v)); };
+  functions.derivative_bounds = std::move(bounds);
+  const auto parametric = ParametricSurface::make(std::move(functions), surface.domain());
+  if (!parametric) return failure.ok() ? parametric.status() : failure;
+  auto grid = to_bezier(*parametric, options);
+  if (!grid && !failure.ok()) return failure;
+  return grid;
+}
+
+}  // namespace tessera

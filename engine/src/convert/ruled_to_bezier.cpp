@@ -1,0 +1,55 @@
+#include <algorithm>
+
+#include "base/guard.h"
+#include "convert/blended_line.h"
+#include "convert/fit_surface.h"
+#include "convert/surface_net.h"
+#include "surface/border_curve.h"
+#include "tessera/ruled_surface.h"
+
+namespace tessera {
+namespace {
+
+/// Over one denominator the points of both curves are the rows of a net of degree 1.
+Result<PatchGrid> exact(const RuledSurface& surface) {
+  const bool along_u = surface.straight() == Direction::v;
+  const auto line =
+      blended_line(std::get<Curve>(surface.first()), std::get<Curve>(surface.second()), nullptr, along_u ? "u" : "v");
+  if (!line) return line.status();
+  const Domain d = surface.domain();
+  const std::vector<double> across = along_u ? std::vector{d.v0, d.v1} : std::vector{d.u0, d.u1};
+  SurfaceNet net(line->degree, line->breaks, 1, across, !line->weights.empty());
+  for (std::size_t i = 0; i < net.rows(); ++i)
+    for (std::size_t j = 0; j < 2; ++j) {
+      net.points[net.index(i, j)] = line->curves[j][i];
+      if (!net.weights.empty()) net.weights[net.index(i, j)] = line->weights[i];
+    }
+  return along_u ? net.patches() : transposed(net).patches();
+}
+
+/// Along the curves the larger of theirs; across them |C2 - C1| over the length, and nothing beyond.
+DerivativeBounds bounds_of(const RuledSurface& surface) {
+  for (const BorderCurve* border : {&surface.first(), &surface.second()})
+    if (!has_bounds(*border)) return {};
+  return [&surface](const Domain& part, int k) -> std::array<double, 2> {
+    const bool along_u = surface.straight() == Direction::v;
+    const Interval along = along_u ? Interval{part.u0, part.u1} : Interval{part.v0, part.v1};
+    const auto largest = [&](int order) {
+      return std::max(derivative_bound(surface.first(), along, order),
+                      derivative_bound(surface.second(), along, order));
+    };
+    const Domain d = surface.domain();
+    const double length = along_u ? d.v1 - d.v0 : d.u1 - d.u0;
+    const double across = k == 0 ? largest(0) : k == 1 ? 2 * largest(0) / length : 0;
+    if (along_u) return {largest(k), across};
+    return {across, largest(k)};
+  };
+}
+
+}  // namespace
+
+Result<PatchGrid> to_bezier(const RuledSurface& surface, const FitOptions& options) {
+  return guarded([&] { return surface.is_exact() ? exact(surface) : fitted(surface, bounds_of(surface), options); });
+}
+
+}  // namespace tessera
