@@ -75,6 +75,20 @@ TEST(CoonsFit, IsSampledWhereABlendIsAFunction) {
   EXPECT_LE(deviation(patch, grid), 1e-5);
 }
 
+// A border that is a spline with a kink: patches end there, and the bound is proven.
+TEST(CoonsFit, BreaksAtTheKnotsOfItsBorders) {
+  CoonsBorders borders = wavy_borders();
+  const std::vector<Vec3> points{{0, 0, 0}, {0.2, 0, 0.4}, {0.3, 0, 0}, {0.6, 0, 0.5}, {1, 0, 0}};
+  borders.c1 = value_of(Curve::b_spline(2, points, std::vector<double>{0, 0, 0, 0.3, 0.3, 1, 1, 1}));
+  const CoonsPatch patch = coons(borders, Blend::cubic());
+  const PatchGrid grid = value_of(to_bezier(patch, {.tolerance = 1e-4, .breaks_u = {0.7}}));
+  for (const double knot : {0.3, 0.7}) EXPECT_TRUE(std::ranges::binary_search(grid.breaks_u(), knot));
+  EXPECT_TRUE(grid.fit_error().certified);
+  EXPECT_LE(grid.fit_error().distance, 1e-4);
+  EXPECT_LE(deviation(patch, grid), grid.fit_error().distance);
+  expect_refused(to_bezier(patch, {.breaks_u = {0.7, 0.2}}), StatusCode::invalid_argument, 2, "breakpoint");
+}
+
 TEST(RuledFit, OfFunctions) {
   const auto sine = [](auto u) {
     using std::cos, std::sin;

@@ -18,6 +18,7 @@ TEST(Curve, EqualsTheDefinition) {
         const Curve curve = random_curve(random, degree, style, rational);
         for (const double t : sample_parameters(random, curve.knots(), curve.domain().from, curve.domain().to, 5)) {
           const CurveJet jet = evaluate_jet(curve, t);
+          EXPECT_EQ(position(curve, t), jet.position);
           const RealJet expected = reference_jet(curve, t);
           EXPECT_TRUE(within_units(jet.position, expected.position.rounded(), double_unit, 8)) << degree << " " << t;
           const double slope = 1 + max_abs(expected.du.rounded()),

@@ -86,9 +86,9 @@ Result<Vec3> position(const CoonsPatch& patch, double u, double v);
 
 /// Exact where is_exact() (FitError 0): polynomial borders give bidegree (max(n_C, a), max(n_D, b)) over merged knots,
 /// blends of degree a in u and b in v; rational ones by clearing denominators, in general (p_C1 + p_C2 + a, p_D1 + p_D2
-/// + b). Otherwise a fit by `options`, certified where all borders have bounds and the blends are polynomials. Errors:
-/// unsupported_degree (above max_degree: says which), non_finite, invalid_weight (products of weights below 1e-100 of
-/// their patch's largest), and those of a fit.
+/// + b). Otherwise a fit by `options`, certified where all borders have bounds and the blends are polynomials, broken
+/// at inner knots of borders that are curves. Errors: unsupported_degree (above max_degree: says which), non_finite,
+/// invalid_weight (products of weights below 1e-100 of their patch's largest), and those of a fit.
 Result<PatchGrid> to_bezier(const CoonsPatch& patch, const FitOptions& options = {});
 
 }  // namespace tessera

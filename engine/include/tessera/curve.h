@@ -62,5 +62,7 @@ struct CurveJet {
 /// counts, at the end of the domain the one on its left: so derivatives that jump there are those of that side. Outside
 /// the domain the first and the last piece go on. Any finite t.
 CurveJet evaluate_jet(const Curve& curve, double t);
+/// Its position alone: the same bits.
+Vec3 position(const Curve& curve, double t);
 
 }  // namespace tessera

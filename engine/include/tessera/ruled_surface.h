@@ -41,9 +41,9 @@ Result<SurfaceJet> evaluate_jet(const RuledSurface& surface, double u, double v)
 Result<Vec3> position(const RuledSurface& surface, double u, double v);
 
 /// Exact for exact borders (FitError 0): made compatible; rational ones of different weight functions over the common
-/// denominator, numerators (1 - t) N1 w2 + t N2 w1 over w1 w2, of degree p1 + p2. Otherwise a fit by `options`.
-/// Errors: unsupported_degree (above max_degree), non_finite, invalid_weight (products of weights below 1e-100 of their
-/// patch's largest), and those of a fit.
+/// denominator, numerators (1 - t) N1 w2 + t N2 w1 over w1 w2, of degree p1 + p2. Otherwise a fit by `options`, broken
+/// at inner knots of a border that is a curve. Errors: unsupported_degree (above max_degree), non_finite,
+/// invalid_weight (products of weights below 1e-100 of their patch's largest), and those of a fit.
 Result<PatchGrid> to_bezier(const RuledSurface& surface, const FitOptions& options = {});
 
 }  // namespace tessera

@@ -10,11 +10,14 @@
 
 namespace tessera {
 
-/// Positions at (u[i], v[j]), record i * v.size() + j. Parameters lie in the domain, in any order. Each border curve is
-/// called once a parameter: 2 (Nu + Nv) calls for a Coons patch, 2 Nu or 2 Nv for a ruled surface. Positions are absolute. The
-/// same bytes for any number of threads and on AVX2 and AVX-512. Errors: invalid_argument (no parameters; one outside the
-/// domain: index), non_finite, buffer_too_small, cancelled, those of functions; nothing is written on any but cancelled.
-/// Memory beyond the output: O(Nu + Nv).
+/// Positions at (u[i], v[j]), record i * v.size() + j. Parameters lie in the domain, in any order. Each border curve
+/// and each blending function is called once a parameter, from the calling thread: 2 (Nu + Nv) curve calls for a Coons
+/// patch, 2 Nu or 2 Nv for a ruled surface. Positions are absolute. Memory beyond the output: O(Nu + Nv). The same
+/// bytes for any number of threads, and on AVX2 and AVX-512. From position(surface, u, v) they are at most 5 units of
+/// 2^-23 (8 of 2^-52 in double) times the largest |g1 C1| + |g2 C2| + |f1 K1| + |f2 K2|, where K_a = D_a - r_a0 g1 -
+/// r_a1 g2; a ruled surface has no K. Errors: invalid_argument (no parameters; one outside the domain or NaN: index; a
+/// view without three components or a stride), buffer_too_small, non_finite (that sum may be too large for the
+/// precision), cancelled, isa_unavailable, those of functions; nothing is written on any but cancelled.
 Status evaluate(const CoonsPatch& patch, std::span<const double> u, std::span<const double> v, const View3<double>& out,
                 const Execution& execution = {});
 Status evaluate(const CoonsPatch& patch, std::span<const double> u, std::span<const double> v, const View3<float>& out,

@@ -117,7 +117,14 @@ DerivativeBounds bounds_of(const CoonsPatch& patch) {
 }  // namespace
 
 Result<PatchGrid> to_bezier(const CoonsPatch& patch, const FitOptions& options) {
-  return guarded([&] { return patch.is_exact() ? exact(patch) : fitted(patch, bounds_of(patch), options); });
+  return guarded([&] {
+    if (patch.is_exact()) return exact(patch);
+    const CoonsBorders& b = patch.borders();
+    FitOptions fit = options;
+    for (const BorderCurve* border : {&b.c1, &b.c2}) add_breaks(fit.breaks_u, *border, fit.degree);
+    for (const BorderCurve* border : {&b.d1, &b.d2}) add_breaks(fit.breaks_v, *border, fit.degree);
+    return fitted(patch, bounds_of(patch), fit);
+  });
 }
 
 }  // namespace tessera

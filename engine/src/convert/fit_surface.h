@@ -1,18 +1,34 @@
 #pragma once
 // Surfaces of other kinds as functions, for the fit.
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
+#include "basis/knots.h"
 #include "tessera/convert.h"
+#include "tessera/parametric_curve.h"
 #include "tessera/parametric_surface.h"
 
 namespace tessera {
 
 /// Bounds of derivatives as SurfaceFunctions has them; empty if there are none.
 using DerivativeBounds = std::function<std::array<double, 2>(const Domain& part, int k)>;
+
+/// Adds the inner knots at which a border has fewer continuous derivatives than patches of this degree need.
+inline void add_breaks(std::vector<double>& breaks, const BorderCurve& border, int degree) {
+  const auto* curve = std::get_if<Curve>(&border);
+  if (curve == nullptr) return;
+  for (const double knot : curve->knots()) {
+    const bool inner = knot > curve->domain().from && knot < curve->domain().to;
+    if (!inner || curve->degree() - static_cast<int>(multiplicity(curve->knots(), knot)) >= degree) continue;
+    const auto place = std::find_if(breaks.begin(), breaks.end(), [&](double t) { return t >= knot; });
+    if (place == breaks.end() || *place != knot) breaks.insert(place, knot);
+  }
+}
 
 /// Patches by a fit to a surface with position(surface, u, v) and evaluate_jet(surface, u, v), which may fail: the fit
 /// then fails with their Status.

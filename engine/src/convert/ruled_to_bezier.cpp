@@ -49,7 +49,13 @@ DerivativeBounds bounds_of(const RuledSurface& surface) {
 }  // namespace
 
 Result<PatchGrid> to_bezier(const RuledSurface& surface, const FitOptions& options) {
-  return guarded([&] { return surface.is_exact() ? exact(surface) : fitted(surface, bounds_of(surface), options); });
+  return guarded([&] {
+    if (surface.is_exact()) return exact(surface);
+    FitOptions fit = options;
+    std::vector<double>& breaks = surface.straight() == Direction::v ? fit.breaks_u : fit.breaks_v;
+    for (const BorderCurve* border : {&surface.first(), &surface.second()}) add_breaks(breaks, *border, fit.degree);
+    return fitted(surface, bounds_of(surface), fit);
+  });
 }
 
 }  // namespace tessera

@@ -8,31 +8,11 @@
 
 #include "base/guard.h"
 #include "base/text.h"
+#include "eval/parameter_grid.h"
 #include "parallel/parallel_for.h"
 
 namespace tessera {
 namespace {
-
-Status check_parameters(std::span<const double> parameters, const char* name, double from, double to) {
-  if (parameters.empty()) return {StatusCode::invalid_argument, std::string("there are no parameters ") + name};
-  for (std::size_t k = 0; k < parameters.size(); ++k)
-    if (!(parameters[k] >= from && parameters[k] <= to))
-      return {StatusCode::invalid_argument,
-              std::string("parameter ") + name + "[" + std::to_string(k) + "] = " + text(parameters[k]) +
-                  " is not within [" + text(from) + ", " + text(to) + "]",
-              static_cast<std::ptrdiff_t>(k)};
-  return {};
-}
-
-template <class T>
-Status check_view(const View3<T>& out, std::size_t count_u, std::size_t count_v) {
-  if (out.empty() || out.component[1] == nullptr || out.component[2] == nullptr || out.stride < 1)
-    return {StatusCode::invalid_argument, "the view needs three components and a stride of at least 1"};
-  if (count_u > out.size / count_v)
-    return {StatusCode::buffer_too_small, "the output needs " + std::to_string(count_u) + " * " +
-                                              std::to_string(count_v) + " records, not " + std::to_string(out.size)};
-  return {};
-}
 
 /// Row i of the grid.
 template <class T>

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <type_traits>
 #include <xsimd/xsimd.hpp>
 
 #include "kernel/kernel_table.h"
@@ -13,6 +14,10 @@ namespace isa_avx2 {
 namespace {
 
 constexpr Isa this_isa = Isa::avx2;
+
+/// An immediate operand.
+template <int bits>
+using Bits = std::integral_constant<int, bits>;
 
 /// The few operations that xsimd lacks.
 template <class T>
@@ -37,6 +42,20 @@ struct Lanes<float> {
       const __m256i index = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
       _mm256_maskstore_ps(p, _mm256_cmpgt_epi32(_mm256_set1_epi32(count), index), a);
     }
+  }
+  /// x0 x1 .. | y0 y1 .. | z0 z1 .. to x0 y0 z0 x1 ..: value 8 k + l comes from lane (8 k + l) / 3, by permutations, of
+  /// component (8 k + l) % 3, by blends.
+  static void interleave(Batch (&p)[3]) {
+    const auto blended = [&](__m256i lanes, auto second, auto third) {
+      const __m256 x = _mm256_permutevar8x32_ps(p[0], lanes), y = _mm256_permutevar8x32_ps(p[1], lanes);
+      return _mm256_blend_ps(_mm256_blend_ps(x, y, second()), _mm256_permutevar8x32_ps(p[2], lanes), third());
+    };
+    const __m256 a = blended(_mm256_setr_epi32(0, 0, 0, 1, 1, 1, 2, 2), Bits<0x92>(), Bits<0x24>());
+    const __m256 b = blended(_mm256_setr_epi32(2, 3, 3, 3, 4, 4, 4, 5), Bits<0x24>(), Bits<0x49>());
+    const __m256 c = blended(_mm256_setr_epi32(5, 5, 6, 6, 6, 7, 7, 7), Bits<0x49>(), Bits<0x92>());
+    p[0] = a;
+    p[1] = b;
+    p[2] = c;
   }
   static void transpose(Batch (&row)[width]) {
     __m256 a[8], b[8];
@@ -76,6 +95,18 @@ struct Lanes<double> {
       const __m256i index = _mm256_setr_epi64x(0, 1, 2, 3);
       _mm256_maskstore_pd(p, _mm256_cmpgt_epi64(_mm256_set1_epi64x(count), index), a);
     }
+  }
+  static void interleave(Batch (&p)[3]) {
+    const auto blended = [&](auto lanes, auto second, auto third) {
+      const __m256d x = _mm256_permute4x64_pd(p[0], lanes()), y = _mm256_permute4x64_pd(p[1], lanes());
+      return _mm256_blend_pd(_mm256_blend_pd(x, y, second()), _mm256_permute4x64_pd(p[2], lanes()), third());
+    };
+    const __m256d a = blended(Bits<0x40>(), Bits<0x2>(), Bits<0x4>());  // lanes 0 0 0 1
+    const __m256d b = blended(Bits<0xa5>(), Bits<0x9>(), Bits<0x2>());  // 1 1 2 2
+    const __m256d c = blended(Bits<0xfe>(), Bits<0x4>(), Bits<0x9>());  // 2 3 3 3
+    p[0] = a;
+    p[1] = b;
+    p[2] = c;
   }
   static void transpose(Batch (&row)[width]) {
     const __m256d a = _mm256_unpacklo_pd(row[0], row[1]), b = _mm256_unpackhi_pd(row[0], row[1]);

@@ -16,6 +16,21 @@ constexpr Isa this_isa = Isa::avx512;
 template <class T>
 using BatchOf = xsimd::batch<T, xsimd::avx512f>;
 
+/// Value l of vector k of interleaved triples is lane (width k + l) / 3 of component (width k + l) % 3: what two
+/// permutations of two vectors pick, the first from x and y, the second from its result and z.
+template <class Index, int width>
+struct InterleavedTriples {
+  alignas(64) Index xy[3][width]{}, z[3][width]{};
+  constexpr InterleavedTriples() {
+    for (int k = 0; k < 3; ++k)
+      for (int l = 0; l < width; ++l) {
+        const int lane = (width * k + l) / 3, component = (width * k + l) % 3;
+        xy[k][l] = component == 1 ? width + lane : lane;
+        z[k][l] = component == 2 ? width + lane : l;
+      }
+  }
+};
+
 /// The few operations that xsimd lacks, or (fma on AVX-512 before 12.1) does not fuse.
 template <class T>
 struct Lanes;
@@ -37,6 +52,15 @@ struct Lanes<float> {
       _mm512_storeu_ps(p, a);
     } else {
       _mm512_mask_storeu_ps(p, static_cast<__mmask16>((1u << count) - 1u), a);
+    }
+  }
+  /// x0 x1 .. | y0 y1 .. | z0 z1 .. to x0 y0 z0 x1 ..
+  static void interleave(Batch (&p)[3]) {
+    static constexpr InterleavedTriples<int, width> lanes;
+    const __m512 x = p[0], y = p[1], z = p[2];
+    for (int k = 0; k < 3; ++k) {
+      const __m512 xy = _mm512_permutex2var_ps(x, _mm512_load_si512(lanes.xy[k]), y);
+      p[k] = _mm512_permutex2var_ps(xy, _mm512_load_si512(lanes.z[k]), z);
     }
   }
   static void transpose(Batch (&row)[width]) {
@@ -80,6 +104,14 @@ struct Lanes<double> {
       _mm512_storeu_pd(p, a);
     } else {
       _mm512_mask_storeu_pd(p, static_cast<__mmask8>((1u << count) - 1u), a);
+    }
+  }
+  static void interleave(Batch (&p)[3]) {
+    static constexpr InterleavedTriples<long long, width> lanes;
+    const __m512d x = p[0], y = p[1], z = p[2];
+    for (int k = 0; k < 3; ++k) {
+      const __m512d xy = _mm512_permutex2var_pd(x, _mm512_load_si512(lanes.xy[k]), y);
+      p[k] = _mm512_permutex2var_pd(xy, _mm512_load_si512(lanes.z[k]), z);
     }
   }
   static void transpose(Batch (&row)[width]) {

@@ -39,6 +39,15 @@ struct Lanes<float> {
       for (int i = 0; i < count; ++i) p[i] = values[i];
     }
   }
+  /// x0 x1 .. | y0 y1 .. | z0 z1 .. to x0 y0 z0 x1 ..
+  static void interleave(Batch (&p)[3]) {
+    const __m128 x = p[0], y = p[1], z = p[2];
+    const __m128 zx_low = _mm_shuffle_ps(z, x, 0x50), yz = _mm_shuffle_ps(y, z, 0x55);  // z0 z0 x1 x1, y1 y1 z1 z1
+    const __m128 zx_high = _mm_shuffle_ps(z, x, 0xfa), yz_high = _mm_shuffle_ps(y, z, 0xff);
+    p[0] = _mm_shuffle_ps(_mm_unpacklo_ps(x, y), zx_low, 0x84);
+    p[1] = _mm_shuffle_ps(yz, _mm_unpackhi_ps(x, y), 0x48);
+    p[2] = _mm_shuffle_ps(zx_high, yz_high, 0x88);
+  }
   static void transpose(Batch (&row)[width]) {
     __m128 a = row[0], b = row[1], c = row[2], d = row[3];
     _MM_TRANSPOSE4_PS(a, b, c, d);
@@ -67,6 +76,12 @@ struct Lanes<double> {
     } else {
       _mm_store_sd(p, a);
     }
+  }
+  static void interleave(Batch (&p)[3]) {
+    const __m128d x = p[0], y = p[1], z = p[2];
+    p[0] = _mm_unpacklo_pd(x, y);
+    p[1] = _mm_shuffle_pd(z, x, 2);
+    p[2] = _mm_unpackhi_pd(y, z);
   }
   static void transpose(Batch (&row)[width]) {
     const __m128d a = row[0], b = row[1];

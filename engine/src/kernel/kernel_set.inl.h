@@ -4,6 +4,7 @@ inline constexpr int max_order = 16;  // coefficients of the highest degree
 
 #include "kernel/grid_kernel.inl.h"
 #include "kernel/border_kernel.inl.h"
+#include "kernel/blend_kernel.inl.h"
 #include "kernel/memory_kernels.inl.h"
 
 constexpr KernelTable table = {
@@ -13,6 +14,8 @@ constexpr KernelTable table = {
     evaluate_border<Lanes<float>>,
     scatter<Lanes<float>>,
     scatter<Lanes<double>>,
+    blend<Lanes<float>>,
+    blend<Lanes<double>>,
     fma_rate<Lanes<float>>,
     fma_rate<Lanes<double>>,
     fill_memory<Lanes<float>>,

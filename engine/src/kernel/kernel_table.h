@@ -55,6 +55,17 @@ struct ScatterJob {
   std::ptrdiff_t stride = 1;
 };
 
+/// Rows of a transfinite grid: g1_j C1_i + g2_j C2_i + f1_i K1_j + f2_i K2_j at record i * column_count + j.
+template <class T>
+struct BlendJob {
+  const T* rows = nullptr;       ///< `[i][8]`: C1 and C2, three components each, then f1 and f2
+  const T* columns = nullptr;    ///< `[8][column_step]`: g1, g2, then K1 and K2, three components each; 64-byte aligned
+  std::ptrdiff_t column_step = 0;   ///< at least column_count, a multiple of 16: whole vectors are read
+  std::ptrdiff_t row_count = 0, column_count = 0;
+  T* out[3] = {nullptr, nullptr, nullptr};  ///< component c of record k goes to out[c][k * stride]
+  std::ptrdiff_t stride = 1;
+};
+
 /// Kernels return their unit's own ISA, which the report hands to the caller.
 struct KernelTable {
   Isa isa;
@@ -63,6 +74,8 @@ struct KernelTable {
   void (*border_f32)(const BorderJob<float>&);
   void (*scatter_f32)(const ScatterJob<float>&);
   void (*scatter_f64)(const ScatterJob<double>&);
+  Isa (*blend_f32)(const BlendJob<float>&);
+  Isa (*blend_f64)(const BlendJob<double>&);
   /// For limits.h: `rounds` times 16 independent fused multiply-adds of whole vectors; returns the lanes of a vector.
   int (*fma_f32)(std::size_t rounds, float* sink);
   int (*fma_f64)(std::size_t rounds, double* sink);

@@ -19,7 +19,14 @@ constexpr int samples = 65;
 
 std::string name_of(std::size_t a) { return a == 0 ? "f1" : "f2"; }
 
-/// p(t), p'(t) and p''(t) by Horner's scheme with twice the digits: power coefficients cancel near t = 1.
+/// p(t) by Horner's scheme with twice the digits: power coefficients cancel near t = 1.
+double polynomial_value(std::span<const double> coefficients, double t) {
+  DoubleDouble p;
+  for (std::size_t i = coefficients.size(); i-- > 0;) p = p * t + DoubleDouble{coefficients[i], 0};
+  return p.rounded();
+}
+
+/// p(t), p'(t) and p''(t) likewise.
 std::array<double, 3> polynomial_jet(std::span<const double> coefficients, double t) {
   std::array<DoubleDouble, 3> p{};
   for (std::size_t i = coefficients.size(); i-- > 0;) {
@@ -119,7 +126,7 @@ Result<Blend> Blend::polynomial(std::span<const double> first, std::span<const d
           i == 0 ? "f1 + f2 = 1" : "f1 + f2 = 1 in the coefficients of t^" + std::to_string(i);
       if (Status status = check_condition(condition.c_str(), error, tolerance); !status.ok()) return status;
     }
-    if (Status status = check_ends(polynomial_jet(*f1, 0)[0], polynomial_jet(*f1, 1)[0], tolerance); !status.ok())
+    if (Status status = check_ends(polynomial_value(*f1, 0), polynomial_value(*f1, 1), tolerance); !status.ok())
       return status;
     Blend blend;
     blend.first_ = *std::move(f1);
@@ -171,7 +178,7 @@ Result<std::array<double, 2>> Blend::values_at(double t) const {
   return guarded([&]() -> Result<std::array<double, 2>> {
     if (t == 0) return std::array<double, 2>{1, 0};
     if (t == 1) return std::array<double, 2>{0, 1};
-    if (is_polynomial()) return std::array{polynomial_jet(first_, t)[0], polynomial_jet(second_, t)[0]};
+    if (is_polynomial()) return std::array{polynomial_value(first_, t), polynomial_value(second_, t)};
     const auto f1 = value_of(callables_[0], 0, t), f2 = value_of(callables_[1], 1, t);
     if (!f1) return f1.status();
     if (!f2) return f2.status();

@@ -49,8 +49,8 @@ double derivative_bound(const Curve& curve, const Interval& part, int k) {
   return bound * (1 + 0x1p-40);  // the hull's own rounding
 }
 
-Status named(const Status& status, const std::string& name) {
-  return {status.code(), name + ": " + status.message(), status.index()};
+Status named(const Status& status, const char* name) {
+  return {status.code(), std::string(name) + ": " + status.message(), status.index()};
 }
 
 }  // namespace
@@ -60,24 +60,24 @@ double derivative_bound(const BorderCurve& border, const Interval& part, int k) 
   return std::get<ParametricCurve>(border).derivative_bound(part, k);
 }
 
-Result<Vec3> position(const BorderCurve& border, double t, const std::string& name) {
+Result<Vec3> position(const BorderCurve& border, double t, const char* name) {
   Result<Vec3> point = position(border, t);
   if (!point) return named(point.status(), name);
   return point;
 }
 
-Result<CurveJet> evaluate_jet(const BorderCurve& border, double t, const std::string& name) {
+Result<CurveJet> evaluate_jet(const BorderCurve& border, double t, const char* name) {
   Result<CurveJet> jet = evaluate_jet(border, t);
   if (!jet) return named(jet.status(), name);
   return jet;
 }
 
-Status check_same_interval(const BorderCurve& a, const std::string& name_a, const BorderCurve& b,
-                           const std::string& name_b) {
+Status check_same_interval(const BorderCurve& a, const char* name_a, const BorderCurve& b, const char* name_b) {
   const Interval &d = domain(a), &e = domain(b);
   if (d == e) return {};
-  return {StatusCode::invalid_argument, name_a + " and " + name_b + " are on different intervals, [" + text(d.from) +
-                                            ", " + text(d.to) + "] and [" + text(e.from) + ", " + text(e.to) + "]"};
+  return {StatusCode::invalid_argument, std::string(name_a) + " and " + name_b + " are on different intervals, [" +
+                                            text(d.from) + ", " + text(d.to) + "] and [" + text(e.from) + ", " +
+                                            text(e.to) + "]"};
 }
 
 const Interval& domain(const BorderCurve& border) {
@@ -85,7 +85,7 @@ const Interval& domain(const BorderCurve& border) {
 }
 
 Result<Vec3> position(const BorderCurve& border, double t) {
-  if (const auto* curve = std::get_if<Curve>(&border)) return evaluate_jet(*curve, t).position;
+  if (const auto* curve = std::get_if<Curve>(&border)) return position(*curve, t);
   return std::get<ParametricCurve>(border).position(t);
 }
 

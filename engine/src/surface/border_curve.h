@@ -1,11 +1,13 @@
 #pragma once
 // What ruled surfaces and Coons patches ask of their borders.
 
-#include <string>
-
 #include "tessera/parametric_curve.h"
 
 namespace tessera {
+
+/// What messages call borders, in the order of CoonsBorders, and curves of ruled surfaces.
+inline constexpr const char* coons_border_names[] = {"border C1", "border C2", "border D1", "border D2"};
+inline constexpr const char* ruled_curve_names[] = {"the first curve", "the second curve"};
 
 inline bool is_exact(const BorderCurve& border) { return std::holds_alternative<Curve>(border); }
 
@@ -19,11 +21,10 @@ inline bool has_bounds(const BorderCurve& border) {
 double derivative_bound(const BorderCurve& border, const Interval& part, int k);
 
 /// As position() and evaluate_jet(), with messages that say which border.
-Result<Vec3> position(const BorderCurve& border, double t, const std::string& name);
-Result<CurveJet> evaluate_jet(const BorderCurve& border, double t, const std::string& name);
+Result<Vec3> position(const BorderCurve& border, double t, const char* name);
+Result<CurveJet> evaluate_jet(const BorderCurve& border, double t, const char* name);
 
 /// Both on the same interval. Errors: invalid_argument (names both).
-Status check_same_interval(const BorderCurve& a, const std::string& name_a, const BorderCurve& b,
-                           const std::string& name_b);
+Status check_same_interval(const BorderCurve& a, const char* name_a, const BorderCurve& b, const char* name_b);
 
 }  // namespace tessera

@@ -11,9 +11,6 @@
 namespace tessera {
 namespace {
 
-/// The four names, in the order of CoonsBorders.
-constexpr const char* border_names[4] = {"border C1", "border C2", "border D1", "border D2"};
-
 std::array<const BorderCurve*, 4> all_of(const CoonsBorders& b) { return {&b.c1, &b.c2, &b.d1, &b.d2}; }
 
 std::string text_of(const Vec3& p) { return "(" + text(p.x) + ", " + text(p.y) + ", " + text(p.z) + ")"; }
@@ -33,7 +30,7 @@ Result<Ends> ends_of(const CoonsBorders& borders) {
     const BorderCurve& border = *all_of(borders)[k];
     const Interval& interval = domain(border);
     for (std::size_t end = 0; end < 2; ++end) {
-      const auto point = position(border, end == 0 ? interval.from : interval.to, border_names[k]);
+      const auto point = position(border, end == 0 ? interval.from : interval.to, coons_border_names[k]);
       if (!point) return point.status();
       ends[k][end] = *point;
     }
@@ -59,8 +56,8 @@ Status check_closed(const Ends& ends, double share) {
       const auto verb = [](std::size_t end) { return end == 0 ? " begins at " : " ends at "; };
       return {StatusCode::invalid_argument,
               "the borders do not close at the corner r(u" + std::to_string(a) + ", v" + std::to_string(b) +
-                  "): " + border_names[b] + verb(a) + text_of(c) + ", " + border_names[2 + a] + verb(b) + text_of(d) +
-                  ", a gap of " + text(gap) + "; allowed is " + text(share * diagonal),
+                  "): " + coons_border_names[b] + verb(a) + text_of(c) + ", " + coons_border_names[2 + a] + verb(b) +
+                  text_of(d) + ", a gap of " + text(gap) + "; allowed is " + text(share * diagonal),
               static_cast<std::ptrdiff_t>(2 * a + b)};
     }
   return {};
@@ -91,7 +88,8 @@ Result<CoonsPatch> CoonsPatch::make(const CoonsBorders& borders, const CoonsOpti
   return guarded([&]() -> Result<CoonsPatch> {
     for (std::size_t k : {std::size_t{0}, std::size_t{2}}) {
       const auto border = all_of(borders);
-      if (Status status = check_same_interval(*border[k], border_names[k], *border[k + 1], border_names[k + 1]);
+      if (Status status =
+              check_same_interval(*border[k], coons_border_names[k], *border[k + 1], coons_border_names[k + 1]);
           !status.ok())
         return status;
     }
@@ -121,7 +119,7 @@ Result<SurfaceJet> evaluate_jet(const CoonsPatch& patch, double u, double v) {
     const auto borders = all_of(patch.borders());
     std::array<Jet, 4> curves;
     for (std::size_t k = 0; k < 4; ++k) {
-      const auto jet = evaluate_jet(*borders[k], k < 2 ? u : v, border_names[k]);
+      const auto jet = evaluate_jet(*borders[k], k < 2 ? u : v, coons_border_names[k]);
       if (!jet) return jet.status();
       curves[k] = {jet->position, jet->first, jet->second};
     }
@@ -147,7 +145,7 @@ Result<Vec3> position(const CoonsPatch& patch, double u, double v) {
     const auto borders = all_of(patch.borders());
     std::array<Vec3, 4> curves;
     for (std::size_t k = 0; k < 4; ++k) {
-      const auto point = position(*borders[k], k < 2 ? u : v, border_names[k]);
+      const auto point = position(*borders[k], k < 2 ? u : v, coons_border_names[k]);
       if (!point) return point.status();
       curves[k] = *point;
     }

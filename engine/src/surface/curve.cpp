@@ -21,6 +21,34 @@ Status check_size(int degree, std::size_t points, std::size_t knots) {
                                           " were given"};
 }
 
+/// The points that act at t, in a frame that keeps their sums in range.
+struct ActingPoints {
+  ActingPoints(const Curve& curve, double t)
+      : line(line_of(curve)), span(find_span(line, t)), frame(frame_of(curve, first(), span, t)) {
+    for (std::size_t k = 0; k < line.order(); ++k)
+      window[k] = frame.homogeneous(curve.points()[first() + k], curve.weight(first() + k));
+  }
+
+  const double* knots() const { return &line.knots[span]; }
+  std::size_t first() const { return span - static_cast<std::size_t>(line.degree); }
+
+  KnotLine line;
+  std::size_t span;
+  WindowFrame frame;
+  SplineWindow window;
+
+ private:
+  static WindowFrame frame_of(const Curve& curve, std::size_t first, std::size_t span, double t) {
+    double largest = 0, largest_weight = 0;
+    for (std::size_t k = first; k <= span; ++k) {
+      largest = std::max(largest, max_abs(curve.points()[k]));
+      if (curve.is_rational()) largest_weight = std::max(largest_weight, curve.weight(k));
+    }
+    const std::size_t nearer = first + nearer_end(curve.degree(), &curve.knots()[span], t);
+    return WindowFrame(largest, largest_weight, curve.is_rational() ? curve.points()[nearer] : Vec3{});
+  }
+};
+
 }  // namespace
 
 Result<Curve> Curve::bezier(std::span<const Vec3> points, std::span<const double> weights, const Interval& domain) {
@@ -68,25 +96,20 @@ Result<Curve> Curve::nurbs(int degree, std::span<const Vec3> points, std::span<c
 }
 
 CurveJet evaluate_jet(const Curve& curve, double t) {
-  const KnotLine line = line_of(curve);
-  const std::size_t span = find_span(line, t), p = static_cast<std::size_t>(line.degree), first = span - p;
-  double largest = 0, largest_weight = 0;
-  for (std::size_t k = first; k <= span; ++k) {
-    largest = std::max(largest, max_abs(curve.points()[k]));
-    if (curve.is_rational()) largest_weight = std::max(largest_weight, curve.weight(k));
-  }
-  const double* at_span = &line.knots[span];
-  const Vec3 origin = curve.is_rational() ? curve.points()[first + nearer_end(line.degree, at_span, t)] : Vec3{};
-  const WindowFrame frame(largest, largest_weight, origin);
-  SplineWindow window;
-  for (std::size_t k = 0; k <= p; ++k)
-    window[k] = frame.homogeneous(curve.points()[first + k], curve.weight(first + k));
-  const SplineJet a = spline_jet(line.degree, at_span, t, window);
+  const ActingPoints acting(curve, t);
+  const WindowFrame& frame = acting.frame;
+  const SplineJet a = spline_jet(curve.degree(), acting.knots(), t, acting.window);
   if (!curve.is_rational())
     return {frame.position(a[0].vector()), frame.vector(a[1].vector()), frame.vector(a[2].vector())};
   const Homogeneous none{0, 0, 0, 0};
   const SurfaceJet jet = project(a[0], a[1], none, a[2], none, none);
   return {frame.position(jet.position), frame.vector(jet.du), frame.vector(jet.duu)};
+}
+
+Vec3 position(const Curve& curve, double t) {
+  const ActingPoints acting(curve, t);
+  const Homogeneous a = de_boor(curve.degree(), acting.knots(), t, acting.window);
+  return acting.frame.position(curve.is_rational() ? a.project() : a.vector());
 }
 
 }  // namespace tessera

@@ -7,8 +7,6 @@
 namespace tessera {
 namespace {
 
-constexpr const char *first_name = "the first curve", *second_name = "the second curve";
-
 /// A point's parameter along the curves, and the shares of the two.
 struct Place {
   Place(const RuledSurface& surface, double u, double v) {
@@ -33,7 +31,8 @@ Result<RuledSurface> RuledSurface::make(const BorderCurve& first, const BorderCu
   return guarded([&]() -> Result<RuledSurface> {
     if (straight != Direction::u && straight != Direction::v)
       return Status(StatusCode::invalid_argument, "the direction of the straight lines is neither u nor v");
-    if (Status status = check_same_interval(first, first_name, second, second_name); !status.ok()) return status;
+    if (Status status = check_same_interval(first, ruled_curve_names[0], second, ruled_curve_names[1]); !status.ok())
+      return status;
     const RuledSurface surface(first, second, across, straight);
     if (Status status = check_domain(surface.domain()); !status.ok()) return status;
     return surface;
@@ -51,9 +50,9 @@ bool RuledSurface::is_exact() const { return tessera::is_exact(first_) && tesser
 Result<SurfaceJet> evaluate_jet(const RuledSurface& surface, double u, double v) {
   return guarded([&]() -> Result<SurfaceJet> {
     const Place place(surface, u, v);
-    const auto first = evaluate_jet(surface.first(), place.along, first_name);
+    const auto first = evaluate_jet(surface.first(), place.along, ruled_curve_names[0]);
     if (!first) return first.status();
-    const auto second = evaluate_jet(surface.second(), place.along, second_name);
+    const auto second = evaluate_jet(surface.second(), place.along, ruled_curve_names[1]);
     if (!second) return second.status();
     SurfaceJet jet;
     jet.position = place.between(first->position, second->position);
@@ -69,9 +68,9 @@ Result<SurfaceJet> evaluate_jet(const RuledSurface& surface, double u, double v)
 Result<Vec3> position(const RuledSurface& surface, double u, double v) {
   return guarded([&]() -> Result<Vec3> {
     const Place place(surface, u, v);
-    const auto first = position(surface.first(), place.along, first_name);
+    const auto first = position(surface.first(), place.along, ruled_curve_names[0]);
     if (!first) return first.status();
-    const auto second = position(surface.second(), place.along, second_name);
+    const auto second = position(surface.second(), place.along, ruled_curve_names[1]);
     if (!second) return second.status();
     return place.between(*first, *second);
   });

@@ -1,0 +1,36 @@
+#pragma once
+// What every evaluation over a grid of a surface's own parameters asks of its arguments.
+
+#include <span>
+#include <string>
+
+#include "base/text.h"
+#include "tessera/status.h"
+#include "tessera/views.h"
+
+namespace tessera {
+
+/// At least one, each within [from, to]. Errors: invalid_argument (index = the parameter).
+inline Status check_parameters(std::span<const double> parameters, const char* name, double from, double to) {
+  if (parameters.empty()) return {StatusCode::invalid_argument, std::string("there are no parameters ") + name};
+  for (std::size_t k = 0; k < parameters.size(); ++k)
+    if (!(parameters[k] >= from && parameters[k] <= to))
+      return {StatusCode::invalid_argument,
+              std::string("parameter ") + name + "[" + std::to_string(k) + "] = " + text(parameters[k]) +
+                  " is not within [" + text(from) + ", " + text(to) + "]",
+              static_cast<std::ptrdiff_t>(k)};
+  return {};
+}
+
+/// Room for count_u * count_v records. Errors: invalid_argument, buffer_too_small.
+template <class T>
+Status check_view(const View3<T>& out, std::size_t count_u, std::size_t count_v) {
+  if (out.empty() || out.component[1] == nullptr || out.component[2] == nullptr || out.stride < 1)
+    return {StatusCode::invalid_argument, "the view needs three components and a stride of at least 1"};
+  if (count_u > out.size / count_v)
+    return {StatusCode::buffer_too_small, "the output needs " + std::to_string(count_u) + " * " +
+                                              std::to_string(count_v) + " records, not " + std::to_string(out.size)};
+  return {};
+}
+
+}  // namespace tessera
