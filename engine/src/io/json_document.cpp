@@ -182,10 +182,11 @@ std::string JsonDocument::pointer_to(std::size_t node) const {
 }
 
 std::optional<JsonValue> JsonValue::find(std::string_view key) const {
-  for (Iterator member = begin(); member != end(); ++member) {
+  for (Iterator member = begin(); member != end();) {
     const JsonValue name = *member;
+    const JsonValue value = *++member;
+    if (name.string() == key) return value;
     ++member;
-    if (name.string() == key) return *member;
   }
   return {};
 }
