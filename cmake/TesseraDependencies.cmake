@@ -3,7 +3,9 @@
 #   xsimd             libxsimd-dev 8.1            the core: SIMD batches (engine/src/kernel alone; headers only)
 #   Embree            libembree-dev 3.13          tessera::ray (engine/src/ray alone)
 #   CLI11             libcli11-dev 2.1            the command line
-#   nlohmann-json     nlohmann-json3-dev 3.11     the command line: --json; tests: values of peers
+#   nlohmann-json     nlohmann-json3-dev 3.11     tessera::io: models (headers only, within engine/src/io);
+#                                               the command line: --json; tests: values of peers
+#   muParser          libmuparser-dev 2.3         tessera::io: expressions in models (engine/src/io alone)
 #   libpng            libpng-dev 1.6              the command line: pictures
 #   GoogleTest        libgtest-dev 1.12           tests (and libgmock-dev: its matchers)
 #   Google Benchmark  libbenchmark-dev 1.7        benchmarks
@@ -13,6 +15,10 @@ find_package(xsimd 8 REQUIRED)
 find_package(Threads REQUIRED)
 if(TESSERA_BUILD_RAY)
   find_package(embree 3 REQUIRED)
+endif()
+if(TESSERA_BUILD_IO)
+  find_package(nlohmann_json 3 REQUIRED)
+  find_package(muparser 2 REQUIRED)
 endif()
 if(TESSERA_BUILD_TOOLS)
   find_package(CLI11 2 REQUIRED)

@@ -26,9 +26,11 @@ std::string error_of(std::string_view text) {
 
 bool same(const Model& a, const Model& b) {
   return std::equal(a.surfaces.begin(), a.surfaces.end(), b.surfaces.begin(), b.surfaces.end(),
-                    [](const ModelSurface& x, const ModelSurface& y) {
-                      return x.patch.degree_u() == y.patch.degree_u() && x.patch.degree_v() == y.patch.degree_v() &&
-                             std::ranges::equal(x.patch.points(), y.patch.points());
+                    [](const ModelSurface& one, const ModelSurface& other) {
+                      const auto& x = std::get<BezierPatch>(one.surface);
+                      const auto& y = std::get<BezierPatch>(other.surface);
+                      return x.degree_u() == y.degree_u() && x.degree_v() == y.degree_v() &&
+                             std::ranges::equal(x.points(), y.points());
                     });
 }
 

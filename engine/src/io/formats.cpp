@@ -26,8 +26,9 @@ struct Format {
   void (*write_mesh)(const Mesh&, OutputFile&) = nullptr;
 };
 
-constexpr std::array<Format, 3> formats{{
+constexpr std::array<Format, 4> formats{{
     {.extension = ".bpt", .read_model = parse_bpt},
+    {.extension = ".json", .read_model = parse_json_model},
     {.extension = ".obj", .read_mesh = parse_obj, .write_mesh = write_obj},
     {.extension = ".ply", .read_mesh = parse_ply, .write_mesh = write_ply},
 }};

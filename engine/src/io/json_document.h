@@ -1,0 +1,100 @@
+#pragma once
+// JSON in memory that knows where everything stands, so that errors can say it: a line and a JSON pointer (RFC 6901).
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tessera/status.h"
+
+namespace tessera {
+
+enum class JsonKind : std::uint8_t { null, boolean, number, string, array, object };
+
+/// What readers of JSON throw; caught where a document's reading begins, and nowhere else.
+struct JsonFailure {
+  Status status;
+};
+
+class JsonValue;
+
+/// A text as a list of values, parents before children. Memory: 32 bytes a value and the strings. Nested 64 deep at
+/// most. Views the text, which must outlive it.
+class JsonDocument {
+ public:
+  static constexpr std::size_t largest_depth = 64;
+  /// `name` stands for the file in messages. Errors: parse_error, with the line (no JSON, no UTF-8, a number beyond
+  /// double, a key that stands twice in an object, nesting too deep).
+  static Result<JsonDocument> parse(std::string_view text, std::string_view name);
+
+  JsonValue root() const;
+
+ private:
+  struct Node {
+    JsonKind kind = JsonKind::null;
+    std::size_t offset = 0;  // behind its first byte in the text
+    std::size_t end = 0;     // the value behind this one and its children
+    double number = 0;       // or the index of a string, the count of elements or members, 0 or 1
+  };
+  JsonDocument(std::string_view text, std::string_view name) : text_(text), name_(name) {}
+  std::string line_of(std::size_t offset) const;
+  std::string pointer_to(std::size_t node) const;
+
+  std::string_view text_;
+  std::string name_;
+  std::vector<Node> nodes_;  // of an object: key, value, key, value
+  std::vector<std::string> strings_;
+  friend class JsonBuilder;
+  friend class JsonValue;
+};
+
+/// One value of a document, which must outlive it.
+class JsonValue {
+ public:
+  JsonKind kind() const { return node().kind; }
+  bool is(JsonKind kind) const { return node().kind == kind; }
+  // What the kind has.
+  double number() const { return node().number; }
+  const std::string& string() const { return document_->strings_[static_cast<std::size_t>(node().number)]; }
+  std::size_t size() const { return static_cast<std::size_t>(node().number); }  ///< elements or members
+
+  /// The elements of an array; keys and values in turn of an object.
+  class Iterator {
+   public:
+    Iterator(const JsonDocument* document, std::size_t at) : document_(document), at_(at) {}
+    JsonValue operator*() const { return {document_, at_}; }
+    Iterator& operator++() {
+      at_ = document_->nodes_[at_].end;
+      return *this;
+    }
+    bool operator!=(const Iterator& other) const { return at_ != other.at_; }
+
+   private:
+    const JsonDocument* document_;
+    std::size_t at_;
+  };
+  Iterator begin() const { return {document_, at_ + 1}; }
+  Iterator end() const { return {document_, node().end}; }
+  /// The member of an object. Linear in their count.
+  std::optional<JsonValue> find(std::string_view key) const;
+
+  /// Throws "file:line: pointer: sentence".
+  [[noreturn]] void fail(std::string_view sentence, StatusCode code = StatusCode::parse_error) const;
+  /// Throws "file:line: pointer: expected <what>, found <what stands here>".
+  [[noreturn]] void fail_expected(std::string_view what) const;
+
+ private:
+  friend class JsonDocument;
+  JsonValue(const JsonDocument* document, std::size_t at) : document_(document), at_(at) {}
+  const JsonDocument::Node& node() const { return document_->nodes_[at_]; }
+
+  const JsonDocument* document_;
+  std::size_t at_;
+};
+
+inline JsonValue JsonDocument::root() const { return {this, 0}; }
+
+}  // namespace tessera
