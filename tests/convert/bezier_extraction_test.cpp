@@ -259,6 +259,21 @@ TEST(BezierExtraction, AllocatesOnceForAllPatches) {
   }
 }
 
+TEST(BezierExtraction, AllocatesInProportionToItsOutput) {
+  Random random(11);
+  for (const int degree : {1, 3, 8})
+    for (const bool rational : {false, true}) {
+      const BSplineSurface s = random_surface(random, degree, degree, {60}, {60}, rational);
+      const std::size_t before = allocated_bytes();
+      const PatchGrid grid = value_of(to_bezier(s));
+      const std::size_t bytes = allocated_bytes() - before;
+      std::size_t output = grid.patches().size_bytes();
+      for (const BezierPatch& patch : grid.patches())
+        output += patch.points().size_bytes() + patch.weights().size_bytes();
+      EXPECT_LE(bytes, 2 * output) << degree << " " << rational;
+    }
+}
+
 TEST(BezierExtraction, PointsNearTheLargestNumber) {
   Random random(10);
   for (const bool rational : {false, true}) {
