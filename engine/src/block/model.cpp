@@ -1,6 +1,7 @@
 #include "tessera/model.h"
 
 #include "base/guard.h"
+#include "block/patch_set_impl.h"
 
 namespace tessera {
 
@@ -15,15 +16,20 @@ Result<PatchSet> make_patch_set(const Model& model, const PatchSetOptions& optio
 
 Result<PatchSet> make_patch_set(std::span<const PatchGrid> grids, const PatchSetOptions& options) {
   return guarded([&]() -> Result<PatchSet> {
+    std::size_t count = 0;
+    for (const PatchGrid& grid : grids) count += grid.patches().size();
     std::vector<BezierPatch> patches;
     std::vector<PatchSource> sources;
+    patches.reserve(count);
+    sources.reserve(count);
     for (std::size_t surface = 0; surface < grids.size(); ++surface) {
-      const PatchGrid& grid = grids[surface];
-      patches.insert(patches.end(), grid.patches().begin(), grid.patches().end());
-      for (std::size_t k = 0; k < grid.patches().size(); ++k)
-        sources.push_back({static_cast<std::uint32_t>(surface), grid.patch_domain(k)});
+      const auto u = grids[surface].breaks_u(), v = grids[surface].breaks_v();
+      patches.insert(patches.end(), grids[surface].patches().begin(), grids[surface].patches().end());
+      for (std::size_t a = 0; a + 1 < u.size(); ++a)
+        for (std::size_t b = 0; b + 1 < v.size(); ++b)
+          sources.push_back({static_cast<std::uint32_t>(surface), {u[a], u[a + 1], v[b], v[b + 1]}});
     }
-    return PatchSet::from(patches, sources, options);
+    return PatchSet::Impl::make(std::move(patches), std::move(sources), options);
   });
 }
 
