@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "support/allocations.h"
+#include "support/lecture_points.h"
 #include "support/random_splines.h"
 #include "support/ulp.h"
 #include "tessera/nurbs_surface.h"
