@@ -9,6 +9,9 @@
 #   libpng            libpng-dev 1.6              the command line: pictures
 #   GoogleTest        libgtest-dev 1.12           tests (and libgmock-dev: its matchers)
 #   Google Benchmark  libbenchmark-dev 1.7        benchmarks
+# What Tessera is compared with, where TESSERA_BUILD_PEERS is ON (tools/peers.sh installs it). bench/peers alone looks for
+# these, and builds what it finds:
+#   OpenCASCADE       libocct-modeling-data-dev 7.6
 
 find_package(TBB 2021 REQUIRED)
 find_package(xsimd 8 REQUIRED)

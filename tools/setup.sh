@@ -4,11 +4,12 @@ set -euo pipefail
 
 usage() {
   cat <<'TEXT'
-tools/setup.sh [--for demo|test]
+tools/setup.sh [--for demo|test|peers]
 
 Installs, from Debian's packages and by apt-get, what is missing to build Tessera: for the demo (the libraries and the
-command line), or for the tests as well (the default). As root directly, otherwise by sudo. Says what it installs.
-Where nothing is missing it does nothing and needs neither network nor rights.
+command line), for the tests as well (the default), or for the comparisons with other programs (the demo's, and these
+programs). As root directly, otherwise by sudo. Says what it installs. Where nothing is missing it does nothing and needs
+neither network nor rights.
 TEXT
 }
 
@@ -21,12 +22,13 @@ fail() {
 demo_packages=(g++ cmake ninja-build libtbb-dev libxsimd-dev libembree-dev libcli11-dev nlohmann-json3-dev libmuparser-dev
   libpng-dev)
 test_packages=(binutils libgtest-dev libgmock-dev libbenchmark-dev)
+peer_packages=(libocct-modeling-data-dev)
 
 purpose='test'
 while (($#)); do
   case $1 in
     --for)
-      (($# >= 2)) || fail "--for wants a word after it: demo or test"
+      (($# >= 2)) || fail "--for wants a word after it: demo, test or peers"
       purpose=$2
       shift 2
       ;;
@@ -44,7 +46,8 @@ done
 case $purpose in
   demo) packages=("${demo_packages[@]}") ;;
   test) packages=("${demo_packages[@]}" "${test_packages[@]}") ;;
-  *) fail "--for $purpose: no such purpose; there are demo and test" ;;
+  peers) packages=("${demo_packages[@]}" "${peer_packages[@]}") ;;
+  *) fail "--for $purpose: no such purpose; there are demo, test and peers" ;;
 esac
 
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then

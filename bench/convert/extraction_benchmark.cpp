@@ -6,8 +6,8 @@
 
 #include <cmath>
 #include <string>
-#include <vector>
 
+#include "convert/wavy_surface.h"
 #include "tessera/limits.h"
 #include "tessera/spline_convert.h"
 
@@ -15,21 +15,6 @@ namespace tessera::bench {
 namespace {
 
 constexpr int spans = 200;
-
-Result<BSplineSurface> wavy_surface(int degree, bool rational) {
-  std::vector<double> knots(static_cast<std::size_t>(degree), 0.0);
-  for (int k = 0; k <= spans; ++k) knots.push_back(k);
-  knots.insert(knots.end(), static_cast<std::size_t>(degree), spans);
-  std::vector<Vec3> points;
-  std::vector<double> weights;
-  for (int i = 0; i < spans + degree; ++i)
-    for (int j = 0; j < spans + degree; ++j) {
-      points.push_back({1.0 * i, 1.0 * j, std::sin(0.1 * i) * std::cos(0.2 * j)});
-      weights.push_back(1 + 0.5 * std::sin(1.0 * i * j));
-    }
-  if (!rational) return BSplineSurface::polynomial(degree, knots, degree, knots, points);
-  return BSplineSurface::rational(degree, knots, degree, knots, points, weights);
-}
 
 bool same(const BSplineSurface& surface, const PatchGrid& grid) {
   for (double t = 0; t <= spans; t += 0.37) {
@@ -42,7 +27,7 @@ bool same(const BSplineSurface& surface, const PatchGrid& grid) {
 }
 
 void run(benchmark::State& state, int degree, bool rational) {
-  const auto surface = wavy_surface(degree, rational);
+  const auto surface = wavy_surface(spans, degree, rational);
   if (!surface) return state.SkipWithError(surface.status().message().c_str());
   const auto checked = to_bezier(*surface);
   if (!checked || !same(*surface, *checked)) return state.SkipWithError("the patches are not the surface");

@@ -17,48 +17,48 @@ KnotLine line_over(int degree, const std::vector<double>& knots) {
 const std::vector<KnotStyle> styles{
     {0, true, false}, {4, true, false}, {4, true, true}, {3, false, false}, {3, false, true}};
 
-TEST(Knots, BasisIsAPartitionOfUnityAndEqualsTheRecursion) {
-  Random random(1);
+/// check(line, span, t, the basis functions there) at many places of knots of all degrees and styles.
+template <class Check>
+void for_many_places(Random& random, Check check) {
   for (int degree = 1; degree <= max_degree; ++degree)
     for (const KnotStyle& style : styles) {
       const std::vector<double> knots = random_knots(random, degree, style);
       const KnotLine line = line_over(degree, knots);
       for (const double t : sample_parameters(random, knots, line.from, line.to, 5)) {
         const std::size_t span = find_span(line, t);
-        ASSERT_EQ(span, reference_span(knots, t, line.to));
         std::vector<double> values(line.order());
         b_spline_values(line, span, t, values.data());
-        double sum = 0;
-        for (std::size_t j = 0; j < values.size(); ++j) {
-          EXPECT_GE(values[j], 0);
-          sum += values[j];
-          if (degree > 8) continue;  // the recursion takes 2^degree calls
-          const Real expected = reference_basis(knots, span, span - line.order() + 1 + j, degree, t);
-          EXPECT_NEAR(values[j], static_cast<double>(expected), 4 * 0x1p-52) << degree << " " << t;
-        }
-        EXPECT_NEAR(sum, 1, degree * 0x1p-52);
+        check(line, span, t, values);
       }
     }
 }
 
+TEST(Knots, BasisIsAPartitionOfUnityAndEqualsTheRecursion) {
+  Random random(1);
+  for_many_places(random, [](const KnotLine& line, std::size_t span, double t, const std::vector<double>& values) {
+    ASSERT_EQ(span, reference_span(line.knots, t, line.to));
+    double sum = 0;
+    for (std::size_t j = 0; j < values.size(); ++j) {
+      EXPECT_GE(values[j], 0);
+      sum += values[j];
+      if (line.degree > 8) continue;  // the recursion takes 2^degree calls
+      const Real expected = reference_basis(line.knots, span, span - line.order() + 1 + j, line.degree, t);
+      EXPECT_NEAR(values[j], static_cast<double>(expected), 4 * 0x1p-52) << line.degree << " " << t;
+    }
+    EXPECT_NEAR(sum, 1, line.degree * 0x1p-52);
+  });
+}
+
 TEST(Knots, GrevilleAbscissaeReproduceTheParameter) {
   Random random(2);
-  for (int degree = 1; degree <= max_degree; ++degree)
-    for (const KnotStyle& style : styles) {
-      const std::vector<double> knots = random_knots(random, degree, style);
-      const KnotLine line = line_over(degree, knots);
-      for (const double t : sample_parameters(random, knots, line.from, line.to, 5)) {
-        const std::size_t span = find_span(line, t);
-        std::vector<double> values(line.order());
-        b_spline_values(line, span, t, values.data());
-        double sum = 0;
-        for (std::size_t j = 0; j < values.size(); ++j) {
-          const auto first = knots.begin() + static_cast<std::ptrdiff_t>(span - line.order() + 2 + j);
-          sum += values[j] * std::accumulate(first, first + degree, 0.0) / degree;
-        }
-        EXPECT_NEAR(sum, t, 20 * degree * 0x1p-52);
-      }
+  for_many_places(random, [](const KnotLine& line, std::size_t span, double t, const std::vector<double>& values) {
+    double sum = 0;
+    for (std::size_t j = 0; j < values.size(); ++j) {
+      const auto first = line.knots.begin() + static_cast<std::ptrdiff_t>(span - line.order() + 2 + j);
+      sum += values[j] * std::accumulate(first, first + line.degree, 0.0) / line.degree;
     }
+    EXPECT_NEAR(sum, t, 20 * line.degree * 0x1p-52);
+  });
 }
 
 TEST(Knots, BlossomIsSymmetricAndGivesControlPointsAtConsecutiveKnots) {

@@ -133,6 +133,23 @@ TEST(PatchSet, RefusesWhatItCannotHold) {
   EXPECT_EQ(PatchSet::from(patches, flat).status().index(), 1);
 }
 
+/// Alternating signs give the largest coefficients of powers: 3^15 each way.
+TEST(PatchSet, CoefficientsFitAsFarAsPromised) {
+  std::vector<Vec3> points;
+  std::vector<double> weights;
+  for (int i = 0; i <= 15; ++i)
+    for (int j = 0; j <= 15; ++j) {
+      const double x = (i + j) % 2 == 0 ? 0x1p49 : -0x1p49;
+      points.push_back({x, -x, x});
+      weights.push_back((i + j) % 2 == 0 ? 1e308 : 1e300);
+    }
+  const std::vector<BezierPatch> patches{value_of(BezierPatch::polynomial(15, 15, points)),
+                                         value_of(BezierPatch::rational(15, 15, points, weights))};
+  const PatchSet set = set_of(patches, {.blocks = {true, true, true, true}});
+  for (const auto* values : {&set.impl().single.bernstein, &set.impl().single.power})
+    for (const float value : *values) ASSERT_TRUE(std::isfinite(value));
+}
+
 TEST(Model, SurfacesBecomeSources) {
   Random random(77);
   Model model;

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "support/allocations.h"
+#include "support/lecture_points.h"
 #include "support/random_splines.h"
 #include "support/ulp.h"
 #include "tessera/nurbs_surface.h"
@@ -257,6 +258,21 @@ TEST(BezierExtraction, AllocatesOnceForAllPatches) {
     const PatchGrid many_patches = value_of(to_bezier(many));
     EXPECT_LE(allocation_count() - second, second - first + 8);  // what grows, the list of spans, grows by doubling
   }
+}
+
+TEST(BezierExtraction, AllocatesInProportionToItsOutput) {
+  Random random(11);
+  for (const int degree : {1, 3, 8})
+    for (const bool rational : {false, true}) {
+      const BSplineSurface s = random_surface(random, degree, degree, {60}, {60}, rational);
+      const std::size_t before = allocated_bytes();
+      const PatchGrid grid = value_of(to_bezier(s));
+      const std::size_t bytes = allocated_bytes() - before;
+      std::size_t output = grid.patches().size_bytes();
+      for (const BezierPatch& patch : grid.patches())
+        output += patch.points().size_bytes() + patch.weights().size_bytes();
+      EXPECT_LE(bytes, 2 * output) << degree << " " << rational;
+    }
 }
 
 TEST(BezierExtraction, PointsNearTheLargestNumber) {

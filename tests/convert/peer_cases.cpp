@@ -4,8 +4,9 @@
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <stdexcept>
+
+#include "convert/peer_obj.h"
 
 namespace tessera::test {
 namespace {
@@ -28,26 +29,38 @@ std::vector<double> flat(const Json& rows) {
   return values;
 }
 
-bool is_patch(const std::string& kind) { return kind == "bezier" || kind == "rational_bezier"; }
-
-void make_surface(const Json& json, PeerSurface& out) {
+PeerSurface surface_from(const Json& json) {
+  PeerSurface surface;
+  surface.name = json.at("name");
   std::vector<Vec3> points;
   for (const Json& row : json.at("control_points"))
     for (const Json& point : row) points.push_back(vector_from(point));
-  out.dimension = static_cast<int>(json.at("control_points").at(0).at(0).size());
+  surface.dimension = static_cast<int>(json.at("control_points").at(0).at(0).size());
   const int p = json.at("degree_u"), q = json.at("degree_v");
   const auto u = json.at("knots_u").get<std::vector<double>>(), v = json.at("knots_v").get<std::vector<double>>();
+  const std::string kind = json.at("kind");
+  const bool patch = kind == "bezier" || kind == "rational_bezier";
   if (json.at("weights").is_null()) {
-    out.surface = BSplineSurface::polynomial(p, u, q, v, points);
-    if (is_patch(out.kind)) out.patch = BezierPatch::polynomial(p, q, points);
+    surface.add(BSplineSurface::polynomial(p, u, q, v, points));
+    if (patch) surface.add(BezierPatch::polynomial(p, q, points));
   } else {
     const std::vector<double> weights = flat(json.at("weights"));
-    out.surface = BSplineSurface::rational(p, u, q, v, points, weights);
-    if (is_patch(out.kind)) out.patch = BezierPatch::rational(p, q, points, weights);
+    surface.add(BSplineSurface::rational(p, u, q, v, points, weights));
+    if (patch) surface.add(BezierPatch::rational(p, q, points, weights));
   }
+  return surface;
+}
+
+/// All that an evaluation may state: what is not understood must not pass unseen.
+void check_keys(const Json& eval) {
+  for (const auto& [key, value] : eval.items())
+    if (key != "params" && key != "point" && key != "derivs" && key != "tolerance" && key != "tolerance_derivs" &&
+        key != "normal")
+      throw std::runtime_error("an evaluation states its " + key);
 }
 
 PeerEval eval_from(const Json& json, const Json& surface) {
+  check_keys(json);
   PeerEval eval;
   eval.u = json.at("params").at(0);
   eval.v = json.at("params").at(1);
@@ -72,65 +85,52 @@ PeerEval eval_from(const Json& json, const Json& surface) {
   return eval;
 }
 
-/// The one `surf` of a Wavefront file of kind bezier or bspline: enough of the format for the cases, none of its
-/// freedom.
-void read_obj(const std::filesystem::path& path, PeerSurface& out) {
-  std::ifstream file(path);
-  if (!file) throw std::runtime_error("no file " + path.string());
-  std::vector<Vec3> vertices, points;
-  std::vector<double> parm_u, parm_v;
-  int degree_u = 0, degree_v = 0;
-  for (std::string line; std::getline(file, line);) {
-    std::istringstream in(line);
-    std::string key;
-    in >> key;
-    if (key == "v") {
-      Vec3 p;
-      in >> p.x >> p.y >> p.z;
-      vertices.push_back(p);
-    } else if (key == "deg") {
-      in >> degree_u >> degree_v;
-    } else if (key == "surf") {
-      double ends[4];
-      for (double& end : ends) in >> end;
-      for (std::string reference; in >> reference;) {
-        const int index = std::stoi(reference);  // what follows a slash is texture
-        points.push_back(index > 0 ? vertices.at(static_cast<std::size_t>(index) - 1)
-                                   : vertices.at(vertices.size() - static_cast<std::size_t>(-index)));
-      }
-    } else if (key == "parm") {
-      in >> key;
-      std::vector<double>& parm = key == "u" ? parm_u : parm_v;
-      for (double value; in >> value;) parm.push_back(value);
+/// A hit is a point of the surface, on the ray.
+void add_hits(const Json& json, PeerCase& out) {
+  for (const Json& ray : json.at("rays")) {
+    const bool line = ray.contains("line_hits");
+    for (const Json& hit : ray.at(line ? "line_hits" : "hits")) {
+      PeerEval eval;
+      eval.u = hit.at("u");
+      eval.v = hit.at("v");
+      const double t = hit.at("t");
+      eval.point = vector_from(ray.at("origin")) + t * vector_from(ray.at("direction"));
+      // 1e-6 of the size is the convention of the file of lines.
+      eval.point_tolerance = line ? 1e-6 * json.at("size").get<double>() : ray.at("tolerance").get<double>();
+      out.evals.push_back(eval);
     }
   }
-  const auto knots = [&](const std::vector<double>& parm, int degree) {
-    if (out.kind == "bspline") return parm;
-    std::vector<double> all{parm.front()};  // breakpoints, each as a knot of full multiplicity
-    for (const double t : parm) all.insert(all.end(), static_cast<std::size_t>(degree), t);
-    all.push_back(parm.back());
-    return all;
-  };
-  const std::vector<double> u = knots(parm_u, degree_u), v = knots(parm_v, degree_v);
-  const std::size_t count_u = u.size() - static_cast<std::size_t>(degree_u) - 1;
-  std::vector<Vec3> ordered;  // u runs fastest in the file
-  for (std::size_t i = 0; i < count_u; ++i)
-    for (std::size_t k = i; k < points.size(); k += count_u) ordered.push_back(points[k]);
-  out.surface = BSplineSurface::polynomial(degree_u, u, degree_v, v, ordered);
+}
+
+PeerCase case_from(const Json& json) {
+  PeerCase result{surface_from(json), {}};
+  if (json.contains("evals"))
+    for (const Json& eval : json["evals"]) result.evals.push_back(eval_from(eval, json));
+  if (json.contains("unit_normal_up_to_sign"))
+    for (const Json& eval : json["unit_normal_up_to_sign"]) {
+      result.evals.push_back(eval_from(eval, json));
+      result.evals.back().normal_up_to_sign = vector_from(eval.at("normal"));
+    }
+  if (json.contains("rays")) add_hits(json, result);
+  return result;
 }
 
 void read_obj_case(const std::filesystem::path& data, const Json& json, PeerFile& out) {
-  PeerSurface surface;
-  surface.name = std::filesystem::path(json.at("file").get<std::string>()).stem();
-  surface.kind = json.at("kind");
-  if (!is_patch(surface.kind) && surface.kind != "bspline") {
-    out.elsewhere.push_back(surface.name + ": " + std::to_string(json.at("evals").size()) + " evaluations of kind " +
-                            surface.kind);
-    return;
+  const std::filesystem::path path = data / json.at("file").get<std::string>();
+  const std::string name = path.stem();
+  if (json.at("kind") == "invalid") {
+    try {
+      out.invalid.push_back(read_obj_surface(path));
+    } catch (const std::runtime_error& error) {
+      out.elsewhere.push_back(name + ": not a whole file (" + error.what() + "), a case for readers of files");
+    }
+  } else if (json.at("evals").empty()) {
+    out.elsewhere.push_back(name + ": without values: " + json.at("note").get<std::string>());
+  } else {
+    PeerCase result{read_obj_surface(path), {}};
+    for (const Json& eval : json.at("evals")) result.evals.push_back(eval_from(eval, json));
+    out.cases.push_back(std::move(result));
   }
-  read_obj(data / json.at("file").get<std::string>(), surface);
-  for (const Json& eval : json.at("evals")) surface.evals.push_back(eval_from(eval, json));
-  out.surfaces.push_back(std::move(surface));
 }
 
 }  // namespace
@@ -144,22 +144,8 @@ PeerFile read_peer_file(const std::filesystem::path& data, const std::filesystem
     return result;
   }
   for (const Json& entry : json.at("surfaces")) {
-    if (!entry.contains("evals")) {
-      result.elsewhere.push_back(entry.at("name").get<std::string>() + ": " + std::to_string(entry.at("rays").size()) +
-                                 " rays");
-      continue;
-    }
-    PeerSurface surface;
-    surface.name = entry.at("name");
-    surface.kind = entry.at("kind");
-    make_surface(entry, surface);
-    for (const Json& eval : entry.at("evals")) surface.evals.push_back(eval_from(eval, entry));
-    if (entry.contains("unit_normal_up_to_sign"))
-      for (const Json& eval : entry["unit_normal_up_to_sign"]) {
-        surface.evals.push_back(eval_from(eval, entry));
-        surface.evals.back().normal_up_to_sign = vector_from(eval.at("normal"));
-      }
-    result.surfaces.push_back(std::move(surface));
+    result.cases.push_back(case_from(entry));
+    if (entry.contains("rays")) result.rays += entry["rays"].size();
   }
   return result;
 }

@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tessera/bezier_patch.h"
-#include "tessera/bspline_surface.h"
+#include "convert/peer_surface.h"
 
 namespace tessera::test {
 
@@ -22,21 +21,17 @@ struct PeerEval {
   double first_tolerance = 0, second_tolerance = 0;  ///< absolute, per component
 };
 
-struct PeerSurface {
-  std::string name;
-  std::string kind;
-  int dimension = 3;  ///< planar surfaces leave z alone
-  /// The surface, or why the library refuses it.
-  Result<BSplineSurface> surface = Status();
-  /// The same as a patch of its own, where it is one.
-  std::optional<Result<BezierPatch>> patch;
+struct PeerCase {
+  PeerSurface surface;
   std::vector<PeerEval> evals;
 };
 
 struct PeerFile {
   std::string peer;
-  std::vector<PeerSurface> surfaces;
-  std::vector<std::string> elsewhere;  ///< what is no evaluation of a Bezier, B-spline or NURBS surface, and why
+  std::vector<PeerCase> cases;
+  std::vector<PeerSurface> invalid;    ///< what the peer refuses
+  std::size_t rays = 0;                ///< whose hits are among the evaluations, as points of the surface
+  std::vector<std::string> elsewhere;  ///< what has no value of a surface, and why
 };
 
 /// A file of peer_cases; `data` is the folder that holds it and the other test data. Throws on what it does not

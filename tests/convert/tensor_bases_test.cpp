@@ -1,6 +1,7 @@
 // Tensor patches from one basis to another, and to Bezier patches.
 
 #include "support/errors.h"
+#include "support/lecture_points.h"
 #include "support/random_bases.h"
 #include "support/reference.h"
 #include "support/ulp.h"
@@ -39,31 +40,29 @@ double growth(const BasisMatrix& basis) {
 
 TEST(TensorToBezier, IsTheSurfaceInEveryPairOfBasesAndDegrees) {
   Random random(1);
-  for (const auto& [m, n] : {std::pair{1, 1}, {3, 3}, {5, 3}, {2, 7}, {15, 1}, {11, 15}})
-    for (const auto& [name_u, basis_u] : bases_of(random, m))
-      for (const auto& [name_v, basis_v] : bases_of(random, n)) {
-        const Domain d{-2, 6, 0.5, 0.75};
-        const TensorPatch patch = random_tensor(random, basis_u, basis_v, d);
-        const PatchGrid grid = value_of(to_bezier(patch));
-        EXPECT_EQ(grid.domain(), d);
-        EXPECT_EQ(grid.fit_error().distance, 0);
-        EXPECT_TRUE(grid.fit_error().certified);
-        ASSERT_EQ(grid.patches().size(), 1u);
-        const BezierPatch& bezier = grid.patches()[0];
-        EXPECT_EQ(std::pair(bezier.degree_u(), bezier.degree_v()), std::pair(m, n));
-        const double largest = std::max(largest_element(patch.geometry()), largest_coefficient(bezier));
-        for (int k = 0; k <= 10; ++k) {
-          const double s = k / 10.0, t = std::fmod(0.7 * k, 1.0);
-          EXPECT_TRUE(within_units(reference_position(bezier, s, t), evaluate_jet(patch, d.u_at(s), d.v_at(t)).position,
-                                   double_unit * largest, 8))
-              << name_u << " " << m << ", " << name_v << " " << n;
-        }
-        const SurfaceJet jet = evaluate_jet(patch, 1, 0.6), other = *grid.evaluate_jet(1, 0.6);
-        const double unit = double_unit * largest * m * n;
-        EXPECT_TRUE(within_units(other.du, jet.du, unit, 16));
-        EXPECT_TRUE(within_units(other.dv, jet.dv, 4 * unit, 16));
-        EXPECT_TRUE(within_units(other.duv, jet.duv, 4 * unit, 32));
-      }
+  for_all_pairs_of_bases(random, [](const TensorPatch& patch, const std::string& bases) {
+    const Domain& d = patch.domain();
+    const int m = patch.basis_u().degree(), n = patch.basis_v().degree();
+    const PatchGrid grid = value_of(to_bezier(patch));
+    EXPECT_EQ(grid.domain(), d);
+    EXPECT_EQ(grid.fit_error().distance, 0);
+    EXPECT_TRUE(grid.fit_error().certified);
+    ASSERT_EQ(grid.patches().size(), 1u);
+    const BezierPatch& bezier = grid.patches()[0];
+    EXPECT_EQ(std::pair(bezier.degree_u(), bezier.degree_v()), std::pair(m, n));
+    const double largest = std::max(largest_element(patch.geometry()), largest_coefficient(bezier));
+    for (int k = 0; k <= 10; ++k) {
+      const double s = k / 10.0, t = std::fmod(0.7 * k, 1.0);
+      EXPECT_TRUE(within_units(reference_position(bezier, s, t), evaluate_jet(patch, d.u_at(s), d.v_at(t)).position,
+                               double_unit * largest, 8))
+          << bases;
+    }
+    const SurfaceJet jet = evaluate_jet(patch, 1, 0.6), other = *grid.evaluate_jet(1, 0.6);
+    const double unit = double_unit * largest * m * n;
+    EXPECT_TRUE(within_units(other.du, jet.du, unit, 16));
+    EXPECT_TRUE(within_units(other.dv, jet.dv, 4 * unit, 16));
+    EXPECT_TRUE(within_units(other.duv, jet.duv, 4 * unit, 32));
+  });
 }
 
 TEST(ChangeOfBasis, ThereAndBackIsTheSameGeometry) {
@@ -125,14 +124,8 @@ TEST(ChangeOfBasis, IsAffinelyInvariant) {
 }
 
 TEST(ChangeOfBasis, BicubicFiguresInEveryBasis) {
-  constexpr double x[4][4] = {{0, 1, 1, 1}, {0, 1, 1, -1}, {-1, 1, 0, 0}, {1, 1, 0, 0}};
-  constexpr double y[4][4] = {{0, 0, 1, 1}, {1, 1, 1, 1}, {1, 1, 0, 0}, {1, 1, 0, 0}};
-  constexpr double z[4][4] = {{2, -1, 1, 1}, {3, -2, 1, -1}, {-1, 1, 0, 0}, {1, 1, 0, 0}};
-  std::vector<Vec3> points;
-  for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 4; ++j) points.push_back({x[j][i], y[j][i], z[j][i]});
   const BasisMatrix cubic = value_of(BasisMatrix::bezier(3));
-  const TensorPatch bezier = value_of(TensorPatch::make(cubic, cubic, points));
+  const TensorPatch bezier = value_of(TensorPatch::make(cubic, cubic, lecture_points()));
   Random random(6);
   for (const auto& [name_u, basis_u] : bases_of(random, 3))
     for (const auto& [name_v, basis_v] : bases_of(random, 3)) {

@@ -65,6 +65,14 @@ grep -qx -- ".* install --no-install-recommends ninja-build" "$place/calls"
 attempt "$place/bin" --for test
 expect 0 "installed libgtest-dev"
 
+printf 'libocct-modeling-data-dev\nlibgtest-dev\n' >"$place/missing"
+attempt "$place/bin" --for test  # the tests need no peer
+expect 0 "installed libgtest-dev"
+printf 'libocct-modeling-data-dev\nlibgtest-dev\n' >"$place/missing"
+attempt "$place/bin" --for=peers  # nor the comparisons GoogleTest
+expect 0 "installed libocct-modeling-data-dev"
+grep -qx -- ".* install --no-install-recommends libocct-modeling-data-dev" "$place/calls"
+
 printf 'cmake\n' >"$place/missing"
 touch "$place/no_network"
 attempt "$place/bin"

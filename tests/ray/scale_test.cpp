@@ -8,6 +8,7 @@ namespace tessera::test {
 namespace {
 
 struct Place {
+  const char* name;
   double scale;
   Vec3 shift;
 };
@@ -15,7 +16,7 @@ struct Place {
 class Places : public testing::TestWithParam<Place> {};
 
 TEST_P(Places, SphereFromOutside) {
-  const auto [scale, shift] = GetParam();
+  const auto [name, scale, shift] = GetParam();
   const PatchSet set = set_of(placed(sphere(), scale, shift));
   const RayScene scene = scene_of(set);
   // What double resolves of the model at its place, and a share of the size.
@@ -42,7 +43,7 @@ TEST_P(Places, SphereFromOutside) {
 }
 
 TEST_P(Places, NothingLeaks) {
-  const auto [scale, shift] = GetParam();
+  const auto [name, scale, shift] = GetParam();
   const PatchSet set = set_of(placed(closed_body(), scale, shift));
   const RayScene scene = scene_of(set);
   Random random(32);
@@ -55,8 +56,11 @@ TEST_P(Places, NothingLeaks) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scales, Places,
-                         testing::Values(Place{1, {}}, Place{5, {1e6, -1e6, 1e6}}, Place{1e-6, {}}, Place{1e6, {}},
-                                         Place{1e-6, {0.01, 0.02, -0.01}}, Place{1e6, {1e8, 0, 0}}));
+                         testing::Values(Place{"unit", 1, {}}, Place{"off_zero", 5, {1e6, -1e6, 1e6}},
+                                         Place{"small", 1e-6, {}}, Place{"large", 1e6, {}},
+                                         Place{"small_off_zero", 1e-6, {0.01, 0.02, -0.01}},
+                                         Place{"large_off_zero", 1e6, {1e8, 0, 0}}),
+                         [](const auto& place) { return place.param.name; });
 
 TEST(Scales, BeyondFloatIsAnError) {
   EXPECT_EQ(RayScene::make(set_of(placed(sphere(), 1e13, {}))).status().code(), StatusCode::unsupported);

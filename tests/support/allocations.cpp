@@ -6,10 +6,11 @@
 
 namespace {
 
-std::atomic<std::size_t> count{0};
+std::atomic<std::size_t> count{0}, bytes_in_all{0};
 
 void* counted(std::size_t bytes, std::size_t alignment) {
   ++count;
+  bytes_in_all += bytes;
   void* memory = std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
   if (memory == nullptr) throw std::bad_alloc();
   return memory;
@@ -20,6 +21,7 @@ void* counted(std::size_t bytes, std::size_t alignment) {
 namespace tessera::test {
 
 std::size_t allocation_count() { return count; }
+std::size_t allocated_bytes() { return bytes_in_all; }
 
 }  // namespace tessera::test
 

@@ -1,6 +1,9 @@
 #pragma once
 // The basis matrices of a degree, and random tensor patches over them.
 
+#include <string>
+#include <utility>
+
 #include "support/random_patches.h"
 #include "support/synthetic_sets.h"
 #include "tessera/tensor_patch.h"
@@ -38,6 +41,17 @@ inline TensorPatch random_tensor(Random& random, const BasisMatrix& basis_u, con
                                  const Domain& domain = {}) {
   return value_of(
       TensorPatch::make(basis_u, basis_v, random_points(random, basis_u.degree(), basis_v.degree()), domain));
+}
+
+/// check(patch, its bases in words) for a random patch over every pair of bases, of equal, mixed and the highest degrees,
+/// on a domain that is not [0,1]^2.
+template <class Check>
+void for_all_pairs_of_bases(Random& random, Check check) {
+  for (const auto& [m, n] : {std::pair{1, 1}, {3, 3}, {5, 3}, {2, 7}, {15, 1}, {11, 15}})
+    for (const auto& [name_u, basis_u] : bases_of(random, m))
+      for (const auto& [name_v, basis_v] : bases_of(random, n))
+        check(random_tensor(random, basis_u, basis_v, {-2, 6, 0.5, 0.75}),
+              std::string(name_u) + " " + std::to_string(m) + ", " + name_v + " " + std::to_string(n));
 }
 
 }  // namespace tessera::test

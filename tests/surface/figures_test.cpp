@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "support/lecture_points.h"
 #include "support/random_patches.h"
 #include "support/reference.h"
 #include "support/ulp.h"
@@ -10,14 +11,7 @@ namespace tessera::test {
 namespace {
 
 TEST(Figures, BicubicBezier) {
-  // Entry [row][column] is V_{column,row}.
-  constexpr double x[4][4] = {{0, 1, 1, 1}, {0, 1, 1, -1}, {-1, 1, 0, 0}, {1, 1, 0, 0}};
-  constexpr double y[4][4] = {{0, 0, 1, 1}, {1, 1, 1, 1}, {1, 1, 0, 0}, {1, 1, 0, 0}};
-  constexpr double z[4][4] = {{2, -1, 1, 1}, {3, -2, 1, -1}, {-1, 1, 0, 0}, {1, 1, 0, 0}};
-  std::vector<Vec3> points;
-  for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 4; ++j) points.push_back({x[j][i], y[j][i], z[j][i]});
-  const BezierPatch patch = polynomial(3, 3, points);
+  const BezierPatch patch = polynomial(3, 3, lecture_points());
 
   const SurfaceJet jet = evaluate_jet(patch, 0.5, 0.5);
   EXPECT_EQ(jet.position, (Vec3{0.5, 0.6875, 0.15625}));

@@ -1,6 +1,7 @@
 // Tensor-product patches over any bases: the reference evaluator against sums of powers, and what is refused.
 
 #include "support/errors.h"
+#include "support/lecture_points.h"
 #include "support/random_bases.h"
 #include "support/reference.h"
 #include "support/ulp.h"
@@ -42,33 +43,29 @@ RealVec3 by_definition(const TensorPatch& patch, Real s, Real t, int a, int b, R
 
 TEST(TensorPatch, IsTheProductOfMatrices) {
   Random random(1);
-  for (const auto& [m, n] : {std::pair{1, 1}, {3, 3}, {5, 3}, {2, 7}, {15, 1}, {11, 15}})
-    for (const auto& [name_u, basis_u] : bases_of(random, m))
-      for (const auto& [name_v, basis_v] : bases_of(random, n)) {
-        const Domain d{-2, 6, 0.5, 0.75};
-        const TensorPatch patch = random_tensor(random, basis_u, basis_v, d);
-        const std::string bases =
-            std::string(name_u) + " " + std::to_string(m) + ", " + name_v + " " + std::to_string(n);
-        for (const auto& [s, t] : {std::pair{0.0, 1.0}, {0.375, 0.625}, {1.0, 0.25}}) {
-          const SurfaceJet jet = evaluate_jet(patch, d.u_at(s), d.v_at(t));
-          const auto expect = [&, s = s, t = t, m = m, n = n](const Vec3& value, int a, int b) {
-            Real size = 0;
-            const Real chain = std::pow(Real(1) / 8, a) * std::pow(Real(4), b);
-            const RealVec3 expected = chain * by_definition(patch, s, t, a, b, size);
-            // The coefficients of the blends are rounded, and each derivative takes differences of them.
-            const double differences = std::pow(2.0 * m, a) * std::pow(2.0 * n, b);
-            EXPECT_TRUE(within_units(value, expected.rounded(),
-                                     double_unit * static_cast<double>(chain * (size + differences)), 4))
-                << bases << " order " << a << b;
-          };
-          expect(jet.position, 0, 0);
-          expect(jet.du, 1, 0);
-          expect(jet.dv, 0, 1);
-          expect(jet.duu, 2, 0);
-          expect(jet.duv, 1, 1);
-          expect(jet.dvv, 0, 2);
-        }
-      }
+  for_all_pairs_of_bases(random, [](const TensorPatch& patch, const std::string& bases) {
+    const Domain& d = patch.domain();
+    const int m = patch.basis_u().degree(), n = patch.basis_v().degree();
+    for (const auto& [s, t] : {std::pair{0.0, 1.0}, {0.375, 0.625}, {1.0, 0.25}}) {
+      const SurfaceJet jet = evaluate_jet(patch, d.u_at(s), d.v_at(t));
+      const auto expect = [&, s = s, t = t](const Vec3& value, int a, int b) {
+        Real size = 0;
+        const Real chain = std::pow(Real(1) / 8, a) * std::pow(Real(4), b);
+        const RealVec3 expected = chain * by_definition(patch, s, t, a, b, size);
+        // The coefficients of the blends are rounded, and each derivative takes differences of them.
+        const double differences = std::pow(2.0 * m, a) * std::pow(2.0 * n, b);
+        EXPECT_TRUE(
+            within_units(value, expected.rounded(), double_unit * static_cast<double>(chain * (size + differences)), 4))
+            << bases << " order " << a << b;
+      };
+      expect(jet.position, 0, 0);
+      expect(jet.du, 1, 0);
+      expect(jet.dv, 0, 1);
+      expect(jet.duu, 2, 0);
+      expect(jet.duv, 1, 1);
+      expect(jet.dvv, 0, 2);
+    }
+  });
 }
 
 TEST(TensorPatch, HighDegreesDontCancel) {
@@ -82,12 +79,7 @@ TEST(TensorPatch, HighDegreesDontCancel) {
 }
 
 TEST(TensorPatch, UniformBSplineFigures) {
-  constexpr double x[4][4] = {{0, 1, 1, 1}, {0, 1, 1, -1}, {-1, 1, 0, 0}, {1, 1, 0, 0}};
-  constexpr double y[4][4] = {{0, 0, 1, 1}, {1, 1, 1, 1}, {1, 1, 0, 0}, {1, 1, 0, 0}};
-  constexpr double z[4][4] = {{2, -1, 1, 1}, {3, -2, 1, -1}, {-1, 1, 0, 0}, {1, 1, 0, 0}};
-  std::vector<Vec3> points;
-  for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 4; ++j) points.push_back({x[j][i], y[j][i], z[j][i]});
+  const std::vector<Vec3> points = lecture_points();
   const BasisMatrix basis = value_of(BasisMatrix::uniform_b_spline(3));
   const TensorPatch patch = value_of(TensorPatch::make(basis, basis, points));
   EXPECT_TRUE(within_units(evaluate_jet(patch, 0.3, 0.6).position,

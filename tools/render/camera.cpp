@@ -61,8 +61,6 @@ Camera fit_camera(const Box3& box, int width, int height) {
   return camera;
 }
 
-Camera fit_camera(const Box3& box) { return fit_camera(box, 1, 1); }
-
 Status check(const Camera& camera) {
   const auto bad = [](const char* why) { return Status(StatusCode::invalid_argument, why); };
   // Written so that NaN fails.

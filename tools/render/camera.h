@@ -5,7 +5,7 @@
 
 namespace tessera::render {
 
-/// fit_camera for a picture of one shape: the box fills more of it.
+/// A three-quarter view from above that frames the whole box; z is up.
 Camera fit_camera(const Box3& box, int width, int height);
 
 /// Whether rays can be made from it.

@@ -24,9 +24,6 @@ struct Camera {
   Vec3 up{0, 0, 1};
 };
 
-/// A three-quarter view from above that frames the whole box in a picture of any shape; z is up.
-Camera fit_camera(const Box3& box);
-
 enum class Shade : std::uint8_t {
   lambert,  ///< glazed porcelain on a floor under a sky: sun with soft shadow, ambient light, one reflection
   normals,  ///< the unit normal, (n + 1) / 2 as red, green, blue

@@ -23,9 +23,12 @@ class BezierPatch {
   /// `points`: (degree_u + 1) * (degree_v + 1) finite points in the order above.
   /// Errors: unsupported_degree, count_mismatch, non_finite (index = the offending point).
   static Result<BezierPatch> polynomial(int degree_u, int degree_v, std::span<const Vec3> points);
-  /// `weights`: one finite weight > 0 a point, at least 1e-100 of the largest; `points` are not premultiplied. If all
-  /// weights are equal by == they are dropped and the patch is polynomial. Errors: as above, and invalid_weight
-  /// (index = the offending weight).
+  /// `weights`: one finite weight > 0 a point, at least 1e-100 of the largest; `points` are not premultiplied. Zero and
+  /// negative weights are refused even where the denominator stays positive: a point is held as itself and its weight,
+  /// so one of weight zero (at infinity, if w V is not zero) has no place, and what lies between two of them has no
+  /// point at all; with negative ones the patch leaves its hull, on which boxes and bounds rest. If all weights are
+  /// equal by == they are dropped and the patch is polynomial. Errors: as above, and invalid_weight (index = the
+  /// offending weight).
   static Result<BezierPatch> rational(int degree_u, int degree_v, std::span<const Vec3> points,
                                       std::span<const double> weights);
 

@@ -27,7 +27,8 @@ class BSplineSurface {
                                            std::span<const double> knots_v, std::span<const Vec3> points,
                                            std::optional<Domain> domain = {});
   /// `weights`: one finite weight > 0 a point, at least 1e-100 of the largest; zero and negative ones are refused even
-  /// where the denominator stays positive. If all are equal by == they are dropped. `points` are not premultiplied.
+  /// where the denominator stays positive, for the reasons that BezierPatch gives: knot insertion and extraction make
+  /// such points. If all are equal by == they are dropped. `points` are not premultiplied.
   /// Errors: as above, and invalid_weight (index = the weight).
   static Result<BSplineSurface> rational(int degree_u, std::span<const double> knots_u, int degree_v,
                                          std::span<const double> knots_v, std::span<const Vec3> points,

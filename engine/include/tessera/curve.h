@@ -32,7 +32,8 @@ class Curve {
   static Result<Curve> b_spline(int degree, std::span<const Vec3> points, std::span<const double> knots,
                                 std::optional<Interval> domain = {});
   /// `weights`: one finite weight > 0 a point, at least 1e-100 of the largest; zero and negative ones are refused even
-  /// where the denominator stays positive. If all are equal by == they are dropped. `points` are not premultiplied.
+  /// where the denominator stays positive, for the reasons that BezierPatch gives: knot insertion and extraction make
+  /// such points. If all are equal by == they are dropped. `points` are not premultiplied.
   /// Errors: as above, and invalid_weight (index = the weight).
   static Result<Curve> nurbs(int degree, std::span<const Vec3> points, std::span<const double> weights,
                              std::span<const double> knots, std::optional<Interval> domain = {});

@@ -26,4 +26,19 @@ struct AlignedAllocator {
 template <class T>
 using AlignedVector = std::vector<T, AlignedAllocator<T>>;
 
+template <class T>
+struct UnsetAllocator : AlignedAllocator<T> {
+  UnsetAllocator() = default;
+  template <class U>
+  UnsetAllocator(const UnsetAllocator<U>&) {}
+  template <class U>
+  void construct(U* at) {
+    ::new (static_cast<void*>(at)) U;
+  }
+};
+
+/// The same for numbers that are all written once there is room for them: resize() leaves new ones unset.
+template <class T>
+using UnsetVector = std::vector<T, UnsetAllocator<T>>;
+
 }  // namespace tessera

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/guard.h"
+#include "block/patch_set_impl.h"
 
 namespace tessera {
 namespace {
@@ -13,17 +14,24 @@ struct Gathered {
   std::vector<PatchSource> sources;
   FitError fit_error;
 
+  explicit Gathered(std::size_t count) {
+    patches.reserve(count);
+    sources.reserve(count);
+  }
+
   void add(std::size_t surface, const PatchGrid& grid) {
+    const auto u = grid.breaks_u(), v = grid.breaks_v();
     patches.insert(patches.end(), grid.patches().begin(), grid.patches().end());
-    for (std::size_t k = 0; k < grid.patches().size(); ++k)
-      sources.push_back({static_cast<std::uint32_t>(surface), grid.patch_domain(k)});
+    for (std::size_t a = 0; a + 1 < u.size(); ++a)
+      for (std::size_t b = 0; b + 1 < v.size(); ++b)
+        sources.push_back({static_cast<std::uint32_t>(surface), {u[a], u[a + 1], v[b], v[b + 1]}});
     fit_error.distance = std::max(fit_error.distance, grid.fit_error().distance);
     fit_error.certified = fit_error.certified && grid.fit_error().certified;
   }
 
-  Result<PatchSet> packed(PatchSetOptions options) const {
+  Result<PatchSet> packed(PatchSetOptions options) && {
     options.fit_error = fit_error;
-    return PatchSet::from(patches, sources, options);
+    return PatchSet::Impl::make(std::move(patches), std::move(sources), options);
   }
 };
 
@@ -56,25 +64,29 @@ Result<PatchGrid> to_bezier(const ModelSurface& surface, const FitOptions& optio
 
 Result<PatchSet> make_patch_set(const Model& model, const PatchSetOptions& options, const FitOptions& fit) {
   return guarded([&]() -> Result<PatchSet> {
-    Gathered all;
-    all.patches.reserve(model.surfaces.size());
-    all.sources.reserve(model.surfaces.size());
+    Gathered all(model.surfaces.size());
+    std::vector<std::size_t> ends;  // of each surface's patches
     for (std::size_t k = 0; k < model.surfaces.size(); ++k) {
       const Result<PatchGrid> grid = to_bezier(model.surfaces[k], fit);
       if (!grid) return in_surface(model, k, grid.status());
       all.add(k, *grid);
+      ends.push_back(all.patches.size());
     }
-    Result<PatchSet> set = all.packed(options);
+    Result<PatchSet> set = std::move(all).packed(options);
     if (set || set.status().index() == Status::no_index) return set;
-    return in_surface(model, all.sources[static_cast<std::size_t>(set.status().index())].surface, set.status());
+    const auto patch = static_cast<std::size_t>(set.status().index());
+    const auto surface = std::upper_bound(ends.begin(), ends.end(), patch) - ends.begin();
+    return in_surface(model, static_cast<std::size_t>(surface), set.status());
   });
 }
 
 Result<PatchSet> make_patch_set(std::span<const PatchGrid> grids, const PatchSetOptions& options) {
   return guarded([&]() -> Result<PatchSet> {
-    Gathered all;
+    std::size_t count = 0;
+    for (const PatchGrid& grid : grids) count += grid.patches().size();
+    Gathered all(count);
     for (std::size_t k = 0; k < grids.size(); ++k) all.add(k, grids[k]);
-    return all.packed(options);
+    return std::move(all).packed(options);
   });
 }
 

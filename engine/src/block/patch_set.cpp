@@ -21,10 +21,11 @@ auto block_key(const BezierPatch& patch) { return std::tuple(patch.degree_u(), p
 void lay_out(PatchSet::Impl& set) {
   std::vector<std::uint32_t> order(set.patches.size());
   std::iota(order.begin(), order.end(), 0u);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](auto a, auto b) { return block_key(set.patches[a]) < block_key(set.patches[b]); });
+  const auto before = [&](auto a, auto b) { return block_key(set.patches[a]) < block_key(set.patches[b]); };
+  if (!std::is_sorted(order.begin(), order.end(), before)) std::stable_sort(order.begin(), order.end(), before);
   constexpr std::size_t lanes = PatchSet::lanes;
   set.slots.resize(order.size());
+  set.lane_patches.reserve(order.size() + lanes);
   std::size_t next_value = 0;
   for (std::size_t begin = 0; begin < order.size();) {
     const BezierPatch& first = set.patches[order[begin]];
@@ -54,6 +55,10 @@ void lay_out(PatchSet::Impl& set) {
 
 /// Weights below these shares of the largest: derivatives grow with the inverse of that share, and normals with its square.
 constexpr double least_weight_in_float = 1e-9, least_weight_in_double = 1e-70;
+
+/// Control points no further than this from the origin give coefficients that fit float, whatever the basis: scaled
+/// weights are below 2^24, and powers of degree 15 both ways below 3^30 < 2^48 times the largest coefficient.
+constexpr double always_in_range = 0x1p50;
 
 Status too_large(std::size_t patch) {
   return Status(StatusCode::non_finite,
@@ -90,15 +95,8 @@ Box3 PatchSet::Impl::box() const {
   return box;
 }
 
-bool PatchSet::Impl::has(Precision precision, Representation representation) const {
-  const bool bernstein = representation == Representation::bernstein;
-  if (precision == Precision::single_precision) return bernstein ? kinds.float_bernstein : kinds.float_power;
-  return bernstein ? kinds.double_bernstein : kinds.double_power;
-}
-
-bool PatchSet::Impl::pack(std::size_t patch, std::vector<double>& scratch) {
+bool PatchSet::Impl::pack(std::size_t patch, const BlockGroup& group, bool surely_fits, std::vector<double>& scratch) {
   const Slot slot = slots[patch];
-  const BlockGroup& group = group_of_block(slot.block);
   const std::size_t first = group.first_value + (slot.block - group.first_block) * group.block_values;
   const auto write = [&](auto& coefficients) {
     auto* block = coefficients.data() + first;
@@ -114,14 +112,54 @@ bool PatchSet::Impl::pack(std::size_t patch, std::vector<double>& scratch) {
     if (!in_float && !in_double) continue;
     relative_coefficients(patches[patch], origin, representation, scratch);
     const double limit = in_float ? double{std::numeric_limits<float>::max()} : std::numeric_limits<double>::max();
-    for (const double value : scratch)
-      if (!(std::abs(value) <= limit)) return false;
+    if (!surely_fits && !std::ranges::all_of(scratch, [&](double value) { return std::abs(value) <= limit; }))
+      return false;
     if (lightest < (in_float ? least_weight_in_float : least_weight_in_double)) return false;
     const bool bernstein = representation == Representation::bernstein;
     if (in_float) write(bernstein ? single.bernstein : single.power);
     if (in_double) write(bernstein ? twice.bernstein : twice.power);
   }
   return true;
+}
+
+bool PatchSet::Impl::pack(std::size_t patch, std::vector<double>& scratch) {
+  return pack(patch, group_of_block(slots[patch].block), false, scratch);
+}
+
+Status PatchSet::Impl::pack_all(bool surely_fits) {
+  std::vector<double> scratch;
+  for (const BlockGroup& group : groups)
+    for (std::size_t block = group.first_block; block < group.first_block + group.block_count; ++block)
+      for (std::size_t lane = 0; lane < lane_counts[block]; ++lane) {
+        const std::size_t patch = lane_patches[block * lanes + lane];
+        if (!pack(patch, group, surely_fits, scratch)) return too_large(patch);
+      }
+  return {};
+}
+
+Result<PatchSet> PatchSet::Impl::make(std::vector<BezierPatch> patches, std::vector<PatchSource> sources,
+                                      const PatchSetOptions& options) {
+  if (Status status = check_sources(patches, sources); !status.ok()) return status;
+  if (options.origin && !is_finite(*options.origin))
+    return Status(StatusCode::non_finite, "the origin of a patch set must be finite");
+  auto set = std::make_unique<Impl>();
+  set->patches = std::move(patches);
+  set->sources = std::move(sources);
+  set->kinds = options.blocks;
+  set->fit_error = options.fit_error;
+  for (const PatchSource& source : set->sources)
+    set->surface_count = std::max(set->surface_count, std::size_t{source.surface} + 1);
+  Box3 box;
+  set->collapsed.reserve(set->patches.size());
+  for (const BezierPatch& patch : set->patches) {  // one pass: the points may not fit the caches
+    box.extend(patch.hull_box());
+    set->collapsed.push_back(patch.collapsed_edges());
+  }
+  set->origin = options.origin.value_or(box.centre());
+  lay_out(*set);
+  const double reach = std::max(max_abs(box.lower - set->origin), max_abs(box.upper - set->origin));
+  if (Status status = set->pack_all(reach < always_in_range); !status.ok()) return status;
+  return PatchSet(std::move(set));
 }
 
 Result<PatchSet> PatchSet::from(std::span<const BezierPatch> patches, const PatchSetOptions& options) {
@@ -135,22 +173,7 @@ Result<PatchSet> PatchSet::from(std::span<const BezierPatch> patches, const Patc
 Result<PatchSet> PatchSet::from(std::span<const BezierPatch> patches, std::span<const PatchSource> sources,
                                 const PatchSetOptions& options) {
   return guarded([&]() -> Result<PatchSet> {
-    if (Status status = check_sources(patches, sources); !status.ok()) return status;
-    if (options.origin && !is_finite(*options.origin))
-      return Status(StatusCode::non_finite, "the origin of a patch set must be finite");
-    auto set = std::make_unique<Impl>();
-    set->patches.assign(patches.begin(), patches.end());
-    set->sources.assign(sources.begin(), sources.end());
-    set->kinds = options.blocks;
-    set->fit_error = options.fit_error;
-    for (const BezierPatch& patch : patches) set->collapsed.push_back(patch.collapsed_edges());
-    for (const PatchSource& source : sources) set->surface_count = std::max(set->surface_count, std::size_t{source.surface} + 1);
-    set->origin = options.origin ? *options.origin : set->box().centre();
-    lay_out(*set);
-    std::vector<double> scratch;
-    for (std::size_t k = 0; k < patches.size(); ++k)
-      if (!set->pack(k, scratch)) return too_large(k);
-    return PatchSet(std::move(set));
+    return Impl::make({patches.begin(), patches.end()}, {sources.begin(), sources.end()}, options);
   });
 }
 

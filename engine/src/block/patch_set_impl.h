@@ -21,8 +21,8 @@ struct BlockGroup {
 /// The coefficients of all groups in one precision, over either basis; empty where not asked for.
 template <class T>
 struct Coefficients {
-  AlignedVector<T> bernstein, power;
-  const AlignedVector<T>& of(Representation representation) const {
+  UnsetVector<T> bernstein, power;
+  const UnsetVector<T>& of(Representation representation) const {
     return representation == Representation::bernstein ? bernstein : power;
   }
 };
@@ -54,11 +54,24 @@ class PatchSet::Impl {
     }
   }
   Box3 box() const;
-  bool has(Precision precision, Representation representation) const;
+  bool has(Precision precision, Representation representation) const {
+    const bool bernstein = representation == Representation::bernstein;
+    if (precision == Precision::single_precision) return bernstein ? kinds.float_bernstein : kinds.float_power;
+    return bernstein ? kinds.double_bernstein : kinds.double_power;
+  }
 
   /// Writes a patch into its lane of every kind of block, and into the unused lanes that repeat it.
   /// False if a coefficient does not fit float; `scratch` is reused between calls.
   bool pack(std::size_t patch, std::vector<double>& scratch);
+
+  /// PatchSet::from, without a copy.
+  static Result<PatchSet> make(std::vector<BezierPatch> patches, std::vector<PatchSource> sources,
+                               const PatchSetOptions& options);
+
+ private:
+  /// Of a patch of `group`, and with all coefficients known to be in range or not.
+  bool pack(std::size_t patch, const BlockGroup& group, bool surely_fits, std::vector<double>& scratch);
+  Status pack_all(bool surely_fits);
 };
 
 }  // namespace tessera

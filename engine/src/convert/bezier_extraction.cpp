@@ -4,6 +4,7 @@
 #include <cstring>
 #include <limits>
 #include <string>
+#include <type_traits>
 
 #include "base/guard.h"
 #include "convert/extraction.h"
@@ -16,22 +17,32 @@
 namespace tessera {
 namespace {
 
-/// values[0..width) = sum of the row's weights times `rows`, which lie `stride` apart.
+/// values[0..width) = sum of `count` weights times `rows`, which lie `stride` apart. In one pass, which keeps sums in
+/// registers.
+template <std::size_t count, class Width>
+void combine(const double* weights, const double* rows, std::size_t stride, Width width, double* values) {
+  std::array<double, count> w;
+  std::copy_n(weights, count, w.begin());
+  for (std::size_t x = 0; x < width; ++x) {
+    double sum = w[0] * rows[x];
+    for (std::size_t k = 1; k < count; ++k) sum += w[k] * rows[k * stride + x];
+    values[x] = sum;
+  }
+}
+
+/// values[0..width) = sum of the row's weights times `rows`, which lie `stride` apart. Width: std::size_t, or a constant
+/// where it is small.
+template <class Width>
 void apply(const Extraction& extraction, const Extraction::Row& row, const double* rows, std::size_t stride,
-           std::size_t width, double* values) {
+           Width width, double* values) {
   const double* from = rows + row.first * stride;
-  if (row.count == 1) {
-    std::copy_n(from, width, values);
-    return;
-  }
   const double* weights = extraction.weights_of(row);
-  const double first = weights[0], second = weights[1];
-  for (std::size_t x = 0; x < width; ++x) values[x] = first * from[x] + second * from[stride + x];
-  for (std::size_t k = 2; k < row.count; ++k) {
-    const double weight = weights[k];
-    const double* next = from + k * stride;
-    for (std::size_t x = 0; x < width; ++x) values[x] += weight * next[x];
-  }
+  if (row.count == 1) return static_cast<void>(std::copy_n(from, std::size_t{width}, values));
+  if (row.count == 2) return combine<2>(weights, from, stride, width, values);
+  if (row.count == 3) return combine<3>(weights, from, stride, width, values);
+  combine<4>(weights, from, stride, width, values);
+  for (std::size_t k = 4; k < row.count; ++k)
+    for (std::size_t x = 0; x < width; ++x) values[x] += weights[k] * from[k * stride + x];
 }
 
 /// What brings points and weights near 1, so that products of them neither over- nor underflow: powers of two.
@@ -70,84 +81,117 @@ bool all_finite(std::span<const double> values) {
   return finite;
 }
 
-/// The Bezier points of a surface, one strip of patches after the other, each point computed once: neighbours share it.
-class Strips {
+/// The Bezier net of a surface, one strip of patches after the other: each point computed once, since neighbours share
+/// it.
+class NetStrips {
  public:
-  explicit Strips(const BSplineSurface& surface)
+  explicit NetStrips(const BSplineSurface& surface)
       : surface_(surface), u_(make_extraction(line_u(surface))), v_(make_extraction(line_v(surface))) {
-    if (surface.is_rational()) scales_.emplace(surface.points(), surface.weights());
-    const std::size_t c = components();
-    const std::vector<double> net = numbers(surface.points(), surface.weights(), scales_ ? &*scales_ : nullptr);
-    along_v_.resize(surface.count_u() * row_size());
-    for (std::size_t i = 0; i < surface.count_u(); ++i)
-      for (std::size_t r = 0; r < v_.rows.size(); ++r)
-        apply(v_, v_.rows[r], &net[i * surface.count_v() * c], c, c, &along_v_[i * row_size() + r * c]);
-    strip_.resize(order_u() * row_size());
+    if (surface.is_rational()) {
+      scales_.emplace(surface.points(), surface.weights());
+      extract_along_v(std::integral_constant<std::size_t, 4>{});
+      homogeneous_.resize(v_.rows.size() * 4);
+      weights_.resize(order_u() * v_.rows.size());
+    } else {
+      extract_along_v(std::integral_constant<std::size_t, 3>{});
+    }
+    points_.resize(order_u() * v_.rows.size() * 3);
     for (const Vec3& p : surface.points())
       may_overflow_ = may_overflow_ || max_abs(p) > std::numeric_limits<double>::max() / 2;
-    if (!scales_) return;
-    projected_.resize(order_u() * v_.rows.size() * 3);
-    projected_weights_.resize(order_u() * v_.rows.size());
   }
 
   const Extraction& u() const { return u_; }
   const Extraction& v() const { return v_; }
 
-  /// Writes the patches of span `a` of u. Spans come in order.
-  Status write(std::size_t a, PatchPieces& pieces) {
-    const std::size_t p = order_u() - 1, size = row_size(), first = a > 0 ? 1 : 0;
-    if (a > 0) std::copy_n(strip_.end() - static_cast<std::ptrdiff_t>(size), size, strip_.begin());
-    for (std::size_t i = first; i <= p; ++i)
-      apply(u_, u_.rows[a * p + i], along_v_.data(), size, size, &strip_[i * size]);
-    if (scales_) project_strip(a);
-    if (may_overflow_ && !all_finite(scales_ ? projected_ : strip_))
+  /// Computes the strip of span `a` of u. Strips come in order.
+  Status compute(std::size_t a) {
+    const std::size_t p = order_u() - 1;
+    if (a > 0) {  // the last row of a strip is the first of the next
+      std::copy(points_.end() - static_cast<std::ptrdiff_t>(v_.rows.size() * 3), points_.end(), points_.begin());
+      if (scales_)
+        std::copy(weights_.end() - static_cast<std::ptrdiff_t>(v_.rows.size()), weights_.end(), weights_.begin());
+    }
+    for (std::size_t i = a > 0 ? 1 : 0; i <= p; ++i) compute_row(u_.rows[a * p + i], i);
+    if (may_overflow_ && !all_finite(points_))
       return {StatusCode::non_finite, "the control points are too large: a mean of them is not finite"};
-    for (std::size_t b = 0; b < v_.span_count(); ++b) write_patch(a * v_.span_count() + b, b, pieces);
     return {};
   }
+  /// Point j of row i of the strip: x, y and z; and its weight if the surface is rational.
+  const double* point(std::size_t i, std::size_t j) const { return &points_[(i * v_.rows.size() + j) * 3]; }
+  const double* weight(std::size_t i, std::size_t j) const { return &weights_[i * v_.rows.size() + j]; }
 
  private:
-  std::size_t components() const { return scales_ ? 4 : 3; }
-  std::size_t row_size() const { return v_.rows.size() * components(); }
   std::size_t order_u() const { return static_cast<std::size_t>(surface_.degree_u()) + 1; }
-  std::size_t order_v() const { return static_cast<std::size_t>(surface_.degree_v()) + 1; }
 
-  void project_strip(std::size_t a) {
-    const std::size_t p = order_u() - 1;
-    for (std::size_t i = 0; i <= p; ++i)
-      for (std::size_t r = 0; r < v_.rows.size(); ++r) {
-        const Extraction::Row &row = u_.rows[a * p + i], &column = v_.rows[r];
-        NetPoint at = project(&strip_[i * row_size() + r * 4], *scales_);
-        if (row.count == 1 && column.count == 1)  // keeps its bits, and its weight's
-          at = {surface_.point(row.first, column.first), surface_.weight(row.first, column.first)};
-        const std::size_t k = i * v_.rows.size() + r;
-        projected_[3 * k] = at.point.x;
-        projected_[3 * k + 1] = at.point.y;
-        projected_[3 * k + 2] = at.point.z;
-        projected_weights_[k] = at.weight;
+  template <class Components>
+  void extract_along_v(Components c) {
+    const std::vector<double> net = numbers(surface_.points(), surface_.weights(), scales_ ? &*scales_ : nullptr);
+    along_v_.resize(surface_.count_u() * v_.rows.size() * c);
+    double* to = along_v_.data();
+    for (std::size_t i = 0; i < surface_.count_u(); ++i)
+      for (const Extraction::Row& row : v_.rows) {
+        apply(v_, row, &net[i * surface_.count_v() * c], c, c, to);
+        to += c;
       }
   }
 
-  void write_patch(std::size_t patch, std::size_t b, PatchPieces& pieces) const {
-    const std::size_t order = order_v(), rows = v_.rows.size();
-    const std::vector<double>& points = scales_ ? projected_ : strip_;
-    for (std::size_t i = 0; i < order_u(); ++i) {
-      const std::size_t k = i * rows + b * (order - 1);
-      const double* from = &points[3 * k];
-      Vec3* to = pieces.points(patch) + i * order;
-      std::memcpy(static_cast<void*>(to), from, order * sizeof(Vec3));
-      if (scales_) std::copy_n(&projected_weights_[k], order, pieces.weights(patch) + i * order);
+  void compute_row(const Extraction::Row& row, std::size_t i) {
+    const std::size_t size = v_.rows.size();
+    if (!scales_) return apply(u_, row, along_v_.data(), 3 * size, 3 * size, &points_[i * 3 * size]);
+    apply(u_, row, along_v_.data(), 4 * size, 4 * size, homogeneous_.data());
+    for (std::size_t j = 0; j < size; ++j) {
+      const Extraction::Row& column = v_.rows[j];
+      NetPoint at = project(&homogeneous_[4 * j], *scales_);
+      if (row.count == 1 && column.count == 1)  // keeps its bits, and its weight's
+        at = {surface_.point(row.first, column.first), surface_.weight(row.first, column.first)};
+      const double point[] = {at.point.x, at.point.y, at.point.z};
+      std::copy_n(point, 3, &points_[(i * size + j) * 3]);
+      weights_[i * size + j] = at.weight;
     }
   }
 
   const BSplineSurface& surface_;
   const Extraction u_, v_;
-  std::optional<Scales> scales_;                       ///< of rational surfaces
-  std::vector<double> along_v_;                        ///< [control row][row of v_][component]
-  std::vector<double> strip_;                          ///< [0 .. degree_u][row of v_][component]
-  bool may_overflow_ = false;                          ///< means of points are no larger than these but for rounding
-  std::vector<double> projected_, projected_weights_;  ///< of rational surfaces: the strip as points and weights
+  std::optional<Scales> scales_;          ///< of rational surfaces
+  std::vector<double> along_v_;           ///< [control row][row of v_][component]
+  std::vector<double> points_, weights_;  ///< [0 .. degree_u][row of v_], the points by their components
+  std::vector<double> homogeneous_;       ///< one row of a rational strip
+  bool may_overflow_ = false;             ///< means of points are no larger than these but for rounding
 };
+
+/// The patches of a strip from `first` on. Order: std::size_t, or a constant, with which a row of points is copied in a
+/// few instructions.
+template <class Order>
+void write_strip(const NetStrips& net, std::size_t first, std::size_t order_u, Order order, PatchPieces& pieces) {
+  for (std::size_t b = 0; b < net.v().span_count(); ++b) {
+    Vec3* points = pieces.points(first + b);
+    const std::size_t column = b * (order - 1);
+    for (std::size_t i = 0; i < order_u; ++i)
+      std::memcpy(static_cast<void*>(points + i * order), net.point(i, column), order * sizeof(Vec3));
+    if (!pieces.rational()) continue;
+    for (std::size_t i = 0; i < order_u; ++i)
+      std::copy_n(net.weight(i, column), std::size_t{order}, pieces.weights(first + b) + i * order);
+  }
+}
+
+/// write(order), order being a constant for the degrees that are met most.
+template <class Write>
+void with_order(int degree, Write write) {
+  if (degree == 1) return write(std::integral_constant<std::size_t, 2>{});
+  if (degree == 2) return write(std::integral_constant<std::size_t, 3>{});
+  if (degree == 3) return write(std::integral_constant<std::size_t, 4>{});
+  write(static_cast<std::size_t>(degree) + 1);
+}
+
+Status write_patches(NetStrips& net, int degree_u, int degree_v, PatchPieces& pieces) {
+  for (std::size_t a = 0; a < net.u().span_count(); ++a) {
+    if (Status status = net.compute(a); !status.ok()) return status;
+    with_order(degree_v, [&](auto order) {
+      write_strip(net, a * net.v().span_count(), static_cast<std::size_t>(degree_u) + 1, order, pieces);
+    });
+  }
+  return {};
+}
 
 /// The patches, of those between `breaks`, whose spans point i acts on: [u_i, u_{i+p+1}].
 std::pair<std::size_t, std::size_t> touched(const KnotLine& line, std::size_t i) {
@@ -161,12 +205,11 @@ std::pair<std::size_t, std::size_t> touched(const KnotLine& line, std::size_t i)
 
 Result<PatchGrid> to_bezier(const BSplineSurface& surface) {
   return guarded([&]() -> Result<PatchGrid> {
-    Strips strips(surface);
-    PatchPieces pieces(surface.degree_u(), surface.degree_v(), strips.u().span_count() * strips.v().span_count(),
+    NetStrips net(surface);
+    PatchPieces pieces(surface.degree_u(), surface.degree_v(), net.u().span_count() * net.v().span_count(),
                        surface.is_rational());
-    for (std::size_t a = 0; a < strips.u().span_count(); ++a)
-      if (Status status = strips.write(a, pieces); !status.ok()) return status;
-    return PatchGrid::make(strips.u().breaks, strips.v().breaks, pieces.take());
+    if (Status status = write_patches(net, surface.degree_u(), surface.degree_v(), pieces); !status.ok()) return status;
+    return PatchGrid::make(net.u().breaks, net.v().breaks, pieces.take());
   });
 }
 

@@ -19,12 +19,6 @@ Status check_curve(const BezierPolygon& curve) {
   return {};
 }
 
-BezierPolygon elevated(const BezierPolygon& curve, std::size_t points) {
-  if (points == curve.points.size()) return curve;
-  const int degree = static_cast<int>(curve.points.size()) - 1;
-  return transform_v(elevation_matrix(degree, static_cast<int>(points) - 1), BezierNet(curve)).polygon();
-}
-
 /// The patch whose rows are two curves with the weights of the first, polynomial if these are all equal.
 Result<BezierPatch> patch_of_rows(const BezierPolygon& c0, std::span<const Vec3> c1) {
   const int degree = static_cast<int>(c0.points.size()) - 1;
@@ -44,8 +38,8 @@ Result<BezierPatch> make_ruled(const BezierPolygon& c0, const BezierPolygon& c1)
       if (Status status = check_curve(*curve); !status.ok()) return status;
       if (const auto flat = patch_of_rows(*curve, curve->points); !flat) return flat;  // before it is elevated
     }
-    const std::size_t points = std::max(c0.points.size(), c1.points.size());
-    const BezierPolygon row0 = elevated(c0, points), row1 = elevated(c1, points);
+    const int degree = static_cast<int>(std::max(c0.points.size(), c1.points.size())) - 1;
+    const BezierPolygon row0 = elevated(c0, degree), row1 = elevated(c1, degree);
     if (row0.weights != row1.weights)
       return Status(StatusCode::unsupported,
                     "the two curves have different weights: the ruled surface between them is of a higher degree");

@@ -92,6 +92,12 @@ BezierNet transform_v(const Matrix& matrix, const BezierNet& net) {
   return transpose(transform_u(matrix, transpose(net)));
 }
 
+BezierPolygon elevated(const BezierPolygon& curve, int degree) {
+  const int from = static_cast<int>(curve.points.size()) - 1;
+  if (degree == from) return curve;
+  return transform_v(elevation_matrix(from, degree), BezierNet(curve)).polygon();
+}
+
 BezierNet transpose(const BezierNet& net) {
   BezierNet result(net.columns, net.rows, !net.weights.empty());
   for (int i = 0; i < net.rows; ++i)

@@ -33,6 +33,9 @@ struct BezierNet {
 BezierNet transform_u(const Matrix& matrix, const BezierNet& net);
 BezierNet transform_v(const Matrix& matrix, const BezierNet& net);
 
+/// The same curve by a degree that is not lower.
+BezierPolygon elevated(const BezierPolygon& curve, int degree);
+
 /// The net with u and v exchanged.
 BezierNet transpose(const BezierNet& net);
 

@@ -4,41 +4,28 @@
 #include <vector>
 
 #include "base/guard.h"
-#include "basis/bernstein_net.h"
+#include "convert/bezier_net.h"
 #include "convert/edge_rows.h"
 #include "tessera/join.h"
 
 namespace tessera {
 namespace {
 
-/// One row of control points along an edge, with weights.
-struct Row {
-  std::vector<Vec3> points;
-  std::vector<double> weights;
-};
-
-/// A row raised to `degree` along the edge, in homogeneous form where the patch is rational.
-Row row_of(const BezierPatch& patch, const EdgeView& view, int row, int degree) {
-  BernsteinNet<Vec3> points(view.along, 0);
-  BernsteinNet<double> weights(view.along, 0);
+/// A row of control points along an edge, raised to `degree`; with weights if the patch is rational.
+BezierPolygon row_of(const BezierPatch& patch, const EdgeView& view, int row, int degree) {
+  BezierPolygon polygon;
   for (int k = 0; k <= view.along; ++k) {
-    weights.at(k, 0) = patch.is_rational() ? patch.weights()[view.index(row, k)] : 1;
-    points.at(k, 0) = patch.points()[view.index(row, k)];
+    polygon.points.push_back(patch.points()[view.index(row, k)]);
+    if (patch.is_rational()) polygon.weights.push_back(patch.weights()[view.index(row, k)]);
   }
-  if (degree == view.along) return {points.values, weights.values};
-  if (!patch.is_rational())
-    return {elevated(points, degree, 0).values, std::vector<double>(static_cast<std::size_t>(degree) + 1, 1.0)};
-  for (int k = 0; k <= view.along; ++k) points.at(k, 0) = weights.at(k, 0) * points.at(k, 0);
-  Row result{elevated(points, degree, 0).values, elevated(weights, degree, 0).values};
-  for (std::size_t k = 0; k < result.points.size(); ++k) result.points[k] = (1 / result.weights[k]) * result.points[k];
-  return result;
+  return elevated(polygon, degree);
 }
 
 /// The row that continues from `before` through `border`: border + factor (border - before), homogeneous.
-Result<Row> continued(const Row& before, const Row& border, double factor, bool rational) {
-  Row next = border;
+Result<BezierPolygon> continued(const BezierPolygon& before, const BezierPolygon& border, double factor) {
+  BezierPolygon next = border;
   for (std::size_t k = 0; k < next.points.size(); ++k) {
-    if (!rational) {
+    if (border.weights.empty()) {
       next.points[k] = border.points[k] + factor * (border.points[k] - before.points[k]);
       continue;
     }
@@ -61,8 +48,8 @@ Result<BezierPatch> joined(const JoinSide& p, const JoinSide& q, double k, bool 
   const int along = std::max(from.along, to.along);
   const double factor = (from.across * width_across(q)) / (k * to.across * width_across(p));
   const bool rational = p.patch.is_rational() || q.patch.is_rational();
-  const Row border = row_of(p.patch, from, 0, along);
-  Result<Row> inside = continued(row_of(p.patch, from, 1, along), border, factor, p.patch.is_rational());
+  const BezierPolygon border = row_of(p.patch, from, 0, along);
+  const Result<BezierPolygon> inside = continued(row_of(p.patch, from, 1, along), border, factor);
   if (!inside) return inside.status();
 
   const int m = crosses_u(q.edge) ? to.across : along, n = crosses_u(q.edge) ? along : to.across;
@@ -70,10 +57,11 @@ Result<BezierPatch> joined(const JoinSide& p, const JoinSide& q, double k, bool 
   std::vector<Vec3> points(static_cast<std::size_t>((m + 1) * (n + 1)));
   std::vector<double> weights(points.size());
   for (int depth = 0; depth <= to.across; ++depth) {
-    const Row row = depth == 0 ? border : depth == 1 ? *inside : row_of(q.patch, to, depth, along);
+    const BezierPolygon row = depth == 0 ? border : depth == 1 ? *inside : row_of(q.patch, to, depth, along);
     for (int i = 0; i <= along; ++i) {
-      points[target.index(depth, i)] = row.points[static_cast<std::size_t>(i)];
-      weights[target.index(depth, i)] = row.weights[static_cast<std::size_t>(i)];
+      const std::size_t at = static_cast<std::size_t>(i);
+      points[target.index(depth, i)] = row.points[at];
+      weights[target.index(depth, i)] = row.weights.empty() ? 1 : row.weights[at];
     }
   }
   return rational ? BezierPatch::rational(m, n, points, weights) : BezierPatch::polynomial(m, n, points);

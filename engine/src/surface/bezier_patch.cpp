@@ -73,20 +73,16 @@ Box3 BezierPatch::hull_box() const {
 
 EdgeMask BezierPatch::collapsed_edges() const {
   const int m = degree_u_, n = degree_v_;
-  bool u0 = true, u1 = true, v0 = true, v1 = true;
-  for (int j = 1; j <= n; ++j) {
-    u0 = u0 && point(0, j) == point(0, 0);
-    u1 = u1 && point(m, j) == point(m, 0);
-  }
-  for (int i = 1; i <= m; ++i) {
-    v0 = v0 && point(i, 0) == point(0, 0);
-    v1 = v1 && point(i, n) == point(0, n);
-  }
+  const auto coincide = [this](int i, int j, int step_i, int step_j, int steps) {
+    for (int k = 1; k <= steps; ++k)
+      if (point(i + k * step_i, j + k * step_j) != point(i, j)) return false;
+    return true;
+  };
   EdgeMask edges;
-  if (u0) edges.add(Edge::u0);
-  if (u1) edges.add(Edge::u1);
-  if (v0) edges.add(Edge::v0);
-  if (v1) edges.add(Edge::v1);
+  if (coincide(0, 0, 0, 1, n)) edges.add(Edge::u0);
+  if (coincide(m, 0, 0, 1, n)) edges.add(Edge::u1);
+  if (coincide(0, 0, 1, 0, m)) edges.add(Edge::v0);
+  if (coincide(0, n, 1, 0, m)) edges.add(Edge::v1);
   return edges;
 }
 

@@ -21,6 +21,7 @@ class PatchPieces {
         points_(uninitialised<Vec3>(count * size_)),
         weights_(rational ? uninitialised<double>(count * size_) : nullptr) {}
 
+  bool rational() const { return weights_ != nullptr; }
   Vec3* points(std::size_t patch) { return &points_[patch * size_]; }
   double* weights(std::size_t patch) { return &weights_[patch * size_]; }
 

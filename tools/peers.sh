@@ -1,0 +1,75 @@
+#!/usr/bin/env bash
+# Compares Tessera with other programs, side by side in one process. Installs first what is missing.
+set -euo pipefail
+
+usage() {
+  cat <<'TEXT'
+tools/peers.sh [NAME...]
+
+Installs the peers' Debian packages (tools/setup.sh --for peers), builds the library and the comparisons in build/peers,
+and runs those named, or all. Each checks that both programs agree on what they made before it prints their rates. A
+comparison whose peer is not installed is not built, and the script says so.
+The names:
+TEXT
+  for row in "${comparisons[@]}"; do
+    printf '  %-18s %s\n' "${row%%|*}" "${row#*|}"
+  done
+}
+
+fail() {
+  printf 'peers: %s\n' "$*" >&2
+  exit "${status:-1}"
+}
+
+# NAME|what it compares. Each is the source bench/peers/NAME.cpp.
+comparisons=(
+  "occt_extraction|Bezier extraction of a 200 x 200 bicubic B-spline surface: OpenCASCADE (libocct-modeling-data-dev)"
+)
+
+# is_comparison NAME: stands in the table.
+is_comparison() {
+  local row
+  for row in "${comparisons[@]}"; do
+    [[ ${row%%|*} == "$1" ]] && return 0
+  done
+  return 1
+}
+
+names=()
+for argument; do
+  case $argument in
+    -h | --help)
+      usage
+      exit 0
+      ;;
+    -*) status=2 fail "unknown argument '$argument' (see --help)" ;;
+    *)
+      is_comparison "$argument" || status=2 fail "no comparison '$argument' (see --help)"
+      names+=("$argument")
+      ;;
+  esac
+done
+if ((${#names[@]} == 0)); then
+  names=("${comparisons[@]%%|*}")
+fi
+cd "$(dirname -- "${BASH_SOURCE[0]}")/.."
+
+tools/setup.sh --for peers || echo "peers: not everything could be installed; going on with what is here" >&2
+if [[ -z ${CMAKE_CXX_COMPILER_LAUNCHER:-} ]] && command -v ccache >/dev/null; then
+  export CMAKE_CXX_COMPILER_LAUNCHER=ccache
+fi
+cmake --preset peers
+rm -f build/peers/bench/peers/tessera_peer_*  # of a peer that is gone
+cmake --build --preset peers
+
+failed=()
+for name in "${names[@]}"; do
+  program=build/peers/bench/peers/tessera_peer_$name
+  printf '\n== %s\n' "$name"
+  if [[ ! -x $program ]]; then
+    echo "not built: its peer is not installed"
+  elif ! "$program"; then
+    failed+=("$name")
+  fi
+done
+((${#failed[@]} == 0)) || fail "failed: ${failed[*]}"
