@@ -9,6 +9,7 @@
 #   libpng            libpng-dev 1.6              the command line: pictures
 #   GoogleTest        libgtest-dev 1.12           tests (and libgmock-dev: its matchers)
 #   Google Benchmark  libbenchmark-dev 1.7        benchmarks
+#   ImageMagick       imagemagick 6.9             tools/gallery.sh alone: pictures on one sheet
 # What Tessera is compared with, where TESSERA_BUILD_PEERS is ON (tools/peers.sh installs it). bench/peers alone looks for
 # these, and builds what it finds:
 #   OpenCASCADE       libocct-modeling-data-dev 7.6

@@ -4,12 +4,12 @@ set -euo pipefail
 
 usage() {
   cat <<'TEXT'
-tools/setup.sh [--for demo|test|peers]
+tools/setup.sh [--for demo|test|peers|gallery]
 
 Installs, from Debian's packages and by apt-get, what is missing to build Tessera: for the demo (the libraries and the
-command line), for the tests as well (the default), or for the comparisons with other programs (the demo's, and these
-programs). As root directly, otherwise by sudo. Says what it installs. Where nothing is missing it does nothing and needs
-neither network nor rights.
+command line), for the tests as well (the default), for the comparisons with other programs (the demo's, and these
+programs), or for the gallery (the demo's, and what puts pictures on a sheet). As root directly, otherwise by sudo. Says
+what it installs. Where nothing is missing it does nothing and needs neither network nor rights.
 TEXT
 }
 
@@ -23,12 +23,13 @@ demo_packages=(g++ cmake ninja-build libtbb-dev libxsimd-dev libembree-dev libcl
   libpng-dev)
 test_packages=(binutils libgtest-dev libgmock-dev libbenchmark-dev)
 peer_packages=(libocct-modeling-data-dev)
+gallery_packages=(imagemagick fonts-dejavu-core)
 
 purpose='test'
 while (($#)); do
   case $1 in
     --for)
-      (($# >= 2)) || fail "--for wants a word after it: demo, test or peers"
+      (($# >= 2)) || fail "--for wants a word after it: demo, test, peers or gallery"
       purpose=$2
       shift 2
       ;;
@@ -47,7 +48,8 @@ case $purpose in
   demo) packages=("${demo_packages[@]}") ;;
   test) packages=("${demo_packages[@]}" "${test_packages[@]}") ;;
   peers) packages=("${demo_packages[@]}" "${peer_packages[@]}") ;;
-  *) fail "--for $purpose: no such purpose; there are demo, test and peers" ;;
+  gallery) packages=("${demo_packages[@]}" "${gallery_packages[@]}") ;;
+  *) fail "--for $purpose: no such purpose; there are demo, test, peers and gallery" ;;
 esac
 
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
