@@ -265,6 +265,11 @@ TEST(CoonsPatch, Refuses) {
   expect_refused(evaluate_jet(patch, 0.3, 0.5), invalid, -1, "border D2: the curve at t = 0.5 threw: gone");
   const Curve far = quadratic({1.7e308, 0, 0}, {}, {}), near = quadratic({-1.7e308, 0, 0}, {}, {});
   expect_refused(CoonsPatch::make({far, near, far, near}), StatusCode::non_finite, -1, "too far apart");
+  const Curve wide = value_of(Curve::bezier(std::vector<Vec3>{{}, {1.7e308, 0, 0}, {1.7e308, 0, 0}, {}}));
+  expect_refused(position(coons({wide, wide, wide, wide}), 0.5, 0.5), StatusCode::non_finite, -1,
+                 "(u, v) = (0.5, 0.5)");
+  expect_refused(evaluate_jet(coons({wide, wide, wide, wide}), not_a_number, 0.5), StatusCode::non_finite, -1,
+                 "border C1: the parameter is nan");
   // Squares of such lengths overflow: the gap is still seen.
   const Curve huge = quadratic({0, 0, 0}, {1e300, 0, 0}, {}), other = quadratic({0, 0, 0}, {1e300, 1e300, 0}, {});
   expect_refused(CoonsPatch::make({huge, huge, huge, other}), invalid, 1, "r(u0, v1)");

@@ -97,6 +97,8 @@ TEST(RuledSurface, Refuses) {
   expect_refused(RuledSurface::make(line, line, {0, not_a_number}, Direction::u), StatusCode::non_finite, -1,
                  "along u");
   expect_refused(RuledSurface::make(line, line, {}, Direction(7)), StatusCode::invalid_argument, -1, "direction");
+  expect_refused(position(ruled(line, line), infinity, 0), StatusCode::non_finite, -1, "the parameter is inf");
+  expect_refused(evaluate_jet(ruled(line, line), 0, infinity), StatusCode::non_finite, -1, "(u, v) = (0, inf)");
   const auto broken = callable([](double t) { return Vec3{t, t == 0.5 ? not_a_number : 0, 0}; });
   const auto thrower = callable([](double t) { return t == 0.5 ? throw std::runtime_error("hole") : Vec3{t, 1, 0}; });
   expect_refused(position(ruled(line, broken), 0.5, 0.25), StatusCode::non_finite, -1,

@@ -79,7 +79,7 @@ class CoonsPatch {
   std::array<Vec3, 4> corners_;
 };
 
-/// The reference evaluator, by the formula above. Errors: those of functions.
+/// The reference evaluator, by the formula above. Errors: those of functions, non_finite (too large a point; (u, v)).
 Result<SurfaceJet> evaluate_jet(const CoonsPatch& patch, double u, double v);
 /// Its position alone: one call of each function.
 Result<Vec3> position(const CoonsPatch& patch, double u, double v);

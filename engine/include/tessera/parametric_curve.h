@@ -1,5 +1,6 @@
 #pragma once
-// Curves that are functions of the caller's, and the two forms in which borders of ruled surfaces and Coons patches come.
+// Curves that are functions of the caller's, and the two forms in which borders of ruled surfaces and Coons patches
+// come.
 
 #include <functional>
 #include <variant>
@@ -10,8 +11,8 @@
 
 namespace tessera {
 
-/// What the caller knows of a curve c(t). Functions are called from one thread at a time, or from several if const calls
-/// on the curve are; what they throw becomes a Status.
+/// What the caller knows of a curve c(t). Functions are called from one thread at a time, or from several if const
+/// calls on the curve are; what they throw becomes a Status.
 struct CurveFunctions {
   std::function<Vec3(double t)> position;
   /// Position, first and second derivative; by differences if empty.
@@ -43,13 +44,14 @@ class ParametricCurve {
   friend Result<CurveJet> evaluate_jet(const ParametricCurve& curve, double t);
 };
 
-/// By the caller's derivatives, else by differences as ParametricSurface takes them. t in the domain. Errors: as of position().
+/// By the caller's derivatives, else by differences as ParametricSurface takes them. t in the domain. Errors: as of
+/// position().
 Result<CurveJet> evaluate_jet(const ParametricCurve& curve, double t);
 
 /// A border: exact, or a function.
 using BorderCurve = std::variant<Curve, ParametricCurve>;
 const Interval& domain(const BorderCurve& border);
-/// Errors: those of the function; none for a Curve.
+/// Errors: those of the function; non_finite (t).
 Result<Vec3> position(const BorderCurve& border, double t);
 Result<CurveJet> evaluate_jet(const BorderCurve& border, double t);
 

@@ -35,7 +35,7 @@ class RuledSurface {
   Direction straight_;
 };
 
-/// The reference evaluator, by the formula above. Errors: those of functions.
+/// The reference evaluator, by the formula above. Errors: those of functions, non_finite (too large a point; (u, v)).
 Result<SurfaceJet> evaluate_jet(const RuledSurface& surface, double u, double v);
 /// Its position alone: one call of each function.
 Result<Vec3> position(const RuledSurface& surface, double u, double v);

@@ -1,6 +1,7 @@
 #include "surface/border_curve.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "base/guard.h"
@@ -49,6 +50,8 @@ double derivative_bound(const Curve& curve, const Interval& part, int k) {
   return bound * (1 + 0x1p-40);  // the hull's own rounding
 }
 
+Status not_finite(double t) { return {StatusCode::non_finite, "the parameter is " + text(t) + ", it must be finite"}; }
+
 Status named(const Status& status, const char* name) {
   return {status.code(), std::string(name) + ": " + status.message(), status.index()};
 }
@@ -85,11 +88,13 @@ const Interval& domain(const BorderCurve& border) {
 }
 
 Result<Vec3> position(const BorderCurve& border, double t) {
+  if (!std::isfinite(t)) return not_finite(t);
   if (const auto* curve = std::get_if<Curve>(&border)) return position(*curve, t);
   return std::get<ParametricCurve>(border).position(t);
 }
 
 Result<CurveJet> evaluate_jet(const BorderCurve& border, double t) {
+  if (!std::isfinite(t)) return not_finite(t);
   if (const auto* curve = std::get_if<Curve>(&border)) return evaluate_jet(*curve, t);
   return evaluate_jet(std::get<ParametricCurve>(border), t);
 }

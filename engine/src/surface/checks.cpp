@@ -1,6 +1,7 @@
 #include "surface/checks.h"
 
 #include <cmath>
+#include <utility>
 
 #include "base/text.h"
 #include "surface/validate.h"
@@ -49,6 +50,26 @@ Status check_increasing(std::span<const double> values, const std::string& what,
 Status check_domain(const Domain& domain) {
   if (Status status = check_interval(domain.u0, domain.u1, "the domain along u"); !status.ok()) return status;
   return check_interval(domain.v0, domain.v1, "the domain along v");
+}
+
+std::string text_at(double u, double v) { return " at (u, v) = (" + text(u) + ", " + text(v) + ")"; }
+
+Status check_finite(const Vec3& position, double u, double v) {
+  return check_finite(SurfaceJet{position, {}, {}, {}, {}, {}}, u, v);
+}
+
+Status check_finite(const SurfaceJet& jet, double u, double v) {
+  const std::pair<const Vec3*, const char*> vectors[] = {{&jet.position, "the surface"},
+                                                         {&jet.du, "the surface's derivative by u"},
+                                                         {&jet.dv, "the surface's derivative by v"},
+                                                         {&jet.duu, "the surface's second derivative by u"},
+                                                         {&jet.duv, "the surface's mixed derivative"},
+                                                         {&jet.dvv, "the surface's second derivative by v"}};
+  for (const auto& [p, what] : vectors)
+    if (!is_finite(*p))
+      return {StatusCode::non_finite, what + text_at(u, v) + " is (" + text(p->x) + ", " + text(p->y) + ", " +
+                                          text(p->z) + "), it must be finite"};
+  return {};
 }
 
 }  // namespace tessera

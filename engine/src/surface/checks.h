@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "tessera/bezier_patch.h"
 #include "tessera/domain.h"
 #include "tessera/status.h"
 #include "tessera/vec.h"
@@ -23,5 +24,11 @@ Status check_interval(double from, double to, const std::string& name);
 /// Finite, u0 < u1 and v0 < v1, with lengths and their reciprocals that are finite too. Errors: invalid_argument,
 /// non_finite.
 Status check_domain(const Domain& domain);
+
+/// " at (u, v) = (0, 1)".
+std::string text_at(double u, double v);
+/// What a surface gave at (u, v). Errors: non_finite (names the vector and (u, v)).
+Status check_finite(const Vec3& position, double u, double v);
+Status check_finite(const SurfaceJet& jet, double u, double v);
 
 }  // namespace tessera

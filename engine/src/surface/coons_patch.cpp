@@ -7,6 +7,7 @@
 #include "base/guard.h"
 #include "base/text.h"
 #include "surface/border_curve.h"
+#include "surface/checks.h"
 
 namespace tessera {
 namespace {
@@ -135,8 +136,10 @@ Result<SurfaceJet> evaluate_jet(const CoonsPatch& patch, double u, double v) {
       for (std::size_t a = 0; a < 2; ++a) sum += g[l][a] * curves[a][k] + f[k][a] * corrections[a][l];
       return sum;
     };
-    return SurfaceJet{derivative(0, 0), derivative(1, 0), derivative(0, 1),
-                      derivative(2, 0), derivative(1, 1), derivative(0, 2)};
+    const SurfaceJet jet{derivative(0, 0), derivative(1, 0), derivative(0, 1),
+                         derivative(2, 0), derivative(1, 1), derivative(0, 2)};
+    if (Status status = check_finite(jet, u, v); !status.ok()) return status;
+    return jet;
   });
 }
 
@@ -159,6 +162,7 @@ Result<Vec3> position(const CoonsPatch& patch, double u, double v) {
       const Vec3 chord = (*g)[0] * patch.corner(corner, 0) + (*g)[1] * patch.corner(corner, 1);
       sum += (*g)[a] * curves[a] + (*f)[a] * (curves[2 + a] - chord);
     }
+    if (Status status = check_finite(sum, u, v); !status.ok()) return status;
     return sum;
   });
 }

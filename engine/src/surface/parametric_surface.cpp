@@ -13,28 +13,8 @@
 namespace tessera {
 namespace {
 
-std::string at(double u, double v) { return " at (u, v) = (" + text(u) + ", " + text(v) + ")"; }
-
 auto place_at(double u, double v) {
-  return [u, v] { return "the surface" + at(u, v); };
-}
-
-Status check_vector(const Vec3& p, const char* what, double u, double v) {
-  if (is_finite(p)) return {};
-  return {StatusCode::non_finite,
-          what + at(u, v) + " is (" + text(p.x) + ", " + text(p.y) + ", " + text(p.z) + "), it must be finite"};
-}
-
-Status check_jet(const SurfaceJet& jet, double u, double v) {
-  const std::pair<const Vec3*, const char*> vectors[] = {{&jet.position, "the surface"},
-                                                         {&jet.du, "the surface's derivative by u"},
-                                                         {&jet.dv, "the surface's derivative by v"},
-                                                         {&jet.duu, "the surface's second derivative by u"},
-                                                         {&jet.duv, "the surface's mixed derivative"},
-                                                         {&jet.dvv, "the surface's second derivative by v"}};
-  for (const auto& [vector, what] : vectors)
-    if (Status status = check_vector(*vector, what, u, v); !status.ok()) return status;
-  return {};
+  return [u, v] { return "the surface" + text_at(u, v); };
 }
 
 using Points = std::array<Vec3, DifferenceStencil::size>;
@@ -121,7 +101,7 @@ Result<Vec3> ParametricSurface::position(double u, double v) const {
   return guarded([&]() -> Result<Vec3> {
     Result<Vec3> point = called([&] { return functions_.position(u, v); }, place_at(u, v));
     if (!point) return point;
-    if (Status status = check_vector(*point, "the surface", u, v); !status.ok()) return status;
+    if (Status status = check_finite(*point, u, v); !status.ok()) return status;
     return point;
   });
 }
@@ -143,7 +123,7 @@ Result<SurfaceJet> evaluate_jet(const ParametricSurface& surface, double u, doub
                                  ? called([&] { return surface.functions_.jet(u, v); }, place_at(u, v))
                                  : jet_by_differences(surface, u, v);
     if (!jet) return jet;
-    if (Status status = check_jet(*jet, u, v); !status.ok()) return status;
+    if (Status status = check_finite(*jet, u, v); !status.ok()) return status;
     return jet;
   });
 }

@@ -60,8 +60,9 @@ Result<SurfaceJet> evaluate_jet(const RuledSurface& surface, double u, double v)
     jet.dv = (1 / place.length) * (second->position - first->position);
     jet.duu = place.between(first->second, second->second);
     jet.duv = (1 / place.length) * (second->first - first->first);
-    if (surface.straight() == Direction::v) return jet;
-    return SurfaceJet{jet.position, jet.dv, jet.du, jet.dvv, jet.duv, jet.duu};
+    if (surface.straight() == Direction::u) jet = {jet.position, jet.dv, jet.du, jet.dvv, jet.duv, jet.duu};
+    if (Status status = check_finite(jet, u, v); !status.ok()) return status;
+    return jet;
   });
 }
 
@@ -72,7 +73,9 @@ Result<Vec3> position(const RuledSurface& surface, double u, double v) {
     if (!first) return first.status();
     const auto second = position(surface.second(), place.along, ruled_curve_names[1]);
     if (!second) return second.status();
-    return place.between(*first, *second);
+    const Vec3 point = place.between(*first, *second);
+    if (Status status = check_finite(point, u, v); !status.ok()) return status;
+    return point;
   });
 }
 
