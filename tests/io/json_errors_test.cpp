@@ -2,12 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <random>
 
-#include "io/json_document.h"
 #include "io/model_text.h"
-#include "support/random_patches.h"
 #include "support/scratch_folder.h"
 
 namespace tessera::test {

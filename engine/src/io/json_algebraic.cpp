@@ -1,13 +1,9 @@
 // Explicit polynomials and quadrics.
 
-#include <algorithm>
-
 #include "io/json_kinds.h"
 
 namespace tessera {
 namespace {
-
-int degree_of(std::size_t count) { return static_cast<int>(std::min<std::size_t>(count, max_degree + 2)) - 1; }
 
 QuadricCoefficients read_coefficients(const JsonValue& value) {
   const Fields fields(value, {"a", "b", "c", "d", "e", "f", "g", "h", "j", "k"});

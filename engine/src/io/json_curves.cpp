@@ -1,9 +1,9 @@
 // Curves of JSON models, and what belongs to them: knots, axes.
 
+#include <algorithm>
 #include <array>
 
 #include "io/json_kinds.h"
-#include "io/text_cursor.h"
 
 namespace tessera {
 namespace {

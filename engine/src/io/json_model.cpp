@@ -5,7 +5,6 @@
 #include "base/guard.h"
 #include "base/text.h"
 #include "io/json_kinds.h"
-#include "io/text_cursor.h"
 #include "tessera/io.h"
 
 namespace tessera {

@@ -5,8 +5,6 @@
 namespace tessera {
 namespace {
 
-int degree_of(std::size_t count) { return static_cast<int>(std::min<std::size_t>(count, max_degree + 2)) - 1; }
-
 /// "degree", which may be left out, must be what the net says.
 void check_degree(const Fields& fields, int degree_u, int degree_v) {
   const std::optional<JsonValue> value = fields.find("degree");

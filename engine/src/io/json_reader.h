@@ -1,7 +1,7 @@
 #pragma once
 // The small things of which JSON models consist. All throw JsonFailure, with the place, for what is not what it should be.
 
-#include <functional>
+#include <algorithm>
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -68,6 +68,8 @@ struct Net {
   std::size_t rows = 0, columns = 0;
   std::vector<T> elements;
 };
+/// The degree of so many elements; beyond max_degree for more than there may be.
+inline int degree_of(std::size_t count) { return static_cast<int>(std::min<std::size_t>(count, max_degree + 2)) - 1; }
 /// `what` says what it is of: "points".
 template <class T, class Read>
 Net<T> read_net(const JsonValue& value, std::string_view what, Read&& read) {

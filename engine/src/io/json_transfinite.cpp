@@ -1,6 +1,7 @@
 // Ruled surfaces and Coons patches.
 
 #include <array>
+#include <functional>
 
 #include "io/expression.h"
 #include "io/json_kinds.h"
