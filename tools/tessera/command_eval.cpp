@@ -143,8 +143,10 @@ class Evaluator {
   /// From the jet where tangents span a plane, else the limit on the surface's patches.
   Result<UnitNormal> normal(const SurfacePlace& place, const SurfaceJet& jet) {
     constexpr double least_sine = 1e-10;
-    const Vec3 du = normalized(jet.du), dv = normalized(jet.dv), across = cross(du, dv);
-    if (length(across) > least_sine) return UnitNormal{normalized(across), NormalKind::regular};
+    if (length(cross(normalized(jet.du), normalized(jet.dv))) > least_sine) {
+      const Vec3 across = normalized(cross(jet.du, jet.dv));
+      if (is_finite(across) && across != Vec3{}) return UnitNormal{across, NormalKind::regular};
+    }
     const ModelSurface& surface = model_.surfaces[place.surface];
     if (!patches_ || converted_ != place.surface) {
       Result<PatchGrid> patches = to_bezier(surface, fit_);
