@@ -63,6 +63,12 @@ TEST(Obj, NaNIsReadSoThatItCanBeCounted) {
   EXPECT_TRUE(std::isinf(mesh->positions[4]));
 }
 
+TEST(Obj, LinesMayBeContinued) {
+  const Result<Mesh> mesh = parse_obj("v 0 0 0\nv 1 0 \\\n0\nv 1 1 0\nusemtl a \\\n b\nf 1 2\\\r\n 3\n", "m.obj");
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message();
+  EXPECT_EQ(mesh->triangle_count(), 1u);
+}
+
 TEST(Obj, ErrorsNameTheLine) {
   EXPECT_EQ(error_of("v 0 0\n"), "m.obj:1: expected 3 numbers after v, found the end of the line");
   EXPECT_EQ(error_of("v 0 0 0\nv 0 x 0\n"), "m.obj:2: expected 3 numbers after v, found \"x\"");

@@ -102,6 +102,51 @@ TEST(TextCursor, LinesAreCounted) {
   EXPECT_EQ(cursor.expected("a number").code(), StatusCode::parse_error);
 }
 
+TEST(TextCursor, ALineMayBeContinued) {
+  TextCursor cursor("a \\\n b\\ \t\r\n\\\n#c \\\nd\\e \\", "t", {.continuation = '\\'});
+  for (const char* token : {"a", "b"}) {
+    cursor.skip_blanks();
+    EXPECT_EQ(cursor.peek_token(), token);
+    cursor.skip(cursor.peek_token());
+  }
+  EXPECT_TRUE(cursor.take_line_end());  // a comment is not continued
+  EXPECT_EQ(cursor.line(), 5u);
+  EXPECT_EQ(cursor.peek_token(), "d\\e");  // in a token it is a character like others
+  cursor.skip("d\\e");
+  EXPECT_TRUE(cursor.take_line_end());
+  EXPECT_TRUE(cursor.at_end());
+  TextCursor without("a \\\n", "t");
+  without.skip("a");
+  EXPECT_FALSE(without.take_line_end());
+  EXPECT_EQ(without.peek_token(), "\\");
+}
+
+TEST(TextCursor, LinesAreSkippedWithTheirContinuations) {
+  TextCursor cursor("a \\\n b\\\r\n c\nd\\", "t", {.continuation = '\\'});
+  cursor.skip_line();
+  EXPECT_TRUE(cursor.take_line_end());
+  EXPECT_EQ(cursor.peek_token(), "d");
+  cursor.skip_line();
+  EXPECT_TRUE(cursor.at_end());
+  TextCursor without("a \\\nb", "t");
+  without.skip_line();
+  EXPECT_TRUE(without.take_line_end());
+  EXPECT_EQ(without.peek_token(), "b");
+}
+
+TEST(TextCursor, ZeroBytesAreCharactersOfTokens) {
+  for (const TextSyntax& syntax : {TextSyntax{}, TextSyntax{.comment = 0}, TextSyntax{.continuation = '\\'}}) {
+    TextCursor cursor(std::string_view(" \0\0a 1\0 2", 10), "t", syntax);
+    cursor.skip_blanks();
+    EXPECT_EQ(cursor.peek_token(), std::string_view("\0\0a", 3));
+    cursor.skip(cursor.peek_token());
+    cursor.skip_blanks();
+    double value = 0;
+    EXPECT_FALSE(cursor.take_number(value));
+    EXPECT_EQ(cursor.expected("a number").message(), "t:1: expected a number, found \"1\\x00\"");
+  }
+}
+
 TEST(TextCursor, EndsAreNamed) {
   TextCursor line("  \n", "t");
   line.skip_blanks();
@@ -109,7 +154,7 @@ TEST(TextCursor, EndsAreNamed) {
   line.skip_space();
   EXPECT_TRUE(line.at_end());
   EXPECT_EQ(line.expected("a number").message(), "t:1: expected a number, found the end of the file");
-  TextCursor separated(",", "t", '#', ',');
+  TextCursor separated(",", "t", {.separator = ','});
   EXPECT_EQ(separated.expected("a number").message(), "t:1: expected a number, found \",\"");
 }
 

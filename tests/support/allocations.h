@@ -10,4 +10,9 @@ std::size_t allocation_count();
 /// What they asked for in all; what was given back is not taken off.
 std::size_t allocated_bytes();
 
+/// The most bytes that were held at a time since restart_peak(), of all threads.
+std::size_t peak_bytes();
+/// The bytes that are held now; the peak begins with them.
+std::size_t restart_peak();
+
 }  // namespace tessera::test

@@ -29,7 +29,7 @@ struct Format {
 constexpr std::array<Format, 4> formats{{
     {.extension = ".bpt", .read_model = parse_bpt},
     {.extension = ".json", .read_model = parse_json_model},
-    {.extension = ".obj", .read_mesh = parse_obj, .write_mesh = write_obj},
+    {.extension = ".obj", .read_model = parse_obj_freeform, .read_mesh = parse_obj, .write_mesh = write_obj},
     {.extension = ".ply", .read_mesh = parse_ply, .write_mesh = write_ply},
 }};
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "io/mesh_formats.h"
+#include "io/obj_index.h"
 #include "io/text_cursor.h"
 
 namespace tessera {
@@ -39,7 +40,8 @@ using Corner = std::array<std::uint32_t, 3>;
 
 class ObjReader {
  public:
-  ObjReader(std::string_view text, std::string_view name) : cursor_(text, name, '#', '/') {}
+  ObjReader(std::string_view text, std::string_view name)
+      : cursor_(text, name, {.separator = '/', .continuation = '\\'}) {}
 
   Result<Mesh> read() {
     for (cursor_.skip_space(); !cursor_.at_end(); cursor_.skip_space()) {
@@ -63,16 +65,12 @@ class ObjReader {
     if (keyword == "vn") return read_values(keyword, 3, 3, mesh_.normals);
     if (keyword == "f") return read_face();
     for (const std::string_view ignored : {"g", "o", "s", "usemtl", "mtllib", "p", "l"}) {
-      if (keyword == ignored) return skip_line();
+      if (keyword == ignored) {
+        cursor_.skip_line();
+        return {};
+      }
     }
     return cursor_.expected("a line of a mesh (v, vt, vn, f, g, o, s, usemtl, mtllib)");
-  }
-
-  Status skip_line() {
-    for (cursor_.skip_blanks(); !cursor_.at_line_end(); cursor_.skip_blanks()) {
-      if (!cursor_.take('/')) cursor_.skip(cursor_.peek_token());
-    }
-    return {};
   }
 
   /// Appends the first `kept` numbers of `kept` to `most`.
@@ -116,26 +114,11 @@ class ObjReader {
     for (std::size_t k = 0; k < 3; ++k) {
       if (k > 0 && !cursor_.take('/')) break;
       if (k == 1 && !cursor_.at_end() && *cursor_.position() == '/') continue;  // a//c
-      const Status status = read_index(kinds[k], static_cast<std::int64_t>(counts[k]), corner[k]);
+      const Status status = read_obj_index(cursor_, "an index of a corner", kinds[k], counts[k], corner[k]);
       if (!status.ok()) return status;
     }
     one_parameter_a_vertex_ &= corner[1] == corner[0];
     one_normal_a_vertex_ &= corner[2] == corner[0];
-    return {};
-  }
-
-  /// An index into the `count` records above, from 1, or from -1 backwards.
-  Status read_index(std::string_view kind, std::int64_t count, std::uint32_t& index) {
-    const TextCursor before = cursor_;
-    std::int64_t number = 0;
-    if (!cursor_.take_number(number)) return before.expected("an index of a corner");
-    if (number == 0 || number > count || number < -count) {
-      const std::string above = std::to_string(count) + " " + std::string(kind) + " above";
-      if (count == 0) return before.expected("no index, as there are " + above);
-      const std::string last = std::to_string(count);
-      return before.expected("an index into the " + above + ", 1 to " + last + " or -" + last + " to -1");
-    }
-    index = static_cast<std::uint32_t>(number > 0 ? number - 1 : count + number);
     return {};
   }
 

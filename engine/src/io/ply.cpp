@@ -71,7 +71,7 @@ class BinaryValues {
 /// The values of an ascii body.
 class AsciiValues {
  public:
-  AsciiValues(std::string_view bytes, std::size_t begin, std::string_view name) : cursor_(bytes, name, 0) {
+  AsciiValues(std::string_view bytes, std::size_t begin, std::string_view name) : cursor_(bytes, name, {.comment = 0}) {
     cursor_.skip(std::string_view(cursor_.position(), begin - (bytes.size() - cursor_.remaining())));
   }
 

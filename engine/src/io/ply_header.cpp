@@ -35,7 +35,8 @@ bool has_name(const std::vector<Named>& list, std::string_view name) {
 
 class HeaderReader {
  public:
-  HeaderReader(std::string_view bytes, std::string_view name) : cursor_(bytes, name, 0), size_(bytes.size()) {}
+  HeaderReader(std::string_view bytes, std::string_view name)
+      : cursor_(bytes, name, {.comment = 0}), size_(bytes.size()) {}
 
   Result<PlyHeader> read() {
     if (next_word() != "ply") return cursor_.expected("ply");

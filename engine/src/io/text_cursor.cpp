@@ -39,39 +39,44 @@ std::errc parse(std::string_view token, Number& value) {
 
 }  // namespace
 
-TextCursor::TextCursor(std::string_view text, std::string_view name, char comment, char separator)
-    : begin_(text.data()),
-      at_(begin_),
-      end_(begin_ + text.size()),
-      name_(name),
-      comment_(comment),
-      separator_(separator) {
+TextCursor::TextCursor(std::string_view text, std::string_view name, const TextSyntax& syntax)
+    : begin_(text.data()), at_(begin_), end_(begin_ + text.size()), name_(name), syntax_(syntax) {
   if (text.starts_with("\xEF\xBB\xBF")) at_ += 3;
 }
 
-void TextCursor::skip_blanks() {
-  while (at_ != end_ && (*at_ == ' ' || *at_ == '\t' || *at_ == '\r')) ++at_;
-  if (at_ != end_ && comment_ != 0 && *at_ == comment_) at_ = std::find(at_, end_, '\n');
+bool TextCursor::continues(const char* at) const {
+  for (++at; at != end_ && is_blank(*at);) ++at;
+  return at == end_ || *at == '\n';
 }
 
-void TextCursor::skip_space() {
-  for (skip_blanks(); at_ != end_ && *at_ == '\n'; skip_blanks()) ++at_;
+void TextCursor::skip_special() {
+  while (at_ != end_ && *at_ != 0) {  // 0 is no character of the syntax, though a text may hold it
+    if (is_blank(*at_)) {
+      ++at_;
+    } else if (*at_ == syntax_.comment) {
+      at_ = std::find(at_, end_, '\n');
+    } else if (*at_ == syntax_.continuation && continues(at_)) {
+      at_ = std::find(at_, end_, '\n');
+      if (at_ != end_) ++at_;
+    } else {
+      return;
+    }
+  }
 }
 
-bool TextCursor::take_line_end() {
-  skip_blanks();
-  if (!at_line_end()) return false;
-  if (at_ != end_) ++at_;
-  return true;
+void TextCursor::skip_line() {
+  for (;;) {
+    const char* const line_end = std::find(at_, end_, '\n');
+    const char* last = line_end;
+    while (last != at_ && is_blank(last[-1])) --last;
+    const bool continued = syntax_.continuation != 0 && last != at_ && last[-1] == syntax_.continuation;
+    at_ = line_end;
+    if (!continued || at_ == end_) return;
+    ++at_;
+  }
 }
 
-std::string_view TextCursor::peek_token() const {
-  const char* token_end = at_;
-  while (token_end != end_ && !ends_token(*token_end)) ++token_end;
-  return {at_, static_cast<std::size_t>(token_end - at_)};
-}
-
-bool TextCursor::take_number(double& value) {
+bool TextCursor::take_signed_or_extreme(double& value) {
   const std::string_view token = peek_token();
   double parsed = 0;
   const std::errc error = parse(token, parsed);
@@ -87,7 +92,7 @@ bool TextCursor::take_number(double& value) {
   return true;
 }
 
-bool TextCursor::take_number(std::int64_t& value) {
+bool TextCursor::take_signed(std::int64_t& value) {
   const std::string_view token = peek_token();
   std::int64_t parsed = 0;
   if (parse(token, parsed) != std::errc()) return false;
@@ -96,22 +101,10 @@ bool TextCursor::take_number(std::int64_t& value) {
   return true;
 }
 
-bool TextCursor::take_finite(double& value) {
-  const char* const before = at_;
-  double parsed = 0;
-  if (!take_number(parsed)) return false;
-  if (!std::isfinite(parsed)) {
-    at_ = before;
-    return false;
-  }
-  value = parsed;
-  return true;
-}
-
 Status TextCursor::expected(std::string_view what) const {
   std::string sentence = "expected " + std::string(what) + ", found ";
   std::string_view token = peek_token();
-  if (token.empty() && at_ != end_ && separator_ != 0 && *at_ == separator_) token = {at_, 1};
+  if (token.empty() && at_ != end_ && *at_ != 0 && *at_ == syntax_.separator) token = {at_, 1};
   if (!token.empty()) {
     sentence += quote(token);
   } else {
@@ -121,8 +114,7 @@ Status TextCursor::expected(std::string_view what) const {
 }
 
 Status TextCursor::failure(std::string_view sentence) const {
-  return Status(StatusCode::parse_error,
-                std::string(name_) + ":" + std::to_string(line()) + ": " + std::string(sentence));
+  return Status(StatusCode::parse_error, place() + ": " + std::string(sentence));
 }
 
 std::size_t TextCursor::line() const {

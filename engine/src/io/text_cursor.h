@@ -10,27 +10,49 @@
 
 namespace tessera {
 
+/// What a text format means by its characters. 0: there is none of the kind.
+struct TextSyntax {
+  char comment = '#';     ///< begins a comment that runs to the end of the line
+  char separator = 0;     ///< ends a token, as blanks do, and is a token of its own
+  char continuation = 0;  ///< at the end of a line, it and the end count as a blank
+};
+
 /// A place in a text. Blanks are spaces, tabs and carriage returns, so that CRLF ends a line like LF. A byte order mark
 /// at the begin is skipped. Lines are counted only when an error is reported.
 class TextCursor {
  public:
-  /// `name` stands for the file in messages; `comment` begins a comment that runs to the end of the line (0: there are
-  /// none); `separator` ends a token, as blanks do, and is a token of its own (0: there is none).
-  TextCursor(std::string_view text, std::string_view name, char comment = '#', char separator = 0);
+  /// `name` stands for the file in messages.
+  TextCursor(std::string_view text, std::string_view name, const TextSyntax& syntax = {});
 
   /// Past blanks and a comment, not past the end of the line.
-  void skip_blanks();
+  void skip_blanks() {
+    while (at_ != end_ && is_blank(*at_)) ++at_;
+    if (at_ != end_ && (*at_ == syntax_.comment || *at_ == syntax_.continuation)) skip_special();
+  }
   /// Past blanks, comments and ends of lines.
-  void skip_space();
+  void skip_space() {
+    for (skip_blanks(); at_ != end_ && *at_ == '\n'; skip_blanks()) ++at_;
+  }
   /// Past blanks, a comment and the end of the line. False, and no move past the blanks, if something else stands
   /// there.
-  bool take_line_end();
+  bool take_line_end() {
+    skip_blanks();
+    if (!at_line_end()) return false;
+    if (at_ != end_) ++at_;
+    return true;
+  }
+  /// To the end of the line, continued ones included.
+  void skip_line();
   bool at_end() const { return at_ == end_; }
   /// Whether the line ends here; after skip_blanks.
   bool at_line_end() const { return at_ == end_ || *at_ == '\n'; }
 
   /// What stands here, up to a blank, separator, comment or end of line; empty at an end. Skips nothing before it.
-  std::string_view peek_token() const;
+  std::string_view peek_token() const {
+    const char* token_end = at_;
+    while (!ends_token(token_end)) ++token_end;
+    return {at_, static_cast<std::size_t>(token_end - at_)};
+  }
   void skip(std::string_view token) { at_ += token.size(); }
   /// Past `c` if it stands here.
   bool take(char c) {
@@ -40,28 +62,58 @@ class TextCursor {
   }
 
   /// A whole token as a number, or false and no move. Doubles may be written as inf or nan: see take_finite.
-  bool take_number(double& value);
-  bool take_number(std::int64_t& value);
+  bool take_number(double& value) { return take_plain(value) || take_signed_or_extreme(value); }
+  bool take_number(std::int64_t& value) { return take_plain(value) || take_signed(value); }
   /// The same, where infinity, NaN and what lies outside the range of double are no numbers.
-  bool take_finite(double& value);
+  bool take_finite(double& value) {
+    const char* const before = at_;
+    double parsed = 0;
+    if (take_number(parsed) && parsed - parsed == 0) {
+      value = parsed;
+      return true;
+    }
+    at_ = before;
+    return false;
+  }
 
   /// "name:line: expected <what>, found "<token>"", or "found the end of the line" or "of the file".
   Status expected(std::string_view what) const;
   /// "name:line: <sentence>" for the line of this place.
   Status failure(std::string_view sentence) const;
+  /// "name:line" of this place.
+  std::string place() const { return std::string(name_) + ":" + std::to_string(line()); }
   std::size_t line() const;
+  std::string_view name() const { return name_; }
   std::size_t remaining() const { return static_cast<std::size_t>(end_ - at_); }
   const char* position() const { return at_; }
 
  private:
-  bool ends_token(char c) const {
-    return c == ' ' || c == '\t' || c == '\r' || c == '\n' || (c == comment_ && comment_ != 0) ||
-           (c == separator_ && separator_ != 0);
+  static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+  bool ends_token(const char* at) const {
+    if (at == end_ || is_blank(*at) || *at == '\n') return true;
+    if (*at == 0) return false;  // what the syntax has not
+    return *at == syntax_.comment || *at == syntax_.separator || (*at == syntax_.continuation && continues(at));
   }
+  /// Whether nothing but blanks stands between a character of continuation and the end of the line.
+  bool continues(const char* at) const;
+  /// Past a comment, or past a continuation and what may be skipped after it.
+  void skip_special();
+
+  template <class Number>
+  bool take_plain(Number& value) {
+    Number parsed;
+    const auto [token_end, error] = std::from_chars(at_, end_, parsed);
+    if (error != std::errc() || !ends_token(token_end)) return false;
+    value = parsed;
+    at_ = token_end;
+    return true;
+  }
+  bool take_signed_or_extreme(double& value);
+  bool take_signed(std::int64_t& value);
 
   const char *begin_, *at_, *end_;
   std::string_view name_;
-  char comment_, separator_;
+  TextSyntax syntax_;
 };
 
 /// `text` in quotes for a message: at most 40 bytes, what cannot be printed as \xNN.

@@ -1,0 +1,32 @@
+#pragma once
+// How OBJ files refer to what stands above: from 1 onwards, or from -1 backwards.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "io/text_cursor.h"
+
+namespace tessera {
+
+/// What is wrong with a number that is no index into the `count` records (`kind`: "vertices") above `before`.
+inline Status obj_index_failure(const TextCursor& before, std::string_view kind, std::size_t count) {
+  const std::string last = std::to_string(count), above = last + " " + std::string(kind) + " above";
+  if (count == 0) return before.expected("no index, as there are " + above);
+  return before.expected("an index into the " + above + ", 1 to " + last + " or -" + last + " to -1");
+}
+
+/// The number here as an index from 0 into `count` records, at most 2^32. `what` names it in messages: "an index of a
+/// corner".
+inline Status read_obj_index(TextCursor& cursor, std::string_view what, std::string_view kind, std::size_t count,
+                             std::uint32_t& index) {
+  const TextCursor before = cursor;
+  std::int64_t number = 0;
+  if (!cursor.take_number(number)) return before.expected(what);
+  const auto size = static_cast<std::int64_t>(count);
+  if (number == 0 || number > size || number < -size) return obj_index_failure(before, kind, count);
+  index = static_cast<std::uint32_t>(number > 0 ? number - 1 : size + number);
+  return {};
+}
+
+}  // namespace tessera

@@ -1,0 +1,34 @@
+#pragma once
+// The curves in parameter space (curv2) of an OBJ file, and the loops that trim and hole make of them.
+
+#include <cstddef>
+#include <vector>
+
+#include "io/text_cursor.h"
+#include "tessera/curve.h"
+#include "tessera/model.h"
+
+namespace tessera {
+
+/// Each curve is a chain of pieces. Every loop copies what it refers to, so the copies are counted: all of them together
+/// hold no more control points than the file has bytes, which no file reaches that refers to a curve a few times.
+class ObjTrimCurves {
+ public:
+  explicit ObjTrimCurves(std::size_t file_size) : allowed_(file_size) {}
+
+  std::size_t size() const { return curves_.size(); }
+  void add(std::vector<Curve> pieces) { curves_.push_back(std::move(pieces)); }
+
+  /// Triples "u0 u1 curv2" to the end of the line.
+  Status read_loop(TextCursor& cursor, std::vector<Curve>& loop);
+  /// Whether `loops` may be copied so many times.
+  bool allow_copies(const std::vector<TrimLoop>& loops, std::size_t copies);
+
+ private:
+  bool allow(std::size_t points);
+
+  std::vector<std::vector<Curve>> curves_;
+  std::size_t allowed_;
+};
+
+}  // namespace tessera

@@ -1,0 +1,44 @@
+// libFuzzer: whatever bytes a reader is given, it returns a model, a mesh or an error, in time and memory that the length
+// of the input bounds (see the limits in CMakeLists.txt). What it returns can be used.
+
+#include <cmath>
+#include <cstdlib>
+
+#include "io/mesh_formats.h"
+#include "tessera/io.h"
+
+namespace {
+
+using namespace tessera;
+
+void require(bool holds) {
+  if (!holds) std::abort();
+}
+
+[[maybe_unused]] void use(const Model& model) {
+  require(!model.surfaces.empty());
+  for (const ModelSurface& surface : model.surfaces) {
+    const Domain d = domain(surface.surface);
+    require(d.u0 < d.u1 && d.v0 < d.v1 && !kind_name(surface.surface).empty());
+    require(evaluate_jet(surface, d.u_at(0.5), d.v_at(0.5)).ok());
+    for (const TrimLoop& loop : surface.trims) require(!loop.curves.empty());
+  }
+}
+
+[[maybe_unused]] void use(const Mesh& mesh) {
+  for (const auto index : mesh.indices) require(index < mesh.vertex_count());
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t size) {
+  const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+  const auto result = TESSERA_FUZZ_PARSER(bytes, "fuzz");
+  if (result.ok()) {
+    use(*result);
+  } else {
+    require(!result.status().message().empty());
+    require(result.status().code() != StatusCode::internal && result.status().code() != StatusCode::out_of_memory);
+  }
+  return 0;
+}
