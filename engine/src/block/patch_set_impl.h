@@ -22,8 +22,13 @@ struct BlockGroup {
 template <class T>
 struct Coefficients {
   AlignedVector<T> bernstein, power;
+  /// `[block][doubt, noise][lane]`: see NormalDoubt.
+  AlignedVector<T> bernstein_doubt, power_doubt;
   const AlignedVector<T>& of(Representation representation) const {
     return representation == Representation::bernstein ? bernstein : power;
+  }
+  const AlignedVector<T>& doubt_of(Representation representation) const {
+    return representation == Representation::bernstein ? bernstein_doubt : power_doubt;
   }
 };
 
