@@ -7,11 +7,14 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <string>
+#include <type_traits>
 
 #include "base/aligned.h"
+#include "eval/grid_outputs.h"
 #include "sets.h"
 #include "tessera/evaluate.h"
 #include "tessera/limits.h"
@@ -31,9 +34,13 @@ struct Case {
 
   std::string name() const {
     const std::string grid = std::to_string(size) + "x" + std::to_string(size);
-    const std::string what = outputs.du ? "positions+du+dv" : outputs.normal ? "positions+normals" : "positions";
-    return "evaluate/" + what + "/" + (layout == Layout::blocks ? "blocks/" : "interleaved/") + set_name + "/" + grid + "/" +
-           std::string(tessera::name(isa)) + "/" + std::to_string(threads);
+    return "evaluate/" + outputs_name() + "/" + (layout == Layout::blocks ? "blocks/" : "interleaved/") + set_name +
+           "/" + grid + "/" + std::string(tessera::name(isa)) + "/" + std::to_string(threads);
+  }
+  std::string outputs_name() const {
+    if (outputs.first_form) return "geometry";  // normals, forms, curvatures, directions, kinds
+    if (outputs.gaussian) return "curvatures";  // positions, first and second derivatives, K, H
+    return outputs.du ? "positions+du+dv" : outputs.normal ? "positions+normals" : "positions";
   }
 };
 
@@ -41,59 +48,109 @@ struct Case {
 class Outputs {
  public:
   Outputs(const GridPlan& plan, const Case& c) : layout_(c.layout) {
-    const std::size_t values = layout_ == Layout::blocks ? plan.block_capacity() : 3 * plan.capacity();
-    const bool wanted[] = {c.outputs.position, c.outputs.du, c.outputs.dv, c.outputs.normal};
-    for (int k = 0; k < 4; ++k)
-      if (wanted[k]) memory_[k].assign(values, 0);
+    const std::size_t records = layout_ == Layout::blocks ? plan.block_capacity() / 3 : plan.capacity();
+    const auto make_room = [&](const auto& output, auto& memory) {
+      if (c.outputs.*output.wanted) memory.assign(records * static_cast<std::size_t>(output.width), {});
+    };
+    std::size_t k = 0;
+    for_each_value_output<float>([&](const auto& output) {
+      auto& memory = values_[k++];
+      make_room(output, memory);
+      blocks_.*output.memory = memory;
+      if (!memory.empty())
+        views_.*output.view = std::remove_cvref_t<decltype(views_.*output.view)>::interleaved(memory);
+    });
+    make_room(normal_kind_output<float>, normal_kinds_);
+    make_room(curvature_kind_output<float>, curvature_kinds_);
+    blocks_.normal_kind = normal_kinds_;
+    blocks_.curvature_kind = curvature_kinds_;
+    if (!normal_kinds_.empty()) views_.normal_kind = View1<NormalKind>::interleaved(normal_kinds_);
+    if (!curvature_kinds_.empty()) views_.curvature_kind = View1<CurvatureKind>::interleaved(curvature_kinds_);
   }
+  Outputs(const Outputs&) = delete;
+  Outputs& operator=(const Outputs&) = delete;
 
   Status evaluate(const PatchSet& set, const GridPlan& plan, const Execution& execution) {
-    if (layout_ == Layout::blocks)
-      return tessera::evaluate(set, plan, GridBlocks<float>{memory_[0], memory_[1], memory_[2], memory_[3]}, execution);
-    const auto view = [&](int k) { return memory_[k].empty() ? View3<float>{} : View3<float>::interleaved(memory_[k]); };
-    return tessera::evaluate(set, plan, GridViews<float>{view(0), view(1), view(2), view(3)}, execution);
+    return layout_ == Layout::blocks ? tessera::evaluate(set, plan, blocks_, execution)
+                                     : tessera::evaluate(set, plan, views_, execution);
   }
 
-  /// Vector `output` (0 position .. 3 normal) of one sample, or nothing if it is not wanted.
-  bool read(const PatchSet& set, const GridPlan& plan, int output, std::size_t patch, std::size_t sample, Vec3& value) const {
-    const auto& memory = memory_[output];
+  /// One output at one sample, or nothing if it is not wanted.
+  template <class Output>
+  bool read(const PatchSet& set, const GridPlan& plan, const Output& output, std::size_t patch, std::size_t sample,
+            Vec3& value) const {
+    const auto memory = blocks_.*output.memory;
     if (memory.empty()) return false;
-    const std::size_t samples = plan.count_u() * plan.count_v();
-    if (layout_ == Layout::interleaved) {
-      const float* p = memory.data() + 3 * (patch * samples + sample);
-      value = {p[0], p[1], p[2]};
-    } else {
+    const std::size_t samples = plan.count_u() * plan.count_v(), width = static_cast<std::size_t>(output.width);
+    const float* p = memory.data() + width * (patch * samples + sample);
+    std::size_t step = 1;
+    if (layout_ == Layout::blocks) {
       const PatchSet::Slot slot = set.slot(patch);
-      const float* p = memory.data() + (slot.block * samples + sample) * 3 * PatchSet::lanes + slot.lane;
-      value = {p[0], p[PatchSet::lanes], p[2 * PatchSet::lanes]};
+      p = memory.data() + (slot.block * samples + sample) * width * PatchSet::lanes + slot.lane;
+      step = PatchSet::lanes;
     }
+    value = width == 1 ? Vec3{p[0], 0, 0} : Vec3{p[0], p[step], p[2 * step]};
     return true;
   }
 
  private:
   Layout layout_;
-  AlignedVector<float> memory_[4];
+  std::array<AlignedVector<float>, std::size(vector_outputs<float>) + std::size(scalar_outputs<float>)> values_;
+  AlignedVector<NormalKind> normal_kinds_;
+  AlignedVector<CurvatureKind> curvature_kinds_;
+  GridBlocks<float> blocks_;
+  GridViews<float> views_;
 };
 
-/// Every sample of 50 patches against the reference evaluators, far looser than the tests and far tighter than a wrong answer.
+/// What an output must be, and how far off it may be where it is well conditioned: far looser than the tests and far tighter than a
+/// wrong answer. `size` is that of the set.
+struct Expected {
+  Vec3 value;
+  double tolerance;
+};
+Expected expected_value(const std::string& name, const PatchSet& set, const SurfaceJet& jet, const LocalGeometry& g,
+                        double size) {
+  const double bend = std::abs(g.first.curvature) + std::abs(g.second.curvature) + 1 / size;
+  if (name == "position") return {jet.position - set.origin(), 1e-5 * size};
+  if (name == "du") return {jet.du, 1e-5 * size};
+  if (name == "dv") return {jet.dv, 1e-5 * size};
+  if (name == "duu") return {jet.duu, 1e-4 * size};
+  if (name == "duv") return {jet.duv, 1e-4 * size};
+  if (name == "dvv") return {jet.dvv, 1e-4 * size};
+  if (name == "normal") return {g.normal.direction, 1e-3};
+  if (name == "first_form") return {{g.e, g.f, g.g}, 1e-4 * size * std::sqrt(std::max(g.e, g.g))};
+  if (name == "second_form") return {{g.l, g.m, g.n}, 1e-3 * size};
+  if (name == "gaussian") return {{g.gaussian, 0, 0}, 0.01 * bend * bend};
+  if (name == "mean") return {{g.mean, 0, 0}, 0.01 * bend};
+  if (name == "first_curvature") return {{g.first.curvature, 0, 0}, 0.01 * bend};
+  if (name == "second_curvature") return {{g.second.curvature, 0, 0}, 0.01 * bend};
+  // Directions are known up to their sign: the test of what the curvatures are along them is the unit tests'.
+  return {{}, 1.001};
+}
+
+/// Every sample of 50 patches against the reference evaluators.
 bool check_values(const PatchSet& set, const GridPlan& plan, const std::vector<double>& t, const Outputs& out) {
-  const double tolerance = 1e-5 * set.box().diagonal();
+  const double size = set.box().diagonal();
   const std::size_t step = std::max<std::size_t>(1, set.patch_count() / 50);
+  bool right = true;
   for (std::size_t patch = 0; patch < set.patch_count(); patch += step) {
     for (std::size_t sample = 0; sample < t.size() * t.size(); ++sample) {
       const double u = t[sample / t.size()], v = t[sample % t.size()];
       const SurfaceJet jet = evaluate_jet(set.patch(patch), u, v);
-      const UnitNormal normal = unit_normal(set.patch(patch), u, v);
-      const Vec3 expected[] = {jet.position - set.origin(), jet.du, jet.dv, normal.direction};
-      const bool conditioned = normal.kind == NormalKind::regular && length(cross(jet.du, jet.dv)) > 1e-3 * dot(jet.du, jet.du);
-      Vec3 value;
-      for (int k = 0; k < 4; ++k) {
-        if (!out.read(set, plan, k, patch, sample, value) || (k == 3 && !conditioned)) continue;
-        if (!(max_abs(value - expected[k]) <= (k == 3 ? 1e-3 : tolerance))) return false;
-      }
+      const LocalGeometry geometry = local_geometry(set.patch(patch), u, v);
+      const bool conditioned =
+          geometry.defined && length(cross(jet.du, jet.dv)) > 1e-3 * std::max(geometry.e, geometry.g) &&
+          std::min(geometry.e, geometry.g) > 1e-6 * size * size / static_cast<double>(set.patch_count());
+      for_each_value_output<float>([&](const auto& output) {
+        const Expected expected = expected_value(output.name, set, jet, geometry, size);
+        Vec3 value;
+        const bool needs_normal = output.order == 2 ? output.name[0] != 'd' : std::string(output.name) == "normal";
+        if (!out.read(set, plan, output, patch, sample, value) || (needs_normal && !conditioned)) return;
+        right = right && max_abs(value - expected.value) <= expected.tolerance;
+      });
     }
   }
-  return true;
+  return right;
 }
 
 /// The best rates of two measurements, before and after the run: a disturbed one must not flatter us.
@@ -135,7 +192,8 @@ void run(benchmark::State& state, const Case& c) {
   if (!check_values(set, *plan, t, out)) return state.SkipWithError("the timed values differ from the reference");
   state.counters["points_per_second"] = static_cast<double>(plan->capacity()) / best;
   state.counters["bytes_per_second"] = work.bytes_written / best;
-  if (c.threads == 1) state.counters["limit_fraction"] = seconds_at_limit(best_of(*limits_before, *limits_after), work) / best;
+  if (c.threads == 1)
+    state.counters["limit_fraction"] = seconds_at_limit(best_of(*limits_before, *limits_after), work) / best;
 }
 
 void add(const Case& c) {
@@ -146,6 +204,20 @@ void add(const Case& c) {
 
 const bool registered = [] {
   const GridOutputs positions{}, normals{.normal = true}, tangents{.du = true, .dv = true};
+  const GridOutputs curvatures{
+      .du = true, .dv = true, .duu = true, .duv = true, .dvv = true, .gaussian = true, .mean = true};
+  const GridOutputs geometry{.position = false,
+                             .normal = true,
+                             .first_form = true,
+                             .second_form = true,
+                             .gaussian = true,
+                             .mean = true,
+                             .first_curvature = true,
+                             .second_curvature = true,
+                             .first_direction = true,
+                             .second_direction = true,
+                             .normal_kind = true,
+                             .curvature_kind = true};
   for (const Isa isa : available_isas()) {
     for (const GridOutputs& outputs : {positions, normals, tangents})
       for (const Layout layout : {Layout::blocks, Layout::interleaved})
@@ -153,7 +225,14 @@ const bool registered = [] {
           add({"teapot", size, outputs, layout, isa, 1});
           add({"bicubic20000", size, outputs, layout, isa, 1});
         }
-    for (const Layout layout : {Layout::blocks, Layout::interleaved}) add({"bicubic20000", 33, positions, layout, isa, 2});
+    for (const Layout layout : {Layout::blocks, Layout::interleaved}) {
+      add({"bicubic20000", 33, positions, layout, isa, 2});
+      for (const GridOutputs& outputs : {curvatures, geometry}) {
+        add({"teapot", 9, outputs, layout, isa, 1});
+        add({"teapot", 33, outputs, layout, isa, 1});
+        add({"bicubic20000", 9, outputs, layout, isa, 1});
+      }
+    }
   }
   return true;
 }();

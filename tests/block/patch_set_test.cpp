@@ -95,6 +95,10 @@ TEST(PatchSet, AnEditIsSeenAndCounted) {
     EXPECT_TRUE(fresh.impl().single.power == set.impl().single.power);
     EXPECT_TRUE(fresh.impl().twice.bernstein == set.impl().twice.bernstein);
     EXPECT_TRUE(fresh.impl().twice.power == set.impl().twice.power);
+    EXPECT_TRUE(fresh.impl().single.bernstein_doubt == set.impl().single.bernstein_doubt);
+    EXPECT_TRUE(fresh.impl().single.power_doubt == set.impl().single.power_doubt);
+    EXPECT_TRUE(fresh.impl().twice.bernstein_doubt == set.impl().twice.bernstein_doubt);
+    EXPECT_TRUE(fresh.impl().twice.power_doubt == set.impl().twice.power_doubt);
   }
 }
 

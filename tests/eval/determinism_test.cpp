@@ -13,11 +13,11 @@ namespace {
 
 bool available(Isa isa) { return std::ranges::count(available_isas(), isa) > 0; }
 
-template <class T>
-GridBuffers<T> run(const PatchSet& set, Isa isa, int threads, ExecutionReport* report = nullptr) {
+template <class T, class Buffers = AllBuffers<T>>
+Buffers run(const PatchSet& set, Isa isa, int threads, ExecutionReport* report = nullptr) {
   const auto u = uniform_parameters(9), v = uniform_parameters(14);
   const GridPlan plan = value_of(GridPlan::make(set, u, v, {.precision = precision_of<T>, .isa = isa}));
-  GridBuffers<T> out(plan);
+  Buffers out(plan);
   // The arena may be larger than the machine; without this limit TBB would make no second worker on one core.
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   tbb::task_arena arena(threads);

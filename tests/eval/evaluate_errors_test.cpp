@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <type_traits>
 
 #include "support/grids.h"
 
@@ -45,6 +46,54 @@ TEST_F(EvaluateErrors, StridesAndMissingComponents) {
   views.dv.component[2] = nullptr;
   expect_error(StatusCode::invalid_argument, views);
   expect_error(StatusCode::invalid_argument, {});
+}
+
+/// Every output of GridViews, short by one record, with a stride of 0, without a component: none of them nor any other is written.
+TEST_F(EvaluateErrors, EachViewOfLocalGeometry) {
+  AllBuffers<float> memory(plan), clean(plan);
+  const auto expect_refused = [&](const GridViews<float>& views, StatusCode code, const std::string& name) {
+    const Status status = evaluate(set, plan, views);
+    EXPECT_EQ(status.code(), code) << name;
+    EXPECT_NE(status.message().find(name), std::string::npos) << status.message();
+    EXPECT_TRUE(memory == clean) << name;
+  };
+  for_each_output<float>([&](const auto& output) {
+    GridViews<float> views = memory.views();
+    (views.*output.view).size = plan.capacity() - 1;
+    expect_refused(views, StatusCode::buffer_too_small, output.name);
+    views = memory.views();
+    (views.*output.view).stride = 0;
+    expect_refused(views, StatusCode::invalid_argument, output.name);
+    if (output.width == 1) return;
+    views = memory.views();
+    (views.*output.view).component.back() = nullptr;
+    expect_refused(views, StatusCode::invalid_argument, output.name);
+  });
+}
+
+TEST_F(EvaluateErrors, EachBlockOfLocalGeometry) {
+  for_each_output<float>([&](const auto& output) {
+    const std::size_t needed = plan.block_capacity() / 3 * static_cast<std::size_t>(output.width);
+    GridBlocks<float> blocks;
+    using Value = typename std::remove_reference_t<decltype(blocks.*output.memory)>::element_type;
+    AlignedVector<Value> memory(needed + 1, Value(9));
+    const std::span<Value> all = memory;
+    for (const auto& [span, code] : {std::pair{all.first(needed - 1), StatusCode::buffer_too_small}, {all.subspan(1), StatusCode::invalid_argument}}) {
+      blocks.*output.memory = span;
+      const Status status = evaluate(set, plan, blocks);
+      EXPECT_EQ(status.code(), code) << output.name;
+      EXPECT_NE(status.message().find(output.name), std::string::npos) << status.message();
+    }
+    EXPECT_TRUE(std::ranges::all_of(memory, [](Value x) { return x == Value(9); }));
+  });
+}
+
+TEST_F(EvaluateErrors, GeometryOptions) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double bad : {-1e-9, 1.0, nan}) {
+    EXPECT_EQ(GridPlan::make(set, t, t, {.geometry = {.smallest_sine = bad}}).status().code(), StatusCode::invalid_argument);
+    EXPECT_EQ(GridPlan::make(set, t, t, {.geometry = {.umbilic_tolerance = bad}}).status().code(), StatusCode::invalid_argument);
+  }
 }
 
 TEST_F(EvaluateErrors, BlockMemory) {

@@ -38,11 +38,6 @@ struct Case {
 };
 
 template <class T>
-Vec3 read(const View3<T>& view, std::size_t record) {
-  return {view.at(record, 0), view.at(record, 1), view.at(record, 2)};
-}
-
-template <class T>
 void check_layouts(int nu, int nv, Isa isa) {
   SCOPED_TRACE(testing::Message() << nu << "x" << nv << " " << name(isa));
   const Case<T> c(nu, nv, isa);

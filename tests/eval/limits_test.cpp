@@ -22,7 +22,7 @@ TEST(Limits, AreMeasuredForEachIsa) {
   }
 }
 
-/// 12, 36 and 50 operations a point of a bicubic; in proportion to the order; 4/3 and 4 more if rational.
+/// 12, 36, 50 and 72 operations a point of a bicubic; in proportion to the order; 4/3 and 4 more if rational; 30 for curvatures.
 TEST(Limits, WorkFollowsTheStatedCounts) {
   Random random(61);
   const auto u = uniform_parameters(5), v = uniform_parameters(8);
@@ -35,6 +35,12 @@ TEST(Limits, WorkFollowsTheStatedCounts) {
   EXPECT_EQ(work(cubic, {.du = true, .dv = true}).lane_operations, 40 * 36);
   EXPECT_EQ(work(cubic, {.normal = true}).lane_operations, 40 * 50);
   EXPECT_EQ(work(cubic, {.normal = true}).bytes_written, 40 * 24);
+  EXPECT_EQ(work(cubic, {.duu = true}).lane_operations, 40 * 72);
+  const GridOutputs twenty{.du = true, .dv = true, .duu = true, .duv = true, .dvv = true, .gaussian = true, .mean = true};
+  EXPECT_EQ(work(cubic, twenty).lane_operations, 40 * 102);
+  EXPECT_EQ(work(cubic, twenty).bytes_written, 40 * 80);
+  EXPECT_EQ(work(cubic, {.position = false, .normal_kind = true}).bytes_written, 40);
+  EXPECT_EQ(work(random_rational(random, 3, 3), twenty).lane_operations, 40 * (72 * 4 / 3 + 4 + 30));
   EXPECT_EQ(work(random_polynomial(random, 1, 1), {}).lane_operations, 40 * 6);
   EXPECT_EQ(work(random_rational(random, 3, 3), {}).lane_operations, 40 * 20);
 }

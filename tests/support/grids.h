@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "base/aligned.h"
+#include "eval/grid_outputs.h"
 #include "support/random_patches.h"
 #include "support/synthetic_sets.h"
 #include "tessera/evaluate.h"
@@ -46,6 +48,38 @@ struct GridBuffers {
   }
   bool operator==(const GridBuffers&) const = default;
 };
+
+/// Every output of a grid in an array of its own, patch-contiguous; the memory of those beyond the outputs asked for stays at `fill`.
+template <class T>
+struct AllBuffers {
+  std::vector<std::vector<T>> values;  ///< in the order of for_each_value_output
+  std::vector<NormalKind> normal_kind;
+  std::vector<CurvatureKind> curvature_kind;
+
+  explicit AllBuffers(const GridPlan& plan, T fill = T(-7))
+      : normal_kind(plan.capacity(), NormalKind{9}), curvature_kind(plan.capacity(), CurvatureKind{9}) {
+    for_each_value_output<T>([&](const auto& output) {
+      values.emplace_back(static_cast<std::size_t>(output.width) * plan.capacity(), fill);
+    });
+  }
+  GridViews<T> views() {
+    GridViews<T> out;
+    std::size_t k = 0;
+    for_each_value_output<T>([&](const auto& output) {
+      auto& view = out.*output.view;
+      view = std::remove_reference_t<decltype(view)>::interleaved(values[k++]);
+    });
+    out.normal_kind = View1<NormalKind>::interleaved(normal_kind);
+    out.curvature_kind = View1<CurvatureKind>::interleaved(curvature_kind);
+    return out;
+  }
+  bool operator==(const AllBuffers&) const = default;
+};
+
+template <class T>
+Vec3 read(const View3<T>& view, std::size_t record) {
+  return {view.at(record, 0), view.at(record, 1), view.at(record, 2)};
+}
 
 template <class T>
 Vec3 vector_at(const std::vector<T>& values, std::size_t record) {

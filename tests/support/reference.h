@@ -80,6 +80,36 @@ inline RealJet reference_jet(const BezierPatch& patch, Real u, Real v) {
   return jet;
 }
 
+/// What section 3.3 of do Carmo's Differential Geometry of Curves and Surfaces gives for a jet with independent tangents: S is the
+/// second form in the orthonormal basis e1 = r_u / |r_u|, e2 = N x e1.
+struct RealGeometry {
+  RealVec3 normal, first_form, second_form, first_direction, second_direction;
+  Real gaussian = 0, mean = 0, first = 0, second = 0;  ///< first >= second
+};
+inline Real dot(RealVec3 a, RealVec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline RealGeometry reference_geometry(const RealJet& jet) {
+  RealGeometry g;
+  g.normal = normalized(cross(jet.du, jet.dv));
+  g.first_form = {dot(jet.du, jet.du), dot(jet.du, jet.dv), dot(jet.dv, jet.dv)};
+  g.second_form = {dot(jet.duu, g.normal), dot(jet.duv, g.normal), dot(jet.dvv, g.normal)};
+  const RealVec3 e1 = normalized(jet.du), e2 = cross(g.normal, e1);
+  // Parameters of e1 and e2: r_u = a e1, r_v = b e1 + c e2.
+  const Real a = dot(jet.du, e1), b = dot(jet.dv, e1), c = dot(jet.dv, e2);
+  const Real u1 = 1 / a, u2 = -b / (a * c), v2 = 1 / c;
+  const auto [l, m, n] = g.second_form;
+  const Real s11 = u1 * u1 * l, s12 = u1 * (u2 * l + v2 * m), s22 = u2 * u2 * l + 2 * u2 * v2 * m + v2 * v2 * n;
+  g.gaussian = s11 * s22 - s12 * s12;
+  g.mean = (s11 + s22) / 2;
+  const Real radius = std::hypot((s11 - s22) / 2, s12);
+  g.first = g.mean + radius;
+  g.second = g.mean - radius;
+  // An eigenvector is orthogonal to each row of S - k1; the longer row is the safer one.
+  const Real x = s11 > s22 ? g.first - s22 : s12, y = s11 > s22 ? s12 : g.first - s11, size = std::hypot(x, y);
+  if (size > 0) g.first_direction = (x / size) * e1 + (y / size) * e2;
+  g.second_direction = cross(g.normal, g.first_direction);
+  return g;
+}
+
 inline Vec3 reference_position(const BezierPatch& patch, Real u, Real v) {
   Real weight;
   const RealVec3 sum = reference_sum(patch, u, v, 0, 0, weight);

@@ -10,6 +10,7 @@
 #include "tessera/execution.h"
 #include "tessera/isa.h"
 #include "tessera/limits.h"
+#include "tessera/local_geometry.h"
 #include "tessera/patch_set.h"
 #include "tessera/status.h"
 #include "tessera/views.h"
@@ -19,24 +20,31 @@ namespace tessera {
 /// `count` >= 2 parameters from 0 to 1: i / (count - 1).
 std::vector<double> uniform_parameters(int count);
 
-/// Which outputs are meant, for capacity and work.
+/// Which outputs are meant, for capacity and work: the members of GridViews by name.
 struct GridOutputs {
   bool position = true, du = false, dv = false, normal = false;
+  bool duu = false, duv = false, dvv = false;
+  bool first_form = false, second_form = false;
+  bool gaussian = false, mean = false, first_curvature = false, second_curvature = false;
+  bool first_direction = false, second_direction = false;
+  bool normal_kind = false, curvature_kind = false;
 };
 
 struct GridPlanOptions {
   Precision precision = Precision::single_precision;
   Representation representation = Representation::bernstein;
   std::optional<Isa> isa = {};  ///< default_isa() if empty
+  /// In single precision a smallest sine below 1e-6 counts as 1e-6, and an umbilic tolerance below 1e-4 as 1e-4.
+  LocalGeometryOptions geometry = {};
 };
 
 /// The grid u_0..u_{N-1} x v_0..v_{M-1} of local parameters, with basis weights tabulated for every degree of a set.
 /// Immutable; reusable for as long as the set's degrees stay (edits of control points keep them).
 class GridPlan {
  public:
-  /// Parameters in [0,1], in any order, 1 to 2^24 each way. Errors: invalid_argument or non_finite (index = the parameter),
-  /// invalid_argument (more points than memory can address),
-  /// unsupported (the set lacks the blocks), isa_unavailable.
+  /// Parameters in [0,1], in any order, 1 to 2^24 each way. Errors: invalid_argument or non_finite (index = the
+  /// parameter), invalid_argument (more points than memory can address), unsupported (the set lacks the blocks),
+  /// isa_unavailable; invalid_argument (options.geometry: not from 0 to below 1).
   static Result<GridPlan> make(const PatchSet& set, std::span<const double> u, std::span<const double> v,
                                const GridPlanOptions& options = {});
 
@@ -50,7 +58,8 @@ class GridPlan {
   Precision precision() const;
   /// Records that a patch-contiguous view must hold: patch_count * count_u * count_v.
   std::size_t capacity() const;
-  /// Values that one block-interleaved output must hold: block_count * count_u * count_v * 3 * PatchSet::lanes.
+  /// Values that one block-interleaved output of vectors must hold: block_count * count_u * count_v * 3 *
+  /// PatchSet::lanes; one of scalars or kinds a third of it.
   std::size_t block_capacity() const;
   /// What the evaluation must compute and write at the least; see limits.h.
   Work work(const GridOutputs& outputs) const;
@@ -63,31 +72,57 @@ class GridPlan {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Patch-contiguous outputs, `[patch][iu][iv]`: record (patch * count_u + iu) * count_v + iv.
-/// Empty views are not computed. Positions in float are relative to the set's origin, in double absolute.
-/// Derivatives are by local parameters. Normals are unit vectors; at a degenerate point the limit (see unit_normal),
-/// or zero where there is none.
+/// Patch-contiguous outputs, `[patch][iu][iv]`: record (patch * count_u + iu) * count_v + iv. Any subset in one pass;
+/// empty views are not computed. Positions in float are relative to the set's origin, in double absolute. Derivatives
+/// are by local parameters. Normals are unit vectors; at a degenerate point the limit, or zero where there is none: as
+/// unit_normal() defines it, and computed by it where the lanes' rounding errors leave it open. Forms, curvatures and
+/// directions are those of local_geometry.h, zero wherever undefined and never NaN: the normal is not regular, or the
+/// tangents are parallel within rounding errors or within GridPlanOptions::geometry, or a figure is out of range (a
+/// form beyond the numbers, a curvature beyond 2^60 in float, 2^500 in double).
 template <class T>
 struct GridViews {
   View3<T> position = {}, du = {}, dv = {}, normal = {};
+  View3<T> duu = {}, duv = {}, dvv = {};
+  View3<T> first_form = {};   ///< E, F, G: r_u.r_u, r_u.r_v, r_v.r_v
+  View3<T> second_form = {};  ///< L, M, N: r_uu.N, r_uv.N, r_vv.N
+  View1<T> gaussian = {}, mean = {};
+  View1<T> first_curvature = {}, second_curvature = {};    ///< k1 >= k2
+  View3<T> first_direction = {}, second_direction = {};    ///< their unit tangents, first x second = normal
+  View1<NormalKind> normal_kind = {};
+  View1<CurvatureKind> curvature_kind = {};
 };
 
 /// Evaluates all patches. Outputs may share memory by interleaving but must not overlap otherwise.
 /// Errors: buffer_too_small, invalid_argument (a plan of other precision, or for other patches; a stride of 0),
 /// cancelled. Nothing is written on any error but cancelled. The same bytes for any number of threads, and on
-/// AVX2 and AVX-512. Error bounds for the Bernstein representation, in units of 2^-23 (2^-52 in double) times the largest
-/// |V - origin| of the patch: positions 2, rational 4, derivatives 16 times the degree; for derivatives of rational patches the
-/// largest |w (V - origin)| over the weight at the point takes its place, since the derivative itself grows with that ratio. Normals: 8 times the
-/// degree, times that size over |r_u x r_v| / max(|r_u|, |r_v|), the sine of the tangents' angle times the shorter tangent.
+/// AVX2 and AVX-512; each output alone is what it is together with others.
+/// Error bounds for the Bernstein representation, in units of 2^-23 (2^-52 in double) times the largest |V - origin| of
+/// the patch, d the higher degree: positions 2, rational 4; first derivatives 16 d; second ones 16 d^2. For derivatives
+/// of rational patches the largest |w (V - origin)| over the weight at the point takes the place of that size, since
+/// the derivative itself grows with that ratio, and for second ones times the largest weight over that at the point.
+/// The first form 32 d times the longer tangent. With h = |r_u x r_v| / max(|r_u|, |r_v|), the sine of the tangents'
+/// angle times the shorter tangent: normals 8 d size / h. In limit normals r_uv stands for the tangent that vanishes,
+/// in h as well, and d^2 for d. With D the largest second derivative, and for rational patches the size of second
+/// derivatives: the second form 8 (d^2 + d D / h); mean and principal curvatures that over h^2; Gaussian |k1| + |k2|
+/// times the curvatures' bound, and its square; principal directions 2 / (k1 - k2) times the curvatures' bound, and the
+/// normals'. To first order: where the errors of the tangents are small against h.
 Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<float>& out, const Execution& execution = {});
 Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<double>& out, const Execution& execution = {});
 
-/// Block-interleaved outputs, `[block][iu][iv][component][lane]`: the kernels' own order, and the fastest.
-/// A patch's place is PatchSet::slot(); unused lanes of a last block repeat a patch. Empty spans are not computed.
-/// Memory must be aligned to 64 bytes (invalid_argument otherwise).
+/// Block-interleaved outputs, `[block][iu][iv][component][lane]`, scalars and kinds `[block][iu][iv][lane]`: the
+/// kernels' own order, and the fastest. A patch's place is PatchSet::slot(); unused lanes of a last block repeat a
+/// patch. The members mean what those of GridViews mean. Empty spans are not computed. Memory must be aligned to 64
+/// bytes (invalid_argument otherwise).
 template <class T>
 struct GridBlocks {
   std::span<T> position = {}, du = {}, dv = {}, normal = {};
+  std::span<T> duu = {}, duv = {}, dvv = {};
+  std::span<T> first_form = {}, second_form = {};
+  std::span<T> gaussian = {}, mean = {};
+  std::span<T> first_curvature = {}, second_curvature = {};
+  std::span<T> first_direction = {}, second_direction = {};
+  std::span<NormalKind> normal_kind = {};
+  std::span<CurvatureKind> curvature_kind = {};
 };
 Status evaluate(const PatchSet& set, const GridPlan& plan, const GridBlocks<float>& out, const Execution& execution = {});
 Status evaluate(const PatchSet& set, const GridPlan& plan, const GridBlocks<double>& out, const Execution& execution = {});

@@ -3,6 +3,7 @@
 // orthogonal and conjugate. One point at a time, in double.
 
 #include <array>
+#include <cstdint>
 
 #include "tessera/bezier_patch.h"
 #include "tessera/status.h"
@@ -27,6 +28,13 @@ struct LocalGeometry {
   double gaussian = 0, mean = 0;     ///< K = k1 k2, H = (k1 + k2) / 2
   PrincipalDirection first, second;  ///< k1 >= k2; first.direction x second.direction = N
   bool umbilic = false;  ///< k1 = k2 within tolerance: every tangent is principal, the directions are arbitrary ones
+};
+
+/// What principal curvatures a point has.
+enum class CurvatureKind : std::uint8_t {
+  distinct,   ///< k1 > k2
+  umbilic,    ///< k1 = k2 within tolerance: every tangent is principal, the directions are arbitrary ones
+  undefined,  ///< no forms and no curvatures; they are zero
 };
 
 struct LocalGeometryOptions {

@@ -40,6 +40,8 @@ struct VectorView {
 };
 
 template <class T>
+using View1 = VectorView<T, 1>;
+template <class T>
 using View3 = VectorView<T, 3>;
 template <class T>
 using View2 = VectorView<T, 2>;

@@ -17,9 +17,19 @@ void power_derivatives(int degree, Real t, Real* values) {
   values[0] = 0;
 }
 
+template <class Real>
+void power_second_derivatives(int degree, Real t, Real* values) {
+  if (degree > 1) power_values(degree - 2, t, values + 2);
+  for (int i = 2; i <= degree; ++i) values[i] *= static_cast<Real>(i * (i - 1));
+  values[0] = 0;
+  if (degree > 0) values[1] = 0;
+}
+
 template void power_values(int, double, double*);
 template void power_values(int, long double, long double*);
 template void power_derivatives(int, double, double*);
 template void power_derivatives(int, long double, long double*);
+template void power_second_derivatives(int, double, double*);
+template void power_second_derivatives(int, long double, long double*);
 
 }  // namespace tessera

@@ -11,5 +11,8 @@ void power_values(int degree, Real t, Real* values);
 /// i t^(i-1).
 template <class Real>
 void power_derivatives(int degree, Real t, Real* values);
+/// i (i-1) t^(i-2).
+template <class Real>
+void power_second_derivatives(int degree, Real t, Real* values);
 
 }  // namespace tessera

@@ -47,10 +47,15 @@ void lay_out(PatchSet::Impl& set) {
     set.groups.push_back(group);
     begin = end;
   }
-  if (set.kinds.float_bernstein) set.single.bernstein.resize(next_value);
-  if (set.kinds.float_power) set.single.power.resize(next_value);
-  if (set.kinds.double_bernstein) set.twice.bernstein.resize(next_value);
-  if (set.kinds.double_power) set.twice.power.resize(next_value);
+  const std::size_t doubts = 2 * lanes * set.lane_counts.size();
+  const auto make_room = [&](auto& coefficients, auto& doubt) {
+    coefficients.resize(next_value);
+    doubt.resize(doubts);
+  };
+  if (set.kinds.float_bernstein) make_room(set.single.bernstein, set.single.bernstein_doubt);
+  if (set.kinds.float_power) make_room(set.single.power, set.single.power_doubt);
+  if (set.kinds.double_bernstein) make_room(set.twice.bernstein, set.twice.bernstein_doubt);
+  if (set.kinds.double_power) make_room(set.twice.power, set.twice.power_doubt);
 }
 
 /// Weights below these shares of the largest: derivatives grow with the inverse of that share, and normals with its square.
@@ -98,11 +103,16 @@ Box3 PatchSet::Impl::box() const {
 bool PatchSet::Impl::pack(std::size_t patch, const BlockGroup& group, bool surely_fits, std::vector<double>& scratch) {
   const Slot slot = slots[patch];
   const std::size_t first = group.first_value + (slot.block - group.first_block) * group.block_values;
-  const auto write = [&](auto& coefficients) {
+  const auto write = [&](auto& coefficients, auto& doubts) {
     auto* block = coefficients.data() + first;
-    write_lane(scratch, block, slot.lane);
+    auto* doubt = doubts.data() + std::size_t{2} * lanes * slot.block;
+    const auto write_to = [&](std::uint32_t lane) {
+      write_lane(scratch, block, lane);
+      write_doubt(patches[patch], scratch, doubt, lane);
+    };
+    write_to(slot.lane);
     if (slot.lane == 0)
-      for (std::uint32_t lane = lane_counts[slot.block]; lane < lanes; ++lane) write_lane(scratch, block, lane);
+      for (std::uint32_t lane = lane_counts[slot.block]; lane < lanes; ++lane) write_to(lane);
   };
   const auto weights = patches[patch].weights();
   const double lightest = weights.empty() ? 1 : std::ranges::min(weights) / std::ranges::max(weights);
@@ -116,8 +126,8 @@ bool PatchSet::Impl::pack(std::size_t patch, const BlockGroup& group, bool surel
       return false;
     if (lightest < (in_float ? least_weight_in_float : least_weight_in_double)) return false;
     const bool bernstein = representation == Representation::bernstein;
-    if (in_float) write(bernstein ? single.bernstein : single.power);
-    if (in_double) write(bernstein ? twice.bernstein : twice.power);
+    if (in_float) bernstein ? write(single.bernstein, single.bernstein_doubt) : write(single.power, single.power_doubt);
+    if (in_double) bernstein ? write(twice.bernstein, twice.bernstein_doubt) : write(twice.power, twice.power_doubt);
   }
   return true;
 }
@@ -196,9 +206,12 @@ std::uint64_t PatchSet::revision() const { return impl_->revision; }
 
 std::size_t PatchSet::memory_bytes() const {
   const auto bytes = [](const auto& vector) { return vector.capacity() * sizeof(vector[0]); };
+  const auto all_bytes = [&](const auto& of) {
+    return bytes(of.bernstein) + bytes(of.power) + bytes(of.bernstein_doubt) + bytes(of.power_doubt);
+  };
   std::size_t total = sizeof(Impl) + bytes(impl_->patches) + bytes(impl_->sources) + bytes(impl_->slots) + bytes(impl_->collapsed) +
-                      bytes(impl_->groups) + bytes(impl_->lane_patches) + bytes(impl_->lane_counts) + bytes(impl_->single.bernstein) +
-                      bytes(impl_->single.power) + bytes(impl_->twice.bernstein) + bytes(impl_->twice.power);
+                      bytes(impl_->groups) + bytes(impl_->lane_patches) + bytes(impl_->lane_counts) + all_bytes(impl_->single) +
+                      all_bytes(impl_->twice);
   for (const BezierPatch& patch : impl_->patches) total += patch.points().size_bytes() + patch.weights().size_bytes();
   return total;
 }

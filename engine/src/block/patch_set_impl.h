@@ -22,8 +22,13 @@ struct BlockGroup {
 template <class T>
 struct Coefficients {
   UnsetVector<T> bernstein, power;
+  /// `[block][doubt, noise][lane]`: see NormalDoubt.
+  UnsetVector<T> bernstein_doubt, power_doubt;
   const UnsetVector<T>& of(Representation representation) const {
     return representation == Representation::bernstein ? bernstein : power;
+  }
+  const UnsetVector<T>& doubt_of(Representation representation) const {
+    return representation == Representation::bernstein ? bernstein_doubt : power_doubt;
   }
 };
 

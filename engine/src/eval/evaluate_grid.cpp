@@ -9,8 +9,9 @@
 
 #include "base/guard.h"
 #include "block/patch_set_impl.h"
+#include "eval/block_normals.h"
+#include "eval/grid_outputs.h"
 #include "eval/grid_plan_impl.h"
-#include "eval/pole_normals.h"
 #include "eval/staged_block.h"
 #include "parallel/parallel_for.h"
 
@@ -48,11 +49,12 @@ Status check_plan(const PatchSet::Impl& set, const GridPlan& plan) {
   const bool same = plan.impl().patch_count == set.patches.size() &&
                     std::equal(planned.begin(), planned.end(), groups.begin(), groups.end(),
                                [](const PlannedGroup& a, const BlockGroup& b) {
-                                 return a.degree_u == b.degree_u && a.degree_v == b.degree_v && a.rational == b.rational &&
-                                        a.blocks == b.block_count;
+                                 return a.degree_u == b.degree_u && a.degree_v == b.degree_v &&
+                                        a.rational == b.rational && a.blocks == b.block_count;
                                });
   if (!same || !set.has(plan.precision(), plan.impl().options.representation))
-    return Status(StatusCode::invalid_argument, "the plan was made for another patch set: counts, degrees or blocks differ");
+    return Status(StatusCode::invalid_argument,
+                  "the plan was made for another patch set: counts, degrees or blocks differ");
   return {};
 }
 
@@ -87,6 +89,17 @@ Isa run_grid(const kernel::KernelTable& kernels, const kernel::GridJob<T>& job) 
   }
 }
 
+/// The highest derivatives that the wanted outputs are made of. Errors: invalid_argument if none is wanted.
+template <class T, class Wanted>
+Result<int> order_of_outputs(Wanted&& wanted) {
+  int order = -1;
+  for_each_output<T>([&](const auto& output) {
+    if (wanted(output)) order = std::max(order, output.order);
+  });
+  if (order < 0) return Status(StatusCode::invalid_argument, "no output is wanted");
+  return order;
+}
+
 /// What the report says of the ISA comes from the kernel that ran; the plan's own value stands in for an empty run.
 void report(const Execution& execution, Isa isa, bool streaming) {
   if (!execution.report) return;
@@ -98,63 +111,68 @@ void report(const Execution& execution, Isa isa, bool streaming) {
 
 template <class T>
 Status check_blocks(const GridPlan& plan, const GridBlocks<T>& out) {
-  const std::pair<const char*, std::span<T>> outputs[] = {
-      {"position", out.position}, {"du", out.du}, {"dv", out.dv}, {"normal", out.normal}};
-  bool any = false;
-  for (const auto& [what, memory] : outputs) {
-    if (memory.data() == nullptr) continue;
-    any = true;
-    if (memory.size() < plan.block_capacity())
-      return Status(StatusCode::buffer_too_small, std::string(what) + " needs " + std::to_string(plan.block_capacity()) +
-                                                      " values, not " + std::to_string(memory.size()));
-    if (reinterpret_cast<std::uintptr_t>(memory.data()) % cache_line != 0)
-      return Status(StatusCode::invalid_argument, std::string(what) + " must be aligned to 64 bytes");
-  }
-  if (!any) return Status(StatusCode::invalid_argument, "no output is wanted");
-  return {};
+  Status status;
+  for_each_output<T>([&](const auto& output) {
+    const auto memory = out.*output.memory;
+    if (memory.data() == nullptr || !status.ok()) return;
+    const std::size_t needed = plan.block_capacity() / 3 * static_cast<std::size_t>(output.width);
+    if (memory.size() < needed)
+      status = Status(StatusCode::buffer_too_small, std::string(output.name) + " needs " + std::to_string(needed) +
+                                                        " values, not " + std::to_string(memory.size()));
+    else if (reinterpret_cast<std::uintptr_t>(memory.data()) % cache_line != 0)
+      status = Status(StatusCode::invalid_argument, std::string(output.name) + " must be aligned to 64 bytes");
+  });
+  return status;
 }
 
 template <class T>
-void write_pole_normals(const PatchSet::Impl& set, const GridPlan::Impl& plan, std::size_t block, T* normals) {
-  for (std::size_t lane = 0; lane < PatchSet::lanes; ++lane) {
-    const std::uint32_t patch = set.lane_patches[block * PatchSet::lanes + lane];
-    for_each_pole_normal(plan, set.patches[patch], set.collapsed[patch], [&](std::size_t iu, std::size_t iv, const Vec3& normal) {
-      T* record = normals + (iu * plan.v.size() + iv) * 3 * PatchSet::lanes + lane;
-      record[0] = static_cast<T>(normal.x);
-      record[PatchSet::lanes] = static_cast<T>(normal.y);
-      record[2 * PatchSet::lanes] = static_cast<T>(normal.z);
-    });
-  }
+bool stores_stream(const GridPlan& plan, const GridBlocks<T>& out, Stores stores) {
+  if (stores != Stores::automatic) return stores == Stores::streaming;
+  std::size_t bytes = 0;
+  for_each_value_output<T>([&](const auto& output) {
+    if (!(out.*output.memory).empty())
+      bytes += plan.block_capacity() / 3 * static_cast<std::size_t>(output.width) * sizeof(T);
+  });
+  return bytes > streaming_threshold();
+}
+
+/// Points the job at a block's part of the caller's memory.
+template <class T>
+void place_outputs(const GridBlocks<T>& out, std::size_t samples, std::size_t block, kernel::GridJob<T>& job) {
+  const std::size_t first = block * samples * PatchSet::lanes;
+  for_each_value_output<T>([&](const auto& output) {
+    const auto memory = out.*output.memory;
+    job.*output.job = memory.empty() ? nullptr : memory.data() + first * static_cast<std::size_t>(output.width);
+  });
+  for_each_kind_output<T>([&](const auto& output) {
+    const auto memory = out.*output.memory;
+    job.*output.job = memory.empty() ? nullptr : reinterpret_cast<std::uint8_t*>(memory.data() + first);
+  });
 }
 
 template <class T>
-Status evaluate_blocks(const PatchSet& set, const GridPlan& plan, const GridBlocks<T>& out, const Execution& execution) {
+Status evaluate_blocks(const PatchSet& set, const GridPlan& plan, const GridBlocks<T>& out,
+                       const Execution& execution) {
   if (Status status = check_plan<T>(set.impl(), plan); !status.ok()) return status;
   if (Status status = check_blocks(plan, out); !status.ok()) return status;
+  const auto order = order_of_outputs<T>([&](const auto& output) { return (out.*output.memory).data() != nullptr; });
+  if (!order) return order.status();
   const PatchSet::Impl& patches = set.impl();
   const GridPlan::Impl& inner = plan.impl();
   const auto& kernels = kernel::kernels(inner.isa);
-  const std::size_t values = inner.samples() * 3 * PatchSet::lanes;
-  const int vectors = !out.position.empty() + !out.du.empty() + !out.dv.empty() + !out.normal.empty();
-  const bool streaming = execution.stores == Stores::streaming ||
-                         (execution.stores == Stores::automatic &&
-                          plan.block_capacity() * sizeof(T) * static_cast<std::size_t>(vectors) > streaming_threshold());
-  const bool derivatives = !out.du.empty() || !out.dv.empty() || !out.normal.empty();
+  const bool streaming = stores_stream(plan, out, execution.stores);
   std::atomic<Isa> isa{inner.isa};
-  const Status status = parallel_for(
-      inner.block_count, blocks_per_task(inner, derivatives), execution, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t block = begin; block < end; ++block) {
-          auto job = block_job<T>(patches, inner, block);
-          const auto place = [&](std::span<T> memory) { return memory.empty() ? nullptr : memory.data() + block * values; };
-          job.position = place(out.position);
-          job.du = place(out.du);
-          job.dv = place(out.dv);
-          job.normal = place(out.normal);
-          job.streaming = streaming;
-          isa.store(run_grid(kernels, job), std::memory_order_relaxed);
-          if (job.normal) write_pole_normals(patches, inner, block, job.normal);
-        }
-      });
+  const Status status = parallel_for(inner.block_count, blocks_per_task(inner, *order > 0), execution,
+                                     [&](std::size_t begin, std::size_t end) {
+                                       BlockNormals<T> normals(patches, inner);
+                                       for (std::size_t block = begin; block < end; ++block) {
+                                         auto job = block_job<T>(patches, inner, block);
+                                         normals.prepare(block, job);
+                                         place_outputs(out, inner.samples(), block, job);
+                                         job.streaming = streaming;
+                                         isa.store(run_grid(kernels, job), std::memory_order_relaxed);
+                                       }
+                                     });
   report(execution, isa, streaming);
   return status;
 }
@@ -163,51 +181,43 @@ Status evaluate_blocks(const PatchSet& set, const GridPlan& plan, const GridBloc
 
 template <class T>
 Status check_views(const GridPlan& plan, const GridViews<T>& out) {
-  const std::pair<const char*, const View3<T>*> outputs[] = {
-      {"position", &out.position}, {"du", &out.du}, {"dv", &out.dv}, {"normal", &out.normal}};
-  bool any = false;
-  for (const auto& [what, view] : outputs) {
-    if (view->empty()) continue;
-    any = true;
-    if (view->component[1] == nullptr || view->component[2] == nullptr || view->stride < 1)
-      return Status(StatusCode::invalid_argument, std::string(what) + ": a view needs three components and a stride of at least 1");
-    if (view->size < plan.capacity())
-      return Status(StatusCode::buffer_too_small, std::string(what) + " needs " + std::to_string(plan.capacity()) + " records, not " +
-                                                      std::to_string(view->size));
-  }
-  if (!any) return Status(StatusCode::invalid_argument, "no output is wanted");
-  return {};
+  Status status;
+  for_each_output<T>([&](const auto& output) {
+    const auto& view = out.*output.view;
+    if (view.empty() || !status.ok()) return;
+    const bool complete =
+        std::ranges::none_of(view.component, [](const auto* component) { return component == nullptr; });
+    if (!complete || view.stride < 1)
+      status = Status(StatusCode::invalid_argument,
+                      std::string(output.name) + ": a view needs all its components and a stride of at least 1");
+    else if (view.size < plan.capacity())
+      status =
+          Status(StatusCode::buffer_too_small, std::string(output.name) + " needs " + std::to_string(plan.capacity()) +
+                                                   " records, not " + std::to_string(view.size));
+  });
+  return status;
 }
 
 template <class T>
-void write_pole_normals(const PatchSet::Impl& set, const GridPlan::Impl& plan, std::size_t block, const View3<T>& normals) {
-  for (std::size_t lane = 0; lane < set.lane_counts[block]; ++lane) {
-    const std::size_t patch = set.lane_patches[block * PatchSet::lanes + lane];
-    for_each_pole_normal(plan, set.patches[patch], set.collapsed[patch], [&](std::size_t iu, std::size_t iv, const Vec3& normal) {
-      const std::size_t record = (patch * plan.u.size() + iu) * plan.v.size() + iv;
-      normals.at(record, 0) = static_cast<T>(normal.x);
-      normals.at(record, 1) = static_cast<T>(normal.y);
-      normals.at(record, 2) = static_cast<T>(normal.z);
-    });
-  }
-}
-
-template <class T>
-Status evaluate_views(const PatchSet::Impl& patches, const GridPlan& plan, const GridViews<T>& out, const Execution& execution) {
+Status evaluate_views(const PatchSet::Impl& patches, const GridPlan& plan, const GridViews<T>& out,
+                      const Execution& execution) {
   if (Status status = check_plan<T>(patches, plan); !status.ok()) return status;
   if (Status status = check_views(plan, out); !status.ok()) return status;
+  const auto order = order_of_outputs<T>([&](const auto& output) { return !(out.*output.view).empty(); });
+  if (!order) return order.status();
   const GridPlan::Impl& inner = plan.impl();
   const auto& kernels = kernel::kernels(inner.isa);
-  const bool derivatives = !out.du.empty() || !out.dv.empty() || !out.normal.empty();
   std::atomic<Isa> isa{inner.isa};
   const Status status = parallel_for(
-      inner.block_count, blocks_per_task(inner, derivatives), execution, [&](std::size_t begin, std::size_t end) {
+      inner.block_count, blocks_per_task(inner, *order > 0), execution, [&](std::size_t begin, std::size_t end) {
         StagedBlock<T> stage(kernels, out);
+        BlockNormals<T> normals(patches, inner);
         for (std::size_t block = begin; block < end; ++block) {
           const std::uint32_t* lane_patches = patches.lane_patches.data() + block * PatchSet::lanes;
-          isa.store(stage.run(block_job<T>(patches, inner, block), lane_patches, patches.lane_counts[block], inner.samples()),
+          auto job = block_job<T>(patches, inner, block);
+          normals.prepare(block, job);
+          isa.store(stage.run(job, lane_patches, patches.lane_counts[block], inner.samples()),
                     std::memory_order_relaxed);
-          if (!out.normal.empty()) write_pole_normals(patches, inner, block, out.normal);
         }
       });
   report(execution, isa, false);
@@ -229,7 +239,8 @@ Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<doubl
   return guarded([&] { return evaluate_views(set.impl(), plan, out, execution); });
 }
 
-Status evaluate(const PatchSet::Impl& set, const GridPlan& plan, const GridViews<float>& out, const Execution& execution) {
+Status evaluate(const PatchSet::Impl& set, const GridPlan& plan, const GridViews<float>& out,
+                const Execution& execution) {
   return guarded([&] { return evaluate_views(set, plan, out, execution); });
 }
 

@@ -10,7 +10,7 @@
 
 namespace tessera {
 
-/// `[k][order][i]` for parameter k: values, then derivatives, degree + 1 of each; one table a degree in use.
+/// `[k][order][i]` for parameter k: values, first and second derivatives, degree + 1 of each; one table a degree in use.
 template <class T>
 using WeightTables = std::array<AlignedVector<T>, max_degree + 1>;
 
@@ -38,6 +38,8 @@ class GridPlan::Impl {
   GridWeights<double> twice;
   /// Whether any parameter lies on the edges u = 0, u = 1, v = 0, v = 1: only there can a collapsed edge be met.
   EdgeMask edges;
+  /// Of each parameter: edge_start at 0, edge_end at 1 (see kernel_table.h).
+  std::vector<std::uint8_t> u_edges, v_edges;
 
   std::size_t samples() const { return u.size() * v.size(); }
   template <class T>

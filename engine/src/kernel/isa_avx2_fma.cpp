@@ -3,6 +3,7 @@
 #include <immintrin.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <type_traits>
 #include <xsimd/xsimd.hpp>
@@ -35,6 +36,14 @@ struct Lanes<float> {
   static Batch fma(Batch a, Batch b, Batch c) { return _mm256_fmadd_ps(a, b, c); }    // a b + c
   static Batch fms(Batch a, Batch b, Batch c) { return _mm256_fmsub_ps(a, b, c); }    // a b - c
   static Batch fnma(Batch a, Batch b, Batch c) { return _mm256_fnmadd_ps(a, b, c); }  // c - a b
+  static Batch inverse_root_guess(Batch a) {  // halves the exponent
+    return _mm256_castsi256_ps(_mm256_sub_epi32(_mm256_set1_epi32(0x5f3759df), _mm256_srli_epi32(_mm256_castps_si256(a), 1)));
+  }
+  static void store_bytes(std::uint8_t* p, Batch a) {  // small whole numbers
+    const __m256i whole = _mm256_cvttps_epi32(a);
+    const __m128i pairs = _mm_packs_epi32(_mm256_castsi256_si128(whole), _mm256_extracti128_si256(whole, 1));
+    _mm_storel_epi64(reinterpret_cast<__m128i*>(p), _mm_packus_epi16(pairs, pairs));
+  }
   static void store_first(float* p, Batch a, int count) {
     if (count == width) {
       _mm256_storeu_ps(p, a);
@@ -88,6 +97,14 @@ struct Lanes<double> {
   static Batch fma(Batch a, Batch b, Batch c) { return _mm256_fmadd_pd(a, b, c); }
   static Batch fms(Batch a, Batch b, Batch c) { return _mm256_fmsub_pd(a, b, c); }
   static Batch fnma(Batch a, Batch b, Batch c) { return _mm256_fnmadd_pd(a, b, c); }
+  static Batch inverse_root_guess(Batch a) {
+    return _mm256_castsi256_pd(
+        _mm256_sub_epi64(_mm256_set1_epi64x(0x5fe6eb50c7b537a9), _mm256_srli_epi64(_mm256_castpd_si256(a), 1)));
+  }
+  static void store_bytes(std::uint8_t* p, Batch a) {
+    const __m128i whole = _mm256_cvttpd_epi32(a), pairs = _mm_packs_epi32(whole, whole);
+    _mm_storeu_si32(p, _mm_packus_epi16(pairs, pairs));
+  }
   static void store_first(double* p, Batch a, int count) {
     if (count == width) {
       _mm256_storeu_pd(p, a);

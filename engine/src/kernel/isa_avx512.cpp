@@ -3,6 +3,7 @@
 #include <immintrin.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <xsimd/xsimd.hpp>
 
@@ -47,6 +48,12 @@ struct Lanes<float> {
   static Batch fma(Batch a, Batch b, Batch c) { return _mm512_fmadd_ps(a, b, c); }    // a b + c
   static Batch fms(Batch a, Batch b, Batch c) { return _mm512_fmsub_ps(a, b, c); }    // a b - c
   static Batch fnma(Batch a, Batch b, Batch c) { return _mm512_fnmadd_ps(a, b, c); }  // c - a b
+  static Batch inverse_root_guess(Batch a) {  // halves the exponent
+    return _mm512_castsi512_ps(_mm512_sub_epi32(_mm512_set1_epi32(0x5f3759df), _mm512_srli_epi32(_mm512_castps_si512(a), 1)));
+  }
+  static void store_bytes(std::uint8_t* p, Batch a) {  // small whole numbers
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(p), _mm512_cvtepi32_epi8(_mm512_cvttps_epi32(a)));
+  }
   static void store_first(float* p, Batch a, int count) {
     if (count == width) {
       _mm512_storeu_ps(p, a);
@@ -99,6 +106,13 @@ struct Lanes<double> {
   static Batch fma(Batch a, Batch b, Batch c) { return _mm512_fmadd_pd(a, b, c); }
   static Batch fms(Batch a, Batch b, Batch c) { return _mm512_fmsub_pd(a, b, c); }
   static Batch fnma(Batch a, Batch b, Batch c) { return _mm512_fnmadd_pd(a, b, c); }
+  static Batch inverse_root_guess(Batch a) {
+    return _mm512_castsi512_pd(
+        _mm512_sub_epi64(_mm512_set1_epi64(0x5fe6eb50c7b537a9), _mm512_srli_epi64(_mm512_castpd_si512(a), 1)));
+  }
+  static void store_bytes(std::uint8_t* p, Batch a) {
+    _mm_storel_epi64(reinterpret_cast<__m128i*>(p), _mm256_cvtepi32_epi8(_mm512_cvttpd_epi32(a)));
+  }
   static void store_first(double* p, Batch a, int count) {
     if (count == width) {
       _mm512_storeu_pd(p, a);

@@ -4,6 +4,7 @@
 #include <emmintrin.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <xsimd/xsimd.hpp>
 
@@ -30,6 +31,13 @@ struct Lanes<float> {
   static Batch fma(Batch a, Batch b, Batch c) { return a * b + c; }
   static Batch fms(Batch a, Batch b, Batch c) { return a * b - c; }
   static Batch fnma(Batch a, Batch b, Batch c) { return c - a * b; }
+  static Batch inverse_root_guess(Batch a) {  // halves the exponent
+    return _mm_castsi128_ps(_mm_sub_epi32(_mm_set1_epi32(0x5f3759df), _mm_srli_epi32(_mm_castps_si128(a), 1)));
+  }
+  static void store_bytes(std::uint8_t* p, Batch a) {  // small whole numbers
+    const __m128i whole = _mm_cvttps_epi32(a), pairs = _mm_packs_epi32(whole, whole);
+    _mm_storeu_si32(p, _mm_packus_epi16(pairs, pairs));
+  }
   static void store_first(float* p, Batch a, int count) {
     if (count == width) {
       _mm_storeu_ps(p, a);
@@ -70,6 +78,13 @@ struct Lanes<double> {
   static Batch fma(Batch a, Batch b, Batch c) { return a * b + c; }
   static Batch fms(Batch a, Batch b, Batch c) { return a * b - c; }
   static Batch fnma(Batch a, Batch b, Batch c) { return c - a * b; }
+  static Batch inverse_root_guess(Batch a) {
+    return _mm_castsi128_pd(_mm_sub_epi64(_mm_set1_epi64x(0x5fe6eb50c7b537a9), _mm_srli_epi64(_mm_castpd_si128(a), 1)));
+  }
+  static void store_bytes(std::uint8_t* p, Batch a) {
+    const __m128i whole = _mm_cvttpd_epi32(a), pairs = _mm_packs_epi32(whole, whole);
+    _mm_storeu_si16(p, _mm_packus_epi16(pairs, pairs));
+  }
   static void store_first(double* p, Batch a, int count) {
     if (count == width) {
       _mm_storeu_pd(p, a);

@@ -2,6 +2,9 @@
 
 inline constexpr int max_order = 16;  // coefficients of the highest degree
 
+#include "kernel/sample_kernel.inl.h"
+#include "kernel/normal_kernel.inl.h"
+#include "kernel/curvature_kernel.inl.h"
 #include "kernel/grid_kernel.inl.h"
 #include "kernel/border_kernel.inl.h"
 #include "kernel/blend_kernel.inl.h"

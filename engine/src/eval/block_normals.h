@@ -1,0 +1,74 @@
+#pragma once
+// What a block's kernel needs to tell regular normals from limits: collapsed edges by lane, and the exact normal of a
+// point.
+
+#include <array>
+
+#include "base/aligned.h"
+#include "block/patch_set_impl.h"
+#include "eval/grid_plan_impl.h"
+
+namespace tessera {
+
+/// Serves one block after the other. Lives on a task's stack; allocates nothing.
+template <class T>
+class BlockNormals {
+ public:
+  BlockNormals(const PatchSet::Impl& set, const GridPlan::Impl& plan) : set_(set), plan_(plan) {}
+
+  /// Completes the job of a block. It must not outlive this object, nor the next call.
+  void prepare(std::size_t block, kernel::GridJob<T>& job) {
+    lane_patches_ = set_.lane_patches.data() + block * PatchSet::lanes;
+    job.doubt = set_.coefficients<T>().doubt_of(plan_.options.representation).data() + block * 2 * PatchSet::lanes;
+    job.noise = job.doubt + PatchSet::lanes;
+    job.u_edges = plan_.u_edges.data();
+    job.v_edges = plan_.v_edges.data();
+    job.collapsed = find_collapsed() ? collapsed_.data() : nullptr;
+    job.exact_normal = exact_normal;
+    job.exact_context = this;
+    const double smallest_sine = sizeof(T) == 4 ? 1e-6 : 0, smallest_tolerance = sizeof(T) == 4 ? 1e-4 : 0;
+    job.smallest_sine = static_cast<T>(std::max(plan_.options.geometry.smallest_sine, smallest_sine));
+    job.umbilic_tolerance = static_cast<T>(std::max(plan_.options.geometry.umbilic_tolerance, smallest_tolerance));
+  }
+
+ private:
+  static constexpr std::size_t lanes = PatchSet::lanes;
+
+  /// Fills the edges' lanes. Whether any patch of the block has a collapsed edge that the grid meets.
+  bool find_collapsed() {
+    EdgeMask any;
+    for (std::size_t lane = 0; lane < lanes; ++lane) any.bits |= set_.collapsed[lane_patches_[lane]].bits;
+    if ((any.bits & plan_.edges.bits) == 0) return false;
+    constexpr std::array edges{Edge::u0, Edge::u1, Edge::v0, Edge::v1};
+    for (std::size_t edge = 0; edge < edges.size(); ++edge)
+      for (std::size_t lane = 0; lane < lanes; ++lane)
+        collapsed_[edge * lanes + lane] = set_.collapsed[lane_patches_[lane]].has(edges[edge]) ? T(1) : T(0);
+    return true;
+  }
+
+  /// See kernel::ExactNormal. Unused lanes repeat a patch and ask for the same point again.
+  static int exact_normal(void* context, int iu, int iv, int lane, T* normal) {
+    auto& self = *static_cast<BlockNormals*>(context);
+    const std::uint32_t patch = self.lane_patches_[lane];
+    if (patch != self.patch_ || iu != self.iu_ || iv != self.iv_)
+      self.last_ = unit_normal(self.set_.patches[patch], self.plan_.u[static_cast<std::size_t>(iu)],
+                               self.plan_.v[static_cast<std::size_t>(iv)]);
+    self.patch_ = patch;
+    self.iu_ = iu;
+    self.iv_ = iv;
+    normal[0] = static_cast<T>(self.last_.direction.x);
+    normal[1] = static_cast<T>(self.last_.direction.y);
+    normal[2] = static_cast<T>(self.last_.direction.z);
+    return static_cast<int>(self.last_.kind);
+  }
+
+  const PatchSet::Impl& set_;
+  const GridPlan::Impl& plan_;
+  const std::uint32_t* lane_patches_ = nullptr;
+  std::uint32_t patch_ = 0;  ///< of the last point asked for
+  int iu_ = -1, iv_ = -1;
+  UnitNormal last_;
+  alignas(cache_line) std::array<T, 4 * lanes> collapsed_{};
+};
+
+}  // namespace tessera

@@ -1,0 +1,252 @@
+// Unit normals of a vector of patches. Where r_u x r_v is safely above what rounding does to the tangents it is the
+// normal. The other lanes look closer: on a collapsed edge the limit comes from r_uv, elsewhere from tangents of their
+// own scale, and what is still within rounding errors goes to the caller's exact arithmetic. Included by isa_*.cpp as
+// sample_kernel.inl.h is.
+
+/// A unit normal, how it was found, and what curvatures need of it.
+template <class L>
+struct Normal {
+  typename L::Batch direction[3];
+  typename L::Batch squared, reciprocal;  ///< |r_u x r_v|^2 and 1 / |r_u x r_v|, unless they are out of range
+  typename L::Batch kind;                 ///< of NormalKind
+  typename L::Batch uncertain;            ///< 1 where the tangents' own errors left it open, whatever was found then
+};
+constexpr int regular_normal = 0, limit_normal = 1, undefined_normal = 2;
+
+/// Squared lengths of r_u x r_v within these lose nothing to overflow and underflow.
+template <class T>
+struct SafeRange {
+  static constexpr T lowest = static_cast<T>(sizeof(T) == 4 ? 0x1p-80 : 0x1p-600);
+  static constexpr T highest = static_cast<T>(sizeof(T) == 4 ? 0x1p100 : 0x1p600);
+};
+
+/// Tangents, and the largest error of their components.
+template <class L>
+struct Tangents {
+  typename L::Batch du[3], dv[3], noise;
+};
+
+/// Which sample of which lanes is at work.
+struct Place {
+  int iu, iv, lane;
+};
+
+template <class L>
+inline typename L::Batch dot(const typename L::Batch (&a)[3], const typename L::Batch (&b)[3]) {
+  return L::fma(a[2], b[2], L::fma(a[1], b[1], a[0] * b[0]));
+}
+
+/// n = a x b, and its squared length.
+template <class L>
+inline typename L::Batch cross(const typename L::Batch (&a)[3], const typename L::Batch (&b)[3],
+                               typename L::Batch (&n)[3]) {
+  n[0] = L::fms(a[1], b[2], a[2] * b[1]);
+  n[1] = L::fms(a[2], b[0], a[0] * b[2]);
+  n[2] = L::fms(a[0], b[1], a[1] * b[0]);
+  return L::fma(n[2], n[2], L::fma(n[1], n[1], n[0] * n[0]));
+}
+
+template <class L>
+inline typename L::Batch largest_component(const typename L::Batch (&a)[3]) {
+  return xsimd::max(xsimd::max(xsimd::abs(a[0]), xsimd::abs(a[1])), xsimd::abs(a[2]));
+}
+
+/// 1 / sqrt(x) within 3 units in the last place for x in SafeRange, from the exponent's half (3.5% off): one or two
+/// steps of Halley, y (1 + e/2 + 3 e^2/8) with e = 1 - x y^2, and one of Newton. Root and division would take longer
+/// than the rest of a normal, and these multiply-adds as well give the same bits on every instruction set that fuses
+/// them.
+template <class L>
+[[gnu::always_inline]] inline typename L::Batch inverse_root(const typename L::Batch& x) {
+  using T = typename L::Scalar;
+  const auto one = L::broadcast(1), half = L::broadcast(static_cast<T>(0.5)),
+             three_eighths = L::broadcast(static_cast<T>(0.375));
+  auto y = L::inverse_root_guess(x);
+  for (int step = 0; step < (sizeof(T) == 4 ? 1 : 2); ++step) {
+    const auto e = L::fnma(x * y, y, one);
+    y = L::fma(y * e, L::fma(e, three_eighths, half), y);
+  }
+  return L::fma(half * y, L::fnma(x * y, y, one), y);
+}
+
+/// a x b / |a x b|, each vector divided by its largest component first; 1 in `certain` where that exceeds what errors
+/// of `noise_a` and `noise_b` in the components of a and b can make of it: 3 (noise_a / max|a| + noise_b / max|b|).
+template <class L>
+inline typename L::Batch certain_direction(const typename L::Batch (&a)[3], const typename L::Batch (&b)[3],
+                                           const typename L::Batch& noise_a, const typename L::Batch& noise_b,
+                                           typename L::Batch (&n)[3]) {
+  using Limits = std::numeric_limits<typename L::Scalar>;
+  const auto zero = L::broadcast(0), one = L::broadcast(1), three = L::broadcast(3);
+  const auto largest_a = largest_component<L>(a), largest_b = largest_component<L>(b);
+  const auto shorter = xsimd::min(largest_a, largest_b), longer = xsimd::max(largest_a, largest_b);
+  const auto scale_a = one / largest_a, scale_b = one / largest_b;
+  typename L::Batch unit_a[3], unit_b[3];
+  for (int c = 0; c < 3; ++c) {
+    unit_a[c] = a[c] * scale_a;
+    unit_b[c] = b[c] * scale_b;
+  }
+  const auto squared = cross<L>(unit_a, unit_b, n);
+  const auto error = three * (noise_a * scale_a + noise_b * scale_b);
+  const auto certain =
+      (shorter >= L::broadcast(Limits::min())) & (longer <= L::broadcast(Limits::max())) & (squared > error * error);
+  const auto reciprocal = inverse_root<L>(squared);
+  for (int c = 0; c < 3; ++c) n[c] = n[c] * reciprocal;
+  return xsimd::select(certain, one, zero);
+}
+
+/// 1 in the lanes whose patch is one point along the edge that a parameter lies on.
+template <class L>
+inline typename L::Batch on_collapsed(const GridJob<typename L::Scalar>& job, int first_edge, std::uint8_t edge,
+                                      int lane) {
+  if (edge == edge_inside) return L::broadcast(0);
+  return L::load(job.collapsed + (first_edge + edge - edge_start) * block_lanes + lane);
+}
+
+/// r_uv of a sample of first order, made anew from the block: so few points ask for it that the others don't pay.
+template <class L>
+inline void polynomial_mixed(const GridJob<typename L::Scalar>& job, const Place& place, typename L::Batch (&duv)[3]) {
+  const int count_u = job.degree_u + 1, count_v = job.degree_v + 1;
+  typename L::Batch curve[3][max_order];
+  row_curves<L, 0>(job.net + place.lane, job.u_weights + (std::ptrdiff_t{place.iu} * 3 + 1) * count_u, count_u, count_v,
+                   curve);
+  combine<L>(job.v_weights + (std::ptrdiff_t{place.iv} * 3 + 1) * count_v, count_v, curve, duv);
+}
+template <class L>
+inline void rational_mixed(const GridJob<typename L::Scalar>& job, const Place& place, typename L::Batch (&duv)[3]) {
+  const int count_u = job.degree_u + 1, count_v = job.degree_v + 1;
+  const auto* u_weights = job.u_weights + std::ptrdiff_t{place.iu} * 3 * count_u;
+  const auto* v_weights = job.v_weights + std::ptrdiff_t{place.iv} * 3 * count_v;
+  RowCurves<L, 1, 4, max_order> curves;
+  for (int order = 0; order <= 1; ++order)
+    row_curves<L, 0>(job.net + place.lane, u_weights + order * count_u, count_u, count_v, curves.by_u[order]);
+  Sample<L> sample;
+  evaluate_sample<L, 1>(curves, v_weights, count_v, sample);
+  typename L::Batch p_u[4], p_v[4], p_uv[4];
+  combine<L>(v_weights, count_v, curves.by_u[1], p_u);
+  combine<L>(v_weights + count_v, count_v, curves.by_u[0], p_v);
+  combine<L>(v_weights + count_v, count_v, curves.by_u[1], p_uv);
+  divide_mixed<L>(p_uv, p_u[3], p_v[3], sample, duv);
+}
+
+/// The limit normals of lanes on a collapsed edge, by one derivative more: where r_u vanishes along v = 0, r_u(u, k) =
+/// k r_uv + ..., so that r_uv x r_v decides, and -r_uv x r_v at v = 1; likewise r_u x r_uv along u = 0. A corner of two
+/// collapsed edges has none. The error of r_uv is taken as 4 max(m, n) times that of the tangents.
+template <class L>
+inline void limit_normals(const GridJob<typename L::Scalar>& job, const Tangents<L>& tangents, const Place& place,
+                          typename L::Batch& doubtful, Normal<L>& normal) {
+  const auto zero = L::broadcast(0), one = L::broadcast(1);
+  const std::uint8_t u_edge = job.u_edges[place.iu], v_edge = job.v_edges[place.iv];
+  const auto on_u = on_collapsed<L>(job, 0, u_edge, place.lane), on_v = on_collapsed<L>(job, 2, v_edge, place.lane);
+  if (!xsimd::any((on_u + on_v) > zero)) return;
+  typename L::Batch duv[3], a[3], b[3], n[3];
+  job.rational ? rational_mixed<L>(job, place, duv) : polynomial_mixed<L>(job, place, duv);
+  const auto along_v = on_v > zero;
+  for (int c = 0; c < 3; ++c) {
+    a[c] = xsimd::select(along_v, duv[c], tangents.du[c]);
+    b[c] = xsimd::select(along_v, tangents.dv[c], duv[c]);
+  }
+  const int degree = job.degree_u > job.degree_v ? job.degree_u : job.degree_v;
+  const auto noise = tangents.noise, noise_uv = noise * L::broadcast(static_cast<typename L::Scalar>(4 * degree));
+  const auto certain =
+      certain_direction<L>(a, b, xsimd::select(along_v, noise_uv, noise), xsimd::select(along_v, noise, noise_uv), n);
+  const auto inwards = [&](std::uint8_t edge) { return edge == edge_end ? zero - one : one; };
+  const auto sign = xsimd::select(along_v, inwards(v_edge), inwards(u_edge));
+  const auto found = (doubtful > zero) & ((on_u + on_v) == one) & (certain > zero);
+  for (int c = 0; c < 3; ++c) normal.direction[c] = xsimd::select(found, sign * n[c], normal.direction[c]);
+  normal.kind = xsimd::select(found, L::broadcast(limit_normal), normal.kind);
+  doubtful = xsimd::select(found | ((on_u + on_v) > one), zero, doubtful);
+}
+
+/// Doubtful lanes whose tangents, at their own scale, are safely independent.
+template <class L>
+inline void certain_normals(const Tangents<L>& tangents, typename L::Batch& doubtful, Normal<L>& normal) {
+  const auto zero = L::broadcast(0);
+  typename L::Batch n[3];
+  const auto certain = certain_direction<L>(tangents.du, tangents.dv, tangents.noise, tangents.noise, n);
+  const auto found = (doubtful > zero) & (certain > zero);
+  for (int c = 0; c < 3; ++c) normal.direction[c] = xsimd::select(found, n[c], normal.direction[c]);
+  normal.kind = xsimd::select(found, zero, normal.kind);
+  doubtful = xsimd::select(found, zero, doubtful);
+}
+
+/// Doubtful lanes one by one, in the caller's arithmetic.
+template <class L>
+inline void exact_normals(const GridJob<typename L::Scalar>& job, const Place& place, const typename L::Batch& doubtful,
+                          Normal<L>& normal) {
+  using T = typename L::Scalar;
+  alignas(64) T asked[L::width], kind[L::width], direction[3][L::width];
+  L::store(asked, doubtful);
+  L::store(kind, normal.kind);
+  for (int c = 0; c < 3; ++c) L::store(direction[c], normal.direction[c]);
+  for (int lane = 0; lane < L::width; ++lane) {
+    if (!(asked[lane] > 0)) continue;
+    T exact[3];
+    kind[lane] = static_cast<T>(job.exact_normal(job.exact_context, place.iu, place.iv, place.lane + lane, exact));
+    for (int c = 0; c < 3; ++c) direction[c][lane] = exact[c];
+  }
+  normal.kind = L::load(kind);
+  for (int c = 0; c < 3; ++c) normal.direction[c] = L::load(direction[c]);
+}
+
+/// What a call for degenerate lanes sees and changes: through memory, so that the main loop's vectors stay in
+/// registers.
+template <class L>
+struct NormalExchange {
+  using Vector = typename L::Scalar[L::width];
+  alignas(64) Vector du[3];
+  alignas(64) Vector dv[3];
+  alignas(64) Vector reciprocal_weight;  ///< of rational patches
+  alignas(64) Vector direction[3];       ///< in and out
+  alignas(64) Vector kind;               ///< out
+  alignas(64) Vector uncertain;          ///< out
+};
+
+/// Lanes whose |r_u x r_v|^2 is out of range or in doubt; `safe` is 1 in the others, which keep what they have, so that
+/// a lane's bits don't depend on its neighbours.
+template <class L>
+__attribute__((noinline)) void degenerate_normals(const GridJob<typename L::Scalar>& job, const Place& place,
+                                                  const typename L::Batch& safe, NormalExchange<L>& exchange) {
+  const auto zero = L::broadcast(0), one = L::broadcast(1);
+  const auto noise = L::load(job.noise + place.lane);
+  Tangents<L> tangents;
+  tangents.noise = job.rational ? noise * L::load(exchange.reciprocal_weight) : noise;
+  Normal<L> normal;
+  for (int c = 0; c < 3; ++c) {
+    tangents.du[c] = L::load(exchange.du[c]);
+    tangents.dv[c] = L::load(exchange.dv[c]);
+    normal.direction[c] = xsimd::select(safe > zero, L::load(exchange.direction[c]), zero);
+  }
+  normal.kind = xsimd::select(safe > zero, zero, L::broadcast(undefined_normal));
+  auto doubtful = xsimd::select((safe > zero) | (noise < zero), zero, one);
+  if (job.collapsed) limit_normals<L>(job, tangents, place, doubtful, normal);
+  if (xsimd::any(doubtful > zero)) certain_normals<L>(tangents, doubtful, normal);
+  L::store(exchange.uncertain, doubtful);
+  if (xsimd::any(doubtful > zero)) exact_normals<L>(job, place, doubtful, normal);
+  for (int c = 0; c < 3; ++c) L::store(exchange.direction[c], normal.direction[c]);
+  L::store(exchange.kind, normal.kind);
+}
+
+/// The unit normal; zero where there is none.
+template <class L, bool Rational>
+[[gnu::always_inline]] inline void unit_normal(const GridJob<typename L::Scalar>& job, const Sample<L>& sample,
+                                               const Place& place, Normal<L>& normal) {
+  normal.squared = cross<L>(sample.du, sample.dv, normal.direction);
+  normal.reciprocal = inverse_root<L>(normal.squared);
+  normal.kind = L::broadcast(regular_normal);
+  normal.uncertain = L::broadcast(0);
+  for (int c = 0; c < 3; ++c) normal.direction[c] = normal.direction[c] * normal.reciprocal;
+  const auto safe = (normal.squared > L::load(job.doubt + place.lane)) &
+                    (normal.squared <= L::broadcast(SafeRange<typename L::Scalar>::highest));
+  if (!xsimd::all(safe)) {
+    NormalExchange<L> exchange;
+    for (int c = 0; c < 3; ++c) {
+      L::store(exchange.du[c], sample.du[c]);
+      L::store(exchange.dv[c], sample.dv[c]);
+      L::store(exchange.direction[c], normal.direction[c]);
+    }
+    if constexpr (Rational) L::store(exchange.reciprocal_weight, sample.reciprocal_weight);
+    degenerate_normals<L>(job, place, xsimd::select(safe, L::broadcast(1), L::broadcast(0)), exchange);
+    for (int c = 0; c < 3; ++c) normal.direction[c] = L::load(exchange.direction[c]);
+    normal.kind = L::load(exchange.kind);
+    normal.uncertain = L::load(exchange.uncertain);
+  }
+}

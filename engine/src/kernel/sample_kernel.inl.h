@@ -1,0 +1,131 @@
+// One sample of a block from the row curves of its u: position and derivatives up to an order, polynomial or rational.
+// Included by isa_*.cpp inside the ISA's namespace, after Lanes<T> and this_isa.
+
+/// r(u,v) and its derivatives in Cartesian coordinates, three components each; what lies above the order is left as it
+/// is.
+template <class L>
+struct Sample {
+  typename L::Batch position[3], du[3], dv[3], duu[3], duv[3], dvv[3];
+  typename L::Batch reciprocal_weight;  ///< of rational patches
+};
+
+/// The row curves of one u for one vector of patches: their values, and their first and second derivatives by u.
+template <class L, int Order, int Components, int Capacity>
+struct RowCurves {
+  typename L::Batch by_u[Order + 1][Components][Capacity];
+};
+
+/// sum_j weights[j] * curve[component][j], in ascending order: one multiplication, then fused multiply-adds.
+template <class L, int Components, int Capacity>
+inline void combine(const typename L::Scalar* weights, int count,
+                    const typename L::Batch (&curve)[Components][Capacity], typename L::Batch (&sum)[Components]) {
+  const auto first = L::broadcast(weights[0]);
+  for (int c = 0; c < Components; ++c) sum[c] = first * curve[c][0];
+#pragma GCC unroll 4
+  for (int j = 1; j < count; ++j) {
+    const auto weight = L::broadcast(weights[j]);
+    for (int c = 0; c < Components; ++c) sum[c] = L::fma(weight, curve[c][j], sum[c]);
+  }
+}
+
+/// `Count` neighbouring row curves from index j: independent sums, so that the multiply-adds overlap.
+template <class L, int Count, int Components, int Capacity>
+inline void row_curves_from(int j, const typename L::Scalar* net, const typename L::Scalar* weights, int count_u,
+                            std::ptrdiff_t row, typename L::Batch (&curve)[Components][Capacity]) {
+  const auto* coefficient = net + j * Components * block_lanes;
+  typename L::Batch sum[Count][Components];
+  const auto first = L::broadcast(weights[0]);
+  for (int k = 0; k < Count; ++k)
+    for (int c = 0; c < Components; ++c) sum[k][c] = first * L::load(coefficient + (k * Components + c) * block_lanes);
+  for (int i = 1; i < count_u; ++i) {
+    const auto weight = L::broadcast(weights[i]);
+    coefficient += row;
+    for (int k = 0; k < Count; ++k)
+      for (int c = 0; c < Components; ++c)
+        sum[k][c] = L::fma(weight, L::load(coefficient + (k * Components + c) * block_lanes), sum[k][c]);
+  }
+  for (int k = 0; k < Count; ++k)
+    for (int c = 0; c < Components; ++c) curve[c][j + k] = sum[k][c];
+}
+
+/// The row curves of one u: curve[component][j] = sum_i weights[i] net[i][j][component], i ascending.
+template <class L, int DegreeV, int Components, int Capacity>
+inline void row_curves(const typename L::Scalar* net, const typename L::Scalar* weights, int count_u, int count_v,
+                       typename L::Batch (&curve)[Components][Capacity]) {
+  const std::ptrdiff_t row = std::ptrdiff_t{count_v} * Components * block_lanes;
+  if constexpr (DegreeV > 0) {
+    row_curves_from<L, DegreeV + 1>(0, net, weights, count_u, row, curve);
+  } else {
+    int j = 0;
+    for (; j + 4 <= count_v; j += 4) row_curves_from<L, 4>(j, net, weights, count_u, row, curve);
+    for (; j < count_v; ++j) row_curves_from<L, 1>(j, net, weights, count_u, row, curve);
+  }
+}
+
+// From homogeneous A = (P, w) to Cartesian (Piegl and Tiller, The NURBS Book, eq. 4.20), q = 1 / w:
+// r = P q,  r_u = (P_u - w_u r) q,  r_uu = (P_uu - 2 w_u r_u - w_uu r) q,  r_uv = (P_uv - w_u r_v - w_v r_u - w_uv r)
+// q.
+
+template <class L>
+inline void divide_first(const typename L::Batch (&point_u)[4], const typename L::Batch& q,
+                         const typename L::Batch (&r)[3], typename L::Batch (&r_u)[3]) {
+  for (int c = 0; c < 3; ++c) r_u[c] = L::fnma(point_u[3], r[c], point_u[c]) * q;
+}
+
+template <class L>
+inline void divide_mixed(const typename L::Batch (&point_uv)[4], const typename L::Batch& w_u,
+                         const typename L::Batch& w_v, const Sample<L>& at, typename L::Batch (&r_uv)[3]) {
+  for (int c = 0; c < 3; ++c) {
+    const auto less_first = L::fnma(w_v, at.du[c], L::fnma(w_u, at.dv[c], point_uv[c]));
+    r_uv[c] = L::fnma(point_uv[3], at.position[c], less_first) * at.reciprocal_weight;
+  }
+}
+
+template <class L>
+inline void divide_second(const typename L::Batch (&point_uu)[4], const typename L::Batch& w_u,
+                          const typename L::Batch (&r_u)[3], const Sample<L>& at, typename L::Batch (&r_uu)[3]) {
+  const auto twice = w_u + w_u;
+  for (int c = 0; c < 3; ++c)
+    r_uu[c] = L::fnma(point_uu[3], at.position[c], L::fnma(twice, r_u[c], point_uu[c])) * at.reciprocal_weight;
+}
+
+template <class L>
+inline void copy(const typename L::Batch (&from)[3], typename L::Batch (&to)[3]) {
+  for (int c = 0; c < 3; ++c) to[c] = from[c];
+}
+
+/// One sample of order `Order` from the row curves; `weights` are those of v, `[order][j]`.
+template <class L, int Order, int Components, int Capacity>
+[[gnu::always_inline]] inline void evaluate_sample(const RowCurves<L, Order, Components, Capacity>& curves,
+                                                   const typename L::Scalar* weights, int count, Sample<L>& sample) {
+  typename L::Batch p[Components], p_u[Components], p_v[Components], p_uu[Components], p_uv[Components],
+      p_vv[Components];
+  combine<L>(weights, count, curves.by_u[0], p);
+  if constexpr (Order >= 1) {
+    combine<L>(weights, count, curves.by_u[1], p_u);
+    combine<L>(weights + count, count, curves.by_u[0], p_v);
+  }
+  if constexpr (Order >= 2) {
+    combine<L>(weights, count, curves.by_u[2], p_uu);
+    combine<L>(weights + count, count, curves.by_u[1], p_uv);
+    combine<L>(weights + 2 * count, count, curves.by_u[0], p_vv);
+  }
+  if constexpr (Components == 3) {
+    copy<L>(p, sample.position);
+    if constexpr (Order >= 1) copy<L>(p_u, sample.du), copy<L>(p_v, sample.dv);
+    if constexpr (Order >= 2) copy<L>(p_uu, sample.duu), copy<L>(p_uv, sample.duv), copy<L>(p_vv, sample.dvv);
+  } else {
+    const auto q = L::broadcast(1) / p[3];
+    sample.reciprocal_weight = q;
+    for (int c = 0; c < 3; ++c) sample.position[c] = p[c] * q;
+    if constexpr (Order >= 1) {
+      divide_first<L>(p_u, q, sample.position, sample.du);
+      divide_first<L>(p_v, q, sample.position, sample.dv);
+    }
+    if constexpr (Order >= 2) {
+      divide_second<L>(p_uu, p_u[3], sample.du, sample, sample.duu);
+      divide_mixed<L>(p_uv, p_u[3], p_v[3], sample, sample.duv);
+      divide_second<L>(p_vv, p_v[3], sample.dv, sample, sample.dvv);
+    }
+  }
+}
