@@ -160,7 +160,7 @@ TEST_F(CommandLine, BadModelsEndWithOne) {
         << result.errors;
   }
   folder_.file("scene.k3d", "<k3dml/>");
-  expect_failure({"info", "scene.k3d"}, 1, "unsupported format \".k3d\": surfaces are read as .bpt, .json");
+  expect_failure({"info", "scene.k3d"}, 1, "unsupported format \".k3d\": surfaces are read as .bpt, .bv, .g2, .json");
 }
 
 TEST_F(CommandLine, OutputsThatCannotBeWrittenEndWithOne) {
