@@ -160,7 +160,8 @@ TEST_F(CommandLine, BadModelsEndWithOne) {
         << result.errors;
   }
   folder_.file("scene.k3d", "<k3dml/>");
-  expect_failure({"info", "scene.k3d"}, 1, "unsupported format \".k3d\": surfaces are read as .bpt, .json, .obj");
+  expect_failure({"info", "scene.k3d"}, 1,
+                 "unsupported format \".k3d\": surfaces are read as .bpt, .bv, .g2, .json, .obj, .rib");
 }
 
 TEST_F(CommandLine, OutputsThatCannotBeWrittenEndWithOne) {

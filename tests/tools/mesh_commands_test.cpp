@@ -30,6 +30,28 @@ TEST_F(MeshTools, InfoSaysWhatTheTeapotIs) {
   EXPECT_NE(text.find("32 of 3 x 3"), std::string::npos) << text;
 }
 
+TEST_F(MeshTools, WhatIsNotReadIsSaidOnceByEveryCommand) {
+  folder_.file("m.bv", "3 1\n0 0 0\n1 0 0\n0 1 0\n4 1\n0 0 0\n0 1 0\n1 0 0\n1 1 0\n1\n0 0\n");
+  const std::string warnings =
+      "tessera: warning: m.bv:1: 1 triangular patch is not read\n"
+      "tessera: warning: m.bv:10: 1 polyhedron is not read\n";
+  for (const std::vector<std::string>& command :
+       {Names{"info", "m.bv"}, Names{"info", "m.bv", "--json"}, Names{"eval", "m.bv", "--grid", "2x2"},
+        Names{"tessellate", "m.bv", "-o", "a.ply", "--grid", "2x2", "--json"},
+        Names{"raycast", "m.bv", "-o", "a.png", "--size", "16x16"}}) {
+    const ToolRun result = run(command);
+    EXPECT_EQ(result.status, 0) << command[0];
+    EXPECT_EQ(result.errors, warnings) << command[0];
+    if (command.back() != "--json") continue;
+    const json said = json::parse(result.output)["warnings"];
+    EXPECT_EQ(said, json({"m.bv:1: 1 triangular patch is not read", "m.bv:10: 1 polyhedron is not read"}));
+  }
+}
+
+TEST_F(MeshTools, AFileReadWholeHasNoWarnings) {
+  EXPECT_EQ(json::parse(output_of({"info", teapot, "--json"}))["warnings"], json::array());
+}
+
 TEST_F(MeshTools, InfoCountsDegrees) {
   folder_.file("m.bpt", "2\n1 1\n0 0 0 0 1 0 1 0 0 1 1 0\n1 2\n0 0 0 0 1 0 0 2 0 1 0 0 1 1 0 1 2 0\n");
   const json facts = json::parse(output_of({"info", "m.bpt", "--json"}));
@@ -146,6 +168,12 @@ TEST_F(MeshTools, EveryTeasetModelBecomesAMesh) {
   if (!data) GTEST_SKIP() << "TESSERA_TEST_DATA is not set";
   int models = 0;
   for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(data) / "classic_teaset")) {
+    if (entry.path().extension() == ".rib") {  // a scene: what else it holds is a warning
+      const ToolRun result = run({"tessellate", entry.path().string(), "-o", "a.ply", "--grid", "8x8", "--json"});
+      EXPECT_EQ(result.status, 0) << result.errors;
+      EXPECT_EQ(json::parse(result.output)["warnings"].size(), 1u);
+      continue;
+    }
     if (entry.path().extension() != ".bpt") {
       const std::string known = entry.path().extension().string();
       expect_failure({"info", entry.path().string()}, 1, "unsupported format \"" + known + "\"");

@@ -11,7 +11,6 @@
 #include "csv.h"
 #include "model_file.h"
 #include "tessera/evaluate.h"
-#include "tessera/io.h"
 
 namespace tessera::cli {
 namespace {
@@ -189,7 +188,7 @@ Status write_rows(const Model& model, const Places& places, const Options& optio
 Status run_eval(const Options& options) {
   Result<OutputFile> out = open_output(options.output);
   if (!out) return out.status();
-  const Result<Model> model = read_model(options.model.path);
+  const Result<Model> model = open_model(options.model);
   if (!model) return model.status();
   Places places;
   if (options.grid) {

@@ -7,7 +7,6 @@
 #include "commands.h"
 #include "console.h"
 #include "model_file.h"
-#include "tessera/io.h"
 #include "tessera/isa.h"
 
 namespace tessera::cli {
@@ -64,6 +63,7 @@ Json as_json(const Options& options, const Model& model, const PatchSet& set, Is
           {"box", {{"lower", to_json(set.box().lower)}, {"upper", to_json(set.box().upper)}}},
           {"size", set.box().diagonal()},
           {"memory_bytes", set.memory_bytes()},
+          {"warnings", warnings_json(model)},
           {"isa", {{"available", isas}, {"used", std::string(name(used))}}}};
 }
 
@@ -98,7 +98,7 @@ std::string as_text(const Options& options, const Model& model, const PatchSet& 
 }
 
 Status run_info(const Options& options) {
-  const Result<Model> model = read_model(options.model.path);
+  const Result<Model> model = open_model(options.model);
   if (!model) return model.status();
   const Result<PatchSet> set = make_patch_set(options.model, *model);
   if (!set) return set.status();

@@ -10,7 +10,6 @@
 #include "io/formats.h"
 #include "model_file.h"
 #include "render/camera.h"
-#include "tessera/io.h"
 #include "tessera/ray_scene.h"
 
 namespace tessera::cli {
@@ -107,7 +106,7 @@ Status trace(const Options& options, const Model& model, const RayScene& scene, 
 Status run_raycast(const Options& options) {
   Result<OutputFile> out = open_output(options.rays.empty() ? options.picture : options.hits);
   if (!out) return out.status();
-  const Result<Model> model = read_model(options.model.path);
+  const Result<Model> model = open_model(options.model);
   if (!model) return model.status();
   std::vector<Ray> rays;
   if (!options.rays.empty()) {

@@ -7,7 +7,6 @@
 #include "console.h"
 #include "io/formats.h"
 #include "model_file.h"
-#include "tessera/io.h"
 #include "tessera/tessellate.h"
 
 namespace tessera::cli {
@@ -36,7 +35,7 @@ Result<Mesh> tessellate(const Options& options, const PatchSet& set) {
   return mesh;
 }
 
-Status report(const Options& options, const PatchSet& set, const Mesh& mesh, const Times& times) {
+Status report(const Options& options, const Model& model, const PatchSet& set, const Mesh& mesh, const Times& times) {
   if (options.json) {
     return print_json(
         Json{{"output", options.output},
@@ -45,6 +44,7 @@ Status report(const Options& options, const PatchSet& set, const Mesh& mesh, con
              {"rate_u", options.grid.first},
              {"rate_v", options.grid.second},
              {"fit_error", fit_json(set)},
+             {"warnings", warnings_json(model)},
              {"seconds", {{"read", times.read}, {"tessellate", times.tessellate}, {"write", times.write}}}});
   }
   return print(options.output + ": " + std::to_string(mesh.vertex_count()) + " vertices, " +
@@ -58,7 +58,7 @@ Status run_tessellate(const Options& options) {
   if (!out) return out.status();
   Times times;
   const Stopwatch reading;
-  const Result<Model> model = read_model(options.model.path);
+  const Result<Model> model = open_model(options.model);
   if (!model) return model.status();
   const Result<PatchSet> set = make_patch_set(options.model, *model);
   if (!set) return set.status();
@@ -72,7 +72,7 @@ Status run_tessellate(const Options& options) {
   if (status.ok()) status = out->commit();
   if (!status.ok()) return status;
   times.write = writing.seconds();
-  return report(options, *set, *mesh, times);
+  return report(options, *model, *set, *mesh, times);
 }
 
 }  // namespace

@@ -1,13 +1,17 @@
 #include "model_file.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "tessera/io.h"
 
 namespace tessera::cli {
 
 void add_model(CLI::App& command, ModelFile& file) {
-  command.add_option("MODEL", file.path, "The file of surfaces (.bpt, .json)")->required()->type_name("FILE");
+  command.add_option("MODEL", file.path, "The file of surfaces (.bpt, .bv, .g2, .json, .rib)")
+      ->required()
+      ->type_name("FILE");
   command
       .add_option("--fit-tolerance", file.fit.tolerance,
                   "How far patches may lie from surfaces that are given by expressions, in the model's unit "
@@ -17,6 +21,24 @@ void add_model(CLI::App& command, ModelFile& file) {
         const bool good = CLI::detail::lexical_cast(text, value) && value > 0 && std::isfinite(value);
         return good ? std::string() : "expected a number above 0, found \"" + text + "\"";
       });
+}
+
+Result<Model> open_model(const ModelFile& file) {
+  constexpr std::size_t limit = 20;  // lines; the file may be a long list of what is not read
+  Result<Model> model = read_model(file.path);
+  if (!model) return model;
+  const std::size_t count = model->warnings.size();
+  for (std::size_t k = 0; k < std::min(count, limit); ++k) {
+    std::fprintf(stderr, "tessera: warning: %s\n", model->warnings[k].c_str());
+  }
+  if (count > limit) std::fprintf(stderr, "tessera: warning: and %zu more of this file\n", count - limit);
+  return model;
+}
+
+Json warnings_json(const Model& model) {
+  Json warnings = Json::array();
+  for (const std::string& warning : model.warnings) warnings.push_back(warning);
+  return warnings;
 }
 
 Result<PatchSet> make_patch_set(const ModelFile& file, const Model& model) {

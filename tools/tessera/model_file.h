@@ -17,6 +17,12 @@ struct ModelFile {
 /// MODEL and --fit-tolerance.
 void add_model(CLI::App& command, ModelFile& file);
 
+/// Reads the model; what of the file it does not hold is said on standard error, a line a warning. Errors: those of
+/// read_model.
+Result<Model> open_model(const ModelFile& file);
+/// Those lines as an array.
+Json warnings_json(const Model& model);
+
 /// Errors name the file.
 Result<PatchSet> make_patch_set(const ModelFile& file, const Model& model);
 

@@ -11,14 +11,26 @@
 
 namespace tessera {
 
-/// Reads surfaces: .bpt (Bezier patches; `#` begins a comment), .json (surfaces of every kind; tools/models/FORMAT.md
-/// tells the format), .obj (free-form surfaces; polygons are counted in a warning, and a file without surfaces is
-/// unsupported). A file with an element that is wrong gives no model. Errors: io_error, parse_error, unsupported (no
-/// reader for it); of .json and .obj also those of the surfaces.
+/// Reads surfaces: .bpt (Bezier patches; `#` begins a comment), .bv (BezierView: tensor and rational patches), .g2
+/// (GoTools: spline and elementary surfaces), .json (surfaces of every kind; tools/models/FORMAT.md tells the format), .obj
+/// (free-form surfaces), .rib (RenderMan: Patch, PatchMesh, NuPatch). What else a file holds is told in Model::warnings. A
+/// file with an element that is wrong gives no model. Errors: io_error, parse_error, unsupported (no reader for it, or
+/// nothing in the file that it reads); of .json and .obj also those of the surfaces.
 /// Memory stays proportional to the file, whatever counts it states.
 Result<Model> read_model(const std::filesystem::path& path);
 /// The same from memory; `name` stands for the file in messages.
 Result<Model> parse_bpt(std::string_view text, std::string_view name);
+/// Kinds 4, 5 and 8 (weights above 0); triangles, polyhedra and PN patches are passed over. Group lines name surfaces.
+Result<Model> parse_bv(std::string_view text, std::string_view name);
+/// Spline surfaces, planes, cylinders, spheres, cones and tori that are bounded, by the file's parameters, but for a
+/// cone's v (counted from the apex) and a torus' (rational arcs within [0,1]^2). Plane surfaces lie in z = 0.
+Result<Model> parse_g2(std::string_view text, std::string_view name);
+/// Text, not compressed. A patch or mesh has RenderMan's parameters over [0,1]^2, a NuPatch its knots'. A mesh is one
+/// B-spline surface, but for bases other than bezier, b-spline, catmull-rom and hermite with their usual steps: those
+/// give a surface a patch. Placements lead to world space as at WorldBegin, coordinates unchanged (left-handed);
+/// Attribute "identifier" "name" names surfaces; TrimCurves are kept as trims. Of a moving surface the first moment is
+/// read. Copies by ObjectInstance and of trims may take 16 times the file, not more.
+Result<Model> parse_rib(std::string_view text, std::string_view name);
 /// "m.json:17: /surfaces/3/points/2/1: expected 3 numbers [x, y, z], found an array of 2": a line, and the place as a JSON
 /// pointer (RFC 6901). Expressions may be evaluated from any number of threads.
 Result<Model> parse_json_model(std::string_view text, std::string_view name);

@@ -26,10 +26,13 @@ struct Format {
   void (*write_mesh)(const Mesh&, OutputFile&) = nullptr;
 };
 
-constexpr std::array<Format, 4> formats{{
+constexpr std::array<Format, 7> formats{{
     {.extension = ".bpt", .read_model = parse_bpt},
+    {.extension = ".bv", .read_model = parse_bv},
+    {.extension = ".g2", .read_model = parse_g2},
     {.extension = ".json", .read_model = parse_json_model},
     {.extension = ".obj", .read_model = parse_obj_freeform, .read_mesh = parse_obj, .write_mesh = write_obj},
+    {.extension = ".rib", .read_model = parse_rib},
     {.extension = ".ply", .read_mesh = parse_ply, .write_mesh = write_ply},
 }};
 

@@ -1,0 +1,63 @@
+#pragma once
+// Objects of GoTools' .g2 files, one after the other: a header (class, version, auxiliary numbers), then the object.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "io/text_cursor.h"
+#include "tessera/affine.h"
+#include "tessera/status.h"
+#include "tessera/surface.h"
+
+namespace tessera {
+
+/// Classes that are read (GoTools, ClassType.h).
+enum G2Class : std::int64_t {
+  g2_spline_surface = 200,
+  g2_plane = 250,
+  g2_cylinder = 260,
+  g2_sphere = 270,
+  g2_cone = 280,
+  g2_torus = 290,
+};
+
+/// Numbers of an object, one by one; after the first that is missing or wrong nothing is read, and status() says what
+/// it was.
+class G2Numbers {
+ public:
+  /// `header` is the object's place and `object` its name in messages.
+  G2Numbers(TextCursor& cursor, const TextCursor& header, std::string object)
+      : cursor_(cursor), header_(header), object_(std::move(object)) {}
+
+  double number(std::string_view what);
+  double positive(std::string_view what);
+  std::int64_t integer(std::string_view what, std::int64_t low, std::int64_t high);
+  Vec3 vector(std::string_view what);
+  const Status& status() const { return status_; }
+  bool ok() const { return status_.ok(); }
+  /// What is wrong with the object as a whole.
+  Status failure(const std::string& sentence) const { return header_.failure(object_ + ": " + sentence); }
+  TextCursor& cursor() { return cursor_; }
+
+ private:
+  TextCursor& cursor_;
+  TextCursor header_;
+  std::string object_;
+  Status status_;
+};
+
+/// An object, or nothing where it is well-formed but of a kind that is not read: no surface of space, or unbounded.
+struct G2Object {
+  std::optional<Surface> surface = {};
+  Affine placement = {};
+  std::string_view unread = {};  ///< why there is none: "unbounded"
+  bool swapped = false;          ///< the file runs its parameters the other way round
+};
+
+/// Plane, cylinder, sphere, cone or torus after its header. Parameters are the file's (angles in radians), but for a
+/// cone's v, which is counted from the apex, and for a torus', which are those of its NURBS on [0,1]^2 or a part of it.
+Result<G2Object> read_g2_elementary(std::int64_t kind, G2Numbers& numbers);
+
+}  // namespace tessera

@@ -1,0 +1,175 @@
+// Elementary surfaces of .g2 files. GoTools writes the dimension, sizes, the location, the z axis, the x axis, the range
+// of the parameters, and whether the two are swapped.
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "io/g2.h"
+#include "tessera/nurbs_surface.h"
+
+namespace tessera {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// Axes of length 1, x made square to z. None where they have no direction or the same.
+std::optional<Affine> frame(const Vec3& location, const Vec3& z_axis, const Vec3& x_axis) {
+  const Vec3 z = normalized(z_axis), along = normalized(x_axis), y = normalized(cross(z, along));
+  if (y == Vec3{}) return std::nullopt;
+  return Affine{.columns = {normalized(cross(y, z)), y, z}, .translation = location};
+}
+
+/// Files print angles with 15 digits or fewer: what is a full turn or a pole to within their rounding is meant so.
+constexpr double printed = 1e-9;
+void snap_turn(double from, double& to) {
+  if (std::abs(to - from - 2 * pi) <= printed) to = from + 2 * pi;
+}
+void snap_pole(double& latitude) {
+  if (std::abs(std::abs(latitude) - pi / 2) <= printed) latitude = std::copysign(pi / 2, latitude);
+}
+
+/// The parameter of an angle in [0, 2 pi] on a circle of four rational arcs over [0,1]: on the arc about its middle m of
+/// half-width h, the angle is m + 2 atan(tan(h/2) s), s from -1 to 1.
+double circle_parameter(double angle) {
+  const double arc = std::min(3.0, std::floor(angle / (pi / 2)));
+  const double off_middle = angle - (arc + 0.5) * (pi / 2);
+  const double s = std::tan(off_middle / 2) / std::tan(pi / 8);
+  return std::clamp((arc + (1 + s) / 2) / 4, 0.0, 1.0);
+}
+
+struct Elementary {
+  double radius = 0, minor_radius = 0, angle = 0;
+  Vec3 location, z_axis, x_axis;
+  bool bounded = true;
+  Domain range;
+};
+
+Elementary read_numbers(std::int64_t kind, G2Numbers& numbers, bool& swapped) {
+  Elementary e;
+  numbers.integer("the dimension 3", 3, 3);
+  if (kind != g2_plane) e.radius = numbers.number("a radius");
+  if (kind == g2_torus) e.minor_radius = numbers.number("the minor radius");
+  e.location = numbers.vector("the location");
+  e.z_axis = numbers.vector("the z axis");
+  e.x_axis = numbers.vector("the x axis");
+  if (kind == g2_cone) e.angle = numbers.number("the cone's angle");
+  if (kind == g2_torus) numbers.integer("whether the outer part is meant", 0, 1);
+  if (kind == g2_plane || kind == g2_cylinder || kind == g2_cone) {
+    e.bounded = numbers.integer("whether the surface is bounded", 0, 1) == 1;
+  }
+  if (!numbers.ok() || !e.bounded) return e;
+  for (double* const limit : {&e.range.u0, &e.range.u1, &e.range.v0, &e.range.v1}) {
+    *limit = numbers.number("a limit of the parameters");
+  }
+  swapped = numbers.integer("whether the parameters are swapped", 0, 1) == 1;
+  return e;
+}
+
+Result<Surface> plane(const Elementary& e) {
+  const Domain& d = e.range;
+  const std::array<double, 4> u{d.u0, d.u0, d.u1, d.u1}, v{d.v0, d.v0, d.v1, d.v1};
+  const std::array<Vec3, 4> corners{Vec3{d.u0, d.v0, 0}, Vec3{d.u0, d.v1, 0}, Vec3{d.u1, d.v0, 0}, Vec3{d.u1, d.v1, 0}};
+  Result<BSplineSurface> surface = BSplineSurface::polynomial(1, u, 1, v, corners);
+  if (!surface) return surface.status();
+  return Surface(*std::move(surface));
+}
+
+/// In the frame of the canonical quadric, whose parameters are the file's.
+Result<Surface> quadric(const QuadricCoefficients& coefficients, Domain range) {
+  snap_turn(range.u0, range.u1);
+  const Result<Quadric> whole = Quadric::make(coefficients);
+  if (!whole) return whole.status();
+  Result<QuadricPiece> piece = QuadricPiece::make(*whole, range);
+  if (!piece) return piece.status();
+  return Surface(*std::move(piece));
+}
+
+Result<Surface> cylinder(double radius, const Domain& range) {
+  return quadric({.a = 1 / radius / radius, .b = 1 / radius / radius, .k = -1}, range);
+}
+
+Result<Surface> sphere(double radius, Domain range) {
+  snap_pole(range.v0);
+  snap_pole(range.v1);
+  const double square = 1 / radius / radius;
+  return quadric({.a = square, .b = square, .c = square, .k = -1}, range);
+}
+
+/// About the origin; the turn begins at u0 and the tube at v0, so that ranges are the first parts of full circles.
+Result<Surface> torus(const Elementary& e) {
+  Domain range = e.range;
+  snap_turn(range.u0, range.u1);
+  snap_turn(range.v0, range.v1);
+  const double turn_u = range.u1 - range.u0, turn_v = range.v1 - range.v0;
+  if (!(turn_u > 0 && turn_u <= 2 * pi + printed && turn_v > 0 && turn_v <= 2 * pi + printed)) {
+    return Status(StatusCode::invalid_argument, "its ranges are not above 0 and at most a full turn");
+  }
+  const Vec3 outwards{std::cos(range.u0), std::sin(range.u0), 0}, up{0, 0, 1};
+  const Result<Curve> tube = nurbs_circle({.origin = e.radius * outwards,
+                                           .direction = cross(outwards, up),
+                                           .zero = std::cos(range.v0) * outwards + std::sin(range.v0) * up},
+                                          e.minor_radius);
+  if (!tube) return tube.status();
+  const Result<BSplineSurface> full = surface_of_revolution(*tube, {.zero = outwards});
+  if (!full) return full.status();
+  Result<BSplineSurface> part =
+      BSplineSurface::rational(full->degree_u(), full->knots_u(), full->degree_v(), full->knots_v(), full->points(),
+                               full->weights(), Domain{0, circle_parameter(turn_u), 0, circle_parameter(turn_v)});
+  if (!part) return part.status();
+  return Surface(*std::move(part));
+}
+
+/// At v the radius is R + v tan(angle): the apex lies at v = -R / tan(angle), from where the canonical cone counts.
+Result<Surface> cone(const Elementary& e, Affine& placement) {
+  const double slope = std::tan(e.angle);
+  if (std::abs(slope) <= printed) return cylinder(e.radius, e.range);
+  const double apex = e.radius / slope;
+  placement = placement * Affine::translated({0, 0, -apex});
+  const Domain range{e.range.u0, e.range.u1, e.range.v0 + apex, e.range.v1 + apex};
+  // A falling radius is a cone that is passed through from below: half a turn further on the same circles.
+  if (slope < 0) {
+    placement = placement * Affine::scaled({-1, -1, 1});
+  }
+  return quadric({.a = 1 / slope / slope, .b = 1 / slope / slope, .c = -1}, range);
+}
+
+Result<Surface> make_surface(std::int64_t kind, const Elementary& e, Affine& placement) {
+  const bool positive = e.radius > 0 && (kind != g2_torus || e.minor_radius > 0);
+  if (!positive && kind != g2_plane && !(kind == g2_cone && e.radius == 0)) {
+    return Status(StatusCode::invalid_argument, "its radius is not above 0");
+  }
+  switch (kind) {
+    case g2_plane:
+      return plane(e);
+    case g2_cylinder:
+      return cylinder(e.radius, e.range);
+    case g2_sphere:
+      return sphere(e.radius, e.range);
+    case g2_cone:
+      return cone(e, placement);
+    default:
+      return torus(e);
+  }
+}
+
+}  // namespace
+
+Result<G2Object> read_g2_elementary(std::int64_t kind, G2Numbers& numbers) {
+  G2Object object;
+  const Elementary e = read_numbers(kind, numbers, object.swapped);
+  if (!numbers.ok()) return numbers.status();
+  if (!e.bounded) {
+    object.unread = "unbounded";
+    return object;
+  }
+  const std::optional<Affine> placement = frame(e.location, e.z_axis, e.x_axis);
+  if (!placement) return numbers.failure("expected a z axis and an x axis of different directions");
+  object.placement = *placement;
+  Result<Surface> surface = make_surface(kind, e, object.placement);
+  if (!surface) return numbers.failure(surface.status().message());
+  object.surface = *std::move(surface);
+  return object;
+}
+
+}  // namespace tessera

@@ -1,0 +1,45 @@
+#pragma once
+// What a reader passes over, counted by kind, for the model's warnings.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/text_cursor.h"
+#include "tessera/status.h"
+
+namespace tessera {
+
+/// Names of a kind of thing for one and for many of it: "polyhedron", "polyhedra". They must outlive the counts.
+struct PartName {
+  std::string_view one, many;
+};
+
+/// Counts of a few kinds, and where each stood first.
+class PassedOver {
+ public:
+  /// `file` stands for the file in the sentences.
+  explicit PassedOver(std::string_view file) : file_(file) {}
+
+  void add(const PartName& name, const TextCursor& at);
+  bool empty() const { return kinds_.empty(); }
+  /// "m.bv:12: 3 polyhedra are not read", a sentence a kind, in the order of their lines.
+  std::vector<std::string> warnings() const;
+  /// For a file that holds nothing else: "m.bv: no surface that can be read, but 3 polyhedra". Error: unsupported.
+  Status nothing_else() const;
+
+ private:
+  struct Kind {
+    PartName name;
+    std::size_t count, line;
+    std::string words() const { return std::to_string(count) + ' ' + std::string(count == 1 ? name.one : name.many); }
+  };
+
+  std::string_view file_;
+  std::vector<Kind> kinds_;
+};
+
+/// A surface's name out of a file: at most 200 bytes of it, whole characters of UTF-8, since many surfaces may share one.
+std::string surface_name(std::string_view text);
+
+}  // namespace tessera

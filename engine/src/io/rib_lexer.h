@@ -1,0 +1,56 @@
+#pragma once
+// The words of a RenderMan Interface Bytestream in its text form (The RenderMan Interface Specification 3.2, appendix C):
+// requests, numbers, strings in double quotes, arrays in brackets; `#` begins a comment.
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/text_cursor.h"
+
+namespace tessera {
+
+class RibLexer {
+ public:
+  /// `name` stands for the file in messages.
+  RibLexer(std::string_view text, std::string_view name) : cursor_(text, name) {}
+
+  // What stands next, past white space and comments.
+  bool at_end();
+  bool at_request();
+  bool at_string();
+  /// A number, a string or an array.
+  bool at_value();
+
+  // Past the next thing, or an error that says what was wanted instead. Numbers are finite.
+  Status take_request(std::string_view& request);
+  /// Between the quotes, escapes as they stand. Brackets around one string are allowed, as for numbers.
+  Status take_string(std::string_view what, std::string_view& value);
+  Status take_number(std::string_view what, double& value);
+  Status take_integer(std::string_view what, std::int64_t low, std::int64_t high, std::int64_t& value);
+  /// As many as there is room for, in brackets or not.
+  Status take_numbers(std::string_view what, std::span<double> values);
+  /// An array, or one number without brackets. `likely`: how many will come, at a guess.
+  Status take_array(std::string_view what, std::vector<double>& values, std::size_t likely = 0);
+  Status skip_value();
+  /// All values up to the next request.
+  Status skip_values();
+
+  /// The raw text of the next value, for comparisons: a number or a string with its quotes.
+  std::string_view peek() const;
+  Status expected(std::string_view what) const { return cursor_.expected(what); }
+  /// A copy of this place, for messages.
+  const TextCursor& place() const { return cursor_; }
+
+ private:
+  char next();  // 0 at the end
+  /// The token up to a bracket or a quote.
+  std::string_view word() const;
+  bool take_word(double& value);
+  Status skip_string();
+
+  TextCursor cursor_;
+};
+
+}  // namespace tessera

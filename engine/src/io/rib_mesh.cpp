@@ -1,0 +1,306 @@
+#include "io/rib_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace tessera {
+namespace {
+
+constexpr double sixth = 1.0 / 6;
+// The Interface's own (The RenderMan Interface Specification 3.2, sec. 5.2), rows from t^3 down to 1.
+constexpr RibBasis bezier_basis{{-1, 3, -3, 1, 3, -6, 3, 0, -3, 3, 0, 0, 1, 0, 0, 0}, 3};
+constexpr RibBasis b_spline_basis{
+    {-sixth, 0.5, -0.5, sixth, 0.5, -1, 0.5, 0, -0.5, 0, 0.5, 0, sixth, 4 * sixth, sixth, 0}, 1};
+constexpr RibBasis catmull_rom_basis{{-0.5, 1.5, -1.5, 0.5, 1, -2.5, 2, -0.5, -0.5, 0, 0.5, 0, 0, 1, 0, 0}, 1};
+constexpr RibBasis hermite_basis{{2, 1, -2, 1, -3, -2, 3, -1, 0, 1, 0, 0, 1, 0, 0, 0}, 2};
+constexpr RibBasis power_basis{{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, 4};
+
+/// How a direction becomes a B-spline: its points as they are over simple or 3-fold knots, Catmull-Rom and Hermite
+/// cubics over double ones, else patch by patch.
+enum class Form { linear, bezier, b_spline, catmull_rom, hermite, separate };
+
+Form form_of(const RibDirection& direction) {
+  if (!direction.basis) return Form::linear;
+  const RibBasis& basis = *direction.basis;
+  if (basis == bezier_basis) return Form::bezier;
+  if (basis == b_spline_basis) return Form::b_spline;
+  if (basis == catmull_rom_basis) return Form::catmull_rom;
+  return basis == hermite_basis ? Form::hermite : Form::separate;
+}
+
+/// The Bezier points of one patch's geometry.
+class PatchMatrix {
+ public:
+  static Result<PatchMatrix> make(const RibBasis& basis) {
+    std::array<double, 16> rows;  // from 1 up to t^3
+    for (std::size_t k = 0; k < 16; ++k) rows[k] = basis.matrix[(3 - k / 4) * 4 + k % 4];
+    Result<BasisMatrix> matrix = BasisMatrix::custom(3, rows);
+    if (!matrix) return matrix.status();
+    return PatchMatrix(*std::move(matrix));
+  }
+  Homogeneous point(int k, const std::array<Homogeneous, 4>& geometry) const {
+    Homogeneous sum{0, 0, 0, 0};
+    for (int i = 0; i < 4; ++i) {
+      sum = sum + matrix_.bernstein_coefficient(k, i) * geometry[static_cast<std::size_t>(i)];
+    }
+    return sum;
+  }
+
+ private:
+  explicit PatchMatrix(BasisMatrix matrix) : matrix_(std::move(matrix)) {}
+  BasisMatrix matrix_;
+};
+
+/// One direction as it will be: lines of the mesh's points in, lines of control points out.
+struct SplineDirection {
+  Form form;
+  int step = 1;
+  std::size_t points, patches;
+  std::optional<PatchMatrix> matrix = {};  // of separate patches
+  std::vector<double> knots = {};          // not of separate ones
+
+  int degree() const { return form == Form::linear ? 1 : 3; }
+};
+
+/// Knots on [0,1], the inner ones so many times.
+std::vector<double> clamped_knots(int degree, std::size_t patches, int times) {
+  std::vector<double> knots(static_cast<std::size_t>(degree + 1), 0.0);
+  for (std::size_t k = 1; k < patches; ++k) {
+    knots.insert(knots.end(), static_cast<std::size_t>(times), static_cast<double>(k) / static_cast<double>(patches));
+  }
+  knots.insert(knots.end(), static_cast<std::size_t>(degree + 1), 1.0);
+  return knots;
+}
+
+std::vector<double> make_knots(Form form, std::size_t patches) {
+  switch (form) {
+    case Form::linear:
+      return clamped_knots(1, patches, 1);
+    case Form::bezier:
+      return clamped_knots(3, patches, 3);
+    case Form::b_spline: {
+      std::vector<double> knots(patches + 7);
+      for (std::size_t k = 0; k < knots.size(); ++k) {
+        knots[k] = (static_cast<double>(k) - 3) / static_cast<double>(patches);
+      }
+      return knots;
+    }
+    case Form::catmull_rom:
+    case Form::hermite:
+      return clamped_knots(3, patches, 2);
+    case Form::separate:
+      break;
+  }
+  return {};
+}
+
+Result<SplineDirection> make_direction(const RibDirection& direction, bool separate) {
+  const Result<std::int64_t> patches = direction.patches();
+  if (!patches) return patches.status();
+  SplineDirection spline{.form = separate ? Form::separate : form_of(direction),
+                         .step = direction.basis ? direction.basis->step : 1,
+                         .points = static_cast<std::size_t>(direction.points),
+                         .patches = static_cast<std::size_t>(*patches)};
+  spline.knots = make_knots(spline.form, spline.patches);
+  if (separate) {
+    Result<PatchMatrix> matrix = PatchMatrix::make(*direction.basis);
+    if (!matrix) return matrix.status();
+    spline.matrix = *std::move(matrix);
+  }
+  return spline;
+}
+
+using Line = std::vector<Homogeneous>;
+
+/// A line of control points from one of the mesh's, which goes round if its end is beyond the last one.
+Line spline_line(const SplineDirection& direction, const Line& line) {
+  const auto at = [&](std::size_t k) { return line[k % line.size()]; };
+  const std::size_t n = direction.patches;
+  Line out;
+  if (direction.form == Form::linear || direction.form == Form::bezier || direction.form == Form::b_spline) {
+    const std::size_t count = direction.knots.size() - static_cast<std::size_t>(direction.degree()) - 1;
+    for (std::size_t k = 0; k < count; ++k) out.push_back(at(k));
+    return out;
+  }
+  const auto third = [](const Homogeneous& p, double sign, const Homogeneous& tangent) {
+    return p + (sign / 3) * tangent;
+  };
+  if (direction.form == Form::catmull_rom) {
+    const auto tangent = [&](std::size_t k) { return 0.5 * (at(k + 1) - at(k - 1)); };  // at points 1 to n + 1
+    out.push_back(at(1));
+    for (std::size_t k = 1; k <= n; ++k) {
+      out.push_back(third(at(k), 1, tangent(k)));
+      out.push_back(third(at(k + 1), -1, tangent(k + 1)));
+    }
+    out.push_back(at(n + 1));
+  } else if (direction.form == Form::hermite) {
+    out.push_back(at(0));
+    for (std::size_t k = 0; k < n; ++k) {
+      out.push_back(third(at(2 * k), 1, at(2 * k + 1)));
+      out.push_back(third(at(2 * k + 2), -1, at(2 * k + 3)));
+    }
+    out.push_back(at(2 * n));
+  } else {
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::size_t first = k * static_cast<std::size_t>(direction.step);
+      const std::array<Homogeneous, 4> geometry{at(first), at(first + 1), at(first + 2), at(first + 3)};
+      for (int i = 0; i < 4; ++i) out.push_back(direction.matrix->point(i, geometry));
+    }
+  }
+  return out;
+}
+
+/// Both directions in turn: [i][j] in, [i][j] out.
+std::vector<Homogeneous> spline_points(const SplineDirection& u, const SplineDirection& v,
+                                       const std::vector<Homogeneous>& mesh) {
+  std::vector<Homogeneous> rows, out;  // along v first
+  std::size_t columns = 0;
+  for (std::size_t i = 0; i < u.points; ++i) {
+    const auto begin = mesh.begin() + static_cast<std::ptrdiff_t>(i * v.points);
+    const Line line = spline_line(v, Line(begin, begin + static_cast<std::ptrdiff_t>(v.points)));
+    columns = line.size();
+    rows.insert(rows.end(), line.begin(), line.end());
+  }
+  for (std::size_t j = 0; j < columns; ++j) {
+    Line line;
+    for (std::size_t i = 0; i < u.points; ++i) line.push_back(rows[i * columns + j]);
+    line = spline_line(u, line);
+    if (out.empty()) out.resize(line.size() * columns);
+    for (std::size_t i = 0; i < line.size(); ++i) out[i * columns + j] = line[i];
+  }
+  return out;
+}
+
+struct Weighted {
+  std::vector<Vec3> points;
+  std::vector<double> weights;
+};
+
+/// Divides by the weights; polynomial nets have none.
+Result<Weighted> divide(const RibNet& net) {
+  Weighted weighted;
+  weighted.points.reserve(net.points.size());
+  if (net.rational) weighted.weights.reserve(net.points.size());
+  for (std::size_t k = 0; k < net.points.size(); ++k) {
+    const Homogeneous& p = net.points[k];
+    if (net.rational && !(p.w > 0)) {
+      return Status(StatusCode::invalid_weight,
+                    "weight " + std::to_string(p.w) + " of control point " + std::to_string(k) + " is not above 0",
+                    static_cast<std::ptrdiff_t>(k));
+    }
+    weighted.points.push_back(net.rational ? p.project() : p.vector());
+    if (net.rational) weighted.weights.push_back(p.w);
+  }
+  return weighted;
+}
+
+Result<std::vector<Surface>> separate_patches(const SplineDirection& u, const SplineDirection& v, const RibNet& net) {
+  const std::size_t columns = 4 * v.patches;
+  const auto knots = [](std::size_t k, std::size_t n) {
+    const double begin = static_cast<double>(k) / static_cast<double>(n),
+                 end = static_cast<double>(k + 1) / static_cast<double>(n);
+    return std::array<double, 8>{begin, begin, begin, begin, end, end, end, end};
+  };
+  std::vector<Surface> surfaces;
+  for (std::size_t a = 0; a < u.patches; ++a) {
+    for (std::size_t b = 0; b < v.patches; ++b) {
+      RibNet patch{.points = {}, .rational = net.rational};
+      for (std::size_t k = 0; k < 16; ++k) {
+        patch.points.push_back(net.points[(4 * a + k / 4) * columns + 4 * b + k % 4]);
+      }
+      Result<BSplineSurface> surface = spline_surface(3, knots(a, u.patches), 3, knots(b, v.patches), patch);
+      if (!surface) return surface.status();
+      surfaces.push_back(*std::move(surface));
+    }
+  }
+  return surfaces;
+}
+
+Result<Surface> single_patch(int degree_u, int degree_v, const RibNet& net) {
+  const Result<Weighted> w = divide(net);
+  if (!w) return w.status();
+  Result<BezierPatch> patch = net.rational ? BezierPatch::rational(degree_u, degree_v, w->points, w->weights)
+                                           : BezierPatch::polynomial(degree_u, degree_v, w->points);
+  if (!patch) return patch.status();
+  return Surface(*std::move(patch));
+}
+
+}  // namespace
+
+const RibBasis* find_rib_basis(std::string_view name) {
+  if (name == "bezier") return &bezier_basis;
+  if (name == "b-spline") return &b_spline_basis;
+  if (name == "catmull-rom") return &catmull_rom_basis;
+  if (name == "hermite") return &hermite_basis;
+  return name == "power" ? &power_basis : nullptr;
+}
+
+std::array<double, 16> recognised_matrix(const std::array<double, 16>& matrix) {
+  constexpr double printed = 1e-5;
+  for (const RibBasis* const known :
+       {&bezier_basis, &b_spline_basis, &catmull_rom_basis, &hermite_basis, &power_basis}) {
+    const bool same = std::equal(matrix.begin(), matrix.end(), known->matrix.begin(),
+                                 [](double x, double y) { return std::abs(x - y) <= printed; });
+    if (same) return known->matrix;
+  }
+  return matrix;
+}
+
+Result<std::int64_t> RibDirection::patches() const {
+  const std::int64_t least = basis ? 4 : 2, step = basis ? basis->step : 1;
+  if (periodic && points >= step && points % step == 0) return points / step;
+  if (!periodic && points >= least && (points - least) % step == 0) return (points - least) / step + 1;
+  const std::string wanted = periodic ? "a multiple of " + std::to_string(step)
+                                      : std::to_string(least) + " and a multiple of " + std::to_string(step) + " more";
+  return Status(StatusCode::count_mismatch, std::to_string(points) + " points a line make no " +
+                                                (periodic ? "closed " : "") + "mesh with this basis, which wants " +
+                                                wanted);
+}
+
+Result<std::vector<double>> height_field_parameters(const RibDirection& direction) {
+  const Form form = form_of(direction);
+  const Result<std::int64_t> patches = direction.patches();
+  if (!patches) return patches.status();
+  if (form == Form::hermite || form == Form::separate) {
+    return Status(StatusCode::unsupported, "a height field wants a basis of points (bezier, b-spline, catmull-rom)");
+  }
+  // Control points at the averages of the knots (Greville) reproduce the parameter itself.
+  const double n = static_cast<double>(*patches), first = form == Form::b_spline || form == Form::catmull_rom ? -1 : 0;
+  const double spacing = form == Form::bezier ? 1 / (3 * n) : 1 / n;
+  std::vector<double> parameters(static_cast<std::size_t>(direction.points));
+  for (std::size_t k = 0; k < parameters.size(); ++k) parameters[k] = (static_cast<double>(k) + first) * spacing;
+  return parameters;
+}
+
+Result<BSplineSurface> spline_surface(int degree_u, std::span<const double> knots_u, int degree_v,
+                                      std::span<const double> knots_v, const RibNet& net,
+                                      std::optional<Domain> domain) {
+  const Result<Weighted> w = divide(net);
+  if (!w) return w.status();
+  if (!net.rational) return BSplineSurface::polynomial(degree_u, knots_u, degree_v, knots_v, w->points, domain);
+  return BSplineSurface::rational(degree_u, knots_u, degree_v, knots_v, w->points, w->weights, domain);
+}
+
+Result<std::vector<Surface>> mesh_surfaces(const RibDirection& u, const RibDirection& v, RibNet net) {
+  const bool separate = form_of(u) == Form::separate || form_of(v) == Form::separate;
+  const Result<SplineDirection> along_u = make_direction(u, separate), along_v = make_direction(v, separate);
+  if (!along_u) return along_u.status();
+  if (!along_v) return along_v.status();
+  net.points = spline_points(*along_u, *along_v, net.points);
+  if (separate) return separate_patches(*along_u, *along_v, net);
+  const auto is_single = [](const SplineDirection& d) { return d.patches == 1 && d.form != Form::b_spline; };
+  Result<Surface> surface = [&]() -> Result<Surface> {
+    if (is_single(*along_u) && is_single(*along_v)) return single_patch(along_u->degree(), along_v->degree(), net);
+    Result<BSplineSurface> spline =
+        spline_surface(along_u->degree(), along_u->knots, along_v->degree(), along_v->knots, net);
+    if (!spline) return spline.status();
+    return Surface(*std::move(spline));
+  }();
+  if (!surface) return surface.status();
+  std::vector<Surface> surfaces;
+  surfaces.push_back(*std::move(surface));
+  return surfaces;
+}
+
+}  // namespace tessera

@@ -1,0 +1,35 @@
+#pragma once
+// Patch, PatchMesh and NuPatch out of a RIB file.
+
+#include <vector>
+
+#include "io/rib_lexer.h"
+#include "io/rib_mesh.h"
+#include "tessera/surface.h"
+
+namespace tessera {
+
+/// Of points in one direction.
+inline constexpr std::int64_t rib_count_limit = std::int64_t{1} << 30;
+
+/// What stands after the word that asks for a surface.
+struct RibSurfaceText {
+  RibLexer& lexer;
+  const TextCursor& begin;   ///< the request's place
+  std::string_view request;  ///< its name
+  const RibBasis &basis_u, &basis_v;
+
+  Status failure(const std::string& sentence) const { return begin.failure(std::string(request) + ": " + sentence); }
+};
+
+// With errors that name the line. Control points of the file run along u first; of their parameter lists, P (x y z),
+// Pw (w x, w y, w z, w) or Pz (z over x = u, y = v) is read and the rest ignored.
+
+Result<std::vector<Surface>> read_patch(const RibSurfaceText& text);
+Result<std::vector<Surface>> read_patch_mesh(const RibSurfaceText& text);
+Result<std::vector<Surface>> read_nu_patch(const RibSurfaceText& text);
+
+/// The variable's own name in a declaration such as "vertex point P".
+std::string_view variable_name(std::string_view declaration);
+
+}  // namespace tessera

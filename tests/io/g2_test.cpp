@@ -1,0 +1,190 @@
+// The reader of .g2 files: spline and elementary surfaces, what is passed over, what is refused.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "io/reader_checks.h"
+
+namespace tessera::test {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+const std::string bent = "200 1 0 0\n3 0\n3 2\n0 0 1 2 2\n2 2\n0 0 5 5\n-1 0 0\n0 0 0\n0 -1 0\n-1 1 0\n1 1 0\n1 -1 0\n";
+const std::string quarter =
+    "200 1 0 4 255 0 0 255\n2 1\n3 3\n0 0 0 1 1 1\n2 2\n0 0 1 1\n"
+    "1 0 1\n0.70710678118654752 0.70710678118654752 0.70710678118654752\n0 1 1\n"
+    "2 0 1\n1.41421356237309505 1.41421356237309505 0.70710678118654752\n0 2 1\n";
+
+Vec3 at(const Model& model, std::size_t surface, double u, double v) {
+  const Result<SurfaceJet> jet = evaluate_jet(model.surfaces.at(surface), u, v);
+  EXPECT_TRUE(jet.ok());
+  return jet->position;
+}
+
+void expect_near(const Vec3& a, const Vec3& b, double tolerance) {
+  EXPECT_LE(length(a - b), tolerance) << a.x << ' ' << a.y << ' ' << a.z << " and " << b.x << ' ' << b.y << ' ' << b.z;
+}
+
+TEST(G2, PointsRunAlongUFirst) {
+  const Model model = model_of(parse_g2, bent);
+  const auto& surface = std::get<BSplineSurface>(model.surfaces.at(0).surface);
+  EXPECT_EQ(surface.degree_u(), 1);
+  EXPECT_EQ(surface.count_u(), 3u);
+  EXPECT_EQ(surface.count_v(), 2u);
+  EXPECT_EQ(surface.domain(), (Domain{0, 2, 0, 5}));
+  EXPECT_EQ(at(model, 0, 0, 0), (Vec3{-1, 0, 0}));
+  EXPECT_EQ(at(model, 0, 2, 0), (Vec3{0, -1, 0}));
+  EXPECT_EQ(at(model, 0, 0, 5), (Vec3{-1, 1, 0}));
+  EXPECT_EQ(at(model, 0, 2, 5), (Vec3{1, -1, 0}));
+}
+
+TEST(G2, PlaneRationalSurfacesLieInZ0AndTheirPointsAreHomogeneous) {
+  const Model model = model_of(parse_g2, bent + quarter);
+  ASSERT_EQ(model.surfaces.size(), 2u);
+  for (double u = 0; u <= 1; u += 0.125) {
+    const Vec3 p = at(model, 1, u, 0.5);
+    EXPECT_NEAR(std::hypot(p.x, p.y), 1.5, 1e-15);
+    EXPECT_EQ(p.z, 0);
+  }
+  EXPECT_TRUE(model.warnings.empty());
+}
+
+TEST(G2, ElementarySurfacesHaveTheFilesParameters) {
+  // Location (1,2,3), z along x, x along y: so the frame's y is z.
+  const std::string frame = "\n1 2 3\n2 0 0\n0 3 0\n";
+  const auto point = [](double x, double y, double z) { return Vec3{1 + z, 2 + x, 3 + y}; };
+  const Model model = model_of(
+      parse_g2, "250 1 0 0\n3" + frame + "1\n-1 2\n3 5\n0\n" + "260 1 0 0\n3\n2" + frame + "1\n0.5 2\n-1 4\n0\n" +
+                    "270 1 0 0\n3\n1.5" + frame + "0 6.28318530717959\n-1.5707963267949 1\n0\n" + "280 1 0 0\n3\n2" +
+                    frame + "0.5\n1\n0 6.283185307\n0 3\n0\n" + "280 1 0 0\n3\n2" + frame + "-0.5\n1\n0.5 2\n0 3\n0\n" +
+                    "280 1 0 0\n3\n2" + frame + "0\n1\n0.5 2\n0 3\n0\n");
+  ASSERT_EQ(model.surfaces.size(), 6u);
+  EXPECT_TRUE(model.warnings.empty());
+  EXPECT_EQ(domain(model.surfaces[0].surface), (Domain{-1, 2, 3, 5}));
+  EXPECT_EQ(domain(model.surfaces[1].surface), (Domain{0.5, 2, -1, 4}));
+  for (const auto& [u, v] : {std::pair(0.5, 0.0), {1.0, 0.75}, {1.5, 1.0}, {2.0, 0.25}}) {
+    expect_near(at(model, 0, u, 3 + v), point(u, 3 + v, 0), 1e-15);
+    expect_near(at(model, 1, u, v), point(2 * std::cos(u), 2 * std::sin(u), v), 4e-15);
+    expect_near(at(model, 2, u, v),
+                point(1.5 * std::cos(u) * std::cos(v), 1.5 * std::sin(u) * std::cos(v), 1.5 * std::sin(v)), 4e-15);
+    // The own v of a cone is counted from its apex, where R + v tan(angle) = 0.
+    const double slope = std::tan(0.5), apex = 2 / slope;
+    const double wide = 2 + v * slope, narrow = 2 - v * slope;
+    expect_near(at(model, 3, u, v + apex), point(wide * std::cos(u), wide * std::sin(u), v), 1e-14);
+    expect_near(at(model, 4, u, v - apex), point(narrow * std::cos(u), narrow * std::sin(u), v), 1e-14);
+    expect_near(at(model, 5, u, v), point(2 * std::cos(u), 2 * std::sin(u), v), 4e-15);
+  }
+  EXPECT_EQ(domain(model.surfaces[2].surface).v0, -pi / 2);  // printed with 14 digits
+  for (const ModelSurface& surface : model.surfaces) EXPECT_TRUE(to_bezier(surface).ok());
+}
+
+TEST(G2, ToriAreNurbsFromBorderToBorder) {
+  const std::string frame = "\n1 2 3\n0 0 1\n1 0 0\n1\n";
+  const Model model = model_of(parse_g2, "290 1 0 0\n3\n5 2" + frame + "0 6.28318530717959\n0 6.28318530717959\n0\n" +
+                                             "290 1 0 0\n3\n5 2" + frame + "0.25 2.5\n-1 3\n1\n");
+  ASSERT_EQ(model.surfaces.size(), 2u);
+  EXPECT_EQ(model.warnings,
+            std::vector<std::string>{"m: u and v of 1 elementary surfaces are swapped in the file, and here are not"});
+  const auto torus = [](double u, double v) {
+    const double r = 5 + 2 * std::cos(v);
+    return Vec3{1 + r * std::cos(u), 2 + r * std::sin(u), 3 + 2 * std::sin(v)};
+  };
+  EXPECT_EQ(domain(model.surfaces[0].surface), (Domain{0, 1, 0, 1}));
+  expect_near(at(model, 0, 0.25, 0.5), torus(pi / 2, pi), 1e-14);
+  const Domain d = domain(model.surfaces[1].surface);
+  for (const auto& [s, t] : {std::pair(0, 0), {0, 1}, {1, 0}, {1, 1}}) {
+    expect_near(at(model, 1, d.u_at(s), d.v_at(t)), torus(s == 0 ? 0.25 : 2.5, t == 0 ? -1 : 3), 2e-14);
+  }
+  for (double s = 0; s <= 1; s += 0.125) {
+    const Vec3 p = at(model, 1, d.u_at(s), d.v_at(1 - s)) - Vec3{1, 2, 3};
+    EXPECT_NEAR(std::hypot(std::hypot(p.x, p.y) - 5, p.z), 2, 1e-14);
+  }
+}
+
+TEST(G2, OtherObjectsArePassedOverAndCounted) {
+  const std::string curve = "100 1 0 0\n3 0\n2 2\n0 0 1 1\n0 0 0\n1 0 0\n";
+  const std::string volume = "700 1 0 0\n3 0\n2 2\n0 0 1 1\n2 2\n0 0 1 1\n2 2\n0 0 1 1\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n";
+  const std::string cylinder = "260 1 0 0\n3\n2\n0 0 0\n0 0 1\n1 0 0\n0\n0 6.28\n0\n";
+  const std::string function = "200 1 0 0\n1 0\n2 2\n0 0 1 1\n2 2\n0 0 1 1\n0\n1\n0\n1\n";
+  const Model model =
+      model_of(parse_g2, curve + volume + bent + curve + cylinder + function + "999 1 0 0\n1 2\n3\n" + bent);
+  EXPECT_EQ(model.surfaces.size(), 2u);
+  EXPECT_EQ(model.warnings,
+            (std::vector<std::string>{"m:1: 2 spline curves are not read", "m:7: 1 spline volume is not read",
+                                      "m:37: 1 unbounded surface is not read",
+                                      "m:46: 1 surface that is not in space is not read",
+                                      "m:56: 1 object of another class is not read"}));
+  EXPECT_EQ(error_of(parse_g2, volume + curve, StatusCode::unsupported),
+            "m: no surface that can be read, but 1 spline volume, 1 spline curve");
+}
+
+TEST(G2, ErrorsSayWhereWhatAndWhatWasWanted) {
+  const std::string header = "the header of an object (class, version 1 0, auxiliary numbers)";
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {"", "m:1: expected an object, found the end of the file"},
+      {"\n\n", "m:2: expected an object, found the end of the file"},
+      {"200 1 0\n", "m:1: expected " + header + ", found \"200\""},
+      {"spline\n", "m:1: expected " + header + ", found \"spline\""},
+      {bent + "1 2 3\n", "m:13: expected " + header + ", found \"1\""},
+      {"200 1 0 0\n4 0\n", "m:2: expected the dimension of object 1 (class 200), from 1 to 3, found \"4\""},
+      {"200 1 0 0\n3 2\n",
+       "m:2: expected whether the surface is rational of object 1 (class 200), from 0 to 1, found \"2\""},
+      {"200 1 0 0\n3 0\n0 2\n",
+       "m:3: expected the number of points along a direction of object 1 (class 200), from 1 to 1073741824, found "
+       "\"0\""},
+      {"200 1 0 0\n3 0\n3 1\n",
+       "m:3: expected the order along a direction of object 1 (class 200), from 2 to 16, found \"1\""},
+      {"200 1 0 0\n3 0\n2 2\n0 0 x 1\n", "m:4: expected a knot of object 1 (class 200), found \"x\""},
+      {"200 1 0 0\n3 0\n2 2\n0 0 1 1\n2 2\n0 1 0 1\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n", "m:1: object 1 (class 200): "},
+      {"200 1 0 0\n3 1\n2 2\n0 0 1 1\n2 2\n0 0 1 1\n0 0 0 0\n1 0 0 1\n0 1 0 1\n1 1 0 1\n",
+       "m:7: expected a weight above 0 of object 1 (class 200), found \"0\""},
+      {"200 1 0 0\n3 1\n2 2\n0 0 1 1\n2 2\n0 0 1 1\n0 0 0 1\n1 0 0 -2\n0 1 0 1\n1 1 0 1\n",
+       "m:8: expected a weight above 0 of object 1 (class 200), found \"-2\""},
+      {"270 1 0 0\n3\n-1\n0 0 0\n0 0 1\n1 0 0\n0 1\n0 1\n0\n", "m:1: object 1 (class 270): its radius is not above 0"},
+      {"270 1 0 0\n3\n1\n0 0 0\n0 0 1\n0 0 2\n0 1\n0 1\n0\n",
+       "m:1: object 1 (class 270): expected a z axis and an x axis of different directions"},
+      {"290 1 0 0\n3\n5 1\n0 0 0\n0 0 1\n1 0 0\n1\n0 9\n0 1\n0\n",
+       "m:1: object 1 (class 290): its ranges are not above 0 and at most a full turn"},
+      {"260 1 0 0\n3\n1\n0 0 0\n0 0 1\n1 0 0\n2\n",
+       "m:7: expected whether the surface is bounded of object 1 (class 260), from 0 to 1, found \"2\""},
+  };
+  for (const auto& [text, message] : cases) EXPECT_EQ(error_of(parse_g2, text).substr(0, message.size()), message);
+}
+
+TEST(G2, NumbersThatAreNotFiniteAreErrors) {
+  for (const char* bad : {"nan", "inf", "-inf", "1e400", "-1e400", "1,5"}) {
+    const std::string message = error_of(
+        parse_g2, "200 1 0 0\n3 0\n2 2\n0 0 1 1\n2 2\n0 0 1 1\n0 0 0\n1 " + std::string(bad) + " 0\n0 1 0\n1 1 0\n");
+    EXPECT_EQ(message, "m:8: expected a coordinate of object 1 (class 200), found \"" + std::string(bad) + "\"");
+  }
+}
+
+TEST(G2, CountsThatTheFileCannotHoldAllocateNothing) {
+  EXPECT_EQ(error_of(parse_g2, "200 1 0 0\n3 0\n1000000000 2\n0 0 1\n"),
+            "m:4: expected a knot of object 1 (class 200), found the end of the file");
+  std::string text = "200 1 0 0\n3 0\n";
+  for (int direction = 0; direction < 2; ++direction) {
+    text += "3000 2\n0";
+    for (int k = 0; k < 3000; ++k) text += " " + std::to_string(k);
+    text += " 2999\n";
+  }
+  EXPECT_EQ(error_of(parse_g2, text + "0 0 0\n"),
+            "m:1: object 1 (class 200): the file is shorter than its 3000 x 3000 points");
+}
+
+TEST(G2, LayoutDoesNotMatter) { expect_layout_does_not_matter(parse_g2, bent + quarter); }
+TEST(G2, CutsAreHarmless) {
+  expect_cuts_are_harmless(parse_g2, bent + "290 1 0 0\n3\n5 2\n0 0 0\n0 0 1\n1 0 0\n1\n0 6.28\n0 1\n0\n" +
+                                         "280 1 0 0\n3\n2\n0 0 0\n0 0 1\n1 0 0\n0.5\n1\n0 6\n0 3\n0\n100 1 0 0\n3 0\n" +
+                                         quarter);
+}
+TEST(G2, SpoiledBytesAreHarmless) {
+  expect_spoiled_bytes_are_harmless(parse_g2,
+                                    bent + quarter + "270 1 0 0\n3\n1.5\n0 0 0\n0 0 1\n1 0 0\n0 6\n-1 1\n0\n");
+}
+
+}  // namespace
+}  // namespace tessera::test
