@@ -95,7 +95,7 @@ Status RibLexer::take_string(std::string_view what, std::string_view& value) {
 bool RibLexer::take_word(double& value) {
   cursor_.skip_space();
   const std::string_view token = word();
-  TextCursor number(token, {}, 0);
+  TextCursor number(token, {}, {.comment = 0});
   if (token.empty() || !number.take_finite(value)) return false;
   cursor_.skip(token);
   return true;
