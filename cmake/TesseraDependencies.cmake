@@ -2,6 +2,7 @@
 #   oneTBB            libtbb-dev 2021.8           the core: threads (engine/src/parallel alone includes it)
 #   xsimd             libxsimd-dev 8.1            the core: SIMD batches (engine/src/kernel alone; headers only)
 #   Embree            libembree-dev 3.13          tessera::ray (engine/src/ray alone)
+#   OpenCASCADE       libocct-data-exchange-dev 7.6  tessera::io_occt (engine/src/io_occt alone); optional
 #   CLI11             libcli11-dev 2.1            the command line
 #   nlohmann-json     nlohmann-json3-dev 3.11     tessera::io: models (headers only, within engine/src/io);
 #                                               the command line: --json; tests: values of peers
@@ -23,6 +24,18 @@ endif()
 if(TESSERA_BUILD_IO)
   find_package(nlohmann_json 3 REQUIRED)
   find_package(muparser 2 REQUIRED)
+endif()
+# Whether tessera::io_occt is built.
+set(TESSERA_HAS_IO_OCCT OFF)
+if(TESSERA_BUILD_IO AND TESSERA_BUILD_IO_OCCT)
+  include(TesseraOpenCascade)
+  set(TESSERA_HAS_IO_OCCT ${tessera_OpenCASCADE_FOUND})
+  if(NOT TESSERA_HAS_IO_OCCT AND TESSERA_BUILD_IO_OCCT STREQUAL "AUTO")
+    message(STATUS "tessera::io_occt (STEP, IGES) is left out: OpenCASCADE is not found (libocct-data-exchange-dev)")
+  elseif(NOT TESSERA_HAS_IO_OCCT)
+    message(FATAL_ERROR "TESSERA_BUILD_IO_OCCT is ON, but OpenCASCADE 7.5 or later with its data exchange is not found. "
+      "On Debian it is libocct-data-exchange-dev.")
+  endif()
 endif()
 if(TESSERA_BUILD_TOOLS)
   find_package(CLI11 2 REQUIRED)

@@ -69,6 +69,21 @@ TEST_F(Interval, OriginOnTheSurface) {
   }
 }
 
+TEST(IntervalBegin, FacetsAtTheBeginningOfAPieceAreLeftBehind) {
+  // Rays that leave the set from just outside are traced from so far back as facets may be off. Some then begin, in
+  // float, on the flat facet itself, whose hit lies before their tnear.
+  std::vector<Vec3> dome;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) dome.push_back({i / 2.0, j / 2.0, i == 1 && j == 1 ? 1.01 : 1.0});
+  const std::vector<Vec3> flat{{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}};
+  const PatchSet set =
+      set_of({value_of(BezierPatch::polynomial(1, 1, flat)), value_of(BezierPatch::polynomial(2, 2, dome))});
+  const RayScene scene = scene_of(set, 5);
+  std::vector<Ray> rays;
+  for (int k = 1; k < 500000; ++k) rays.push_back(ray({0.3, 0.6, -4e-8 * k}, {0, 0, -1}));
+  for (const Hit& hit : closest(scene, rays)) ASSERT_EQ(hit.kind, HitKind::miss);
+}
+
 TEST_F(Interval, OccludedAgreesWithClosest) {
   Random random(24);
   std::vector<Ray> rays;

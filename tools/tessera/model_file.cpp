@@ -5,11 +5,30 @@
 #include <cstdio>
 
 #include "tessera/io.h"
+#ifdef TESSERA_HAS_IO_OCCT
+#include "tessera/io_occt.h"
+#endif
 
 namespace tessera::cli {
+namespace {
+
+#ifdef TESSERA_HAS_IO_OCCT
+constexpr const char* cad_formats = ", .step, .stp, .iges, .igs";
+
+/// By the component that knows the format.
+Result<Model> read_any_model(const std::string& path) { return is_cad_file(path) ? read_cad(path) : read_model(path); }
+#else
+constexpr const char* cad_formats = "";
+
+Result<Model> read_any_model(const std::string& path) { return read_model(path); }
+#endif
+
+}  // namespace
 
 void add_model(CLI::App& command, ModelFile& file) {
-  command.add_option("MODEL", file.path, "The file of surfaces (.bpt, .bv, .g2, .json, .rib)")
+  command
+      .add_option("MODEL", file.path,
+                  std::string("The file of surfaces (.bpt, .bv, .g2, .json, .rib") + cad_formats + ")")
       ->required()
       ->type_name("FILE");
   command
@@ -25,7 +44,7 @@ void add_model(CLI::App& command, ModelFile& file) {
 
 Result<Model> open_model(const ModelFile& file) {
   constexpr std::size_t limit = 20;  // lines; the file may be a long list of what is not read
-  Result<Model> model = read_model(file.path);
+  Result<Model> model = read_any_model(file.path);
   if (!model) return model;
   const std::size_t count = model->warnings.size();
   for (std::size_t k = 0; k < std::min(count, limit); ++k) {

@@ -64,6 +64,17 @@ Result<Content> read_as(const fs::path& path, Ability Format::*member, std::stri
   return ((*format)->*member)(*bytes, path.string());
 }
 
+/// That tessera::io_occt reads these files, if it does; else `status`.
+Status or_read_elsewhere(const fs::path& path, const Status& status) {
+  const std::string extension = lower_extension(path);
+  const bool step = extension == ".step" || extension == ".stp", iges = extension == ".iges" || extension == ".igs";
+  if (status.code() != StatusCode::unsupported || (!step && !iges)) return status;
+  return Status(StatusCode::unsupported,
+                path.string() + ": unsupported format \"" + extension + "\": " + (step ? "STEP" : "IGES") +
+                    " is read where OpenCASCADE is installed (libocct-data-exchange-dev) when Tessera is built, by "
+                    "read_cad of tessera/io_occt.h");
+}
+
 /// Lengths that fit each other, indices in range, numbers that fit float.
 Status validate(const Mesh& mesh) {
   const std::size_t vertices = mesh.vertex_count(), triangles = mesh.triangle_count();
@@ -111,7 +122,8 @@ Status check_mesh_format(const fs::path& path) { return find_format(path, &Forma
 Result<Model> read_model(const fs::path& path) {
   return guarded([&]() -> Result<Model> {
     Result<Model> model = read_as<Model>(path, &Format::read_model, "surfaces are read");
-    if (model) model->name = path.stem().string();
+    if (!model) return or_read_elsewhere(path, model.status());
+    model->name = path.stem().string();
     return model;
   });
 }

@@ -178,7 +178,9 @@ void RayScene::Impl::trace(std::span<const RaySegment> segments, std::span<Facet
 Hit RayScene::Impl::resolve(const Ray& ray, const RaySegment& segment, FacetHit facet) const {
   for (Hit hit; facet.hit();) {
     if (accept(ray, segment, facet, hit)) return hit;
-    const FacetRay behind = segment.facet_ray(std::nextafter(facet.t, std::numeric_limits<float>::max()));
+    // Embree takes a denormal tnear for 0, and would find a facet at 0 again without end.
+    const float next = std::nextafter(facet.t, std::numeric_limits<float>::max());
+    const FacetRay behind = segment.facet_ray(std::max(next, std::numeric_limits<float>::min()));
     if (!(behind.tnear <= behind.tfar)) break;
     const FlushDenormals flush;
     facet = scene_.closest(behind);

@@ -1,0 +1,15 @@
+# Finds OpenCASCADE (7.5 or later; its own version file lets no other patch version pass) and sets
+# tessera_OpenCASCADE_FOUND. What its package adds to the compile definitions of the folder is taken back: only the
+# targets are wanted.
+
+get_directory_property(_tessera_definitions COMPILE_DEFINITIONS)
+find_package(OpenCASCADE QUIET)
+set_directory_properties(PROPERTIES COMPILE_DEFINITIONS "${_tessera_definitions}")
+unset(_tessera_definitions)
+
+set(tessera_OpenCASCADE_FOUND FALSE)
+if(OpenCASCADE_FOUND AND TARGET TKSTEP AND TARGET TKIGES)
+  if("${OpenCASCADE_MAJOR_VERSION}.${OpenCASCADE_MINOR_VERSION}" VERSION_GREATER_EQUAL 7.5)
+    set(tessera_OpenCASCADE_FOUND TRUE)
+  endif()
+endif()

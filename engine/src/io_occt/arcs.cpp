@@ -1,0 +1,65 @@
+#include "io_occt/arcs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tessera {
+namespace {
+
+constexpr double rounding = 1e-12;
+
+/// With zeros where only the rounding of pi is in the way.
+Arcs::Point on_circle(double angle) {
+  const auto clean = [](double value) { return std::abs(value) < 1e-15 ? 0.0 : value; };
+  return {clean(std::cos(angle)), clean(std::sin(angle)), 1};
+}
+
+}  // namespace
+
+Arcs::Arcs(double from, double to) : from_(from), to_(to) {
+  const double right_angles = (to - from) / (std::numbers::pi / 2);
+  count_ = std::max(1, static_cast<int>(std::ceil(right_angles - rounding)));
+}
+
+std::vector<Arcs::Point> Arcs::points() const {
+  std::vector<Point> points{on_circle(from_)};
+  const double inner = std::cos(half());
+  for (int k = 0; k < count_; ++k) {
+    const Point corner = on_circle(0.5 * (knot(k) + knot(k + 1)));  // of the tangents
+    points.push_back({corner.cosine / inner, corner.sine / inner, inner});
+    points.push_back(on_circle(knot(k + 1)));
+  }
+  if (std::abs(to_ - from_ - 2 * std::numbers::pi) < rounding) points.back() = points.front();
+  return points;
+}
+
+std::vector<double> Arcs::knots() const {
+  std::vector<double> knots{from_};
+  for (int k = 0; k <= count_; ++k) knots.insert(knots.end(), 2, knot(k));
+  knots.push_back(to_);
+  return knots;
+}
+
+double Arcs::middle(double value) const {
+  const double place = std::floor((value - from_) / (2 * half()));
+  const int k = static_cast<int>(std::clamp(place, 0.0, count_ - 1.0));
+  return 0.5 * (knot(k) + knot(k + 1));
+}
+
+double Arcs::parameter(double angle) const {
+  const double m = middle(angle), h = half();
+  return m + h * std::tan(0.5 * (angle - m)) / std::tan(0.5 * h);
+}
+
+double Arcs::angle(double parameter) const {
+  const double m = middle(parameter), h = half();
+  return m + 2 * std::atan(std::tan(0.5 * h) * (parameter - m) / h);
+}
+
+double Arcs::slope(double angle) const {
+  const double h = half(), c = std::cos(0.5 * (angle - middle(angle)));
+  return 0.5 * h / (c * c * std::tan(0.5 * h));
+}
+
+}  // namespace tessera

@@ -1,0 +1,40 @@
+#pragma once
+// The unit circle between two angles as rational quadratic arcs, and what their parameter is to the angle.
+
+#include <vector>
+
+namespace tessera {
+
+/// Arcs of equal length, at most 90 degrees each, which meet in double knots; their parameter is the angle at the knots.
+/// Within an arc about m of half-width h it is m + h tan((angle - m)/2) / tan(h/2) (the rational quadratic of weights 1,
+/// cos h, 1 is the stereographic one: Farin, Curves and Surfaces for CAGD, 5th ed., sec. 12.6, 12.8).
+class Arcs {
+ public:
+  /// from < to, at most a full turn, which closes bit for bit.
+  Arcs(double from, double to);
+
+  double from() const { return from_; }
+  double to() const { return to_; }
+
+  /// A circle's point as a control point: (cosine, sine) are those of a point of the plane.
+  struct Point {
+    double cosine = 1, sine = 0, weight = 1;
+  };
+  std::vector<Point> points() const;
+  std::vector<double> knots() const;
+
+  /// Both ways; what lies outside goes on with the nearest arc.
+  double parameter(double angle) const;
+  double angle(double parameter) const;
+  /// d parameter / d angle: continuous, as the arcs are equal.
+  double slope(double angle) const;
+
+ private:
+  double half() const { return (to_ - from_) / (2 * count_); }
+  double middle(double value) const;
+  double knot(int k) const { return k == count_ ? to_ : from_ + (to_ - from_) * k / count_; }
+  double from_, to_;
+  int count_;
+};
+
+}  // namespace tessera

@@ -1,0 +1,154 @@
+#include "io_occt/face_loops.h"
+
+#include <opencascade/BRepTools.hxx>
+#include <opencascade/BRepTools_WireExplorer.hxx>
+#include <opencascade/BRep_Tool.hxx>
+#include <opencascade/GeomAdaptor_Surface.hxx>
+#include <opencascade/Precision.hxx>
+#include <opencascade/TopExp_Explorer.hxx>
+#include <opencascade/TopoDS.hxx>
+#include <opencascade/TopoDS_Iterator.hxx>
+#include <opencascade/TopoDS_Wire.hxx>
+
+#include <algorithm>
+#include <cmath>
+
+#include "io_occt/trim_curve.h"
+
+namespace tessera {
+namespace {
+
+using opencascade::handle;
+
+/// Lengths below this are rounding to OpenCASCADE's users; above, edges and faces state their own.
+double tolerance_of(const TopoDS_Face& face) {
+  double tolerance = std::max(::Precision::Confusion(), BRep_Tool::Tolerance(face));
+  for (TopExp_Explorer edge(face, TopAbs_EDGE); edge.More(); edge.Next())
+    tolerance = std::max(tolerance, BRep_Tool::Tolerance(TopoDS::Edge(edge.Current())));
+  return tolerance;
+}
+
+/// One direction of the box.
+struct Side {
+  double from, to;          // of the face
+  double first, last;       // of the surface
+  double period;            // 0: none
+  double length_tolerance;  // of the face, as a parameter
+
+  double tolerance() const { return std::clamp(length_tolerance, 1e-9 * (to - from), 1e-4 * (to - from)); }
+  void settle() {
+    const double tol = tolerance();
+    for (double* const end : {&from, &to}) {
+      if (std::abs(*end - first) <= tol) *end = first;
+      if (std::abs(*end - last) <= tol) *end = last;
+    }
+    if (period > 0) {
+      if (to - from > period - tol) to = from == first ? last : from + period;
+    } else {
+      from = std::max(from, first);
+      to = std::min(to, last);
+    }
+  }
+};
+
+/// The edges of a wire in their order. Where the wire is broken, those that the walk along it does not reach come last.
+std::vector<TopoDS_Edge> edges_of(const TopoDS_Wire& wire, const TopoDS_Face& face) {
+  std::vector<TopoDS_Edge> edges;
+  for (BRepTools_WireExplorer walk(wire, face); walk.More(); walk.Next()) edges.push_back(walk.Current());
+  std::vector<TopoDS_Edge> all;
+  for (TopoDS_Iterator child(wire); child.More(); child.Next())
+    if (child.Value().ShapeType() == TopAbs_EDGE) all.push_back(TopoDS::Edge(child.Value()));
+  if (all.size() == edges.size()) return edges;
+  for (const TopoDS_Edge& edge : all) {
+    const auto same = [&](const TopoDS_Edge& other) { return edge.IsEqual(other); };
+    if (std::none_of(edges.begin(), edges.end(), same)) edges.push_back(edge);
+  }
+  return edges;
+}
+
+Result<Curve> curve_of(const TopoDS_Edge& edge, const TopoDS_Face& face, const FaceBox& box,
+                       const Reparametrization& parameters) {
+  double from = 0, to = 0;
+  const handle<Geom2d_Curve> curve = BRep_Tool::CurveOnSurface(edge, face, from, to);
+  if (curve.IsNull()) return Status(StatusCode::unsupported, "an edge has no curve in the face's parameters");
+  const Domain& d = box.domain;
+  const double tolerance = 1e-9 * std::min(d.u1 - d.u0, d.v1 - d.v0);
+  return trim_curve(curve, {from, to}, edge.Orientation() == TopAbs_REVERSED, parameters, tolerance);
+}
+
+/// Whether all control points of the curve are on one side of the box.
+bool is_on_a_side(const Curve& curve, const FaceBox& box) {
+  const auto all = [&](auto&& fits) { return std::all_of(curve.points().begin(), curve.points().end(), fits); };
+  const Domain& d = box.domain;
+  return all([&](const Vec3& p) { return std::abs(p.x - d.u0) <= box.tolerance_u; }) ||
+         all([&](const Vec3& p) { return std::abs(p.x - d.u1) <= box.tolerance_u; }) ||
+         all([&](const Vec3& p) { return std::abs(p.y - d.v0) <= box.tolerance_v; }) ||
+         all([&](const Vec3& p) { return std::abs(p.y - d.v1) <= box.tolerance_v; });
+}
+
+/// Of the polygon of the curves' ends.
+double enclosed_area(const std::vector<Curve>& curves) {
+  double twice = 0;
+  const Vec3 corner = curves.front().points().front();
+  for (const Curve& curve : curves) twice += cross(curve.points().front() - corner, curve.points().back() - corner).z;
+  return 0.5 * twice;
+}
+
+/// Whether one loop goes around the box along its sides: then nothing is trimmed.
+bool is_whole_box(const std::vector<TrimLoop>& loops, const FaceBox& box) {
+  if (loops.size() != 1 || loops[0].curves.empty()) return false;
+  const std::vector<Curve>& curves = loops[0].curves;
+  if (!std::all_of(curves.begin(), curves.end(), [&](const Curve& c) { return is_on_a_side(c, box); })) return false;
+  const Domain& d = box.domain;
+  const double width = d.u1 - d.u0, height = d.v1 - d.v0;
+  const double slack = 2 * (box.tolerance_u * height + box.tolerance_v * width);
+  return std::abs(std::abs(enclosed_area(curves)) - width * height) <= slack;
+}
+
+}  // namespace
+
+Result<FaceBox> face_box(const TopoDS_Face& face) {
+  TopLoc_Location location;
+  const handle<Geom_Surface> surface = BRep_Tool::Surface(face, location);
+  const GeomAdaptor_Surface adaptor(surface);
+  const double tolerance = tolerance_of(face);
+  Side u{}, v{};
+  BRepTools::UVBounds(face, u.from, u.to, v.from, v.to);
+  surface->Bounds(u.first, u.last, v.first, v.last);
+  if (surface->IsUPeriodic()) u.period = surface->UPeriod();
+  if (surface->IsVPeriodic()) v.period = surface->VPeriod();
+  u.length_tolerance = adaptor.UResolution(tolerance);
+  v.length_tolerance = adaptor.VResolution(tolerance);
+  for (Side* const side : {&u, &v}) {
+    const bool bounded = std::isfinite(side->to - side->from) && !::Precision::IsInfinite(side->from) &&
+                         !::Precision::IsInfinite(side->to);
+    if (!bounded) return Status(StatusCode::unsupported, "it has no bounds");
+    if (!(side->from < side->to)) return Status(StatusCode::unsupported, "it has no extent");
+    side->settle();
+    if (!(side->from < side->to)) return Status(StatusCode::unsupported, "it has no extent");
+  }
+  return FaceBox{{u.from, u.to, v.from, v.to}, u.tolerance(), v.tolerance()};
+}
+
+Result<std::vector<TrimLoop>> face_loops(const TopoDS_Face& given, const FaceBox& box,
+                                         const Reparametrization& parameters) {
+  // Wires of a face that is reversed run the other way: what a loop encloses does not depend on that.
+  const TopoDS_Face face = TopoDS::Face(given.Oriented(TopAbs_FORWARD));
+  const TopoDS_Wire outer = BRepTools::OuterWire(face);
+  std::vector<TrimLoop> loops;
+  for (TopoDS_Iterator child(face); child.More(); child.Next()) {
+    if (child.Value().ShapeType() != TopAbs_WIRE) continue;
+    const TopoDS_Wire wire = TopoDS::Wire(child.Value());
+    TrimLoop loop{{}, !outer.IsNull() && !wire.IsSame(outer)};
+    for (const TopoDS_Edge& edge : edges_of(wire, face)) {
+      Result<Curve> curve = curve_of(edge, face, box, parameters);
+      if (!curve) return curve.status();
+      loop.curves.push_back(*std::move(curve));
+    }
+    if (!loop.curves.empty()) loops.push_back(std::move(loop));
+  }
+  if (is_whole_box(loops, box)) loops.clear();
+  return loops;
+}
+
+}  // namespace tessera

@@ -1,0 +1,227 @@
+#include "io_occt/face_surface.h"
+
+#include <opencascade/GeomAdaptor_Surface.hxx>
+#include <opencascade/GeomConvert_ApproxSurface.hxx>
+#include <opencascade/Geom_BSplineSurface.hxx>
+#include <opencascade/Geom_BezierSurface.hxx>
+#include <opencascade/Geom_OffsetSurface.hxx>
+#include <opencascade/Geom_RectangularTrimmedSurface.hxx>
+#include <opencascade/Geom_SurfaceOfLinearExtrusion.hxx>
+#include <opencascade/Geom_SurfaceOfRevolution.hxx>
+#include <opencascade/gp_Cone.hxx>
+#include <opencascade/gp_Cylinder.hxx>
+#include <opencascade/gp_Pln.hxx>
+#include <opencascade/gp_Sphere.hxx>
+#include <opencascade/gp_Torus.hxx>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "io_occt/spline_line.h"
+
+namespace tessera {
+namespace {
+
+using opencascade::handle;
+
+/// Axes at right angles, of unit length, left- or right-handed.
+struct Frame {
+  Vec3 origin, x, y, z;
+
+  Frame(const gp_Ax3& axes)
+      : origin(vec3(axes.Location().XYZ())),
+        x(vec3(axes.XDirection().XYZ())),
+        y(vec3(axes.YDirection().XYZ())),
+        z(vec3(axes.Direction().XYZ())) {}
+  Vec3 at(const Vec3& p) const { return origin + (p.x * x + p.y * y) + p.z * z; }
+  Vec3 local(const Vec3& p) const {
+    const Vec3 d = p - origin;
+    return {dot(d, x), dot(d, y), dot(d, z)};
+  }
+};
+
+Interval range_u(const Domain& box) { return {box.u0, box.u1}; }
+Interval range_v(const Domain& box) { return {box.v0, box.v1}; }
+
+Result<FaceSurface> made(Result<BSplineSurface> surface, const Reparametrization& parameters, double fit_error = 0) {
+  if (!surface) return surface.status();
+  return FaceSurface{*std::move(surface), parameters, fit_error};
+}
+
+/// `profile`, whose points are in the frame's coordinates, along v, turned about the frame's z by the angles u.
+Result<FaceSurface> revolved(const Frame& frame, const Interval& angles, const SplineLine& profile) {
+  const Arcs turn(angles.from, angles.to);
+  std::vector<Vec3> points;
+  std::vector<double> weights;
+  for (const Arcs::Point& arc : turn.points())
+    for (std::size_t k = 0; k < profile.points.size(); ++k) {
+      const Vec3& p = profile.points[k];
+      points.push_back(frame.at({arc.cosine * p.x - arc.sine * p.y, arc.sine * p.x + arc.cosine * p.y, p.z}));
+      weights.push_back(arc.weight * profile.weight(k));
+    }
+  const Domain domain{angles.from, angles.to, profile.range.from, profile.range.to};
+  return made(BSplineSurface::rational(2, turn.knots(), profile.degree, profile.knots, points, weights, domain),
+              {turn, profile.arcs}, profile.fit_error);
+}
+
+/// `profile` along u, moved by v times `direction`.
+Result<FaceSurface> extruded(const SplineLine& profile, const Vec3& direction, const Interval& range) {
+  std::vector<Vec3> points;
+  std::vector<double> weights;
+  for (std::size_t k = 0; k < profile.points.size(); ++k)
+    for (const double v : {range.from, range.to}) {
+      points.push_back(profile.points[k] + v * direction);
+      weights.push_back(profile.weight(k));
+    }
+  const std::vector<double> knots_v{range.from, range.from, range.to, range.to};
+  const Domain domain{profile.range.from, profile.range.to, range.from, range.to};
+  return made(BSplineSurface::rational(profile.degree, profile.knots, 1, knots_v, points, weights, domain),
+              {profile.arcs, {}}, profile.fit_error);
+}
+
+Result<FaceSurface> from_plane(const gp_Pln& plane, const Domain& box) {
+  const Frame frame(plane.Position());
+  return extruded(straight_line(frame.at({box.u0, 0, 0}), frame.at({box.u1, 0, 0}), range_u(box)), frame.y,
+                  range_v(box));
+}
+
+Result<FaceSurface> from_cylinder(const gp_Cylinder& cylinder, const Domain& box) {
+  const double r = cylinder.Radius();
+  return revolved(cylinder.Position(), range_u(box), straight_line({r, 0, box.v0}, {r, 0, box.v1}, range_v(box)));
+}
+
+Result<FaceSurface> from_cone(const gp_Cone& cone, const Domain& box) {
+  const double s = std::sin(cone.SemiAngle()), c = std::cos(cone.SemiAngle());
+  std::array<double, 2> radii{cone.RefRadius() + box.v0 * s, cone.RefRadius() + box.v1 * s};
+  const double largest = std::max(std::abs(radii[0]), std::abs(radii[1]));
+  for (double& radius : radii)
+    if (std::abs(radius) < 1e-12 * largest) radius = 0;  // the apex
+  return revolved(cone.Position(), range_u(box),
+                  straight_line({radii[0], 0, box.v0 * c}, {radii[1], 0, box.v1 * c}, range_v(box)));
+}
+
+/// The circle of radius `minor` whose centre is `major` away from the axis, turned about the axis.
+Result<FaceSurface> from_turned_circle(const gp_Ax3& axes, double major, double minor, const Domain& box) {
+  return revolved(axes, range_u(box), ellipse_arcs({major, 0, 0}, {minor, 0, 0}, {0, 0, minor}, range_v(box)));
+}
+
+Result<FaceSurface> from_revolution(const Geom_SurfaceOfRevolution& surface, const Domain& box) {
+  Result<SplineLine> profile = spline_line(surface.BasisCurve(), range_v(box));
+  if (!profile) return profile.status();
+  const Frame frame(gp_Ax3(surface.Axis().Location(), surface.Axis().Direction()));
+  for (Vec3& p : profile->points) p = frame.local(p);
+  return revolved(frame, range_u(box), *profile);
+}
+
+Result<FaceSurface> from_extrusion(const Geom_SurfaceOfLinearExtrusion& surface, const Domain& box) {
+  const Result<SplineLine> profile = spline_line(surface.BasisCurve(), range_u(box));
+  if (!profile) return profile.status();
+  return extruded(*profile, vec3(surface.Direction().XYZ()), range_v(box));
+}
+
+Result<FaceSurface> from_spline(const Geom_BSplineSurface& surface, const Domain& box) {
+  const double period_u = surface.IsUPeriodic() ? surface.UPeriod() : 0,
+               period_v = surface.IsVPeriodic() ? surface.VPeriod() : 0;
+  const PoleLine u = unrolled({surface.UDegree(), surface.NbUPoles(), period_u}, surface.UKnotSequence(), range_u(box));
+  const PoleLine v = unrolled({surface.VDegree(), surface.NbVPoles(), period_v}, surface.VKnotSequence(), range_v(box));
+  const bool rational = surface.IsURational() || surface.IsVRational();
+  std::vector<Vec3> points;
+  std::vector<double> weights;
+  for (const int i : u.poles)
+    for (const int j : v.poles) {
+      points.push_back(vec3(surface.Pole(i + 1, j + 1).XYZ()));
+      if (rational) weights.push_back(surface.Weight(i + 1, j + 1));
+    }
+  const Interval part_u = u.covered(range_u(box)), part_v = v.covered(range_v(box));
+  const Domain domain{part_u.from, part_u.to, part_v.from, part_v.to};
+  return made(rational ? BSplineSurface::rational(u.degree, u.knots, v.degree, v.knots, points, weights, domain)
+                       : BSplineSurface::polynomial(u.degree, u.knots, v.degree, v.knots, points, domain),
+              {});
+}
+
+Result<FaceSurface> from_bezier(const Geom_BezierSurface& surface, const Domain& box) {
+  const bool rational = surface.IsURational() || surface.IsVRational();
+  const auto knots = [](int degree) {
+    std::vector<double> all(static_cast<std::size_t>(degree) + 1, 0.0);
+    all.resize(2 * all.size(), 1.0);
+    return all;
+  };
+  std::vector<Vec3> points;
+  std::vector<double> weights;
+  for (int i = 1; i <= surface.NbUPoles(); ++i)
+    for (int j = 1; j <= surface.NbVPoles(); ++j) {
+      points.push_back(vec3(surface.Pole(i, j).XYZ()));
+      weights.push_back(rational ? surface.Weight(i, j) : 1);
+    }
+  const Domain domain{std::max(0.0, box.u0), std::min(1.0, box.u1), std::max(0.0, box.v0), std::min(1.0, box.v1)};
+  return made(BSplineSurface::rational(surface.UDegree(), knots(surface.UDegree()), surface.VDegree(),
+                                       knots(surface.VDegree()), points, weights, domain),
+              {});
+}
+
+/// How far the two are apart at equal parameters, at a fine grid of them.
+double deviation(const Geom_Surface& a, const Geom_Surface& b, const Domain& box) {
+  constexpr int steps = 48;
+  double largest = 0;
+  for (int i = 0; i <= steps; ++i)
+    for (int j = 0; j <= steps; ++j) {
+      const double u = box.u_at(static_cast<double>(i) / steps), v = box.v_at(static_cast<double>(j) / steps);
+      largest = std::max(largest, a.Value(u, v).Distance(b.Value(u, v)));
+    }
+  return largest;
+}
+
+/// Any surface, at equal parameters, to within 1e-6 of its size where OpenCASCADE gets there. C0 alone: of smoother fits
+/// OpenCASCADE 7.6 states errors that are too small by factors of thousands.
+Result<FaceSurface> fitted(const handle<Geom_Surface>& surface, const Domain& box) {
+  Box3 points;
+  for (int k = 0; k < 25; ++k) points.extend(vec3(surface->Value(box.u_at(k % 5 / 4.0), box.v_at(k / 5 / 4.0)).XYZ()));
+  const handle<Geom_Surface> part = new Geom_RectangularTrimmedSurface(surface, box.u0, box.u1, box.v0, box.v1);
+  const GeomConvert_ApproxSurface fit(part, 1e-6 * points.diagonal(), GeomAbs_C0, GeomAbs_C0, 9, 9, 100, 1);
+  if (!fit.HasResult())
+    return Status(StatusCode::unsupported,
+                  std::string("a ") + surface->DynamicType()->Name() + " that OpenCASCADE cannot fit");
+  Result<FaceSurface> face = from_spline(*fit.Surface(), box);
+  if (face) face->fit_error = std::max(fit.MaxError(), deviation(*surface, *fit.Surface(), box));
+  return face;
+}
+
+/// Without the clothes that change neither points nor parameters.
+handle<Geom_Surface> bare(handle<Geom_Surface> surface) {
+  for (;;) {
+    handle<Geom_Surface> inner;
+    if (const auto trimmed = handle<Geom_RectangularTrimmedSurface>::DownCast(surface)) inner = trimmed->BasisSurface();
+    if (const auto offset = handle<Geom_OffsetSurface>::DownCast(surface)) inner = offset->Surface();
+    if (inner.IsNull()) return surface;
+    surface = inner;
+  }
+}
+
+}  // namespace
+
+Result<FaceSurface> face_surface(const handle<Geom_Surface>& given, const Domain& box) {
+  const handle<Geom_Surface> surface = bare(given);
+  if (const auto s = handle<Geom_BSplineSurface>::DownCast(surface)) return from_spline(*s, box);
+  if (const auto s = handle<Geom_BezierSurface>::DownCast(surface)) return from_bezier(*s, box);
+  if (const auto s = handle<Geom_SurfaceOfRevolution>::DownCast(surface)) return from_revolution(*s, box);
+  if (const auto s = handle<Geom_SurfaceOfLinearExtrusion>::DownCast(surface)) return from_extrusion(*s, box);
+  const GeomAdaptor_Surface adaptor(surface);
+  switch (adaptor.GetType()) {
+    case GeomAbs_Plane:
+      return from_plane(adaptor.Plane(), box);
+    case GeomAbs_Cylinder:
+      return from_cylinder(adaptor.Cylinder(), box);
+    case GeomAbs_Cone:
+      return from_cone(adaptor.Cone(), box);
+    case GeomAbs_Sphere:
+      return from_turned_circle(adaptor.Sphere().Position(), 0, adaptor.Sphere().Radius(), box);
+    case GeomAbs_Torus:
+      return from_turned_circle(adaptor.Torus().Position(), adaptor.Torus().MajorRadius(),
+                                adaptor.Torus().MinorRadius(), box);
+    default:
+      return fitted(surface, box);
+  }
+}
+
+}  // namespace tessera

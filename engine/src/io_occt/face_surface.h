@@ -1,0 +1,36 @@
+#pragma once
+// The surface of a face, in the form of ours.
+
+#include <array>
+#include <opencascade/Geom_Surface.hxx>
+#include <optional>
+#include <string_view>
+
+#include "io_occt/arcs.h"
+#include "tessera/bspline_surface.h"
+#include "tessera/domain.h"
+#include "tessera/status.h"
+
+namespace tessera {
+
+/// From OpenCASCADE's parameters of a surface to ours.
+struct Reparametrization {
+  std::optional<Arcs> u, v;  ///< empty: equal
+
+  bool is_identity() const { return !u && !v; }
+  std::array<double, 2> operator()(double theirs_u, double theirs_v) const {
+    return {u ? u->parameter(theirs_u) : theirs_u, v ? v->parameter(theirs_v) : theirs_v};
+  }
+};
+
+struct FaceSurface {
+  BSplineSurface surface;
+  Reparametrization parameters;
+  double fit_error = 0;  ///< 0: exact
+};
+
+/// The part of `surface` over `box`, a rectangle of OpenCASCADE's parameters (angles span at most 2 pi). Errors: those
+/// of BSplineSurface, unsupported. May throw Standard_Failure.
+Result<FaceSurface> face_surface(const opencascade::handle<Geom_Surface>& surface, const Domain& box);
+
+}  // namespace tessera

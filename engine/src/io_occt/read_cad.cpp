@@ -1,0 +1,97 @@
+#include <opencascade/Standard_Failure.hxx>
+#include <opencascade/Standard_OutOfMemory.hxx>
+
+#include <array>
+#include <cerrno>
+#include <fstream>
+#include <string_view>
+#include <system_error>
+
+#include "base/guard.h"
+#include "io/file.h"
+#include "io/formats.h"
+#include "io_occt/cad_file.h"
+#include "io_occt/child_process.h"
+#include "io_occt/model_bytes.h"
+#include "io_occt/shape_model.h"
+#include "tessera/io_occt.h"
+
+namespace tessera {
+namespace {
+
+namespace fs = std::filesystem;
+using Load = Result<CadFile>(const std::string& path);
+
+struct CadFormat {
+  std::string_view extension;
+  Load* load;
+};
+constexpr std::array<CadFormat, 4> formats{
+    {{".step", load_step}, {".stp", load_step}, {".iges", load_iges}, {".igs", load_iges}}};
+
+const CadFormat* find_format(const fs::path& path) {
+  const std::string extension = lower_extension(path);
+  for (const CadFormat& format : formats)
+    if (format.extension == extension) return &format;
+  return nullptr;
+}
+
+/// The file's size, if it can be read at all.
+Result<std::uintmax_t> readable_size(const fs::path& path) {
+  std::error_code error;
+  if (fs::is_directory(path, error))
+    return Status(StatusCode::io_error, path.string() + ": is a directory, not a file");
+  if (!std::ifstream(path, std::ios::binary)) return io_failure(path, "cannot be opened", errno);
+  const std::uintmax_t size = fs::file_size(path, error);
+  if (error) return Status(StatusCode::unsupported, path.string() + ": STEP and IGES are read from files alone");
+  if (size == 0) return Status(StatusCode::parse_error, path.string() + ": the file is empty");
+  return size;
+}
+
+Result<Model> load_model(const std::string& path, Load* load) {
+  try {
+    const Result<CadFile> file = load(path);
+    return file ? model_of(*file, path) : Result<Model>(file.status());
+  } catch (const Standard_OutOfMemory&) {
+    return Status(StatusCode::out_of_memory, path + ": OpenCASCADE wants more memory than it is allowed");
+  } catch (const std::bad_alloc&) {
+    return Status(StatusCode::out_of_memory, path + ": OpenCASCADE wants more memory than it is allowed");
+  } catch (const Standard_Failure& failure) {
+    return Status(StatusCode::parse_error,
+                  path + ": OpenCASCADE: " + failure.DynamicType()->Name() + ": " + failure.GetMessageString());
+  }
+}
+
+Result<Model> read(const fs::path& path, Load* load) {
+  return guarded([&]() -> Result<Model> {
+    const Result<std::uintmax_t> size = readable_size(path);
+    if (!size) return size.status();
+    const std::string file = path.string();
+    const ChildLimits limits{(std::size_t{512} << 20) + 256 * *size, static_cast<unsigned>(120 + *size / 20000)};
+    const auto work = [&] { return to_bytes(guarded([&] { return load_model(file, load); })); };
+    const Result<std::string> bytes = run_in_child(work, limits, "OpenCASCADE");
+    if (!bytes) return Status(bytes.status().code(), file + ": " + bytes.status().message());
+    Result<Model> model = model_from_bytes(*bytes);
+    if (model) model->name = path.stem().string();
+    return model;
+  });
+}
+
+}  // namespace
+
+Result<Model> read_step(const fs::path& path) { return read(path, load_step); }
+
+Result<Model> read_iges(const fs::path& path) { return read(path, load_iges); }
+
+bool is_cad_file(const fs::path& path) { return find_format(path) != nullptr; }
+
+Result<Model> read_cad(const fs::path& path) {
+  const CadFormat* const format = find_format(path);
+  if (format) return read(path, format->load);
+  return guarded([&]() -> Result<Model> {
+    return Status(StatusCode::unsupported, path.string() + ": unsupported format \"" + lower_extension(path) +
+                                               "\": CAD files are read as .step, .stp, .iges, .igs");
+  });
+}
+
+}  // namespace tessera

@@ -1,0 +1,16 @@
+#pragma once
+// The faces of a shape as a model.
+
+#include <string>
+
+#include "io_occt/cad_file.h"
+#include "tessera/model.h"
+#include "tessera/status.h"
+
+namespace tessera {
+
+/// What tessera/io_occt.h says, face after face in the order of the shape. Messages begin with `path`. Errors: parse_error
+/// and those of the first face, if none is left.
+Result<Model> model_of(const CadFile& file, const std::string& path);
+
+}  // namespace tessera

@@ -1,0 +1,128 @@
+#include "io_occt/trim_curve.h"
+
+#include <opencascade/Geom2dConvert.hxx>
+#include <opencascade/Geom2d_BSplineCurve.hxx>
+#include <opencascade/Geom2d_TrimmedCurve.hxx>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace tessera {
+namespace {
+
+using opencascade::handle;
+
+/// The spline itself, with its poles mapped: right where the map keeps straight what they span.
+Result<Curve> mapped_poles(const Geom2d_BSplineCurve& spline, const Reparametrization& parameters) {
+  std::vector<Vec3> points;
+  std::vector<double> weights;
+  for (int k = 1; k <= spline.NbPoles(); ++k) {
+    const gp_Pnt2d pole = spline.Pole(k);
+    const std::array<double, 2> uv = parameters(pole.X(), pole.Y());
+    points.push_back({uv[0], uv[1], 0});
+    if (spline.IsRational()) weights.push_back(spline.Weight(k));
+  }
+  const TColStd_Array1OfReal& flat = spline.KnotSequence();
+  const std::vector<double> knots(flat.begin(), flat.end());
+  return weights.empty() ? Curve::b_spline(spline.Degree(), points, knots)
+                         : Curve::nurbs(spline.Degree(), points, weights, knots);
+}
+
+bool is_straight_along_a_parameter(const Geom2d_BSplineCurve& spline) {
+  if (spline.Degree() != 1 || spline.NbPoles() != 2) return false;
+  const gp_Pnt2d a = spline.Pole(1), b = spline.Pole(2);
+  const double du = std::abs(b.X() - a.X()), dv = std::abs(b.Y() - a.Y());
+  return std::min(du, dv) <= 1e-12 * std::max(du, dv);
+}
+
+struct Sample {
+  double t = 0;
+  Vec3 point, slope;
+};
+
+/// One knot interval of the spline as it runs in our parameters.
+class MappedSpan {
+ public:
+  MappedSpan(const Geom2d_BSplineCurve& spline, int span, const Reparametrization& parameters)
+      : spline_(spline), span_(span), parameters_(parameters) {}
+
+  Sample at(double t) const {
+    gp_Pnt2d p;
+    gp_Vec2d d;
+    spline_.LocalD1(t, span_, span_ + 1, p, d);
+    const std::array<double, 2> uv = parameters_(p.X(), p.Y());
+    const double slope_u = parameters_.u ? parameters_.u->slope(p.X()) : 1,
+                 slope_v = parameters_.v ? parameters_.v->slope(p.Y()) : 1;
+    return {t, {uv[0], uv[1], 0}, {slope_u * d.X(), slope_v * d.Y(), 0}};
+  }
+
+ private:
+  const Geom2d_BSplineCurve& spline_;
+  int span_;
+  const Reparametrization& parameters_;
+};
+
+/// Cubics that share their ends, in Bezier form.
+struct Cubics {
+  std::vector<Vec3> points;
+  std::vector<double> knots;
+
+  void begin(const Sample& a) {
+    points = {a.point};
+    knots.assign(4, a.t);
+  }
+  void append(const std::array<Vec3, 4>& bezier, double end) {
+    points.insert(points.end(), bezier.begin() + 1, bezier.end());
+    knots.insert(knots.end(), 3, end);
+  }
+  Result<Curve> curve() {
+    knots.push_back(knots.back());
+    return Curve::b_spline(3, points, knots);
+  }
+};
+
+/// Position and slope at both ends; halved until the points between fit.
+void append_hermite(const MappedSpan& span, const Sample& a, const Sample& b, double tolerance, int depth,
+                    Cubics& out) {
+  const double third = (b.t - a.t) / 3;
+  const std::array<Vec3, 4> c{a.point, a.point + third * a.slope, b.point - third * b.slope, b.point};
+  const auto cubic = [&](double x) {
+    const double y = 1 - x;
+    return y * y * y * c[0] + 3 * x * y * y * c[1] + 3 * x * x * y * c[2] + x * x * x * c[3];
+  };
+  const Sample middle = span.at(0.5 * (a.t + b.t));
+  bool fits = length(cubic(0.5) - middle.point) <= tolerance;
+  for (const double x : {0.25, 0.75})
+    fits = fits && length(cubic(x) - span.at(a.t + x * (b.t - a.t)).point) <= tolerance;
+  constexpr int deepest = 12;
+  if (fits || depth == deepest) return out.append(c, b.t);
+  append_hermite(span, a, middle, tolerance, depth + 1, out);
+  append_hermite(span, middle, b, tolerance, depth + 1, out);
+}
+
+Result<Curve> refitted(const Geom2d_BSplineCurve& spline, const Reparametrization& parameters, double tolerance) {
+  Cubics cubics;
+  for (int k = spline.FirstUKnotIndex(); k < spline.LastUKnotIndex(); ++k) {
+    const MappedSpan span(spline, k, parameters);
+    const Sample a = span.at(spline.Knot(k)), b = span.at(spline.Knot(k + 1));
+    if (cubics.points.empty()) cubics.begin(a);
+    append_hermite(span, a, b, tolerance, 0, cubics);
+  }
+  return cubics.curve();
+}
+
+}  // namespace
+
+Result<Curve> trim_curve(const handle<Geom2d_Curve>& curve, const Interval& range, bool reversed,
+                         const Reparametrization& parameters, double tolerance) {
+  const handle<Geom2d_TrimmedCurve> part = new Geom2d_TrimmedCurve(curve, range.from, range.to);
+  const handle<Geom2d_BSplineCurve> spline = Geom2dConvert::CurveToBSplineCurve(part);
+  if (spline->IsPeriodic()) spline->SetNotPeriodic();
+  if (reversed) spline->Reverse();
+  if (parameters.is_identity() || is_straight_along_a_parameter(*spline)) return mapped_poles(*spline, parameters);
+  return refitted(*spline, parameters, tolerance);
+}
+
+}  // namespace tessera

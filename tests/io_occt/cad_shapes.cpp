@@ -1,0 +1,57 @@
+#include "io_occt/cad_shapes.h"
+
+#include <opencascade/IGESControl_Writer.hxx>
+#include <opencascade/STEPControl_Writer.hxx>
+#include <opencascade/TopExp_Explorer.hxx>
+#include <opencascade/TopoDS.hxx>
+
+#include <algorithm>
+#include <cstdlib>
+#include <stdexcept>
+
+#include "tessera/io_occt.h"
+
+namespace tessera::test {
+namespace {
+
+bool is_step(const std::filesystem::path& path) { return path.extension().string().starts_with(".st"); }
+
+}  // namespace
+
+void write_cad(const TopoDS_Shape& shape, const std::string& path) {
+  std::string ignored;
+  take_messages(ignored);
+  bool written = false;
+  if (is_step(path)) {
+    STEPControl_Writer writer;
+    take_messages(ignored);
+    written =
+        writer.Transfer(shape, STEPControl_AsIs) == IFSelect_RetDone && writer.Write(path.c_str()) == IFSelect_RetDone;
+  } else {
+    IGESControl_Writer writer;
+    written = writer.AddShape(shape) && writer.Write(path.c_str());
+  }
+  if (!written) throw std::runtime_error("OpenCASCADE cannot write " + path);
+}
+
+Result<CadFile> load_cad(const std::string& path) { return is_step(path) ? load_step(path) : load_iges(path); }
+
+std::vector<TopoDS_Face> faces_of(const TopoDS_Shape& shape) {
+  std::vector<TopoDS_Face> faces;
+  if (shape.IsNull()) return faces;
+  for (TopExp_Explorer face(shape, TopAbs_FACE); face.More(); face.Next())
+    faces.push_back(TopoDS::Face(face.Current()));
+  return faces;
+}
+
+std::vector<std::filesystem::path> real_cad_files() {
+  std::vector<std::filesystem::path> files;
+  const char* const data = std::getenv("TESSERA_TEST_DATA");
+  if (!data) return files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(data))
+    if (entry.is_regular_file() && is_cad_file(entry.path())) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace tessera::test

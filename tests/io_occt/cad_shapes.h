@@ -1,0 +1,24 @@
+#pragma once
+// Shapes of OpenCASCADE's, as files and as their faces.
+
+#include <filesystem>
+#include <opencascade/TopoDS_Face.hxx>
+#include <opencascade/TopoDS_Shape.hxx>
+#include <string>
+#include <vector>
+
+#include "io_occt/cad_file.h"
+
+namespace tessera::test {
+
+/// Writes `shape` to a STEP or an IGES file, by the extension.
+void write_cad(const TopoDS_Shape& shape, const std::string& path);
+/// The file as OpenCASCADE understands it, in this process.
+Result<CadFile> load_cad(const std::string& path);
+/// In the order of models.
+std::vector<TopoDS_Face> faces_of(const TopoDS_Shape& shape);
+
+/// The files of TESSERA_TEST_DATA that end like STEP and IGES files, sorted; none where it is not set.
+std::vector<std::filesystem::path> real_cad_files();
+
+}  // namespace tessera::test
