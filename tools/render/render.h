@@ -44,7 +44,7 @@ struct Image {
   std::vector<std::uint8_t> rgb;
 };
 
-/// `box`: that of the scene's patch set. The same bytes for any number of threads.
+/// `box`: what is to be seen, RayScene::box() by default of the commands. The same bytes for any number of threads.
 /// Errors: invalid_argument (an empty box, settings out of range), cancelled, and those of RayScene::closest.
 Result<Image> render(const RayScene& scene, const Box3& box, const Settings& settings, const Execution& execution = {});
 

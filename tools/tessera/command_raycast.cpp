@@ -40,7 +40,7 @@ Status draw(const Options& options, const PatchSet& set, const RayScene& scene, 
   const Stopwatch drawing;
   Result<render::Image> image = [&] {
     Progress progress("casting rays");
-    return render::render(scene, set.box(), options.settings, progress.execution());
+    return render::render(scene, scene.box(), options.settings, progress.execution());
   }();
   if (!image) return in_file(options.picture, image.status());
   const double draw_seconds = drawing.seconds();

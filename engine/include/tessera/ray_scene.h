@@ -89,6 +89,7 @@ class RayScene {
   /// stale until a refit succeeds.
   Status refit(const Execution& execution = {});
 
+  Box3 box() const;                    ///< of the facets: tighter than that of the control points; empty while stale
   std::uint64_t revision() const;      ///< of the set, when the scene was made or last refitted
   std::size_t memory_bytes() const;    ///< grids and BVH
 

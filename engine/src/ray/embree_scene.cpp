@@ -218,6 +218,13 @@ void EmbreeScene::occluded(std::span<const FacetRay> rays, std::span<std::uint8_
   for (std::size_t k = 0; k < rays.size(); ++k) occluded[k] = query.tfar[k] < 0;
 }
 
+Box3 EmbreeScene::box() const {
+  if (!state_->scene) return {};
+  RTCBounds bounds;
+  rtcGetSceneBounds(state_->scene.get(), &bounds);
+  return {{bounds.lower_x, bounds.lower_y, bounds.lower_z}, {bounds.upper_x, bounds.upper_y, bounds.upper_z}};
+}
+
 std::size_t EmbreeScene::memory_bytes() const {
   const auto bytes = static_cast<std::size_t>(std::max<std::ptrdiff_t>(state_->monitor.bytes.load(), 0));
   return bytes + state_->grids.capacity() * sizeof(RTCGrid);

@@ -11,6 +11,7 @@
 
 #include "tessera/execution.h"
 #include "tessera/status.h"
+#include "tessera/vec.h"
 
 namespace tessera {
 
@@ -77,6 +78,8 @@ class EmbreeScene {
   void closest(std::span<const FacetRay> rays, std::span<FacetHit> hits) const;
   void occluded(std::span<const FacetRay> rays, std::span<std::uint8_t> occluded) const;
 
+  /// Of all vertices; empty before the first build.
+  Box3 box() const;
   /// What Embree has allocated.
   std::size_t memory_bytes() const;
 

@@ -63,6 +63,11 @@ class RayScene::Impl {
   Status closest(std::span<const Ray> rays, std::span<Hit> hits, const Execution& execution) const;
   Status occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded, const Execution& execution) const;
   std::uint64_t revision() const { return revision_; }
+  Box3 box() const {
+    const Box3 box = scene_.box();
+    if (!fresh() || box.empty()) return {};
+    return {box.lower + set_.origin(), box.upper + set_.origin()};
+  }
   std::size_t memory_bytes() const {
     return positions_.capacity() * sizeof(float) + adjacency_.memory_bytes() + scene_.memory_bytes();
   }
@@ -310,6 +315,7 @@ Status RayScene::refit(const Execution& execution) {
 }
 
 std::uint64_t RayScene::revision() const { return impl_->revision(); }
+Box3 RayScene::box() const { return impl_->box(); }
 std::size_t RayScene::memory_bytes() const { return impl_->memory_bytes(); }
 
 }  // namespace tessera
