@@ -9,7 +9,7 @@ tools/gallery.sh [--size WxH] [--sheet PICTURE] [MODEL...]
 Installs what is missing (tools/setup.sh --for gallery), builds the command line in build/demo, casts a picture of each
 model (all of tools/models by default) into out/gallery/NAME.png, and puts them on one sheet, out/gallery.png by default.
 
-  --size WxH        of each picture, 640x480 by default; on the sheet they are half as wide and high
+  --size WxH        of each picture, 480x360 by default; on the sheet they are half as wide and high
   --sheet PICTURE   where the sheet goes
 TEXT
 }
@@ -19,7 +19,7 @@ fail() {
   exit 2
 }
 
-size=640x480
+size=480x360
 sheet=
 models=()
 while (($#)); do
@@ -59,5 +59,5 @@ for model in "${models[@]}"; do
   build/demo/tools/tessera raycast "$model" -o "out/gallery/$name.png" --size "$size"
   tiles+=(-label "${name//_/ }" "out/gallery/$name.png")
 done
-montage "${tiles[@]}" -resize 50% -tile 6x -geometry +6+6 -font DejaVu-Sans -pointsize 13 -background '#f4f4f4' "$sheet"
+montage "${tiles[@]}" -resize 50% -tile 8x -quality 88 -geometry +5+5 -font DejaVu-Sans -pointsize 13 -background '#f4f4f4' "$sheet"
 echo "gallery: ${#models[@]} models on $sheet"
