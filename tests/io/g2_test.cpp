@@ -175,7 +175,12 @@ TEST(G2, CountsThatTheFileCannotHoldAllocateNothing) {
             "m:1: object 1 (class 200): the file is shorter than its 3000 x 3000 points");
 }
 
-TEST(G2, LayoutDoesNotMatter) { expect_layout_does_not_matter(parse_g2, bent + quarter); }
+TEST(G2, LayoutDoesNotMatter) {
+  expect_layout_does_not_matter(parse_g2, bent + quarter);
+  std::string line = bent + quarter;
+  for (char& c : line) c = c == '\n' ? ' ' : c;
+  expect_same(model_of(parse_g2, bent + quarter), model_of(parse_g2, line), "all in one line");
+}
 TEST(G2, CutsAreHarmless) {
   expect_cuts_are_harmless(parse_g2, bent + "290 1 0 0\n3\n5 2\n0 0 0\n0 0 1\n1 0 0\n1\n0 6.28\n0 1\n0\n" +
                                          "280 1 0 0\n3\n2\n0 0 0\n0 0 1\n1 0 0\n0.5\n1\n0 6\n0 3\n0\n100 1 0 0\n3 0\n" +

@@ -64,6 +64,15 @@ TEST(RibScene, BlocksBringBackWhatTheySaved) {
   }
 }
 
+TEST(RibScene, AttributesOfOtherFormsAreNoErrors) {
+  const Model model = model_of(parse_rib,
+                               "Attribute \"identifier\" \"name\" [\"a\" \"b\"] Attribute \"identifier\" \"name\" 5 "
+                               "Attribute [\"x\" 1] Attribute \"visibility\" \"int camera\" [1]\n" +
+                                   quad);
+  EXPECT_EQ(model.surfaces.at(0).name, "");
+  EXPECT_EQ(model.warnings, std::vector<std::string>{"m:1: requests that are passed over: Attribute 4"});
+}
+
 TEST(RibScene, ObjectsStandWhereTheirInstancesAre) {
   const Model model = model_of(parse_rib, "Translate 9 9 9 ObjectBegin 1 Translate 1 0 0 " + quad +
                                               "ObjectEnd ObjectBegin \"two\" "

@@ -1,6 +1,7 @@
-// .g2, the files of GoTools (SINTEF): objects one after the other. Of spline surfaces (class 200) stand the dimension and
-// whether it is rational, then for u and v the number of points, the order and the knots, then the points, u running
-// fastest; rational ones as w x, w y, w z, w. Objects that are not read end where the next header stands in a line.
+// .g2, the files of GoTools (SINTEF): objects one after the other. Of spline surfaces (class 200) stand the dimension
+// and whether it is rational, then for u and v the number of points, the order and the knots, then the points, u
+// running fastest; rational ones as w x, w y, w z, w. Objects that are not read end where the next header stands in a
+// line.
 
 #include "io/g2.h"
 
@@ -42,21 +43,20 @@ PartName unread_name(std::int64_t kind) {
   return known == std::end(unread_classes) ? others : known->second;
 }
 
-/// The class of a header that stands here alone in its line, past it; or 0, anywhere in the line.
-std::int64_t take_header(TextCursor& cursor) {
-  std::int64_t kind = 0, major = 0, minor = 0, auxiliary = 0;
-  for (std::int64_t* const value : {&kind, &major, &minor, &auxiliary}) {
-    cursor.skip_blanks();
-    if (!cursor.take_number(*value)) return 0;
-  }
+/// The class of a header that stands here, past it; or 0, anywhere in it. `alone`: in a line of its own.
+std::int64_t take_header(TextCursor& cursor, bool alone) {
+  const auto take = [&](std::int64_t& value) {
+    alone ? cursor.skip_blanks() : cursor.skip_space();
+    return cursor.take_number(value);
+  };
+  std::int64_t kind = 0, major = 0, minor = 0, auxiliary = 0, ignored = 0;
+  if (!take(kind) || !take(major) || !take(minor) || !take(auxiliary)) return 0;
   if (kind < 100 || kind > 999 || major < 0 || major > 9 || minor < 0 || minor > 9) return 0;
   if (auxiliary < 0 || auxiliary > 16) return 0;
   for (std::int64_t k = 0; k < auxiliary; ++k) {  // a colour, mostly
-    std::int64_t ignored = 0;
-    cursor.skip_blanks();
-    if (!cursor.take_number(ignored)) return 0;
+    if (!take(ignored)) return 0;
   }
-  return cursor.take_line_end() ? kind : 0;
+  return !alone || cursor.take_line_end() ? kind : 0;
 }
 
 class G2Reader {
@@ -66,7 +66,7 @@ class G2Reader {
   Result<Model> read() {
     for (cursor_.skip_space(); !cursor_.at_end(); cursor_.skip_space()) {
       header_ = cursor_;
-      const std::int64_t kind = take_header(cursor_);
+      const std::int64_t kind = take_header(cursor_, false);
       if (kind == 0) return header_.expected("the header of an object (class, version 1 0, auxiliary numbers)");
       ++object_;
       const Status status = read_object(kind);
@@ -106,7 +106,7 @@ class G2Reader {
     passed_over_.add(name, header_);
     for (cursor_.skip_space(); !cursor_.at_end(); cursor_.skip_space()) {
       TextCursor ahead = cursor_;
-      if (take_header(ahead) != 0) return;
+      if (take_header(ahead, true) != 0) return;
       for (cursor_.skip_blanks(); !cursor_.at_line_end(); cursor_.skip_blanks()) cursor_.skip(cursor_.peek_token());
     }
   }

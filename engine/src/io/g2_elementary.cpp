@@ -1,5 +1,5 @@
-// Elementary surfaces of .g2 files. GoTools writes the dimension, sizes, the location, the z axis, the x axis, the range
-// of the parameters, and whether the two are swapped.
+// Elementary surfaces of .g2 files. GoTools writes the dimension, sizes, the location, the z axis, the x axis, the
+// range of the parameters, and whether the two are swapped.
 
 #include <algorithm>
 #include <cmath>
@@ -29,8 +29,8 @@ void snap_pole(double& latitude) {
   if (std::abs(std::abs(latitude) - pi / 2) <= printed) latitude = std::copysign(pi / 2, latitude);
 }
 
-/// The parameter of an angle in [0, 2 pi] on a circle of four rational arcs over [0,1]: on the arc about its middle m of
-/// half-width h, the angle is m + 2 atan(tan(h/2) s), s from -1 to 1.
+/// The parameter of an angle in [0, 2 pi] on a circle of four rational arcs over [0,1]: on the arc about its middle m
+/// of half-width h, the angle is m + 2 atan(tan(h/2) s), s from -1 to 1.
 double circle_parameter(double angle) {
   const double arc = std::min(3.0, std::floor(angle / (pi / 2)));
   const double off_middle = angle - (arc + 0.5) * (pi / 2);

@@ -1,7 +1,7 @@
-// RIB, the RenderMan Interface Bytestream as text: Patch, PatchMesh and NuPatch, their bases, trims and transformations,
-// objects and their instances (The RenderMan Interface Specification 3.2, sec. 4, 5 and appendix C). Points and
-// transformations act on row vectors, as the Interface writes them; the model's space is the world as it is at
-// WorldBegin, left-handed as the Interface's is, coordinates unchanged.
+// RIB, the RenderMan Interface Bytestream as text: Patch, PatchMesh and NuPatch, their bases, trims and
+// transformations, objects and their instances (The RenderMan Interface Specification 3.2, sec. 4, 5 and appendix C).
+// Points and transformations act on row vectors, as the Interface writes them; the model's space is the world as it
+// is at WorldBegin, left-handed as the Interface's is, coordinates unchanged.
 
 #include <algorithm>
 #include <array>
@@ -238,19 +238,17 @@ class RibReader {
     return status;
   }
 
-  /// Only the name is of interest: Attribute "identifier" "name" ["rim"].
+  /// Only the name is of interest, Attribute "identifier" "name" ["rim"]; other forms are skipped like anything else.
   Status attribute() {
-    std::string_view kind, parameter;
-    Status status = lexer_.take_string("the name of an attribute", kind);
-    while (status.ok() && lexer_.at_string()) {
-      status = lexer_.take_string("the name of a parameter", parameter);
-      if (!status.ok()) break;
-      status = kind == "identifier" && variable_name(parameter) == "name"
-                   ? lexer_.take_string("a name in quotes", stack_.state().name)
-                   : lexer_.skip_value();
+    RibLexer ahead = lexer_;
+    std::string_view kind, parameter, name;
+    if (ahead.take_string({}, kind).ok() && kind == "identifier" && ahead.take_string({}, parameter).ok() &&
+        variable_name(parameter) == "name" && ahead.take_string({}, name).ok()) {
+      stack_.state().name = name;
+    } else {
+      others_.add(request_, start_);
     }
-    if (kind != "identifier") others_.add(request_, start_);
-    return status;
+    return lexer_.skip_values();
   }
 
   Status trim_curve() {

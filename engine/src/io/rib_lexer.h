@@ -1,6 +1,6 @@
 #pragma once
-// The words of a RenderMan Interface Bytestream in its text form (The RenderMan Interface Specification 3.2, appendix C):
-// requests, numbers, strings in double quotes, arrays in brackets; `#` begins a comment.
+// The words of a RenderMan Interface Bytestream in its text form (The RenderMan Interface Specification 3.2, appendix
+// C): requests, numbers, strings in double quotes, arrays in brackets; `#` begins a comment.
 
 #include <span>
 #include <string>

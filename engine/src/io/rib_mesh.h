@@ -16,9 +16,11 @@ struct RibBasis {
   int step;
   friend bool operator==(const RibBasis&, const RibBasis&) = default;
 };
-/// "bezier", "b-spline", "catmull-rom", "hermite" (point, vector, point, vector) or "power" with its usual step, or null.
+/// "bezier", "b-spline", "catmull-rom", "hermite" (point, vector, point, vector) or "power" with its usual step, or
+/// null.
 const RibBasis* find_rib_basis(std::string_view name);
-/// The matrix of one of these, if all entries are the same to 1e-5 (files print them with six digits or so); else as it is.
+/// The matrix of one of these, if all entries are the same to 1e-5 (files print them with six digits or so); else as
+/// it is.
 std::array<double, 16> recognised_matrix(const std::array<double, 16>& matrix);
 
 /// One direction of a mesh: cubic with a basis, or linear without.
@@ -43,9 +45,9 @@ struct RibNet {
 Result<std::vector<double>> height_field_parameters(const RibDirection& direction);
 
 /// The mesh over [0,1]^2, all patches alike in size. Bezier, B-spline, Catmull-Rom and Hermite meshes of their usual
-/// steps, and linear ones, are one B-spline surface each, whose knots are as smooth as the basis (3-fold, simple, double,
-/// double); a single Bezier patch is a Bezier patch; any other basis gives a surface a patch. Exact to rounding.
-/// Errors: count_mismatch, invalid_weight, and those of the surfaces.
+/// steps, and linear ones, are one B-spline surface each, whose knots are as smooth as the basis (3-fold, simple,
+/// double, double); a single patch that is no B-spline is a Bezier patch; any other basis gives a surface a patch.
+/// Exact to rounding. Errors: count_mismatch, invalid_weight, and those of the surfaces.
 Result<std::vector<Surface>> mesh_surfaces(const RibDirection& u, const RibDirection& v, RibNet net);
 
 /// A B-spline surface of a net, with the knots' own parameters. Errors: invalid_weight, and those of the surface.
