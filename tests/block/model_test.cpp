@@ -11,6 +11,7 @@
 #include "support/random_hermite.h"
 #include "support/random_splines.h"
 #include "support/ulp.h"
+#include "tessera/generic_callable.h"
 #include "tessera/nurbs_surface.h"
 #include "tessera/spline_convert.h"
 
@@ -119,6 +120,29 @@ TEST(Model, FittedSurfacesKeepTheToleranceWhereTheyArePlaced) {
     const Vec3 expected{100 * std::cos(u), 100 * std::sin(u), 50};
     EXPECT_LE(length(grid.evaluate_jet(u, 0.5)->position - expected), fit.tolerance) << u;
   }
+}
+
+/// Far from zero the points' own rounding counts: it is in the stated error, and a tolerance below it is refused.
+TEST(Model, ErrorsOfFitsHoldFarFromZero) {
+  const auto bowl = value_of(generic_surface(
+      [](auto u, auto v) {
+        using std::cos;
+        return std::array{u * 1.0, v * 1.0, cos(u) * cos(v)};
+      },
+      Domain{}));
+  const FitOptions fit{.tolerance = 1e-10, .degree = 7};
+  for (const double far : {0.0, 1e3, 1e4}) {
+    const PatchGrid grid = value_of(to_bezier(ModelSurface{"", bowl, Affine::translated({far, far, far})}, fit));
+    EXPECT_TRUE(grid.fit_error().certified);
+    EXPECT_LE(grid.fit_error().distance, fit.tolerance);
+    for (double u = 0; u <= 1; u += 0.01) {
+      const Vec3 found = grid.evaluate_jet(u, 0.7)->position - Vec3{far, far, far};
+      EXPECT_LE(length(found - Vec3{u, 0.7, std::cos(u) * std::cos(0.7)}),
+                grid.fit_error().distance + 4 * double_unit * far);  // evaluation rounds too
+    }
+  }
+  expect_refused(to_bezier(ModelSurface{"", bowl, Affine::translated({1e9, 0, 0})}, fit), StatusCode::invalid_argument,
+                 Status::no_index, "below what rounding leaves where the surface is placed");
 }
 
 TEST(Model, MapsKeepSharedBordersAndPoles) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <cstdio>
@@ -30,6 +31,18 @@ TEST(ChildProcess, SharesNothing) {
   int value = 1;
   EXPECT_TRUE(run_in_child([&] { return std::string(static_cast<std::size_t>(++value), 'x'); }, plenty, "it").ok());
   EXPECT_EQ(value, 1);
+}
+
+/// As a daemon has none: the pipe then takes their places.
+TEST(ChildProcess, NeedsNoStreamsOfItsParent) {
+  const auto without_streams = [] {
+    for (int stream = 0; stream < 3; ++stream) ::close(stream);
+    const Result<std::string> bytes = run_in_child([] { return std::string("x"); }, plenty, "it");
+    return bytes.ok() ? *bytes : bytes.status().message();
+  };
+  const Result<std::string> bytes = run_in_child(without_streams, plenty, "it");
+  ASSERT_TRUE(bytes.ok()) << bytes.status().message();
+  EXPECT_EQ(*bytes, "x");
 }
 
 TEST(ChildProcess, CrashesAlone) {

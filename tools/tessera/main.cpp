@@ -22,8 +22,8 @@ void describe(CLI::App& app) {
   });
   app.footer(
       "Models are read as .bpt (Bezier patches; # begins a comment), .bv (BezierView), .g2 (GoTools), .json (surfaces\n"
-      "of every kind; tools/models/FORMAT.md tells the format) and .rib (RenderMan); what of them is not read is said\n"
-      "as a warning. Meshes are written and read as .obj and .ply.\n"
+      "of every kind; tools/models/FORMAT.md tells the format), .obj (free-form surfaces), .rib (RenderMan), and, where\n"
+      "OpenCASCADE was there at the build, .step and .iges; what of them is not read is said as a warning. Meshes are written and read as .obj and .ply.\n"
       "Surfaces, patches and rays are counted from 0.\n"
       "TESSERA_ISA=sse2|avx2|avx512 in the environment forces an instruction set.\n"
       "Exit status: 0 done, 1 the input is bad or the output cannot be written, 2 the command line is bad.\n"

@@ -28,7 +28,7 @@ Result<Model> read_any_model(const std::string& path) { return read_model(path);
 void add_model(CLI::App& command, ModelFile& file) {
   command
       .add_option("MODEL", file.path,
-                  std::string("The file of surfaces (.bpt, .bv, .g2, .json, .rib") + cad_formats + ")")
+                  std::string("The file of surfaces (.bpt, .bv, .g2, .json, .obj, .rib") + cad_formats + ")")
       ->required()
       ->type_name("FILE");
   command
@@ -68,7 +68,7 @@ Result<PatchSet> make_patch_set(const ModelFile& file, const Model& model) {
 
 std::string fit_line(const PatchSet& set) {
   const FitError& error = set.fit_error();
-  if (error.distance == 0) return {};
+  if (error.distance == 0 && error.certified) return {};
   return "  callables fitted to within " + readable(error.distance, 3) +
          (error.certified ? ", proven\n" : ", sampled\n");
 }

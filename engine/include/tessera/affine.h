@@ -1,6 +1,7 @@
 #pragma once
 // Affine maps of space.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 

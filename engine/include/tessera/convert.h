@@ -59,7 +59,7 @@ class PatchGrid {
 };
 
 /// The image of a grid, exact to rounding: control points are mapped, weights stay (affine invariance). What was shared
-/// or collapsed stays so, and a fit error grows with the map's norm. A map with a negative determinant turns normals over.
+/// or collapsed stays so. A fit error grows with the map's norm, and by the rounding of the points. A map with a negative determinant turns normals over.
 /// Errors: non_finite (the map, or a point too large; index = the patch).
 Result<PatchGrid> transformed(const PatchGrid& grid, const Affine& map);
 

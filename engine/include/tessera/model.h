@@ -42,8 +42,8 @@ Status in_surface(const Model& model, std::size_t surface, const Status& status)
 
 /// Position and derivatives in the model, by the surface's own parameters. Errors: those of the kind.
 Result<SurfaceJet> evaluate_jet(const ModelSurface& surface, double u, double v);
-/// The patches in the model's space; a tolerance and the fit error are lengths there. Errors: those of the kind, and
-/// non_finite (the placement).
+/// The patches in the model's space; a tolerance and the fit error are lengths there. Errors: those of the kind,
+/// non_finite (the placement), and invalid_argument (a tolerance below what rounding leaves where the surface is placed).
 Result<PatchGrid> to_bezier(const ModelSurface& surface, const FitOptions& options = {});
 
 /// The patches of all surfaces; source(k).surface is the index into model.surfaces, source(k).domain the patch's

@@ -17,7 +17,8 @@ struct CurveFunctions {
   std::function<Vec3(double t)> position;
   /// Position, first and second derivative; by differences if empty.
   std::function<CurveJet(double t)> jet = {};
-  /// A bound of |d^k c / dt^k| over an interval; infinity where there is none. If empty, fits are not certified.
+  /// A bound of |d^k c / dt^k| over an interval within the domain, k from 0 (|c| itself) to 16; infinity where there is
+  /// none. If empty, fits are not certified. One that is too small makes a certificate false.
   std::function<double(const Interval& part, int k)> derivative_bound = {};
 };
 

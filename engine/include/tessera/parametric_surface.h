@@ -22,8 +22,8 @@ struct SurfaceFunctions {
   std::function<Vec3(double u, double v)> position;
   /// Position and derivatives to the second order; by differences if empty.
   std::function<SurfaceJet(double u, double v)> jet = {};
-  /// Bounds of |d^k p / du^k| and |d^k p / dv^k| over a rectangle; infinity where there is none. If empty, fits are
-  /// sampled, not certified.
+  /// Bounds of |d^k p / du^k| and |d^k p / dv^k| over a rectangle within the domain, k from 1 to 16; infinity where there
+  /// is none. If empty, fits are sampled, not certified. One that is too small makes a certificate false.
   std::function<std::array<double, 2>(const Domain& part, int k)> derivative_bounds = {};
 };
 
@@ -34,7 +34,7 @@ struct Disc {
 
 /// The polar map of a disc: x = x0 + s rho cos(theta), y = y0 + s rho sin(theta), rho from 0 to the radius R and theta
 /// from 0 to 2 pi. The factor s is a little below 1, so that the points lie within the disc also after rounding: the
-/// rim is short of R by at most 6 units of 2^-52 of R and two of |x0| + |y0|, and R*R - dx*dx - dy*dy with dx = x - x0,
+/// rim is short of R by at most 7 units of 2^-52 of R and two of |x0| + |y0|, and R*R - dx*dx - dy*dy with dx = x - x0,
 /// dy = y - y0, in doubles and in any order, is never negative. (The root of it at the rim is noise below 1e-7 R.) The
 /// centre is one point for all theta, and theta = 2 pi is theta = 0, by ==.
 class PolarMap {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/guard.h"
+#include "base/text.h"
 #include "block/patch_set_impl.h"
 
 namespace tessera {
@@ -35,6 +36,9 @@ struct Gathered {
   }
 };
 
+/// Of a tolerance; the rest is for the rounding of placed points.
+constexpr double share_for_fits = 0.99;
+
 }  // namespace
 
 Status in_surface(const Model& model, std::size_t surface, const Status& status) {
@@ -57,9 +61,14 @@ Result<PatchGrid> to_bezier(const ModelSurface& surface, const FitOptions& optio
   if (surface.placement == Affine{}) return to_bezier(surface.surface, options);
   FitOptions before = options;  // lengths before the placement
   const double norm = surface.placement.norm_bound();
-  if (norm > 0) before.tolerance /= norm;
-  const Result<PatchGrid> grid = to_bezier(surface.surface, before);
-  return grid ? transformed(*grid, surface.placement) : grid;
+  if (norm > 0) before.tolerance *= share_for_fits / norm;
+  Result<PatchGrid> grid = to_bezier(surface.surface, before);
+  if (grid) grid = transformed(*grid, surface.placement);
+  if (grid && options.tolerance > 0 && grid->fit_error().distance > options.tolerance)
+    return Status(StatusCode::invalid_argument, "the tolerance " + text(options.tolerance) +
+                                                    " is below what rounding leaves where the surface is placed: " +
+                                                    text(grid->fit_error().distance) + " was reached");
+  return grid;
 }
 
 Result<PatchSet> make_patch_set(const Model& model, const PatchSetOptions& options, const FitOptions& fit) {

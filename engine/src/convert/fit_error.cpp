@@ -34,9 +34,10 @@ Result<CellError> ProvenError::operator()(const Domain& cell) const {
 }
 
 double ProvenError::rounding(const Domain& cell) const {
-  // A node's parameter is rounded three times, each by at most 2^-53 of the largest one.
-  const double u = 0x1p-51 * std::max(std::abs(cell.u0), std::abs(cell.u1));
-  const double v = 0x1p-51 * std::max(std::abs(cell.v0), std::abs(cell.v1));
+  // A node's parameter a + t (b - a): the difference and its product by at most 2^-52 of the largest, for they may be
+  // twice as large, and the sum by 2^-53.
+  const double u = 0x1p-50 * std::max(std::abs(cell.u0), std::abs(cell.u1));
+  const double v = 0x1p-50 * std::max(std::abs(cell.v0), std::abs(cell.v1));
   const auto bounds = surface_.derivative_bounds(cell, 1);
   const double lebesgue = lobatto_lebesgue_constant(degree_);
   return lebesgue * lebesgue * ((bounds[0] == 0 ? 0 : u * bounds[0]) + (bounds[1] == 0 ? 0 : v * bounds[1]));

@@ -69,9 +69,14 @@ Result<PatchGrid> transformed(const PatchGrid& grid, const Affine& map) {
     std::vector<BezierPatch> patches;
     patches.reserve(grid.patches().size());
     std::vector<Vec3> points;
+    const auto& [x, y, z] = map.columns;
+    double size = 0;  // of what the sums of products are made of
     for (const BezierPatch& patch : grid.patches()) {
       points.clear();
-      for (const Vec3& p : patch.points()) points.push_back(map.point(p));
+      for (const Vec3& p : patch.points()) {
+        points.push_back(map.point(p));
+        size = std::max(size, std::abs(p.x) * max_abs(x) + std::abs(p.y) * max_abs(y) + std::abs(p.z) * max_abs(z));
+      }
       Result<BezierPatch> image = patch.with_points(points);
       if (!image) {
         const std::size_t k = patches.size();
@@ -81,9 +86,11 @@ Result<PatchGrid> transformed(const PatchGrid& grid, const Affine& map) {
       patches.push_back(*std::move(image));
     }
     const FitError& error = grid.fit_error();
+    // A coordinate is a sum of three rounded products and the translation: six roundings of 2^-53, in three coordinates.
+    const double rounding = error.distance > 0 ? 0x1p-49 * (size + max_abs(map.translation)) : 0;
     const auto copy = [](std::span<const double> breaks) { return std::vector<double>(breaks.begin(), breaks.end()); };
     return PatchGrid::make(copy(grid.breaks_u()), copy(grid.breaks_v()), std::move(patches),
-                           {error.distance * map.norm_bound(), error.certified});
+                           {error.distance * map.norm_bound() * (1 + 0x1p-40) + rounding, error.certified});
   });
 }
 

@@ -65,6 +65,7 @@ void leave_the_parent(int& output, pid_t parent) {
   if (::getppid() != parent) ::_exit(child_failed);
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXCPU})
     std::signal(signal, SIG_DFL);
+  if (output < 3) output = ::fcntl(output, F_DUPFD, 3);  // the parent may have had no streams
   const int nowhere = ::open("/dev/null", O_RDWR);
   for (int stream = 0; stream < 3; ++stream) ::dup2(nowhere, stream);
   if (output != 3) output = ::dup2(output, 3);

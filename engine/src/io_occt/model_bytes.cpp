@@ -113,8 +113,10 @@ bool take_trims(Reader& in, std::vector<TrimLoop>& trims) {
   if (!in.take_count(loops, 1)) return false;
   for (std::size_t k = 0; k < loops; ++k) {
     TrimLoop& loop = trims.emplace_back();
+    std::uint8_t hole = 0;
     std::size_t curves = 0;
-    if (!in.take(loop.hole) || !in.take_count(curves, 1)) return false;
+    if (!in.take(hole) || hole > 1 || !in.take_count(curves, 1)) return false;
+    loop.hole = hole == 1;
     for (std::size_t c = 0; c < curves; ++c)
       if (!take_curve(in, loop.curves)) return false;
   }
@@ -161,7 +163,7 @@ Status put_model(Writer& out, const Model& model) {
     out.put(surface.placement);
     out.put(std::uint64_t{surface.trims.size()});
     for (const TrimLoop& loop : surface.trims) {
-      out.put(loop.hole);
+      out.put(std::uint8_t{loop.hole});
       out.put(std::uint64_t{loop.curves.size()});
       for (const Curve& curve : loop.curves) put_curve(out, curve);
     }

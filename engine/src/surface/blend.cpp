@@ -130,7 +130,11 @@ Result<Blend> Blend::polynomial(std::span<const double> first, std::span<const d
       return status;
     Blend blend;
     blend.first_ = *std::move(f1);
-    blend.second_ = *std::move(f2);
+    // What the conditions were missed by is put right, so that patches meet their borders.
+    blend.first_[0] = 1;
+    blend.first_[1] -= polynomial_value(blend.first_, 1);
+    for (const double c : blend.first_) blend.second_.push_back(-c);
+    blend.second_[0] = 0;
     return blend;
   });
 }

@@ -22,15 +22,25 @@ bool is_smooth(const Curve& curve, const Interval& part, int k) {
   return true;
 }
 
+/// A vector and a bound of what rounding can have done to it.
+struct Rounded {
+  Vec3 value;
+  double error = 0;
+};
+
 /// Control points of the k-th derivative (Piegl and Tiller, The NURBS Book, eq. 3.8). Those between equal knots act
-/// nowhere.
-std::vector<Vec3> derivative_points(const Curve& curve, int k) {
-  std::vector<Vec3> points(curve.points().begin(), curve.points().end());
+/// nowhere. Each step rounds a point four times, and magnifies the errors of the two that it is the difference of.
+std::vector<Rounded> derivative_points(const Curve& curve, int k) {
+  std::vector<Rounded> points;
+  for (const Vec3& point : curve.points()) points.push_back({point});
   const std::size_t p = static_cast<std::size_t>(curve.degree());
   for (std::size_t order = 1; order <= static_cast<std::size_t>(k); ++order) {
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {
       const double width = curve.knots()[i + p + 1] - curve.knots()[i + order];
-      points[i] = width > 0 ? (static_cast<double>(p - order + 1) / width) * (points[i + 1] - points[i]) : Vec3{};
+      const double scale = width > 0 ? static_cast<double>(p - order + 1) / width : 0;
+      const Vec3 value = scale * (points[i + 1].value - points[i].value);
+      const double error = scale * (points[i].error + points[i + 1].error) + 0x1p-50 * length(value);
+      points[i] = {value, error * (1 + 0x1p-40)};
     }
     points.pop_back();
   }
@@ -40,12 +50,13 @@ std::vector<Vec3> derivative_points(const Curve& curve, int k) {
 double derivative_bound(const Curve& curve, const Interval& part, int k) {
   if (k > curve.degree() && !curve.is_rational()) return is_smooth(curve, part, k) ? 0 : infinity;
   if (k > 0 && (curve.is_rational() || !is_smooth(curve, part, k))) return infinity;
-  const std::vector<Vec3> points = derivative_points(curve, k);
+  const std::vector<Rounded> points = derivative_points(curve, k);
   const std::size_t p = static_cast<std::size_t>(curve.degree()), order = static_cast<std::size_t>(k);
   double bound = 0;
   for (const std::size_t span : distinct_spans(line_of(curve))) {
     if (curve.knots()[span] >= part.to || curve.knots()[span + 1] <= part.from) continue;
-    for (std::size_t i = span - p; i + order <= span; ++i) bound = std::max(bound, length(points[i]));
+    for (std::size_t i = span - p; i + order <= span; ++i)
+      bound = std::max(bound, length(points[i].value) + points[i].error);
   }
   return bound * (1 + 0x1p-40);  // the hull's own rounding
 }
