@@ -109,8 +109,7 @@ int run() {
   const auto with_occt = [&] { occt_patches(occt, patches); };
   const auto to_patches = [&] { (void)test::value_of(to_bezier(surface)); };
   const auto to_blocks = [&] {
-    const PatchGrid made = test::value_of(to_bezier(surface));
-    (void)test::value_of(make_patch_set({&made, 1}));
+    (void)test::value_of(make_patch_set(test::value_of(to_bezier(surface))));
   };
   const auto seconds = best_interleaved(rounds, {with_occt, to_patches, to_blocks});
   const char* names[] = {"OpenCASCADE, to patches", "Tessera, to patches", "Tessera, to blocks"};

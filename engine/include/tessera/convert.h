@@ -40,6 +40,8 @@ class PatchGrid {
   std::span<const double> breaks_u() const { return breaks_u_; }
   std::span<const double> breaks_v() const { return breaks_v_; }
   std::span<const BezierPatch> patches() const { return patches_; }
+  /// The patches, taken out of a grid that is done with.
+  std::vector<BezierPatch> take_patches() && { return std::move(patches_); }
   const BezierPatch& patch(std::size_t a, std::size_t b) const { return patches_[a * count_v() + b]; }
   Domain domain() const { return {breaks_u_.front(), breaks_u_.back(), breaks_v_.front(), breaks_v_.back()}; }
   Domain patch_domain(std::size_t patch) const;   ///< patch < patches().size()

@@ -54,5 +54,7 @@ Result<PatchSet> make_patch_set(const Model& model, const PatchSetOptions& optio
 /// The patches of several surfaces in one set; source(k).surface is the index into `grids`, source(k).domain the patch's
 /// rectangle. Errors: those of PatchSet::from.
 Result<PatchSet> make_patch_set(std::span<const PatchGrid> grids, const PatchSetOptions& options = {});
+/// The same of one surface; a grid that is moved here gives its patches without a copy.
+Result<PatchSet> make_patch_set(PatchGrid grid, const PatchSetOptions& options = {});
 
 }  // namespace tessera

@@ -1,6 +1,7 @@
 #include "tessera/model.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "base/guard.h"
 #include "base/text.h"
@@ -15,14 +16,15 @@ struct Gathered {
   std::vector<PatchSource> sources;
   FitError fit_error;
 
-  explicit Gathered(std::size_t count) {
-    patches.reserve(count);
-    sources.reserve(count);
-  }
-
-  void add(std::size_t surface, const PatchGrid& grid) {
+  void add(std::size_t surface, PatchGrid grid) {
     const auto u = grid.breaks_u(), v = grid.breaks_v();
-    patches.insert(patches.end(), grid.patches().begin(), grid.patches().end());
+    std::vector<BezierPatch> added = std::move(grid).take_patches();
+    if (patches.empty()) {
+      patches = std::move(added);
+      sources.reserve(patches.size());
+    } else {
+      patches.insert(patches.end(), std::move_iterator(added.begin()), std::move_iterator(added.end()));
+    }
     for (std::size_t a = 0; a + 1 < u.size(); ++a)
       for (std::size_t b = 0; b + 1 < v.size(); ++b)
         sources.push_back({static_cast<std::uint32_t>(surface), {u[a], u[a + 1], v[b], v[b + 1]}});
@@ -73,12 +75,12 @@ Result<PatchGrid> to_bezier(const ModelSurface& surface, const FitOptions& optio
 
 Result<PatchSet> make_patch_set(const Model& model, const PatchSetOptions& options, const FitOptions& fit) {
   return guarded([&]() -> Result<PatchSet> {
-    Gathered all(model.surfaces.size());
+    Gathered all;
     std::vector<std::size_t> ends;  // of each surface's patches
     for (std::size_t k = 0; k < model.surfaces.size(); ++k) {
-      const Result<PatchGrid> grid = to_bezier(model.surfaces[k], fit);
+      Result<PatchGrid> grid = to_bezier(model.surfaces[k], fit);
       if (!grid) return in_surface(model, k, grid.status());
-      all.add(k, *grid);
+      all.add(k, *std::move(grid));
       ends.push_back(all.patches.size());
     }
     Result<PatchSet> set = std::move(all).packed(options);
@@ -91,10 +93,16 @@ Result<PatchSet> make_patch_set(const Model& model, const PatchSetOptions& optio
 
 Result<PatchSet> make_patch_set(std::span<const PatchGrid> grids, const PatchSetOptions& options) {
   return guarded([&]() -> Result<PatchSet> {
-    std::size_t count = 0;
-    for (const PatchGrid& grid : grids) count += grid.patches().size();
-    Gathered all(count);
+    Gathered all;
     for (std::size_t k = 0; k < grids.size(); ++k) all.add(k, grids[k]);
+    return std::move(all).packed(options);
+  });
+}
+
+Result<PatchSet> make_patch_set(PatchGrid grid, const PatchSetOptions& options) {
+  return guarded([&]() -> Result<PatchSet> {
+    Gathered all;
+    all.add(0, std::move(grid));
     return std::move(all).packed(options);
   });
 }

@@ -1,17 +1,89 @@
 #include "block/pack.h"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "block/patch_set_impl.h"
 #include "convert/power_form.h"
 #include "surface/homogeneous.h"
 
 namespace tessera {
 namespace {
 
-/// Whether all rows or all columns of the net are the same: then r_u or r_v is zero everywhere.
-bool is_curve(const BezierPatch& patch) {
+/// Weights below these shares of the largest: derivatives grow with the inverse of that share, and normals with its
+/// square.
+constexpr double least_weight_in_float = 1e-9, least_weight_in_double = 1e-70;
+
+double largest_vector(std::span<const double> net, std::size_t components) {
+  double largest = 0;
+  for (std::size_t k = 0; k < net.size(); k += components)
+    for (std::size_t c = 0; c < 3; ++c) largest = std::max(largest, std::abs(net[k + c]));
+  return largest;
+}
+
+/// Whether weights, and coefficients as large as in_range(limit) finds, suit blocks of which some are in float.
+template <class InRange>
+bool fits(const RelativeNet& net, bool in_float, InRange in_range) {
+  return in_range(in_float ? double{std::numeric_limits<float>::max()} : std::numeric_limits<double>::max()) &&
+         !(net.weight_ratio() < (in_float ? least_weight_in_float : least_weight_in_double));
+}
+
+/// Where a patch goes, and what its doubts rest on.
+struct Place {
+  const BlockGroup& group;
+  PatchSet::Slot slot;
+  std::uint32_t lane_count;  ///< of the block
+  const RelativeNet& net;
+  bool curve;
+  double diameter;
+
+  /// The patch's lane, and those that repeat it, by write_coefficients(lane). `largest`: x, y or z of the coefficients.
+  template <class T, class Write>
+  void write(UnsetVector<T>& coefficients, UnsetVector<T>& doubts, double largest, Write write_coefficients) const {
+    constexpr std::size_t lanes = PatchSet::lanes;
+    NormalDoubt doubt{.squared_length = std::numeric_limits<double>::infinity(), .noise = -1};
+    if (!curve)
+      doubt = normal_doubt(net, std::max(group.degree_u, group.degree_v), largest, diameter,
+                           std::numeric_limits<T>::epsilon());
+    T* block = coefficients.data() + group.first_value + (slot.block - group.first_block) * group.block_values;
+    T* rows = doubts.data() + 2 * lanes * slot.block;
+    const auto write_to = [&](std::uint32_t lane) {
+      write_coefficients(block + lane);
+      write_doubt(doubt, rows + lane);
+    };
+    write_to(slot.lane);
+    if (slot.lane == 0)
+      for (std::uint32_t lane = lane_count; lane < lanes; ++lane) write_to(lane);
+  }
+};
+
+}  // namespace
+
+RelativeNet::RelativeNet(const BezierPatch& patch, const Vec3& origin) : patch_(patch), origin_(origin) {
+  if (!patch.is_rational()) return;
+  const auto [low, high] = std::ranges::minmax(patch.weights());
+  low_ = low;
+  high_ = high;
+  scale_ = 1 / power_of_two_near(high);
+}
+
+double RelativeNet::largest(const Box3& hull) const {
+  if (!patch_.is_rational()) return std::max(max_abs(hull.lower - origin_), max_abs(hull.upper - origin_));
+  double largest = 0;
+  for (std::size_t k = 0; k < patch_.points().size(); ++k)
+    largest = std::max(largest, max_abs(scale_ * patch_.weights()[k] * (patch_.points()[k] - origin_)));
+  return largest;
+}
+
+std::span<const double> RelativeNet::power(Power& memory) const {
+  double* to = memory.data();
+  for_each([&](double value) { *to++ = value; });
+  const std::span net(memory.data(), to);
+  power_coefficients(patch_.degree_u(), patch_.degree_v(), coefficient_components(patch_.is_rational()), net);
+  return net;
+}
+
+bool is_curve(const BezierPatch& patch, EdgeMask collapsed) {
+  if (!collapsed.any()) return false;
   bool equal_rows = true, equal_columns = true;
   for (int i = 0; i <= patch.degree_u(); ++i)
     for (int j = 0; j <= patch.degree_v(); ++j) {
@@ -21,56 +93,45 @@ bool is_curve(const BezierPatch& patch) {
   return patch.is_rational() ? equal_rows && equal_columns : equal_rows || equal_columns;
 }
 
-double weight_scale(const BezierPatch& patch) {
-  return patch.is_rational() ? 1 / power_of_two_near(std::ranges::max(patch.weights())) : 1;
-}
-
-}  // namespace
-
-void relative_coefficients(const BezierPatch& patch, const Vec3& origin, Representation representation,
-                           std::vector<double>& net) {
-  const auto points = patch.points();
-  const auto weights = patch.weights();
-  const std::size_t components = static_cast<std::size_t>(coefficient_components(patch.is_rational()));
-  net.resize(points.size() * components);
-  double* to = net.data();
-  // Adding +0 turns -0 into +0, so that equal control points are equal bits.
-  if (weights.empty()) {
-    for (const Vec3& point : points) {
-      to[0] = point.x - origin.x + 0.0;
-      to[1] = point.y - origin.y + 0.0;
-      to[2] = point.z - origin.z + 0.0;
-      to += components;
-    }
-  } else {
-    const double scale = weight_scale(patch);
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      const double w = scale * weights[k];
-      const Vec3 q = w * (points[k] - origin + Vec3{}) + Vec3{};
-      for (const double value : {q.x, q.y, q.z, w}) *to++ = value;
-    }
-  }
-  if (representation == Representation::power)
-    power_coefficients(patch.degree_u(), patch.degree_v(), coefficient_components(patch.is_rational()), net);
-}
-
-NormalDoubt normal_doubt(const BezierPatch& patch, std::span<const double> net, double unit) {
-  if (is_curve(patch)) return {.squared_length = std::numeric_limits<double>::infinity(), .noise = -1};
-  const auto components = static_cast<std::size_t>(coefficient_components(patch.is_rational()));
-  double largest = 0;
-  for (std::size_t k = 0; k < net.size(); k += components)
-    for (std::size_t c = 0; c < 3; ++c) largest = std::max(largest, std::abs(net[k + c]));
-  const double degree = std::max(patch.degree_u(), patch.degree_v());
+NormalDoubt normal_doubt(const RelativeNet& net, int degree, double largest, double diameter, double unit) {
   const double noise = 6 * degree * unit * largest;
-  double lightest = 1, spread = 1;
-  if (patch.is_rational()) {
-    const auto [low, high] = std::ranges::minmax(patch.weights());
-    lightest = weight_scale(patch) * low;
-    spread = high / low;
-  }
-  const double longest = degree * spread * patch.hull_box().diagonal();
-  const double length = 4 * (noise / lightest) * longest;  // 2 sqrt(3) noise |r_u|
+  const double longest = degree * net.weight_spread() * diameter;
+  const double length = 4 * (noise / net.lightest()) * longest;  // 2 sqrt(3) noise |r_u|
   return {.squared_length = length * length, .noise = noise};
+}
+
+bool PatchSet::Impl::pack(std::size_t index, const BlockGroup& group, const Box3& hull) {
+  const RelativeNet net(patches[index], origin);
+  const Slot slot = slots[index];
+  const bool curve = is_curve(patches[index], collapsed[index]);
+  const Place place{group, slot, lane_counts[slot.block], net, curve, hull.diagonal()};
+  if (kinds.float_bernstein || kinds.double_bernstein) {
+    const double largest = net.largest(hull);
+    if (!fits(net, kinds.float_bernstein, [&](double limit) { return largest <= limit; })) return false;
+    const auto coefficients = [&](auto* lane) { net.write(lane); };
+    if (kinds.float_bernstein) place.write(single.bernstein, single.bernstein_doubt, largest, coefficients);
+    if (kinds.double_bernstein) place.write(twice.bernstein, twice.bernstein_doubt, largest, coefficients);
+  }
+  if (kinds.float_power || kinds.double_power) {
+    RelativeNet::Power memory;
+    const std::span<const double> power = net.power(memory);
+    const auto in_range = [&](double limit) {
+      return std::ranges::all_of(power, [&](double value) { return std::abs(value) <= limit; });
+    };
+    if (!fits(net, kinds.float_power, in_range)) return false;
+    const double largest = largest_vector(power, static_cast<std::size_t>(coefficient_components(group.rational)));
+    const auto coefficients = [&]<class T>(T* lane) {
+      for (std::size_t k = 0; k < power.size(); ++k) lane[k * lanes] = static_cast<T>(power[k]);
+    };
+    if (kinds.float_power) place.write(single.power, single.power_doubt, largest, coefficients);
+    if (kinds.double_power) place.write(twice.power, twice.power_doubt, largest, coefficients);
+  }
+  return true;
+}
+
+bool PatchSet::Impl::pack(std::size_t index) {
+  collapsed[index] = patches[index].collapsed_edges();
+  return pack(index, group_of_block(slots[index].block), patches[index].hull_box());
 }
 
 }  // namespace tessera

@@ -1,12 +1,11 @@
 #pragma once
-// One patch into its lane of a block.
+// One patch into its lanes of a block.
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <span>
-#include <vector>
 
 #include "tessera/bezier_patch.h"
 #include "tessera/patch_set.h"
@@ -24,14 +23,56 @@ constexpr std::size_t block_values(int degree_u, int degree_v, bool rational) {
 /// The coefficients of `patch` relative to `origin`, `[i][j][component]`: (V - o, or w (V - o) and w) in the Bernstein
 /// basis, or the same in powers of u and v. Weights are divided by a power of two that brings the largest near 1: they
 /// fit float whatever their size, and borders shared by patches keep their bits.
-void relative_coefficients(const BezierPatch& patch, const Vec3& origin, Representation representation,
-                           std::vector<double>& net);
+class RelativeNet {
+ public:
+  RelativeNet(const BezierPatch& patch, const Vec3& origin);
 
-/// Writes a net into one lane of a block, rounding to T once.
-template <class T>
-void write_lane(std::span<const double> net, T* block, std::uint32_t lane) {
-  for (std::size_t k = 0; k < net.size(); ++k) block[k * PatchSet::lanes + lane] = static_cast<T>(net[k]);
-}
+  double lightest() const { return scale_ * low_; }       ///< weight, once divided
+  double weight_ratio() const { return low_ / high_; }    ///< at most 1
+  double weight_spread() const { return high_ / low_; }   ///< at least 1
+
+  /// Largest x, y or z of the Bernstein coefficients. `hull`: patch.hull_box(), whose corners hold that of a polynomial
+  /// patch, for rounding a difference keeps order.
+  double largest(const Box3& hull) const;
+  /// Writes the Bernstein coefficients into the lane that begins here, rounding to T once.
+  template <class T>
+  void write(T* lane) const {
+    for_each([&](double value) {
+      *lane = static_cast<T>(value);
+      lane += PatchSet::lanes;
+    });
+  }
+
+  using Power = std::array<double, (max_degree + 1) * (max_degree + 1) * 4>;
+  /// The power coefficients, in `memory`.
+  std::span<const double> power(Power& memory) const;
+
+ private:
+  /// put(value) for each Bernstein coefficient. Equal control points give equal bits: adding +0 turns -0 into +0.
+  template <class Put>
+  void for_each(Put put) const {
+    const auto points = patch_.points();
+    const auto weights = patch_.weights();
+    if (weights.empty()) {
+      const Vec3 shift = Vec3{} - origin_;  // never -0, nor is a sum with it
+      for (const Vec3& point : points) {
+        put(point.x + shift.x);
+        put(point.y + shift.y);
+        put(point.z + shift.z);
+      }
+    } else {
+      for (std::size_t k = 0; k < points.size(); ++k) {
+        const double w = scale_ * weights[k];
+        const Vec3 q = w * (points[k] - origin_ + Vec3{}) + Vec3{};
+        for (const double value : {q.x, q.y, q.z, w}) put(value);
+      }
+    }
+  }
+
+  const BezierPatch& patch_;
+  const Vec3 origin_;
+  double low_ = 1, high_ = 1, scale_ = 1;  // of the weights
+};
 
 /// From when on r_u x r_v can't be told from zero in a block's arithmetic.
 struct NormalDoubt {
@@ -39,20 +80,23 @@ struct NormalDoubt {
   double noise = 0;  ///< largest error of a tangent's component, times the weight; negative: no normal anywhere
 };
 
-/// With 6 max(m, n) units of the largest coefficient for the error of a tangent, over the weight for rational patches:
-/// random nets of all degrees reach 4, tangents that vanish 1.6. And |r_u|, |r_v| <= max(m, n) (largest weight /
-/// smallest) diameter (Floater 1992, Derivatives of rational Bezier curves, eq. 10). `net` as of relative_coefficients;
-/// `unit` is 2^-23 or 2^-52.
-NormalDoubt normal_doubt(const BezierPatch& patch, std::span<const double> net, double unit);
+/// Whether all rows or all columns of the net are the same (for rational patches: both): then r_u or r_v is zero
+/// everywhere. `collapsed`: patch.collapsed_edges(); the ends of equal rows are two.
+bool is_curve(const BezierPatch& patch, EdgeMask collapsed);
+
+/// Of a patch that is no curve. With 6 max(m, n) units of the largest coefficient for the error of a tangent, over the
+/// weight for rational patches: random nets of all degrees reach 4, tangents that vanish 1.6. And |r_u|, |r_v| <=
+/// max(m, n) (largest weight / smallest) diameter (Floater 1992, Derivatives of rational Bezier curves, eq. 10).
+/// `largest`: x, y or z of the coefficients; `diameter`: of the hull's box; `unit`: 2^-23 or 2^-52.
+NormalDoubt normal_doubt(const RelativeNet& net, int degree, double largest, double diameter, double unit);
 
 /// The same into one lane of a block's two rows. Squared lengths below `lowest`, 2^-80 or 2^-600, are out of the range
 /// of a float's or a double's squares.
 template <class T>
-void write_doubt(const BezierPatch& patch, std::span<const double> net, T* rows, std::uint32_t lane) {
-  const NormalDoubt doubt = normal_doubt(patch, net, std::numeric_limits<T>::epsilon());
+void write_doubt(const NormalDoubt& doubt, T* lane) {
   const double lowest = sizeof(T) == 4 ? 0x1p-80 : 0x1p-600, largest = std::numeric_limits<T>::max();
-  rows[lane] = static_cast<T>(std::clamp(doubt.squared_length, lowest, largest));
-  rows[PatchSet::lanes + lane] = static_cast<T>(std::min(doubt.noise, largest));
+  lane[0] = static_cast<T>(std::clamp(doubt.squared_length, lowest, largest));
+  lane[PatchSet::lanes] = static_cast<T>(std::min(doubt.noise, largest));
 }
 
 }  // namespace tessera

@@ -1,28 +1,32 @@
 #include "tessera/patch_set.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <string>
-#include <tuple>
 
 #include "base/guard.h"
 #include "block/pack.h"
 #include "block/patch_set_impl.h"
+#include "parallel/parallel_for.h"
 
 namespace tessera {
 namespace {
 
-/// Patches of equal key share blocks.
-auto block_key(const BezierPatch& patch) { return std::tuple(patch.degree_u(), patch.degree_v(), patch.is_rational()); }
+/// Patches of equal key share blocks, which lie in the keys' order.
+int block_key(const BezierPatch& patch) {
+  return (patch.degree_u() * (max_degree + 1) + patch.degree_v()) * 2 + (patch.is_rational() ? 1 : 0);
+}
 
 /// Assigns patches to groups, blocks and lanes, in the patches' order within a group.
 void lay_out(PatchSet::Impl& set) {
+  std::vector<int> keys(set.patches.size());
+  std::ranges::transform(set.patches, keys.begin(), block_key);
   std::vector<std::uint32_t> order(set.patches.size());
   std::iota(order.begin(), order.end(), 0u);
-  const auto before = [&](auto a, auto b) { return block_key(set.patches[a]) < block_key(set.patches[b]); };
-  if (!std::is_sorted(order.begin(), order.end(), before)) std::stable_sort(order.begin(), order.end(), before);
+  if (!std::ranges::is_sorted(keys)) std::ranges::stable_sort(order, {}, [&](auto k) { return keys[k]; });
   constexpr std::size_t lanes = PatchSet::lanes;
   set.slots.resize(order.size());
   set.lane_patches.reserve(order.size() + lanes);
@@ -30,7 +34,7 @@ void lay_out(PatchSet::Impl& set) {
   for (std::size_t begin = 0; begin < order.size();) {
     const BezierPatch& first = set.patches[order[begin]];
     std::size_t end = begin;
-    while (end < order.size() && block_key(set.patches[order[end]]) == block_key(first)) ++end;
+    while (end < order.size() && keys[order[end]] == keys[order[begin]]) ++end;
     BlockGroup group{first.degree_u(), first.degree_v(), first.is_rational(), set.lane_counts.size(),
                      (end - begin + lanes - 1) / lanes, next_value,
                      block_values(first.degree_u(), first.degree_v(), first.is_rational())};
@@ -57,13 +61,6 @@ void lay_out(PatchSet::Impl& set) {
   if (set.kinds.double_bernstein) make_room(set.twice.bernstein, set.twice.bernstein_doubt);
   if (set.kinds.double_power) make_room(set.twice.power, set.twice.power_doubt);
 }
-
-/// Weights below these shares of the largest: derivatives grow with the inverse of that share, and normals with its square.
-constexpr double least_weight_in_float = 1e-9, least_weight_in_double = 1e-70;
-
-/// Control points no further than this from the origin give coefficients that fit float, whatever the basis: scaled
-/// weights are below 2^24, and powers of degree 15 both ways below 3^30 < 2^48 times the largest coefficient.
-constexpr double always_in_range = 0x1p50;
 
 Status too_large(std::size_t patch) {
   return Status(StatusCode::non_finite,
@@ -100,51 +97,34 @@ Box3 PatchSet::Impl::box() const {
   return box;
 }
 
-bool PatchSet::Impl::pack(std::size_t patch, const BlockGroup& group, bool surely_fits, std::vector<double>& scratch) {
-  const Slot slot = slots[patch];
-  const std::size_t first = group.first_value + (slot.block - group.first_block) * group.block_values;
-  const auto write = [&](auto& coefficients, auto& doubts) {
-    auto* block = coefficients.data() + first;
-    auto* doubt = doubts.data() + std::size_t{2} * lanes * slot.block;
-    const auto write_to = [&](std::uint32_t lane) {
-      write_lane(scratch, block, lane);
-      write_doubt(patches[patch], scratch, doubt, lane);
-    };
-    write_to(slot.lane);
-    if (slot.lane == 0)
-      for (std::uint32_t lane = lane_counts[slot.block]; lane < lanes; ++lane) write_to(lane);
-  };
-  const auto weights = patches[patch].weights();
-  const double lightest = weights.empty() ? 1 : std::ranges::min(weights) / std::ranges::max(weights);
-  for (const auto representation : {Representation::bernstein, Representation::power}) {
-    const bool in_float = has(Precision::single_precision, representation);
-    const bool in_double = has(Precision::double_precision, representation);
-    if (!in_float && !in_double) continue;
-    relative_coefficients(patches[patch], origin, representation, scratch);
-    const double limit = in_float ? double{std::numeric_limits<float>::max()} : std::numeric_limits<double>::max();
-    if (!surely_fits && !std::ranges::all_of(scratch, [&](double value) { return std::abs(value) <= limit; }))
-      return false;
-    if (lightest < (in_float ? least_weight_in_float : least_weight_in_double)) return false;
-    const bool bernstein = representation == Representation::bernstein;
-    if (in_float) bernstein ? write(single.bernstein, single.bernstein_doubt) : write(single.power, single.power_doubt);
-    if (in_double) bernstein ? write(twice.bernstein, twice.bernstein_doubt) : write(twice.power, twice.power_doubt);
-  }
-  return true;
+Status PatchSet::Impl::measure(std::vector<Box3>& hulls) {
+  constexpr std::size_t patches_in_piece = 512;
+  hulls.resize(patches.size());
+  collapsed.resize(patches.size());
+  return parallel_for(patches.size(), patches_in_piece, {}, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      hulls[k] = patches[k].hull_box();
+      collapsed[k] = patches[k].collapsed_edges();
+    }
+  });
 }
 
-bool PatchSet::Impl::pack(std::size_t patch, std::vector<double>& scratch) {
-  return pack(patch, group_of_block(slots[patch].block), false, scratch);
-}
-
-Status PatchSet::Impl::pack_all(bool surely_fits) {
-  std::vector<double> scratch;
-  for (const BlockGroup& group : groups)
-    for (std::size_t block = group.first_block; block < group.first_block + group.block_count; ++block)
-      for (std::size_t lane = 0; lane < lane_counts[block]; ++lane) {
-        const std::size_t patch = lane_patches[block * lanes + lane];
-        if (!pack(patch, group, surely_fits, scratch)) return too_large(patch);
+Status PatchSet::Impl::pack_all(std::span<const Box3> hulls) {
+  constexpr std::size_t blocks_in_piece = 32;
+  std::atomic<std::size_t> refused{lane_patches.size()};  // the first lane
+  const auto pack_blocks = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t block = begin; block < end; ++block) {
+      const BlockGroup& group = group_of_block(block);
+      for (std::size_t lane = block * lanes; lane < block * lanes + lane_counts[block]; ++lane) {
+        if (pack(lane_patches[lane], group, hulls[lane_patches[lane]])) continue;
+        std::size_t first = refused;
+        while (lane < first && !refused.compare_exchange_weak(first, lane)) continue;
+        return;
       }
-  return {};
+    }
+  };
+  Status status = parallel_for(lane_counts.size(), blocks_in_piece, {}, pack_blocks);
+  return status.ok() && refused < lane_patches.size() ? too_large(lane_patches[refused]) : status;
 }
 
 Result<PatchSet> PatchSet::Impl::make(std::vector<BezierPatch> patches, std::vector<PatchSource> sources,
@@ -159,16 +139,13 @@ Result<PatchSet> PatchSet::Impl::make(std::vector<BezierPatch> patches, std::vec
   set->fit_error = options.fit_error;
   for (const PatchSource& source : set->sources)
     set->surface_count = std::max(set->surface_count, std::size_t{source.surface} + 1);
+  std::vector<Box3> hulls;
+  if (Status status = set->measure(hulls); !status.ok()) return status;
   Box3 box;
-  set->collapsed.reserve(set->patches.size());
-  for (const BezierPatch& patch : set->patches) {  // one pass: the points may not fit the caches
-    box.extend(patch.hull_box());
-    set->collapsed.push_back(patch.collapsed_edges());
-  }
+  for (const Box3& hull : hulls) box.extend(hull);
   set->origin = options.origin.value_or(box.centre());
   lay_out(*set);
-  const double reach = std::max(max_abs(box.lower - set->origin), max_abs(box.upper - set->origin));
-  if (Status status = set->pack_all(reach < always_in_range); !status.ok()) return status;
+  if (Status status = set->pack_all(hulls); !status.ok()) return status;
   return PatchSet(std::move(set));
 }
 
@@ -224,15 +201,12 @@ Status PatchSet::set_control_points(std::size_t index, std::span<const Vec3> poi
                     static_cast<std::ptrdiff_t>(index));
     Result<BezierPatch> edited = patch(index).with_points(points);
     if (!edited) return edited.status();
-    std::vector<double> scratch;
-    scratch.reserve((max_degree + 1) * (max_degree + 1) * 4);  // what follows must not fail half-way
     std::swap(impl_->patches[index], *edited);
-    if (!impl_->pack(index, scratch)) {
+    if (!impl_->pack(index)) {
       std::swap(impl_->patches[index], *edited);
-      (void)impl_->pack(index, scratch);  // it fitted before
+      (void)impl_->pack(index);  // it fitted before
       return too_large(index);
     }
-    impl_->collapsed[index] = impl_->patches[index].collapsed_edges();
     ++impl_->revision;
     return {};
   });

@@ -2,6 +2,7 @@
 // The inside of a PatchSet: groups of blocks, for the floors that evaluate them.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/aligned.h"
@@ -65,18 +66,21 @@ class PatchSet::Impl {
     return bernstein ? kinds.double_bernstein : kinds.double_power;
   }
 
-  /// Writes a patch into its lane of every kind of block, and into the unused lanes that repeat it.
-  /// False if a coefficient does not fit float; `scratch` is reused between calls.
-  bool pack(std::size_t patch, std::vector<double>& scratch);
+  /// Writes a patch's collapsed edges, its lane of every kind of block, and the unused lanes that repeat it. False, and
+  /// the lanes half-written, if a coefficient does not fit. Allocates nothing.
+  bool pack(std::size_t index);
 
   /// PatchSet::from, without a copy.
   static Result<PatchSet> make(std::vector<BezierPatch> patches, std::vector<PatchSource> sources,
                                const PatchSetOptions& options);
 
  private:
-  /// Of a patch of `group`, and with all coefficients known to be in range or not.
-  bool pack(std::size_t patch, const BlockGroup& group, bool surely_fits, std::vector<double>& scratch);
-  Status pack_all(bool surely_fits);
+  /// Finds the collapsed edges of all patches, and their boxes.
+  Status measure(std::vector<Box3>& hulls);
+  /// Of a patch of `group` whose collapsed edges are known; `hull` is its box.
+  bool pack(std::size_t index, const BlockGroup& group, const Box3& hull);
+  /// Errors: non_finite, of the first patch in the order of the lanes that doesn't fit.
+  Status pack_all(std::span<const Box3> hulls);
 };
 
 }  // namespace tessera

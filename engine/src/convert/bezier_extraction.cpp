@@ -6,6 +6,7 @@
 #include <string>
 #include <type_traits>
 
+#include "base/aligned.h"
 #include "base/guard.h"
 #include "convert/extraction.h"
 #include "convert/spline_net.h"
@@ -153,9 +154,9 @@ class NetStrips {
   const BSplineSurface& surface_;
   const Extraction u_, v_;
   std::optional<Scales> scales_;          ///< of rational surfaces
-  std::vector<double> along_v_;           ///< [control row][row of v_][component]
-  std::vector<double> points_, weights_;  ///< [0 .. degree_u][row of v_], the points by their components
-  std::vector<double> homogeneous_;       ///< one row of a rational strip
+  UnsetVector<double> along_v_;           ///< [control row][row of v_][component]
+  UnsetVector<double> points_, weights_;  ///< [0 .. degree_u][row of v_], the points by their components
+  UnsetVector<double> homogeneous_;       ///< one row of a rational strip
   bool may_overflow_ = false;             ///< means of points are no larger than these but for rounding
 };
 
