@@ -145,6 +145,16 @@ TEST(Model, ErrorsOfFitsHoldFarFromZero) {
                  Status::no_index, "below what rounding leaves where the surface is placed");
 }
 
+TEST(Model, PlacementsOfAnySizeAreTaken) {
+  const FitOptions fit{.tolerance = 1e-3};
+  EXPECT_TRUE(to_bezier(ModelSurface{"", round_sheet(), Affine::scaled({1e-200, 1e-200, 1e-200})}, fit).ok());
+  const auto speck = value_of(
+      BezierPatch::polynomial(1, 1, std::vector<Vec3>{{0, 0, 0}, {0, 1e-300, 0}, {1e-300, 0, 0}, {1e-300, 1e-300, 0}}));
+  const PatchGrid grid =
+      value_of(to_bezier(ModelSurface{"", speck, Affine{{Vec3{1.7e308, 0, 0}, Vec3{1.7e308, 0, 0}}}}));
+  EXPECT_EQ(grid.fit_error().distance, 0);
+}
+
 TEST(Model, MapsKeepSharedBordersAndPoles) {
   const BSplineSurface sphere = value_of(nurbs_sphere({}, 1));
   const PatchGrid grid = value_of(transformed(value_of(to_bezier(sphere)), askew()));

@@ -281,6 +281,29 @@ TEST(Fit, BreakpointsFromTheStart) {
                    static_cast<std::ptrdiff_t>(breaks.size()) - 1, "breakpoint v[");
 }
 
+/// Squares of what is below 1e-162 are 0, and so are fourth powers of what is below 1e-81.
+TEST(Fit, TinySurfacesAndDomainsAreMeasured) {
+  const auto wave = [](double scale) {
+    return value_of(ParametricSurface::make({.position = [scale](double u, double v) {
+      return scale * Vec3{u, v, std::sin(30 * u)};
+    }}));
+  };
+  const PatchGrid usual = value_of(to_bezier(wave(1))), tiny = value_of(to_bezier(wave(0x1p-560)));
+  EXPECT_EQ(tiny.patches().size(), usual.patches().size());
+  EXPECT_GT(tiny.fit_error().distance, 0);
+  const auto power = [](double u, double) { return Vec3{std::pow(1e30 * u, 4), 0, 0}; };
+  const auto bounds = [](const Domain& part, int k) {
+    double factor = 1;
+    for (int i = 0; i < k; ++i) factor *= 4 - i;
+    return std::array{k > 4 ? 0.0 : factor * std::pow(1e30, k) * std::pow(1e30 * part.u1, 4 - k), 0.0};
+  };
+  const auto short_one =
+      value_of(ParametricSurface::make({.position = power, .derivative_bounds = bounds}, {0, 1e-82, 0, 1}));
+  const Result<PatchGrid> fit = to_bezier(short_one, {.tolerance = 1e-216});
+  if (!fit) return;  // refused, which is as well
+  EXPECT_LE(std::abs(fit->evaluate_jet(0.3e-82, 0.5)->position.x - std::pow(0.3e-52, 4)), fit->fit_error().distance);
+}
+
 TEST(Fit, NamesWhatGoesWrongInTheMiddle) {
   // Not a number on a small spot that the coarse points miss, first met where the fit samples.
   const auto spot = [](double u, double v) {

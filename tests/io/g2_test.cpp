@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <sstream>
 
 #include "io/reader_checks.h"
 
@@ -79,6 +80,24 @@ TEST(G2, ElementarySurfacesHaveTheFilesParameters) {
   }
   EXPECT_EQ(domain(model.surfaces[2].surface).v0, -pi / 2);  // printed with 14 digits
   for (const ModelSurface& surface : model.surfaces) EXPECT_TRUE(to_bezier(surface).ok());
+}
+
+TEST(G2, FlatAndSteepConesAreCones) {
+  for (const double angle : {1e-6, 0.01, 1.57, 1.5707962}) {
+    std::ostringstream text;
+    text.precision(17);
+    text << "280 1 0 0\n3\n1\n0 0 0\n0 0 1\n1 0 0\n" << angle << "\n1\n0 6.283185307179586\n0 1\n0\n";
+    const Model model = model_of(parse_g2, text.str());
+    ASSERT_EQ(model.surfaces.size(), 1u);
+    const Domain d = domain(model.surfaces[0].surface);
+    const double slope = std::tan(angle);
+    for (const double u : {0.0, 1.0, 4.0}) {
+      // Heights count from the apex, 1 / slope below: that takes so many digits.
+      const double scale = 1e-15 * (1 + slope) * (1 + 1 / slope);
+      expect_near(at(model, 0, u, d.v0), {std::cos(u), std::sin(u), 0}, 4 * scale);
+      expect_near(at(model, 0, u, d.v1), {(1 + slope) * std::cos(u), (1 + slope) * std::sin(u), 1}, 4 * scale);
+    }
+  }
 }
 
 TEST(G2, ToriAreNurbsFromBorderToBorder) {

@@ -57,6 +57,15 @@ TEST(Blend, LeadingZerosAreNoDegree) {
   EXPECT_EQ(blend.second().size(), 2u);
 }
 
+/// What the tolerance forgives is mended: the polynomials themselves then meet the conditions.
+TEST(Blend, ForgivenMissesArePutRight) {
+  const Blend blend =
+      value_of(Blend::polynomial(std::vector{1 + 9e-12, -11 - 9e-12, 10.0}, std::vector{0.0, 11.0, -10.0}));
+  EXPECT_EQ(blend.first()[0], 1);
+  EXPECT_EQ(blend.first()[0] + blend.first()[1] + blend.first()[2], 0);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(blend.first()[i] + blend.second()[i], i == 0 ? 1 : 0);
+}
+
 TEST(Blend, RefusesPolynomialsThatBreakAConditionAndSaysWhich) {
   using List = std::vector<double>;
   const auto refused = [](const List& first, const List& second, StatusCode code, std::ptrdiff_t index,

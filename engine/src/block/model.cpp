@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 
 #include "base/guard.h"
 #include "base/text.h"
@@ -63,7 +64,8 @@ Result<PatchGrid> to_bezier(const ModelSurface& surface, const FitOptions& optio
   if (surface.placement == Affine{}) return to_bezier(surface.surface, options);
   FitOptions before = options;  // lengths before the placement
   const double norm = surface.placement.norm_bound();
-  if (norm > 0) before.tolerance *= share_for_fits / norm;
+  if (norm > 0)
+    before.tolerance = std::min(share_for_fits * options.tolerance / norm, std::numeric_limits<double>::max());
   Result<PatchGrid> grid = to_bezier(surface.surface, before);
   if (grid) grid = transformed(*grid, surface.placement);
   if (grid && options.tolerance > 0 && grid->fit_error().distance > options.tolerance)

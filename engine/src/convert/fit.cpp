@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/guard.h"
+#include "base/safe_length.h"
 #include "base/text.h"
 #include "basis/chebyshev_lobatto.h"
 #include "convert/fit_error.h"
@@ -67,7 +68,7 @@ Result<Box3> coarse_box(const ParametricSurface& surface) {
 Result<double> tolerance_of(const Box3& box, double wanted) {
   const double size = std::max(max_abs(box.lower), max_abs(box.upper));
   const double least = std::max(0x1p-48 * size, std::numeric_limits<double>::min());
-  if (wanted == 0) return std::max(1e-6 * box.diagonal(), least);
+  if (wanted == 0) return std::max(1e-6 * safe_length(box.upper - box.lower), least);
   if (wanted < least)
     return Status(StatusCode::invalid_argument, "the tolerance " + text(wanted) + " is below " + text(least) +
                                                     ", which rounding leaves of coordinates as large as " + text(size));

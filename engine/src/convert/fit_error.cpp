@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "base/safe_length.h"
 #include "basis/chebyshev_lobatto.h"
 
 namespace tessera {
@@ -12,9 +13,12 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// factor h^(n+1) bound, 0 for a bound of 0.
+/// factor h^(n+1) bound, 0 for a bound of 0. The bound comes first: powers of a short h underflow.
 double interpolation_error(int degree, double h, double bound) {
-  return bound == 0 ? 0 : lobatto_error_factor(degree) * std::pow(h, degree + 1) * bound;
+  if (bound == 0) return 0;
+  double error = lobatto_error_factor(degree) * bound;
+  for (int i = 0; i <= degree; ++i) error *= h;
+  return std::max(error, std::numeric_limits<double>::min());
 }
 
 }  // namespace
@@ -91,9 +95,9 @@ Result<CellError> SampledError::operator()(const Domain& cell) {
         along_v += basis_[b * nodes_ + j] * value(a, 3 * j);
         both += basis_[b * nodes_ + j] * along_u_[a * size() + 3 * j];
       }
-      error.along_u = std::max(error.along_u, length(value(a, b) - along_u_[a * size() + b]));
-      error.along_v = std::max(error.along_v, length(value(a, b) - along_v));
-      error.total = std::max(error.total, length(value(a, b) - both));
+      error.along_u = std::max(error.along_u, safe_length(value(a, b) - along_u_[a * size() + b]));
+      error.along_v = std::max(error.along_v, safe_length(value(a, b) - along_v));
+      error.total = std::max(error.total, safe_length(value(a, b) - both));
     }
   return error;
 }

@@ -86,11 +86,15 @@ Result<PatchGrid> transformed(const PatchGrid& grid, const Affine& map) {
       patches.push_back(*std::move(image));
     }
     const FitError& error = grid.fit_error();
-    // A coordinate is a sum of three rounded products and the translation: six roundings of 2^-53, in three coordinates.
-    const double rounding = error.distance > 0 ? 0x1p-49 * (size + max_abs(map.translation)) : 0;
+    double distance = 0;  // an exact surface stays exact
+    if (error.distance > 0) {
+      // A coordinate is a sum of three rounded products and the translation: six roundings of 2^-53, in three of them.
+      const double rounding = 0x1p-49 * (size + max_abs(map.translation));
+      distance = error.distance * map.norm_bound() * (1 + 0x1p-40) + rounding;
+    }
     const auto copy = [](std::span<const double> breaks) { return std::vector<double>(breaks.begin(), breaks.end()); };
     return PatchGrid::make(copy(grid.breaks_u()), copy(grid.breaks_v()), std::move(patches),
-                           {error.distance * map.norm_bound() * (1 + 0x1p-40) + rounding, error.certified});
+                           {distance, error.certified});
   });
 }
 

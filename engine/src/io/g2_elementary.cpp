@@ -76,24 +76,27 @@ Result<Surface> plane(const Elementary& e) {
 }
 
 /// In the frame of the canonical quadric, whose parameters are the file's.
-Result<Surface> quadric(const QuadricCoefficients& coefficients, Domain range) {
+Result<Surface> quadric(QuadricKind kind, const QuadricCoefficients& coefficients, Domain range) {
   snap_turn(range.u0, range.u1);
   const Result<Quadric> whole = Quadric::make(coefficients);
   if (!whole) return whole.status();
+  if (whole->kind() != kind)
+    return Status(StatusCode::invalid_argument, "its sizes are too far from 1 for doubles: it comes out as the kind '" +
+                                                    std::string(name(whole->kind())) + "'");
   Result<QuadricPiece> piece = QuadricPiece::make(*whole, range);
   if (!piece) return piece.status();
   return Surface(*std::move(piece));
 }
 
 Result<Surface> cylinder(double radius, const Domain& range) {
-  return quadric({.a = 1 / radius / radius, .b = 1 / radius / radius, .k = -1}, range);
+  return quadric(QuadricKind::elliptic_cylinder, {.a = 1 / radius / radius, .b = 1 / radius / radius, .k = -1}, range);
 }
 
 Result<Surface> sphere(double radius, Domain range) {
   snap_pole(range.v0);
   snap_pole(range.v1);
   const double square = 1 / radius / radius;
-  return quadric({.a = square, .b = square, .c = square, .k = -1}, range);
+  return quadric(QuadricKind::ellipsoid, {.a = square, .b = square, .c = square, .k = -1}, range);
 }
 
 /// About the origin; the turn begins at u0 and the tube at v0, so that ranges are the first parts of full circles.
@@ -125,13 +128,13 @@ Result<Surface> cone(const Elementary& e, Affine& placement) {
   const double slope = std::tan(e.angle);
   if (std::abs(slope) <= printed) return cylinder(e.radius, e.range);
   const double apex = e.radius / slope;
-  placement = placement * Affine::translated({0, 0, -apex});
+  placement = placement * Affine::translated({0, 0, -apex}) * Affine::scaled({std::abs(slope), std::abs(slope), 1});
   const Domain range{e.range.u0, e.range.u1, e.range.v0 + apex, e.range.v1 + apex};
   // A falling radius is a cone that is passed through from below: half a turn further on the same circles.
   if (slope < 0) {
     placement = placement * Affine::scaled({-1, -1, 1});
   }
-  return quadric({.a = 1 / slope / slope, .b = 1 / slope / slope, .c = -1}, range);
+  return quadric(QuadricKind::elliptic_cone, {.a = 1, .b = 1, .c = -1}, range);  // of slope 1, then scaled
 }
 
 Result<Surface> make_surface(std::int64_t kind, const Elementary& e, Affine& placement) {

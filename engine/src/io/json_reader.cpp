@@ -102,6 +102,7 @@ Interval read_interval(const JsonValue& value) {
   ++end;
   interval.to = read_number(*end);
   if (!(interval.from < interval.to)) value.fail("the interval is empty or reversed");
+  if (!std::isfinite(interval.to - interval.from)) value.fail("the interval is too long for doubles");
   return interval;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/guard.h"
+#include "base/safe_length.h"
 #include "base/text.h"
 #include "surface/border_curve.h"
 #include "surface/checks.h"
@@ -15,12 +16,6 @@ namespace {
 std::array<const BorderCurve*, 4> all_of(const CoonsBorders& b) { return {&b.c1, &b.c2, &b.d1, &b.d2}; }
 
 std::string text_of(const Vec3& p) { return "(" + text(p.x) + ", " + text(p.y) + ", " + text(p.z) + ")"; }
-
-/// |a| without over- or underflow.
-double safe_length(const Vec3& a) {
-  const double largest = max_abs(a);
-  return largest > 0 && std::isfinite(largest) ? largest * length((1 / largest) * a) : largest;
-}
 
 /// Where the four curves end: [border][end].
 using Ends = std::array<std::array<Vec3, 2>, 4>;

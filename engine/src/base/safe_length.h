@@ -1,0 +1,17 @@
+#pragma once
+// Lengths whose squares leave the range of doubles.
+
+#include <cmath>
+
+#include "tessera/vec.h"
+
+namespace tessera {
+
+/// |a| without over- or underflow on the way.
+inline double safe_length(const Vec3& a) {
+  const double largest = max_abs(a);
+  if (!(largest > 0) || !std::isfinite(largest)) return largest;
+  return largest * length({a.x / largest, a.y / largest, a.z / largest});
+}
+
+}  // namespace tessera
