@@ -87,6 +87,15 @@ TEST_F(EvalTool, JsonAndCsvSayTheSame) {
   }
 }
 
+/// Not that of the fitted patches, which is off by the square root of their error.
+TEST_F(EvalTool, TheNormalAtTheTopOfAHemisphereIsUpright) {
+  const std::string hemisphere = TESSERA_SOURCE_DIR "/tools/models/hemisphere.json";
+  folder_.file("p.csv", "surface,u,v\n0,0,0\n0,0,1.25\n0,0,4\n");
+  const auto rows = cells_of(output_of({"eval", hemisphere, "--params", "p.csv"}));
+  ASSERT_EQ(rows.size(), 4u);
+  for (std::size_t k = 1; k < rows.size(); ++k) EXPECT_LE(length(vector_at(rows[k], 6) - Vec3{0, 0, 1}), 1e-9) << k;
+}
+
 TEST_F(EvalTool, WhereThereIsNoNormalItIsZeroOrNull) {
   folder_.file("point.bpt", "1\n1 1\n1 2 3\n1 2 3\n1 2 3\n1 2 3\n");
   const auto rows = cells_of(output_of({"eval", "point.bpt", "--grid", "2x2"}));

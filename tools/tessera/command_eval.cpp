@@ -139,7 +139,8 @@ class Evaluator {
     return jet;
   }
 
-  /// From the jet where tangents span a plane, else the limit on the surface's patches.
+  /// From the jet where tangents span a plane, else the limit: of a function at a collapsed border by r_uv, otherwise on
+  /// the surface's patches.
   Result<UnitNormal> normal(const SurfacePlace& place, const SurfaceJet& jet) {
     constexpr double least_sine = 1e-10;
     if (length(cross(normalized(jet.du), normalized(jet.dv))) > least_sine) {
@@ -147,6 +148,10 @@ class Evaluator {
       if (is_finite(across) && across != Vec3{}) return UnitNormal{across, NormalKind::regular};
     }
     const ModelSurface& surface = model_.surfaces[place.surface];
+    if (std::holds_alternative<ParametricSurface>(surface.surface)) {
+      const UnitNormal limit = limit_at_border(domain(surface.surface), place, jet);
+      if (limit.kind == NormalKind::limit) return limit;
+    }
     if (!patches_ || converted_ != place.surface) {
       Result<PatchGrid> patches = to_bezier(surface, fit_);
       if (!patches) return patches.status();
@@ -159,6 +164,19 @@ class Evaluator {
   }
 
  private:
+  /// Near a border u = u0 where r_v vanishes, r_v is (u - u0) r_uv, so that r_u x r_uv is the normal's direction; turned
+  /// at u1, for there u - u1 < 0. The same with u and v exchanged.
+  static UnitNormal limit_at_border(const Domain& d, const SurfacePlace& place, const SurfaceJet& jet) {
+    constexpr double vanishing = 1e-10, least_sine = 1e-6;
+    const auto side = [](double t, double from, double to) { return t == from ? 1.0 : t == to ? -1.0 : 0.0; };
+    const bool by_u = length(jet.dv) <= vanishing * length(jet.du);
+    const double sign = by_u ? side(place.u, d.u0, d.u1) : side(place.v, d.v0, d.v1);
+    if (sign == 0 || (!by_u && length(jet.du) > vanishing * length(jet.dv))) return {};
+    const Vec3 mixed = normalized(jet.duv);
+    const Vec3 across = by_u ? cross(normalized(jet.du), mixed) : cross(mixed, normalized(jet.dv));
+    return length(across) > least_sine ? UnitNormal{normalized(sign * across), NormalKind::limit} : UnitNormal{};
+  }
+
   const Model& model_;
   FitOptions fit_;
   std::optional<PatchGrid> patches_;
