@@ -20,7 +20,7 @@ std::vector<BezierPatch> many_patches() {
 
 template <class T>
 bool same_bytes(const T& a, const T& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0;
+  return a.size() == b.size() && (a.size() == 0 || std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0);
 }
 
 template <class T>

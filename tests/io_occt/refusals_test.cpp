@@ -170,6 +170,10 @@ TEST(ReadCad, PrintsNothing) {
 }
 
 TEST(ReadCad, ManyThreadsReadAtOnce) {
+#if defined(__SANITIZE_ADDRESS__)
+  GTEST_SKIP()
+      << "the address sanitizer's allocator stays locked in a child that is forked while another thread is in it";
+#endif
   const ScratchFolder folder;
   write_cad(part(), folder / "part.step");
   write_cad(part(), folder / "part.igs");
