@@ -166,7 +166,7 @@ TEST(Model, MapsKeepSharedBordersAndPoles) {
 
 TEST(Model, ErrorsNameTheSurface) {
   Model model{"", {{"floor", unit_square()}, {"rim", unit_square()}}};
-  model.surfaces[1].placement.translation.y = not_a_number;
+  model.surfaces[1].placement = Affine::translated({0, not_a_number, 0});
   expect_refused(make_patch_set(model), StatusCode::non_finite, 1, "surface 1 (rim): an affine map must be finite");
   model.surfaces[1].placement = Affine::scaled({1e200, 1e200, 1e200});
   expect_refused(make_patch_set(model), StatusCode::non_finite, 0,

@@ -21,7 +21,7 @@ void require(bool holds) {
     const Domain d = domain(surface.surface);
     require(d.u0 < d.u1 && d.v0 < d.v1 && !kind_name(surface.surface).empty());
     require(evaluate_jet(surface, d.u_at(0.5), d.v_at(0.5)).ok());
-    for (const TrimLoop& loop : surface.trims) require(!loop.curves.empty());
+    for (const TrimLoop& loop : *surface.trims) require(!loop.curves.empty());
   }
 }
 

@@ -48,10 +48,10 @@ TEST(Bv, GroupLinesNameWhatFollows) {
   EXPECT_EQ(model_of(parse_bv, "GROUP 7\n" + bilinear).surfaces[0].name, "");
   // A name that is a large part of the file is not stored once a surface: 200 bytes at most, no half characters.
   const Model long_name = model_of(parse_bv, "group 0 x" + std::string(1000, 'a') + "\n" + bilinear);
-  EXPECT_EQ(long_name.surfaces[0].name.size(), 200u);
+  EXPECT_EQ(long_name.surfaces[0].name->size(), 200u);
   std::string accents = "group 0 x";
   for (int k = 0; k < 200; ++k) accents += "\xC3\xA9";
-  EXPECT_EQ(model_of(parse_bv, accents + "\n" + bilinear).surfaces[0].name.size(), 199u);
+  EXPECT_EQ(model_of(parse_bv, accents + "\n" + bilinear).surfaces[0].name->size(), 199u);
 }
 
 TEST(Bv, OtherKindsArePassedOverAndCounted) {

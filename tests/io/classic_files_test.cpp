@@ -159,11 +159,11 @@ TEST_F(ClassicFiles, SpheresAreRound) {
 TEST_F(ClassicFiles, TheTrimmedSphereKeepsItsLoop) {
   const Model model = read("rib_nupatch/trimmed_nupatch_sphere.rib");
   const ModelSurface& surface = model.surfaces.at(0);
-  ASSERT_EQ(surface.trims.size(), 1u);
-  ASSERT_EQ(surface.trims[0].curves.size(), 4u);
+  ASSERT_EQ(surface.trims->size(), 1u);
+  ASSERT_EQ(surface.trims->at(0).curves.size(), 4u);
   // Around the whole of the parameters, each curve from where the one before it ends.
   Vec3 end;
-  for (const Curve& curve : surface.trims[0].curves) {
+  for (const Curve& curve : surface.trims->at(0).curves) {
     EXPECT_LE(length(evaluate_jet(curve, curve.domain().from).position - end), 1e-12);
     end = evaluate_jet(curve, curve.domain().to).position;
   }

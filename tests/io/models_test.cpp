@@ -55,16 +55,16 @@ void expect_formula(const ModelSurface& s, const Formula& formula, double tolera
   for (int k = 0; k < 200; ++k) {
     const double u = k == 0 ? d.u0 : k == 1 ? d.u1 : uniform(random, d.u0, d.u1);
     const double v = k == 0 ? d.v0 : k == 1 ? d.v1 : uniform(random, d.v0, d.v1);
-    EXPECT_LE(max_abs(point(s, u, v) - formula(u, v)), tolerance) << s.name << " at " << u << ", " << v;
+    EXPECT_LE(max_abs(point(s, u, v) - formula(u, v)), tolerance) << *s.name << " at " << u << ", " << v;
     EXPECT_LE(max_abs(grid.evaluate_jet(u, v)->position - formula(u, v)), tolerance + fit_error(grid))
-        << s.name << " at " << u << ", " << v;
+        << *s.name << " at " << u << ", " << v;
   }
 }
 /// The value at one place, of the surface and of its patches.
 void expect_point(const ModelSurface& s, double u, double v, const Vec3& expected, double tolerance = rounding) {
-  EXPECT_LE(max_abs(point(s, u, v) - expected), tolerance) << s.name;
+  EXPECT_LE(max_abs(point(s, u, v) - expected), tolerance) << *s.name;
   const PatchGrid grid = value_of(to_bezier(s));
-  EXPECT_LE(max_abs(grid.evaluate_jet(u, v)->position - expected), tolerance + fit_error(grid)) << s.name;
+  EXPECT_LE(max_abs(grid.evaluate_jet(u, v)->position - expected), tolerance + fit_error(grid)) << *s.name;
 }
 
 double h0(double t) { return 1 - 3 * t * t + 2 * t * t * t; }
@@ -83,7 +83,7 @@ TEST(Models, EachIsReadAndSaysWhereItIsFrom) {
                 text.find("\"description\": \"Gallery: ") != std::string::npos)
         << file;
     std::set<std::string> names;
-    for (const ModelSurface& s : read->surfaces) EXPECT_TRUE(!s.name.empty() && names.insert(s.name).second) << file;
+    for (const ModelSurface& s : read->surfaces) EXPECT_TRUE(!s.name->empty() && names.insert(s.name).second) << file;
   }
 }
 

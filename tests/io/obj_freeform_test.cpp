@@ -273,7 +273,7 @@ TEST(ObjFreeform, LayoutDoesNotMatter) {
       const Model model = model_of(other);
       ASSERT_EQ(model.surfaces.size(), plain.surfaces.size()) << other;
       for (std::size_t k = 0; k < plain.surfaces.size(); ++k) {
-        EXPECT_EQ(model.surfaces[k].trims.size(), plain.surfaces[k].trims.size());
+        EXPECT_EQ(model.surfaces[k].trims->size(), plain.surfaces[k].trims->size());
         EXPECT_EQ(model.surfaces[k].name, plain.surfaces[k].name);
         const Domain d = domain(plain.surfaces[k].surface);
         for (const double t : {0.0, 0.4, 1.0})
@@ -317,7 +317,7 @@ TEST(ObjFreeform, TrimsAreKeptWithTheirCurvesAndReported) {
   const Model model = model_of(four_vertices + curves + bilinear + bilinear.substr(0, bilinear.size() - 4) +
                                "trim 0 4 1\nhole 0.25 0.75 2 0 1 -1\nscrv 0 1 2\nend\n");
   ASSERT_EQ(model.surfaces.size(), 2u);
-  EXPECT_TRUE(model.surfaces[0].trims.empty());
+  EXPECT_TRUE(model.surfaces[0].trims->empty());
   const std::vector<TrimLoop>& trims = model.surfaces[1].trims;
   ASSERT_EQ(trims.size(), 2u);
   EXPECT_FALSE(trims[0].hole);
@@ -354,8 +354,8 @@ TEST(ObjFreeform, TrimmingCurvesOfEveryTypeAreTheirFormulas) {
     text += "cstype " + type + "\ndeg 3\nstep 3\nbmat u" + matrix + "\ncurv2" + range_text(count) +
             "\nparm u 0 1 3\nend\n" + bilinear.substr(0, bilinear.size() - 4) + "trim 0 3 1\nend\n";
     const Model model = model_of(text);
-    ASSERT_EQ(model.surfaces.at(0).trims.size(), 1u) << type;
-    const TrimLoop& loop = model.surfaces[0].trims[0];
+    ASSERT_EQ(model.surfaces.at(0).trims->size(), 1u) << type;
+    const TrimLoop& loop = model.surfaces[0].trims->at(0);
     const auto blend = [&](int direction, int i, Real t) -> Real {
       if (direction == 1) return 1;
       if (type == "cardinal") return catmull_rom(0, i, t);

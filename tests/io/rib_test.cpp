@@ -273,10 +273,10 @@ TEST(Rib, TrimCurvesAreKept) {
   const std::string patch = " NuPatch 2 2 [0 0 1 1] 0 1 2 2 [0 0 1 1] 0 1 \"P\" [0 0 0 1 0 0 0 1 0 1 1 0] ";
   const Model model = model_of(parse_rib, "AttributeBegin " + trims + patch + patch + "AttributeEnd" + patch);
   ASSERT_EQ(model.surfaces.size(), 3u);
-  EXPECT_TRUE(model.surfaces[2].trims.empty());
+  EXPECT_TRUE(model.surfaces[2].trims->empty());
   EXPECT_EQ(model.warnings, std::vector<std::string>{"m:1: 2 surfaces are trimmed: trims are not honoured yet"});
   for (std::size_t k = 0; k < 2; ++k) {
-    const auto& loops = model.surfaces[k].trims;
+    const auto& loops = *model.surfaces[k].trims;
     ASSERT_EQ(loops.size(), 2u);
     EXPECT_EQ(loops[0].curves.size(), 1u);
     ASSERT_EQ(loops[1].curves.size(), 2u);

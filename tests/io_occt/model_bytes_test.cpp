@@ -18,7 +18,7 @@ Model sample() {
   const std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0.5, 0}};
   const Result<Curve> curve = Curve::bezier(points), arc = nurbs_circle({}, 1);
   TrimLoop loop{{*curve, *arc}, true};
-  model.surfaces.push_back({"ball", *sphere, Affine::translated({1, 2, 3}), {loop, {}}});
+  model.surfaces.push_back({"ball", *sphere, Affine::translated({1, 2, 3}), std::vector<TrimLoop>{loop, {}}});
   const std::vector<double> knots{0, 0, 1, 1};
   model.surfaces.push_back({"", *BSplineSurface::polynomial(1, knots, 1, knots, points, Domain{0.25, 1, 0, 0.5})});
   return model;
@@ -35,9 +35,9 @@ TEST(ModelBytes, HoldTheWholeModel) {
   ASSERT_EQ(read->surfaces.size(), 2u);
   EXPECT_EQ(read->surfaces[0].name, "ball");
   EXPECT_EQ(read->surfaces[0].placement, model.surfaces[0].placement);
-  ASSERT_EQ(read->surfaces[0].trims.size(), 2u);
-  EXPECT_TRUE(read->surfaces[0].trims[0].hole);
-  EXPECT_EQ(read->surfaces[0].trims[0].curves.size(), 2u);
+  ASSERT_EQ(read->surfaces[0].trims->size(), 2u);
+  EXPECT_TRUE(read->surfaces[0].trims->at(0).hole);
+  EXPECT_EQ(read->surfaces[0].trims->at(0).curves.size(), 2u);
   const BSplineSurface &before = std::get<BSplineSurface>(model.surfaces[1].surface),
                        &after = std::get<BSplineSurface>(read->surfaces[1].surface);
   EXPECT_EQ(before.domain(), after.domain());

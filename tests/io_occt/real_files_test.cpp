@@ -62,7 +62,7 @@ TEST(RealCadFiles, AreReadOrRefusedWithTheirReason) {
       continue;
     }
     std::size_t trimmed = 0;
-    for (const ModelSurface& surface : model->surfaces) trimmed += !surface.trims.empty();
+    for (const ModelSurface& surface : model->surfaces) trimmed += !surface.trims->empty();
     std::printf("%-50s %8zu %8zu\n", file.c_str(), model->surfaces.size(), trimmed);
     for (const std::string& warning : model->warnings)
       std::printf("    %s\n", warning.c_str() + path.string().size() + 2);
@@ -89,7 +89,7 @@ TEST(RealCadFiles, AssembliesHaveNamesAndPlaces) {
   std::map<std::string, std::set<double>> places;  // of each part, along x
   std::map<std::string, std::size_t> faces;
   for (const ModelSurface& surface : model->surfaces) {
-    places[surface.name].insert(surface.placement.point({}).x);
+    places[surface.name].insert(surface.placement->point({}).x);
     ++faces[surface.name];
   }
   // The classic: a plate, two brackets with three bolts each, a rod; nuts on all of these.

@@ -238,8 +238,8 @@ void expect_normals_outwards(const Model& model, const Vec3& inside) {
     const BSplineSurface& s = std::get<BSplineSurface>(surface.surface);
     const Domain& d = s.domain();
     const SurfaceJet jet = evaluate_jet(s, d.u_at(0.4), d.v_at(0.6));
-    const Vec3 normal = surface.placement.vector(cross(jet.du, jet.dv));
-    EXPECT_GT(dot(normal, surface.placement.point(jet.position) - inside), 0);
+    const Vec3 normal = surface.placement->vector(cross(jet.du, jet.dv));
+    EXPECT_GT(dot(normal, surface.placement->point(jet.position) - inside), 0);
   }
 }
 
@@ -255,12 +255,12 @@ TEST(ReadCad, PrimitivesComeBackFromBothFormats) {
     EXPECT_TRUE(model->warnings.empty()) << model->warnings[0];
     ASSERT_EQ(model->surfaces.size(), 1u);
     const ModelSurface& surface = model->surfaces[0];
-    EXPECT_TRUE(surface.trims.empty());
+    EXPECT_TRUE(surface.trims->empty());
     const BSplineSurface& s = std::get<BSplineSurface>(surface.surface);
     for (const double u : {0.0, 0.3, 0.77})
       for (const double v : {0.1, 0.5, 1.0}) {
         const Vec3 p = evaluate_jet(s, s.domain().u_at(u), s.domain().v_at(v)).position;
-        EXPECT_NEAR(length(surface.placement.point(p) - origin), 2, 1e-13) << name;
+        EXPECT_NEAR(length(surface.placement->point(p) - origin), 2, 1e-13) << name;
       }
     expect_normals_outwards(*model, origin);
   }

@@ -70,8 +70,8 @@ TEST(Trims, AreWhereAFaceIsLessThanItsRectangle) {
       if (s.is_rational()) continue;  // planes, whose parameters are lengths
       const Domain& d = s.domain();
       const double scale = length(evaluate_jet(s, d.u0, d.v0).du) * length(evaluate_jet(s, d.u0, d.v0).dv);
-      areas.push_back(scale * (surface.trims.empty() ? (d.u1 - d.u0) * (d.v1 - d.v0) : area(surface.trims)));
-      for (const TrimLoop& loop : surface.trims) holes += loop.hole;
+      areas.push_back(scale * (surface.trims->empty() ? (d.u1 - d.u0) * (d.v1 - d.v0) : area(surface.trims)));
+      for (const TrimLoop& loop : *surface.trims) holes += loop.hole;
     }
     std::sort(areas.begin(), areas.end());
     ASSERT_EQ(areas.size(), 6u);
@@ -95,13 +95,13 @@ TEST(Trims, LoopsFollowCurvesThroughRationalParameters) {
   std::size_t checked = 0;
   for (const ModelSurface& surface : model->surfaces) {
     const BSplineSurface& s = std::get<BSplineSurface>(surface.surface);
-    for (const TrimLoop& loop : surface.trims) {
+    for (const TrimLoop& loop : *surface.trims) {
       if (!loop.hole) continue;
       for (const Curve& curve : loop.curves)
         for (int k = 0; k <= 50; ++k) {
           const Interval& d = curve.domain();
           const Vec3 uv = evaluate_jet(curve, d.from + (d.to - d.from) * k / 50).position;
-          const Vec3 p = surface.placement.point(evaluate_jet(s, uv.x, uv.y).position);
+          const Vec3 p = surface.placement->point(evaluate_jet(s, uv.x, uv.y).position);
           EXPECT_NEAR(std::hypot(p.x, p.y - 5), 0.7, 1e-4);  // OpenCASCADE's curves are that good
           EXPECT_NEAR(std::hypot(std::hypot(p.x, p.y) - 5, p.z), 2, 1e-12);
           ++checked;
@@ -129,12 +129,12 @@ TEST(Trims, LoopsOfRealFilesClose) {
       const BSplineSurface& s = std::get<BSplineSurface>(surface.surface);
       Box3 points;
       for (const Vec3& p : s.points()) points.extend(p);
-      for (const TrimLoop& loop : surface.trims) {
+      for (const TrimLoop& loop : *surface.trims) {
         ++loops;
         for (std::size_t k = 0; k < loop.curves.size(); ++k) {
           const double off = gap(surface, end_of(loop.curves[k]), start_of(loop.curves[(k + 1) % loop.curves.size()]));
           worst = std::max(worst, off / points.diagonal());
-          EXPECT_LT(off, 1e-3 * points.diagonal()) << path << ' ' << surface.name << " curve " << k;
+          EXPECT_LT(off, 1e-3 * points.diagonal()) << path << ' ' << *surface.name << " curve " << k;
           ++curves;
         }
       }

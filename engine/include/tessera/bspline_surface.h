@@ -1,6 +1,7 @@
 #pragma once
 // B-spline and NURBS surfaces in double, with the scalar reference evaluator.
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -17,7 +18,7 @@ namespace tessera {
 /// points, degree and 1: they do not decrease; a knot within the domain [u_p, u_{m+1}] stands at most p times (p-fold
 /// it breaks to C0), one at its ends or outside at most p + 1 times. So they may be clamped, unclamped, uniform;
 /// surfaces that close on periodic knots repeat their first p rows at the end. Points are stored [i][j], i along u.
-/// Immutable but for assignment.
+/// Immutable but for assignment; copies share everything.
 class BSplineSurface {
  public:
   /// There are knots_u.size() - degree_u - 1 by knots_v.size() - degree_v - 1 points. `domain`: a part of the domain of
@@ -34,25 +35,28 @@ class BSplineSurface {
                                          std::span<const double> knots_v, std::span<const Vec3> points,
                                          std::span<const double> weights, std::optional<Domain> domain = {});
 
-  int degree_u() const { return degree_u_; }
-  int degree_v() const { return degree_v_; }
-  std::size_t count_u() const { return knots_u_.size() - static_cast<std::size_t>(degree_u_) - 1; }
-  std::size_t count_v() const { return knots_v_.size() - static_cast<std::size_t>(degree_v_) - 1; }
-  std::span<const double> knots_u() const { return knots_u_; }
-  std::span<const double> knots_v() const { return knots_v_; }
-  bool is_rational() const { return !weights_.empty(); }
-  std::span<const Vec3> points() const { return points_; }
-  std::span<const double> weights() const { return weights_; }  ///< empty for a polynomial surface
-  const Vec3& point(std::size_t i, std::size_t j) const { return points_[i * count_v() + j]; }
-  double weight(std::size_t i, std::size_t j) const { return weights_.empty() ? 1.0 : weights_[i * count_v() + j]; }
-  const Domain& domain() const { return domain_; }
+  int degree_u() const { return data_->degree_u; }
+  int degree_v() const { return data_->degree_v; }
+  std::size_t count_u() const { return knots_u().size() - static_cast<std::size_t>(degree_u()) - 1; }
+  std::size_t count_v() const { return knots_v().size() - static_cast<std::size_t>(degree_v()) - 1; }
+  std::span<const double> knots_u() const { return data_->knots_u; }
+  std::span<const double> knots_v() const { return data_->knots_v; }
+  bool is_rational() const { return !data_->weights.empty(); }
+  std::span<const Vec3> points() const { return data_->points; }
+  std::span<const double> weights() const { return data_->weights; }  ///< empty for a polynomial surface
+  const Vec3& point(std::size_t i, std::size_t j) const { return data_->points[i * count_v() + j]; }
+  double weight(std::size_t i, std::size_t j) const { return is_rational() ? data_->weights[i * count_v() + j] : 1.0; }
+  const Domain& domain() const { return data_->domain; }
 
  private:
-  BSplineSurface() = default;
-  int degree_u_ = 0, degree_v_ = 0;
-  std::vector<double> knots_u_, knots_v_, weights_;
-  std::vector<Vec3> points_;
-  Domain domain_;
+  struct Data {
+    int degree_u, degree_v;
+    std::vector<double> knots_u, knots_v, weights;
+    std::vector<Vec3> points;
+    Domain domain;
+  };
+  explicit BSplineSurface(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
+  std::shared_ptr<const Data> data_;
 };
 
 /// The reference evaluator, by the surface's own parameters: de Boor's algorithm, rational surfaces in homogeneous

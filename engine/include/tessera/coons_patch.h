@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -57,26 +58,30 @@ struct CoonsOptions {
 
 /// r = [C1 C2] g(t) + f(s)^T [D1; D2] - f(s)^T [[r00, r01], [r10, r11]] g(t), where s and t run over [0,1] as u and v
 /// over the domain (Coons 1967; Farin, Curves and Surfaces for CAGD, 5th ed., ch. 22). The corners r_ab are the ends of
-/// C1, C2. Immutable but for assignment.
+/// C1, C2. Immutable but for assignment; copies share everything.
 class CoonsPatch {
  public:
   /// Errors: invalid_argument (curves on different intervals: says which; a border that does not close: names the
   /// corner, index = 2 a + b, the two curves and the gap), non_finite, those of functions.
   static Result<CoonsPatch> make(const CoonsBorders& borders, const CoonsOptions& options = {});
 
-  const CoonsBorders& borders() const { return borders_; }
-  const Blend& f() const { return f_; }
-  const Blend& g() const { return g_; }
-  const Vec3& corner(int a, int b) const { return corners_[static_cast<std::size_t>(2 * a + b)]; }  ///< r(u_a, v_b)
+  const CoonsBorders& borders() const { return data_->borders; }
+  const Blend& f() const { return data_->f; }
+  const Blend& g() const { return data_->g; }
+  /// r(u_a, v_b)
+  const Vec3& corner(int a, int b) const { return data_->corners[static_cast<std::size_t>(2 * a + b)]; }
   Domain domain() const;
   /// Borders are Bezier, B-spline or NURBS curves and blends polynomials: to_bezier() is exact.
   bool is_exact() const;
 
  private:
-  CoonsPatch(const CoonsBorders& borders, const Blend& f, const Blend& g) : borders_(borders), f_(f), g_(g) {}
-  CoonsBorders borders_;
-  Blend f_, g_;
-  std::array<Vec3, 4> corners_;
+  struct Data {
+    CoonsBorders borders;
+    Blend f, g;
+    std::array<Vec3, 4> corners;
+  };
+  explicit CoonsPatch(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
+  std::shared_ptr<const Data> data_;
 };
 
 /// The reference evaluator, by the formula above. Errors: those of functions, non_finite (too large a point; (u, v)).

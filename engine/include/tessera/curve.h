@@ -1,6 +1,7 @@
 #pragma once
 // Bezier, B-spline and NURBS curves in double: profiles of revolution, borders of ruled surfaces and Coons patches.
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -21,7 +22,7 @@ struct Interval {
 /// The NURBS Book, 2nd ed., ch. 3 and 4). The knots t_0 .. t_{m+p+1} of points 0 .. m do not decrease; a knot within
 /// [t_p, t_{m+1}] stands at most p times (p-fold it breaks to C0), one at its ends or outside at most p + 1 times.
 /// Clamped or not; closed curves on periodic knots repeat their first p points at the end. Immutable but for
-/// assignment.
+/// assignment; copies share everything.
 class Curve {
  public:
   /// Of degree points.size() - 1, weights as below or none. Errors: as below.
@@ -38,20 +39,23 @@ class Curve {
   static Result<Curve> nurbs(int degree, std::span<const Vec3> points, std::span<const double> weights,
                              std::span<const double> knots, std::optional<Interval> domain = {});
 
-  int degree() const { return degree_; }
-  bool is_rational() const { return !weights_.empty(); }
-  std::span<const Vec3> points() const { return points_; }
-  std::span<const double> weights() const { return weights_; }  ///< empty for a polynomial curve
-  double weight(std::size_t i) const { return weights_.empty() ? 1.0 : weights_[i]; }
-  std::span<const double> knots() const { return knots_; }
-  const Interval& domain() const { return domain_; }
+  int degree() const { return data_->degree; }
+  bool is_rational() const { return !data_->weights.empty(); }
+  std::span<const Vec3> points() const { return data_->points; }
+  std::span<const double> weights() const { return data_->weights; }  ///< empty for a polynomial curve
+  double weight(std::size_t i) const { return is_rational() ? data_->weights[i] : 1.0; }
+  std::span<const double> knots() const { return data_->knots; }
+  const Interval& domain() const { return data_->domain; }
 
  private:
-  Curve() = default;
-  int degree_ = 0;
-  std::vector<Vec3> points_;
-  std::vector<double> weights_, knots_;
-  Interval domain_;
+  struct Data {
+    int degree;
+    std::vector<Vec3> points;
+    std::vector<double> weights, knots;
+    Interval domain;
+  };
+  explicit Curve(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
+  std::shared_ptr<const Data> data_;
 };
 
 /// Position, first and second derivative by the curve's own parameter.

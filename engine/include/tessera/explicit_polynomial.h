@@ -1,6 +1,7 @@
 #pragma once
 // Graphs z = sum a_ij x^i y^j over a rectangle. The conversion needs tessera/convert.h as well.
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -12,7 +13,8 @@ namespace tessera {
 
 class PatchGrid;
 
-/// (x, y, sum a_ij x^i y^j) with x = u and y = v over a rectangle. Immutable but for assignment.
+/// (x, y, sum a_ij x^i y^j) with x = u and y = v over a rectangle. Immutable but for assignment; copies share
+/// everything.
 class ExplicitPolynomial {
  public:
   /// `coefficients`: a_ij is coefficients[i * (degree_y + 1) + j]; degrees 0 to max_degree; the rectangle finite, with
@@ -21,16 +23,21 @@ class ExplicitPolynomial {
   static Result<ExplicitPolynomial> make(int degree_x, int degree_y, std::span<const double> coefficients,
                                          const Domain& rectangle);
 
-  int degree_x() const { return degree_x_; }
-  int degree_y() const { return degree_y_; }
-  const Domain& rectangle() const { return rectangle_; }
-  double coefficient(int i, int j) const { return coefficients_[static_cast<std::size_t>(i * (degree_y_ + 1) + j)]; }
+  int degree_x() const { return data_->degree_x; }
+  int degree_y() const { return data_->degree_y; }
+  const Domain& rectangle() const { return data_->rectangle; }
+  double coefficient(int i, int j) const {
+    return data_->coefficients[static_cast<std::size_t>(i * (degree_y() + 1) + j)];
+  }
 
  private:
-  ExplicitPolynomial() = default;
-  int degree_x_ = 0, degree_y_ = 0;
-  std::vector<double> coefficients_;
-  Domain rectangle_;
+  struct Data {
+    int degree_x, degree_y;
+    std::vector<double> coefficients;
+    Domain rectangle;
+  };
+  explicit ExplicitPolynomial(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
+  std::shared_ptr<const Data> data_;
 };
 
 /// Position and derivatives at x = u, y = v, inside the rectangle or not: the reference evaluator. Sums carry 106 bits,

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -33,7 +34,7 @@ Result<std::vector<HermiteNode>> estimate_twists(TwistEstimate estimate, std::sp
 /// for the column lines and l_j > 0 for the row lines, k_0 = l_0 = 1. Patch (i,j) takes at its corner (a,b), from node
 /// (i+a, j+b), r_u = K A, r_v = L B, r_uv = K L T on [0,1]^2, where K = k_i if a = 0, else 1, and L = l_j if b = 0,
 /// else 1. Neighbours are G1 along whole edges. The parameters of the whole run over knot spacings h_i = k_i h_{i-1},
-/// g_j = l_j g_{j-1}, by which it is C1. Immutable but for assignment.
+/// g_j = l_j g_{j-1}, by which it is C1. Immutable but for assignment; copies share everything.
 class HermiteNetwork {
  public:
   /// `nodes`: count_u * count_v of them [i][j], at least two each way; `k`: count_u - 1 factors, one for each line with
@@ -48,25 +49,28 @@ class HermiteNetwork {
   static Result<HermiteNetwork> on_knots(std::span<const double> u, std::span<const double> v,
                                          std::span<const HermiteNode> nodes);
 
-  std::size_t count_u() const { return knots_u_.size(); }  ///< nodes along u
-  std::size_t count_v() const { return knots_v_.size(); }
+  std::size_t count_u() const { return data_->knots_u.size(); }  ///< nodes along u
+  std::size_t count_v() const { return data_->knots_v.size(); }
   /// P, A, B and T of node (i,j).
-  const HermiteNode& node(std::size_t i, std::size_t j) const { return nodes_[i * count_v() + j]; }
-  std::span<const double> factors_u() const { return k_; }
-  std::span<const double> factors_v() const { return l_; }
-  std::span<const double> knots_u() const { return knots_u_; }
-  std::span<const double> knots_v() const { return knots_v_; }
-  Domain domain() const { return {knots_u_.front(), knots_u_.back(), knots_v_.front(), knots_v_.back()}; }
+  const HermiteNode& node(std::size_t i, std::size_t j) const { return data_->nodes[i * count_v() + j]; }
+  std::span<const double> factors_u() const { return data_->k; }
+  std::span<const double> factors_v() const { return data_->l; }
+  std::span<const double> knots_u() const { return data_->knots_u; }
+  std::span<const double> knots_v() const { return data_->knots_v; }
+  Domain domain() const { return {knots_u().front(), knots_u().back(), knots_v().front(), knots_v().back()}; }
   /// Patch (i,j) on [0,1]^2; i < count_u() - 1, j < count_v() - 1.
   HermitePatch patch(std::size_t i, std::size_t j) const;
 
  private:
-  HermiteNetwork() = default;
+  struct Data {
+    std::vector<HermiteNode> nodes;
+    std::vector<double> k, l, knots_u, knots_v;
+  };
+  explicit HermiteNetwork(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
   HermitePatch::Corners patch_corners(std::size_t i, std::size_t j) const;
   static Result<HermiteNetwork> checked(HermiteNetwork network);
 
-  std::vector<HermiteNode> nodes_;
-  std::vector<double> k_, l_, knots_u_, knots_v_;
+  std::shared_ptr<const Data> data_;
 };
 
 /// The reference evaluator, by the patch that holds (u,v): at an inner knot the one on its right; outside the domain

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 
 #include "tessera/bezier_patch.h"
@@ -33,7 +34,7 @@ struct CornerTangents {
 
 /// The bicubic patch with given positions, tangents and twists at its corners. Tangents and twists are derivatives by
 /// the patch's own parameters, which run over its domain: with s = (u - u0) / (u1 - u0) the blends are
-/// H0(s), (u1 - u0) H1(s), (u1 - u0) H2(s), H3(s). Immutable but for assignment.
+/// H0(s), (u1 - u0) H1(s), (u1 - u0) H2(s), H3(s). Immutable but for assignment; copies share their vectors.
 class HermitePatch {
  public:
   /// The corners of a domain in the order (u0,v0), (u0,v1), (u1,v0), (u1,v1).
@@ -65,7 +66,7 @@ class HermitePatch {
   /// A polynomial Bezier patch of degrees 1 to 3 each way; exact. Errors: unsupported (rational), unsupported_degree.
   static Result<HermitePatch> from_bezier(const BezierPatch& patch, const Domain& domain = {});
 
-  const Domain& domain() const { return domain_; }
+  const Domain& domain() const { return data_->domain; }
   /// The geometry matrix, derivatives by u and v of the domain.
   Grid geometry(HermiteOrder order = HermiteOrder::by_end) const;
   /// At u = u0 (a = 0) or u1 (a = 1), v = v0 (b = 0) or v1 (b = 1).
@@ -79,15 +80,18 @@ class HermitePatch {
   Result<HermitePatch> reparametrized(const Domain& domain) const;
 
  private:
-  HermitePatch(const Grid& geometry, const Domain& domain) : geometry_(geometry), domain_(domain) {}
+  struct Data {
+    Grid geometry;  // by_end
+    Domain domain;
+  };
+  explicit HermitePatch(const Data& data) : data_(std::make_shared<const Data>(data)) {}
   /// The geometry by local parameters, which run over [0,1], from that by the domain's, and back.
   static Result<HermitePatch> from_local(const Grid& local, const Domain& domain);
   Grid local_geometry() const;
   friend SurfaceJet evaluate_jet(const HermitePatch& patch, double u, double v);
   friend Result<PatchGrid> to_bezier(const HermitePatch& patch);
 
-  Grid geometry_;  // by_end
-  Domain domain_;
+  std::shared_ptr<const Data> data_;
 };
 
 /// The reference evaluator: the sum over the products of blends. Derivatives by u and v of the domain. Any finite

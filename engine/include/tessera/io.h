@@ -29,7 +29,7 @@ Result<Model> parse_g2(std::string_view text, std::string_view name);
 /// B-spline surface, but for bases other than bezier, b-spline, catmull-rom and hermite with their usual steps: those
 /// give a surface a patch. Placements lead to world space as at WorldBegin, coordinates unchanged (left-handed);
 /// Attribute "identifier" "name" names surfaces; TrimCurves are kept as trims. Of a moving surface the first moment is
-/// read. Copies by ObjectInstance and of trims may take 16 times the file, not more.
+/// read. Copies by ObjectInstance may take 4 times the file and 1 MiB, not more.
 Result<Model> parse_rib(std::string_view text, std::string_view name);
 /// "m.json:17: /surfaces/3/points/2/1: expected 3 numbers [x, y, z], found an array of 2": a line, and the place as a JSON
 /// pointer (RFC 6901). Expressions may be evaluated from any number of threads.

@@ -9,6 +9,7 @@
 #include "tessera/convert.h"
 #include "tessera/curve.h"
 #include "tessera/patch_set.h"
+#include "tessera/shared.h"
 #include "tessera/status.h"
 #include "tessera/surface.h"
 
@@ -22,12 +23,12 @@ struct TrimLoop {
 };
 
 /// A named surface, and where it stands in the model. Trims are kept for those who ask; neither patches, meshes nor rays
-/// honour them yet.
+/// honour them yet. Copies share everything.
 struct ModelSurface {
-  std::string name;
+  Shared<std::string> name;
   Surface surface;
-  Affine placement = {};
-  std::vector<TrimLoop> trims = {};
+  Shared<Affine> placement = {};
+  Shared<std::vector<TrimLoop>> trims = {};
 };
 
 struct Model {

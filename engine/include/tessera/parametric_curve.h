@@ -3,6 +3,7 @@
 // come.
 
 #include <functional>
+#include <memory>
 #include <variant>
 
 #include "tessera/curve.h"
@@ -30,18 +31,21 @@ class ParametricCurve {
   /// tessera/generic_callable.h.
   static Result<ParametricCurve> make(CurveFunctions functions, const Interval& domain = {});
 
-  const Interval& domain() const { return domain_; }
+  const Interval& domain() const { return data_->domain; }
   /// Errors: non_finite (names t), invalid_argument (the function threw: its message).
   Result<Vec3> position(double t) const;
-  bool has_derivatives() const { return functions_.jet != nullptr; }
-  bool has_bounds() const { return functions_.derivative_bound != nullptr; }
+  bool has_derivatives() const { return data_->functions.jet != nullptr; }
+  bool has_bounds() const { return data_->functions.derivative_bound != nullptr; }
   /// A bound of |d^k c / dt^k| over a part of the domain, k >= 0; infinity where none is known.
   double derivative_bound(const Interval& part, int k) const;
 
  private:
-  ParametricCurve() = default;
-  CurveFunctions functions_;
-  Interval domain_;
+  struct Data {
+    CurveFunctions functions;
+    Interval domain;
+  };
+  explicit ParametricCurve(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
+  std::shared_ptr<const Data> data_;
   friend Result<CurveJet> evaluate_jet(const ParametricCurve& curve, double t);
 };
 

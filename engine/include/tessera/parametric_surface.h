@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "tessera/bezier_patch.h"
@@ -68,18 +69,21 @@ class ParametricSurface {
   /// and those of PolarMap.
   static Result<ParametricSurface> over_disc(SurfaceFunctions functions, const Disc& disc = {});
 
-  const Domain& domain() const { return domain_; }
+  const Domain& domain() const { return data_->domain; }
   /// Errors: non_finite (names u and v), invalid_argument (the function threw: its message).
   Result<Vec3> position(double u, double v) const;
-  bool has_derivatives() const { return functions_.jet != nullptr; }
-  bool has_bounds() const { return functions_.derivative_bounds != nullptr; }
+  bool has_derivatives() const { return data_->functions.jet != nullptr; }
+  bool has_bounds() const { return data_->functions.derivative_bounds != nullptr; }
   /// Bounds over a part of the domain, k >= 0; infinity where none is known.
   std::array<double, 2> derivative_bounds(const Domain& part, int k) const;
 
  private:
-  ParametricSurface() = default;
-  SurfaceFunctions functions_;
-  Domain domain_;
+  struct Data {
+    SurfaceFunctions functions;
+    Domain domain;
+  };
+  explicit ParametricSurface(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
+  std::shared_ptr<const Data> data_;
   friend Result<SurfaceJet> evaluate_jet(const ParametricSurface& surface, double u, double v);
 };
 

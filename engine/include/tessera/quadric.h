@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string_view>
 
@@ -121,7 +122,7 @@ struct QuadricParameters {
   int sheet = 0;
 };
 
-/// A surface between ranges of the canonical parameters.
+/// A surface between ranges of the canonical parameters. Immutable but for assignment; copies share their quadric.
 class QuadricPiece {
  public:
   /// Angles u span at most 2 pi (to within 4e-15; then the piece closes) and |u| <= 100; latitudes of an ellipsoid lie
@@ -129,17 +130,20 @@ class QuadricPiece {
   /// non_finite, invalid_argument (a range that is empty, reversed or outside these limits; no such sheet).
   static Result<QuadricPiece> make(const Quadric& quadric, const Domain& range, int sheet = 0);
 
-  const Quadric& quadric() const { return quadric_; }
-  const Domain& range() const { return range_; }
-  int sheet() const { return sheet_; }
+  const Quadric& quadric() const { return data_->quadric; }
+  const Domain& range() const { return data_->range; }
+  int sheet() const { return data_->sheet; }
   /// Parameters of a point of the surface, if it lies in the piece; its borders have a margin of 1e-12 of the ranges.
   std::optional<QuadricParameters> locate(const Vec3& point) const;
 
  private:
-  explicit QuadricPiece(const Quadric& quadric) : quadric_(quadric) {}
-  Quadric quadric_;
-  Domain range_;
-  int sheet_ = 0;
+  struct Data {
+    Quadric quadric;
+    Domain range;
+    int sheet;
+  };
+  explicit QuadricPiece(const Data& data) : data_(std::make_shared<const Data>(data)) {}
+  std::shared_ptr<const Data> data_;
 };
 
 /// Position and derivatives by the canonical parameters: the reference evaluator.

@@ -2,6 +2,7 @@
 // Ruled surfaces between two curves.
 
 #include <cstdint>
+#include <memory>
 
 #include "tessera/parametric_curve.h"
 #include "tessera/parametric_surface.h"
@@ -12,7 +13,7 @@ namespace tessera {
 enum class Direction : std::uint8_t { u, v };
 
 /// r(u,v) = ((b - v) C1(u) + (v - a) C2(u)) / (b - a), v in [a, b]; or, with the straight lines along u, the same of
-/// D1(v), D2(v) and u. Immutable but for assignment.
+/// D1(v), D2(v) and u. Immutable but for assignment; copies share their curves.
 class RuledSurface {
  public:
   /// `straight`: the direction of the straight lines, over the interval `across`. Errors: invalid_argument (curves on
@@ -20,19 +21,21 @@ class RuledSurface {
   static Result<RuledSurface> make(const BorderCurve& first, const BorderCurve& second, const Interval& across = {},
                                    Direction straight = Direction::v);
 
-  const BorderCurve& first() const { return first_; }
-  const BorderCurve& second() const { return second_; }
-  Direction straight() const { return straight_; }
+  const BorderCurve& first() const { return data_->first; }
+  const BorderCurve& second() const { return data_->second; }
+  Direction straight() const { return data_->straight; }
   Domain domain() const;
   /// Both borders are Bezier, B-spline or NURBS curves: to_bezier() is exact.
   bool is_exact() const;
 
  private:
-  RuledSurface(const BorderCurve& first, const BorderCurve& second, const Interval& across, Direction straight)
-      : first_(first), second_(second), across_(across), straight_(straight) {}
-  BorderCurve first_, second_;
-  Interval across_;
-  Direction straight_;
+  struct Data {
+    BorderCurve first, second;
+    Interval across;
+    Direction straight;
+  };
+  explicit RuledSurface(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
+  std::shared_ptr<const Data> data_;
 };
 
 /// The reference evaluator, by the formula above. Errors: those of functions, non_finite (too large a point; (u, v)).

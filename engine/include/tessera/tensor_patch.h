@@ -2,6 +2,7 @@
 // Tensor-product patches over any polynomial bases, the two directions' own: Bezier, power, Hermite, uniform B-spline,
 // Catmull-Rom, or a matrix of the user's.
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -16,7 +17,7 @@ class PatchGrid;  // tessera/convert.h
 
 /// A basis of the polynomials of one degree on [0,1] by the matrix M that turns the geometry of a curve into its power
 /// coefficients: r(t) = [1 t .. t^n] M G, with the blending functions f_i(t) = sum_k t^k M_ki. Immutable but for
-/// assignment.
+/// assignment; copies share the matrix.
 class BasisMatrix {
  public:
   /// Bernstein polynomials. Error: unsupported_degree, as for all with a degree.
@@ -35,29 +36,35 @@ class BasisMatrix {
   /// and convert from, not to. Errors: unsupported_degree, count_mismatch, non_finite (index = the entry).
   static Result<BasisMatrix> custom(int degree, std::span<const double> entries);
 
-  int degree() const { return degree_; }
+  int degree() const { return data_->degree; }
   /// M_ki: the coefficient of t^k in f_i.
-  double power_coefficient(int k, int i) const { return power_[index(k, i)]; }
+  double power_coefficient(int k, int i) const { return data_->power[index(k, i)]; }
   /// The coefficient of B_{k,n} in f_i: the matrix M_B^{-1} M that turns geometry into Bezier points.
-  double bernstein_coefficient(int k, int i) const { return bernstein_[index(k, i)]; }
+  double bernstein_coefficient(int k, int i) const { return data_->bernstein[index(k, i)]; }
   /// Whether other bases can be converted to this one: M has an inverse, to the rounding of its entries.
-  bool is_regular() const { return !from_bernstein_.empty(); }
+  bool is_regular() const { return !data_->from_bernstein.empty(); }
   /// The entry [i][k] of M^{-1} M_B, which turns Bezier points into geometry. is_regular() must hold.
-  double inverse_coefficient(int i, int k) const { return from_bernstein_[index(i, k)]; }
+  double inverse_coefficient(int i, int k) const { return data_->from_bernstein[index(i, k)]; }
 
-  friend bool operator==(const BasisMatrix&, const BasisMatrix&) = default;
+  friend bool operator==(const BasisMatrix& a, const BasisMatrix& b) {
+    return a.data_ == b.data_ || *a.data_ == *b.data_;
+  }
 
  private:
-  BasisMatrix() = default;
-  std::size_t index(int k, int i) const { return static_cast<std::size_t>(k * (degree_ + 1) + i); }
+  struct Data {
+    int degree;
+    std::vector<double> power, bernstein, from_bernstein;
+    friend bool operator==(const Data&, const Data&) = default;
+  };
+  explicit BasisMatrix(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
+  std::size_t index(int k, int i) const { return static_cast<std::size_t>(k * (degree() + 1) + i); }
 
-  int degree_ = 0;
-  std::vector<double> power_, bernstein_, from_bernstein_;
+  std::shared_ptr<const Data> data_;
 };
 
 /// r(u,v) = U M_u G M_v^T V^T, U = [1 s .. s^m] and V = [1 t .. t^n], where s and t run over [0,1] as u and v run over
 /// the domain. G holds points, tangents or twists, as the bases want them: tangents by s and t. Immutable but for
-/// assignment.
+/// assignment; copies share everything.
 class TensorPatch {
  public:
   /// `geometry`: (m + 1) * (n + 1) vectors [i][j], i along u, of the degrees of the bases.
@@ -65,22 +72,22 @@ class TensorPatch {
   static Result<TensorPatch> make(const BasisMatrix& basis_u, const BasisMatrix& basis_v,
                                   std::span<const Vec3> geometry, const Domain& domain = {});
 
-  const BasisMatrix& basis_u() const { return basis_u_; }
-  const BasisMatrix& basis_v() const { return basis_v_; }
-  std::span<const Vec3> geometry() const { return geometry_; }
+  const BasisMatrix& basis_u() const { return data_->basis_u; }
+  const BasisMatrix& basis_v() const { return data_->basis_v; }
+  std::span<const Vec3> geometry() const { return data_->geometry; }
   const Vec3& element(int i, int j) const {
-    return geometry_[static_cast<std::size_t>(i * (basis_v_.degree() + 1) + j)];
+    return data_->geometry[static_cast<std::size_t>(i * (basis_v().degree() + 1) + j)];
   }
-  const Domain& domain() const { return domain_; }
+  const Domain& domain() const { return data_->domain; }
 
  private:
-  TensorPatch(const BasisMatrix& basis_u, const BasisMatrix& basis_v, std::span<const Vec3> geometry,
-              const Domain& domain)
-      : basis_u_(basis_u), basis_v_(basis_v), geometry_(geometry.begin(), geometry.end()), domain_(domain) {}
-
-  BasisMatrix basis_u_, basis_v_;
-  std::vector<Vec3> geometry_;
-  Domain domain_;
+  struct Data {
+    BasisMatrix basis_u, basis_v;
+    std::vector<Vec3> geometry;
+    Domain domain;
+  };
+  explicit TensorPatch(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
+  std::shared_ptr<const Data> data_;
 };
 
 /// The reference evaluator: sum f_i(s) g_j(t) g_ij in long double, the blending functions in Bernstein form, since

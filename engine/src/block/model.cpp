@@ -63,7 +63,7 @@ Result<SurfaceJet> evaluate_jet(const ModelSurface& surface, double u, double v)
 Result<PatchGrid> to_bezier(const ModelSurface& surface, const FitOptions& options) {
   if (surface.placement == Affine{}) return to_bezier(surface.surface, options);
   FitOptions before = options;  // lengths before the placement
-  const double norm = surface.placement.norm_bound();
+  const double norm = surface.placement->norm_bound();
   if (norm > 0)
     before.tolerance = std::min(share_for_fits * options.tolerance / norm, std::numeric_limits<double>::max());
   Result<PatchGrid> grid = to_bezier(surface.surface, before);

@@ -56,7 +56,7 @@ class BvReader {
       cursor_.skip(cursor_.peek_token());
       end = cursor_.position();
     }
-    group_ = std::string_view(begin, static_cast<std::size_t>(end - begin));
+    group_ = surface_name({begin, static_cast<std::size_t>(end - begin)});
     return {};
   }
 
@@ -98,7 +98,7 @@ class BvReader {
         rational ? BezierPatch::rational(m, n, points, std::span<const double>(weights_).first(wanted))
                  : BezierPatch::polynomial(m, n, points);
     if (!patch) return cursor_.failure(segment() + ": " + patch.status().message());
-    model_.surfaces.push_back({surface_name(group_), *std::move(patch)});
+    model_.surfaces.push_back({group_, *std::move(patch)});
     return {};
   }
 
@@ -189,7 +189,7 @@ class BvReader {
   TextCursor cursor_;
   PassedOver passed_over_;
   Model model_;
-  std::string_view group_;
+  Shared<std::string> group_;
   std::size_t segment_ = 0;
   std::array<Vec3, (max_degree + 1) * (max_degree + 1)> points_;
   std::array<double, (max_degree + 1) * (max_degree + 1)> weights_;

@@ -191,7 +191,7 @@ class ObjFreeformReader {
 
   Status read_object() { return read_name(object_); }
   Status read_group() { return read_name(group_); }
-  /// The rest of the line, at most 200 bytes of it: every surface keeps a copy.
+  /// The rest of the line, at most 200 bytes of it.
   Status read_name(std::string& name) {
     constexpr std::size_t longest = 200;
     const char* const begin = cursor_.position();
@@ -205,9 +205,9 @@ class ObjFreeformReader {
     std::replace_if(
         name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
     name.erase(name.find_last_not_of(' ') + 1);
+    surface_name_ = object_ + (object_.empty() || group_.empty() ? "" : "/") + group_;
     return {};
   }
-  std::string surface_name() const { return object_ + (object_.empty() || group_.empty() ? "" : "/") + group_; }
 
   // Elements.
 
@@ -319,24 +319,17 @@ class ObjFreeformReader {
   }
 
   Status make_surfaces(const FreeformState& state) {
-    const std::string name = surface_name();
-    const std::string words =
-        "surface " + std::to_string(model_.surfaces.size()) + (name.empty() ? "" : " (" + name + ")");
     Result<std::vector<Surface>> surfaces = freeform_surfaces(state, {vertices_, element_.points}, element_.range);
-    if (!surfaces) return in_element(surfaces.status(), words);
-    if (!element_.loops.empty()) {
-      if (trimmed_++ == 0) first_trimmed_ = element_.place;
-      if (!curves_.allow_copies(element_.loops, surfaces->size() - 1))
-        return in_element({StatusCode::unsupported, "its trims on each of its " + std::to_string(surfaces->size()) +
-                                                        " pieces are longer than the file"},
-                          words);
-    }
+    const std::string& name = *surface_name_;
+    if (!surfaces)
+      return in_element(surfaces.status(),
+                        "surface " + std::to_string(model_.surfaces.size()) + (name.empty() ? "" : " (" + name + ")"));
+    if (!element_.loops.empty() && trimmed_++ == 0) first_trimmed_ = element_.place;
+    const Shared<std::vector<TrimLoop>> trims = std::move(element_.loops);
     for (std::size_t k = 0; k < surfaces->size(); ++k) {
-      const bool last = k + 1 == surfaces->size();
-      model_.surfaces.push_back({surfaces->size() == 1 ? name : name + "[" + std::to_string(k) + "]",
-                                 std::move((*surfaces)[k]),
-                                 {},
-                                 last ? std::move(element_.loops) : element_.loops});
+      const Shared<std::string> piece =
+          surfaces->size() == 1 ? surface_name_ : Shared<std::string>(name + "[" + std::to_string(k) + "]");
+      model_.surfaces.push_back({piece, std::move((*surfaces)[k]), {}, trims});
     }
     return {};
   }
@@ -369,6 +362,7 @@ class ObjFreeformReader {
   std::size_t texture_vertices_ = 0, normals_ = 0;
   FreeformState state_;
   std::string object_, group_;
+  Shared<std::string> surface_name_;
   Element element_;
   ObjTrimCurves curves_;
   Model model_;

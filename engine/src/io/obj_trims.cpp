@@ -26,15 +26,6 @@ bool ObjTrimCurves::allow(std::size_t points) {
   return true;
 }
 
-bool ObjTrimCurves::allow_copies(const std::vector<TrimLoop>& loops, std::size_t copies) {
-  std::size_t points = 0;
-  for (const TrimLoop& loop : loops) {
-    ++points;
-    for (const Curve& curve : loop.curves) points += curve.points().size();
-  }
-  return copies == 0 || (points <= allowed_ / copies && allow(points * copies));
-}
-
 Status ObjTrimCurves::read_loop(TextCursor& cursor, std::vector<Curve>& loop) {
   do {
     const TextCursor before = cursor;
@@ -56,8 +47,9 @@ Status ObjTrimCurves::read_loop(TextCursor& cursor, std::vector<Curve>& loop) {
     for (auto at = first; at != pieces.end() && at->domain().from < to; ++at) {
       const Curve& piece = *at;
       const Interval part{std::max(from, piece.domain().from), std::min(to, piece.domain().to)};
-      if (!allow(piece.points().size()))
-        return before.failure("the curves of all trims together have more control points than the file has bytes");
+      if (!(part == piece.domain()) && !allow(piece.points().size()))
+        return before.failure(
+            "the parts of curves of all trims together have more control points than the file has bytes");
       const Result<Curve> curve = part_of(piece, part);
       if (!curve) return Status(curve.status().code(), before.place() + ": " + curve.status().message());
       loop.push_back(*curve);

@@ -10,8 +10,9 @@
 
 namespace tessera {
 
-/// Each curve is a chain of pieces. Every loop copies what it refers to, so the copies are counted: all of them together
-/// hold no more control points than the file has bytes, which no file reaches that refers to a curve a few times.
+/// Each curve is a chain of pieces. Loops share them, but for parts of a piece, which are copies with another domain: all
+/// of these together hold no more control points than the file has bytes, which no file reaches that refers to a curve a
+/// few times.
 class ObjTrimCurves {
  public:
   explicit ObjTrimCurves(std::size_t file_size) : allowed_(file_size) {}
@@ -21,8 +22,6 @@ class ObjTrimCurves {
 
   /// Triples "u0 u1 curv2" to the end of the line.
   Status read_loop(TextCursor& cursor, std::vector<Curve>& loop);
-  /// Whether `loops` may be copied so many times.
-  bool allow_copies(const std::vector<TrimLoop>& loops, std::size_t copies);
 
  private:
   bool allow(std::size_t points);

@@ -39,8 +39,7 @@ class PassedOver {
   std::vector<Kind> kinds_;
 };
 
-/// A surface's name out of a file: at most 200 bytes of it, whole characters of UTF-8, since many surfaces may share
-/// one.
+/// A surface's name out of a file: at most 200 bytes of it, whole characters of UTF-8.
 std::string surface_name(std::string_view text);
 
 }  // namespace tessera

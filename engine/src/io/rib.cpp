@@ -79,15 +79,12 @@ class Tally {
 };
 
 /// What ObjectBegin and ObjectEnd enclose.
-struct Object {
-  std::vector<ModelSurface> surfaces;
-  std::size_t bytes = 0;  // of the file, with those of instances within
-};
+using Object = std::vector<ModelSurface>;
 
 class RibReader {
  public:
   RibReader(std::string_view text, std::string_view name)
-      : name_(name), lexer_(text, name), start_(lexer_.place()), copies_left_(16 * text.size() + (1 << 20)) {}
+      : name_(name), lexer_(text, name), start_(lexer_.place()), copies_left_(4 * text.size() + (1 << 20)) {}
 
   Result<Model> read() {
     while (!lexer_.at_end()) {
@@ -145,7 +142,6 @@ class RibReader {
     handle_ = lexer_.at_value() ? lexer_.peek() : std::string_view();
     if (handle_.empty()) return lexer_.expected("a number or a name for the object");
     object_.emplace();
-    object_begin_ = lexer_.place().position();
     Status status = stack_.begin("Object", start_);
     return status.ok() ? lexer_.skip_values() : status;
   }
@@ -153,7 +149,6 @@ class RibReader {
   Status end_object() {
     Status status = stack_.end("Object", start_);
     if (!status.ok()) return status;
-    object_->bytes += static_cast<std::size_t>(lexer_.place().position() - object_begin_);
     objects_[handle_] = *std::move(object_);
     object_.reset();
     return {};
@@ -162,21 +157,26 @@ class RibReader {
   Status instance() {
     const auto object = objects_.find(lexer_.at_value() ? lexer_.peek() : std::string_view());
     if (object == objects_.end()) return lexer_.expected("the number or name of an object above");
-    Status status = count_copy(object->second.bytes);
-    if (!status.ok()) return status;
-    for (const ModelSurface& surface : object->second.surfaces) {
-      ModelSurface& copy = surfaces().emplace_back(surface);
-      copy.placement = stack_.state().transform * surface.placement;
-      if (!is_finite(copy.placement)) return failure("the transformation is too large for double");
-      if (!object_ && !copy.trims.empty()) trimmed_.add(request_, start_);
+    const Affine* own = nullptr;  // of the surface before, often the next one's too
+    Shared<Affine> placement;
+    for (const ModelSurface& surface : object->second) {
+      if (own != &*surface.placement) {
+        own = &*surface.placement;
+        placement = *stack_.state().transform * *own;
+        if (!is_finite(*placement)) return failure("the transformation is too large for double");
+      }
+      Status status = count_copy();
+      if (!status.ok()) return status;
+      surfaces().push_back({surface.name, surface.surface, placement, surface.trims});
+      if (!object_ && !surface.trims->empty()) trimmed_.add(request_, start_);
     }
-    if (object_) object_->bytes += object->second.bytes;
     return lexer_.skip_values();
   }
 
   /// What stands once in the file and often in the model is bounded by the file's size all the same.
-  Status count_copy(std::size_t bytes) {
-    if (bytes > copies_left_) return failure("copies of objects and trims would take more than 16 times the file");
+  Status count_copy() {
+    constexpr std::size_t bytes = sizeof(ModelSurface) + sizeof(Affine);
+    if (bytes > copies_left_) return failure("copies of objects would take more than 4 times the file");
     copies_left_ -= bytes;
     return {};
   }
@@ -206,9 +206,9 @@ class RibReader {
       map = {.columns = {Vec3{n[0], n[1], n[2]}, Vec3{n[4], n[5], n[6]}, Vec3{n[8], n[9], n[10]}},
              .translation = {n[12], n[13], n[14]}};
     }
-    Affine& current = stack_.state().transform;
-    current = request_ == "Identity" || request_ == "Transform" ? map : current * map;
-    return is_finite(current) ? Status() : failure("the transformation is too large for double");
+    Shared<Affine>& current = stack_.state().transform;
+    current = request_ == "Identity" || request_ == "Transform" ? map : *current * map;
+    return is_finite(*current) ? Status() : failure("the transformation is too large for double");
   }
 
   Status basis() {
@@ -244,7 +244,7 @@ class RibReader {
     std::string_view kind, parameter, name;
     if (ahead.take_string({}, kind).ok() && kind == "identifier" && ahead.take_string({}, parameter).ok() &&
         variable_name(parameter) == "name" && ahead.take_string({}, name).ok()) {
-      stack_.state().name = name;
+      stack_.state().name = surface_name(name);
     } else {
       others_.add(request_, start_);
     }
@@ -254,8 +254,7 @@ class RibReader {
   Status trim_curve() {
     Result<std::vector<TrimLoop>> loops = read_trim_loops(lexer_);
     if (!loops) return loops.status();
-    const auto bytes = static_cast<std::size_t>(lexer_.place().position() - start_.position());
-    stack_.state().trims = std::make_shared<RibTrims>(RibTrims{*std::move(loops), bytes});
+    stack_.state().trims = *std::move(loops);
     return {};
   }
 
@@ -269,22 +268,20 @@ class RibReader {
   Status nu_patch() {
     Status status = add(read_nu_patch(surface_text()));
     const auto& trims = stack_.state().trims;
-    if (!status.ok() || !trims || trims->loops.empty()) return status;
-    status = count_copy(trims->bytes);
-    if (!status.ok()) return status;
-    surfaces().back().trims = trims->loops;
+    if (!status.ok() || trims->empty()) return status;
+    surfaces().back().trims = trims;
     if (!object_) trimmed_.add(request_, start_);
     return {};
   }
 
   RibSurfaceText surface_text() { return {lexer_, start_, request_, stack_.state().basis_u, stack_.state().basis_v}; }
 
-  std::vector<ModelSurface>& surfaces() { return object_ ? object_->surfaces : model_.surfaces; }
+  std::vector<ModelSurface>& surfaces() { return object_ ? *object_ : model_.surfaces; }
 
   Status add(Result<std::vector<Surface>> read) {
     if (!read) return read.status();
     for (Surface& surface : *read) {
-      surfaces().push_back({surface_name(stack_.state().name), std::move(surface), stack_.state().transform});
+      surfaces().push_back({stack_.state().name, std::move(surface), stack_.state().transform});
     }
     return {};
   }
@@ -358,7 +355,6 @@ class RibReader {
   std::map<std::string_view, Object> objects_;
   std::optional<Object> object_;  // that is being defined
   std::string_view handle_;
-  const char* object_begin_ = nullptr;
   std::size_t copies_left_;
   bool in_motion_ = false;
   std::size_t samples_ = 0;

@@ -1,7 +1,6 @@
 #pragma once
 // The graphics state of a RIB file as far as surfaces depend on it, and the blocks that save it.
 
-#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,21 +9,16 @@
 #include "io/text_cursor.h"
 #include "tessera/affine.h"
 #include "tessera/model.h"
+#include "tessera/shared.h"
 
 namespace tessera {
 
-/// A TrimCurve's loops, and how much of the file they are.
-struct RibTrims {
-  std::vector<TrimLoop> loops;
-  std::size_t bytes = 0;
-};
-
 struct RibState {
   /// From the current coordinates to those at WorldBegin (ObjectBegin within an object, else the begin of the file).
-  Affine transform;
-  std::string_view name;
+  Shared<Affine> transform;
+  Shared<std::string> name;
   RibBasis basis_u = *find_rib_basis("bezier"), basis_v = basis_u;
-  std::shared_ptr<const RibTrims> trims;
+  Shared<std::vector<TrimLoop>> trims;
 };
 
 /// The state within nested blocks: Frame, World, Attribute, Transform, Solid, Object.

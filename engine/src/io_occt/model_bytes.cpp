@@ -158,11 +158,11 @@ Status put_model(Writer& out, const Model& model) {
   for (const ModelSurface& surface : model.surfaces) {
     const BSplineSurface* const spline = std::get_if<BSplineSurface>(&surface.surface);
     if (!spline) return Status(StatusCode::internal, "a surface of this kind has no form as bytes");
-    out.put_text(surface.name);
+    out.put_text(*surface.name);
     put_surface(out, *spline);
-    out.put(surface.placement);
-    out.put(std::uint64_t{surface.trims.size()});
-    for (const TrimLoop& loop : surface.trims) {
+    out.put(*surface.placement);
+    out.put(std::uint64_t{surface.trims->size()});
+    for (const TrimLoop& loop : *surface.trims) {
       out.put(std::uint8_t{loop.hole});
       out.put(std::uint64_t{loop.curves.size()});
       for (const Curve& curve : loop.curves) put_curve(out, curve);

@@ -138,59 +138,59 @@ Status check_entries(int degree, std::span<const double> entries) {
 Result<BasisMatrix> BasisMatrix::bezier(int degree) {
   return guarded([&]() -> Result<BasisMatrix> {
     if (Status status = check_degree(degree, "degree of a basis matrix"); !status.ok()) return status;
-    BasisMatrix basis;
-    basis.degree_ = degree;
-    basis.power_ = power_of_bernstein(degree);
-    basis.bernstein_ = basis.from_bernstein_ = identity(degree);
-    return basis;
+    Data basis;
+    basis.degree = degree;
+    basis.power = power_of_bernstein(degree);
+    basis.bernstein = basis.from_bernstein = identity(degree);
+    return BasisMatrix(std::move(basis));
   });
 }
 
 Result<BasisMatrix> BasisMatrix::power(int degree) {
   return guarded([&]() -> Result<BasisMatrix> {
     if (Status status = check_degree(degree, "degree of a basis matrix"); !status.ok()) return status;
-    BasisMatrix basis;
-    basis.degree_ = degree;
-    basis.power_ = identity(degree);
-    basis.bernstein_ = bernstein_of_power(degree);
-    basis.from_bernstein_ = power_of_bernstein(degree);
-    return basis;
+    Data basis;
+    basis.degree = degree;
+    basis.power = identity(degree);
+    basis.bernstein = bernstein_of_power(degree);
+    basis.from_bernstein = power_of_bernstein(degree);
+    return BasisMatrix(std::move(basis));
   });
 }
 
 Result<BasisMatrix> BasisMatrix::hermite() {
   return guarded([]() -> Result<BasisMatrix> {
     constexpr double third = 1.0 / 3;
-    BasisMatrix basis;
-    basis.degree_ = 3;
-    basis.power_ = {1, 0, 0, 0, 0, 1, 0, 0, -3, -2, -1, 3, 2, 1, 1, -2};
-    basis.bernstein_ = {1, 0, 0, 0, 1, third, 0, 0, 0, 0, -third, 1, 0, 0, 0, 1};
-    basis.from_bernstein_ = {1, 0, 0, 0, -3, 3, 0, 0, 0, 0, -3, 3, 0, 0, 0, 1};
-    return basis;
+    Data basis;
+    basis.degree = 3;
+    basis.power = {1, 0, 0, 0, 0, 1, 0, 0, -3, -2, -1, 3, 2, 1, 1, -2};
+    basis.bernstein = {1, 0, 0, 0, 1, third, 0, 0, 0, 0, -third, 1, 0, 0, 0, 1};
+    basis.from_bernstein = {1, 0, 0, 0, -3, 3, 0, 0, 0, 0, -3, 3, 0, 0, 0, 1};
+    return BasisMatrix(std::move(basis));
   });
 }
 
 Result<BasisMatrix> BasisMatrix::uniform_b_spline(int degree) {
   return guarded([&]() -> Result<BasisMatrix> {
     if (Status status = check_degree(degree, "degree of a basis matrix"); !status.ok()) return status;
-    BasisMatrix basis;
-    basis.degree_ = degree;
-    basis.power_ = power_of_uniform(degree);
-    basis.bernstein_ = bernstein_of_uniform(degree);
-    basis.from_bernstein_ = uniform_of_bernstein(degree);
-    return basis;
+    Data basis;
+    basis.degree = degree;
+    basis.power = power_of_uniform(degree);
+    basis.bernstein = bernstein_of_uniform(degree);
+    basis.from_bernstein = uniform_of_bernstein(degree);
+    return BasisMatrix(std::move(basis));
   });
 }
 
 Result<BasisMatrix> BasisMatrix::catmull_rom() {
   return guarded([]() -> Result<BasisMatrix> {
     constexpr double sixth = 1.0 / 6;
-    BasisMatrix basis;
-    basis.degree_ = 3;
-    basis.power_ = {0, 1, 0, 0, -0.5, 0, 0.5, 0, 1, -2.5, 2, -0.5, -0.5, 1.5, -1.5, 0.5};
-    basis.bernstein_ = {0, 1, 0, 0, -sixth, 1, sixth, 0, 0, sixth, 1, -sixth, 0, 0, 1, 0};
-    basis.from_bernstein_ = {6, -6, 0, 1, 1, 0, 0, 0, 0, 0, 0, 1, 1, 0, -6, 6};
-    return basis;
+    Data basis;
+    basis.degree = 3;
+    basis.power = {0, 1, 0, 0, -0.5, 0, 0.5, 0, 1, -2.5, 2, -0.5, -0.5, 1.5, -1.5, 0.5};
+    basis.bernstein = {0, 1, 0, 0, -sixth, 1, sixth, 0, 0, sixth, 1, -sixth, 0, 0, 1, 0};
+    basis.from_bernstein = {6, -6, 0, 1, 1, 0, 0, 0, 0, 0, 0, 1, 1, 0, -6, 6};
+    return BasisMatrix(std::move(basis));
   });
 }
 
@@ -198,19 +198,20 @@ Result<BasisMatrix> BasisMatrix::custom(int degree, std::span<const double> entr
   return guarded([&]() -> Result<BasisMatrix> {
     if (Status status = check_degree(degree, "degree of a basis matrix"); !status.ok()) return status;
     if (Status status = check_entries(degree, entries); !status.ok()) return status;
-    BasisMatrix basis;
-    basis.degree_ = degree;
-    basis.power_.assign(entries.begin(), entries.end());
-    basis.bernstein_ = entries_of(degree, [&](int k, int i) {
+    Data basis;
+    basis.degree = degree;
+    basis.power.assign(entries.begin(), entries.end());
+    basis.bernstein = entries_of(degree, [&](int k, int i) {
       long double sum = 0;
       for (int l = 0; l <= k; ++l)
-        sum += static_cast<long double>(binomial(k, l)) / binomial(degree, l) * basis.power_coefficient(l, i);
+        sum += static_cast<long double>(binomial(k, l)) / binomial(degree, l) *
+               entries[static_cast<std::size_t>(l * (degree + 1) + i)];
       return static_cast<double>(sum);
     });
-    for (const double value : basis.bernstein_)
+    for (const double value : basis.bernstein)
       if (!std::isfinite(value)) return Status(StatusCode::non_finite, "the entries of the basis matrix are too large");
-    basis.from_bernstein_ = inverse_entries(degree, basis.bernstein_);
-    return basis;
+    basis.from_bernstein = inverse_entries(degree, basis.bernstein);
+    return BasisMatrix(std::move(basis));
   });
 }
 

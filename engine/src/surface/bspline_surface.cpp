@@ -18,34 +18,38 @@ Status check_count(std::size_t count_u, std::size_t count_v, std::size_t count, 
                                           " were given"};
 }
 
+/// What both kinds ask for; an empty domain becomes that of the knots.
+Status check_polynomial(int degree_u, std::span<const double> knots_u, int degree_v, std::span<const double> knots_v,
+                        std::span<const Vec3> points, std::optional<Domain>& domain) {
+  if (Status status = check_degree(degree_u, "degree u"); !status.ok()) return status;
+  if (Status status = check_degree(degree_v, "degree v"); !status.ok()) return status;
+  if (Status status = check_knots(degree_u, knots_u, "knots u"); !status.ok()) return status;
+  if (Status status = check_knots(degree_v, knots_v, "knots v"); !status.ok()) return status;
+  const std::size_t p = static_cast<std::size_t>(degree_u), q = static_cast<std::size_t>(degree_v);
+  const std::size_t count_u = knots_u.size() - p - 1, count_v = knots_v.size() - q - 1;
+  if (Status status = check_count(count_u, count_v, points.size(), "control points"); !status.ok()) return status;
+  const auto place = [&](std::size_t k) { return place_in_rows(k, count_v); };
+  if (Status status = check_points(points, place); !status.ok()) return status;
+  if (!domain) domain = Domain{knots_u[p], knots_u[count_u], knots_v[q], knots_v[count_v]};
+  if (Status status = check_range(degree_u, knots_u, domain->u0, domain->u1, "the domain in u"); !status.ok())
+    return status;
+  return check_range(degree_v, knots_v, domain->v0, domain->v1, "the domain in v");
+}
+
+template <class T>
+std::vector<T> copy(std::span<const T> values) {
+  return {values.begin(), values.end()};
+}
+
 }  // namespace
 
 Result<BSplineSurface> BSplineSurface::polynomial(int degree_u, std::span<const double> knots_u, int degree_v,
                                                   std::span<const double> knots_v, std::span<const Vec3> points,
                                                   std::optional<Domain> domain) {
   return guarded([&]() -> Result<BSplineSurface> {
-    if (Status status = check_degree(degree_u, "degree u"); !status.ok()) return status;
-    if (Status status = check_degree(degree_v, "degree v"); !status.ok()) return status;
-    if (Status status = check_knots(degree_u, knots_u, "knots u"); !status.ok()) return status;
-    if (Status status = check_knots(degree_v, knots_v, "knots v"); !status.ok()) return status;
-    const std::size_t p = static_cast<std::size_t>(degree_u), q = static_cast<std::size_t>(degree_v);
-    const std::size_t count_u = knots_u.size() - p - 1, count_v = knots_v.size() - q - 1;
-    if (Status status = check_count(count_u, count_v, points.size(), "control points"); !status.ok()) return status;
-    const auto place = [&](std::size_t k) { return place_in_rows(k, count_v); };
-    if (Status status = check_points(points, place); !status.ok()) return status;
-    const Domain used = domain.value_or(Domain{knots_u[p], knots_u[count_u], knots_v[q], knots_v[count_v]});
-    if (Status status = check_range(degree_u, knots_u, used.u0, used.u1, "the domain in u"); !status.ok())
+    if (Status status = check_polynomial(degree_u, knots_u, degree_v, knots_v, points, domain); !status.ok())
       return status;
-    if (Status status = check_range(degree_v, knots_v, used.v0, used.v1, "the domain in v"); !status.ok())
-      return status;
-    BSplineSurface surface;
-    surface.degree_u_ = degree_u;
-    surface.degree_v_ = degree_v;
-    surface.knots_u_.assign(knots_u.begin(), knots_u.end());
-    surface.knots_v_.assign(knots_v.begin(), knots_v.end());
-    surface.points_.assign(points.begin(), points.end());
-    surface.domain_ = used;
-    return surface;
+    return BSplineSurface({degree_u, degree_v, copy(knots_u), copy(knots_v), {}, copy(points), *domain});
   });
 }
 
@@ -53,15 +57,15 @@ Result<BSplineSurface> BSplineSurface::rational(int degree_u, std::span<const do
                                                 std::span<const double> knots_v, std::span<const Vec3> points,
                                                 std::span<const double> weights, std::optional<Domain> domain) {
   return guarded([&]() -> Result<BSplineSurface> {
-    Result<BSplineSurface> surface = polynomial(degree_u, knots_u, degree_v, knots_v, points, domain);
-    if (!surface) return surface;
-    const std::size_t count_v = surface->count_v();
-    if (Status status = check_count(surface->count_u(), count_v, weights.size(), "weights"); !status.ok())
+    if (Status status = check_polynomial(degree_u, knots_u, degree_v, knots_v, points, domain); !status.ok())
+      return status;
+    const std::size_t count_v = knots_v.size() - static_cast<std::size_t>(degree_v) - 1;
+    if (Status status = check_count(points.size() / count_v, count_v, weights.size(), "weights"); !status.ok())
       return status;
     const auto place = [&](std::size_t k) { return place_in_rows(k, count_v); };
     if (Status status = check_weights(weights, place); !status.ok()) return status;
-    if (!all_equal(weights)) surface->weights_.assign(weights.begin(), weights.end());
-    return surface;
+    if (all_equal(weights)) weights = {};
+    return BSplineSurface({degree_u, degree_v, copy(knots_u), copy(knots_v), copy(weights), copy(points), *domain});
   });
 }
 

@@ -92,22 +92,19 @@ Result<CoonsPatch> CoonsPatch::make(const CoonsBorders& borders, const CoonsOpti
     const auto ends = ends_of(borders);
     if (!ends) return ends.status();
     if (Status status = check_closed(*ends, options.closing_tolerance); !status.ok()) return status;
-    CoonsPatch patch(borders, options.f, options.g);
-    for (std::size_t a = 0; a < 2; ++a)
-      for (std::size_t b = 0; b < 2; ++b) patch.corners_[2 * a + b] = (*ends)[b][a];
-    return patch;
+    return CoonsPatch({borders, options.f, options.g, {(*ends)[0][0], (*ends)[1][0], (*ends)[0][1], (*ends)[1][1]}});
   });
 }
 
 Domain CoonsPatch::domain() const {
-  const Interval &u = tessera::domain(borders_.c1), &v = tessera::domain(borders_.d1);
+  const Interval &u = tessera::domain(borders().c1), &v = tessera::domain(borders().d1);
   return {u.from, u.to, v.from, v.to};
 }
 
 bool CoonsPatch::is_exact() const {
-  const auto borders = all_of(borders_);
-  return std::all_of(borders.begin(), borders.end(), [](const BorderCurve* b) { return tessera::is_exact(*b); }) &&
-         f_.is_polynomial() && g_.is_polynomial();
+  const auto all = all_of(borders());
+  return std::all_of(all.begin(), all.end(), [](const BorderCurve* b) { return tessera::is_exact(*b); }) &&
+         f().is_polynomial() && g().is_polynomial();
 }
 
 Result<SurfaceJet> evaluate_jet(const CoonsPatch& patch, double u, double v) {

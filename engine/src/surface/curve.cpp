@@ -21,6 +21,22 @@ Status check_size(int degree, std::size_t points, std::size_t knots) {
                                           " were given"};
 }
 
+/// What both kinds ask for; an empty domain becomes that of the knots.
+Status check_b_spline(int degree, std::span<const Vec3> points, std::span<const double> knots,
+                      std::optional<Interval>& domain) {
+  if (Status status = check_degree(degree, "the degree"); !status.ok()) return status;
+  if (Status status = check_size(degree, points.size(), knots.size()); !status.ok()) return status;
+  if (Status status = check_knots(degree, knots, "knots"); !status.ok()) return status;
+  if (Status status = check_points(points, place); !status.ok()) return status;
+  if (!domain) domain = Interval{knots[static_cast<std::size_t>(degree)], knots[points.size()]};
+  return check_range(degree, knots, domain->from, domain->to, "the domain");
+}
+
+template <class T>
+std::vector<T> copy(std::span<const T> values) {
+  return {values.begin(), values.end()};
+}
+
 /// The points that act at t, in a frame that keeps their sums in range.
 struct ActingPoints {
   ActingPoints(const Curve& curve, double t)
@@ -65,33 +81,21 @@ Result<Curve> Curve::bezier(std::span<const Vec3> points, std::span<const double
 Result<Curve> Curve::b_spline(int degree, std::span<const Vec3> points, std::span<const double> knots,
                               std::optional<Interval> domain) {
   return guarded([&]() -> Result<Curve> {
-    if (Status status = check_degree(degree, "the degree"); !status.ok()) return status;
-    if (Status status = check_size(degree, points.size(), knots.size()); !status.ok()) return status;
-    if (Status status = check_knots(degree, knots, "knots"); !status.ok()) return status;
-    if (Status status = check_points(points, place); !status.ok()) return status;
-    const std::size_t p = static_cast<std::size_t>(degree);
-    const Interval used = domain.value_or(Interval{knots[p], knots[points.size()]});
-    if (Status status = check_range(degree, knots, used.from, used.to, "the domain"); !status.ok()) return status;
-    Curve curve;
-    curve.degree_ = degree;
-    curve.points_.assign(points.begin(), points.end());
-    curve.knots_.assign(knots.begin(), knots.end());
-    curve.domain_ = used;
-    return curve;
+    if (Status status = check_b_spline(degree, points, knots, domain); !status.ok()) return status;
+    return Curve({degree, copy(points), {}, copy(knots), *domain});
   });
 }
 
 Result<Curve> Curve::nurbs(int degree, std::span<const Vec3> points, std::span<const double> weights,
                            std::span<const double> knots, std::optional<Interval> domain) {
   return guarded([&]() -> Result<Curve> {
-    Result<Curve> curve = b_spline(degree, points, knots, domain);
-    if (!curve) return curve;
+    if (Status status = check_b_spline(degree, points, knots, domain); !status.ok()) return status;
     if (weights.size() != points.size())
       return Status(StatusCode::count_mismatch, std::to_string(points.size()) + " points need as many weights, " +
                                                     std::to_string(weights.size()) + " were given");
     if (Status status = check_weights(weights, place); !status.ok()) return status;
-    if (!all_equal(weights)) curve->weights_.assign(weights.begin(), weights.end());
-    return curve;
+    if (all_equal(weights)) weights = {};
+    return Curve({degree, copy(points), copy(weights), copy(knots), *domain});
   });
 }
 

@@ -60,12 +60,7 @@ Result<ExplicitPolynomial> ExplicitPolynomial::make(int degree_x, int degree_y, 
     if (Status status = check_coefficients(degree_x, degree_y, coefficients); !status.ok()) return status;
     if (Status status = check_interval("x", rectangle.u0, rectangle.u1); !status.ok()) return status;
     if (Status status = check_interval("y", rectangle.v0, rectangle.v1); !status.ok()) return status;
-    ExplicitPolynomial surface;
-    surface.degree_x_ = degree_x;
-    surface.degree_y_ = degree_y;
-    surface.coefficients_.assign(coefficients.begin(), coefficients.end());
-    surface.rectangle_ = rectangle;
-    return surface;
+    return ExplicitPolynomial({degree_x, degree_y, {coefficients.begin(), coefficients.end()}, rectangle});
   });
 }
 

@@ -102,13 +102,13 @@ Result<HermiteNetwork> HermiteNetwork::from_factors(std::size_t count_u, std::si
     auto knots_u = knots_of(k, "k"), knots_v = knots_of(l, "l");
     if (!knots_u) return knots_u.status();
     if (!knots_v) return knots_v.status();
-    HermiteNetwork network;
-    network.nodes_.assign(nodes.begin(), nodes.end());
-    network.k_.assign(k.begin(), k.end());
-    network.l_.assign(l.begin(), l.end());
-    network.knots_u_ = *std::move(knots_u);
-    network.knots_v_ = *std::move(knots_v);
-    return checked(std::move(network));
+    Data network;
+    network.nodes.assign(nodes.begin(), nodes.end());
+    network.k.assign(k.begin(), k.end());
+    network.l.assign(l.begin(), l.end());
+    network.knots_u = *std::move(knots_u);
+    network.knots_v = *std::move(knots_v);
+    return checked(HermiteNetwork(std::move(network)));
   });
 }
 
@@ -118,18 +118,18 @@ Result<HermiteNetwork> HermiteNetwork::on_knots(std::span<const double> u, std::
     if (Status status = check_increasing(u, "knot", "u"); !status.ok()) return status;
     if (Status status = check_increasing(v, "knot", "v"); !status.ok()) return status;
     if (Status status = check_nodes(u.size(), v.size(), nodes); !status.ok()) return status;
-    HermiteNetwork network;
-    network.knots_u_.assign(u.begin(), u.end());
-    network.knots_v_.assign(v.begin(), v.end());
-    network.k_ = factors_of(u);
-    network.l_ = factors_of(v);
+    Data network;
+    network.knots_u.assign(u.begin(), u.end());
+    network.knots_v.assign(v.begin(), v.end());
+    network.k = factors_of(u);
+    network.l = factors_of(v);
     for (std::size_t i = 0; i < u.size(); ++i)
       for (std::size_t j = 0; j < v.size(); ++j) {
         const HermiteNode& node = nodes[i * v.size() + j];
         const double h = spacing_before(u, i), g = spacing_before(v, j);
-        network.nodes_.push_back({node.position, h * node.du, g * node.dv, (h * g) * node.duv});
+        network.nodes.push_back({node.position, h * node.du, g * node.dv, (h * g) * node.duv});
       }
-    return checked(std::move(network));
+    return checked(HermiteNetwork(std::move(network)));
   });
 }
 
@@ -138,7 +138,7 @@ HermitePatch::Corners HermiteNetwork::patch_corners(std::size_t i, std::size_t j
   for (std::size_t a = 0; a < 2; ++a)
     for (std::size_t b = 0; b < 2; ++b) {
       const HermiteNode& n = node(i + a, j + b);
-      const double k = a == 0 ? k_[i] : 1, l = b == 0 ? l_[j] : 1;
+      const double k = a == 0 ? data_->k[i] : 1, l = b == 0 ? data_->l[j] : 1;
       corners[2 * a + b] = {n.position, k * n.du, l * n.dv, (k * l) * n.duv};
     }
   return corners;

@@ -116,7 +116,7 @@ Result<HermitePatch> HermitePatch::make(std::span<const Vec3> geometry, const Do
         const bool keep = order == HermiteOrder::by_end;
         by_end[keep ? at(i, j) : at(by_kind_order[i], by_kind_order[j])] = geometry[at(i, j)];
       }
-    return HermitePatch(by_end, domain);
+    return HermitePatch({by_end, domain});
   });
 }
 
@@ -199,20 +199,23 @@ Result<HermitePatch> HermitePatch::from_bezier(const BezierPatch& patch, const D
 }
 
 HermitePatch::Grid HermitePatch::geometry(HermiteOrder order) const {
-  if (order == HermiteOrder::by_end) return geometry_;
+  const Grid& geometry = data_->geometry;
+  if (order == HermiteOrder::by_end) return geometry;
   Grid by_kind;
   for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 4; ++j) by_kind[at(i, j)] = geometry_[at(by_kind_order[i], by_kind_order[j])];
+    for (int j = 0; j < 4; ++j) by_kind[at(i, j)] = geometry[at(by_kind_order[i], by_kind_order[j])];
   return by_kind;
 }
 
 HermiteNode HermitePatch::corner(int a, int b) const {
-  return {geometry_[at(3 * a, 3 * b)], geometry_[at(1 + a, 3 * b)], geometry_[at(3 * a, 1 + b)],
-          geometry_[at(1 + a, 1 + b)]};
+  const Grid& geometry = data_->geometry;
+  return {geometry[at(3 * a, 3 * b)], geometry[at(1 + a, 3 * b)], geometry[at(3 * a, 1 + b)],
+          geometry[at(1 + a, 1 + b)]};
 }
 
 HermitePatch::Grid HermitePatch::local_geometry() const {
-  return scaled(geometry_, domain_.u1 - domain_.u0, domain_.v1 - domain_.v0);
+  const Domain& d = domain();
+  return scaled(data_->geometry, d.u1 - d.u0, d.v1 - d.v0);
 }
 
 HermitePatch::Grid HermitePatch::algebraic_form() const { return transformed(power_of_hermite, local_geometry()); }
@@ -228,14 +231,15 @@ HermitePatch::Grid HermitePatch::points_at(const std::array<double, 4>& u, const
 Result<HermitePatch> HermitePatch::reparametrized(const Domain& domain) const {
   return guarded([&]() -> Result<HermitePatch> {
     if (Status status = check_domain(domain); !status.ok()) return status;
-    const double along_u = (domain_.u1 - domain_.u0) / (domain.u1 - domain.u0);
-    const double along_v = (domain_.v1 - domain_.v0) / (domain.v1 - domain.v0);
-    return make(scaled(geometry_, along_u, along_v), domain);
+    const Domain& own = data_->domain;
+    const double along_u = (own.u1 - own.u0) / (domain.u1 - domain.u0);
+    const double along_v = (own.v1 - own.v0) / (domain.v1 - domain.v0);
+    return make(scaled(data_->geometry, along_u, along_v), domain);
   });
 }
 
 SurfaceJet evaluate_jet(const HermitePatch& patch, double u, double v) {
-  const Domain& d = patch.domain_;
+  const Domain& d = patch.domain();
   const double s = d.local_u(u), t = d.local_v(v);
   const Grid g = patch.local_geometry();
   const std::array<double, 4> f[] = {hermite_values(s), hermite_derivatives(s), hermite_second_derivatives(s)};

@@ -49,9 +49,7 @@ Result<ParametricCurve> ParametricCurve::make(CurveFunctions functions, const In
   return guarded([&]() -> Result<ParametricCurve> {
     if (!functions.position) return Status(StatusCode::invalid_argument, "the curve has no function for its position");
     if (Status status = check_interval(domain.from, domain.to, "the curve's interval"); !status.ok()) return status;
-    ParametricCurve curve;
-    curve.functions_ = std::move(functions);
-    curve.domain_ = domain;
+    ParametricCurve curve({std::move(functions), domain});
     for (const double end : {domain.from, domain.to})
       if (const auto point = curve.position(end); !point) return point.status();
     return curve;
@@ -60,7 +58,7 @@ Result<ParametricCurve> ParametricCurve::make(CurveFunctions functions, const In
 
 Result<Vec3> ParametricCurve::position(double t) const {
   return guarded([&]() -> Result<Vec3> {
-    Result<Vec3> point = called([&] { return functions_.position(t); }, place_at(t));
+    Result<Vec3> point = called([&] { return data_->functions.position(t); }, place_at(t));
     if (point && !is_finite(*point)) return not_finite("the curve", t, *point);
     return point;
   });
@@ -68,15 +66,14 @@ Result<Vec3> ParametricCurve::position(double t) const {
 
 double ParametricCurve::derivative_bound(const Interval& part, int k) const {
   return bound_of([&] {
-    return has_bounds() ? functions_.derivative_bound(part, k) : std::numeric_limits<double>::infinity();
+    return has_bounds() ? data_->functions.derivative_bound(part, k) : std::numeric_limits<double>::infinity();
   });
 }
 
 Result<CurveJet> evaluate_jet(const ParametricCurve& curve, double t) {
   return guarded([&]() -> Result<CurveJet> {
-    Result<CurveJet> jet = curve.has_derivatives()
-                               ? called([&] { return curve.functions_.jet(t); }, place_at(t))
-                               : jet_by_differences(curve, t);
+    Result<CurveJet> jet = curve.has_derivatives() ? called([&] { return curve.data_->functions.jet(t); }, place_at(t))
+                                                   : jet_by_differences(curve, t);
     if (!jet) return jet;
     if (Status status = check_jet(*jet, t); !status.ok()) return status;
     return jet;

@@ -68,9 +68,7 @@ Result<ParametricSurface> ParametricSurface::make(SurfaceFunctions functions, co
     if (!functions.position)
       return Status(StatusCode::invalid_argument, "the surface has no function for its position");
     if (Status status = check_domain(domain); !status.ok()) return status;
-    ParametricSurface surface;
-    surface.functions_ = std::move(functions);
-    surface.domain_ = domain;
+    ParametricSurface surface({std::move(functions), domain});
     for (const double u : {domain.u0, domain.u1})
       for (const double v : {domain.v0, domain.v1})
         if (const auto corner = surface.position(u, v); !corner) return corner.status();
@@ -99,7 +97,7 @@ Result<ParametricSurface> ParametricSurface::over_disc(SurfaceFunctions function
 
 Result<Vec3> ParametricSurface::position(double u, double v) const {
   return guarded([&]() -> Result<Vec3> {
-    Result<Vec3> point = called([&] { return functions_.position(u, v); }, place_at(u, v));
+    Result<Vec3> point = called([&] { return data_->functions.position(u, v); }, place_at(u, v));
     if (!point) return point;
     if (Status status = check_finite(*point, u, v); !status.ok()) return status;
     return point;
@@ -110,7 +108,7 @@ std::array<double, 2> ParametricSurface::derivative_bounds(const Domain& part, i
   constexpr double none = std::numeric_limits<double>::infinity();
   if (!has_bounds()) return {none, none};
   try {
-    const auto [along_u, along_v] = functions_.derivative_bounds(part, k);
+    const auto [along_u, along_v] = data_->functions.derivative_bounds(part, k);
     return {bound_or_infinity(along_u), bound_or_infinity(along_v)};
   } catch (...) {  // a bound is never needed: without one a fit is sampled
     return {none, none};
@@ -120,7 +118,7 @@ std::array<double, 2> ParametricSurface::derivative_bounds(const Domain& part, i
 Result<SurfaceJet> evaluate_jet(const ParametricSurface& surface, double u, double v) {
   return guarded([&]() -> Result<SurfaceJet> {
     Result<SurfaceJet> jet = surface.has_derivatives()
-                                 ? called([&] { return surface.functions_.jet(u, v); }, place_at(u, v))
+                                 ? called([&] { return surface.data_->functions.jet(u, v); }, place_at(u, v))
                                  : jet_by_differences(surface, u, v);
     if (!jet) return jet;
     if (Status status = check_finite(*jet, u, v); !status.ok()) return status;

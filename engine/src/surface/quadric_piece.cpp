@@ -91,9 +91,7 @@ Result<QuadricPiece> QuadricPiece::make(const Quadric& quadric, const Domain& ra
     const Profiles profile = profiles(kind);
     if (Status status = check_range("u", profile.u, false, range.u0, range.u1); !status.ok()) return status;
     if (Status status = check_range("v", profile.v, true, range.v0, range.v1); !status.ok()) return status;
-    QuadricPiece piece(quadric);
-    piece.range_ = range;
-    piece.sheet_ = sheet;
+    const QuadricPiece piece({quadric, range, sheet});
     for (const double u : {range.u0, range.u1})
       for (const double v : {range.v0, range.v1})
         if (!is_finite(evaluate_jet(piece, u, v).position))
@@ -103,26 +101,28 @@ Result<QuadricPiece> QuadricPiece::make(const Quadric& quadric, const Domain& ra
 }
 
 std::optional<QuadricParameters> QuadricPiece::locate(const Vec3& point) const {
-  const Profiles profile = profiles(quadric_.kind());
-  const Vec3 p = quadric_.frame().local(point);
-  QuadricParameters at = raw_parameters(quadric_, p, sheet_);
-  const double margin_u = border_margin * (range_.u1 - range_.u0), margin_v = border_margin * (range_.v1 - range_.v0);
+  const Quadric& quadric = data_->quadric;
+  const Domain& range = data_->range;
+  const Profiles profile = profiles(quadric.kind());
+  const Vec3 p = quadric.frame().local(point);
+  QuadricParameters at = raw_parameters(quadric, p, sheet());
+  const double margin_u = border_margin * (range.u1 - range.u0), margin_v = border_margin * (range.v1 - range.v0);
   const auto inside = [&](QuadricParameters& q) {
-    if (q.sheet != sheet_ || !(q.v >= range_.v0 - margin_v && q.v <= range_.v1 + margin_v)) return false;
+    if (q.sheet != sheet() || !(q.v >= range.v0 - margin_v && q.v <= range.v1 + margin_v)) return false;
     if (profile.u == Profile::circle) {
-      const double radius = std::hypot(p.x / quadric_.size().x, p.y / quadric_.size().y);
-      q.u = radius <= border_margin ? range_.u0 : turned(q.u, range_.u0, margin_u);  // a pole lies on every meridian
+      const double radius = std::hypot(p.x / quadric.size().x, p.y / quadric.size().y);
+      q.u = radius <= border_margin ? range.u0 : turned(q.u, range.u0, margin_u);  // a pole lies on every meridian
     }
-    return q.u >= range_.u0 - margin_u && q.u <= range_.u1 + margin_u;
+    return q.u >= range.u0 - margin_u && q.u <= range.u1 + margin_u;
   };
   QuadricParameters opposite{at.u + pi, -at.v, at.sheet};
   const bool both =
-      quadric_.kind() == QuadricKind::hyperboloid_two_sheets || quadric_.kind() == QuadricKind::elliptic_paraboloid;
+      quadric.kind() == QuadricKind::hyperboloid_two_sheets || quadric.kind() == QuadricKind::elliptic_paraboloid;
   if (!inside(at)) {
     if (!both || !inside(opposite)) return std::nullopt;
     at = opposite;
   }
-  return QuadricParameters{std::clamp(at.u, range_.u0, range_.u1), std::clamp(at.v, range_.v0, range_.v1), at.sheet};
+  return QuadricParameters{std::clamp(at.u, range.u0, range.u1), std::clamp(at.v, range.v0, range.v1), at.sheet};
 }
 
 SurfaceJet evaluate_jet(const QuadricPiece& piece, double u, double v) {

@@ -33,19 +33,19 @@ Result<RuledSurface> RuledSurface::make(const BorderCurve& first, const BorderCu
       return Status(StatusCode::invalid_argument, "the direction of the straight lines is neither u nor v");
     if (Status status = check_same_interval(first, ruled_curve_names[0], second, ruled_curve_names[1]); !status.ok())
       return status;
-    const RuledSurface surface(first, second, across, straight);
+    const RuledSurface surface({first, second, across, straight});
     if (Status status = check_domain(surface.domain()); !status.ok()) return status;
     return surface;
   });
 }
 
 Domain RuledSurface::domain() const {
-  const Interval& along = tessera::domain(first_);
-  if (straight_ == Direction::v) return {along.from, along.to, across_.from, across_.to};
-  return {across_.from, across_.to, along.from, along.to};
+  const Interval &along = tessera::domain(first()), &across = data_->across;
+  if (straight() == Direction::v) return {along.from, along.to, across.from, across.to};
+  return {across.from, across.to, along.from, along.to};
 }
 
-bool RuledSurface::is_exact() const { return tessera::is_exact(first_) && tessera::is_exact(second_); }
+bool RuledSurface::is_exact() const { return tessera::is_exact(first()) && tessera::is_exact(second()); }
 
 Result<SurfaceJet> evaluate_jet(const RuledSurface& surface, double u, double v) {
   return guarded([&]() -> Result<SurfaceJet> {

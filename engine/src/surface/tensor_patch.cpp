@@ -59,7 +59,7 @@ Result<TensorPatch> TensorPatch::make(const BasisMatrix& basis_u, const BasisMat
                                                     std::to_string(geometry.size()) + " elements were given");
     if (Status status = check_vectors(geometry, columns, "geometry element"); !status.ok()) return status;
     if (Status status = check_domain(domain); !status.ok()) return status;
-    return TensorPatch(basis_u, basis_v, geometry, domain);
+    return TensorPatch({basis_u, basis_v, {geometry.begin(), geometry.end()}, domain});
   });
 }
 
