@@ -1,14 +1,12 @@
-// Free-form OBJ files of other programs, and the values that one of them expects: a table of what was read of each.
-// The folder is named by the environment variable TESSERA_TEST_DATA.
+// Free-form OBJ files, and the values that another program expects of them. The folder is named by the environment
+// variable TESSERA_TEST_DATA.
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "tessera/io.h"
@@ -27,45 +25,6 @@ class ObjFiles : public testing::Test {
   }
   fs::path data_;
 };
-
-/// What is wrong with the files that are refused: words of the message.
-const std::map<std::string, std::string> refused{
-    {"ex1_taylor_curve.obj", ":2: expected a statement"},      // numbers of the page's formula before the data
-    {"ex2_bezier_curve.obj", "no free-form surface in it"},    // a curve alone
-    {"ex3_bspline_surface.obj", ":23: expected a statement"},  // a continuation that is none
-    {"ex6_trimmed_nurb_surface.obj", ":26: surface 0: the domain is empty: it runs from knots v[2] = -2"},
-    {"invalid_bmatrix_missing_step.obj", ":23: surface 0: there is no step for u"},
-    {"invalid_wrong_control_count.obj",
-     ":7: surface 0: its parameters and degrees want 3 x 3 control points, it has 4"},
-};
-
-TEST_F(ObjFiles, AllAreReadWholeOrRefusedWithTheirReason) {
-  for (const char* folder : {"obj_freeform_spec", "obj_freeform_tests", "obj_freeform_files"}) {
-    std::vector<fs::path> paths;
-    for (const auto& entry : fs::directory_iterator(data_ / folder))
-      if (entry.path().extension() == ".obj") paths.push_back(entry.path());
-    std::sort(paths.begin(), paths.end());
-    EXPECT_FALSE(paths.empty()) << folder;
-    for (const fs::path& path : paths) {
-      const std::string file = path.filename().string();
-      const auto wrong = refused.find(file);
-      const Result<Model> model = read_model(path);
-      std::cout << folder << " | " << file << " | ";
-      if (!model) {
-        std::cout << "refused: " << model.status().message().substr(path.string().size()) << "\n";
-        ASSERT_NE(wrong, refused.end()) << model.status().message();
-        EXPECT_NE(model.status().message().find(wrong->second), std::string::npos) << model.status().message();
-        continue;
-      }
-      EXPECT_EQ(wrong, refused.end()) << file;
-      std::cout << model->surfaces.size() << " x " << kind_name(model->surfaces.front().surface);
-      for (const std::string& warning : model->warnings) std::cout << " | " << warning.substr(path.string().size());
-      std::cout << "\n";
-      const Result<PatchSet> set = make_patch_set(*model);
-      EXPECT_TRUE(set.ok()) << file << ": " << set.status().message();
-    }
-  }
-}
 
 TEST_F(ObjFiles, PointsAreThoseThatAnotherReaderExpects) {
   const auto json = nlohmann::json::parse(std::ifstream(data_ / "peer_cases" / "obj_freeform_oxideav_A.json"));

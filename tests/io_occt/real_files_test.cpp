@@ -1,10 +1,9 @@
-// Every STEP and IGES file of TESSERA_TEST_DATA, and what is read of it.
+// What some STEP and IGES files of TESSERA_TEST_DATA are known for. That each is read stands in tests/conformance.
 
 #include <gtest/gtest.h>
 
 #include <map>
 #include <set>
-#include <sstream>
 
 #include "io_occt/cad_shapes.h"
 #include "support/scratch_folder.h"
@@ -12,67 +11,6 @@
 
 namespace tessera::test {
 namespace {
-
-/// How often each word of a form "=WORD(" stands in a STEP file.
-std::size_t count_of(const std::string& text, const std::string& word) {
-  std::size_t count = 0;
-  for (std::size_t place = text.find(word); place != std::string::npos; place = text.find(word, place + 1)) ++count;
-  return count;
-}
-
-/// Independent entities of an IGES file by type, from the first lines of its directory entries: columns 1-8 are the type,
-/// 69-70 of the status say whether the entity depends on another one (00: on none).
-std::map<int, int> independent_types(const std::string& text) {
-  std::map<int, int> types;
-  std::istringstream stream(text);
-  int entry_line = 0;
-  for (std::string line; std::getline(stream, line);) {
-    if (line.size() <= 72 || line[72] != 'D' || ++entry_line % 2 == 0) continue;
-    const std::string status = line.substr(64, 8);
-    if (status.substr(2, 2) == "00" || status.substr(2, 2) == "  " || status.substr(2, 2) == " 0")
-      ++types[std::atoi(line.substr(0, 8).c_str())];
-  }
-  return types;
-}
-
-std::size_t expected_at_least(const std::filesystem::path& path) {
-  const std::string text = content_of(path);
-  if (path.extension().string().starts_with(".st"))
-    return count_of(text, "ADVANCED_FACE(") + count_of(text, "FACE_SURFACE(");
-  std::size_t surfaces = 0;
-  for (const auto& [type, count] : independent_types(text))
-    for (const int surface : {114, 118, 120, 122, 128, 140, 143, 144})
-      if (type == surface) surfaces += static_cast<std::size_t>(count);
-  return surfaces;
-}
-
-TEST(RealCadFiles, AreReadOrRefusedWithTheirReason) {
-  const std::vector<std::filesystem::path> files = real_cad_files();
-  if (files.empty()) GTEST_SKIP() << "TESSERA_TEST_DATA is not set";
-  std::printf("%-50s %8s %8s\n", "file", "surfaces", "trimmed");
-  std::size_t read = 0, surfaces = 0;
-  for (const std::filesystem::path& path : files) {
-    const std::string file = path.filename().string();
-    const std::size_t least = expected_at_least(path);
-    const Result<Model> model = read_cad(path);
-    if (!model) {
-      std::printf("%-50s refused: %s\n", file.c_str(), model.status().message().c_str() + path.string().size() + 2);
-      EXPECT_EQ(least, 0u) << model.status().message();
-      EXPECT_NE(model.status().message().find("it holds no surfaces"), std::string::npos) << model.status().message();
-      continue;
-    }
-    std::size_t trimmed = 0;
-    for (const ModelSurface& surface : model->surfaces) trimmed += !surface.trims->empty();
-    std::printf("%-50s %8zu %8zu\n", file.c_str(), model->surfaces.size(), trimmed);
-    for (const std::string& warning : model->warnings)
-      std::printf("    %s\n", warning.c_str() + path.string().size() + 2);
-    EXPECT_GE(model->surfaces.size(), least) << path;
-    ++read;
-    surfaces += model->surfaces.size();
-  }
-  std::printf("%zu files, %zu read, %zu surfaces\n", files.size(), read, surfaces);
-  EXPECT_GE(read, 30u);
-}
 
 const Model* find(const std::vector<std::filesystem::path>& files, const char* name, Result<Model>& model) {
   for (const std::filesystem::path& path : files)
