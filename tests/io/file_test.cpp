@@ -9,6 +9,7 @@
 #include <csignal>
 
 #include "io/output_file.h"
+#include "support/privileges.h"
 #include "support/scratch_folder.h"
 
 namespace tessera {
@@ -16,22 +17,8 @@ namespace {
 
 using test::content_of;
 using test::ScratchFolder;
+using test::WithoutPrivileges;
 using Names = std::vector<std::string>;
-
-/// While it lives, the superuser is an ordinary user, whom permissions bind.
-class WithoutPrivileges {
- public:
-  WithoutPrivileges() : root_(::geteuid() == 0) { done_ = !root_ || ::seteuid(65534) == 0; }
-  WithoutPrivileges(const WithoutPrivileges&) = delete;
-  WithoutPrivileges& operator=(const WithoutPrivileges&) = delete;
-  ~WithoutPrivileges() {
-    if (root_ && ::seteuid(0) != 0) std::abort();
-  }
-  bool done() const { return done_; }
-
- private:
-  bool root_, done_ = false;
-};
 
 Status write_text(const std::string& path, std::string_view text) {
   Result<OutputFile> out = OutputFile::create(path);
