@@ -14,7 +14,7 @@
 // - A face that can't be read is left out, and a warning says why: degrees above max_degree, an unbounded plane, what
 //   OpenCASCADE refuses (weights that are not positive among it). Errors: no face is left (the first reason), io_error,
 //   parse_error (the reason is OpenCASCADE's), invalid_weight (IGES: OpenCASCADE would read another surface),
-//   unsupported (the extension), out_of_memory, internal (OpenCASCADE crashed).
+//   unsupported (the extension; what is no regular file), out_of_memory, internal (OpenCASCADE crashed).
 //
 // OpenCASCADE is not proof against damaged files, and keeps global state. So it works in a forked child process, which
 // has no standard streams and a bound on memory (512 MiB and 256 times the file) and on computing (120 seconds and one

@@ -12,6 +12,7 @@
 #include "io/formats.h"
 #include "io_occt/cad_file.h"
 #include "io_occt/child_process.h"
+#include "io_occt/markless_file.h"
 #include "io_occt/model_bytes.h"
 #include "io_occt/shape_model.h"
 #include "tessera/io_occt.h"
@@ -39,19 +40,30 @@ const CadFormat* find_format(const fs::path& path) {
 /// The file's size, if it can be read at all.
 Result<std::uintmax_t> readable_size(const fs::path& path) {
   std::error_code error;
-  if (fs::is_directory(path, error))
-    return Status(StatusCode::io_error, path.string() + ": is a directory, not a file");
+  const fs::file_status facts = fs::status(path, error);
+  if (fs::is_directory(facts)) return Status(StatusCode::io_error, path.string() + ": is a directory, not a file");
+  // Read twice: a pipe would end, or keep whoever opens it waiting.
+  if (fs::exists(facts) && !fs::is_regular_file(facts))
+    return Status(StatusCode::unsupported, path.string() + ": STEP and IGES are read from files alone");
   if (!std::ifstream(path, std::ios::binary)) return io_failure(path, "cannot be opened", errno);
   const std::uintmax_t size = fs::file_size(path, error);
-  if (error) return Status(StatusCode::unsupported, path.string() + ": STEP and IGES are read from files alone");
+  if (error) return io_failure(path, "cannot be read", error.value());
   if (size == 0) return Status(StatusCode::parse_error, path.string() + ": the file is empty");
   return size;
 }
 
+/// A message that begins with the path of a copy, beginning with the file's own.
+Status renamed(const Status& status, const std::string& copy, const std::string& path) {
+  if (!status.message().starts_with(copy)) return status;
+  return Status(status.code(), path + status.message().substr(copy.size()), status.index());
+}
+
 Result<Model> load_model(const std::string& path, Load* load) {
   try {
-    const Result<CadFile> file = load(path);
-    return file ? model_of(*file, path) : Result<Model>(file.status());
+    const Result<MarklessFile> plain = MarklessFile::make(path);
+    if (!plain) return plain.status();
+    const Result<CadFile> file = load(plain->path());
+    return file ? model_of(*file, path) : Result<Model>(renamed(file.status(), plain->path(), path));
   } catch (const Standard_OutOfMemory&) {
     return Status(StatusCode::out_of_memory, path + ": OpenCASCADE wants more memory than it is allowed");
   } catch (const std::bad_alloc&) {

@@ -1,0 +1,25 @@
+#pragma once
+// Files that begin with a byte order mark.
+
+#include <string>
+
+#include "io/descriptor.h"
+#include "tessera/status.h"
+
+namespace tessera {
+
+/// A file without the byte order mark that an editor has put before it: OpenCASCADE would take it for a part of the text,
+/// and in IGES it moves the columns of the first line. As long as it lives, path() can be opened.
+class MarklessFile {
+ public:
+  /// The file itself, or a copy in memory where it has the mark. Errors: io_error.
+  static Result<MarklessFile> make(const std::string& path);
+  const std::string& path() const { return path_; }
+
+ private:
+  MarklessFile() = default;
+  std::string path_;
+  Descriptor copy_;
+};
+
+}  // namespace tessera
