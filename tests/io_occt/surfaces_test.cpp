@@ -1,6 +1,7 @@
 // Surfaces of faces: points equal OpenCASCADE's own at the same parameters.
 
 #include <gtest/gtest.h>
+#include <opencascade/BRepBuilderAPI_MakeFace.hxx>
 #include <opencascade/BRepPrimAPI_MakeBox.hxx>
 #include <opencascade/BRepPrimAPI_MakeCone.hxx>
 #include <opencascade/BRepPrimAPI_MakeCylinder.hxx>
@@ -59,8 +60,9 @@ void expect_exact(const handle<Geom_Surface>& surface, const Domain& box) {
   ASSERT_TRUE(ours.ok()) << ours.status().message();
   EXPECT_EQ(ours->fit_error, 0);
   EXPECT_LT(distance(surface, *ours, box, 200), 1e-14) << surface->DynamicType()->Name();
-  EXPECT_EQ(ours->surface.domain().u0, box.u0);
-  EXPECT_EQ(ours->surface.domain().v1, box.v1);
+  // Of periods, knots may differ from the ends by rounding, and are taken for these.
+  EXPECT_NEAR(ours->surface.domain().u0, box.u0, 1e-12 * (box.u1 - box.u0));
+  EXPECT_NEAR(ours->surface.domain().v1, box.v1, 1e-12 * (box.v1 - box.v0));
 }
 
 const gp_Ax3 tilted(gp_Pnt(3, -1, 2), gp_Dir(1, 2, 3), gp_Dir(1, 0, 0));
@@ -175,6 +177,45 @@ TEST(FaceSurface, PeriodicSplinesKeepTheirPolesAndParameters) {
   ASSERT_TRUE(ours.ok());
   EXPECT_EQ(ours->surface.count_u(), 8u + 3u);
   EXPECT_EQ(ours->surface.point(8, 0), ours->surface.point(0, 0));
+}
+
+/// The narrowest patch along either direction, as a part of the surface's range.
+double narrowest_patch(const BSplineSurface& surface) {
+  const PatchGrid grid = *to_bezier(surface);
+  double narrowest = 1;
+  for (const auto breaks : {grid.breaks_u(), grid.breaks_v()})
+    for (std::size_t k = 1; k < breaks.size(); ++k)
+      narrowest = std::min(narrowest, (breaks[k] - breaks[k - 1]) / (breaks.back() - breaks.front()));
+  return narrowest;
+}
+
+TEST(FaceBox, EndsThatAreKnotsButForRoundingAreKnots) {
+  const handle<Geom_BSplineSurface> surface = periodic_surface(8, 5, 3, 2);
+  double u0, u1, v0, v1;
+  surface->Bounds(u0, u1, v0, v1);
+  const TColStd_Array1OfReal &knots_u = surface->UKnots(), &knots_v = surface->VKnots();
+  for (const double off : {0.0, 1e-15, -1e-15, 1e-12, -1e-12, 1e-10})
+    for (const double turn : {0.0, 1.0, -2.0}) {
+      const double period = turn * (u1 - u0);
+      const Domain box{knots_u(2) + period + off, knots_u(6) + period - off, knots_v(2) - off, knots_v(4) + off};
+      const TopoDS_Face face = BRepBuilderAPI_MakeFace(surface, box.u0, box.u1, box.v0, box.v1, 1e-7);
+      const Result<FaceBox> found = face_box(face);
+      ASSERT_TRUE(found.ok()) << found.status().message();
+      const Result<FaceSurface> ours = face_surface(surface, found->domain);
+      ASSERT_TRUE(ours.ok()) << ours.status().message();
+      EXPECT_GT(narrowest_patch(ours->surface), 0.1) << off << ' ' << turn;
+      EXPECT_NEAR(ours->surface.domain().v0, knots_v(2), 1e-15);
+    }
+}
+
+TEST(FaceBox, NoRealFaceEndsInSlivers) {
+  const std::vector<std::filesystem::path> files = real_cad_files();
+  if (files.empty()) GTEST_SKIP() << "TESSERA_TEST_DATA is not set";
+  for (const std::filesystem::path& path : files) {
+    const Result<Model> model = read_cad(path);
+    for (std::size_t k = 0; model && k < model->surfaces.size(); ++k)
+      EXPECT_GT(narrowest_patch(std::get<BSplineSurface>(model->surfaces[k].surface)), 1e-5) << path << ", face " << k;
+  }
 }
 
 TEST(FaceSurface, BezierSurfacesKeepTheirPoles) {

@@ -4,6 +4,8 @@
 #include <opencascade/BRepTools_WireExplorer.hxx>
 #include <opencascade/BRep_Tool.hxx>
 #include <opencascade/GeomAdaptor_Surface.hxx>
+#include <opencascade/Geom_BSplineCurve.hxx>
+#include <opencascade/Geom_BSplineSurface.hxx>
 #include <opencascade/Precision.hxx>
 #include <opencascade/TopExp_Explorer.hxx>
 #include <opencascade/TopoDS.hxx>
@@ -30,15 +32,17 @@ double tolerance_of(const TopoDS_Face& face) {
 
 /// One direction of the box.
 struct Side {
-  double from, to;          // of the face
-  double first, last;       // of the surface
-  double period;            // 0: none
-  double length_tolerance;  // of the face, as a parameter
+  double from, to;            // of the face
+  double first, last;         // of the surface
+  double period;              // 0: none
+  double length_tolerance;    // of the face, as a parameter
+  std::vector<double> knots;  // of the surface, where it has any
 
   double tolerance() const { return std::clamp(length_tolerance, 1e-9 * (to - from), 1e-4 * (to - from)); }
   void settle() {
     const double tol = tolerance();
     for (double* const end : {&from, &to}) {
+      *end = settled_on_knot(*end, tol);
       if (std::abs(*end - first) <= tol) *end = first;
       if (std::abs(*end - last) <= tol) *end = last;
     }
@@ -49,7 +53,39 @@ struct Side {
       to = std::min(to, last);
     }
   }
+
+ private:
+  /// The nearest knot, if it is one but for rounding: else a patch as narrow as that would lie between the two.
+  double settled_on_knot(double end, double tol) const {
+    double nearest = end, distance = tol;
+    for (const double knot : knots) {
+      const double turns = period > 0 ? std::round((end - knot) / period) : 0;
+      const double there = knot + turns * period;
+      if (std::abs(end - there) > distance) continue;
+      nearest = there;
+      distance = std::abs(end - there);
+    }
+    return nearest;
+  }
 };
+
+std::vector<double> values(const TColStd_Array1OfReal& array) { return {array.begin(), array.end()}; }
+
+std::vector<double> knots_of(const Adaptor3d_Curve& curve) {
+  return curve.GetType() == GeomAbs_BSplineCurve ? values(curve.BSpline()->Knots()) : std::vector<double>();
+}
+
+std::vector<double> knots_u(const GeomAdaptor_Surface& surface) {
+  if (surface.GetType() == GeomAbs_BSplineSurface) return values(surface.BSpline()->UKnots());
+  if (surface.GetType() == GeomAbs_SurfaceOfExtrusion) return knots_of(*surface.BasisCurve());
+  return {};
+}
+
+std::vector<double> knots_v(const GeomAdaptor_Surface& surface) {
+  if (surface.GetType() == GeomAbs_BSplineSurface) return values(surface.BSpline()->VKnots());
+  if (surface.GetType() == GeomAbs_SurfaceOfRevolution) return knots_of(*surface.BasisCurve());
+  return {};
+}
 
 /// The edges of a wire in their order. Where the wire is broken, those that the walk along it does not reach come last.
 std::vector<TopoDS_Edge> edges_of(const TopoDS_Wire& wire, const TopoDS_Face& face) {
@@ -119,6 +155,8 @@ Result<FaceBox> face_box(const TopoDS_Face& face) {
   if (surface->IsVPeriodic()) v.period = surface->VPeriod();
   u.length_tolerance = adaptor.UResolution(tolerance);
   v.length_tolerance = adaptor.VResolution(tolerance);
+  u.knots = knots_u(adaptor);
+  v.knots = knots_v(adaptor);
   for (Side* const side : {&u, &v}) {
     const bool bounded = std::isfinite(side->to - side->from) && !::Precision::IsInfinite(side->from) &&
                          !::Precision::IsInfinite(side->to);

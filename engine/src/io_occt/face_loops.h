@@ -16,7 +16,7 @@ struct FaceBox {
   Domain domain;
   double tolerance_u = 0, tolerance_v = 0;
 };
-/// Moved to the ends of the surface's own range where they are within the tolerance. Errors: unsupported (unbounded, or
+/// Moved to the surface's own knots and ends where they are within the tolerance. Errors: unsupported (unbounded, or
 /// no extent). May throw Standard_Failure.
 Result<FaceBox> face_box(const TopoDS_Face& face);
 

@@ -78,7 +78,14 @@ Result<SplineLine> fitted(const handle<Geom_Curve>& curve, const Interval& range
 }  // namespace
 
 Interval PoleLine::covered(const Interval& range) const {
-  return {std::max(range.from, knots[static_cast<std::size_t>(degree)]), std::min(range.to, knots[poles.size()])};
+  // An end that is a knot but for the rounding of a period must be that knot: there would be a patch between the two.
+  const double tiny = 1e-12 * (range.to - range.from);
+  const auto settled = [&](double end) {
+    const auto knot = std::lower_bound(knots.begin(), knots.end(), end - tiny);
+    return knot != knots.end() && *knot <= end + tiny ? *knot : end;
+  };
+  return {std::max(settled(range.from), knots[static_cast<std::size_t>(degree)]),
+          std::min(settled(range.to), knots[poles.size()])};
 }
 
 PoleLine unrolled(const PoleCircle& circle, const TColStd_Array1OfReal& flat, const Interval& range) {
