@@ -73,6 +73,10 @@ attempt "$place/bin" --for=peers  # nor the comparisons GoogleTest
 expect 0 "installed libocct-modeling-data-dev"
 grep -qx -- ".* install --no-install-recommends libocct-modeling-data-dev" "$place/calls"
 
+printf 'qemu-user\nlibosd-dev\n' >"$place/missing"
+attempt "$place/bin" --for neon
+expect 0 "installed qemu-user"
+
 printf 'imagemagick\nlibgtest-dev\n' >"$place/missing"
 attempt "$place/bin" --for gallery
 expect 0 "installed imagemagick"

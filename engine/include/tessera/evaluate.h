@@ -95,7 +95,7 @@ struct GridViews {
 /// Evaluates all patches. Outputs may share memory by interleaving but must not overlap otherwise.
 /// Errors: buffer_too_small, invalid_argument (a plan of other precision, or for other patches; a stride of 0),
 /// cancelled. Nothing is written on any error but cancelled. The same bytes for any number of threads, and on
-/// AVX2 and AVX-512; each output alone is what it is together with others.
+/// AVX2, AVX-512 and NEON; each output alone is what it is together with others.
 /// Error bounds for the Bernstein representation, in units of 2^-23 (2^-52 in double) times the largest |V - origin| of
 /// the patch, d the higher degree: positions 2, rational 4; first derivatives 16 d; second ones 16 d^2. For derivatives
 /// of rational patches the largest |w (V - origin)| over the weight at the point takes the place of that size, since
