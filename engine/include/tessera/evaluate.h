@@ -105,7 +105,11 @@ struct GridViews {
 /// in h as well, and d^2 for d. With D the largest second derivative, and for rational patches the size of second
 /// derivatives: the second form 8 (d^2 + d D / h); mean and principal curvatures that over h^2; Gaussian |k1| + |k2|
 /// times the curvatures' bound, and its square; principal directions 2 / (k1 - k2) times the curvatures' bound, and the
-/// normals'. To first order: where the errors of the tangents are small against h.
+/// normals'. To first order: where the errors of the tangents are small against h. Positions in double, which are
+/// absolute, round once more, to 2^-53 of their own size.
+/// In the power representation the bounds of positions and first derivatives are (1 + 2u)^m (1 + 2v)^n times as large,
+/// m and n the degrees, in rational patches the largest weight over that at the point times again: random bicubic
+/// patches lose 34 units, degrees 5 and 7 lose 1,200 and 140,000.
 Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<float>& out, const Execution& execution = {});
 Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<double>& out, const Execution& execution = {});
 
