@@ -29,9 +29,10 @@ endif()
 # tessera_floor(NAME SOURCES... BELOW floors...): the target tessera_NAME, compiled from engine/src/NAME. A floor sees
 # the public headers, its own folder and those below it, all as <folder>/<file>; tests/house checks every #include.
 function(tessera_floor name)
+  get_filename_component(engine ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../engine ABSOLUTE)
   cmake_parse_arguments(FLOOR "" "" "SOURCES;BELOW" ${ARGN})
   add_library(tessera_${name} OBJECT ${FLOOR_SOURCES})
-  target_include_directories(tessera_${name} PRIVATE ${PROJECT_SOURCE_DIR}/engine/include ${PROJECT_SOURCE_DIR}/engine/src)
+  target_include_directories(tessera_${name} PRIVATE ${engine}/include ${engine}/src)
   target_link_libraries(tessera_${name} PRIVATE tessera_compile)
   foreach(below IN LISTS FLOOR_BELOW)
     add_dependencies(tessera_${name} tessera_${below})

@@ -10,10 +10,13 @@
 #   libpng            libpng-dev 1.6              the command line: pictures
 #   GoogleTest        libgtest-dev 1.12           tests (and libgmock-dev: its matchers)
 #   Google Benchmark  libbenchmark-dev 1.7        benchmarks
+#   a cross compiler  g++-aarch64-linux-gnu 12.2  the test of the NEON kernels, with qemu-user 7.2; skipped without
 #   ImageMagick       imagemagick 6.9             tools/gallery.sh alone: pictures on one sheet
 # What Tessera is compared with, where TESSERA_BUILD_PEERS is ON (tools/peers.sh installs it). bench/peers alone looks for
 # these, and builds what it finds:
 #   OpenCASCADE       libocct-modeling-data-dev 7.6
+#   OpenSubdiv        libosd-dev 3.5
+#   SISL              libsisl-dev 4.6             AGPL: linked by one program of its own, which links nothing of Tessera
 
 find_package(TBB 2021 REQUIRED)
 find_package(xsimd 8 REQUIRED)

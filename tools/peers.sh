@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Compares Tessera with other programs, side by side in one process. Installs first what is missing.
+# Compares Tessera with other programs, side by side in one run. Installs first what is missing.
 set -euo pipefail
 
 usage() {
@@ -8,7 +8,7 @@ tools/peers.sh [NAME...]
 
 Installs the peers' Debian packages (tools/setup.sh --for peers), builds the library and the comparisons in build/peers,
 and runs those named, or all. Each checks that both programs agree on what they made before it prints their rates. A
-comparison whose peer is not installed is not built, and the script says so.
+comparison whose peer is not installed is not built or leaves it out, and says so.
 The names:
 TEXT
   for row in "${comparisons[@]}"; do
@@ -23,6 +23,7 @@ fail() {
 
 # NAME|what it compares. Each is the source bench/peers/NAME.cpp.
 comparisons=(
+  "grid_evaluation|a bicubic B-spline surface at a grid: OpenSubdiv (libosd-dev), OpenCASCADE, SISL (libsisl-dev)"
   "occt_extraction|Bezier extraction of a 200 x 200 bicubic B-spline surface: OpenCASCADE (libocct-modeling-data-dev)"
 )
 

@@ -106,10 +106,10 @@ int run() {
     return 1;
   }
 
-  const auto with_occt = [&] { occt_patches(occt, patches); };
-  const auto to_patches = [&] { (void)test::value_of(to_bezier(surface)); };
+  const auto with_occt = [&] { return seconds_of([&] { occt_patches(occt, patches); }); };
+  const auto to_patches = [&] { return seconds_of([&] { (void)test::value_of(to_bezier(surface)); }); };
   const auto to_blocks = [&] {
-    (void)test::value_of(make_patch_set(test::value_of(to_bezier(surface))));
+    return seconds_of([&] { (void)test::value_of(make_patch_set(test::value_of(to_bezier(surface)))); });
   };
   const auto seconds = best_interleaved(rounds, {with_occt, to_patches, to_blocks});
   const char* names[] = {"OpenCASCADE, to patches", "Tessera, to patches", "Tessera, to blocks"};

@@ -7,10 +7,11 @@
 namespace tessera::house {
 namespace {
 
-constexpr std::array<IsaUnit, 3> units{{
+constexpr std::array<IsaUnit, 4> units{{
     {"sse2", "sse2", "sse2"},
     {"avx2_fma", "avx2", "avx|avx2|fma3|fma5"},
     {"avx512", "avx512", "avx512[a-z]*"},
+    {"neon64", "neon64", "neon64"},
 }};
 
 // Functions that the linker sees: global and weak ones, and indirect ones. Data holds no instructions.

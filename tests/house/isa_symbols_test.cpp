@@ -43,6 +43,7 @@ TEST(IsaSymbols, ForeignFunctionsAreFound) {
 TEST(IsaSymbols, UnitsAreKnownByTheirObjects) {
   EXPECT_EQ(isa_unit_of("src/kernel/isa_avx2_fma.cpp.o")->isa, "avx2");
   EXPECT_EQ(isa_unit_of("src/kernel/isa_sse2.cpp.o")->isa, "sse2");
+  EXPECT_EQ(isa_unit_of("src/kernel/isa_neon64.cpp.o")->isa, "neon64");
   EXPECT_FALSE(isa_unit_of("src/kernel/select_isa.cpp.o"));
 }
 

@@ -24,6 +24,7 @@ cat >"$place/bin/apt-get" <<TEXT
 echo "\$*" >>"$place/calls"
 [[ \$DEBIAN_FRONTEND == noninteractive ]] || exit 1
 [[ -e "$place/no_network" ]] && exit 100
+[[ -e "$place/unknown" && " \$* " == *" \$(cat "$place/unknown") "* ]] && exit 100
 for word; do sed -i "/^\$word\$/d" "$place/missing"; done
 TEXT
 printf '#!%s\nexec "$@"\n' "$bash" >"$place/bin/sudo"
@@ -72,6 +73,17 @@ printf 'libocct-modeling-data-dev\nlibgtest-dev\n' >"$place/missing"
 attempt "$place/bin" --for=peers  # nor the comparisons GoogleTest
 expect 0 "installed libocct-modeling-data-dev"
 grep -qx -- ".* install --no-install-recommends libocct-modeling-data-dev" "$place/calls"
+
+printf 'libosd-dev\nlibsisl-dev\n' >"$place/missing"
+echo libosd-dev >"$place/unknown"
+attempt "$place/bin" --for peers  # a peer that there is not keeps no other out
+expect 1 "could not install libosd-dev:"
+grep -qx libsisl-dev "$place/missing" && { echo "libsisl-dev was not installed" >&2; exit 1; }
+rm "$place/unknown"
+
+printf 'qemu-user\nlibosd-dev\n' >"$place/missing"
+attempt "$place/bin" --for neon
+expect 0 "installed qemu-user"
 
 printf 'imagemagick\nlibgtest-dev\n' >"$place/missing"
 attempt "$place/bin" --for gallery

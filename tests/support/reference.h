@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "tessera/bezier_patch.h"
 
@@ -48,27 +49,42 @@ inline Real reference_bernstein(int n, int i, Real t, int order = 0) {
          (term(Real(i) * (i - 1), i - 2, j) - 2 * term(Real(i) * j, i - 1, j - 1) + term(Real(j) * (j - 1), i, j - 2));
 }
 
+/// The basis polynomials of one parameter, `[order][i]`, orders 0 to 2.
+using ReferenceBasis = std::array<std::vector<Real>, 3>;
+inline ReferenceBasis reference_basis(int degree, Real t) {
+  ReferenceBasis basis;
+  for (int order = 0; order <= 2; ++order)
+    for (int i = 0; i <= degree; ++i)
+      basis[static_cast<std::size_t>(order)].push_back(reference_bernstein(degree, i, t, order));
+  return basis;
+}
+
 /// Derivative of order (a, b) of the numerator, and of the denominator in `weight`.
-inline RealVec3 reference_sum(const BezierPatch& patch, Real u, Real v, int a, int b, Real& weight) {
+inline RealVec3 reference_sum(const BezierPatch& patch, const ReferenceBasis& u, const ReferenceBasis& v, int a, int b,
+                              Real& weight) {
   RealVec3 sum;
   weight = 0;
   for (int i = 0; i <= patch.degree_u(); ++i)
     for (int j = 0; j <= patch.degree_v(); ++j) {
-      const Real factor = reference_bernstein(patch.degree_u(), i, u, a) *
-                          reference_bernstein(patch.degree_v(), j, v, b) * Real(patch.weight(i, j));
+      const Real factor = u[static_cast<std::size_t>(a)][static_cast<std::size_t>(i)] *
+                          v[static_cast<std::size_t>(b)][static_cast<std::size_t>(j)] * Real(patch.weight(i, j));
       const Vec3& p = patch.point(i, j);
       sum = sum + factor * RealVec3{p.x, p.y, p.z};
       weight += factor;
     }
   return sum;
 }
+inline RealVec3 reference_sum(const BezierPatch& patch, Real u, Real v, int a, int b, Real& weight) {
+  return reference_sum(patch, reference_basis(patch.degree_u(), u), reference_basis(patch.degree_v(), v), a, b, weight);
+}
 
 inline RealJet reference_jet(const BezierPatch& patch, Real u, Real v) {
+  const ReferenceBasis f = reference_basis(patch.degree_u(), u), g = reference_basis(patch.degree_v(), v);
   Real w, wu, wv, wuu, wuv, wvv;
-  const RealVec3 a = reference_sum(patch, u, v, 0, 0, w);
-  const RealVec3 au = reference_sum(patch, u, v, 1, 0, wu), av = reference_sum(patch, u, v, 0, 1, wv);
-  const RealVec3 auu = reference_sum(patch, u, v, 2, 0, wuu), avv = reference_sum(patch, u, v, 0, 2, wvv);
-  const RealVec3 auv = reference_sum(patch, u, v, 1, 1, wuv);
+  const RealVec3 a = reference_sum(patch, f, g, 0, 0, w);
+  const RealVec3 au = reference_sum(patch, f, g, 1, 0, wu), av = reference_sum(patch, f, g, 0, 1, wv);
+  const RealVec3 auu = reference_sum(patch, f, g, 2, 0, wuu), avv = reference_sum(patch, f, g, 0, 2, wvv);
+  const RealVec3 auv = reference_sum(patch, f, g, 1, 1, wuv);
   if (!patch.is_rational()) return {a, au, av, auu, auv, avv};
   RealJet jet;
   jet.position = (1 / w) * a;

@@ -95,7 +95,7 @@ struct GridViews {
 /// Evaluates all patches. Outputs may share memory by interleaving but must not overlap otherwise.
 /// Errors: buffer_too_small, invalid_argument (a plan of other precision, or for other patches; a stride of 0),
 /// cancelled. Nothing is written on any error but cancelled. The same bytes for any number of threads, and on
-/// AVX2 and AVX-512; each output alone is what it is together with others.
+/// AVX2, AVX-512 and NEON; each output alone is what it is together with others.
 /// Error bounds for the Bernstein representation, in units of 2^-23 (2^-52 in double) times the largest |V - origin| of
 /// the patch, d the higher degree: positions 2, rational 4; first derivatives 16 d; second ones 16 d^2. For derivatives
 /// of rational patches the largest |w (V - origin)| over the weight at the point takes the place of that size, since
@@ -105,7 +105,11 @@ struct GridViews {
 /// in h as well, and d^2 for d. With D the largest second derivative, and for rational patches the size of second
 /// derivatives: the second form 8 (d^2 + d D / h); mean and principal curvatures that over h^2; Gaussian |k1| + |k2|
 /// times the curvatures' bound, and its square; principal directions 2 / (k1 - k2) times the curvatures' bound, and the
-/// normals'. To first order: where the errors of the tangents are small against h.
+/// normals'. To first order: where the errors of the tangents are small against h. Positions in double, which are
+/// absolute, round once more, to 2^-53 of their own size.
+/// In the power representation the bounds of positions and first derivatives are (1 + 2u)^m (1 + 2v)^n times as large,
+/// m and n the degrees, in rational patches the largest weight over that at the point times again: random bicubic
+/// patches lose 34 units, degrees 5 and 7 lose 1,200 and 140,000.
 Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<float>& out, const Execution& execution = {});
 Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<double>& out, const Execution& execution = {});
 

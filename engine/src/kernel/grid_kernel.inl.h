@@ -199,6 +199,6 @@ Isa evaluate_grid(const GridJob<typename L::Scalar>& job) {
         break;
     }
   }
-  if (job.streaming) _mm_sfence();
+  if (job.streaming) L::fence();
   return this_isa;
 }

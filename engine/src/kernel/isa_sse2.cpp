@@ -28,6 +28,7 @@ struct Lanes<float> {
   static Batch load(const float* p) { return Batch::load_aligned(p); }
   static void store(float* p, Batch a) { a.store_aligned(p); }
   static void stream(float* p, Batch a) { _mm_stream_ps(p, a); }
+  static void fence() { _mm_sfence(); }  // after the last stream
   static Batch fma(Batch a, Batch b, Batch c) { return a * b + c; }
   static Batch fms(Batch a, Batch b, Batch c) { return a * b - c; }
   static Batch fnma(Batch a, Batch b, Batch c) { return c - a * b; }
@@ -75,6 +76,7 @@ struct Lanes<double> {
   static Batch load(const double* p) { return Batch::load_aligned(p); }
   static void store(double* p, Batch a) { a.store_aligned(p); }
   static void stream(double* p, Batch a) { _mm_stream_pd(p, a); }
+  static void fence() { _mm_sfence(); }  // after the last stream
   static Batch fma(Batch a, Batch b, Batch c) { return a * b + c; }
   static Batch fms(Batch a, Batch b, Batch c) { return a * b - c; }
   static Batch fnma(Batch a, Batch b, Batch c) { return c - a * b; }

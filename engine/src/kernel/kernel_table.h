@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "tessera/isa.h"
 
@@ -121,9 +122,14 @@ struct KernelTable {
   void (*fill)(void* memory, std::size_t bytes, bool streaming);
 };
 
+// Each is defined in a build for its processor alone.
 const KernelTable& sse2_kernels();
 const KernelTable& avx2_kernels();
 const KernelTable& avx512_kernels();
+const KernelTable& neon64_kernels();
+
+/// The kernels of every ISA that processor and operating system support, slowest first; at least one.
+std::span<const KernelTable* const> machine_kernels();
 
 /// The kernels of an ISA. Call it only for one that available_isas() lists.
 const KernelTable& kernels(Isa isa);

@@ -46,7 +46,7 @@ void fill_memory(void* memory, std::size_t bytes, bool streaming) {
   const std::size_t count = bytes / sizeof(typename L::Scalar);
   if (streaming) {
     for (std::size_t k = 0; k < count; k += L::width) L::stream(out + k, value);
-    _mm_sfence();
+    L::fence();
   } else {
     for (std::size_t k = 0; k < count; k += L::width) L::store(out + k, value);
   }

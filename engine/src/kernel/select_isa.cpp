@@ -1,4 +1,4 @@
-// Which instruction sets this machine has, and which one a call uses.
+// Which instruction set a call uses, of those that this machine has.
 
 #include <array>
 #include <cstdlib>
@@ -10,22 +10,16 @@
 namespace tessera {
 namespace {
 
+constexpr std::array<Isa, 4> all_isas{Isa::sse2, Isa::avx2, Isa::avx512, Isa::neon64};
+
 struct Available {
-  std::array<Isa, 3> isas{};
+  std::array<Isa, all_isas.size()> isas{};
   std::size_t count = 0;
 };
 
-/// The compiler's own test asks the processor and the operating system (XGETBV); xsimd's asks the processor alone.
-Available detect() {
-  __builtin_cpu_init();
+Available list_available() {
   Available found;
-  found.isas[found.count++] = Isa::sse2;
-  const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  if (avx2) found.isas[found.count++] = Isa::avx2;
-  if (avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
-      __builtin_cpu_supports("avx512vl")) {
-    found.isas[found.count++] = Isa::avx512;
-  }
+  for (const kernel::KernelTable* table : kernel::machine_kernels()) found.isas[found.count++] = table->isa;
   return found;
 }
 
@@ -45,19 +39,20 @@ std::string_view name(Isa isa) {
     case Isa::sse2: return "sse2";
     case Isa::avx2: return "avx2";
     case Isa::avx512: return "avx512";
+    case Isa::neon64: return "neon64";
   }
   return "unknown";
 }
 
 std::span<const Isa> available_isas() {
-  static const Available found = detect();
+  static const Available found = list_available();
   return {found.isas.data(), found.count};
 }
 
 Result<Isa> parse_isa(std::string_view text) {
   for (const Isa isa : available_isas())
     if (text == name(isa)) return isa;
-  for (const Isa isa : {Isa::sse2, Isa::avx2, Isa::avx512}) {
+  for (const Isa isa : all_isas) {
     if (text == name(isa))
       return Status(StatusCode::isa_unavailable,
                     "this machine lacks the instruction set \"" + std::string(text) + "\"; it has " + available_names());
@@ -77,12 +72,9 @@ Result<Isa> default_isa() {
 namespace kernel {
 
 const KernelTable& kernels(Isa isa) {
-  switch (isa) {
-    case Isa::avx512: return avx512_kernels();
-    case Isa::avx2: return avx2_kernels();
-    case Isa::sse2: break;
-  }
-  return sse2_kernels();
+  for (const KernelTable* table : machine_kernels())
+    if (table->isa == isa) return *table;
+  return *machine_kernels().front();
 }
 
 }  // namespace kernel

@@ -1,0 +1,14 @@
+#pragma once
+// The grid by Tessera, which the peers are compared with.
+
+#include "peers/grid_task.h"
+#include "tessera/bspline_surface.h"
+
+namespace tessera::bench {
+
+BSplineSurface surface_of(const GridTask& task);
+
+/// Float in blocks, float interleaved, double in blocks, double interleaved.
+std::vector<GridRun> tessera_runs(const GridTask& task);
+
+}  // namespace tessera::bench

@@ -1,0 +1,35 @@
+// Which of the instruction sets of x86-64 this machine has.
+
+#include <array>
+
+#include "kernel/kernel_table.h"
+
+namespace tessera::kernel {
+namespace {
+
+struct Machine {
+  std::array<const KernelTable*, 3> tables{};
+  std::size_t count = 0;
+};
+
+/// The compiler's own test asks the processor and the operating system (XGETBV); xsimd's asks the processor alone.
+Machine detect() {
+  __builtin_cpu_init();
+  Machine found;
+  found.tables[found.count++] = &sse2_kernels();
+  const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  if (avx2) found.tables[found.count++] = &avx2_kernels();
+  if (avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+      __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl"))
+    found.tables[found.count++] = &avx512_kernels();
+  return found;
+}
+
+}  // namespace
+
+std::span<const KernelTable* const> machine_kernels() {
+  static const Machine found = detect();
+  return {found.tables.data(), found.count};
+}
+
+}  // namespace tessera::kernel
