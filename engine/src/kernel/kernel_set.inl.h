@@ -2,6 +2,7 @@
 
 inline constexpr int max_order = 16;  // coefficients of the highest degree
 
+#include "kernel/transpose.inl.h"
 #include "kernel/sample_kernel.inl.h"
 #include "kernel/normal_kernel.inl.h"
 #include "kernel/curvature_kernel.inl.h"
