@@ -19,13 +19,7 @@ struct Place {
 
 std::vector<Place> places(const Division& division) {
   std::vector<Place> at;
-  for (int iu = 1; iu < division.inner.u; ++iu)
-    for (int iv = 1; iv < division.inner.v; ++iv)
-      at.push_back({double(iu) / division.inner.u, double(iv) / division.inner.v});
-  for (int k = 0; k < division.border[0]; ++k) at.push_back({double(k) / division.border[0], 0});
-  for (int k = 0; k < division.border[1]; ++k) at.push_back({1, double(k) / division.border[1]});
-  for (int k = division.border[2]; k > 0; --k) at.push_back({double(k) / division.border[2], 1});
-  for (int k = division.border[3]; k > 0; --k) at.push_back({0, double(k) / division.border[3]});
+  division.for_parameters([&](double u, double v) { at.push_back({u, v}); });
   return at;
 }
 

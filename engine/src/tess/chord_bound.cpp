@@ -155,12 +155,12 @@ double ChordBound::distance(Rates rates) const {
   const Split split = splits_[rates.u % 2 == 0][rates.v % 2 == 0];
   double most = 0;
   for (int k = split.first; k < split.first + split.count; ++k)
-    most = std::max(most, pieces_[static_cast<std::size_t>(k)].chord(1.0 / rates.u, 1.0 / rates.v));
+    most = std::max(most, pieces_[static_cast<std::size_t>(k)].chord(rates));
   return most;
 }
 
 std::optional<Rates> ChordBound::with_rate(double tolerance, int fixed, bool fixed_u, int most) const {
-  const double h = 1.0 / fixed;
+  const double h = 1.0 / fixed + 0x1p-24;
   std::optional<Rates> best;
   for (const bool even : {false, true}) {
     const bool fixed_even = fixed % 2 == 0;
@@ -175,7 +175,7 @@ std::optional<Rates> ChordBound::with_rate(double tolerance, int fixed, bool fix
     int rate = static_cast<int>(std::ceil(needed));
     if ((rate % 2 == 0) != even) ++rate;
     const auto rates = [&] { return fixed_u ? Rates{fixed, rate} : Rates{rate, fixed}; };
-    if (!(distance(rates()) <= tolerance)) rate += 2;  // the root was rounded
+    if (!(distance(rates()) <= tolerance)) rate += 2;  // the root was rounded, or the parameters are
     if (rate <= most && distance(rates()) <= tolerance && (!best || rate < (fixed_u ? best->v : best->u))) best = rates();
   }
   return best;

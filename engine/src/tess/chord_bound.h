@@ -26,6 +26,8 @@ struct SecondDerivatives {
 
   /// The largest distance of a triangle with a parameter box h x k.
   double chord(double h, double k) const { return (h * h * uu + 2 * h * k * uv + k * k * vv) / 8; }
+  /// By rates; a float parameter i / rate lies up to 2^-25 beside it.
+  double chord(Rates rates) const { return chord(1.0 / rates.u + 0x1p-24, 1.0 / rates.v + 0x1p-24); }
 };
 
 /// Bounds for the whole patch, its halves and its quarters. Those of a half hold only for triangles that lie in one half:

@@ -19,6 +19,25 @@ constexpr Edge edge_of(Side side) {
   return edges[static_cast<int>(side)];
 }
 
+/// A border's packed float control points, relative to the set's origin, homogeneous if there are 4 components; they run
+/// with u or v. Patches scale their weights by powers of two, each its own: here they are scaled so that the border's
+/// largest weight lies in [1/2, 1). The set must have float Bernstein blocks.
+class PackedBorder {
+ public:
+  PackedBorder(const PatchSet::Impl& set, std::size_t patch, Side side);
+  int count() const { return count_; }
+  int components() const { return components_; }
+  float value(int point, int component) const {
+    return scale_ * first_[point * step_ + component * std::ptrdiff_t{PatchSet::lanes}];
+  }
+
+ private:
+  float scale_ = 1;
+  const float* first_;
+  std::ptrdiff_t step_;
+  int count_, components_;
+};
+
 /// The edges of a set: borders whose packed float control points and weights are the same bits, in either direction, are one edge. It
 /// is these floats that get evaluated, so equal bits make equal curves. Borders of different degree are different edges.
 /// Collapsed borders belong to none.

@@ -36,6 +36,9 @@ struct Division {
   std::size_t vertex_count() const { return empty ? 0 : inner_count() + ring_count(); }
   std::size_t triangle_count() const;
 
+  /// visit(u, v) for each vertex, in order.
+  template <class Visit>
+  void for_parameters(Visit visit) const;
   /// Writes the corners of all triangles, counter-clockwise seen from where r_u x r_v points; vertices are counted from
   /// `first`. Returns the end of what it wrote.
   std::uint32_t* write_triangles(std::uint32_t first, std::uint32_t* indices) const;
@@ -43,5 +46,15 @@ struct Division {
  private:
   bool has_inner_points() const { return inner.u > 1; }
 };
+
+template <class Visit>
+void Division::for_parameters(Visit visit) const {
+  for (int iu = 1; iu < inner.u; ++iu)
+    for (int iv = 1; iv < inner.v; ++iv) visit(double(iu) / inner.u, double(iv) / inner.v);
+  for (int k = 0; k < border[0]; ++k) visit(double(k) / border[0], 0.0);
+  for (int k = 0; k < border[1]; ++k) visit(1.0, double(k) / border[1]);
+  for (int k = border[2]; k > 0; --k) visit(double(k) / border[2], 1.0);
+  for (int k = border[3]; k > 0; --k) visit(0.0, double(k) / border[3]);
+}
 
 }  // namespace tessera

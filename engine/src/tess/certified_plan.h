@@ -1,0 +1,48 @@
+#pragma once
+// How each patch of a set is divided so that a tolerance is kept and neighbours meet.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "block/patch_set_impl.h"
+#include "tess/stitched_patch.h"
+#include "tessera/certified_tessellation.h"
+
+namespace tessera {
+
+/// The largest distance between a float vertex, relative to the set's origin, and the surface's point: the rounding of the
+/// packed coefficients, of the weights, and of the sums. With n = degree_u + degree_v, at most n + 6 roundings of 2^-24 of the
+/// largest coefficient each way of summation (Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., sec. 3.1),
+/// for rational patches of numerator and denominator, over the smallest weight.
+double vertex_rounding(const BezierPatch& patch, const Vec3& origin);
+
+class CertifiedPlan {
+ public:
+  /// Errors: those of CertifiedTessellation::make.
+  static Result<CertifiedPlan> make(const PatchSet::Impl& set, const CertifiedOptions& options,
+                                    const Execution& execution);
+
+  std::size_t patch_count() const { return divisions_.size(); }
+  const Division& division(std::size_t patch) const { return divisions_[patch]; }
+  std::span<const PatchShape> shapes() const { return shapes_; }
+  std::size_t first_vertex(std::size_t patch) const { return first_vertex_[patch]; }
+  std::size_t first_triangle(std::size_t patch) const { return first_triangle_[patch]; }
+  MeshCapacity capacity() const { return {first_vertex_.back(), first_triangle_.back()}; }
+  std::span<const float> bounds() const { return bounds_; }
+
+ private:
+  CertifiedPlan() = default;
+  /// The rates that each patch needs for itself, and its bound. Errors: invalid_argument (index = the patch).
+  Status choose_rates(const PatchSet::Impl& set, const CertifiedOptions& options, const Execution& execution);
+  void divide(const PatchSet::Impl& set);
+  Status count(const CertifiedOptions& options);
+
+  std::vector<PatchShape> shapes_;
+  std::vector<Rates> rates_;
+  std::vector<Division> divisions_;
+  std::vector<std::size_t> first_vertex_, first_triangle_;  ///< of each patch, and the number of all
+  std::vector<float> bounds_;
+};
+
+}  // namespace tessera
