@@ -33,13 +33,8 @@ float rounded_up(double x) {
 double vertex_rounding(const BezierPatch& patch, const Vec3& origin) {
   double size = 0;
   for (const Vec3& p : patch.points()) size = std::max(size, max_abs(p - origin));
-  double spread = 1;
-  if (patch.is_rational()) {
-    const auto [low, high] = std::minmax_element(patch.weights().begin(), patch.weights().end());
-    spread = 2 * (*high / *low);
-  }
-  const double components = std::numbers::sqrt3;
-  return components * (patch.degree_u() + patch.degree_v() + 6) * 0x1p-24 * spread * size;
+  const double roundings = (patch.is_rational() ? 2 : 1) * (patch.degree_u() + patch.degree_v() + 6.0);
+  return std::numbers::sqrt3 * roundings * 0x1p-24 * size;
 }
 
 Status CertifiedPlan::choose_rates(const PatchSet::Impl& set, const CertifiedOptions& options,

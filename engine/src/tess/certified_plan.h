@@ -11,10 +11,10 @@
 
 namespace tessera {
 
-/// The largest distance between a float vertex, relative to the set's origin, and the surface's point: the rounding of the
-/// packed coefficients, of the weights, and of the sums. With n = degree_u + degree_v, at most n + 6 roundings of 2^-24 of the
-/// largest coefficient each way of summation (Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., sec. 3.1),
-/// for rational patches of numerator and denominator, over the smallest weight.
+/// The largest distance between a float vertex, relative to the set's origin, and the surface's point. Each term of a sum of
+/// B_i B_j V_ij, or of B_i B_j w_ij V_ij and of B_i B_j w_ij, has gone through at most m + n + 6 roundings: of the packed
+/// coefficient, of the weights, and of the sums (Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., sec. 3.1).
+/// The terms' sizes add up to at most the largest |V|, and so they do for rational patches, over the sum of weights.
 double vertex_rounding(const BezierPatch& patch, const Vec3& origin);
 
 class CertifiedPlan {
