@@ -131,6 +131,28 @@ TEST(CertifiedTessellation, TheSameBytesForAnyNumberOfThreads) {
   }
 }
 
+TEST(CertifiedTessellation, ABudgetGivesTheSmallestTolerance) {
+  const PatchSet set = set_of(wavy_field(6, 6));
+  for (const std::uint64_t budget : {72u, 100u, 1000u, 50000u}) {
+    const CertifiedTessellation plan = good(CertifiedTessellation::make(set, {.most_triangles = budget, .smallest = true}));
+    EXPECT_LE(plan.capacity().triangles, budget);
+    const auto finer = CertifiedTessellation::make(set, {.tolerance = plan.bound() / 1.05, .most_triangles = budget});
+    EXPECT_TRUE(budget <= 100 || !finer.ok()) << budget;
+  }
+  const auto few = CertifiedTessellation::make(set, {.most_triangles = 71, .smallest = true});
+  ASSERT_FALSE(few.ok());
+  EXPECT_NE(few.status().message().find("takes 72 triangles"), std::string::npos) << few.status().message();
+}
+
+TEST(CertifiedTessellation, ARelativeToleranceIsOfTheSize) {
+  const PatchSet small = set_of(closed_body()), large = set_of(placed(closed_body(), 0x1p20, {}));
+  for (const double relative : {0.1, 1e-3}) {
+    const Mesh a = mesh_of(small, good(CertifiedTessellation::make(small, {.tolerance = relative, .relative = true})));
+    const Mesh b = mesh_of(large, good(CertifiedTessellation::make(large, {.tolerance = relative, .relative = true})));
+    EXPECT_EQ(a.indices, b.indices);
+  }
+}
+
 TEST(CertifiedTessellation, RunsAgainAfterAnEdit) {
   PatchSet set = set_of(closed_body());
   const CertifiedTessellation plan = plan_of(set, 0.01);

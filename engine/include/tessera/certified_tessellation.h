@@ -18,8 +18,12 @@ struct CertifiedOptions {
   /// The largest distance between surfaces and mesh, in the model's lengths, above 0: every point of either lies within
   /// it of the other.
   double tolerance = 0;
+  /// The tolerance is a share of the size of the set's box instead, its diagonal.
+  bool relative = false;
   /// More triangles than this are refused.
   std::uint64_t most_triangles = std::uint64_t{1} << 30;
+  /// The tolerance is not given but found: the smallest, within 1 percent, for which most_triangles are enough.
+  bool smallest = false;
   std::optional<Isa> isa = {};
 };
 
@@ -36,7 +40,7 @@ struct CertifiedOptions {
 class CertifiedTessellation {
  public:
   /// Errors: invalid_argument (a tolerance that is not above 0; one that a patch's rounding or the fit error exceeds
-  /// already; more triangles or vertices than allowed: the message says how many), unsupported (the set has no float
+  /// already; more triangles or vertices than allowed: the message says how many; fewer than one cell a patch takes), unsupported (the set has no float
   /// Bernstein blocks), isa_unavailable, cancelled.
   static Result<CertifiedTessellation> make(const PatchSet& set, const CertifiedOptions& options,
                                             const Execution& execution = {});
@@ -48,6 +52,8 @@ class CertifiedTessellation {
   /// What the mesh is proven to keep: the largest of bounds(). At most the tolerance. Of the revision that the plan was
   /// made for.
   double bound() const;
+  /// Whether that is proven; false where the set's fit error is only sampled.
+  bool certified() const;
   /// The same of each patch.
   std::span<const float> bounds() const;
   MeshCapacity capacity() const;  ///< exact

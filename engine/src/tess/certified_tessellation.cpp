@@ -17,7 +17,11 @@ constexpr std::size_t patches_a_piece = 16;
 
 class CertifiedTessellation::Impl {
  public:
-  Impl(const PatchSet& set, CertifiedPlan plan) : plan_(std::move(plan)), origin_(set.origin()) {
+  Impl(const PatchSet& set, CertifiedPlan plan, std::span<const PatchShape> shapes)
+      : plan_(std::move(plan)),
+        shapes_(shapes.begin(), shapes.end()),
+        origin_(set.origin()),
+        certified_(set.fit_error().certified) {
     for (std::size_t k = 0; k < plan_.patch_count(); ++k)
       for (const Side side : all_sides) {
         const BezierPatch& patch = set.patch(k);
@@ -29,11 +33,12 @@ class CertifiedTessellation::Impl {
 
   const CertifiedPlan& plan() const { return plan_; }
   double bound() const { return bound_; }
+  bool certified() const { return certified_; }
   Mesh allocate() const { return empty_mesh(plan_.capacity(), origin_); }
 
   Status run(const PatchSet& set, const MeshViews& out, const Execution& execution) const {
     if (Status status = check_views(out, plan_.capacity()); !status.ok()) return status;
-    if (Status status = check_shapes(set, plan_.shapes()); !status.ok()) return status;
+    if (Status status = check_shapes(set, shapes_); !status.ok()) return status;
     return parallel_for(plan_.patch_count(), patches_a_piece, execution, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) write_patch(set, k, out);
     });
@@ -71,7 +76,9 @@ class CertifiedTessellation::Impl {
   }
 
   CertifiedPlan plan_;
+  std::vector<PatchShape> shapes_;
   Vec3 origin_;
+  bool certified_;
   BorderWeights weights_;
   float bound_ = 0;
 };
@@ -81,9 +88,17 @@ Result<CertifiedTessellation> CertifiedTessellation::make(const PatchSet& set, c
   return guarded([&]() -> Result<CertifiedTessellation> {
     if (!set.blocks().float_bernstein)
       return Status(StatusCode::unsupported, "a tessellation needs float Bernstein blocks, the set has none");
-    Result<CertifiedPlan> plan = CertifiedPlan::make(set.impl(), options, execution);
+    Result<CertifiedPlanner> planner = CertifiedPlanner::make(set.impl(), execution);
+    if (!planner) return planner.status();
+    double tolerance = options.tolerance * (options.relative ? set.box().diagonal() : 1);
+    if (options.smallest) {
+      const Result<double> found = planner->smallest_tolerance(options.most_triangles, execution);
+      if (!found) return found.status();
+      tolerance = *found;
+    }
+    Result<CertifiedPlan> plan = planner->plan(tolerance, options.most_triangles, execution);
     if (!plan) return plan.status();
-    return CertifiedTessellation(std::make_unique<Impl>(set, std::move(*plan)));
+    return CertifiedTessellation(std::make_unique<Impl>(set, std::move(*plan), planner->shapes()));
   });
 }
 
@@ -93,6 +108,7 @@ CertifiedTessellation& CertifiedTessellation::operator=(CertifiedTessellation&&)
 CertifiedTessellation::~CertifiedTessellation() = default;
 
 double CertifiedTessellation::bound() const { return impl_->bound(); }
+bool CertifiedTessellation::certified() const { return impl_->certified(); }
 std::span<const float> CertifiedTessellation::bounds() const { return impl_->plan().bounds(); }
 MeshCapacity CertifiedTessellation::capacity() const { return impl_->plan().capacity(); }
 

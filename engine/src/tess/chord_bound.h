@@ -36,6 +36,7 @@ class ChordBound {
  public:
   /// Exact but for rounding, which is added: a proven bound. Infinite where it is beyond double.
   explicit ChordBound(const BezierPatch& patch);
+  ChordBound() = default;  ///< of a plane
 
   /// The largest distance between the patch and a mesh of it, each of whose triangles has a parameter box of at most
   /// 1 / rates.u x 1 / rates.v, and where a rate is even none straddles the middle of that parameter.
