@@ -101,6 +101,39 @@ TEST(MeshCheck, DegenerateTrianglesAndTheirEdges) {
   EXPECT_TRUE(report.closed());
 }
 
+/// A square of two triangles, beside it one of three whose border has a vertex more.
+TEST(MeshCheck, TJunctions) {
+  Mesh mesh;
+  mesh.positions = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 2, 0, 0, 2, 1, 0, 1, 0.25f, 0};
+  mesh.indices = {0, 1, 2, 0, 2, 3, 1, 4, 6, 6, 4, 5, 6, 5, 2};
+  EXPECT_EQ(report_of(mesh).t_junctions, 1u);
+  EXPECT_EQ(report_of(mesh).open_edges, 9u);
+  mesh.positions[18] = 1.001f;  // a crack, seen as open edges
+  EXPECT_EQ(report_of(mesh).t_junctions, 0u);
+  mesh.positions = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+  mesh.indices = {0, 1, 2, 0, 2, 3};
+  EXPECT_EQ(report_of(mesh).t_junctions, 0u);
+}
+
+TEST(MeshCheck, TJunctionsAmongManyEdges) {
+  // Separate triangles in a row along x; each has a corner in the middle of the next one's long edge.
+  Mesh mesh;
+  for (std::uint32_t k = 0; k < 2000; ++k) {
+    const float x = static_cast<float>(k);
+    mesh.positions.insert(mesh.positions.end(), {x, -1, 0, x + 1, 0, 0, x, 1, 0});
+    mesh.indices.insert(mesh.indices.end(), {3 * k, 3 * k + 1, 3 * k + 2});
+  }
+  EXPECT_EQ(report_of(mesh).t_junctions, 1999u);
+}
+
+TEST(MeshCheck, FlippedTriangles) {
+  Mesh mesh = tetrahedron();
+  mesh.normals = {-1, -1, -1, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  EXPECT_EQ(report_of(mesh).flipped_triangles, 0u);
+  std::swap(mesh.indices[0], mesh.indices[1]);
+  EXPECT_EQ(report_of(mesh).flipped_triangles, 1u);
+}
+
 TEST(MeshCheck, TinyTrianglesAreNotDegenerate) {
   Mesh mesh;
   mesh.positions = {1, 1, 1, 1 + 0x1p-23f, 1, 1, 1, 1 + 0x1p-23f, 1};

@@ -48,6 +48,8 @@ struct MeshReport {
   std::size_t open_edges = 0;            ///< edges of one triangle
   std::size_t non_manifold_edges = 0;    ///< edges of three triangles or more
   std::size_t inconsistent_edges = 0;    ///< edges whose two triangles run along it the same way
+  std::size_t t_junctions = 0;           ///< vertices of open edges that lie inside another open edge
+  std::size_t flipped_triangles = 0;     ///< sound ones that look the other way than the normals at their corners
   std::size_t degenerate_triangles = 0;  ///< two corners in one place, or no area; not counted in edges
   std::size_t non_finite_vertices = 0;   ///< NaN or infinity in a position or a normal
   /// Whether its sound triangles, of which there are some, leave no border.

@@ -4,31 +4,14 @@
 #include <array>
 
 #include "base/aligned.h"
-#include "basis/bernstein.h"
 #include "block/patch_set_impl.h"
+#include "eval/border_weights.h"
 #include "eval/grid_plan_impl.h"
 #include "kernel/kernel_table.h"
 #include "parallel/parallel_for.h"
 
 namespace tessera {
 namespace {
-
-/// Bernstein weights at k / rate whose bits do not depend on the direction: B_i = C(n,i) (t^i s^(n-i)) with t = k / rate
-/// and s = (rate - k) / rate, so that B_i at k is B_{n-i} at rate - k.
-AlignedVector<float> symmetric_weights(int degree, int rate) {
-  AlignedVector<float> weights;
-  weights.reserve(static_cast<std::size_t>((rate + 1) * (degree + 1)));
-  for (int k = 0; k <= rate; ++k) {
-    std::array<double, max_degree + 1> t{1}, s{1};
-    for (std::size_t i = 1; i <= static_cast<std::size_t>(degree); ++i) {
-      t[i] = t[i - 1] * (static_cast<double>(k) / rate);
-      s[i] = s[i - 1] * (static_cast<double>(rate - k) / rate);
-    }
-    for (int i = 0; i <= degree; ++i)
-      weights.push_back(static_cast<float>(binomial(degree, i) * (t[static_cast<std::size_t>(i)] * s[static_cast<std::size_t>(degree - i)])));
-  }
-  return weights;
-}
 
 /// Where one edge of a patch lies in its net and in its grid.
 struct EdgePlace {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/guard.h"
+#include "tess/t_junctions.h"
 #include "tessera/mesh.h"
 
 namespace tessera {
@@ -97,13 +98,14 @@ std::size_t count_non_finite(const Mesh& mesh) {
   return count;
 }
 
+Vec3 vertex(const std::vector<float>& values, std::size_t k) {
+  return {values[3 * k], values[3 * k + 1], values[3 * k + 2]};
+}
+
 /// Whether the corners of a triangle lie on one line. Products of differences of floats are exact in double unless
 /// their exponents lie far apart, so this is no matter of tolerance.
 bool has_no_area(const Mesh& mesh, const std::uint32_t* corners) {
-  const auto point = [&](int k) {
-    const float* p = &mesh.positions[3 * std::size_t{corners[k]}];
-    return Vec3{p[0], p[1], p[2]};
-  };
+  const auto point = [&](int k) { return vertex(mesh.positions, corners[k]); };
   return cross(point(1) - point(0), point(2) - point(0)) == Vec3{};
 }
 
@@ -125,23 +127,33 @@ class EdgeTable {
       }
   }
 
-  void count_into(MeshReport& report) {
+  /// Open edges are told as well.
+  void count_into(MeshReport& report, std::vector<std::array<std::uint32_t, 2>>& open) {
     for (std::size_t k = 0; k + 1 < first_.size(); ++k) {
       const std::span<std::uint32_t> edges(edges_.data() + first_[k], first_[k + 1] - first_[k]);
       std::sort(edges.begin(), edges.end());
       for (std::size_t from = 0, to = 0; from < edges.size(); from = to) {
         while (to < edges.size() && edges[to] / 2 == edges[from] / 2) ++to;
-        report.open_edges += to - from == 1;
+        if (to - from == 1) open.push_back({static_cast<std::uint32_t>(k), edges[from] / 2});
         report.inconsistent_edges += to - from == 2 && edges[from] == edges[from + 1];
         report.non_manifold_edges += to - from > 2;
       }
     }
+    report.open_edges = open.size();
   }
 
  private:
   std::vector<std::size_t> first_;
   std::vector<std::uint32_t> edges_;
 };
+
+/// Whether the triangle looks the other way than the normals at its corners do, taken together.
+bool is_flipped(const Mesh& mesh, const std::uint32_t* corners) {
+  const auto at = [&](int k) { return vertex(mesh.positions, corners[k]); };
+  Vec3 normals;
+  for (int k = 0; k < 3; ++k) normals += vertex(mesh.normals, corners[k]);
+  return dot(cross(at(1) - at(0), at(2) - at(0)), normals) < 0;
+}
 
 MeshReport count(const Mesh& mesh) {
   MeshReport report;
@@ -155,10 +167,16 @@ MeshReport count(const Mesh& mesh) {
   for (std::size_t k = 0; k < report.triangles; ++k) {
     const std::uint32_t* corners = &mesh.indices[3 * k];
     const Triangle t{welded.place[corners[0]], welded.place[corners[1]], welded.place[corners[2]]};
-    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0] && !has_no_area(mesh, corners)) sound.push_back(t);
+    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0] || has_no_area(mesh, corners)) continue;
+    sound.push_back(t);
+    report.flipped_triangles += !mesh.normals.empty() && is_flipped(mesh, corners);
   }
   report.degenerate_triangles = report.triangles - sound.size();
-  EdgeTable(sound, welded.count).count_into(report);
+  std::vector<std::array<std::uint32_t, 2>> open;
+  EdgeTable(sound, welded.count).count_into(report, open);
+  std::vector<Vec3> places(welded.count);
+  for (std::size_t k = 0; k < mesh.vertex_count(); ++k) places[welded.place[k]] = vertex(mesh.positions, k);
+  report.t_junctions = count_t_junctions(places, open);
   return report;
 }
 

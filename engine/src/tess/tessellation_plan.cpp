@@ -1,10 +1,10 @@
 #include <algorithm>
-#include <atomic>
 #include <string>
 
 #include "base/guard.h"
 #include "eval/uniform_grid.h"
 #include "parallel/parallel_for.h"
+#include "tess/mesh_views.h"
 #include "tess/patch_triangles.h"
 #include "tessera/tessellate.h"
 
@@ -30,23 +30,6 @@ Status check_vertices(std::size_t patches, Rates rates) {
   return invalid(std::to_string(patches) + " patches at rates " + std::to_string(rates.u) + " x " +
                  std::to_string(rates.v) + " have " + std::to_string(patches * rates.vertices()) +
                  " vertices, 32-bit indices reach " + std::to_string(most_vertices));
-}
-
-Status check_size(const char* name, std::size_t size, std::size_t wanted, const char* what) {
-  if (size >= wanted) return {};
-  return {StatusCode::buffer_too_small, std::string("the ") + name + " view holds " + std::to_string(size) + " " +
-                                            what + ", " + std::to_string(wanted) + " are needed"};
-}
-
-template <int N>
-Status check_view(const char* name, const VectorView<float, N>& view, std::size_t vertices) {
-  if (view.empty()) return {};
-  if (std::find(view.component.begin(), view.component.end(), nullptr) != view.component.end())
-    return invalid(std::string("a component of the ") + name + " view is null");
-  if (view.stride < 1)
-    return invalid("the " + std::string(name) + " view's stride is " + std::to_string(view.stride) +
-                   ", it must be at least 1");
-  return check_size(name, view.size, vertices, "vertices");
 }
 
 std::vector<float> parameters(int rate) {
@@ -78,57 +61,16 @@ class TessellationPlan::Impl {
   Rates rates() const { return rates_; }
   MeshCapacity capacity() const { return {shapes_.size() * rates_.vertices(), first_triangle_.back()}; }
 
-  Mesh allocate() const {
-    Mesh mesh;
-    mesh.origin = origin_;
-    mesh.positions.resize(3 * capacity().vertices);
-    mesh.normals.resize(3 * capacity().vertices);
-    mesh.parameters.resize(2 * capacity().vertices);
-    mesh.patches.resize(capacity().triangles);
-    mesh.indices.resize(3 * capacity().triangles);
-    return mesh;
-  }
+  Mesh allocate() const { return empty_mesh(capacity(), origin_); }
 
   Status run(const PatchSet& set, const MeshViews& out, const Execution& execution) const {
-    if (Status status = check_views(out); !status.ok()) return status;
-    if (Status status = check_shapes(set); !status.ok()) return status;
+    if (Status status = check_views(out, capacity()); !status.ok()) return status;
+    if (Status status = check_shapes(set, shapes_); !status.ok()) return status;
     if (Status status = write_vertices(set, out, execution); !status.ok()) return status;
     return write_rest(out, execution);
   }
 
  private:
-  Status check_views(const MeshViews& out) const {
-    const MeshCapacity wanted = capacity();
-    if (out.position.empty()) return invalid("the position view is empty, it is required");
-    if (Status status = check_view("position", out.position, wanted.vertices); !status.ok()) return status;
-    if (Status status = check_view("normal", out.normal, wanted.vertices); !status.ok()) return status;
-    if (Status status = check_view("parameter", out.parameter, wanted.vertices); !status.ok()) return status;
-    if (Status status = check_size("indices", out.indices.size(), 3 * wanted.triangles, "indices"); !status.ok())
-      return status;
-    if (out.patch.empty()) return {};
-    return check_size("patch", out.patch.size(), wanted.triangles, "triangles");
-  }
-
-  Status check_shapes(const PatchSet& set) const {
-    if (set.patch_count() != shapes_.size())
-      return {StatusCode::stale, "the plan is for " + std::to_string(shapes_.size()) + " patches, the set has " +
-                                     std::to_string(set.patch_count())};
-    std::atomic<std::size_t> changed = shapes_.size();  // the first one, so that the message does not depend on threads
-    const auto compare = [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) {
-        if (PatchShape::of(set.patch(k)) == shapes_[k]) continue;
-        for (std::size_t least = changed; k < least && !changed.compare_exchange_weak(least, k);) {
-        }
-        return;
-      }
-    };
-    if (Status status = parallel_for(shapes_.size(), 16 * patches_a_piece, {}, compare); !status.ok()) return status;
-    if (changed == shapes_.size()) return {};
-    return {StatusCode::stale,
-            "patch " + std::to_string(changed) + " has other degrees or collapsed edges than when the plan was made",
-            static_cast<std::ptrdiff_t>(changed.load())};
-  }
-
   Status write_vertices(const PatchSet& set, const MeshViews& out, const Execution& execution) const {
     GridViews<float> grid;
     grid.position = out.position;

@@ -1,0 +1,103 @@
+// Whether certified tessellations keep what they promise, and how loose their bounds are: for each patch the bound over the
+// true largest distance, found by branch and bound that shares no code with the bounds. Exit status 1 if a bound is
+// exceeded, or the median on bicubic patches is above 3.
+// Usage: tessera_certificate_report [MODEL...], beside the built-in sets.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "support/synthetic_sets.h"
+#include "support/true_distance.h"
+#include "tess/certificate_sets.h"
+#include "tessera/certified_tessellation.h"
+#include "tessera/io.h"
+
+namespace {
+
+using namespace tessera;
+
+/// So many patches of a set are looked at, evenly spread, and so many triangles of each.
+constexpr std::size_t most_patches = 300, most_triangles = 600;
+
+struct Looseness {
+  std::size_t patches = 0, triangles = 0, exceeded = 0;
+  std::vector<double> ratios;  ///< bound over true distance, of each patch that is not flat within rounding
+};
+
+test::MeshTriangle triangle_of(const Mesh& mesh, std::size_t t) {
+  test::MeshTriangle triangle;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::size_t k = mesh.indices[3 * t + c];
+    triangle.parameters[c] = {mesh.parameters[2 * k], mesh.parameters[2 * k + 1]};
+    triangle.corners[c] =
+        mesh.origin + Vec3{mesh.positions[3 * k], mesh.positions[3 * k + 1], mesh.positions[3 * k + 2]};
+  }
+  return triangle;
+}
+
+Looseness measure(const PatchSet& set, double tolerance) {
+  const CertifiedTessellation plan = test::value_of(CertifiedTessellation::make(set, {.tolerance = tolerance}));
+  Mesh mesh = test::value_of(plan.allocate());
+  if (const Status status = plan.run(set, mesh.views()); !status.ok()) {
+    std::fprintf(stderr, "%s\n", status.message().c_str());
+    std::exit(1);
+  }
+  std::vector<std::size_t> first(set.patch_count() + 1, mesh.triangle_count());
+  for (std::size_t t = mesh.triangle_count(); t-- > 0;) first[mesh.patches[t]] = t;
+  for (std::size_t k = set.patch_count(); k-- > 0;) first[k] = std::min(first[k], first[k + 1]);
+  Looseness result;
+  const std::size_t step = 1 + (set.patch_count() - 1) / most_patches;
+  for (std::size_t k = 0; k < set.patch_count(); k += step) {
+    const double bound = plan.bounds()[k];
+    double low = 0, high = 0;
+    const std::size_t count = first[k + 1] - first[k], stride = 1 + count / most_triangles;
+    for (std::size_t t = first[k]; t < first[k + 1]; t += stride) {
+      const test::DistanceRange found = test::largest_distance(set.patch(k), triangle_of(mesh, t), 0.03, 400);
+      low = std::max(low, found.low);
+      high = std::max(high, found.high);
+      ++result.triangles;
+    }
+    ++result.patches;
+    if (low > bound) ++result.exceeded;
+    if (count > 0 && high > 1e-3 * tolerance) result.ratios.push_back(bound / low);
+  }
+  std::sort(result.ratios.begin(), result.ratios.end());
+  return result;
+}
+
+/// Prints a row; false if it breaks a promise.
+bool report(const std::string& name, const PatchSet& set, double relative, bool bicubic) {
+  const Looseness result = measure(set, relative * set.box().diagonal());
+  const auto at = [&](double share) {
+    return result.ratios.empty() ? 0 : result.ratios[static_cast<std::size_t>(share * static_cast<double>(result.ratios.size() - 1))];
+  };
+  std::printf("%-28s %8.0e %8zu %9zu %9zu %8.2f %8.2f %8.2f\n", name.c_str(), relative, result.patches, result.triangles,
+              result.exceeded, at(0), at(0.5), at(0.99));
+  std::fflush(stdout);
+  return result.exceeded == 0 && (!bicubic || at(0.5) <= 3);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  bool good = true;
+  std::printf("%-28s %8s %8s %9s %9s %8s %8s %8s\n", "set", "relative", "patches", "triangles", "exceeded", "least", "median",
+              "p99");
+  for (const test::CertificateSet& set : test::certificate_sets())
+    for (const double relative : {3e-3, 3e-4})
+      good = report(set.name, test::value_of(PatchSet::from(set.patches)), relative, set.bicubic) && good;
+  for (int k = 1; k < argc; ++k) {
+    const Result<Model> model = read_model(argv[k]);
+    const Result<PatchSet> set = model ? make_patch_set(*model) : Result<PatchSet>(model.status());
+    if (!set) {
+      std::fprintf(stderr, "%s\n", set.status().message().c_str());
+      return 1;
+    }
+    good = report(model->name, *set, 3e-4, false) && good;
+  }
+  return good ? 0 : 1;
+}

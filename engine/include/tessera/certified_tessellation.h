@@ -1,0 +1,75 @@
+#pragma once
+// Triangles that provably keep a tolerance, without cracks.
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "tessera/execution.h"
+#include "tessera/isa.h"
+#include "tessera/mesh.h"
+#include "tessera/patch_set.h"
+#include "tessera/status.h"
+
+namespace tessera {
+
+struct CertifiedOptions {
+  /// The largest distance between surfaces and mesh, in the model's lengths, above 0: every point of either lies within
+  /// it of the other.
+  double tolerance = 0;
+  /// The tolerance is a share of the size of the set's box instead, its diagonal.
+  bool relative = false;
+  /// More triangles than this are refused.
+  std::uint64_t most_triangles = std::uint64_t{1} << 30;
+  /// The tolerance is not given but found: the smallest, within 1 percent, for which most_triangles are enough.
+  bool smallest = false;
+  std::optional<Isa> isa = {};
+};
+
+/// A mesh of the fewest cells that keep the tolerance, patch by patch. The bound of a patch is proven: from the second
+/// differences of its control net (Filip, Magedson, Markot 1986; rational patches in homogeneous form), the rounding of
+/// float vertices and the set's fit error.
+///
+/// Without cracks: borders of patches whose packed control points are the same bits, in either direction, run at one
+/// rate, and their vertices are the same bits in both patches. Each patch has an inner grid at rates of its own and strips of
+/// triangles between that and its borders. A collapsed border is one point, and no triangle stands on it.
+///
+/// Layout of the vertices, patch after patch: first_vertex(k) + (iu - 1) * (rates v - 1) + iv - 1 for the inner points,
+/// then the border points counter-clockwise from (0,0), each corner once. Immutable. Threads: any number of const calls.
+class CertifiedTessellation {
+ public:
+  /// Errors: invalid_argument (a tolerance that is not above 0; one that a patch's rounding or the fit error exceeds
+  /// already; more triangles or vertices than allowed: the message says how many; fewer than one cell a patch takes), unsupported (the set has no float
+  /// Bernstein blocks), isa_unavailable, cancelled.
+  static Result<CertifiedTessellation> make(const PatchSet& set, const CertifiedOptions& options,
+                                            const Execution& execution = {});
+
+  CertifiedTessellation(CertifiedTessellation&&) noexcept;
+  CertifiedTessellation& operator=(CertifiedTessellation&&) noexcept;
+  ~CertifiedTessellation();
+
+  /// What the mesh is proven to keep: the largest of bounds(). At most the tolerance. Of the revision that the plan was
+  /// made for.
+  double bound() const;
+  /// Whether that is proven; false where the set's fit error is only sampled.
+  bool certified() const;
+  /// The same of each patch.
+  std::span<const float> bounds() const;
+  MeshCapacity capacity() const;  ///< exact
+  /// A mesh of the right size with all attributes.
+  Result<Mesh> allocate() const;
+  /// Writes the mesh of the set that the plan was made for, at any revision: the same triangles, whatever the control
+  /// points (the bounds hold for the plan's own revision). Errors: buffer_too_small, stale (another number of patches,
+  /// other degrees or collapsed borders), invalid_argument, cancelled. Nothing is written on any but cancelled. The same
+  /// bytes for any number of threads.
+  Status run(const PatchSet& set, const MeshViews& out, const Execution& execution = {}) const;
+
+  class Impl;
+
+ private:
+  explicit CertifiedTessellation(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace tessera

@@ -1,0 +1,123 @@
+#include "tessera/certified_tessellation.h"
+
+#include <algorithm>
+
+#include "base/guard.h"
+#include "parallel/parallel_for.h"
+#include "tess/border_points.h"
+#include "tess/certified_plan.h"
+#include "tess/mesh_views.h"
+
+namespace tessera {
+namespace {
+
+constexpr std::size_t patches_a_piece = 16;
+
+}  // namespace
+
+class CertifiedTessellation::Impl {
+ public:
+  Impl(const PatchSet& set, CertifiedPlan plan, std::span<const PatchShape> shapes)
+      : plan_(std::move(plan)),
+        shapes_(shapes.begin(), shapes.end()),
+        origin_(set.origin()),
+        certified_(set.fit_error().certified) {
+    for (std::size_t k = 0; k < plan_.patch_count(); ++k)
+      for (const Side side : all_sides) {
+        const BezierPatch& patch = set.patch(k);
+        weights_.add(runs_along_u(side) ? patch.degree_u() : patch.degree_v(),
+                     plan_.division(k).border[static_cast<std::size_t>(side)]);
+      }
+    for (const float bound : plan_.bounds()) bound_ = std::max(bound_, bound);
+  }
+
+  const CertifiedPlan& plan() const { return plan_; }
+  double bound() const { return bound_; }
+  bool certified() const { return certified_; }
+  Mesh allocate() const { return empty_mesh(plan_.capacity(), origin_); }
+
+  Status run(const PatchSet& set, const MeshViews& out, const Execution& execution) const {
+    if (Status status = check_views(out, plan_.capacity()); !status.ok()) return status;
+    if (Status status = check_shapes(set, shapes_); !status.ok()) return status;
+    return parallel_for(plan_.patch_count(), patches_a_piece, execution, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) write_patch(set, k, out);
+    });
+  }
+
+ private:
+  void write_patch(const PatchSet& set, std::size_t k, const MeshViews& out) const {
+    const Division& division = plan_.division(k);
+    if (division.empty) return;
+    const std::size_t first = plan_.first_vertex(k);
+    std::size_t vertex = first;
+    division.for_parameters([&](double u, double v) { write_vertex(set.patch(k), u, v, vertex++, out); });
+    vertex = first + division.inner_count();
+    for (const Side side : all_sides) {
+      const int rate = division.border[static_cast<std::size_t>(side)];
+      write_border(set.impl(), k, side, rate, weights_, out.position, vertex);
+      vertex += static_cast<std::size_t>(rate);
+    }
+    division.write_triangles(static_cast<std::uint32_t>(first), out.indices.data() + 3 * plan_.first_triangle(k));
+    if (!out.patch.empty())
+      std::fill(out.patch.data() + plan_.first_triangle(k), out.patch.data() + plan_.first_triangle(k + 1),
+                static_cast<std::uint32_t>(k));
+  }
+
+  void write_vertex(const BezierPatch& patch, double u, double v, std::size_t vertex, const MeshViews& out) const {
+    const Vec3 p = de_casteljau(patch, u, v) - origin_, n = unit_normal(patch, u, v).direction;
+    const double position[3] = {p.x, p.y, p.z}, normal[3] = {n.x, n.y, n.z};
+    for (int c = 0; c < 3; ++c) {
+      out.position.at(vertex, c) = static_cast<float>(position[c]);
+      if (!out.normal.empty()) out.normal.at(vertex, c) = static_cast<float>(normal[c]);
+    }
+    if (out.parameter.empty()) return;
+    out.parameter.at(vertex, 0) = static_cast<float>(u);
+    out.parameter.at(vertex, 1) = static_cast<float>(v);
+  }
+
+  CertifiedPlan plan_;
+  std::vector<PatchShape> shapes_;
+  Vec3 origin_;
+  bool certified_;
+  BorderWeights weights_;
+  float bound_ = 0;
+};
+
+Result<CertifiedTessellation> CertifiedTessellation::make(const PatchSet& set, const CertifiedOptions& options,
+                                                          const Execution& execution) {
+  return guarded([&]() -> Result<CertifiedTessellation> {
+    if (!set.blocks().float_bernstein)
+      return Status(StatusCode::unsupported, "a tessellation needs float Bernstein blocks, the set has none");
+    Result<CertifiedPlanner> planner = CertifiedPlanner::make(set.impl(), execution);
+    if (!planner) return planner.status();
+    double tolerance = options.tolerance * (options.relative ? set.box().diagonal() : 1);
+    if (options.smallest) {
+      const Result<double> found = planner->smallest_tolerance(options.most_triangles, execution);
+      if (!found) return found.status();
+      tolerance = *found;
+    }
+    Result<CertifiedPlan> plan = planner->plan(tolerance, options.most_triangles, execution);
+    if (!plan) return plan.status();
+    return CertifiedTessellation(std::make_unique<Impl>(set, std::move(*plan), planner->shapes()));
+  });
+}
+
+CertifiedTessellation::CertifiedTessellation(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+CertifiedTessellation::CertifiedTessellation(CertifiedTessellation&&) noexcept = default;
+CertifiedTessellation& CertifiedTessellation::operator=(CertifiedTessellation&&) noexcept = default;
+CertifiedTessellation::~CertifiedTessellation() = default;
+
+double CertifiedTessellation::bound() const { return impl_->bound(); }
+bool CertifiedTessellation::certified() const { return impl_->certified(); }
+std::span<const float> CertifiedTessellation::bounds() const { return impl_->plan().bounds(); }
+MeshCapacity CertifiedTessellation::capacity() const { return impl_->plan().capacity(); }
+
+Result<Mesh> CertifiedTessellation::allocate() const {
+  return guarded([&]() -> Result<Mesh> { return impl_->allocate(); });
+}
+
+Status CertifiedTessellation::run(const PatchSet& set, const MeshViews& out, const Execution& execution) const {
+  return guarded([&] { return impl_->run(set, out, execution); });
+}
+
+}  // namespace tessera

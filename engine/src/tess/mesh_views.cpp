@@ -1,0 +1,76 @@
+#include "tess/mesh_views.h"
+
+#include <algorithm>
+#include <string>
+
+#include "parallel/least_index.h"
+#include "parallel/parallel_for.h"
+
+namespace tessera {
+namespace {
+
+constexpr std::size_t patches_a_piece = 1024;
+
+Status invalid(std::string message) { return {StatusCode::invalid_argument, std::move(message)}; }
+
+Status check_size(const char* name, std::size_t size, std::size_t wanted, const char* what) {
+  if (size >= wanted) return {};
+  return {StatusCode::buffer_too_small, std::string("the ") + name + " view holds " + std::to_string(size) + " " +
+                                            what + ", " + std::to_string(wanted) + " are needed"};
+}
+
+template <int N>
+Status check_view(const char* name, const VectorView<float, N>& view, std::size_t vertices) {
+  if (view.empty()) return {};
+  if (std::find(view.component.begin(), view.component.end(), nullptr) != view.component.end())
+    return invalid(std::string("a component of the ") + name + " view is null");
+  if (view.stride < 1)
+    return invalid("the " + std::string(name) + " view's stride is " + std::to_string(view.stride) +
+                   ", it must be at least 1");
+  return check_size(name, view.size, vertices, "vertices");
+}
+
+}  // namespace
+
+Mesh empty_mesh(const MeshCapacity& capacity, const Vec3& origin) {
+  Mesh mesh;
+  mesh.origin = origin;
+  mesh.positions.resize(3 * capacity.vertices);
+  mesh.normals.resize(3 * capacity.vertices);
+  mesh.parameters.resize(2 * capacity.vertices);
+  mesh.patches.resize(capacity.triangles);
+  mesh.indices.resize(3 * capacity.triangles);
+  return mesh;
+}
+
+Status check_views(const MeshViews& out, const MeshCapacity& wanted) {
+  if (out.position.empty()) return invalid("the position view is empty, it is required");
+  if (Status status = check_view("position", out.position, wanted.vertices); !status.ok()) return status;
+  if (Status status = check_view("normal", out.normal, wanted.vertices); !status.ok()) return status;
+  if (Status status = check_view("parameter", out.parameter, wanted.vertices); !status.ok()) return status;
+  if (Status status = check_size("indices", out.indices.size(), 3 * wanted.triangles, "indices"); !status.ok())
+    return status;
+  if (out.patch.empty()) return {};
+  return check_size("patch", out.patch.size(), wanted.triangles, "triangles");
+}
+
+Status check_shapes(const PatchSet& set, std::span<const PatchShape> planned) {
+  if (set.patch_count() != planned.size())
+    return {StatusCode::stale, "the plan is for " + std::to_string(planned.size()) + " patches, the set has " +
+                                   std::to_string(set.patch_count())};
+  LeastIndex changed;
+  const auto compare = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      if (PatchShape::of(set.patch(k)) == planned[k]) continue;
+      changed.add(k);
+      return;
+    }
+  };
+  if (Status status = parallel_for(planned.size(), patches_a_piece, {}, compare); !status.ok()) return status;
+  if (!changed.found()) return {};
+  return {StatusCode::stale,
+          "patch " + std::to_string(changed.index()) + " has other degrees or collapsed edges than when the plan was made",
+          static_cast<std::ptrdiff_t>(changed.index())};
+}
+
+}  // namespace tessera

@@ -1,0 +1,21 @@
+#pragma once
+// What every tessellation checks before it writes.
+
+#include <span>
+
+#include "tess/patch_triangles.h"
+#include "tessera/mesh.h"
+#include "tessera/patch_set.h"
+
+namespace tessera {
+
+/// A mesh with all attributes, zeros, of so many vertices and triangles.
+Mesh empty_mesh(const MeshCapacity& capacity, const Vec3& origin);
+
+/// Errors: buffer_too_small; invalid_argument (no positions, a null component, a stride below 1).
+Status check_views(const MeshViews& out, const MeshCapacity& wanted);
+
+/// Whether the patches of a set are still those that a plan was made for. Errors: stale, of the first that is not.
+Status check_shapes(const PatchSet& set, std::span<const PatchShape> planned);
+
+}  // namespace tessera

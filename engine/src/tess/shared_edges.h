@@ -1,0 +1,60 @@
+#pragma once
+// Which borders of the patches of a set are one curve.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "block/patch_set_impl.h"
+
+namespace tessera {
+
+/// The four borders of a patch, counter-clockwise around its parameters from (0,0): v = 0, u = 1, v = 1, u = 0.
+enum class Side : std::uint8_t { v0, u1, v1, u0 };
+inline constexpr std::array<Side, 4> all_sides{Side::v0, Side::u1, Side::v1, Side::u0};
+constexpr bool runs_along_u(Side side) { return side == Side::v0 || side == Side::v1; }
+constexpr Edge edge_of(Side side) {
+  constexpr Edge edges[] = {Edge::v0, Edge::u1, Edge::v1, Edge::u0};
+  return edges[static_cast<int>(side)];
+}
+
+/// A border's packed float control points, relative to the set's origin, homogeneous if there are 4 components; they run
+/// with u or v. Patches scale their weights by powers of two, each its own: here they are scaled so that the border's
+/// largest weight lies in [1/2, 1). The set must have float Bernstein blocks.
+class PackedBorder {
+ public:
+  PackedBorder(const PatchSet::Impl& set, std::size_t patch, Side side);
+  int count() const { return count_; }
+  int components() const { return components_; }
+  float value(int point, int component) const {
+    return scale_ * first_[point * step_ + component * std::ptrdiff_t{PatchSet::lanes}];
+  }
+
+ private:
+  float scale_ = 1;
+  const float* first_;
+  std::ptrdiff_t step_;
+  int count_, components_;
+};
+
+/// The edges of a set: borders whose packed float control points and weights are the same bits, in either direction, are one edge. It
+/// is these floats that get evaluated, so equal bits make equal curves. Borders of different degree are different edges.
+/// Collapsed borders belong to none.
+class SharedEdges {
+ public:
+  static constexpr std::uint32_t none = 0xffffffff;
+
+  /// The set must have float Bernstein blocks. Edges are numbered by the first border of each, in the order of the
+  /// patches and of `all_sides`.
+  explicit SharedEdges(const PatchSet::Impl& set);
+
+  std::size_t count() const { return count_; }
+  std::uint32_t edge(std::size_t patch, Side side) const { return edges_[4 * patch + static_cast<std::size_t>(side)]; }
+
+ private:
+  std::vector<std::uint32_t> edges_;  ///< `[patch][side]`
+  std::size_t count_ = 0;
+};
+
+}  // namespace tessera

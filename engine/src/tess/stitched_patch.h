@@ -1,0 +1,60 @@
+#pragma once
+// The vertices and triangles of one patch whose four borders have rates of their own: an inner grid, a ring of border
+// points, and strips between them.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "tess/patch_triangles.h"
+#include "tess/shared_edges.h"
+
+namespace tessera {
+
+/// How a patch is divided. Vertices: the inner points [iu - 1][iv - 1] at (iu / inner.u, iv / inner.v), then the ring:
+/// border points at k / rate, counter-clockwise from (0,0), each corner once.
+///
+/// Every triangle's parameter box is at most 1 / n wide along a parameter, n being the rate asked for there: an inner
+/// cell's, and a strip's too, whose border rate is at least n. None straddles the middle of a parameter along which the
+/// rates of the patch and of its borders are even.
+struct Division {
+  Rates inner;                    ///< both 1: no inner points; then the borders of one pair of sides have rate 1
+  std::array<int, 4> border{};    ///< by Side
+  EdgeMask collapsed;             ///< these borders are points: no triangle stands on them
+  bool empty = false;             ///< a curve or a point: neither vertices nor triangles
+
+  /// `rates` were asked for the patch; each of `borders` is at least the rate along it.
+  static Division of(const PatchShape& shape, Rates rates, const std::array<int, 4>& borders);
+
+  std::size_t inner_count() const {
+    return static_cast<std::size_t>(inner.u - 1) * static_cast<std::size_t>(inner.v - 1);
+  }
+  std::size_t ring_count() const {
+    return static_cast<std::size_t>(border[0]) + static_cast<std::size_t>(border[1]) +
+           static_cast<std::size_t>(border[2]) + static_cast<std::size_t>(border[3]);
+  }
+  std::size_t vertex_count() const { return empty ? 0 : inner_count() + ring_count(); }
+  std::size_t triangle_count() const;
+
+  /// visit(u, v) for each vertex, in order.
+  template <class Visit>
+  void for_parameters(Visit visit) const;
+  /// Writes the corners of all triangles, counter-clockwise seen from where r_u x r_v points; vertices are counted from
+  /// `first`. Returns the end of what it wrote.
+  std::uint32_t* write_triangles(std::uint32_t first, std::uint32_t* indices) const;
+
+ private:
+  bool has_inner_points() const { return inner.u > 1; }
+};
+
+template <class Visit>
+void Division::for_parameters(Visit visit) const {
+  for (int iu = 1; iu < inner.u; ++iu)
+    for (int iv = 1; iv < inner.v; ++iv) visit(double(iu) / inner.u, double(iv) / inner.v);
+  for (int k = 0; k < border[0]; ++k) visit(double(k) / border[0], 0.0);
+  for (int k = 0; k < border[1]; ++k) visit(1.0, double(k) / border[1]);
+  for (int k = border[2]; k > 0; --k) visit(double(k) / border[2], 1.0);
+  for (int k = border[3]; k > 0; --k) visit(0.0, double(k) / border[3]);
+}
+
+}  // namespace tessera

@@ -1,0 +1,160 @@
+#pragma once
+// The true distance between a patch and a triangle of its mesh, by branch and bound. Shares no code with the bounds that
+// tessellations are made with.
+
+#include <algorithm>
+#include <array>
+#include <queue>
+#include <vector>
+
+#include "support/triangle_distance.h"
+#include "tessera/bezier_patch.h"
+
+namespace tessera::test {
+
+/// Corners of a triangle: where they lie in the patch's parameters, and in space (they may be rounded, or off the patch).
+struct MeshTriangle {
+  std::array<std::array<double, 2>, 3> parameters;
+  std::array<Vec3, 3> corners;
+};
+
+/// An interval that holds the largest distance.
+struct DistanceRange {
+  double low = 0, high = 0;
+};
+
+namespace true_distance {
+
+/// The net of a piece of a patch, in homogeneous form, over the box [u0,u1] x [v0,v1] of the patch's parameters.
+struct Piece {
+  double u0, u1, v0, v1;
+  std::vector<std::array<double, 4>> net;
+  double bound = 0;
+  bool operator<(const Piece& other) const { return bound < other.bound; }
+};
+
+inline double lerp(double a, double b, double t) { return (1 - t) * a + t * b; }
+
+/// The part from `t` on, or up to `t`, of each line of a net.
+inline void cut(Piece& piece, int lines, int line_step, int count, int step, double t, bool keep_low) {
+  for (int line = 0; line < lines; ++line) {
+    const auto at = [&](int i) -> std::array<double, 4>& { return piece.net[static_cast<std::size_t>(line * line_step + i * step)]; };
+    for (int round = 1; round < count; ++round) {
+      for (int k = 0; k + round < count; ++k) {
+        const int to = keep_low ? count - 1 - k : k;
+        const int from = keep_low ? to - 1 : to + 1;
+        for (std::size_t c = 0; c < 4; ++c)
+          at(to)[c] = keep_low ? lerp(at(from)[c], at(to)[c], t) : lerp(at(to)[c], at(from)[c], t);
+      }
+    }
+  }
+}
+
+class Search {
+ public:
+  Search(const BezierPatch& patch, const MeshTriangle& triangle)
+      : m_(patch.degree_u()), n_(patch.degree_v()), triangle_(triangle) {
+    Piece whole{0, 1, 0, 1, {}, 0};
+    for (int i = 0; i <= m_; ++i)
+      for (int j = 0; j <= n_; ++j) {
+        const double w = patch.weight(i, j);
+        const Vec3& p = patch.point(i, j);
+        whole.net.push_back({w * p.x, w * p.y, w * p.z, w});
+      }
+    const auto [u0, u1] = range(0);
+    const auto [v0, v1] = range(1);
+    keep(whole, u0, u1, v0, v1);
+    add(std::move(whole));
+  }
+
+  DistanceRange run(double precision, int most_steps) {
+    for (int step = 0; step < most_steps && !pieces_.empty(); ++step) {
+      if (pieces_.top().bound <= low_ * (1 + precision)) break;
+      const Piece top = pieces_.top();
+      pieces_.pop();
+      const double u = (top.u0 + top.u1) / 2, v = (top.v0 + top.v1) / 2;
+      for (const bool low_u : {false, true})
+        for (const bool low_v : {false, true}) {
+          Piece part = top;
+          keep(part, low_u ? top.u0 : u, low_u ? u : top.u1, low_v ? top.v0 : v, low_v ? v : top.v1);
+          add(std::move(part));
+        }
+    }
+    return {low_, pieces_.empty() ? low_ : std::max(low_, pieces_.top().bound)};
+  }
+
+ private:
+  std::pair<double, double> range(std::size_t c) const {
+    const auto& p = triangle_.parameters;
+    return {std::min({p[0][c], p[1][c], p[2][c]}), std::max({p[0][c], p[1][c], p[2][c]})};
+  }
+
+  void keep(Piece& piece, double u0, double u1, double v0, double v1) const {
+    const int row = n_ + 1;
+    if (u1 < piece.u1) cut(piece, row, 1, m_ + 1, row, (u1 - piece.u0) / (piece.u1 - piece.u0), true), piece.u1 = u1;
+    if (u0 > piece.u0) cut(piece, row, 1, m_ + 1, row, (u0 - piece.u0) / (piece.u1 - piece.u0), false), piece.u0 = u0;
+    if (v1 < piece.v1) cut(piece, m_ + 1, row, row, 1, (v1 - piece.v0) / (piece.v1 - piece.v0), true), piece.v1 = v1;
+    if (v0 > piece.v0) cut(piece, m_ + 1, row, row, 1, (v0 - piece.v0) / (piece.v1 - piece.v0), false), piece.v0 = v0;
+  }
+
+  double distance(const Vec3& p) const {
+    return distance_to_triangle(p, triangle_.corners[0], triangle_.corners[1], triangle_.corners[2]);
+  }
+
+  /// Twice the signed area of the parameter triangle with its corner k replaced.
+  double side(std::size_t k, double u, double v) const {
+    const auto& a = triangle_.parameters[(k + 1) % 3];
+    const auto& b = triangle_.parameters[(k + 2) % 3];
+    return (b[0] - a[0]) * (v - a[1]) - (u - a[0]) * (b[1] - a[1]);
+  }
+  bool outside(const Piece& piece) const {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double in = side(k, triangle_.parameters[k][0], triangle_.parameters[k][1]);
+      const double sign = in < 0 ? -1 : 1;
+      double most = -1e300;
+      for (const double u : {piece.u0, piece.u1})
+        for (const double v : {piece.v0, piece.v1}) most = std::max(most, sign * side(k, u, v));
+      if (most < 0) return true;
+    }
+    return false;
+  }
+  bool inside(double u, double v) const {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double in = side(k, triangle_.parameters[k][0], triangle_.parameters[k][1]);
+      if ((in < 0 ? -1 : 1) * side(k, u, v) < 0) return false;
+    }
+    return true;
+  }
+
+  /// The distance from a triangle is convex: over the hull of the control points it is largest at one of them.
+  void add(Piece piece) {
+    if (outside(piece)) return;
+    piece.bound = 0;
+    for (const auto& a : piece.net) piece.bound = std::max(piece.bound, distance({a[0] / a[3], a[1] / a[3], a[2] / a[3]}));
+    const std::size_t row = static_cast<std::size_t>(n_) + 1, last = piece.net.size() - 1;
+    const std::array<std::pair<std::size_t, std::array<double, 2>>, 4> ends{{{0, {piece.u0, piece.v0}},
+                                                                             {row - 1, {piece.u0, piece.v1}},
+                                                                             {last + 1 - row, {piece.u1, piece.v0}},
+                                                                             {last, {piece.u1, piece.v1}}}};
+    for (const auto& [k, place] : ends)
+      if (const auto& a = piece.net[k]; inside(place[0], place[1]))
+        low_ = std::max(low_, distance({a[0] / a[3], a[1] / a[3], a[2] / a[3]}));
+    pieces_.push(std::move(piece));
+  }
+
+  int m_, n_;
+  const MeshTriangle& triangle_;
+  double low_ = 0;
+  std::priority_queue<Piece> pieces_;
+};
+
+}  // namespace true_distance
+
+/// The largest distance from the triangle of the patch's points whose parameters lie in the parameter triangle, to a
+/// relative precision, or as near as `most_steps` subdivisions lead.
+inline DistanceRange largest_distance(const BezierPatch& patch, const MeshTriangle& triangle, double precision = 0.01,
+                                      int most_steps = 2000) {
+  return true_distance::Search(patch, triangle).run(precision, most_steps);
+}
+
+}  // namespace tessera::test

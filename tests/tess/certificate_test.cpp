@@ -1,0 +1,56 @@
+// The promise of certified tessellations against the true largest distance, found by branch and bound.
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/true_distance.h"
+#include "tess/certificate_sets.h"
+#include "tess/tessellate_support.h"
+#include "tessera/certified_tessellation.h"
+
+namespace tessera::test {
+namespace {
+
+/// The reference itself: a paraboloid's chord error is known.
+TEST(TrueDistance, OfAParaboloid) {
+  // z = u^2 + v^2 over the triangle (0,0), (1,0), (0,1): the plane is z = u + v, and the largest distance from it lies
+  // at (1/2, 1/2): (u + v - u^2 - v^2) / sqrt 3 = 0.5 / sqrt 3.
+  const double h = 0.5;
+  const BezierPatch patch = polynomial(2, 2, {{0, 0, 0}, {0, h, 0}, {0, 1, 1}, {h, 0, 0}, {h, h, 0}, {h, 1, 1},
+                                              {1, 0, 1}, {1, h, 1}, {1, 1, 2}});
+  const MeshTriangle triangle{{{{0, 0}, {1, 0}, {0, 1}}}, {Vec3{0, 0, 0}, Vec3{1, 0, 1}, Vec3{0, 1, 1}}};
+  const DistanceRange found = largest_distance(patch, triangle, 1e-4, 20000);
+  EXPECT_LE(found.low, 0.5 / std::sqrt(3.0) + 1e-12);
+  EXPECT_GE(found.high, 0.5 / std::sqrt(3.0) - 1e-12);
+  EXPECT_LE(found.high, 1.001 * found.low);
+}
+
+TEST(Certificate, IsNeverExceededByTheTrueDistance) {
+  Random random(1);
+  for (const CertificateSet& chosen : certificate_sets()) {
+    const PatchSet set = set_of(chosen.patches);
+    const double tolerance = 0.02 * set.box().diagonal();
+    const CertifiedTessellation plan = good(CertifiedTessellation::make(set, {.tolerance = tolerance}));
+    Mesh mesh = good(plan.allocate());
+    ASSERT_TRUE(plan.run(set, mesh.views()).ok());
+    double tightest = 0;
+    for (int sample = 0; sample < 30; ++sample) {
+      const std::size_t t = random() % mesh.triangle_count();
+      MeshTriangle triangle;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::size_t k = mesh.indices[3 * t + c];
+        triangle.parameters[c] = {mesh.parameters[2 * k], mesh.parameters[2 * k + 1]};
+        triangle.corners[c] =
+            mesh.origin + Vec3{mesh.positions[3 * k], mesh.positions[3 * k + 1], mesh.positions[3 * k + 2]};
+      }
+      const double bound = plan.bounds()[mesh.patches[t]];
+      const DistanceRange found = largest_distance(set.patch(mesh.patches[t]), triangle, 0.1, 60);
+      EXPECT_LE(found.low, bound) << chosen.name;
+      tightest = std::max(tightest, found.high / bound);
+    }
+    EXPECT_GE(tightest, chosen.bicubic ? 0.25 : 1e-4) << chosen.name;
+  }
+}
+
+}  // namespace
+}  // namespace tessera::test

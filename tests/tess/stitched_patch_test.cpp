@@ -1,0 +1,129 @@
+// Patches with rates of their own on every border: a triangulation of the parameter square whose triangles keep within
+// the cells that the rates promise.
+
+#include "tess/stitched_patch.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <random>
+#include <utility>
+#include <vector>
+
+namespace tessera::test {
+namespace {
+
+struct Place {
+  double u, v;
+};
+
+std::vector<Place> places(const Division& division) {
+  std::vector<Place> at;
+  division.for_parameters([&](double u, double v) { at.push_back({u, v}); });
+  return at;
+}
+
+struct Corners {
+  Place a, b, c;
+  double twice_area() const { return (b.u - a.u) * (c.v - a.v) - (c.u - a.u) * (b.v - a.v); }
+  double low_u() const { return std::min({a.u, b.u, c.u}); }
+  double high_u() const { return std::max({a.u, b.u, c.u}); }
+  double low_v() const { return std::min({a.v, b.v, c.v}); }
+  double high_v() const { return std::max({a.v, b.v, c.v}); }
+};
+
+/// Checks everything that the header promises for a patch without collapsed borders.
+void expect_triangulation(const Division& division, Rates asked) {
+  const std::vector<Place> at = places(division);
+  ASSERT_EQ(at.size(), division.vertex_count());
+  std::vector<std::uint32_t> indices(3 * division.triangle_count() + 1, 77777);
+  ASSERT_EQ(division.write_triangles(0, indices.data()), indices.data() + 3 * division.triangle_count());
+  EXPECT_EQ(indices.back(), 77777u);
+  double area = 0;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+  for (std::size_t t = 0; t < division.triangle_count(); ++t) {
+    const std::uint32_t* corner = &indices[3 * t];
+    for (int k = 0; k < 3; ++k) {
+      ASSERT_LT(corner[k], at.size());
+      ++edges[{corner[k], corner[(k + 1) % 3]}];
+    }
+    const Corners place{at[corner[0]], at[corner[1]], at[corner[2]]};
+    ASSERT_GT(place.twice_area(), 0);
+    area += place.twice_area() / 2;
+    EXPECT_LE(place.high_u() - place.low_u(), 1.0 / asked.u + 1e-12);
+    EXPECT_LE(place.high_v() - place.low_v(), 1.0 / asked.v + 1e-12);
+    EXPECT_TRUE(asked.u % 2 == 1 || place.high_u() <= 0.5 || place.low_u() >= 0.5);
+    EXPECT_TRUE(asked.v % 2 == 1 || place.high_v() <= 0.5 || place.low_v() >= 0.5);
+  }
+  EXPECT_NEAR(area, 1, 1e-9);
+  std::size_t open = 0;
+  for (const auto& [edge, count] : edges) {
+    EXPECT_EQ(count, 1);
+    open += !edges.contains({edge.second, edge.first});
+  }
+  EXPECT_EQ(open, division.ring_count());
+  for (std::size_t k = 0; k < division.ring_count(); ++k) {
+    const auto from = static_cast<std::uint32_t>(division.inner_count() + k);
+    const auto to = static_cast<std::uint32_t>(division.inner_count() + (k + 1) % division.ring_count());
+    EXPECT_TRUE(edges.contains({from, to}));
+  }
+}
+
+TEST(StitchedPatch, TrianglesCoverTheSquareWithinTheCellsOfTheRates) {
+  std::mt19937 random(1);
+  const PatchShape plain{3, 3, {}, false};
+  for (int repeat = 0; repeat < 3000 && !testing::Test::HasFailure(); ++repeat) {
+    const int most = repeat % 3 == 0 ? 3 : repeat % 3 == 1 ? 9 : 40;
+    std::uniform_int_distribution<int> rate(1, most), more(0, repeat % 2 ? most : 1);
+    const Rates asked{rate(random), rate(random)};
+    const auto border = [&](int n) {
+      const int e = n + more(random);
+      return n % 2 == 0 ? e + e % 2 : e;
+    };
+    const std::array<int, 4> borders{border(asked.u), border(asked.v), border(asked.u), border(asked.v)};
+    SCOPED_TRACE(testing::Message() << asked.u << " x " << asked.v << ", borders " << borders[0] << " " << borders[1]
+                                    << " " << borders[2] << " " << borders[3]);
+    expect_triangulation(Division::of(plain, asked, borders), asked);
+  }
+}
+
+TEST(StitchedPatch, EqualRatesGiveTheCellsOfTheGrid) {
+  for (const Rates rates : {Rates{1, 1}, Rates{1, 5}, Rates{6, 1}, Rates{2, 2}, Rates{4, 7}}) {
+    const Division division = Division::of({3, 3, {}, false}, rates, {rates.u, rates.v, rates.u, rates.v});
+    EXPECT_EQ(division.triangle_count(), static_cast<std::size_t>(2 * rates.u * rates.v));
+    EXPECT_EQ(division.vertex_count(), rates.vertices());
+  }
+}
+
+TEST(StitchedPatch, NoTriangleStandsOnACollapsedBorder) {
+  for (const Side side : all_sides)
+    for (const Rates asked : {Rates{1, 1}, Rates{1, 6}, Rates{5, 1}, Rates{4, 6}}) {
+      PatchShape shape{3, 3, {}, false};
+      shape.collapsed.add(edge_of(side));
+      const Division division = Division::of(shape, asked, {asked.u + 2, asked.v, asked.u, asked.v + 2});
+      const std::vector<Place> at = places(division);
+      std::vector<std::uint32_t> indices(3 * division.triangle_count());
+      ASSERT_EQ(division.write_triangles(0, indices.data()), indices.data() + indices.size());
+      const auto on_side = [&](std::uint32_t k) {
+        const Place p = at[k];
+        return side == Side::v0 ? p.v == 0 : side == Side::v1 ? p.v == 1 : side == Side::u0 ? p.u == 0 : p.u == 1;
+      };
+      const Division whole = Division::of({3, 3, {}, false}, asked, division.border);
+      EXPECT_GE(division.triangle_count() + static_cast<std::size_t>(division.border[static_cast<std::size_t>(side)]), whole.triangle_count());
+      for (std::size_t t = 0; t < indices.size(); t += 3)
+        EXPECT_LT(on_side(indices[t]) + on_side(indices[t + 1]) + on_side(indices[t + 2]), 2);
+    }
+}
+
+TEST(StitchedPatch, ACurveHasNoTriangles) {
+  PatchShape shape{3, 3, {}, true};
+  const Division division = Division::of(shape, {4, 4}, {4, 4, 4, 4});
+  EXPECT_EQ(division.triangle_count(), 0u);
+  EXPECT_EQ(division.vertex_count(), 0u);
+  std::uint32_t untouched = 5;
+  EXPECT_EQ(division.write_triangles(0, &untouched), &untouched);
+  EXPECT_EQ(untouched, 5u);
+}
+
+}  // namespace
+}  // namespace tessera::test
