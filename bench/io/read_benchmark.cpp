@@ -1,6 +1,6 @@
-// Text in memory to a model: read/bpt and read/obj, about 20 MB each, of numbers with 7 digits. Every control point is
-// compared with the number that was written before the rate is reported; memcpy_fraction is the time to copy the text,
-// measured in the same process, over the time to read it.
+// Text in memory to a model: read/bpt, bv, g2, json, obj and rib, about 20 MB each, of numbers with 7 digits. Every
+// control point is compared with the number that was written before the rate is reported; memcpy_fraction is the time to
+// copy the text, measured in the same process, over the time to read it.
 
 #include <benchmark/benchmark.h>
 
@@ -23,23 +23,27 @@ struct Text {
   std::string bytes;
   std::vector<Vec3> points;  ///< as they stand in the text, in order
 
-  void add(double value) {
+  /// The digits of the value; it becomes the number that they mean.
+  void add(double& value) {
     char digits[32];
     const auto [end, error] = std::to_chars(digits, digits + sizeof digits, value, std::chars_format::general, 7);
+    std::from_chars(digits, end, value);
     bytes.append(digits, end);
-    bytes += ' ';
   }
-  /// A point of a wavy field; what is kept is the number that the digits mean.
-  void add_point() {
+  /// A point of a wavy field.
+  void add_point(std::string_view between = " ", std::string_view end = "\n") {
     const double k = static_cast<double>(points.size());
     Vec3 p{std::sin(0.7 * k) * 12, std::cos(1.3 * k) * 150, 1e-3 * k};
-    for (double* const value : {&p.x, &p.y, &p.z}) {
-      const std::size_t begin = bytes.size();
-      add(*value);
-      std::from_chars(bytes.data() + begin, bytes.data() + bytes.size(), *value);
-    }
-    bytes.back() = '\n';
+    add(p.x);
+    bytes += between;
+    add(p.y);
+    bytes += between;
+    add(p.z);
+    bytes += end;
     points.push_back(p);
+  }
+  void add_knots(int count) {
+    for (int k = 0; k < count; ++k) bytes += " " + std::to_string(k);
   }
 };
 
@@ -55,9 +59,74 @@ Text bpt_text() {
   return text;
 }
 
-/// Bicubic B-spline surfaces of 32 x 32 control points.
+/// Bicubic patches in groups of 100.
+Text bv_text() {
+  Text text;
+  for (std::size_t patches = 0; text.bytes.size() < text_size; ++patches) {
+    if (patches % 100 == 0) text.bytes += "Group 0 wave" + std::to_string(patches) + "\n";
+    text.bytes += "5\n3 3\n";
+    for (int k = 0; k < 16; ++k) text.add_point();
+  }
+  return text;
+}
+
+/// Bicubic patches, a row of points a line.
+Text json_text() {
+  Text text{R"({"format": "tessera", "version": 1, "surfaces": [)", {}};
+  while (text.bytes.size() < text_size) {
+    text.bytes += text.points.empty() ? "\n" : ",\n";
+    text.bytes += R"({"kind": "bezier", "points": [)";
+    for (int i = 0; i < 4; ++i) {
+      for (int j = 0; j < 4; ++j) {
+        text.bytes += j == 0 ? "[[" : ", [";
+        text.add_point(", ", "]");
+      }
+      text.bytes += i < 3 ? "],\n" : "]";
+    }
+    text.bytes += "]}";
+  }
+  text.bytes += "]}\n";
+  return text;
+}
+
+/// Control points along each direction of B-spline surfaces.
+constexpr int count = 32;
+
+/// Bicubic B-spline surfaces.
+Text g2_text() {
+  Text text;
+  while (text.bytes.size() < text_size) {
+    text.bytes += "200 1 0 0\n3 0\n";
+    for (int direction = 0; direction < 2; ++direction) {
+      text.bytes += std::to_string(count) + " 4\n";
+      text.add_knots(count + 4);
+      text.bytes += "\n";
+    }
+    for (int k = 0; k < count * count; ++k) text.add_point();
+  }
+  return text;
+}
+
+/// Bicubic patches and meshes of bicubic B-splines.
+Text rib_text() {
+  Text text;
+  const std::string size = std::to_string(count);
+  while (text.bytes.size() < text_size) {
+    for (int patches = 0; patches < 16; ++patches) {
+      text.bytes += "Basis \"bezier\" 3 \"bezier\" 3\nPatch \"bicubic\" \"P\" [";
+      for (int k = 0; k < 16; ++k) text.add_point();
+      text.bytes += "]\n";
+    }
+    text.bytes += "Basis \"b-spline\" 1 \"b-spline\" 1\nPatchMesh \"bicubic\" " + size + " \"nonperiodic\" " + size +
+                  " \"nonperiodic\" \"P\" [";
+    for (int k = 0; k < count * count; ++k) text.add_point();
+    text.bytes += "]\n";
+  }
+  return text;
+}
+
+/// Bicubic B-spline surfaces.
 Text obj_text() {
-  constexpr int count = 32;
   Text text;
   while (text.bytes.size() < text_size) {
     for (int k = 0; k < count * count; ++k) {
@@ -69,21 +138,23 @@ Text obj_text() {
     for (std::size_t k = last - count * count + 1; k <= last; ++k) text.bytes += " " + std::to_string(k);
     for (const char* direction : {"\nparm u", "\nparm v"}) {
       text.bytes += direction;
-      for (int k = 0; k < count + 4; ++k) text.bytes += " " + std::to_string(k);
+      text.add_knots(count + 4);
     }
     text.bytes += "\nend\n";
   }
   return text;
 }
 
-bool holds(const Model& model, const Text& text) {
+/// A patch's points run along v first in its file, unless `patches_transposed`; those of splines along u first in every
+/// file, while v runs first in the surface.
+bool holds(const Model& model, const Text& text, bool patches_transposed) {
   std::size_t begin = 0;
   for (const ModelSurface& surface : model.surfaces) {
     if (const auto* const patch = std::get_if<BezierPatch>(&surface.surface)) {
-      const auto points = patch->points();
-      if (!std::equal(points.begin(), points.end(), text.points.begin() + std::ptrdiff_t(begin))) return false;
-      begin += points.size();
-    } else {  // u runs first in the file, v in the surface
+      for (int i = 0; i <= patch->degree_u(); ++i)
+        for (int j = 0; j <= patch->degree_v(); ++j)
+          if (!((patches_transposed ? patch->point(j, i) : patch->point(i, j)) == text.points[begin++])) return false;
+    } else {
       const auto& spline = std::get<BSplineSurface>(surface.surface);
       for (std::size_t j = 0; j < spline.count_v(); ++j)
         for (std::size_t i = 0; i < spline.count_u(); ++i)
@@ -106,10 +177,15 @@ double seconds_to_copy(const std::string& bytes) {
   return best;
 }
 
-void read(benchmark::State& state, const Text& text, Result<Model> (*parse)(std::string_view, std::string_view)) {
-  const Result<Model> checked = parse(text.bytes, "text");
-  if (!checked) return state.SkipWithError(checked.status().message().c_str());
-  if (!holds(*checked, text)) return state.SkipWithError("the model is not what the text says");
+using Parser = Result<Model> (*)(std::string_view, std::string_view);
+
+void read(benchmark::State& state, Text (*make)(), Parser parse, bool patches_transposed = false) {
+  const Text text = make();
+  {
+    const Result<Model> checked = parse(text.bytes, "text");
+    if (!checked) return state.SkipWithError(checked.status().message().c_str());
+    if (!holds(*checked, text, patches_transposed)) return state.SkipWithError("the model is not what the text says");
+  }
   for (auto _ : state) {
     const Result<Model> model = parse(text.bytes, "text");
     benchmark::DoNotOptimize(model->surfaces.data());
@@ -119,17 +195,12 @@ void read(benchmark::State& state, const Text& text, Result<Model> (*parse)(std:
       benchmark::Counter(seconds_to_copy(text.bytes), benchmark::Counter::kIsIterationInvariantRate);
 }
 
-void read_bpt(benchmark::State& state) {
-  static const Text text = bpt_text();
-  read(state, text, parse_bpt);
-}
-BENCHMARK(read_bpt)->Name("read/bpt")->Unit(benchmark::kMillisecond);
-
-void read_obj(benchmark::State& state) {
-  static const Text text = obj_text();
-  read(state, text, parse_obj_freeform);
-}
-BENCHMARK(read_obj)->Name("read/obj")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(read, bpt, bpt_text, parse_bpt)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(read, bv, bv_text, parse_bv)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(read, g2, g2_text, parse_g2)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(read, json, json_text, parse_json_model)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(read, obj, obj_text, parse_obj_freeform)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(read, rib, rib_text, parse_rib, true)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace tessera::bench

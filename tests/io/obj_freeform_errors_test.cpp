@@ -205,43 +205,6 @@ std::size_t memory_of(const std::string& text, Result<Model> (*parse)(std::strin
   return peak_bytes() - before;
 }
 
-std::string large_obj() {
-  Random random(12);
-  std::string text;
-  for (int k = 0; k < 8; ++k) {
-    const std::vector<Vec3> points = random_cloud(random, 64 * 64);
-    for (const Vec3& p : points) {
-      text += "v";
-      for (const double x : {p.x, p.y, p.z}) text += " " + std::to_string(x);
-      text += "\n";
-    }
-    std::vector<double> knots(68);
-    for (std::size_t i = 0; i < knots.size(); ++i) knots[i] = double(i);
-    text += "cstype bspline\ndeg 3 3\nsurf 3 64 3 64" + range_text(64 * 64, std::size_t(k) * 64 * 64 + 1) + "\nparm u" +
-            numbers_text(knots) + "\nparm v" + numbers_text(knots) + "\nend\n";
-  }
-  return text;
-}
-
-std::string large_bpt() {
-  Random random(13);
-  std::string text = "2000\n";
-  for (int k = 0; k < 2000; ++k) {
-    text += "3 3\n";
-    for (const Vec3& p : random_cloud(random, 16))
-      text += std::to_string(p.x) + " " + std::to_string(p.y) + " " + std::to_string(p.z) + "\n";
-  }
-  return text;
-}
-
-TEST(ObjFreeformErrors, ReadingTakesAtMostEightTimesTheFile) {
-  for (const auto& [text, parse] : {std::pair{large_obj(), &parse_obj_freeform}, {large_bpt(), &parse_bpt}}) {
-    const double factor = 1 + double(memory_of(text, parse)) / double(text.size());  // 1: the text itself
-    RecordProperty(parse == parse_bpt ? "bpt" : "obj", std::to_string(factor));
-    EXPECT_LE(factor, 8);
-  }
-}
-
 TEST(ObjFreeformErrors, SmallFilesCannotAskForMuchMemory) {
   const std::string many = " 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1";
   std::string points, parm, trims;

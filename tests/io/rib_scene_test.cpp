@@ -95,8 +95,7 @@ TEST(RibScene, CopiesAreBoundedByTheFile) {
     text += "ObjectEnd\n";
   }
   const std::string message = error_of(parse_rib, text + "ObjectInstance 30\n");
-  EXPECT_NE(message.find("ObjectInstance: copies of objects would take more than 4 times the file"),
-            std::string::npos)
+  EXPECT_NE(message.find("ObjectInstance: copies of objects would take more than 4 times the file"), std::string::npos)
       << message;
 }
 

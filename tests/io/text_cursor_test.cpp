@@ -154,7 +154,7 @@ TEST(TextCursor, EndsAreNamed) {
   line.skip_space();
   EXPECT_TRUE(line.at_end());
   EXPECT_EQ(line.expected("a number").message(), "t:1: expected a number, found the end of the file");
-  TextCursor separated(",", "t", {.separator = ','});
+  TextCursor separated(",", "t", {.separators = ","});
   EXPECT_EQ(separated.expected("a number").message(), "t:1: expected a number, found \",\"");
 }
 

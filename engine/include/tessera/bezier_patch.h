@@ -56,10 +56,11 @@ class BezierPatch {
   std::size_t index(int i, int j) const { return static_cast<std::size_t>(i * (degree_v_ + 1) + j); }
 
   int degree_u_ = 0, degree_v_ = 0;
-  // Copies share them; so do the pieces of one surface, whose points lie in one array.
+  // Copies share them; the pieces of one surface and the patches of a file have theirs in common arrays.
   std::shared_ptr<const Vec3[]> points_;
   std::shared_ptr<const double[]> weights_;
   friend class PatchPieces;
+  friend class PatchPool;
 };
 
 /// Position and partial derivatives at one (u,v).

@@ -27,6 +27,10 @@ class BSplineSurface {
   static Result<BSplineSurface> polynomial(int degree_u, std::span<const double> knots_u, int degree_v,
                                            std::span<const double> knots_v, std::span<const Vec3> points,
                                            std::optional<Domain> domain = {});
+  /// The same; points that are moved here are kept without a copy.
+  static Result<BSplineSurface> polynomial(int degree_u, std::span<const double> knots_u, int degree_v,
+                                           std::span<const double> knots_v, std::vector<Vec3>&& points,
+                                           std::optional<Domain> domain = {});
   /// `weights`: one finite weight > 0 a point, at least 1e-100 of the largest; zero and negative ones are refused even
   /// where the denominator stays positive, for the reasons that BezierPatch gives: knot insertion and extraction make
   /// such points. If all are equal by == they are dropped. `points` are not premultiplied.
@@ -34,6 +38,10 @@ class BSplineSurface {
   static Result<BSplineSurface> rational(int degree_u, std::span<const double> knots_u, int degree_v,
                                          std::span<const double> knots_v, std::span<const Vec3> points,
                                          std::span<const double> weights, std::optional<Domain> domain = {});
+  /// The same; points and weights that are moved here are kept without a copy.
+  static Result<BSplineSurface> rational(int degree_u, std::span<const double> knots_u, int degree_v,
+                                         std::span<const double> knots_v, std::vector<Vec3>&& points,
+                                         std::vector<double>&& weights, std::optional<Domain> domain = {});
 
   int degree_u() const { return data_->degree_u; }
   int degree_v() const { return data_->degree_v; }

@@ -16,7 +16,10 @@ namespace tessera {
 /// (free-form surfaces), .rib (RenderMan: Patch, PatchMesh, NuPatch). What else a file holds is told in Model::warnings. A
 /// file with an element that is wrong gives no model. Errors: io_error, parse_error, unsupported (no reader for it, or
 /// nothing in the file that it reads); of .json and .obj also those of the surfaces.
-/// Memory stays proportional to the file, whatever counts it states.
+/// Memory, the file's own bytes among it: at most 8 times the file (and 64 KiB) for numbers of a few digits, commonly 2
+/// to 4 times. Where each has one digit and a blank, .json takes 13 times the file, .g2 9, a mesh of .rib 11, one of its
+/// Catmull-Rom meshes 28. An index of .obj becomes a point: up to 20 times if it has one digit, and as often as pieces of a
+/// bmatrix share it, which are a surface each. Whatever counts a file states, it gets no more.
 Result<Model> read_model(const std::filesystem::path& path);
 /// The same from memory; `name` stands for the file in messages.
 Result<Model> parse_bpt(std::string_view text, std::string_view name);

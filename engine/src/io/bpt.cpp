@@ -7,6 +7,7 @@
 
 #include "base/guard.h"
 #include "io/text_cursor.h"
+#include "surface/patch_pool.h"
 #include "tessera/io.h"
 
 namespace tessera {
@@ -73,10 +74,11 @@ Result<Model> parse(std::string_view text, std::string_view name) {
   constexpr std::size_t shortest_patch = 28;
   model.surfaces.reserve(std::min(static_cast<std::size_t>(count), cursor.remaining() / shortest_patch + 1));
   Points points;
+  PatchPool pool;
   for (std::int64_t k = 0; k < count; ++k) {
     Result<BezierPatch> patch = read_patch(cursor, {k, count}, points);
     if (!patch) return patch.status();
-    model.surfaces.push_back({{}, *std::move(patch)});
+    model.surfaces.push_back({{}, pool.placed(*patch)});
   }
   cursor.skip_space();
   if (!cursor.at_end()) return cursor.expected("the end of the file after " + std::to_string(count) + " patches");

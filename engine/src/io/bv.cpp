@@ -6,8 +6,10 @@
 #include <string>
 
 #include "base/guard.h"
+#include "io/make_room.h"
 #include "io/passed_over.h"
 #include "io/text_cursor.h"
+#include "surface/patch_pool.h"
 #include "tessera/io.h"
 
 namespace tessera {
@@ -30,7 +32,8 @@ bool is_group(std::string_view token) {
 
 class BvReader {
  public:
-  BvReader(std::string_view text, std::string_view name) : cursor_(text, name), passed_over_(name) {}
+  BvReader(std::string_view text, std::string_view name)
+      : cursor_(text, name), size_(text.size()), passed_over_(name) {}
 
   Result<Model> read() {
     for (cursor_.skip_space(); !cursor_.at_end(); cursor_.skip_space()) {
@@ -98,7 +101,8 @@ class BvReader {
         rational ? BezierPatch::rational(m, n, points, std::span<const double>(weights_).first(wanted))
                  : BezierPatch::polynomial(m, n, points);
     if (!patch) return cursor_.failure(segment() + ": " + patch.status().message());
-    model_.surfaces.push_back({group_, *std::move(patch)});
+    make_room(model_.surfaces, size_ - cursor_.remaining(), size_);
+    model_.surfaces.push_back({group_, pool_.placed(*patch)});
     return {};
   }
 
@@ -187,8 +191,10 @@ class BvReader {
   }
 
   TextCursor cursor_;
+  std::size_t size_;
   PassedOver passed_over_;
   Model model_;
+  PatchPool pool_;
   Shared<std::string> group_;
   std::size_t segment_ = 0;
   std::array<Vec3, (max_degree + 1) * (max_degree + 1)> points_;

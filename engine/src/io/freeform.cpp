@@ -35,13 +35,14 @@ Homogeneous premultiplied(const Homogeneous& p, bool rational) {
 }
 
 Result<Surface> spline_surface(int degree_u, std::span<const double> knots_u, int degree_v,
-                               std::span<const double> knots_v, const Net& net, const Domain& domain) {
-  const Result<BSplineSurface> surface =
+                               std::span<const double> knots_v, Net net, const Domain& domain) {
+  Result<BSplineSurface> surface =
       net.weights.empty()
-          ? BSplineSurface::polynomial(degree_u, knots_u, degree_v, knots_v, net.points, domain)
-          : BSplineSurface::rational(degree_u, knots_u, degree_v, knots_v, net.points, net.weights, domain);
+          ? BSplineSurface::polynomial(degree_u, knots_u, degree_v, knots_v, std::move(net.points), domain)
+          : BSplineSurface::rational(degree_u, knots_u, degree_v, knots_v, std::move(net.points),
+                                     std::move(net.weights), domain);
   if (!surface) return surface.status();
-  return Surface(*surface);
+  return Surface(*std::move(surface));
 }
 
 Result<Surface> bezier_patch(int degree_u, int degree_v, const Net& net) {
@@ -114,12 +115,12 @@ class SurfaceMaker {
   Result<Surface> whole() const {
     if (type_ == FreeformType::bspline)
       return spline_surface(degree_u_, u_.parm, degree_v_, v_.parm, given_net(), range_);
-    const Net net = type_ == FreeformType::cardinal ? cardinal_net() : given_net();
+    Net net = type_ == FreeformType::cardinal ? cardinal_net() : given_net();
     const Domain whole{u_.parm.front(), u_.parm.back(), v_.parm.front(), v_.parm.back()};
     if (u_.parm.size() == 2 && v_.parm.size() == 2 && whole == Domain{} && range_ == whole)
       return bezier_patch(degree_u_, degree_v_, net);
-    return spline_surface(degree_u_, bezier_knots(degree_u_, u_.parm), degree_v_, bezier_knots(degree_v_, v_.parm), net,
-                          range_);
+    return spline_surface(degree_u_, bezier_knots(degree_u_, u_.parm), degree_v_, bezier_knots(degree_v_, v_.parm),
+                          std::move(net), range_);
   }
 
   Result<std::vector<Surface>> pieces() const {
@@ -160,10 +161,10 @@ class SurfaceMaker {
       if (!patch) return patch.status();
       return Surface(*patch);
     }
-    const Net net = piece_net(i0, j0, basis_u, basis_v);
+    Net net = piece_net(i0, j0, basis_u, basis_v);
     const std::array ends_u{own.u0, own.u1}, ends_v{own.v0, own.v1};
-    return spline_surface(degree_u_, bezier_knots(degree_u_, ends_u), degree_v_, bezier_knots(degree_v_, ends_v), net,
-                          part);
+    return spline_surface(degree_u_, bezier_knots(degree_u_, ends_u), degree_v_, bezier_knots(degree_v_, ends_v),
+                          std::move(net), part);
   }
 
   /// The Bezier points of a piece: C_u G C_v^T, with C as of BasisMatrix::bernstein_coefficient.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/guard.h"
+#include "io/make_room.h"
 #include "io/passed_over.h"
 #include "tessera/io.h"
 
@@ -61,7 +62,8 @@ std::int64_t take_header(TextCursor& cursor, bool alone) {
 
 class G2Reader {
  public:
-  G2Reader(std::string_view text, std::string_view name) : name_(name), cursor_(text, name), passed_over_(name) {}
+  G2Reader(std::string_view text, std::string_view name)
+      : name_(name), cursor_(text, name), size_(text.size()), passed_over_(name) {}
 
   Result<Model> read() {
     for (cursor_.skip_space(); !cursor_.at_end(); cursor_.skip_space()) {
@@ -119,8 +121,13 @@ class G2Reader {
       return {};
     }
     swapped_ += object->swapped;
-    model_.surfaces.push_back({{}, *std::move(object->surface), object->placement});
+    add({{}, *std::move(object->surface), object->placement});
     return {};
+  }
+
+  void add(ModelSurface surface) {
+    make_room(model_.surfaces, size_ - cursor_.remaining(), size_);
+    model_.surfaces.push_back(std::move(surface));
   }
 
   struct Line {
@@ -158,16 +165,18 @@ class G2Reader {
     }
     std::vector<Vec3> points(count_u * count_v);
     std::vector<double> weights(rational ? points.size() : 0);
-    for (std::size_t k = 0; k < points.size() && numbers.ok(); ++k) {
-      const std::size_t at = k % count_u * count_v + k / count_u;  // u runs fastest in the file, v here
-      points[at] = read_point(numbers, dimension, rational ? &weights[at] : nullptr);
-    }
+    for (std::size_t j = 0; j < count_v && numbers.ok(); ++j)  // u runs fastest in the file, v here
+      for (std::size_t i = 0; i < count_u && numbers.ok(); ++i) {
+        const std::size_t at = i * count_v + j;
+        points[at] = read_point(numbers, dimension, rational ? &weights[at] : nullptr);
+      }
     if (!numbers.ok()) return numbers.status();
-    const Result<BSplineSurface> surface =
-        rational ? BSplineSurface::rational(u.degree(), u.knots, v.degree(), v.knots, points, weights)
-                 : BSplineSurface::polynomial(u.degree(), u.knots, v.degree(), v.knots, points);
+    Result<BSplineSurface> surface =
+        rational
+            ? BSplineSurface::rational(u.degree(), u.knots, v.degree(), v.knots, std::move(points), std::move(weights))
+            : BSplineSurface::polynomial(u.degree(), u.knots, v.degree(), v.knots, std::move(points));
     if (!surface) return numbers.failure(surface.status().message());
-    model_.surfaces.push_back({{}, *surface});
+    add({{}, *std::move(surface)});
     return {};
   }
 
@@ -184,6 +193,7 @@ class G2Reader {
 
   std::string_view name_;
   TextCursor cursor_;
+  std::size_t size_;
   TextCursor header_ = cursor_;  // of the object that is being read
   PassedOver passed_over_;
   Model model_;
@@ -192,13 +202,7 @@ class G2Reader {
 
 }  // namespace
 
-double G2Numbers::number(std::string_view what) {
-  double value = 0;
-  if (!ok()) return value;
-  cursor_.skip_space();
-  if (!cursor_.take_finite(value)) status_ = cursor_.expected(std::string(what) + " of " + object_);
-  return value;
-}
+void G2Numbers::fail(std::string_view what) { status_ = cursor_.expected(std::string(what) + " of " + object_); }
 
 double G2Numbers::positive(std::string_view what) {
   if (!ok()) return 1;

@@ -31,7 +31,13 @@ class G2Numbers {
   G2Numbers(TextCursor& cursor, const TextCursor& header, std::string object)
       : cursor_(cursor), header_(header), object_(std::move(object)) {}
 
-  double number(std::string_view what);
+  double number(std::string_view what) {
+    double value = 0;
+    if (!ok()) return value;
+    cursor_.skip_space();
+    if (!cursor_.take_finite(value)) fail(what);
+    return value;
+  }
   double positive(std::string_view what);
   std::int64_t integer(std::string_view what, std::int64_t low, std::int64_t high);
   Vec3 vector(std::string_view what);
@@ -42,6 +48,8 @@ class G2Numbers {
   TextCursor& cursor() { return cursor_; }
 
  private:
+  void fail(std::string_view what);
+
   TextCursor& cursor_;
   TextCursor header_;
   std::string object_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
@@ -67,19 +68,19 @@ class JsonBuilder : public nlohmann::json_sax<nlohmann::json> {
     return status_;
   }
 
-  bool null() override { return add(JsonKind::null, 0); }
-  bool boolean(bool value) override { return add(JsonKind::boolean, value ? 1 : 0); }
-  bool number_integer(number_integer_t value) override { return add(JsonKind::number, static_cast<double>(value)); }
-  bool number_unsigned(number_unsigned_t value) override { return add(JsonKind::number, static_cast<double>(value)); }
-  bool number_float(number_float_t value, const string_t&) override { return add(JsonKind::number, value); }
+  bool null() override { return add(JsonKind::null, {.number = 0}); }
+  bool boolean(bool value) override { return add(JsonKind::boolean, {.number = value ? 1.0 : 0.0}); }
+  bool number_integer(number_integer_t value) override { return add_number(static_cast<double>(value)); }
+  bool number_unsigned(number_unsigned_t value) override { return add_number(static_cast<double>(value)); }
+  bool number_float(number_float_t value, const string_t&) override { return add_number(value); }
   bool string(string_t& value) override {
     document_.strings_.push_back(std::move(value));
-    return add(JsonKind::string, static_cast<double>(document_.strings_.size() - 1));
+    return add(JsonKind::string, {.string = document_.strings_.size() - 1});
   }
   bool binary(binary_t&) override { return false; }  // not in texts
   bool key(string_t& value) override {
     document_.strings_.push_back(std::move(value));
-    append(JsonKind::string, static_cast<double>(document_.strings_.size() - 1));  // counted with its value
+    append(JsonKind::string, {.string = document_.strings_.size() - 1});  // counted with its value
     return true;
   }
   bool start_object(std::size_t) override { return open(JsonKind::object); }
@@ -92,41 +93,42 @@ class JsonBuilder : public nlohmann::json_sax<nlohmann::json> {
   }
 
  private:
-  using Node = JsonDocument::Node;
+  using Content = JsonDocument::Content;
 
   Status failure(std::string_view sentence) const {
     return {StatusCode::parse_error, document_.line_of(read_) + std::string(sentence)};
   }
-  void append(JsonKind kind, double number) {
-    document_.nodes_.push_back({kind, read_, document_.nodes_.size() + 1, number});
+  void append(JsonKind kind, Content content) {
+    document_.nodes_.push_back({kind, static_cast<std::uint32_t>(read_), content});
   }
-  bool add(JsonKind kind, double number) {
-    if (!open_.empty()) ++document_.nodes_[open_.back()].number;
-    append(kind, number);
+  bool add(JsonKind kind, Content content) {
+    if (!open_.empty()) ++document_.nodes_[open_.back()].content.children.count;
+    append(kind, content);
     return true;
   }
+  bool add_number(double value) { return add(JsonKind::number, {.number = value}); }
   bool open(JsonKind kind) {
     if (open_.size() == JsonDocument::largest_depth) {
       status_ = failure("nested more than " + std::to_string(JsonDocument::largest_depth) + " deep");
       return false;
     }
-    add(kind, 0);
+    add(kind, {.children = {0, 0}});
     open_.push_back(document_.nodes_.size() - 1);
     return true;
   }
   bool close() {
-    document_.nodes_[open_.back()].end = document_.nodes_.size();
+    document_.nodes_[open_.back()].content.children.end = static_cast<std::uint32_t>(document_.nodes_.size());
     open_.pop_back();
     return true;
   }
   /// Sorted, since a hostile object may have a million keys.
   bool has_distinct_keys(std::size_t object) {
-    const std::vector<Node>& nodes = document_.nodes_;
+    const auto& nodes = document_.nodes_;
     const auto text_of = [&](std::size_t node) -> const std::string& {
-      return document_.strings_[static_cast<std::size_t>(nodes[node].number)];
+      return document_.strings_[nodes[node].content.string];
     };
     std::vector<std::size_t> keys;
-    for (std::size_t key = object + 1; key < nodes.size(); key = nodes[key + 1].end) keys.push_back(key);
+    for (std::size_t key = object + 1; key < nodes.size(); key = document_.behind(key + 1)) keys.push_back(key);
     std::stable_sort(keys.begin(), keys.end(), [&](auto a, auto b) { return text_of(a) < text_of(b); });
     const auto twice =
         std::adjacent_find(keys.begin(), keys.end(), [&](auto a, auto b) { return text_of(a) == text_of(b); });
@@ -144,6 +146,8 @@ class JsonBuilder : public nlohmann::json_sax<nlohmann::json> {
 };
 
 Result<JsonDocument> JsonDocument::parse(std::string_view text, std::string_view name) {
+  if (text.size() > std::numeric_limits<std::uint32_t>::max())
+    return Status(StatusCode::unsupported, std::string(name) + ": JSON of more than 4 GB is not read");
   JsonDocument document(text, name);
   const Status status = JsonBuilder(document).run();
   if (!status.ok()) return status;
@@ -162,13 +166,13 @@ std::string JsonDocument::pointer_to(std::size_t node) const {
     const bool is_object = nodes_[at].kind == JsonKind::object;
     std::size_t child = at + 1, index = 0;
     std::string name;
-    for (;; child = nodes_[child].end, ++index) {
+    for (;; child = behind(child), ++index) {
       if (is_object) {
-        name = strings_[static_cast<std::size_t>(nodes_[child].number)];
+        name = strings_[nodes_[child].content.string];
         if (child == node) return pointer;  // a key: the place of its object
         ++child;
       }
-      if (node < nodes_[child].end) break;
+      if (node < behind(child)) break;
     }
     if (is_object) {
       const std::string quoted = quote(name);

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -21,23 +22,31 @@ struct JsonFailure {
 
 class JsonValue;
 
-/// A text as a list of values, parents before children. Memory: 32 bytes a value and the strings. Nested 64 deep at
-/// most. Views the text, which must outlive it.
+/// A text as a list of values, parents before children. Memory: 16 bytes a value and the strings. Nested 64 deep at
+/// most, of at most 2^32 - 1 bytes. Views the text, which must outlive it.
 class JsonDocument {
  public:
   static constexpr std::size_t largest_depth = 64;
   /// `name` stands for the file in messages. Errors: parse_error, with the line (no JSON, no UTF-8, a number beyond
-  /// double, a key that stands twice in an object, nesting too deep).
+  /// double, a key that stands twice in an object, nesting too deep), unsupported (too long).
   static Result<JsonDocument> parse(std::string_view text, std::string_view name);
 
   JsonValue root() const;
 
  private:
+  struct Children {
+    std::uint32_t count, end;  // elements or members; the value behind this one and its children
+  };
+  union Content {
+    double number;  // 0 or 1 of a boolean
+    std::size_t string;
+    Children children;
+  };
   struct Node {
-    JsonKind kind = JsonKind::null;
-    std::size_t offset = 0;  // behind its first byte in the text
-    std::size_t end = 0;     // the value behind this one and its children
-    double number = 0;       // or the index of a string, the count of elements or members, 0 or 1
+    JsonKind kind;
+    std::uint32_t offset;  // behind its first byte in the text
+    Content content;
+    bool has_children() const { return kind == JsonKind::array || kind == JsonKind::object; }
   };
   JsonDocument(std::string_view text, std::string_view name) : text_(text), name_(name) {}
   std::string line_of(std::size_t offset) const;
@@ -45,7 +54,10 @@ class JsonDocument {
 
   std::string_view text_;
   std::string name_;
-  std::vector<Node> nodes_;  // of an object: key, value, key, value
+  std::size_t behind(std::size_t node) const {
+    return nodes_[node].has_children() ? nodes_[node].content.children.end : node + 1;
+  }
+  std::deque<Node> nodes_;  // of an object: key, value, key, value; a deque takes no second place to grow
   std::vector<std::string> strings_;
   friend class JsonBuilder;
   friend class JsonValue;
@@ -57,9 +69,11 @@ class JsonValue {
   JsonKind kind() const { return node().kind; }
   bool is(JsonKind kind) const { return node().kind == kind; }
   // What the kind has.
-  double number() const { return node().number; }
-  const std::string& string() const { return document_->strings_[static_cast<std::size_t>(node().number)]; }
-  std::size_t size() const { return static_cast<std::size_t>(node().number); }  ///< elements or members
+  double number() const { return node().content.number; }
+  const std::string& string() const { return document_->strings_[node().content.string]; }
+  std::size_t size() const { return node().content.children.count; }  ///< elements or members
+  /// Values within this one, itself included.
+  std::size_t span() const { return document_->behind(at_) - at_; }
 
   /// The elements of an array; keys and values in turn of an object.
   class Iterator {
@@ -67,7 +81,7 @@ class JsonValue {
     Iterator(const JsonDocument* document, std::size_t at) : document_(document), at_(at) {}
     JsonValue operator*() const { return {document_, at_}; }
     Iterator& operator++() {
-      at_ = document_->nodes_[at_].end;
+      at_ = document_->behind(at_);
       return *this;
     }
     bool operator!=(const Iterator& other) const { return at_ != other.at_; }
@@ -77,7 +91,7 @@ class JsonValue {
     std::size_t at_;
   };
   Iterator begin() const { return {document_, at_ + 1}; }
-  Iterator end() const { return {document_, node().end}; }
+  Iterator end() const { return {document_, document_->behind(at_)}; }
   /// The member of an object. Linear in their count.
   std::optional<JsonValue> find(std::string_view key) const;
 

@@ -77,7 +77,10 @@ Net<T> read_net(const JsonValue& value, std::string_view what, Read&& read) {
   Net<T> net;
   for (const JsonValue row : array(value, "rows of " + name)) {
     const std::size_t count = array(row, "a row of " + name).size();
-    if (net.rows == 0) net.columns = count;
+    if (net.rows == 0) {
+      net.columns = count;
+      net.elements.reserve(std::min(value.size() * count, value.span()));
+    }
     if (count != net.columns)
       row.fail("row " + std::to_string(net.rows) + " has " + std::to_string(count) + " " + name + ", row 0 has " +
                std::to_string(net.columns));

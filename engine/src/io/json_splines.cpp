@@ -71,17 +71,17 @@ CircleArcs arcs_of(const Fields& fields) { return fields.get("arcs", CircleArcs:
 
 Surface read_b_spline_surface(const JsonValue& value) {
   const SurfaceFields fields(value, {"degree", "knots_u", "knots_v", "points", "domain"});
-  const SplineNet net(fields);
-  return made(value,
-              BSplineSurface::polynomial(net.degree_u, net.knots_u, net.degree_v, net.knots_v, net.points, net.domain));
+  SplineNet net(fields);
+  return made(value, BSplineSurface::polynomial(net.degree_u, net.knots_u, net.degree_v, net.knots_v,
+                                                std::move(net.points), net.domain));
 }
 
 Surface read_nurbs_surface(const JsonValue& value) {
   const SurfaceFields fields(value, {"degree", "knots_u", "knots_v", "points", "weights", "domain"});
   fields.at("weights");
-  const SplineNet net(fields);
-  return made(value, BSplineSurface::rational(net.degree_u, net.knots_u, net.degree_v, net.knots_v, net.points,
-                                              net.weights, net.domain));
+  SplineNet net(fields);
+  return made(value, BSplineSurface::rational(net.degree_u, net.knots_u, net.degree_v, net.knots_v,
+                                              std::move(net.points), std::move(net.weights), net.domain));
 }
 
 Surface read_sphere(const JsonValue& value) {

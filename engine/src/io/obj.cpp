@@ -41,7 +41,7 @@ using Corner = std::array<std::uint32_t, 3>;
 class ObjReader {
  public:
   ObjReader(std::string_view text, std::string_view name)
-      : cursor_(text, name, {.separator = '/', .continuation = '\\'}) {}
+      : cursor_(text, name, {.separators = "/", .continuation = '\\'}) {}
 
   Result<Mesh> read() {
     for (cursor_.skip_space(); !cursor_.at_end(); cursor_.skip_space()) {

@@ -13,6 +13,7 @@
 
 #include "base/guard.h"
 #include "io/freeform.h"
+#include "io/make_room.h"
 #include "io/obj_index.h"
 #include "io/obj_notes.h"
 #include "io/obj_trims.h"
@@ -40,7 +41,7 @@ bool begins_with_letter(std::string_view word) {
 class ObjFreeformReader {
  public:
   ObjFreeformReader(std::string_view text, std::string_view name)
-      : cursor_(text, name, {.separator = '/', .continuation = '\\'}), curves_(text.size()) {}
+      : cursor_(text, name, {.separators = "/", .continuation = '\\'}), size_(text.size()), curves_(text.size()) {}
 
   Result<Model> read() {
     for (cursor_.skip_space(); !cursor_.at_end(); cursor_.skip_space()) {
@@ -102,6 +103,7 @@ class ObjFreeformReader {
     if (count == 5) return cursor_.expected(what);
     if (vertices_.size() == std::numeric_limits<std::uint32_t>::max())
       return cursor_.failure("there are more vertices than 32-bit indices can tell apart");
+    make_room(vertices_, size_ - cursor_.remaining(), size_);
     vertices_.push_back({p[0], p[1], p[2], count == 4 || count == 7 ? p[3] : 1});
     return {};
   }
@@ -114,6 +116,7 @@ class ObjFreeformReader {
       return cursor_.failure("there are more vp lines than 32-bit indices can tell apart");
     // A missing second coordinate does for special points; a curve that refers to such a point is refused.
     const double v = count > 1 ? p[1] : std::numeric_limits<double>::quiet_NaN();
+    make_room(parameter_vertices_, size_ - cursor_.remaining(), size_);
     parameter_vertices_.push_back({p[0], v, 0, count > 2 ? p[2] : 1});
     return {};
   }
@@ -329,6 +332,7 @@ class ObjFreeformReader {
     for (std::size_t k = 0; k < surfaces->size(); ++k) {
       const Shared<std::string> piece =
           surfaces->size() == 1 ? surface_name_ : Shared<std::string>(name + "[" + std::to_string(k) + "]");
+      make_room(model_.surfaces, size_ - cursor_.remaining(), size_);
       model_.surfaces.push_back({piece, std::move((*surfaces)[k]), {}, trims});
     }
     return {};
@@ -358,6 +362,7 @@ class ObjFreeformReader {
   }
 
   TextCursor cursor_, place_ = cursor_;
+  std::size_t size_;
   std::vector<Homogeneous> vertices_, parameter_vertices_;
   std::size_t texture_vertices_ = 0, normals_ = 0;
   FreeformState state_;

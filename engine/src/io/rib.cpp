@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "base/guard.h"
+#include "io/make_room.h"
 #include "io/passed_over.h"
 #include "io/rib_lexer.h"
 #include "io/rib_state.h"
@@ -84,7 +85,11 @@ using Object = std::vector<ModelSurface>;
 class RibReader {
  public:
   RibReader(std::string_view text, std::string_view name)
-      : name_(name), lexer_(text, name), start_(lexer_.place()), copies_left_(4 * text.size() + (1 << 20)) {}
+      : name_(name),
+        size_(text.size()),
+        lexer_(text, name),
+        start_(lexer_.place()),
+        copies_left_(4 * text.size() + (1 << 20)) {}
 
   Result<Model> read() {
     while (!lexer_.at_end()) {
@@ -281,6 +286,7 @@ class RibReader {
   Status add(Result<std::vector<Surface>> read) {
     if (!read) return read.status();
     for (Surface& surface : *read) {
+      make_room(surfaces(), size_ - lexer_.place().remaining(), size_);
       surfaces().push_back({stack_.state().name, std::move(surface), stack_.state().transform});
     }
     return {};
@@ -347,6 +353,7 @@ class RibReader {
   }};
 
   std::string_view name_;
+  std::size_t size_;
   RibLexer lexer_;
   TextCursor start_;  // of the request that is being read
   std::string_view request_;

@@ -8,18 +8,9 @@ namespace {
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 
-bool ends_word(char c) {
-  return c == ' ' || c == '\n' || c == '\t' || c == '\r' || c == '[' || c == ']' || c == '"' || c == '#';
-}
-
 bool begins_number(char c) { return (c >= '0' && c <= '9') || c == '+' || c == '-' || c == '.'; }
 
 }  // namespace
-
-char RibLexer::next() {
-  cursor_.skip_space();
-  return cursor_.at_end() ? '\0' : *cursor_.position();
-}
 
 bool RibLexer::at_end() {
   cursor_.skip_space();
@@ -35,12 +26,6 @@ bool RibLexer::at_value() {
   return c == '"' || c == '[' || begins_number(c);
 }
 
-std::string_view RibLexer::word() const {
-  const char *const begin = cursor_.position(), *const end = begin + cursor_.remaining(), *at = begin;
-  while (at != end && !ends_word(*at)) ++at;
-  return {begin, static_cast<std::size_t>(at - begin)};
-}
-
 std::string_view RibLexer::peek() const {
   RibLexer ahead = *this;
   if (ahead.at_string()) {
@@ -48,7 +33,7 @@ std::string_view RibLexer::peek() const {
     if (!ahead.skip_string().ok()) return {};
     return {begin, static_cast<std::size_t>(ahead.cursor_.position() - begin)};
   }
-  return ahead.word();
+  return ahead.cursor_.peek_token();
 }
 
 Status RibLexer::take_request(std::string_view& request) {
@@ -60,7 +45,7 @@ Status RibLexer::take_request(std::string_view& request) {
     }
     return cursor_.expected("a request (a word without quotes)");
   }
-  request = word();
+  request = cursor_.peek_token();
   cursor_.skip(request);
   return {};
 }
@@ -90,15 +75,6 @@ Status RibLexer::take_string(std::string_view what, std::string_view& value) {
   value = {begin, static_cast<std::size_t>(cursor_.position() - 1 - begin)};
   if (bracket && (next() != ']' || !cursor_.take(']'))) return cursor_.expected("] after one string");
   return {};
-}
-
-bool RibLexer::take_word(double& value) {
-  cursor_.skip_space();
-  const std::string_view token = word();
-  TextCursor number(token, {}, {.comment = 0});
-  if (token.empty() || !number.take_finite(value)) return false;
-  cursor_.skip(token);
-  return true;
 }
 
 Status RibLexer::take_number(std::string_view what, double& value) {
@@ -148,7 +124,7 @@ Status RibLexer::take_array(std::string_view what, std::vector<double>& values, 
 Status RibLexer::skip_value() {
   if (at_string()) return skip_string();
   if (next() != '[') {
-    const std::string_view token = word();
+    const std::string_view token = cursor_.peek_token();
     if (!begins_number(next())) return cursor_.expected("a value");
     cursor_.skip(token);
     return {};
@@ -160,7 +136,7 @@ Status RibLexer::skip_value() {
       Status status = skip_string();
       if (!status.ok()) return status;
     } else {
-      const std::string_view token = word();
+      const std::string_view token = cursor_.peek_token();
       if (token.empty()) return cursor_.expected("a number, a string or ]");
       cursor_.skip(token);
     }

@@ -14,7 +14,7 @@ namespace tessera {
 class RibLexer {
  public:
   /// `name` stands for the file in messages.
-  RibLexer(std::string_view text, std::string_view name) : cursor_(text, name) {}
+  RibLexer(std::string_view text, std::string_view name) : cursor_(text, name, {.separators = "[]\""}) {}
 
   // What stands next, past white space and comments.
   bool at_end();
@@ -44,10 +44,14 @@ class RibLexer {
   const TextCursor& place() const { return cursor_; }
 
  private:
-  char next();  // 0 at the end
-  /// The token up to a bracket or a quote.
-  std::string_view word() const;
-  bool take_word(double& value);
+  char next() {  // 0 at the end
+    cursor_.skip_space();
+    return cursor_.at_end() ? '\0' : *cursor_.position();
+  }
+  bool take_word(double& value) {
+    cursor_.skip_space();
+    return cursor_.take_finite(value);
+  }
   Status skip_string();
 
   TextCursor cursor_;

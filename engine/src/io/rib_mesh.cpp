@@ -151,51 +151,86 @@ Line spline_line(const SplineDirection& direction, const Line& line) {
   return out;
 }
 
-/// Both directions in turn: [i][j] in, [i][j] out.
-std::vector<Homogeneous> spline_points(const SplineDirection& u, const SplineDirection& v,
-                                       const std::vector<Homogeneous>& mesh) {
-  std::vector<Homogeneous> rows, out;  // along v first
-  std::size_t columns = 0;
-  for (std::size_t i = 0; i < u.points; ++i) {
-    const auto begin = mesh.begin() + static_cast<std::ptrdiff_t>(i * v.points);
-    const Line line = spline_line(v, Line(begin, begin + static_cast<std::ptrdiff_t>(v.points)));
-    columns = line.size();
-    rows.insert(rows.end(), line.begin(), line.end());
-  }
-  for (std::size_t j = 0; j < columns; ++j) {
-    Line line;
-    for (std::size_t i = 0; i < u.points; ++i) line.push_back(rows[i * columns + j]);
-    line = spline_line(u, line);
-    if (out.empty()) out.resize(line.size() * columns);
-    for (std::size_t i = 0; i < line.size(); ++i) out[i * columns + j] = line[i];
-  }
-  return out;
+/// Whether the mesh's points are the control points along this direction, in their order.
+bool keeps_points(const SplineDirection& d) {
+  const bool same = d.form == Form::linear || d.form == Form::bezier || d.form == Form::b_spline;
+  return same && d.knots.size() == d.points + static_cast<std::size_t>(d.degree()) + 1;
 }
 
-struct Weighted {
+/// Control points [i][j] and their weights, none of a polynomial net; filled one by one, in any order.
+class Weighted {
+ public:
+  Weighted(std::size_t count, bool rational) : points(count), weights(rational ? count : 0) {}
+
+  void set(std::size_t k, const Homogeneous& p) {
+    if (weights.empty()) {
+      points[k] = p.vector();
+    } else if (p.w > 0) {
+      points[k] = p.project();
+      weights[k] = p.w;
+    } else {
+      if (k < bad_) bad_weight_ = p.w;
+      bad_ = std::min(bad_, k);
+    }
+  }
+  Status status() const {
+    if (bad_ >= points.size()) return {};
+    return {StatusCode::invalid_weight,
+            "weight " + std::to_string(bad_weight_) + " of control point " + std::to_string(bad_) + " is not above 0",
+            static_cast<std::ptrdiff_t>(bad_)};
+  }
+
   std::vector<Vec3> points;
   std::vector<double> weights;
+
+ private:
+  std::size_t bad_ = static_cast<std::size_t>(-1);  // the first one whose weight is not above 0
+  double bad_weight_ = 0;
 };
 
-/// Divides by the weights; polynomial nets have none.
-Result<Weighted> divide(const RibNet& net) {
-  Weighted weighted;
-  weighted.points.reserve(net.points.size());
-  if (net.rational) weighted.weights.reserve(net.points.size());
-  for (std::size_t k = 0; k < net.points.size(); ++k) {
-    const Homogeneous& p = net.points[k];
-    if (net.rational && !(p.w > 0)) {
-      return Status(StatusCode::invalid_weight,
-                    "weight " + std::to_string(p.w) + " of control point " + std::to_string(k) + " is not above 0",
-                    static_cast<std::ptrdiff_t>(k));
-    }
-    weighted.points.push_back(net.rational ? p.project() : p.vector());
-    if (net.rational) weighted.weights.push_back(p.w);
-  }
+/// The net as it is. Error: invalid_weight.
+Result<Weighted> divided(RibNet net) {
+  Weighted weighted(net.points.size(), net.rational);
+  for (std::size_t k = 0; k < net.points.size(); ++k) weighted.set(k, net.points[k]);
+  if (Status status = weighted.status(); !status.ok()) return status;
   return weighted;
 }
 
-Result<std::vector<Surface>> separate_patches(const SplineDirection& u, const SplineDirection& v, const RibNet& net) {
+/// The control points [i][j] of a mesh [i][j]: along v, then along u. Error: invalid_weight.
+Result<Weighted> spline_points(const SplineDirection& u, const SplineDirection& v, RibNet mesh) {
+  if (keeps_points(u) && keeps_points(v)) return divided(std::move(mesh));
+  std::vector<Homogeneous> rows;
+  std::size_t columns = 0;
+  for (std::size_t i = 0; i < u.points; ++i) {
+    const auto begin = mesh.points.begin() + static_cast<std::ptrdiff_t>(i * v.points);
+    const Line line = spline_line(v, Line(begin, begin + static_cast<std::ptrdiff_t>(v.points)));
+    columns = line.size();
+    rows.reserve(u.points * columns);
+    rows.insert(rows.end(), line.begin(), line.end());
+  }
+  mesh.points = std::vector<Homogeneous>();  // {} would keep the memory
+  std::optional<Weighted> out;
+  Line column(u.points);
+  for (std::size_t j = 0; j < columns; ++j) {
+    for (std::size_t i = 0; i < u.points; ++i) column[i] = rows[i * columns + j];
+    const Line line = spline_line(u, column);
+    if (!out) out.emplace(line.size() * columns, mesh.rational);
+    for (std::size_t i = 0; i < line.size(); ++i) out->set(i * columns + j, line[i]);
+  }
+  if (Status status = out->status(); !status.ok()) return status;
+  return *std::move(out);
+}
+
+Result<BSplineSurface> spline_surface(int degree_u, std::span<const double> knots_u, int degree_v,
+                                      std::span<const double> knots_v, Weighted net,
+                                      std::optional<Domain> domain = {}) {
+  if (net.weights.empty())
+    return BSplineSurface::polynomial(degree_u, knots_u, degree_v, knots_v, std::move(net.points), domain);
+  return BSplineSurface::rational(degree_u, knots_u, degree_v, knots_v, std::move(net.points), std::move(net.weights),
+                                  domain);
+}
+
+Result<std::vector<Surface>> separate_patches(const SplineDirection& u, const SplineDirection& v, const Weighted& net) {
   const std::size_t columns = 4 * v.patches;
   const auto knots = [](std::size_t k, std::size_t n) {
     const double begin = static_cast<double>(k) / static_cast<double>(n),
@@ -205,11 +240,13 @@ Result<std::vector<Surface>> separate_patches(const SplineDirection& u, const Sp
   std::vector<Surface> surfaces;
   for (std::size_t a = 0; a < u.patches; ++a) {
     for (std::size_t b = 0; b < v.patches; ++b) {
-      RibNet patch{.points = {}, .rational = net.rational};
+      Weighted patch(16, !net.weights.empty());
       for (std::size_t k = 0; k < 16; ++k) {
-        patch.points.push_back(net.points[(4 * a + k / 4) * columns + 4 * b + k % 4]);
+        const std::size_t at = (4 * a + k / 4) * columns + 4 * b + k % 4;
+        patch.points[k] = net.points[at];
+        if (!net.weights.empty()) patch.weights[k] = net.weights[at];
       }
-      Result<BSplineSurface> surface = spline_surface(3, knots(a, u.patches), 3, knots(b, v.patches), patch);
+      Result<BSplineSurface> surface = spline_surface(3, knots(a, u.patches), 3, knots(b, v.patches), std::move(patch));
       if (!surface) return surface.status();
       surfaces.push_back(*std::move(surface));
     }
@@ -217,11 +254,9 @@ Result<std::vector<Surface>> separate_patches(const SplineDirection& u, const Sp
   return surfaces;
 }
 
-Result<Surface> single_patch(int degree_u, int degree_v, const RibNet& net) {
-  const Result<Weighted> w = divide(net);
-  if (!w) return w.status();
-  Result<BezierPatch> patch = net.rational ? BezierPatch::rational(degree_u, degree_v, w->points, w->weights)
-                                           : BezierPatch::polynomial(degree_u, degree_v, w->points);
+Result<Surface> single_patch(int degree_u, int degree_v, const Weighted& net) {
+  Result<BezierPatch> patch = net.weights.empty() ? BezierPatch::polynomial(degree_u, degree_v, net.points)
+                                                  : BezierPatch::rational(degree_u, degree_v, net.points, net.weights);
   if (!patch) return patch.status();
   return Surface(*std::move(patch));
 }
@@ -274,12 +309,10 @@ Result<std::vector<double>> height_field_parameters(const RibDirection& directio
 }
 
 Result<BSplineSurface> spline_surface(int degree_u, std::span<const double> knots_u, int degree_v,
-                                      std::span<const double> knots_v, const RibNet& net,
-                                      std::optional<Domain> domain) {
-  const Result<Weighted> w = divide(net);
-  if (!w) return w.status();
-  if (!net.rational) return BSplineSurface::polynomial(degree_u, knots_u, degree_v, knots_v, w->points, domain);
-  return BSplineSurface::rational(degree_u, knots_u, degree_v, knots_v, w->points, w->weights, domain);
+                                      std::span<const double> knots_v, RibNet net, std::optional<Domain> domain) {
+  Result<Weighted> weighted = divided(std::move(net));
+  if (!weighted) return weighted.status();
+  return spline_surface(degree_u, knots_u, degree_v, knots_v, *std::move(weighted), domain);
 }
 
 Result<std::vector<Surface>> mesh_surfaces(const RibDirection& u, const RibDirection& v, RibNet net) {
@@ -287,13 +320,14 @@ Result<std::vector<Surface>> mesh_surfaces(const RibDirection& u, const RibDirec
   const Result<SplineDirection> along_u = make_direction(u, separate), along_v = make_direction(v, separate);
   if (!along_u) return along_u.status();
   if (!along_v) return along_v.status();
-  net.points = spline_points(*along_u, *along_v, net.points);
-  if (separate) return separate_patches(*along_u, *along_v, net);
+  Result<Weighted> points = spline_points(*along_u, *along_v, std::move(net));
+  if (!points) return points.status();
+  if (separate) return separate_patches(*along_u, *along_v, *points);
   const auto is_single = [](const SplineDirection& d) { return d.patches == 1 && d.form != Form::b_spline; };
   Result<Surface> surface = [&]() -> Result<Surface> {
-    if (is_single(*along_u) && is_single(*along_v)) return single_patch(along_u->degree(), along_v->degree(), net);
+    if (is_single(*along_u) && is_single(*along_v)) return single_patch(along_u->degree(), along_v->degree(), *points);
     Result<BSplineSurface> spline =
-        spline_surface(along_u->degree(), along_u->knots, along_v->degree(), along_v->knots, net);
+        spline_surface(along_u->degree(), along_u->knots, along_v->degree(), along_v->knots, *std::move(points));
     if (!spline) return spline.status();
     return Surface(*std::move(spline));
   }();

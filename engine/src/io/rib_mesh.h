@@ -52,7 +52,6 @@ Result<std::vector<Surface>> mesh_surfaces(const RibDirection& u, const RibDirec
 
 /// A B-spline surface of a net, with the knots' own parameters. Errors: invalid_weight, and those of the surface.
 Result<BSplineSurface> spline_surface(int degree_u, std::span<const double> knots_u, int degree_v,
-                                      std::span<const double> knots_v, const RibNet& net,
-                                      std::optional<Domain> domain = {});
+                                      std::span<const double> knots_v, RibNet net, std::optional<Domain> domain = {});
 
 }  // namespace tessera

@@ -87,7 +87,7 @@ Result<std::vector<Surface>> read_mesh(const RibSurfaceText& text, const RibDire
     if (!x || !y) return text.failure((x ? y : x).status().message());
   }
   RibNet net = make_net(positions, count_u, count_v, *x, *y);
-  positions.values = {};
+  positions.values = std::vector<double>();  // {} would keep the memory
   Result<std::vector<Surface>> surfaces = mesh_surfaces(u, v, std::move(net));
   return surfaces ? std::move(surfaces) : text.failure(surfaces.status().message());
 }
@@ -160,10 +160,10 @@ Result<std::vector<Surface>> read_nu_patch(const RibSurfaceText& text) {
   status = read_positions(text, count_u * count_v, positions);
   if (!status.ok()) return status;
   const bool field = positions.name == "Pz";
-  const RibNet net = make_net(positions, count_u, count_v, field ? u.greville() : std::vector<double>(),
-                              field ? v.greville() : std::vector<double>());
-  positions.values = {};
-  Result<BSplineSurface> surface = spline_surface(u.degree(), u.knots, v.degree(), v.knots, net,
+  RibNet net = make_net(positions, count_u, count_v, field ? u.greville() : std::vector<double>(),
+                        field ? v.greville() : std::vector<double>());
+  positions.values = std::vector<double>();  // {} would keep the memory
+  Result<BSplineSurface> surface = spline_surface(u.degree(), u.knots, v.degree(), v.knots, std::move(net),
                                                   Domain{u.range[0], u.range[1], v.range[0], v.range[1]});
   if (!surface) return text.failure(surface.status().message());
   std::vector<Surface> surfaces;

@@ -104,7 +104,7 @@ bool TextCursor::take_signed(std::int64_t& value) {
 Status TextCursor::expected(std::string_view what) const {
   std::string sentence = "expected " + std::string(what) + ", found ";
   std::string_view token = peek_token();
-  if (token.empty() && at_ != end_ && *at_ != 0 && *at_ == syntax_.separator) token = {at_, 1};
+  if (token.empty() && at_ != end_ && is_separator(*at_)) token = {at_, 1};
   if (!token.empty()) {
     sentence += quote(token);
   } else {

@@ -12,9 +12,9 @@ namespace tessera {
 
 /// What a text format means by its characters. 0: there is none of the kind.
 struct TextSyntax {
-  char comment = '#';     ///< begins a comment that runs to the end of the line
-  char separator = 0;     ///< ends a token, as blanks do, and is a token of its own
-  char continuation = 0;  ///< at the end of a line, it and the end count as a blank
+  char comment = '#';                ///< begins a comment that runs to the end of the line
+  std::string_view separators = {};  ///< each ends a token, as blanks do, and is a token of its own
+  char continuation = 0;             ///< at the end of a line, it and the end count as a blank
 };
 
 /// A place in a text. Blanks are spaces, tabs and carriage returns, so that CRLF ends a line like LF. A byte order mark
@@ -89,10 +89,11 @@ class TextCursor {
 
  private:
   static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+  bool is_separator(char c) const { return syntax_.separators.find(c) != std::string_view::npos; }
   bool ends_token(const char* at) const {
     if (at == end_ || is_blank(*at) || *at == '\n') return true;
     if (*at == 0) return false;  // what the syntax has not
-    return *at == syntax_.comment || *at == syntax_.separator || (*at == syntax_.continuation && continues(at));
+    return *at == syntax_.comment || is_separator(*at) || (*at == syntax_.continuation && continues(at));
   }
   /// Whether nothing but blanks stands between a character of continuation and the end of the line.
   bool continues(const char* at) const;

@@ -46,16 +46,28 @@ std::vector<T> copy(std::span<const T> values) {
 Result<BSplineSurface> BSplineSurface::polynomial(int degree_u, std::span<const double> knots_u, int degree_v,
                                                   std::span<const double> knots_v, std::span<const Vec3> points,
                                                   std::optional<Domain> domain) {
+  return guarded([&] { return polynomial(degree_u, knots_u, degree_v, knots_v, copy(points), domain); });
+}
+
+Result<BSplineSurface> BSplineSurface::polynomial(int degree_u, std::span<const double> knots_u, int degree_v,
+                                                  std::span<const double> knots_v, std::vector<Vec3>&& points,
+                                                  std::optional<Domain> domain) {
   return guarded([&]() -> Result<BSplineSurface> {
     if (Status status = check_polynomial(degree_u, knots_u, degree_v, knots_v, points, domain); !status.ok())
       return status;
-    return BSplineSurface({degree_u, degree_v, copy(knots_u), copy(knots_v), {}, copy(points), *domain});
+    return BSplineSurface({degree_u, degree_v, copy(knots_u), copy(knots_v), {}, std::move(points), *domain});
   });
 }
 
 Result<BSplineSurface> BSplineSurface::rational(int degree_u, std::span<const double> knots_u, int degree_v,
                                                 std::span<const double> knots_v, std::span<const Vec3> points,
                                                 std::span<const double> weights, std::optional<Domain> domain) {
+  return guarded([&] { return rational(degree_u, knots_u, degree_v, knots_v, copy(points), copy(weights), domain); });
+}
+
+Result<BSplineSurface> BSplineSurface::rational(int degree_u, std::span<const double> knots_u, int degree_v,
+                                                std::span<const double> knots_v, std::vector<Vec3>&& points,
+                                                std::vector<double>&& weights, std::optional<Domain> domain) {
   return guarded([&]() -> Result<BSplineSurface> {
     if (Status status = check_polynomial(degree_u, knots_u, degree_v, knots_v, points, domain); !status.ok())
       return status;
@@ -64,8 +76,9 @@ Result<BSplineSurface> BSplineSurface::rational(int degree_u, std::span<const do
       return status;
     const auto place = [&](std::size_t k) { return place_in_rows(k, count_v); };
     if (Status status = check_weights(weights, place); !status.ok()) return status;
-    if (all_equal(weights)) weights = {};
-    return BSplineSurface({degree_u, degree_v, copy(knots_u), copy(knots_v), copy(weights), copy(points), *domain});
+    if (all_equal(weights)) weights = std::vector<double>();
+    return BSplineSurface(
+        {degree_u, degree_v, copy(knots_u), copy(knots_v), std::move(weights), std::move(points), *domain});
   });
 }
 
