@@ -85,5 +85,10 @@ const KernelTable& kernels(Isa isa) {
   return sse2_kernels();
 }
 
+const KernelTable& default_kernels() {
+  const Result<Isa> isa = default_isa();
+  return kernels(isa ? *isa : Isa::sse2);
+}
+
 }  // namespace kernel
 }  // namespace tessera
