@@ -7,7 +7,9 @@
 
 #include "block/patch_set_impl.h"
 #include "support/grids.h"
+#include "support/random_splines.h"
 #include "tessera/model.h"
+#include "tessera/spline_convert.h"
 
 namespace tessera::test {
 namespace {
@@ -87,6 +89,30 @@ TEST(Packing, AGridThatIsMovedGivesTheSameSet) {
   }
   EXPECT_EQ(moved.source(5).domain.u1, 3);
   EXPECT_EQ(moved.source(5).domain.v1, 5);
+}
+
+/// A B-spline surface's set is the same whether its patches come with the box that they were made with or alone, and for
+/// any number of threads.
+TEST(Packing, ASplineGivesTheSetOfItsPatches) {
+  Random random(94);
+  tbb::task_arena alone(1), crowd(7);
+  const PatchSetOptions options{.blocks = {true, true, true, true}};
+  for (const bool rational : {false, true}) {
+    const BSplineSurface s = random_surface(random, 3, 2, {70}, {41}, rational);
+    const auto make = [&] { return value_of(make_patch_set(value_of(to_bezier(s)), options)); };
+    const PatchSet one = alone.execute(make), more = crowd.execute(make);
+    const PatchGrid grid = value_of(to_bezier(s));
+    std::vector<PatchSource> sources;
+    for (std::size_t k = 0; k < grid.patches().size(); ++k) sources.push_back({0, grid.patch_domain(k)});
+    const PatchSet patches = value_of(PatchSet::from(grid.patches(), sources, options));
+    for (const PatchSet* set : {&more, &patches}) {
+      EXPECT_TRUE(same_bytes(one.impl().single, set->impl().single));
+      EXPECT_TRUE(same_bytes(one.impl().twice, set->impl().twice));
+      EXPECT_EQ(one.origin(), set->origin());
+      ASSERT_EQ(one.patch_count(), set->patch_count());
+      for (std::size_t k = 0; k < one.patch_count(); ++k) EXPECT_EQ(one.source(k).domain, set->source(k).domain);
+    }
+  }
 }
 
 }  // namespace

@@ -2,10 +2,10 @@
 // Tensor-product Bezier patches, polynomial and rational, in double: the form to which every surface is
 // converted. With the scalar reference evaluators that the fast kernels are tested against.
 
-#include <memory>
 #include <span>
 
 #include "tessera/domain.h"
+#include "tessera/shared_memory.h"
 #include "tessera/status.h"
 #include "tessera/vec.h"
 
@@ -39,9 +39,9 @@ class BezierPatch {
   int degree_u() const { return degree_u_; }
   int degree_v() const { return degree_v_; }
   bool is_rational() const { return weights_ != nullptr; }
-  std::span<const Vec3> points() const { return {points_.get(), count()}; }
+  std::span<const Vec3> points() const { return {points_, count()}; }
   /// Empty for a polynomial patch. Pieces of one rational surface are rational all, even where their weights are equal.
-  std::span<const double> weights() const { return {weights_.get(), is_rational() ? count() : 0}; }
+  std::span<const double> weights() const { return {weights_, is_rational() ? count() : 0}; }
   const Vec3& point(int i, int j) const { return points_[index(i, j)]; }
   double weight(int i, int j) const { return !is_rational() ? 1.0 : weights_[index(i, j)]; }
 
@@ -56,9 +56,9 @@ class BezierPatch {
   std::size_t index(int i, int j) const { return static_cast<std::size_t>(i * (degree_v_ + 1) + j); }
 
   int degree_u_ = 0, degree_v_ = 0;
-  // Copies share them; the pieces of one surface and the patches of a file have theirs in common arrays.
-  std::shared_ptr<const Vec3[]> points_;
-  std::shared_ptr<const double[]> weights_;
+  const Vec3* points_ = nullptr;
+  const double* weights_ = nullptr;  ///< null for a polynomial patch
+  SharedMemory memory_;  ///< of both. Copies share it; so do the pieces of one surface and patches of one file
   friend class PatchPieces;
   friend class PatchPool;
 };

@@ -13,6 +13,8 @@
 
 namespace tessera {
 
+class BSplineSurface;
+
 /// A place in a grid of patches.
 struct PatchLocation {
   std::size_t patch = 0;    ///< index into PatchGrid::patches()
@@ -46,6 +48,8 @@ class PatchGrid {
   Domain domain() const { return {breaks_u_.front(), breaks_u_.back(), breaks_v_.front(), breaks_v_.back()}; }
   Domain patch_domain(std::size_t patch) const;   ///< patch < patches().size()
   const FitError& fit_error() const { return error_; }
+  /// Of all control points.
+  const Box3& box() const { return box_; }
 
   /// The patch that holds (u,v) and the local parameters there. At an inner breakpoint the patch on its right; at the end
   /// of the domain the last one. Nothing for (u,v) outside the domain or NaN.
@@ -55,9 +59,15 @@ class PatchGrid {
 
  private:
   PatchGrid() = default;
+  /// `box`: of all control points.
+  static Result<PatchGrid> make(std::vector<double> breaks_u, std::vector<double> breaks_v, std::vector<BezierPatch> patches,
+                                FitError error, const Box3& box);
+  friend Result<PatchGrid> to_bezier(const BSplineSurface& surface);  // knows the box of what it has just computed
+
   std::vector<double> breaks_u_, breaks_v_;
   std::vector<BezierPatch> patches_;
   FitError error_;
+  Box3 box_;
 };
 
 /// The image of a grid, exact to rounding: control points are mapped, weights stay (affine invariance). What was shared

@@ -15,6 +15,8 @@ namespace {
 struct Gathered {
   std::vector<BezierPatch> patches;
   std::vector<PatchSource> sources;
+  std::size_t surface_count = 0;
+  Box3 box;
   FitError fit_error;
 
   void add(std::size_t surface, PatchGrid grid) {
@@ -26,16 +28,25 @@ struct Gathered {
     } else {
       patches.insert(patches.end(), std::move_iterator(added.begin()), std::move_iterator(added.end()));
     }
-    for (std::size_t a = 0; a + 1 < u.size(); ++a)
-      for (std::size_t b = 0; b + 1 < v.size(); ++b)
-        sources.push_back({static_cast<std::uint32_t>(surface), {u[a], u[a + 1], v[b], v[b + 1]}});
+    std::vector<PatchSource> row;
+    for (std::size_t k = 0; k < grid.count_v(); ++k)
+      row.push_back({static_cast<std::uint32_t>(surface), {0, 1, v[k], v[k + 1]}});
+    for (std::size_t k = 0; k < grid.count_u(); ++k) {
+      for (PatchSource& source : row) {
+        source.domain.u0 = u[k];
+        source.domain.u1 = u[k + 1];
+      }
+      sources.insert(sources.end(), row.begin(), row.end());
+    }
+    surface_count = surface + 1;
+    box.extend(grid.box());
     fit_error.distance = std::max(fit_error.distance, grid.fit_error().distance);
     fit_error.certified = fit_error.certified && grid.fit_error().certified;
   }
 
   Result<PatchSet> packed(PatchSetOptions options) && {
     options.fit_error = fit_error;
-    return PatchSet::Impl::make(std::move(patches), std::move(sources), options);
+    return PatchSet::Impl::make(std::move(patches), std::move(sources), surface_count, box, options);
   }
 };
 

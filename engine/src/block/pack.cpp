@@ -40,10 +40,10 @@ struct Place {
   template <class T, class Write>
   void write(UnsetVector<T>& coefficients, UnsetVector<T>& doubts, double largest, Write write_coefficients) const {
     constexpr std::size_t lanes = PatchSet::lanes;
-    NormalDoubt doubt{.squared_length = std::numeric_limits<double>::infinity(), .noise = -1};
+    NormalDoubt doubt = no_normal;
     if (!curve)
-      doubt = normal_doubt(net, std::max(group.degree_u, group.degree_v), largest, diameter,
-                           std::numeric_limits<T>::epsilon());
+      doubt = normal_doubt<T>(std::max(group.degree_u, group.degree_v), largest, diameter, net.lightest(),
+                              net.weight_spread());
     T* block = coefficients.data() + group.first_value + (slot.block - group.first_block) * group.block_values;
     T* rows = doubts.data() + 2 * lanes * slot.block;
     const auto write_to = [&](std::uint32_t lane) {
@@ -93,45 +93,46 @@ bool is_curve(const BezierPatch& patch, EdgeMask collapsed) {
   return patch.is_rational() ? equal_rows && equal_columns : equal_rows || equal_columns;
 }
 
-NormalDoubt normal_doubt(const RelativeNet& net, int degree, double largest, double diameter, double unit) {
-  const double noise = 6 * degree * unit * largest;
-  const double longest = degree * net.weight_spread() * diameter;
-  const double length = 4 * (noise / net.lightest()) * longest;  // 2 sqrt(3) noise |r_u|
-  return {.squared_length = length * length, .noise = noise};
-}
-
-bool PatchSet::Impl::pack(std::size_t index, const BlockGroup& group, const Box3& hull) {
+bool PatchSet::Impl::pack_bernstein(std::size_t index, const BlockGroup& group, const Box3& hull) {
+  if (!kinds.float_bernstein && !kinds.double_bernstein) return true;
   const RelativeNet net(patches[index], origin);
   const Slot slot = slots[index];
   const bool curve = is_curve(patches[index], collapsed[index]);
   const Place place{group, slot, lane_counts[slot.block], net, curve, hull.diagonal()};
-  if (kinds.float_bernstein || kinds.double_bernstein) {
-    const double largest = net.largest(hull);
-    if (!fits(net, kinds.float_bernstein, [&](double limit) { return largest <= limit; })) return false;
-    const auto coefficients = [&](auto* lane) { net.write(lane); };
-    if (kinds.float_bernstein) place.write(single.bernstein, single.bernstein_doubt, largest, coefficients);
-    if (kinds.double_bernstein) place.write(twice.bernstein, twice.bernstein_doubt, largest, coefficients);
-  }
-  if (kinds.float_power || kinds.double_power) {
-    RelativeNet::Power memory;
-    const std::span<const double> power = net.power(memory);
-    const auto in_range = [&](double limit) {
-      return std::ranges::all_of(power, [&](double value) { return std::abs(value) <= limit; });
-    };
-    if (!fits(net, kinds.float_power, in_range)) return false;
-    const double largest = largest_vector(power, static_cast<std::size_t>(coefficient_components(group.rational)));
-    const auto coefficients = [&]<class T>(T* lane) {
-      for (std::size_t k = 0; k < power.size(); ++k) lane[k * lanes] = static_cast<T>(power[k]);
-    };
-    if (kinds.float_power) place.write(single.power, single.power_doubt, largest, coefficients);
-    if (kinds.double_power) place.write(twice.power, twice.power_doubt, largest, coefficients);
-  }
+  const double largest = net.largest(hull);
+  if (!fits(net, kinds.float_bernstein, [&](double limit) { return largest <= limit; })) return false;
+  const auto coefficients = [&](auto* lane) { net.write(lane); };
+  if (kinds.float_bernstein) place.write(single.bernstein, single.bernstein_doubt, largest, coefficients);
+  if (kinds.double_bernstein) place.write(twice.bernstein, twice.bernstein_doubt, largest, coefficients);
+  return true;
+}
+
+bool PatchSet::Impl::pack_power(std::size_t index, const BlockGroup& group, const Box3& hull) {
+  if (!kinds.float_power && !kinds.double_power) return true;
+  const RelativeNet net(patches[index], origin);
+  const Slot slot = slots[index];
+  const bool curve = is_curve(patches[index], collapsed[index]);
+  const Place place{group, slot, lane_counts[slot.block], net, curve, hull.diagonal()};
+  RelativeNet::Power memory;
+  const std::span<const double> power = net.power(memory);
+  const auto in_range = [&](double limit) {
+    return std::ranges::all_of(power, [&](double value) { return std::abs(value) <= limit; });
+  };
+  if (!fits(net, kinds.float_power, in_range)) return false;
+  const double largest = largest_vector(power, static_cast<std::size_t>(coefficient_components(group.rational)));
+  const auto coefficients = [&]<class T>(T* lane) {
+    for (std::size_t k = 0; k < power.size(); ++k) lane[k * lanes] = static_cast<T>(power[k]);
+  };
+  if (kinds.float_power) place.write(single.power, single.power_doubt, largest, coefficients);
+  if (kinds.double_power) place.write(twice.power, twice.power_doubt, largest, coefficients);
   return true;
 }
 
 bool PatchSet::Impl::pack(std::size_t index) {
+  const BlockGroup& group = group_of_block(slots[index].block);
+  const Box3 hull = patches[index].hull_box();
   collapsed[index] = patches[index].collapsed_edges();
-  return pack(index, group_of_block(slots[index].block), patches[index].hull_box());
+  return pack_bernstein(index, group, hull) && pack_power(index, group, hull);
 }
 
 }  // namespace tessera

@@ -84,11 +84,20 @@ struct NormalDoubt {
 /// everywhere. `collapsed`: patch.collapsed_edges(); the ends of equal rows are two.
 bool is_curve(const BezierPatch& patch, EdgeMask collapsed);
 
-/// Of a patch that is no curve. With 6 max(m, n) units of the largest coefficient for the error of a tangent, over the
-/// weight for rational patches: random nets of all degrees reach 4, tangents that vanish 1.6. And |r_u|, |r_v| <=
-/// max(m, n) (largest weight / smallest) diameter (Floater 1992, Derivatives of rational Bezier curves, eq. 10).
-/// `largest`: x, y or z of the coefficients; `diameter`: of the hull's box; `unit`: 2^-23 or 2^-52.
-NormalDoubt normal_doubt(const RelativeNet& net, int degree, double largest, double diameter, double unit);
+/// Of a curve.
+inline constexpr NormalDoubt no_normal{.squared_length = std::numeric_limits<double>::infinity(), .noise = -1};
+
+/// Of a patch that is no curve, `degree` = max(m, n), in blocks of T. With 6 max(m, n) units of the largest coefficient
+/// for the error of a tangent, over the weight for rational patches: random nets of all degrees reach 4, tangents that
+/// vanish 1.6. And |r_u|, |r_v| <= max(m, n) (largest weight / smallest) diameter (Floater 1992, Derivatives of rational
+/// Bezier curves, eq. 10). `largest`: x, y or z of the coefficients; `diameter`: of the hull's box.
+template <class T>
+NormalDoubt normal_doubt(int degree, double largest, double diameter, double lightest = 1, double weight_spread = 1) {
+  const double noise = 6 * degree * double{std::numeric_limits<T>::epsilon()} * largest;
+  const double longest = degree * weight_spread * diameter;
+  const double length = 4 * (noise / lightest) * longest;  // 2 sqrt(3) noise |r_u|
+  return {.squared_length = length * length, .noise = noise};
+}
 
 /// The same into one lane of a block's two rows. Squared lengths below `lowest`, 2^-80 or 2^-600, are out of the range
 /// of a float's or a double's squares.

@@ -4,13 +4,16 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <numeric>
 #include <string>
 
 #include "base/guard.h"
 #include "block/pack.h"
 #include "block/patch_set_impl.h"
+#include "kernel/kernel_table.h"
 #include "parallel/parallel_for.h"
+#include "surface/patch_pieces.h"
 
 namespace tessera {
 namespace {
@@ -20,33 +23,53 @@ int block_key(const BezierPatch& patch) {
   return (patch.degree_u() * (max_degree + 1) + patch.degree_v()) * 2 + (patch.is_rational() ? 1 : 0);
 }
 
+/// The box of all control points, over threads.
+Result<Box3> box_of(std::span<const BezierPatch> patches) {
+  constexpr std::size_t patches_in_piece = 2048;
+  Box3 box;
+  std::mutex mutex;
+  const Status status = parallel_for(patches.size(), patches_in_piece, {}, [&](std::size_t begin, std::size_t end) {
+    Box3 part;
+    for (std::size_t k = begin; k < end; ++k) part.extend(patches[k].hull_box());
+    const std::lock_guard lock(mutex);
+    box.extend(part);
+  });
+  if (!status.ok()) return status;
+  return box;
+}
+
 /// Assigns patches to groups, blocks and lanes, in the patches' order within a group.
 void lay_out(PatchSet::Impl& set) {
   std::vector<int> keys(set.patches.size());
   std::ranges::transform(set.patches, keys.begin(), block_key);
   std::vector<std::uint32_t> order(set.patches.size());
   std::iota(order.begin(), order.end(), 0u);
-  if (!std::ranges::is_sorted(keys)) std::ranges::stable_sort(order, {}, [&](auto k) { return keys[k]; });
+  if (!std::ranges::is_sorted(keys)) {
+    std::ranges::stable_sort(order, {}, [&](auto k) { return keys[k]; });
+    std::ranges::sort(keys);
+  }
   constexpr std::size_t lanes = PatchSet::lanes;
   set.slots.resize(order.size());
-  set.lane_patches.reserve(order.size() + lanes);
   std::size_t next_value = 0;
   for (std::size_t begin = 0; begin < order.size();) {
     const BezierPatch& first = set.patches[order[begin]];
-    std::size_t end = begin;
-    while (end < order.size() && keys[order[end]] == keys[order[begin]]) ++end;
+    const auto end = static_cast<std::size_t>(std::ranges::upper_bound(keys, keys[begin]) - keys.begin());
     BlockGroup group{first.degree_u(), first.degree_v(), first.is_rational(), set.lane_counts.size(),
                      (end - begin + lanes - 1) / lanes, next_value,
                      block_values(first.degree_u(), first.degree_v(), first.is_rational())};
     next_value += group.block_count * group.block_values;
-    for (std::size_t block = begin; block < end; block += lanes) {
-      const std::size_t used = std::min(lanes, end - block);
-      for (std::size_t lane = 0; lane < lanes; ++lane) {
-        set.lane_patches.push_back(order[block + (lane < used ? lane : 0)]);
-        if (lane < used)
-          set.slots[order[block + lane]] = {static_cast<std::uint32_t>(set.lane_counts.size()), static_cast<std::uint32_t>(lane)};
-      }
-      set.lane_counts.push_back(static_cast<std::uint8_t>(used));
+    const std::size_t first_lane = group.first_block * lanes;
+    set.lane_patches.resize(first_lane + group.block_count * lanes);
+    set.lane_counts.resize(group.first_block + group.block_count, static_cast<std::uint8_t>(lanes));
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::size_t lane = first_lane + k - begin;
+      set.lane_patches[lane] = order[k];
+      set.slots[order[k]] = {static_cast<std::uint32_t>(lane / lanes), static_cast<std::uint32_t>(lane % lanes)};
+    }
+    if (const std::size_t used = (end - begin) % lanes; used > 0) {  // unused lanes repeat their block's first patch
+      set.lane_counts.back() = static_cast<std::uint8_t>(used);
+      for (std::size_t lane = set.lane_patches.size() - lanes + used; lane < set.lane_patches.size(); ++lane)
+        set.lane_patches[lane] = set.lane_patches[set.lane_patches.size() - lanes];
     }
     set.groups.push_back(group);
     begin = end;
@@ -69,9 +92,6 @@ Status too_large(std::size_t patch) {
 }
 
 Status check_sources(std::span<const BezierPatch> patches, std::span<const PatchSource> sources) {
-  if (patches.empty()) return Status(StatusCode::invalid_argument, "a patch set needs at least one patch");
-  if (patches.size() > std::numeric_limits<std::uint32_t>::max())
-    return Status(StatusCode::invalid_argument, "a patch set holds at most 2^32 - 1 patches, not " + std::to_string(patches.size()));
   if (sources.size() != patches.size())
     return Status(StatusCode::count_mismatch, std::to_string(patches.size()) + " patches need as many sources, not " +
                                                   std::to_string(sources.size()));
@@ -91,36 +111,25 @@ const BlockGroup& PatchSet::Impl::group_of_block(std::size_t block) const {
                                      [](std::size_t b, const BlockGroup& group) { return b < group.first_block; }));
 }
 
+PatchSet::Impl::~Impl() { PatchPieces::release(patches); }
+
 Box3 PatchSet::Impl::box() const {
   Box3 box;
   for (const BezierPatch& patch : patches) box.extend(patch.hull_box());
   return box;
 }
 
-Status PatchSet::Impl::measure(std::vector<Box3>& hulls) {
-  constexpr std::size_t patches_in_piece = 512;
-  hulls.resize(patches.size());
-  collapsed.resize(patches.size());
-  return parallel_for(patches.size(), patches_in_piece, {}, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      hulls[k] = patches[k].hull_box();
-      collapsed[k] = patches[k].collapsed_edges();
-    }
-  });
-}
-
-Status PatchSet::Impl::pack_all(std::span<const Box3> hulls) {
+Status PatchSet::Impl::pack_all() {
   constexpr std::size_t blocks_in_piece = 32;
+  const kernel::KernelTable& kernels = kernel::default_kernels();
   std::atomic<std::size_t> refused{lane_patches.size()};  // the first lane
   const auto pack_blocks = [&](std::size_t begin, std::size_t end) {
     for (std::size_t block = begin; block < end; ++block) {
-      const BlockGroup& group = group_of_block(block);
-      for (std::size_t lane = block * lanes; lane < block * lanes + lane_counts[block]; ++lane) {
-        if (pack(lane_patches[lane], group, hulls[lane_patches[lane]])) continue;
-        std::size_t first = refused;
-        while (lane < first && !refused.compare_exchange_weak(first, lane)) continue;
-        return;
-      }
+      const std::size_t fitting = pack_block(block, kernels);
+      if (fitting == lanes) continue;
+      std::size_t first = refused;
+      while (block * lanes + fitting < first && !refused.compare_exchange_weak(first, block * lanes + fitting)) continue;
+      return;
     }
   };
   Status status = parallel_for(lane_counts.size(), blocks_in_piece, {}, pack_blocks);
@@ -128,8 +137,11 @@ Status PatchSet::Impl::pack_all(std::span<const Box3> hulls) {
 }
 
 Result<PatchSet> PatchSet::Impl::make(std::vector<BezierPatch> patches, std::vector<PatchSource> sources,
+                                      std::size_t surface_count, const std::optional<Box3>& box,
                                       const PatchSetOptions& options) {
-  if (Status status = check_sources(patches, sources); !status.ok()) return status;
+  if (patches.empty()) return Status(StatusCode::invalid_argument, "a patch set needs at least one patch");
+  if (patches.size() > std::numeric_limits<std::uint32_t>::max())
+    return Status(StatusCode::invalid_argument, "a patch set holds at most 2^32 - 1 patches, not " + std::to_string(patches.size()));
   if (options.origin && !is_finite(*options.origin))
     return Status(StatusCode::non_finite, "the origin of a patch set must be finite");
   auto set = std::make_unique<Impl>();
@@ -137,15 +149,17 @@ Result<PatchSet> PatchSet::Impl::make(std::vector<BezierPatch> patches, std::vec
   set->sources = std::move(sources);
   set->kinds = options.blocks;
   set->fit_error = options.fit_error;
-  for (const PatchSource& source : set->sources)
-    set->surface_count = std::max(set->surface_count, std::size_t{source.surface} + 1);
-  std::vector<Box3> hulls;
-  if (Status status = set->measure(hulls); !status.ok()) return status;
-  Box3 box;
-  for (const Box3& hull : hulls) box.extend(hull);
-  set->origin = options.origin.value_or(box.centre());
+  set->surface_count = surface_count;
+  if (options.origin) {
+    set->origin = *options.origin;
+  } else {
+    const Result<Box3> known = box ? *box : box_of(set->patches);
+    if (!known) return known.status();
+    set->origin = known->centre() + Vec3{};  // a zero's sign would depend on the order of the patches
+  }
+  set->collapsed.resize(set->patches.size());
   lay_out(*set);
-  if (Status status = set->pack_all(hulls); !status.ok()) return status;
+  if (Status status = set->pack_all(); !status.ok()) return status;
   return PatchSet(std::move(set));
 }
 
@@ -160,7 +174,10 @@ Result<PatchSet> PatchSet::from(std::span<const BezierPatch> patches, const Patc
 Result<PatchSet> PatchSet::from(std::span<const BezierPatch> patches, std::span<const PatchSource> sources,
                                 const PatchSetOptions& options) {
   return guarded([&]() -> Result<PatchSet> {
-    return Impl::make({patches.begin(), patches.end()}, {sources.begin(), sources.end()}, options);
+    if (Status status = check_sources(patches, sources); !status.ok()) return status;
+    std::size_t surface_count = 0;
+    for (const PatchSource& source : sources) surface_count = std::max(surface_count, std::size_t{source.surface} + 1);
+    return Impl::make({patches.begin(), patches.end()}, {sources.begin(), sources.end()}, surface_count, {}, options);
   });
 }
 

@@ -2,6 +2,7 @@
 // The inside of a PatchSet: groups of blocks, for the floors that evaluate them.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -9,6 +10,10 @@
 #include "tessera/patch_set.h"
 
 namespace tessera {
+
+namespace kernel {
+struct KernelTable;
+}
 
 /// Blocks of equal degrees and rationality, one after the other.
 struct BlockGroup {
@@ -35,6 +40,8 @@ struct Coefficients {
 
 class PatchSet::Impl {
  public:
+  ~Impl();
+
   std::vector<BezierPatch> patches;
   std::vector<PatchSource> sources;
   std::vector<Slot> slots;                  ///< of each patch
@@ -70,17 +77,19 @@ class PatchSet::Impl {
   /// the lanes half-written, if a coefficient does not fit. Allocates nothing.
   bool pack(std::size_t index);
 
-  /// PatchSet::from, without a copy.
+  /// PatchSet::from, without a copy, of sources that are known to be good. `box`: of all control points, where known.
   static Result<PatchSet> make(std::vector<BezierPatch> patches, std::vector<PatchSource> sources,
+                               std::size_t surface_count, const std::optional<Box3>& box,
                                const PatchSetOptions& options);
 
  private:
-  /// Finds the collapsed edges of all patches, and their boxes.
-  Status measure(std::vector<Box3>& hulls);
-  /// Of a patch of `group` whose collapsed edges are known; `hull` is its box.
-  bool pack(std::size_t index, const BlockGroup& group, const Box3& hull);
+  /// A patch of `group` whose collapsed edges are known into its lane over one basis; `hull` is its box.
+  bool pack_bernstein(std::size_t index, const BlockGroup& group, const Box3& hull);
+  bool pack_power(std::size_t index, const BlockGroup& group, const Box3& hull);
+  /// The same bits for all patches of a block. The first lane that doesn't fit; lanes if all do.
+  std::size_t pack_block(std::size_t block, const kernel::KernelTable& kernels);
   /// Errors: non_finite, of the first patch in the order of the lanes that doesn't fit.
-  Status pack_all(std::span<const Box3> hulls);
+  Status pack_all();
 };
 
 }  // namespace tessera

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <mutex>
 #include <string>
 #include <type_traits>
 
@@ -10,6 +11,8 @@
 #include "base/guard.h"
 #include "convert/extraction.h"
 #include "convert/spline_net.h"
+#include "kernel/kernel_table.h"
+#include "parallel/parallel_for.h"
 #include "surface/homogeneous.h"
 #include "surface/patch_pieces.h"
 #include "surface/spline_lines.h"
@@ -31,8 +34,7 @@ void combine(const double* weights, const double* rows, std::size_t stride, Widt
   }
 }
 
-/// values[0..width) = sum of the row's weights times `rows`, which lie `stride` apart. Width: std::size_t, or a constant
-/// where it is small.
+/// values[0..width) = sum of the row's weights times `rows`, which lie `stride` apart. Width: std::size_t, or a constant.
 template <class Width>
 void apply(const Extraction& extraction, const Extraction::Row& row, const double* rows, std::size_t stride,
            Width width, double* values) {
@@ -58,17 +60,14 @@ struct Scales {
   }
 };
 
-/// The control points as numbers, `components` each: x y z, or x w, y w, z w, w scaled.
-std::vector<double> numbers(std::span<const Vec3> points, std::span<const double> weights, const Scales* scales) {
-  std::vector<double> values;
-  values.reserve(points.size() * (scales != nullptr ? 4 : 3));
+/// Control points as numbers, `components` each: x y z, or x w, y w, z w, w scaled.
+void write_numbers(std::span<const Vec3> points, std::span<const double> weights, const Scales* scales, double* to) {
   for (std::size_t k = 0; k < points.size(); ++k) {
     const double w = scales != nullptr ? weights[k] / scales->weight : 1;
     const Vec3 p = scales != nullptr ? w * ((1 / scales->point) * points[k]) : points[k];
-    values.insert(values.end(), {p.x, p.y, p.z});
-    if (scales != nullptr) values.push_back(w);
+    for (const double value : {p.x, p.y, p.z}) *to++ = value;
+    if (scales != nullptr) *to++ = w;
   }
-  return values;
 }
 
 NetPoint project(const double* values, const Scales& scales) {
@@ -82,98 +81,162 @@ bool all_finite(std::span<const double> values) {
   return finite;
 }
 
-/// The Bezier net of a surface, one strip of patches after the other: each point computed once, since neighbours share
-/// it.
-class NetStrips {
+/// The numbers of whole cache lines, so that rows begin where vectors are loaded in one piece.
+constexpr std::size_t whole_lines(std::size_t numbers) {
+  constexpr std::size_t line = cache_line / sizeof(double);
+  return (numbers + line - 1) / line * line;
+}
+
+/// A surface's control net extracted along v: what all strips of patches are made of.
+class ExtractedRows {
  public:
-  explicit NetStrips(const BSplineSurface& surface)
+  explicit ExtractedRows(const BSplineSurface& surface)
       : surface_(surface), u_(make_extraction(line_u(surface))), v_(make_extraction(line_v(surface))) {
-    if (surface.is_rational()) {
-      scales_.emplace(surface.points(), surface.weights());
-      extract_along_v(std::integral_constant<std::size_t, 4>{});
-      homogeneous_.resize(v_.rows.size() * 4);
-      weights_.resize(order_u() * v_.rows.size());
-    } else {
-      extract_along_v(std::integral_constant<std::size_t, 3>{});
-    }
-    points_.resize(order_u() * v_.rows.size() * 3);
-    for (const Vec3& p : surface.points())
-      may_overflow_ = may_overflow_ || max_abs(p) > std::numeric_limits<double>::max() / 2;
+    if (surface.is_rational()) scales_.emplace(surface.points(), surface.weights());
+    values_.resize(surface.count_u() * row_size());
+    bool small = true;
+    for (const Vec3& p : surface.points())  // without a branch
+      small &= (std::abs(p.x) <= half_range) & (std::abs(p.y) <= half_range) & (std::abs(p.z) <= half_range);
+    may_overflow_ = !small;
   }
 
+  /// Computes them all.
+  Status compute() {
+    constexpr std::size_t points_in_piece = 4096;
+    return parallel_for(surface_.count_u(), points_in_piece / v_.rows.size(), {},
+                        [&](std::size_t begin, std::size_t end) {
+                          if (scales_) return compute(begin, end, std::integral_constant<std::size_t, 4>{});
+                          compute(begin, end, std::integral_constant<std::size_t, 3>{});
+                        });
+  }
+
+  const BSplineSurface& surface() const { return surface_; }
   const Extraction& u() const { return u_; }
   const Extraction& v() const { return v_; }
-
-  /// Computes the strip of span `a` of u. Strips come in order.
-  Status compute(std::size_t a) {
-    const std::size_t p = order_u() - 1;
-    if (a > 0) {  // the last row of a strip is the first of the next
-      std::copy(points_.end() - static_cast<std::ptrdiff_t>(v_.rows.size() * 3), points_.end(), points_.begin());
-      if (scales_)
-        std::copy(weights_.end() - static_cast<std::ptrdiff_t>(v_.rows.size()), weights_.end(), weights_.begin());
-    }
-    for (std::size_t i = a > 0 ? 1 : 0; i <= p; ++i) compute_row(u_.rows[a * p + i], i);
-    if (may_overflow_ && !all_finite(points_))
-      return {StatusCode::non_finite, "the control points are too large: a mean of them is not finite"};
-    return {};
-  }
-  /// Point j of row i of the strip: x, y and z; and its weight if the surface is rational.
-  const double* point(std::size_t i, std::size_t j) const { return &points_[(i * v_.rows.size() + j) * 3]; }
-  const double* weight(std::size_t i, std::size_t j) const { return &weights_[i * v_.rows.size() + j]; }
+  const std::optional<Scales>& scales() const { return scales_; }
+  bool may_overflow() const { return may_overflow_; }
+  std::size_t order_u() const { return static_cast<std::size_t>(surface_.degree_u()) + 1; }
+  std::size_t components() const { return scales_ ? 4 : 3; }
+  std::size_t row_size() const { return whole_lines(v_.rows.size() * components()); }
+  const double* values() const { return values_.data(); }
 
  private:
-  std::size_t order_u() const { return static_cast<std::size_t>(surface_.degree_u()) + 1; }
+  static constexpr double half_range = std::numeric_limits<double>::max() / 2;
 
   template <class Components>
-  void extract_along_v(Components c) {
-    const std::vector<double> net = numbers(surface_.points(), surface_.weights(), scales_ ? &*scales_ : nullptr);
-    along_v_.resize(surface_.count_u() * v_.rows.size() * c);
-    double* to = along_v_.data();
-    for (std::size_t i = 0; i < surface_.count_u(); ++i)
+  void compute(std::size_t begin, std::size_t end, Components c) {
+    const std::size_t count = surface_.count_v();
+    UnsetVector<double> numbers(count * c);
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto weights = scales_ ? surface_.weights().subspan(i * count, count) : std::span<const double>{};
+      write_numbers(surface_.points().subspan(i * count, count), weights, scales_ ? &*scales_ : nullptr, numbers.data());
+      double* to = values_.data() + i * row_size();
       for (const Extraction::Row& row : v_.rows) {
-        apply(v_, row, &net[i * surface_.count_v() * c], c, c, to);
+        apply(v_, row, numbers.data(), c, c, to);
         to += c;
       }
-  }
-
-  void compute_row(const Extraction::Row& row, std::size_t i) {
-    const std::size_t size = v_.rows.size();
-    if (!scales_) return apply(u_, row, along_v_.data(), 3 * size, 3 * size, &points_[i * 3 * size]);
-    apply(u_, row, along_v_.data(), 4 * size, 4 * size, homogeneous_.data());
-    for (std::size_t j = 0; j < size; ++j) {
-      const Extraction::Row& column = v_.rows[j];
-      NetPoint at = project(&homogeneous_[4 * j], *scales_);
-      if (row.count == 1 && column.count == 1)  // keeps its bits, and its weight's
-        at = {surface_.point(row.first, column.first), surface_.weight(row.first, column.first)};
-      const double point[] = {at.point.x, at.point.y, at.point.z};
-      std::copy_n(point, 3, &points_[(i * size + j) * 3]);
-      weights_[i * size + j] = at.weight;
     }
   }
 
   const BSplineSurface& surface_;
   const Extraction u_, v_;
-  std::optional<Scales> scales_;          ///< of rational surfaces
-  UnsetVector<double> along_v_;           ///< [control row][row of v_][component]
-  UnsetVector<double> points_, weights_;  ///< [0 .. degree_u][row of v_], the points by their components
-  UnsetVector<double> homogeneous_;       ///< one row of a rational strip
-  bool may_overflow_ = false;             ///< means of points are no larger than these but for rounding
+  std::optional<Scales> scales_;  ///< of rational surfaces
+  UnsetVector<double> values_;    ///< [control row][row of v_][component], rows row_size() apart
+  bool may_overflow_ = false;     ///< means of points are no larger than these but for rounding
 };
 
-/// The patches of a strip from `first` on. Order: std::size_t, or a constant, with which a row of points is copied in a
-/// few instructions.
-template <class Order>
-void write_strip(const NetStrips& net, std::size_t first, std::size_t order_u, Order order, PatchPieces& pieces) {
-  for (std::size_t b = 0; b < net.v().span_count(); ++b) {
-    Vec3* points = pieces.points(first + b);
-    const std::size_t column = b * (order - 1);
-    for (std::size_t i = 0; i < order_u; ++i)
-      std::memcpy(static_cast<void*>(points + i * order), net.point(i, column), order * sizeof(Vec3));
-    if (!pieces.rational()) continue;
-    for (std::size_t i = 0; i < order_u; ++i)
-      std::copy_n(net.weight(i, column), std::size_t{order}, pieces.weights(first + b) + i * order);
+/// The Bezier net of a few patches along v, of one strip after the other along u: each point computed once, since
+/// neighbours share it, and written while it is in the nearest cache.
+class Strip {
+ public:
+  static constexpr std::size_t most_patches = 64;
+
+  explicit Strip(const ExtractedRows& rows) : from_(rows) {
+    const std::size_t most_columns = std::min(most_patches, rows.v().span_count()) * degree_v() + 1;
+    row_size_ = whole_lines(most_columns * 3);
+    points_.resize(rows.order_u() * row_size_);
+    std::fill_n(lower_, 3, std::numeric_limits<double>::infinity());
+    std::fill_n(upper_, 3, -std::numeric_limits<double>::infinity());
+    if (!rows.scales()) return;
+    weights_.resize(rows.order_u() * most_columns);
+    homogeneous_.resize(most_columns * 4);
   }
-}
+
+  /// Goes to the spans from b_begin to b_end of v, most_patches at most.
+  void select(std::size_t b_begin, std::size_t b_end) {
+    b_begin_ = b_begin;
+    b_end_ = b_end;
+    columns_ = (b_end - b_begin) * degree_v() + 1;
+  }
+  /// Computes the strip of span `a` of u. `next`: it follows the strip that was computed before.
+  void compute(std::size_t a, bool next) {
+    const std::size_t p = from_.order_u() - 1;
+    if (next) {  // the last row of a strip is the first of the next
+      std::copy_n(&points_[p * row_size_], columns_ * 3, points_.begin());
+      if (from_.scales()) std::copy_n(&weights_[p * columns_], columns_, weights_.begin());
+    }
+    for (std::size_t i = next ? 1 : 0; i <= p; ++i) compute_row(from_.u().rows[a * p + i], i);
+  }
+  /// Of the points computed so far.
+  Box3 box() const { return {{lower_[0], lower_[1], lower_[2]}, {upper_[0], upper_[1], upper_[2]}}; }
+  bool is_finite() const { return finite_; }
+
+  /// Writes its patches, `first` being that of the first span of v. Order: std::size_t, or a constant, with which a row
+  /// of points is copied in a few instructions.
+  template <class Order>
+  void write(std::size_t first, Order order, PatchPieces& pieces) const {
+    for (std::size_t b = b_begin_; b < b_end_; ++b) {
+      Vec3* points = pieces.points(first + b);
+      const std::size_t column = (b - b_begin_) * (order - 1);
+      for (std::size_t i = 0; i < from_.order_u(); ++i)
+        std::memcpy(static_cast<void*>(points + i * order), &points_[i * row_size_ + column * 3], order * sizeof(Vec3));
+      if (!pieces.rational()) continue;
+      for (std::size_t i = 0; i < from_.order_u(); ++i)
+        std::copy_n(&weights_[i * columns_ + column], std::size_t{order}, pieces.weights(first + b) + i * order);
+    }
+  }
+
+ private:
+  std::size_t degree_v() const { return static_cast<std::size_t>(from_.surface().degree_v()); }
+
+  void compute_row(const Extraction::Row& row, std::size_t i) {
+    double* points = &points_[i * row_size_];
+    combine(row, from_.scales() ? homogeneous_.data() : points);
+    if (from_.scales()) project_row(row, points, &weights_[i * columns_]);
+    kernels_.bound_points(points, columns_ * 3, lower_, upper_);
+    if (from_.may_overflow()) finite_ = finite_ && all_finite({points, columns_ * 3});
+  }
+
+  void combine(const Extraction::Row& row, double* to) const {
+    const std::size_t components = from_.components(), width = columns_ * components;
+    const double* rows = from_.values() + row.first * from_.row_size() + b_begin_ * degree_v() * components;
+    if (row.count == 1) return static_cast<void>(std::copy_n(rows, width, to));
+    kernels_.combine({from_.u().weights_of(row), row.count, rows, from_.row_size(), width, to});
+  }
+
+  void project_row(const Extraction::Row& row, double* points, double* weights) const {
+    const BSplineSurface& surface = from_.surface();
+    for (std::size_t j = 0; j < columns_; ++j) {
+      const Extraction::Row& column = from_.v().rows[b_begin_ * degree_v() + j];
+      NetPoint at = project(&homogeneous_[4 * j], *from_.scales());
+      if (row.count == 1 && column.count == 1)  // keeps its bits, and its weight's
+        at = {surface.point(row.first, column.first), surface.weight(row.first, column.first)};
+      const double point[] = {at.point.x, at.point.y, at.point.z};
+      std::copy_n(point, 3, points + 3 * j);
+      weights[j] = at.weight;
+    }
+  }
+
+  const ExtractedRows& from_;
+  const kernel::KernelTable& kernels_ = kernel::default_kernels();
+  std::size_t b_begin_ = 0, b_end_ = 0;
+  std::size_t columns_ = 0, row_size_ = 0;
+  UnsetVector<double> points_;       ///< [0 .. degree_u][column][component], rows row_size_ apart
+  UnsetVector<double> weights_;      ///< [0 .. degree_u][column]
+  UnsetVector<double> homogeneous_;  ///< one row of a rational strip
+  double lower_[3], upper_[3];
+  bool finite_ = true;
+};
 
 /// write(order), order being a constant for the degrees that are met most.
 template <class Write>
@@ -184,14 +247,30 @@ void with_order(int degree, Write write) {
   write(static_cast<std::size_t>(degree) + 1);
 }
 
-Status write_patches(NetStrips& net, int degree_u, int degree_v, PatchPieces& pieces) {
-  for (std::size_t a = 0; a < net.u().span_count(); ++a) {
-    if (Status status = net.compute(a); !status.ok()) return status;
-    with_order(degree_v, [&](auto order) {
-      write_strip(net, a * net.v().span_count(), static_cast<std::size_t>(degree_u) + 1, order, pieces);
-    });
-  }
-  return {};
+/// The patches of strips after strips, pieces of them on threads; and the box of their control points.
+Result<Box3> write_patches(const ExtractedRows& rows, PatchPieces& pieces) {
+  constexpr std::size_t patches_in_piece = 1024;
+  const std::size_t in_strip = rows.v().span_count();
+  Box3 box;
+  bool finite = true;
+  std::mutex mutex;  // of these two
+  const Status status =
+      parallel_for(rows.u().span_count(), patches_in_piece / in_strip, {}, [&](std::size_t begin, std::size_t end) {
+        Strip strip(rows);
+        for (std::size_t b = 0; b < in_strip; b += Strip::most_patches) {
+          strip.select(b, std::min(b + Strip::most_patches, in_strip));
+          for (std::size_t a = begin; a < end; ++a) {
+            strip.compute(a, a > begin);
+            with_order(rows.surface().degree_v(), [&](auto order) { strip.write(a * in_strip, order, pieces); });
+          }
+        }
+        const std::lock_guard lock(mutex);
+        box.extend(strip.box());
+        finite = finite && strip.is_finite();
+      });
+  if (!status.ok()) return status;
+  if (!finite) return Status(StatusCode::non_finite, "the control points are too large: a mean of them is not finite");
+  return box;
 }
 
 /// The patches, of those between `breaks`, whose spans point i acts on: [u_i, u_{i+p+1}].
@@ -206,11 +285,13 @@ std::pair<std::size_t, std::size_t> touched(const KnotLine& line, std::size_t i)
 
 Result<PatchGrid> to_bezier(const BSplineSurface& surface) {
   return guarded([&]() -> Result<PatchGrid> {
-    NetStrips net(surface);
-    PatchPieces pieces(surface.degree_u(), surface.degree_v(), net.u().span_count() * net.v().span_count(),
+    ExtractedRows rows(surface);
+    if (Status status = rows.compute(); !status.ok()) return status;
+    PatchPieces pieces(surface.degree_u(), surface.degree_v(), rows.u().span_count() * rows.v().span_count(),
                        surface.is_rational());
-    if (Status status = write_patches(net, surface.degree_u(), surface.degree_v(), pieces); !status.ok()) return status;
-    return PatchGrid::make(net.u().breaks, net.v().breaks, pieces.take());
+    const Result<Box3> box = write_patches(rows, pieces);
+    if (!box) return box.status();
+    return PatchGrid::make(rows.u().breaks, rows.v().breaks, pieces.take(), {}, *box);
   });
 }
 
@@ -220,8 +301,9 @@ Result<BezierPieces> to_bezier(const Curve& curve) {
     BezierPieces pieces{curve.degree(), extraction.breaks, {}, {}};
     std::optional<Scales> scales;
     if (curve.is_rational()) scales.emplace(curve.points(), curve.weights());
-    const std::vector<double> net = numbers(curve.points(), curve.weights(), scales ? &*scales : nullptr);
     const std::size_t width = scales ? 4 : 3;
+    UnsetVector<double> net(curve.points().size() * width);
+    write_numbers(curve.points(), curve.weights(), scales ? &*scales : nullptr, net.data());
     for (const Extraction::Row& row : extraction.rows) {
       std::array<double, 4> values{};
       apply(extraction, row, net.data(), width, width, values.data());

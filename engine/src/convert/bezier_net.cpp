@@ -70,10 +70,7 @@ Result<BezierPatch> BezierNet::patch() const {
   if (weights.empty()) return BezierPatch::polynomial(rows - 1, columns - 1, points);
   Result<BezierPatch> checked = BezierPatch::rational(rows - 1, columns - 1, points, weights);
   if (!checked || checked->is_rational()) return checked;
-  PatchPieces piece(rows - 1, columns - 1, 1, true);  // its weights are all equal, and kept
-  std::copy(points.begin(), points.end(), piece.points(0));
-  std::copy(weights.begin(), weights.end(), piece.weights(0));
-  return piece.take().front();
+  return PatchPieces::single(rows - 1, columns - 1, points, weights);  // its weights are all equal, and kept
 }
 
 BezierNet transform_u(const Matrix& matrix, const BezierNet& net) {

@@ -19,6 +19,13 @@ std::size_t interval(std::span<const double> breaks, double t) {
 
 Result<PatchGrid> PatchGrid::make(std::vector<double> breaks_u, std::vector<double> breaks_v,
                                   std::vector<BezierPatch> patches, FitError error) {
+  Box3 box;
+  for (const BezierPatch& patch : patches) box.extend(patch.hull_box());
+  return make(std::move(breaks_u), std::move(breaks_v), std::move(patches), error, box);
+}
+
+Result<PatchGrid> PatchGrid::make(std::vector<double> breaks_u, std::vector<double> breaks_v,
+                                  std::vector<BezierPatch> patches, FitError error, const Box3& box) {
   return guarded([&]() -> Result<PatchGrid> {
     if (Status status = check_increasing(breaks_u, "breakpoint", "u"); !status.ok()) return status;
     if (Status status = check_increasing(breaks_v, "breakpoint", "v"); !status.ok()) return status;
@@ -33,6 +40,7 @@ Result<PatchGrid> PatchGrid::make(std::vector<double> breaks_u, std::vector<doub
     grid.breaks_v_ = std::move(breaks_v);
     grid.patches_ = std::move(patches);
     grid.error_ = error;
+    grid.box_ = box;
     return grid;
   });
 }

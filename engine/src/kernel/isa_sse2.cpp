@@ -75,6 +75,8 @@ struct Lanes<double> {
   static Batch broadcast(double x) { return Batch(x); }
   static Batch load(const double* p) { return Batch::load_aligned(p); }
   static void store(double* p, Batch a) { a.store_aligned(p); }
+  static void store_as(double* p, Batch a) { store(p, a); }
+  static void store_as(float* p, Batch a) { _mm_storel_pi(reinterpret_cast<__m64*>(p), _mm_cvtpd_ps(a)); }  // rounded
   static void stream(double* p, Batch a) { _mm_stream_pd(p, a); }
   static void fence() { _mm_sfence(); }  // after the last stream
   static Batch fma(Batch a, Batch b, Batch c) { return a * b + c; }

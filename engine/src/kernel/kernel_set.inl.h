@@ -9,6 +9,7 @@ inline constexpr int max_order = 16;  // coefficients of the highest degree
 #include "kernel/grid_kernel.inl.h"
 #include "kernel/border_kernel.inl.h"
 #include "kernel/blend_kernel.inl.h"
+#include "kernel/net_kernel.inl.h"
 #include "kernel/memory_kernels.inl.h"
 
 constexpr KernelTable table = {
@@ -20,6 +21,11 @@ constexpr KernelTable table = {
     scatter<Lanes<double>>,
     blend<Lanes<float>>,
     blend<Lanes<double>>,
+    pack_nets<float>,
+    pack_nets<double>,
+    bound_nets,
+    bound_points,
+    combine_rows,
     fma_rate<Lanes<float>>,
     fma_rate<Lanes<double>>,
     fill_memory<Lanes<float>>,

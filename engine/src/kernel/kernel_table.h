@@ -94,6 +94,29 @@ struct ScatterJob {
   std::ptrdiff_t stride = 1;
 };
 
+/// The control points of a block's patches, into its lanes, relative to an origin.
+template <class T>
+struct PackJob {
+  const double* const* nets = nullptr;  ///< one a lane, `[number]`: x y z x y z ..
+  std::size_t count = 0;         ///< numbers in each, a multiple of 3
+  double shift[3] = {0, 0, 0};   ///< added to x, y, z
+  T* out = nullptr;              ///< `[number][lane]`, 64-byte aligned
+};
+
+/// The boxes of the control points of a block's patches.
+struct alignas(64) NetBoxes {
+  double lower[3][block_lanes], upper[3][block_lanes];
+};
+
+/// out[x] = weights[0] rows[x] + weights[1] rows[stride + x] + .. for x < width.
+struct CombineJob {
+  const double* weights = nullptr;
+  std::size_t count = 0;         ///< of rows, at least 1
+  const double* rows = nullptr;
+  std::size_t stride = 0, width = 0;
+  double* out = nullptr;
+};
+
 /// Rows of a transfinite grid: g1_j C1_i + g2_j C2_i + f1_i K1_j + f2_i K2_j at record i * column_count + j.
 template <class T>
 struct BlendJob {
@@ -115,6 +138,13 @@ struct KernelTable {
   void (*scatter_f64)(const ScatterJob<double>&);
   Isa (*blend_f32)(const BlendJob<float>&);
   Isa (*blend_f64)(const BlendJob<double>&);
+  void (*pack_f32)(const PackJob<float>&);
+  void (*pack_f64)(const PackJob<double>&);
+  /// `nets` and `count` as in PackJob.
+  void (*bound_nets)(const double* const* nets, std::size_t count, NetBoxes& boxes);
+  /// Extends the box `lower`, `upper` by points of `count` numbers, x y z x y z ..
+  void (*bound_points)(const double* points, std::size_t count, double (&lower)[3], double (&upper)[3]);
+  void (*combine)(const CombineJob&);
   /// For limits.h: `rounds` times 16 independent fused multiply-adds of whole vectors; returns the lanes of a vector.
   int (*fma_f32)(std::size_t rounds, float* sink);
   int (*fma_f64)(std::size_t rounds, double* sink);
@@ -130,6 +160,9 @@ const KernelTable& neon64_kernels();
 
 /// The kernels of every ISA that processor and operating system support, slowest first; at least one.
 std::span<const KernelTable* const> machine_kernels();
+
+/// Those of default_isa(), or the baseline's where TESSERA_ISA names none: for kernels that compute the same bits on all.
+const KernelTable& default_kernels();
 
 /// The kernels of an ISA. Call it only for one that available_isas() lists.
 const KernelTable& kernels(Isa isa);

@@ -77,5 +77,10 @@ const KernelTable& kernels(Isa isa) {
   return *machine_kernels().front();
 }
 
+const KernelTable& default_kernels() {
+  const Result<Isa> isa = default_isa();
+  return kernels(isa ? *isa : Isa::sse2);
+}
+
 }  // namespace kernel
 }  // namespace tessera

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/guard.h"
+#include "surface/patch_pieces.h"
 #include "surface/validate.h"
 
 namespace tessera {
@@ -20,48 +21,38 @@ Status check_count(int degree_u, int degree_v, std::size_t count, const char* wh
           size_text(degree_u, degree_v) + " " + what + ", " + std::to_string(count) + " were given"};
 }
 
-template <class T>
-std::shared_ptr<const T[]> shared_copy(std::span<const T> values) {
-  auto copy = std::make_shared<T[]>(values.size());
-  std::copy(values.begin(), values.end(), copy.get());
-  return copy;
+/// What BezierPatch::polynomial asks for.
+Status check_net(int degree_u, int degree_v, std::span<const Vec3> points) {
+  if (Status status = check_degree(degree_u, "degree u"); !status.ok()) return status;
+  if (Status status = check_degree(degree_v, "degree v"); !status.ok()) return status;
+  if (Status status = check_count(degree_u, degree_v, points.size(), "control points"); !status.ok()) return status;
+  return check_points(points, [&](std::size_t k) { return place_in_rows(k, static_cast<std::size_t>(degree_v) + 1); });
 }
 
 }  // namespace
 
 Result<BezierPatch> BezierPatch::polynomial(int degree_u, int degree_v, std::span<const Vec3> points) {
   return guarded([&]() -> Result<BezierPatch> {
-    if (Status status = check_degree(degree_u, "degree u"); !status.ok()) return status;
-    if (Status status = check_degree(degree_v, "degree v"); !status.ok()) return status;
-    if (Status status = check_count(degree_u, degree_v, points.size(), "control points"); !status.ok()) return status;
-    const auto place = [&](std::size_t k) { return place_in_rows(k, static_cast<std::size_t>(degree_v) + 1); };
-    if (Status status = check_points(points, place); !status.ok()) return status;
-    BezierPatch patch;
-    patch.degree_u_ = degree_u;
-    patch.degree_v_ = degree_v;
-    patch.points_ = shared_copy(points);
-    return patch;
+    if (Status status = check_net(degree_u, degree_v, points); !status.ok()) return status;
+    return PatchPieces::single(degree_u, degree_v, points, {});
   });
 }
 
 Result<BezierPatch> BezierPatch::rational(int degree_u, int degree_v, std::span<const Vec3> points,
                                           std::span<const double> weights) {
   return guarded([&]() -> Result<BezierPatch> {
-    Result<BezierPatch> patch = polynomial(degree_u, degree_v, points);
-    if (!patch) return patch;
+    if (Status status = check_net(degree_u, degree_v, points); !status.ok()) return status;
     if (Status status = check_count(degree_u, degree_v, weights.size(), "weights"); !status.ok()) return status;
     const auto place = [&](std::size_t k) { return place_in_rows(k, static_cast<std::size_t>(degree_v) + 1); };
     if (Status status = check_weights(weights, place); !status.ok()) return status;
-    if (!all_equal(weights)) patch->weights_ = shared_copy(weights);
-    return patch;
+    return PatchPieces::single(degree_u, degree_v, points, all_equal(weights) ? std::span<const double>{} : weights);
   });
 }
 
 Result<BezierPatch> BezierPatch::with_points(std::span<const Vec3> points) const {
   return guarded([&]() -> Result<BezierPatch> {
-    Result<BezierPatch> patch = polynomial(degree_u_, degree_v_, points);
-    if (patch) patch->weights_ = weights_;
-    return patch;
+    if (Status status = check_net(degree_u_, degree_v_, points); !status.ok()) return status;
+    return PatchPieces::single(degree_u_, degree_v_, points, weights());
   });
 }
 

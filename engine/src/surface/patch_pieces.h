@@ -1,16 +1,17 @@
 #pragma once
 // The patches of one surface, with all their points in one array: one allocation instead of one a patch.
 
+#include <algorithm>
 #include <cassert>
-#include <memory>
+#include <span>
 #include <vector>
 
 #include "tessera/bezier_patch.h"
 
 namespace tessera {
 
-/// Filled patch by patch, then taken. What is written must be what BezierPatch::polynomial and rational accept; weights
-/// are kept even where those of a patch are all equal, for rationality is the surface's own.
+/// Filled patch by patch, from any number of threads, then taken. What is written must be what BezierPatch::polynomial
+/// and rational accept; weights are kept even where those of a patch are all equal, for rationality is the surface's own.
 class PatchPieces {
  public:
   PatchPieces(int degree_u, int degree_v, std::size_t count, bool rational)
@@ -18,8 +19,9 @@ class PatchPieces {
         degree_v_(degree_v),
         count_(count),
         size_(static_cast<std::size_t>(degree_u + 1) * static_cast<std::size_t>(degree_v + 1)),
-        points_(uninitialised<Vec3>(count * size_)),
-        weights_(rational ? uninitialised<double>(count * size_) : nullptr) {}
+        memory_(count * size_ * (sizeof(Vec3) + (rational ? sizeof(double) : 0))),
+        points_(static_cast<Vec3*>(memory_.data())),
+        weights_(rational ? reinterpret_cast<double*>(points_ + count * size_) : nullptr) {}
 
   bool rational() const { return weights_ != nullptr; }
   Vec3* points(std::size_t patch) { return &points_[patch * size_]; }
@@ -29,30 +31,40 @@ class PatchPieces {
   std::vector<BezierPatch> take() {
     std::vector<BezierPatch> patches;
     patches.reserve(count_);
-    for (std::size_t k = 0; k < count_; ++k) {
-      BezierPatch patch;
-      patch.degree_u_ = degree_u_;
-      patch.degree_v_ = degree_v_;
-      patch.points_ = std::shared_ptr<const Vec3[]>(points_, points(k));
-      if (weights_) patch.weights_ = std::shared_ptr<const double[]>(weights_, weights(k));
-      assert(is_finite(patch.points_[0]) && is_finite(patch.points_[size_ - 1]));
-      patches.push_back(std::move(patch));
-    }
+    SharedMemory::Copies handles(memory_, count_);
+    for (std::size_t k = 0; k < count_; ++k) patches.push_back(patch(k, handles.take()));
     return patches;
+  }
+  /// One patch of these; no weights: polynomial.
+  static BezierPatch single(int degree_u, int degree_v, std::span<const Vec3> points, std::span<const double> weights) {
+    PatchPieces piece(degree_u, degree_v, 1, !weights.empty());
+    std::copy(points.begin(), points.end(), piece.points_);
+    std::copy(weights.begin(), weights.end(), piece.weights_);
+    return piece.patch(0, std::move(piece.memory_));
+  }
+  /// Ends what patches hold, all pieces of a surface at once; they can then only be destroyed.
+  static void release(std::span<BezierPatch> patches) {
+    SharedMemory::Sink sink;
+    for (BezierPatch& patch : patches) sink.take(patch.memory_);
   }
 
  private:
-  /// make_shared would write zeros first.
-  template <class T>
-  static std::shared_ptr<T[]> uninitialised(std::size_t count) {
-    std::allocator<T> allocator;
-    return {allocator.allocate(count), [allocator, count](T* memory) mutable { allocator.deallocate(memory, count); }};
+  BezierPatch patch(std::size_t k, SharedMemory memory) {
+    BezierPatch patch;
+    patch.degree_u_ = degree_u_;
+    patch.degree_v_ = degree_v_;
+    patch.points_ = points(k);
+    patch.weights_ = rational() ? weights(k) : nullptr;
+    patch.memory_ = std::move(memory);
+    assert(is_finite(patch.points_[0]) && is_finite(patch.points_[size_ - 1]));
+    return patch;
   }
 
   int degree_u_, degree_v_;
   std::size_t count_, size_;
-  std::shared_ptr<Vec3[]> points_;
-  std::shared_ptr<double[]> weights_;
+  SharedMemory memory_;
+  Vec3* points_;
+  double* weights_;
 };
 
 }  // namespace tessera

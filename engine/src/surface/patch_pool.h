@@ -1,50 +1,49 @@
 #pragma once
-// Bezier patches that share arrays of points, of whatever degrees they are: a few allocations instead of two a patch.
+// Bezier patches that share memory, of whatever degrees they are: a few allocations instead of one a patch.
 
 #include <algorithm>
+#include <cstddef>
 #include <memory>
-#include <span>
 
 #include "tessera/bezier_patch.h"
 
 namespace tessera {
 
-/// Where the patches of a file keep their points. An array lives as long as a patch that has points in it.
+/// Where the patches of a file keep their points. Memory lives as long as a patch that has points in it.
 class PatchPool {
  public:
   /// The same patch, its numbers in the pool.
   BezierPatch placed(const BezierPatch& patch) {
+    const auto points = patch.points();
+    const auto weights = patch.weights();
+    reserve(points.size_bytes() + weights.size_bytes());
     BezierPatch copy = patch;
-    copy.points_ = points_.copy_of(patch.points());
-    if (patch.is_rational()) copy.weights_ = weights_.copy_of(patch.weights());
+    copy.points_ = static_cast<const Vec3*>(put(points));
+    if (patch.is_rational()) copy.weights_ = static_cast<const double*>(put(weights));
+    copy.memory_ = memory_;
     return copy;
   }
 
  private:
+  /// What may be left over at the end is small beside a file that fills it.
+  static constexpr std::size_t largest = 48 * 1024;
+
+  void reserve(std::size_t bytes) {
+    if (bytes <= size_ - used_) return;
+    size_ = std::max(bytes, std::clamp<std::size_t>(2 * size_, 512, largest));
+    used_ = 0;
+    memory_ = SharedMemory(size_);
+  }
   template <class T>
-  class Arrays {
-   public:
-    std::shared_ptr<const T[]> copy_of(std::span<const T> values) {
-      if (values.size() > size_ - used_) {
-        size_ = std::max(values.size(), std::clamp<std::size_t>(2 * size_, 16, largest));
-        used_ = 0;
-        array_ = std::shared_ptr<T[]>(new T[size_]);
-      }
-      T* const place = &array_[used_];
-      std::copy(values.begin(), values.end(), place);
-      used_ += values.size();
-      return {array_, place};
-    }
+  void* put(std::span<const T> values) {
+    T* const place = reinterpret_cast<T*>(static_cast<std::byte*>(memory_.data()) + used_);
+    std::uninitialized_copy(values.begin(), values.end(), place);
+    used_ += values.size_bytes();
+    return place;
+  }
 
-   private:
-    static constexpr std::size_t largest =
-        2048;  // what may be left over at the end is small beside a file that fills it
-    std::shared_ptr<T[]> array_;
-    std::size_t size_ = 0, used_ = 0;
-  };
-
-  Arrays<Vec3> points_;
-  Arrays<double> weights_;
+  SharedMemory memory_;
+  std::size_t size_ = 0, used_ = 0;
 };
 
 }  // namespace tessera
