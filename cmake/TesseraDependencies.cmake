@@ -7,6 +7,7 @@
 #   nlohmann-json     nlohmann-json3-dev 3.11     tessera::io: models (headers only, within engine/src/io);
 #                                               the command line: --json; tests: values of peers
 #   muParser          libmuparser-dev 2.3         tessera::io: expressions in models (engine/src/io alone)
+#   tinygltf          libtinygltf-dev 2.7         tessera::io: glTF (engine/src/io alone); tests: its reader
 #   libpng            libpng-dev 1.6              the command line: pictures
 #   GoogleTest        libgtest-dev 1.12           tests (and libgmock-dev: its matchers)
 #   Google Benchmark  libbenchmark-dev 1.7        benchmarks
@@ -27,6 +28,7 @@ endif()
 if(TESSERA_BUILD_IO)
   find_package(nlohmann_json 3 REQUIRED)
   find_package(muparser 2 REQUIRED)
+  find_package(TinyGLTF CONFIG REQUIRED)
 endif()
 # Whether tessera::io_occt is built.
 set(TESSERA_HAS_IO_OCCT OFF)

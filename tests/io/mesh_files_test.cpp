@@ -1,8 +1,10 @@
 // What is written is read back, in each format; what cannot be written is refused.
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <cmath>
+#include <csignal>
 #include <limits>
 
 #include "io/mesh_formats.h"
@@ -83,10 +85,15 @@ TEST_P(MeshFiles, LargerThanTheBuffer) {
   EXPECT_EQ(read->indices, mesh.indices);
 }
 
-TEST_P(MeshFiles, BadMeshesAreRefusedAndNothingAppears) {
+/// The formats that are written, read back or not.
+class MeshWriters : public MeshFiles {};
+INSTANTIATE_TEST_SUITE_P(Formats, MeshWriters, testing::Values(".obj", ".ply", ".stl", ".glb", ".gltf"),
+                         [](const auto& format) { return format.param.substr(1); });
+
+TEST_P(MeshWriters, BadMeshesAreRefusedAndNothingAppears) {
   std::vector<std::pair<StatusCode, Mesh>> cases;
   const Mesh good = random_mesh(5, 4);
-  for (int k = 0; k < 8; ++k) cases.emplace_back(StatusCode::count_mismatch, good);
+  for (int k = 0; k < 14; ++k) cases.emplace_back(StatusCode::count_mismatch, good);
   cases[0].second.positions.pop_back();
   cases[1].second.normals.pop_back();
   cases[2].second.parameters.pop_back();
@@ -98,6 +105,17 @@ TEST_P(MeshFiles, BadMeshesAreRefusedAndNothingAppears) {
   cases[6].first = StatusCode::non_finite;
   cases[7].second.origin.x = 1e39;
   cases[7].first = StatusCode::non_finite;
+  cases[8].second.normals[5] = std::numeric_limits<float>::infinity();
+  cases[8].first = StatusCode::non_finite;
+  cases[9].second.parameters[9] = -std::numeric_limits<float>::quiet_NaN();
+  cases[9].first = StatusCode::non_finite;
+  cases[10].second = {};
+  cases[10].first = StatusCode::invalid_argument;
+  cases[11].second.parts = {{"a", 0, 3}};
+  cases[12].second.parts = {{"a", 0, 3}, {"b", 2, 2}};
+  cases[12].first = StatusCode::invalid_argument;
+  cases[13].second.parts = {{"a", 0, 3}, {"b", 3, ~std::size_t{0}}};
+  cases[13].first = StatusCode::invalid_argument;
   for (const auto& [code, mesh] : cases) {
     const Status status = write_mesh(mesh, path());
     EXPECT_EQ(status.code(), code) << status.message();
@@ -105,10 +123,29 @@ TEST_P(MeshFiles, BadMeshesAreRefusedAndNothingAppears) {
   }
   EXPECT_EQ(write_mesh(cases[5].second, path()).index(), 7);
   EXPECT_EQ(write_mesh(cases[6].second, path()).index(), 1);
+  EXPECT_EQ(write_mesh(cases[8].second, path()).index(), 1);
+  EXPECT_EQ(write_mesh(cases[9].second, path()).index(), 4);
+  EXPECT_EQ(write_mesh(cases[13].second, path()).index(), 1);
   EXPECT_TRUE(folder_.names().empty());
 }
 
-TEST_P(MeshFiles, OutputsThatCannotBeWrittenAreErrors) {
+/// As the first bad value is found among pieces of many threads.
+TEST_P(MeshWriters, TheFirstOfSeveralBadVerticesIsNamed) {
+  Mesh mesh = random_mesh(200000, 3);
+  for (const std::size_t vertex : {199999u, 150001u, 70000u})
+    mesh.positions[3 * vertex + 2] = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(write_mesh(mesh, path()).index(), 70000);
+  EXPECT_TRUE(folder_.names().empty());
+}
+
+TEST_P(MeshWriters, MeshesWithoutTriangles) {
+  const Status status = write_mesh(random_mesh(3, 0), path());
+  const bool points_suffice = GetParam() == ".obj" || GetParam() == ".ply";
+  EXPECT_EQ(status.ok(), points_suffice) << status.message();
+  EXPECT_EQ(folder_.names().size(), points_suffice ? 1u : 0u);
+}
+
+TEST_P(MeshWriters, OutputsThatCannotBeWrittenAreErrors) {
   const Mesh mesh = random_mesh(5, 4);
   EXPECT_EQ(write_mesh(mesh, path("none/mesh")).code(), StatusCode::io_error);
   std::filesystem::create_directory(path("folder"));
@@ -116,6 +153,23 @@ TEST_P(MeshFiles, OutputsThatCannotBeWrittenAreErrors) {
   std::filesystem::create_symlink("/dev/full", path("full"));
   EXPECT_EQ(write_mesh(mesh, path("full")).code(), StatusCode::io_error);
   EXPECT_EQ(folder_.names().size(), 2u);
+}
+
+/// As on a disk that fills up.
+TEST_P(MeshWriters, AFileThatMayNotGrowLeavesTheOldOne) {
+  folder_.file("mesh" + GetParam(), "before");
+  struct rlimit limit {};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &limit), 0);
+  std::signal(SIGXFSZ, SIG_IGN);
+  struct rlimit small = limit;
+  small.rlim_cur = 5'000'000;
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  const Status status = write_mesh(random_mesh(150000, 250000), path());
+  ::setrlimit(RLIMIT_FSIZE, &limit);
+  EXPECT_EQ(status.code(), StatusCode::io_error);
+  EXPECT_EQ(status.message(), path() + ": cannot be written: File too large");
+  EXPECT_EQ(test::content_of(path()), "before");
+  EXPECT_EQ(folder_.names().size(), 1u);
 }
 
 TEST_P(MeshFiles, TruncatedFilesNeverCrashNorGiveMoreThanTheyHold) {
@@ -137,15 +191,18 @@ TEST_P(MeshFiles, TruncatedFilesNeverCrashNorGiveMoreThanTheyHold) {
 TEST(Formats, UnknownOnesAreNamedWithThoseThatAreKnown) {
   const ScratchFolder folder;
   const std::string model = folder.file("a.k3d", "x"), none = folder.file("plain", "x"),
-                    mesh = folder.file("b.stl", "x");
+                    mesh = folder.file("b.off", "x");
   EXPECT_EQ(read_model(model).status().message(),
             model + ": unsupported format \".k3d\": surfaces are read as .bpt, .bv, .g2, .json, .obj, .rib");
   EXPECT_EQ(read_model(model).status().code(), StatusCode::unsupported);
   EXPECT_EQ(read_model(none).status().message(),
             none + ": unsupported format \"\": surfaces are read as .bpt, .bv, .g2, .json, .obj, .rib");
-  EXPECT_EQ(read_mesh(mesh).status().message(), mesh + ": unsupported format \".stl\": meshes are read as .obj, .ply");
+  EXPECT_EQ(read_mesh(mesh).status().message(),
+            mesh + ": unsupported format \".off\": meshes are read as .obj, .ply, .stl");
   EXPECT_EQ(write_mesh(random_mesh(3, 1), mesh).message(),
-            mesh + ": unsupported format \".stl\": meshes are written as .obj, .ply");
+            mesh + ": unsupported format \".off\": meshes are written as .obj, .ply, .stl, .glb, .gltf");
+  EXPECT_EQ(write_model(Model{}, mesh).status().message(),
+            mesh + ": unsupported format \".off\": surfaces are written as .bpt, .obj");
   EXPECT_EQ(test::content_of(mesh), "x");
 }
 

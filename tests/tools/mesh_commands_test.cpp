@@ -145,7 +145,7 @@ TEST_F(MeshTools, CheckRefusesNaNAndBadIndices) {
   expect_failure({"check", "index.obj"}, 1, "tessera: index.obj:4: expected an index into the 3 vertices above");
   folder_.file("empty.ply", "");
   expect_failure({"check", "empty.ply"}, 1, "tessera: empty.ply: the file is empty");
-  expect_failure({"check", teapot}, 1, "meshes are read as .obj, .ply");
+  expect_failure({"check", teapot}, 1, "meshes are read as .obj, .ply, .stl");
   expect_failure({"check", "missing.ply"}, 1, "tessera: missing.ply: cannot be opened");
 }
 

@@ -1,9 +1,11 @@
 #pragma once
-// Files: surfaces in, meshes in and out. The format follows from the name's extension, in any case of letters.
+// Files: surfaces and meshes, in and out. The format follows from the name's extension, in any case of letters.
 // Errors name the file and, for text, the line: "teapot.bpt:17: expected 3 numbers for a control point, found \"a b\"".
 
 #include <filesystem>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "tessera/mesh.h"
 #include "tessera/model.h"
@@ -41,11 +43,37 @@ Result<Model> parse_json_model(std::string_view text, std::string_view name);
 /// 2.11; trims and holes are kept as ModelSurface::trims. Surfaces are named by object and group.
 Result<Model> parse_obj_freeform(std::string_view text, std::string_view name);
 
-/// Writes .obj (text, floats in shortest round-trip form) or .ply (binary, little endian), in the model's coordinates
-/// (the origin is added in double; what does not fit float exactly is rounded). The file appears whole or not at all:
-/// it is written beside its place, then renamed. Errors: io_error, unsupported.
+/// What write_model has written.
+struct WrittenModel {
+  std::size_t surfaces = 0, patches = 0;
+  FitError fit_error = {};                 ///< the largest of all; 0 where every surface is a patch or made of such
+  std::vector<std::string> warnings = {};  ///< what of the model the file does not hold, a sentence each
+};
+
+/// Writes surfaces as their Bezier patches, in the model's space, numbers in the shortest form that reads back as the
+/// same: .obj (free-form: weights, names as groups, trims; a surface's patches are one `surf` over its own ranges of
+/// parameters, so that (u,v) stay) or .bpt (polynomial patches alone; names and ranges are not kept). A quadric's
+/// parameters become those of its patches, and its trims are left out with a warning; so are those of a surface whose
+/// patches do not share their borders, which becomes a `surf` a patch. Polynomial surfaces read back with the same control
+/// points. The file appears whole or not at all. Errors: io_error, unsupported (the extension; a rational surface for
+/// .bpt, index = the surface), invalid_argument (no surfaces), those of to_bezier.
+Result<WrittenModel> write_model(const Model& model, const std::filesystem::path& path, const FitOptions& fit = {});
+/// The patches of a set, each over its rectangle of its surface's parameters; in .obj the group "surface 3" says of which.
+/// Errors: io_error, unsupported (index = the patch).
+Status write_model(const PatchSet& set, const std::filesystem::path& path);
+
+/// Writes the mesh in the model's coordinates, which are not turned: viewers take y or z as up. The file appears whole or
+/// not at all: it is written beside its place, then renamed.
+/// .obj (text, floats in shortest round-trip form; parts as groups), .ply and .stl (binary, little endian; .stl holds the
+/// triangles' corners alone): the origin is added in double, what does not fit float exactly is rounded. .glb and .gltf
+/// (glTF 2.0, one file with all in it): a mesh for each of Mesh::parts, positions as they are, and the origin as the
+/// translation of their node; normals are made unit, parameters are texture coordinates.
+/// Errors: io_error, unsupported (the extension; a glTF file beyond 2 GiB), and of a mesh that no file can hold:
+/// invalid_argument (no vertices; for .stl, .glb and .gltf no triangles; an index or a part out of range), count_mismatch,
+/// non_finite.
 Status write_mesh(const Mesh& mesh, const std::filesystem::path& path);
-/// Reads the meshes that write_mesh writes, polygons split as fans. Errors: io_error, parse_error, unsupported.
+/// Reads .obj, .ply and .stl (binary or ascii), polygons split as fans; the corners of .stl's triangles become one vertex
+/// where their bits are equal. Errors: io_error, parse_error, unsupported.
 Result<Mesh> read_mesh(const std::filesystem::path& path);
 
 }  // namespace tessera

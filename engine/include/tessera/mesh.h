@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "tessera/status.h"
@@ -26,6 +27,12 @@ struct MeshViews {
   std::span<std::uint32_t> indices = {}; ///< three a triangle, counter-clockwise seen from where r_u x r_v points
 };
 
+/// A run of triangles that belong together, such as those of one surface.
+struct MeshPart {
+  std::string name;
+  std::size_t first_triangle = 0, triangle_count = 0;
+};
+
 /// A mesh that owns its memory, interleaved by attribute: 3 floats a position or normal, 2 a parameter.
 struct Mesh {
   Vec3 origin;                          ///< add it to positions to get the model's coordinates
@@ -34,6 +41,7 @@ struct Mesh {
   std::vector<float> parameters;        ///< empty, or two a vertex
   std::vector<std::uint32_t> patches;   ///< empty, or one a triangle
   std::vector<std::uint32_t> indices;
+  std::vector<MeshPart> parts;          ///< empty, or runs one after the other that together are all triangles
 
   std::size_t vertex_count() const { return positions.size() / 3; }
   std::size_t triangle_count() const { return indices.size() / 3; }

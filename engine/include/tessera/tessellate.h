@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "tessera/execution.h"
 #include "tessera/isa.h"
@@ -11,6 +12,8 @@
 #include "tessera/status.h"
 
 namespace tessera {
+
+struct Model;
 
 struct TessellationOptions {
   int rate_u = 8;  ///< segments along u of every patch, 1 to 4096
@@ -47,5 +50,10 @@ class TessellationPlan {
   explicit TessellationPlan(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
+
+/// Mesh::parts by surfaces: a part for each run of triangles whose patches come from one surface, with its name in the
+/// model ("surface 3" if it has none). `set` is the one of mesh.patches, made of `model`. Errors: count_mismatch (not one
+/// patch a triangle), invalid_argument (no such patch in the set, or surface in the model; index = the triangle).
+Result<std::vector<MeshPart>> parts_by_surface(const Mesh& mesh, const PatchSet& set, const Model& model);
 
 }  // namespace tessera

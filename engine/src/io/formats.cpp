@@ -1,17 +1,14 @@
 #include "io/formats.h"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
-#include <span>
 #include <string>
 #include <system_error>
 
 #include "base/guard.h"
 #include "io/file.h"
 #include "io/mesh_formats.h"
-#include "io/output_file.h"
+#include "io/model_formats.h"
+#include "io/valid_mesh.h"
 #include "tessera/io.h"
 
 namespace tessera {
@@ -23,20 +20,28 @@ struct Format {
   std::string_view extension;
   Result<Model> (*read_model)(std::string_view, std::string_view) = nullptr;
   Result<Mesh> (*read_mesh)(std::string_view, std::string_view) = nullptr;
-  void (*write_mesh)(const Mesh&, OutputFile&) = nullptr;
+  Status (*write_mesh)(const Mesh&, OutputFile&) = nullptr;
+  decltype(&write_bpt) write_model = nullptr;
 };
 
-constexpr std::array<Format, 7> formats{{
-    {.extension = ".bpt", .read_model = parse_bpt},
+constexpr std::array<Format, 10> formats{{
+    {.extension = ".bpt", .read_model = parse_bpt, .write_model = write_bpt},
     {.extension = ".bv", .read_model = parse_bv},
     {.extension = ".g2", .read_model = parse_g2},
     {.extension = ".json", .read_model = parse_json_model},
-    {.extension = ".obj", .read_model = parse_obj_freeform, .read_mesh = parse_obj, .write_mesh = write_obj},
+    {.extension = ".obj",
+     .read_model = parse_obj_freeform,
+     .read_mesh = parse_obj,
+     .write_mesh = write_obj,
+     .write_model = write_obj_freeform},
     {.extension = ".rib", .read_model = parse_rib},
     {.extension = ".ply", .read_mesh = parse_ply, .write_mesh = write_ply},
+    {.extension = ".stl", .read_mesh = parse_stl, .write_mesh = write_stl},
+    {.extension = ".glb", .write_mesh = write_glb},
+    {.extension = ".gltf", .write_mesh = write_gltf},
 }};
 
-constexpr std::string_view mesh_writers = "meshes are written";
+constexpr std::string_view mesh_writers = "meshes are written", model_writers = "surfaces are written";
 
 /// The format that `path` names, if it has the ability `member`; otherwise an error that lists those that have.
 template <class Ability>
@@ -75,38 +80,6 @@ Status or_read_elsewhere(const fs::path& path, const Status& status) {
                     "read_cad of tessera/io_occt.h");
 }
 
-/// Lengths that fit each other, indices in range, numbers that fit float.
-Status validate(const Mesh& mesh) {
-  const std::size_t vertices = mesh.vertex_count(), triangles = mesh.triangle_count();
-  const bool lengths_fit = mesh.positions.size() == 3 * vertices && mesh.indices.size() == 3 * triangles &&
-                           (mesh.normals.empty() || mesh.normals.size() == 3 * vertices) &&
-                           (mesh.parameters.empty() || mesh.parameters.size() == 2 * vertices) &&
-                           (mesh.patches.empty() || mesh.patches.size() == triangles);
-  if (!lengths_fit)
-    return Status(StatusCode::count_mismatch, "the mesh's arrays have lengths that do not fit each other");
-  if (vertices > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
-    return Status(StatusCode::invalid_argument, "the mesh has more vertices than files can index (2147483647)");
-  }
-  const auto bad_index = std::find_if(mesh.indices.begin(), mesh.indices.end(), [&](auto k) { return k >= vertices; });
-  if (bad_index != mesh.indices.end()) {
-    return Status(StatusCode::invalid_argument, "an index of the mesh is beyond its vertices",
-                  bad_index - mesh.indices.begin());
-  }
-  for (std::size_t k = 0; k < mesh.positions.size(); ++k) {
-    const double origin = std::array{mesh.origin.x, mesh.origin.y, mesh.origin.z}[k % 3];
-    const bool normal_finite = mesh.normals.empty() || std::isfinite(mesh.normals[k]);
-    if (!std::isfinite(file_coordinate(origin, mesh.positions[k])) || !normal_finite) {
-      return Status(StatusCode::non_finite, "a vertex of the mesh is not finite in float",
-                    static_cast<std::ptrdiff_t>(k / 3));
-    }
-  }
-  const auto finite = [](float value) { return std::isfinite(value); };
-  if (!std::all_of(mesh.parameters.begin(), mesh.parameters.end(), finite)) {
-    return Status(StatusCode::non_finite, "a parameter of the mesh is not finite");
-  }
-  return {};
-}
-
 }  // namespace
 
 std::string lower_extension(const fs::path& path) {
@@ -118,6 +91,14 @@ std::string lower_extension(const fs::path& path) {
 }
 
 Status check_mesh_format(const fs::path& path) { return find_format(path, &Format::write_mesh, mesh_writers).status(); }
+
+Status check_model_format(const fs::path& path) { return surface_writer(path).status(); }
+
+Result<SurfaceWriter> surface_writer(const fs::path& path) {
+  const Result<const Format*> format = find_format(path, &Format::write_model, model_writers);
+  if (!format) return format.status();
+  return SurfaceWriter{(*format)->write_model};
+}
 
 Result<Model> read_model(const fs::path& path) {
   return guarded([&]() -> Result<Model> {
@@ -138,8 +119,8 @@ Status write_mesh(const Mesh& mesh, const fs::path& path, OutputFile& out) {
     if (!format) return format.status();
     Status status = validate(mesh);
     if (!status.ok()) return Status(status.code(), path.string() + ": " + status.message(), status.index());
-    (*format)->write_mesh(mesh, out);
-    return {};
+    status = (*format)->write_mesh(mesh, out);
+    return status.ok() ? status : Status(status.code(), path.string() + ": " + status.message(), status.index());
   });
 }
 

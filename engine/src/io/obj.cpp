@@ -6,6 +6,7 @@
 
 #include "io/mesh_formats.h"
 #include "io/obj_index.h"
+#include "io/obj_name.h"
 #include "io/text_cursor.h"
 
 namespace tessera {
@@ -129,7 +130,7 @@ class ObjReader {
 
 }  // namespace
 
-void write_obj(const Mesh& mesh, OutputFile& out) {
+Status write_obj(const Mesh& mesh, OutputFile& out) {
   const bool normals = !mesh.normals.empty(), parameters = !mesh.parameters.empty();
   out.write("# Tessera: " + std::to_string(mesh.vertex_count()) + " vertices, " +
             std::to_string(mesh.triangle_count()) + " triangles\n");
@@ -141,11 +142,15 @@ void write_obj(const Mesh& mesh, OutputFile& out) {
     if (parameters) write_record(out, "vt", std::span(mesh.parameters).subspan(2 * k, 2));
     if (normals) write_record(out, "vn", std::span(mesh.normals).subspan(3 * k, 3));
   }
+  auto part = mesh.parts.begin();
   for (std::size_t k = 0; k < mesh.triangle_count() && !out.failed(); ++k) {
+    for (; part != mesh.parts.end() && part->first_triangle == k; ++part)
+      if (part->triangle_count > 0) out.write("g " + obj_name(part->name) + "\n");
     out.write('f');
     for (std::size_t c = 0; c < 3; ++c) write_corner(out, mesh.indices[3 * k + c], parameters, normals);
     out.write('\n');
   }
+  return {};
 }
 
 Result<Mesh> parse_obj(std::string_view text, std::string_view name) { return ObjReader(text, name).read(); }

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "io/mesh_formats.h"
+#include "io/packed_records.h"
 #include "io/ply_header.h"
 #include "io/text_cursor.h"
 
@@ -240,8 +241,9 @@ class BodyReader {
 };
 
 template <class T>
-void write_raw(OutputFile& out, std::span<const T> values) {
-  out.write(std::string_view(reinterpret_cast<const char*>(values.data()), values.size_bytes()));
+char* put(char* to, const T* values, std::size_t count) {
+  std::memcpy(to, values, count * sizeof(T));
+  return to + count * sizeof(T);
 }
 
 void write_header(const Mesh& mesh, OutputFile& out) {
@@ -258,21 +260,31 @@ void write_header(const Mesh& mesh, OutputFile& out) {
 
 }  // namespace
 
-void write_ply(const Mesh& mesh, OutputFile& out) {
+Status write_ply(const Mesh& mesh, OutputFile& out) {
   write_header(mesh, out);
-  for (std::size_t k = 0; k < mesh.vertex_count() && !out.failed(); ++k) {
-    const float* const p = mesh.positions.data() + 3 * k;
-    const std::array<float, 3> position{file_coordinate(mesh.origin.x, p[0]), file_coordinate(mesh.origin.y, p[1]),
-                                        file_coordinate(mesh.origin.z, p[2])};
-    write_raw(out, std::span<const float>(position));
-    if (!mesh.normals.empty()) write_raw(out, std::span(mesh.normals).subspan(3 * k, 3));
-    if (!mesh.parameters.empty()) write_raw(out, std::span(mesh.parameters).subspan(2 * k, 2));
-  }
-  for (std::size_t k = 0; k < mesh.triangle_count() && !out.failed(); ++k) {
-    out.write(char{3});
-    write_raw(out, std::span(mesh.indices).subspan(3 * k, 3));
-    if (!mesh.patches.empty()) write_raw(out, std::span(mesh.patches).subspan(k, 1));
-  }
+  const bool normals = !mesh.normals.empty(), parameters = !mesh.parameters.empty(), patches = !mesh.patches.empty();
+  const std::size_t vertex_bytes = sizeof(float) * (3 + (normals ? 3 : 0) + (parameters ? 2 : 0));
+  Status status =
+      write_packed(out, mesh.vertex_count(), vertex_bytes, [&](std::size_t first, std::size_t last, char* to) {
+        for (std::size_t k = first; k < last; ++k) {
+          const float* const p = mesh.positions.data() + 3 * k;
+          const std::array<float, 3> position{file_coordinate(mesh.origin.x, p[0]),
+                                              file_coordinate(mesh.origin.y, p[1]),
+                                              file_coordinate(mesh.origin.z, p[2])};
+          to = put(to, position.data(), 3);
+          if (normals) to = put(to, mesh.normals.data() + 3 * k, 3);
+          if (parameters) to = put(to, mesh.parameters.data() + 2 * k, 2);
+        }
+      });
+  if (!status.ok()) return status;
+  const std::size_t face_bytes = 1 + sizeof(std::uint32_t) * (3 + (patches ? 1 : 0));
+  return write_packed(out, mesh.triangle_count(), face_bytes, [&](std::size_t first, std::size_t last, char* to) {
+    for (std::size_t k = first; k < last; ++k) {
+      *to++ = 3;
+      to = put(to, mesh.indices.data() + 3 * k, 3);
+      if (patches) to = put(to, mesh.patches.data() + k, 1);
+    }
+  });
 }
 
 Result<Mesh> parse_ply(std::string_view bytes, std::string_view name) {

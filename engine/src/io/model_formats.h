@@ -1,0 +1,44 @@
+#pragma once
+// Surfaces as Bezier patches into files, one source file a format. Called by write_model.
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/output_file.h"
+#include "tessera/io.h"
+
+namespace tessera {
+
+/// What of a surface is written. Patches as in a PatchGrid: patch (a, b) at a * (breaks_v.size() - 1) + b.
+struct WrittenSurface {
+  std::string_view name;
+  std::span<const double> breaks_u, breaks_v;
+  std::span<const BezierPatch> patches;
+  std::span<const TrimLoop> trims;  ///< by the parameters of breaks_u and breaks_v
+
+  Domain patch_domain(std::size_t patch) const {
+    const std::size_t count_v = breaks_v.size() - 1, a = patch / count_v, b = patch % count_v;
+    return {breaks_u[a], breaks_u[a + 1], breaks_v[b], breaks_v[b + 1]};
+  }
+};
+
+/// "surface 3 (rim): 2 trims are not written: <why>".
+std::string trims_left_out(std::size_t surface, const WrittenSurface& written, std::string_view why);
+
+/// One surface after the other; adds what the format does not hold to `warnings`. Errors: unsupported (a rational patch
+/// for .bpt; index = the surface).
+Status write_bpt(std::span<const WrittenSurface> surfaces, OutputFile& out, std::vector<std::string>& warnings);
+Status write_obj_freeform(std::span<const WrittenSurface> surfaces, OutputFile& out,
+                          std::vector<std::string>& warnings);
+
+struct SurfaceWriter {
+  decltype(&write_bpt) write = nullptr;
+};
+/// By the extension of `path`. Errors: unsupported, with a list of those that are known.
+Result<SurfaceWriter> surface_writer(const std::filesystem::path& path);
+
+}  // namespace tessera

@@ -1,0 +1,132 @@
+#include "io/valid_mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <string>
+
+#include "io/mesh_formats.h"
+#include "parallel/parallel_for.h"
+
+namespace tessera {
+namespace {
+
+constexpr std::size_t values_a_piece = std::size_t{1} << 16;
+
+Status invalid(std::string message, std::size_t index) {
+  return {StatusCode::invalid_argument, std::move(message), static_cast<std::ptrdiff_t>(index)};
+}
+
+/// The least k below `count` that find(begin, end) finds in the pieces of [0, count), or `count`. `find` gives `end`
+/// where there is none.
+template <class Find>
+Result<std::size_t> first_of(std::size_t count, const Find& find) {
+  std::atomic<std::size_t> found = count;
+  Status status = parallel_for(count, values_a_piece, {}, [&](std::size_t begin, std::size_t end) {
+    const std::size_t k = find(begin, end);
+    if (k == end) return;
+    for (std::size_t least = found; k < least && !found.compare_exchange_weak(least, k);) {
+    }
+  });
+  if (!status.ok()) return status;
+  return found.load();
+}
+
+/// The first of [begin, end) for which `bad` holds. Looked for where there is one alone: to see that there is none takes
+/// no branches.
+template <class Bad>
+std::size_t first_bad(std::size_t begin, std::size_t end, const Bad& bad) {
+  unsigned any = 0;
+  for (std::size_t k = begin; k < end; ++k) any |= bad(k) ? 1u : 0u;
+  if (any == 0) return end;
+  while (!bad(begin)) ++begin;
+  return begin;
+}
+
+/// The first of values that are not finite, or whose magnitude is above `bound`.
+Result<std::size_t> first_beyond(std::span<const float> values, float bound) {
+  return first_of(values.size(), [&](std::size_t begin, std::size_t end) {
+    return first_bad(begin, end, [&](std::size_t k) { return !(std::abs(values[k]) <= bound); });
+  });
+}
+Result<std::size_t> first_not_finite(std::span<const float> values) {
+  return first_beyond(values, std::numeric_limits<float>::max());
+}
+
+/// The first vertex that does not fit float in the model's space.
+Result<std::size_t> first_misplaced(const Mesh& mesh) {
+  const std::array<double, 3> origin{mesh.origin.x, mesh.origin.y, mesh.origin.z};
+  constexpr float ample = 1e38f;  // it and an origin as large give a sum within float
+  const auto is_small = [](double x) { return std::abs(x) <= double{ample}; };
+  const Result<std::size_t> large = first_beyond(mesh.positions, ample);
+  if (!large) return large;
+  const bool all_small = std::all_of(origin.begin(), origin.end(), is_small);
+  if (all_small && *large == mesh.positions.size()) return mesh.vertex_count();
+  for (std::size_t k = 0; k < mesh.positions.size(); ++k)
+    if (!std::isfinite(file_coordinate(origin[k % 3], mesh.positions[k]))) return k / 3;
+  return mesh.vertex_count();
+}
+
+Status check_lengths(const Mesh& mesh) {
+  const std::size_t vertices = mesh.vertex_count(), triangles = mesh.triangle_count();
+  const bool lengths_fit = mesh.positions.size() == 3 * vertices && mesh.indices.size() == 3 * triangles &&
+                           (mesh.normals.empty() || mesh.normals.size() == 3 * vertices) &&
+                           (mesh.parameters.empty() || mesh.parameters.size() == 2 * vertices) &&
+                           (mesh.patches.empty() || mesh.patches.size() == triangles);
+  if (!lengths_fit) return {StatusCode::count_mismatch, "the mesh's arrays have lengths that do not fit each other"};
+  if (vertices == 0) return {StatusCode::invalid_argument, "the mesh has no vertices"};
+  if (vertices > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
+    return {StatusCode::invalid_argument, "the mesh has more vertices than files can index (2147483647)"};
+  return {};
+}
+
+Status check_indices(const Mesh& mesh) {
+  const std::span indices(mesh.indices);
+  const auto vertices = static_cast<std::uint32_t>(mesh.vertex_count());
+  const Result<std::size_t> bad = first_of(indices.size(), [&](std::size_t begin, std::size_t end) {
+    return first_bad(begin, end, [&](std::size_t k) { return indices[k] >= vertices; });
+  });
+  if (!bad) return bad.status();
+  return *bad == indices.size() ? Status() : invalid("an index of the mesh is beyond its vertices", *bad);
+}
+
+Status check_numbers(const Mesh& mesh) {
+  const Result<std::size_t> vertex = first_misplaced(mesh), normal = first_not_finite(mesh.normals),
+                            parameter = first_not_finite(mesh.parameters);
+  for (const Result<std::size_t>* found : {&vertex, &normal, &parameter})
+    if (!*found) return found->status();
+  const std::size_t bad = std::min(*vertex, mesh.normals.empty() ? *vertex : *normal / 3);
+  if (bad < mesh.vertex_count())
+    return {StatusCode::non_finite, "a vertex of the mesh is not finite in float", static_cast<std::ptrdiff_t>(bad)};
+  if (*parameter < mesh.parameters.size())
+    return {StatusCode::non_finite, "a parameter of the mesh is not finite",
+            static_cast<std::ptrdiff_t>(*parameter / 2)};
+  return {};
+}
+
+Status check_parts(const Mesh& mesh) {
+  std::size_t next = 0;
+  for (std::size_t k = 0; k < mesh.parts.size(); ++k) {
+    const MeshPart& part = mesh.parts[k];
+    if (part.first_triangle != next || part.triangle_count > mesh.triangle_count() - next)
+      return invalid(
+          "part " + std::to_string(k) + " of the mesh does not follow on the one before, within its triangles", k);
+    next += part.triangle_count;
+  }
+  if (mesh.parts.empty() || next == mesh.triangle_count()) return {};
+  return {StatusCode::count_mismatch, "the mesh's parts have " + std::to_string(next) + " triangles, the mesh " +
+                                          std::to_string(mesh.triangle_count())};
+}
+
+}  // namespace
+
+Status validate(const Mesh& mesh) {
+  for (Status (*const check)(const Mesh&) : {check_lengths, check_indices, check_numbers, check_parts})
+    if (Status status = check(mesh); !status.ok()) return status;
+  return {};
+}
+
+}  // namespace tessera

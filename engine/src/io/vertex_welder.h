@@ -1,0 +1,30 @@
+#pragma once
+// Corners of triangles, each with its own copy of the position, to vertices.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace tessera {
+
+/// Numbers distinct positions in the order in which they come. Positions are one if they are of the same bits, -0 taken
+/// as 0. Memory: 4 to 16 bytes a vertex beside the positions.
+class VertexWelder {
+ public:
+  /// `positions`: three floats a vertex, to which new ones are appended; at most 2^32 - 1 vertices.
+  explicit VertexWelder(std::vector<float>& positions) : positions_(positions), table_(least_size, none) {}
+
+  std::uint32_t index_of(const std::array<float, 3>& position);
+
+ private:
+  static constexpr std::uint32_t none = ~std::uint32_t{0};
+  static constexpr std::size_t least_size = 64;  // a power of two, as all sizes
+
+  std::size_t slot_of(const std::array<float, 3>& position) const;
+  void grow();
+
+  std::vector<float>& positions_;
+  std::vector<std::uint32_t> table_;  // open hash table of vertices
+};
+
+}  // namespace tessera

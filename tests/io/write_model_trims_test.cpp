@@ -1,0 +1,85 @@
+// Trims are written with the surfaces that they belong to, and said to be left out where they cannot be.
+
+#include "io/written_models.h"
+
+namespace tessera::test {
+namespace {
+
+template <class T>
+bool same(std::span<const T> a, std::span<const T> b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end());
+}
+
+void expect_same_loops(const std::vector<TrimLoop>& a, const std::vector<TrimLoop>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    EXPECT_EQ(a[k].hole, b[k].hole);
+    ASSERT_EQ(a[k].curves.size(), b[k].curves.size());
+    for (std::size_t c = 0; c < a[k].curves.size(); ++c) {
+      const Curve &p = a[k].curves[c], &q = b[k].curves[c];
+      EXPECT_EQ(p.degree(), q.degree());
+      EXPECT_EQ(p.domain(), q.domain());
+      EXPECT_TRUE(same(p.points(), q.points()));
+      EXPECT_TRUE(same(p.weights(), q.weights()));
+      EXPECT_TRUE(same(p.knots(), q.knots()));
+    }
+  }
+}
+
+/// A triangle of segments, of which one is a part of a longer one; and a circle of two rational halves.
+std::vector<TrimLoop> loops() {
+  const auto segment = [](Vec3 a, Vec3 b) { return value_of(Curve::bezier(std::vector{a, b})); };
+  const Curve longer = value_of(Curve::b_spline(1, std::vector<Vec3>{{0.1, 0.9, 0}, {0.1, 0.1, 0}, {5, 5, 0}},
+                                                std::vector<double>{-1, -1, 1.0 / 3, 2, 2}, Interval{-1, 1.0 / 3}));
+  const auto half = [](double side) {
+    return value_of(
+        Curve::bezier(std::vector<Vec3>{{0.5 - side, 0.5, 0}, {0.5 - side, 0.5 + side, 0}, {0.5 + side, 0.5 + side, 0}},
+                      std::vector<double>{1, 0.7, 1}, Interval{0, 0.1}));
+  };
+  return {{{segment({0.1, 0.1, 0}, {0.9, 0.1, 0}), segment({0.9, 0.1, 0}, {0.1, 0.9, 0}), longer}, false},
+          {{half(0.1), half(-0.1)}, true}};
+}
+
+TEST(WriteModelTrims, ComeBackBitForBit) {
+  const ScratchFolder folder;
+  Random random(1);
+  Model model =
+      model_of({random_polynomial(random, 3, 2), random_rational(random, 2, 2), random_polynomial(random, 1, 1)});
+  model.surfaces[0].trims = loops();
+  model.surfaces[1].trims = std::vector{loops()[1], loops()[0], loops()[1]};
+  WrittenModel facts;
+  const Model read = rewritten(model, folder / "a.obj", &facts);
+  EXPECT_TRUE(facts.warnings.empty());
+  for (std::size_t k = 0; k < 3; ++k) expect_same_loops(model.surfaces[k].trims, read.surfaces[k].trims);
+  expect_same_patches(model, read, "trimmed");
+}
+
+TEST(WriteModelTrims, AreSaidToBeLeftOutOfBpt) {
+  const ScratchFolder folder;
+  Random random(2);
+  Model model = model_of({random_polynomial(random, 3, 2), random_polynomial(random, 3, 2)});
+  model.surfaces[0].trims = loops();
+  model.surfaces[1].trims = std::vector{loops()[0]};
+  model.surfaces[1].name = "rim";
+  WrittenModel facts;
+  rewritten(model, folder / "a.bpt", &facts);
+  EXPECT_EQ(facts.warnings, (std::vector<std::string>{"surface 0: 2 trims are not written: .bpt has none",
+                                                      "surface 1 (rim): 1 trim is not written: .bpt has none"}));
+}
+
+TEST(WriteModelTrims, AreSaidToBeLeftOutOfQuadrics) {
+  const ScratchFolder folder;
+  Model model = value_of(read_model(TESSERA_SOURCE_DIR "/tools/models/quadric_elliptic_cylinder.json"));
+  ASSERT_TRUE(std::holds_alternative<QuadricPiece>(model.surfaces.at(0).surface));
+  model.surfaces[0].name = "side";
+  model.surfaces[0].trims = loops();
+  WrittenModel facts;
+  const Model read = rewritten(model, folder / "a.obj", &facts);
+  EXPECT_EQ(facts.warnings,
+            (std::vector<std::string>{
+                "surface 0 (side): 2 trims are not written: they are by other parameters than its patches"}));
+  EXPECT_TRUE(read.surfaces[0].trims->empty());
+}
+
+}  // namespace
+}  // namespace tessera::test

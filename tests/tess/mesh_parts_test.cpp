@@ -1,0 +1,79 @@
+// The parts of a mesh are its surfaces.
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "support/synthetic_sets.h"
+#include "tessera/model.h"
+#include "tessera/tessellate.h"
+
+namespace tessera {
+namespace {
+
+using test::value_of;
+
+/// Four surfaces of one patch each; the third is a segment, which has no triangles.
+Model model() {
+  Model model;
+  for (const char* name : {"front", "", "edge", "back"}) {
+    std::vector<Vec3> points{{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 1}};
+    if (model.surfaces.size() == 2) points = {{0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {1, 0, 0}};
+    model.surfaces.push_back({name, value_of(BezierPatch::polynomial(1, 1, points))});
+  }
+  return model;
+}
+
+Mesh mesh_of(const PatchSet& set) {
+  const TessellationPlan plan = value_of(TessellationPlan::make(set, {.rate_u = 3, .rate_v = 2, .isa = {}}));
+  Mesh mesh = value_of(plan.allocate());
+  EXPECT_TRUE(plan.run(set, mesh.views()).ok());
+  return mesh;
+}
+
+TEST(MeshParts, EachSurfaceThatHasTrianglesIsOne) {
+  const Model surfaces = model();
+  const PatchSet set = value_of(make_patch_set(surfaces));
+  const Mesh mesh = mesh_of(set);
+  const std::vector<MeshPart> parts = value_of(parts_by_surface(mesh, set, surfaces));
+  ASSERT_EQ(parts.size(), 3u);
+  const std::vector<const char*> names{"front", "surface 1", "back"};
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(parts[k].name, names[k]);
+    EXPECT_EQ(parts[k].first_triangle, 12 * k);
+    EXPECT_EQ(parts[k].triangle_count, 12u);
+  }
+}
+
+TEST(MeshParts, PatchesOfOneSurfaceAreOnePart) {
+  const Model surfaces = model();
+  const std::vector<BezierPatch> patches = test::wavy_field(2, 3);
+  std::vector<PatchSource> sources(6);
+  for (std::size_t k : {2, 3, 4}) sources[k].surface = 3;
+  const PatchSet set = value_of(PatchSet::from(patches, sources));
+  const std::vector<MeshPart> parts = value_of(parts_by_surface(mesh_of(set), set, surfaces));
+  ASSERT_EQ(parts.size(), 3u);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(parts[k].name, k == 1 ? "back" : "front");
+  EXPECT_EQ(parts[1].first_triangle, 2 * 12u);
+  EXPECT_EQ(parts[1].triangle_count, 3 * 12u);
+}
+
+TEST(MeshParts, WhatDoesNotBelongTogetherIsRefused) {
+  Model surfaces = model();
+  const PatchSet set = value_of(make_patch_set(surfaces));
+  Mesh mesh = mesh_of(set);
+  mesh.patches[17] = 4;
+  const Status no_patch = parts_by_surface(mesh, set, surfaces).status();
+  EXPECT_EQ(no_patch.code(), StatusCode::invalid_argument);
+  EXPECT_EQ(no_patch.message(), "triangle 17 is of patch 4, there are 4");
+  EXPECT_EQ(no_patch.index(), 17);
+  mesh.patches.pop_back();
+  EXPECT_EQ(parts_by_surface(mesh, set, surfaces).status().message(), "35 patches for 36 triangles");
+  mesh = mesh_of(set);
+  surfaces.surfaces.pop_back();
+  EXPECT_EQ(parts_by_surface(mesh, set, surfaces).status().message(), "triangle 24 is of surface 3, there are 3");
+  EXPECT_TRUE(value_of(parts_by_surface(Mesh{}, set, surfaces)).empty());
+}
+
+}  // namespace
+}  // namespace tessera
