@@ -31,7 +31,7 @@ struct Errors {
 /// What errors at one point are measured by, of a patch about the set's origin.
 struct Units {
   double position, derivative;  ///< one unit
-  double weight = 0;            ///< of the weight's own error, relative, where it counts: in the power basis
+  double denominator = 0;       ///< the weight's own relative error, where it counts: in the power basis
 
   Units(const BezierPatch& patch, double u, double v, double epsilon, Representation representation) {
     position = derivative = epsilon * largest_coefficient(patch);
@@ -52,7 +52,7 @@ struct Units {
     const double growth = std::pow(1 + 2 * u, patch.degree_u()) * std::pow(1 + 2 * v, patch.degree_v());
     position *= growth * heaviest / static_cast<double>(weight);
     derivative *= growth * heaviest / static_cast<double>(weight);
-    if (patch.is_rational()) this->weight = epsilon * growth * heaviest / static_cast<double>(weight);
+    if (patch.is_rational()) denominator = epsilon * growth * heaviest / static_cast<double>(weight);
   }
 };
 
@@ -67,7 +67,7 @@ void add_errors(const BezierPatch& patch, const GridBuffers<T>& out, std::size_t
   const double epsilon = sizeof(T) == 4 ? float_unit : double_unit;
   const double degree = std::max(patch.degree_u(), patch.degree_v());
   const Units units(patch, u, v, epsilon, representation);
-  if (units.weight > 0.01) return;  // the denominator may be anything
+  if (units.denominator > 0.01) return;  // the denominator may be anything
   const RealJet jet = reference_jet(patch, u, v);
   const Vec3 position = vector_at(out.position, record);
   Errors here;

@@ -50,9 +50,9 @@ inline Real reference_bernstein(int n, int i, Real t, int order = 0) {
 }
 
 /// The basis polynomials of one parameter, `[order][i]`, orders 0 to 2.
-using BernsteinColumns = std::array<std::vector<Real>, 3>;
-inline BernsteinColumns reference_basis(int degree, Real t) {
-  BernsteinColumns basis;
+using ReferenceBernstein = std::array<std::vector<Real>, 3>;
+inline ReferenceBernstein reference_bernsteins(int degree, Real t) {
+  ReferenceBernstein basis;
   for (int order = 0; order <= 2; ++order)
     for (int i = 0; i <= degree; ++i)
       basis[static_cast<std::size_t>(order)].push_back(reference_bernstein(degree, i, t, order));
@@ -60,7 +60,7 @@ inline BernsteinColumns reference_basis(int degree, Real t) {
 }
 
 /// Derivative of order (a, b) of the numerator, and of the denominator in `weight`.
-inline RealVec3 reference_sum(const BezierPatch& patch, const BernsteinColumns& u, const BernsteinColumns& v, int a, int b,
+inline RealVec3 reference_sum(const BezierPatch& patch, const ReferenceBernstein& u, const ReferenceBernstein& v, int a, int b,
                               Real& weight) {
   RealVec3 sum;
   weight = 0;
@@ -75,11 +75,11 @@ inline RealVec3 reference_sum(const BezierPatch& patch, const BernsteinColumns& 
   return sum;
 }
 inline RealVec3 reference_sum(const BezierPatch& patch, Real u, Real v, int a, int b, Real& weight) {
-  return reference_sum(patch, reference_basis(patch.degree_u(), u), reference_basis(patch.degree_v(), v), a, b, weight);
+  return reference_sum(patch, reference_bernsteins(patch.degree_u(), u), reference_bernsteins(patch.degree_v(), v), a, b, weight);
 }
 
 inline RealJet reference_jet(const BezierPatch& patch, Real u, Real v) {
-  const BernsteinColumns f = reference_basis(patch.degree_u(), u), g = reference_basis(patch.degree_v(), v);
+  const ReferenceBernstein f = reference_bernsteins(patch.degree_u(), u), g = reference_bernsteins(patch.degree_v(), v);
   Real w, wu, wv, wuu, wuv, wvv;
   const RealVec3 a = reference_sum(patch, f, g, 0, 0, w);
   const RealVec3 au = reference_sum(patch, f, g, 1, 0, wu), av = reference_sum(patch, f, g, 0, 1, wv);

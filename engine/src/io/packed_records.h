@@ -2,9 +2,11 @@
 // Records of one size into a binary file, packed by all threads.
 
 #include <cstddef>
+#include <cstring>
 
 #include "base/function_ref.h"
 #include "io/output_file.h"
+#include "tessera/vec.h"
 
 namespace tessera {
 
@@ -12,5 +14,14 @@ namespace tessera {
 /// called for pieces of them from any number of threads. Memory: 1 MiB. Errors: what `pack` throws, as a Status.
 Status write_packed(OutputFile& out, std::size_t count, std::size_t bytes,
                     FunctionRef<void(std::size_t, std::size_t, char*)> pack);
+
+/// Three floats at `to`. Number by number: an array that is filled first and copied then is read before its stores are
+/// done, which costs half the time again.
+inline void put_floats(const Vec3& v, char* to) {
+  const float x = static_cast<float>(v.x), y = static_cast<float>(v.y), z = static_cast<float>(v.z);
+  std::memcpy(to, &x, sizeof x);
+  std::memcpy(to + 4, &y, sizeof y);
+  std::memcpy(to + 8, &z, sizeof z);
+}
 
 }  // namespace tessera

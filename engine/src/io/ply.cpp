@@ -268,10 +268,8 @@ Status write_ply(const Mesh& mesh, OutputFile& out) {
       write_packed(out, mesh.vertex_count(), vertex_bytes, [&](std::size_t first, std::size_t last, char* to) {
         for (std::size_t k = first; k < last; ++k) {
           const float* const p = mesh.positions.data() + 3 * k;
-          const std::array<float, 3> position{file_coordinate(mesh.origin.x, p[0]),
-                                              file_coordinate(mesh.origin.y, p[1]),
-                                              file_coordinate(mesh.origin.z, p[2])};
-          to = put(to, position.data(), 3);
+          put_floats(mesh.origin + Vec3{p[0], p[1], p[2]}, to);
+          to += 3 * sizeof(float);
           if (normals) to = put(to, mesh.normals.data() + 3 * k, 3);
           if (parameters) to = put(to, mesh.parameters.data() + 2 * k, 2);
         }

@@ -23,25 +23,17 @@ static_assert(std::endian::native == std::endian::little, "STL is read and writt
 constexpr std::size_t title_bytes = 80, header_bytes = title_bytes + 4, triangle_bytes = 50;
 constexpr std::size_t most_vertices = std::numeric_limits<std::uint32_t>::max();
 
-void put(const Vec3& v, char* to) {
-  const float x = static_cast<float>(v.x), y = static_cast<float>(v.y), z = static_cast<float>(v.z);
-  std::memcpy(to, &x, sizeof x);
-  std::memcpy(to + 4, &y, sizeof y);
-  std::memcpy(to + 8, &z, sizeof z);
-}
-
 /// The normal, from where the corners run counter-clockwise (zero if there is no area), the corners, and two bytes of 0.
-/// Number by number: a record that is put together first costs half the time again.
 void put_triangle(const Mesh& mesh, std::size_t triangle, char* to) {
   std::array<Vec3, 3> corner;
   for (std::size_t c = 0; c < 3; ++c) {
     const float* const p = &mesh.positions[3 * std::size_t{mesh.indices[3 * triangle + c]}];
     corner[c] = {p[0], p[1], p[2]};
-    put(mesh.origin + corner[c], to + 12 * (c + 1));
+    put_floats(mesh.origin + corner[c], to + 12 * (c + 1));
   }
   const Vec3 area = cross(corner[1] - corner[0], corner[2] - corner[0]);
   const double size = length(area);
-  put((size > 0 ? 1 / size : 0) * area, to);
+  put_floats((size > 0 ? 1 / size : 0) * area, to);
   to[48] = to[49] = 0;
 }
 
