@@ -9,6 +9,7 @@
 #   muParser          libmuparser-dev 2.3         tessera::io: expressions in models (engine/src/io alone)
 #   tinygltf          libtinygltf-dev 2.7         tessera::io: glTF (engine/src/io alone); tests: its reader
 #   libpng            libpng-dev 1.6              the command line: pictures
+#   OpenEXR           libopenexr-dev 3.1          the command line: float pictures; tests: its reader
 #   GoogleTest        libgtest-dev 1.12           tests (and libgmock-dev: its matchers)
 #   Google Benchmark  libbenchmark-dev 1.7        benchmarks
 #   a cross compiler  g++-aarch64-linux-gnu 12.2  the test of the NEON kernels, with qemu-user 7.2; skipped without
@@ -46,6 +47,7 @@ if(TESSERA_BUILD_TOOLS)
   find_package(CLI11 2 REQUIRED)
   find_package(nlohmann_json 3 REQUIRED)
   find_package(PNG REQUIRED)
+  find_package(OpenEXR 3 CONFIG REQUIRED)
 endif()
 if(TESSERA_BUILD_TESTS)
   find_package(GTest REQUIRED)

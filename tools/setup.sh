@@ -21,7 +21,7 @@ fail() {
 
 # What each package is for stands in cmake/TesseraDependencies.cmake.
 demo_packages=(g++ cmake ninja-build libtbb-dev libxsimd-dev libembree-dev libcli11-dev nlohmann-json3-dev libmuparser-dev
-  libtinygltf-dev libpng-dev)
+  libtinygltf-dev libpng-dev libopenexr-dev)
 test_packages=(binutils libgtest-dev libgmock-dev libbenchmark-dev libocct-data-exchange-dev)
 neon_packages=(g++-aarch64-linux-gnu qemu-user)
 peer_packages=(libocct-modeling-data-dev libosd-dev libsisl-dev)

@@ -51,7 +51,7 @@ TEST_F(CommandLine, EveryOptionIsInTheHelp) {
 }
 
 TEST_F(CommandLine, WhatIsNoCommandLineEndsWithTwo) {
-  expect_failure({}, 2, "expected a command (info, eval, tessellate, raycast, check), found none");
+  expect_failure({}, 2, "expected a command (info, eval, tessellate, raycast, convert, check), found none");
   expect_failure({"paint"}, 2, "paint");
   expect_failure({"info"}, 2, "MODEL");
   expect_failure({"info", teapot, "--colour"}, 2, "--colour");

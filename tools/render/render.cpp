@@ -17,18 +17,7 @@ namespace tessera::render {
 namespace {
 
 constexpr int tile_side = 8;
-constexpr int largest_side = 32768, most_samples = 16;
 constexpr double exposure = 0.58;
-
-Status check(const Settings& settings, const Box3& box) {
-  const auto bad = [](const char* why) { return Status(StatusCode::invalid_argument, why); };
-  if (box.empty() || !is_finite(box.lower) || !is_finite(box.upper))
-    return bad("there is nothing to draw: the box is empty");
-  if (std::min(settings.width, settings.height) < 1 || std::max(settings.width, settings.height) > largest_side)
-    return bad("a picture's sides run from 1 to 32768 pixels");
-  if (settings.samples < 1 || settings.samples > most_samples) return bad("samples run from 1 to 16");
-  return settings.camera ? render::check(*settings.camera) : Status();
-}
 
 /// The curve of Narkowicz, ACES filmic tone mapping curve, 2016.
 double tone(double x) {
@@ -120,6 +109,17 @@ class Drawing {
 };
 
 }  // namespace
+
+Status check(const Settings& settings, const Box3& box) {
+  constexpr int largest_side = 32768, most_samples = 16;
+  const auto bad = [](const char* why) { return Status(StatusCode::invalid_argument, why); };
+  if (box.empty() || !is_finite(box.lower) || !is_finite(box.upper))
+    return bad("there is nothing to draw: the box is empty");
+  if (std::min(settings.width, settings.height) < 1 || std::max(settings.width, settings.height) > largest_side)
+    return bad("a picture's sides run from 1 to 32768 pixels");
+  if (settings.samples < 1 || settings.samples > most_samples) return bad("samples run from 1 to 16");
+  return settings.camera ? render::check(*settings.camera) : Status();
+}
 
 Status trace(const View& view, const Tile& tile, Workspace& work) {
   const int side = view.settings.samples;

@@ -56,6 +56,9 @@ struct Workspace {
   std::vector<std::uint8_t> occluded;
 };
 
+/// Whether a picture of the box can be drawn.
+Status check(const Settings& settings, const Box3& box);
+
 /// Fills samples, rays and hits.
 Status trace(const View& view, const Tile& tile, Workspace& work);
 

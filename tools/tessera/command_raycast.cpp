@@ -10,6 +10,7 @@
 #include "io/formats.h"
 #include "model_file.h"
 #include "render/camera.h"
+#include "render/hit_image.h"
 #include "tessera/ray_scene.h"
 
 namespace tessera::cli {
@@ -36,20 +37,41 @@ Result<RayScene> make_scene(const PatchSet& set) {
   return RayScene::make(set, options, progress.execution());
 }
 
-Status draw(const Options& options, const PatchSet& set, const RayScene& scene, double scene_seconds, OutputFile& out) {
+bool is_exr(const std::string& path) { return lower_extension(path) == ".exr"; }
+
+/// What is in the picture, and how long it took to cast.
+Status cast_picture(const Options& options, const Model& model, const RayScene& scene, OutputFile& out,
+                    double& seconds) {
   const Stopwatch drawing;
-  Result<render::Image> image = [&] {
-    Progress progress("casting rays");
-    return render::render(scene, scene.box(), options.settings, progress.execution());
-  }();
-  if (!image) return in_file(options.picture, image.status());
-  const double draw_seconds = drawing.seconds();
-  Status status = render::write_png(*image, out);
+  const auto cast = [&](const auto& make, const auto& write) {
+    const auto image = [&] {
+      Progress progress("casting rays");
+      return make(progress.execution());
+    }();
+    if (!image) return in_file(options.picture, image.status());
+    seconds = drawing.seconds();
+    return write(*image);
+  };
+  const Box3 box = scene.box();
+  const render::Settings& settings = options.settings;
+  if (is_exr(options.picture))
+    return cast([&](const Execution& e) { return render::cast_hits(scene, box, model, settings, e); },
+                [&](const render::HitImage& image) { return render::write_exr(image, out); });
+  return cast([&](const Execution& e) { return render::render(scene, box, settings, e); },
+              [&](const render::Image& image) { return render::write_png(image, out); });
+}
+
+Status draw(const Options& options, const Model& model, const PatchSet& set, const RayScene& scene,
+            double scene_seconds, OutputFile& out) {
+  double draw_seconds = 0;
+  Status status = cast_picture(options, model, scene, out, draw_seconds);
   if (status.ok()) status = out.commit();
   if (!status.ok()) return status;
-  return print(options.picture + ": " + std::to_string(image->width) + " x " + std::to_string(image->height) + ", " +
-               std::to_string(set.patch_count()) + " patches; scene built in " + readable_seconds(scene_seconds) +
-               ", picture cast in " + readable_seconds(draw_seconds) + "\n" + fit_line(set));
+  const render::Settings& settings = options.settings;
+  return print(options.picture + ": " + std::to_string(settings.width) + " x " + std::to_string(settings.height) +
+               ", " + std::to_string(set.patch_count()) + " patches; scene built in " +
+               readable_seconds(scene_seconds) + ", picture cast in " + readable_seconds(draw_seconds) + "\n" +
+               fit_line(set));
 }
 
 constexpr std::string_view hits_header = "ray,hit,t,surface,patch,u,v,x,y,z,nx,ny,nz\n";
@@ -120,7 +142,7 @@ Status run_raycast(const Options& options) {
   const Result<RayScene> scene = make_scene(*set);
   if (!scene) return in_file(options.model.path, scene.status());
   if (!options.rays.empty()) return trace(options, *model, *scene, rays, *out);
-  return draw(options, *set, *scene, building.seconds(), *out);
+  return draw(options, *model, *set, *scene, building.seconds(), *out);
 }
 
 render::Camera parse_camera(const std::string& text) {
@@ -136,12 +158,15 @@ render::Camera parse_camera(const std::string& text) {
 
 std::string fault_of_picture(const std::string& path) {
   const std::string extension = lower_extension(path);
-  if (extension == ".png") return {};
-  return path + ": unsupported format \"" + extension + "\": pictures are written as .png";
+  if (extension == ".png" || is_exr(path)) return {};
+  return path + ": unsupported format \"" + extension + "\": pictures are written as .png, .exr";
 }
 
 constexpr const char* footer =
     "A picture: -o, with --size, --shade and --camera. The default camera fits the model; its up is the z axis.\n"
+    ".exr holds numbers, of one ray through the middle of each pixel: floats Z (distance from the eye), N.X N.Y N.Z,\n"
+    "UV.U UV.V (parameters of the surface), integers surface and patch; where nothing is met Z is inf, the integers "
+    "4294967295.\n"
     "Hits of given rays: --rays and --hits. Rays are a table with the header line ox,oy,oz,dx,dy,dz or\n"
     "ox,oy,oz,dx,dy,dz,tnear,tfar: numbers of at most 1.844e18, the direction not zero, 0 <= tnear <= tfar, tfar may "
     "be inf;\n"
@@ -157,8 +182,8 @@ const std::map<std::string, render::Shade> shades{{"lambert", render::Shade::lam
                                                   {"uv", render::Shade::uv},
                                                   {"patch", render::Shade::patch}};
 
-/// The options that make sense with a picture alone.
-void add_picture_options(CLI::App& command, CLI::Option* picture, render::Settings& settings) {
+/// The options that make sense with a picture alone. Returns --shade.
+CLI::Option* add_picture_options(CLI::App& command, CLI::Option* picture, render::Settings& settings) {
   const auto set_size = [&settings](const std::string& text) {
     const Extent size = parse_extent("--size", text, 1, 16384);
     settings.width = size.first;
@@ -169,14 +194,16 @@ void add_picture_options(CLI::App& command, CLI::Option* picture, render::Settin
   command.add_option_function<std::string>("--size", set_size, "Pixels of the picture, 1 to 16384 each [1280x800]")
       ->type_name("WxH")
       ->needs(picture);
-  command.add_option_function<std::string>("--shade", set_shade, "How surfaces are coloured [lambert]")
-      ->check(CLI::IsMember({"lambert", "normals", "uv", "patch"}))
-      ->needs(picture);
+  CLI::Option* const shade =
+      command.add_option_function<std::string>("--shade", set_shade, "How surfaces are coloured [lambert]")
+          ->check(CLI::IsMember({"lambert", "normals", "uv", "patch"}))
+          ->needs(picture);
   command
       .add_option_function<std::string>("--camera", set_camera,
                                         "Eye, target, field of view in degrees over the picture's shorter side")
       ->type_name("ex,ey,ez,tx,ty,tz,fovdeg")
       ->needs(picture);
+  return shade;
 }
 
 }  // namespace
@@ -185,18 +212,22 @@ void add_raycast(CLI::App& app, Session& session) {
   CLI::App* const command = app.add_subcommand("raycast", "Draw a picture by rays, or find the hits of given rays");
   const auto options = std::make_shared<Options>();
   add_model(*command, options->model);
-  CLI::Option* const picture = command->add_option("-o,--output", options->picture, "The picture to be written (.png)");
-  picture->check(fault_of_picture)->type_name("PICTURE.png");
-  add_picture_options(*command, picture, options->settings);
+  CLI::Option* const picture =
+      command->add_option("-o,--output", options->picture, "The picture to be written (.png, .exr)");
+  picture->check(fault_of_picture)->type_name("PICTURE");
+  const CLI::Option* const shade = add_picture_options(*command, picture, options->settings);
   CLI::Option* const rays = command->add_option("--rays", options->rays, "The table of rays");
   rays->check(fault_of_name)->type_name("FILE.csv");
   CLI::Option* const hits = command->add_option("--hits", options->hits, "The table of hits to be written");
   hits->check(fault_of_name)->type_name("OUT.csv")->needs(rays);
   rays->needs(hits)->excludes(picture);
   command->footer(footer);
-  command->callback([options, &session] {
+  command->callback([options, shade, &session] {
     if (options->picture.empty() && options->rays.empty()) {
-      throw CLI::ValidationError("raycast", "expected -o PICTURE.png, or --rays FILE.csv and --hits OUT.csv");
+      throw CLI::ValidationError("raycast", "expected -o PICTURE, or --rays FILE.csv and --hits OUT.csv");
+    }
+    if (shade->count() > 0 && is_exr(options->picture)) {
+      throw CLI::ValidationError("--shade", "pictures of numbers (.exr) have no shade");
     }
     refuse_overwriting("--output", options->picture, {options->model.path});
     refuse_overwriting("--hits", options->hits, {options->model.path, options->rays});

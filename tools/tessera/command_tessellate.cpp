@@ -23,7 +23,7 @@ struct Times {
   double read = 0, tessellate = 0, write = 0;
 };
 
-Result<Mesh> tessellate(const Options& options, const PatchSet& set) {
+Result<Mesh> tessellate(const Options& options, const Model& model, const PatchSet& set) {
   const Result<TessellationPlan> plan =
       TessellationPlan::make(set, {.rate_u = options.grid.first, .rate_v = options.grid.second, .isa = {}});
   if (!plan) return plan.status();
@@ -32,6 +32,9 @@ Result<Mesh> tessellate(const Options& options, const PatchSet& set) {
   Progress progress("tessellating");
   const Status status = plan->run(set, mesh->views(), progress.execution());
   if (!status.ok()) return status;
+  Result<std::vector<MeshPart>> parts = parts_by_surface(*mesh, set, model);
+  if (!parts) return parts.status();
+  mesh->parts = *std::move(parts);
   return mesh;
 }
 
@@ -64,7 +67,7 @@ Status run_tessellate(const Options& options) {
   if (!set) return set.status();
   times.read = reading.seconds();
   const Stopwatch tessellating;
-  const Result<Mesh> mesh = tessellate(options, *set);
+  const Result<Mesh> mesh = tessellate(options, *model, *set);
   if (!mesh) return in_file(options.model.path, mesh.status());
   times.tessellate = tessellating.seconds();
   const Stopwatch writing;
@@ -81,7 +84,7 @@ void add_tessellate(CLI::App& app, Session& session) {
   CLI::App* const command = app.add_subcommand("tessellate", "Turn surfaces into a mesh");
   const auto options = std::make_shared<Options>();
   add_model(*command, options->model);
-  command->add_option("-o,--output", options->output, "The mesh to be written (.obj, .ply)")
+  command->add_option("-o,--output", options->output, "The mesh to be written (.obj, .ply, .stl, .glb, .gltf)")
       ->required()
       ->type_name("MESH")
       ->check([](const std::string& path) { return check_mesh_format(path).message(); });
@@ -93,7 +96,8 @@ void add_tessellate(CLI::App& app, Session& session) {
       ->type_name("NxM");
   command->add_flag("--json", options->json, "Print one JSON object");
   command->footer(
-      "Positions, normals and parameters are written; neighbours share their borders bit for bit.\n"
+      "Positions, normals and parameters are written (.stl: triangles alone), a part for each surface in .obj, .glb\n"
+      "and .gltf; neighbours share their borders bit for bit.\n"
       "\nExample:\n  tessera tessellate teapot.bpt -o teapot.ply --grid 16x16");
   command->callback([options, &session] {
     refuse_overwriting("--output", options->output, {options->model.path});

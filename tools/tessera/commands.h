@@ -17,6 +17,7 @@ void add_info(CLI::App& app, Session& session);
 void add_eval(CLI::App& app, Session& session);
 void add_tessellate(CLI::App& app, Session& session);
 void add_raycast(CLI::App& app, Session& session);
+void add_convert(CLI::App& app, Session& session);
 void add_check(CLI::App& app, Session& session);
 
 }  // namespace tessera::cli

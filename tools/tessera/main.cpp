@@ -23,7 +23,9 @@ void describe(CLI::App& app) {
   app.footer(
       "Models are read as .bpt (Bezier patches; # begins a comment), .bv (BezierView), .g2 (GoTools), .json (surfaces\n"
       "of every kind; tools/models/FORMAT.md tells the format), .obj (free-form surfaces), .rib (RenderMan), and, where\n"
-      "OpenCASCADE was there at the build, .step and .iges; what of them is not read is said as a warning. Meshes are written and read as .obj and .ply.\n"
+      "OpenCASCADE was there at the build, .step and .iges; what of them is not read is said as a warning.\n"
+      "Meshes are written as .obj, .ply, .stl, .glb and .gltf (glTF 2.0) and read as .obj, .ply and .stl; surfaces are\n"
+      "written as .obj (free-form) and .bpt; pictures as .png, and as .exr (numbers: depth, normals, parameters).\n"
       "Surfaces, patches and rays are counted from 0.\n"
       "TESSERA_ISA=sse2|avx2|avx512 in the environment forces an instruction set.\n"
       "Exit status: 0 done, 1 the input is bad or the output cannot be written, 2 the command line is bad.\n"
@@ -39,6 +41,7 @@ int run(int argc, char** argv) {
   tessera::cli::add_eval(app, session);
   tessera::cli::add_tessellate(app, session);
   tessera::cli::add_raycast(app, session);
+  tessera::cli::add_convert(app, session);
   tessera::cli::add_check(app, session);
   try {
     app.parse(argc, argv);
@@ -54,7 +57,7 @@ int run(int argc, char** argv) {
     return status == 0 ? success : bad_command_line;
   }
   if (!session.command) {
-    complain("expected a command (info, eval, tessellate, raycast, check), found none\nTry tessera --help.");
+    complain("expected a command (info, eval, tessellate, raycast, convert, check), found none\nTry tessera --help.");
     return bad_command_line;
   }
   const tessera::Result<tessera::Isa> isa = tessera::default_isa();

@@ -42,15 +42,18 @@ void add_model(CLI::App& command, ModelFile& file) {
       });
 }
 
-Result<Model> open_model(const ModelFile& file) {
+void say_warnings(const std::vector<std::string>& warnings) {
   constexpr std::size_t limit = 20;  // lines; the file may be a long list of what is not read
-  Result<Model> model = read_any_model(file.path);
-  if (!model) return model;
-  const std::size_t count = model->warnings.size();
+  const std::size_t count = warnings.size();
   for (std::size_t k = 0; k < std::min(count, limit); ++k) {
-    std::fprintf(stderr, "tessera: warning: %s\n", model->warnings[k].c_str());
+    std::fprintf(stderr, "tessera: warning: %s\n", warnings[k].c_str());
   }
   if (count > limit) std::fprintf(stderr, "tessera: warning: and %zu more of this file\n", count - limit);
+}
+
+Result<Model> open_model(const ModelFile& file) {
+  Result<Model> model = read_any_model(file.path);
+  if (model) say_warnings(model->warnings);
   return model;
 }
 
@@ -66,15 +69,14 @@ Result<PatchSet> make_patch_set(const ModelFile& file, const Model& model) {
   return set;
 }
 
-std::string fit_line(const PatchSet& set) {
-  const FitError& error = set.fit_error();
+std::string fit_line(const PatchSet& set) { return fit_line(set.fit_error()); }
+std::string fit_line(const FitError& error) {
   if (error.distance == 0 && error.certified) return {};
   return "  callables fitted to within " + readable(error.distance, 3) +
          (error.certified ? ", proven\n" : ", sampled\n");
 }
 
-Json fit_json(const PatchSet& set) {
-  return {{"distance", set.fit_error().distance}, {"certified", set.fit_error().certified}};
-}
+Json fit_json(const PatchSet& set) { return fit_json(set.fit_error()); }
+Json fit_json(const FitError& error) { return {{"distance", error.distance}, {"certified", error.certified}}; }
 
 }  // namespace tessera::cli

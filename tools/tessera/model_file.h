@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 #include "console.h"
 #include "tessera/model.h"
@@ -20,7 +21,9 @@ void add_model(CLI::App& command, ModelFile& file);
 /// Reads the model; what of the file it does not hold is said on standard error, a line a warning. Errors: those of
 /// read_model.
 Result<Model> open_model(const ModelFile& file);
-/// Those lines as an array.
+/// A line a warning on standard error, of very many the first.
+void say_warnings(const std::vector<std::string>& warnings);
+/// A model's warnings as an array.
 Json warnings_json(const Model& model);
 
 /// Errors name the file.
@@ -28,6 +31,8 @@ Result<PatchSet> make_patch_set(const ModelFile& file, const Model& model);
 
 /// A line that says how far fitted callables are off, or nothing where all is exact.
 std::string fit_line(const PatchSet& set);
+std::string fit_line(const FitError& error);
 Json fit_json(const PatchSet& set);
+Json fit_json(const FitError& error);
 
 }  // namespace tessera::cli
