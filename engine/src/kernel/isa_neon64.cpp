@@ -27,6 +27,7 @@ struct Neon<float> {
   using Register = float32x4_t;
   using Bits = uint32x4_t;
   static Register all(float x) { return vdupq_n_f32(x); }
+  static Register load(const float* p) { return vld1q_f32(p); }
   static Register chosen(Bits mask, Register a, Register b) { return vbslq_f32(mask, a, b); }
   static Register root(Register a) { return vsqrtq_f32(a); }
   static Register size(Register a) { return vabsq_f32(a); }
@@ -43,6 +44,7 @@ struct Neon<double> {
   using Register = float64x2_t;
   using Bits = uint64x2_t;
   static Register all(double x) { return vdupq_n_f64(x); }
+  static Register load(const double* p) { return vld1q_f64(p); }
   static Register chosen(Bits mask, Register a, Register b) { return vbslq_f64(mask, a, b); }
   static Register root(Register a) { return vsqrtq_f64(a); }
   static Register size(Register a) { return vabsq_f64(a); }
@@ -74,6 +76,7 @@ struct batch {
   batch(Register a) : lanes(a) {}
   explicit batch(T x) : lanes(Neon<T>::all(x)) {}
   operator Register() const { return lanes; }
+  static batch load_unaligned(const T* p) { return Neon<T>::load(p); }
   friend batch operator+(batch a, batch b) { return a.lanes + b.lanes; }
   friend batch operator-(batch a, batch b) { return a.lanes - b.lanes; }
   friend batch operator*(batch a, batch b) { return a.lanes * b.lanes; }
@@ -119,11 +122,46 @@ bool any(batch_bool<T> mask) {
 
 }  // namespace xsimd
 
+/// What lines of a cache need and NEON has no instructions for, through memory.
+template <class Scalar>
+struct ThroughMemory {
+  using Batch = xsimd::batch<Scalar>;
+  static constexpr int width = 16 / static_cast<int>(sizeof(Scalar));
+  static void store_masked(Scalar* p, Batch a, unsigned bits) {
+    for (int i = 0; i < width; ++i)
+      if (bits >> i & 1u) p[i] = a.lanes[i];
+  }
+  static Batch blend(Batch a, Batch b, unsigned bits) {
+    for (int i = 0; i < width; ++i)
+      if (bits >> i & 1u) a.lanes[i] = b.lanes[i];
+    return a;
+  }
+  /// A shift by `count` lanes, below `width`.
+  struct Shift {
+    int count;
+  };
+  static Shift shift_by(int count) { return {count}; }
+  /// The last lanes of the vector before `next` and the first ones of `next`; `carry` keeps what the following call needs.
+  static Batch shift_in(Batch& carry, Batch next, const Shift& shift) {
+    Batch shifted;
+    for (int i = 0; i < width; ++i)
+      shifted.lanes[i] = i < shift.count ? carry.lanes[width - shift.count + i] : next.lanes[i - shift.count];
+    carry = next;
+    return shifted;
+  }
+  /// The first `count` values, zeros in the other lanes; reads no more.
+  static Batch load_first(const Scalar* p, int count) {
+    Batch a(Scalar(0));
+    for (int i = 0; i < width && i < count; ++i) a.lanes[i] = p[i];
+    return a;
+  }
+};
+
 template <class T>
 struct Lanes;
 
 template <>
-struct Lanes<float> {
+struct Lanes<float> : ThroughMemory<float> {
   using Scalar = float;
   using Batch = xsimd::batch<float>;
   static constexpr int width = 4;
@@ -157,6 +195,12 @@ struct Lanes<float> {
     vst3q_f32(values, float32x4x3_t{{p[0], p[1], p[2]}});
     for (int k = 0; k < 3; ++k) p[k] = vld1q_f32(values + k * width);
   }
+  /// Vector l becomes value l of the rows at row(0), row(1), ...
+  template <class Row>
+  static void load_columns(const Row& row, Batch (&column)[width]) {
+    for (int k = 0; k < width; ++k) column[k] = load(row(k));
+    transpose(column);
+  }
   static void transpose(Batch (&row)[width]) {
     const float32x4x2_t a = vtrnq_f32(row[0], row[1]), b = vtrnq_f32(row[2], row[3]);
     for (int c = 0; c < 2; ++c) {  // a.val[c] holds column c in its low half, c + 2 in its high one
@@ -167,7 +211,7 @@ struct Lanes<float> {
 };
 
 template <>
-struct Lanes<double> {
+struct Lanes<double> : ThroughMemory<double> {
   using Scalar = double;
   using Batch = xsimd::batch<double>;
   static constexpr int width = 2;
@@ -197,6 +241,12 @@ struct Lanes<double> {
     p[0] = vzip1q_f64(x, y);
     p[1] = vcombine_f64(vget_low_f64(z), vget_high_f64(x));
     p[2] = vzip2q_f64(y, z);
+  }
+  /// Vector l becomes value l of the rows at row(0), row(1), ...
+  template <class Row>
+  static void load_columns(const Row& row, Batch (&column)[width]) {
+    for (int k = 0; k < width; ++k) column[k] = load(row(k));
+    transpose(column);
   }
   static void transpose(Batch (&row)[width]) {
     const float64x2_t a = row[0], b = row[1];
