@@ -8,7 +8,7 @@
 #                                               the command line: --json; tests: values of peers
 #   muParser          libmuparser-dev 2.3         tessera::io: expressions in models (engine/src/io alone)
 #   tinygltf          libtinygltf-dev 2.7         tessera::io: glTF (engine/src/io alone); tests: its reader
-#   libpng            libpng-dev 1.6              the command line: pictures
+#   libpng            libpng-dev 1.6              the command line and the benchmarks: pictures
 #   OpenEXR           libopenexr-dev 3.1          the command line: float pictures; tests: its reader
 #   GoogleTest        libgtest-dev 1.12           tests (and libgmock-dev: its matchers)
 #   Google Benchmark  libbenchmark-dev 1.7        benchmarks
@@ -46,8 +46,10 @@ endif()
 if(TESSERA_BUILD_TOOLS)
   find_package(CLI11 2 REQUIRED)
   find_package(nlohmann_json 3 REQUIRED)
-  find_package(PNG REQUIRED)
   find_package(OpenEXR 3 CONFIG REQUIRED)
+endif()
+if(TESSERA_BUILD_TOOLS OR TESSERA_BUILD_BENCH)
+  find_package(PNG REQUIRED)
 endif()
 if(TESSERA_BUILD_TESTS)
   find_package(GTest REQUIRED)

@@ -1,6 +1,5 @@
-// Bezier extraction: extraction/KIND/DEGREE of a surface of 200 x 200 spans. The patches are checked against the
-// reference evaluator before the rate is reported; store_fraction is the time to fill as much memory as the points of
-// the patches take, measured in the same process, over the time of one conversion.
+// Bezier extraction of a surface of 200 x 200 spans. The patches are checked against the reference evaluator before the
+// rate is reported. Its limit is filling as much memory as the points of the patches take.
 
 #include <benchmark/benchmark.h>
 
@@ -8,8 +7,9 @@
 #include <string>
 
 #include "convert/wavy_surface.h"
-#include "tessera/limits.h"
+#include "suite.h"
 #include "tessera/spline_convert.h"
+#include "timing.h"
 
 namespace tessera::bench {
 namespace {
@@ -31,26 +31,21 @@ void run(benchmark::State& state, int degree, bool rational) {
   if (!surface) return state.SkipWithError(surface.status().message().c_str());
   const auto checked = to_bezier(*surface);
   if (!checked || !same(*surface, *checked)) return state.SkipWithError("the patches are not the surface");
-  for (auto _ : state) {
-    const auto grid = to_bezier(*surface);
-    benchmark::DoNotOptimize(grid->patches().data());
-  }
   const double patches = 1.0 * spans * spans;
   const double bytes = patches * (degree + 1) * (degree + 1) * (rational ? 32 : 24);
-  state.counters["patches_per_second"] = benchmark::Counter(patches, benchmark::Counter::kIsIterationInvariantRate);
-  const auto limits = measure_limits({.isa = {}, .store_bytes = static_cast<std::size_t>(bytes)});
-  if (!limits) return state.SkipWithError("the machine's limits could not be measured");
-  state.counters["store_fraction"] =
-      benchmark::Counter(bytes / limits->plain_store_bytes_per_second, benchmark::Counter::kIsIterationInvariantRate);
+  const LimitsAround around({}, bytes);
+  const auto best = time_calls(state, 1, [&] { return to_bezier(*surface).status(); });
+  const auto limits = around.best(state);
+  if (!best || !limits) return;
+  report_rates(state, *best, patches, bytes);
+  report_limit(state, *best, *limits, {.bytes_written = bytes});
 }
 
 const bool registered = [] {
   for (const bool rational : {false, true})
     for (const int degree : {2, 3, 5})
-      benchmark::RegisterBenchmark(
-          ("extraction/" + std::string(rational ? "nurbs/" : "bspline/") + std::to_string(degree)).c_str(),
-          [=](benchmark::State& state) { run(state, degree, rational); })
-          ->Unit(benchmark::kMillisecond);
+      add_case({"extract", rational ? "nurbs" : "bspline", std::to_string(degree), square(spans)},
+               degree == 3 ? Part::quick : Part::full, [=](benchmark::State& state) { run(state, degree, rational); });
   return true;
 }();
 

@@ -1,11 +1,8 @@
-// Transfinite grids: transfinite/BORDERS/PRECISION/LAYOUT/SIZE/ISA/THREADS, partially bicubic Coons patches. Each case
-// checks the values that it timed against the scalar evaluator. limit_fraction is the time that storing the output
-// takes at the machine's rate, measured in the same process around the run, over the best time of one call;
-// times_pointwise is how many times as long evaluate_jet() a point takes.
+// Transfinite grids, partially bicubic Coons patches: transfinite.PRECISION.LAYOUT. Each case checks the values that it
+// timed against the scalar evaluator. Its limit is storing the output; times_pointwise is how many times as long
+// evaluate_jet() a point takes.
 
 #include <benchmark/benchmark.h>
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <chrono>
@@ -14,10 +11,11 @@
 #include <string>
 
 #include "base/aligned.h"
+#include "suite.h"
 #include "support/synthetic_sets.h"
 #include "tessera/evaluate.h"
-#include "tessera/limits.h"
 #include "tessera/transfinite.h"
+#include "timing.h"
 
 namespace tessera::bench {
 namespace {
@@ -32,11 +30,12 @@ struct Case {
   Isa isa;
   int threads;
 
-  std::string name() const {
-    const std::string side = std::to_string(size);
-    return std::string("transfinite/") + (callables ? "callables/" : "curves/") + (twice ? "double/" : "float/") +
-           (arrays ? "arrays/" : "interleaved/") + side + "x" + side + "/" + std::string(tessera::name(isa)) + "/" +
-           std::to_string(threads);
+  CaseName name() const {
+    const std::string operation =
+        std::string("transfinite.") + (twice ? "double." : "float.") + (arrays ? "arrays" : "interleaved");
+    return {
+        operation, callables ? "coons-callables" : "coons-curves", "-", square(size), std::string(tessera::name(isa)),
+        threads};
   }
 };
 
@@ -66,10 +65,6 @@ CoonsPatch patch_of(bool callables) {
   const Vec3 r00{0, 0, 0}, r01{0, 1, 0.5}, r10{1, 0, 0.2}, r11{1, 1, 0};
   return value_of(CoonsPatch::make(
       {curve(r00, r10, true), curve(r01, r11, false), curve(r00, r01, false), curve(r10, r11, true)}, options));
-}
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 /// Every 37th point against the scalar evaluator.
@@ -110,39 +105,27 @@ void run(benchmark::State& state, const Case& c) {
       c.arrays ? View3<T>::soa({all.subspan(0, points), all.subspan(points, points), all.subspan(2 * points)})
                : View3<T>::interleaved(all);
   setenv("TESSERA_ISA", std::string(tessera::name(c.isa)).c_str(), 1);
-  const LimitsOptions limits_options{.isa = c.isa, .store_bytes = bytes};
-  const auto before = measure_limits(limits_options);
+  const LimitsAround around(c.isa, static_cast<double>(bytes));
   ExecutionReport report;
   Execution execution;
   execution.report = &report;
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(c.threads));
-  tbb::task_arena arena(c.threads);
-  double best = 1e30;
-  for (auto _ : state) {
-    const auto start = std::chrono::steady_clock::now();
-    Status status;
-    arena.execute([&] { status = evaluate(patch, t, t, out, execution); });
-    const double seconds = seconds_since(start);
-    if (!status.ok()) return state.SkipWithError(status.message().c_str());
-    state.SetIterationTime(seconds);
-    best = std::min(best, seconds);
-  }
-  const auto after = measure_limits(limits_options);
+  const auto best = time_calls(state, c.threads, [&] { return evaluate(patch, t, t, out, execution); });
+  const auto limits = around.best(state);
   unsetenv("TESSERA_ISA");
-  if (!before || !after) return state.SkipWithError("the machine's limits could not be measured");
+  if (!best || !limits) return;
   if (report.isa != c.isa) return state.SkipWithError("another instruction set ran than was asked for");
   if (!check_values(patch, t, out)) return state.SkipWithError("the timed values differ from the scalar evaluator");
-  const double rate = std::max(before->plain_store_bytes_per_second, after->plain_store_bytes_per_second);
-  state.counters["points_per_second"] = static_cast<double>(points) / best;
-  if (c.threads == 1) state.counters["limit_fraction"] = static_cast<double>(bytes) / rate / best;
-  state.counters["times_pointwise"] = pointwise_seconds(patch) * static_cast<double>(points) / best;
+  report_rates(state, *best, static_cast<double>(points), static_cast<double>(bytes));
+  if (c.threads == 1) {  // views are written by plain stores
+    const double seconds = static_cast<double>(bytes) / limits->plain_store_bytes_per_second;
+    state.counters["limit_fraction"] = seconds / *best;
+  }
+  state.counters["times_pointwise"] = pointwise_seconds(patch) * static_cast<double>(points) / *best;
 }
 
 void add(const Case& c) {
-  benchmark::RegisterBenchmark(c.name().c_str(),
-                               [c](benchmark::State& state) { c.twice ? run<double>(state, c) : run<float>(state, c); })
-      ->UseManualTime()
-      ->Unit(benchmark::kMillisecond);
+  add_case(c.name(), c.threads == 1 ? quick_on_fastest(c.isa) : Part::full,
+           [c](benchmark::State& state) { c.twice ? run<double>(state, c) : run<float>(state, c); });
 }
 
 const bool registered = [] {

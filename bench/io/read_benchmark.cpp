@@ -1,4 +1,4 @@
-// Text in memory to a model: read/bpt, bv, g2, json, obj and rib, about 20 MB each, of numbers with 7 digits. Every
+// Text in memory to a model: read.bpt, bv, g2, json, obj and rib, about 20 MB each, of numbers with 7 digits. Every
 // control point is compared with the number that was written before the rate is reported; memcpy_fraction is the time to
 // copy the text, measured in the same process, over the time to read it.
 
@@ -12,7 +12,9 @@
 #include <string>
 #include <vector>
 
+#include "suite.h"
 #include "tessera/io.h"
+#include "timing.h"
 
 namespace tessera::bench {
 namespace {
@@ -172,35 +174,39 @@ double seconds_to_copy(const std::string& bytes) {
     std::memcpy(copy.data(), bytes.data(), bytes.size());
     benchmark::DoNotOptimize(copy.data());
     benchmark::ClobberMemory();
-    best = std::min(best, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    best = std::min(best, seconds_since(start));
   }
   return best;
 }
 
 using Parser = Result<Model> (*)(std::string_view, std::string_view);
 
-void read(benchmark::State& state, Text (*make)(), Parser parse, bool patches_transposed = false) {
-  const Text text = make();
+void read(benchmark::State& state, const Text& text, Parser parse, bool patches_transposed) {
   {
     const Result<Model> checked = parse(text.bytes, "text");
     if (!checked) return state.SkipWithError(checked.status().message().c_str());
     if (!holds(*checked, text, patches_transposed)) return state.SkipWithError("the model is not what the text says");
   }
-  for (auto _ : state) {
-    const Result<Model> model = parse(text.bytes, "text");
-    benchmark::DoNotOptimize(model->surfaces.data());
-  }
-  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(text.bytes.size()));
-  state.counters["memcpy_fraction"] =
-      benchmark::Counter(seconds_to_copy(text.bytes), benchmark::Counter::kIsIterationInvariantRate);
+  const auto best = time_calls(state, 1, [&] { return parse(text.bytes, "text").status(); });
+  if (!best) return;
+  report_rates(state, *best, static_cast<double>(text.points.size()), static_cast<double>(text.bytes.size()));
+  state.counters["memcpy_fraction"] = seconds_to_copy(text.bytes) / *best;
 }
 
-BENCHMARK_CAPTURE(read, bpt, bpt_text, parse_bpt)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(read, bv, bv_text, parse_bv)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(read, g2, g2_text, parse_g2)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(read, json, json_text, parse_json_model)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(read, obj, obj_text, parse_obj_freeform)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(read, rib, rib_text, parse_rib, true)->Unit(benchmark::kMillisecond);
+void add_read(const char* format, const char* surface, Text (*make)(), Parser parse, bool patches_transposed = false) {
+  add_case({std::string("read.") + format, surface, "3", "20MB"}, Part::quick,
+           [=](benchmark::State& state) { read(state, make(), parse, patches_transposed); });
+}
+
+const bool registered = [] {
+  add_read("bpt", "bicubic", bpt_text, parse_bpt);
+  add_read("bv", "bicubic", bv_text, parse_bv);
+  add_read("g2", "bspline", g2_text, parse_g2);
+  add_read("json", "bicubic", json_text, parse_json_model);
+  add_read("obj", "bspline", obj_text, parse_obj_freeform);
+  add_read("rib", "bicubic", rib_text, parse_rib, true);
+  return true;
+}();
 
 }  // namespace
 }  // namespace tessera::bench

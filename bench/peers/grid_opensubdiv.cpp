@@ -40,8 +40,7 @@ std::unique_ptr<Far::TopologyRefiner> refiner_of(const GridTask& task) {
   Sdc::Options options;
   options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_NONE);
   using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
-  return std::unique_ptr<Far::TopologyRefiner>(
-      Factory::Create(mesh, Factory::Options(Sdc::SCHEME_CATMARK, options)));
+  return std::unique_ptr<Far::TopologyRefiner>(Factory::Create(mesh, Factory::Options(Sdc::SCHEME_CATMARK, options)));
 }
 
 int face_of(const GridTask& task, int a, int b) { return (a + 1) * (task.side() - 1) + b + 1; }

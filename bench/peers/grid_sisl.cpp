@@ -88,11 +88,9 @@ const bool registered = [] {
   std::signal(SIGPIPE, SIG_IGN);  // a peer that ends is an error, not the end of us
   grid_peers().push_back({"SISL", [](const GridTask& task) {
                             const auto process = std::make_shared<Process>(task);
-                            return std::vector<GridRun>{{"SISL " TESSERA_SISL_VERSION, "s1506", true,
-                                                         [=] { return process->run(); },
-                                                         [=](std::size_t i, std::size_t j) {
-                                                           return process->read_point(i, j);
-                                                         }}};
+                            return std::vector<GridRun>{
+                                {"SISL " TESSERA_SISL_VERSION, "s1506", true, [=] { return process->run(); },
+                                 [=](std::size_t i, std::size_t j) { return process->read_point(i, j); }}};
                           }});
   return true;
 }();

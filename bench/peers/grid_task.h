@@ -18,7 +18,9 @@ struct GridTask {
   std::vector<double> local;  ///< the points' parameters within a span, the same in all and each way, inside (0, 1)
 
   int side() const { return spans + 3; }
-  std::size_t count() const { return static_cast<std::size_t>(spans) * static_cast<std::size_t>(per_span); }  ///< each way
+  std::size_t count() const {
+    return static_cast<std::size_t>(spans) * static_cast<std::size_t>(per_span);
+  }  ///< each way
   std::size_t points() const { return count() * count(); }
   /// Parameter k of all, in [0, spans].
   double parameter(std::size_t k) const {
@@ -37,8 +39,9 @@ struct GridValue {
 struct GridRun {
   std::string program, way;
   bool in_double = false;
-  std::function<double()> seconds;                              ///< does the task once: the processor time it took
-  std::function<GridValue(std::size_t i, std::size_t j)> read;  ///< what the last time left at parameters i of u, j of v
+  std::function<double()> seconds;  ///< does the task once: the processor time it took
+  std::function<GridValue(std::size_t i, std::size_t j)>
+      read;  ///< what the last time left at parameters i of u, j of v
 };
 
 /// A program that was found: its runs for a task, which must outlive them. Each peer's source holds one.

@@ -34,9 +34,9 @@ class Evaluation {
       : task_(task),
         blocks_(blocks),
         set_(set_of(surface, sizeof(T) == 8)),
-        plan_(value_of(GridPlan::make(set_, task.local, task.local,
-                                      {.precision = sizeof(T) == 4 ? Precision::single_precision
-                                                                   : Precision::double_precision}))) {
+        plan_(value_of(GridPlan::make(
+            set_, task.local, task.local,
+            {.precision = sizeof(T) == 4 ? Precision::single_precision : Precision::double_precision}))) {
     const std::size_t values = blocks ? plan_.block_capacity() : 3 * plan_.capacity();
     for (AlignedVector<T>* memory : {&position_, &du_, &dv_})
       if (memory == &position_ || task.tangents) memory->assign(values, T(0));

@@ -2,7 +2,6 @@
 // and all. Each run is checked against a ray caster that shares no code before its speed counts.
 
 #include <benchmark/benchmark.h>
-#include <tbb/task_arena.h>
 
 #include <cmath>
 #include <random>
@@ -12,9 +11,11 @@
 #include <vector>
 
 #include "sets.h"
+#include "suite.h"
 #include "support/reference_rays.h"
 #include "support/synthetic_sets.h"
 #include "tessera/ray_scene.h"
+#include "timing.h"
 
 namespace {
 
@@ -108,87 +109,80 @@ Check check(const Workload& work, const std::vector<Ray>& rays, IsWrong is_wrong
   return out;
 }
 
-void report(benchmark::State& state, const Workload& work, const std::vector<Ray>& rays, const Check& checked) {
+void report(benchmark::State& state, double best, const Workload& work, const std::vector<Ray>& rays,
+            const Check& checked) {
   if (!checked.good()) {
     state.SkipWithError(
         (std::to_string(checked.wrong) + " of " + std::to_string(checked.sample) + " answers are wrong").c_str());
     return;
   }
-  state.counters["rays_per_second"] =
-      benchmark::Counter(static_cast<double>(rays.size()), benchmark::Counter::kIsIterationInvariantRate);
+  bench::report_rates(state, best, static_cast<double>(rays.size()));
   state.counters["wrong_of_checked"] = static_cast<double>(checked.wrong) / static_cast<double>(checked.sample);
   state.counters["bytes_per_patch"] =
       static_cast<double>(work.scene.memory_bytes()) / static_cast<double>(work.patches.size());
 }
 
-tbb::task_arena arena(const benchmark::State& state) { return tbb::task_arena(static_cast<int>(state.range(0))); }
-
-void closest(benchmark::State& state, const Workload& work, const std::vector<Ray>& rays) {
+void closest(benchmark::State& state, const Workload& work, const std::vector<Ray>& rays, int threads) {
   std::vector<Hit> hits(rays.size());
-  Status status;
-  arena(state).execute([&] {
-    for ([[maybe_unused]] auto _ : state) status = work.scene.closest(rays, hits);
-  });
-  if (!status.ok()) return state.SkipWithError(status.message().c_str());
+  const auto best = bench::time_calls(state, threads, [&] { return work.scene.closest(rays, hits); });
+  if (!best) return;
   const double tolerance = 1e-9 * work.set.box().diagonal();
   const Check checked = check(work, rays, [&](std::size_t k, const test::ReferenceHit& expected) {
     const bool hit = hits[k].kind == HitKind::hit;
     return hit != expected.hit() ||
            (hit && !(std::abs(hits[k].t - expected.t) * length(rays[k].direction) <= tolerance));
   });
-  report(state, work, rays, checked);
+  report(state, *best, work, rays, checked);
 }
 
-void occluded(benchmark::State& state, const Workload& work, const std::vector<Ray>& rays) {
+void occluded(benchmark::State& state, const Workload& work, const std::vector<Ray>& rays, int threads) {
   std::vector<std::uint8_t> occluded(rays.size());
-  Status status;
-  arena(state).execute([&] {
-    for ([[maybe_unused]] auto _ : state) status = work.scene.occluded(rays, occluded);
-  });
-  if (!status.ok()) return state.SkipWithError(status.message().c_str());
+  const auto best = bench::time_calls(state, threads, [&] { return work.scene.occluded(rays, occluded); });
+  if (!best) return;
   const Check checked = check(work, rays, [&](std::size_t k, const test::ReferenceHit& expected) {
     return (occluded[k] != 0) != expected.hit();
   });
-  report(state, work, rays, checked);
+  report(state, *best, work, rays, checked);
 }
 
 /// Grids and BVH anew.
-void refit(benchmark::State& state, const Workload& work, const std::vector<Ray>& rays) {
+void refit(benchmark::State& state, const Workload& work, const std::vector<Ray>& rays, int threads) {
   RaySceneOptions options;
   options.rate = rate;
   RayScene scene = test::value_of(RayScene::make(work.set, options));
-  Status status;
-  arena(state).execute([&] {
-    for ([[maybe_unused]] auto _ : state) status = scene.refit();
-  });
+  const auto best = bench::time_calls(state, threads, [&] { return scene.refit(); });
+  if (!best) return;
   const Ray& ray = rays[rays.size() / 2 + 128];  // in the middle of the picture
   const Hit hit = scene.closest(ray);
-  if (!status.ok() || hit.kind != HitKind::hit || hit.t != work.scene.closest(ray).t)
+  if (hit.kind != HitKind::hit || hit.t != work.scene.closest(ray).t)
     return state.SkipWithError("the refitted scene differs");
-  state.counters["patches_per_second"] =
-      benchmark::Counter(static_cast<double>(work.patches.size()), benchmark::Counter::kIsIterationInvariantRate);
+  bench::report_rates(state, *best, static_cast<double>(work.patches.size()));
 }
 
-using Run = void (*)(benchmark::State&, const Workload&, const std::vector<Ray>&);
+using Run = void (*)(benchmark::State&, const Workload&, const std::vector<Ray>&, int);
 
 /// The workloads are built when first run: a filter that leaves them out doesn't pay for them.
-void add(const std::string& name, Run run, const Workload& (*work)(), std::vector<Ray> Workload::*rays) {
-  auto* benchmark =
-      benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) { run(state, work(), work().*rays); });
-  benchmark->ArgName("threads")->Arg(1)->UseRealTime()->Unit(benchmark::kMillisecond);
-  if (const unsigned all = std::thread::hardware_concurrency(); all > 1) benchmark->Arg(all);
+void add(const char* operation, const char* surface, const std::string& size, Run run, const Workload& (*work)(),
+         std::vector<Ray> Workload::*rays) {
+  const auto all = static_cast<int>(std::thread::hardware_concurrency());
+  for (const int threads : {1, all}) {
+    bench::add_case({operation, surface, "3", size, "-", threads},
+                    threads == 1 ? bench::Part::quick : bench::Part::full,
+                    [=](benchmark::State& state) { run(state, work(), work().*rays, threads); });
+    if (all <= 1) break;
+  }
 }
 
 [[maybe_unused]] const bool registered = [] {
-  add("ray/closest/teapot/camera", closest, teapot, &Workload::camera);
-  add("ray/closest/teapot/random", closest, teapot, &Workload::random);
-  add("ray/closest/bicubic20000/camera", closest, bicubic20000, &Workload::camera);
-  add("ray/closest/bicubic20000/random", closest, bicubic20000, &Workload::random);
-  add("ray/occluded/teapot/camera", occluded, teapot, &Workload::camera);
-  add("ray/occluded/teapot/random", occluded, teapot, &Workload::random);
-  add("ray/occluded/bicubic20000/camera", occluded, bicubic20000, &Workload::camera);
-  add("ray/occluded/bicubic20000/random", occluded, bicubic20000, &Workload::random);
-  add("ray/refit/bicubic20000", refit, bicubic20000, &Workload::camera);
+  add("ray.closest.camera", "teapot", "65536", closest, teapot, &Workload::camera);
+  add("ray.closest.random", "teapot", "65536", closest, teapot, &Workload::random);
+  add("ray.closest.camera", "bicubic20000", "65536", closest, bicubic20000, &Workload::camera);
+  add("ray.closest.random", "bicubic20000", "65536", closest, bicubic20000, &Workload::random);
+  add("ray.occluded.camera", "teapot", "65536", occluded, teapot, &Workload::camera);
+  add("ray.occluded.random", "teapot", "65536", occluded, teapot, &Workload::random);
+  add("ray.occluded.camera", "bicubic20000", "65536", occluded, bicubic20000, &Workload::camera);
+  add("ray.occluded.random", "bicubic20000", "65536", occluded, bicubic20000, &Workload::random);
+  add("ray.refit", "bicubic20000", "rate8", refit, bicubic20000, &Workload::camera);
   return true;
 }();
 

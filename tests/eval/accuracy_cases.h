@@ -11,8 +11,8 @@ namespace tessera::test {
 struct Circumstance {
   double size, distance, lowest_weight, highest_weight;
 };
-inline constexpr Circumstance circumstances[] = {{1, 0, 0.25, 4},      {1, 0, 1e-3, 1e3},    {1e-6, 0, 1e-3, 1e3},
-                                                 {1e6, 0, 1e-3, 1e3},  {1, 1e7, 1e-3, 1e3},  {1e-6, 1e3, 1e-3, 1e3},
+inline constexpr Circumstance circumstances[] = {{1, 0, 0.25, 4},      {1, 0, 1e-3, 1e3},   {1e-6, 0, 1e-3, 1e3},
+                                                 {1e6, 0, 1e-3, 1e3},  {1, 1e7, 1e-3, 1e3}, {1e-6, 1e3, 1e-3, 1e3},
                                                  {1e-6, 1e7, 0.25, 4}, {1e6, 1e7, 0.25, 4}};
 
 /// `count` patches, one direction of `degree`, the other of any up to it; every other one rational.
@@ -22,8 +22,9 @@ inline std::vector<BezierPatch> patches_of_degree(Random& random, int degree, in
   for (int k = 0; k < count; ++k) {
     const int other = 1 + static_cast<int>(random() % static_cast<unsigned>(degree));
     const int m = k / 2 % 2 ? degree : other, n = k / 2 % 2 ? other : degree;
-    patches.push_back(k % 2 ? random_rational(random, m, n, where.lowest_weight, where.highest_weight, centre, where.size)
-                            : random_polynomial(random, m, n, centre, where.size));
+    patches.push_back(k % 2
+                          ? random_rational(random, m, n, where.lowest_weight, where.highest_weight, centre, where.size)
+                          : random_polynomial(random, m, n, centre, where.size));
   }
   return patches;
 }

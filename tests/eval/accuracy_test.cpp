@@ -73,11 +73,11 @@ void add_errors(const BezierPatch& patch, const GridBuffers<T>& out, std::size_t
   Errors here;
   (patch.is_rational() ? here.rational : here.polynomial) =
       error_of(position - shift, jet.position.rounded(), units.position, max_abs(shift) > 0 ? max_abs(position) : 0);
-  if (!patch.is_rational())
-    here.plain = here.polynomial * units.position / (epsilon * largest_coefficient(patch));
+  if (!patch.is_rational()) here.plain = here.polynomial * units.position / (epsilon * largest_coefficient(patch));
   double& derivative = patch.is_rational() ? here.rational_derivative : here.derivative;
   for (const auto& [values, expected] : {std::pair{&out.du, jet.du}, {&out.dv, jet.dv}})
-    derivative = std::max(derivative, error_of(vector_at(*values, record), expected.rounded(), units.derivative) / degree);
+    derivative =
+        std::max(derivative, error_of(vector_at(*values, record), expected.rounded(), units.derivative) / degree);
   const Vec3 du = jet.du.rounded(), dv = jet.dv.rounded();
   const double height = length(cross(du, dv)) / std::max(length(du), length(dv));
   // To first order in errors over the height; where they are as large, any direction may come out.
@@ -116,9 +116,11 @@ void check_bounds(Isa isa, Representation representation) {
   // Odd and clustered parameters, and the ends.
   const std::vector<double> u = {0, 1, 0.5, 0.1, 1.0 / 3, 0.999, 1e-6}, v = {1, 0.25, 0.77, 0, 2.0 / 3};
   const bool bernstein = representation == Representation::bernstein;
-  std::printf("%s, %s, %s: largest errors by degree, in units (bounds: 2, 4, 16, 16, 8)\n", std::string(name(isa)).c_str(),
-              sizeof(T) == 4 ? "float" : "double", bernstein ? "Bernstein" : "power, over its growth");
-  std::printf("degree  positions  rational  derivatives  rational  normals%s\n", bernstein ? "" : "  positions as they are");
+  std::printf("%s, %s, %s: largest errors by degree, in units (bounds: 2, 4, 16, 16, 8)\n",
+              std::string(name(isa)).c_str(), sizeof(T) == 4 ? "float" : "double",
+              bernstein ? "Bernstein" : "power, over its growth");
+  std::printf("degree  positions  rational  derivatives  rational  normals%s\n",
+              bernstein ? "" : "  positions as they are");
   for (int degree = 1; degree <= max_degree; ++degree) {
     Errors errors;
     for (const Circumstance& where : circumstances) {
@@ -126,8 +128,8 @@ void check_bounds(Isa isa, Representation representation) {
       const GridPlan plan = value_of(GridPlan::make(set, u, v, {precision_of<T>, representation, isa}));
       errors.grow(errors_of<T>(set, plan, u, v, representation));
     }
-    std::printf("%6d  %9.2f  %8.2f  %11.2f  %8.2f  %7.2f", degree, errors.polynomial, errors.rational, errors.derivative,
-                errors.rational_derivative, errors.normal);
+    std::printf("%6d  %9.2f  %8.2f  %11.2f  %8.2f  %7.2f", degree, errors.polynomial, errors.rational,
+                errors.derivative, errors.rational_derivative, errors.normal);
     if (!bernstein) std::printf("  %21.3g", errors.plain);
     std::printf("\n");
     EXPECT_LE(errors.polynomial, 2) << "degree " << degree;
@@ -168,7 +170,8 @@ TEST_P(Accuracy, NormalsAtAnyScale) {
     GridBuffers<float> out(plan);
     ASSERT_TRUE(evaluate(set, plan, out.views()).ok());
     for (std::size_t k = 0; k < 16; ++k)
-      EXPECT_TRUE(within_units(vector_at(out.normal, k), reference_normal(set.patch(0), t[k / 4], t[k % 4]), 1e-4, 1)) << scale;
+      EXPECT_TRUE(within_units(vector_at(out.normal, k), reference_normal(set.patch(0), t[k / 4], t[k % 4]), 1e-4, 1))
+          << scale;
   }
 }
 

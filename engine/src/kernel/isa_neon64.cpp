@@ -170,10 +170,10 @@ struct Lanes<float> : ThroughMemory<float> {
   static void store(float* p, Batch a) { vst1q_f32(p, a); }
   static void stream(float* p, Batch a) { vst1q_f32(p, a); }  // AArch64 has hints alone
   static void fence() {}
-  static Batch fma(Batch a, Batch b, Batch c) { return vfmaq_f32(c, a, b); }              // a b + c
+  static Batch fma(Batch a, Batch b, Batch c) { return vfmaq_f32(c, a, b); }             // a b + c
   static Batch fms(Batch a, Batch b, Batch c) { return vfmaq_f32(vnegq_f32(c), a, b); }  // a b - c
-  static Batch fnma(Batch a, Batch b, Batch c) { return vfmsq_f32(c, a, b); }             // c - a b
-  static Batch inverse_root_guess(Batch a) {  // halves the exponent
+  static Batch fnma(Batch a, Batch b, Batch c) { return vfmsq_f32(c, a, b); }            // c - a b
+  static Batch inverse_root_guess(Batch a) {                                             // halves the exponent
     return vreinterpretq_f32_u32(vsubq_u32(vdupq_n_u32(0x5f3759df), vshrq_n_u32(vreinterpretq_u32_f32(a), 1)));
   }
   static void store_bytes(std::uint8_t* p, Batch a) {  // small whole numbers

@@ -52,8 +52,8 @@ void append_weights(int degree, double t, AlignedVector<T>& out) {
   for (int i = 0; i <= degree; ++i)
     out.push_back(static_cast<T>(degree * (value(degree - 1, i - 1) - value(degree - 1, i))));
   for (int i = 0; i <= degree; ++i)
-    out.push_back(static_cast<T>(degree * (degree - 1) * (value(degree - 2, i - 2) - 2 * value(degree - 2, i - 1) +
-                                                          value(degree - 2, i))));
+    out.push_back(static_cast<T>(degree * (degree - 1) *
+                                 (value(degree - 2, i - 2) - 2 * value(degree - 2, i - 1) + value(degree - 2, i))));
 }
 
 /// What the kernels ask of the caller where they can't decide: any function of the place will do.
@@ -98,13 +98,17 @@ struct Output {
   int order;  ///< of the derivatives it takes
 };
 template <class T>
-constexpr Output<T> vector_outputs[] = {
-    {"position", &GridJob<T>::position, 0},        {"du", &GridJob<T>::du, 1},
-    {"dv", &GridJob<T>::dv, 1},                    {"normal", &GridJob<T>::normal, 1},
-    {"duu", &GridJob<T>::duu, 2},                  {"duv", &GridJob<T>::duv, 2},
-    {"dvv", &GridJob<T>::dvv, 2},                  {"first_form", &GridJob<T>::first_form, 2},
-    {"second_form", &GridJob<T>::second_form, 2},  {"first_direction", &GridJob<T>::first_direction, 2},
-    {"second_direction", &GridJob<T>::second_direction, 2}};
+constexpr Output<T> vector_outputs[] = {{"position", &GridJob<T>::position, 0},
+                                        {"du", &GridJob<T>::du, 1},
+                                        {"dv", &GridJob<T>::dv, 1},
+                                        {"normal", &GridJob<T>::normal, 1},
+                                        {"duu", &GridJob<T>::duu, 2},
+                                        {"duv", &GridJob<T>::duv, 2},
+                                        {"dvv", &GridJob<T>::dvv, 2},
+                                        {"first_form", &GridJob<T>::first_form, 2},
+                                        {"second_form", &GridJob<T>::second_form, 2},
+                                        {"first_direction", &GridJob<T>::first_direction, 2},
+                                        {"second_direction", &GridJob<T>::second_direction, 2}};
 template <class T>
 constexpr Output<T> scalar_outputs[] = {{"gaussian", &GridJob<T>::gaussian, 2},
                                         {"mean", &GridJob<T>::mean, 2},
@@ -116,7 +120,8 @@ template <class T>
 void run_grid(const KernelTable& table, const Net& net, int order, bool streaming) {
   const double u[] = {0, 0.3125, 1}, v[] = {0, 0.1, 0.75, 1};
   constexpr int count_u = 3, count_v = 4;
-  constexpr std::size_t samples = count_u * count_v, vectors = samples * 3 * block_lanes, scalars = samples * block_lanes;
+  constexpr std::size_t samples = count_u * count_v, vectors = samples * 3 * block_lanes,
+                        scalars = samples * block_lanes;
   const std::uint8_t u_edges[] = {edge_start, edge_inside, edge_end};
   const std::uint8_t v_edges[] = {edge_start, edge_inside, edge_inside, edge_end};
   Random random(static_cast<std::uint64_t>(100 * net.degree_u + net.degree_v));

@@ -1,0 +1,35 @@
+#pragma once
+// The limits of the user's machine and how near the kernels come to them, in a few lines and a picture.
+
+#include <string>
+#include <vector>
+
+#include "tessera/limits.h"
+#include "tessera/status.h"
+
+namespace tessera::bench {
+
+/// Operations a second over operations a byte, one thread.
+struct RooflinePoint {
+  std::string name;       ///< "positions"
+  double per_byte = 0;    ///< operations of Work over the bytes it must write
+  double operations = 0;  ///< a second, reached
+  double points = 0;      ///< of surfaces, a second
+  bool in_cache = false;  ///< the output stays in the second-level cache
+};
+
+struct Roofline {
+  std::string machine;
+  std::vector<Limits> isas;  ///< of each instruction set, slowest first, its stores past the caches
+  double cache_store = 0;    ///< bytes a second into the second-level cache, fastest instruction set
+  std::vector<RooflinePoint> points;
+};
+
+/// Measures (some seconds), prints, and writes the picture.
+/// Errors: those of the measurements, and of writing the file.
+Status print_roofline(const std::string& picture);
+
+/// The picture alone.
+Status draw_roofline(const Roofline& roofline, const std::string& path);
+
+}  // namespace tessera::bench

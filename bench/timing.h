@@ -1,0 +1,89 @@
+#pragma once
+// How a case is timed and what it reports: the shortest time of a call, items and bytes a second by it, and how near it
+// comes to the machine's limits, which are measured in the same process around the run.
+
+#include <benchmark/benchmark.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <optional>
+
+#include "base/function_ref.h"
+#include "tessera/limits.h"
+#include "tessera/status.h"
+
+namespace tessera::bench {
+
+inline double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Calls `call` once an iteration in an arena of `threads`, and nothing else that counts. The shortest time in seconds;
+/// nothing where a call failed, which skips the case with its message.
+inline std::optional<double> time_calls(benchmark::State& state, int threads, FunctionRef<Status()> call) {
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  tbb::task_arena arena(threads);
+  double best = std::numeric_limits<double>::infinity();
+  for (auto _ : state) {
+    const auto start = std::chrono::steady_clock::now();
+    Status status;
+    arena.execute([&] { status = call(); });
+    const double seconds = seconds_since(start);
+    if (!status.ok()) {
+      state.SkipWithError(status.message().c_str());
+      return {};
+    }
+    state.SetIterationTime(seconds);
+    best = std::min(best, seconds);
+  }
+  return best;
+}
+
+/// The machine's limits before and after a run: the better rates of both, since a disturbed measurement must not flatter
+/// the run.
+class LimitsAround {
+ public:
+  LimitsAround(std::optional<Isa> isa, double bytes)
+      : options_{.isa = isa, .store_bytes = static_cast<std::size_t>(bytes)}, before_(measure_limits(options_)) {}
+
+  /// Nothing where they can't be measured, which skips the case.
+  std::optional<Limits> best(benchmark::State& state) const {
+    const Result<Limits> after = measure_limits(options_);
+    if (!before_ || !after) {
+      state.SkipWithError("the machine's limits could not be measured");
+      return {};
+    }
+    const auto better = [](double a, double b) { return std::max(a, b); };
+    Limits limits = *before_;
+    limits.float_operations_per_second = better(limits.float_operations_per_second, after->float_operations_per_second);
+    limits.double_operations_per_second =
+        better(limits.double_operations_per_second, after->double_operations_per_second);
+    limits.plain_store_bytes_per_second =
+        better(limits.plain_store_bytes_per_second, after->plain_store_bytes_per_second);
+    limits.streaming_store_bytes_per_second =
+        better(limits.streaming_store_bytes_per_second, after->streaming_store_bytes_per_second);
+    limits.store_bytes_per_second = better(limits.store_bytes_per_second, after->store_bytes_per_second);
+    return limits;
+  }
+
+ private:
+  LimitsOptions options_;
+  Result<Limits> before_;
+};
+
+/// items_per_second and bytes_per_second (where bytes > 0) by the best time.
+inline void report_rates(benchmark::State& state, double best, double items, double bytes = 0) {
+  state.counters["items_per_second"] = items / best;
+  if (bytes > 0) state.counters["bytes_per_second"] = bytes / best;
+}
+
+/// limit_fraction: the time that `work` takes at the limits of one thread (limits.h) over the best time. Of one thread
+/// alone: what two threads share is no limit of one.
+inline void report_limit(benchmark::State& state, double best, const Limits& limits, const Work& work) {
+  state.counters["limit_fraction"] = seconds_at_limit(limits, work) / best;
+}
+
+}  // namespace tessera::bench
