@@ -1,14 +1,10 @@
-// Grids of many patches: evaluate/OUTPUTS/LAYOUT/SET/SIZE/ISA/THREADS. Each case checks the values that it timed against the reference
-// evaluator before it reports; limit_fraction is the time at the machine's limits, measured in the same process around the run,
-// over the best time of one call.
+// Grids of many patches: evaluate.OUTPUTS.LAYOUT. Each case checks the values that it timed against the reference evaluator
+// before it reports. Its limit is GridPlan::work().
 
 #include <benchmark/benchmark.h>
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <string>
 #include <type_traits>
@@ -16,8 +12,9 @@
 #include "base/aligned.h"
 #include "eval/grid_outputs.h"
 #include "sets.h"
+#include "suite.h"
 #include "tessera/evaluate.h"
-#include "tessera/limits.h"
+#include "timing.h"
 
 namespace tessera::bench {
 namespace {
@@ -32,10 +29,9 @@ struct Case {
   Isa isa;
   int threads;
 
-  std::string name() const {
-    const std::string grid = std::to_string(size) + "x" + std::to_string(size);
-    return "evaluate/" + outputs_name() + "/" + (layout == Layout::blocks ? "blocks/" : "interleaved/") + set_name +
-           "/" + grid + "/" + std::string(tessera::name(isa)) + "/" + std::to_string(threads);
+  CaseName name() const {
+    return {"evaluate." + outputs_name() + (layout == Layout::blocks ? ".blocks" : ".interleaved"), set_name, "3",
+            square(static_cast<std::size_t>(size)), std::string(tessera::name(isa)), threads};
   }
   std::string outputs_name() const {
     if (outputs.first_form) return "geometry";  // normals, forms, curvatures, directions, kinds
@@ -153,14 +149,6 @@ bool check_values(const PatchSet& set, const GridPlan& plan, const std::vector<d
   return right;
 }
 
-/// The best rates of two measurements, before and after the run: a disturbed one must not flatter us.
-Limits best_of(const Limits& a, const Limits& b) {
-  Limits best = a;
-  best.float_operations_per_second = std::max(a.float_operations_per_second, b.float_operations_per_second);
-  best.store_bytes_per_second = std::max(a.store_bytes_per_second, b.store_bytes_per_second);
-  return best;
-}
-
 void run(benchmark::State& state, const Case& c) {
   const PatchSet& set = set_named(c.set_name);
   const std::vector<double> t = uniform_parameters(c.size);
@@ -168,38 +156,21 @@ void run(benchmark::State& state, const Case& c) {
   if (!plan) return state.SkipWithError(plan.status().message().c_str());
   Outputs out(*plan, c);
   const Work work = plan->work(c.outputs);
-  const LimitsOptions limits_options{.isa = c.isa, .store_bytes = static_cast<std::size_t>(work.bytes_written)};
-  const auto limits_before = measure_limits(limits_options);
-
+  const LimitsAround around(c.isa, work.bytes_written);
   ExecutionReport report;
   Execution execution;
   execution.report = &report;
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(c.threads));
-  tbb::task_arena arena(c.threads);
-  double best = 1e30;
-  for (auto _ : state) {
-    const auto start = std::chrono::steady_clock::now();
-    Status status;
-    arena.execute([&] { status = out.evaluate(set, *plan, execution); });
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (!status.ok()) return state.SkipWithError(status.message().c_str());
-    state.SetIterationTime(seconds);
-    best = std::min(best, seconds);
-  }
-  const auto limits_after = measure_limits(limits_options);
-  if (!limits_before || !limits_after) return state.SkipWithError("the machine's limits could not be measured");
+  const auto best = time_calls(state, c.threads, [&] { return out.evaluate(set, *plan, execution); });
+  const auto limits = around.best(state);
+  if (!best || !limits) return;
   if (report.isa != c.isa) return state.SkipWithError("another instruction set ran than was asked for");
   if (!check_values(set, *plan, t, out)) return state.SkipWithError("the timed values differ from the reference");
-  state.counters["points_per_second"] = static_cast<double>(plan->capacity()) / best;
-  state.counters["bytes_per_second"] = work.bytes_written / best;
-  if (c.threads == 1)
-    state.counters["limit_fraction"] = seconds_at_limit(best_of(*limits_before, *limits_after), work) / best;
+  report_rates(state, *best, static_cast<double>(plan->capacity()), work.bytes_written);
+  if (c.threads == 1) report_limit(state, *best, *limits, work);
 }
 
 void add(const Case& c) {
-  benchmark::RegisterBenchmark(c.name().c_str(), [c](benchmark::State& state) { run(state, c); })
-      ->UseManualTime()
-      ->Unit(benchmark::kMillisecond);
+  add_case(c.name(), c.size == 9 ? quick_on_fastest(c.isa) : Part::full, [c](benchmark::State& state) { run(state, c); });
 }
 
 const bool registered = [] {
