@@ -1,5 +1,5 @@
-// Every file of TESSERA_TEST_DATA: read whole, or refused for a reason that its text bears out; what is read is what its
-// patches are. Ends in a table, format by format.
+// Every file of TESSERA_TEST_DATA: read whole, or refused for a reason that its text bears out; its patches are its
+// surfaces. Ends in a table, format by format.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// Real files of the classic formats: the teapot is the same pot in all of them, spheres are round; other programs' values
-// of what is read. That every file is read stands in tests/conformance.
+// Real files of the classic formats: the teapot is the same pot in all of them, spheres are round; other programs'
+// values of what is read. That every file is read stands in tests/conformance.
 
 #include <gtest/gtest.h>
 

@@ -47,6 +47,8 @@ TEST(ObjFreeformErrors, SyntaxIsNamedWithItsLine) {
             "m.obj:7: expected 4 finite numbers after surf, the ranges of u and v, found the end of the line");
   EXPECT_EQ(error_of(spoiled("surf 0 1 0 1 1 2 3 4", "surf 0 1 0 1 1")),
             "m.obj:7: expected at least 2 control points, found the end of the line");
+  // A continuation that is none, as the specification's own example of stech prints it.
+  EXPECT_EQ(error_of(spoiled("1 2 3 4", "1 2 \\ 3 4")), "m.obj:7: expected an index of a control point, found \"\\\"");
   EXPECT_EQ(error_of(spoiled("deg 1 1", "1 1")),
             "m.obj:6: expected a statement (is the line above to be continued, without a \\ at its end?), found \"1\"");
   EXPECT_EQ(error_of(std::string("\0\x01v 1 2 3\n", 9)),
