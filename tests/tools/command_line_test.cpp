@@ -51,11 +51,11 @@ TEST_F(CommandLine, EveryOptionIsInTheHelp) {
 }
 
 TEST_F(CommandLine, WhatIsNoCommandLineEndsWithTwo) {
-  expect_failure({}, 2, "expected a command (info, eval, tessellate, raycast, convert, check), found none");
+  expect_failure({}, 2, "expected a command (info, eval, tessellate, raycast, convert, check, completion or man), found none");
   expect_failure({"paint"}, 2, "paint");
   expect_failure({"info"}, 2, "MODEL");
   expect_failure({"info", teapot, "--colour"}, 2, "--colour");
-  expect_failure({"info", teapot, "another"}, 2, "another");
+  expect_failure({"completion", "bash", "another"}, 2, "tessera completion: the word another is not expected");
   expect_failure({"eval", teapot}, 2, "");
   expect_failure({"eval", teapot, "--grid", "3x3", "--params", "p.csv"}, 2, "");
   expect_failure({"eval", teapot, "--grid", "3x3", "--derivs", "3"}, 2, "--derivs");
@@ -165,15 +165,15 @@ TEST_F(CommandLine, BadModelsEndWithOne) {
 }
 
 TEST_F(CommandLine, OutputsThatCannotBeWrittenEndWithOne) {
-  std::filesystem::create_directory(folder_ / "folder.ply");
-  std::filesystem::create_directory(folder_ / "folder.png");
+  std::filesystem::create_directories(folder_.path() / "folder" / "teapot.ply");
+  std::filesystem::create_directories(folder_.path() / "folder" / "teapot.png");
   expect_failure({"tessellate", teapot, "-o", "none/a.ply", "--grid", "2x2"}, 1, "none/a.ply: cannot be written");
-  expect_failure({"tessellate", teapot, "-o", "folder.ply", "--grid", "2x2"}, 1,
-                 "folder.ply: cannot be written: it is a directory");
+  expect_failure({"tessellate", teapot, "-o", "folder", "--grid", "2x2"}, 1,
+                 "folder/teapot.ply: cannot be written: it is a directory");
   expect_failure({"eval", teapot, "--grid", "2x2", "-o", "none/a.csv"}, 1, "none/a.csv: cannot be written");
   expect_failure({"eval", teapot, "--grid", "2x2", "-o", "/dev/full"}, 1, "No space left on device");
   expect_failure({"raycast", teapot, "-o", "none/a.png", "--size", "8x8"}, 1, "none/a.png");
-  expect_failure({"raycast", teapot, "-o", "folder.png", "--size", "8x8"}, 1, "folder.png");
+  expect_failure({"raycast", teapot, "-o", "folder/", "--size", "8x8"}, 1, "folder/teapot.png");
   folder_.file("rays.csv", "ox,oy,oz,dx,dy,dz\n0,0,9,0,0,-1\n");
   expect_failure({"raycast", teapot, "--rays", "rays.csv", "--hits", "none/a.csv"}, 1, "none/a.csv: cannot be written");
 }

@@ -57,6 +57,7 @@ class RunningProgram {
     ::waitpid(child_, nullptr, 0);
   }
 
+  pid_t id() const { return child_; }
   void signal(int number) const { ::kill(child_, number); }
   ToolRun wait() {
     int state = 0;

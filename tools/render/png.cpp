@@ -4,6 +4,7 @@
 #include <csetjmp>
 #include <cstdio>
 #include <string>
+#include <vector>
 
 #include "base/guard.h"
 #include "io/output_file.h"
@@ -45,13 +46,26 @@ struct Encoder {
   png_infop info = nullptr;
 };
 
+/// libpng reads keyword and text only, but takes them as pointers to what it may change.
+std::vector<png_text> as_png(const PngTexts& texts) {
+  std::vector<png_text> chunks(texts.size());
+  for (std::size_t k = 0; k < texts.size(); ++k) {
+    chunks[k].compression = PNG_TEXT_COMPRESSION_NONE;
+    chunks[k].key = const_cast<char*>(texts[k].first.c_str());
+    chunks[k].text = const_cast<char*>(texts[k].second.c_str());
+    chunks[k].text_length = texts[k].second.size();
+  }
+  return chunks;
+}
+
 /// False if libpng has failed. It comes back here by longjmp: nothing in this function may need a destructor.
-bool encode(Encoder& encoder, const Image& image, const OutputFile& out) {
+bool encode(Encoder& encoder, const Image& image, const std::vector<png_text>& texts, const OutputFile& out) {
   const png_structp png = encoder.png;
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_IHDR(png, encoder.info, static_cast<png_uint_32>(image.width), static_cast<png_uint_32>(image.height), 8,
                PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_sRGB(png, encoder.info, PNG_sRGB_INTENT_PERCEPTUAL);
+  if (!texts.empty()) png_set_text(png, encoder.info, texts.data(), static_cast<int>(texts.size()));
   png_write_info(png, encoder.info);
   const std::size_t row_bytes = 3 * static_cast<std::size_t>(image.width);
   for (std::size_t at = 0; at < image.rgb.size(); at += row_bytes) {
@@ -64,17 +78,18 @@ bool encode(Encoder& encoder, const Image& image, const OutputFile& out) {
 
 }  // namespace
 
-Status write_png(const Image& image, OutputFile& out) {
+Status write_png(const Image& image, OutputFile& out, const PngTexts& texts) {
   if (image.width < 1 || image.height < 1 ||
       image.rgb.size() != 3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height)) {
     return Status(StatusCode::invalid_argument, "a picture's bytes don't fit its size");
   }
   return guarded([&]() -> Status {
+    const std::vector<png_text> chunks = as_png(texts);
     Encoder encoder(out);
     if (encoder.png == nullptr || encoder.info == nullptr) {
       return Status(StatusCode::out_of_memory, out.path().string() + ": out of memory");
     }
-    if (encode(encoder, image, out)) return {};
+    if (encode(encoder, image, chunks, out)) return {};
     return Status(StatusCode::internal, out.path().string() + ": libpng: " + encoder.message.data());
   });
 }

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "tessera/execution.h"
@@ -48,11 +50,14 @@ struct Image {
 /// Errors: invalid_argument (an empty box, settings out of range), cancelled, and those of RayScene::closest.
 Result<Image> render(const RayScene& scene, const Box3& box, const Settings& settings, const Execution& execution = {});
 
+/// Keywords and what they say, as tEXt chunks in Latin-1 (PNG specification, 11.3.4.3): "Warning", for example.
+using PngTexts = std::vector<std::pair<std::string, std::string>>;
+
 /// The file appears whole or not at all: it is written beside its place, then renamed.
 /// Errors: invalid_argument (an image whose bytes don't fit its size), io_error.
 Status write_png(const Image& image, const std::filesystem::path& path);
 /// Row by row into an open file; what is left to do is to commit it, which also says whether a write has failed.
 /// Errors: invalid_argument, out_of_memory, internal (libpng).
-Status write_png(const Image& image, OutputFile& out);
+Status write_png(const Image& image, OutputFile& out, const PngTexts& texts = {});
 
 }  // namespace tessera::render

@@ -1,11 +1,12 @@
 #include "arguments.h"
 
-#include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 #include <system_error>
 
 #include "io/text_cursor.h"
+#include "suggestions.h"
 
 namespace tessera::cli {
 namespace {
@@ -52,6 +53,33 @@ std::vector<double> parse_numbers(const std::string& option, const std::string& 
 }
 
 std::string fault_of_name(const std::string& name) { return name.empty() ? "expected the name of a file" : ""; }
+
+CLI::Validator one_of(const std::vector<std::string>& words) {
+  std::string list;
+  for (const std::string& word : words) list += (list.empty() ? "" : ",") + word;
+  return {[words](std::string& text) {
+            if (std::find(words.begin(), words.end(), text) != words.end()) return std::string();
+            return "expected " + listed(words, "or") + ", found " + quote(text) + did_you_mean(text, words);
+          },
+          "{" + list + "}"};
+}
+
+CLI::Validator whole_number(int least, int most) {
+  return {[least, most](std::string& text) {
+            std::string_view rest = text;
+            int value = 0;
+            if (take_integer(rest, least, most, value) && rest.empty()) return std::string();
+            return "expected a whole number from " + std::to_string(least) + " to " + std::to_string(most) +
+                   ", found " + quote(text);
+          },
+          ""};
+}
+
+void add_text_output(CLI::App& command, std::string& output) {
+  command.add_option("-o,--output", output, "Where to write [standard output]")
+      ->check(fault_of_name)
+      ->type_name("FILE");
+}
 
 void refuse_overwriting(const std::string& option, const std::string& output, const std::vector<std::string>& inputs) {
   std::error_code error;

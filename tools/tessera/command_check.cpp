@@ -1,21 +1,17 @@
-// tessera check: whether a mesh is whole.
+// tessera check: whether meshes are whole.
 
 #include <memory>
 
+#include "arguments.h"
 #include "commands.h"
-#include "console.h"
+#include "jobs.h"
 #include "tessera/io.h"
 
 namespace tessera::cli {
 namespace {
 
-struct Options {
-  std::string mesh;
-  bool json = false;
-};
-
-Json as_json(const Options& options, const MeshReport& report) {
-  return {{"mesh", options.mesh},
+Json as_json(const std::string& mesh, const MeshReport& report) {
+  return {{"mesh", mesh},
           {"vertices", report.vertices},
           {"distinct_positions", report.distinct_positions},
           {"triangles", report.triangles},
@@ -27,11 +23,11 @@ Json as_json(const Options& options, const MeshReport& report) {
           {"closed", report.closed()}};
 }
 
-std::string as_text(const Options& options, const MeshReport& report) {
+std::string as_text(const std::string& mesh, const MeshReport& report) {
   const auto line = [](const char* what, std::size_t count, const char* note = "") {
     return std::string("  ") + what + std::to_string(count) + note + "\n";
   };
-  return options.mesh + ": " + (report.closed() ? "closed" : "not closed") + "\n" +
+  return mesh + ": " + (report.closed() ? "closed" : "not closed") + "\n" +
          line("vertices              ", report.vertices) + line("distinct positions    ", report.distinct_positions) +
          line("triangles             ", report.triangles) +
          line("open edges            ", report.open_edges, "  (of one triangle)") +
@@ -42,31 +38,50 @@ std::string as_text(const Options& options, const MeshReport& report) {
          line("NaN or infinite       ", report.non_finite_vertices, "  (vertices)");
 }
 
-Status run_check(const Options& options) {
-  const Result<Mesh> mesh = read_mesh(options.mesh);
+Status run_check(const std::string& file, const CommonOptions& common, Timings& timings) {
+  const Result<Mesh> mesh = [&] {
+    const auto phase = timings.phase("read");
+    return read_mesh(file);
+  }();
   if (!mesh) return mesh.status();
-  const Result<MeshReport> report = check(*mesh);
-  if (!report) return in_file(options.mesh, report.status());
-  Status status = options.json ? print_json(as_json(options, *report)) : print(as_text(options, *report));
-  if (status.ok() && report->non_finite_vertices != 0) {
-    status = Status(StatusCode::non_finite, options.mesh + ": " + std::to_string(report->non_finite_vertices) +
-                                                " vertices with NaN or infinity");
-  }
-  return status;
+  const Result<MeshReport> report = [&] {
+    const auto phase = timings.phase("check");
+    return check(*mesh);
+  }();
+  if (!report) return in_file(file, report.status());
+  Json json = as_json(file, *report);
+  add_seconds(json, common, timings);
+  if (Status status = common.json ? print_json(json) : print(as_text(file, *report)); !status.ok()) return status;
+  if (report->non_finite_vertices == 0) return {};
+  complain(file + ": " + std::to_string(report->non_finite_vertices) + " vertices with NaN or infinity");
+  return already_said(StatusCode::non_finite);
 }
+
+constexpr const char* footer =
+    "Vertices at the same position, bit for bit, count as one. Open edges are no error, as a model may be open:\n"
+    "the exit status is 1 only if a mesh cannot be read, holds NaN or infinity, or has an index out of range.\n"
+    "\nExamples:\n"
+    "  tessera check teapot.ply\n"
+    "  tessera check 'meshes/*.ply' --json";
 
 }  // namespace
 
 void add_check(CLI::App& app, Session& session) {
-  CLI::App* const command = app.add_subcommand("check", "Count what is wrong with a mesh");
-  const auto options = std::make_shared<Options>();
-  command->add_option("MESH", options->mesh, "The mesh (.obj, .ply)")->required()->type_name("FILE");
-  command->add_flag("--json", options->json, "Print one JSON object");
-  command->footer(
-      "Vertices at the same position, bit for bit, count as one. Open edges are no error, as a model may be open:\n"
-      "the exit status is 1 only if the mesh cannot be read, holds NaN or infinity, or has an index out of range.\n"
-      "\nExample:\n  tessera check teapot.ply");
-  command->callback([options, &session] { session.command = [options] { return run_check(*options); }; });
+  CLI::App* const command = app.add_subcommand("check", "Count what is wrong with meshes");
+  const auto meshes = std::make_shared<std::vector<std::string>>();
+  command->add_option("MESH", *meshes, "Meshes (.obj, .ply), or patterns of their names")
+      ->required()
+      ->check(fault_of_name)
+      ->type_name("FILE");
+  add_common(*command, session.common);
+  command->footer(footer);
+  command->callback([meshes, &session] {
+    session.command = [&session, plan = plan_jobs(*meshes, "", {"MESH", "", false})] {
+      return run_jobs(plan, session.common, [&session](const Job& job, Timings& timings) {
+        return run_check(job.inputs[0], session.common, timings);
+      });
+    };
+  });
 }
 
 }  // namespace tessera::cli

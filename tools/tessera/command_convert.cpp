@@ -1,66 +1,90 @@
 // tessera convert: surfaces to Bezier patches in another format.
 
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "arguments.h"
 #include "commands.h"
 #include "console.h"
 #include "io/formats.h"
-#include "model_file.h"
+#include "loading.h"
 
 namespace tessera::cli {
 namespace {
 
 struct Options {
-  ModelFile model;
+  ModelOptions models;
   std::string output;
-  bool json = false;
 };
 
-Status report(const Options& options, const Model& model, const WrittenModel& written) {
-  if (options.json) {
-    Json warnings = warnings_json(model);
-    for (const std::string& warning : written.warnings) warnings.push_back(warning);
-    return print_json(Json{{"output", options.output},
-                           {"surfaces", written.surfaces},
-                           {"patches", written.patches},
-                           {"fit_error", fit_json(written.fit_error)},
-                           {"warnings", warnings}});
+Status report(const Job& job, const CommonOptions& common, const Loaded& loaded, const WrittenModel& written,
+              const Timings& timings) {
+  if (!common.json) {
+    return print(job.output + ": " + std::to_string(written.surfaces) + " surfaces, " +
+                 std::to_string(written.patches) + " patches\n" + fit_line(written.fit_error));
   }
-  return print(options.output + ": " + std::to_string(written.surfaces) + " surfaces, " +
-               std::to_string(written.patches) + " patches\n" + fit_line(written.fit_error));
+  Json object = files_json(loaded);
+  object["output"] = job.output;
+  object["surfaces"] = written.surfaces;
+  object["patches"] = written.patches;
+  object["fit_error"] = fit_json(written.fit_error);
+  object["warnings"] = warnings_json(loaded.model);
+  for (const std::string& warning : written.warnings) object["warnings"].push_back(warning);
+  add_seconds(object, common, timings);
+  return print_json(object);
 }
 
-Status run_convert(const Options& options) {
-  Result<OutputFile> out = open_output(options.output);
+Status run_convert(const Job& job, const Options& options, const CommonOptions& common, Timings& timings) {
+  Result<OutputFile> out = open_output(job.output);
   if (!out) return out.status();
-  const Result<Model> model = open_model(options.model);
-  if (!model) return model.status();
-  const Result<WrittenModel> written = write_model(*model, options.output, options.model.fit, *out);
+  const Result<Loaded> loaded = load(job, options.models.fit, With::surfaces, timings);
+  if (!loaded) return loaded.status();
+  const Result<WrittenModel> written = [&] {
+    const auto phase = timings.phase("write");
+    return write_model(loaded->model, job.output, options.models.fit, *out);
+  }();
   if (!written) return written.status();
   if (Status status = out->commit(); !status.ok()) return status;
-  say_warnings(written->warnings);
-  return report(options, *model, *written);
+  for (const std::string& warning : written->warnings) warn(warning);
+  const Status said = report(job, common, *loaded, *written, timings);
+  return said.ok() ? loaded->status() : said;
 }
+
+constexpr const char* extension_in_folders = ".obj";
+
+std::string fault_of_output(const std::string& path) {
+  if (path.empty()) return fault_of_name(path);
+  return is_folder(path) ? "" : check_model_format(path).message();
+}
+
+constexpr const char* footer =
+    ".obj keeps weights, names, trims and the ranges of parameters; .bpt holds polynomial patches alone. What the file\n"
+    "does not hold is said as a warning. Several models become one file, or one each where the output is a folder\n"
+    "(then as .obj) or holds {name}.\n"
+    "\nExample:\n"
+    "  tessera convert goblet.json -o goblet.obj";
 
 }  // namespace
 
 void add_convert(CLI::App& app, Session& session) {
   CLI::App* const command = app.add_subcommand("convert", "Write surfaces as Bezier patches in another format");
   const auto options = std::make_shared<Options>();
-  add_model(*command, options->model);
-  command->add_option("-o,--output", options->output, "The surfaces to be written (.bpt, .obj)")
+  add_models(*command, options->models);
+  command
+      ->add_option("-o,--output", options->output,
+                   "The surfaces to be written (.bpt, .obj), or a folder, or a name with {name}")
       ->required()
-      ->type_name("SURFACES")
-      ->check([](const std::string& path) { return check_model_format(path).message(); });
-  command->add_flag("--json", options->json, "Print one JSON object");
-  command->footer(
-      ".obj keeps weights, names, trims and the ranges of parameters; .bpt holds polynomial patches alone.\n"
-      "What the file does not hold is said as a warning.\n"
-      "\nExample:\n  tessera convert goblet.json -o goblet.obj");
+      ->type_name("FILE")
+      ->check(fault_of_output);
+  add_common(*command, session.common);
+  command->footer(footer);
   command->callback([options, &session] {
-    refuse_overwriting("--output", options->output, {options->model.path});
-    session.command = [options] { return run_convert(*options); };
+    const Plan plan = plan_jobs(options->models.files, options->output, {"--output", extension_in_folders});
+    session.command = [options, plan, &session] {
+      return run_jobs(plan, session.common, [&](const Job& job, Timings& timings) {
+        return run_convert(job, *options, session.common, timings);
+      });
+    };
   });
 }
 

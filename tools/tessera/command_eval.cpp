@@ -7,16 +7,16 @@
 
 #include "arguments.h"
 #include "commands.h"
-#include "console.h"
 #include "csv.h"
-#include "model_file.h"
+#include "loading.h"
+#include "progress.h"
 #include "tessera/evaluate.h"
 
 namespace tessera::cli {
 namespace {
 
 struct Options {
-  ModelFile model;
+  ModelOptions models;
   std::string output, places, format = "csv";
   std::optional<Extent> grid;
   int derivatives = 0;
@@ -39,8 +39,7 @@ constexpr std::array<Column, 6> columns{{{"position", "", &SurfaceJet::position,
 /// Rows as CSV or JSON, all numbers with 17 digits.
 class RowWriter {
  public:
-  RowWriter(OutputFile& out, const Options& options)
-      : out_(out), json_(options.format == "json"), derivatives_(options.derivatives) {}
+  RowWriter(OutputFile& out, bool json, int derivatives) : out_(out), json_(json), derivatives_(derivatives) {}
 
   void begin() {
     if (json_) return out_.write("{\"rows\": [");
@@ -71,8 +70,12 @@ class RowWriter {
     out_.write(json_ ? "}" : "\n");
   }
 
-  void end() {
-    if (json_) out_.write("\n]}\n");
+  /// `more`: what the JSON object says beside the rows.
+  void end(const Json& more) {
+    if (!json_) return;
+    out_.write("\n]");
+    for (const auto& [key, value] : more.items()) out_.write(", \"" + key + "\": " + value.dump());
+    out_.write("}\n");
   }
 
  private:
@@ -183,9 +186,10 @@ class Evaluator {
   std::uint32_t converted_ = 0;
 };
 
-Status write_rows(const Model& model, const Places& places, const Options& options, OutputFile& out) {
-  RowWriter rows(out, options);
-  Evaluator evaluator(model, options.model.fit);
+/// A row for each place.
+Status write_rows(const Loaded& loaded, const Places& places, const Options& options, RowWriter& rows,
+                  const OutputFile& out) {
+  Evaluator evaluator(loaded.model, options.models.fit);
   Progress progress("evaluating");
   rows.begin();
   for (std::size_t k = 0; k < places.count && !out.failed(); ++k) {
@@ -196,28 +200,51 @@ Status write_rows(const Model& model, const Places& places, const Options& optio
     const SurfacePlace place = places.at(k);
     const Result<SurfaceJet> jet = evaluator.jet(place);
     const Result<UnitNormal> normal = jet ? evaluator.normal(place, *jet) : jet.status();
-    if (!normal) return in_file(options.model.path, in_surface(model, place.surface, normal.status()));
+    if (!normal) return loaded.in_surface(place.surface, normal.status());
     rows.write(place, *jet, *normal);
   }
-  rows.end();
-  return out.commit();
+  return {};
 }
 
-Status run_eval(const Options& options) {
-  Result<OutputFile> out = open_output(options.output);
+Result<Places> places_of(const Options& options, const Model& model) {
+  if (options.grid) return grid_places(*options.grid, model);
+  Result<std::vector<SurfacePlace>> read = read_places(options.places, model);
+  if (!read) return read.status();
+  const std::size_t count = read->size();
+  return Places{count, [list = *std::move(read)](std::size_t k) { return list[k]; }};
+}
+
+Status report(const Job& job, const CommonOptions& common, const Loaded& loaded, std::size_t rows,
+              const Timings& timings) {
+  Json object = files_json(loaded);
+  object["output"] = job.output;
+  object["rows"] = rows;
+  object["surfaces"] = loaded.model.surfaces.size();
+  object["trimmed_surfaces"] = loaded.trimmed();
+  object["warnings"] = warnings_json(loaded.model);
+  add_seconds(object, common, timings);
+  return print_json(object);
+}
+
+Status run_eval(const Job& job, const Options& options, const CommonOptions& common, Timings& timings) {
+  Result<OutputFile> out = open_output(job.output);
   if (!out) return out.status();
-  const Result<Model> model = open_model(options.model);
-  if (!model) return model.status();
-  Places places;
-  if (options.grid) {
-    places = grid_places(*options.grid, *model);
-  } else {
-    Result<std::vector<SurfacePlace>> read = read_places(options.places, *model);
-    if (!read) return read.status();
-    const std::size_t count = read->size();
-    places = {count, [list = *std::move(read)](std::size_t k) { return list[k]; }};
-  }
-  return write_rows(*model, places, options, *out);
+  const Result<Loaded> loaded = load(job, options.models.fit, With::surfaces, timings);
+  if (!loaded) return loaded.status();
+  const Result<Places> places = places_of(options, loaded->model);
+  if (!places) return places.status();
+  RowWriter rows(*out, options.format == "json" || (common.json && job.output.empty()), options.derivatives);
+  Status status = [&] {
+    const auto phase = timings.phase("evaluate");
+    return write_rows(*loaded, *places, options, rows, *out);
+  }();
+  if (!status.ok()) return status;
+  Json more = Json::object();
+  add_seconds(more, common, timings);
+  rows.end(more);
+  status = out->commit();
+  if (status.ok() && common.json && !job.output.empty()) status = report(job, common, *loaded, places->count, timings);
+  return status.ok() ? loaded->status() : status;
 }
 
 constexpr const char* footer =
@@ -228,39 +255,57 @@ constexpr const char* footer =
     "At a degenerate point (a pole) the normal is the limit; where there is none, it is 0,0,0 (null in JSON).\n"
     "JSON: {\"rows\": [{\"surface\", \"u\", \"v\", \"position\", \"du\", \"dv\", \"duu\", \"duv\", \"dvv\", "
     "\"normal\"}, ...]}\n"
+    "Several models give one table, or one each where the output is a folder or holds {name}. With --json, rows on\n"
+    "standard output are JSON; rows in a file are as --format says, and standard output tells of them.\n"
     "\nExamples:\n"
     "  tessera eval teapot.bpt --grid 5x5 -o points.csv\n"
     "  tessera eval teapot.bpt --params places.csv --derivs 2 --format json";
+
+/// --grid or --params.
+void add_places(CLI::App& command, Options& options) {
+  CLI::Option_group* const where = command.add_option_group("Where", "One of");
+  where->require_option(1);
+  where
+      ->add_option_function<std::string>(
+          "--grid", [&options](const std::string& text) { options.grid = parse_extent("--grid", text, 2, 65536); },
+          "N x M points on every surface, from border to border, 2 to 65536 each")
+      ->type_name("NxM");
+  where->add_option("--params", options.places, "At the places of this table")
+      ->check(fault_of_name)
+      ->type_name("FILE.csv");
+}
 
 }  // namespace
 
 void add_eval(CLI::App& app, Session& session) {
   CLI::App* const command = app.add_subcommand("eval", "Evaluate surfaces: positions, derivatives, normals");
   const auto options = std::make_shared<Options>();
-  add_model(*command, options->model);
-  CLI::Option_group* const where = command->add_option_group("Where", "One of");
-  where->require_option(1);
-  where
-      ->add_option_function<std::string>(
-          "--grid", [options](const std::string& text) { options->grid = parse_extent("--grid", text, 2, 65536); },
-          "N x M points on every surface, from border to border, 2 to 65536 each")
-      ->type_name("NxM");
-  where->add_option("--params", options->places, "At the places of this table")
-      ->check(fault_of_name)
-      ->type_name("FILE.csv");
-  command->add_option("--derivs", options->derivatives, "Derivatives up to this order")
-      ->check(CLI::Range(0, 2))
+  add_models(*command, options->models);
+  add_places(*command, *options);
+  command->add_option("--derivs", options->derivatives, "Derivatives up to this order, 0 to 2")
+      ->type_name("ORDER")
+      ->check(whole_number(0, 2))
       ->capture_default_str();
-  command->add_option("--format", options->format, "csv or json")
-      ->check(CLI::IsMember({"csv", "json"}))
+  command->add_option("--format", options->format, "Of the rows")
+      ->type_name("NAME")
+      ->check(one_of({"csv", "json"}))
       ->capture_default_str();
-  command->add_option("-o,--output", options->output, "Where to write; standard output if not given")
+  command
+      ->add_option("-o,--output", options->output,
+                   "Where to write, a file, a folder, or a name with {name} [standard output]")
       ->check(fault_of_name)
       ->type_name("FILE");
+  add_common(*command, session.common);
   command->footer(footer);
   command->callback([options, &session] {
-    refuse_overwriting("--output", options->output, {options->model.path, options->places});
-    session.command = [options] { return run_eval(*options); };
+    const std::string extension = "." + options->format;
+    const Plan plan = plan_jobs(options->models.files, options->output, {"--output", extension});
+    for (const Job& job : plan.jobs) refuse_overwriting("--output", job.output, {options->places});
+    session.command = [options, plan, &session] {
+      return run_jobs(plan, session.common, [&](const Job& job, Timings& timings) {
+        return run_eval(job, *options, session.common, timings);
+      });
+    };
   });
 }
 

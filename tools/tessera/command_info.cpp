@@ -1,122 +1,173 @@
-// tessera info: what a model holds.
+// tessera info: what models hold.
 
-#include <map>
 #include <memory>
 #include <sstream>
 
+#include "arguments.h"
 #include "commands.h"
-#include "console.h"
-#include "model_file.h"
+#include "facts.h"
+#include "joins.h"
+#include "loading.h"
 #include "tessera/isa.h"
 
 namespace tessera::cli {
 namespace {
 
 struct Options {
-  ModelFile model;
-  bool json = false;
+  ModelOptions models;
+  std::size_t most_joins = 20000;
 };
 
-struct Summary {
-  std::map<std::string_view, std::size_t> kinds;       // -> surfaces
-  std::map<std::pair<int, int>, std::size_t> degrees;  // (along u, along v) -> patches
-  std::size_t rational = 0, control_points = 0;
-  std::size_t collapsed_edges = 0, patches_with_collapsed_edges = 0;
+/// All that is known of one file.
+struct Findings {
+  const std::string& file;
+  const Loaded& loaded;
+  const PatchSet& set;
+  Facts facts;
+  std::optional<Joins> joins;  ///< nothing where they are left out
+  Isa isa;
 };
 
-Summary summarize(const Model& model, const PatchSet& set) {
-  Summary summary;
-  for (const ModelSurface& surface : model.surfaces) ++summary.kinds[kind_name(surface.surface)];
-  for (std::size_t k = 0; k < set.patch_count(); ++k) {
-    const BezierPatch& patch = set.patch(k);
-    ++summary.degrees[{patch.degree_u(), patch.degree_v()}];
-    summary.rational += patch.is_rational();
-    summary.control_points += patch.points().size();
-    const EdgeMask collapsed = patch.collapsed_edges();
-    for (const Edge edge : {Edge::u0, Edge::u1, Edge::v0, Edge::v1}) summary.collapsed_edges += collapsed.has(edge);
-    summary.patches_with_collapsed_edges += collapsed.any();
-  }
-  return summary;
+Json range_json(const Range& range) { return Json::array({range.least, range.largest}); }
+
+Json memory_json(const Facts& facts) {
+  return {{"model", facts.model_bytes}, {"patches", facts.patch_bytes}, {"blocks", facts.block_bytes}};
 }
 
-Json to_json(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
-
-Json as_json(const Options& options, const Model& model, const PatchSet& set, Isa used) {
-  const Summary summary = summarize(model, set);
+Json as_json(const Findings& found) {
+  const Facts& facts = found.facts;
   Json kinds = Json::object(), degrees = Json::array(), isas = Json::array();
-  for (const auto& [kind, count] : summary.kinds) kinds[std::string(kind)] = count;
-  for (const auto& [degree, count] : summary.degrees) {
+  for (const auto& [kind, count] : facts.kinds) kinds[std::string(kind)] = count;
+  for (const auto& [degree, count] : facts.degrees) {
     degrees.push_back({{"degree_u", degree.first}, {"degree_v", degree.second}, {"patches", count}});
   }
   for (const Isa isa : available_isas()) isas.push_back(std::string(name(isa)));
-  return {{"model", options.model.path},
-          {"name", model.name},
-          {"surfaces", model.surfaces.size()},
+  const auto bytes = file_bytes(found.file);
+  return {{"model", found.file},
+          {"file_bytes", bytes ? Json(*bytes) : Json()},
+          {"name", found.loaded.model.name},
+          {"surfaces", found.loaded.model.surfaces.size()},
           {"kinds", kinds},
-          {"patches", set.patch_count()},
+          {"trimmed_surfaces", facts.trimmed},
+          {"parameters",
+           {{"u", range_json(facts.u)}, {"v", range_json(facts.v)}, {"surfaces_on_unit_square", facts.on_unit_square}}},
+          {"patches", found.set.patch_count()},
           {"degrees", degrees},
-          {"rational_patches", summary.rational},
-          {"collapsed_edges", summary.collapsed_edges},
-          {"patches_with_collapsed_edges", summary.patches_with_collapsed_edges},
-          {"control_points", summary.control_points},
-          {"fit_error", fit_json(set)},
-          {"box", {{"lower", to_json(set.box().lower)}, {"upper", to_json(set.box().upper)}}},
-          {"size", set.box().diagonal()},
-          {"memory_bytes", set.memory_bytes()},
-          {"warnings", warnings_json(model)},
-          {"isa", {{"available", isas}, {"used", std::string(name(used))}}}};
+          {"rational_patches", facts.rational},
+          {"collapsed_edges", facts.collapsed_edges},
+          {"patches_with_collapsed_edges", facts.patches_with_collapsed_edges},
+          {"joins", found.joins ? joins_json(*found.joins) : Json()},
+          {"control_points", facts.control_points},
+          {"fit_error", fit_json(found.set)},
+          {"box", {{"lower", to_json(found.set.box().lower)}, {"upper", to_json(found.set.box().upper)}}},
+          {"size", found.set.box().diagonal()},
+          {"memory_bytes", memory_json(facts)},
+          {"warnings", warnings_json(found.loaded.model)},
+          {"isa", {{"available", isas}, {"used", std::string(name(found.isa))}}}};
 }
 
-std::string as_text(const Options& options, const Model& model, const PatchSet& set, Isa used) {
-  const Summary summary = summarize(model, set);
+std::string list_of_kinds(const Facts& facts) {
+  std::string text;
+  for (const auto& [kind, count] : facts.kinds)
+    text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + std::string(kind);
+  return text;
+}
+
+std::string list_of_degrees(const Facts& facts) {
+  std::string text;
+  for (const auto& [degree, count] : facts.degrees)
+    text += (text.empty() ? "" : ", ") + std::to_string(count) + " of " + std::to_string(degree.first) + " x " +
+            std::to_string(degree.second);
+  return text;
+}
+
+std::string parameters_text(const Facts& facts, std::size_t surfaces) {
+  const auto range = [](const Range& of) { return "[" + readable(of.least) + ", " + readable(of.largest) + "]"; };
+  return range(facts.u) + " x " + range(facts.v) +
+         (facts.on_unit_square == surfaces ? ""
+                                           : " in all; " + std::to_string(facts.on_unit_square) + " of " +
+                                                 std::to_string(surfaces) + " on [0, 1]^2");
+}
+
+std::string as_text(const Findings& found) {
+  const Facts& facts = found.facts;
   const auto point = [](const Vec3& v) {
     return "(" + readable(v.x) + ", " + readable(v.y) + ", " + readable(v.z) + ")";
   };
+  const std::size_t surfaces = found.loaded.model.surfaces.size();
+  const auto bytes = file_bytes(found.file);
   std::ostringstream text;
-  text << options.model.path << ": " << model.surfaces.size() << " surfaces, " << set.patch_count()
-       << " Bezier patches\n  kinds            ";
-  const char* between = "";
-  for (const auto& [kind, count] : summary.kinds) {
-    text << between << count << ' ' << kind;
-    between = ", ";
-  }
-  text << "\n  degrees          ";
-  between = "";
-  for (const auto& [degree, count] : summary.degrees) {
-    text << between << count << " of " << degree.first << " x " << degree.second;
-    between = ", ";
-  }
-  text << "\n  rational         " << summary.rational << "\n  collapsed edges  " << summary.collapsed_edges << " on "
-       << summary.patches_with_collapsed_edges << " patches\n  control points   " << summary.control_points
-       << "\n  bounding box     " << point(set.box().lower) << " to " << point(set.box().upper)
+  text << found.file << ": " << surfaces << " surfaces, " << found.set.patch_count() << " Bezier patches"
+       << (bytes ? ", read from " + readable_bytes(*bytes) : "") << "\n  kinds            " << list_of_kinds(facts)
+       << "\n  degrees          " << list_of_degrees(facts) << "\n  rational         " << facts.rational
+       << " of the patches"
+       << "\n  parameters       " << parameters_text(facts, surfaces);
+  if (facts.trimmed > 0) text << "\n  trims            " << trims_text(facts.trimmed);
+  text << "\n  collapsed edges  " << facts.collapsed_edges << " on " << facts.patches_with_collapsed_edges
+       << " patches\n"
+       << (found.joins ? joins_text(*found.joins) : "  joins            left out, as --joins 0 says\n")
+       << "  control points   " << facts.control_points << ", of the patches"
+       << "\n  bounding box     " << point(found.set.box().lower) << " to " << point(found.set.box().upper)
        << ", of the control points"
-       << "\n  memory           " << set.memory_bytes() << " bytes, packed\n  instruction set  " << name(used)
-       << ", of";
+       << "\n  memory           model " << readable_bytes(facts.model_bytes) << ", patches "
+       << readable_bytes(facts.patch_bytes) << ", blocks " << readable_bytes(facts.block_bytes)
+       << "\n  instruction set  " << name(found.isa) << ", of";
   for (const Isa isa : available_isas()) text << ' ' << name(isa);
-  text << '\n' << fit_line(set);
+  text << '\n' << fit_line(found.set);
   return std::move(text).str();
 }
 
-Status run_info(const Options& options) {
-  const Result<Model> model = open_model(options.model);
-  if (!model) return model.status();
-  const Result<PatchSet> set = make_patch_set(options.model, *model);
+Status run_info(const Job& job, const Options& options, const CommonOptions& common, Timings& timings) {
+  const Result<Loaded> loaded = load(job, options.models.fit, With::patches, timings);
+  if (!loaded) return loaded.status();
+  const Result<PatchSet> set = pack(*loaded, timings);
   if (!set) return set.status();
-  const Result<Isa> used = default_isa();
-  if (!used) return used.status();
-  if (options.json) return print_json(as_json(options, *model, *set, *used));
-  return print(as_text(options, *model, *set, *used));
+  const Result<Isa> isa = default_isa();
+  if (!isa) return isa.status();
+  Findings found{job.inputs[0], *loaded, *set, count_facts(loaded->model, *set), {}, *isa};
+  if (options.most_joins > 0) {
+    const auto phase = timings.phase("joins");
+    const Result<Joins> joins = find_joins(*set, options.most_joins);
+    if (!joins) return in_file(job.inputs[0], joins.status());
+    found.joins = *joins;
+  }
+  if (!common.json) return print(as_text(found));
+  Json object = as_json(found);
+  add_seconds(object, common, timings);
+  return print_json(object);
 }
+
+constexpr const char* footer =
+    "Joins: borders of two patches at the same place, and how they meet: C1 (one derivative across), G1 (one normal,\n"
+    "to 0.11 degrees), C0 (one border, to 1e-6 of the two patches' size; the largest angle between the normals is "
+    "told),\n"
+    "a gap (the ends agree within 1e-4 of the model's size, the borders do not). Open borders have no neighbour; what\n"
+    "meets in the middle of a border, or along trims, is not seen.\n"
+    "Memory: surfaces with their points, weights, knots and trims; patches; blocks packed for evaluation.\n"
+    "\nExamples:\n"
+    "  tessera info teapot.bpt\n"
+    "  tessera info 'models/*.json' --json --timings";
 
 }  // namespace
 
 void add_info(CLI::App& app, Session& session) {
-  CLI::App* const command = app.add_subcommand("info", "Say what a model holds");
+  CLI::App* const command = app.add_subcommand("info", "Say what models hold");
   const auto options = std::make_shared<Options>();
-  add_model(*command, options->model);
-  command->add_flag("--json", options->json, "Print one JSON object");
-  command->footer("Example:\n  tessera info teapot.bpt --json");
-  command->callback([options, &session] { session.command = [options] { return run_info(*options); }; });
+  add_models(*command, options->models);
+  command->add_option("--joins", options->most_joins, "Joins to be measured at the most; 0 leaves them out")
+      ->type_name("COUNT")
+      ->check(whole_number(0, 1'000'000'000))
+      ->capture_default_str();
+  add_common(*command, session.common);
+  command->footer(footer);
+  command->callback([options, &session] {
+    const Plan plan = plan_jobs(options->models.files, "", {"MODEL", "", false});
+    session.command = [options, plan, &session] {
+      return run_jobs(plan, session.common, [&](const Job& job, Timings& timings) {
+        return run_info(job, *options, session.common, timings);
+      });
+    };
+  });
 }
 
 }  // namespace tessera::cli

@@ -1,25 +1,38 @@
-// tessera raycast: a picture of surfaces, or the hits of given rays.
+// tessera raycast: pictures of surfaces, or the hits of given rays.
 
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "arguments.h"
 #include "commands.h"
-#include "console.h"
 #include "csv.h"
+#include "hits_table.h"
 #include "io/formats.h"
-#include "model_file.h"
+#include "loading.h"
+#include "progress.h"
 #include "render/camera.h"
+#include "render/caption.h"
 #include "render/hit_image.h"
+#include "terminal_picture.h"
 #include "tessera/ray_scene.h"
 
 namespace tessera::cli {
 namespace {
 
 struct Options {
-  ModelFile model;
-  std::string picture, rays, hits;
+  ModelOptions models;
+  std::string picture, rays, hits, colour = "auto";
+  bool terminal = false;
+  bool sized = false;  // --size was given
   render::Settings settings;
+};
+
+/// What a job works with. The scene refers to the set.
+struct Scene {
+  Loaded loaded;
+  PatchSet set;
+  RayScene rays;
 };
 
 /// Finer grids for smaller models: facets then are near the pixels' size, and a large model's scene still fits memory.
@@ -30,119 +43,134 @@ int scene_rate(std::size_t patches) {
   return rate;
 }
 
-Result<RayScene> make_scene(const PatchSet& set) {
+Result<Scene> make_scene(Loaded loaded, Timings& timings) {
+  Result<PatchSet> set = pack(loaded, timings);
+  if (!set) return set.status();
+  const auto phase = timings.phase("build");
   Progress progress("building the scene");
   RaySceneOptions options;
-  options.rate = scene_rate(set.patch_count());
-  return RayScene::make(set, options, progress.execution());
+  options.rate = scene_rate(set->patch_count());
+  Result<RayScene> rays = RayScene::make(*set, options, progress.execution());
+  if (!rays) return in_file(loaded.files[0], rays.status());
+  return Scene{std::move(loaded), *std::move(set), *std::move(rays)};
+}
+
+Result<render::Image> draw(const Scene& scene, const render::Settings& settings, Timings& timings) {
+  const auto phase = timings.phase("evaluate");
+  Progress progress("casting rays");
+  return render::render(scene.rays, scene.rays.box(), settings, progress.execution());
 }
 
 bool is_exr(const std::string& path) { return lower_extension(path) == ".exr"; }
 
-/// What is in the picture, and how long it took to cast.
-Status cast_picture(const Options& options, const Model& model, const RayScene& scene, OutputFile& out,
-                    double& seconds) {
-  const Stopwatch drawing;
-  const auto cast = [&](const auto& make, const auto& write) {
-    const auto image = [&] {
-      Progress progress("casting rays");
-      return make(progress.execution());
-    }();
-    if (!image) return in_file(options.picture, image.status());
-    seconds = drawing.seconds();
-    return write(*image);
-  };
-  const Box3 box = scene.box();
-  const render::Settings& settings = options.settings;
-  if (is_exr(options.picture))
-    return cast([&](const Execution& e) { return render::cast_hits(scene, box, model, settings, e); },
-                [&](const render::HitImage& image) { return render::write_exr(image, out); });
-  return cast([&](const Execution& e) { return render::render(scene, box, settings, e); },
-              [&](const render::Image& image) { return render::write_png(image, out); });
+/// The picture, with a caption where the model is trimmed.
+Status write_colours(const Job& job, const render::Settings& settings, const Scene& scene, const std::string& trims,
+                     OutputFile& out, Timings& timings) {
+  Result<render::Image> image = draw(scene, settings, timings);
+  if (!image) return in_file(job.output, image.status());
+  if (!trims.empty()) render::add_caption(*image, {trims, "trims not honoured", "trims!"});
+  const auto phase = timings.phase("write");
+  Status status =
+      render::write_png(*image, out, trims.empty() ? render::PngTexts{} : render::PngTexts{{"Warning", trims}});
+  return status.ok() ? out.commit() : status;
 }
 
-Status draw(const Options& options, const Model& model, const PatchSet& set, const RayScene& scene,
-            double scene_seconds, OutputFile& out) {
-  double draw_seconds = 0;
-  Status status = cast_picture(options, model, scene, out, draw_seconds);
-  if (status.ok()) status = out.commit();
-  if (!status.ok()) return status;
-  const render::Settings& settings = options.settings;
-  return print(options.picture + ": " + std::to_string(settings.width) + " x " + std::to_string(settings.height) +
-               ", " + std::to_string(set.patch_count()) + " patches; scene built in " +
-               readable_seconds(scene_seconds) + ", picture cast in " + readable_seconds(draw_seconds) + "\n" +
-               fit_line(set));
-}
-
-constexpr std::string_view hits_header = "ray,hit,t,surface,patch,u,v,x,y,z,nx,ny,nz\n";
-
-void write_hit(OutputFile& out, std::size_t ray, const Hit& hit) {
-  constexpr int digits = 17;
-  out.write_number(ray);
-  if (hit.kind != HitKind::hit) return out.write(",0,,,,,,,,,,,\n");
-  out.write(",1,");
-  out.write_number(hit.t, digits);
-  out.write(',');
-  out.write_number(hit.surface);
-  out.write(',');
-  out.write_number(hit.patch);
-  for (const double value :
-       {hit.u, hit.v, hit.position.x, hit.position.y, hit.position.z, hit.normal.x, hit.normal.y, hit.normal.z}) {
-    out.write(',');
-    out.write_number(value, digits);
-  }
-  out.write('\n');
-}
-
-Status trace(const Options& options, const Model& model, const RayScene& scene, std::span<const Ray> rays,
-             OutputFile& out) {
-  std::vector<Hit> hits(rays.size());
-  const Stopwatch tracing;
-  Status status = [&] {
+Status write_numbers(const Job& job, const render::Settings& settings, const Scene& scene, OutputFile& out,
+                     Timings& timings) {
+  const Result<render::HitImage> image = [&] {
+    const auto phase = timings.phase("evaluate");
     Progress progress("casting rays");
-    return scene.closest(rays, hits, progress.execution());
+    return render::cast_hits(scene.rays, scene.rays.box(), scene.loaded.model, settings, progress.execution());
   }();
-  if (!status.ok()) return status;
-  const double seconds = tracing.seconds();
-  out.write(hits_header);
-  for (std::size_t k = 0; k < hits.size() && !out.failed(); ++k) {
-    Hit& hit = hits[k];
-    if (hit.kind == HitKind::hit) {
-      const auto own = own_parameters(model.surfaces[hit.surface].surface, hit.u, hit.v);
-      hit.u = own[0];
-      hit.v = own[1];
-    }
-    write_hit(out, k, hit);
-  }
-  status = out.commit();
-  if (!status.ok()) return status;
-  std::size_t found = 0, unrefined = 0;
-  for (const Hit& hit : hits) {
-    found += hit.kind == HitKind::hit;
-    unrefined += hit.kind == HitKind::hit && hit.flags.unrefined;
-  }
-  return print(options.hits + ": " + std::to_string(hits.size()) + " rays, " + std::to_string(found) + " hits, " +
-               std::to_string(unrefined) + " of them on facets only; cast in " + readable_seconds(seconds) + "\n");
+  if (!image) return in_file(job.output, image.status());
+  const auto phase = timings.phase("write");
+  Status status = render::write_exr(*image, out);
+  return status.ok() ? out.commit() : status;
 }
 
-Status run_raycast(const Options& options) {
-  Result<OutputFile> out = open_output(options.rays.empty() ? options.picture : options.hits);
+Status draw_file(const Job& job, const Options& options, const CommonOptions& common, const Scene& scene,
+                 OutputFile& out, Timings& timings) {
+  const render::Settings& settings = options.settings;
+  const std::string trims = trims_text(scene.loaded.trimmed());
+  const Status written = is_exr(job.output) ? write_numbers(job, settings, scene, out, timings)
+                                            : write_colours(job, settings, scene, trims, out, timings);
+  if (!written.ok()) return written;
+  if (!common.json) {
+    return print(job.output + ": " + std::to_string(settings.width) + " x " + std::to_string(settings.height) + ", " +
+                 std::to_string(scene.set.patch_count()) + " patches\n" + fit_line(scene.set));
+  }
+  Json object = files_json(scene.loaded);
+  object["output"] = job.output;
+  object["width"] = settings.width;
+  object["height"] = settings.height;
+  object["caption"] = is_exr(job.output) ? "" : trims;
+  add_model_facts(object, scene.loaded, scene.set);
+  add_seconds(object, common, timings);
+  return print_json(object);
+}
+
+Status draw_characters(const Options& options, const Scene& scene, OutputFile& out, Timings& timings) {
+  render::Settings settings = options.settings;
+  if (!options.sized) {
+    const PixelSize size = picture_size(terminal_size());
+    settings.width = size.width;
+    settings.height = size.height;
+  }
+  const Result<render::Image> image = draw(scene, settings, timings);
+  if (!image) return in_file(scene.loaded.files[0], image.status());
+  const auto phase = timings.phase("write");
+  out.write(as_characters(*image, output_colours(options.colour)));
+  const std::string trims = trims_text(scene.loaded.trimmed());
+  out.write(scene.loaded.files[0] + (trims.empty() ? "" : ": " + trims) + "\n");
+  return out.commit();
+}
+
+Status trace(const Job& job, const CommonOptions& common, const Scene& scene, std::span<const Ray> rays,
+             OutputFile& out, Timings& timings) {
+  std::vector<Hit> hits(rays.size());
+  const Status traced = [&] {
+    const auto phase = timings.phase("evaluate");
+    Progress progress("casting rays");
+    return scene.rays.closest(rays, hits, progress.execution());
+  }();
+  if (!traced.ok()) return traced;
+  const HitCounts counts = use_own_parameters(scene.loaded.model, hits);
+  {
+    const auto phase = timings.phase("write");
+    write_hits(out, hits);
+    if (Status status = out.commit(); !status.ok()) return status;
+  }
+  if (!common.json) {
+    return print(job.output + ": " + std::to_string(counts.rays) + " rays, " + std::to_string(counts.hits) + " hits, " +
+                 std::to_string(counts.unrefined) + " of them on facets only\n");
+  }
+  Json object = files_json(scene.loaded);
+  object["output"] = job.output;
+  object["rays"] = counts.rays;
+  object["hits"] = counts.hits;
+  object["unrefined"] = counts.unrefined;
+  add_model_facts(object, scene.loaded, scene.set);
+  add_seconds(object, common, timings);
+  return print_json(object);
+}
+
+Status run_raycast(const Job& job, const Options& options, const CommonOptions& common, Timings& timings) {
+  Result<OutputFile> out = open_output(job.output);
   if (!out) return out.status();
-  const Result<Model> model = open_model(options.model);
-  if (!model) return model.status();
+  Result<Loaded> loaded = load(job, options.models.fit, With::patches, timings);
+  if (!loaded) return loaded.status();
   std::vector<Ray> rays;
   if (!options.rays.empty()) {
     Result<std::vector<Ray>> read = read_rays(options.rays);
     if (!read) return read.status();
     rays = *std::move(read);
   }
-  const Result<PatchSet> set = make_patch_set(options.model, *model);
-  if (!set) return set.status();
-  const Stopwatch building;
-  const Result<RayScene> scene = make_scene(*set);
-  if (!scene) return in_file(options.model.path, scene.status());
-  if (!options.rays.empty()) return trace(options, *model, *scene, rays, *out);
-  return draw(options, *model, *set, *scene, building.seconds(), *out);
+  const Result<Scene> scene = make_scene(*std::move(loaded), timings);
+  if (!scene) return scene.status();
+  const Status status = !options.rays.empty()      ? trace(job, common, *scene, rays, *out, timings)
+                        : !options.picture.empty() ? draw_file(job, options, common, *scene, *out, timings)
+                                                   : draw_characters(options, *scene, *out, timings);
+  return status.ok() ? scene->loaded.status() : status;
 }
 
 render::Camera parse_camera(const std::string& text) {
@@ -156,25 +184,37 @@ render::Camera parse_camera(const std::string& text) {
   return camera;
 }
 
+constexpr const char* picture_extension = ".png";
+
 std::string fault_of_picture(const std::string& path) {
+  if (is_folder(path)) return {};
   const std::string extension = lower_extension(path);
-  if (extension == ".png" || is_exr(path)) return {};
+  if (extension == picture_extension || is_exr(path)) return {};
   return path + ": unsupported format \"" + extension + "\": pictures are written as .png, .exr";
 }
 
 constexpr const char* footer =
-    "A picture: -o, with --size, --shade and --camera. The default camera fits the model; its up is the z axis.\n"
+    "A picture: -o, with --size, --shade and --camera. The default camera fits the model; its up is the z axis. "
+    "Several\n"
+    "models are one scene, or a picture each where the output is a folder or holds {name}. Trims are not honoured yet: "
+    "a\n"
+    "picture of a trimmed model says so at its lower border and in its metadata (Warning).\n"
     ".exr holds numbers, of one ray through the middle of each pixel: floats Z (distance from the eye), N.X N.Y N.Z,\n"
-    "UV.U UV.V (parameters of the surface), integers surface and patch; where nothing is met Z is inf, the integers "
+    "UV.U UV.V (parameters of the surface), integers surface and patch; where nothing is met Z is inf, the integers\n"
     "4294967295.\n"
+    "Without -o the picture is drawn in the terminal, a model after the other, two pixels a character: in 24-bit "
+    "colours\n"
+    "where COLORTERM promises them, in 256 where TERM does, else, with NO_COLOR and in a pipe in plain characters.\n"
     "Hits of given rays: --rays and --hits. Rays are a table with the header line ox,oy,oz,dx,dy,dz or\n"
-    "ox,oy,oz,dx,dy,dz,tnear,tfar: numbers of at most 1.844e18, the direction not zero, 0 <= tnear <= tfar, tfar may "
-    "be inf;\n"
-    "# begins a comment. Hits are the table ray,hit,t,surface,patch,u,v,x,y,z,nx,ny,nz, a row for each ray in the\n"
+    "ox,oy,oz,dx,dy,dz,tnear,tfar: numbers of at most 1.844e18, the direction not zero, 0 <= tnear <= tfar, tfar may\n"
+    "be inf; # begins a comment. Hits are the table ray,hit,t,surface,patch,u,v,x,y,z,nx,ny,nz, a row for each ray in "
+    "the\n"
     "order of the rays, counted from 0; a miss has hit = 0 and empty fields. 17 significant digits.\n"
     "\nExamples:\n"
+    "  tessera raycast teapot.bpt\n"
     "  tessera raycast teapot.bpt -o teapot.png --size 1280x720\n"
     "  tessera raycast teapot.bpt -o teapot.png --shade normals --camera=4,-8,5,0,0,1.5,40\n"
+    "  tessera raycast 'parts/*.step' -o 'pictures/{name}.png'\n"
     "  tessera raycast teapot.bpt --rays rays.csv --hits hits.csv";
 
 const std::map<std::string, render::Shade> shades{{"lambert", render::Shade::lambert},
@@ -182,56 +222,88 @@ const std::map<std::string, render::Shade> shades{{"lambert", render::Shade::lam
                                                   {"uv", render::Shade::uv},
                                                   {"patch", render::Shade::patch}};
 
-/// The options that make sense with a picture alone. Returns --shade.
-CLI::Option* add_picture_options(CLI::App& command, CLI::Option* picture, render::Settings& settings) {
-  const auto set_size = [&settings](const std::string& text) {
+/// The options that make sense with a picture alone.
+std::vector<CLI::Option*> add_picture_options(CLI::App& command, Options& options) {
+  const auto set_size = [&options](const std::string& text) {
     const Extent size = parse_extent("--size", text, 1, 16384);
-    settings.width = size.first;
-    settings.height = size.second;
+    options.settings.width = size.first;
+    options.settings.height = size.second;
+    options.sized = true;
   };
-  const auto set_shade = [&settings](const std::string& text) { settings.shade = shades.at(text); };
-  const auto set_camera = [&settings](const std::string& text) { settings.camera = parse_camera(text); };
-  command.add_option_function<std::string>("--size", set_size, "Pixels of the picture, 1 to 16384 each [1280x800]")
-      ->type_name("WxH")
-      ->needs(picture);
-  CLI::Option* const shade =
-      command.add_option_function<std::string>("--shade", set_shade, "How surfaces are coloured [lambert]")
-          ->check(CLI::IsMember({"lambert", "normals", "uv", "patch"}))
-          ->needs(picture);
-  command
-      .add_option_function<std::string>("--camera", set_camera,
-                                        "Eye, target, field of view in degrees over the picture's shorter side")
-      ->type_name("ex,ey,ez,tx,ty,tz,fovdeg")
-      ->needs(picture);
-  return shade;
+  const auto set_shade = [&options](const std::string& text) { options.settings.shade = shades.at(text); };
+  const auto set_camera = [&options](const std::string& text) { options.settings.camera = parse_camera(text); };
+  return {command
+              .add_option_function<std::string>("--size", set_size,
+                                                "Pixels of the picture, 1 to 16384 each [1280x800; the terminal's]")
+              ->type_name("WxH"),
+          command.add_option_function<std::string>("--shade", set_shade, "How surfaces are coloured [lambert]")
+              ->type_name("NAME")
+              ->check(one_of({"lambert", "normals", "uv", "patch"})),
+          command
+              .add_option_function<std::string>("--camera", set_camera,
+                                                "Eye, target, field of view in degrees over the picture's shorter side "
+                                                "[a view from above that fits the model]")
+              ->type_name("ex,ey,ez,tx,ty,tz,fovdeg"),
+          command.add_flag("--terminal", options.terminal, "Draw on standard output, whatever that is"),
+          command.add_option("--colour,--color", options.colour, "Colours in the terminal, \"always\" in a pipe too")
+              ->type_name("WHEN")
+              ->check(one_of({"auto", "always", "never"}))
+              ->capture_default_str()};
+}
+
+/// --rays and --hits, which belong together and exclude pictures.
+void add_ray_options(CLI::App& command, Options& options, const std::vector<CLI::Option*>& of_pictures) {
+  CLI::Option* const rays = command.add_option("--rays", options.rays, "The table of rays");
+  rays->check(fault_of_name)->type_name("FILE.csv");
+  CLI::Option* const hits =
+      command.add_option("--hits", options.hits, "The table of hits to be written, or a folder, or a name with {name}");
+  hits->check(fault_of_name)->type_name("FILE.csv")->needs(rays);
+  rays->needs(hits);
+  for (CLI::Option* const picture : of_pictures) rays->excludes(picture);
+}
+
+Plan plan_raycast(const Options& options, const CommonOptions& common) {
+  if (!options.rays.empty()) {
+    Plan plan = plan_jobs(options.models.files, options.hits, {"--hits", ".csv"});
+    for (const Job& job : plan.jobs) refuse_overwriting("--hits", job.output, {options.rays});
+    return plan;
+  }
+  const bool in_terminal = options.picture.empty();
+  if (in_terminal && (common.json || (!options.terminal && !output_is_terminal()))) {
+    throw CLI::ValidationError(
+        "raycast", "expected -o FILE, or --rays FILE.csv and --hits FILE.csv" +
+                       std::string(common.json ? "" : ", or --terminal, as standard output is no terminal"));
+  }
+  return plan_jobs(options.models.files, options.picture, {"--output", picture_extension, false});
 }
 
 }  // namespace
 
 void add_raycast(CLI::App& app, Session& session) {
-  CLI::App* const command = app.add_subcommand("raycast", "Draw a picture by rays, or find the hits of given rays");
+  CLI::App* const command = app.add_subcommand("raycast", "Draw pictures by rays, or find the hits of given rays");
   const auto options = std::make_shared<Options>();
-  add_model(*command, options->model);
+  add_models(*command, options->models);
   CLI::Option* const picture =
-      command->add_option("-o,--output", options->picture, "The picture to be written (.png, .exr)");
-  picture->check(fault_of_picture)->type_name("PICTURE");
-  const CLI::Option* const shade = add_picture_options(*command, picture, options->settings);
-  CLI::Option* const rays = command->add_option("--rays", options->rays, "The table of rays");
-  rays->check(fault_of_name)->type_name("FILE.csv");
-  CLI::Option* const hits = command->add_option("--hits", options->hits, "The table of hits to be written");
-  hits->check(fault_of_name)->type_name("OUT.csv")->needs(rays);
-  rays->needs(hits)->excludes(picture);
+      command->add_option("-o,--output", options->picture,
+                          "The picture to be written (.png, .exr), or a folder, or a name with {name} [the terminal]");
+  picture->check(fault_of_name)->check(fault_of_picture)->type_name("FILE");
+  std::vector<CLI::Option*> of_pictures = add_picture_options(*command, *options);
+  for (CLI::Option* const option : of_pictures) {
+    if (option->check_name("--terminal") || option->check_name("--colour")) option->excludes(picture);
+  }
+  of_pictures.push_back(picture);
+  add_ray_options(*command, *options, of_pictures);
+  add_common(*command, session.common);
   command->footer(footer);
-  command->callback([options, shade, &session] {
-    if (options->picture.empty() && options->rays.empty()) {
-      throw CLI::ValidationError("raycast", "expected -o PICTURE, or --rays FILE.csv and --hits OUT.csv");
-    }
-    if (shade->count() > 0 && is_exr(options->picture)) {
+  command->callback([options, shade = of_pictures[1], &session] {
+    if (shade->count() > 0 && is_exr(options->picture))
       throw CLI::ValidationError("--shade", "pictures of numbers (.exr) have no shade");
-    }
-    refuse_overwriting("--output", options->picture, {options->model.path});
-    refuse_overwriting("--hits", options->hits, {options->model.path, options->rays});
-    session.command = [options] { return run_raycast(*options); };
+    const Plan plan = plan_raycast(*options, session.common);
+    session.command = [options, plan, &session] {
+      return run_jobs(plan, session.common, [&](const Job& job, Timings& timings) {
+        return run_raycast(job, *options, session.common, timings);
+      });
+    };
   });
 }
 

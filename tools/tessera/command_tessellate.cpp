@@ -4,23 +4,18 @@
 
 #include "arguments.h"
 #include "commands.h"
-#include "console.h"
 #include "io/formats.h"
-#include "model_file.h"
+#include "loading.h"
+#include "progress.h"
 #include "tessera/tessellate.h"
 
 namespace tessera::cli {
 namespace {
 
 struct Options {
-  ModelFile model;
+  ModelOptions models;
   std::string output;
   Extent grid;
-  bool json = false;
-};
-
-struct Times {
-  double read = 0, tessellate = 0, write = 0;
 };
 
 Result<Mesh> tessellate(const Options& options, const Model& model, const PatchSet& set) {
@@ -38,70 +33,87 @@ Result<Mesh> tessellate(const Options& options, const Model& model, const PatchS
   return mesh;
 }
 
-Status report(const Options& options, const Model& model, const PatchSet& set, const Mesh& mesh, const Times& times) {
-  if (options.json) {
-    return print_json(
-        Json{{"output", options.output},
-             {"vertices", mesh.vertex_count()},
-             {"triangles", mesh.triangle_count()},
-             {"rate_u", options.grid.first},
-             {"rate_v", options.grid.second},
-             {"fit_error", fit_json(set)},
-             {"warnings", warnings_json(model)},
-             {"seconds", {{"read", times.read}, {"tessellate", times.tessellate}, {"write", times.write}}}});
+Status report(const Job& job, const Options& options, const CommonOptions& common, const Loaded& loaded,
+              const PatchSet& set, const Mesh& mesh, const Timings& timings) {
+  if (!common.json) {
+    return print(job.output + ": " + std::to_string(mesh.vertex_count()) + " vertices, " +
+                 std::to_string(mesh.triangle_count()) + " triangles\n" + fit_line(set));
   }
-  return print(options.output + ": " + std::to_string(mesh.vertex_count()) + " vertices, " +
-               std::to_string(mesh.triangle_count()) + " triangles; read in " + readable_seconds(times.read) +
-               ", tessellated in " + readable_seconds(times.tessellate) + ", written in " +
-               readable_seconds(times.write) + "\n" + fit_line(set));
+  Json object = files_json(loaded);
+  object["output"] = job.output;
+  object["vertices"] = mesh.vertex_count();
+  object["triangles"] = mesh.triangle_count();
+  object["rate_u"] = options.grid.first;
+  object["rate_v"] = options.grid.second;
+  add_model_facts(object, loaded, set);
+  add_seconds(object, common, timings);
+  return print_json(object);
 }
 
-Status run_tessellate(const Options& options) {
-  Result<OutputFile> out = open_output(options.output);
+Status run_tessellate(const Job& job, const Options& options, const CommonOptions& common, Timings& timings) {
+  Result<OutputFile> out = open_output(job.output);
   if (!out) return out.status();
-  Times times;
-  const Stopwatch reading;
-  const Result<Model> model = open_model(options.model);
-  if (!model) return model.status();
-  const Result<PatchSet> set = make_patch_set(options.model, *model);
+  const Result<Loaded> loaded = load(job, options.models.fit, With::patches, timings);
+  if (!loaded) return loaded.status();
+  const Result<PatchSet> set = pack(*loaded, timings);
   if (!set) return set.status();
-  times.read = reading.seconds();
-  const Stopwatch tessellating;
-  const Result<Mesh> mesh = tessellate(options, *model, *set);
-  if (!mesh) return in_file(options.model.path, mesh.status());
-  times.tessellate = tessellating.seconds();
-  const Stopwatch writing;
-  Status status = write_mesh(*mesh, options.output, *out);
-  if (status.ok()) status = out->commit();
-  if (!status.ok()) return status;
-  times.write = writing.seconds();
-  return report(options, *model, *set, *mesh, times);
+  const Result<Mesh> mesh = [&] {
+    const auto phase = timings.phase("evaluate");
+    return tessellate(options, loaded->model, *set);
+  }();
+  if (!mesh) return in_file(job.inputs[0], mesh.status());
+  {
+    const auto phase = timings.phase("write");
+    Status status = write_mesh(*mesh, job.output, *out);
+    if (status.ok()) status = out->commit();
+    if (!status.ok()) return status;
+  }
+  const Status said = report(job, options, common, *loaded, *set, *mesh, timings);
+  return said.ok() ? loaded->status() : said;
 }
+
+constexpr const char* extension_in_folders = ".ply";
+
+std::string fault_of_output(const std::string& path) {
+  if (path.empty()) return fault_of_name(path);
+  return is_folder(path) ? "" : check_mesh_format(path).message();
+}
+
+constexpr const char* footer =
+    "Positions, normals and parameters are written (.stl: triangles alone), a part for each surface in .obj, .glb and\n"
+    ".gltf; neighbours share their borders bit for bit. Several models become\n"
+    "one mesh, or one each where the output is a folder (then as .ply) or holds {name}.\n"
+    "\nExamples:\n"
+    "  tessera tessellate teapot.bpt -o teapot.ply --grid 16x16\n"
+    "  tessera tessellate 'parts/*.json' -o 'meshes/{name}.obj' --grid 8x8";
 
 }  // namespace
 
 void add_tessellate(CLI::App& app, Session& session) {
-  CLI::App* const command = app.add_subcommand("tessellate", "Turn surfaces into a mesh");
+  CLI::App* const command = app.add_subcommand("tessellate", "Turn surfaces into meshes");
   const auto options = std::make_shared<Options>();
-  add_model(*command, options->model);
-  command->add_option("-o,--output", options->output, "The mesh to be written (.obj, .ply, .stl, .glb, .gltf)")
+  add_models(*command, options->models);
+  command
+      ->add_option("-o,--output", options->output,
+                   "The mesh to be written (.obj, .ply, .stl, .glb, .gltf), or a folder, or a name with {name}")
       ->required()
-      ->type_name("MESH")
-      ->check([](const std::string& path) { return check_mesh_format(path).message(); });
+      ->type_name("FILE")
+      ->check(fault_of_output);
   command
       ->add_option_function<std::string>(
           "--grid", [options](const std::string& text) { options->grid = parse_extent("--grid", text, 1, 4096); },
           "Segments of every patch, along u and along v, 1 to 4096 each")
       ->required()
       ->type_name("NxM");
-  command->add_flag("--json", options->json, "Print one JSON object");
-  command->footer(
-      "Positions, normals and parameters are written (.stl: triangles alone), a part for each surface in .obj, .glb\n"
-      "and .gltf; neighbours share their borders bit for bit.\n"
-      "\nExample:\n  tessera tessellate teapot.bpt -o teapot.ply --grid 16x16");
+  add_common(*command, session.common);
+  command->footer(footer);
   command->callback([options, &session] {
-    refuse_overwriting("--output", options->output, {options->model.path});
-    session.command = [options] { return run_tessellate(*options); };
+    const Plan plan = plan_jobs(options->models.files, options->output, {"--output", extension_in_folders});
+    session.command = [options, plan, &session] {
+      return run_jobs(plan, session.common, [&](const Job& job, Timings& timings) {
+        return run_tessellate(job, *options, session.common, timings);
+      });
+    };
   });
 }
 

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 
+#include "common_options.h"
 #include "tessera/status.h"
 
 namespace tessera::cli {
@@ -11,6 +12,7 @@ namespace tessera::cli {
 /// What the command line asks for.
 struct Session {
   std::function<Status()> command;
+  CommonOptions common;
 };
 
 void add_info(CLI::App& app, Session& session);
@@ -19,5 +21,7 @@ void add_tessellate(CLI::App& app, Session& session);
 void add_raycast(CLI::App& app, Session& session);
 void add_convert(CLI::App& app, Session& session);
 void add_check(CLI::App& app, Session& session);
+void add_completion(CLI::App& app, Session& session);
+void add_man(CLI::App& app, Session& session);
 
 }  // namespace tessera::cli

@@ -1,7 +1,5 @@
 #include "console.h"
 
-#include <unistd.h>
-
 #include <csignal>
 #include <cstdio>
 
@@ -29,16 +27,25 @@ Result<OutputFile> open_output(const std::string& path) {
   return OutputFile::create(path, &interrupt_flag);
 }
 
-Status print(std::string_view text) {
-  OutputFile out = OutputFile::standard_output(&interrupt_flag);
-  out.write(text);
-  return out.commit();
+Status print(std::string_view text) { return write_text(text, {}); }
+
+Status write_text(std::string_view text, const std::string& path) {
+  Result<OutputFile> out = open_output(path);
+  if (!out) return out.status();
+  out->write(text);
+  return out->commit();
 }
 
 Status print_json(const Json& object) {
   // File names need not be UTF-8, JSON must.
-  return print(object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  return print(object.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
+
+void complain(const std::string& message) { std::fprintf(stderr, "tessera: %s\n", message.c_str()); }
+void warn(const std::string& message) { complain("warning: " + message); }
+
+Status already_said(StatusCode code) { return Status(code, ""); }
+bool is_already_said(const Status& status) { return !status.ok() && status.message().empty(); }
 
 Status in_file(const std::filesystem::path& file, const Status& status) {
   return Status(status.code(), file.string() + ": " + status.message(), status.index());
@@ -62,26 +69,6 @@ void end_by_signal() {
   if (caught_signal == 0) return;
   std::signal(caught_signal, SIG_DFL);
   std::raise(caught_signal);
-}
-
-Progress::Progress(std::string_view work) : work_(work), terminal_(isatty(STDERR_FILENO) == 1) {}
-
-Progress::~Progress() {
-  if (percent_ >= 0) std::fputs("\r\x1b[K", stderr);
-}
-
-Execution Progress::execution() {
-  Execution execution;
-  execution.cancel = &interrupt_flag;
-  if (terminal_) execution.progress = [this](double share) { tell(share); };
-  return execution;
-}
-
-void Progress::tell(double share) {
-  const int percent = static_cast<int>(100 * share);
-  if (!terminal_ || percent == percent_) return;
-  percent_ = percent;
-  std::fprintf(stderr, "\r%s %d%%\x1b[K", work_.c_str(), percent);
 }
 
 std::string readable(double value, int digits) {

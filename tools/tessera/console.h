@@ -1,5 +1,5 @@
 #pragma once
-// What the commands say and hear: standard output, progress, interruption, clocks.
+// What the commands say and hear: standard output and error, interruption, clocks.
 
 #include <atomic>
 #include <chrono>
@@ -11,6 +11,7 @@
 #include "io/output_file.h"
 #include "tessera/execution.h"
 #include "tessera/status.h"
+#include "tessera/vec.h"
 
 namespace tessera::cli {
 
@@ -21,8 +22,17 @@ using Json = nlohmann::ordered_json;
 Result<OutputFile> open_output(const std::string& path);
 /// Writes to standard output. Errors: io_error, cancelled.
 Status print(std::string_view text);
-/// One JSON object and the end of the line.
+/// Writes to a file, or to standard output if `path` is empty. Errors: io_error, cancelled.
+Status write_text(std::string_view text, const std::string& path);
+/// One JSON object on a line of its own, so that several files give as many lines.
 Status print_json(const Json& object);
+
+/// "tessera: ..." and the end of the line, on standard error.
+void complain(const std::string& message);
+void warn(const std::string& message);
+/// An error of which all is said already.
+Status already_said(StatusCode code);
+bool is_already_said(const Status& status);
 
 /// `status` with the file's name before its message, for errors that do not know the file.
 Status in_file(const std::filesystem::path& file, const Status& status);
@@ -34,24 +44,6 @@ const std::atomic<bool>& interrupted();
 /// Ends the process by the signal that was caught, as its caller expects; returns if there was none.
 void end_by_signal();
 
-/// Tells on standard error how far the work is, if that is a terminal; the line is removed at the end.
-class Progress {
- public:
-  explicit Progress(std::string_view work);
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
-  ~Progress();
-
-  /// Options for a library call: its progress comes here, and an interrupt cancels it.
-  Execution execution();
-  void tell(double share);
-
- private:
-  std::string work_;
-  bool terminal_;
-  int percent_ = -1;
-};
-
 class Stopwatch {
  public:
   double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
@@ -62,6 +54,8 @@ class Stopwatch {
 
 /// A number for people, with so many significant digits.
 std::string readable(double value, int digits = 6);
+/// [x, y, z].
+inline Json to_json(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
 /// "0.0123 s".
 inline std::string readable_seconds(double seconds) { return readable(seconds, 3) + " s"; }
 

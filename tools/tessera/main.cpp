@@ -7,78 +7,71 @@
 #include "commands.h"
 #include "console.h"
 #include "tessera/isa.h"
+#include "usage.h"
 
+namespace tessera::cli {
 namespace {
 
 constexpr int success = 0, bad_input = 1, bad_command_line = 2;
 
-void complain(const std::string& message) { std::fprintf(stderr, "tessera: %s\n", message.c_str()); }
+void add_commands(CLI::App& app, Session& session) {
+  add_info(app, session);
+  add_eval(app, session);
+  add_tessellate(app, session);
+  add_raycast(app, session);
+  add_convert(app, session);
+  add_check(app, session);
+  add_completion(app, session);
+  add_man(app, session);
+}
 
-void describe(CLI::App& app) {
-  app.set_version_flag("--version", "tessera " TESSERA_VERSION);
-  app.require_subcommand(0, 1);  // none is seen after parsing, so that a wrong word is named first
-  app.failure_message([](const CLI::App*, const CLI::Error& error) {
-    return std::string("tessera: ") + error.what() + "\nTry tessera --help, or --help after a command.\n";
-  });
-  app.footer(
-      "Models are read as .bpt (Bezier patches; # begins a comment), .bv (BezierView), .g2 (GoTools), .json (surfaces\n"
-      "of every kind; tools/models/FORMAT.md tells the format), .obj (free-form surfaces), .rib (RenderMan), and, where\n"
-      "OpenCASCADE was there at the build, .step and .iges; what of them is not read is said as a warning.\n"
-      "Meshes are written as .obj, .ply, .stl, .glb and .gltf (glTF 2.0) and read as .obj, .ply and .stl; surfaces are\n"
-      "written as .obj (free-form) and .bpt; pictures as .png, and as .exr (numbers: depth, normals, parameters).\n"
-      "Surfaces, patches and rays are counted from 0.\n"
-      "TESSERA_ISA=sse2|avx2|avx512 in the environment forces an instruction set.\n"
-      "Exit status: 0 done, 1 the input is bad or the output cannot be written, 2 the command line is bad.\n"
-      "Outputs appear whole or not at all.\n"
-      "\nExample:\n  tessera raycast teapot.bpt -o teapot.png");
+/// Help and version go to standard output, faults to standard error.
+int end_of_parsing(const CLI::App& app, const CLI::ParseError& error) {
+  if (error.get_exit_code() != 0) {
+    complain(usage_fault(app, error));
+    return bad_command_line;
+  }
+  std::ostringstream output, errors;
+  (void)app.exit(error, output, errors);
+  const Status printed = print(output.str());
+  if (printed.ok()) return success;
+  complain(printed.message());
+  return bad_input;
 }
 
 int run(int argc, char** argv) {
   CLI::App app("Tessera: parametric surfaces to points, meshes and ray hits", "tessera");
-  tessera::cli::Session session;
+  Session session;
   describe(app);
-  tessera::cli::add_info(app, session);
-  tessera::cli::add_eval(app, session);
-  tessera::cli::add_tessellate(app, session);
-  tessera::cli::add_raycast(app, session);
-  tessera::cli::add_convert(app, session);
-  tessera::cli::add_check(app, session);
+  add_commands(app, session);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    std::ostringstream output, errors;
-    const int status = app.exit(error, output, errors);
-    const tessera::Status printed = tessera::cli::print(output.str());
-    if (!printed.ok()) {
-      complain(printed.message());
-      return bad_input;
-    }
-    std::fputs(errors.str().c_str(), stderr);
-    return status == 0 ? success : bad_command_line;
+    return end_of_parsing(app, error);
   }
   if (!session.command) {
-    complain("expected a command (info, eval, tessellate, raycast, convert, check), found none\nTry tessera --help.");
+    complain(missing_command(app));
     return bad_command_line;
   }
-  const tessera::Result<tessera::Isa> isa = tessera::default_isa();
-  if (!isa) {
+  if (const Result<Isa> isa = default_isa(); !isa) {
     complain(isa.status().message());
     return bad_command_line;
   }
-  tessera::cli::catch_signals();
-  const tessera::Status status = session.command();
-  if (!status.ok() && status.code() != tessera::StatusCode::cancelled) complain(status.message());
-  tessera::cli::end_by_signal();
+  catch_signals();
+  const Status status = with_threads(session.common.threads, session.command);
+  if (!status.ok() && status.code() != StatusCode::cancelled && !is_already_said(status)) complain(status.message());
+  end_by_signal();
   return status.ok() ? success : bad_input;
 }
 
 }  // namespace
+}  // namespace tessera::cli
 
 int main(int argc, char** argv) {
   try {
-    return run(argc, argv);
+    return tessera::cli::run(argc, argv);
   } catch (const std::exception& error) {
-    complain(error.what());
-    return bad_input;
+    tessera::cli::complain(error.what());
+    return tessera::cli::bad_input;
   }
 }

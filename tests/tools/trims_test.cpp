@@ -1,0 +1,106 @@
+// Trims are not honoured yet: whoever draws a trimmed model is told, and so is who sees the picture.
+
+#include <png.h>
+
+#include "tools/tool_test.h"
+
+namespace tessera::test {
+namespace {
+
+using nlohmann::json;
+
+class Trims : public ToolTest {
+ protected:
+  Trims() {
+    const std::string square =
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvp 0.2 0.2\nvp 0.8 0.2\nvp 0.8 0.8\nvp 0.2 0.2\n"
+        "cstype bezier\ndeg 1\ncurv2 5 6 7 8\nparm u 0 1 2 3\nend\n"
+        "cstype bezier\ndeg 1 1\nsurf 0 1 0 1 1 2 3 4\nparm u 0 1\nparm v 0 1\n";
+    folder_.file("plain.obj", square + "end\n");
+    folder_.file("trimmed.obj", square + "trim 0 3 1\nend\n");
+  }
+
+  struct Picture {
+    unsigned width = 0, height = 0;
+    std::vector<unsigned char> rgb;
+  };
+  Picture picture(const std::string& name) const {
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    Picture out;
+    if (png_image_begin_read_from_file(&image, (folder_ / name).c_str()) == 0) throw std::runtime_error(image.message);
+    image.format = PNG_FORMAT_RGB;
+    out.width = image.width;
+    out.height = image.height;
+    out.rgb.resize(PNG_IMAGE_SIZE(image));
+    png_image_finish_read(&image, nullptr, out.rgb.data(), 0, nullptr);
+    return out;
+  }
+};
+
+TEST_F(Trims, AreSaidOnceByEveryCommand) {
+  for (const std::vector<std::string>& command :
+       {Names{"info", "trimmed.obj"}, Names{"eval", "trimmed.obj", "--grid", "2x2"},
+        Names{"tessellate", "trimmed.obj", "-o", "a.ply", "--grid", "2x2"},
+        Names{"raycast", "trimmed.obj", "-o", "a.png", "--size", "16x16"},
+        Names{"raycast", "trimmed.obj", "--terminal", "--size", "16x16"}}) {
+    const ToolRun result = run(command);
+    EXPECT_EQ(result.status, 0) << result.errors;
+    EXPECT_EQ(result.errors.rfind("tessera: warning: trimmed.obj", 0), 0u) << result.errors;
+    const std::size_t said = result.errors.find("trims not honoured yet");
+    ASSERT_NE(said, std::string::npos) << result.errors;
+    EXPECT_EQ(result.errors.find("honoured", said + 12), std::string::npos) << result.errors;
+  }
+  output_of({"info", "plain.obj"});
+}
+
+TEST_F(Trims, AreInTheFacts) {
+  const json facts = json::parse(run({"info", "trimmed.obj", "--json"}).output);
+  EXPECT_EQ(facts["trimmed_surfaces"], 1);
+  EXPECT_EQ(json::parse(output_of({"info", "plain.obj", "--json"}))["trimmed_surfaces"], 0);
+  EXPECT_NE(run({"info", "trimmed.obj"}).output.find("1 surface is trimmed: trims not honoured yet"),
+            std::string::npos);
+}
+
+TEST_F(Trims, ThePictureSaysSo) {
+  const Names options{"--size", "400x300", "--json"};
+  Names plain{"raycast", "plain.obj", "-o", "plain.png"}, trimmed{"raycast", "trimmed.obj", "-o", "trimmed.png"};
+  plain.insert(plain.end(), options.begin(), options.end());
+  trimmed.insert(trimmed.end(), options.begin(), options.end());
+  EXPECT_EQ(json::parse(output_of(plain))["caption"], "");
+  const json report = json::parse(run(trimmed).output);
+  EXPECT_EQ(report["caption"], "1 surface is trimmed: trims not honoured yet");
+  EXPECT_EQ(report["trimmed_surfaces"], 1);
+  // In the metadata: a tEXt chunk with the keyword Warning (PNG specification, 11.3.4.3).
+  EXPECT_NE(content_of(folder_ / "trimmed.png").find(std::string("tEXtWarning\0", 12) + "1 surface is trimmed"),
+            std::string::npos);
+  EXPECT_EQ(content_of(folder_ / "plain.png").find("tEXt"), std::string::npos);
+  // In the picture: all but the strip at the bottom is the same, and the strip is dark with bright letters.
+  const Picture a = picture("plain.png"), b = picture("trimmed.png");
+  ASSERT_EQ(a.rgb.size(), b.rgb.size());
+  std::size_t first = 0;
+  while (first < a.rgb.size() && a.rgb[first] == b.rgb[first]) ++first;
+  const std::size_t row = 3 * a.width;
+  ASSERT_LT(first, a.rgb.size());
+  EXPECT_EQ(first / row, a.height - 9);
+  std::size_t bright = 0;
+  for (std::size_t k = (a.height - 9) * row; k < b.rgb.size(); k += 3) bright += b.rgb[k] > 200;
+  EXPECT_GT(bright, 200u);  // 40 letters of about 12 dots
+  EXPECT_LT(bright, 9u * a.width / 2);
+}
+
+TEST_F(Trims, SmallPicturesSayItShorter) {
+  for (const char* const size : {"150x40", "50x40", "20x12", "16x9", "9x5", "1x1"}) {
+    const ToolRun result = run({"raycast", "trimmed.obj", "-o", "a.png", "--size", size});
+    EXPECT_EQ(result.status, 0) << result.errors;
+  }
+}
+
+TEST_F(Trims, TheTerminalSaysSo) {
+  EXPECT_NE(run({"raycast", "trimmed.obj", "--terminal", "--size", "16x16"})
+                .output.find("\ntrimmed.obj: 1 surface is trimmed: trims not honoured yet\n"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace tessera::test

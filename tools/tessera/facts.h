@@ -1,0 +1,42 @@
+#pragma once
+// What a model holds, counted.
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "tessera/model.h"
+#include "tessera/patch_set.h"
+
+namespace tessera::cli {
+
+/// The least and the largest of several values.
+struct Range {
+  double least = 0, largest = 0;
+};
+
+struct Facts {
+  std::map<std::string_view, std::size_t> kinds;       ///< -> surfaces
+  std::map<std::pair<int, int>, std::size_t> degrees;  ///< (along u, along v) -> patches
+  std::size_t rational = 0, control_points = 0;        ///< of patches
+  std::size_t collapsed_edges = 0, patches_with_collapsed_edges = 0;
+  std::size_t trimmed = 0;  ///< surfaces
+  Range u, v;               ///< the surfaces' own parameters
+  std::size_t on_unit_square = 0;
+  std::size_t model_bytes = 0, patch_bytes = 0, block_bytes = 0;
+};
+
+/// Sizes in memory: of the surfaces with their points, weights, knots and trims, without what a callable holds; of the
+/// patches; of their packed blocks with the tables that belong to them.
+Facts count_facts(const Model& model, const PatchSet& set);
+
+/// Nothing for what is no regular file.
+std::optional<std::uintmax_t> file_bytes(const std::string& path);
+
+/// "12.3 MB", with the units of powers of 1000.
+std::string readable_bytes(std::uintmax_t bytes);
+
+}  // namespace tessera::cli

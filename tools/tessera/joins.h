@@ -1,0 +1,38 @@
+#pragma once
+// Which patches meet at which borders, and how smoothly.
+
+#include <cstddef>
+
+#include "console.h"
+#include "tessera/join.h"
+#include "tessera/patch_set.h"
+
+namespace tessera::cli {
+
+/// What info takes for zero: files hold six digits often, and designers call a degree's tenth smooth.
+inline constexpr JoinTolerances join_tolerances{.position = 1e-6, .angle = 2e-3, .derivative = 1e-3};
+
+/// Joins by their continuity; maxima are of those that were measured.
+struct JoinCounts {
+  std::size_t joins = 0, measured = 0;
+  std::size_t c1 = 0, g1 = 0, c0 = 0, gaps = 0;  ///< gaps: the borders have the same ends, but differ between them
+  double largest_angle = 0;                      ///< radians, where there is no gap
+  double largest_gap = 0;                        ///< in the model's unit
+};
+
+struct Joins {
+  JoinCounts between_surfaces, within_surfaces;
+  std::size_t open_borders = 0;     ///< of one patch alone, those not collapsed to a point
+  std::size_t crowded_borders = 0;  ///< where three patches or more meet
+};
+
+/// Borders are neighbours if their ends lie within 1e-4 of the model's size, and their middles within a twentieth of
+/// their length. At most `most` joins are measured, those between surfaces first: what is left is joins - measured. On
+/// all threads, the same figures for any number of them.
+Result<Joins> find_joins(const PatchSet& set, std::size_t most);
+
+/// Two or three lines for people.
+std::string joins_text(const Joins& joins);
+Json joins_json(const Joins& joins);
+
+}  // namespace tessera::cli

@@ -1,0 +1,198 @@
+#include "loading.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <mutex>
+#include <optional>
+
+#include "arguments.h"
+#include "progress.h"
+#include "tessera/io.h"
+#ifdef TESSERA_HAS_IO_OCCT
+#include "tessera/io_occt.h"
+#endif
+
+namespace tessera::cli {
+namespace {
+
+#ifdef TESSERA_HAS_IO_OCCT
+constexpr const char* cad_formats = ", .step, .stp, .iges, .igs";
+
+/// By the component that knows the format.
+Result<Model> read_any_model(const std::string& path) { return is_cad_file(path) ? read_cad(path) : read_model(path); }
+#else
+constexpr const char* cad_formats = "";
+
+Result<Model> read_any_model(const std::string& path) { return read_model(path); }
+#endif
+
+std::size_t count_trimmed(std::span<const ModelSurface> surfaces) {
+  return static_cast<std::size_t>(std::count_if(surfaces.begin(), surfaces.end(),
+                                                [](const ModelSurface& surface) { return !surface.trims->empty(); }));
+}
+
+/// What of the file the model does not hold.
+void say_warnings(const std::string& file, const Model& model) {
+  constexpr std::size_t limit = 20;  // lines; the file may be a long list of what is not read
+  const std::size_t count = model.warnings.size();
+  bool trims_said = false;
+  for (std::size_t k = 0; k < count; ++k) {
+    const bool of_trims = model.warnings[k].find("honoured yet") != std::string::npos;
+    trims_said = trims_said || of_trims;
+    if (k < limit || of_trims) warn(model.warnings[k]);
+  }
+  if (count > limit) warn("and " + std::to_string(count - limit) + " more of this file");
+  const std::string trims = trims_text(count_trimmed(model.surfaces));
+  if (!trims_said && !trims.empty()) warn(file + ": " + trims);
+}
+
+/// Surfaces are converted on all threads; of several that fail, the first one is told.
+Result<std::vector<PatchGrid>> convert(const Model& model, const FitOptions& fit) {
+  const std::size_t count = model.surfaces.size();
+  std::vector<std::optional<Result<PatchGrid>>> results(count);
+  Progress progress("converting");
+  std::mutex mutex;
+  std::size_t done = 0;
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
+    if (interrupted()) return;
+    results[k].emplace(to_bezier(model.surfaces[k], fit));
+    const std::lock_guard lock(mutex);
+    progress.tell(static_cast<double>(++done) / static_cast<double>(count));
+  });
+  std::vector<PatchGrid> grids;
+  grids.reserve(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    if (!results[k]) return Status(StatusCode::cancelled, "interrupted");
+    if (!*results[k]) return in_surface(model, k, results[k]->status());
+    grids.push_back(*std::move(*results[k]));
+  }
+  return grids;
+}
+
+/// Reads one file and adds it to what is there.
+Status add_file(const std::string& file, const FitOptions& fit, With with, Timings& timings, Loaded& loaded) {
+  Result<Model> model = [&] {
+    const auto phase = timings.phase("read");
+    return read_any_model(file);
+  }();
+  if (!model) return model.status();
+  say_warnings(file, *model);
+  if (with == With::patches) {
+    const auto phase = timings.phase("convert");
+    Result<std::vector<PatchGrid>> grids = convert(*model, fit);
+    if (!grids) return in_file(file, grids.status());
+    std::move(grids->begin(), grids->end(), std::back_inserter(loaded.grids));
+  }
+  loaded.files.push_back(file);
+  loaded.first.push_back(loaded.model.surfaces.size());
+  if (loaded.files.size() == 1) {
+    loaded.model = *std::move(model);
+    return {};
+  }
+  const auto append = [](auto& to, auto& from) { std::move(from.begin(), from.end(), std::back_inserter(to)); };
+  append(loaded.model.surfaces, model->surfaces);
+  append(loaded.model.warnings, model->warnings);
+  return {};
+}
+
+}  // namespace
+
+std::string model_formats() { return std::string(".bpt, .bv, .g2, .json, .obj, .rib") + cad_formats; }
+
+void add_models(CLI::App& command, ModelOptions& options) {
+  command.add_option("MODEL", options.files, "Files of surfaces (" + model_formats() + "), or patterns of their names")
+      ->required()
+      ->check(fault_of_name)
+      ->type_name("FILE");
+  command
+      .add_option("--fit-tolerance", options.fit.tolerance,
+                  "How far patches may lie from surfaces that are given by expressions, in the model's unit "
+                  "[1e-6 of the surface's size]")
+      ->type_name("LENGTH")
+      ->check([](const std::string& text) {
+        double value = 0;
+        const bool good = CLI::detail::lexical_cast(text, value) && value > 0 && std::isfinite(value);
+        return good ? std::string() : "expected a number above 0, found \"" + text + "\"";
+      });
+}
+
+std::size_t Loaded::trimmed() const { return count_trimmed(model.surfaces); }
+
+Status Loaded::in_surface(std::size_t surface, const Status& status) const {
+  const auto after = std::upper_bound(first.begin(), first.end(), surface);
+  const auto file = static_cast<std::size_t>(after - first.begin()) - 1;
+  const std::string& name = *model.surfaces[surface].name;
+  return Status(status.code(), files[file] + ": surface " + std::to_string(surface - first[file]) +
+                                   (name.empty() ? "" : " (" + name + ")") + ": " + status.message());
+}
+
+Status Loaded::status() const { return failed.empty() ? Status() : already_said(failed.back().second.code()); }
+
+Result<Loaded> load(const Job& job, const FitOptions& fit, With with, Timings& timings) {
+  Loaded loaded;
+  for (const std::string& file : job.inputs) {
+    const Status status = add_file(file, fit, with, timings, loaded);
+    if (status.ok()) continue;
+    if (job.inputs.size() == 1 || status.code() == StatusCode::cancelled || interrupted()) return status;
+    complain(status.message());
+    loaded.failed.emplace_back(file, status);
+  }
+  if (!loaded.files.empty()) return loaded;
+  return Status(loaded.failed.back().second.code(),
+                "none of the " + std::to_string(loaded.failed.size()) + " models can be used");
+}
+
+Result<PatchSet> pack(const Loaded& loaded, Timings& timings) {
+  const auto phase = timings.phase("pack");
+  Result<PatchSet> set = make_patch_set(loaded.grids);
+  if (set) return set;
+  const Status& status = set.status();
+  if (status.index() == Status::no_index) return in_file(loaded.files[0], status);
+  auto patch = static_cast<std::size_t>(status.index());
+  std::size_t surface = 0;
+  for (; patch >= loaded.grids[surface].patches().size(); ++surface) patch -= loaded.grids[surface].patches().size();
+  return loaded.in_surface(surface, status);
+}
+
+Json files_json(const Loaded& loaded) {
+  Json failed = Json::array();
+  for (const auto& [file, status] : loaded.failed) {
+    failed.push_back({{"file", file}, {"code", std::string(name(status.code()))}, {"message", status.message()}});
+  }
+  return {{"models", loaded.files}, {"failed", failed}};
+}
+
+void add_model_facts(Json& object, const Loaded& loaded, const PatchSet& set) {
+  object["surfaces"] = loaded.model.surfaces.size();
+  object["patches"] = set.patch_count();
+  object["trimmed_surfaces"] = loaded.trimmed();
+  object["fit_error"] = fit_json(set);
+  object["warnings"] = warnings_json(loaded.model);
+}
+
+Json warnings_json(const Model& model) {
+  Json warnings = Json::array();
+  for (const std::string& warning : model.warnings) warnings.push_back(warning);
+  return warnings;
+}
+
+std::string trims_text(std::size_t trimmed) {
+  if (trimmed == 0) return {};
+  return std::to_string(trimmed) + (trimmed == 1 ? " surface is" : " surfaces are") +
+         " trimmed: trims not honoured yet";
+}
+
+std::string fit_line(const PatchSet& set) { return fit_line(set.fit_error()); }
+std::string fit_line(const FitError& error) {
+  if (error.distance == 0 && error.certified) return {};
+  return "  callables fitted to within " + readable(error.distance, 3) +
+         (error.certified ? ", proven\n" : ", sampled\n");
+}
+
+Json fit_json(const PatchSet& set) { return fit_json(set.fit_error()); }
+Json fit_json(const FitError& error) { return {{"distance", error.distance}, {"certified", error.certified}}; }
+
+}  // namespace tessera::cli
