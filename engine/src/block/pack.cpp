@@ -28,32 +28,56 @@ bool fits(const RelativeNet& net, bool in_float, InRange in_range) {
 }
 
 /// Where a patch goes, and what its doubts rest on.
-struct Place {
-  const BlockGroup& group;
-  PatchSet::Slot slot;
-  std::uint32_t lane_count;  ///< of the block
-  const RelativeNet& net;
-  bool curve;
-  double diameter;
+class Place {
+ public:
+  /// `lane_count`: of the block; `diameter`: of the patch's box.
+  Place(const BlockGroup& group, PatchSet::Slot slot, std::uint32_t lane_count, const RelativeNet& net, bool curve,
+        double diameter)
+      : group_(group), slot_(slot), lane_count_(lane_count), net_(net), curve_(curve), diameter_(diameter) {}
 
   /// The patch's lane, and those that repeat it, by write_coefficients(lane). `largest`: x, y or z of the coefficients.
   template <class T, class Write>
   void write(UnsetVector<T>& coefficients, UnsetVector<T>& doubts, double largest, Write write_coefficients) const {
     constexpr std::size_t lanes = PatchSet::lanes;
-    NormalDoubt doubt{.squared_length = std::numeric_limits<double>::infinity(), .noise = -1};
-    if (!curve)
-      doubt = normal_doubt(net, std::max(group.degree_u, group.degree_v), largest, diameter,
-                           std::numeric_limits<T>::epsilon());
-    T* block = coefficients.data() + group.first_value + (slot.block - group.first_block) * group.block_values;
-    T* rows = doubts.data() + 2 * lanes * slot.block;
+    const std::array<T, 2> doubt = doubt_of<T>(largest);
+    T* block = coefficients.data() + group_.first_value + (slot_.block - group_.first_block) * group_.block_values;
+    T* rows = doubts.data() + 2 * lanes * slot_.block;
     const auto write_to = [&](std::uint32_t lane) {
       write_coefficients(block + lane);
-      write_doubt(doubt, rows + lane);
+      rows[lane] = doubt[0];
+      rows[lanes + lane] = doubt[1];
     };
-    write_to(slot.lane);
-    if (slot.lane == 0)
-      for (std::uint32_t lane = lane_count; lane < lanes; ++lane) write_to(lane);
+    write_to(slot_.lane);
+    if (slot_.lane == 0)
+      for (std::uint32_t lane = lane_count_; lane < lanes; ++lane) write_to(lane);
   }
+  /// The patch for scattered points.
+  template <class T>
+  void write_points(Coefficients<T>& to, double largest) const {
+    net_.write_rows(to.points.data() + group_.point_value(slot_), group_.point_values);
+    NormalDoubt doubt = regular_doubt<T>(largest);
+    if (curve_) doubt.noise = -1;
+    to.point_doubt[slot_.block * std::size_t{PatchSet::lanes} + slot_.lane] = doubt_in<T>(doubt);
+  }
+
+ private:
+  template <class T>
+  std::array<T, 2> doubt_of(double largest) const {
+    if (curve_) return doubt_in<T>({.squared_length = std::numeric_limits<double>::infinity(), .noise = -1});
+    return doubt_in<T>(regular_doubt<T>(largest));
+  }
+  template <class T>
+  NormalDoubt regular_doubt(double largest) const {
+    return normal_doubt(net_, std::max(group_.degree_u, group_.degree_v), largest, diameter_,
+                        std::numeric_limits<T>::epsilon());
+  }
+
+  const BlockGroup& group_;
+  const PatchSet::Slot slot_;
+  const std::uint32_t lane_count_;
+  const RelativeNet& net_;
+  const bool curve_;
+  const double diameter_;
 };
 
 }  // namespace
@@ -104,13 +128,16 @@ bool PatchSet::Impl::pack(std::size_t index, const BlockGroup& group, const Box3
   const RelativeNet net(patches[index], origin);
   const Slot slot = slots[index];
   const bool curve = is_curve(patches[index], collapsed[index]);
-  const Place place{group, slot, lane_counts[slot.block], net, curve, hull.diagonal()};
-  if (kinds.float_bernstein || kinds.double_bernstein) {
+  const Place place(group, slot, lane_counts[slot.block], net, curve, hull.diagonal());
+  const bool in_float = kinds.float_bernstein || kinds.float_points;
+  if (in_float || kinds.double_bernstein || kinds.double_points) {
     const double largest = net.largest(hull);
-    if (!fits(net, kinds.float_bernstein, [&](double limit) { return largest <= limit; })) return false;
+    if (!fits(net, in_float, [&](double limit) { return largest <= limit; })) return false;
     const auto coefficients = [&](auto* lane) { net.write(lane); };
     if (kinds.float_bernstein) place.write(single.bernstein, single.bernstein_doubt, largest, coefficients);
     if (kinds.double_bernstein) place.write(twice.bernstein, twice.bernstein_doubt, largest, coefficients);
+    if (kinds.float_points) place.write_points(single, largest);
+    if (kinds.double_points) place.write_points(twice, largest);
   }
   if (kinds.float_power || kinds.double_power) {
     RelativeNet::Power memory;
@@ -131,7 +158,11 @@ bool PatchSet::Impl::pack(std::size_t index, const BlockGroup& group, const Box3
 
 bool PatchSet::Impl::pack(std::size_t index) {
   collapsed[index] = patches[index].collapsed_edges();
-  return pack(index, group_of_block(slots[index].block), patches[index].hull_box());
+  if (!pack(index, group_of_block(slots[index].block), patches[index].hull_box())) return false;
+  const std::size_t at = slots[index].block * std::size_t{lanes} + slots[index].lane;
+  if (kinds.float_points) single.largest_doubt = std::max(single.largest_doubt, single.point_doubt[at][0]);
+  if (kinds.double_points) twice.largest_doubt = std::max(twice.largest_doubt, twice.point_doubt[at][0]);
+  return true;
 }
 
 }  // namespace tessera
