@@ -56,11 +56,11 @@ struct AllBuffers {
   std::vector<NormalKind> normal_kind;
   std::vector<CurvatureKind> curvature_kind;
 
-  explicit AllBuffers(const GridPlan& plan, T fill = T(-7))
-      : normal_kind(plan.capacity(), NormalKind{9}), curvature_kind(plan.capacity(), CurvatureKind{9}) {
-    for_each_value_output<T>([&](const auto& output) {
-      values.emplace_back(static_cast<std::size_t>(output.width) * plan.capacity(), fill);
-    });
+  explicit AllBuffers(const GridPlan& plan, T fill = T(-7)) : AllBuffers(plan.capacity(), fill) {}
+  explicit AllBuffers(std::size_t records, T fill = T(-7))
+      : normal_kind(records, NormalKind{9}), curvature_kind(records, CurvatureKind{9}) {
+    for_each_value_output<T>(
+        [&](const auto& output) { values.emplace_back(static_cast<std::size_t>(output.width) * records, fill); });
   }
   GridViews<T> views() {
     GridViews<T> out;

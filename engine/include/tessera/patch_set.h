@@ -21,12 +21,16 @@ enum class Representation : std::uint8_t {
   power,      ///< monomials u^i v^j; loses up to 58 / 2,950 / 135,000 ULP at degrees 3 / 5 / 7
 };
 
-/// Which blocks a set holds. Each kind costs (m+1)(n+1) * (3 or 4) coefficients a patch.
+/// Which coefficients a set holds, packed when it is made and again with each edit. Each kind costs (m+1)(n+1) * (3 or 4) coefficients a patch.
 struct BlockKinds {
   bool float_bernstein = true;
   bool double_bernstein = false;
   bool float_power = false;
   bool double_power = false;
+  /// Bernstein coefficients again, patch by patch, each from a cache line on: what scattered points are evaluated from
+  /// (evaluate_points.h). 192 bytes a bicubic patch in float.
+  bool float_points = false;
+  bool double_points = false;
 };
 
 struct PatchSetOptions {

@@ -40,19 +40,32 @@ struct Place {
   template <class T, class Write>
   void write(UnsetVector<T>& coefficients, UnsetVector<T>& doubts, double largest, Write write_coefficients) const {
     constexpr std::size_t lanes = PatchSet::lanes;
-    NormalDoubt doubt = no_normal;
-    if (!curve)
-      doubt = normal_doubt<T>(std::max(group.degree_u, group.degree_v), largest, diameter, net.lightest(),
-                              net.weight_spread());
+    const std::array<T, 2> doubt = doubt_in<T>(curve ? no_normal : regular_doubt<T>(largest));
     T* block = coefficients.data() + group.first_value + (slot.block - group.first_block) * group.block_values;
     T* rows = doubts.data() + 2 * lanes * slot.block;
     const auto write_to = [&](std::uint32_t lane) {
       write_coefficients(block + lane);
-      write_doubt(doubt, rows + lane);
+      rows[lane] = doubt[0];
+      rows[lanes + lane] = doubt[1];
     };
     write_to(slot.lane);
     if (slot.lane == 0)
       for (std::uint32_t lane = lane_count; lane < lanes; ++lane) write_to(lane);
+  }
+
+  /// The patch for scattered points.
+  template <class T>
+  void write_points(Coefficients<T>& to, double largest) const {
+    net.write_rows(to.points.data() + group.point_value(slot), group.point_values);
+    NormalDoubt doubt = regular_doubt<T>(largest);
+    if (curve) doubt.noise = no_normal.noise;
+    to.point_doubt[slot.block * std::size_t{PatchSet::lanes} + slot.lane] = doubt_in<T>(doubt);
+  }
+
+  template <class T>
+  NormalDoubt regular_doubt(double largest) const {
+    return normal_doubt<T>(std::max(group.degree_u, group.degree_v), largest, diameter, net.lightest(),
+                           net.weight_spread());
   }
 };
 
@@ -107,6 +120,19 @@ bool PatchSet::Impl::pack_bernstein(std::size_t index, const BlockGroup& group, 
   return true;
 }
 
+bool PatchSet::Impl::pack_points(std::size_t index, const BlockGroup& group, const Box3& hull) {
+  if (!kinds.float_points && !kinds.double_points) return true;
+  const RelativeNet net(patches[index], origin);
+  const Slot slot = slots[index];
+  const bool curve = is_curve(patches[index], collapsed[index]);
+  const Place place{group, slot, lane_counts[slot.block], net, curve, hull.diagonal()};
+  const double largest = net.largest(hull);
+  if (!fits(net, kinds.float_points, [&](double limit) { return largest <= limit; })) return false;
+  if (kinds.float_points) place.write_points(single, largest);
+  if (kinds.double_points) place.write_points(twice, largest);
+  return true;
+}
+
 bool PatchSet::Impl::pack_power(std::size_t index, const BlockGroup& group, const Box3& hull) {
   if (!kinds.float_power && !kinds.double_power) return true;
   const RelativeNet net(patches[index], origin);
@@ -132,7 +158,12 @@ bool PatchSet::Impl::pack(std::size_t index) {
   const BlockGroup& group = group_of_block(slots[index].block);
   const Box3 hull = patches[index].hull_box();
   collapsed[index] = patches[index].collapsed_edges();
-  return pack_bernstein(index, group, hull) && pack_power(index, group, hull);
+  if (!pack_bernstein(index, group, hull) || !pack_points(index, group, hull) || !pack_power(index, group, hull))
+    return false;
+  const std::size_t at = slots[index].block * std::size_t{lanes} + slots[index].lane;
+  if (kinds.float_points) single.largest_doubt = std::max(single.largest_doubt, single.point_doubt[at][0]);
+  if (kinds.double_points) twice.largest_doubt = std::max(twice.largest_doubt, twice.point_doubt[at][0]);
+  return true;
 }
 
 }  // namespace tessera

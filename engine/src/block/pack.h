@@ -20,6 +20,12 @@ constexpr std::size_t block_values(int degree_u, int degree_v, bool rational) {
   return static_cast<std::size_t>((degree_u + 1) * (degree_v + 1) * coefficient_components(rational) * PatchSet::lanes);
 }
 
+/// Values from one patch to the next where patches lie one by one: whole cache lines in either precision.
+constexpr std::size_t point_values(int degree_u, int degree_v, bool rational) {
+  const std::size_t line = 16, values = block_values(degree_u, degree_v, rational) / PatchSet::lanes;
+  return (values + line - 1) / line * line;
+}
+
 /// The coefficients of `patch` relative to `origin`, `[i][j][component]`: (V - o, or w (V - o) and w) in the Bernstein
 /// basis, or the same in powers of u and v. Weights are divided by a power of two that brings the largest near 1: they
 /// fit float whatever their size, and borders shared by patches keep their bits.
@@ -41,6 +47,23 @@ class RelativeNet {
       *lane = static_cast<T>(value);
       lane += PatchSet::lanes;
     });
+  }
+
+  /// Writes the Bernstein coefficients `[i][component][j]`, and zeros up to `size` values.
+  template <class T>
+  void write_rows(T* rows, std::size_t size) const {
+    const std::size_t components = static_cast<std::size_t>(coefficient_components(patch_.is_rational()));
+    const std::size_t columns = static_cast<std::size_t>(patch_.degree_v()) + 1;
+    std::size_t row = 0, j = 0, c = 0;  // where the next value goes
+    for_each([&](double value) {
+      rows[row + c * columns + j] = static_cast<T>(value);
+      if (++c < components) return;
+      c = 0;
+      if (++j < columns) return;
+      j = 0;
+      row += components * columns;
+    });
+    std::fill(rows + row, rows + size, T(0));
   }
 
   using Power = std::array<double, (max_degree + 1) * (max_degree + 1) * 4>;
@@ -99,13 +122,13 @@ NormalDoubt normal_doubt(int degree, double largest, double diameter, double lig
   return {.squared_length = length * length, .noise = noise};
 }
 
-/// The same into one lane of a block's two rows. Squared lengths below `lowest`, 2^-80 or 2^-600, are out of the range
-/// of a float's or a double's squares.
+/// The same as a kernel reads it: squared length, noise. Squared lengths below `lowest`, 2^-80 or 2^-600, are out of the
+/// range of a float's or a double's squares.
 template <class T>
-void write_doubt(const NormalDoubt& doubt, T* lane) {
+std::array<T, 2> doubt_in(const NormalDoubt& doubt) {
   const double lowest = sizeof(T) == 4 ? 0x1p-80 : 0x1p-600, largest = std::numeric_limits<T>::max();
-  lane[0] = static_cast<T>(std::clamp(doubt.squared_length, lowest, largest));
-  lane[PatchSet::lanes] = static_cast<T>(std::min(doubt.noise, largest));
+  return {static_cast<T>(std::clamp(doubt.squared_length, lowest, largest)),
+          static_cast<T>(std::min(doubt.noise, largest))};
 }
 
 }  // namespace tessera

@@ -56,8 +56,11 @@ struct PolynomialBlock {
                coefficients.data() + group.first_value + (block - group.first_block) * group.block_values});
     T* rows = doubts.data() + 2 * PatchSet::lanes * block;
     const int degree = std::max(group.degree_u, group.degree_v);
-    for (std::size_t lane = 0; lane < largest.size(); ++lane)
-      write_doubt(normal_doubt<T>(degree, largest[lane], diagonal[lane]), rows + lane);
+    for (std::size_t lane = 0; lane < largest.size(); ++lane) {
+      const std::array<T, 2> doubt = doubt_in<T>(normal_doubt<T>(degree, largest[lane], diagonal[lane]));
+      rows[lane] = doubt[0];
+      rows[PatchSet::lanes + lane] = doubt[1];
+    }
   }
 };
 
@@ -81,12 +84,15 @@ std::size_t PatchSet::Impl::pack_block(std::size_t block, const kernel::KernelTa
     if (kinds.float_bernstein) bernstein.write(kernels.pack_f32, single.bernstein, single.bernstein_doubt);
     if (kinds.double_bernstein) bernstein.write(kernels.pack_f64, twice.bernstein, twice.bernstein_doubt);
   }
+  const bool others = kinds.float_points || kinds.double_points || kinds.float_power || kinds.double_power;
   for (std::size_t lane = 0; lane < lane_counts[block]; ++lane) {
     const std::size_t index = indices[lane];
     const bool alone = group.rational || is_curve(patches[index], collapsed[index]);
-    if (!alone && !kinds.float_power && !kinds.double_power) continue;
+    if (!alone && !others) continue;
     const Box3 hull = box_of_lane(boxes, lane);
-    if ((alone && !pack_bernstein(index, group, hull)) || !pack_power(index, group, hull)) return lane;
+    if ((alone && !pack_bernstein(index, group, hull)) || !pack_points(index, group, hull) ||
+        !pack_power(index, group, hull))
+      return lane;
   }
   return lanes;
 }

@@ -50,14 +50,16 @@ void lay_out(PatchSet::Impl& set) {
   }
   constexpr std::size_t lanes = PatchSet::lanes;
   set.slots.resize(order.size());
-  std::size_t next_value = 0;
+  std::size_t next_value = 0, next_point_value = 0;
   for (std::size_t begin = 0; begin < order.size();) {
     const BezierPatch& first = set.patches[order[begin]];
     const auto end = static_cast<std::size_t>(std::ranges::upper_bound(keys, keys[begin]) - keys.begin());
     BlockGroup group{first.degree_u(), first.degree_v(), first.is_rational(), set.lane_counts.size(),
                      (end - begin + lanes - 1) / lanes, next_value,
-                     block_values(first.degree_u(), first.degree_v(), first.is_rational())};
+                     block_values(first.degree_u(), first.degree_v(), first.is_rational()), next_point_value,
+                     point_values(first.degree_u(), first.degree_v(), first.is_rational())};
     next_value += group.block_count * group.block_values;
+    next_point_value += (end - begin) * group.point_values;
     const std::size_t first_lane = group.first_block * lanes;
     set.lane_patches.resize(first_lane + group.block_count * lanes);
     set.lane_counts.resize(group.first_block + group.block_count, static_cast<std::uint8_t>(lanes));
@@ -83,6 +85,18 @@ void lay_out(PatchSet::Impl& set) {
   if (set.kinds.float_power) make_room(set.single.power, set.single.power_doubt);
   if (set.kinds.double_bernstein) make_room(set.twice.bernstein, set.twice.bernstein_doubt);
   if (set.kinds.double_power) make_room(set.twice.power, set.twice.power_doubt);
+  const auto make_points = [&](auto& of) {
+    of.points.resize(next_point_value + lanes);
+    std::fill_n(of.points.end() - lanes, lanes, 0);
+    of.point_doubt.resize(lanes * set.lane_counts.size());
+  };
+  if (set.kinds.float_points) make_points(set.single);
+  if (set.kinds.double_points) make_points(set.twice);
+}
+
+template <class T>
+void find_largest_doubt(Coefficients<T>& of) {
+  for (const auto& doubt : of.point_doubt) of.largest_doubt = std::max(of.largest_doubt, doubt[0]);
 }
 
 Status too_large(std::size_t patch) {
@@ -160,6 +174,8 @@ Result<PatchSet> PatchSet::Impl::make(std::vector<BezierPatch> patches, std::vec
   set->collapsed.resize(set->patches.size());
   lay_out(*set);
   if (Status status = set->pack_all(); !status.ok()) return status;
+  find_largest_doubt(set->single);
+  find_largest_doubt(set->twice);
   return PatchSet(std::move(set));
 }
 
@@ -201,7 +217,8 @@ std::uint64_t PatchSet::revision() const { return impl_->revision; }
 std::size_t PatchSet::memory_bytes() const {
   const auto bytes = [](const auto& vector) { return vector.capacity() * sizeof(vector[0]); };
   const auto all_bytes = [&](const auto& of) {
-    return bytes(of.bernstein) + bytes(of.power) + bytes(of.bernstein_doubt) + bytes(of.power_doubt);
+    return bytes(of.bernstein) + bytes(of.power) + bytes(of.bernstein_doubt) + bytes(of.power_doubt) + bytes(of.points) +
+           bytes(of.point_doubt);
   };
   std::size_t total = sizeof(Impl) + bytes(impl_->patches) + bytes(impl_->sources) + bytes(impl_->slots) + bytes(impl_->collapsed) +
                       bytes(impl_->groups) + bytes(impl_->lane_patches) + bytes(impl_->lane_counts) + all_bytes(impl_->single) +

@@ -1,6 +1,7 @@
 #pragma once
 // The inside of a PatchSet: groups of blocks, for the floors that evaluate them.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -22,6 +23,13 @@ struct BlockGroup {
   std::size_t first_block = 0, block_count = 0;
   std::size_t first_value = 0;    ///< in the coefficient arrays, which all have the same layout
   std::size_t block_values = 0;   ///< values a block
+  std::size_t first_point_value = 0;  ///< in the coefficients for points
+  std::size_t point_values = 0;       ///< values from one patch to the next there, a multiple of 16
+
+  /// Where a patch of this group lies in the coefficients for points.
+  std::size_t point_value(const PatchSet::Slot& slot) const {
+    return first_point_value + ((slot.block - first_block) * PatchSet::lanes + slot.lane) * point_values;
+  }
 };
 
 /// The coefficients of all groups in one precision, over either basis; empty where not asked for.
@@ -30,6 +38,12 @@ struct Coefficients {
   UnsetVector<T> bernstein, power;
   /// `[block][doubt, noise][lane]`: see NormalDoubt.
   UnsetVector<T> bernstein_doubt, power_doubt;
+  /// Bernstein coefficients `[patch][i][component][j]`, patches in the order of slots, zeros in between; whole vectors
+  /// may be read from the last patch too.
+  UnsetVector<T> points;
+  /// `[block * lanes + lane]`: doubt and noise, see NormalDoubt; that of a curve is finite, and its noise negative.
+  std::vector<std::array<T, 2>> point_doubt;
+  T largest_doubt = 0;                        ///< no patch's is larger
   const UnsetVector<T>& of(Representation representation) const {
     return representation == Representation::bernstein ? bernstein : power;
   }
@@ -73,6 +87,10 @@ class PatchSet::Impl {
     return bernstein ? kinds.double_bernstein : kinds.double_power;
   }
 
+  bool has_points(Precision precision) const {
+    return precision == Precision::single_precision ? kinds.float_points : kinds.double_points;
+  }
+
   /// Writes a patch's collapsed edges, its lane of every kind of block, and the unused lanes that repeat it. False, and
   /// the lanes half-written, if a coefficient does not fit. Allocates nothing.
   bool pack(std::size_t index);
@@ -85,6 +103,7 @@ class PatchSet::Impl {
  private:
   /// A patch of `group` whose collapsed edges are known into its lane over one basis; `hull` is its box.
   bool pack_bernstein(std::size_t index, const BlockGroup& group, const Box3& hull);
+  bool pack_points(std::size_t index, const BlockGroup& group, const Box3& hull);
   bool pack_power(std::size_t index, const BlockGroup& group, const Box3& hull);
   /// The same bits for all patches of a block. The first lane that doesn't fit; lanes if all do.
   std::size_t pack_block(std::size_t block, const kernel::KernelTable& kernels);

@@ -53,6 +53,12 @@ struct Lanes<float> {
       _mm256_maskstore_ps(p, _mm256_cmpgt_epi32(_mm256_set1_epi32(count), index), a);
     }
   }
+  /// The first `count` values, zeros in the other lanes; reads no more.
+  static Batch load_first(const float* p, int count) {
+    if (count == 4) return _mm256_zextps128_ps256(_mm_loadu_ps(p));
+    const __m256i index = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+    return _mm256_maskload_ps(p, _mm256_cmpgt_epi32(_mm256_set1_epi32(count), index));
+  }
   /// x0 x1 .. | y0 y1 .. | z0 z1 .. to x0 y0 z0 x1 ..: value 8 k + l comes from lane (8 k + l) / 3, by permutations, of
   /// component (8 k + l) % 3, by blends.
   static void interleave(Batch (&p)[3]) {
@@ -116,6 +122,10 @@ struct Lanes<double> {
       const __m256i index = _mm256_setr_epi64x(0, 1, 2, 3);
       _mm256_maskstore_pd(p, _mm256_cmpgt_epi64(_mm256_set1_epi64x(count), index), a);
     }
+  }
+  static Batch load_first(const double* p, int count) {
+    const __m256i index = _mm256_setr_epi64x(0, 1, 2, 3);
+    return _mm256_maskload_pd(p, _mm256_cmpgt_epi64(_mm256_set1_epi64x(count), index));
   }
   static void interleave(Batch (&p)[3]) {
     const auto blended = [&](auto lanes, auto second, auto third) {

@@ -62,6 +62,15 @@ struct Lanes<float> {
       _mm512_mask_storeu_ps(p, static_cast<__mmask16>((1u << count) - 1u), a);
     }
   }
+  /// The first `count` values, zeros in the other lanes; reads no more.
+  static Batch load_first(const float* p, int count) {
+    return _mm512_maskz_loadu_ps(static_cast<__mmask16>((1u << count) - 1u), p);
+  }
+  /// The first four values become the last.
+  static Batch rotated(Batch a) {
+    const __m512i bits = _mm512_castps_si512(a);
+    return _mm512_castsi512_ps(_mm512_alignr_epi32(bits, bits, 4));
+  }
   /// x0 x1 .. | y0 y1 .. | z0 z1 .. to x0 y0 z0 x1 ..
   static void interleave(Batch (&p)[3]) {
     static constexpr InterleavedTriples<int, width> lanes;
@@ -123,6 +132,9 @@ struct Lanes<double> {
     } else {
       _mm512_mask_storeu_pd(p, static_cast<__mmask8>((1u << count) - 1u), a);
     }
+  }
+  static Batch load_first(const double* p, int count) {
+    return _mm512_maskz_loadu_pd(static_cast<__mmask8>((1u << count) - 1u), p);
   }
   static void interleave(Batch (&p)[3]) {
     static constexpr InterleavedTriples<long long, width> lanes;

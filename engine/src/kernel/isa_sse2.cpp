@@ -48,6 +48,13 @@ struct Lanes<float> {
       for (int i = 0; i < count; ++i) p[i] = values[i];
     }
   }
+  /// The first `count` values, zeros in the other lanes; reads no more.
+  static Batch load_first(const float* p, int count) {
+    if (count == width) return _mm_loadu_ps(p);
+    alignas(16) float values[width] = {0, 0, 0, 0};
+    for (int i = 0; i < count; ++i) values[i] = p[i];
+    return _mm_load_ps(values);
+  }
   /// x0 x1 .. | y0 y1 .. | z0 z1 .. to x0 y0 z0 x1 ..
   static void interleave(Batch (&p)[3]) {
     const __m128 x = p[0], y = p[1], z = p[2];
@@ -96,6 +103,7 @@ struct Lanes<double> {
       _mm_store_sd(p, a);
     }
   }
+  static Batch load_first(const double* p, int count) { return count == width ? _mm_loadu_pd(p) : _mm_load_sd(p); }
   static void interleave(Batch (&p)[3]) {
     const __m128d x = p[0], y = p[1], z = p[2];
     p[0] = _mm_unpacklo_pd(x, y);

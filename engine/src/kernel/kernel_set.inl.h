@@ -11,6 +11,10 @@ inline constexpr int max_order = 16;  // coefficients of the highest degree
 #include "kernel/blend_kernel.inl.h"
 #include "kernel/net_kernel.inl.h"
 #include "kernel/memory_kernels.inl.h"
+#include "kernel/lane_weights.inl.h"
+#include "kernel/locate_kernel.inl.h"
+#include "kernel/point_kernel.inl.h"
+#include "kernel/point_store.inl.h"
 
 constexpr KernelTable table = {
     this_isa,
@@ -26,6 +30,11 @@ constexpr KernelTable table = {
     bound_nets,
     bound_points,
     combine_rows,
+    evaluate_points<Lanes<float>>,
+    evaluate_points<Lanes<double>>,
+    locate,
+    store_points<Lanes<float>>,
+    store_points<Lanes<double>>,
     fma_rate<Lanes<float>>,
     fma_rate<Lanes<double>>,
     fill_memory<Lanes<float>>,

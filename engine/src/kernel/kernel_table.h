@@ -21,6 +21,10 @@ inline constexpr std::uint8_t edge_inside = 0, edge_start = 1, edge_end = 2;
 template <class T>
 using ExactNormal = int (*)(void* context, int iu, int iv, int lane, T* normal);
 
+/// Doubt and noise of the patch under one lane.
+template <class T>
+using LaneDoubt = void (*)(void* context, int iu, int lane, T* doubt, T* noise);
+
 /// A block of patches over a grid of tabulated weights. T is float or double.
 template <class T>
 struct GridJob {
@@ -67,6 +71,8 @@ struct GridJob {
   const std::uint8_t* v_edges = nullptr;  ///< `[iv]`
   ExactNormal<T> exact_normal = nullptr;
   void* exact_context = nullptr;
+  /// Where lanes are samples of many patches, `doubt` holds an upper bound of all, and this says what one lane's is.
+  LaneDoubt<T> lane_doubt = nullptr;
   T smallest_sine = 0;           ///< of the tangents' angle, below which curvatures are undefined
   T umbilic_tolerance = 0;       ///< (k1 - k2) / (|k1| + |k2|) at or below which a point is umbilic
 };
@@ -128,6 +134,57 @@ struct BlendJob {
   std::ptrdiff_t stride = 1;
 };
 
+/// Up to block_lanes neighbouring samples, one a lane.
+struct PointSlot {
+  int first = 0, count = 0;
+};
+
+/// Scattered samples, evaluated slot by slot into a stage. Lanes beyond a slot's count are evaluated too and mean
+/// nothing.
+template <class T>
+struct PointJob {
+  /// Degrees, rationality, what decides about normals, and the stage: outputs `[slot][component][lane]` and
+  /// `[slot][lane]`. A sample's Place is (slot, 0, lane). net, weights and ranges are not read.
+  GridJob<T> grid;
+  /// `[sample]`: the patch's coefficients `[i][component][j]`, from a cache line on. Like u and v it is readable for
+  /// block_lanes samples beyond the last slot, and for prefetch_distance more.
+  const T* const* nets = nullptr;
+  const T* u = nullptr;  ///< `[sample]`
+  const T* v = nullptr;
+  const PointSlot* slots = nullptr;
+  int slot_count = 0;
+  bool runs = false;           ///< the samples of each slot lie on one patch
+  std::size_t prefetched = 0;  ///< bytes of a patch to fetch ahead; 0 where patches are in a near cache anyway
+};
+/// Samples from a fetch to its use: beyond the time of a cache miss, short of the number of lines that may be on their
+/// way.
+inline constexpr int prefetch_distance = 24;
+
+/// Finds parameters among strictly increasing breakpoints: the span on the right of a breakpoint, the last one at the
+/// end, the outer ones beyond.
+struct LocateJob {
+  const double* breaks = nullptr;  ///< spans + 1 of them
+  std::size_t spans = 0;           ///< at least 1, below 2^31
+  const double* t = nullptr;       ///< `[sample]`, like all that follow
+  std::size_t count = 0;           ///< the kernel rounds it up to a multiple of locate_lanes
+  std::int64_t* span = nullptr;    ///< `[sample]`
+  double* local = nullptr;         ///< `[sample]`: 0 to 1 within the span, exact at its ends
+  double* width = nullptr;         ///< `[sample]`: of the span
+};
+inline constexpr std::size_t locate_lanes = 16;
+
+/// Moves one output of slots from the stage to records of the caller's.
+template <class T>
+struct PointStoreJob {
+  const T* stage = nullptr;            ///< `[slot][component][lane]`
+  int width = 3;                       ///< components
+  const PointSlot* slots = nullptr;
+  int slot_count = 0;
+  const std::uint32_t* records = nullptr;   ///< `[sample]`; null: sample k has the record k
+  T* out[3] = {nullptr, nullptr, nullptr};  ///< component c of record k goes to out[c][k * stride]
+  std::ptrdiff_t stride = 1;
+};
+
 /// Kernels return their unit's own ISA, which the report hands to the caller.
 struct KernelTable {
   Isa isa;
@@ -145,6 +202,11 @@ struct KernelTable {
   /// Extends the box `lower`, `upper` by points of `count` numbers, x y z x y z ..
   void (*bound_points)(const double* points, std::size_t count, double (&lower)[3], double (&upper)[3]);
   void (*combine)(const CombineJob&);
+  Isa (*points_f32)(const PointJob<float>&);
+  Isa (*points_f64)(const PointJob<double>&);
+  void (*locate)(const LocateJob&);
+  void (*store_points_f32)(const PointStoreJob<float>&);
+  void (*store_points_f64)(const PointStoreJob<double>&);
   /// For limits.h: `rounds` times 16 independent fused multiply-adds of whole vectors; returns the lanes of a vector.
   int (*fma_f32)(std::size_t rounds, float* sink);
   int (*fma_f64)(std::size_t rounds, double* sink);

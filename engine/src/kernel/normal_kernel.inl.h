@@ -200,13 +200,43 @@ struct NormalExchange {
   alignas(64) Vector uncertain;          ///< out
 };
 
+/// Where lanes are samples of many patches: those that are safe by their own patch's doubt, and the patches' noise.
+template <class L>
+inline typename L::Batch own_doubts(const GridJob<typename L::Scalar>& job, const Place& place,
+                                    const typename L::Batch& safe, const NormalExchange<L>& exchange,
+                                    typename L::Batch& noise) {
+  using T = typename L::Scalar;
+  const auto zero = L::broadcast(0), one = L::broadcast(1);
+  alignas(64) T trusted[L::width], doubts[L::width], noises[L::width];
+  L::store(trusted, safe);
+  L::store(doubts, zero);
+  L::store(noises, zero);
+  for (int lane = 0; lane < L::width; ++lane)
+    if (!(trusted[lane] > 0))
+      job.lane_doubt(job.exact_context, place.iu, place.lane + lane, doubts + lane, noises + lane);
+  noise = L::load(noises);
+  typename L::Batch du[3], dv[3], n[3];
+  for (int c = 0; c < 3; ++c) {
+    du[c] = L::load(exchange.du[c]);
+    dv[c] = L::load(exchange.dv[c]);
+  }
+  const auto squared = cross<L>(du, dv, n);
+  const auto own = (squared > L::load(doubts)) & (squared <= L::broadcast(SafeRange<T>::highest));
+  return xsimd::select((safe > zero) | own, one, zero);
+}
+
 /// Lanes whose |r_u x r_v|^2 is out of range or in doubt; `safe` is 1 in the others, which keep what they have, so that
 /// a lane's bits don't depend on its neighbours.
 template <class L>
 __attribute__((noinline)) void degenerate_normals(const GridJob<typename L::Scalar>& job, const Place& place,
-                                                  const typename L::Batch& safe, NormalExchange<L>& exchange) {
+                                                  const typename L::Batch& assumed_safe, NormalExchange<L>& exchange) {
   const auto zero = L::broadcast(0), one = L::broadcast(1);
-  const auto noise = L::load(job.noise + place.lane);
+  typename L::Batch safe = assumed_safe, noise;
+  if (job.lane_doubt) {
+    safe = own_doubts<L>(job, place, safe, exchange, noise);
+  } else {
+    noise = L::load(job.noise + place.lane);
+  }
   Tangents<L> tangents;
   tangents.noise = job.rational ? noise * L::load(exchange.reciprocal_weight) : noise;
   Normal<L> normal;

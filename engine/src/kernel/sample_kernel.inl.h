@@ -15,15 +15,25 @@ struct RowCurves {
   typename L::Batch by_u[Order + 1][Components][Capacity];
 };
 
+/// A weight of all lanes, or one a lane.
+template <class L>
+inline typename L::Batch in_lanes(typename L::Scalar weight) {
+  return L::broadcast(weight);
+}
+template <class L>
+inline typename L::Batch in_lanes(const typename L::Scalar (&weight)[L::width]) {
+  return L::load(weight);
+}
+
 /// sum_j weights[j] * curve[component][j], in ascending order: one multiplication, then fused multiply-adds.
-template <class L, int Components, int Capacity>
-inline void combine(const typename L::Scalar* weights, int count,
-                    const typename L::Batch (&curve)[Components][Capacity], typename L::Batch (&sum)[Components]) {
-  const auto first = L::broadcast(weights[0]);
+template <class L, class Weight, int Components, int Capacity>
+inline void combine(const Weight* weights, int count, const typename L::Batch (&curve)[Components][Capacity],
+                    typename L::Batch (&sum)[Components]) {
+  const auto first = in_lanes<L>(weights[0]);
   for (int c = 0; c < Components; ++c) sum[c] = first * curve[c][0];
 #pragma GCC unroll 4
   for (int j = 1; j < count; ++j) {
-    const auto weight = L::broadcast(weights[j]);
+    const auto weight = in_lanes<L>(weights[j]);
     for (int c = 0; c < Components; ++c) sum[c] = L::fma(weight, curve[c][j], sum[c]);
   }
 }
@@ -95,9 +105,9 @@ inline void copy(const typename L::Batch (&from)[3], typename L::Batch (&to)[3])
 }
 
 /// One sample of order `Order` from the row curves; `weights` are those of v, `[order][j]`.
-template <class L, int Order, int Components, int Capacity>
+template <class L, int Order, int Components, int Capacity, class Weight>
 [[gnu::always_inline]] inline void evaluate_sample(const RowCurves<L, Order, Components, Capacity>& curves,
-                                                   const typename L::Scalar* weights, int count, Sample<L>& sample) {
+                                                   const Weight* weights, int count, Sample<L>& sample) {
   typename L::Batch p[Components], p_u[Components], p_v[Components], p_uu[Components], p_uv[Components],
       p_vv[Components];
   combine<L>(weights, count, curves.by_u[0], p);

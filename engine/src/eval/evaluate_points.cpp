@@ -1,0 +1,136 @@
+// Scattered samples over threads: all are checked before the first is evaluated, then chunk after chunk goes through the
+// kernels.
+
+#include "tessera/evaluate_points.h"
+
+#include <algorithm>
+#include <atomic>
+#include <string>
+
+#include "base/guard.h"
+#include "eval/point_chunk.h"
+#include "eval/point_sources.h"
+#include "parallel/parallel_for.h"
+
+namespace tessera {
+namespace {
+
+/// Below these many samples one thread is faster than waking another.
+constexpr std::size_t serial_positions = 4096, serial_normals = 2048;
+
+/// Of the options and the views; `order`: of the derivatives that are needed.
+template <class T, class Source>
+Status check_call(const PatchSet::Impl& set, const Source& source, const GridViews<T>& out, const PointOptions& options,
+                  int& order) {
+  const bool twice = sizeof(T) == 8;
+  if (!set.has_points(twice ? Precision::double_precision : Precision::single_precision))
+    return Status(StatusCode::unsupported,
+                  std::string("the patch set holds no coefficients for points; see BlockKinds::") +
+                      (twice ? "double_points" : "float_points"));
+  if (!source.lengths_fit())
+    return Status(StatusCode::count_mismatch,
+                  std::to_string(source.count()) + " samples need as many parameters and numbers each way");
+  const auto fraction = [](double value) { return value >= 0 && value < 1; };
+  if (!fraction(options.geometry.smallest_sine) || !fraction(options.geometry.umbilic_tolerance))
+    return Status(StatusCode::invalid_argument,
+                  "the smallest sine and the umbilic tolerance must lie from 0 to below 1");
+  ViewChecks checks(source.count());
+  order = -1;
+  for_each_output<T>([&](const auto& output) {
+    const auto& view = out.*output.view;
+    const bool wanted = std::ranges::any_of(view.component, [](const auto* memory) { return memory != nullptr; });
+    if (!wanted) return;
+    checks.add(output.name, view);
+    order = std::max(order, output.order);
+  });
+  if (source.count() > 0) source.check_views(checks);
+  if (Status status = checks.status(); !status.ok()) return status;
+  return order < 0 ? Status(StatusCode::invalid_argument, "no output is wanted") : Status();
+}
+
+/// The first sample that can't be evaluated, for any number of threads.
+template <class Source>
+Status check_samples(const Source& source, std::size_t grain, const Execution& execution) {
+  std::atomic<std::size_t> refused{source.count()};
+  const Execution checking{.cancel = execution.cancel};
+  const Status status = parallel_for(source.count(), grain, checking, [&](std::size_t begin, std::size_t end) {
+    if (begin >= refused.load(std::memory_order_relaxed)) return;
+    const Status found = source.check(begin, end);
+    if (found.ok()) return;
+    const auto sample = static_cast<std::size_t>(found.index());
+    std::size_t first = refused;
+    while (sample < first && !refused.compare_exchange_weak(first, sample)) continue;
+  });
+  if (!status.ok() || refused == source.count()) return status;
+  return source.check(refused, refused + 1);
+}
+
+template <class T, class Source>
+Status run(const PatchSet::Impl& set, const Source& source, const GridViews<T>& out, const PointOptions& options,
+           const Execution& execution) {
+  int order = 0;
+  if (Status status = check_call(set, source, out, options, order); !status.ok()) return status;
+  const Result<Isa> isa = options.isa ? parse_isa(name(*options.isa)) : default_isa();
+  if (!isa) return isa.status();
+  const std::size_t capacity = ChunkSamples<T>::capacity;
+  const bool serial = source.count() <= (order > 0 ? serial_normals : serial_positions);
+  const std::size_t grain = serial ? std::max<std::size_t>(source.count(), 1) : capacity;
+  if (Status status = check_samples(source, 8 * grain, execution); !status.ok()) return status;
+
+  const PointCall<T> call{set, kernel::kernels(*isa), out, options.geometry};
+  std::atomic<Isa> ran{*isa};
+  const Status status = parallel_for(source.count(), grain, execution, [&](std::size_t begin, std::size_t end) {
+    PointChunk<T> chunk(call);
+    for (; begin < end; begin += capacity) {
+      auto& samples = chunk.samples();
+      samples.begin = begin;
+      samples.count = std::min(capacity, end - begin);
+      source.fill(begin, samples.count, call.kernels, samples);
+      ran.store(chunk.run(), std::memory_order_relaxed);
+    }
+  });
+  if (execution.report) {
+    execution.report->isa = ran;
+    execution.report->streaming = false;
+  }
+  return status;
+}
+
+template <class T>
+Status run_patches(const PatchSet& set, const PatchSamples<T>& samples, const GridViews<T>& out,
+                   const PointOptions& options, const Execution& execution) {
+  return guarded([&] {
+    return run(set.impl(), SamplesByPatch<T>(set.impl(), samples, options.outside), out, options, execution);
+  });
+}
+
+template <class T>
+Status run_surfaces(const PatchSet& set, const SurfaceMap& map, const SurfaceSamples& samples, const GridViews<T>& out,
+                    const PointOptions& options, const Execution& execution) {
+  return guarded([&]() -> Status {
+    if (map.impl().patch_count != set.patch_count() || map.surface_count() != set.surface_count())
+      return Status(StatusCode::invalid_argument, "the surface map was made for another patch set");
+    return run(set.impl(), SamplesBySurface<T>(map.impl(), samples, options.outside), out, options, execution);
+  });
+}
+
+}  // namespace
+
+Status evaluate(const PatchSet& set, const PatchSamples<float>& samples, const PointViews<float>& out,
+                const PointOptions& options, const Execution& execution) {
+  return run_patches(set, samples, out, options, execution);
+}
+Status evaluate(const PatchSet& set, const PatchSamples<double>& samples, const PointViews<double>& out,
+                const PointOptions& options, const Execution& execution) {
+  return run_patches(set, samples, out, options, execution);
+}
+Status evaluate(const PatchSet& set, const SurfaceMap& map, const SurfaceSamples& samples, const PointViews<float>& out,
+                const PointOptions& options, const Execution& execution) {
+  return run_surfaces(set, map, samples, out, options, execution);
+}
+Status evaluate(const PatchSet& set, const SurfaceMap& map, const SurfaceSamples& samples,
+                const PointViews<double>& out, const PointOptions& options, const Execution& execution) {
+  return run_surfaces(set, map, samples, out, options, execution);
+}
+
+}  // namespace tessera

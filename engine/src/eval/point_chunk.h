@@ -1,0 +1,319 @@
+#pragma once
+// A task's share of scattered samples, on their way from patches and parameters to the caller's records.
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <type_traits>
+
+#include "base/aligned.h"
+#include "block/patch_set_impl.h"
+#include "eval/grid_outputs.h"
+#include "tessera/evaluate_points.h"
+
+namespace tessera {
+
+/// What all chunks of a call share.
+template <class T>
+struct PointCall {
+  const PatchSet::Impl& set;
+  const kernel::KernelTable& kernels;
+  const GridViews<T>& out;
+  LocalGeometryOptions geometry;
+};
+
+/// Samples of a chunk by patch and local parameters, as a source of samples fills them in.
+template <class T>
+struct ChunkSamples {
+  static constexpr std::size_t capacity = 2048;
+  /// Kernels read, and fetch ahead, beyond the last sample.
+  static constexpr std::size_t padded = capacity + kernel::block_lanes + kernel::prefetch_distance;
+
+  std::size_t begin = 0, count = 0;  ///< of the call's samples
+  std::array<std::uint32_t, padded> patch;
+  alignas(cache_line) std::array<T, padded> u, v;
+  /// What derivatives by local parameters are to be divided by: widths of the patch in the surface's parameters.
+  bool scaled = false;
+  std::array<double, padded> width_u, width_v;
+};
+
+/// Evaluates chunk after chunk. Lives on a task's stack; allocates nothing.
+template <class T>
+class PointChunk {
+ public:
+  using Samples = ChunkSamples<T>;
+
+  explicit PointChunk(const PointCall<T>& call) : call_(call), coefficients_(call.set.template coefficients<T>()) {
+    prepare_job();
+    T* next = stage_.data();
+    for_each_value_output<T>([&](const auto& output) {
+      const auto& view = call.out.*output.view;
+      if (view.empty()) return;
+      Field& field = fields_[field_count_++];
+      field = {next, output.width, view.stride, {}, factors_of(output.name)};
+      std::copy(view.component.begin(), view.component.end(), field.out.begin());
+      job_.grid.*output.job = next;
+      next += std::ptrdiff_t{output.width} * lanes * batch;
+    });
+    std::size_t kind = 0;
+    for_each_kind_output<T>([&](const auto& output) {
+      job_.grid.*output.job = (call.out.*output.view).empty() ? nullptr : kinds_[kind].data();
+      ++kind;
+    });
+  }
+  PointChunk(const PointChunk&) = delete;
+  PointChunk& operator=(const PointChunk&) = delete;
+
+  /// The samples to be filled in before the next run().
+  Samples& samples() { return samples_; }
+
+  /// Evaluates the samples to their records.
+  Isa run() {
+    const auto& groups = call_.set.groups;
+    if (groups.size() == 1) return run_all(groups.front());
+    std::array<std::uint8_t, Samples::capacity> of_group;
+    Isa isa = Isa::sse2;
+    for (std::size_t k = 0; k < samples_.count; ++k) of_group[k] = 0;
+    for (std::size_t k = 0; k < samples_.count; ++k) {
+      if (of_group[k]) continue;  // of a group that is done
+      const BlockGroup& group = call_.set.group_of_block(call_.set.slots[samples_.patch[k]].block);
+      isa = run_group(group, k, of_group);
+    }
+    return isa;
+  }
+
+ private:
+  static constexpr int lanes = kernel::block_lanes;
+  static constexpr int batch = 8;  ///< slots in the stage
+  static constexpr std::size_t most_fields = std::size(vector_outputs<T>) + std::size(scalar_outputs<T>);
+  static constexpr std::size_t stage_rows = 3 * std::size(vector_outputs<T>) + std::size(scalar_outputs<T>);
+  /// From runs of this mean length on, broadcast coefficients win.
+  static constexpr std::size_t shortest_run = 8;
+  static constexpr std::size_t most_slots = Samples::capacity / shortest_run + Samples::capacity / lanes;
+  /// Patches beyond this many bytes are fetched ahead: a second-level cache.
+  static constexpr std::size_t cached_bytes = 1 << 20;
+
+  /// How often each component of an output is to be divided by the patch's width along u and v.
+  struct Factors {
+    std::array<int, 3> u{}, v{};
+  };
+  /// A wanted output.
+  struct Field {
+    T* stage = nullptr;
+    int width = 3;
+    std::ptrdiff_t stride = 1;
+    std::array<T*, 3> out{};
+    Factors factors;
+  };
+
+  static Factors factors_of(std::string_view name) {
+    if (name == "du") return {{1, 1, 1}, {}};
+    if (name == "dv") return {{}, {1, 1, 1}};
+    if (name == "duu") return {{2, 2, 2}, {}};
+    if (name == "duv") return {{1, 1, 1}, {1, 1, 1}};
+    if (name == "dvv") return {{}, {2, 2, 2}};
+    if (name == "first_form" || name == "second_form") return {{2, 1, 0}, {0, 1, 2}};
+    return {};
+  }
+
+  void prepare_job() {
+    kernel::GridJob<T>& grid = job_.grid;
+    if constexpr (sizeof(T) == 8) {
+      grid.offset[0] = call_.set.origin.x;
+      grid.offset[1] = call_.set.origin.y;
+      grid.offset[2] = call_.set.origin.z;
+    }
+    doubts_.fill(coefficients_.largest_doubt);
+    grid.doubt = doubts_.data();
+    grid.lane_doubt = lane_doubt;
+    grid.exact_normal = exact_normal;
+    grid.exact_context = this;
+    const double smallest_sine = sizeof(T) == 4 ? 1e-6 : 0, smallest_tolerance = sizeof(T) == 4 ? 1e-4 : 0;
+    grid.smallest_sine = static_cast<T>(std::max(call_.geometry.smallest_sine, smallest_sine));
+    grid.umbilic_tolerance = static_cast<T>(std::max(call_.geometry.umbilic_tolerance, smallest_tolerance));
+    job_.nets = nets_.data();
+  }
+
+  /// Every sample is of this group: patches lie in their own order.
+  Isa run_all(const BlockGroup& group) {
+    const T* const points = coefficients_.points.data();
+    for (std::size_t k = 0; k < samples_.count; ++k) nets_[k] = points + samples_.patch[k] * group.point_values;
+    list_ = nullptr;
+    count_ = samples_.count;
+    pad(samples_.u);
+    pad(samples_.v);
+    job_.u = samples_.u.data();
+    job_.v = samples_.v.data();
+    return run_list(group);
+  }
+
+  /// The samples of one group, from the first on; marks them in `done`.
+  Isa run_group(const BlockGroup& group, std::size_t first, std::array<std::uint8_t, Samples::capacity>& done) {
+    count_ = 0;
+    for (std::size_t k = first; k < samples_.count; ++k) {
+      const PatchSet::Slot& slot = call_.set.slots[samples_.patch[k]];
+      if (slot.block - group.first_block >= group.block_count) continue;  // unsigned: below it too
+      done[k] = 1;
+      nets_[count_] = coefficients_.points.data() + group.point_value(slot);
+      listed_u_[count_] = samples_.u[k];
+      listed_v_[count_] = samples_.v[k];
+      indices_[count_++] = static_cast<std::uint32_t>(k);
+    }
+    list_ = indices_.data();
+    pad(listed_u_);
+    pad(listed_v_);
+    job_.u = listed_u_.data();
+    job_.v = listed_v_.data();
+    return run_list(group);
+  }
+
+  /// Repeats the last sample for lanes without one.
+  void pad(std::array<T, Samples::padded>& values) const {
+    std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(count_), lanes, values[count_ - 1]);
+  }
+
+  Isa run_list(const BlockGroup& group) {
+    std::fill(nets_.begin() + static_cast<std::ptrdiff_t>(count_), nets_.end(), nets_[count_ - 1]);
+    kernel::GridJob<T>& grid = job_.grid;
+    grid.degree_u = group.degree_u;
+    grid.degree_v = group.degree_v;
+    grid.rational = group.rational;
+    const std::size_t bytes = group.point_values * sizeof(T);
+    job_.prefetched = coefficients_.points.size() * sizeof(T) > cached_bytes ? bytes : 0;
+    const std::size_t slots = make_slots();
+    Isa isa = Isa::sse2;
+    for (std::size_t first = 0; first < slots; first += batch) {
+      job_.slots = slots_.data() + first;
+      job_.slot_count = static_cast<int>(std::min<std::size_t>(batch, slots - first));
+      if constexpr (sizeof(T) == 4) {
+        isa = call_.kernels.points_f32(job_);
+      } else {
+        isa = call_.kernels.points_f64(job_);
+      }
+      move_out();
+    }
+    return isa;
+  }
+
+  /// Slots of samples of one patch where runs are long enough, of any samples otherwise.
+  std::size_t make_slots() {
+    const std::size_t runs = find_runs();
+    job_.runs = runs * shortest_run <= count_;
+    if (!job_.runs) return add_slots(0, count_, 0);
+    std::size_t slots = 0;
+    for (std::size_t run = 0; run < runs; ++run) slots = add_slots(run_starts_[run], run_starts_[run + 1], slots);
+    return slots;
+  }
+  /// Where runs of one patch begin, and the end of the last; without a branch a sample.
+  std::size_t find_runs() {
+    std::size_t runs = 1;
+    run_starts_[0] = 0;
+    for (std::size_t k = 1; k < count_; ++k) {
+      run_starts_[runs] = static_cast<std::uint16_t>(k);
+      runs += nets_[k] != nets_[k - 1];
+    }
+    run_starts_[runs] = static_cast<std::uint16_t>(count_);
+    return runs;
+  }
+  /// Cuts samples [begin, end) into slots behind the `slots` that there are; returns how many there are then.
+  std::size_t add_slots(std::size_t begin, std::size_t end, std::size_t slots) {
+    for (std::size_t k = begin; k < end; k += lanes)
+      slots_[slots++] = {static_cast<int>(k), static_cast<int>(std::min<std::size_t>(lanes, end - k))};
+    return slots;
+  }
+
+  std::size_t sample_of(int slot, int lane) const {
+    const std::size_t k = std::min(static_cast<std::size_t>(job_.slots[slot].first + lane), count_ - 1);
+    return list_ ? list_[k] : k;
+  }
+
+  void move_out() {
+    for (const Field& field : std::span(fields_.data(), field_count_)) {
+      if (samples_.scaled) scale(field);
+      kernel::PointStoreJob<T> store{.stage = field.stage,
+                                     .width = field.width,
+                                     .slots = job_.slots,
+                                     .slot_count = job_.slot_count,
+                                     .records = list_,
+                                     .stride = field.stride};
+      for (std::size_t c = 0; c < static_cast<std::size_t>(field.width); ++c)
+        store.out[c] = field.out[c] + static_cast<std::ptrdiff_t>(samples_.begin) * field.stride;
+      if constexpr (sizeof(T) == 4) {
+        call_.kernels.store_points_f32(store);
+      } else {
+        call_.kernels.store_points_f64(store);
+      }
+    }
+    std::size_t kind = 0;
+    for_each_kind_output<T>([&](const auto& output) {
+      const std::uint8_t* kinds = kinds_[kind++].data();
+      const auto& view = call_.out.*output.view;
+      if (view.empty()) return;
+      using Kind = std::remove_cvref_t<decltype(view.at(0, 0))>;
+      for (int slot = 0; slot < job_.slot_count; ++slot)
+        for (int lane = 0; lane < job_.slots[slot].count; ++lane)
+          view.at(samples_.begin + sample_of(slot, lane), 0) = static_cast<Kind>(kinds[slot * lanes + lane]);
+    });
+  }
+
+  /// From derivatives by local parameters to those by the surface's; in double, and by division, since a width or its
+  /// inverse may be out of range where the result is not.
+  void scale(const Field& field) {
+    for (int c = 0; c < field.width; ++c) {
+      const int by_u = field.factors.u[static_cast<std::size_t>(c)],
+                by_v = field.factors.v[static_cast<std::size_t>(c)];
+      if (by_u + by_v == 0) continue;
+      for (int slot = 0; slot < job_.slot_count; ++slot) {
+        T* values = field.stage + (slot * field.width + c) * lanes;
+        for (int lane = 0; lane < job_.slots[slot].count; ++lane) {
+          const std::size_t k = sample_of(slot, lane);
+          double value = values[lane];
+          for (int times = 0; times < by_u; ++times) value /= samples_.width_u[k];
+          for (int times = 0; times < by_v; ++times) value /= samples_.width_v[k];
+          values[lane] = static_cast<T>(value);
+        }
+      }
+    }
+  }
+
+  /// See kernel::LaneDoubt.
+  static void lane_doubt(void* context, int slot, int lane, T* doubt, T* noise) {
+    const auto& self = *static_cast<PointChunk*>(context);
+    const PatchSet::Slot at = self.call_.set.slots[self.samples_.patch[self.sample_of(slot, lane)]];
+    const auto& own = self.coefficients_.point_doubt[at.block * std::size_t{lanes} + at.lane];
+    *doubt = own[1] < 0 ? std::numeric_limits<T>::max() : own[0];
+    *noise = own[1];
+  }
+
+  /// See kernel::ExactNormal.
+  static int exact_normal(void* context, int slot, int, int lane, T* normal) {
+    const auto& self = *static_cast<PointChunk*>(context);
+    const std::size_t k = self.sample_of(slot, lane);
+    const UnitNormal exact =
+        unit_normal(self.call_.set.patches[self.samples_.patch[k]], self.samples_.u[k], self.samples_.v[k]);
+    normal[0] = static_cast<T>(exact.direction.x);
+    normal[1] = static_cast<T>(exact.direction.y);
+    normal[2] = static_cast<T>(exact.direction.z);
+    return static_cast<int>(exact.kind);
+  }
+
+  const PointCall<T>& call_;
+  const Coefficients<T>& coefficients_;
+  kernel::PointJob<T> job_;
+  std::array<Field, most_fields> fields_{};
+  std::size_t field_count_ = 0;
+  Samples samples_;
+  const std::uint32_t* list_ = nullptr;  ///< the samples at work; null: all
+  std::size_t count_ = 0;                ///< of the samples at work
+  std::array<const T*, Samples::padded> nets_;
+  alignas(cache_line) std::array<T, Samples::padded> listed_u_, listed_v_;
+  std::array<std::uint32_t, Samples::capacity> indices_;
+  std::array<std::uint16_t, Samples::capacity + 1> run_starts_;
+  std::array<kernel::PointSlot, most_slots> slots_;
+  alignas(cache_line) std::array<T, lanes> doubts_;
+  alignas(cache_line) std::array<T, stage_rows * lanes * batch> stage_;
+  alignas(cache_line) std::array<std::array<std::uint8_t, static_cast<std::size_t>(lanes) * batch>, 2> kinds_;
+};
+
+}  // namespace tessera

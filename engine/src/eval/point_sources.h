@@ -1,0 +1,205 @@
+#pragma once
+// Where scattered samples come from: by patch, or by surface. A source checks its samples, then hands them out by the
+// chunk.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <type_traits>
+
+#include "base/text.h"
+#include "eval/point_chunk.h"
+#include "eval/surface_map_impl.h"
+#include "eval/view_checks.h"
+
+namespace tessera {
+
+/// Status of one sample that can't be evaluated.
+inline Status refused_sample(StatusCode code, std::size_t sample, const std::string& why) {
+  return Status(code, "sample " + std::to_string(sample) + ": " + why, static_cast<std::ptrdiff_t>(sample));
+}
+inline Status refused_parameter(const char* direction, std::size_t sample, double t, double from, double to) {
+  const std::string what = std::string(direction) + " = " + text(t);
+  if (!std::isfinite(t)) return refused_sample(StatusCode::non_finite, sample, what + " is not finite");
+  return refused_sample(StatusCode::invalid_argument, sample,
+                        what + " is outside [" + text(from) + ", " + text(to) + "]");
+}
+
+/// Copies values [begin, begin + count) of a view.
+template <class From, class To>
+void gather(const View1<const From>& view, std::size_t begin, std::size_t count, To* to) {
+  const From* from = view.component[0] + static_cast<std::ptrdiff_t>(begin) * view.stride;
+  if (std::is_same_v<From, To> && view.stride == 1) {
+    std::memcpy(to, from, count * sizeof(From));
+  } else {
+    for (std::size_t k = 0; k < count; ++k) to[k] = from[static_cast<std::ptrdiff_t>(k) * view.stride];
+  }
+}
+
+/// Whether all values of a view in [begin, end) pass; without a branch in between, so that it runs in vectors.
+template <class T, class Passes>
+bool all_pass(const View1<const T>& view, std::size_t begin, std::size_t end, Passes passes) {
+  const T* values = view.component[0] + static_cast<std::ptrdiff_t>(begin) * view.stride;
+  const std::size_t count = end - begin;
+  unsigned refused = 0;
+  if (view.stride == 1) {
+    for (std::size_t k = 0; k < count; ++k) refused += !passes(values[k]);
+  } else {
+    for (std::size_t k = 0; k < count; ++k) refused += !passes(values[static_cast<std::ptrdiff_t>(k) * view.stride]);
+  }
+  return refused == 0;
+}
+
+/// Samples by patch.
+template <class T>
+class SamplesByPatch {
+ public:
+  SamplesByPatch(const PatchSet::Impl& set, const PatchSamples<T>& samples, OutsideDomain outside)
+      : patches_(static_cast<std::uint32_t>(set.patches.size())), samples_(samples), outside_(outside) {}
+
+  std::size_t count() const { return samples_.patch.size; }
+  bool lengths_fit() const { return samples_.u.size >= count() && samples_.v.size >= count(); }
+  void check_views(ViewChecks& checks) const {
+    checks.add("patch", samples_.patch);
+    checks.add("u", samples_.u);
+    checks.add("v", samples_.v);
+  }
+
+  /// Of samples [begin, end): the first one that can't be evaluated.
+  Status check(std::size_t begin, std::size_t end) const {
+    const auto inside = [this](T t) { return passes(t); };
+    if (all_pass(samples_.patch, begin, end, [this](std::uint32_t patch) { return patch < patches_; }) &&
+        all_pass(samples_.u, begin, end, inside) && all_pass(samples_.v, begin, end, inside))
+      return {};
+    for (std::size_t k = begin; k < end; ++k) {
+      if (samples_.patch.at(k, 0) >= patches_)
+        return refused_sample(StatusCode::invalid_argument, k,
+                              "there is no patch " + std::to_string(samples_.patch.at(k, 0)) + " in a set of " +
+                                  std::to_string(patches_));
+      for (const auto& [name, t] : {std::pair{"u", samples_.u.at(k, 0)}, {"v", samples_.v.at(k, 0)}})
+        if (!passes(t)) return refused_parameter(name, k, t, 0, 1);
+    }
+    return {};
+  }
+
+  void fill(std::size_t begin, std::size_t count, const kernel::KernelTable&, ChunkSamples<T>& chunk) const {
+    gather(samples_.patch, begin, count, chunk.patch.data());
+    gather(samples_.u, begin, count, chunk.u.data());
+    gather(samples_.v, begin, count, chunk.v.data());
+    if (outside_ != OutsideDomain::clamp) return;
+    for (auto* parameters : {&chunk.u, &chunk.v})
+      for (std::size_t k = 0; k < count; ++k) (*parameters)[k] = std::clamp<T>((*parameters)[k], 0, 1);
+  }
+
+ private:
+  bool passes(T t) const {
+    return outside_ == OutsideDomain::error ? (t >= 0) & (t <= 1) : std::abs(t) <= std::numeric_limits<T>::max();
+  }
+
+  std::uint32_t patches_;
+  const PatchSamples<T>& samples_;
+  OutsideDomain outside_;
+};
+
+/// Samples by surface.
+template <class T>
+class SamplesBySurface {
+ public:
+  SamplesBySurface(const SurfaceMap::Impl& map, const SurfaceSamples& samples, OutsideDomain outside)
+      : map_(map), samples_(samples), outside_(outside) {}
+
+  std::size_t count() const { return samples_.u.size; }
+  bool lengths_fit() const {
+    return samples_.v.size >= count() && (samples_.surface.empty() || samples_.surface.size >= count());
+  }
+  void check_views(ViewChecks& checks) const {
+    if (!samples_.surface.empty()) checks.add("surface", samples_.surface);
+    checks.add("u", samples_.u);
+    checks.add("v", samples_.v);
+  }
+
+  Status check(std::size_t begin, std::size_t end) const {
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::uint32_t surface = surface_of(k);
+      if (surface >= map_.surfaces.size() || map_.surfaces[surface].breaks_u.empty())
+        return refused_sample(StatusCode::invalid_argument, k,
+                              "there is no surface " + std::to_string(surface) + " in the set");
+      const auto& breaks_u = map_.surfaces[surface].breaks_u;
+      const auto& breaks_v = map_.surfaces[surface].breaks_v;
+      const double u = samples_.u.at(k, 0), v = samples_.v.at(k, 0);
+      if (!passes(u, breaks_u)) return refused_parameter("u", k, u, breaks_u.front(), breaks_u.back());
+      if (!passes(v, breaks_v)) return refused_parameter("v", k, v, breaks_v.front(), breaks_v.back());
+    }
+    return {};
+  }
+
+  void fill(std::size_t begin, std::size_t count, const kernel::KernelTable& kernels, ChunkSamples<T>& chunk) const {
+    chunk.scaled = true;
+    for (std::size_t first = 0; first < count;) {
+      std::size_t last = std::min(count, first + piece);
+      const std::uint32_t surface = surface_of(begin + first);
+      if (!samples_.surface.empty()) last = first + 1 + equal_after(begin + first, begin + last);
+      fill_piece(map_.surfaces[surface], begin, first, last - first, kernels, chunk);
+      first = last;
+    }
+  }
+
+ private:
+  static constexpr std::size_t piece = 256;  ///< samples of one surface that are located at once
+  struct Located {
+    alignas(cache_line) std::array<double, piece> t, local;
+    std::array<std::int64_t, piece> span;
+  };
+
+  std::uint32_t surface_of(std::size_t k) const { return samples_.surface.empty() ? 0 : samples_.surface.at(k, 0); }
+  std::size_t equal_after(std::size_t k, std::size_t end) const {
+    std::size_t next = k + 1;
+    while (next < end && surface_of(next) == surface_of(k)) ++next;
+    return next - k - 1;
+  }
+  bool passes(double t, const std::vector<double>& breaks) const {
+    if (outside_ == OutsideDomain::error) return t >= breaks.front() && t <= breaks.back();
+    return std::isfinite(t);
+  }
+
+  void fill_piece(const SurfaceMap::Impl::Surface& surface, std::size_t begin, std::size_t first, std::size_t count,
+                  const kernel::KernelTable& kernels, ChunkSamples<T>& chunk) const {
+    Located u, v;
+    locate(surface.breaks_u, samples_.u, begin + first, count, kernels, u, chunk.width_u.data() + first);
+    locate(surface.breaks_v, samples_.v, begin + first, count, kernels, v, chunk.width_v.data() + first);
+    const std::size_t columns = surface.breaks_v.size() - 1;
+    for (std::size_t k = 0; k < count; ++k) {
+      chunk.patch[first + k] = static_cast<std::uint32_t>(
+          surface.first_patch + static_cast<std::size_t>(u.span[k]) * columns + static_cast<std::size_t>(v.span[k]));
+      chunk.u[first + k] = static_cast<T>(u.local[k]);
+      chunk.v[first + k] = static_cast<T>(v.local[k]);
+    }
+  }
+
+  void locate(const std::vector<double>& breaks, const View1<const double>& parameters, std::size_t begin,
+              std::size_t count, const kernel::KernelTable& kernels, Located& located, double* widths) const {
+    gather(parameters, begin, count, located.t.data());
+    if (outside_ == OutsideDomain::clamp)
+      for (std::size_t k = 0; k < count; ++k) located.t[k] = std::clamp(located.t[k], breaks.front(), breaks.back());
+    const std::size_t lanes = kernel::locate_lanes, whole = (count + lanes - 1) / lanes * lanes;
+    std::fill(located.t.begin() + static_cast<std::ptrdiff_t>(count),
+              located.t.begin() + static_cast<std::ptrdiff_t>(whole), breaks.front());
+    alignas(cache_line) std::array<double, piece> width;
+    kernels.locate({.breaks = breaks.data(),
+                    .spans = breaks.size() - 1,
+                    .t = located.t.data(),
+                    .count = count,
+                    .span = located.span.data(),
+                    .local = located.local.data(),
+                    .width = width.data()});
+    std::copy_n(width.begin(), count, widths);
+  }
+
+  const SurfaceMap::Impl& map_;
+  const SurfaceSamples& samples_;
+  OutsideDomain outside_;
+};
+
+}  // namespace tessera

@@ -1,0 +1,52 @@
+#pragma once
+// Whether the views that a call is given can be used: complete, long enough, aligned, and apart from each other.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "tessera/status.h"
+#include "tessera/views.h"
+
+namespace tessera {
+
+/// Takes note of the views of one call, one after the other; the first error stands.
+class ViewChecks {
+ public:
+  /// Of every view so many records are used.
+  explicit ViewChecks(std::size_t records) : records_(records) {}
+
+  /// Errors: invalid_argument (a component is missing or misaligned, the stride is below 1 or leaves memory),
+  /// buffer_too_small. `name` must outlive this.
+  template <class T, int N>
+  void add(const char* name, const VectorView<T, N>& view) {
+    for (T* component : view.component)
+      add({name, reinterpret_cast<std::uintptr_t>(component), view.stride, sizeof(T), !std::is_const_v<T>}, view.size,
+          alignof(T));
+  }
+
+  /// The first error of all views, or invalid_argument if one that is written shares memory with another.
+  Status status() const;
+
+ private:
+  /// One component of a view.
+  struct Array {
+    const char* name;
+    std::uintptr_t begin;
+    std::ptrdiff_t stride;  ///< in elements
+    std::size_t element;    ///< bytes
+    bool written;
+  };
+  static constexpr std::size_t most_arrays = 64;
+
+  void add(const Array& array, std::size_t size, std::size_t alignment);
+  bool collide(const Array& a, const Array& b) const;
+
+  std::size_t records_;
+  Status error_;
+  std::array<Array, most_arrays> arrays_{};
+  std::size_t count_ = 0;
+};
+
+}  // namespace tessera

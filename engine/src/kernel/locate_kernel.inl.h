@@ -1,0 +1,25 @@
+// Span search for a batch of parameters, without a branch that depends on them: binary search in as many steps for each,
+// in loops over lanes that the compiler turns into gathers and comparisons. Included by isa_*.cpp as sample_kernel.inl.h
+// is.
+
+inline void locate_batch(const LocateJob& job, std::size_t first) {
+  constexpr std::size_t lanes = locate_lanes;
+  const double* const t = job.t + first;
+  alignas(64) std::int64_t base[lanes] = {};
+  for (auto rest = static_cast<std::int64_t>(job.spans); rest > 1;) {
+    const std::int64_t half = rest / 2;
+    for (std::size_t l = 0; l < lanes; ++l) base[l] = job.breaks[base[l] + half] <= t[l] ? base[l] + half : base[l];
+    rest -= half;
+  }
+  for (std::size_t l = 0; l < lanes; ++l) {
+    const double start = job.breaks[base[l]], end = job.breaks[base[l] + 1], width = end - start;
+    const double local = (t[l] - start) / width;
+    job.span[first + l] = base[l];
+    job.width[first + l] = width;
+    job.local[first + l] = t[l] == end ? 1 : local;
+  }
+}
+
+inline void locate(const LocateJob& job) {
+  for (std::size_t first = 0; first < job.count; first += locate_lanes) locate_batch(job, first);
+}

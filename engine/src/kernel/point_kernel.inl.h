@@ -1,0 +1,183 @@
+// Kernel 4, scattered samples. A patch lies together, rows [component][j] one after the other. For each sample whole
+// vectors of its patch's rows are summed, q = sum_i f_i(u) row_i; a transpose of `width` samples then gives the row
+// curves with lanes = samples, from where on everything goes as in a grid. Where all samples of a slot lie on one patch
+// its coefficients are broadcast instead: the same sums in the same order, so that the choice does not change a bit.
+// Included by isa_*.cpp as sample_kernel.inl.h is.
+
+/// Coefficients of the highest degree that an evaluation is made for. Degree 0: any.
+template <int Degree>
+constexpr int point_capacity = Degree > 0 ? Degree + 1 : max_order;
+
+/// The Bernstein weights of one parameter of a slot's samples: `[vector][order * (degree + 1) + i][lane]`.
+template <class L, int Degree, int Order>
+struct SlotWeights {
+  static constexpr int count = (Order + 1) * point_capacity<Degree>;
+  alignas(64) typename L::Scalar of[block_lanes / L::width][count][L::width];
+
+  [[gnu::always_inline]] void fill(const typename L::Scalar* parameters, int degree) {
+    for (auto& vector : of) {
+      typename L::Batch weights[count];
+      bernstein_weights<L, Order, point_capacity<Degree>>(L::Batch::load_unaligned(parameters), degree, weights);
+      for (int i = 0; i < (Order + 1) * (degree + 1); ++i) L::store(vector[i], weights[i]);
+      parameters += L::width;
+    }
+  }
+};
+
+/// sum_i weights[i] net[i * length], one vector of a row's `rest` last values. Reads no value behind the last row: that
+/// may lie on another cache line. `EndsLine`: rows are 12 wide and the last one ends a line.
+template <class L, bool EndsLine>
+[[gnu::always_inline]] inline typename L::Batch row_sum(const typename L::Scalar* net,
+                                                        const typename L::Scalar* weights, int count_u,
+                                                        std::ptrdiff_t length, int rest) {
+  using Batch = typename L::Batch;
+  const auto last_values = [&](const typename L::Scalar* row) -> Batch {
+    if constexpr (EndsLine) {
+      return L::rotated(L::load(row - 4));
+    } else {
+      return rest >= L::width ? Batch::load_unaligned(row) : L::load_first(row, rest);
+    }
+  };
+  Batch sum = L::broadcast(weights[0]) * Batch::load_unaligned(net);
+#pragma GCC unroll 4
+  for (int i = 1; i < count_u; ++i) {
+    const auto* row = net + i * length;
+    const Batch values = i + 1 < count_u ? Batch::load_unaligned(row) : last_values(row);
+    sum = L::fma(L::broadcast(weights[i * L::width]), values, sum);
+  }
+  return sum;
+}
+
+inline void fetch(const void* memory, std::size_t bytes) {
+  for (std::size_t b = 0; b < bytes; b += 64) __builtin_prefetch(static_cast<const char*>(memory) + b);
+}
+
+/// Row curves of `width` samples from their patches' rows.
+template <class L, int Degree, int Components, int Capacity>
+[[gnu::always_inline]] inline void curves_by_rows(const typename L::Scalar* const* nets,
+                                                  const typename L::Scalar* weights, int count_u, int count_v,
+                                                  std::size_t prefetched,
+                                                  typename L::Batch (&curve)[Components][Capacity]) {
+  constexpr bool ends_line = Degree == 3 && Components == 3 && L::width == 16;
+  const int length = Components * count_v;
+  int c = 0, j = 0;
+#pragma GCC unroll 4
+  for (int k = 0; k < length; k += L::width) {
+    typename L::Batch tile[L::width];
+#pragma GCC unroll 16
+    for (int s = 0; s < L::width; ++s) {
+      if (k == 0 && prefetched > 0) fetch(nets[s + prefetch_distance], prefetched);
+      tile[s] = row_sum<L, ends_line>(nets[s] + k, weights + s, count_u, length, length - k);
+    }
+    L::transpose(tile);
+    const int columns = length - k < L::width ? length - k : int{L::width};
+#pragma GCC unroll 16
+    for (int l = 0; l < columns; ++l) {
+      curve[c][j] = tile[l];
+      if (++j == count_v) j = 0, ++c;
+    }
+  }
+}
+
+/// `Count` neighbouring row curves of samples of one patch.
+template <class L, int Count>
+[[gnu::always_inline]] inline void run_sums(const typename L::Scalar* net, const typename L::Scalar* weights,
+                                            int count_u, std::ptrdiff_t length, typename L::Batch* sums) {
+  typename L::Batch sum[Count];
+  for (int k = 0; k < Count; ++k) sum[k] = L::load(weights) * L::broadcast(net[k]);
+  for (int i = 1; i < count_u; ++i) {
+    const auto weight = L::load(weights + i * L::width);
+    for (int k = 0; k < Count; ++k) sum[k] = L::fma(weight, L::broadcast(net[i * length + k]), sum[k]);
+  }
+  for (int k = 0; k < Count; ++k) sums[k] = sum[k];
+}
+
+/// Row curves of `width` samples of one patch.
+template <class L, int Degree, int Components, int Capacity>
+[[gnu::always_inline]] inline void curves_by_run(const typename L::Scalar* net, const typename L::Scalar* weights,
+                                                 int count_u, int count_v,
+                                                 typename L::Batch (&curve)[Components][Capacity]) {
+  constexpr int step = Degree > 0 && Degree < 3 ? Degree + 1 : 4;
+  const std::ptrdiff_t length = Components * count_v;
+  for (int c = 0; c < Components; ++c) {
+    const auto* row = net + c * count_v;
+    int j = 0;
+    for (; j + step <= count_v; j += step) run_sums<L, step>(row + j, weights, count_u, length, curve[c] + j);
+    for (; j < count_v; ++j) run_sums<L, 1>(row + j, weights, count_u, length, curve[c] + j);
+  }
+}
+
+/// The samples of slot k.
+template <class L, int Degree, bool Rational, int Order>
+inline void evaluate_slot(const PointJob<typename L::Scalar>& job, int k,
+                          const SlotWeights<L, Degree, Order>& u_weights,
+                          const SlotWeights<L, Degree, Order>& v_weights) {
+  constexpr int components = Rational ? 4 : 3, capacity = point_capacity<Degree>;
+  const int count_u = Degree > 0 ? Degree + 1 : job.grid.degree_u + 1;
+  const int count_v = Degree > 0 ? Degree + 1 : job.grid.degree_v + 1;
+  const PointSlot slot = job.slots[k];
+  for (int lane = 0; lane < slot.count; lane += L::width) {
+    const auto* const* nets = job.nets + slot.first + lane;
+    RowCurves<L, Order, components, capacity> curves;
+    for (int order = 0; order <= Order; ++order) {
+      const auto* of_order = u_weights.of[lane / L::width][order * count_u];
+      if (job.runs) {
+        curves_by_run<L, Degree>(job.nets[slot.first], of_order, count_u, count_v, curves.by_u[order]);
+      } else {
+        curves_by_rows<L, Degree>(nets, of_order, count_u, count_v, order == 0 ? job.prefetched : 0,
+                                  curves.by_u[order]);
+      }
+    }
+    Sample<L> sample;
+    evaluate_sample<L, Order>(curves, v_weights.of[lane / L::width], count_v, sample);
+    const std::ptrdiff_t at = std::ptrdiff_t{k} * block_lanes + lane, vector = at + std::ptrdiff_t{2} * k * block_lanes;
+    store_sample<L, Rational, false, Order>(job.grid, sample, {k, 0, lane}, {vector, at, at});
+  }
+}
+
+/// Weights of several slots come first: their long chains of products then overlap.
+template <class L, int Degree, bool Rational, int Order>
+void evaluate_slots(const PointJob<typename L::Scalar>& job) {
+  constexpr int at_once = Degree > 0 ? 8 : 1;
+  const int degree_u = Degree > 0 ? Degree : job.grid.degree_u, degree_v = Degree > 0 ? Degree : job.grid.degree_v;
+  SlotWeights<L, Degree, Order> u_weights[at_once], v_weights[at_once];
+  for (int first = 0; first < job.slot_count; first += at_once) {
+    const int count = job.slot_count - first < at_once ? job.slot_count - first : at_once;
+    for (int k = 0; k < count; ++k) {
+      u_weights[k].fill(job.u + job.slots[first + k].first, degree_u);
+      v_weights[k].fill(job.v + job.slots[first + k].first, degree_v);
+    }
+    for (int k = 0; k < count; ++k)
+      evaluate_slot<L, Degree, Rational, Order>(job, first + k, u_weights[k], v_weights[k]);
+  }
+}
+
+/// Degrees that are fixed where it pays, and any.
+template <class L, int Order>
+void choose_degree(const PointJob<typename L::Scalar>& job) {
+  const int degree = job.grid.degree_u == job.grid.degree_v ? job.grid.degree_u : 0;
+  if (job.grid.rational) {
+    evaluate_slots<L, 0, true, Order>(job);
+  } else if (degree == 3) {
+    evaluate_slots<L, 3, false, Order>(job);
+  } else if (degree == 2 && Order < 2) {
+    evaluate_slots < L, Order<2 ? 2 : 0, false, Order>(job);
+  } else if (degree == 1 && Order < 2) {
+    evaluate_slots < L, Order<2 ? 1 : 0, false, Order>(job);
+  } else {
+    evaluate_slots<L, 0, false, Order>(job);
+  }
+}
+
+template <class L>
+Isa evaluate_points(const PointJob<typename L::Scalar>& job) {
+  const auto& grid = job.grid;
+  if (grid.duu || grid.duv || grid.dvv || wants_curvatures(grid)) {
+    choose_degree<L, 2>(job);
+  } else if (grid.du || grid.dv || grid.normal || grid.normal_kind) {
+    choose_degree<L, 1>(job);
+  } else {
+    choose_degree<L, 0>(job);
+  }
+  return this_isa;
+}

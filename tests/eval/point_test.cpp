@@ -1,0 +1,203 @@
+// Scattered points: the same bytes however they are asked for, degenerate points, edits.
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+
+#include "support/allocations.h"
+#include "support/points.h"
+#include "support/reference.h"
+#include "support/ulp.h"
+
+namespace tessera::test {
+namespace {
+
+template <class T>
+AllBuffers<T> run(const PatchSet& set, const Samples<T>& samples, Isa isa, int threads, ExecutionReport& report) {
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  tbb::task_arena arena(threads);
+  Execution execution;
+  execution.report = &report;
+  AllBuffers<T> out(samples.size());
+  arena.execute([&] { out = all_outputs(set, samples, {.isa = isa}, execution); });
+  return out;
+}
+
+template <class T>
+void compare_bytes(const std::vector<BezierPatch>& patches, std::size_t count) {
+  Random random(311);
+  const PatchSet set = set_of(patches, with_points());
+  const Samples<T> samples = random_samples<T>(random, set.patch_count(), count);
+  std::vector<AllBuffers<T>> by_isa;
+  for (const Isa isa : available_isas()) {
+    ExecutionReport report;
+    by_isa.push_back(run(set, samples, isa, 1, report));
+    EXPECT_GT(report.tasks, 2u) << "too little work to be shared";
+    EXPECT_EQ(report.isa, isa);
+    EXPECT_TRUE(by_isa.back() == run(set, samples, isa, 2, report)) << name(isa);
+    EXPECT_TRUE(by_isa.back() == run(set, samples, isa, 8, report)) << name(isa);
+  }
+  if (by_isa.size() < 3) GTEST_SKIP() << "this machine lacks AVX-512";
+  EXPECT_TRUE(by_isa[1] == by_isa[2]);
+  EXPECT_FALSE(by_isa[0] == by_isa[1]) << "SSE2 can't round like AVX2";
+}
+
+TEST(Points, SameBytesForAnyThreadsAndOnEveryIsaOfOneDegree) {
+  compare_bytes<float>(test::wavy_field(9, 11), 20000);
+  compare_bytes<double>(test::wavy_field(9, 11), 9000);
+}
+TEST(Points, SameBytesForAnyThreadsAndOnEveryIsaOfMixedDegrees) {
+  Random random(312);
+  const std::vector<BezierPatch> patches = mixed_patches(random, 4, 2);
+  compare_bytes<float>(patches, 9000);
+  compare_bytes<double>(patches, 9000);
+}
+
+/// A sample's values depend neither on its neighbours nor on which kernel their order calls for.
+template <class T>
+void compare_orders(const std::vector<BezierPatch>& patches) {
+  Random random(313);
+  const PatchSet set = set_of(patches, with_points());
+  const Samples<T> samples = random_samples<T>(random, set.patch_count(), 5000);
+  std::vector<std::size_t> order = shuffled_order(random, samples.size());
+  std::ranges::stable_sort(order, {}, [&](std::size_t k) { return samples.patch[k]; });
+  const Samples<T> sorted = samples.in_order(order);
+  for (const Isa isa : available_isas()) {
+    const AllBuffers<T> a = all_outputs(set, samples, {.isa = isa}), b = all_outputs(set, sorted, {.isa = isa});
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      ASSERT_EQ(b.normal_kind[k], a.normal_kind[order[k]]);
+      ASSERT_EQ(b.curvature_kind[k], a.curvature_kind[order[k]]);
+      for (std::size_t i = 0; i < a.values.size(); ++i) {
+        const std::size_t width = a.values[i].size() / order.size();
+        for (std::size_t c = 0; c < width; ++c)
+          ASSERT_EQ(b.values[i][k * width + c], a.values[i][order[k] * width + c]) << name(isa) << " " << i;
+      }
+    }
+  }
+}
+TEST(Points, OrderDoesNotMatter) {
+  Random random(314);
+  compare_orders<float>(test::wavy_field(5, 7));
+  compare_orders<double>(test::wavy_field(5, 7));
+  compare_orders<float>(mixed_patches(random, 3));
+  compare_orders<float>(test::sphere());
+}
+
+TEST(Points, EachOutputAloneIsWhatItIsAmongOthers) {
+  Random random(315);
+  const PatchSet set = set_of(mixed_patches(random, 3), with_points());
+  const Samples<float> samples = random_samples<float>(random, set.patch_count(), 500);
+  const AllBuffers<float> all = all_outputs(set, samples);
+  std::size_t k = 0;
+  for_each_value_output<float>([&](const auto& output) {
+    AllBuffers<float> alone(samples.size());
+    GridViews<float> out;
+    out.*output.view = alone.views().*output.view;
+    ASSERT_TRUE(evaluate(set, samples.views(), out).ok());
+    EXPECT_TRUE(alone.values[k] == all.values[k]) << output.name;
+    ++k;
+  });
+  AllBuffers<float> kinds(samples.size());
+  ASSERT_TRUE(evaluate(set, samples.views(), {.normal_kind = kinds.views().normal_kind}).ok());
+  EXPECT_EQ(kinds.normal_kind, all.normal_kind);
+  ASSERT_TRUE(evaluate(set, samples.views(), {.curvature_kind = kinds.views().curvature_kind}).ok());
+  EXPECT_EQ(kinds.curvature_kind, all.curvature_kind);
+}
+
+/// A cap whose edge u = 0 is one point, on every edge in turn; the sphere's poles; patches that are a curve or a point.
+std::vector<BezierPatch> degenerate_patches() {
+  const Vec3 pole{0, 0, 1};
+  const BezierPatch cap =
+      polynomial(2, 2, {pole, pole, pole, {0.5, 0, 1}, {0.5, 0.5, 1}, {0, 0.5, 1}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  std::vector<BezierPatch> patches = sphere();
+  for (int way = 0; way < 8; ++way) patches.push_back(reoriented(cap, way));
+  patches.push_back(polynomial(1, 1, {{1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}}));
+  patches.push_back(polynomial(1, 2, {{0, 0, 0}, {1, 1, 0}, {2, 0, 0}, {0, 0, 0}, {1, 1, 0}, {2, 0, 0}}));
+  return patches;
+}
+
+/// Kinds are the grid's, and so are normals within the rounding of limits.
+template <class T>
+void compare_degenerate(Isa isa) {
+  const PatchSet set = set_of(degenerate_patches(), with_points());
+  const std::vector<double> t = {0, 0.25, 0.5, 1};
+  const GridPlan plan = value_of(GridPlan::make(set, t, t, {.precision = precision_of<T>, .isa = isa}));
+  AllBuffers<T> grid(plan);
+  ASSERT_TRUE(evaluate(set, plan, grid.views()).ok());
+  Samples<T> samples;
+  for (std::size_t k = 0; k < set.patch_count(); ++k)
+    for (const double u : t)
+      for (const double v : t) samples.add(k, static_cast<T>(u), static_cast<T>(v));
+  AllBuffers<T> points = all_outputs(set, samples, {.isa = isa});
+  EXPECT_EQ(points.normal_kind, grid.normal_kind);
+  EXPECT_EQ(points.curvature_kind, grid.curvature_kind);
+  EXPECT_GT(std::ranges::count(points.normal_kind, NormalKind::limit), 0);
+  EXPECT_GE(std::ranges::count(points.normal_kind, NormalKind::undefined), 32);
+  const GridViews<T> a = points.views(), b = grid.views();
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    EXPECT_TRUE(within_units(read(a.normal, k), read(b.normal, k), sizeof(T) == 4 ? 1e-6 : 1e-13, 1)) << k;
+    if (points.normal_kind[k] == NormalKind::undefined) {
+      EXPECT_EQ(read(a.normal, k), Vec3{});
+    }
+  }
+}
+TEST(Points, DegeneratePointsAsInGrids) {
+  for (const Isa isa : available_isas()) {
+    compare_degenerate<float>(isa);
+    compare_degenerate<double>(isa);
+  }
+}
+
+TEST(Points, EditsAreSeenAsIfTheSetWereNew) {
+  Random random(316);
+  std::vector<BezierPatch> patches = mixed_patches(random, 3);
+  const PatchSetOptions options = [] {
+    PatchSetOptions fixed = with_points();
+    fixed.origin = Vec3{};
+    return fixed;
+  }();
+  PatchSet set = set_of(patches, options);
+  for (std::size_t k = 0; k < patches.size(); k += 3) {
+    const auto points = random_points(random, patches[k].degree_u(), patches[k].degree_v(), {}, k % 2 ? 3 : 1e-3);
+    ASSERT_TRUE(set.set_control_points(k, points).ok());
+    patches[k] = value_of(patches[k].with_points(points));
+  }
+  const Samples<float> floats = random_samples<float>(random, patches.size(), 2000);
+  const Samples<double> doubles = random_samples<double>(random, patches.size(), 2000);
+  EXPECT_TRUE(all_outputs(set, floats) == all_outputs(set_of(patches, options), floats));
+  EXPECT_TRUE(all_outputs(set, doubles) == all_outputs(set_of(patches, options), doubles));
+}
+
+TEST(Points, NothingIsAllocatedWhenEvaluatingAgain) {
+  Random random(317);
+  const PatchSet set = set_of(mixed_patches(random, 3, 2), with_points());
+  const Samples<float> samples = random_samples<float>(random, set.patch_count(), 3000);
+  AllBuffers<float> out(samples.size());
+  const GridViews<float> views = out.views();
+  ASSERT_TRUE(evaluate(set, samples.views(), views, {.isa = available_isas().back()}).ok());
+  const std::size_t before = allocation_count();
+  for (int k = 0; k < 3; ++k) ASSERT_TRUE(evaluate(set, samples.views(), views, {.isa = available_isas().back()}).ok());
+  EXPECT_EQ(allocation_count(), before);
+}
+
+TEST(Points, ProgressIsToldAndCancellationSeen) {
+  Random random(318);
+  const PatchSet set = set_of(test::wavy_field(3, 3), with_points());
+  const Samples<float> samples = random_samples<float>(random, 9, 50000);
+  std::vector<float> positions(3 * samples.size());
+  const PointViews<float> out{.position = View3<float>::interleaved(positions)};
+  double last = 0;
+  Execution execution;
+  execution.progress = [&](double share) { last = std::max(last, share); };
+  ASSERT_TRUE(evaluate(set, samples.views(), out, {}, execution).ok());
+  EXPECT_EQ(last, 1);
+  std::atomic<bool> cancel{false};
+  execution.cancel = &cancel;
+  execution.progress = [&](double) { cancel = true; };
+  EXPECT_EQ(evaluate(set, samples.views(), out, {}, execution).code(), StatusCode::cancelled);
+}
+
+}  // namespace
+}  // namespace tessera::test
