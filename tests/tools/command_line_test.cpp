@@ -62,7 +62,7 @@ TEST_F(CommandLine, WhatIsNoCommandLineEndsWithTwo) {
   expect_failure({"eval", teapot, "--grid", "3x3", "--format", "xml"}, 2, "--format");
   expect_failure({"tessellate", teapot, "--grid", "3x3"}, 2, "--output");
   expect_failure({"tessellate", teapot, "-o", "a.ply"}, 2, "--grid");
-  expect_failure({"tessellate", teapot, "-o", "a.stl", "--grid", "3x3"}, 2, "meshes are written as .obj, .ply");
+  expect_failure({"tessellate", teapot, "-o", "a.off", "--grid", "3x3"}, 2, "meshes are written as .obj, .ply, .stl, .glb, .gltf");
   expect_failure({"raycast", teapot}, 2, "expected -o");
   expect_failure({"raycast", teapot, "-o", "a.gif"}, 2, "pictures are written as .png");
   expect_failure({"raycast", teapot, "--rays", "a.csv"}, 2, "--hits");

@@ -134,7 +134,7 @@ TEST_F(Files, TwoFilesAreNotWrittenToOnePlace) {
 }
 
 TEST_F(Files, ErrorsNameTheFileAndItsOwnSurface) {
-  folder_.file("large.bpt", "2\n1 1\n0 0 0\n0 1 0\n1 0 0\n1 1 0\n1 1\n0 0 0\n0 1 0\n1 0 0\n1e300 1 0\n");
+  folder_.file("large.bpt", "2\n1 1\n0 0 0\n0 1 0\n1 0 0\n1 1 0\n1 1\n-1e300 0 0\n0 1 0\n1 0 0\n1e300 1 0\n");
   const ToolRun run = this->run({"tessellate", "m2.bpt", "large.bpt", "-o", "a.ply", "--grid", "2x2"});
   EXPECT_EQ(run.status, 1);
   EXPECT_NE(run.errors.find("tessera: large.bpt: surface 1: "), std::string::npos) << run.errors;

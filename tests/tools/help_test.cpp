@@ -11,7 +11,7 @@ namespace {
 class Help : public ToolTest {
  protected:
   static const Names& commands() {
-    static const Names names{"info", "eval", "tessellate", "raycast", "check", "completion", "man"};
+    static const Names names{"info", "eval", "tessellate", "raycast", "convert", "check", "completion", "man"};
     return names;
   }
   /// The long options that a text names.
@@ -42,7 +42,7 @@ TEST_F(Help, TheToolsHelpSuffices) {
 }
 
 TEST_F(Help, EveryOptionSaysWhatItTakesAndItsDefault) {
-  for (const std::string& command : Names{"info", "eval", "tessellate", "raycast", "check"}) {
+  for (const std::string& command : Names{"info", "eval", "tessellate", "raycast", "convert", "check"}) {
     const std::set<std::string> options = options_of(command);
     for (const char* const common : {"--json", "--timings", "--threads", "--isa"})
       EXPECT_TRUE(options.count(common)) << command << ' ' << common;

@@ -67,7 +67,7 @@ TEST_F(Terminal, APipeGetsNoEscapesUnlessForced) {
   }
   EXPECT_NE(output_of({"raycast", teapot, "--terminal", "--colour", "always", "--size", "20x10"}).find("\x1b[38;2;"),
             std::string::npos);
-  expect_failure({"raycast", teapot}, 2, "expected -o FILE.png, or --rays FILE.csv and --hits FILE.csv, or --terminal");
+  expect_failure({"raycast", teapot}, 2, "expected -o FILE, or --rays FILE.csv and --hits FILE.csv, or --terminal");
 }
 
 TEST_F(Terminal, CharactersShowThePicture) {

@@ -14,10 +14,10 @@ class Trims : public ToolTest {
   Trims() {
     const std::string square =
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvp 0.2 0.2\nvp 0.8 0.2\nvp 0.8 0.8\nvp 0.2 0.2\n"
-        "cstype bezier\ndeg 1\ncurv2 5 6 7 8\nparm u 0 1 2 3\nend\n"
+        "cstype bezier\ndeg 1\ncurv2 1 2 3 4 1\nparm u 0 1 2 3 4\nend\n"
         "cstype bezier\ndeg 1 1\nsurf 0 1 0 1 1 2 3 4\nparm u 0 1\nparm v 0 1\n";
     folder_.file("plain.obj", square + "end\n");
-    folder_.file("trimmed.obj", square + "trim 0 3 1\nend\n");
+    folder_.file("trimmed.obj", square + "trim 0 4 1\nend\n");
   }
 
   struct Picture {

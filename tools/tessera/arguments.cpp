@@ -37,7 +37,7 @@ Extent parse_extent(const std::string& option, const std::string& text, int leas
 std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count,
                                   const std::string& form) {
   std::vector<double> values;
-  TextCursor cursor(text, option, {.comment = 0, .separator = ','});
+  TextCursor cursor(text, option, {.comment = 0, .separators = ","});
   do {
     cursor.skip_blanks();
     double value = 0;

@@ -76,7 +76,7 @@ Status read_csv(const std::filesystem::path& path, const ColumnNames& required, 
   const Result<std::string> text = read_file(path);
   if (!text) return text.status();
   const std::string name = path.string();
-  TextCursor cursor(*text, name, {.separator = ','});
+  TextCursor cursor(*text, name, {.separators = ","});
   cursor.skip_space();
   const ColumnNames columns = take_header(cursor, required, optional);
   if (columns.empty()) {

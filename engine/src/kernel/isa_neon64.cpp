@@ -28,6 +28,7 @@ struct Neon<float> {
   using Bits = uint32x4_t;
   static Register all(float x) { return vdupq_n_f32(x); }
   static Register load(const float* p) { return vld1q_f32(p); }
+  static void store(float* p, Register a) { vst1q_f32(p, a); }
   static Register chosen(Bits mask, Register a, Register b) { return vbslq_f32(mask, a, b); }
   static Register root(Register a) { return vsqrtq_f32(a); }
   static Register size(Register a) { return vabsq_f32(a); }
@@ -45,6 +46,7 @@ struct Neon<double> {
   using Bits = uint64x2_t;
   static Register all(double x) { return vdupq_n_f64(x); }
   static Register load(const double* p) { return vld1q_f64(p); }
+  static void store(double* p, Register a) { vst1q_f64(p, a); }
   static Register chosen(Bits mask, Register a, Register b) { return vbslq_f64(mask, a, b); }
   static Register root(Register a) { return vsqrtq_f64(a); }
   static Register size(Register a) { return vabsq_f64(a); }
@@ -77,6 +79,7 @@ struct batch {
   explicit batch(T x) : lanes(Neon<T>::all(x)) {}
   operator Register() const { return lanes; }
   static batch load_unaligned(const T* p) { return Neon<T>::load(p); }
+  void store_unaligned(T* p) const { Neon<T>::store(p, lanes); }
   friend batch operator+(batch a, batch b) { return a.lanes + b.lanes; }
   friend batch operator-(batch a, batch b) { return a.lanes - b.lanes; }
   friend batch operator*(batch a, batch b) { return a.lanes * b.lanes; }
@@ -218,6 +221,8 @@ struct Lanes<double> : ThroughMemory<double> {
   static Batch broadcast(double x) { return Batch(x); }
   static Batch load(const double* p) { return vld1q_f64(p); }
   static void store(double* p, Batch a) { vst1q_f64(p, a); }
+  static void store_as(double* p, Batch a) { store(p, a); }
+  static void store_as(float* p, Batch a) { vst1_f32(p, vcvt_f32_f64(a)); }  // rounded
   static void stream(double* p, Batch a) { vst1q_f64(p, a); }
   static void fence() {}
   static Batch fma(Batch a, Batch b, Batch c) { return vfmaq_f64(c, a, b); }
