@@ -107,6 +107,32 @@ template <class L, int Degree, int Components, int Capacity>
   }
 }
 
+/// Row curves of `width` samples; `nets` are theirs, `run` the patch of all of them if there is one.
+template <class L, int Degree, int Components, int Capacity>
+[[gnu::always_inline]] inline void sample_curves(const typename L::Scalar* const* nets, const typename L::Scalar* run,
+                                                 const typename L::Scalar* weights, int count_u, int count_v,
+                                                 std::size_t prefetched,
+                                                 typename L::Batch (&curve)[Components][Capacity]) {
+  if (run) {
+    curves_by_run<L, Degree>(run, weights, count_u, count_v, curve);
+  } else {
+    curves_by_rows<L, Degree>(nets, weights, count_u, count_v, prefetched, curve);
+  }
+}
+
+// Any degree, out of line: loops over the degree are long enough for a call, and their code is large.
+template <class L, int Components>
+__attribute__((noinline)) void any_curves(const typename L::Scalar* const* nets, const typename L::Scalar* run,
+                                          const typename L::Scalar* weights, int count_u, int count_v,
+                                          std::size_t prefetched, typename L::Batch (&curve)[Components][max_order]) {
+  sample_curves<L, 0>(nets, run, weights, count_u, count_v, prefetched, curve);
+}
+template <class L, int Order>
+__attribute__((noinline)) void fill_any(SlotWeights<L, 0, Order>& weights, const typename L::Scalar* parameters,
+                                        int degree) {
+  weights.fill(parameters, degree);
+}
+
 /// The samples of slot k.
 template <class L, int Degree, bool Rational, int Order>
 inline void evaluate_slot(const PointJob<typename L::Scalar>& job, int k,
@@ -121,11 +147,12 @@ inline void evaluate_slot(const PointJob<typename L::Scalar>& job, int k,
     RowCurves<L, Order, components, capacity> curves;
     for (int order = 0; order <= Order; ++order) {
       const auto* of_order = u_weights.of[lane / L::width][order * count_u];
-      if (job.runs) {
-        curves_by_run<L, Degree>(job.nets[slot.first], of_order, count_u, count_v, curves.by_u[order]);
+      const auto* run = job.runs ? job.nets[slot.first] : nullptr;
+      const std::size_t prefetched = order == 0 ? job.prefetched : 0;
+      if constexpr (Degree > 0) {
+        sample_curves<L, Degree>(nets, run, of_order, count_u, count_v, prefetched, curves.by_u[order]);
       } else {
-        curves_by_rows<L, Degree>(nets, of_order, count_u, count_v, order == 0 ? job.prefetched : 0,
-                                  curves.by_u[order]);
+        any_curves<L>(nets, run, of_order, count_u, count_v, prefetched, curves.by_u[order]);
       }
     }
     Sample<L> sample;
@@ -139,13 +166,18 @@ inline void evaluate_slot(const PointJob<typename L::Scalar>& job, int k,
 template <class L, int Degree, bool Rational, int Order>
 void evaluate_slots(const PointJob<typename L::Scalar>& job) {
   constexpr int at_once = Degree > 0 ? 8 : 1;
-  const int degree_u = Degree > 0 ? Degree : job.grid.degree_u, degree_v = Degree > 0 ? Degree : job.grid.degree_v;
   SlotWeights<L, Degree, Order> u_weights[at_once], v_weights[at_once];
   for (int first = 0; first < job.slot_count; first += at_once) {
     const int count = job.slot_count - first < at_once ? job.slot_count - first : at_once;
     for (int k = 0; k < count; ++k) {
-      u_weights[k].fill(job.u + job.slots[first + k].first, degree_u);
-      v_weights[k].fill(job.v + job.slots[first + k].first, degree_v);
+      const int sample = job.slots[first + k].first;
+      if constexpr (Degree > 0) {
+        u_weights[k].fill(job.u + sample, Degree);
+        v_weights[k].fill(job.v + sample, Degree);
+      } else {
+        fill_any(u_weights[k], job.u + sample, job.grid.degree_u);
+        fill_any(v_weights[k], job.v + sample, job.grid.degree_v);
+      }
     }
     for (int k = 0; k < count; ++k)
       evaluate_slot<L, Degree, Rational, Order>(job, first + k, u_weights[k], v_weights[k]);
@@ -156,17 +188,13 @@ void evaluate_slots(const PointJob<typename L::Scalar>& job) {
 template <class L, int Order>
 void choose_degree(const PointJob<typename L::Scalar>& job) {
   const int degree = job.grid.degree_u == job.grid.degree_v ? job.grid.degree_u : 0;
-  if (job.grid.rational) {
-    evaluate_slots<L, 0, true, Order>(job);
-  } else if (degree == 3) {
-    evaluate_slots<L, 3, false, Order>(job);
-  } else if (degree == 2 && Order < 2) {
-    evaluate_slots < L, Order<2 ? 2 : 0, false, Order>(job);
-  } else if (degree == 1 && Order < 2) {
-    evaluate_slots < L, Order<2 ? 1 : 0, false, Order>(job);
-  } else {
-    evaluate_slots<L, 0, false, Order>(job);
+  if (job.grid.rational) return evaluate_slots<L, 0, true, Order>(job);
+  if (degree == 3) return evaluate_slots<L, 3, false, Order>(job);
+  if constexpr (Order < 2) {
+    if (degree == 2) return evaluate_slots<L, 2, false, Order>(job);
+    if (degree == 1) return evaluate_slots<L, 1, false, Order>(job);
   }
+  evaluate_slots<L, 0, false, Order>(job);
 }
 
 template <class L>
