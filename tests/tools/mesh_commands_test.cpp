@@ -163,6 +163,28 @@ TEST_F(MeshTools, NeighbourPatchesShareBordersInTheFiles) {
   }
 }
 
+TEST_F(MeshTools, TolerancesAndBudgets) {
+  const json fine = json::parse(output_of({"tessellate", teapot, "-o", "a.ply", "--tolerance", "0.001", "--json"}));
+  EXPECT_LE(fine["bound"], 0.001);
+  EXPECT_EQ(fine["certified"], true);
+  EXPECT_FALSE(fine.contains("rate_u"));
+  const json coarse = json::parse(output_of({"tessellate", teapot, "-o", "b.ply", "--triangles", "5000", "--json"}));
+  EXPECT_LE(coarse["triangles"], 5000);
+  EXPECT_GT(coarse["triangles"], 3000);
+  EXPECT_GT(coarse["bound"], fine["bound"]);
+  const std::string text = output_of({"tessellate", teapot, "-o", "c.ply", "--relative", "0.01"});
+  EXPECT_NE(text.find(" of the surfaces, proven\n"), std::string::npos) << text;
+  const json mesh = json::parse(output_of({"check", "a.ply", "--json"}));
+  EXPECT_EQ(mesh["t_junctions"], 0);
+  EXPECT_EQ(mesh["flipped_triangles"], 0);
+  for (const char* const wrong : {"0", "-1", "nan", "x", ""})
+    expect_failure({"tessellate", teapot, "-o", "d.ply", "--tolerance", wrong}, 2, "--tolerance");
+  expect_failure({"tessellate", teapot, "-o", "d.ply"}, 2, "--grid");
+  expect_failure({"tessellate", teapot, "-o", "d.ply", "--grid", "2x2", "--tolerance", "1"}, 2, "");
+  expect_failure({"tessellate", teapot, "-o", "d.ply", "--tolerance", "1e-30"}, 1, "what float vertices of patch");
+  expect_failure({"tessellate", teapot, "-o", "d.ply", "--triangles", "3"}, 1, "are allowed");
+}
+
 TEST_F(MeshTools, EveryTeasetModelBecomesAMesh) {
   const char* const data = std::getenv("TESSERA_TEST_DATA");
   if (!data) GTEST_SKIP() << "TESSERA_TEST_DATA is not set";

@@ -44,6 +44,36 @@ TEST_P(Models, IsEvaluatedAndMeshedWhole) {
   EXPECT_EQ(mesh["non_manifold_edges"], 0);
 }
 
+/// Vertices - edges + triangles: a crack along an edge would change it.
+long euler_number(const json& mesh) {
+  const long triangles = mesh["triangles"], open = mesh["open_edges"], vertices = mesh["distinct_positions"];
+  return vertices - (3 * triangles + open) / 2 + triangles;
+}
+
+TEST_P(Models, KeepsATolerance) {
+  output_of({"tessellate", GetParam(), "-o", "a.ply", "--grid", "6x6"});
+  const json uniform = json::parse(output_of({"check", "a.ply", "--json"}));
+  output_of({"tessellate", GetParam(), "-o", "a.ply", "--grid", "17x17"});
+  const json finer = json::parse(output_of({"check", "a.ply", "--json"}));
+  const double size = json::parse(output_of({"info", GetParam(), "--json"}))["size"];
+  // Its octants are turned into their places, so that their borders differ by rounding: cracks of the model's own.
+  const bool apart = euler_number(uniform) != euler_number(finer);
+  EXPECT_EQ(apart, GetParam().find("sphere_of_octants") != std::string::npos);
+  for (const double relative : {0.03, 0.001}) {
+    const json made =
+        json::parse(output_of({"tessellate", GetParam(), "-o", "b.ply", "--relative", std::to_string(relative), "--json"}));
+    EXPECT_LE(made["bound"], relative * size * (1 + 1e-6));
+    const json mesh = json::parse(output_of({"check", "b.ply", "--json"}));
+    EXPECT_EQ(mesh["triangles"], made["triangles"]);
+    EXPECT_EQ(mesh["non_finite_vertices"], 0);
+    EXPECT_EQ(mesh["degenerate_triangles"], 0);
+    EXPECT_EQ(mesh["non_manifold_edges"], 0);
+    EXPECT_EQ(mesh["t_junctions"], 0);
+    EXPECT_TRUE(apart || euler_number(mesh) == euler_number(uniform)) << relative;
+    EXPECT_EQ(mesh["open_edges"] == 0, uniform["open_edges"] == 0) << relative;
+  }
+}
+
 TEST_P(Models, IsDrawn) {
   output_of({"raycast", GetParam(), "-o", "a.png", "--size", "40x30"});
   EXPECT_GT(content_of(folder_ / "a.png").size(), 200u);

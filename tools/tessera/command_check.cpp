@@ -18,6 +18,8 @@ Json as_json(const std::string& mesh, const MeshReport& report) {
           {"open_edges", report.open_edges},
           {"non_manifold_edges", report.non_manifold_edges},
           {"inconsistent_edges", report.inconsistent_edges},
+          {"t_junctions", report.t_junctions},
+          {"flipped_triangles", report.flipped_triangles},
           {"degenerate_triangles", report.degenerate_triangles},
           {"non_finite_vertices", report.non_finite_vertices},
           {"closed", report.closed()}};
@@ -34,6 +36,8 @@ std::string as_text(const std::string& mesh, const MeshReport& report) {
          line("non-manifold edges    ", report.non_manifold_edges, "  (of three triangles or more)") +
          line("inconsistent edges    ", report.inconsistent_edges,
               "  (whose two triangles are turned against each other)") +
+         line("T-junctions           ", report.t_junctions, "  (vertices inside open edges)") +
+         line("flipped triangles     ", report.flipped_triangles, "  (that look the other way than their normals)") +
          line("degenerate triangles  ", report.degenerate_triangles) +
          line("NaN or infinite       ", report.non_finite_vertices, "  (vertices)");
 }
@@ -69,7 +73,7 @@ constexpr const char* footer =
 void add_check(CLI::App& app, Session& session) {
   CLI::App* const command = app.add_subcommand("check", "Count what is wrong with meshes");
   const auto meshes = std::make_shared<std::vector<std::string>>();
-  command->add_option("MESH", *meshes, "Meshes (.obj, .ply), or patterns of their names")
+  command->add_option("MESH", *meshes, "Meshes (.obj, .ply, .stl), or patterns of their names")
       ->required()
       ->check(fault_of_name)
       ->type_name("FILE");

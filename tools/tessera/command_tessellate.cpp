@@ -1,12 +1,14 @@
 // tessera tessellate: surfaces to a mesh.
 
 #include <memory>
+#include <optional>
 
 #include "arguments.h"
 #include "commands.h"
 #include "io/formats.h"
 #include "loading.h"
 #include "progress.h"
+#include "tessera/certified_tessellation.h"
 #include "tessera/tessellate.h"
 
 namespace tessera::cli {
@@ -15,36 +17,70 @@ namespace {
 struct Options {
   ModelOptions models;
   std::string output;
-  Extent grid;
+  std::optional<Extent> grid;
+  CertifiedOptions certified;  ///< if there is no grid
 };
 
-Result<Mesh> tessellate(const Options& options, const Model& model, const PatchSet& set) {
-  const Result<TessellationPlan> plan =
-      TessellationPlan::make(set, {.rate_u = options.grid.first, .rate_v = options.grid.second, .isa = {}});
+struct Tessellated {
+  Mesh mesh;
+  double bound = 0;      ///< how far mesh and surfaces lie apart at most; 0: not known
+  bool proven = false;   ///< only sampled where callables are fitted without bounds on their derivatives
+};
+
+/// By a plan of either kind.
+template <class Plan>
+Result<Mesh> run_plan(const Result<Plan>& plan, const PatchSet& set) {
   if (!plan) return plan.status();
   Result<Mesh> mesh = plan->allocate();
   if (!mesh) return mesh;
   Progress progress("tessellating");
   const Status status = plan->run(set, mesh->views(), progress.execution());
   if (!status.ok()) return status;
-  Result<std::vector<MeshPart>> parts = parts_by_surface(*mesh, set, model);
-  if (!parts) return parts.status();
-  mesh->parts = *std::move(parts);
   return mesh;
 }
 
+Result<Tessellated> tessellate(const Options& options, const Model& model, const PatchSet& set) {
+  Tessellated made;
+  Result<Mesh> mesh = [&] {
+    if (options.grid)
+      return run_plan(
+          TessellationPlan::make(set, {.rate_u = options.grid->first, .rate_v = options.grid->second, .isa = {}}), set);
+    const Result<CertifiedTessellation> plan = CertifiedTessellation::make(set, options.certified);
+    if (plan) {
+      made.bound = plan->bound();
+      made.proven = plan->certified();
+    }
+    return run_plan(plan, set);
+  }();
+  if (!mesh) return mesh.status();
+  Result<std::vector<MeshPart>> parts = parts_by_surface(*mesh, set, model);
+  if (!parts) return parts.status();
+  made.mesh = *std::move(mesh);
+  made.mesh.parts = *std::move(parts);
+  return made;
+}
+
 Status report(const Job& job, const Options& options, const CommonOptions& common, const Loaded& loaded,
-              const PatchSet& set, const Mesh& mesh, const Timings& timings) {
+              const PatchSet& set, const Tessellated& made, const Timings& timings) {
+  const Mesh& mesh = made.mesh;
   if (!common.json) {
+    const std::string kept = options.grid ? ""
+                                          : ", within " + readable(made.bound, 3) + " of the surfaces, " +
+                                                (made.proven ? "proven" : "but for fits that are sampled");
     return print(job.output + ": " + std::to_string(mesh.vertex_count()) + " vertices, " +
-                 std::to_string(mesh.triangle_count()) + " triangles\n" + fit_line(set));
+                 std::to_string(mesh.triangle_count()) + " triangles" + kept + "\n" + fit_line(set));
   }
   Json object = files_json(loaded);
   object["output"] = job.output;
   object["vertices"] = mesh.vertex_count();
   object["triangles"] = mesh.triangle_count();
-  object["rate_u"] = options.grid.first;
-  object["rate_v"] = options.grid.second;
+  if (options.grid) {
+    object["rate_u"] = options.grid->first;
+    object["rate_v"] = options.grid->second;
+  } else {
+    object["bound"] = made.bound;
+    object["certified"] = made.proven;
+  }
   add_model_facts(object, loaded, set);
   add_seconds(object, common, timings);
   return print_json(object);
@@ -57,18 +93,18 @@ Status run_tessellate(const Job& job, const Options& options, const CommonOption
   if (!loaded) return loaded.status();
   const Result<PatchSet> set = pack(*loaded, timings);
   if (!set) return set.status();
-  const Result<Mesh> mesh = [&] {
+  const Result<Tessellated> made = [&] {
     const auto phase = timings.phase("evaluate");
     return tessellate(options, loaded->model, *set);
   }();
-  if (!mesh) return in_file(job.inputs[0], mesh.status());
+  if (!made) return in_file(job.inputs[0], made.status());
   {
     const auto phase = timings.phase("write");
-    Status status = write_mesh(*mesh, job.output, *out);
+    Status status = write_mesh(made->mesh, job.output, *out);
     if (status.ok()) status = out->commit();
     if (!status.ok()) return status;
   }
-  const Status said = report(job, options, common, *loaded, *set, *mesh, timings);
+  const Status said = report(job, options, common, *loaded, *set, *made, timings);
   return said.ok() ? loaded->status() : said;
 }
 
@@ -83,9 +119,47 @@ constexpr const char* footer =
     "Positions, normals and parameters are written (.stl: triangles alone), a part for each surface in .obj, .glb and\n"
     ".gltf; neighbours share their borders bit for bit. Several models become\n"
     "one mesh, or one each where the output is a folder (then as .ply) or holds {name}.\n"
+    "By --tolerance, --relative or --triangles each patch gets the rates that it needs, neighbours meet without a crack,\n"
+    "and the bound that is printed is proven, float rounding and fits included.\n"
     "\nExamples:\n"
     "  tessera tessellate teapot.bpt -o teapot.ply --grid 16x16\n"
+    "  tessera tessellate teapot.bpt -o teapot.ply --tolerance 0.001\n"
     "  tessera tessellate 'parts/*.json' -o 'meshes/{name}.obj' --grid 8x8";
+
+/// How fine the mesh is: one of these options must be given.
+void add_density(CLI::App& command, Options& options) {
+  CLI::App* const group = command.add_option_group("Density");
+  group
+      ->add_option_function<std::string>(
+          "--grid", [&options](const std::string& text) { options.grid = parse_extent("--grid", text, 1, 4096); },
+          "Segments of every patch, along u and along v, 1 to 4096 each")
+      ->type_name("NxM");
+  const auto add_length = [&](const char* name, const char* help, const char* type, bool relative) {
+    group
+        ->add_option_function<std::string>(
+            name,
+            [&options, name, relative](const std::string& text) {
+              options.certified.tolerance = parse_numbers(name, text, 1, "a length")[0];
+              options.certified.relative = relative;
+              if (!(options.certified.tolerance > 0))
+                throw CLI::ValidationError(name, "expected a number above 0, found \"" + text + "\"");
+            },
+            help)
+        ->type_name(type);
+  };
+  add_length("--tolerance", "How far the mesh may lie from the surfaces, in the model's unit; proven", "LENGTH", false);
+  add_length("--relative", "The same as a share of the model's size, the diagonal of its box", "SHARE", true);
+  group
+      ->add_option_function<std::uint64_t>(
+          "--triangles",
+          [&options](std::uint64_t count) {
+            options.certified.most_triangles = count;
+            options.certified.smallest = true;
+          },
+          "The finest tolerance that takes at most so many triangles")
+      ->type_name("COUNT");
+  group->require_option(1);
+}
 
 }  // namespace
 
@@ -99,12 +173,7 @@ void add_tessellate(CLI::App& app, Session& session) {
       ->required()
       ->type_name("FILE")
       ->check(fault_of_output);
-  command
-      ->add_option_function<std::string>(
-          "--grid", [options](const std::string& text) { options->grid = parse_extent("--grid", text, 1, 4096); },
-          "Segments of every patch, along u and along v, 1 to 4096 each")
-      ->required()
-      ->type_name("NxM");
+  add_density(*command, *options);
   add_common(*command, session.common);
   command->footer(footer);
   command->callback([options, &session] {
