@@ -4,6 +4,7 @@
 #include <time.h>
 
 #include <algorithm>
+#include <chrono>
 #include <limits>
 #include <vector>
 
@@ -25,6 +26,14 @@ double seconds_of(Task&& task) {
   const double start = processor_seconds();
   task();
   return processor_seconds() - start;
+}
+
+/// The time on the wall, for work on several threads.
+template <class Task>
+double wall_seconds_of(Task&& task) {
+  const auto start = std::chrono::steady_clock::now();
+  task();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 /// The shortest time of each of `tasks`, which say themselves how many seconds they took, over `rounds` in which all

@@ -108,14 +108,14 @@ int run() {
     return 1;
   }
 
-  const auto with_occt = [&] { return seconds_of([&] { occt_patches(occt, patches); }); };
-  const auto to_patches = [&] { return seconds_of([&] { (void)test::value_of(to_bezier(surface)); }); };
-  const auto to_blocks = [&] {
-    return seconds_of([&] { (void)test::value_of(make_patch_set(test::value_of(to_bezier(surface)))); });
-  };
+  const auto make_patches = [&] { (void)test::value_of(to_bezier(surface)); };
+  const auto make_blocks = [&] { (void)test::value_of(make_patch_set(test::value_of(to_bezier(surface)))); };
   tbb::task_arena alone(1);
-  const auto to_patches_alone = [&] { alone.execute(to_patches); };
-  const auto to_blocks_alone = [&] { alone.execute(to_blocks); };
+  const auto with_occt = [&] { return seconds_of([&] { occt_patches(occt, patches); }); };
+  const auto to_patches_alone = [&] { return seconds_of([&] { alone.execute(make_patches); }); };
+  const auto to_blocks_alone = [&] { return seconds_of([&] { alone.execute(make_blocks); }); };
+  const auto to_patches = [&] { return wall_seconds_of(make_patches); };
+  const auto to_blocks = [&] { return wall_seconds_of(make_blocks); };
   const auto seconds =
       best_interleaved(rounds, {with_occt, to_patches_alone, to_blocks_alone, to_patches, to_blocks});
   const char* names[] = {"OpenCASCADE, to patches", "Tessera, to patches, one thread", "Tessera, to blocks, one thread",
