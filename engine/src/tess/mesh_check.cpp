@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/guard.h"
+#include "tess/position_bits.h"
 #include "tess/t_junctions.h"
 #include "tessera/mesh.h"
 
@@ -15,21 +16,8 @@ namespace {
 /// Edges keep a vertex and a direction in 32 bits.
 constexpr std::size_t most_vertices = std::size_t{1} << 31;
 
-using Bits3 = std::array<std::uint32_t, 3>;
-
-/// The bits of a position, -0 taken as 0.
-Bits3 position_bits(const Mesh& mesh, std::size_t vertex) {
-  const float* p = &mesh.positions[3 * vertex];
-  return {std::bit_cast<std::uint32_t>(p[0] + 0.0f), std::bit_cast<std::uint32_t>(p[1] + 0.0f),
-          std::bit_cast<std::uint32_t>(p[2] + 0.0f)};
-}
-
-std::size_t hash(const Bits3& bits) {
-  std::uint64_t h = bits[0] * 0x9E3779B97F4A7C15u;
-  h = (h ^ (h >> 32) ^ bits[1]) * 0xC2B2AE3D27D4EB4Fu;
-  h = (h ^ (h >> 32) ^ bits[2]) * 0x165667B19E3779F9u;
-  return static_cast<std::size_t>(h ^ (h >> 29));
-}
+/// The bits of a vertex' position.
+PositionBits bits_of(const Mesh& mesh, std::size_t vertex) { return position_bits(&mesh.positions[3 * vertex]); }
 
 struct Welded {
   std::vector<std::uint32_t> place;  ///< of each vertex, 0 .. count - 1
@@ -44,9 +32,9 @@ Welded weld(const Mesh& mesh) {
   std::vector<std::uint32_t> table(std::bit_ceil(2 * mesh.vertex_count() + 1), none);
   const std::size_t mask = table.size() - 1;
   for (std::size_t k = 0; k < mesh.vertex_count(); ++k) {
-    const Bits3 bits = position_bits(mesh, k);
+    const PositionBits bits = bits_of(mesh, k);
     std::size_t slot = hash(bits) & mask;
-    while (table[slot] != none && position_bits(mesh, table[slot]) != bits) slot = (slot + 1) & mask;
+    while (table[slot] != none && bits_of(mesh, table[slot]) != bits) slot = (slot + 1) & mask;
     if (table[slot] == none) {
       table[slot] = static_cast<std::uint32_t>(k);
       welded.place[k] = static_cast<std::uint32_t>(welded.count++);
