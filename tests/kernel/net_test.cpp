@@ -76,22 +76,24 @@ TEST(NetKernels, BoundEveryLane) {
     }
 }
 
-TEST(NetKernels, BoundPointsExtendABox) {
+TEST(NetKernels, BoundPointsExtendsBounds) {
   for (const Isa isa : available_isas())
     for (std::size_t count = 0; count <= 150; count += 3) {
       SCOPED_TRACE(std::string(name(isa)) + ", " + std::to_string(count));
       const std::vector<double> points = numbers(count + 1);
-      double lower[] = {-90, infinity, 3}, upper[] = {-90, -infinity, 3};
-      double low[] = {-90, infinity, 3}, high[] = {-90, -infinity, 3};
+      kernel::PointBounds bounds, expected;
+      for (std::size_t k = 0; k < kernel::PointBounds::run; ++k) {
+        expected.lower[k] = bounds.lower[k] = k % 3 == 0 ? -90 : k % 3 == 1 ? infinity : 3;
+        expected.upper[k] = bounds.upper[k] = k % 3 == 0 ? -90 : k % 3 == 1 ? -infinity : 3;
+      }
       for (std::size_t k = 0; k < count; ++k) {
-        low[k % 3] = std::min(low[k % 3], points[k + 1]);
-        high[k % 3] = std::max(high[k % 3], points[k + 1]);
+        double &low = expected.lower[k % kernel::PointBounds::run], &high = expected.upper[k % kernel::PointBounds::run];
+        low = std::min(low, points[k + 1]);
+        high = std::max(high, points[k + 1]);
       }
-      kernel::kernels(isa).bound_points(points.data() + 1, count, lower, upper);
-      for (std::size_t c = 0; c < 3; ++c) {
-        EXPECT_EQ(lower[c], low[c]);
-        EXPECT_EQ(upper[c], high[c]);
-      }
+      kernel::kernels(isa).bound_points(points.data() + 1, count, bounds);
+      EXPECT_TRUE(std::ranges::equal(bounds.lower, expected.lower));
+      EXPECT_TRUE(std::ranges::equal(bounds.upper, expected.upper));
     }
 }
 

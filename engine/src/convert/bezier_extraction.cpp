@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -94,10 +95,6 @@ class ExtractedRows {
       : surface_(surface), u_(make_extraction(line_u(surface))), v_(make_extraction(line_v(surface))) {
     if (surface.is_rational()) scales_.emplace(surface.points(), surface.weights());
     values_.resize(surface.count_u() * row_size());
-    bool small = true;
-    for (const Vec3& p : surface.points())  // without a branch
-      small &= (std::abs(p.x) <= half_range) & (std::abs(p.y) <= half_range) & (std::abs(p.z) <= half_range);
-    may_overflow_ = !small;
   }
 
   /// Computes them all.
@@ -126,6 +123,10 @@ class ExtractedRows {
   template <class Components>
   void compute(std::size_t begin, std::size_t end, Components c) {
     const std::size_t count = surface_.count_v();
+    bool small = true;
+    for (const Vec3& p : surface_.points().subspan(begin * count, (end - begin) * count))  // without a branch
+      small &= (std::abs(p.x) <= half_range) & (std::abs(p.y) <= half_range) & (std::abs(p.z) <= half_range);
+    if (!small) may_overflow_ = true;
     UnsetVector<double> numbers(count * c);
     for (std::size_t i = begin; i < end; ++i) {
       const auto weights = scales_ ? surface_.weights().subspan(i * count, count) : std::span<const double>{};
@@ -140,9 +141,9 @@ class ExtractedRows {
 
   const BSplineSurface& surface_;
   const Extraction u_, v_;
-  std::optional<Scales> scales_;  ///< of rational surfaces
-  UnsetVector<double> values_;    ///< [control row][row of v_][component], rows row_size() apart
-  bool may_overflow_ = false;     ///< means of points are no larger than these but for rounding
+  std::optional<Scales> scales_;            ///< of rational surfaces
+  UnsetVector<double> values_;              ///< [control row][row of v_][component], rows row_size() apart
+  std::atomic<bool> may_overflow_ = false;  ///< means of points are no larger than these but for rounding
 };
 
 /// The Bezier net of a few patches along v, of one strip after the other along u: each point computed once, since
@@ -155,8 +156,8 @@ class Strip {
     const std::size_t most_columns = std::min(most_patches, rows.v().span_count()) * degree_v() + 1;
     row_size_ = whole_lines(most_columns * 3);
     points_.resize(rows.order_u() * row_size_);
-    std::fill_n(lower_, 3, std::numeric_limits<double>::infinity());
-    std::fill_n(upper_, 3, -std::numeric_limits<double>::infinity());
+    std::ranges::fill(bounds_.lower, std::numeric_limits<double>::infinity());
+    std::ranges::fill(bounds_.upper, -std::numeric_limits<double>::infinity());
     if (!rows.scales()) return;
     weights_.resize(rows.order_u() * most_columns);
     homogeneous_.resize(most_columns * 4);
@@ -178,7 +179,14 @@ class Strip {
     for (std::size_t i = next ? 1 : 0; i <= p; ++i) compute_row(from_.u().rows[a * p + i], i);
   }
   /// Of the points computed so far.
-  Box3 box() const { return {{lower_[0], lower_[1], lower_[2]}, {upper_[0], upper_[1], upper_[2]}}; }
+  Box3 box() const {
+    Box3 box;
+    for (std::size_t k = 0; k < kernel::PointBounds::run; k += 3) {
+      const auto corner = [k](const auto& of) { return Vec3{of[k], of[k + 1], of[k + 2]}; };
+      box.extend(Box3{corner(bounds_.lower), corner(bounds_.upper)});
+    }
+    return box;
+  }
   bool is_finite() const { return finite_; }
 
   /// Writes its patches, `first` being that of the first span of v. Order: std::size_t, or a constant, with which a row
@@ -203,7 +211,7 @@ class Strip {
     double* points = &points_[i * row_size_];
     combine(row, from_.scales() ? homogeneous_.data() : points);
     if (from_.scales()) project_row(row, points, &weights_[i * columns_]);
-    kernels_.bound_points(points, columns_ * 3, lower_, upper_);
+    kernels_.bound_points(points, columns_ * 3, bounds_);
     if (from_.may_overflow()) finite_ = finite_ && all_finite({points, columns_ * 3});
   }
 
@@ -234,7 +242,7 @@ class Strip {
   UnsetVector<double> points_;       ///< [0 .. degree_u][column][component], rows row_size_ apart
   UnsetVector<double> weights_;      ///< [0 .. degree_u][column]
   UnsetVector<double> homogeneous_;  ///< one row of a rational strip
-  double lower_[3], upper_[3];
+  kernel::PointBounds bounds_;
   bool finite_ = true;
 };
 

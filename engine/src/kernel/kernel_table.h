@@ -114,6 +114,13 @@ struct alignas(64) NetBoxes {
   double lower[3][block_lanes], upper[3][block_lanes];
 };
 
+/// Bounds of points' numbers, number k in the place k mod run: whole vectors of every width, and of x, y and z apart.
+struct PointBounds {
+  static constexpr std::size_t run = 24;
+  alignas(64) double lower[run];
+  alignas(64) double upper[run];
+};
+
 /// out[x] = weights[0] rows[x] + weights[1] rows[stride + x] + .. for x < width.
 struct CombineJob {
   const double* weights = nullptr;
@@ -199,8 +206,8 @@ struct KernelTable {
   void (*pack_f64)(const PackJob<double>&);
   /// `nets` and `count` as in PackJob.
   void (*bound_nets)(const double* const* nets, std::size_t count, NetBoxes& boxes);
-  /// Extends the box `lower`, `upper` by points of `count` numbers, x y z x y z ..
-  void (*bound_points)(const double* points, std::size_t count, double (&lower)[3], double (&upper)[3]);
+  /// Extends the bounds by points of `count` numbers, x y z x y z ..
+  void (*bound_points)(const double* points, std::size_t count, PointBounds& bounds);
   void (*combine)(const CombineJob&);
   Isa (*points_f32)(const PointJob<float>&);
   Isa (*points_f64)(const PointJob<double>&);

@@ -54,55 +54,60 @@ inline void bound_nets(const double* const* nets, std::size_t count, NetBoxes& b
   }
 }
 
-/// The box of points that lie together.
-inline void bound_points(const double* points, std::size_t count, double (&lower)[3], double (&upper)[3]) {
+/// The bounds of points that lie together.
+inline void bound_points(const double* points, std::size_t count, PointBounds& bounds) {
   using L = Lanes<double>;
   using Batch = L::Batch;
-  constexpr std::size_t width = L::width, run = 3 * width;
-  const auto extend = [&](std::size_t c, double value) {
-    lower[c] = value < lower[c] ? value : lower[c];
-    upper[c] = value > upper[c] ? value : upper[c];
-  };
-  std::size_t k = 0;
-  if (count >= run) {
-    Batch low[3], high[3];
-    for (std::size_t t = 0; t < 3; ++t) low[t] = high[t] = Batch::load_unaligned(points + t * width);
-    for (k = run; k + run <= count; k += run) {
-#pragma GCC unroll 3
-      for (std::size_t t = 0; t < 3; ++t) {
-        const Batch values = Batch::load_unaligned(points + k + t * width);
-        low[t] = xsimd::min(low[t], values);
-        high[t] = xsimd::max(high[t], values);
-      }
-    }
-    alignas(64) double values[2][run];
-    for (std::size_t t = 0; t < 3; ++t) {
-      L::store(values[0] + t * width, low[t]);
-      L::store(values[1] + t * width, high[t]);
-    }
-    for (std::size_t n = 0; n < run; ++n) {
-      extend(n % 3, values[0][n]);
-      extend(n % 3, values[1][n]);
-    }
+  constexpr std::size_t run = PointBounds::run, parts = run / L::width;
+  Batch lower[parts], upper[parts];
+  for (std::size_t t = 0; t < parts; ++t) {
+    lower[t] = L::load(bounds.lower + t * L::width);
+    upper[t] = L::load(bounds.upper + t * L::width);
   }
-  for (; k < count; ++k) extend(k % 3, points[k]);
+  std::size_t k = 0;
+  for (; k + run <= count; k += run)
+#pragma GCC unroll 12
+    for (std::size_t t = 0; t < parts; ++t) {
+      const Batch values = Batch::load_unaligned(points + k + t * L::width);
+      lower[t] = xsimd::min(lower[t], values);
+      upper[t] = xsimd::max(upper[t], values);
+    }
+  for (std::size_t t = 0; t < parts; ++t) {
+    L::store(bounds.lower + t * L::width, lower[t]);
+    L::store(bounds.upper + t * L::width, upper[t]);
+  }
+  for (std::size_t n = 0; k + n < count; ++n) {
+    const double value = points[k + n];
+    bounds.lower[n] = value < bounds.lower[n] ? value : bounds.lower[n];
+    bounds.upper[n] = value > bounds.upper[n] ? value : bounds.upper[n];
+  }
 }
 
-/// Products and sums rounded one by one, in order: the same bits on every ISA.
-inline void combine_rows(const CombineJob& job) {
+/// Products and sums rounded one by one, in order: the same bits on every ISA. Count: std::size_t, or a constant.
+template <class Count>
+inline void combine_rows(const CombineJob& job, Count count) {
   using L = Lanes<double>;
   using Batch = L::Batch;
   std::size_t x = 0;
   for (; x + L::width <= job.width; x += L::width) {
     const double* row = job.rows + x;
     Batch sum = L::broadcast(job.weights[0]) * Batch::load_unaligned(row);
-    for (std::size_t k = 1; k < job.count; ++k)
+    for (std::size_t k = 1; k < count; ++k)
       sum = sum + L::broadcast(job.weights[k]) * Batch::load_unaligned(row + k * job.stride);
     sum.store_unaligned(job.out + x);
   }
   for (; x < job.width; ++x) {
     double sum = job.weights[0] * job.rows[x];
-    for (std::size_t k = 1; k < job.count; ++k) sum += job.weights[k] * job.rows[k * job.stride + x];
+    for (std::size_t k = 1; k < count; ++k) sum += job.weights[k] * job.rows[k * job.stride + x];
     job.out[x] = sum;
+  }
+}
+
+inline void combine_rows(const CombineJob& job) {
+  switch (job.count) {  // those of degrees 1 to 3
+    case 2: return combine_rows(job, std::integral_constant<std::size_t, 2>{});
+    case 3: return combine_rows(job, std::integral_constant<std::size_t, 3>{});
+    case 4: return combine_rows(job, std::integral_constant<std::size_t, 4>{});
+    default: return combine_rows(job, job.count);
   }
 }
