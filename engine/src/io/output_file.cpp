@@ -129,7 +129,7 @@ OutputFile OutputFile::standard_output(const std::atomic<bool>* cancel) {
 void OutputFile::write(std::string_view bytes) {
   if (bytes.size() > buffer_.size() - used_) {
     flush();
-    if (bytes.size() >= buffer_.size()) return send(bytes);
+    if (bytes.size() >= buffer_.size() / 2) return send(bytes);
   }
   if (bytes.empty()) return;
   std::memcpy(buffer_.data() + used_, bytes.data(), bytes.size());

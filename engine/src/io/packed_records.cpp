@@ -8,23 +8,28 @@
 namespace tessera {
 namespace {
 
-constexpr std::size_t buffer_bytes = std::size_t{1} << 20;  // stays in a cache until it is written
-constexpr std::size_t piece_bytes = std::size_t{1} << 16;   // what a thread packs at a time
+constexpr std::size_t piece_bytes = std::size_t{1} << 16;  // what a thread packs at a time
+constexpr std::size_t pieces_in_buffer = 16;               // which stays in a cache until it is written
 
 }  // namespace
 
 Status write_packed(OutputFile& out, std::size_t count, std::size_t bytes,
                     FunctionRef<void(std::size_t, std::size_t, char*)> pack) {
-  const std::size_t room = std::min(count, buffer_bytes / bytes);
-  const auto buffer = std::make_unique_for_overwrite<char[]>(room * bytes);
+  const std::size_t piece = piece_bytes / bytes, room = std::min(count, pieces_in_buffer * piece);
+  auto buffer = std::make_unique_for_overwrite<char[]>(room * bytes), packed_before = std::make_unique_for_overwrite<char[]>(room * bytes);
+  std::string_view before;  // in packed_before: written by one thread while the others pack the next records
   for (std::size_t first = 0; first < count && !out.failed(); first += room) {
     const std::size_t records = std::min(room, count - first);
-    Status status = parallel_for(records, piece_bytes / bytes, {}, [&](std::size_t begin, std::size_t end) {
+    const Status status = parallel_for(1 + (records + piece - 1) / piece, 1, {}, [&](std::size_t k, std::size_t) {
+      if (k == 0) return out.write(before);
+      const std::size_t begin = (k - 1) * piece, end = std::min(records, k * piece);
       pack(first + begin, first + end, buffer.get() + begin * bytes);
     });
     if (!status.ok()) return status;
-    out.write({buffer.get(), records * bytes});
+    std::swap(buffer, packed_before);
+    before = {packed_before.get(), records * bytes};
   }
+  out.write(before);
   return {};
 }
 
