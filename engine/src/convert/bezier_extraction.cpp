@@ -123,10 +123,10 @@ class ExtractedRows {
   template <class Components>
   void compute(std::size_t begin, std::size_t end, Components c) {
     const std::size_t count = surface_.count_v();
-    bool small = true;
+    int large = 0;
     for (const Vec3& p : surface_.points().subspan(begin * count, (end - begin) * count))  // without a branch
-      small &= (std::abs(p.x) <= half_range) & (std::abs(p.y) <= half_range) & (std::abs(p.z) <= half_range);
-    if (!small) may_overflow_ = true;
+      for (const double x : {p.x, p.y, p.z}) large |= std::abs(x) > half_range;
+    if (large) may_overflow_ = true;
     UnsetVector<double> numbers(count * c);
     for (std::size_t i = begin; i < end; ++i) {
       const auto weights = scales_ ? surface_.weights().subspan(i * count, count) : std::span<const double>{};
