@@ -176,6 +176,13 @@ TEST(Model, ErrorsNameTheSurface) {
   expect_refused(make_patch_set(Model{}), StatusCode::invalid_argument, Status::no_index, "at least one patch");
 }
 
+TEST(Model, PointsPlacedBeyondTheRangeOfNumbersAreRefused) {
+  const ModelSurface surface{"", unit_square(), Affine::translated({1.5e308, 0, 0}) * Affine::scaled({1e308, 1, 1})};
+  EXPECT_EQ(value_of(evaluate_jet(surface, 0, 0.5)).position, (Vec3{1.5e308, 0.5, 0}));
+  expect_refused(evaluate_jet(surface, 1, 0.5), StatusCode::non_finite, Status::no_index,
+                 "the surface's point at (1, 0.5) is (inf, 0.5, 0) where it is placed");
+}
+
 /// The pieces of a rational surface stay rational even where all weights of a piece are equal.
 TEST(Model, EditsKeepWeightsThatAreAllEqual) {
   Random random(23);

@@ -15,7 +15,8 @@ void require(bool holds) {
   if (!holds) std::abort();
 }
 
-/// Of these alone an evaluation may fail: where the functions or their differences are not finite.
+/// Of these alone an evaluation may fail where they are not placed beyond the range of numbers: the functions or their
+/// differences may not be finite.
 bool may_have_functions(const Surface& surface) {
   return std::holds_alternative<ParametricSurface>(surface) || std::holds_alternative<RuledSurface>(surface) ||
          std::holds_alternative<CoonsPatch>(surface);
@@ -27,7 +28,8 @@ bool may_have_functions(const Surface& surface) {
     const Domain d = domain(surface.surface);
     require(d.u0 < d.u1 && d.v0 < d.v1 && !kind_name(surface.surface).empty());
     const Result<SurfaceJet> jet = evaluate_jet(surface, d.u_at(0.5), d.v_at(0.5));
-    require(jet ? is_finite(jet->position) : may_have_functions(surface.surface));
+    const bool placed_too_far = jet.status().code() == StatusCode::non_finite && surface.placement != Affine{};
+    require(jet ? is_finite(jet->position) : placed_too_far || may_have_functions(surface.surface));
     for (const TrimLoop& loop : *surface.trims) require(!loop.curves.empty());
   }
 }

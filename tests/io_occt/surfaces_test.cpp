@@ -22,6 +22,8 @@
 #include <opencascade/TColgp_Array1OfPnt.hxx>
 #include <opencascade/TColgp_Array2OfPnt.hxx>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -314,6 +316,29 @@ TEST(ReadCad, PrimitivesComeBackFromBothFormats) {
     ASSERT_EQ(model->warnings.size(), 1u);
     EXPECT_EQ(model->warnings[0], folder / name + ": 2 faces are trimmed: trims not honoured yet");
   }
+}
+
+TEST(ReadCad, IgesExponentsAreWrittenWithEOrD) {
+  TColgp_Array2OfPnt poles(1, 3, 1, 2);
+  for (int i = 1; i <= 3; ++i)
+    for (int j = 1; j <= 2; ++j) poles(i, j) = gp_Pnt(1.25e-5 * i, 3e-5 * j, 1.5e7 * i * j);
+  const ScratchFolder folder;
+  write_cad(BRepBuilderAPI_MakeFace(new Geom_BezierSurface(poles), 1e-9).Shape(), folder / "e.igs");
+  std::string text = content_of(folder / "e.igs");
+  std::size_t changed = 0;
+  for (std::size_t line = 0; line + 81 <= text.size(); line += 81)  // the first 64 columns of parameter lines
+    for (std::size_t k = line; text[line + 72] == 'P' && k + 1 < line + 64; ++k)
+      if (text[k] == 'E' && (text[k + 1] == '-' || text[k + 1] == '+' || std::isdigit(text[k + 1]))) {
+        text[k] = 'D';
+        ++changed;
+      }
+  ASSERT_GE(changed, 6u) << text;
+  const Result<Model> with_e = read_cad(folder / "e.igs"), with_d = read_cad(folder.file("d.igs", text));
+  ASSERT_TRUE(with_e.ok()) << with_e.status().message();
+  ASSERT_TRUE(with_d.ok()) << with_d.status().message();
+  const auto points = [](const Model& model) { return std::get<BSplineSurface>(model.surfaces.at(0).surface).points(); };
+  EXPECT_NEAR(points(*with_e).back().x, 3.75e-5, 1e-18);
+  EXPECT_TRUE(std::ranges::equal(points(*with_e), points(*with_d)));
 }
 
 TEST(ReadCad, IsWhatThisProcessMakesOfTheFile) {

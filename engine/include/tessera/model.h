@@ -41,7 +41,8 @@ struct Model {
 /// `status` as "surface 3 (rim): ...", with the index 3.
 Status in_surface(const Model& model, std::size_t surface, const Status& status);
 
-/// Position and derivatives in the model, by the surface's own parameters. Errors: those of the kind.
+/// Position and derivatives in the model, by the surface's own parameters. Errors: those of the kind; non_finite (placed
+/// beyond the range of numbers).
 Result<SurfaceJet> evaluate_jet(const ModelSurface& surface, double u, double v);
 /// The patches in the model's space; a tolerance and the fit error are lengths there. Errors: those of the kind,
 /// non_finite (the placement), and invalid_argument (a tolerance below what rounding leaves where the surface is placed).
