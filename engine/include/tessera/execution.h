@@ -12,7 +12,9 @@ namespace tessera {
 
 /// How block-interleaved results are written to memory. Patch-contiguous views are always written by plain stores.
 enum class Stores : std::uint8_t {
-  automatic,  ///< streaming where the output is larger than a third of the last-level cache, plain otherwise
+  /// Streaming where the output is larger than a third of the last-level cache or eight times a core's second-level
+  /// cache, plain otherwise.
+  automatic,
   plain,
   streaming,  ///< non-temporal, past the caches
 };

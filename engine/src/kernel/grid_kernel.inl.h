@@ -199,6 +199,5 @@ Isa evaluate_grid(const GridJob<typename L::Scalar>& job) {
         break;
     }
   }
-  if (job.streaming) L::fence();
   return this_isa;
 }

@@ -38,4 +38,5 @@ constexpr KernelTable table = {
     fma_rate<Lanes<float>>,
     fma_rate<Lanes<double>>,
     fill_memory<Lanes<float>>,
+    finish_streaming<Lanes<float>>,
 };

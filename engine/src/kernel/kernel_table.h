@@ -60,7 +60,7 @@ struct GridJob {
   std::uint8_t* normal_kind = nullptr;
   std::uint8_t* curvature_kind = nullptr;
   T offset[3] = {0, 0, 0};       ///< added to positions (doubles only: floats stay relative to the origin)
-  bool streaming = false;        ///< non-temporal stores
+  bool streaming = false;        ///< non-temporal stores; the caller ends them with finish_streaming
 
   // What decides where r_u x r_v stands for the normal; read where normals or curvatures are wanted.
   const T* doubt = nullptr;      ///< `[lane]`: at or below this |r_u x r_v|^2 the tangents' rounding errors count
@@ -219,6 +219,8 @@ struct KernelTable {
   int (*fma_f64)(std::size_t rounds, double* sink);
   /// For limits.h: fills bytes (a multiple of 64, aligned to 64) with full-width stores.
   void (*fill)(void* memory, std::size_t bytes, bool streaming);
+  /// Once a task has streamed, before its results are given to other threads. Not once a block: a fence waits for memory.
+  void (*finish_streaming)();
 };
 
 // Each is defined in a build for its processor alone.

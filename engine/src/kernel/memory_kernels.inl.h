@@ -39,6 +39,12 @@ int fma_rate(std::size_t rounds, typename L::Scalar* sink) {
   return L::width;
 }
 
+/// Other threads see what was streamed before.
+template <class L>
+void finish_streaming() {
+  L::fence();
+}
+
 template <class L>
 void fill_memory(void* memory, std::size_t bytes, bool streaming) {
   auto* out = static_cast<typename L::Scalar*>(memory);
