@@ -103,6 +103,46 @@ TEST_F(MeshTools, BothFormatsHoldTheSameMesh) {
   EXPECT_EQ(ply->indices, obj->indices);
 }
 
+TEST_F(MeshTools, WeldingClosesPolesAndSeamsOfRealFiles) {
+  const char* const data = std::getenv("TESSERA_TEST_DATA");
+  if (!data) GTEST_SKIP() << "TESSERA_TEST_DATA is not set";
+  const std::string file = std::string(data) + "/rib_nupatch/trimmed_nupatch_sphere.rib";
+  for (const char* const relative : {"0.03", "0.01", "0.003", "0.001", "0.0003"}) {
+    const ToolRun made = run({"tessellate", file, "-o", "a.ply", "--relative", relative, "--weld", "auto", "--json"});
+    ASSERT_EQ(made.status, 0) << made.errors;
+    EXPECT_EQ(json::parse(made.output)["welded_borders"], 8);  // at its poles
+    const json mesh = json::parse(output_of({"check", "a.ply", "--json"}));
+    EXPECT_EQ(mesh["closed"], true) << relative;
+    EXPECT_EQ(mesh["degenerate_triangles"], 0) << relative;
+  }
+}
+
+TEST_F(MeshTools, WeldingClosesRealBodiesWhosePatchesAreRounded) {
+  const char* const data = std::getenv("TESSERA_TEST_DATA");
+  if (!data) GTEST_SKIP() << "TESSERA_TEST_DATA is not set";
+  for (const char* const name : {"/bezierview_bv/SurfLab__cubeg2.bv", "/bezierview_bv/SurfLab__twg2.bv"})
+    for (const char* const relative : {"0.03", "0.01", "0.003"}) {
+      const Names command{"tessellate", data + std::string(name), "-o", "a.ply", "--relative", relative};
+      output_of(command);
+      EXPECT_GT(json::parse(output_of({"check", "a.ply", "--json"}))["open_edges"], 0);
+      Names welded = command;
+      welded.insert(welded.end(), {"--weld", "auto"});
+      output_of(welded);
+      const json mesh = json::parse(output_of({"check", "a.ply", "--json"}));
+      EXPECT_EQ(mesh["closed"], true) << name << ' ' << relative;
+      EXPECT_EQ(mesh["degenerate_triangles"], 0) << name << ' ' << relative;
+      EXPECT_EQ(2 * mesh["distinct_positions"].get<int>(), mesh["triangles"].get<int>() + 4);
+    }
+}
+
+TEST_F(MeshTools, WeldsAreLengthsOrAuto) {
+  for (const char* const wrong : {"-1", "nan", "inf", "x", "1,2", ""})
+    expect_failure({"tessellate", teapot, "-o", "d.ply", "--tolerance", "1", "--weld", wrong}, 2, "--weld");
+  const json made = json::parse(output_of({"tessellate", teapot, "-o", "a.ply", "--tolerance", "0.01", "--weld", "1e-5", "--json"}));
+  EXPECT_EQ(made["weld"], 1e-5);
+  EXPECT_EQ(made["welded_borders"], 0);
+}
+
 TEST_F(MeshTools, AFailureLeavesTheOldMesh) {
   folder_.file("a.ply", "before");
   folder_.file("bad.bpt", "1\n3 3\n");

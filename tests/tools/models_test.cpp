@@ -74,6 +74,31 @@ TEST_P(Models, KeepsATolerance) {
   }
 }
 
+/// What octants turned into their places, seams and poles are apart by rounding.
+TEST_P(Models, HasNoCrackOnceWelded) {
+  output_of({"tessellate", GetParam(), "-o", "a.ply", "--grid", "6x6"});
+  const json uniform = json::parse(output_of({"check", "a.ply", "--json"}));
+  const double size = json::parse(output_of({"info", GetParam(), "--json"}))["size"];
+  long euler = 0;
+  for (const double relative : {0.03, 0.001}) {
+    const json made = json::parse(output_of(
+        {"tessellate", GetParam(), "-o", "b.ply", "--relative", std::to_string(relative), "--weld", "auto", "--json"}));
+    EXPECT_LE(made["bound"], relative * size * (1 + 1e-6));
+    EXPECT_NEAR(made["weld"], 1e-6 * size, 1e-6 * size * 1e-9);
+    const json mesh = json::parse(output_of({"check", "b.ply", "--json"}));
+    EXPECT_EQ(mesh["degenerate_triangles"], 0);
+    EXPECT_EQ(mesh["non_manifold_edges"], 0);
+    EXPECT_EQ(mesh["t_junctions"], 0);
+    EXPECT_TRUE(euler == 0 || euler_number(mesh) == euler);
+    euler = euler_number(mesh);
+    if (GetParam().find("sphere") != std::string::npos && GetParam().find("hemisphere") == std::string::npos) {
+      EXPECT_EQ(mesh["closed"], true);
+      EXPECT_EQ(euler, 2);
+      EXPECT_EQ(made["welded_borders"].get<int>() > 0, GetParam().find("octants") != std::string::npos);
+    }
+  }
+}
+
 TEST_P(Models, IsDrawn) {
   output_of({"raycast", GetParam(), "-o", "a.png", "--size", "40x30"});
   EXPECT_GT(content_of(folder_ / "a.png").size(), 200u);

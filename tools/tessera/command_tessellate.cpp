@@ -19,12 +19,18 @@ struct Options {
   std::string output;
   std::optional<Extent> grid;
   CertifiedOptions certified;  ///< if there is no grid
+  bool weld_rounding = false;  ///< a weld that is a share of the size
 };
+
+/// Files of six or seven digits, and surfaces that programs have turned into their places, differ by about this.
+constexpr double rounding_share = 1e-6;
 
 struct Tessellated {
   Mesh mesh;
-  double bound = 0;      ///< how far mesh and surfaces lie apart at most; 0: not known
-  bool proven = false;   ///< only sampled where callables are fitted without bounds on their derivatives
+  double weld = 0;
+  std::size_t welded_borders = 0;
+  double bound = 0;     ///< how far mesh and surfaces lie apart at most; 0: not known
+  bool proven = false;  ///< only sampled where callables are fitted without bounds on their derivatives
 };
 
 /// By a plan of either kind.
@@ -45,8 +51,12 @@ Result<Tessellated> tessellate(const Options& options, const Model& model, const
     if (options.grid)
       return run_plan(
           TessellationPlan::make(set, {.rate_u = options.grid->first, .rate_v = options.grid->second, .isa = {}}), set);
-    const Result<CertifiedTessellation> plan = CertifiedTessellation::make(set, options.certified);
+    CertifiedOptions certified = options.certified;
+    if (options.weld_rounding) certified.weld = rounding_share * set.box().diagonal();
+    const Result<CertifiedTessellation> plan = CertifiedTessellation::make(set, certified);
     if (plan) {
+      made.weld = certified.weld;
+      made.welded_borders = plan->welded_borders();
       made.bound = plan->bound();
       made.proven = plan->certified();
     }
@@ -64,9 +74,11 @@ Status report(const Job& job, const Options& options, const CommonOptions& commo
               const PatchSet& set, const Tessellated& made, const Timings& timings) {
   const Mesh& mesh = made.mesh;
   if (!common.json) {
-    const std::string kept = options.grid ? ""
-                                          : ", within " + readable(made.bound, 3) + " of the surfaces, " +
-                                                (made.proven ? "proven" : "but for fits that are sampled");
+    const std::string kept =
+        options.grid ? ""
+                     : ", within " + readable(made.bound, 3) + " of the surfaces, " +
+                           (made.proven ? "proven" : "but for fits that are sampled") +
+                           (made.welded_borders ? ", " + std::to_string(made.welded_borders) + " borders welded" : "");
     return print(job.output + ": " + std::to_string(mesh.vertex_count()) + " vertices, " +
                  std::to_string(mesh.triangle_count()) + " triangles" + kept + "\n" + fit_line(set));
   }
@@ -80,6 +92,8 @@ Status report(const Job& job, const Options& options, const CommonOptions& commo
   } else {
     object["bound"] = made.bound;
     object["certified"] = made.proven;
+    object["weld"] = made.weld;
+    object["welded_borders"] = made.welded_borders;
   }
   add_model_facts(object, loaded, set);
   add_seconds(object, common, timings);
@@ -119,7 +133,8 @@ constexpr const char* footer =
     "Positions, normals and parameters are written (.stl: triangles alone), a part for each surface in .obj, .glb and\n"
     ".gltf; neighbours share their borders bit for bit. Several models become\n"
     "one mesh, or one each where the output is a folder (then as .ply) or holds {name}.\n"
-    "By --tolerance, --relative or --triangles each patch gets the rates that it needs, neighbours meet without a crack,\n"
+    "By --tolerance, --relative or --triangles each patch gets the rates that it needs, neighbours meet without a "
+    "crack,\n"
     "and the bound that is printed is proven, float rounding and fits included.\n"
     "\nExamples:\n"
     "  tessera tessellate teapot.bpt -o teapot.ply --grid 16x16\n"
@@ -161,6 +176,21 @@ void add_density(CLI::App& command, Options& options) {
   group->require_option(1);
 }
 
+void add_weld(CLI::App& command, Options& options) {
+  const auto set_weld = [&options](const std::string& text) {
+    options.weld_rounding = text == "auto";
+    if (options.weld_rounding) return;
+    options.certified.weld = parse_numbers("--weld", text, 1, "a length, or auto")[0];
+    if (!(options.certified.weld >= 0))
+      throw CLI::ValidationError("--weld", "expected a length of at least 0, or auto, found \"" + text + "\"");
+  };
+  command
+      .add_option_function<std::string>("--weld", set_weld,
+                                        "Join borders that lie so near each other, unless by --grid; auto: 1e-6 of the "
+                                        "model's size [0: borders of the same bits]")
+      ->type_name("LENGTH");
+}
+
 }  // namespace
 
 void add_tessellate(CLI::App& app, Session& session) {
@@ -174,6 +204,7 @@ void add_tessellate(CLI::App& app, Session& session) {
       ->type_name("FILE")
       ->check(fault_of_output);
   add_density(*command, *options);
+  add_weld(*command, *options);
   add_common(*command, session.common);
   command->footer(footer);
   command->callback([options, &session] {

@@ -20,6 +20,10 @@ struct CertifiedOptions {
   double tolerance = 0;
   /// The tolerance is a share of the size of the set's box instead, its diagonal.
   bool relative = false;
+  /// Borders that lie within this length of each other are joined, 0 or more; 0 joins those of the same bits alone. About
+  /// 1e-6 of the set's size suits files whose neighbours differ by rounding. It should stay below what the smallest patch
+  /// measures: thinner ones lose their area.
+  double weld = 0;
   /// More triangles than this are refused.
   std::uint64_t most_triangles = std::uint64_t{1} << 30;
   /// The tolerance is not given but found: the smallest, within 1 percent, for which most_triangles are enough.
@@ -35,12 +39,19 @@ struct CertifiedOptions {
 /// rate, and their vertices are the same bits in both patches. Each patch has an inner grid at rates of its own and strips of
 /// triangles between that and its borders. A collapsed border is one point, and no triangle stands on it.
 ///
+/// Welding: a border that is no other's by its bits is joined to the nearest one within the tolerance, in either
+/// direction, of any degree: polynomial or rational, their points at equal parameters lie that near, by their control
+/// points raised to one degree. (Rational curves of one shape whose parameters run at different speeds are not joined, nor
+/// one long border to two short ones.) Its vertices become the other's, corners of joined borders become one corner's,
+/// and borders whose control points lie in a box of at most the tolerance become points, as collapsed ones are. How far
+/// vertices are moved is part of the bounds.
+///
 /// Layout of the vertices, patch after patch: first_vertex(k) + (iu - 1) * (rates v - 1) + iv - 1 for the inner points,
 /// then the border points counter-clockwise from (0,0), each corner once. Immutable. Threads: any number of const calls.
 class CertifiedTessellation {
  public:
-  /// Errors: invalid_argument (a tolerance that is not above 0; one that a patch's rounding or the fit error exceeds
-  /// already; more triangles or vertices than allowed: the message says how many; fewer than one cell a patch takes), unsupported (the set has no float
+  /// Errors: invalid_argument (a tolerance that is not above 0; one that a patch's rounding, welding or the fit error
+  /// exceeds already; a weld that is negative or not finite; more triangles or vertices than allowed: the message says how many; fewer than one cell a patch takes), unsupported (the set has no float
   /// Bernstein blocks), isa_unavailable, cancelled.
   static Result<CertifiedTessellation> make(const PatchSet& set, const CertifiedOptions& options,
                                             const Execution& execution = {});
@@ -56,6 +67,8 @@ class CertifiedTessellation {
   bool certified() const;
   /// The same of each patch.
   std::span<const float> bounds() const;
+  /// Borders that take the vertices of others, and those made points: joined by welding, not by their bits.
+  std::size_t welded_borders() const;
   MeshCapacity capacity() const;  ///< exact
   /// A mesh of the right size with all attributes.
   Result<Mesh> allocate() const;

@@ -36,7 +36,7 @@ double vertex_rounding(const BezierPatch& patch, const Vec3& origin) {
   return std::numbers::sqrt3 * roundings * 0x1p-24 * size;
 }
 
-Result<CertifiedPlanner> CertifiedPlanner::make(const PatchSet::Impl& set, const Execution& execution) {
+Result<CertifiedPlanner> CertifiedPlanner::make(const PatchSet::Impl& set, double weld, const Execution& execution) {
   CertifiedPlanner planner(set);
   const std::size_t patches = set.patches.size();
   planner.shapes_.resize(patches);
@@ -50,6 +50,11 @@ Result<CertifiedPlanner> CertifiedPlanner::make(const PatchSet::Impl& set, const
     }
   });
   if (!status.ok()) return status;
+  if (weld > 0) {
+    planner.weld_ = weld_borders(set, planner.shapes_, planner.roundings_, weld, planner.edges_);
+    for (std::size_t k = 0; k < patches; ++k)
+      planner.roundings_[k] = std::max(planner.roundings_[k], planner.weld_.displacements[k]);
+  }
   return planner;
 }
 
@@ -75,7 +80,7 @@ Status CertifiedPlanner::choose_rates(double tolerance, std::vector<Rates>& rate
   if (Status status = parallel_for(rates.size(), patches_a_piece, execution, choose); !status.ok()) return status;
   if (rough.found())
     return invalid("the tolerance " + text(tolerance) + " is not above what float vertices of patch " +
-                       std::to_string(rough.index()) + " keep, " + text(roundings_[rough.index()]) +
+                       std::to_string(rough.index()) + (weld_.shapes.empty() ? "" : ", welded,") + " keep, " + text(roundings_[rough.index()]) +
                        ", and the fit error, " + text(fit_error_),
                    rough.index());
   if (wide.found())
@@ -86,6 +91,7 @@ Status CertifiedPlanner::choose_rates(double tolerance, std::vector<Rates>& rate
 }
 
 std::vector<Division> CertifiedPlanner::divide(std::span<const Rates> rates) const {
+  const std::span<const PatchShape> shapes = divided_shapes();
   const auto rate_along = [&](std::size_t patch, Side side) {
     return runs_along_u(side) ? rates[patch].u : rates[patch].v;
   };
@@ -94,7 +100,7 @@ std::vector<Division> CertifiedPlanner::divide(std::span<const Rates> rates) con
   for (std::size_t k = 0; k < rates.size(); ++k)
     for (const Side side : all_sides) {
       const std::uint32_t edge = edges_.edge(k, side);
-      if (edge == SharedEdges::none || shapes_[k].is_curve) continue;
+      if (edge == SharedEdges::none || shapes[k].is_curve) continue;
       edge_rates[edge] = std::max(edge_rates[edge], rate_along(k, side));
       if (rate_along(k, side) % 2 == 0) even[edge] = 1;
     }
@@ -108,7 +114,7 @@ std::vector<Division> CertifiedPlanner::divide(std::span<const Rates> rates) con
       const std::uint32_t edge = edges_.edge(k, side);
       borders[static_cast<std::size_t>(side)] = edge == SharedEdges::none ? rate_along(k, side) : edge_rates[edge];
     }
-    divisions.push_back(Division::of(shapes_[k], rates[k], borders));
+    divisions.push_back(Division::of(shapes[k], rates[k], borders));
   }
   return divisions;
 }

@@ -9,6 +9,7 @@
 #include "tess/chord_bound.h"
 #include "tess/shared_edges.h"
 #include "tess/stitched_patch.h"
+#include "tess/weld.h"
 #include "tessera/certified_tessellation.h"
 
 namespace tessera {
@@ -38,10 +39,12 @@ class CertifiedPlan {
 /// What is known of a set before a tolerance is.
 class CertifiedPlanner {
  public:
-  /// Errors: cancelled.
-  static Result<CertifiedPlanner> make(const PatchSet::Impl& set, const Execution& execution);
+  /// Errors: cancelled. `weld`: finite, at least 0.
+  static Result<CertifiedPlanner> make(const PatchSet::Impl& set, double weld, const Execution& execution);
 
+  /// Before welding.
   std::span<const PatchShape> shapes() const { return shapes_; }
+  const Weld& weld() const { return weld_; }
   /// Errors: invalid_argument, as CertifiedTessellation::make says; cancelled.
   Result<CertifiedPlan> plan(double tolerance, std::uint64_t most_triangles, const Execution& execution) const;
   /// The smallest tolerance, within 1 percent, whose mesh has at most so many triangles. Errors: invalid_argument (not
@@ -54,11 +57,13 @@ class CertifiedPlanner {
   Status choose_rates(double tolerance, std::vector<Rates>& rates, std::vector<float>& bounds,
                       const Execution& execution) const;
   std::vector<Division> divide(std::span<const Rates> rates) const;
+  std::span<const PatchShape> divided_shapes() const { return weld_.shapes.empty() ? shapes_ : weld_.shapes; }
 
   SharedEdges edges_;
   double fit_error_;
   std::vector<PatchShape> shapes_;
-  std::vector<double> roundings_;  ///< vertex_rounding() of each patch
+  Weld weld_;
+  std::vector<double> roundings_;  ///< vertex_rounding() of each patch, or by how much its vertices are off when welded
   std::vector<ChordBound> chords_;
 };
 

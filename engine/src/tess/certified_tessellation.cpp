@@ -1,12 +1,15 @@
 #include "tessera/certified_tessellation.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/guard.h"
+#include "base/text.h"
 #include "parallel/parallel_for.h"
 #include "tess/border_points.h"
 #include "tess/certified_plan.h"
 #include "tess/mesh_views.h"
+#include "tess/welded_vertices.h"
 
 namespace tessera {
 namespace {
@@ -17,9 +20,10 @@ constexpr std::size_t patches_a_piece = 16;
 
 class CertifiedTessellation::Impl {
  public:
-  Impl(const PatchSet& set, CertifiedPlan plan, std::span<const PatchShape> shapes)
+  Impl(const PatchSet& set, CertifiedPlan plan, const CertifiedPlanner& planner)
       : plan_(std::move(plan)),
-        shapes_(shapes.begin(), shapes.end()),
+        shapes_(planner.shapes().begin(), planner.shapes().end()),
+        weld_(planner.weld()),
         origin_(set.origin()),
         certified_(set.fit_error().certified) {
     for (std::size_t k = 0; k < plan_.patch_count(); ++k)
@@ -34,14 +38,17 @@ class CertifiedTessellation::Impl {
   const CertifiedPlan& plan() const { return plan_; }
   double bound() const { return bound_; }
   bool certified() const { return certified_; }
+  std::size_t welded_borders() const { return weld_.borders.size() + weld_.poles.size(); }
   Mesh allocate() const { return empty_mesh(plan_.capacity(), origin_); }
 
   Status run(const PatchSet& set, const MeshViews& out, const Execution& execution) const {
     if (Status status = check_views(out, plan_.capacity()); !status.ok()) return status;
     if (Status status = check_shapes(set, shapes_); !status.ok()) return status;
-    return parallel_for(plan_.patch_count(), patches_a_piece, execution, [&](std::size_t begin, std::size_t end) {
+    const auto write = [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) write_patch(set, k, out);
-    });
+    };
+    if (Status status = parallel_for(plan_.patch_count(), patches_a_piece, execution, write); !status.ok()) return status;
+    return write_welded(weld_, plan_, set, out, execution);
   }
 
  private:
@@ -77,6 +84,7 @@ class CertifiedTessellation::Impl {
 
   CertifiedPlan plan_;
   std::vector<PatchShape> shapes_;
+  Weld weld_;
   Vec3 origin_;
   bool certified_;
   BorderWeights weights_;
@@ -88,7 +96,10 @@ Result<CertifiedTessellation> CertifiedTessellation::make(const PatchSet& set, c
   return guarded([&]() -> Result<CertifiedTessellation> {
     if (!set.blocks().float_bernstein)
       return Status(StatusCode::unsupported, "a tessellation needs float Bernstein blocks, the set has none");
-    Result<CertifiedPlanner> planner = CertifiedPlanner::make(set.impl(), execution);
+    if (!(options.weld >= 0 && std::isfinite(options.weld)))
+      return Status(StatusCode::invalid_argument,
+                    "the weld is " + text(options.weld) + ", it must be finite and at least 0");
+    Result<CertifiedPlanner> planner = CertifiedPlanner::make(set.impl(), options.weld, execution);
     if (!planner) return planner.status();
     double tolerance = options.tolerance * (options.relative ? set.box().diagonal() : 1);
     if (options.smallest) {
@@ -98,7 +109,7 @@ Result<CertifiedTessellation> CertifiedTessellation::make(const PatchSet& set, c
     }
     Result<CertifiedPlan> plan = planner->plan(tolerance, options.most_triangles, execution);
     if (!plan) return plan.status();
-    return CertifiedTessellation(std::make_unique<Impl>(set, std::move(*plan), planner->shapes()));
+    return CertifiedTessellation(std::make_unique<Impl>(set, std::move(*plan), *planner));
   });
 }
 
@@ -110,6 +121,7 @@ CertifiedTessellation::~CertifiedTessellation() = default;
 double CertifiedTessellation::bound() const { return impl_->bound(); }
 bool CertifiedTessellation::certified() const { return impl_->certified(); }
 std::span<const float> CertifiedTessellation::bounds() const { return impl_->plan().bounds(); }
+std::size_t CertifiedTessellation::welded_borders() const { return impl_->welded_borders(); }
 MeshCapacity CertifiedTessellation::capacity() const { return impl_->plan().capacity(); }
 
 Result<Mesh> CertifiedTessellation::allocate() const {

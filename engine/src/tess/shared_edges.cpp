@@ -11,14 +11,6 @@ std::uint32_t bits(const PackedBorder& border, int point, int component) {
   return std::bit_cast<std::uint32_t>(border.value(point, component));
 }
 
-bool equal(const PackedBorder& a, const PackedBorder& b, bool reversed) {
-  if (a.count() != b.count() || a.components() != b.components()) return false;
-  for (int k = 0; k < a.count(); ++k)
-    for (int c = 0; c < a.components(); ++c)
-      if (bits(a, k, c) != bits(b, reversed ? b.count() - 1 - k : k, c)) return false;
-  return true;
-}
-
 /// The finaliser of MurmurHash3 (Appleby 2011): every bit of x moves every bit of the result.
 std::uint64_t mixed(std::uint64_t x) {
   x = (x ^ x >> 33) * 0xff51afd7ed558ccdULL;
@@ -38,6 +30,14 @@ std::uint64_t hash(const PackedBorder& border) {
 }
 
 }  // namespace
+
+bool equal(const PackedBorder& a, const PackedBorder& b, bool reversed) {
+  if (a.count() != b.count() || a.components() != b.components()) return false;
+  for (int k = 0; k < a.count(); ++k)
+    for (int c = 0; c < a.components(); ++c)
+      if (bits(a, k, c) != bits(b, reversed ? b.count() - 1 - k : k, c)) return false;
+  return true;
+}
 
 PackedBorder::PackedBorder(const PatchSet::Impl& set, std::size_t patch, Side side) {
   const PatchSet::Slot slot = set.slots[patch];
@@ -82,6 +82,11 @@ SharedEdges::SharedEdges(const PatchSet::Impl& set) : edges_(4 * set.patches.siz
       table[at] = static_cast<std::uint32_t>(number + 1);
       edges_[number] = static_cast<std::uint32_t>(count_++);
     }
+}
+
+void SharedEdges::renumber(std::span<const std::uint32_t> numbers) {
+  for (std::uint32_t& edge : edges_)
+    if (edge != none) edge = numbers[edge];
 }
 
 }  // namespace tessera

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "block/patch_set_impl.h"
@@ -38,6 +39,9 @@ class PackedBorder {
   int count_, components_;
 };
 
+/// Whether borders are the same bits, the one running backwards if `reversed`.
+bool equal(const PackedBorder& a, const PackedBorder& b, bool reversed);
+
 /// The edges of a set: borders whose packed float control points and weights are the same bits, in either direction, are one edge. It
 /// is these floats that get evaluated, so equal bits make equal curves. Borders of different degree are different edges.
 /// Collapsed borders belong to none.
@@ -51,6 +55,8 @@ class SharedEdges {
 
   std::size_t count() const { return count_; }
   std::uint32_t edge(std::size_t patch, Side side) const { return edges_[4 * patch + static_cast<std::size_t>(side)]; }
+  /// Gives each edge another number, below count(), or none.
+  void renumber(std::span<const std::uint32_t> numbers);
 
  private:
   std::vector<std::uint32_t> edges_;  ///< `[patch][side]`
