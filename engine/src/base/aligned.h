@@ -9,6 +9,17 @@ namespace tessera {
 
 inline constexpr std::size_t cache_line = 64;
 
+/// Memory of some pages of this size is asked for in them, where the system has them: scattered reads of 4 KiB pages
+/// wait longer for the page's address than for the values.
+inline constexpr std::size_t large_page = std::size_t{2} << 20;
+
+/// Alignment of so many bytes.
+constexpr std::align_val_t alignment_of(std::size_t bytes) {
+  return std::align_val_t{bytes >= 2 * large_page ? large_page : cache_line};
+}
+/// `bytes` at that alignment. Throws std::bad_alloc.
+void* allocate_aligned(std::size_t bytes);
+
 template <class T>
 struct AlignedAllocator {
   using value_type = T;
@@ -17,9 +28,9 @@ struct AlignedAllocator {
   AlignedAllocator(const AlignedAllocator<U>&) {}
   T* allocate(std::size_t count) {
     if (count > static_cast<std::size_t>(-1) / sizeof(T)) throw std::bad_array_new_length();
-    return static_cast<T*>(::operator new(count * sizeof(T), std::align_val_t{cache_line}));
+    return static_cast<T*>(allocate_aligned(count * sizeof(T)));
   }
-  void deallocate(T* memory, std::size_t) { ::operator delete(memory, std::align_val_t{cache_line}); }
+  void deallocate(T* memory, std::size_t count) { ::operator delete(memory, alignment_of(count * sizeof(T))); }
   friend bool operator==(const AlignedAllocator&, const AlignedAllocator&) { return true; }
 };
 

@@ -1,0 +1,16 @@
+#include "base/aligned.h"
+
+#include <sys/mman.h>
+
+namespace tessera {
+
+void* allocate_aligned(std::size_t bytes) {
+  void* const memory = ::operator new(bytes, alignment_of(bytes));
+#ifdef MADV_HUGEPAGE
+  if (alignment_of(bytes) == std::align_val_t{large_page})
+    (void)madvise(memory, bytes / large_page * large_page, MADV_HUGEPAGE);  // a wish, no need
+#endif
+  return memory;
+}
+
+}  // namespace tessera

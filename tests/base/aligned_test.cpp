@@ -1,0 +1,32 @@
+// Memory aligned to cache lines, and to large pages where there is enough of it.
+
+#include "base/aligned.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+
+namespace tessera::test {
+namespace {
+
+template <class Vector>
+bool is_aligned(const Vector& vector, std::size_t to) {
+  return reinterpret_cast<std::uintptr_t>(vector.data()) % to == 0;
+}
+
+TEST(Aligned, VectorsOfEverySize) {
+  constexpr std::size_t most_small = 2 * large_page / sizeof(double);
+  for (const std::size_t size : {std::size_t{1}, std::size_t{9}, most_small - 1, most_small, most_small + 7}) {
+    AlignedVector<double> vector(size, 3.0);
+    EXPECT_TRUE(is_aligned(vector, size < most_small ? cache_line : large_page)) << size;
+    for (const std::size_t more : {size + 1, 3 * size}) {  // grows from small to large
+      vector.resize(more, 4.0);
+      EXPECT_TRUE(is_aligned(vector, cache_line));
+      EXPECT_EQ(vector[size - 1], 3.0);
+      EXPECT_EQ(vector.back(), 4.0);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tessera::test
