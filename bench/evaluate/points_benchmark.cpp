@@ -1,10 +1,8 @@
-// Scattered points: points/OUTPUTS/ORDER/PATCHES/ISA/THREADS. Each case checks the values that it timed against the
-// reference evaluator before it reports; touch_fraction is the time of touching the three lines of each sample's patch,
-// measured in the same process around the run, over the best time of one call.
+// Scattered points: points.OUTPUTS.ORDER; the size is the number of samples. Each case checks the values that it timed
+// against the reference evaluator before it reports; touch_fraction is the time of touching the three lines of each
+// sample's patch, measured in the same process around the run, over the best time of one call.
 
 #include <benchmark/benchmark.h>
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <chrono>
@@ -15,8 +13,10 @@
 #include <vector>
 
 #include "block/patch_set_impl.h"
+#include "suite.h"
 #include "support/synthetic_sets.h"
 #include "tessera/evaluate_points.h"
+#include "timing.h"
 
 namespace tessera::bench {
 namespace {
@@ -28,10 +28,14 @@ struct Case {
   Isa isa;
   int threads;
 
-  std::string name() const {
-    const std::string order = run == 1 ? "random" : "runs" + std::to_string(run);
-    return std::string("points/positions") + (normals ? "+normals/" : "/") + order + "/bicubic" +
-           std::to_string(patches) + "/" + std::string(tessera::name(isa)) + "/" + std::to_string(threads);
+  CaseName name() const {
+    const std::string outputs = normals ? "positions+normals." : "positions.";
+    return {"points." + outputs + (run == 1 ? "random" : "runs" + std::to_string(run)),
+            "bicubic" + std::to_string(patches),
+            "3",
+            std::to_string(samples()),
+            std::string(tessera::name(isa)),
+            threads};
   }
   std::size_t samples() const { return std::max<std::size_t>(patches, 400'000); }
 };
@@ -101,31 +105,21 @@ void run(benchmark::State& state, const Case& c) {
   PointViews<float> out{.position = View3<float>::interleaved(positions)};
   if (c.normals) out.normal = View3<float>::interleaved(normals);
   const double touch_before = touch_seconds(set, samples);
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(c.threads));
-  tbb::task_arena arena(c.threads);
   ExecutionReport report;
   Execution execution;
   execution.report = &report;
-  double best = 1e30;
-  for (auto _ : state) {
-    const auto start = std::chrono::steady_clock::now();
-    Status status;
-    arena.execute([&] { status = evaluate(set, samples.views(), out, {.isa = c.isa}, execution); });
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (!status.ok()) return state.SkipWithError(status.message().c_str());
-    state.SetIterationTime(seconds);
-    best = std::min(best, seconds);
-  }
+  const auto best = time_calls(state, c.threads,
+                               [&] { return evaluate(set, samples.views(), out, {.isa = c.isa}, execution); });
+  if (!best) return;
   if (report.isa != c.isa) return state.SkipWithError("another instruction set ran than was asked for");
   if (!check_values(set, samples, out)) return state.SkipWithError("the timed values differ from the reference");
-  state.counters["points_per_second"] = static_cast<double>(c.samples()) / best;
-  if (c.threads == 1) state.counters["touch_fraction"] = std::min(touch_before, touch_seconds(set, samples)) / best;
+  report_rates(state, *best, static_cast<double>(c.samples()));
+  if (c.threads == 1) state.counters["touch_fraction"] = std::min(touch_before, touch_seconds(set, samples)) / *best;
 }
 
 void add(const Case& c) {
-  benchmark::RegisterBenchmark(c.name().c_str(), [c](benchmark::State& state) { run(state, c); })
-      ->UseManualTime()
-      ->Unit(benchmark::kMillisecond);
+  const bool quick = c.patches == 5'000 && (c.run == 1 || c.run == 40);
+  add_case(c.name(), quick ? quick_on_fastest(c.isa) : Part::full, [c](benchmark::State& state) { run(state, c); });
 }
 
 const bool registered = [] {

@@ -57,15 +57,10 @@ TEST(Points, SameBytesForAnyThreadsAndOnEveryIsaOfMixedDegrees) {
 
 /// A sample's values depend neither on its neighbours nor on which kernel their order calls for.
 template <class T>
-void compare_orders(const std::vector<BezierPatch>& patches) {
-  Random random(313);
-  const PatchSet set = set_of(patches, with_points());
-  const Samples<T> samples = random_samples<T>(random, set.patch_count(), 5000);
-  std::vector<std::size_t> order = shuffled_order(random, samples.size());
-  std::ranges::stable_sort(order, {}, [&](std::size_t k) { return samples.patch[k]; });
-  const Samples<T> sorted = samples.in_order(order);
+void compare_orders(const PatchSet& set, const Samples<T>& samples, const std::vector<std::size_t>& order) {
+  const Samples<T> ordered = samples.in_order(order);
   for (const Isa isa : available_isas()) {
-    const AllBuffers<T> a = all_outputs(set, samples, {.isa = isa}), b = all_outputs(set, sorted, {.isa = isa});
+    const AllBuffers<T> a = all_outputs(set, samples, {.isa = isa}), b = all_outputs(set, ordered, {.isa = isa});
     for (std::size_t k = 0; k < order.size(); ++k) {
       ASSERT_EQ(b.normal_kind[k], a.normal_kind[order[k]]);
       ASSERT_EQ(b.curvature_kind[k], a.curvature_kind[order[k]]);
@@ -77,12 +72,45 @@ void compare_orders(const std::vector<BezierPatch>& patches) {
     }
   }
 }
+template <class T>
+void compare_sorted(const std::vector<BezierPatch>& patches) {
+  Random random(313);
+  const PatchSet set = set_of(patches, with_points());
+  const Samples<T> samples = random_samples<T>(random, set.patch_count(), 5000);
+  std::vector<std::size_t> order = shuffled_order(random, samples.size());
+  std::ranges::stable_sort(order, {}, [&](std::size_t k) { return samples.patch[k]; });
+  compare_orders(set, samples, order);
+}
 TEST(Points, OrderDoesNotMatter) {
   Random random(314);
-  compare_orders<float>(test::wavy_field(5, 7));
-  compare_orders<double>(test::wavy_field(5, 7));
-  compare_orders<float>(mixed_patches(random, 3));
-  compare_orders<float>(test::sphere());
+  compare_sorted<float>(test::wavy_field(5, 7));
+  compare_sorted<double>(test::wavy_field(5, 7));
+  compare_sorted<float>(mixed_patches(random, 3));
+  compare_sorted<float>(test::sphere());
+}
+TEST(Points, OrderDoesNotMatterWherePatchesAreFetchedAhead) {
+  const std::vector<BezierPatch> patches = test::wavy_field(60, 100);
+  compare_sorted<float>(patches);
+  compare_sorted<double>(patches);
+}
+
+/// Runs of one patch of every length around the lanes of a vector, between samples of others.
+template <class T>
+void compare_runs(const std::vector<BezierPatch>& patches) {
+  Random random(319);
+  const PatchSet set = set_of(patches, with_points());
+  Samples<T> samples = random_samples<T>(random, set.patch_count(), 4200);
+  for (std::size_t k = 0, run = 0; k < samples.size(); run = (run + 1) % 41)
+    for (const std::size_t first = k; k < std::min(samples.size(), first + 1 + run); ++k)
+      samples.patch[k] = samples.patch[first];
+  compare_orders(set, samples, shuffled_order(random, samples.size()));
+}
+TEST(Points, RunsOfEveryLengthAreWhatTheirSamplesAreAlone) {
+  Random random(320);
+  compare_runs<float>(test::wavy_field(5, 7));
+  compare_runs<double>(test::wavy_field(5, 7));
+  compare_runs<float>(mixed_patches(random, 3));
+  compare_runs<double>(mixed_patches(random, 3));
 }
 
 TEST(Points, EachOutputAloneIsWhatItIsAmongOthers) {

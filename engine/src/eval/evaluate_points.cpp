@@ -50,19 +50,20 @@ Status check_call(const PatchSet::Impl& set, const Source& source, const GridVie
 
 /// The first sample that can't be evaluated, for any number of threads.
 template <class Source>
-Status check_samples(const Source& source, std::size_t grain, const Execution& execution) {
+Status check_samples(const Source& source, const kernel::KernelTable& kernels, std::size_t grain,
+                     const Execution& execution) {
   std::atomic<std::size_t> refused{source.count()};
   const Execution checking{.cancel = execution.cancel};
   const Status status = parallel_for(source.count(), grain, checking, [&](std::size_t begin, std::size_t end) {
     if (begin >= refused.load(std::memory_order_relaxed)) return;
-    const Status found = source.check(begin, end);
+    const Status found = source.check(begin, end, kernels);
     if (found.ok()) return;
     const auto sample = static_cast<std::size_t>(found.index());
     std::size_t first = refused;
     while (sample < first && !refused.compare_exchange_weak(first, sample)) continue;
   });
   if (!status.ok() || refused == source.count()) return status;
-  return source.check(refused, refused + 1);
+  return source.check(refused, refused + 1, kernels);
 }
 
 template <class T, class Source>
@@ -75,9 +76,10 @@ Status run(const PatchSet::Impl& set, const Source& source, const GridViews<T>& 
   const std::size_t capacity = ChunkSamples<T>::capacity;
   const bool serial = source.count() <= (order > 0 ? serial_normals : serial_positions);
   const std::size_t grain = serial ? std::max<std::size_t>(source.count(), 1) : capacity;
-  if (Status status = check_samples(source, 8 * grain, execution); !status.ok()) return status;
+  const kernel::KernelTable& kernels = kernel::kernels(*isa);
+  if (Status status = check_samples(source, kernels, 8 * grain, execution); !status.ok()) return status;
 
-  const PointCall<T> call{set, kernel::kernels(*isa), out, options.geometry};
+  const PointCall<T> call{set, kernels, out, options.geometry};
   std::atomic<Isa> ran{*isa};
   const Status status = parallel_for(source.count(), grain, execution, [&](std::size_t begin, std::size_t end) {
     PointChunk<T> chunk(call);

@@ -23,19 +23,36 @@ struct PointCall {
   LocalGeometryOptions geometry;
 };
 
-/// Samples of a chunk by patch and local parameters, as a source of samples fills them in.
+/// Samples of a chunk by patch and local parameters, as a source of samples hands them out: where they lie already, or
+/// in memory of the chunk's own. All are readable for kernel::point_padding beyond the last.
 template <class T>
 struct ChunkSamples {
   static constexpr std::size_t capacity = 2048;
-  /// Kernels read, and fetch ahead, beyond the last sample.
-  static constexpr std::size_t padded = capacity + kernel::block_lanes + kernel::prefetch_distance;
+  static constexpr std::size_t padding = kernel::point_padding;
+  template <class Value>
+  using Memory = std::array<Value, capacity + padding>;
 
   std::size_t begin = 0, count = 0;  ///< of the call's samples
-  std::array<std::uint32_t, padded> patch;
-  alignas(cache_line) std::array<T, padded> u, v;
+  const std::uint32_t* patch = nullptr;
+  const T* u = nullptr;
+  const T* v = nullptr;
+  alignas(cache_line) Memory<std::uint32_t> own_patch;
+  alignas(cache_line) Memory<T> own_u, own_v;
   /// What derivatives by local parameters are to be divided by: widths of the patch in the surface's parameters.
   bool scaled = false;
-  std::array<double, padded> width_u, width_v;
+  std::array<double, capacity> width_u, width_v;
+
+  /// For samples in memory of the chunk's own; the padding repeats the last.
+  void use_own() {
+    patch = padded(own_patch, count);
+    u = padded(own_u, count);
+    v = padded(own_v, count);
+  }
+  template <class Value>
+  static const Value* padded(Memory<Value>& values, std::size_t count) {
+    std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(count), padding, values[count - 1]);
+    return values.data();
+  }
 };
 
 /// Evaluates chunk after chunk. Lives on a task's stack; allocates nothing.
@@ -85,12 +102,9 @@ class PointChunk {
 
  private:
   static constexpr int lanes = kernel::block_lanes;
-  static constexpr int batch = 8;  ///< slots in the stage
+  static constexpr int batch = kernel::point_slots;  ///< slots in the stage
   static constexpr std::size_t most_fields = std::size(vector_outputs<T>) + std::size(scalar_outputs<T>);
   static constexpr std::size_t stage_rows = 3 * std::size(vector_outputs<T>) + std::size(scalar_outputs<T>);
-  /// From runs of this mean length on, broadcast coefficients win.
-  static constexpr std::size_t shortest_run = 8;
-  static constexpr std::size_t most_slots = Samples::capacity / shortest_run + Samples::capacity / lanes;
   /// Patches beyond this many bytes are fetched ahead: a second-level cache.
   static constexpr std::size_t cached_bytes = 1 << 20;
 
@@ -132,19 +146,15 @@ class PointChunk {
     const double smallest_sine = sizeof(T) == 4 ? 1e-6 : 0, smallest_tolerance = sizeof(T) == 4 ? 1e-4 : 0;
     grid.smallest_sine = static_cast<T>(std::max(call_.geometry.smallest_sine, smallest_sine));
     grid.umbilic_tolerance = static_cast<T>(std::max(call_.geometry.umbilic_tolerance, smallest_tolerance));
-    job_.nets = nets_.data();
   }
 
   /// Every sample is of this group: patches lie in their own order.
   Isa run_all(const BlockGroup& group) {
-    const T* const points = coefficients_.points.data();
-    for (std::size_t k = 0; k < samples_.count; ++k) nets_[k] = points + samples_.patch[k] * group.point_values;
     list_ = nullptr;
     count_ = samples_.count;
-    pad(samples_.u);
-    pad(samples_.v);
-    job_.u = samples_.u.data();
-    job_.v = samples_.v.data();
+    job_.patch = samples_.patch;
+    job_.u = samples_.u;
+    job_.v = samples_.v;
     return run_list(group);
   }
 
@@ -155,37 +165,32 @@ class PointChunk {
       const PatchSet::Slot& slot = call_.set.slots[samples_.patch[k]];
       if (slot.block - group.first_block >= group.block_count) continue;  // unsigned: below it too
       done[k] = 1;
-      nets_[count_] = coefficients_.points.data() + group.point_value(slot);
+      listed_patch_[count_] =
+          static_cast<std::uint32_t>((slot.block - group.first_block) * PatchSet::lanes + slot.lane);
       listed_u_[count_] = samples_.u[k];
       listed_v_[count_] = samples_.v[k];
       indices_[count_++] = static_cast<std::uint32_t>(k);
     }
     list_ = indices_.data();
-    pad(listed_u_);
-    pad(listed_v_);
-    job_.u = listed_u_.data();
-    job_.v = listed_v_.data();
+    job_.patch = Samples::padded(listed_patch_, count_);
+    job_.u = Samples::padded(listed_u_, count_);
+    job_.v = Samples::padded(listed_v_, count_);
     return run_list(group);
   }
 
-  /// Repeats the last sample for lanes without one.
-  void pad(std::array<T, Samples::padded>& values) const {
-    std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(count_), lanes, values[count_ - 1]);
-  }
-
   Isa run_list(const BlockGroup& group) {
-    std::fill(nets_.begin() + static_cast<std::ptrdiff_t>(count_), nets_.end(), nets_[count_ - 1]);
     kernel::GridJob<T>& grid = job_.grid;
     grid.degree_u = group.degree_u;
     grid.degree_v = group.degree_v;
     grid.rational = group.rational;
+    job_.points = coefficients_.points.data() + group.first_point_value;
+    job_.patch_values = group.point_values;
     const std::size_t bytes = group.point_values * sizeof(T);
     job_.prefetched = coefficients_.points.size() * sizeof(T) > cached_bytes ? bytes : 0;
-    const std::size_t slots = make_slots();
+    job_.count = static_cast<int>(count_);
+    job_.next = 0;
     Isa isa = Isa::sse2;
-    for (std::size_t first = 0; first < slots; first += batch) {
-      job_.slots = slots_.data() + first;
-      job_.slot_count = static_cast<int>(std::min<std::size_t>(batch, slots - first));
+    while (job_.next < job_.count) {
       if constexpr (sizeof(T) == 4) {
         isa = call_.kernels.points_f32(job_);
       } else {
@@ -194,33 +199,6 @@ class PointChunk {
       move_out();
     }
     return isa;
-  }
-
-  /// Slots of samples of one patch where runs are long enough, of any samples otherwise.
-  std::size_t make_slots() {
-    const std::size_t runs = find_runs();
-    job_.runs = runs * shortest_run <= count_;
-    if (!job_.runs) return add_slots(0, count_, 0);
-    std::size_t slots = 0;
-    for (std::size_t run = 0; run < runs; ++run) slots = add_slots(run_starts_[run], run_starts_[run + 1], slots);
-    return slots;
-  }
-  /// Where runs of one patch begin, and the end of the last; without a branch a sample.
-  std::size_t find_runs() {
-    std::size_t runs = 1;
-    run_starts_[0] = 0;
-    for (std::size_t k = 1; k < count_; ++k) {
-      run_starts_[runs] = static_cast<std::uint16_t>(k);
-      runs += nets_[k] != nets_[k - 1];
-    }
-    run_starts_[runs] = static_cast<std::uint16_t>(count_);
-    return runs;
-  }
-  /// Cuts samples [begin, end) into slots behind the `slots` that there are; returns how many there are then.
-  std::size_t add_slots(std::size_t begin, std::size_t end, std::size_t slots) {
-    for (std::size_t k = begin; k < end; k += lanes)
-      slots_[slots++] = {static_cast<int>(k), static_cast<int>(std::min<std::size_t>(lanes, end - k))};
-    return slots;
   }
 
   std::size_t sample_of(int slot, int lane) const {
@@ -306,11 +284,9 @@ class PointChunk {
   Samples samples_;
   const std::uint32_t* list_ = nullptr;  ///< the samples at work; null: all
   std::size_t count_ = 0;                ///< of the samples at work
-  std::array<const T*, Samples::padded> nets_;
-  alignas(cache_line) std::array<T, Samples::padded> listed_u_, listed_v_;
+  typename Samples::template Memory<std::uint32_t> listed_patch_;
+  alignas(cache_line) typename Samples::template Memory<T> listed_u_, listed_v_;
   std::array<std::uint32_t, Samples::capacity> indices_;
-  std::array<std::uint16_t, Samples::capacity + 1> run_starts_;
-  std::array<kernel::PointSlot, most_slots> slots_;
   alignas(cache_line) std::array<T, lanes> doubts_;
   alignas(cache_line) std::array<T, stage_rows * lanes * batch> stage_;
   alignas(cache_line) std::array<std::array<std::uint8_t, static_cast<std::size_t>(lanes) * batch>, 2> kinds_;

@@ -38,26 +38,16 @@ void gather(const View1<const From>& view, std::size_t begin, std::size_t count,
   }
 }
 
-/// Whether all values of a view in [begin, end) pass; without a branch in between, so that it runs in vectors.
-template <class T, class Passes>
-bool all_pass(const View1<const T>& view, std::size_t begin, std::size_t end, Passes passes) {
-  const T* values = view.component[0] + static_cast<std::ptrdiff_t>(begin) * view.stride;
-  const std::size_t count = end - begin;
-  unsigned refused = 0;
-  if (view.stride == 1) {
-    for (std::size_t k = 0; k < count; ++k) refused += !passes(values[k]);
-  } else {
-    for (std::size_t k = 0; k < count; ++k) refused += !passes(values[static_cast<std::ptrdiff_t>(k) * view.stride]);
-  }
-  return refused == 0;
-}
-
 /// Samples by patch.
 template <class T>
 class SamplesByPatch {
  public:
   SamplesByPatch(const PatchSet::Impl& set, const PatchSamples<T>& samples, OutsideDomain outside)
-      : patches_(static_cast<std::uint32_t>(set.patches.size())), samples_(samples), outside_(outside) {}
+      : patches_(static_cast<std::uint32_t>(set.patches.size())),
+        samples_(samples),
+        outside_(outside),
+        low_(outside == OutsideDomain::error ? T(0) : std::numeric_limits<T>::lowest()),
+        high_(outside == OutsideDomain::error ? T(1) : std::numeric_limits<T>::max()) {}
 
   std::size_t count() const { return samples_.patch.size; }
   bool lengths_fit() const { return samples_.u.size >= count() && samples_.v.size >= count(); }
@@ -68,39 +58,57 @@ class SamplesByPatch {
   }
 
   /// Of samples [begin, end): the first one that can't be evaluated.
-  Status check(std::size_t begin, std::size_t end) const {
-    const auto inside = [this](T t) { return passes(t); };
-    if (all_pass(samples_.patch, begin, end, [this](std::uint32_t patch) { return patch < patches_; }) &&
-        all_pass(samples_.u, begin, end, inside) && all_pass(samples_.v, begin, end, inside))
-      return {};
+  Status check(std::size_t begin, std::size_t end, const kernel::KernelTable& kernels) const {
+    if (lie_together() && all_pass(begin, end - begin, kernels)) return {};
     for (std::size_t k = begin; k < end; ++k) {
       if (samples_.patch.at(k, 0) >= patches_)
         return refused_sample(StatusCode::invalid_argument, k,
                               "there is no patch " + std::to_string(samples_.patch.at(k, 0)) + " in a set of " +
                                   std::to_string(patches_));
       for (const auto& [name, t] : {std::pair{"u", samples_.u.at(k, 0)}, {"v", samples_.v.at(k, 0)}})
-        if (!passes(t)) return refused_parameter(name, k, t, 0, 1);
+        if (!(t >= low_ && t <= high_)) return refused_parameter(name, k, t, 0, 1);
     }
     return {};
   }
 
   void fill(std::size_t begin, std::size_t count, const kernel::KernelTable&, ChunkSamples<T>& chunk) const {
-    gather(samples_.patch, begin, count, chunk.patch.data());
-    gather(samples_.u, begin, count, chunk.u.data());
-    gather(samples_.v, begin, count, chunk.v.data());
-    if (outside_ != OutsideDomain::clamp) return;
-    for (auto* parameters : {&chunk.u, &chunk.v})
-      for (std::size_t k = 0; k < count; ++k) (*parameters)[k] = std::clamp<T>((*parameters)[k], 0, 1);
+    const std::size_t end = begin + count;
+    if (outside_ != OutsideDomain::clamp && lie_together() && end + ChunkSamples<T>::padding <= this->count()) {
+      chunk.patch = samples_.patch.component[0] + begin;
+      chunk.u = samples_.u.component[0] + begin;
+      chunk.v = samples_.v.component[0] + begin;
+      return;
+    }
+    gather(samples_.patch, begin, count, chunk.own_patch.data());
+    gather(samples_.u, begin, count, chunk.own_u.data());
+    gather(samples_.v, begin, count, chunk.own_v.data());
+    if (outside_ == OutsideDomain::clamp)
+      for (auto* parameters : {&chunk.own_u, &chunk.own_v})
+        for (std::size_t k = 0; k < count; ++k) (*parameters)[k] = std::clamp<T>((*parameters)[k], 0, 1);
+    chunk.use_own();
   }
 
  private:
-  bool passes(T t) const {
-    return outside_ == OutsideDomain::error ? (t >= 0) & (t <= 1) : std::abs(t) <= std::numeric_limits<T>::max();
+  bool lie_together() const { return samples_.patch.stride == 1 && samples_.u.stride == 1 && samples_.v.stride == 1; }
+  bool all_pass(std::size_t begin, std::size_t count, const kernel::KernelTable& kernels) const {
+    const kernel::PointCheckJob<T> job{.patch = samples_.patch.component[0] + begin,
+                                       .patches = patches_,
+                                       .u = samples_.u.component[0] + begin,
+                                       .v = samples_.v.component[0] + begin,
+                                       .low = low_,
+                                       .high = high_,
+                                       .count = count};
+    if constexpr (sizeof(T) == 4) {
+      return kernels.check_points_f32(job);
+    } else {
+      return kernels.check_points_f64(job);
+    }
   }
 
   std::uint32_t patches_;
   const PatchSamples<T>& samples_;
   OutsideDomain outside_;
+  T low_, high_;  ///< parameters from when on, and up to which, they are taken
 };
 
 /// Samples by surface.
@@ -120,7 +128,7 @@ class SamplesBySurface {
     checks.add("v", samples_.v);
   }
 
-  Status check(std::size_t begin, std::size_t end) const {
+  Status check(std::size_t begin, std::size_t end, const kernel::KernelTable&) const {
     for (std::size_t k = begin; k < end; ++k) {
       const std::uint32_t surface = surface_of(k);
       if (surface >= map_.surfaces.size() || map_.surfaces[surface].breaks_u.empty())
@@ -144,6 +152,7 @@ class SamplesBySurface {
       fill_piece(map_.surfaces[surface], begin, first, last - first, kernels, chunk);
       first = last;
     }
+    chunk.use_own();
   }
 
  private:
@@ -171,10 +180,10 @@ class SamplesBySurface {
     locate(surface.breaks_v, samples_.v, begin + first, count, kernels, v, chunk.width_v.data() + first);
     const std::size_t columns = surface.breaks_v.size() - 1;
     for (std::size_t k = 0; k < count; ++k) {
-      chunk.patch[first + k] = static_cast<std::uint32_t>(
+      chunk.own_patch[first + k] = static_cast<std::uint32_t>(
           surface.first_patch + static_cast<std::size_t>(u.span[k]) * columns + static_cast<std::size_t>(v.span[k]));
-      chunk.u[first + k] = static_cast<T>(u.local[k]);
-      chunk.v[first + k] = static_cast<T>(v.local[k]);
+      chunk.own_u[first + k] = static_cast<T>(u.local[k]);
+      chunk.own_v[first + k] = static_cast<T>(v.local[k]);
     }
   }
 

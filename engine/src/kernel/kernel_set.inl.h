@@ -13,6 +13,7 @@ inline constexpr int max_order = 16;  // coefficients of the highest degree
 #include "kernel/memory_kernels.inl.h"
 #include "kernel/lane_weights.inl.h"
 #include "kernel/locate_kernel.inl.h"
+#include "kernel/point_slots.inl.h"
 #include "kernel/point_kernel.inl.h"
 #include "kernel/point_store.inl.h"
 
@@ -32,6 +33,8 @@ constexpr KernelTable table = {
     combine_rows,
     evaluate_points<Lanes<float>>,
     evaluate_points<Lanes<double>>,
+    check_points<float>,
+    check_points<double>,
     locate,
     store_points<Lanes<float>>,
     store_points<Lanes<double>>,

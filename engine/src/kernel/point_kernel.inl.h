@@ -48,33 +48,51 @@ template <class L, bool EndsLine>
   return sum;
 }
 
-inline void fetch(const void* memory, std::size_t bytes) {
-  for (std::size_t b = 0; b < bytes; b += 64) __builtin_prefetch(static_cast<const char*>(memory) + b);
+template <class T>
+[[gnu::always_inline]] inline const T* net_of(const PointJob<T>& job, int sample) {
+  return job.points + job.patch[sample] * job.patch_values;
 }
 
-/// Row curves of `width` samples from their patches' rows.
-template <class L, int Degree, int Components, int Capacity>
-[[gnu::always_inline]] inline void curves_by_rows(const typename L::Scalar* const* nets,
+/// The patch of the sample prefetch_distance behind this one, towards the second-level cache.
+template <int Degree, int Components, class T>
+[[gnu::always_inline]] inline void fetch_ahead(const PointJob<T>& job, int sample) {
+  constexpr std::size_t known = std::size_t{(Degree + 1) * (Degree + 1) * Components} * sizeof(T);
+  const auto* net = reinterpret_cast<const char*>(net_of(job, sample + prefetch_distance));
+  for (std::size_t b = 0; b < (Degree > 0 ? known : job.prefetched); b += 64) __builtin_prefetch(net + b, 0, 2);
+}
+
+/// Column l of the sums becomes row curve k + l, counted over all components.
+template <class L, int Components, int Capacity>
+[[gnu::always_inline]] inline void put_columns(typename L::Batch (&tile)[L::width], int k, int count_v,
+                                               typename L::Batch (&curve)[Components][Capacity]) {
+  L::transpose(tile);
+  const int rest = Components * count_v - k, columns = rest < L::width ? rest : int{L::width};
+  int c = k / count_v, j = k % count_v;
+#pragma GCC unroll 16
+  for (int l = 0; l < columns; ++l) {
+    curve[c][j] = tile[l];
+    if (++j == count_v) j = 0, ++c;
+  }
+}
+
+/// Row curves of `width` samples from their patches' rows. `weights`: `[order][i][lane]`.
+template <class L, int Degree, int Order, int Components, int Capacity>
+[[gnu::always_inline]] inline void curves_by_rows(const PointJob<typename L::Scalar>& job, int first,
                                                   const typename L::Scalar* weights, int count_u, int count_v,
-                                                  std::size_t prefetched,
-                                                  typename L::Batch (&curve)[Components][Capacity]) {
+                                                  RowCurves<L, Order, Components, Capacity>& curves) {
   constexpr bool ends_line = Degree == 3 && Components == 3 && L::width == 16;
   const int length = Components * count_v;
-  int c = 0, j = 0;
 #pragma GCC unroll 4
   for (int k = 0; k < length; k += L::width) {
-    typename L::Batch tile[L::width];
+    for (int order = 0; order <= Order; ++order) {
+      typename L::Batch tile[L::width];
 #pragma GCC unroll 16
-    for (int s = 0; s < L::width; ++s) {
-      if (k == 0 && prefetched > 0) fetch(nets[s + prefetch_distance], prefetched);
-      tile[s] = row_sum<L, ends_line>(nets[s] + k, weights + s, count_u, length, length - k);
-    }
-    L::transpose(tile);
-    const int columns = length - k < L::width ? length - k : int{L::width};
-#pragma GCC unroll 16
-    for (int l = 0; l < columns; ++l) {
-      curve[c][j] = tile[l];
-      if (++j == count_v) j = 0, ++c;
+      for (int s = 0; s < L::width; ++s) {
+        if (k == 0 && order == 0 && job.prefetched > 0) fetch_ahead<Degree, Components>(job, first + s);
+        tile[s] = row_sum<L, ends_line>(net_of(job, first + s) + k, weights + order * count_u * L::width + s, count_u,
+                                        length, length - k);
+      }
+      put_columns<L>(tile, k, count_v, curves.by_u[order]);
     }
   }
 }
@@ -107,25 +125,26 @@ template <class L, int Degree, int Components, int Capacity>
   }
 }
 
-/// Row curves of `width` samples; `nets` are theirs, `run` the patch of all of them if there is one.
-template <class L, int Degree, int Components, int Capacity>
-[[gnu::always_inline]] inline void sample_curves(const typename L::Scalar* const* nets, const typename L::Scalar* run,
+/// Row curves of all orders, of `width` samples from `first` on.
+template <class L, int Degree, int Order, int Components, int Capacity>
+[[gnu::always_inline]] inline void sample_curves(const PointJob<typename L::Scalar>& job, int first, bool run,
                                                  const typename L::Scalar* weights, int count_u, int count_v,
-                                                 std::size_t prefetched,
-                                                 typename L::Batch (&curve)[Components][Capacity]) {
+                                                 RowCurves<L, Order, Components, Capacity>& curves) {
   if (run) {
-    curves_by_run<L, Degree>(run, weights, count_u, count_v, curve);
+    const auto* net = net_of(job, first);
+    for (int order = 0; order <= Order; ++order)
+      curves_by_run<L, Degree>(net, weights + order * count_u * L::width, count_u, count_v, curves.by_u[order]);
   } else {
-    curves_by_rows<L, Degree>(nets, weights, count_u, count_v, prefetched, curve);
+    curves_by_rows<L, Degree>(job, first, weights, count_u, count_v, curves);
   }
 }
 
 // Any degree, out of line: loops over the degree are long enough for a call, and their code is large.
-template <class L, int Components>
-__attribute__((noinline)) void any_curves(const typename L::Scalar* const* nets, const typename L::Scalar* run,
+template <class L, int Order, int Components>
+__attribute__((noinline)) void any_curves(const PointJob<typename L::Scalar>& job, int first, bool run,
                                           const typename L::Scalar* weights, int count_u, int count_v,
-                                          std::size_t prefetched, typename L::Batch (&curve)[Components][max_order]) {
-  sample_curves<L, 0>(nets, run, weights, count_u, count_v, prefetched, curve);
+                                          RowCurves<L, Order, Components, max_order>& curves) {
+  sample_curves<L, 0>(job, first, run, weights, count_u, count_v, curves);
 }
 template <class L, int Order>
 __attribute__((noinline)) void fill_any(SlotWeights<L, 0, Order>& weights, const typename L::Scalar* parameters,
@@ -143,17 +162,12 @@ inline void evaluate_slot(const PointJob<typename L::Scalar>& job, int k,
   const int count_v = Degree > 0 ? Degree + 1 : job.grid.degree_v + 1;
   const PointSlot slot = job.slots[k];
   for (int lane = 0; lane < slot.count; lane += L::width) {
-    const auto* const* nets = job.nets + slot.first + lane;
     RowCurves<L, Order, components, capacity> curves;
-    for (int order = 0; order <= Order; ++order) {
-      const auto* of_order = u_weights.of[lane / L::width][order * count_u];
-      const auto* run = job.runs ? job.nets[slot.first] : nullptr;
-      const std::size_t prefetched = order == 0 ? job.prefetched : 0;
-      if constexpr (Degree > 0) {
-        sample_curves<L, Degree>(nets, run, of_order, count_u, count_v, prefetched, curves.by_u[order]);
-      } else {
-        any_curves<L>(nets, run, of_order, count_u, count_v, prefetched, curves.by_u[order]);
-      }
+    const auto* weights = u_weights.of[lane / L::width][0];
+    if constexpr (Degree > 0) {
+      sample_curves<L, Degree>(job, slot.first + lane, slot.run, weights, count_u, count_v, curves);
+    } else {
+      any_curves<L>(job, slot.first + lane, slot.run, weights, count_u, count_v, curves);
     }
     Sample<L> sample;
     evaluate_sample<L, Order>(curves, v_weights.of[lane / L::width], count_v, sample);
@@ -165,7 +179,7 @@ inline void evaluate_slot(const PointJob<typename L::Scalar>& job, int k,
 /// Weights of several slots come first: their long chains of products then overlap.
 template <class L, int Degree, bool Rational, int Order>
 void evaluate_slots(const PointJob<typename L::Scalar>& job) {
-  constexpr int at_once = Degree > 0 ? 8 : 1;
+  constexpr int at_once = Degree > 0 ? point_slots : 1;
   SlotWeights<L, Degree, Order> u_weights[at_once], v_weights[at_once];
   for (int first = 0; first < job.slot_count; first += at_once) {
     const int count = job.slot_count - first < at_once ? job.slot_count - first : at_once;
@@ -198,7 +212,8 @@ void choose_degree(const PointJob<typename L::Scalar>& job) {
 }
 
 template <class L>
-Isa evaluate_points(const PointJob<typename L::Scalar>& job) {
+Isa evaluate_points(PointJob<typename L::Scalar>& job) {
+  cut_slots<L>(job);
   const auto& grid = job.grid;
   if (grid.duu || grid.duv || grid.dvv || wants_curvatures(grid)) {
     choose_degree<L, 2>(job);

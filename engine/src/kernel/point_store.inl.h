@@ -1,18 +1,40 @@
 // Outputs of scattered samples from the stage to the caller's records. Included by isa_*.cpp as sample_kernel.inl.h is.
 
-/// The first `count` samples of vectors of three, or of numbers, from neighbouring records on.
+/// The samples of a slot as neighbouring records of three, or as numbers one after the other.
 template <class L, Records Layout>
 inline void store_slot(const PointStoreJob<typename L::Scalar>& job, const typename L::Scalar* stage,
-                       std::ptrdiff_t record, int count) {
-  for (int lane = 0; lane < count; lane += L::width) {
-    const int part = count - lane < L::width ? count - lane : int{L::width};
-    if (job.width == 1 && job.stride == 1) {
-      L::store_first(job.out[0] + record + lane, L::load(stage + lane), part);
+                       const PointSlot& slot) {
+  for (int lane = 0; lane < slot.count; lane += L::width) {
+    const int part = slot.count - lane < L::width ? slot.count - lane : int{L::width};
+    if (job.width == 1) {
+      L::store_first(job.out[0] + slot.first + lane, L::load(stage + lane), part);
     } else {
       typename L::Batch p[3];
       for (int c = 0; c < 3; ++c) p[c] = L::load(stage + c * block_lanes + lane);
-      store_records<L, Layout>(job, record + lane, p, part);
+      store_records<L, Layout>(job, slot.first + lane, p, part);
     }
+  }
+}
+
+template <class T>
+inline std::ptrdiff_t record_of(const PointStoreJob<T>& job, int sample) {
+  return (job.records ? static_cast<std::ptrdiff_t>(job.records[sample]) : sample) * job.stride;
+}
+
+/// Vectors whose three components lie together, each sample where it belongs.
+template <class L>
+inline void store_vectors(const PointStoreJob<typename L::Scalar>& job, const typename L::Scalar* stage,
+                          const PointSlot& slot) {
+  using T = typename L::Scalar;
+  alignas(64) T vectors[3 * L::width];
+  for (int lane = 0; lane < slot.count; lane += L::width) {
+    typename L::Batch p[3];
+    for (int c = 0; c < 3; ++c) p[c] = L::load(stage + c * block_lanes + lane);
+    L::interleave(p);
+    for (int k = 0; k < 3; ++k) L::store(vectors + k * L::width, p[k]);
+    const int part = slot.count - lane < L::width ? slot.count - lane : int{L::width};
+    for (int l = 0; l < part; ++l)
+      __builtin_memcpy(job.out[0] + record_of(job, slot.first + lane + l), vectors + 3 * l, 3 * sizeof(T));
   }
 }
 
@@ -20,26 +42,24 @@ inline void store_slot(const PointStoreJob<typename L::Scalar>& job, const typen
 template <class T>
 inline void store_apart(const PointStoreJob<T>& job, const T* stage, const PointSlot& slot) {
   for (int c = 0; c < job.width; ++c)
-    for (int lane = 0; lane < slot.count; ++lane) {
-      const std::ptrdiff_t sample = slot.first + lane;
-      const std::ptrdiff_t record = job.records ? static_cast<std::ptrdiff_t>(job.records[sample]) : sample;
-      job.out[c][record * job.stride] = stage[c * block_lanes + lane];
-    }
+    for (int lane = 0; lane < slot.count; ++lane)
+      job.out[c][record_of(job, slot.first + lane)] = stage[c * block_lanes + lane];
 }
 
 template <class L>
 void store_points(const PointStoreJob<typename L::Scalar>& job) {
   const bool together = !job.records, number = job.width == 1;
   const bool arrays = together && job.stride == 1;
-  const bool packed =
-      together && !number && job.stride == 3 && job.out[1] == job.out[0] + 1 && job.out[2] == job.out[0] + 2;
+  const bool vectors = !number && job.out[1] == job.out[0] + 1 && job.out[2] == job.out[0] + 2;
   for (int k = 0; k < job.slot_count; ++k) {
     const auto* stage = job.stage + std::ptrdiff_t{k} * job.width * block_lanes;
-    const PointSlot slot = job.slots[k];
-    if (packed) {
-      store_slot<L, Records::packed>(job, stage, slot.first, slot.count);
+    const PointSlot& slot = job.slots[k];
+    if (together && vectors && job.stride == 3) {
+      store_slot<L, Records::packed>(job, stage, slot);
     } else if (arrays) {
-      store_slot<L, Records::arrays>(job, stage, slot.first, slot.count);
+      store_slot<L, Records::arrays>(job, stage, slot);
+    } else if (vectors) {
+      store_vectors<L>(job, stage, slot);
     } else {
       store_apart(job, stage, slot);
     }
