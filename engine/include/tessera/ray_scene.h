@@ -1,11 +1,13 @@
 #pragma once
 // Ray queries on a patch set.
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "tessera/execution.h"
 #include "tessera/isa.h"
@@ -15,9 +17,9 @@
 
 namespace tessera {
 
-/// Points origin + t * direction, tnear <= t <= tfar, in the model's coordinates. The direction need not be a unit vector.
-/// Valid: finite origin and direction with components of at most 1.844e18, direction not zero, 0 <= tnear <= tfar;
-/// tfar may be infinite. Both ends belong to the interval and hold for the refined t, in double.
+/// Points origin + t * direction, tnear <= t <= tfar, in the model's coordinates. The direction need not be a unit
+/// vector. Valid: finite origin and direction with components of at most 1.844e18, direction not zero, 0 <= tnear <=
+/// tfar; tfar may be infinite. Both ends belong to the interval and hold for the refined t, in double.
 struct Ray {
   Vec3 origin = {}, direction = {};
   double tnear = 0;
@@ -34,6 +36,13 @@ enum class HitKind : std::uint8_t {
 struct HitFlags {
   bool unrefined : 1 = false;         ///< Newton did not converge inside the patch: t, position, u, v are those of the facet
   bool degenerate_normal : 1 = false; ///< the normal is a limit at a degenerate point, or undefined (zero)
+  /// Exact mode: the point lies on the ray within the tolerance, but no root of the surface was proven there. The ray
+  /// touches the surface or runs along it (t is then good to about the square root of tolerance times size), meets a
+  /// pole, or passes a border by less than the tolerance.
+  bool uncertified : 1 = false;
+  /// Exact mode: the bound on the work for one piece of a patch was reached, as where a surface runs along the ray or
+  /// is folded up into a line. There may be other hits, of a miss too.
+  bool incomplete : 1 = false;
 };
 
 struct Hit {
@@ -48,50 +57,74 @@ struct Hit {
   double residual = 0;  ///< distance from the position to the ray; of an unrefined hit, to the surface at (u,v)
 };
 
+/// The hits of several rays one after the other: of ray k, in the order of t, hits[first[k]] to hits[first[k + 1] - 1].
+struct HitLists {
+  std::vector<Hit> hits;
+  std::vector<std::size_t> first;  ///< one more than rays
+};
+
 enum class RayMode : std::uint8_t {
-  /// Evaluated grids in an Embree BVH, then Newton on the surface: every hit that is not flagged lies on it. Facets decide
-  /// what is met and in which order: a silhouette may be missed or flagged, and of two surfaces nearer to each other than
-  /// to their facets the farther one may come first.
+  /// Evaluated grids in an Embree BVH, then Newton on the surface: every hit that is not flagged lies on it. Facets
+  /// decide what is met and in which order: a silhouette may be missed or flagged, and of two surfaces nearer to each
+  /// other than to their facets the farther one may come first.
   grid,
+  /// The surface itself: pieces of patches in an Embree BVH, each searched by branch and bound in double with every
+  /// rounding bounded, far origins included. What the surface of the control points in double meets is hit, at shared
+  /// borders and poles too, silhouettes down to the tolerance; a returned hit lies within the tolerance of the ray.
+  /// Hits that are not flagged uncertified are roots up to rounding. Slower than grid.
+  exact,
 };
 
 struct RaySceneOptions {
-  RayMode mode = RayMode::grid;
-  int rate = 8;              ///< grid segments a patch and direction, 1 to 4096
-  bool refine = true;        ///< false leaves hits on the facets (for comparison)
-  std::optional<Isa> isa = {};
+  RayMode mode = RayMode::grid;  ///< the faster one
+  int rate = 8;                  ///< grid mode: grid segments a patch and direction, 1 to 4096
+  bool refine = true;            ///< grid mode: false leaves hits on the facets (for comparison)
+  std::optional<Isa> isa = {};   ///< grid mode
+  int pieces = 2;                ///< exact mode: pieces a patch and direction, 1, 2, 4 or 8; more for long thin patches
+  /// Exact mode: how far from the ray a point that is returned may lie, in the model's unit; above 0. It counts where
+  /// the ray touches the surface or passes a border: there points within it may be hits. By default 2e-12 of the set's
+  /// size; smaller ones than twice the bound on rounding (2e-12 of the size for bicubic patches, 9e-12 at degree 15,
+  /// at the most) are raised to that.
+  std::optional<double> tolerance = {};
 };
 
-/// A patch set ready for rays. Keeps a reference to the set's inner state: the set must outlive the scene (it may be moved).
-/// Threads: const calls from any number of threads; refit and edits of the set exclude them.
+/// A patch set ready for rays. Keeps a reference to the set's inner state: the set must outlive the scene (it may be
+/// moved). Threads: const calls from any number of threads; refit and edits of the set exclude them.
 class RayScene {
  public:
-  /// Errors: invalid_argument (the rate), unsupported (no float Bernstein blocks; a box with a diagonal below 1e-9 or
-  /// reaching further than 1e12 from the set's origin; more than 2^32 grid points), isa_unavailable, cancelled,
-  /// out_of_memory, internal (Embree's own).
+  /// Errors: invalid_argument (the rate, the pieces, the tolerance), cancelled, out_of_memory, internal (Embree's own),
+  /// unsupported. Grid mode: isa_unavailable; unsupported are no float Bernstein blocks, a box with a diagonal below
+  /// 1e-9 or reaching further than 1e12 from the set's origin, more than 2^32 grid points. Exact mode: unsupported are
+  /// a diagonal outside of 1e-140 to 1e140, 2^32 pieces.
   static Result<RayScene> make(const PatchSet& set, const RaySceneOptions& options = {}, const Execution& execution = {});
 
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;
   ~RayScene();
 
-  /// The closest hit of each ray; hits.size() >= rays.size(). A ray that is not valid is a miss with HitKind::invalid_ray.
-  /// Errors: buffer_too_small, stale (the set was edited; call refit), cancelled.
+  /// The closest hit of each ray; hits.size() >= rays.size(). A ray that is not valid is a miss with
+  /// HitKind::invalid_ray. Errors: buffer_too_small, stale (the set was edited; call refit), cancelled.
   Status closest(std::span<const Ray> rays, std::span<Hit> hits, const Execution& execution = {}) const;
   /// 1 where anything lies on the ray, 0 where not or where the ray is not valid; occluded.size() >= rays.size().
-  /// The facets decide, not the surface: a ray that leaves the surface must begin further off than they lie.
+  /// In grid mode the facets decide, not the surface: a ray that leaves the surface must begin further off than they
+  /// lie.
   Status occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded, const Execution& execution = {}) const;
+  /// All hits of each ray, in exact mode. A point that several pieces or neighbours share is one hit: two are the same
+  /// where they coincide on a patch or at a shared border, not where they are merely near in t. Rays that are not valid
+  /// have none. Memory of `lists` is used again. Errors: unsupported (grid mode), stale, cancelled, out_of_memory; the
+  /// lists are then empty.
+  Status all(std::span<const Ray> rays, HitLists& lists, const Execution& execution = {}) const;
   /// One ray. A stale scene gives a miss with HitKind::invalid_ray.
   Hit closest(const Ray& ray) const;
   bool occluded(const Ray& ray) const;
 
-  /// After edits of the set: evaluates the grids anew and rebuilds the BVH. Errors: those of make; the scene then stays
-  /// stale until a refit succeeds.
+  /// After edits of the set: evaluates grids or pieces anew and rebuilds the BVH. Errors: those of make; the scene
+  /// then stays stale until a refit succeeds.
   Status refit(const Execution& execution = {});
 
-  Box3 box() const;                    ///< of the facets: tighter than that of the control points; empty while stale
+  Box3 box() const;                    ///< of facets or pieces' nets: tighter than of all control points; empty while stale
   std::uint64_t revision() const;      ///< of the set, when the scene was made or last refitted
-  std::size_t memory_bytes() const;    ///< grids and BVH
+  std::size_t memory_bytes() const;    ///< grids or nets, and BVH
 
   class Impl;
 

@@ -1,86 +1,19 @@
 #include "ray/embree_scene.h"
 
-#include <embree3/rtcore.h>
 #include <xmmintrin.h>
 
 #include <algorithm>
-#include <atomic>
-#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "ray/embree_device.h"
 
 namespace tessera {
 namespace {
 
 constexpr unsigned flush_and_denormals_are_zero = 0x8040;
 constexpr unsigned all_exceptions_masked = 0x1f80;
-
-struct SceneRelease {
-  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-};
-struct DeviceRelease {
-  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-};
-struct GeometryRelease {
-  void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
-};
-template <class Handle, class Release>
-using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
-
-StatusCode status_code(RTCError error) {
-  switch (error) {
-    case RTC_ERROR_OUT_OF_MEMORY:
-      return StatusCode::out_of_memory;
-    case RTC_ERROR_CANCELLED:
-      return StatusCode::cancelled;
-    case RTC_ERROR_UNSUPPORTED_CPU:
-      return StatusCode::unsupported;
-    default:
-      return StatusCode::internal;
-  }
-}
-
-/// What Embree reports through its callbacks, from any thread.
-struct Monitor {
-  std::atomic<std::ptrdiff_t> bytes{0};
-  std::mutex mutex;
-  RTCError error = RTC_ERROR_NONE;  // the first since it was last taken
-  std::string message;
-
-  static void on_error(void* self, RTCError code, const char* text) {
-    auto& monitor = *static_cast<Monitor*>(self);
-    const std::lock_guard lock(monitor.mutex);
-    if (monitor.error != RTC_ERROR_NONE) return;
-    monitor.error = code;
-    try {
-      monitor.message = text ? text : "";
-    } catch (...) {  // the code alone must do
-    }
-  }
-  static bool on_memory(void* self, ssize_t bytes, bool) {
-    static_cast<Monitor*>(self)->bytes += bytes;
-    return true;
-  }
-  Status take() {
-    const std::lock_guard lock(mutex);
-    const RTCError code = std::exchange(error, RTC_ERROR_NONE);
-    if (code == RTC_ERROR_NONE) return {};
-    if (code == RTC_ERROR_CANCELLED) return Status(StatusCode::cancelled, "cancelled by the caller");
-    return Status(status_code(code), "Embree: " + std::exchange(message, {}));
-  }
-};
-
-bool not_cancelled(void* cancel, double) {
-  return !static_cast<const std::atomic<bool>*>(cancel)->load(std::memory_order_relaxed);
-}
-
-RTCIntersectContext context_for(RTCIntersectContextFlags flags) {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = flags;
-  return context;
-}
 
 RTCRay to_embree(const FacetRay& ray) {
   RTCRay out{};
@@ -115,7 +48,7 @@ FlushDenormals::FlushDenormals() : saved_(_mm_getcsr()) {
 FlushDenormals::~FlushDenormals() { _mm_setcsr(saved_); }
 
 struct EmbreeScene::State {
-  Monitor monitor;             // outlives the device, which calls it
+  EmbreeMonitor monitor;       // outlives the device, which calls it
   std::vector<RTCGrid> grids;  // borrowed by the geometry
   Owned<RTCDevice, DeviceRelease> device;
   Owned<RTCScene, SceneRelease> scene;
@@ -128,11 +61,9 @@ EmbreeScene::~EmbreeScene() = default;
 
 Result<EmbreeScene> EmbreeScene::make() {
   auto state = std::make_unique<State>();
-  // No thread is started or bound to a core: the work runs in the caller's arena.
-  state->device.reset(rtcNewDevice("verbose=0,start_threads=0,set_affinity=0"));
-  if (!state->device) return Status(status_code(rtcGetDeviceError(nullptr)), "Embree: no device could be made");
-  rtcSetDeviceErrorFunction(state->device.get(), &Monitor::on_error, &state->monitor);
-  rtcSetDeviceMemoryMonitorFunction(state->device.get(), &Monitor::on_memory, &state->monitor);
+  Result<Owned<RTCDevice, DeviceRelease>> device = make_device(state->monitor);
+  if (!device) return device.status();
+  state->device = *std::move(device);
   return EmbreeScene(std::move(state));
 }
 
@@ -167,13 +98,7 @@ Status EmbreeScene::build(const GridVertices& vertices, const Execution& executi
   rtcCommitGeometry(geometry.get());
   rtcAttachGeometry(scene.get(), geometry.get());
   rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
-  if (execution.cancel) {
-    rtcSetSceneProgressMonitorFunction(scene.get(), &not_cancelled, const_cast<std::atomic<bool>*>(execution.cancel));
-  }
-  // Not rtcJoinCommitScene: with TBB that one works in an arena of Embree's own, this one in the caller's.
-  rtcCommitScene(scene.get());
-  rtcSetSceneProgressMonitorFunction(scene.get(), nullptr, nullptr);
-  if (Status status = state.monitor.take(); !status.ok()) return status;
+  if (Status status = commit(scene.get(), state.monitor, execution); !status.ok()) return status;
   state.scene = std::move(scene);
   return {};
 }
@@ -226,8 +151,7 @@ Box3 EmbreeScene::box() const {
 }
 
 std::size_t EmbreeScene::memory_bytes() const {
-  const auto bytes = static_cast<std::size_t>(std::max<std::ptrdiff_t>(state_->monitor.bytes.load(), 0));
-  return bytes + state_->grids.capacity() * sizeof(RTCGrid);
+  return state_->monitor.bytes() + state_->grids.capacity() * sizeof(RTCGrid);
 }
 
 }  // namespace tessera

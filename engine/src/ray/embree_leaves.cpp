@@ -1,0 +1,126 @@
+#include "ray/embree_leaves.h"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "ray/embree_device.h"
+
+namespace tessera {
+namespace {
+
+// Rays in float: start and direction round by 2^-24 of at most 3.5 and over at most 4, a component by 5e-7. Boxes are
+// larger by four times that on each side; Embree's own arithmetic is conservative in robust scenes.
+constexpr float box_pad = 2e-6f;
+
+/// What a call of Embree's carries to the callbacks: first what Embree knows, so that one points to the other.
+struct Call {
+  RTCIntersectContext context;
+  RayQuery* query;
+  SearchSpace* space;
+  float enter_in_float;  ///< s where Embree's ray begins
+};
+
+}  // namespace
+
+struct EmbreeLeaves::State {
+  EmbreeMonitor monitor;  // outlives the device, which calls it
+  const LeafNets* nets = nullptr;
+  double tolerance = 0;
+  Owned<RTCDevice, DeviceRelease> device;
+  Owned<RTCScene, SceneRelease> scene;
+
+  static void bounds(const RTCBoundsFunctionArguments* arguments) {
+    const State& state = *static_cast<const State*>(arguments->geometryUserPtr);
+    const Box3 box = state.nets->box(state.nets->leaves()[arguments->primID]);
+    RTCBounds& out = *arguments->bounds_o;
+    out.lower_x = static_cast<float>(box.lower.x) - box_pad, out.upper_x = static_cast<float>(box.upper.x) + box_pad;
+    out.lower_y = static_cast<float>(box.lower.y) - box_pad, out.upper_y = static_cast<float>(box.upper.y) + box_pad;
+    out.lower_z = static_cast<float>(box.lower.z) - box_pad, out.upper_z = static_cast<float>(box.upper.z) + box_pad;
+  }
+
+  static const RayQuery& search(const void* user, unsigned leaf_index, RTCIntersectContext* context) {
+    const State& state = *static_cast<const State*>(user);
+    const Call& call = *reinterpret_cast<const Call*>(context);
+    const Leaf& leaf = state.nets->leaves()[leaf_index];
+    search_leaf(leaf, state.nets->net(leaf), state.tolerance, *call.space, *call.query);
+    return *call.query;
+  }
+
+  /// Rays come one by one. The end of Embree's ray follows the closest root, rounded up by what boxes are padded with.
+  static void intersect(const RTCIntersectFunctionNArguments* arguments) {
+    if (arguments->N != 1 || arguments->valid[0] == 0) return;
+    const RayQuery& query = search(arguments->geometryUserPtr, arguments->primID, arguments->context);
+    RTCRay& ray = *reinterpret_cast<RTCRay*>(RTCRayHitN_RayN(arguments->rayhit, 1));
+    const Call& call = *reinterpret_cast<const Call*>(arguments->context);
+    ray.tfar = std::min(ray.tfar, static_cast<float>(query.far) - call.enter_in_float + box_pad);
+  }
+
+  static void occluded(const RTCOccludedFunctionNArguments* arguments) {
+    if (arguments->N != 1 || arguments->valid[0] == 0) return;
+    const RayQuery& query = search(arguments->geometryUserPtr, arguments->primID, arguments->context);
+    RTCRay& ray = *reinterpret_cast<RTCRay*>(arguments->ray);
+    if (query.done()) ray.tfar = -std::numeric_limits<float>::infinity();
+  }
+};
+
+EmbreeLeaves::EmbreeLeaves(std::unique_ptr<State> state) : state_(std::move(state)) {}
+EmbreeLeaves::EmbreeLeaves(EmbreeLeaves&&) noexcept = default;
+EmbreeLeaves& EmbreeLeaves::operator=(EmbreeLeaves&&) noexcept = default;
+EmbreeLeaves::~EmbreeLeaves() = default;
+
+Result<EmbreeLeaves> EmbreeLeaves::make() {
+  auto state = std::make_unique<State>();
+  Result<Owned<RTCDevice, DeviceRelease>> device = make_device(state->monitor);
+  if (!device) return device.status();
+  state->device = *std::move(device);
+  return EmbreeLeaves(std::move(state));
+}
+
+Status EmbreeLeaves::build(const LeafNets& nets, double tolerance, const Execution& execution) {
+  State& state = *state_;
+  state.scene.reset();
+  state.nets = &nets;
+  state.tolerance = tolerance;
+  RTCDevice device = state.device.get();
+  const Owned<RTCGeometry, GeometryRelease> geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER));
+  Owned<RTCScene, SceneRelease> scene(rtcNewScene(device));
+  if (!geometry || !scene) return state.monitor.take();
+  rtcSetGeometryUserPrimitiveCount(geometry.get(), static_cast<unsigned>(nets.leaves().size()));
+  rtcSetGeometryUserData(geometry.get(), &state);
+  rtcSetGeometryBoundsFunction(geometry.get(), &State::bounds, nullptr);
+  rtcSetGeometryIntersectFunction(geometry.get(), &State::intersect);
+  rtcSetGeometryOccludedFunction(geometry.get(), &State::occluded);
+  rtcCommitGeometry(geometry.get());
+  rtcAttachGeometry(scene.get(), geometry.get());
+  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+  if (Status status = commit(scene.get(), state.monitor, execution); !status.ok()) return status;
+  state.scene = std::move(scene);
+  return {};
+}
+
+void EmbreeLeaves::trace(RayQuery& query, SearchSpace& space) const {
+  const RayLine& line = query.line;
+  const Vec3 start = line.start + line.enter * line.direction;
+  Call call{context_for(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT), &query, &space, static_cast<float>(line.enter)};
+  RTCRay ray{};
+  ray.org_x = static_cast<float>(start.x), ray.org_y = static_cast<float>(start.y);
+  ray.org_z = static_cast<float>(start.z);
+  ray.dir_x = static_cast<float>(line.direction.x), ray.dir_y = static_cast<float>(line.direction.y);
+  ray.dir_z = static_cast<float>(line.direction.z);
+  ray.tfar = static_cast<float>(line.leave - line.enter) + box_pad;
+  ray.mask = ~0u;
+  if (query.wanted == RootsWanted::any) {
+    rtcOccluded1(state_->scene.get(), &call.context, &ray);
+    return;
+  }
+  RTCRayHit hit{};
+  hit.ray = ray;
+  hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(state_->scene.get(), &call.context, &hit);
+}
+
+std::size_t EmbreeLeaves::memory_bytes() const { return state_->monitor.bytes(); }
+
+}  // namespace tessera

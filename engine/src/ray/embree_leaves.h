@@ -1,0 +1,41 @@
+#pragma once
+// Embree's side of an exact scene: the pieces of patches as primitives of a user geometry. Embree's types stay in
+// embree_leaves.cpp.
+
+#include <memory>
+
+#include "ray/leaf_nets.h"
+#include "ray/leaf_search.h"
+#include "ray/ray_query.h"
+#include "tessera/execution.h"
+#include "tessera/status.h"
+
+namespace tessera {
+
+/// Owns device, scene and geometry. Const calls from any number of threads, each with a search space of its own and
+/// inside a FlushDenormals (embree_scene.h).
+class EmbreeLeaves {
+ public:
+  /// Errors: internal and out_of_memory, from Embree.
+  static Result<EmbreeLeaves> make();
+  EmbreeLeaves(EmbreeLeaves&&) noexcept;
+  EmbreeLeaves& operator=(EmbreeLeaves&&) noexcept;
+  ~EmbreeLeaves();
+
+  /// Builds the BVH, in the caller's arena. `nets` must stay in place and unchanged while the scene is used;
+  /// `tolerance` as of search_leaf. On errors the scene is empty. Errors: cancelled, Embree's own.
+  Status build(const LeafNets& nets, double tolerance, const Execution& execution);
+
+  /// Runs the query against all leaves that its line meets. The line must not be empty.
+  void trace(RayQuery& query, SearchSpace& space) const;
+
+  /// What Embree has allocated.
+  std::size_t memory_bytes() const;
+
+ private:
+  struct State;
+  explicit EmbreeLeaves(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace tessera

@@ -1,0 +1,155 @@
+// Exact mode: pieces of patches in an Embree BVH, each searched for all its roots.
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "ray/adjacency.h"
+#include "ray/distinct_roots.h"
+#include "ray/embree_leaves.h"
+#include "ray/embree_scene.h"
+#include "ray/leaf_nets.h"
+#include "ray/leaf_search.h"
+#include "ray/ray_line.h"
+#include "ray/ray_scene_impl.h"
+#include "ray/ray_segment.h"
+#include "ray/surface_hit.h"
+
+namespace tessera {
+namespace {
+
+constexpr double smallest_size = 1e-140, largest_size = 1e140;  // squares of lengths stay normal numbers
+constexpr double default_tolerance = 2e-12;                     // of the size
+constexpr std::size_t most_leaves = 0xffffffff;
+
+class ExactScene final : public RayScene::Impl {
+ public:
+  ExactScene(const PatchSet& set, EmbreeLeaves scene, const RaySceneOptions& options)
+      : Impl(set), scene_(std::move(scene)), options_(options) {}
+
+  std::size_t memory_bytes() const override {
+    return nets_.memory_bytes() + adjacency_.memory_bytes() + scene_.memory_bytes();
+  }
+
+ private:
+  Status build(const Execution& execution) override;
+  Box3 model_box() const override { return box_; }
+  void closest_piece(std::span<const Ray> rays, std::span<Hit> hits) const override;
+  void occluded_piece(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const override;
+  Status all_of(const Ray& ray, std::vector<Hit>& hits) const override;
+  Hit hit_at(const RayLine& line, const LeafRoot& root) const;
+
+  LeafNets nets_;  // borrowed by scene_
+  EmbreeLeaves scene_;
+  RaySceneOptions options_;
+  Adjacency adjacency_;
+  SceneFrame frame_;
+  Box3 box_, scene_box_;  // of the leaves' control points, in the model's and the scene's coordinates
+  double size_ = 0;
+};
+
+Status ExactScene::build(const Execution& execution) {
+  const Box3 box = set().box();
+  size_ = box.diagonal();
+  if (!(size_ >= smallest_size && size_ <= largest_size))
+    return Status(StatusCode::unsupported,
+                  "an exact ray scene holds models of a size from 1e-140 to 1e140: scale the model");
+  frame_ = SceneFrame::around(box);
+  if (Status status = nets_.build(set(), frame_, options_.pieces, execution); !status.ok()) return status;
+  if (nets_.leaves().size() > most_leaves)
+    return Status(StatusCode::unsupported, "more than the 2^32 - 1 pieces of patches of one ray scene");
+  adjacency_ = Adjacency(set());
+  scene_box_ = {};
+  int degree_u = 1, degree_v = 1;
+  for (const Leaf& leaf : nets_.leaves()) {
+    scene_box_.extend(nets_.box(leaf));
+    degree_u = std::max<int>(degree_u, leaf.degree_u), degree_v = std::max<int>(degree_v, leaf.degree_v);
+  }
+  box_ = {frame_.to_model(scene_box_.lower), frame_.to_model(scene_box_.upper)};
+  const double asked = options_.tolerance.value_or(default_tolerance * size_) * frame_.scale;
+  const double rounding = search_rounding(degree_u, degree_v, nets_.most_halvings(), SearchSpace::most_depth);
+  return scene_.build(nets_, std::max(asked, 2 * rounding), execution);
+}
+
+Hit ExactScene::hit_at(const RayLine& line, const LeafRoot& root) const {
+  Hit hit;
+  set_surface_point(set(), size_, root.patch, root.u, root.v, first_order(set().patch(root.patch), root.u, root.v),
+                    hit);
+  hit.t = line.t_at(root.s);
+  const Vec3 from_start = frame_.to_scene(hit.position) - line.start;
+  hit.residual = std::hypot(dot(line.across[0], from_start), dot(line.across[1], from_start)) / frame_.scale;
+  hit.flags.uncertified = !root.certified;
+  return hit;
+}
+
+void ExactScene::closest_piece(std::span<const Ray> rays, std::span<Hit> hits) const {
+  SearchSpace space(nets_.largest());
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    hits[k] = {};
+    if (!is_valid(rays[k])) {
+      hits[k].kind = HitKind::invalid_ray;
+      continue;
+    }
+    const RayLine line = line_of(rays[k], frame_, scene_box_);
+    if (line.empty) continue;
+    RayQuery query(rays[k], line, RootsWanted::closest);
+    {
+      const FlushDenormals flush;
+      scene_.trace(query, space);
+    }
+    if (query.found) hits[k] = hit_at(line, query.best);
+    hits[k].flags.incomplete = query.incomplete;
+  }
+}
+
+void ExactScene::occluded_piece(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const {
+  SearchSpace space(nets_.largest());
+  const FlushDenormals flush;
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    occluded[k] = 0;
+    if (!is_valid(rays[k])) continue;
+    const RayLine line = line_of(rays[k], frame_, scene_box_);
+    if (line.empty) continue;
+    RayQuery query(rays[k], line, RootsWanted::any);
+    scene_.trace(query, space);
+    occluded[k] = query.found;
+  }
+}
+
+Status ExactScene::all_of(const Ray& ray, std::vector<Hit>& hits) const {
+  if (!is_valid(ray)) return {};
+  const RayLine line = line_of(ray, frame_, scene_box_);
+  if (line.empty) return {};
+  SearchSpace space(nets_.largest());
+  RayQuery query(ray, line, RootsWanted::all);
+  {
+    const FlushDenormals flush;
+    scene_.trace(query, space);
+  }
+  if (query.overflow) return Status(StatusCode::out_of_memory, "out of memory");
+  keep_distinct(set(), adjacency_, query.roots);
+  for (const LeafRoot& root : query.roots) {
+    hits.push_back(hit_at(line, root));
+    hits.back().flags.incomplete = query.incomplete;
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<RayScene::Impl>> make_exact_scene(const PatchSet& set, const RaySceneOptions& options) {
+  if (const int pieces = options.pieces; pieces != 1 && pieces != 2 && pieces != 4 && pieces != 8) {
+    return Status(
+        StatusCode::invalid_argument,
+        "a patch of an exact ray scene is cut into 1, 2, 4 or 8 pieces a side, not " + std::to_string(pieces));
+  }
+  if (options.tolerance && !(*options.tolerance > 0 && std::isfinite(*options.tolerance))) {
+    return Status(StatusCode::invalid_argument, "the tolerance of a ray scene must be a finite length above 0, not " +
+                                                    std::to_string(*options.tolerance));
+  }
+  Result<EmbreeLeaves> scene = EmbreeLeaves::make();
+  if (!scene) return scene.status();
+  return std::unique_ptr<RayScene::Impl>(std::make_unique<ExactScene>(set, *std::move(scene), options));
+}
+
+}  // namespace tessera

@@ -1,0 +1,235 @@
+// Grid mode: evaluated grids in an Embree BVH, then Newton's method.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "base/aligned.h"
+#include "eval/uniform_grid.h"
+#include "ray/adjacency.h"
+#include "ray/embree_scene.h"
+#include "ray/facet_deviation.h"
+#include "ray/ray_scene_impl.h"
+#include "ray/ray_segment.h"
+#include "ray/refine.h"
+#include "ray/surface_hit.h"
+
+namespace tessera {
+namespace {
+
+constexpr int max_rate = 4096;
+constexpr std::size_t padding = 1;  // floats behind the last vertex, which Embree reads as 16 bytes
+// Products of three lengths must stay in float's range on a facet far smaller than the model, and on the whole model.
+constexpr double smallest_size = 1e-9, largest_size = 1e12;
+// Facets lie before or behind the surface: so far are rays traced beyond their ends, in units of the bound on the
+// distance, for rays that meet the surface at less than a right angle.
+constexpr double margin_deviations = 4;
+constexpr double float_rounding = 1e-6;  // of the size: positions, origins and directions in float
+
+using Packet = std::array<FacetRay, EmbreeScene::packet>;
+
+/// Rays that start near each other and run nearly the same way are worth a packet.
+bool coherent(std::span<const RaySegment> segments, double size) {
+  const RaySegment& first = segments.front();
+  for (const RaySegment& other : segments) {
+    if (other.empty || dot(first.direction, other.direction) < 0.99 || max_abs(first.start - other.start) > 0.1 * size)
+      return false;
+  }
+  return true;
+}
+
+class GridScene final : public RayScene::Impl {
+ public:
+  GridScene(const PatchSet& set, UniformGrid grid, EmbreeScene scene, const RaySceneOptions& options)
+      : Impl(set), grid_(std::move(grid)), scene_(std::move(scene)), options_(options) {}
+
+  std::size_t memory_bytes() const override {
+    return positions_.capacity() * sizeof(float) + adjacency_.memory_bytes() + scene_.memory_bytes();
+  }
+
+ private:
+  Status build(const Execution& execution) override;
+  Box3 model_box() const override {
+    const Box3 box = scene_.box();
+    return {box.lower + set().origin(), box.upper + set().origin()};
+  }
+  void closest_piece(std::span<const Ray> rays, std::span<Hit> hits) const override;
+  void occluded_piece(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const override;
+  Status all_of(const Ray&, std::vector<Hit>&) const override {
+    return Status(StatusCode::unsupported, "all hits of a ray are known in exact mode only");
+  }
+
+  Status evaluate_grids(const Execution& execution);
+  void measure();
+  void closest_packet(std::span<const Ray> rays, std::span<Hit> hits) const;
+  void occluded_packet(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const;
+  void trace(std::span<const RaySegment> segments, std::span<FacetHit> facets) const;
+  Hit resolve(const Ray& ray, const RaySegment& segment, FacetHit facet) const;
+  bool accept(const Ray& ray, const RaySegment& segment, const FacetHit& facet, Hit& hit) const;
+
+  UniformGrid grid_;
+  EmbreeScene scene_;
+  RaySceneOptions options_;
+  AlignedVector<float> positions_;  // `[patch][iu][iv]`, borrowed by scene_
+  Adjacency adjacency_;
+  Box3 set_box_;  // in the model's coordinates
+  Box3 box_;      // relative to the origin, a little larger than the set's
+  double size_ = 0;
+  double margin_ = 0;
+};
+
+Status GridScene::evaluate_grids(const Execution& execution) {
+  positions_.resize(3 * grid_.capacity() + padding);
+  const auto vertices = View3<float>::interleaved(std::span(positions_).first(3 * grid_.capacity()));
+  return grid_.run(set().impl(), GridViews<float>{.position = vertices, .du = {}, .dv = {}, .normal = {}}, execution);
+}
+
+/// What the rays need to know of the set: neighbours, box, and how far facets lie from the surface.
+void GridScene::measure() {
+  adjacency_ = Adjacency(set());
+  double deviation = 0;
+  for (std::size_t k = 0; k < set().patch_count(); ++k) {
+    deviation = std::max(deviation, facet_deviation(set().patch(k), options_.rate, options_.rate));
+  }
+  const Vec3 origin = set().origin();
+  box_ = {set_box_.lower - origin, set_box_.upper - origin};
+  const double rounding = float_rounding * std::max(max_abs(box_.lower), max_abs(box_.upper));
+  box_.lower += {-rounding, -rounding, -rounding};
+  box_.upper += {rounding, rounding, rounding};
+  margin_ = margin_deviations * deviation + rounding;
+}
+
+Status GridScene::build(const Execution& execution) {
+  set_box_ = set().box();
+  size_ = set_box_.diagonal();
+  const double reach = std::max(max_abs(set_box_.lower - set().origin()), max_abs(set_box_.upper - set().origin()));
+  if (!(size_ >= smallest_size && reach <= largest_size)) {
+    return Status(StatusCode::unsupported, "a ray scene holds models of a size from 1e-9 to 1e12: scale the model");
+  }
+  GridVertices vertices{nullptr, set().patch_count(), options_.rate + 1, options_.rate + 1};
+  if (Status status = EmbreeScene::check_size(vertices); !status.ok()) return status;
+  // Until the BVH stands again nothing may trace in it, so a failure on the way leaves the scene stale.
+  if (Status status = evaluate_grids(execution); !status.ok()) return status;
+  measure();
+  vertices.data = positions_.data();
+  return scene_.build(vertices, execution);
+}
+
+void GridScene::closest_piece(std::span<const Ray> rays, std::span<Hit> hits) const {
+  for (std::size_t k = 0; k < rays.size(); k += EmbreeScene::packet) {
+    const std::size_t count = std::min(EmbreeScene::packet, rays.size() - k);
+    closest_packet(rays.subspan(k, count), hits.subspan(k, count));
+  }
+}
+
+/// At most a packet of rays.
+void GridScene::closest_packet(std::span<const Ray> rays, std::span<Hit> hits) const {
+  std::array<RaySegment, EmbreeScene::packet> segments;
+  std::array<FacetHit, EmbreeScene::packet> facets;
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    hits[k] = {};
+    if (is_valid(rays[k])) {
+      segments[k] = cut(rays[k], set().origin(), box_, margin_);
+    } else {
+      hits[k].kind = HitKind::invalid_ray;
+    }
+  }
+  trace(std::span(segments).first(rays.size()), facets);
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    if (facets[k].hit()) hits[k] = resolve(rays[k], segments[k], facets[k]);
+  }
+}
+
+void GridScene::trace(std::span<const RaySegment> segments, std::span<FacetHit> facets) const {
+  const FlushDenormals flush;
+  if (segments.size() > 1 && coherent(segments, size_)) {
+    Packet rays;
+    for (std::size_t k = 0; k < segments.size(); ++k) rays[k] = segments[k].facet_ray();
+    scene_.closest(std::span(rays).first(segments.size()), facets);
+    return;
+  }
+  for (std::size_t k = 0; k < segments.size(); ++k) {
+    if (!segments[k].empty) facets[k] = scene_.closest(segments[k].facet_ray());
+  }
+}
+
+/// From the first facet on, the first one whose point of the surface lies in [tnear, tfar].
+Hit GridScene::resolve(const Ray& ray, const RaySegment& segment, FacetHit facet) const {
+  for (Hit hit; facet.hit();) {
+    if (accept(ray, segment, facet, hit)) return hit;
+    // Embree takes a denormal tnear for 0, and would find a facet at 0 again without end.
+    const float next = std::nextafter(facet.t, std::numeric_limits<float>::max());
+    const FacetRay behind = segment.facet_ray(std::max(next, std::numeric_limits<float>::min()));
+    if (!(behind.tnear <= behind.tfar)) break;
+    const FlushDenormals flush;
+    facet = scene_.closest(behind);
+  }
+  return {};
+}
+
+bool GridScene::accept(const Ray& ray, const RaySegment& segment, const FacetHit& facet, Hit& hit) const {
+  const Refiner refiner(set(), adjacency_, set_box_, options_.rate);
+  const double facet_u = std::clamp(facet.u, 0.0f, 1.0f), facet_v = std::clamp(facet.v, 0.0f, 1.0f);
+  SurfaceRoot root;
+  const bool refined = options_.refine && refiner.refine(segment, facet.grid, facet_u, facet_v, root);
+  if (!refined) {
+    refiner.evaluate(segment, facet.grid, facet_u, facet_v, root);  // on [0,1]^2 this is always defined
+    root.s = facet.t;
+  }
+  hit.t = segment.t_at(root.s);
+  if (!(hit.t >= ray.tnear && hit.t <= ray.tfar) || !std::isfinite(hit.t)) return false;
+
+  hit.flags.unrefined = !refined;
+  set_surface_point(set(), size_, root.patch, root.u, root.v, {root.position, root.du, root.dv}, hit);
+  hit.residual = root.residual;
+  if (!refined) {
+    hit.position = set().origin() + (segment.start + root.s * segment.direction);
+    hit.residual = length(root.position - hit.position);
+  }
+  return true;
+}
+
+void GridScene::occluded_piece(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const {
+  for (std::size_t k = 0; k < rays.size(); k += EmbreeScene::packet) {
+    const std::size_t count = std::min(EmbreeScene::packet, rays.size() - k);
+    occluded_packet(rays.subspan(k, count), occluded.subspan(k, count));
+  }
+}
+
+/// At most a packet of rays. Facets decide, so the rays end where they say.
+void GridScene::occluded_packet(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const {
+  std::array<RaySegment, EmbreeScene::packet> segments;
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    if (is_valid(rays[k])) segments[k] = cut(rays[k], set().origin(), box_, 0);
+  }
+  const std::span<const RaySegment> used = std::span(segments).first(rays.size());
+  const FlushDenormals flush;
+  if (used.size() > 1 && coherent(used, size_)) {
+    Packet packet;
+    for (std::size_t k = 0; k < used.size(); ++k) packet[k] = used[k].facet_ray();
+    scene_.occluded(std::span(packet).first(used.size()), occluded);
+    return;
+  }
+  for (std::size_t k = 0; k < used.size(); ++k) {
+    occluded[k] = !used[k].empty && scene_.occluded(used[k].facet_ray());
+  }
+}
+
+}  // namespace
+
+Result<std::unique_ptr<RayScene::Impl>> make_grid_scene(const PatchSet& set, const RaySceneOptions& options) {
+  if (options.rate < 1 || options.rate > max_rate) {
+    return Status(StatusCode::invalid_argument, "the rate of a ray scene must lie between 1 and " +
+                                                    std::to_string(max_rate) + ", not " + std::to_string(options.rate));
+  }
+  Result<UniformGrid> grid = UniformGrid::make(set, options.rate, options.rate, options.isa);
+  if (!grid) return grid.status();
+  Result<EmbreeScene> scene = EmbreeScene::make();
+  if (!scene) return scene.status();
+  return std::unique_ptr<RayScene::Impl>(
+      std::make_unique<GridScene>(set, *std::move(grid), *std::move(scene), options));
+}
+
+}  // namespace tessera

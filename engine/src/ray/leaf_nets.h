@@ -1,0 +1,55 @@
+#pragma once
+// The pieces of patches that exact rays are traced against: control nets in the scene's coordinates.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ray/ray_line.h"
+#include "ray/set_view.h"
+#include "tessera/execution.h"
+#include "tessera/status.h"
+
+namespace tessera {
+
+/// A piece [u0, u0 + du] x [v0, v0 + dv] of a patch.
+struct Leaf {
+  std::uint32_t patch = 0;
+  std::uint8_t degree_u = 0, degree_v = 0;
+  bool rational = false;
+  std::uint8_t halvings = 0;  ///< of both directions together, from the patch to the piece
+  std::size_t first = 0;      ///< of its coefficients
+  double u0 = 0, v0 = 0, du = 1, dv = 1;
+
+  int size() const { return (degree_u + 1) * (degree_v + 1); }
+  int components() const { return rational ? 4 : 3; }
+};
+
+/// Nets of homogeneous coefficients w (x, y, z), w, `[component][i][j]`; w is left out of polynomial pieces, else the
+/// largest weight of a patch is scaled by a power of two to [1, 2).
+class LeafNets {
+ public:
+  /// Cuts every patch into at least `pieces` x `pieces` (a power of two), more along sides that are much longer than
+  /// the others, so that the pieces are roughly square. Errors: cancelled, out_of_memory.
+  Status build(const SetView& set, const SceneFrame& frame, int pieces, const Execution& execution);
+
+  std::span<const Leaf> leaves() const { return leaves_; }
+  const double* net(const Leaf& leaf) const { return coefficients_.data() + leaf.first; }
+  /// Of the control points: the piece lies in it but for rounding.
+  Box3 box(const Leaf& leaf) const;
+  /// Values in the largest net.
+  std::size_t largest() const { return largest_; }
+  int most_halvings() const { return most_halvings_; }
+  std::size_t memory_bytes() const {
+    return leaves_.capacity() * sizeof(Leaf) + coefficients_.capacity() * sizeof(double);
+  }
+
+ private:
+  std::vector<Leaf> leaves_;
+  std::vector<double> coefficients_;
+  std::size_t largest_ = 0;
+  int most_halvings_ = 0;
+};
+
+}  // namespace tessera

@@ -1,0 +1,93 @@
+#include "ray/ray_line.h"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace tessera {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+struct TwoSum {
+  double high, low;
+  /// a + b without rounding (Knuth; Muller et al., Handbook of Floating-Point Arithmetic, alg. 4.4).
+  TwoSum(double a, double b) : high(a + b) {
+    const double part = high - a;
+    low = (a - (high - part)) + (b - part);
+  }
+};
+
+/// origin + t d - centre, rounded as if all but the last sum were exact to twice the precision.
+double point_on_line(double origin, double t, double d, double centre) {
+  const double product = t * d, rest = std::fma(t, d, -product);
+  const TwoSum from(origin, -centre), sum(from.high, product);
+  return sum.high + (sum.low + (from.low + rest));
+}
+
+/// An orthonormal basis with the unit vector d: Duff et al., Building an orthonormal basis, revisited, JCGT 6(1), 2017.
+void set_across(RayLine& line) {
+  const Vec3& d = line.direction;
+  const double sign = std::copysign(1.0, d.z), a = -1 / (sign + d.z), b = d.x * d.y * a;
+  line.across[0] = {1 + sign * d.x * d.x * a, sign * b, -sign * d.x};
+  line.across[1] = {b, sign + d.y * d.y * a, -d.y};
+}
+
+/// Narrows [enter, leave] to where start + s * direction lies in [lower, upper].
+void clip(double start, double direction, double lower, double upper, RayLine& line) {
+  constexpr double parallel = 1e-300;  // the reciprocal is finite
+  if (std::abs(direction) < parallel) {
+    if (start < lower || start > upper) line.leave = -std::numeric_limits<double>::infinity();
+    return;
+  }
+  double in = (lower - start) / direction, out = (upper - start) / direction;
+  if (in > out) std::swap(in, out);
+  line.enter = std::max(line.enter, in);
+  line.leave = std::min(line.leave, out);
+}
+
+}  // namespace
+
+SceneFrame SceneFrame::around(const Box3& box) {
+  SceneFrame frame;
+  frame.centre = box.centre();
+  const double reach = std::max(max_abs(box.lower - frame.centre), max_abs(box.upper - frame.centre));
+  int exponent = 0;
+  std::frexp(reach, &exponent);  // reach < 2^exponent
+  frame.scale = std::ldexp(1.0, -exponent);
+  return frame;
+}
+
+RayLine line_of(const Ray& ray, const SceneFrame& frame, const Box3& box) {
+  RayLine line;
+  // By the largest component first, so that neither tiny nor huge directions under- or overflow.
+  const double largest = max_abs(ray.direction);
+  const Vec3 scaled{ray.direction.x / largest, ray.direction.y / largest, ray.direction.z / largest};
+  const double stretch = length(scaled);
+  line.direction = {scaled.x / stretch, scaled.y / stretch, scaled.z / stretch};
+  line.speed = largest * stretch * frame.scale;
+
+  line.base = -dot(frame.to_scene(ray.origin), line.direction) / line.speed;
+  if (!std::isfinite(line.base) || !(line.speed > 0)) return line;  // no t in double reaches the scene
+  const Vec3 &o = ray.origin, &d = ray.direction, &c = frame.centre;
+  const Vec3 near_centre{point_on_line(o.x, line.base, d.x, c.x), point_on_line(o.y, line.base, d.y, c.y),
+                         point_on_line(o.z, line.base, d.z, c.z)};
+  line.start = frame.scale * near_centre;
+  line.shift = -dot(line.start, line.direction);  // what the rounding of `base` has left
+  line.start += line.shift * line.direction;
+
+  line.slack = 8 * epsilon * (1 + std::abs(line.base) * line.speed);
+  line.near = (ray.tnear - line.base) * line.speed - line.shift;
+  line.far = (ray.tfar - line.base) * line.speed - line.shift;
+  line.enter = line.near - line.slack;
+  line.leave = line.far + line.slack;
+  constexpr double pad = 1e-12;  // above the rounding of start, direction and the quotients
+  clip(line.start.x, line.direction.x, box.lower.x - pad, box.upper.x + pad, line);
+  clip(line.start.y, line.direction.y, box.lower.y - pad, box.upper.y + pad, line);
+  clip(line.start.z, line.direction.z, box.lower.z - pad, box.upper.z + pad, line);
+  line.empty = !(line.enter <= line.leave);
+  if (!line.empty) set_across(line);
+  return line;
+}
+
+}  // namespace tessera

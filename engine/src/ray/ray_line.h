@@ -1,0 +1,41 @@
+#pragma once
+// The line of a ray in the coordinates that exact rays are traced in. A far origin costs it no accuracy.
+
+#include "tessera/ray_scene.h"
+#include "tessera/vec.h"
+
+namespace tessera {
+
+/// The coordinates of an exact scene: x = scale (p - centre), scale a power of two. The scene's box lies in [-1,1]^3,
+/// and its longer side is at least 1 long: lengths there are shares of the model's size.
+struct SceneFrame {
+  Vec3 centre;
+  double scale = 1;
+
+  /// `box`: not empty, of a finite diagonal that is not zero.
+  static SceneFrame around(const Box3& box);
+  Vec3 to_scene(const Vec3& p) const { return scale * (p - centre); }
+  Vec3 to_model(const Vec3& x) const { return centre + (1 / scale) * x; }
+};
+
+/// Points start + s * direction, s in [near, far] where tnear and tfar say so, in [enter, leave] where the scene's box
+/// is, which is inside the former but for `slack`. The start is the line's point nearest to the scene's centre, right
+/// to 2^-52 whatever the distance of the ray's origin, and the line is that of the ray: o + t D is taken in twice the
+/// precision, and the rounding of the unit direction counts over the scene's size alone.
+struct RayLine {
+  Vec3 start, direction;  ///< the direction is a unit vector
+  Vec3 across[2];         ///< with it an orthonormal basis
+  double near = 0, far = 0;
+  double enter = 0, leave = 0;
+  double slack = 0;   ///< how far an s may be off for the rounding of t
+  bool empty = true;  ///< passes the scene by
+
+  double t_at(double s) const { return base + (shift + s) / speed; }
+
+  double base = 0, shift = 0, speed = 1;  ///< t = base + (shift + s) / speed
+};
+
+/// The line of a valid ray. `box`: of the scene, in its own coordinates.
+RayLine line_of(const Ray& ray, const SceneFrame& frame, const Box3& box);
+
+}  // namespace tessera

@@ -1,0 +1,59 @@
+#pragma once
+// What a ray is asked for in exact mode, and the roots that it has met so far.
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "ray/ray_line.h"
+
+namespace tessera {
+
+/// A point of a patch on a ray.
+struct LeafRoot {
+  std::uint32_t patch = 0;
+  double u = 0, v = 0;                ///< in the patch
+  double s = 0;                       ///< along the line
+  double residual = 0;                ///< distance from the line, in the scene's coordinates
+  double radius_u = 0, radius_v = 0;  ///< how far another root may be that is the same
+  bool certified = false;             ///< the one root of its surroundings, up to rounding
+};
+
+enum class RootsWanted : std::uint8_t { closest, any, all };
+
+struct RayQuery {
+  RayQuery(const Ray& of, const RayLine& along, RootsWanted which)
+      : ray(of), line(along), wanted(which), near(along.near - along.slack), far(along.leave) {}
+
+  const Ray& ray;
+  const RayLine& line;
+  RootsWanted wanted;
+  double near, far;  ///< roots outside are of no use; far shrinks to the closest so far
+  bool found = false;
+  bool incomplete = false;      ///< a bound on work was reached: there may be more
+  bool overflow = false;        ///< memory for more roots ran out
+  LeafRoot best;                ///< where found
+  std::vector<LeafRoot> roots;  ///< where all are wanted
+
+  bool done() const { return (found && wanted == RootsWanted::any) || overflow; }
+
+  /// False where the root's t is outside of [tnear, tfar].
+  bool take(const LeafRoot& root) {
+    const double t = line.t_at(root.s);
+    if (!(t >= ray.tnear && t <= ray.tfar)) return false;
+    if (wanted == RootsWanted::all) {
+      try {
+        roots.push_back(root);
+      } catch (...) {  // called from Embree, which knows no exceptions
+        overflow = true;
+      }
+    } else if (!found || root.s < best.s) {
+      best = root;
+      far = std::min(far, root.s);
+    }
+    found = true;
+    return true;
+  }
+};
+
+}  // namespace tessera

@@ -1,0 +1,52 @@
+#pragma once
+// What both modes of a ray scene do, and what they share.
+
+#include <memory>
+#include <span>
+
+#include "ray/set_view.h"
+#include "tessera/ray_scene.h"
+
+namespace tessera {
+
+class RayScene::Impl {
+ public:
+  explicit Impl(const PatchSet& set) : set_(set) {}
+  virtual ~Impl() = default;
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  /// Makes ready for the set as it is now. After an error the scene stays stale.
+  Status rebuild(const Execution& execution);
+  Status closest(std::span<const Ray> rays, std::span<Hit> hits, const Execution& execution) const;
+  Status occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded, const Execution& execution) const;
+  Status all(std::span<const Ray> rays, HitLists& lists, const Execution& execution) const;
+
+  Box3 box() const { return fresh() ? model_box() : Box3{}; }
+  std::uint64_t revision() const { return revision_; }
+  virtual std::size_t memory_bytes() const = 0;
+
+ protected:
+  /// Any number of rays of a task. Valid or not; room is checked.
+  virtual void closest_piece(std::span<const Ray> rays, std::span<Hit> hits) const = 0;
+  virtual void occluded_piece(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const = 0;
+  /// Appends the hits of one ray, in order.
+  virtual Status all_of(const Ray& ray, std::vector<Hit>& hits) const = 0;
+
+  const SetView& set() const { return set_; }
+
+ private:
+  virtual Status build(const Execution& execution) = 0;
+  virtual Box3 model_box() const = 0;
+  bool fresh() const { return ready_ && revision_ == set_.revision(); }
+
+  SetView set_;
+  std::uint64_t revision_ = 0;
+  bool ready_ = false;  // false after a build that failed
+};
+
+/// Options are checked here. Not yet built.
+Result<std::unique_ptr<RayScene::Impl>> make_grid_scene(const PatchSet& set, const RaySceneOptions& options);
+Result<std::unique_ptr<RayScene::Impl>> make_exact_scene(const PatchSet& set, const RaySceneOptions& options);
+
+}  // namespace tessera

@@ -1,0 +1,36 @@
+#include "ray/surface_hit.h"
+
+#include <algorithm>
+
+namespace tessera {
+namespace {
+
+/// unit_normal's answer, taken from the derivatives at hand where they are clearly regular.
+void set_normal(const BezierPatch& patch, double size, double u, double v, const FirstOrder& at, Hit& hit) {
+  constexpr double clearly = 1e-6;
+  const Vec3 normal = cross(at.du, at.dv);
+  const double du = length(at.du), dv = length(at.dv), area = length(normal);
+  if (std::min(du, dv) > clearly * size && area > clearly * du * dv) {
+    hit.normal = (1 / area) * normal;
+    return;
+  }
+  const UnitNormal limit = unit_normal(patch, u, v);
+  hit.normal = limit.direction;
+  hit.flags.degenerate_normal = limit.kind != NormalKind::regular;
+}
+
+}  // namespace
+
+void set_surface_point(const SetView& set, double size, std::uint32_t patch, double u, double v, const FirstOrder& at,
+                       Hit& hit) {
+  hit.kind = HitKind::hit;
+  hit.patch = patch;
+  const PatchSource& source = set.source(patch);
+  hit.surface = source.surface;
+  hit.patch_u = u, hit.patch_v = v;
+  hit.u = source.domain.u_at(u), hit.v = source.domain.v_at(v);
+  hit.position = at.position;
+  set_normal(set.patch(patch), size, u, v, at, hit);
+}
+
+}  // namespace tessera

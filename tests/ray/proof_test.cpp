@@ -1,0 +1,111 @@
+// Exact mode against a referee in interval arithmetic, and closed bodies that nothing may leave. The same at length:
+// tessera_proof_report.
+
+#include <iostream>
+
+#include "ray_support.h"
+#include "support/ray_classes.h"
+#include "support/ray_proof.h"
+
+namespace tessera::test {
+namespace {
+
+RayScene exact_scene(const PatchSet& set, int pieces = 2) {
+  RaySceneOptions options;
+  options.mode = RayMode::exact;
+  options.pieces = pieces;
+  return value_of(RayScene::make(set, options));
+}
+
+TEST(Referee, KnowsAPlane) {
+  const std::vector<BezierPatch> plane{polynomial(1, 1, {{0, 0, 1}, {0, 2, 1}, {2, 0, 1}, {2, 2, 1}})};
+  const Verdict hit = referee(plane, ray({0.5, 0.25, -3}, {0, 0, 2}));
+  ASSERT_TRUE(hit.hit());
+  EXPECT_TRUE(hit.first().t.holds(2));
+  EXPECT_TRUE(hit.first().u.holds(0.25) && hit.first().v.holds(0.125));
+  EXPECT_LT(hit.first().t.width(), 1e-12);
+  EXPECT_TRUE(referee(plane, ray({0.5, 2.25, -3}, {0, 0, 2})).miss());
+  EXPECT_TRUE(referee(plane, ray({0.5, 0.25, 3}, {0, 0, 2})).miss());
+  EXPECT_FALSE(referee(plane, ray({0.5, 2, -3}, {0, 0, 2})).hit());   // at the border nothing is proven inside
+  EXPECT_FALSE(referee(plane, ray({0.5, 2, -3}, {0, 0, 2})).miss());  // nor excluded
+}
+
+TEST(ExactMode, MissesNothingThatIsProven) {
+  constexpr int rays_a_class = 25;
+  std::size_t hits = 0, undecidable = 0;
+  for (const RayClass& rays : ray_classes()) {
+    SCOPED_TRACE(rays.name);
+    const PatchSet set = set_of(rays.patches);
+    const double size = set.box().diagonal();
+    const RayScene scene = exact_scene(set);
+    Random random(31);
+    ProofTally tally;
+    for (int k = 0; k < rays_a_class; ++k) judge_ray(rays.patches, scene, rays.draw(random), 5e-12 * size, size, tally);
+    EXPECT_EQ(tally.missed, 0u);
+    EXPECT_EQ(tally.false_hits, 0u);
+    EXPECT_EQ(tally.incomplete, 0u);
+    EXPECT_EQ(tally.contradicted, 0u);
+    hits += tally.hits, undecidable += tally.undecidable;
+  }
+  std::cout << hits << " proven hits, " << undecidable << " undecidable rays\n";
+  EXPECT_GT(hits, 250u);
+  EXPECT_LT(undecidable, hits / 3);
+}
+
+TEST(ExactMode, NothingLeavesAClosedBody) {
+  for (const auto& patches : {closed_body(), sphere(), placed(closed_body(), 1e-5, {3e-2, 0, 7e-2})}) {
+    const PatchSet set = set_of(patches);
+    const Vec3 centre = set.box().centre();
+    const double scale = set.box().diagonal() / set_of(closed_body()).box().diagonal();
+    const bool about_zero = length(centre) < scale;
+    for (const int pieces : {1, 2, 4}) {
+      const RayScene scene = exact_scene(set, pieces);
+      Random random(32);
+      std::size_t leaks = 0, at_seams = 0;
+      for (int k = 0; k < 4000; ++k) {
+        auto [inside, one] = about_zero ? chord_of_seam(patches, random) : std::pair(false, Ray{});
+        if (!inside) one = ray(centre + 0.2 * scale * random_direction(random), random_direction(random));
+        at_seams += inside;
+        leaks += scene.closest(one).kind != HitKind::hit || !scene.occluded(one);
+      }
+      EXPECT_EQ(leaks, 0u);
+      EXPECT_TRUE(!about_zero || at_seams > 1000);
+    }
+  }
+}
+
+TEST(ExactMode, LinesCrossClosedBodiesEvenly) {
+  // A tangential point counts once: rays that touch are left out. So does one of a crease that the ray passes outside
+  // of, which is why only the smooth body is aimed at where patches meet.
+  for (const auto& [patches, smooth] : {std::pair{closed_body(), false}, {sphere(), true}}) {
+    const PatchSet set = set_of(patches);
+    const RayScene scene = exact_scene(set);
+    Random random(33);
+    std::vector<Ray> lines;
+    for (int k = 0; k < 4000; ++k) {
+      lines.push_back(k % 2 == 0 && smooth ? rays::at_seam(patches, random, 10)
+                                           : rays::at_surface(patches, random, 30));
+      lines.back().origin += -10.0 * normalized(lines.back().direction);
+    }
+    HitLists lists;
+    ASSERT_TRUE(scene.all(lines, lists).ok());
+    ASSERT_EQ(lists.first.size(), lines.size() + 1);
+    std::size_t odd = 0, counted = 0;
+    for (std::size_t k = 0; k < lines.size(); ++k) {
+      bool touches = false;
+      for (std::size_t h = lists.first[k]; h < lists.first[k + 1]; ++h) {
+        const Hit& hit = lists.hits[h];
+        touches |= hit.flags.uncertified || std::abs(dot(normalized(lines[k].direction), hit.normal)) < 1e-4;
+        EXPECT_TRUE(h == lists.first[k] || hit.t >= lists.hits[h - 1].t);
+      }
+      if (touches) continue;
+      ++counted;
+      odd += (lists.first[k + 1] - lists.first[k]) % 2;
+    }
+    EXPECT_EQ(odd, 0u);
+    EXPECT_GT(counted, 2000u);
+  }
+}
+
+}  // namespace
+}  // namespace tessera::test

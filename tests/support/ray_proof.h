@@ -1,0 +1,86 @@
+#pragma once
+// What an exact ray scene says against what the referee has proven.
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "support/interval_rays.h"
+#include "tessera/patch_set.h"
+#include "tessera/ray_scene.h"
+
+namespace tessera::test {
+
+struct ProofTally {
+  std::size_t rays = 0;
+  std::size_t hits = 0;          ///< proven
+  std::size_t misses = 0;        ///< proven
+  std::size_t undecidable = 0;   ///< neither proven
+  std::size_t missed = 0;        ///< a proven hit, and the scene has none, or a later one
+  std::size_t false_hits = 0;    ///< the point is not on patch and ray to the tolerance, or outside of [tnear, tfar]
+  std::size_t touching = 0;      ///< proven misses that the scene met within its tolerance
+  std::size_t contradicted = 0;  ///< rays for which occluded() and closest() disagree
+  std::size_t incomplete = 0;
+  std::vector<double> t_errors, u_errors;  ///< of hits whose proven t is narrow; t in shares of the size
+
+  void add(const ProofTally& other) {
+    rays += other.rays, hits += other.hits, misses += other.misses, undecidable += other.undecidable;
+    missed += other.missed, false_hits += other.false_hits, touching += other.touching;
+    contradicted += other.contradicted, incomplete += other.incomplete;
+    t_errors.insert(t_errors.end(), other.t_errors.begin(), other.t_errors.end());
+    u_errors.insert(u_errors.end(), other.u_errors.begin(), other.u_errors.end());
+  }
+};
+
+/// The distance of a point from a ray's line, in quadruple-like steps that a far origin doesn't hurt.
+inline double distance_from_line(const Vec3& p, const Ray& ray) {
+  using Long = long double;
+  const Long x = static_cast<Long>(p.x) - ray.origin.x, y = static_cast<Long>(p.y) - ray.origin.y,
+             z = static_cast<Long>(p.z) - ray.origin.z;
+  const Long dx = ray.direction.x, dy = ray.direction.y, dz = ray.direction.z;
+  const Long a = y * dz - z * dy, b = z * dx - x * dz, c = x * dy - y * dx;
+  return static_cast<double>(std::sqrt(a * a + b * b + c * c) / std::sqrt(dx * dx + dy * dy + dz * dz));
+}
+
+/// Judges one ray. `tolerance`: the scene's; `size`: the model's. The point is that of the patch by another evaluator.
+inline void judge_ray(std::span<const BezierPatch> patches, const RayScene& scene, const Ray& ray, double tolerance,
+                      double size, ProofTally& tally) {
+  const Verdict verdict = referee(patches, ray);
+  const Hit hit = scene.closest(ray);
+  const bool met = hit.kind == HitKind::hit;
+  const double speed = length(ray.direction);
+  ++tally.rays;
+  tally.contradicted += scene.occluded(ray) != met;
+  tally.incomplete += hit.flags.incomplete;
+  if (met) {
+    const Vec3 p = de_casteljau(patches[hit.patch], hit.patch_u, hit.patch_v);
+    const double reach = std::max({max_abs(p), max_abs(ray.origin), max_abs(p - ray.origin)});
+    const double rounding = 64 * 0x1p-53 * max_abs(p) + 0x1p-58 * reach;
+    const bool on_ray = distance_from_line(p, ray) <= tolerance + rounding && hit.t >= ray.tnear && hit.t <= ray.tfar;
+    tally.false_hits += !on_ray;
+  }
+  tally.undecidable += !verdict.hit() && !verdict.miss();
+  if (verdict.miss()) {
+    ++tally.misses;
+    tally.touching += met;
+  }
+  if (!verdict.hit()) return;
+  ++tally.hits;
+  const Verdict::Root& first = verdict.first();
+  // Within the tolerance of a tangent the surface is met a square root of it earlier or later.
+  const double loose = 4 * std::sqrt(tolerance * size) / speed, strict = 1e-9 * size / speed;
+  if (!met || hit.t > first.t.hi + (hit.flags.uncertified ? loose : strict)) {
+    ++tally.missed;
+    return;
+  }
+  if (first.t.width() * speed > 1e-9 * size || hit.patch != first.patch ||
+      std::abs(hit.patch_u - first.u.middle()) > 1e-3 || std::abs(hit.patch_v - first.v.middle()) > 1e-3)
+    return;
+  tally.t_errors.push_back(std::abs(hit.t - first.t.middle()) * speed / size);
+  tally.u_errors.push_back(
+      std::max(std::abs(hit.patch_u - first.u.middle()), std::abs(hit.patch_v - first.v.middle())));
+}
+
+}  // namespace tessera::test
