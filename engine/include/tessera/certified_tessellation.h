@@ -11,22 +11,44 @@
 #include "tessera/mesh.h"
 #include "tessera/patch_set.h"
 #include "tessera/status.h"
+#include "tessera/view.h"
 
 namespace tessera {
 
+/// How far mesh and surfaces may lie apart in a picture: every point of either that is seen lies within so many pixels of
+/// one of the other; silhouettes too. Along the rays it says nothing: an angle makes up for that in shading. Patches of
+/// which nothing is in the frame are not divided for it. Those that come nearer to the eye than the view's near distance,
+/// or pass behind it, are kept by their distance in space at the least depth at which anything of them is seen: so a
+/// camera may stand inside the model, and a patch that it all but touches takes many triangles.
+struct PixelTolerance {
+  double pixels = 0.5;  ///< above 0
+  View view;
+};
+
+/// At least one of tolerance, angle, pixels and smallest.
 struct CertifiedOptions {
   /// The largest distance between surfaces and mesh, in the model's lengths, above 0: every point of either lies within
   /// it of the other.
-  double tolerance = 0;
+  std::optional<double> tolerance = {};
   /// The tolerance is a share of the size of the set's box instead, its diagonal.
   bool relative = false;
+  /// The largest angle by which the surface's normal turns within a triangle, radians, above 0, at most pi / 2: any two of
+  /// its normals over the triangle's parameters lie within it, and so does the mesh's shading, its vertices' normals mixed.
+  /// (Flat triangles' own normals are another matter: those of needles may look anywhere.) Where the normal has no direction,
+  /// at a cusp or at a corner with parallel tangents, there is no such bound, and nearly none where it turns at a rate of
+  /// more than 32 radians over a patch: such a patch gets at least angle_rate segments along each parameter instead and
+  /// counts in patches_without_angle(). Poles have bounds.
+  std::optional<double> angle = {};
+  int angle_rate = 64;  ///< 1 to 4096
+  std::optional<PixelTolerance> pixels = {};
   /// Borders that lie within this length of each other are joined, 0 or more; 0 joins those of the same bits alone. About
   /// 1e-6 of the set's size suits files whose neighbours differ by rounding. It should stay below what the smallest patch
   /// measures: thinner ones lose their area.
   double weld = 0;
   /// More triangles than this are refused.
   std::uint64_t most_triangles = std::uint64_t{1} << 30;
-  /// The tolerance is not given but found: the smallest, within 1 percent, for which most_triangles are enough.
+  /// The tolerance is not given but found: the smallest, within 1 percent, for which most_triangles are enough. Angle and
+  /// pixels are kept as well.
   bool smallest = false;
   std::optional<Isa> isa = {};
 };
@@ -50,8 +72,10 @@ struct CertifiedOptions {
 /// then the border points counter-clockwise from (0,0), each corner once. Immutable. Threads: any number of const calls.
 class CertifiedTessellation {
  public:
-  /// Errors: invalid_argument (a tolerance that is not above 0; one that a patch's rounding, welding or the fit error
-  /// exceeds already; a weld that is negative or not finite; more triangles or vertices than allowed: the message says how many; fewer than one cell a patch takes), unsupported (the set has no float
+  /// Errors: invalid_argument (no tolerance of any kind, or one that is not above 0; one that a patch's rounding, welding or
+  /// the fit error exceeds already; a view without a picture; a weld that is negative or not finite; more triangles or
+  /// vertices than allowed, or more than 4096 segments along a parameter: the message says how many triangles it takes;
+  /// fewer triangles than one cell a patch takes), unsupported (the set has no float
   /// Bernstein blocks), isa_unavailable, cancelled.
   static Result<CertifiedTessellation> make(const PatchSet& set, const CertifiedOptions& options,
                                             const Execution& execution = {});
@@ -67,6 +91,15 @@ class CertifiedTessellation {
   bool certified() const;
   /// The same of each patch.
   std::span<const float> bounds() const;
+  /// The angle that is proven, radians: the largest of those patches that have a bound. 0 if none was asked for.
+  double angle() const;
+  std::size_t patches_without_angle() const;
+  /// The same of each patch, infinite where there is none; empty if none was asked for.
+  std::span<const float> angles() const;
+  /// What is proven in the picture, in pixels. 0 if it was not asked for.
+  double pixels() const;
+  /// The same of each patch, 0 where nothing is seen; empty if it was not asked for.
+  std::span<const float> pixel_bounds() const;
   /// Borders that take the vertices of others, and those made points: joined by welding, not by their bits.
   std::size_t welded_borders() const;
   MeshCapacity capacity() const;  ///< exact

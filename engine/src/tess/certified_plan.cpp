@@ -1,7 +1,9 @@
 #include "tess/certified_plan.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -9,13 +11,12 @@
 #include "base/text.h"
 #include "parallel/least_index.h"
 #include "parallel/parallel_for.h"
+#include "tess/border_curve.h"
 
 namespace tessera {
 namespace {
 
 constexpr std::size_t patches_a_piece = 64;
-/// Rates stay below this: parameters i / rate are then well apart in float.
-constexpr int most_rate = 4096;
 constexpr std::uint64_t most_vertices = std::uint64_t{1} << 32;  // 32-bit indices
 
 Status invalid(std::string message, std::size_t patch) {
@@ -36,8 +37,9 @@ double vertex_rounding(const BezierPatch& patch, const Vec3& origin) {
   return std::numbers::sqrt3 * roundings * 0x1p-24 * size;
 }
 
-Result<CertifiedPlanner> CertifiedPlanner::make(const PatchSet::Impl& set, double weld, const Execution& execution) {
-  CertifiedPlanner planner(set);
+Result<CertifiedPlanner> CertifiedPlanner::make(const PatchSet::Impl& set, const PlannerOptions& options,
+                                                const Execution& execution) {
+  CertifiedPlanner planner(set, options);
   const std::size_t patches = set.patches.size();
   planner.shapes_.resize(patches);
   planner.roundings_.resize(patches);
@@ -50,44 +52,129 @@ Result<CertifiedPlanner> CertifiedPlanner::make(const PatchSet::Impl& set, doubl
     }
   });
   if (!status.ok()) return status;
-  if (weld > 0) {
-    planner.weld_ = weld_borders(set, planner.shapes_, planner.roundings_, weld, planner.edges_);
+  if (options.weld > 0) {
+    planner.weld_ = weld_borders(set, planner.shapes_, planner.roundings_, options.weld, planner.edges_);
     for (std::size_t k = 0; k < patches; ++k)
       planner.roundings_[k] = std::max(planner.roundings_[k], planner.weld_.displacements[k]);
   }
+  if (status = planner.bound_turning_and_picture(set, execution); !status.ok()) return status;
   return planner;
 }
 
-Status CertifiedPlanner::choose_rates(double tolerance, std::vector<Rates>& rates, std::vector<float>& bounds,
-                                      const Execution& execution) const {
-  LeastIndex rough, wide;  // rounding alone exceeds the tolerance; the rates would
-  const auto choose = [&](std::size_t begin, std::size_t end) {
+Status CertifiedPlanner::bound_turning_and_picture(const PatchSet::Impl& set, const Execution& execution) {
+  if (!options_.angle && !options_.camera) return {};
+  std::vector<std::optional<PatchInPicture>> pictures(options_.camera ? shapes_.size() : 0);
+  if (options_.angle) turnings_.resize(shapes_.size());
+  const auto bound = [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      const double given = roundings_[k] + fit_error_;
-      if (!(given < tolerance)) {
-        rough.add(k);
-        continue;
-      }
-      const auto cheapest = chords_[k].cheapest(tolerance - given, most_rate);
-      if (!cheapest) {
-        wide.add(k);
-        continue;
-      }
-      rates[k] = *cheapest;
-      bounds[k] = rounded_up(chords_[k].distance(*cheapest) + given);
+      if (options_.camera)
+        pictures[k].emplace(*options_.camera, set.patches[k], roundings_[k] + fit_error_, options_.pixels);
+      if (!options_.angle || shapes_[k].is_curve) continue;
+      BezierPatch patch = set.patches[k];
+      for (const Side side : all_sides)  // what welding makes a pole is one
+        if (divided_shapes()[k].collapsed.has(edge_of(side)) && !shapes_[k].collapsed.has(edge_of(side)))
+          patch = with_pole(patch, side).value();
+      turnings_[k] = TurningBound(patch);
     }
   };
-  if (Status status = parallel_for(rates.size(), patches_a_piece, execution, choose); !status.ok()) return status;
-  if (rough.found())
-    return invalid("the tolerance " + text(tolerance) + " is not above what float vertices of patch " +
-                       std::to_string(rough.index()) + (weld_.shapes.empty() ? "" : ", welded,") + " keep, " + text(roundings_[rough.index()]) +
-                       ", and the fit error, " + text(fit_error_),
-                   rough.index());
-  if (wide.found())
-    return invalid("the tolerance " + text(tolerance) + " takes more than " + std::to_string(most_rate) +
-                       " segments along a parameter of patch " + std::to_string(wide.index()),
-                   wide.index());
+  if (Status status = parallel_for(shapes_.size(), patches_a_piece, execution, bound); !status.ok()) return status;
+  pictures_.reserve(pictures.size());
+  for (std::optional<PatchInPicture>& picture : pictures) pictures_.push_back(*std::move(picture));
   return {};
+}
+
+std::optional<Rates> CertifiedPlanner::rates_for(const CellLimits& limits, std::size_t patch, int most) const {
+  const bool distance_alone = limits.chord && !limits.turning && !limits.picture;
+  return distance_alone ? chords_[patch].cheapest(limits.distance, most) : cheapest(limits, most);
+}
+
+CertifiedPlanner::Choice CertifiedPlanner::choose(std::size_t patch, double tolerance, int most) const {
+  const double given = roundings_[patch] + fit_error_;
+  const PatchInPicture* const picture = options_.camera ? &pictures_[patch] : nullptr;
+  const TurningBound* const turning = options_.angle && !shapes_[patch].is_curve ? &turnings_[patch] : nullptr;
+  Choice choice;
+  CellLimits limits;
+  const double distance = picture ? std::min(tolerance, picture->distance()) : tolerance;
+  if (!(given < distance)) choice.failure = given < tolerance ? Failure::rough_pixels : Failure::rough;
+  if (std::isfinite(distance)) limits.chord = &chords_[patch];
+  limits.distance = distance - given;
+  if (picture && picture->projected()) {
+    limits.picture = picture->projected();
+    limits.pixels = options_.pixels - picture->moved_pixels();
+    if (!(limits.pixels > 0)) choice.failure = Failure::rough_pixels;
+  }
+  if (choice.failure != Failure::none) return choice;
+  const bool bounded = turning && turning->is_finite();
+  if (bounded) {
+    limits.turning = turning;
+    limits.angle = *options_.angle;
+  }
+  std::optional<Rates> rates = rates_for(limits, patch, most);
+  if (rates && turning && !bounded)
+    rates = Rates{std::max(rates->u, options_.angle_rate), std::max(rates->v, options_.angle_rate)};
+  if (!rates) return {Failure::wide, {}};
+  choice.rates = *rates;
+  // Rates that were raised may be odd now: what holds for a half may not hold for the whole.
+  if (!(limits.keeps(*rates))) choice.rates = {rates->u + rates->u % 2, rates->v + rates->v % 2};
+  choice.bound = chords_[patch].distance(choice.rates) + given;
+  if (turning) choice.angle = bounded ? turning->angle(choice.rates) : std::numeric_limits<double>::infinity();
+  if (picture) choice.pixels = picture->pixels(choice.rates, choice.bound);
+  return choice;
+}
+
+std::string CertifiedPlanner::wanted(double tolerance) const {
+  std::string said;
+  const auto add = [&said](const std::string& more) { said += (said.empty() ? "" : " with ") + more; };
+  if (std::isfinite(tolerance)) add("the tolerance " + text(tolerance));
+  if (options_.angle) add("the angle " + text(*options_.angle));
+  if (options_.camera) add("the tolerance of " + text(options_.pixels) + " pixels");
+  return said;
+}
+
+Status CertifiedPlanner::refusal(Failure failure, std::size_t patch, double tolerance) const {
+  const std::string vertices = "float vertices of patch " + std::to_string(patch) +
+                               (weld_.shapes.empty() ? "" : ", welded,") + " keep, " + text(roundings_[patch]) +
+                               ", and the fit error, " + text(fit_error_);
+  if (failure == Failure::rough)
+    return invalid("the tolerance " + text(tolerance) + " is not above what " + vertices, patch);
+  if (failure == Failure::rough_pixels)
+    return invalid("so near to the eye, " + text(options_.pixels) + " pixels are not above what " + vertices +
+                       "; a larger near distance leaves more room",
+                   patch);
+  constexpr int unlimited = 1 << 24;
+  double triangles = 0;
+  for (std::size_t k = 0; k < shapes_.size(); ++k) {
+    const Choice choice = choose(k, tolerance, unlimited);
+    triangles +=
+        choice.failure == Failure::none ? 2.0 * choice.rates.u * choice.rates.v : double{unlimited} * unlimited;
+  }
+  std::array<char, 32> count;
+  std::snprintf(count.data(), count.size(), "%.2g", triangles);
+  return invalid(wanted(tolerance) + " takes more than " + std::to_string(most_rate) +
+                     " segments along a parameter of patch " + std::to_string(patch) + ", and about " + count.data() +
+                     " triangles in all",
+                 patch);
+}
+
+Status CertifiedPlanner::choose_rates(double tolerance, std::vector<Rates>& rates, CertifiedPlan& plan,
+                                      const Execution& execution) const {
+  plan.bounds_.resize(rates.size());
+  if (options_.angle) plan.angles_.resize(rates.size());
+  if (options_.camera) plan.pixels_.resize(rates.size());
+  LeastIndex failed;
+  const auto choose_some = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const Choice choice = choose(k, tolerance, most_rate);
+      if (choice.failure != Failure::none) failed.add(k);
+      rates[k] = choice.rates;
+      plan.bounds_[k] = rounded_up(choice.bound);
+      if (options_.angle) plan.angles_[k] = rounded_up(choice.angle);
+      if (options_.camera) plan.pixels_[k] = rounded_up(choice.pixels);
+    }
+  };
+  if (Status status = parallel_for(rates.size(), patches_a_piece, execution, choose_some); !status.ok()) return status;
+  if (!failed.found()) return {};
+  return refusal(choose(failed.index(), tolerance, most_rate).failure, failed.index(), tolerance);
 }
 
 std::vector<Division> CertifiedPlanner::divide(std::span<const Rates> rates) const {
@@ -121,12 +208,9 @@ std::vector<Division> CertifiedPlanner::divide(std::span<const Rates> rates) con
 
 Result<CertifiedPlan> CertifiedPlanner::plan(double tolerance, std::uint64_t most_triangles,
                                              const Execution& execution) const {
-  if (!(tolerance > 0 && std::isfinite(tolerance)))
-    return Status(StatusCode::invalid_argument, "the tolerance is " + text(tolerance) + ", it must be finite and above 0");
   CertifiedPlan plan;
   std::vector<Rates> rates(shapes_.size());
-  plan.bounds_.resize(shapes_.size());
-  if (Status status = choose_rates(tolerance, rates, plan.bounds_, execution); !status.ok()) return status;
+  if (Status status = choose_rates(tolerance, rates, plan, execution); !status.ok()) return status;
   plan.divisions_ = divide(rates);
   std::size_t vertices = 0, triangles = 0;
   plan.first_vertex_.reserve(rates.size() + 1);
@@ -140,10 +224,10 @@ Result<CertifiedPlan> CertifiedPlanner::plan(double tolerance, std::uint64_t mos
   plan.first_vertex_.push_back(vertices);
   plan.first_triangle_.push_back(triangles);
   if (triangles <= most_triangles && vertices <= most_vertices) return plan;
-  return Status(StatusCode::invalid_argument,
-                "the tolerance " + text(tolerance) + " takes " + std::to_string(triangles) + " triangles and " +
-                    std::to_string(vertices) + " vertices, " + std::to_string(most_triangles) + " and " +
-                    std::to_string(most_vertices) + " are allowed");
+  return Status(StatusCode::invalid_argument, wanted(tolerance) + " takes " + std::to_string(triangles) +
+                                                  " triangles and " + std::to_string(vertices) + " vertices, " +
+                                                  std::to_string(most_triangles) + " and " +
+                                                  std::to_string(most_vertices) + " are allowed");
 }
 
 Result<double> CertifiedPlanner::smallest_tolerance(std::uint64_t most_triangles, const Execution& execution) const {

@@ -2,11 +2,15 @@
 // How each patch of a set is divided so that a tolerance is kept and neighbours meet.
 
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "block/patch_set_impl.h"
+#include "tess/cell_limits.h"
 #include "tess/chord_bound.h"
+#include "tess/picture.h"
 #include "tess/shared_edges.h"
 #include "tess/stitched_patch.h"
 #include "tess/weld.h"
@@ -20,6 +24,9 @@ namespace tessera {
 /// The terms' sizes add up to at most the largest |V|, and so they do for rational patches, over the sum of weights.
 double vertex_rounding(const BezierPatch& patch, const Vec3& origin);
 
+/// Rates stay at most this: parameters i / rate are then well apart in float.
+inline constexpr int most_rate = 4096;
+
 class CertifiedPlan {
  public:
   std::size_t patch_count() const { return divisions_.size(); }
@@ -28,43 +35,79 @@ class CertifiedPlan {
   std::size_t first_triangle(std::size_t patch) const { return first_triangle_[patch]; }
   MeshCapacity capacity() const { return {first_vertex_.back(), first_triangle_.back()}; }
   std::span<const float> bounds() const { return bounds_; }
+  std::span<const float> angles() const { return angles_; }  ///< empty if none was asked for
+  std::span<const float> pixels() const { return pixels_; }  ///< the same
 
  private:
   friend class CertifiedPlanner;
   std::vector<Division> divisions_;
   std::vector<std::size_t> first_vertex_, first_triangle_;  ///< of each patch, and the number of all
-  std::vector<float> bounds_;
+  std::vector<float> bounds_, angles_, pixels_;
+};
+
+/// What is to be kept beside a distance, and how borders are joined.
+struct PlannerOptions {
+  double weld = 0;              ///< finite, at least 0
+  std::optional<double> angle;  ///< radians, above 0, at most pi / 2
+  int angle_rate = 64;          ///< where the angle has no bound
+  std::optional<Camera> camera;
+  double pixels = 0;  ///< above 0 if there is a camera
 };
 
 /// What is known of a set before a tolerance is.
 class CertifiedPlanner {
  public:
-  /// Errors: cancelled. `weld`: finite, at least 0.
-  static Result<CertifiedPlanner> make(const PatchSet::Impl& set, double weld, const Execution& execution);
+  /// Errors: cancelled, out_of_memory.
+  static Result<CertifiedPlanner> make(const PatchSet::Impl& set, const PlannerOptions& options,
+                                       const Execution& execution);
 
   /// Before welding.
   std::span<const PatchShape> shapes() const { return shapes_; }
   const Weld& weld() const { return weld_; }
-  /// Errors: invalid_argument, as CertifiedTessellation::make says; cancelled.
+  /// `tolerance`: the distance, infinite if any will do. Errors: invalid_argument, as CertifiedTessellation::make says;
+  /// cancelled.
   Result<CertifiedPlan> plan(double tolerance, std::uint64_t most_triangles, const Execution& execution) const;
   /// The smallest tolerance, within 1 percent, whose mesh has at most so many triangles. Errors: invalid_argument (not
   /// even one cell a patch keeps the budget).
   Result<double> smallest_tolerance(std::uint64_t most_triangles, const Execution& execution) const;
 
  private:
-  CertifiedPlanner(const PatchSet::Impl& set) : edges_(set), fit_error_(set.fit_error.distance) {}
-  /// The rates that each patch needs for itself, and its bound.
-  Status choose_rates(double tolerance, std::vector<Rates>& rates, std::vector<float>& bounds,
+  /// Why a patch has no rates.
+  enum class Failure : std::uint8_t {
+    none,
+    rough,         ///< vertices alone are further away than allowed
+    rough_pixels,  ///< the same in the picture
+    wide,          ///< more segments than allowed
+  };
+  /// What a patch needs for itself, and what that keeps.
+  struct Choice {
+    Failure failure = Failure::none;
+    Rates rates;
+    double bound = 0, angle = 0, pixels = 0;
+  };
+
+  CertifiedPlanner(const PatchSet::Impl& set, const PlannerOptions& options)
+      : options_(options), edges_(set), fit_error_(set.fit_error.distance) {}
+  Status bound_turning_and_picture(const PatchSet::Impl& set, const Execution& execution);
+  Choice choose(std::size_t patch, double tolerance, int most) const;
+  std::optional<Rates> rates_for(const CellLimits& limits, std::size_t patch, int most) const;
+  /// Rates and bounds of all patches.
+  Status choose_rates(double tolerance, std::vector<Rates>& rates, CertifiedPlan& plan,
                       const Execution& execution) const;
+  Status refusal(Failure failure, std::size_t patch, double tolerance) const;
+  std::string wanted(double tolerance) const;
   std::vector<Division> divide(std::span<const Rates> rates) const;
   std::span<const PatchShape> divided_shapes() const { return weld_.shapes.empty() ? shapes_ : weld_.shapes; }
 
+  PlannerOptions options_;
   SharedEdges edges_;
   double fit_error_;
   std::vector<PatchShape> shapes_;
   Weld weld_;
   std::vector<double> roundings_;  ///< vertex_rounding() of each patch, or by how much its vertices are off when welded
   std::vector<ChordBound> chords_;
+  std::vector<TurningBound> turnings_;    ///< if there is an angle
+  std::vector<PatchInPicture> pictures_;  ///< if there is a camera
 };
 
 }  // namespace tessera

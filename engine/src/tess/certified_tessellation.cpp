@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
 
 #include "base/guard.h"
 #include "base/text.h"
@@ -33,10 +36,18 @@ class CertifiedTessellation::Impl {
                      plan_.division(k).border[static_cast<std::size_t>(side)]);
       }
     for (const float bound : plan_.bounds()) bound_ = std::max(bound_, bound);
+    for (const float pixels : plan_.pixels()) pixels_ = std::max(pixels_, pixels);
+    for (const float angle : plan_.angles()) {
+      if (std::isinf(angle)) ++without_angle_;
+      if (!std::isinf(angle)) angle_ = std::max(angle_, angle);
+    }
   }
 
   const CertifiedPlan& plan() const { return plan_; }
   double bound() const { return bound_; }
+  double angle() const { return angle_; }
+  std::size_t patches_without_angle() const { return without_angle_; }
+  double pixels() const { return pixels_; }
   bool certified() const { return certified_; }
   std::size_t welded_borders() const { return weld_.borders.size() + weld_.poles.size(); }
   Mesh allocate() const { return empty_mesh(plan_.capacity(), origin_); }
@@ -88,20 +99,55 @@ class CertifiedTessellation::Impl {
   Vec3 origin_;
   bool certified_;
   BorderWeights weights_;
-  float bound_ = 0;
+  float bound_ = 0, angle_ = 0, pixels_ = 0;
+  std::size_t without_angle_ = 0;
 };
+
+namespace {
+
+/// What is asked for, where it makes sense. Errors: invalid_argument.
+Result<PlannerOptions> checked(const CertifiedOptions& options) {
+  const auto bad = [](const std::string& message) { return Status(StatusCode::invalid_argument, message); };
+  // Written so that NaN fails.
+  if (!options.tolerance && !options.angle && !options.pixels && !options.smallest)
+    return bad("no tolerance is given: a distance, an angle, pixels or the smallest");
+  if (options.tolerance && !(*options.tolerance > 0 && std::isfinite(*options.tolerance)))
+    return bad("the tolerance is " + text(*options.tolerance) + ", it must be finite and above 0");
+  if (options.angle && !(*options.angle > 0 && *options.angle <= std::numbers::pi / 2))
+    return bad("the angle is " + text(*options.angle) + ", it must be above 0 and at most pi / 2");
+  if (options.angle_rate < 1 || options.angle_rate > most_rate)
+    return bad("the angle's rate is " + std::to_string(options.angle_rate) + ", it must be from 1 to " + std::to_string(most_rate));
+  if (options.pixels && !(options.pixels->pixels > 0 && std::isfinite(options.pixels->pixels)))
+    return bad("the tolerance is " + text(options.pixels->pixels) + " pixels, it must be finite and above 0");
+  if (!(options.weld >= 0 && std::isfinite(options.weld)))
+    return bad("the weld is " + text(options.weld) + ", it must be finite and at least 0");
+  PlannerOptions planner;
+  planner.weld = options.weld;
+  planner.angle = options.angle;
+  planner.angle_rate = options.angle_rate;
+  if (!options.pixels) return planner;
+  Result<Camera> camera = Camera::make(options.pixels->view);
+  if (!camera) return camera.status();
+  planner.camera = *camera;
+  planner.pixels = options.pixels->pixels;
+  return planner;
+}
+
+}  // namespace
 
 Result<CertifiedTessellation> CertifiedTessellation::make(const PatchSet& set, const CertifiedOptions& options,
                                                           const Execution& execution) {
   return guarded([&]() -> Result<CertifiedTessellation> {
     if (!set.blocks().float_bernstein)
       return Status(StatusCode::unsupported, "a tessellation needs float Bernstein blocks, the set has none");
-    if (!(options.weld >= 0 && std::isfinite(options.weld)))
-      return Status(StatusCode::invalid_argument,
-                    "the weld is " + text(options.weld) + ", it must be finite and at least 0");
-    Result<CertifiedPlanner> planner = CertifiedPlanner::make(set.impl(), options.weld, execution);
+    const Result<PlannerOptions> planned = checked(options);
+    if (!planned) return planned.status();
+    Result<CertifiedPlanner> planner = CertifiedPlanner::make(set.impl(), *planned, execution);
     if (!planner) return planner.status();
-    double tolerance = options.tolerance * (options.relative ? set.box().diagonal() : 1);
+    double tolerance = std::numeric_limits<double>::infinity();
+    if (options.tolerance) tolerance = *options.tolerance * (options.relative ? set.box().diagonal() : 1);
+    if (!(tolerance > 0))
+      return Status(StatusCode::invalid_argument, "the tolerance is " + text(tolerance) + ": the model has no size");
     if (options.smallest) {
       const Result<double> found = planner->smallest_tolerance(options.most_triangles, execution);
       if (!found) return found.status();
@@ -121,6 +167,11 @@ CertifiedTessellation::~CertifiedTessellation() = default;
 double CertifiedTessellation::bound() const { return impl_->bound(); }
 bool CertifiedTessellation::certified() const { return impl_->certified(); }
 std::span<const float> CertifiedTessellation::bounds() const { return impl_->plan().bounds(); }
+double CertifiedTessellation::angle() const { return impl_->angle(); }
+std::size_t CertifiedTessellation::patches_without_angle() const { return impl_->patches_without_angle(); }
+std::span<const float> CertifiedTessellation::angles() const { return impl_->plan().angles(); }
+double CertifiedTessellation::pixels() const { return impl_->pixels(); }
+std::span<const float> CertifiedTessellation::pixel_bounds() const { return impl_->plan().pixels(); }
 std::size_t CertifiedTessellation::welded_borders() const { return impl_->welded_borders(); }
 MeshCapacity CertifiedTessellation::capacity() const { return impl_->plan().capacity(); }
 

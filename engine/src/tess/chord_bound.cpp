@@ -159,20 +159,25 @@ double ChordBound::distance(Rates rates) const {
   return most;
 }
 
-std::optional<Rates> ChordBound::with_rate(double tolerance, int fixed, bool fixed_u, int most) const {
+double ChordBound::needed(double tolerance, int fixed, bool fixed_u, bool even) const {
   const double h = 1.0 / fixed + 0x1p-24;
+  const bool fixed_even = fixed % 2 == 0;
+  const Split split = fixed_u ? splits_[fixed_even][even] : splits_[even][fixed_even];
+  double needed = 1;
+  for (int k = split.first; k < split.first + split.count; ++k) {
+    const SecondDerivatives& d = pieces_[static_cast<std::size_t>(k)];
+    needed = std::max(needed, smallest_rate(h * h * (fixed_u ? d.uu : d.vv), 2 * h * d.uv, fixed_u ? d.vv : d.uu,
+                                            8 * tolerance));
+  }
+  return needed;
+}
+
+std::optional<Rates> ChordBound::with_rate(double tolerance, int fixed, bool fixed_u, int most) const {
   std::optional<Rates> best;
   for (const bool even : {false, true}) {
-    const bool fixed_even = fixed % 2 == 0;
-    const Split split = fixed_u ? splits_[fixed_even][even] : splits_[even][fixed_even];
-    double needed = 1;
-    for (int k = split.first; k < split.first + split.count; ++k) {
-      const SecondDerivatives& d = pieces_[static_cast<std::size_t>(k)];
-      needed = std::max(needed, smallest_rate(h * h * (fixed_u ? d.uu : d.vv), 2 * h * d.uv, fixed_u ? d.vv : d.uu,
-                                              8 * tolerance));
-    }
-    if (!(needed <= most)) continue;
-    int rate = static_cast<int>(std::ceil(needed));
+    const double least = needed(tolerance, fixed, fixed_u, even);
+    if (!(least <= most)) continue;
+    int rate = static_cast<int>(std::ceil(least));
     if ((rate % 2 == 0) != even) ++rate;
     const auto rates = [&] { return fixed_u ? Rates{fixed, rate} : Rates{rate, fixed}; };
     if (!(distance(rates()) <= tolerance)) rate += 2;  // the root was rounded, or the parameters are

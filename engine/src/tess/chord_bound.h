@@ -41,6 +41,9 @@ class ChordBound {
   /// The largest distance between the patch and a mesh of it, each of whose triangles has a parameter box of at most
   /// 1 / rates.u x 1 / rates.v, and where a rate is even none straddles the middle of that parameter.
   double distance(Rates rates) const;
+  /// The smallest real rate along the other parameter that keeps it, `fixed` being that along u or v; among even rates, or
+  /// odd ones. Infinite if there is none.
+  double needed(double tolerance, int fixed, bool fixed_u, bool even) const;
   /// The rates with the fewest cells that keep distance() <= tolerance; none up to `most` do: empty. tolerance > 0.
   std::optional<Rates> cheapest(double tolerance, int most) const;
 
