@@ -108,8 +108,8 @@ void run(benchmark::State& state, const Case& c) {
   ExecutionReport report;
   Execution execution;
   execution.report = &report;
-  const auto best = time_calls(state, c.threads,
-                               [&] { return evaluate(set, samples.views(), out, {.isa = c.isa}, execution); });
+  const auto best =
+      time_calls(state, c.threads, [&] { return evaluate(set, samples.views(), out, {.isa = c.isa}, execution); });
   if (!best) return;
   if (report.isa != c.isa) return state.SkipWithError("another instruction set ran than was asked for");
   if (!check_values(set, samples, out)) return state.SkipWithError("the timed values differ from the reference");

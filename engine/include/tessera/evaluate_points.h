@@ -41,8 +41,9 @@ struct PatchSamples {
 template <class T>
 using PointViews = GridViews<T>;
 
-/// Evaluates all samples, in any order of patches; samples that come sorted by patch, eight or more of a patch in
-/// a row, run up to twice as fast as others. The set must hold BlockKinds::float_points (double_points).
+/// Evaluates all samples, in any order of patches; samples that come sorted by patch, a dozen or more of a patch in
+/// a row, run up to twice as fast as others. Arrays (views of stride 1) are read where they lie, others copied first.
+/// The set must hold BlockKinds::float_points (double_points).
 /// Positions in float are relative to the set's origin, in double absolute; derivatives are by the patch's parameters.
 /// Degenerate points as in GridViews, by unit_normal().
 /// Errors, with nothing written: unsupported (the set lacks the coefficients), buffer_too_small, count_mismatch (fewer

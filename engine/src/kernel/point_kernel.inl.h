@@ -14,23 +14,25 @@ struct SlotWeights {
   static constexpr int count = (Order + 1) * point_capacity<Degree>;
   alignas(64) typename L::Scalar of[block_lanes / L::width][count][L::width];
 
-  [[gnu::always_inline]] void fill(const typename L::Scalar* parameters, int degree) {
-    for (auto& vector : of) {
+  /// Of the first `samples`, and of those that share their vectors.
+  [[gnu::always_inline]] void fill(const typename L::Scalar* parameters, int samples, int degree) {
+    for (int lane = 0; lane < samples; lane += L::width) {
       typename L::Batch weights[count];
-      bernstein_weights<L, Order, point_capacity<Degree>>(L::Batch::load_unaligned(parameters), degree, weights);
-      for (int i = 0; i < (Order + 1) * (degree + 1); ++i) L::store(vector[i], weights[i]);
-      parameters += L::width;
+      bernstein_weights<L, Order, point_capacity<Degree>>(L::Batch::load_unaligned(parameters + lane), degree, weights);
+      for (int i = 0; i < (Order + 1) * (degree + 1); ++i) L::store(of[lane / L::width][i], weights[i]);
     }
   }
 };
 
-/// sum_i weights[i] net[i * length], one vector of a row's `rest` last values. Reads no value behind the last row: that
-/// may lie on another cache line. `EndsLine`: rows are 12 wide and the last one ends a line.
-template <class L, bool EndsLine>
-[[gnu::always_inline]] inline typename L::Batch row_sum(const typename L::Scalar* net,
-                                                        const typename L::Scalar* weights, int count_u,
-                                                        std::ptrdiff_t length, int rest) {
+/// sums[order] = sum_i weights[order][i] net[i * length], one vector of a row's `rest` last values; `weights` are
+/// `[order][i][lane]` from one lane on. Reads no value behind the last row: that may lie on another cache line.
+/// `EndsLine`: rows are 12 wide and the last one ends a line.
+template <class L, bool EndsLine, int Order>
+[[gnu::always_inline]] inline void row_sums(const typename L::Scalar* net, const typename L::Scalar* weights,
+                                            int count_u, std::ptrdiff_t length, int rest,
+                                            typename L::Batch (&sums)[Order + 1]) {
   using Batch = typename L::Batch;
+  const auto weight = [&](int order, int i) { return L::broadcast(weights[(order * count_u + i) * L::width]); };
   const auto last_values = [&](const typename L::Scalar* row) -> Batch {
     if constexpr (EndsLine) {
       return L::rotated(L::load(row - 4));
@@ -38,14 +40,16 @@ template <class L, bool EndsLine>
       return rest >= L::width ? Batch::load_unaligned(row) : L::load_first(row, rest);
     }
   };
-  Batch sum = L::broadcast(weights[0]) * Batch::load_unaligned(net);
+  const Batch first = Batch::load_unaligned(net);
+#pragma GCC unroll 3
+  for (int order = 0; order <= Order; ++order) sums[order] = weight(order, 0) * first;
 #pragma GCC unroll 4
   for (int i = 1; i < count_u; ++i) {
     const auto* row = net + i * length;
     const Batch values = i + 1 < count_u ? Batch::load_unaligned(row) : last_values(row);
-    sum = L::fma(L::broadcast(weights[i * L::width]), values, sum);
+#pragma GCC unroll 3
+    for (int order = 0; order <= Order; ++order) sums[order] = L::fma(weight(order, i), values, sums[order]);
   }
-  return sum;
 }
 
 template <class T>
@@ -84,16 +88,17 @@ template <class L, int Degree, int Order, int Components, int Capacity>
   const int length = Components * count_v;
 #pragma GCC unroll 4
   for (int k = 0; k < length; k += L::width) {
-    for (int order = 0; order <= Order; ++order) {
-      typename L::Batch tile[L::width];
+    typename L::Batch tiles[Order + 1][L::width];
 #pragma GCC unroll 16
-      for (int s = 0; s < L::width; ++s) {
-        if (k == 0 && order == 0 && job.prefetched > 0) fetch_ahead<Degree, Components>(job, first + s);
-        tile[s] = row_sum<L, ends_line>(net_of(job, first + s) + k, weights + order * count_u * L::width + s, count_u,
-                                        length, length - k);
-      }
-      put_columns<L>(tile, k, count_v, curves.by_u[order]);
+    for (int s = 0; s < L::width; ++s) {
+      if (k == 0 && job.prefetched > 0) fetch_ahead<Degree, Components>(job, first + s);
+      typename L::Batch sums[Order + 1];
+      row_sums<L, ends_line, Order>(net_of(job, first + s) + k, weights + s, count_u, length, length - k, sums);
+#pragma GCC unroll 3
+      for (int order = 0; order <= Order; ++order) tiles[order][s] = sums[order];
     }
+#pragma GCC unroll 3
+    for (int order = 0; order <= Order; ++order) put_columns<L>(tiles[order], k, count_v, curves.by_u[order]);
   }
 }
 
@@ -148,8 +153,8 @@ __attribute__((noinline)) void any_curves(const PointJob<typename L::Scalar>& jo
 }
 template <class L, int Order>
 __attribute__((noinline)) void fill_any(SlotWeights<L, 0, Order>& weights, const typename L::Scalar* parameters,
-                                        int degree) {
-  weights.fill(parameters, degree);
+                                        int samples, int degree) {
+  weights.fill(parameters, samples, degree);
 }
 
 /// The samples of slot k.
@@ -184,13 +189,13 @@ void evaluate_slots(const PointJob<typename L::Scalar>& job) {
   for (int first = 0; first < job.slot_count; first += at_once) {
     const int count = job.slot_count - first < at_once ? job.slot_count - first : at_once;
     for (int k = 0; k < count; ++k) {
-      const int sample = job.slots[first + k].first;
+      const PointSlot& slot = job.slots[first + k];
       if constexpr (Degree > 0) {
-        u_weights[k].fill(job.u + sample, Degree);
-        v_weights[k].fill(job.v + sample, Degree);
+        u_weights[k].fill(job.u + slot.first, slot.count, Degree);
+        v_weights[k].fill(job.v + slot.first, slot.count, Degree);
       } else {
-        fill_any(u_weights[k], job.u + sample, job.grid.degree_u);
-        fill_any(v_weights[k], job.v + sample, job.grid.degree_v);
+        fill_any(u_weights[k], job.u + slot.first, slot.count, job.grid.degree_u);
+        fill_any(v_weights[k], job.v + slot.first, slot.count, job.grid.degree_v);
       }
     }
     for (int k = 0; k < count; ++k)

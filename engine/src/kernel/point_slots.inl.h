@@ -20,7 +20,8 @@ bool check_points(const PointCheckJob<T>& job) {
 template <class L>
 inline constexpr int shortest_run = (7 * L::width + 9) / 10;
 
-/// How many of the next `rest` samples, block_lanes at the most, lie on the patch of the first and are best taken alone.
+/// How many of the next `rest` samples, block_lanes at the most, lie on the patch of the first and are best taken
+/// alone.
 template <class L>
 inline int run_length(const std::uint32_t* patch, int rest) {
   if (patch[shortest_run<L> - 1] != patch[0] || rest < shortest_run<L>) return 0;
