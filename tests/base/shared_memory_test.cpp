@@ -32,9 +32,11 @@ TEST(SharedMemory, EndsWithTheLastHandle) {
   SharedMemory first(size);
   SharedMemory second = first, third;
   EXPECT_EQ(first.data(), second.data());
+  EXPECT_FALSE(first.sole());
   third = second;
   first = SharedMemory();
   second = std::move(third);
+  EXPECT_TRUE(second.sole());
   EXPECT_EQ(held.blocks(), 1u);
   second = SharedMemory(size);
   EXPECT_EQ(held.blocks(), 1u);

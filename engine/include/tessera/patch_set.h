@@ -92,6 +92,7 @@ class PatchSet {
 
   class Impl;
   const Impl& impl() const { return *impl_; }  ///< for the library's own use
+  Impl& impl() { return *impl_; }
 
  private:
   explicit PatchSet(std::unique_ptr<Impl> impl);

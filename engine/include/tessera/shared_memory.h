@@ -28,6 +28,8 @@ class SharedMemory {
     if (block_) drop(block_, 1);
   }
 
+  /// Whether there is no other handle on the memory. The handle is not empty.
+  bool sole() const noexcept { return block_->handles.load(std::memory_order_acquire) == 1; }
   /// The first byte, aligned as operator new aligns. The handle is not empty.
   void* data() const { return block_ + 1; }
 

@@ -154,15 +154,22 @@ bool PatchSet::Impl::pack_power(std::size_t index, const BlockGroup& group, cons
   return true;
 }
 
-bool PatchSet::Impl::pack(std::size_t index) {
+bool PatchSet::Impl::pack_lanes(std::size_t index) {
   const BlockGroup& group = group_of_block(slots[index].block);
   const Box3 hull = patches[index].hull_box();
   collapsed[index] = patches[index].collapsed_edges();
-  if (!pack_bernstein(index, group, hull) || !pack_points(index, group, hull) || !pack_power(index, group, hull))
-    return false;
+  return pack_bernstein(index, group, hull) && pack_points(index, group, hull) && pack_power(index, group, hull);
+}
+
+void PatchSet::Impl::note_doubt(std::size_t index) {
   const std::size_t at = slots[index].block * std::size_t{lanes} + slots[index].lane;
   if (kinds.float_points) single.largest_doubt = std::max(single.largest_doubt, single.point_doubt[at][0]);
   if (kinds.double_points) twice.largest_doubt = std::max(twice.largest_doubt, twice.point_doubt[at][0]);
+}
+
+bool PatchSet::Impl::pack(std::size_t index) {
+  if (!pack_lanes(index)) return false;
+  note_doubt(index);
   return true;
 }
 

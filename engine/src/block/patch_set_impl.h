@@ -94,6 +94,12 @@ class PatchSet::Impl {
   /// Writes a patch's collapsed edges, its lane of every kind of block, and the unused lanes that repeat it. False, and
   /// the lanes half-written, if a coefficient does not fit. Allocates nothing.
   bool pack(std::size_t index);
+  /// The same but for what all patches share, so that threads may pack different patches; note_doubt() completes it.
+  bool pack_lanes(std::size_t index);
+  void note_doubt(std::size_t index);
+  /// The lanes of all patches of a block, with the same bits; note_doubt() completes it for each of them. The first lane
+  /// that doesn't fit; lanes if all do.
+  std::size_t pack_block(std::size_t block, const kernel::KernelTable& kernels);
 
   /// PatchSet::from, without a copy, of sources that are known to be good. `box`: of all control points, where known.
   static Result<PatchSet> make(std::vector<BezierPatch> patches, std::vector<PatchSource> sources,
@@ -105,8 +111,6 @@ class PatchSet::Impl {
   bool pack_bernstein(std::size_t index, const BlockGroup& group, const Box3& hull);
   bool pack_points(std::size_t index, const BlockGroup& group, const Box3& hull);
   bool pack_power(std::size_t index, const BlockGroup& group, const Box3& hull);
-  /// The same bits for all patches of a block. The first lane that doesn't fit; lanes if all do.
-  std::size_t pack_block(std::size_t block, const kernel::KernelTable& kernels);
   /// Errors: non_finite, of the first patch in the order of the lanes that doesn't fit.
   Status pack_all();
 };

@@ -18,9 +18,14 @@ class BlockNormals {
 
   /// Completes the job of a block. It must not outlive this object, nor the next call.
   void prepare(std::size_t block, kernel::GridJob<T>& job) {
-    lane_patches_ = set_.lane_patches.data() + block * PatchSet::lanes;
-    job.doubt = set_.coefficients<T>().doubt_of(plan_.options.representation).data() + block * 2 * PatchSet::lanes;
-    job.noise = job.doubt + PatchSet::lanes;
+    prepare(set_.lane_patches.data() + block * PatchSet::lanes,
+            set_.coefficients<T>().doubt_of(plan_.options.representation).data() + block * 2 * PatchSet::lanes, job);
+  }
+  /// Of 16 patches that stand in no block together; `doubts`: `[doubt, noise][lane]`.
+  void prepare(const std::uint32_t* lane_patches, const T* doubts, kernel::GridJob<T>& job) {
+    lane_patches_ = lane_patches;
+    job.doubt = doubts;
+    job.noise = doubts + PatchSet::lanes;
     job.u_edges = plan_.u_edges.data();
     job.v_edges = plan_.v_edges.data();
     job.collapsed = find_collapsed() ? collapsed_.data() : nullptr;

@@ -10,6 +10,7 @@
 #include "base/guard.h"
 #include "block/patch_set_impl.h"
 #include "eval/block_normals.h"
+#include "eval/grid_calls.h"
 #include "eval/grid_outputs.h"
 #include "eval/grid_plan_impl.h"
 #include "eval/staged_block.h"
@@ -36,10 +37,7 @@ std::size_t streaming_threshold() {
 }
 
 std::size_t blocks_per_task(const GridPlan::Impl& plan, bool derivatives) {
-  const std::size_t points = plan.samples() * PatchSet::lanes;
-  const std::size_t total = points * plan.block_count;
-  if (total <= (derivatives ? serial_normals : serial_positions)) return plan.block_count;
-  return std::max<std::size_t>(1, points_per_task / points);
+  return blocks_a_task(plan, plan.block_count, derivatives);
 }
 
 template <class T>
@@ -246,6 +244,30 @@ Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<doubl
 Status evaluate(const PatchSet::Impl& set, const GridPlan& plan, const GridViews<float>& out,
                 const Execution& execution) {
   return guarded([&] { return evaluate_views(set, plan, out, execution); });
+}
+
+// ---- what other calls share
+
+template <class T>
+Result<int> check_grids(const PatchSet::Impl& set, const GridPlan& plan, const GridViews<T>& out) {
+  if (Status status = check_plan<T>(set, plan); !status.ok()) return status;
+  if (Status status = check_views(plan, out); !status.ok()) return status;
+  return order_of_outputs<T>([&](const auto& output) { return !(out.*output.view).empty(); });
+}
+template Result<int> check_grids(const PatchSet::Impl&, const GridPlan&, const GridViews<float>&);
+template Result<int> check_grids(const PatchSet::Impl&, const GridPlan&, const GridViews<double>&);
+
+template <class T>
+kernel::GridJob<T> block_job_of(const PatchSet::Impl& set, const GridPlan::Impl& plan, std::size_t block) {
+  return block_job<T>(set, plan, block);
+}
+template kernel::GridJob<float> block_job_of(const PatchSet::Impl&, const GridPlan::Impl&, std::size_t);
+template kernel::GridJob<double> block_job_of(const PatchSet::Impl&, const GridPlan::Impl&, std::size_t);
+
+std::size_t blocks_a_task(const GridPlan::Impl& plan, std::size_t blocks, bool derivatives) {
+  const std::size_t points = plan.samples() * PatchSet::lanes;
+  if (points * blocks <= (derivatives ? serial_normals : serial_positions)) return blocks;
+  return std::max<std::size_t>(1, points_per_task / points);
 }
 
 }  // namespace tessera

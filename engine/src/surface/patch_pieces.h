@@ -42,6 +42,15 @@ class PatchPieces {
     std::copy(weights.begin(), weights.end(), piece.weights_);
     return piece.patch(0, std::move(piece.memory_));
   }
+  /// Gives a patch memory of its own, unless it has that, so that overwrite() changes no other.
+  static void make_sole(BezierPatch& patch) {
+    if (!patch.memory_.sole()) patch = single(patch.degree_u(), patch.degree_v(), patch.points(), patch.weights());
+  }
+  /// New control points for a patch that has memory of its own: as many as before, finite.
+  static void overwrite(BezierPatch& patch, const Vec3* points) {
+    assert(patch.memory_.sole());
+    std::copy_n(points, patch.count(), const_cast<Vec3*>(patch.points_));
+  }
   /// Ends what patches hold, all pieces of a surface at once; they can then only be destroyed.
   static void release(std::span<BezierPatch> patches) {
     SharedMemory::Sink sink;

@@ -1,0 +1,112 @@
+// Animation: control points in, patch-contiguous grids of the touched patches out: update.OUTPUTS.SHARE. Each case checks
+// what it timed against evaluation of a set made anew. Its limit is the time that its stores take: its work for the
+// touched patches, GridPlan::work().
+
+#include <benchmark/benchmark.h>
+
+#include <string>
+#include <vector>
+
+#include "base/aligned.h"
+#include "suite.h"
+#include "support/synthetic_sets.h"
+#include "tessera/update.h"
+#include "timing.h"
+
+namespace tessera::bench {
+namespace {
+
+constexpr int rows = 100, columns = 100, size = 9;
+
+struct Case {
+  std::size_t step;  ///< every step-th patch is touched
+  bool normals;
+  Isa isa;
+  int threads;
+
+  std::size_t touched() const { return rows * columns / step; }
+  CaseName name() const {
+    const std::string share = step == 1 ? "all" : "one_in_" + std::to_string(step);
+    return {"update.positions" + std::string(normals ? "+normals." : ".") + share,
+            "bicubic10000",
+            "3",
+            square(size),
+            std::string(tessera::name(isa)),
+            threads};
+  }
+};
+
+/// Two shapes of the field, by turns, as edits.
+struct Animation {
+  std::vector<std::uint32_t> patch;
+  std::vector<Vec3> points[2];
+
+  Animation(const Case& c, const std::vector<BezierPatch>& patches) {
+    for (std::size_t k = 0; k < c.touched(); ++k) {
+      patch.push_back(static_cast<std::uint32_t>(k * c.step));
+      for (const Vec3& point : patches[k * c.step].points()) {
+        points[0].push_back(point + Vec3{0, 0, 0.1 * point.x});
+        points[1].push_back(point);
+      }
+    }
+  }
+  PatchEdits edits(std::size_t turn) const { return {patch, points[turn % 2]}; }
+};
+
+/// Outputs of a set made anew of the same patches.
+bool check_values(const PatchSet& set, const GridPlan& plan, const Case& c, const AlignedVector<float>& vertices) {
+  std::vector<BezierPatch> patches;
+  for (std::size_t k = 0; k < set.patch_count(); ++k) patches.push_back(set.patch(k));
+  const auto fresh = PatchSet::from(patches, {.origin = set.origin()});
+  AlignedVector<float> expected(vertices.size());
+  GridViews<float> out{.position = View3<float>::interleaved(expected, c.normals ? 6 : 3)};
+  if (c.normals) out.normal = View3<float>::interleaved(expected, 6, 3);
+  return fresh && evaluate(*fresh, plan, out).ok() && expected == vertices;
+}
+
+void run(benchmark::State& state, const Case& c) {
+  const std::vector<BezierPatch> patches = test::wavy_field(rows, columns);
+  PatchSet set = test::value_of(PatchSet::from(patches));
+  const std::vector<double> t = uniform_parameters(size);
+  const GridPlan plan = test::value_of(GridPlan::make(set, t, t, {.isa = c.isa}));
+  GridUpdate update = test::value_of(GridUpdate::make(set));
+  const Animation animation(c, patches);
+  AlignedVector<float> vertices(plan.capacity() * (c.normals ? 6 : 3));
+  GridViews<float> out{.position = View3<float>::interleaved(vertices, c.normals ? 6 : 3)};
+  if (c.normals) out.normal = View3<float>::interleaved(vertices, 6, 3);
+  if (const Status status = evaluate(set, plan, out); !status.ok())
+    return state.SkipWithError(status.message().c_str());
+  Work work = plan.work({.normal = c.normals});
+  for (double* amount : {&work.lane_operations, &work.bytes_written, &work.bytes_read})
+    *amount /= static_cast<double>(c.step);
+  const LimitsAround around(c.isa, work.bytes_written);
+  ExecutionReport report;
+  Execution execution;
+  execution.report = &report;
+  std::size_t turn = 0;
+  const auto best =
+      time_calls(state, c.threads, [&] { return update.run(set, plan, animation.edits(turn++), out, execution); });
+  const auto limits = around.best(state);
+  if (!best || !limits) return;
+  if (report.isa != c.isa) return state.SkipWithError("another instruction set ran than was asked for");
+  if (!check_values(set, plan, c, vertices)) return state.SkipWithError("the timed values differ from a new set's");
+  report_rates(state, *best, static_cast<double>(c.touched()) * size * size, work.bytes_written);
+  if (c.threads == 1) report_limit(state, *best, *limits, work);
+}
+
+void add(const Case& c) {
+  add_case(c.name(), c.step == 1 ? quick_on_fastest(c.isa) : Part::full,
+           [c](benchmark::State& state) { run(state, c); });
+}
+
+const bool registered = [] {
+  for (const Isa isa : available_isas())
+    for (const bool normals : {false, true}) {
+      for (const std::size_t step : {1, 2, 20, 500}) add({step, normals, isa, 1});
+      add({1, normals, isa, 2});
+    }
+  return true;
+}();
+
+}  // namespace
+}  // namespace tessera::bench

@@ -1,0 +1,121 @@
+#pragma once
+// A task's share of an update: patches are packed, then evaluated while they are in its cache.
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "base/aligned.h"
+#include "eval/block_normals.h"
+#include "eval/grid_calls.h"
+#include "eval/staged_block.h"
+#include "eval/touched_blocks.h"
+#include "surface/patch_pieces.h"
+
+namespace tessera {
+
+/// What all tasks of an update share.
+template <class T>
+struct UpdateCall {
+  PatchSet::Impl& set;
+  const GridPlan::Impl& plan;
+  const kernel::KernelTable& kernels;
+  const PatchEdits& edits;
+  const TouchedBlocks& touched;
+  const GridViews<T>& out;
+};
+
+/// Takes block after block. Those whose patches are all edited are evaluated where they lie; the edited patches of others
+/// are gathered, 16 at a time, so that no lane goes idle. Lives on a task's stack; allocates nothing.
+template <class T>
+class EditedGrids {
+ public:
+  explicit EditedGrids(const UpdateCall<T>& call)
+      : call_(call), stage_(call.kernels, call.out), normals_(call.set, call.plan) {}
+
+  void add(std::uint32_t block) {
+    if (call_.touched.count(block) == call_.set.lane_counts[block]) {
+      add_whole(block);
+    } else {
+      add_lanes(block);
+    }
+  }
+  /// Evaluates what is still gathered. The ISA that ran last.
+  Isa finish() {
+    flush();
+    return isa_;
+  }
+
+ private:
+  static constexpr std::size_t lanes = PatchSet::lanes;
+  static constexpr std::size_t most_coefficients = (max_degree + 1) * (max_degree + 1) * 4;
+
+  void write_points(std::uint32_t patch, std::uint32_t edit) {
+    PatchPieces::overwrite(call_.set.patches[patch], call_.edits.points.data() + call_.touched.first_point(edit));
+  }
+
+  void add_whole(std::uint32_t block) {
+    const std::uint32_t* patches = call_.set.lane_patches.data() + block * lanes;
+    const std::uint32_t* edits = call_.touched.edits(block);
+    for (std::size_t lane = 0; lane < call_.set.lane_counts[block]; ++lane) write_points(patches[lane], edits[lane]);
+    call_.set.pack_block(block, call_.kernels);  // all fit: they have been checked
+    auto job = block_job_of<T>(call_.set, call_.plan, block);
+    normals_.prepare(block, job);
+    isa_ = stage_.run(job, patches, call_.set.lane_counts[block], call_.plan.samples());
+  }
+
+  void add_lanes(std::uint32_t block) {
+    const BlockGroup& group = call_.set.group_of_block(block);
+    if (gathered_ > 0 && &group != &call_.set.group_of_block(block_)) flush();
+    block_ = block;
+    const std::uint32_t* edits = call_.touched.edits(block);
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      if (edits[lane] == TouchedBlocks::none) continue;
+      const std::uint32_t patch = call_.set.lane_patches[block * lanes + lane];
+      write_points(patch, edits[lane]);
+      (void)call_.set.pack_lanes(patch);  // fits: it has been checked
+      gather(group, lane);
+      patches_[gathered_++] = patch;
+      if (gathered_ == lanes) flush();
+    }
+  }
+
+  /// A lane of block_ into the next lane of the net.
+  void gather(const BlockGroup& group, std::size_t lane) {
+    const Coefficients<T>& all = call_.set.template coefficients<T>();
+    const Representation representation = call_.plan.options.representation;
+    const T* from =
+        all.of(representation).data() + group.first_value + (block_ - group.first_block) * group.block_values + lane;
+    for (std::size_t k = 0; k < group.block_values; k += lanes) net_[k + gathered_] = from[k];
+    const T* doubts = all.doubt_of(representation).data() + block_ * 2 * lanes + lane;
+    doubts_[gathered_] = doubts[0];
+    doubts_[lanes + gathered_] = doubts[lanes];
+  }
+
+  void flush() {
+    if (gathered_ == 0) return;
+    const std::size_t values = call_.set.group_of_block(block_).block_values;
+    const auto repeat_first = [&](auto* row) { std::fill(row + gathered_, row + lanes, row[0]); };
+    for (std::size_t k = 0; k < values; k += lanes) repeat_first(net_.data() + k);
+    repeat_first(doubts_.data());
+    repeat_first(doubts_.data() + lanes);
+    repeat_first(patches_.data());
+    auto job = block_job_of<T>(call_.set, call_.plan, block_);
+    job.net = net_.data();
+    normals_.prepare(patches_.data(), doubts_.data(), job);
+    isa_ = stage_.run(job, patches_.data(), static_cast<int>(gathered_), call_.plan.samples());
+    gathered_ = 0;
+  }
+
+  const UpdateCall<T>& call_;
+  StagedBlock<T> stage_;
+  BlockNormals<T> normals_;
+  Isa isa_ = Isa::sse2;
+  std::size_t gathered_ = 0;  ///< patches in the net
+  std::uint32_t block_ = 0;   ///< the last one that they came from
+  std::array<std::uint32_t, lanes> patches_;
+  alignas(cache_line) std::array<T, 2 * lanes> doubts_;
+  alignas(cache_line) std::array<T, most_coefficients * lanes> net_;
+};
+
+}  // namespace tessera

@@ -1,0 +1,20 @@
+#pragma once
+// What other calls over grids share with evaluate(): its checks, and the jobs of blocks. T is float or double.
+
+#include "eval/grid_plan_impl.h"
+
+namespace tessera {
+
+/// Of a plan and views for all patches of the set. Else the highest order of the derivatives that the outputs are made
+/// of. Errors: those of evaluate().
+template <class T>
+Result<int> check_grids(const PatchSet::Impl& set, const GridPlan& plan, const GridViews<T>& out);
+
+/// Over the whole grid of one block; outputs and what normals need are left to be filled in.
+template <class T>
+kernel::GridJob<T> block_job_of(const PatchSet::Impl& set, const GridPlan::Impl& plan, std::size_t block);
+
+/// How many blocks a task takes; all where one thread is faster than two.
+std::size_t blocks_a_task(const GridPlan::Impl& plan, std::size_t blocks, bool derivatives);
+
+}  // namespace tessera

@@ -1,0 +1,89 @@
+#pragma once
+// Which edit is whose, by the blocks of a set: what an update finds out before it writes.
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "block/patch_set_impl.h"
+#include "tessera/update.h"
+
+namespace tessera {
+
+/// Status of one edit that is refused.
+inline Status refused_edit(StatusCode code, std::size_t edit, const std::string& why) {
+  return Status(code, "edit " + std::to_string(edit) + ": " + why, static_cast<std::ptrdiff_t>(edit));
+}
+
+/// The edits of one call, block by block. Memory for all patches of a set, so that no call allocates.
+class TouchedBlocks {
+ public:
+  static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+  explicit TouchedBlocks(const PatchSet::Impl& set)
+      : edits_(set.lane_patches.size(), none), counts_(set.lane_counts.size(), 0) {
+    blocks_.reserve(counts_.size());
+    first_points_.reserve(set.patches.size());
+  }
+
+  /// Takes the edits of a call. Errors: invalid_argument (no such patch, one named twice), count_mismatch; then, as
+  /// after clear(), there is none.
+  Status add(const PatchSet::Impl& set, const PatchEdits& edits) {
+    clear();
+    std::size_t next = 0;
+    for (std::size_t k = 0; k < edits.patch.size(); ++k) {
+      const std::uint32_t patch = edits.patch[k];
+      if (patch >= set.patches.size())
+        return refuse(refused_edit(
+            StatusCode::invalid_argument, k,
+            "there is no patch " + std::to_string(patch) + " in a set of " + std::to_string(set.patches.size())));
+      const PatchSet::Slot slot = set.slots[patch];
+      std::uint32_t& edit = edits_[slot.block * lanes + slot.lane];
+      if (edit != none)
+        return refuse(
+            refused_edit(StatusCode::invalid_argument, k,
+                         "patch " + std::to_string(patch) + " has edit " + std::to_string(edit) + " already"));
+      edit = static_cast<std::uint32_t>(k);
+      if (counts_[slot.block]++ == 0) blocks_.push_back(slot.block);
+      first_points_.push_back(next);
+      next += set.patches[patch].points().size();
+    }
+    if (next == edits.points.size()) return {};
+    return refuse(Status(StatusCode::count_mismatch, "the patches of " + std::to_string(edits.patch.size()) +
+                                                         " edits have " + std::to_string(next) + " control points, " +
+                                                         std::to_string(edits.points.size()) + " were given"));
+  }
+
+  void clear() {
+    for (const std::uint32_t block : blocks_) {
+      std::fill_n(edits_.begin() + static_cast<std::ptrdiff_t>(block * lanes), lanes, none);
+      counts_[block] = 0;
+    }
+    blocks_.clear();
+    first_points_.clear();
+  }
+
+  std::size_t block_count() const { return counts_.size(); }                                ///< of the set
+  std::span<const std::uint32_t> blocks() const { return blocks_; }                         ///< those with edits
+  int count(std::uint32_t block) const { return counts_[block]; }                           ///< of its edits
+  const std::uint32_t* edits(std::uint32_t block) const { return &edits_[block * lanes]; }  ///< of its lanes, or none
+  std::size_t first_point(std::size_t edit) const { return first_points_[edit]; }
+
+ private:
+  static constexpr std::size_t lanes = PatchSet::lanes;
+
+  Status refuse(Status status) {
+    clear();
+    return status;
+  }
+
+  std::vector<std::uint32_t> edits_;  ///< `[block][lane]`
+  std::vector<std::uint8_t> counts_;  ///< of each block's edits
+  std::vector<std::uint32_t> blocks_;
+  std::vector<std::size_t> first_points_;  ///< of each edit
+};
+
+}  // namespace tessera
