@@ -129,6 +129,7 @@ TEST_F(Info, ThePageOfJsonIsWhole) {
       {"eval -o", {"eval", teapot, "--grid", "2x2", "-o", "a.csv"}},
       {"tessellate", {"tessellate", teapot, "--grid", "2x2", "-o", "a.ply"}},
       {"tessellate --tolerance", {"tessellate", teapot, "--tolerance", "0.1", "-o", "a.ply"}},
+      {"tessellate --tolerance", {"tessellate", teapot, "--angle", "30", "-o", "a.ply"}},
       {"convert", {"convert", teapot, "-o", "a.obj"}},
       {"raycast -o", {"raycast", teapot, "--size", "8x8", "-o", "a.png"}},
       {"raycast --rays", {"raycast", teapot, "--rays", "rays.csv", "--hits", "b.csv"}},

