@@ -202,9 +202,13 @@ TEST(Weld, WrongLengthsAreRefused) {
   const auto plan = CertifiedTessellation::make(apart, {.tolerance = 0.005, .weld = 0.04});
   ASSERT_FALSE(plan.ok());
   EXPECT_NE(plan.status().message().find("welded, keep"), std::string::npos) << plan.status().message();
-  // Huge and tiny ones end well.
-  for (const double weld : {1e300, 1e-300, 5e-324})
-    (void)CertifiedTessellation::make(apart, {.tolerance = 0.005, .weld = weld});
+  for (const double weld : {0.5, 1e300}) {
+    const auto plan_of_all = CertifiedTessellation::make(apart, {.tolerance = 0.05, .weld = weld});
+    ASSERT_FALSE(plan_of_all.ok());
+    EXPECT_NE(plan_of_all.status().message().find("a twentieth of the model's size"), std::string::npos);
+  }
+  for (const double weld : {1e-300, 5e-324})
+    EXPECT_TRUE(CertifiedTessellation::make(apart, {.tolerance = 0.05, .weld = weld}).ok());
 }
 
 TEST(BorderCurve, TheDistanceBoundIsNotExceeded) {

@@ -41,7 +41,8 @@ struct CertifiedOptions {
   std::optional<double> angle = {};
   int angle_rate = 64;  ///< 1 to 4096
   std::optional<PixelTolerance> pixels = {};
-  /// Borders that lie within this length of each other are joined, 0 or more; 0 joins those of the same bits alone. About
+  /// Borders that lie within this length of each other are joined: 0 to a twentieth of the set's size; 0 joins those of the
+  /// same bits alone. About
   /// 1e-6 of the set's size suits files whose neighbours differ by rounding. It should stay below what the smallest patch
   /// measures: thinner ones lose their area.
   double weld = 0;
@@ -73,7 +74,7 @@ struct CertifiedOptions {
 class CertifiedTessellation {
  public:
   /// Errors: invalid_argument (no tolerance of any kind, or one that is not above 0; one that a patch's rounding, welding or
-  /// the fit error exceeds already; a view without a picture; a weld that is negative or not finite; more triangles or
+  /// the fit error exceeds already; a view without a picture; a weld out of range; more triangles or
   /// vertices than allowed, or more than 4096 segments along a parameter: the message says how many triangles it takes;
   /// fewer triangles than one cell a patch takes), unsupported (the set has no float
   /// Bernstein blocks), isa_unavailable, cancelled.

@@ -105,8 +105,10 @@ class CertifiedTessellation::Impl {
 
 namespace {
 
+constexpr double most_weld = 0.05;  // of the model's size
+
 /// What is asked for, where it makes sense. Errors: invalid_argument.
-Result<PlannerOptions> checked(const CertifiedOptions& options) {
+Result<PlannerOptions> checked(const CertifiedOptions& options, const PatchSet& set) {
   const auto bad = [](const std::string& message) { return Status(StatusCode::invalid_argument, message); };
   // Written so that NaN fails.
   if (!options.tolerance && !options.angle && !options.pixels && !options.smallest)
@@ -121,6 +123,8 @@ Result<PlannerOptions> checked(const CertifiedOptions& options) {
     return bad("the tolerance is " + text(options.pixels->pixels) + " pixels, it must be finite and above 0");
   if (!(options.weld >= 0 && std::isfinite(options.weld)))
     return bad("the weld is " + text(options.weld) + ", it must be finite and at least 0");
+  if (const double size = options.weld > 0 ? set.box().diagonal() : 0; options.weld > most_weld * size)
+    return bad("the weld is " + text(options.weld) + ", more than a twentieth of the model's size, " + text(size));
   PlannerOptions planner;
   planner.weld = options.weld;
   planner.angle = options.angle;
@@ -140,7 +144,7 @@ Result<CertifiedTessellation> CertifiedTessellation::make(const PatchSet& set, c
   return guarded([&]() -> Result<CertifiedTessellation> {
     if (!set.blocks().float_bernstein)
       return Status(StatusCode::unsupported, "a tessellation needs float Bernstein blocks, the set has none");
-    const Result<PlannerOptions> planned = checked(options);
+    const Result<PlannerOptions> planned = checked(options, set);
     if (!planned) return planned.status();
     Result<CertifiedPlanner> planner = CertifiedPlanner::make(set.impl(), *planned, execution);
     if (!planner) return planner.status();

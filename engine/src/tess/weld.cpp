@@ -123,6 +123,8 @@ class Welder {
         if (other == edge) return;
         const BorderCurve met = curve(heads_[other]);
         for (const bool turned : {false, true}) {
+          const Vec3 first = turned ? met.last() : met.first(), last = turned ? met.first() : met.last();
+          if (!(length(border.first() - first) <= tolerance_ && length(border.last() - last) <= tolerance_)) continue;
           const double distance = distance_bound(border, met, turned);
           if (distance < least || (distance == least && other < nearest)) {
             least = distance;
