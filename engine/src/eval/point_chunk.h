@@ -105,8 +105,8 @@ class PointChunk {
   static constexpr int batch = kernel::point_slots;  ///< slots in the stage
   static constexpr std::size_t most_fields = std::size(vector_outputs<T>) + std::size(scalar_outputs<T>);
   static constexpr std::size_t stage_rows = 3 * std::size(vector_outputs<T>) + std::size(scalar_outputs<T>);
-  /// Patches beyond this many bytes are fetched ahead: a second-level cache.
-  static constexpr std::size_t cached_bytes = 1 << 20;
+  /// Patches beyond this many bytes are fetched ahead, to the first-level cache, and further ahead, to the second.
+  static constexpr std::size_t near_bytes = 32 << 10, far_bytes = 1 << 20;
 
   /// How often each component of an output is to be divided by the patch's width along u and v.
   struct Factors {
@@ -185,8 +185,9 @@ class PointChunk {
     grid.rational = group.rational;
     job_.points = coefficients_.points.data() + group.first_point_value;
     job_.patch_values = group.point_values;
-    const std::size_t bytes = group.point_values * sizeof(T);
-    job_.prefetched = coefficients_.points.size() * sizeof(T) > cached_bytes ? bytes : 0;
+    const std::size_t all_bytes = coefficients_.points.size() * sizeof(T);
+    job_.prefetched = all_bytes > near_bytes ? group.point_values * sizeof(T) : 0;
+    job_.far = all_bytes > far_bytes;
     job_.count = static_cast<int>(count_);
     job_.next = 0;
     Isa isa = Isa::sse2;

@@ -163,17 +163,19 @@ struct PointJob {
   const T* u = nullptr;             ///< `[sample]`
   const T* v = nullptr;
   int count = 0;                    ///< samples in all
-  std::size_t prefetched = 0;       ///< bytes of a patch to fetch ahead; 0 where patches are in a near cache anyway
+  std::size_t prefetched = 0;       ///< bytes of a patch to fetch ahead; 0 where all stay in the first-level cache
+  bool far = false;                 ///< patches are not even in the second-level cache
 
   // What a call leaves: the slots that it cut from sample `next` on, and the sample behind them.
   int next = 0;
   PointSlot slots[point_slots];
   int slot_count = 0;
 };
-/// Samples from a fetch to its use: beyond the time of a cache miss. Patches are fetched to the second-level cache, for
-/// more lines may be on their way there than to the first; 1M patches of 192 bytes are touched 1.3 times as fast.
-inline constexpr int prefetch_distance = 64;
-inline constexpr int point_padding = block_lanes + prefetch_distance;
+/// Samples from a fetch to its use, beyond the time of a cache miss: from the second-level cache to the first, and from
+/// beyond to the second, for more lines may be on their way there than to the first: 1M patches of 192 bytes are
+/// touched 1.3 times as fast.
+inline constexpr int near_distance = 16, far_distance = 64;
+inline constexpr int point_padding = block_lanes + far_distance;
 
 /// Whether samples can be evaluated.
 template <class T>

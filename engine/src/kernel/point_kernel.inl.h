@@ -57,12 +57,16 @@ template <class T>
   return job.points + job.patch[sample] * job.patch_values;
 }
 
-/// The patch of the sample prefetch_distance behind this one, towards the second-level cache.
+/// The patches of samples behind this one, towards the near caches.
 template <int Degree, int Components, class T>
 [[gnu::always_inline]] inline void fetch_ahead(const PointJob<T>& job, int sample) {
   constexpr std::size_t known = std::size_t{(Degree + 1) * (Degree + 1) * Components} * sizeof(T);
-  const auto* net = reinterpret_cast<const char*>(net_of(job, sample + prefetch_distance));
-  for (std::size_t b = 0; b < (Degree > 0 ? known : job.prefetched); b += 64) __builtin_prefetch(net + b, 0, 2);
+  const std::size_t bytes = Degree > 0 ? known : job.prefetched;
+  const auto* near = reinterpret_cast<const char*>(net_of(job, sample + near_distance));
+  for (std::size_t b = 0; b < bytes; b += 64) __builtin_prefetch(near + b, 0, 3);
+  if (!job.far) return;
+  const auto* far = reinterpret_cast<const char*>(net_of(job, sample + far_distance));
+  for (std::size_t b = 0; b < bytes; b += 64) __builtin_prefetch(far + b, 0, 2);
 }
 
 /// Column l of the sums becomes row curve k + l, counted over all components.
