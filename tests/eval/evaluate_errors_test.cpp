@@ -48,6 +48,45 @@ TEST_F(EvaluateErrors, StridesAndMissingComponents) {
   expect_error(StatusCode::invalid_argument, {});
 }
 
+TEST_F(EvaluateErrors, OverlapsAndMisalignment) {
+  const std::size_t count = plan.capacity();
+  std::vector<float> memory(8 * count, -7.0f);
+  const std::span<float> all = memory;
+  const auto expect_refused = [&](const GridViews<float>& views) {
+    const Status status = evaluate(set, plan, views);
+    EXPECT_EQ(status.code(), StatusCode::invalid_argument);
+    EXPECT_NE(status.message().find("position"), std::string::npos) << status.message();
+    EXPECT_TRUE(std::ranges::all_of(memory, [](float x) { return x == -7.0f; }));
+  };
+  const auto of = [&](std::size_t record, std::size_t first) { return View3<float>::interleaved(all, record, first); };
+  expect_refused({.position = of(3, 0), .normal = of(3, 3)});  // a record later
+  expect_refused({.position = of(6, 0), .normal = of(6, 2)});  // z is x
+  expect_refused({.position = of(6, 0), .normal = of(8, 3)});  // strides of their own
+  expect_refused({.position = of(2, 0)});                      // itself
+  const auto array = [&](std::size_t first) { return all.subspan(first, count); };
+  expect_refused({.position = View3<float>::soa({array(0), array(count - 1), array(3 * count)})});
+  View3<float> odd = of(3, 0);
+  for (float*& component : odd.component) component = reinterpret_cast<float*>(reinterpret_cast<char*>(component) + 1);
+  expect_refused({.position = odd});
+  View3<float> wide = of(3, 0);
+  wide.stride = std::numeric_limits<std::ptrdiff_t>::max();
+  expect_refused({.position = wide});
+}
+
+TEST_F(EvaluateErrors, BlocksThatShareMemory) {
+  AlignedVector<float> memory(2 * plan.block_capacity(), -7.0f);
+  const std::span<float> all = memory;
+  const GridBlocks<float> apart{.position = all.first(plan.block_capacity()),
+                                .normal = all.subspan(plan.block_capacity())};
+  GridBlocks<float> shared = apart;
+  shared.normal = all.subspan(plan.block_capacity() - 16);
+  const Status status = evaluate(set, plan, shared);
+  EXPECT_EQ(status.code(), StatusCode::invalid_argument);
+  EXPECT_NE(status.message().find("normal"), std::string::npos) << status.message();
+  EXPECT_TRUE(std::ranges::all_of(memory, [](float x) { return x == -7.0f; }));
+  EXPECT_TRUE(evaluate(set, plan, apart).ok());
+}
+
 /// Every output of GridViews, short by one record, with a stride of 0, without a component: none of them nor any other is written.
 TEST_F(EvaluateErrors, EachViewOfLocalGeometry) {
   AllBuffers<float> memory(plan), clean(plan);

@@ -38,6 +38,11 @@ struct GridPlanOptions {
   LocalGeometryOptions geometry = {};
 };
 
+/// Parameters that differ from patch to patch, as many for each: `[patch][iu]` and `[patch][iv]`.
+struct PatchParameters {
+  std::span<const double> u = {}, v = {};
+};
+
 /// The grid u_0..u_{N-1} x v_0..v_{M-1} of local parameters, with basis weights tabulated for every degree of a set.
 /// Immutable; reusable for as long as the set's degrees stay (edits of control points keep them).
 class GridPlan {
@@ -46,6 +51,11 @@ class GridPlan {
   /// parameter), invalid_argument (more points than memory can address), unsupported (the set lacks the blocks),
   /// isa_unavailable; invalid_argument (options.geometry: not from 0 to below 1).
   static Result<GridPlan> make(const PatchSet& set, std::span<const double> u, std::span<const double> v,
+                               const GridPlanOptions& options = {});
+  /// A grid of its own for each patch. Its weights take 3 (degree + 1) values a parameter of a patch. A patch's results
+  /// are, bit for bit, those of its parameters given for all patches. Errors: the same, and invalid_argument (parameters
+  /// that are not as many for each patch).
+  static Result<GridPlan> make(const PatchSet& set, const PatchParameters& parameters,
                                const GridPlanOptions& options = {});
 
   GridPlan(GridPlan&&) noexcept;
@@ -92,9 +102,12 @@ struct GridViews {
   View1<CurvatureKind> curvature_kind = {};
 };
 
-/// Evaluates all patches. Outputs may share memory by interleaving but must not overlap otherwise.
-/// Errors: buffer_too_small, invalid_argument (a plan of other precision, or for other patches; a stride of 0),
-/// cancelled. Nothing is written on any error but cancelled. The same bytes for any number of threads, and on
+/// Evaluates all patches. Outputs may share memory by interleaving but must not overlap otherwise. Views that fill one
+/// record together, packed views, and structures of arrays are written by whole vectors, streaming as Execution::stores
+/// says; others value by value, at a small part of the speed.
+/// Errors: buffer_too_small, invalid_argument (a plan of other precision, or for other patches; a view that lacks a
+/// component, has a stride of 0, is not aligned to its numbers, or shares memory with another), cancelled. Nothing is
+/// written on any error but cancelled. The same bytes for any number of threads, and on
 /// AVX2, AVX-512 and NEON; each output alone is what it is together with others.
 /// Error bounds for the Bernstein representation, in units of 2^-23 (2^-52 in double) times the largest |V - origin| of
 /// the patch, d the higher degree: positions 2, rational 4; first derivatives 16 d; second ones 16 d^2. For derivatives
@@ -116,7 +129,7 @@ Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<doubl
 /// Block-interleaved outputs, `[block][iu][iv][component][lane]`, scalars and kinds `[block][iu][iv][lane]`: the
 /// kernels' own order, and the fastest. A patch's place is PatchSet::slot(); unused lanes of a last block repeat a
 /// patch. The members mean what those of GridViews mean. Empty spans are not computed. Memory must be aligned to 64
-/// bytes (invalid_argument otherwise).
+/// bytes and apart from each other (invalid_argument otherwise). Grids of each patch's own are stored plainly.
 template <class T>
 struct GridBlocks {
   std::span<T> position = {}, du = {}, dv = {}, normal = {};

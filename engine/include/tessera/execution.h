@@ -10,7 +10,7 @@
 
 namespace tessera {
 
-/// How block-interleaved results are written to memory. Patch-contiguous views are always written by plain stores.
+/// How results of grids are written to memory; scattered points, and what goes value by value, by plain stores always.
 enum class Stores : std::uint8_t {
   /// Streaming where the output is larger than a third of the last-level cache or eight times a core's second-level
   /// cache, plain otherwise.

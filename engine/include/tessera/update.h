@@ -32,7 +32,8 @@ class GridUpdate {
   /// for any number of threads. The revision grows by one, unless there is no edit.
   /// A patch's first update gives its points memory of their own, if it shares it with other patches; the next ones
   /// allocate nothing.
-  /// Errors, with nothing written: those of evaluate(); invalid_argument (another set than the one of make(); index =
+  /// Errors, with nothing written: those of evaluate(); unsupported (a plan with parameters of each patch's own);
+  /// invalid_argument (another set than the one of make(); index =
   /// the edit: no such patch, or one that an edit before names); count_mismatch (points); non_finite (index = the edit: a
   /// point is not finite, or does not fit the set's numbers relative to its origin); out_of_memory. cancelled: each patch
   /// then has its new control points and its new grid, or neither.

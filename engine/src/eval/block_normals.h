@@ -20,8 +20,11 @@ class BlockNormals {
   void prepare(std::size_t block, kernel::GridJob<T>& job) {
     prepare(set_.lane_patches.data() + block * PatchSet::lanes,
             set_.coefficients<T>().doubt_of(plan_.options.representation).data() + block * 2 * PatchSet::lanes, job);
+    if (!plan_.by_patch) return;
+    job.u_edges += block * PatchSet::lanes * plan_.count_u;
+    job.v_edges += block * PatchSet::lanes * plan_.count_v;
   }
-  /// Of 16 patches that stand in no block together; `doubts`: `[doubt, noise][lane]`.
+  /// Of 16 patches that stand in no block together, of a plan with parameters for all; `doubts`: `[doubt, noise][lane]`.
   void prepare(const std::uint32_t* lane_patches, const T* doubts, kernel::GridJob<T>& job) {
     lane_patches_ = lane_patches;
     job.doubt = doubts;
@@ -56,8 +59,8 @@ class BlockNormals {
     auto& self = *static_cast<BlockNormals*>(context);
     const std::uint32_t patch = self.lane_patches_[lane];
     if (patch != self.patch_ || iu != self.iu_ || iv != self.iv_)
-      self.last_ = unit_normal(self.set_.patches[patch], self.plan_.u[static_cast<std::size_t>(iu)],
-                               self.plan_.v[static_cast<std::size_t>(iv)]);
+      self.last_ = unit_normal(self.set_.patches[patch], self.plan_.u_at(patch, static_cast<std::size_t>(iu)),
+                               self.plan_.v_at(patch, static_cast<std::size_t>(iv)));
     self.patch_ = patch;
     self.iu_ = iu;
     self.iv_ = iv;

@@ -23,6 +23,8 @@ struct UpdateCall {
   const PatchEdits& edits;
   const TouchedBlocks& touched;
   const GridViews<T>& out;
+  const StageLayout<T>& layout;
+  bool streaming;
 };
 
 /// Takes block after block. Those whose patches are all edited are evaluated where they lie; the edited patches of others
@@ -31,7 +33,7 @@ template <class T>
 class EditedGrids {
  public:
   explicit EditedGrids(const UpdateCall<T>& call)
-      : call_(call), stage_(call.kernels, call.out), normals_(call.set, call.plan) {}
+      : call_(call), stage_(call.kernels, call.layout, call.out, call.streaming), normals_(call.set, call.plan) {}
 
   void add(std::uint32_t block) {
     if (call_.touched.count(block) == call_.set.lane_counts[block]) {
@@ -43,6 +45,7 @@ class EditedGrids {
   /// Evaluates what is still gathered. The ISA that ran last.
   Isa finish() {
     flush();
+    if (call_.streaming) call_.kernels.finish_streaming();
     return isa_;
   }
 

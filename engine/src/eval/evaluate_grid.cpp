@@ -1,9 +1,10 @@
 // Blocks and grids over threads. Two ways out of the kernels: block-interleaved memory, which they write themselves,
-// and patch-contiguous views, through a stage that stays in the first-level cache and is transposed from there.
+// and patch-contiguous views, through a stage that stays in the first-level cache and leaves it line by line.
 
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <string>
 
@@ -14,6 +15,7 @@
 #include "eval/grid_outputs.h"
 #include "eval/grid_plan_impl.h"
 #include "eval/staged_block.h"
+#include "eval/view_checks.h"
 #include "parallel/parallel_for.h"
 
 namespace tessera {
@@ -36,9 +38,37 @@ std::size_t streaming_threshold() {
   return bytes;
 }
 
-std::size_t blocks_per_task(const GridPlan::Impl& plan, bool derivatives) {
-  return blocks_a_task(plan, plan.block_count, derivatives);
-}
+/// A part of a block's grid: rows of parameters u.
+struct Piece {
+  std::size_t block;
+  int u_begin, u_end;
+};
+
+/// The work as pieces of about points_per_task points: several blocks, or some rows of one. The same for any number of
+/// threads.
+class Pieces {
+ public:
+  Pieces(const GridPlan::Impl& plan, bool derivatives) : rows_(plan.count_u), count_u_(rows_) {
+    const std::size_t row_points = plan.count_v * PatchSet::lanes, points = row_points * count_u_;
+    grain_ = std::max<std::size_t>(1, points_per_task / points);
+    if (points * plan.block_count <= (derivatives ? serial_normals : serial_positions)) {
+      grain_ = plan.block_count;
+    } else if (points > 2 * points_per_task) {
+      rows_ = std::max<std::size_t>(1, points_per_task / row_points);
+    }
+    in_block_ = (count_u_ + rows_ - 1) / rows_;
+    count_ = plan.block_count * in_block_;
+  }
+  std::size_t count() const { return count_; }
+  std::size_t grain() const { return grain_; }
+  Piece operator[](std::size_t k) const {
+    const std::size_t begin = k % in_block_ * rows_;
+    return {k / in_block_, static_cast<int>(begin), static_cast<int>(std::min(count_u_, begin + rows_))};
+  }
+
+ private:
+  std::size_t rows_, count_u_, in_block_ = 1, count_ = 0, grain_ = 1;
+};
 
 template <class T>
 Status check_plan(const PatchSet::Impl& set, const GridPlan& plan) {
@@ -61,18 +91,21 @@ Status check_plan(const PatchSet::Impl& set, const GridPlan& plan) {
 
 /// What every kernel call over one block has in common.
 template <class T>
-kernel::GridJob<T> block_job(const PatchSet::Impl& set, const GridPlan::Impl& plan, std::size_t block) {
-  const BlockGroup& group = set.group_of_block(block);
+kernel::GridJob<T> block_job(const PatchSet::Impl& set, const GridPlan::Impl& plan, const Piece& piece) {
+  const BlockGroup& group = set.group_of_block(piece.block);
   kernel::GridJob<T> job;
   job.net = set.coefficients<T>().of(plan.options.representation).data() + group.first_value +
-            (block - group.first_block) * group.block_values;
+            (piece.block - group.first_block) * group.block_values;
   job.degree_u = group.degree_u;
   job.degree_v = group.degree_v;
   job.rational = group.rational;
-  job.u_weights = plan.weights<T>().u[static_cast<std::size_t>(group.degree_u)].data();
-  job.v_weights = plan.weights<T>().v[static_cast<std::size_t>(group.degree_v)].data();
-  job.u_end = static_cast<int>(plan.u.size());
-  job.v_end = static_cast<int>(plan.v.size());
+  const GridWeights<T>& weights = plan.weights<T>();
+  job.by_lane = plan.by_patch;
+  job.u_weights = plan.by_patch ? weights.u_lanes.of(piece.block) : weights.u[static_cast<std::size_t>(group.degree_u)].data();
+  job.v_weights = plan.by_patch ? weights.v_lanes.of(piece.block) : weights.v[static_cast<std::size_t>(group.degree_v)].data();
+  job.u_begin = piece.u_begin;
+  job.u_end = piece.u_end;
+  job.v_end = static_cast<int>(plan.count_v);
   if constexpr (sizeof(T) == 8) {
     job.offset[0] = set.origin.x;
     job.offset[1] = set.origin.y;
@@ -110,9 +143,33 @@ void report(const Execution& execution, Isa isa, bool streaming) {
 
 // ---- block-interleaved outputs
 
+/// The memory of outputs in blocks, one after the other; the first that shares some with one before is refused.
+class BlockMemory {
+ public:
+  template <class T>
+  Status add(const char* name, std::span<T> memory) {
+    const Range range{name, reinterpret_cast<std::uintptr_t>(memory.data()), memory.size_bytes()};
+    for (const Range& other : std::span(ranges_).first(count_))
+      if (range.begin < other.begin + other.bytes && other.begin < range.begin + range.bytes)
+        return Status(StatusCode::invalid_argument, std::string(other.name) + " and " + name + " share memory");
+    ranges_.at(count_++) = range;
+    return {};
+  }
+
+ private:
+  struct Range {
+    const char* name;
+    std::uintptr_t begin;
+    std::size_t bytes;
+  };
+  std::array<Range, 24> ranges_{};
+  std::size_t count_ = 0;
+};
+
 template <class T>
 Status check_blocks(const GridPlan& plan, const GridBlocks<T>& out) {
   Status status;
+  BlockMemory all;
   for_each_output<T>([&](const auto& output) {
     const auto memory = out.*output.memory;
     if (memory.data() == nullptr || !status.ok()) return;
@@ -122,25 +179,31 @@ Status check_blocks(const GridPlan& plan, const GridBlocks<T>& out) {
                                                         " values, not " + std::to_string(memory.size()));
     else if (reinterpret_cast<std::uintptr_t>(memory.data()) % cache_line != 0)
       status = Status(StatusCode::invalid_argument, std::string(output.name) + " must be aligned to 64 bytes");
+    else
+      status = all.add(output.name, memory.first(needed));
   });
   return status;
 }
 
-template <class T>
-bool stores_stream(const GridPlan& plan, const GridBlocks<T>& out, Stores stores) {
-  if (stores != Stores::automatic) return stores == Stores::streaming;
-  std::size_t bytes = 0;
-  for_each_value_output<T>([&](const auto& output) {
-    if (!(out.*output.memory).empty())
-      bytes += plan.block_capacity() / 3 * static_cast<std::size_t>(output.width) * sizeof(T);
-  });
-  return bytes > streaming_threshold();
+bool stores_stream(std::size_t bytes, Stores stores) {
+  return stores == Stores::automatic ? bytes > streaming_threshold() : stores == Stores::streaming;
 }
 
-/// Points the job at a block's part of the caller's memory.
+/// Of one record of the values that `wanted` names.
+template <class T, class Wanted>
+std::size_t record_bytes(Wanted&& wanted) {
+  std::size_t bytes = 0;
+  for_each_value_output<T>([&](const auto& output) {
+    if (wanted(output)) bytes += static_cast<std::size_t>(output.width) * sizeof(T);
+  });
+  return bytes;
+}
+
+/// Points the job at a piece's part of the caller's memory.
 template <class T>
-void place_outputs(const GridBlocks<T>& out, std::size_t samples, std::size_t block, kernel::GridJob<T>& job) {
-  const std::size_t first = block * samples * PatchSet::lanes;
+void place_outputs(const GridBlocks<T>& out, const GridPlan::Impl& plan, const Piece& piece, kernel::GridJob<T>& job) {
+  const std::size_t row = piece.block * plan.count_u + static_cast<std::size_t>(piece.u_begin);
+  const std::size_t first = row * plan.count_v * PatchSet::lanes;
   for_each_value_output<T>([&](const auto& output) {
     const auto memory = out.*output.memory;
     job.*output.job = memory.empty() ? nullptr : memory.data() + first * static_cast<std::size_t>(output.width);
@@ -156,25 +219,29 @@ Status evaluate_blocks(const PatchSet& set, const GridPlan& plan, const GridBloc
                        const Execution& execution) {
   if (Status status = check_plan<T>(set.impl(), plan); !status.ok()) return status;
   if (Status status = check_blocks(plan, out); !status.ok()) return status;
-  const auto order = order_of_outputs<T>([&](const auto& output) { return (out.*output.memory).data() != nullptr; });
+  const auto wanted = [&](const auto& output) { return (out.*output.memory).data() != nullptr; };
+  const auto order = order_of_outputs<T>(wanted);
   if (!order) return order.status();
   const PatchSet::Impl& patches = set.impl();
   const GridPlan::Impl& inner = plan.impl();
   const auto& kernels = kernel::kernels(inner.isa);
-  const bool streaming = stores_stream(plan, out, execution.stores);
+  const bool streaming =
+      !inner.by_patch && stores_stream(plan.block_capacity() / 3 * record_bytes<T>(wanted), execution.stores);
+  const Pieces pieces(inner, *order > 0);
   std::atomic<Isa> isa{inner.isa};
-  const Status status = parallel_for(inner.block_count, blocks_per_task(inner, *order > 0), execution,
-                                     [&](std::size_t begin, std::size_t end) {
-                                       BlockNormals<T> normals(patches, inner);
-                                       for (std::size_t block = begin; block < end; ++block) {
-                                         auto job = block_job<T>(patches, inner, block);
-                                         normals.prepare(block, job);
-                                         place_outputs(out, inner.samples(), block, job);
-                                         job.streaming = streaming;
-                                         isa.store(run_grid(kernels, job), std::memory_order_relaxed);
-                                       }
-                                       if (streaming) kernels.finish_streaming();
-                                     });
+  const Status status =
+      parallel_for(pieces.count(), pieces.grain(), execution, [&](std::size_t begin, std::size_t end) {
+        BlockNormals<T> normals(patches, inner);
+        for (std::size_t k = begin; k < end; ++k) {
+          const Piece piece = pieces[k];
+          auto job = block_job<T>(patches, inner, piece);
+          normals.prepare(piece.block, job);
+          place_outputs(out, inner, piece, job);
+          job.streaming = streaming;
+          isa.store(run_grid(kernels, job), std::memory_order_relaxed);
+        }
+        if (streaming) kernels.finish_streaming();
+      });
   report(execution, isa, streaming);
   return status;
 }
@@ -183,46 +250,39 @@ Status evaluate_blocks(const PatchSet& set, const GridPlan& plan, const GridBloc
 
 template <class T>
 Status check_views(const GridPlan& plan, const GridViews<T>& out) {
-  Status status;
+  ViewChecks checks(plan.capacity());
   for_each_output<T>([&](const auto& output) {
-    const auto& view = out.*output.view;
-    if (view.empty() || !status.ok()) return;
-    const bool complete =
-        std::ranges::none_of(view.component, [](const auto* component) { return component == nullptr; });
-    if (!complete || view.stride < 1)
-      status = Status(StatusCode::invalid_argument,
-                      std::string(output.name) + ": a view needs all its components and a stride of at least 1");
-    else if (view.size < plan.capacity())
-      status =
-          Status(StatusCode::buffer_too_small, std::string(output.name) + " needs " + std::to_string(plan.capacity()) +
-                                                   " records, not " + std::to_string(view.size));
+    if (!(out.*output.view).empty()) checks.add(output.name, out.*output.view);
   });
-  return status;
+  return checks.status();
 }
 
 template <class T>
 Status evaluate_views(const PatchSet::Impl& patches, const GridPlan& plan, const GridViews<T>& out,
                       const Execution& execution) {
-  if (Status status = check_plan<T>(patches, plan); !status.ok()) return status;
-  if (Status status = check_views(plan, out); !status.ok()) return status;
-  const auto order = order_of_outputs<T>([&](const auto& output) { return !(out.*output.view).empty(); });
+  const Result<int> order = check_grids(patches, plan, out);
   if (!order) return order.status();
   const GridPlan::Impl& inner = plan.impl();
   const auto& kernels = kernel::kernels(inner.isa);
+  const StageLayout<T> layout(out);
+  const bool streaming = views_stream(layout, plan.capacity(), execution.stores);
+  const Pieces pieces(inner, *order > 0);
   std::atomic<Isa> isa{inner.isa};
-  const Status status = parallel_for(
-      inner.block_count, blocks_per_task(inner, *order > 0), execution, [&](std::size_t begin, std::size_t end) {
-        StagedBlock<T> stage(kernels, out);
+  const Status status =
+      parallel_for(pieces.count(), pieces.grain(), execution, [&](std::size_t begin, std::size_t end) {
+        StagedBlock<T> stage(kernels, layout, out, streaming);
         BlockNormals<T> normals(patches, inner);
-        for (std::size_t block = begin; block < end; ++block) {
-          const std::uint32_t* lane_patches = patches.lane_patches.data() + block * PatchSet::lanes;
-          auto job = block_job<T>(patches, inner, block);
-          normals.prepare(block, job);
-          isa.store(stage.run(job, lane_patches, patches.lane_counts[block], inner.samples()),
+        for (std::size_t k = begin; k < end; ++k) {
+          const Piece piece = pieces[k];
+          auto job = block_job<T>(patches, inner, piece);
+          normals.prepare(piece.block, job);
+          const std::uint32_t* lane_patches = patches.lane_patches.data() + piece.block * PatchSet::lanes;
+          isa.store(stage.run(job, lane_patches, patches.lane_counts[piece.block], inner.samples()),
                     std::memory_order_relaxed);
         }
+        if (streaming) kernels.finish_streaming();
       });
-  report(execution, isa, false);
+  report(execution, isa, streaming);
   return status;
 }
 
@@ -259,10 +319,18 @@ template Result<int> check_grids(const PatchSet::Impl&, const GridPlan&, const G
 
 template <class T>
 kernel::GridJob<T> block_job_of(const PatchSet::Impl& set, const GridPlan::Impl& plan, std::size_t block) {
-  return block_job<T>(set, plan, block);
+  return block_job<T>(set, plan, {block, 0, static_cast<int>(plan.count_u)});
 }
 template kernel::GridJob<float> block_job_of(const PatchSet::Impl&, const GridPlan::Impl&, std::size_t);
 template kernel::GridJob<double> block_job_of(const PatchSet::Impl&, const GridPlan::Impl&, std::size_t);
+
+template <class T>
+bool views_stream(const StageLayout<T>& layout, std::size_t records, Stores stores) {
+  if (layout.arrays().empty()) return false;
+  return stores_stream(records * static_cast<std::size_t>(layout.record_width()) * sizeof(T), stores);
+}
+template bool views_stream(const StageLayout<float>&, std::size_t, Stores);
+template bool views_stream(const StageLayout<double>&, std::size_t, Stores);
 
 std::size_t blocks_a_task(const GridPlan::Impl& plan, std::size_t blocks, bool derivatives) {
   const std::size_t points = plan.samples() * PatchSet::lanes;

@@ -2,6 +2,7 @@
 // What other calls over grids share with evaluate(): its checks, and the jobs of blocks. T is float or double.
 
 #include "eval/grid_plan_impl.h"
+#include "eval/staged_block.h"
 
 namespace tessera {
 
@@ -13,6 +14,10 @@ Result<int> check_grids(const PatchSet::Impl& set, const GridPlan& plan, const G
 /// Over the whole grid of one block; outputs and what normals need are left to be filled in.
 template <class T>
 kernel::GridJob<T> block_job_of(const PatchSet::Impl& set, const GridPlan::Impl& plan, std::size_t block);
+
+/// Whether so many records of views go out by streaming stores.
+template <class T>
+bool views_stream(const StageLayout<T>& layout, std::size_t records, Stores stores);
 
 /// How many blocks a task takes; all where one thread is faster than two.
 std::size_t blocks_a_task(const GridPlan::Impl& plan, std::size_t blocks, bool derivatives);

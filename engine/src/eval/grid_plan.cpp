@@ -12,40 +12,72 @@
 namespace tessera {
 namespace {
 
-/// Values, first and second derivatives of one basis at each parameter, computed in long double and rounded once.
-template <class T>
-AlignedVector<T> tabulate(int degree, std::span<const double> parameters, Representation representation) {
-  AlignedVector<T> table;
-  table.reserve(parameters.size() * 3 * static_cast<std::size_t>(degree + 1));
+/// Values, first and second derivatives of one basis, computed in long double and rounded once: put(k, value) for k from
+/// 0 to 3 (degree + 1) - 1.
+template <class T, class Put>
+void tabulate(int degree, long double t, Representation representation, Put&& put) {
   std::array<long double, max_degree + 1> values{}, derivatives{}, second{};
-  for (const long double t : parameters) {
-    if (representation == Representation::bernstein) {
-      bernstein_values(degree, t, values.data());
-      bernstein_derivatives(degree, t, derivatives.data());
-      bernstein_second_derivatives(degree, t, second.data());
-    } else {
-      power_values(degree, t, values.data());
-      power_derivatives(degree, t, derivatives.data());
-      power_second_derivatives(degree, t, second.data());
-    }
-    for (const auto* row : {&values, &derivatives, &second})
-      for (int i = 0; i <= degree; ++i) table.push_back(static_cast<T>((*row)[static_cast<std::size_t>(i)]));
+  if (representation == Representation::bernstein) {
+    bernstein_values(degree, t, values.data());
+    bernstein_derivatives(degree, t, derivatives.data());
+    bernstein_second_derivatives(degree, t, second.data());
+  } else {
+    power_values(degree, t, values.data());
+    power_derivatives(degree, t, derivatives.data());
+    power_second_derivatives(degree, t, second.data());
   }
-  return table;
+  std::size_t k = 0;
+  for (const auto* row : {&values, &derivatives, &second})
+    for (int i = 0; i <= degree; ++i) put(k++, static_cast<T>((*row)[static_cast<std::size_t>(i)]));
 }
 
 template <class T>
-void tabulate_group(const BlockGroup& group, const GridPlan::Impl& plan, GridWeights<T>& weights) {
-  auto& u = weights.u[static_cast<std::size_t>(group.degree_u)];
-  auto& v = weights.v[static_cast<std::size_t>(group.degree_v)];
-  if (u.empty()) u = tabulate<T>(group.degree_u, plan.u, plan.options.representation);
-  if (v.empty()) v = tabulate<T>(group.degree_v, plan.v, plan.options.representation);
+void tabulate_degree(int degree, std::span<const double> parameters, const GridPlan::Impl& plan,
+                     AlignedVector<T>& table) {
+  if (!table.empty()) return;
+  table.reserve(parameters.size() * 3 * static_cast<std::size_t>(degree + 1));
+  for (const double t : parameters)
+    tabulate<T>(degree, t, plan.options.representation, [&](std::size_t, T value) { table.push_back(value); });
 }
 
-Status check_parameters(std::span<const double> parameters, const char* direction) {
-  if (parameters.empty() || parameters.size() > (1u << 24))
-    return Status(StatusCode::invalid_argument, std::string("a grid needs 1 to 2^24 parameters along ") + direction +
-                                                    ", not " + std::to_string(parameters.size()));
+/// Of each lane its own patch's parameters, `count` of them.
+template <class T>
+void tabulate_blocks(const PatchSet::Impl& set, std::span<const double> parameters, std::size_t count,
+                     int BlockGroup::*degree, Representation representation, LaneTables<T>& tables) {
+  const auto row = [&](std::size_t block) { return 3 * static_cast<std::size_t>(set.group_of_block(block).*degree + 1); };
+  std::size_t values = 0;
+  for (std::size_t block = 0; block < set.lane_counts.size(); ++block) {
+    tables.first.push_back(values);
+    values += count * row(block) * PatchSet::lanes;
+  }
+  tables.values.resize(values);
+  for (std::size_t block = 0; block < set.lane_counts.size(); ++block)
+    for (std::size_t lane = 0; lane < PatchSet::lanes; ++lane) {
+      const std::size_t patch = set.lane_patches[block * PatchSet::lanes + lane];
+      for (std::size_t k = 0; k < count; ++k) {
+        T* out = tables.values.data() + tables.first[block] + k * row(block) * PatchSet::lanes + lane;
+        tabulate<T>(set.group_of_block(block).*degree, parameters[patch * count + k], representation,
+                    [&](std::size_t i, T value) { out[i * PatchSet::lanes] = value; });
+      }
+    }
+}
+
+template <class T>
+void tabulate_set(const PatchSet::Impl& set, const GridPlan::Impl& plan, GridWeights<T>& weights) {
+  if (plan.by_patch) {
+    const Representation representation = plan.options.representation;
+    tabulate_blocks(set, plan.u, plan.count_u, &BlockGroup::degree_u, representation, weights.u_lanes);
+    tabulate_blocks(set, plan.v, plan.count_v, &BlockGroup::degree_v, representation, weights.v_lanes);
+    return;
+  }
+  for (const BlockGroup& group : set.groups) {
+    tabulate_degree(group.degree_u, plan.u, plan, weights.u[static_cast<std::size_t>(group.degree_u)]);
+    tabulate_degree(group.degree_v, plan.v, plan, weights.v[static_cast<std::size_t>(group.degree_v)]);
+  }
+}
+
+/// Parameters that are finite and in [0, 1].
+Status check_values(std::span<const double> parameters, const char* direction) {
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     const double t = parameters[k];
     const auto place = [&] {
@@ -59,26 +91,51 @@ Status check_parameters(std::span<const double> parameters, const char* directio
   return {};
 }
 
+Status check_count(std::size_t count, const char* direction) {
+  if (count >= 1 && count <= (1u << 24)) return {};
+  return Status(StatusCode::invalid_argument,
+                std::string("a grid needs 1 to 2^24 parameters along ") + direction + ", not " + std::to_string(count));
+}
+
+Status check_lists(std::span<const double> parameters, std::size_t patches, const char* direction) {
+  if (parameters.size() % patches == 0) return check_count(parameters.size() / patches, direction);
+  return Status(StatusCode::invalid_argument,
+                std::to_string(parameters.size()) + " parameters along " + direction + " are not as many for each of " +
+                    std::to_string(patches) + " patches");
+}
+
 /// Records, values and bytes of every output must be countable.
-Status check_size(const PatchSet& set, std::size_t count_u, std::size_t count_v) {
-  const double bytes = static_cast<double>(set.block_count()) * PatchSet::lanes * 3 * sizeof(double) *
+Status check_size(const PatchSet::Impl& set, std::size_t count_u, std::size_t count_v) {
+  const double bytes = static_cast<double>(set.lane_counts.size()) * PatchSet::lanes * 3 * sizeof(double) *
                        static_cast<double>(count_u) * static_cast<double>(count_v);
   if (bytes < 0x1p62) return {};
   return Status(StatusCode::invalid_argument, "a grid of " + std::to_string(count_u) + " x " + std::to_string(count_v) +
-                                                  " parameters over " + std::to_string(set.patch_count()) +
+                                                  " parameters over " + std::to_string(set.patches.size()) +
                                                   " patches has more points than memory can address");
 }
 
-std::vector<std::uint8_t> edges_of(std::span<const double> parameters) {
+std::uint8_t edge_of(double t) {
+  return t == 0 ? kernel::edge_start : t == 1 ? kernel::edge_end : kernel::edge_inside;
+}
+
+std::vector<std::uint8_t> edges_of(std::span<const double> parameters, std::size_t count, bool by_patch,
+                                   const PatchSet::Impl& set) {
   std::vector<std::uint8_t> edges;
-  for (const double t : parameters)
-    edges.push_back(t == 0 ? kernel::edge_start : t == 1 ? kernel::edge_end : kernel::edge_inside);
+  if (!by_patch) {
+    for (const double t : parameters) edges.push_back(edge_of(t));
+    return edges;
+  }
+  edges.reserve(set.lane_patches.size() * count);
+  for (std::size_t block = 0; block < set.lane_counts.size(); ++block)
+    for (std::size_t k = 0; k < count; ++k)
+      for (std::size_t lane = 0; lane < PatchSet::lanes; ++lane)
+        edges.push_back(edge_of(parameters[set.lane_patches[block * PatchSet::lanes + lane] * count + k]));
   return edges;
 }
 
-void find_edges(GridPlan::Impl& plan) {
-  plan.u_edges = edges_of(plan.u);
-  plan.v_edges = edges_of(plan.v);
+void find_edges(const PatchSet::Impl& set, GridPlan::Impl& plan) {
+  plan.u_edges = edges_of(plan.u, plan.count_u, plan.by_patch, set);
+  plan.v_edges = edges_of(plan.v, plan.count_v, plan.by_patch, set);
   if (std::ranges::count(plan.u_edges, kernel::edge_start) > 0) plan.edges.add(Edge::u0);
   if (std::ranges::count(plan.u_edges, kernel::edge_end) > 0) plan.edges.add(Edge::u1);
   if (std::ranges::count(plan.v_edges, kernel::edge_start) > 0) plan.edges.add(Edge::v0);
@@ -119,41 +176,75 @@ std::vector<double> uniform_parameters(int count) {
   return parameters;
 }
 
+namespace {
+
+/// A plan whose parameters are checked and counted.
+Result<std::unique_ptr<GridPlan::Impl>> make_plan(const PatchSet::Impl& set, std::unique_ptr<GridPlan::Impl> plan) {
+  const GridPlanOptions& options = plan->options;
+  if (Status status = check_geometry(options.geometry); !status.ok()) return status;
+  if (!set.has(options.precision, options.representation))
+    return Status(
+        StatusCode::unsupported,
+        "the patch set holds no blocks of the precision and representation asked for; see PatchSetOptions::blocks");
+  const Result<Isa> isa = options.isa ? parse_isa(name(*options.isa)) : default_isa();
+  if (!isa) return isa.status();
+  if (Status status = check_size(set, plan->count_u, plan->count_v); !status.ok()) return status;
+  plan->isa = *isa;
+  plan->patch_count = set.patches.size();
+  plan->block_count = set.lane_counts.size();
+  find_edges(set, *plan);
+  for (const BlockGroup& group : set.groups) {
+    std::size_t count = 0;
+    for (std::size_t block = 0; block < group.block_count; ++block) count += set.lane_counts[group.first_block + block];
+    plan->groups.push_back({group.degree_u, group.degree_v, group.rational, group.block_count, count});
+  }
+  if (options.precision == Precision::single_precision) {
+    tabulate_set(set, *plan, plan->single);
+  } else {
+    tabulate_set(set, *plan, plan->twice);
+  }
+  return plan;
+}
+
+}  // namespace
+
 Result<GridPlan> GridPlan::make(const PatchSet& set, std::span<const double> u, std::span<const double> v,
                                 const GridPlanOptions& options) {
   return guarded([&]() -> Result<GridPlan> {
-    if (Status status = check_parameters(u, "u"); !status.ok()) return status;
-    if (Status status = check_parameters(v, "v"); !status.ok()) return status;
-    if (Status status = check_geometry(options.geometry); !status.ok()) return status;
-    const PatchSet::Impl& patches = set.impl();
-    if (!patches.has(options.precision, options.representation))
-      return Status(
-          StatusCode::unsupported,
-          "the patch set holds no blocks of the precision and representation asked for; see PatchSetOptions::blocks");
-    const Result<Isa> isa = options.isa ? parse_isa(name(*options.isa)) : default_isa();
-    if (!isa) return isa.status();
-
-    if (Status status = check_size(set, u.size(), v.size()); !status.ok()) return status;
+    for (const auto& [parameters, direction] : {std::pair(u, "u"), std::pair(v, "v")}) {
+      if (Status status = check_count(parameters.size(), direction); !status.ok()) return status;
+      if (Status status = check_values(parameters, direction); !status.ok()) return status;
+    }
     auto plan = std::make_unique<Impl>();
     plan->u.assign(u.begin(), u.end());
     plan->v.assign(v.begin(), v.end());
+    plan->count_u = u.size();
+    plan->count_v = v.size();
     plan->options = options;
-    plan->isa = *isa;
-    plan->patch_count = set.patch_count();
-    plan->block_count = set.block_count();
-    find_edges(*plan);
-    for (const BlockGroup& group : patches.groups) {
-      std::size_t count = 0;
-      for (std::size_t block = 0; block < group.block_count; ++block)
-        count += patches.lane_counts[group.first_block + block];
-      plan->groups.push_back({group.degree_u, group.degree_v, group.rational, group.block_count, count});
-      if (options.precision == Precision::single_precision) {
-        tabulate_group(group, *plan, plan->single);
-      } else {
-        tabulate_group(group, *plan, plan->twice);
-      }
+    auto made = make_plan(set.impl(), std::move(plan));
+    if (!made) return made.status();
+    return GridPlan(*std::move(made));
+  });
+}
+
+Result<GridPlan> GridPlan::make(const PatchSet& set, const PatchParameters& parameters,
+                                const GridPlanOptions& options) {
+  return guarded([&]() -> Result<GridPlan> {
+    const std::size_t patches = set.patch_count();
+    for (const auto& [list, direction] : {std::pair(parameters.u, "u"), std::pair(parameters.v, "v")}) {
+      if (Status status = check_lists(list, patches, direction); !status.ok()) return status;
+      if (Status status = check_values(list, direction); !status.ok()) return status;
     }
-    return GridPlan(std::move(plan));
+    auto plan = std::make_unique<Impl>();
+    plan->u.assign(parameters.u.begin(), parameters.u.end());
+    plan->v.assign(parameters.v.begin(), parameters.v.end());
+    plan->count_u = parameters.u.size() / patches;
+    plan->count_v = parameters.v.size() / patches;
+    plan->by_patch = true;
+    plan->options = options;
+    auto made = make_plan(set.impl(), std::move(plan));
+    if (!made) return made.status();
+    return GridPlan(*std::move(made));
   });
 }
 
@@ -162,8 +253,8 @@ GridPlan::GridPlan(GridPlan&&) noexcept = default;
 GridPlan& GridPlan::operator=(GridPlan&&) noexcept = default;
 GridPlan::~GridPlan() = default;
 
-std::size_t GridPlan::count_u() const { return impl_->u.size(); }
-std::size_t GridPlan::count_v() const { return impl_->v.size(); }
+std::size_t GridPlan::count_u() const { return impl_->count_u; }
+std::size_t GridPlan::count_v() const { return impl_->count_v; }
 Isa GridPlan::isa() const { return impl_->isa; }
 Precision GridPlan::precision() const { return impl_->options.precision; }
 std::size_t GridPlan::capacity() const { return impl_->patch_count * impl_->samples(); }

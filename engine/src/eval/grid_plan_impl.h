@@ -14,10 +14,19 @@ namespace tessera {
 template <class T>
 using WeightTables = std::array<AlignedVector<T>, max_degree + 1>;
 
-/// The tables of one precision.
+/// The same of parameters that differ from patch to patch: a table `[k][order][i][lane]` a block, and where each begins.
+template <class T>
+struct LaneTables {
+  UnsetVector<T> values;
+  std::vector<std::size_t> first;
+  const T* of(std::size_t block) const { return values.data() + first[block]; }
+};
+
+/// The tables of one precision: by degree, or by block where each patch has parameters of its own.
 template <class T>
 struct GridWeights {
   WeightTables<T> u, v;
+  LaneTables<T> u_lanes, v_lanes;
 };
 
 /// Degrees and rationality of a group, and its patches: what a plan must find again in the set that it runs over.
@@ -29,7 +38,9 @@ struct PlannedGroup {
 
 class GridPlan::Impl {
  public:
-  std::vector<double> u, v;
+  std::vector<double> u, v;  ///< `[k]`, or `[patch][k]`
+  std::size_t count_u = 0, count_v = 0;
+  bool by_patch = false;
   GridPlanOptions options;
   Isa isa = Isa::sse2;
   std::vector<PlannedGroup> groups;
@@ -38,10 +49,12 @@ class GridPlan::Impl {
   GridWeights<double> twice;
   /// Whether any parameter lies on the edges u = 0, u = 1, v = 0, v = 1: only there can a collapsed edge be met.
   EdgeMask edges;
-  /// Of each parameter: edge_start at 0, edge_end at 1 (see kernel_table.h).
+  /// Of each parameter: edge_start at 0, edge_end at 1 (see kernel_table.h); `[k]`, or `[block][k][lane]`.
   std::vector<std::uint8_t> u_edges, v_edges;
 
-  std::size_t samples() const { return u.size() * v.size(); }
+  std::size_t samples() const { return count_u * count_v; }
+  double u_at(std::size_t patch, std::size_t k) const { return u[by_patch ? patch * count_u + k : k]; }
+  double v_at(std::size_t patch, std::size_t k) const { return v[by_patch ? patch * count_v + k : k]; }
   template <class T>
   const GridWeights<T>& weights() const {
     if constexpr (sizeof(T) == 4) {

@@ -79,14 +79,18 @@ class GridUpdate::Impl {
              const Execution& execution) {
     const Result<int> order = check_grids(set, plan, out);
     if (!order) return order.status();
+    if (plan.impl().by_patch)
+      return Status(StatusCode::unsupported, "grids with parameters of each patch's own can't be updated");
     if (patch_count_ != set.patches.size() || touched_.block_count() != set.lane_counts.size())
       return Status(StatusCode::invalid_argument, "the update was made for another patch set");
     if (Status status = touched_.add(set, edits); !status.ok()) return status;
     if (Status status = prepare(set, edits, touched_, execution); !status.ok()) return status;
 
     const GridPlan::Impl& inner = plan.impl();
-    const UpdateCall<T> call{set, inner, kernel::kernels(inner.isa), edits, touched_, out};
     const auto blocks = touched_.blocks();
+    const StageLayout<T> layout(out);
+    const bool streaming = views_stream(layout, edits.patch.size() * inner.samples(), execution.stores);
+    const UpdateCall<T> call{set, inner, kernel::kernels(inner.isa), edits, touched_, out, layout, streaming};
     std::atomic<Isa> isa{inner.isa};
     const Status status = parallel_for(blocks.size(), blocks_a_task(inner, blocks.size(), *order > 0), execution,
                                        [&](std::size_t begin, std::size_t end) {
@@ -98,7 +102,7 @@ class GridUpdate::Impl {
     if (!edits.patch.empty()) ++set.revision;
     if (execution.report) {
       execution.report->isa = isa;
-      execution.report->streaming = false;
+      execution.report->streaming = streaming;
     }
     return status;
   }

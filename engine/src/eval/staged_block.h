@@ -13,64 +13,44 @@
 
 namespace tessera {
 
-/// Evaluates a block piece by piece into a stage of 64 KiB and moves each piece to its place, one patch a lane.
-/// Where all wanted views of numbers are fields of one gapless record (positions and normals interleaved, say), the
-/// stage has that record's order, and whole records are moved; otherwise each view goes its own way. Lives on a task's
-/// stack; allocates nothing.
+/// The two precisions of the kernels that write lines.
 template <class T>
-class StagedBlock {
+struct LineKernels {
+  const kernel::KernelTable& kernels;
+
+  void begin(kernel::LineState<T>& state, T* const* memory) const {
+    if constexpr (sizeof(T) == 4) {
+      kernels.begin_lines_f32(state, memory);
+    } else {
+      kernels.begin_lines_f64(state, memory);
+    }
+  }
+  void put(const kernel::LineJob<T>& job) const {
+    if constexpr (sizeof(T) == 4) {
+      kernels.put_lines_f32(job);
+    } else {
+      kernels.put_lines_f64(job);
+    }
+  }
+  void end(const kernel::LineState<T>& state, int lane_count, bool streaming) const {
+    if constexpr (sizeof(T) == 4) {
+      kernels.end_lines_f32(state, lane_count, streaming);
+    } else {
+      kernels.end_lines_f64(state, lane_count, streaming);
+    }
+  }
+};
+
+/// How views are reached from a stage of a few samples. Where all wanted views of numbers are fields of one gapless
+/// record (positions and normals interleaved, say), the stage has that record's order, and it is one array; otherwise
+/// packed views are one array each, structures of arrays one a component. What lies value by value between others is a
+/// column.
+template <class T>
+class StageLayout {
  public:
-  StagedBlock(const kernel::KernelTable& kernels, const GridViews<T>& out) : kernels_(kernels), out_(out) {
-    for_each_value_output<T>([&](const auto& output) {
-      const auto& view = out.*output.view;
-      if (view.empty()) return;
-      Field& field = fields_[wanted_++];
-      std::copy(view.component.begin(), view.component.end(), field.component.begin());
-      field.stride = view.stride;
-      field.width = output.width;
-      field.job = output.job;
-      record_width_ += output.width;
-    });
-    piece_ = std::min(most_samples, stage_values / (lanes * std::max(record_width_, 1)));
-    find_record();
-    if (record_) return;
-    int first = 0;
-    for (Field& field : fields()) {
-      field.first = first;
-      first += field.width * piece_;
-    }
-  }
-
-  /// Evaluates `job` over its whole grid into records [patch * samples, (patch + 1) * samples) of each lane's patch.
-  Isa run(kernel::GridJob<T> job, const std::uint32_t* lane_patches, int lane_count, std::size_t samples) {
-    const int count_u = job.u_end, count_v = job.v_end;
-    const int piece_v = std::min(count_v, piece_);
-    const int piece_u = std::max(1, piece_ / count_v);
-    Isa isa = Isa::sse2;
-    place_outputs(job);
-    for (job.u_begin = 0; job.u_begin < count_u; job.u_begin += piece_u) {
-      job.u_end = std::min(count_u, job.u_begin + piece_u);
-      for (job.v_begin = 0; job.v_begin < count_v; job.v_begin += piece_v) {
-        job.v_end = std::min(count_v, job.v_begin + piece_v);
-        if constexpr (sizeof(T) == 4) {
-          isa = kernels_.grid_f32(job);
-        } else {
-          isa = kernels_.grid_f64(job);
-        }
-        const auto first = static_cast<std::size_t>(job.u_begin) * count_v + job.v_begin;
-        const auto count = static_cast<std::size_t>(job.u_end - job.u_begin) * (job.v_end - job.v_begin);
-        move_out(lane_patches, lane_count, samples, first, count);
-        move_kinds(lane_patches, lane_count, samples, first, count);
-      }
-    }
-    return isa;
-  }
-
- private:
   static constexpr int lanes = kernel::block_lanes;
-  static constexpr int stage_values = static_cast<int>(65536 / sizeof(T));
-  static constexpr int most_samples = static_cast<int>(16384 / (3 * lanes * sizeof(T)));
   static constexpr std::size_t most_fields = std::size(vector_outputs<T>) + std::size(scalar_outputs<T>);
+  static constexpr std::size_t most_arrays = 3 * most_fields;
 
   /// A wanted view.
   struct Field {
@@ -82,28 +62,134 @@ class StagedBlock {
 
     bool packed() const { return width == 1 || (component[1] == component[0] + 1 && component[2] == component[0] + 2); }
   };
-  std::span<Field> fields() { return {fields_.data(), static_cast<std::size_t>(wanted_)}; }
+  /// `width` values a record, `step` rows of lanes apart in the stage; record k of an array lies at memory + k * width,
+  /// of a column at memory + k * stride.
+  struct Array {
+    T* memory = nullptr;
+    std::ptrdiff_t width = 1, stride = 1, first = 0, step = 1;
+  };
 
-  /// One record holds all views if their stride is its width and they fill it without a gap.
-  void find_record() {
-    if (wanted_ == 0) return;
-    T* first = fields_[0].component[0];
-    for (const Field& field : fields()) first = std::min(first, field.component[0]);
-    std::array<bool, 3 * most_fields> filled{};
-    for (Field& field : fields()) {
-      const std::ptrdiff_t offset = field.component[0] - first;
-      if (!field.packed() || field.stride != record_width_ || offset + field.width > record_width_) return;
-      field.first = static_cast<int>(offset);
-      for (int c = 0; c < field.width; ++c)
-        if (std::exchange(filled[static_cast<std::size_t>(offset + c)], true)) return;
+  explicit StageLayout(const GridViews<T>& out) {
+    for_each_value_output<T>([&](const auto& output) {
+      const auto& view = out.*output.view;
+      if (view.empty()) return;
+      Field& field = fields_[field_count_++];
+      std::copy(view.component.begin(), view.component.end(), field.component.begin());
+      field.stride = view.stride;
+      field.width = output.width;
+      field.job = output.job;
+      record_width_ += output.width;
+    });
+    if (find_record()) return;
+    int first = 0;
+    for (Field& field : std::span(fields_).first(field_count_)) {
+      field.first = first;
+      first += field.width * longest_piece();
+      find_arrays(field);
     }
-    record_ = first;
   }
 
+  std::span<const Field> fields() const { return std::span(fields_).first(field_count_); }
+  std::span<const Array> arrays() const { return std::span(arrays_).first(array_count_); }
+  std::span<const Array> columns() const { return std::span(columns_).first(column_count_); }
+  bool one_record() const { return one_record_; }
+  int record_width() const { return record_width_; }  ///< values of all wanted views
+  /// Samples that are staged at once, if rows of the grid come out even: enough to make up for the calls, so few that
+  /// their stores are still on their way to memory while the next ones are computed.
+  int piece() const { return std::max(least_samples, stage_rows / std::max(record_width_, 1)); }
+  /// At the most: a row of the grid is rather not cut, since its curves would be made twice.
+  int longest_piece() const { return 2 * piece(); }
+
+  static constexpr int least_samples = 16, stage_rows = 144;
+  /// Rows in the stage at the most, with those that a tile may reach beyond the last.
+  static constexpr std::size_t most_rows = 2 * std::max<std::size_t>(least_samples * most_arrays, stage_rows) + 3 * 16;
+
+ private:
+  /// One record holds all views if their stride is its width and they fill it without a gap.
+  bool find_record() {
+    if (field_count_ == 0) return false;
+    T* first = fields_[0].component[0];
+    for (const Field& field : fields()) first = std::min(first, field.component[0]);
+    std::array<bool, most_arrays> filled{};
+    for (Field& field : std::span(fields_).first(field_count_)) {
+      const std::ptrdiff_t offset = field.component[0] - first;
+      if (!field.packed() || field.stride != record_width_ || offset + field.width > record_width_) return false;
+      field.first = static_cast<int>(offset);
+      for (int c = 0; c < field.width; ++c)
+        if (std::exchange(filled[static_cast<std::size_t>(offset + c)], true)) return false;
+    }
+    arrays_[array_count_++] = {first, record_width_, record_width_, 0, 1};
+    return one_record_ = true;
+  }
+
+  void find_arrays(const Field& field) {
+    if (field.packed() && field.stride == field.width) {
+      arrays_[array_count_++] = {field.component[0], field.width, field.width, field.first, 1};
+      return;
+    }
+    for (int c = 0; c < field.width; ++c) {
+      const Array array{field.component[static_cast<std::size_t>(c)], 1, field.stride, field.first + c, field.width};
+      (field.stride == 1 ? arrays_[array_count_++] : columns_[column_count_++]) = array;
+    }
+  }
+
+  std::array<Field, most_fields> fields_{};
+  std::array<Array, most_arrays> arrays_{}, columns_{};
+  std::size_t field_count_ = 0, array_count_ = 0, column_count_ = 0;
+  int record_width_ = 0;
+  bool one_record_ = false;
+};
+
+/// Evaluates a block piece by piece into a stage in the first-level cache, from which each piece goes to its place, one
+/// patch a lane. Lives on a task's stack, and what it holds is unset; allocates nothing.
+template <class T>
+class StagedBlock {
+ public:
+  StagedBlock(const kernel::KernelTable& kernels, const StageLayout<T>& layout, const GridViews<T>& out, bool streaming)
+      : kernels_(kernels), lines_{kernels}, layout_(layout), out_(out), streaming_(streaming) {}
+  StagedBlock(const StagedBlock&) = delete;
+  StagedBlock& operator=(const StagedBlock&) = delete;
+
+  /// Evaluates `job` over its part of the grid, whole rows of it, into the records of each lane's patch, `samples` of
+  /// each. Unused lanes repeat a patch, and write what that writes.
+  Isa run(kernel::GridJob<T> job, const std::uint32_t* lane_patches, int lane_count, std::size_t samples) {
+    std::ptrdiff_t records[lanes];
+    for (int lane = 0; lane < lanes; ++lane)
+      records[lane] = static_cast<std::ptrdiff_t>(lane_patches[lane] * samples) + std::ptrdiff_t{job.u_begin} * job.v_end;
+    const int first_u = job.u_begin, end_u = job.u_end, count_v = job.v_end;
+    const int parts_v = count_v <= layout_.longest_piece() ? 1 : (count_v + layout_.piece() - 1) / layout_.piece();
+    const int piece_v = (count_v + parts_v - 1) / parts_v, piece_u = std::max(1, layout_.piece() / count_v);
+    Isa isa = Isa::sse2;
+    place_outputs(job);
+    begin(records);
+    for (job.u_begin = first_u; job.u_begin < end_u; job.u_begin += piece_u) {
+      job.u_end = std::min(end_u, job.u_begin + piece_u);
+      for (job.v_begin = 0; job.v_begin < count_v; job.v_begin += piece_v) {
+        job.v_end = std::min(count_v, job.v_begin + piece_v);
+        if constexpr (sizeof(T) == 4) {
+          isa = kernels_.grid_f32(job);
+        } else {
+          isa = kernels_.grid_f64(job);
+        }
+        const std::ptrdiff_t first = std::ptrdiff_t{job.u_begin - first_u} * count_v + job.v_begin;
+        const std::ptrdiff_t count = std::ptrdiff_t{job.u_end - job.u_begin} * (job.v_end - job.v_begin);
+        put(count, lane_count);
+        put_columns(records, lane_count, first, count);
+        put_kinds(records, lane_count, first, count);
+      }
+    }
+    for (std::size_t k = 0; k < layout_.arrays().size(); ++k) lines_.end(states_[k], lane_count, streaming_);
+    return isa;
+  }
+
+ private:
+  static constexpr std::ptrdiff_t lanes = kernel::block_lanes;
+  using Layout = StageLayout<T>;
+
   void place_outputs(kernel::GridJob<T>& job) {
-    for (const Field& field : fields()) job.*field.job = stage_.data() + std::ptrdiff_t{field.first} * lanes;
-    job.vector_step = (record_ ? record_width_ : 3) * lanes;
-    job.scalar_step = (record_ ? record_width_ : 1) * lanes;
+    for (const auto& field : layout_.fields()) job.*field.job = stage_.data() + field.first * lanes;
+    job.vector_step = (layout_.one_record() ? layout_.record_width() : 3) * lanes;
+    job.scalar_step = (layout_.one_record() ? layout_.record_width() : 1) * lanes;
     std::size_t kind = 0;
     for_each_kind_output<T>([&](const auto& output) {
       job.*output.job = (out_.*output.view).empty() ? nullptr : kinds_[kind].data();
@@ -111,69 +197,57 @@ class StagedBlock {
     });
   }
 
-  void move_out(const std::uint32_t* lane_patches, int lane_count, std::size_t samples, std::size_t first,
-                std::size_t count) {
-    if (record_) {
-      const auto width = static_cast<std::size_t>(record_width_);
-      return move({.rows = stage_.data(), .row_step = lanes, .count = count * width, .lane_count = lane_count},
-                  lane_patches, [&](std::size_t patch) { return record_ + (patch * samples + first) * width; });
-    }
-    for (const Field& field : fields()) {
-      const T* rows = stage_.data() + std::ptrdiff_t{field.first} * lanes;
-      const auto width = static_cast<std::size_t>(field.width);
-      if (field.packed() && field.stride == field.width) {
-        move({.rows = rows, .row_step = lanes, .count = width * count, .lane_count = lane_count}, lane_patches,
-             [&](std::size_t patch) { return field.component[0] + (patch * samples + first) * width; });
-        continue;
-      }
-      for (std::size_t c = 0; c < width; ++c) {
-        move({.rows = rows + static_cast<std::ptrdiff_t>(c) * lanes,
-              .row_step = field.width * lanes,
-              .count = count,
-              .lane_count = lane_count,
-              .stride = field.stride},
-             lane_patches, [&](std::size_t patch) {
-               return field.component[c] + static_cast<std::ptrdiff_t>(patch * samples + first) * field.stride;
-             });
-      }
+  void begin(const std::ptrdiff_t* records) {
+    std::size_t k = 0;
+    for (const auto& array : layout_.arrays()) {
+      T* memory[lanes];
+      for (int lane = 0; lane < lanes; ++lane) memory[lane] = array.memory + records[lane] * array.width;
+      lines_.begin(states_[k++], memory);
     }
   }
 
-  template <class Destination>
-  void move(kernel::ScatterJob<T> job, const std::uint32_t* lane_patches, Destination&& destination) {
-    T* lane[lanes];
-    for (int l = 0; l < job.lane_count; ++l) lane[l] = destination(lane_patches[l]);
-    job.lane = lane;
-    if constexpr (sizeof(T) == 4) {
-      kernels_.scatter_f32(job);
-    } else {
-      kernels_.scatter_f64(job);
-    }
+  void put(std::ptrdiff_t count, int lane_count) {
+    std::size_t k = 0;
+    for (const auto& array : layout_.arrays())
+      lines_.put({.state = &states_[k++],
+                  .rows = stage_.data() + array.first * lanes,
+                  .step = array.step * lanes,
+                  .count = count * array.width,
+                  .lane_count = lane_count,
+                  .streaming = streaming_});
   }
 
-  void move_kinds(const std::uint32_t* lane_patches, int lane_count, std::size_t samples, std::size_t first,
-                  std::size_t count) {
+  void put_columns(const std::ptrdiff_t* records, int lane_count, std::ptrdiff_t first, std::ptrdiff_t count) {
+    for (const auto& column : layout_.columns())
+      for (int lane = 0; lane < lane_count; ++lane) {
+        const T* value = stage_.data() + column.first * lanes + lane;
+        T* out = column.memory + (records[lane] + first) * column.stride;
+        for (std::ptrdiff_t k = 0; k < count; ++k) out[k * column.stride] = value[k * column.step * lanes];
+      }
+  }
+
+  void put_kinds(const std::ptrdiff_t* records, int lane_count, std::ptrdiff_t first, std::ptrdiff_t count) {
     std::size_t stage = 0;
     for_each_kind_output<T>([&](const auto& output) {
       const auto& view = out_.*output.view;
       const std::uint8_t* kinds = kinds_[stage++].data();
       if (view.empty()) return;
       using Kind = std::remove_cvref_t<decltype(view.at(0, 0))>;
-      for (std::size_t lane = 0; lane < static_cast<std::size_t>(lane_count); ++lane)
-        for (std::size_t k = 0; k < count; ++k)
-          view.at(lane_patches[lane] * samples + first + k, 0) = static_cast<Kind>(kinds[k * lanes + lane]);
+      for (int lane = 0; lane < lane_count; ++lane)
+        for (std::ptrdiff_t k = 0; k < count; ++k)
+          view.at(static_cast<std::size_t>(records[lane] + first + k), 0) = static_cast<Kind>(kinds[k * lanes + lane]);
     });
   }
 
   const kernel::KernelTable& kernels_;
+  LineKernels<T> lines_;
+  const Layout& layout_;
   const GridViews<T>& out_;
-  std::array<Field, most_fields> fields_{};
-  T* record_ = nullptr;  ///< the first value of the shared record, if there is one
-  int wanted_ = 0;
-  int record_width_ = 0;  ///< values of all wanted views
-  int piece_ = 0;         ///< samples staged at once
-  alignas(cache_line) std::array<T, stage_values> stage_;
-  alignas(cache_line) std::array<std::array<std::uint8_t, static_cast<std::size_t>(most_samples) * lanes>, 2> kinds_;
+  bool streaming_;
+  alignas(cache_line) std::array<T, Layout::most_rows * lanes> stage_;
+  std::array<kernel::LineState<T>, Layout::most_arrays> states_;
+  static constexpr std::size_t most_samples = 2 * Layout::stage_rows;  // of kinds alone: as many as of one value
+  alignas(cache_line) std::array<std::array<std::uint8_t, most_samples * lanes>, 2> kinds_;
 };
 
 }  // namespace tessera

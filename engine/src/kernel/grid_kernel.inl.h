@@ -121,9 +121,8 @@ template <class L, bool Rational, bool Streaming, int Order>
 
 /// `Groups` neighbouring vectors of patches, from `lane`, over the job's part of the grid. DegreeV 0 reads the degree
 /// from the job.
-template <class L, int DegreeV, bool Rational, int Order, bool Streaming, int Groups>
+template <class L, bool ByLane, int DegreeV, bool Rational, int Order, bool Streaming, int Groups>
 void evaluate_lanes(const GridJob<typename L::Scalar>& job, int lane) {
-  using T = typename L::Scalar;
   constexpr int components = Rational ? 4 : 3;
   constexpr int capacity = DegreeV > 0 ? DegreeV + 1 : max_order;
   const int count_u = job.degree_u + 1;
@@ -132,15 +131,17 @@ void evaluate_lanes(const GridJob<typename L::Scalar>& job, int lane) {
 
   RowCurves<L, Order, components, capacity> curves[Groups];
   for (int iu = job.u_begin; iu < job.u_end; ++iu) {
-    const T* u_weights = job.u_weights + std::ptrdiff_t{iu} * 3 * count_u;
-    for (int group = 0; group < Groups; ++group)
+    for (int group = 0; group < Groups; ++group) {
+      const int first = lane + group * L::width;
+      const auto u_weights = weights_at<L, ByLane>(job.u_weights, iu, count_u, first);
       for (int order = 0; order <= Order; ++order)
-        row_curves<L, DegreeV>(job.net + lane + group * L::width, u_weights + order * count_u, count_u, count_v,
+        row_curves<L, DegreeV>(job.net + first, u_weights + order * count_u, count_u, count_v,
                                curves[group].by_u[order]);
+    }
     for (int iv = job.v_begin; iv < job.v_end; ++iv) {
-      const T* v_weights = job.v_weights + std::ptrdiff_t{iv} * 3 * count_v;
       for (int group = 0; group < Groups; ++group) {
         const std::ptrdiff_t shift = group * L::width;
+        const auto v_weights = weights_at<L, ByLane>(job.v_weights, iv, count_v, lane + group * L::width);
         Sample<L> sample;
         evaluate_sample<L, Order>(curves[group], v_weights, count_v, sample);
         store_sample<L, Rational, Streaming, Order>(job, sample, {iu, iv, lane + group * L::width},
@@ -158,11 +159,19 @@ void evaluate_block(const GridJob<typename L::Scalar>& job) {
   constexpr int line = 64 / static_cast<int>(sizeof(typename L::Scalar));
   if (job.streaming) {
     for (int lane = 0; lane < block_lanes; lane += line)
-      evaluate_lanes<L, DegreeV, Rational, Order, true, line / L::width>(job, lane);
+      evaluate_lanes<L, false, DegreeV, Rational, Order, true, line / L::width>(job, lane);
   } else {
     for (int lane = 0; lane < block_lanes; lane += L::width)
-      evaluate_lanes<L, DegreeV, Rational, Order, false, 1>(job, lane);
+      evaluate_lanes<L, false, DegreeV, Rational, Order, false, 1>(job, lane);
   }
+}
+
+/// One loop for all degrees, and first derivatives in any case: such grids are rare.
+template <class L, int Order>
+void evaluate_by_lane(const GridJob<typename L::Scalar>& job) {
+  for (int lane = 0; lane < block_lanes; lane += L::width)
+    job.rational ? evaluate_lanes<L, true, 0, true, Order, false, 1>(job, lane)
+                 : evaluate_lanes<L, true, 0, false, Order, false, 1>(job, lane);
 }
 
 template <class L, int DegreeV, int Order>
@@ -170,34 +179,43 @@ void choose_weights(const GridJob<typename L::Scalar>& job) {
   job.rational ? evaluate_block<L, DegreeV, true, Order>(job) : evaluate_block<L, DegreeV, false, Order>(job);
 }
 
+template <class T>
+inline int order_of(const GridJob<T>& job) {
+  if (job.duu || job.duv || job.dvv || wants_curvatures(job)) return 2;
+  return job.du || job.dv || job.normal || job.normal_kind ? 1 : 0;
+}
+
 template <class L, int DegreeV>
 void choose_order(const GridJob<typename L::Scalar>& job) {
-  if (job.du || job.dv || job.normal || job.normal_kind) {
-    choose_weights<L, DegreeV, 1>(job);
+  order_of(job) == 1 ? choose_weights<L, DegreeV, 1>(job) : choose_weights<L, DegreeV, 0>(job);
+}
+
+/// Degrees are fixed where it matters most: the run-time loop is within 15% of them, and rational second derivatives are
+/// as much code as all the rest.
+template <class L>
+void choose_degree(const GridJob<typename L::Scalar>& job) {
+  if (order_of(job) == 2) {
+    job.degree_v == 3 && !job.rational ? evaluate_block<L, 3, false, 2>(job) : choose_weights<L, 0, 2>(job);
+  } else if (job.degree_v == 1) {
+    choose_order<L, 1>(job);
+  } else if (job.degree_v == 2) {
+    choose_order<L, 2>(job);
+  } else if (job.degree_v == 3) {
+    choose_order<L, 3>(job);
   } else {
-    choose_weights<L, DegreeV, 0>(job);
+    choose_order<L, 0>(job);
   }
 }
 
 template <class L>
 Isa evaluate_grid(const GridJob<typename L::Scalar>& job) {
-  if (job.duu || job.duv || job.dvv || wants_curvatures(job)) {
-    job.degree_v == 3 ? choose_weights<L, 3, 2>(job) : choose_weights<L, 0, 2>(job);
+  const int order = order_of(job);
+  if (job.by_lane) {
+    order == 2 ? evaluate_by_lane<L, 2>(job) : evaluate_by_lane<L, 1>(job);
+  } else if constexpr (fixed_degrees) {
+    choose_degree<L>(job);
   } else {
-    switch (job.degree_v) {
-      case 1:
-        choose_order<L, 1>(job);
-        break;
-      case 2:
-        choose_order<L, 2>(job);
-        break;
-      case 3:
-        choose_order<L, 3>(job);
-        break;
-      default:
-        choose_order<L, 0>(job);
-        break;
-    }
+    order == 2 ? choose_weights<L, 0, 2>(job) : choose_order<L, 0>(job);
   }
   return this_isa;
 }

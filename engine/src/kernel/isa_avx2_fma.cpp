@@ -15,10 +15,22 @@ namespace isa_avx2 {
 namespace {
 
 constexpr Isa this_isa = Isa::avx2;
+/// Grids of degrees 1 to 3 by loops of their own.
+constexpr bool fixed_degrees = true;
 
 /// An immediate operand.
 template <int bits>
 using Bits = std::integral_constant<int, bits>;
+
+/// Eight lanes (a double takes two) turned by `count`: where they come from, and which of them then belong to the vector
+/// before.
+struct Turn {
+  __m256i lanes, before;
+};
+Turn turn_by(int count) {
+  const __m256i each = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7), by = _mm256_set1_epi32(count);
+  return {_mm256_and_si256(_mm256_sub_epi32(each, by), _mm256_set1_epi32(7)), _mm256_cmpgt_epi32(by, each)};
+}
 
 /// The few operations that xsimd lacks.
 template <class T>
@@ -72,6 +84,33 @@ struct Lanes<float> {
     p[0] = a;
     p[1] = b;
     p[2] = c;
+  }
+  /// A shift by `count` lanes, below `width`.
+  using Shift = Turn;
+  static Shift shift_by(int count) { return turn_by(count); }
+  /// The last lanes of the vector before `next` and the first ones of `next`; `carry` keeps what the following call needs.
+  static Batch shift_in(Batch& carry, Batch next, const Shift& shift) {
+    const __m256 turned = _mm256_permutevar8x32_ps(next, shift.lanes);
+    const __m256 shifted = _mm256_blendv_ps(turned, carry, _mm256_castsi256_ps(shift.before));
+    carry = turned;
+    return shifted;
+  }
+  /// The carry with which the next shift_in() leaves the first lanes of `a` where they are.
+  static Batch carried(Batch a, const Shift&) { return a; }
+  /// Vector l becomes value l of the rows at row(0), row(1), ..., of which four values are read: rows k and k + 4 share a
+  /// vector from the start, which spares a third of a transpose's shuffles.
+  template <class Row>
+  static void load_columns(const Row& row, Batch (&column)[4]) {
+    __m256 a[4];
+#pragma GCC unroll 4
+    for (int k = 0; k < 4; ++k)
+      a[k] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps(row(k))), _mm_load_ps(row(4 + k)), 1);
+    const __m256 b0 = _mm256_unpacklo_ps(a[0], a[1]), b1 = _mm256_unpackhi_ps(a[0], a[1]);
+    const __m256 b2 = _mm256_unpacklo_ps(a[2], a[3]), b3 = _mm256_unpackhi_ps(a[2], a[3]);
+    column[0] = _mm256_shuffle_ps(b0, b2, 0x44);
+    column[1] = _mm256_shuffle_ps(b0, b2, 0xee);
+    column[2] = _mm256_shuffle_ps(b1, b3, 0x44);
+    column[3] = _mm256_shuffle_ps(b1, b3, 0xee);
   }
   static void transpose(Batch (&row)[width]) {
     __m256 a[8], b[8];
@@ -138,6 +177,24 @@ struct Lanes<double> {
     p[0] = a;
     p[1] = b;
     p[2] = c;
+  }
+  using Shift = Turn;
+  static Shift shift_by(int count) { return turn_by(2 * count); }
+  static Batch shift_in(Batch& carry, Batch next, const Shift& shift) {
+    const __m256d turned = _mm256_castps_pd(_mm256_permutevar8x32_ps(_mm256_castpd_ps(next), shift.lanes));
+    const __m256d shifted = _mm256_blendv_pd(turned, carry, _mm256_castsi256_pd(shift.before));
+    carry = turned;
+    return shifted;
+  }
+  static Batch carried(Batch a, const Shift&) { return a; }
+  template <class Row>
+  static void load_columns(const Row& row, Batch (&column)[2]) {
+    const auto rows = [&](int k) {
+      return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_load_pd(row(k))), _mm_load_pd(row(2 + k)), 1);
+    };
+    const __m256d a = rows(0), b = rows(1);
+    column[0] = _mm256_unpacklo_pd(a, b);
+    column[1] = _mm256_unpackhi_pd(a, b);
   }
   static void transpose(Batch (&row)[width]) {
     const __m256d a = _mm256_unpacklo_pd(row[0], row[1]), b = _mm256_unpackhi_pd(row[0], row[1]);

@@ -14,6 +14,8 @@ namespace isa_avx512 {
 namespace {
 
 constexpr Isa this_isa = Isa::avx512;
+/// Grids of degrees 1 to 3 by loops of their own.
+constexpr bool fixed_degrees = true;
 template <class T>
 using BatchOf = xsimd::batch<T, xsimd::avx512f>;
 
@@ -80,6 +82,40 @@ struct Lanes<float> {
       p[k] = _mm512_permutex2var_ps(xy, _mm512_load_si512(lanes.z[k]), z);
     }
   }
+  /// A shift by `count` lanes, below `width`.
+  struct Shift {
+    __m512i lanes;     ///< from the vector before where bit 4 is set
+    __m512i backward;
+  };
+  static Shift shift_by(int count) {
+    const __m512i each = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15), by = _mm512_set1_epi32(count);
+    return {_mm512_xor_si512(_mm512_sub_epi32(each, _mm512_sub_epi32(by, _mm512_set1_epi32(width))), _mm512_set1_epi32(width)), _mm512_add_epi32(each, by)};
+  }
+  /// The last lanes of the vector before `next` and the first ones of `next`; `carry` keeps what the following call needs.
+  static Batch shift_in(Batch& carry, Batch next, const Shift& shift) {
+    const __m512 shifted = _mm512_permutex2var_ps(next, shift.lanes, carry);
+    carry = next;
+    return shifted;
+  }
+  /// The carry with which the next shift_in() leaves the first lanes of `a` where they are.
+  static Batch carried(Batch a, const Shift& shift) { return _mm512_permutexvar_ps(shift.backward, a); }
+  /// Vector l becomes value l of the rows at row(0), row(1), ..., of which four values are read: rows k, k + 4, k + 8 and
+  /// k + 12 share a vector from the start, which spares half of a transpose's shuffles.
+  template <class Row>
+  static void load_columns(const Row& row, Batch (&column)[4]) {
+    __m512 a[4];
+#pragma GCC unroll 4
+    for (int k = 0; k < 4; ++k) {
+      a[k] = _mm512_insertf32x4(_mm512_castps128_ps512(_mm_load_ps(row(k))), _mm_load_ps(row(4 + k)), 1);
+      a[k] = _mm512_insertf32x4(_mm512_insertf32x4(a[k], _mm_load_ps(row(8 + k)), 2), _mm_load_ps(row(12 + k)), 3);
+    }
+    const __m512 b0 = _mm512_unpacklo_ps(a[0], a[1]), b1 = _mm512_unpackhi_ps(a[0], a[1]);
+    const __m512 b2 = _mm512_unpacklo_ps(a[2], a[3]), b3 = _mm512_unpackhi_ps(a[2], a[3]);
+    column[0] = _mm512_shuffle_ps(b0, b2, 0x44);
+    column[1] = _mm512_shuffle_ps(b0, b2, 0xee);
+    column[2] = _mm512_shuffle_ps(b1, b3, 0x44);
+    column[3] = _mm512_shuffle_ps(b1, b3, 0xee);
+  }
   static void transpose(Batch (&row)[width]) {
     __m512 a[16], b[16];
     for (int i = 0; i < 16; i += 2) {  // pairs of rows
@@ -143,6 +179,34 @@ struct Lanes<double> {
       const __m512d xy = _mm512_permutex2var_pd(x, _mm512_load_si512(lanes.xy[k]), y);
       p[k] = _mm512_permutex2var_pd(xy, _mm512_load_si512(lanes.z[k]), z);
     }
+  }
+  /// A shift by `count` lanes, below `width`.
+  struct Shift {
+    __m512i lanes;     ///< from the vector before where bit 3 is set
+    __m512i backward;
+  };
+  static Shift shift_by(int count) {
+    const __m512i each = _mm512_setr_epi64(0, 1, 2, 3, 4, 5, 6, 7), by = _mm512_set1_epi64(count);
+    return {_mm512_xor_si512(_mm512_sub_epi64(each, _mm512_sub_epi64(by, _mm512_set1_epi64(width))), _mm512_set1_epi64(width)), _mm512_add_epi64(each, by)};
+  }
+  /// The last lanes of the vector before `next` and the first ones of `next`; `carry` keeps what the following call needs.
+  static Batch shift_in(Batch& carry, Batch next, const Shift& shift) {
+    const __m512d shifted = _mm512_permutex2var_pd(next, shift.lanes, carry);
+    carry = next;
+    return shifted;
+  }
+  /// The carry with which the next shift_in() leaves the first lanes of `a` where they are.
+  static Batch carried(Batch a, const Shift& shift) { return _mm512_permutexvar_pd(shift.backward, a); }
+  template <class Row>
+  static void load_columns(const Row& row, Batch (&column)[2]) {
+    __m512d a[2];
+#pragma GCC unroll 2
+    for (int k = 0; k < 2; ++k) {
+      a[k] = _mm512_insertf64x2(_mm512_castpd128_pd512(_mm_load_pd(row(k))), _mm_load_pd(row(2 + k)), 1);
+      a[k] = _mm512_insertf64x2(_mm512_insertf64x2(a[k], _mm_load_pd(row(4 + k)), 2), _mm_load_pd(row(6 + k)), 3);
+    }
+    column[0] = _mm512_unpacklo_pd(a[0], a[1]);
+    column[1] = _mm512_unpackhi_pd(a[0], a[1]);
   }
   static void transpose(Batch (&row)[width]) {
     __m512d a[8];

@@ -13,6 +13,8 @@ namespace isa_neon64 {
 namespace {
 
 constexpr Isa this_isa = Isa::neon64;
+/// Grids of degrees 1 to 3 by loops of their own.
+constexpr bool fixed_degrees = true;
 
 // What the kernels call by the name of xsimd. Debian's xsimd (8.1) divides floats and takes their roots by estimates on
 // NEON, and its minimum and maximum treat a NaN otherwise than x86's do: other bits. So these few stand in for it.
@@ -130,20 +132,17 @@ template <class Scalar>
 struct ThroughMemory {
   using Batch = xsimd::batch<Scalar>;
   static constexpr int width = 16 / static_cast<int>(sizeof(Scalar));
-  static void store_masked(Scalar* p, Batch a, unsigned bits) {
-    for (int i = 0; i < width; ++i)
-      if (bits >> i & 1u) p[i] = a.lanes[i];
-  }
-  static Batch blend(Batch a, Batch b, unsigned bits) {
-    for (int i = 0; i < width; ++i)
-      if (bits >> i & 1u) a.lanes[i] = b.lanes[i];
-    return a;
-  }
   /// A shift by `count` lanes, below `width`.
   struct Shift {
     int count;
   };
   static Shift shift_by(int count) { return {count}; }
+  /// The carry with which the next shift_in() leaves the first lanes of `a` where they are.
+  static Batch carried(Batch a, const Shift& shift) {
+    Batch carry;
+    for (int i = 0; i < width; ++i) carry.lanes[i] = a.lanes[(i + shift.count) % width];
+    return carry;
+  }
   /// The last lanes of the vector before `next` and the first ones of `next`; `carry` keeps what the following call needs.
   static Batch shift_in(Batch& carry, Batch next, const Shift& shift) {
     Batch shifted;

@@ -15,6 +15,8 @@ namespace isa_sse2 {
 namespace {
 
 constexpr Isa this_isa = Isa::sse2;
+/// Grids of degrees 1 to 3 by loops of their own: not here, for the code's size.
+constexpr bool fixed_degrees = false;
 
 template <class T>
 struct Lanes;
@@ -64,6 +66,35 @@ struct Lanes<float> {
     p[1] = _mm_shuffle_ps(yz, _mm_unpackhi_ps(x, y), 0x48);
     p[2] = _mm_shuffle_ps(zx_high, yz_high, 0x88);
   }
+  /// A shift by `count` lanes, below `width`.
+  struct Shift {
+    int count;
+  };
+  static Shift shift_by(int count) { return {count}; }
+  /// The last lanes of the vector before `next` and the first ones of `next`; `carry` keeps what the following call needs.
+  static Batch shift_in(Batch& carry, Batch next, const Shift& shift) {
+    const Batch before = carry;
+    carry = next;
+    return shifted(before, next, shift.count);
+  }
+  /// The carry with which the next shift_in() leaves the first lanes of `a` where they are.
+  static Batch carried(Batch a, const Shift& shift) { return shifted(a, a, width - shift.count); }
+  /// `count` last lanes of a, then the first ones of b.
+  static Batch shifted(__m128 a, __m128 b, int count) {
+    switch (count) {
+      case 0: return b;
+      case 1: return _mm_move_ss(_mm_shuffle_ps(b, b, 0x90), _mm_shuffle_ps(a, a, 0xff));
+      case 2: return _mm_shuffle_ps(a, b, 0x4e);
+      case 3: return _mm_shuffle_ps(_mm_shuffle_ps(a, a, 0xf9), _mm_shuffle_ps(a, b, 0x0f), 0x84);
+      default: return a;
+    }
+  }
+  /// Vector l becomes value l of the rows at row(0), row(1), ...
+  template <class Row>
+  static void load_columns(const Row& row, Batch (&column)[width]) {
+    for (int k = 0; k < width; ++k) column[k] = load(row(k));
+    transpose(column);
+  }
   static void transpose(Batch (&row)[width]) {
     __m128 a = row[0], b = row[1], c = row[2], d = row[3];
     _MM_TRANSPOSE4_PS(a, b, c, d);
@@ -109,6 +140,27 @@ struct Lanes<double> {
     p[0] = _mm_unpacklo_pd(x, y);
     p[1] = _mm_shuffle_pd(z, x, 2);
     p[2] = _mm_unpackhi_pd(y, z);
+  }
+  /// A shift by `count` lanes, below `width`.
+  struct Shift {
+    int count;
+  };
+  static Shift shift_by(int count) { return {count}; }
+  /// The last lanes of the vector before `next` and the first ones of `next`; `carry` keeps what the following call needs.
+  static Batch shift_in(Batch& carry, Batch next, const Shift& shift) {
+    const Batch before = carry;
+    carry = next;
+    return shifted(before, next, shift.count);
+  }
+  /// The carry with which the next shift_in() leaves the first lanes of `a` where they are.
+  static Batch carried(Batch a, const Shift& shift) { return shifted(a, a, width - shift.count); }
+  static Batch shifted(__m128d a, __m128d b, int count) {
+    return count == 0 ? b : count == 1 ? _mm_shuffle_pd(a, b, 1) : a;
+  }
+  template <class Row>
+  static void load_columns(const Row& row, Batch (&column)[width]) {
+    for (int k = 0; k < width; ++k) column[k] = load(row(k));
+    transpose(column);
   }
   static void transpose(Batch (&row)[width]) {
     const __m128d a = row[0], b = row[1];

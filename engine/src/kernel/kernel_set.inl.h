@@ -7,6 +7,7 @@ inline constexpr int max_order = 16;  // coefficients of the highest degree
 #include "kernel/normal_kernel.inl.h"
 #include "kernel/curvature_kernel.inl.h"
 #include "kernel/grid_kernel.inl.h"
+#include "kernel/line_kernel.inl.h"
 #include "kernel/border_kernel.inl.h"
 #include "kernel/blend_kernel.inl.h"
 #include "kernel/net_kernel.inl.h"
@@ -22,8 +23,12 @@ constexpr KernelTable table = {
     evaluate_grid<Lanes<float>>,
     evaluate_grid<Lanes<double>>,
     evaluate_border<Lanes<float>>,
-    scatter<Lanes<float>>,
-    scatter<Lanes<double>>,
+    begin_lines<Lanes<float>>,
+    begin_lines<Lanes<double>>,
+    put_lines<Lanes<float>>,
+    put_lines<Lanes<double>>,
+    end_lines<Lanes<float>>,
+    end_lines<Lanes<double>>,
     blend<Lanes<float>>,
     blend<Lanes<double>>,
     pack_nets<float>,

@@ -33,6 +33,9 @@ struct GridJob {
   bool rational = false;
   const T* u_weights = nullptr;  ///< `[iu][order][i]`: values, first and second derivatives, degree_u + 1 of each
   const T* v_weights = nullptr;  ///< `[iv][order][j]`
+  /// Each lane has parameters of its own: weights are `[iu][order][i][lane]`, edges `[iu][lane]`, likewise along v.
+  /// Stores are plain then.
+  bool by_lane = false;
   int u_begin = 0, u_end = 0;    ///< the part of the grid to evaluate
   int v_begin = 0, v_end = 0;
 
@@ -89,15 +92,28 @@ struct BorderJob {
   T* position = nullptr;         ///< `[k][component][lane]`
 };
 
-/// Moves rows of a block's output, `[row][lane]` with `row_step` elements between rows, to one place a lane.
+/// Results of a block's lanes on their way to an array each, from piece to piece of the grid: what falls short of a whole
+/// aligned vector waits here.
 template <class T>
-struct ScatterJob {
-  const T* rows = nullptr;       ///< aligned to 64 bytes
-  std::ptrdiff_t row_step = block_lanes;
-  std::size_t count = 0;         ///< rows
-  T* const* lane = nullptr;      ///< block_lanes destinations; row k of lane l goes to lane[l][k * stride]
-  int lane_count = block_lanes;  ///< lanes beyond it are left out
-  std::ptrdiff_t stride = 1;
+struct LineState {
+  static constexpr int values = 64 / static_cast<int>(sizeof(T));
+  alignas(64) T part[block_lanes][values];  ///< the vector at `next` as far as it is known, up to `end`
+  alignas(64) T head[block_lanes][values];  ///< once next is beyond first: that one, which another lane may share
+  T* first[block_lanes];                    ///< the vector in which the lane begins, at value `begin`
+  T* next[block_lanes];
+  int begin[block_lanes], end[block_lanes];
+};
+
+/// The next values of all lanes.
+template <class T>
+struct LineJob {
+  LineState<T>* state = nullptr;
+  /// Value k of lane l at rows[k * step + l]; aligned to 64 bytes. Another 15 rows can be read, and mean nothing.
+  const T* rows = nullptr;
+  std::ptrdiff_t step = block_lanes;
+  std::ptrdiff_t count = 0;
+  int lane_count = block_lanes;  ///< lanes beyond it have the values and the memory of one before
+  bool streaming = false;        ///< non-temporal stores, as in GridJob
 };
 
 /// The control points of a block's patches, into its lanes, relative to an origin.
@@ -219,8 +235,13 @@ struct KernelTable {
   Isa (*grid_f32)(const GridJob<float>&);
   Isa (*grid_f64)(const GridJob<double>&);
   void (*border_f32)(const BorderJob<float>&);
-  void (*scatter_f32)(const ScatterJob<float>&);
-  void (*scatter_f64)(const ScatterJob<double>&);
+  /// Patch-contiguous results: where those of each lane begin, in order the pieces, and what is left in the end.
+  void (*begin_lines_f32)(LineState<float>& state, float* const* memory);
+  void (*begin_lines_f64)(LineState<double>& state, double* const* memory);
+  void (*put_lines_f32)(const LineJob<float>&);
+  void (*put_lines_f64)(const LineJob<double>&);
+  void (*end_lines_f32)(const LineState<float>& state, int lane_count, bool streaming);
+  void (*end_lines_f64)(const LineState<double>& state, int lane_count, bool streaming);
   Isa (*blend_f32)(const BlendJob<float>&);
   Isa (*blend_f64)(const BlendJob<double>&);
   void (*pack_f32)(const PackJob<float>&);

@@ -1,27 +1,4 @@
-// Kernels that move rather than compute, and the probes of the machine's limits. Included by isa_*.cpp as grid_kernel.inl.h is.
-
-/// Rows to lanes. Runs of `width` rows are transposed in registers and stored as one vector a lane.
-template <class L>
-void scatter(const ScatterJob<typename L::Scalar>& job) {
-  using T = typename L::Scalar;
-  if (job.stride != 1) {
-    for (std::size_t k = 0; k < job.count; ++k)
-      for (int lane = 0; lane < job.lane_count; ++lane)
-        job.lane[lane][static_cast<std::ptrdiff_t>(k) * job.stride] = job.rows[static_cast<std::ptrdiff_t>(k) * job.row_step + lane];
-    return;
-  }
-  typename L::Batch tile[L::width];
-  for (std::size_t k = 0; k < job.count; k += L::width) {
-    const T* rows = job.rows + static_cast<std::ptrdiff_t>(k) * job.row_step;
-    const int count = job.count - k < L::width ? static_cast<int>(job.count - k) : int{L::width};
-    for (int lane = 0; lane < job.lane_count; lane += L::width) {
-      for (int row = 0; row < L::width; ++row) tile[row] = L::load(rows + (row < count ? row : 0) * job.row_step + lane);
-      L::transpose(tile);
-      const int lanes = job.lane_count - lane < L::width ? job.lane_count - lane : int{L::width};
-      for (int l = 0; l < lanes; ++l) L::store_first(job.lane[lane + l] + k, tile[l], count);
-    }
-  }
-}
+// The end of streaming, and the probes of the machine's limits. Included by isa_*.cpp as grid_kernel.inl.h is.
 
 /// 16 independent chains hide the latency of the multiply-adds; the sum of all keeps the compiler from dropping them.
 template <class L>

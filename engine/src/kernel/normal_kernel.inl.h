@@ -93,28 +93,40 @@ inline typename L::Batch certain_direction(const typename L::Batch (&a)[3], cons
   return xsimd::select(certain, one, zero);
 }
 
-/// 1 in the lanes whose patch is one point along the edge that a parameter lies on.
+/// Lanes whose patch is one point along the edge that their parameter lies on.
 template <class L>
-inline typename L::Batch on_collapsed(const GridJob<typename L::Scalar>& job, int first_edge, std::uint8_t edge,
-                                      int lane) {
-  if (edge == edge_inside) return L::broadcast(0);
-  return L::load(job.collapsed + (first_edge + edge - edge_start) * block_lanes + lane);
+struct OnCollapsed {
+  typename L::Batch on;       ///< 1 there, 0 elsewhere
+  typename L::Batch inwards;  ///< -1 where the parameter is 1, 1 elsewhere
+};
+/// `edges` of parameter k; `first_edge`: 0 for u, 2 for v.
+template <class L>
+inline OnCollapsed<L> on_collapsed(const GridJob<typename L::Scalar>& job, const std::uint8_t* edges, int k,
+                                   int first_edge, int lane) {
+  alignas(64) typename L::Scalar on[L::width], inwards[L::width];
+  for (int l = 0; l < L::width; ++l) {
+    const int edge = edges[job.by_lane ? k * block_lanes + lane + l : k];
+    on[l] = edge == edge_inside ? 0 : job.collapsed[(first_edge + edge - edge_start) * block_lanes + lane + l];
+    inwards[l] = edge == edge_end ? -1 : 1;
+  }
+  return {L::load(on), L::load(inwards)};
 }
 
 /// r_uv of a sample of first order, made anew from the block: so few points ask for it that the others don't pay.
-template <class L>
+template <class L, bool ByLane>
 inline void polynomial_mixed(const GridJob<typename L::Scalar>& job, const Place& place, typename L::Batch (&duv)[3]) {
   const int count_u = job.degree_u + 1, count_v = job.degree_v + 1;
   typename L::Batch curve[3][max_order];
-  row_curves<L, 0>(job.net + place.lane, job.u_weights + (std::ptrdiff_t{place.iu} * 3 + 1) * count_u, count_u, count_v,
-                   curve);
-  combine<L>(job.v_weights + (std::ptrdiff_t{place.iv} * 3 + 1) * count_v, count_v, curve, duv);
+  const auto u_weights = weights_at<L, ByLane>(job.u_weights, place.iu, count_u, place.lane) + count_u;
+  const auto v_weights = weights_at<L, ByLane>(job.v_weights, place.iv, count_v, place.lane) + count_v;
+  row_curves<L, 0>(job.net + place.lane, u_weights, count_u, count_v, curve);
+  combine<L>(v_weights, count_v, curve, duv);
 }
-template <class L>
+template <class L, bool ByLane>
 inline void rational_mixed(const GridJob<typename L::Scalar>& job, const Place& place, typename L::Batch (&duv)[3]) {
   const int count_u = job.degree_u + 1, count_v = job.degree_v + 1;
-  const auto* u_weights = job.u_weights + std::ptrdiff_t{place.iu} * 3 * count_u;
-  const auto* v_weights = job.v_weights + std::ptrdiff_t{place.iv} * 3 * count_v;
+  const auto u_weights = weights_at<L, ByLane>(job.u_weights, place.iu, count_u, place.lane);
+  const auto v_weights = weights_at<L, ByLane>(job.v_weights, place.iv, count_v, place.lane);
   RowCurves<L, 1, 4, max_order> curves;
   for (int order = 0; order <= 1; ++order)
     row_curves<L, 0>(job.net + place.lane, u_weights + order * count_u, count_u, count_v, curves.by_u[order]);
@@ -127,6 +139,15 @@ inline void rational_mixed(const GridJob<typename L::Scalar>& job, const Place& 
   divide_mixed<L>(p_uv, p_u[3], p_v[3], sample, duv);
 }
 
+template <class L>
+inline void mixed_derivative(const GridJob<typename L::Scalar>& job, const Place& place, typename L::Batch (&duv)[3]) {
+  if (job.by_lane) {
+    job.rational ? rational_mixed<L, true>(job, place, duv) : polynomial_mixed<L, true>(job, place, duv);
+  } else {
+    job.rational ? rational_mixed<L, false>(job, place, duv) : polynomial_mixed<L, false>(job, place, duv);
+  }
+}
+
 /// The limit normals of lanes on a collapsed edge, by one derivative more: where r_u vanishes along v = 0, r_u(u, k) =
 /// k r_uv + ..., so that r_uv x r_v decides, and -r_uv x r_v at v = 1; likewise r_u x r_uv along u = 0. A corner of two
 /// collapsed edges has none. The error of r_uv is taken as 4 max(m, n) times that of the tangents.
@@ -134,11 +155,12 @@ template <class L>
 inline void limit_normals(const GridJob<typename L::Scalar>& job, const Tangents<L>& tangents, const Place& place,
                           typename L::Batch& doubtful, Normal<L>& normal) {
   const auto zero = L::broadcast(0), one = L::broadcast(1);
-  const std::uint8_t u_edge = job.u_edges[place.iu], v_edge = job.v_edges[place.iv];
-  const auto on_u = on_collapsed<L>(job, 0, u_edge, place.lane), on_v = on_collapsed<L>(job, 2, v_edge, place.lane);
+  const auto u_edge = on_collapsed<L>(job, job.u_edges, place.iu, 0, place.lane);
+  const auto v_edge = on_collapsed<L>(job, job.v_edges, place.iv, 2, place.lane);
+  const auto on_u = u_edge.on, on_v = v_edge.on;
   if (!xsimd::any((on_u + on_v) > zero)) return;
   typename L::Batch duv[3], a[3], b[3], n[3];
-  job.rational ? rational_mixed<L>(job, place, duv) : polynomial_mixed<L>(job, place, duv);
+  mixed_derivative<L>(job, place, duv);
   const auto along_v = on_v > zero;
   for (int c = 0; c < 3; ++c) {
     a[c] = xsimd::select(along_v, duv[c], tangents.du[c]);
@@ -148,8 +170,7 @@ inline void limit_normals(const GridJob<typename L::Scalar>& job, const Tangents
   const auto noise = tangents.noise, noise_uv = noise * L::broadcast(static_cast<typename L::Scalar>(4 * degree));
   const auto certain =
       certain_direction<L>(a, b, xsimd::select(along_v, noise_uv, noise), xsimd::select(along_v, noise, noise_uv), n);
-  const auto inwards = [&](std::uint8_t edge) { return edge == edge_end ? zero - one : one; };
-  const auto sign = xsimd::select(along_v, inwards(v_edge), inwards(u_edge));
+  const auto sign = xsimd::select(along_v, v_edge.inwards, u_edge.inwards);
   const auto found = (doubtful > zero) & ((on_u + on_v) == one) & (certain > zero);
   for (int c = 0; c < 3; ++c) normal.direction[c] = xsimd::select(found, sign * n[c], normal.direction[c]);
   normal.kind = xsimd::select(found, L::broadcast(limit_normal), normal.kind);

@@ -15,7 +15,29 @@ struct RowCurves {
   typename L::Batch by_u[Order + 1][Components][Capacity];
 };
 
+/// Weights that differ from lane to lane, `[i][lane]` of a block.
+template <class L>
+struct LaneWeights {
+  const typename L::Scalar* first;
+  typename L::Batch operator[](int i) const { return L::load(first + i * block_lanes); }
+  LaneWeights operator+(int count) const { return {first + count * block_lanes}; }
+};
+/// The weights of parameter k, of `count` coefficients, for the lanes from `lane` on.
+template <class L, bool ByLane>
+[[gnu::always_inline]] inline auto weights_at(const typename L::Scalar* table, int k, int count, int lane) {
+  const std::ptrdiff_t first = std::ptrdiff_t{k} * 3 * count;
+  if constexpr (ByLane) {
+    return LaneWeights<L>{table + first * block_lanes + lane};
+  } else {
+    return table + first;
+  }
+}
+
 /// A weight of all lanes, or one a lane.
+template <class L>
+inline typename L::Batch in_lanes(const typename L::Batch& weight) {
+  return weight;
+}
 template <class L>
 inline typename L::Batch in_lanes(typename L::Scalar weight) {
   return L::broadcast(weight);
@@ -26,8 +48,8 @@ inline typename L::Batch in_lanes(const typename L::Scalar (&weight)[L::width]) 
 }
 
 /// sum_j weights[j] * curve[component][j], in ascending order: one multiplication, then fused multiply-adds.
-template <class L, class Weight, int Components, int Capacity>
-inline void combine(const Weight* weights, int count, const typename L::Batch (&curve)[Components][Capacity],
+template <class L, class Weights, int Components, int Capacity>
+inline void combine(const Weights weights, int count, const typename L::Batch (&curve)[Components][Capacity],
                     typename L::Batch (&sum)[Components]) {
   const auto first = in_lanes<L>(weights[0]);
   for (int c = 0; c < Components; ++c) sum[c] = first * curve[c][0];
@@ -39,16 +61,16 @@ inline void combine(const Weight* weights, int count, const typename L::Batch (&
 }
 
 /// `Count` neighbouring row curves from index j: independent sums, so that the multiply-adds overlap.
-template <class L, int Count, int Components, int Capacity>
-inline void row_curves_from(int j, const typename L::Scalar* net, const typename L::Scalar* weights, int count_u,
+template <class L, int Count, class Weights, int Components, int Capacity>
+inline void row_curves_from(int j, const typename L::Scalar* net, const Weights weights, int count_u,
                             std::ptrdiff_t row, typename L::Batch (&curve)[Components][Capacity]) {
   const auto* coefficient = net + j * Components * block_lanes;
   typename L::Batch sum[Count][Components];
-  const auto first = L::broadcast(weights[0]);
+  const auto first = in_lanes<L>(weights[0]);
   for (int k = 0; k < Count; ++k)
     for (int c = 0; c < Components; ++c) sum[k][c] = first * L::load(coefficient + (k * Components + c) * block_lanes);
   for (int i = 1; i < count_u; ++i) {
-    const auto weight = L::broadcast(weights[i]);
+    const auto weight = in_lanes<L>(weights[i]);
     coefficient += row;
     for (int k = 0; k < Count; ++k)
       for (int c = 0; c < Components; ++c)
@@ -59,8 +81,8 @@ inline void row_curves_from(int j, const typename L::Scalar* net, const typename
 }
 
 /// The row curves of one u: curve[component][j] = sum_i weights[i] net[i][j][component], i ascending.
-template <class L, int DegreeV, int Components, int Capacity>
-inline void row_curves(const typename L::Scalar* net, const typename L::Scalar* weights, int count_u, int count_v,
+template <class L, int DegreeV, class Weights, int Components, int Capacity>
+inline void row_curves(const typename L::Scalar* net, const Weights weights, int count_u, int count_v,
                        typename L::Batch (&curve)[Components][Capacity]) {
   const std::ptrdiff_t row = std::ptrdiff_t{count_v} * Components * block_lanes;
   if constexpr (DegreeV > 0) {
@@ -105,9 +127,9 @@ inline void copy(const typename L::Batch (&from)[3], typename L::Batch (&to)[3])
 }
 
 /// One sample of order `Order` from the row curves; `weights` are those of v, `[order][j]`.
-template <class L, int Order, int Components, int Capacity, class Weight>
+template <class L, int Order, int Components, int Capacity, class Weights>
 [[gnu::always_inline]] inline void evaluate_sample(const RowCurves<L, Order, Components, Capacity>& curves,
-                                                   const Weight* weights, int count, Sample<L>& sample) {
+                                                   const Weights weights, int count, Sample<L>& sample) {
   typename L::Batch p[Components], p_u[Components], p_v[Components], p_uu[Components], p_uv[Components],
       p_vv[Components];
   combine<L>(weights, count, curves.by_u[0], p);

@@ -56,6 +56,16 @@ void append_weights(int degree, double t, AlignedVector<T>& out) {
                                  (value(degree - 2, i - 2) - 2 * value(degree - 2, i - 1) + value(degree - 2, i))));
 }
 
+/// The same of a parameter of each lane's own, `[order][i][lane]`: the odd ones have half of t.
+template <class T>
+void append_lane_weights(int degree, double t, AlignedVector<T>& out) {
+  AlignedVector<T> weights[2];
+  append_weights(degree, t, weights[0]);
+  append_weights(degree, t / 2, weights[1]);
+  for (std::size_t k = 0; k < weights[0].size(); ++k)
+    for (int lane = 0; lane < block_lanes; ++lane) out.push_back(weights[lane % 2][k]);
+}
+
 /// What the kernels ask of the caller where they can't decide: any function of the place will do.
 template <class T>
 int exact_normal(void*, int iu, int iv, int lane, T* normal) {
@@ -117,7 +127,7 @@ constexpr Output<T> scalar_outputs[] = {{"gaussian", &GridJob<T>::gaussian, 2},
 
 /// A block over 3 x 4 parameters, all outputs up to `order`.
 template <class T>
-void run_grid(const KernelTable& table, const Net& net, int order, bool streaming) {
+void run_grid(const KernelTable& table, const Net& net, int order, bool streaming, bool by_lane = false) {
   const double u[] = {0, 0.3125, 1}, v[] = {0, 0.1, 0.75, 1};
   constexpr int count_u = 3, count_v = 4;
   constexpr std::size_t samples = count_u * count_v, vectors = samples * 3 * block_lanes,
@@ -127,8 +137,9 @@ void run_grid(const KernelTable& table, const Net& net, int order, bool streamin
   Random random(static_cast<std::uint64_t>(100 * net.degree_u + net.degree_v));
   const AlignedVector<T> block = coefficients<T>(net, random);
   AlignedVector<T> u_weights, v_weights, doubt(block_lanes), noise(block_lanes), collapsed(4 * block_lanes);
-  for (const double t : u) append_weights(net.degree_u, t, u_weights);
-  for (const double t : v) append_weights(net.degree_v, t, v_weights);
+  const auto append = by_lane ? append_lane_weights<T> : append_weights<T>;
+  for (const double t : u) append(net.degree_u, t, u_weights);
+  for (const double t : v) append(net.degree_v, t, v_weights);
   for (int lane = 0; lane < block_lanes; ++lane) {
     const auto l = static_cast<std::size_t>(lane);
     noise[l] = lane == 9 ? T(-1) : static_cast<T>(std::ldexp(lane == 7 ? 1.0 : 0x1p-20, net.exponent));
@@ -148,8 +159,16 @@ void run_grid(const KernelTable& table, const Net& net, int order, bool streamin
   job.doubt = doubt.data();
   job.noise = noise.data();
   job.collapsed = net.collapsed ? collapsed.data() : nullptr;
-  job.u_edges = u_edges;
-  job.v_edges = v_edges;
+  std::vector<std::uint8_t> u_lane_edges, v_lane_edges;  // half of 1 is no edge
+  for (const std::uint8_t edge : u_edges)
+    for (int lane = 0; lane < block_lanes; ++lane)
+      u_lane_edges.push_back(lane % 2 == 1 && edge == edge_end ? edge_inside : edge);
+  for (const std::uint8_t edge : v_edges)
+    for (int lane = 0; lane < block_lanes; ++lane)
+      v_lane_edges.push_back(lane % 2 == 1 && edge == edge_end ? edge_inside : edge);
+  job.by_lane = by_lane;
+  job.u_edges = by_lane ? u_lane_edges.data() : u_edges;
+  job.v_edges = by_lane ? v_lane_edges.data() : v_edges;
   job.exact_normal = exact_normal<T>;
   job.smallest_sine = T(1e-6);
   job.umbilic_tolerance = T(1e-4);
@@ -173,7 +192,7 @@ void run_grid(const KernelTable& table, const Net& net, int order, bool streamin
   const std::string name = std::string("grid/") + type_name<T> + "/" + std::to_string(net.degree_u) + "x" +
                            std::to_string(net.degree_v) + (net.rational ? "/rational" : "/polynomial") + "/2^" +
                            std::to_string(net.exponent) + (net.collapsed ? "/collapsed" : "") + "/order" +
-                           std::to_string(order) + (streaming ? "/streaming" : "");
+                           std::to_string(order) + (streaming ? "/streaming" : "") + (by_lane ? "/by lane" : "");
   std::size_t next = 0;
   for (const auto& output : vector_outputs<T>)
     if (output.order <= order) print_hash(name, output.name, memory[next++].data(), vectors);
@@ -191,9 +210,11 @@ void run_grids(const KernelTable& table) {
     for (const bool rational : {false, true})
       for (const bool collapsed : {false, true})
         for (const int exponent : {-far, 0, far})
-          for (int order = 0; order <= 2; ++order)
-            for (const bool streaming : {false, true})
-              run_grid<T>(table, {degree_u, degree_v, rational, exponent, collapsed}, order, streaming);
+          for (int order = 0; order <= 2; ++order) {
+            const Net net{degree_u, degree_v, rational, exponent, collapsed};
+            for (const bool streaming : {false, true}) run_grid<T>(table, net, order, streaming);
+            run_grid<T>(table, net, order, false, true);
+          }
 }
 
 void run_borders(const KernelTable& table) {
@@ -221,16 +242,20 @@ void run_borders(const KernelTable& table) {
 }
 
 template <class T>
-void run_scatters(void (*scatter)(const ScatterJob<T>&)) {
+void run_lines(void (*begin)(LineState<T>&, T* const*), void (*put)(const LineJob<T>&),
+               void (*end)(const LineState<T>&, int, bool)) {
   for (const std::size_t count : {1u, 7u, 16u, 37u})
-    for (const std::ptrdiff_t stride : {1, 3}) {
+    for (const std::ptrdiff_t step : {16, 48}) {
       Random random(count);
-      AlignedVector<T> rows(count * block_lanes), out(block_lanes * (count * 3 + 1));
+      AlignedVector<T> rows((count + 16) * static_cast<std::size_t>(step)), out(block_lanes * (2 * count + 3));
       for (T& x : rows) x = static_cast<T>(uniform(random));
       T* lane[block_lanes];
-      for (std::size_t l = 0; l < block_lanes; ++l) lane[l] = out.data() + l * (count * 3 + 1);
-      scatter({rows.data(), block_lanes, count, lane, 13, stride});
-      print_hash(std::string("scatter/") + type_name<T> + "/" + std::to_string(count) + "/" + std::to_string(stride),
+      for (std::size_t l = 0; l < block_lanes; ++l) lane[l] = out.data() + 1 + (l < 13 ? l * (2 * count + l % 2) : 0);
+      LineState<T> state;
+      begin(state, lane);
+      for (int piece = 0; piece < 2; ++piece) put({&state, rows.data(), step, static_cast<std::ptrdiff_t>(count), 13, false});
+      end(state, 13, false);
+      print_hash(std::string("lines/") + type_name<T> + "/" + std::to_string(count) + "/" + std::to_string(step),
                  "values", out.data(), out.size());
     }
 }
@@ -258,8 +283,8 @@ int run(const char* isa) {
     run_grids<float>(*table);
     run_grids<double>(*table);
     run_borders(*table);
-    run_scatters<float>(table->scatter_f32);
-    run_scatters<double>(table->scatter_f64);
+    run_lines<float>(table->begin_lines_f32, table->put_lines_f32, table->end_lines_f32);
+    run_lines<double>(table->begin_lines_f64, table->put_lines_f64, table->end_lines_f64);
     run_blends<float>(table->blend_f32);
     run_blends<double>(table->blend_f64);
     return 0;

@@ -1,0 +1,161 @@
+// Kernel 2's way out, patch-contiguous: values of a block, `[value][lane]`, are transposed for a few lanes at once, and
+// what a lane gets is joined with what was left of its last vector, so that memory sees whole aligned vectors alone,
+// plain or streamed. Vectors in which one lane ends and the next begins are put together when all are through. Included
+// by isa_*.cpp as sample_kernel.inl.h is.
+
+/// Lanes whose values fit 16 bytes: what is transposed at once. More would cost shuffles across a vector, which one port
+/// alone executes.
+template <class L>
+inline constexpr int lane_group = 16 / static_cast<int>(sizeof(typename L::Scalar));
+
+template <class L>
+void begin_lines(LineState<typename L::Scalar>& state, typename L::Scalar* const* memory) {
+  using T = typename L::Scalar;
+  for (int l = 0; l < block_lanes; ++l) {
+    const int place = static_cast<int>(reinterpret_cast<std::uintptr_t>(memory[l]) / sizeof(T) % L::width);
+    state.begin[l] = state.end[l] = place;
+    state.first[l] = state.next[l] = memory[l] - place;
+  }
+}
+
+/// What the lanes of a group have in hand.
+template <class L>
+struct GroupLines {
+  typename L::Batch carry[lane_group<L>];
+  typename L::Shift shift[lane_group<L>];
+  typename L::Scalar* next[lane_group<L>];
+};
+
+/// Vectors that aren't a lane's first go to memory.
+template <class L, bool Streaming>
+[[gnu::always_inline]] inline void put_first(LineState<typename L::Scalar>& state, int l, typename L::Scalar* memory,
+                                             const typename L::Batch& vector) {
+  if (memory == state.first[l]) {
+    L::store(state.head[l], vector);
+  } else {
+    store<L, Streaming>(memory, vector);
+  }
+}
+
+/// The values of `width` rows for the lanes of a group. Step 0 reads the rows' distance from the job.
+template <class L, int Step>
+[[gnu::always_inline]] inline void load_group(const LineJob<typename L::Scalar>& job, const typename L::Scalar* rows,
+                                              typename L::Batch (&column)[lane_group<L>]) {
+  const std::ptrdiff_t step = Step > 0 ? Step : job.step;
+  L::load_columns([&](int k) { return rows + k * step; }, column);
+}
+
+/// The lanes from l on.
+template <class L, bool Streaming, int Step>
+[[gnu::always_inline]] inline void put_group(const LineJob<typename L::Scalar>& job, int l) {
+  constexpr int group = lane_group<L>, width = L::width;
+  LineState<typename L::Scalar>& state = *job.state;
+  GroupLines<L> out;
+#pragma GCC unroll 4
+  for (int k = 0; k < group; ++k) {
+    out.shift[k] = L::shift_by(state.end[l + k]);
+    out.carry[k] = L::carried(L::load(state.part[l + k]), out.shift[k]);
+    out.next[k] = state.next[l + k];
+  }
+  const auto* rows = job.rows + l;
+  const std::ptrdiff_t step = Step > 0 ? Step : job.step;
+  const std::ptrdiff_t tiles = job.count / width;
+  for (std::ptrdiff_t tile = 0; tile < tiles; ++tile, rows += width * step) {
+    typename L::Batch column[group];
+    load_group<L, Step>(job, rows, column);
+#pragma GCC unroll 4
+    for (int k = 0; k < group; ++k) column[k] = L::shift_in(out.carry[k], column[k], out.shift[k]);
+    if (tile == 0) {
+      for (int k = 0; k < group; ++k) put_first<L, Streaming>(state, l + k, out.next[k], column[k]);
+    } else {
+#pragma GCC unroll 4
+      for (int k = 0; k < group; ++k) store<L, Streaming>(out.next[k] + tile * width, column[k]);
+    }
+  }
+  const int rest = static_cast<int>(job.count % width);
+  typename L::Batch column[group];
+  if (rest > 0) {
+    load_group<L, Step>(job, rows, column);
+  } else {
+    for (int k = 0; k < group; ++k) column[k] = L::broadcast(0);
+  }
+#pragma GCC unroll 4
+  for (int k = 0; k < group; ++k) {
+    auto* next = out.next[k] + tiles * width;
+    int end = state.end[l + k] + rest;
+    auto vector = L::shift_in(out.carry[k], column[k], out.shift[k]);
+    if (end >= width) {
+      put_first<L, Streaming>(state, l + k, next, vector);
+      vector = L::shift_in(out.carry[k], column[k], out.shift[k]);
+      next += width;
+      end -= width;
+    }
+    L::store(state.part[l + k], vector);
+    state.end[l + k] = end;
+    state.next[l + k] = next;
+  }
+}
+
+template <class L, bool Streaming, int Step>
+void put_groups(const LineJob<typename L::Scalar>& job) {
+  for (int l = 0; l < job.lane_count; l += lane_group<L>) put_group<L, Streaming, Step>(job, l);
+}
+
+template <class L>
+void put_lines(const LineJob<typename L::Scalar>& job) {
+  if (job.step == block_lanes) {
+    job.streaming ? put_groups<L, true, block_lanes>(job) : put_groups<L, false, block_lanes>(job);
+  } else {
+    job.streaming ? put_groups<L, true, 0>(job) : put_groups<L, false, 0>(job);
+  }
+}
+
+/// Parts of vectors, one after the other: neighbours in one vector become one store.
+template <class L>
+class PartialVectors {
+ public:
+  using T = typename L::Scalar;
+  explicit PartialVectors(bool streaming) : streaming_(streaming), vector_(L::broadcast(0)) {}
+
+  /// Values begin .. end - 1 of the vector at `memory`.
+  [[gnu::always_inline]] void put(T* memory, const typename L::Batch& vector, int begin, int end) {
+    if (memory == memory_ && begin == end_) {
+      vector_ = xsimd::select(L::load(place) < L::broadcast(static_cast<T>(begin)), vector_, vector);
+    } else {
+      finish();
+      memory_ = memory;
+      vector_ = vector;
+      begin_ = begin;
+    }
+    end_ = end;
+    if (begin_ > 0 || end_ < L::width) return;
+    streaming_ ? L::stream(memory_, vector_) : L::store(memory_, vector_);
+    memory_ = nullptr;
+  }
+  void finish() {
+    if (memory_ == nullptr) return;
+    alignas(64) T values[L::width];
+    L::store(values, vector_);
+    for (int k = begin_; k < end_; ++k) memory_[k] = values[k];
+    memory_ = nullptr;
+  }
+
+ private:
+  alignas(64) static constexpr T place[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+  bool streaming_;
+  T* memory_ = nullptr;
+  int begin_ = 0, end_ = 0;
+  typename L::Batch vector_;
+};
+
+template <class L>
+void end_lines(const LineState<typename L::Scalar>& state, int lane_count, bool streaming) {
+  PartialVectors<L> partial(streaming);
+  for (int l = 0; l < lane_count; ++l) {
+    const bool several = state.next[l] != state.first[l];
+    const int begin = several ? 0 : state.begin[l];
+    if (several) partial.put(state.first[l], L::load(state.head[l]), state.begin[l], L::width);
+    if (begin < state.end[l]) partial.put(state.next[l], L::load(state.part[l]), begin, state.end[l]);
+  }
+  partial.finish();
+}
