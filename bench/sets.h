@@ -7,7 +7,8 @@
 
 namespace tessera::bench {
 
-/// "teapot": the 32 patches of tools/models/teapot.bpt. "bicubic20000": a wavy field of 200 x 100 bicubic patches.
+/// "teapot": the 32 patches of tools/models/teapot.bpt. "bicubic1000", "bicubic20000": wavy fields of 40 x 25 and of
+/// 200 x 100 bicubic patches, the larger one in doubles as well. "rational20000": its control points with weights.
 /// Ends the program with a message if the model cannot be read.
 const PatchSet& set_named(std::string_view name);
 

@@ -21,13 +21,15 @@ inline double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Calls `call` once an iteration in an arena of `threads`, and nothing else that counts. The shortest time in seconds;
+/// Calls `before` and then `call` once an iteration, which alone counts, in an arena of `threads`. The shortest time in seconds;
 /// nothing where a call failed, which skips the case with its message.
-inline std::optional<double> time_calls(benchmark::State& state, int threads, FunctionRef<Status()> call) {
+inline std::optional<double> time_calls(benchmark::State& state, int threads, FunctionRef<Status()> call,
+                                        FunctionRef<void()> before = [] {}) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   tbb::task_arena arena(threads);
   double best = std::numeric_limits<double>::infinity();
   for (auto _ : state) {
+    before();
     const auto start = std::chrono::steady_clock::now();
     Status status;
     arena.execute([&] { status = call(); });

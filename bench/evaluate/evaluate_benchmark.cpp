@@ -1,5 +1,6 @@
-// Grids of many patches: evaluate.OUTPUTS.LAYOUT. Each case checks the values that it timed against the reference evaluator
-// before it reports. Its limit is GridPlan::work().
+// Grids of many patches: evaluate.OUTPUTS.LAYOUT, with ".double" for doubles, ".streamed" where stores are non-temporal
+// whatever the size, and ".cold" where the caches hold other memory before each call. Each case checks the values that it
+// timed against the reference evaluator before it reports. Its limit is GridPlan::work().
 
 #include <benchmark/benchmark.h>
 
@@ -7,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <string_view>
 #include <type_traits>
 
 #include "base/aligned.h"
@@ -27,11 +29,16 @@ struct Case {
   GridOutputs outputs;
   Layout layout;
   Isa isa;
-  int threads;
+  int threads = 1;
+  Stores stores = Stores::automatic;
+  bool cold = false, twice = false;
 
   CaseName name() const {
-    return {"evaluate." + outputs_name() + (layout == Layout::blocks ? ".blocks" : ".interleaved"), set_name, "3",
-            square(static_cast<std::size_t>(size)), std::string(tessera::name(isa)), threads};
+    const bool rational = std::string_view(set_name).starts_with("rational");
+    return {"evaluate." + outputs_name() + (layout == Layout::blocks ? ".blocks" : ".interleaved") +
+                (twice ? ".double" : "") + (stores == Stores::streaming ? ".streamed" : "") + (cold ? ".cold" : ""),
+            set_name, rational ? "3r" : "3", square(static_cast<std::size_t>(size)), std::string(tessera::name(isa)),
+            threads};
   }
   std::string outputs_name() const {
     if (outputs.first_form) return "geometry";  // normals, forms, curvatures, directions, kinds
@@ -41,6 +48,7 @@ struct Case {
 };
 
 /// Memory for every output of one case, in either layout.
+template <class T>
 class Outputs {
  public:
   Outputs(const GridPlan& plan, const Case& c) : layout_(c.layout) {
@@ -49,15 +57,16 @@ class Outputs {
       if (c.outputs.*output.wanted) memory.assign(records * static_cast<std::size_t>(output.width), {});
     };
     std::size_t k = 0;
-    for_each_value_output<float>([&](const auto& output) {
+    for_each_value_output<T>([&](const auto& output) {
       auto& memory = values_[k++];
       make_room(output, memory);
       blocks_.*output.memory = memory;
       if (!memory.empty())
         views_.*output.view = std::remove_cvref_t<decltype(views_.*output.view)>::interleaved(memory);
     });
-    make_room(normal_kind_output<float>, normal_kinds_);
-    make_room(curvature_kind_output<float>, curvature_kinds_);
+    join_normals(records);
+    make_room(normal_kind_output<T>, normal_kinds_);
+    make_room(curvature_kind_output<T>, curvature_kinds_);
     blocks_.normal_kind = normal_kinds_;
     blocks_.curvature_kind = curvature_kinds_;
     if (!normal_kinds_.empty()) views_.normal_kind = View1<NormalKind>::interleaved(normal_kinds_);
@@ -78,24 +87,32 @@ class Outputs {
     const auto memory = blocks_.*output.memory;
     if (memory.empty()) return false;
     const std::size_t samples = plan.count_u() * plan.count_v(), width = static_cast<std::size_t>(output.width);
-    const float* p = memory.data() + width * (patch * samples + sample);
-    std::size_t step = 1;
-    if (layout_ == Layout::blocks) {
-      const PatchSet::Slot slot = set.slot(patch);
-      p = memory.data() + (slot.block * samples + sample) * width * PatchSet::lanes + slot.lane;
-      step = PatchSet::lanes;
-    }
-    value = width == 1 ? Vec3{p[0], 0, 0} : Vec3{p[0], p[step], p[2 * step]};
+    const PatchSet::Slot slot = set.slot(patch);
+    const std::size_t place = (slot.block * samples + sample) * width * PatchSet::lanes + slot.lane;
+    const auto component = [&](int c) -> double {
+      if (layout_ == Layout::interleaved) return (views_.*output.view).at(patch * samples + sample, c);
+      return memory[place + static_cast<std::size_t>(c) * PatchSet::lanes];
+    };
+    value = width == 1 ? Vec3{component(0), 0, 0} : Vec3{component(0), component(1), component(2)};
     return true;
   }
 
  private:
+  /// Positions and normals alone share records of six.
+  void join_normals(std::size_t records) {
+    if (views_.normal.empty() || views_.position.empty()) return;
+    values_[0].assign(6 * records, {});
+    blocks_.position = values_[0];
+    views_.position = View3<T>::interleaved(values_[0], 6, 0);
+    views_.normal = View3<T>::interleaved(values_[0], 6, 3);
+  }
+
   Layout layout_;
-  std::array<AlignedVector<float>, std::size(vector_outputs<float>) + std::size(scalar_outputs<float>)> values_;
+  std::array<AlignedVector<T>, std::size(vector_outputs<T>) + std::size(scalar_outputs<T>)> values_;
   AlignedVector<NormalKind> normal_kinds_;
   AlignedVector<CurvatureKind> curvature_kinds_;
-  GridBlocks<float> blocks_;
-  GridViews<float> views_;
+  GridBlocks<T> blocks_;
+  GridViews<T> views_;
 };
 
 /// What an output must be, and how far off it may be where it is well conditioned: far looser than the tests and far tighter than a
@@ -104,10 +121,10 @@ struct Expected {
   Vec3 value;
   double tolerance;
 };
-Expected expected_value(const std::string& name, const PatchSet& set, const SurfaceJet& jet, const LocalGeometry& g,
+Expected expected_value(const std::string& name, const Vec3& origin, const SurfaceJet& jet, const LocalGeometry& g,
                         double size) {
   const double bend = std::abs(g.first.curvature) + std::abs(g.second.curvature) + 1 / size;
-  if (name == "position") return {jet.position - set.origin(), 1e-5 * size};
+  if (name == "position") return {jet.position - origin, 1e-5 * size};
   if (name == "du") return {jet.du, 1e-5 * size};
   if (name == "dv") return {jet.dv, 1e-5 * size};
   if (name == "duu") return {jet.duu, 1e-4 * size};
@@ -125,7 +142,9 @@ Expected expected_value(const std::string& name, const PatchSet& set, const Surf
 }
 
 /// Every sample of 50 patches against the reference evaluators.
-bool check_values(const PatchSet& set, const GridPlan& plan, const std::vector<double>& t, const Outputs& out) {
+template <class T>
+bool check_values(const PatchSet& set, const GridPlan& plan, const std::vector<double>& t, const Outputs<T>& out) {
+  const Vec3 origin = sizeof(T) == 4 ? set.origin() : Vec3{};
   const double size = set.box().diagonal();
   const std::size_t step = std::max<std::size_t>(1, set.patch_count() / 50);
   bool right = true;
@@ -137,8 +156,8 @@ bool check_values(const PatchSet& set, const GridPlan& plan, const std::vector<d
       const bool conditioned =
           geometry.defined && length(cross(jet.du, jet.dv)) > 1e-3 * std::max(geometry.e, geometry.g) &&
           std::min(geometry.e, geometry.g) > 1e-6 * size * size / static_cast<double>(set.patch_count());
-      for_each_value_output<float>([&](const auto& output) {
-        const Expected expected = expected_value(output.name, set, jet, geometry, size);
+      for_each_value_output<T>([&](const auto& output) {
+        const Expected expected = expected_value(output.name, origin, jet, geometry, size);
         Vec3 value;
         const bool needs_normal = output.order == 2 ? output.name[0] != 'd' : std::string(output.name) == "normal";
         if (!out.read(set, plan, output, patch, sample, value) || (needs_normal && !conditioned)) return;
@@ -149,18 +168,27 @@ bool check_values(const PatchSet& set, const GridPlan& plan, const std::vector<d
   return right;
 }
 
+/// Fills the caches with other memory.
+void cool() {
+  static AlignedVector<std::byte> other(std::size_t{96} << 20);
+  for (std::size_t k = 0; k < other.size(); k += cache_line) other[k] = std::byte(std::to_integer<int>(other[k]) + 1);
+}
+
+template <class T>
 void run(benchmark::State& state, const Case& c) {
   const PatchSet& set = set_named(c.set_name);
   const std::vector<double> t = uniform_parameters(c.size);
-  auto plan = GridPlan::make(set, t, t, {.isa = c.isa});
+  auto plan = GridPlan::make(set, t, t, {.precision = c.twice ? Precision::double_precision : Precision::single_precision, .isa = c.isa});
   if (!plan) return state.SkipWithError(plan.status().message().c_str());
-  Outputs out(*plan, c);
+  Outputs<T> out(*plan, c);
   const Work work = plan->work(c.outputs);
   const LimitsAround around(c.isa, work.bytes_written);
   ExecutionReport report;
   Execution execution;
   execution.report = &report;
-  const auto best = time_calls(state, c.threads, [&] { return out.evaluate(set, *plan, execution); });
+  execution.stores = c.stores;
+  const auto call = [&] { return out.evaluate(set, *plan, execution); };
+  const auto best = c.cold ? time_calls(state, c.threads, call, [] { cool(); }) : time_calls(state, c.threads, call);
   const auto limits = around.best(state);
   if (!best || !limits) return;
   if (report.isa != c.isa) return state.SkipWithError("another instruction set ran than was asked for");
@@ -170,7 +198,9 @@ void run(benchmark::State& state, const Case& c) {
 }
 
 void add(const Case& c) {
-  add_case(c.name(), c.size == 9 ? quick_on_fastest(c.isa) : Part::full, [c](benchmark::State& state) { run(state, c); });
+  add_case(c.name(), c.size == 9 ? quick_on_fastest(c.isa) : Part::full, [c](benchmark::State& state) {
+    c.twice ? run<double>(state, c) : run<float>(state, c);
+  });
 }
 
 const bool registered = [] {
@@ -190,6 +220,19 @@ const bool registered = [] {
                              .normal_kind = true,
                              .curvature_kind = true};
   for (const Isa isa : available_isas()) {
+    for (const Layout layout : {Layout::blocks, Layout::interleaved}) {
+      for (const GridOutputs& outputs : {positions, normals, tangents, curvatures}) {
+        add({"bicubic1000", 9, outputs, layout, isa});
+        for (const int size : {9, 33}) add({"bicubic20000", size, outputs, layout, isa, 2, Stores::streaming});
+        for (const int size : {4, 5, 8, 9, 16, 33})
+          if (size != 33 || !outputs.duu) add({"bicubic20000", size, outputs, layout, isa, 1, Stores::streaming});
+        add({"bicubic20000", 9, outputs, layout, isa, 1, Stores::streaming, true});
+      }
+      for (const int size : {9, 33}) {
+        add({"rational20000", size, positions, layout, isa, 1, Stores::streaming});
+        add({"bicubic20000", size, positions, layout, isa, 1, Stores::streaming, false, true});
+      }
+    }
     for (const GridOutputs& outputs : {positions, normals, tangents})
       for (const Layout layout : {Layout::blocks, Layout::interleaved})
         for (const int size : {9, 33}) {
