@@ -109,7 +109,8 @@ class CertifiedTessellation {
   /// Writes the mesh of the set that the plan was made for, at any revision: the same triangles, whatever the control
   /// points (the bounds hold for the plan's own revision). Errors: buffer_too_small, stale (another number of patches,
   /// other degrees or collapsed borders), invalid_argument, cancelled. Nothing is written on any but cancelled. The same
-  /// bytes for any number of threads.
+  /// bytes for any number of threads, and on every instruction set that fuses multiply-adds; border positions on all.
+  /// Packed views (three floats a record) of large meshes are written past the caches unless execution.stores is plain.
   Status run(const PatchSet& set, const MeshViews& out, const Execution& execution = {}) const;
 
   class Impl;

@@ -121,6 +121,7 @@ Status check_sources(std::span<const BezierPatch> patches, std::span<const Patch
 }  // namespace
 
 const BlockGroup& PatchSet::Impl::group_of_block(std::size_t block) const {
+  if (groups.size() == 1) return groups.front();
   return *std::prev(std::upper_bound(groups.begin(), groups.end(), block,
                                      [](std::size_t b, const BlockGroup& group) { return b < group.first_block; }));
 }

@@ -1,8 +1,6 @@
 // Blocks and grids over threads. Two ways out of the kernels: block-interleaved memory, which they write themselves,
 // and patch-contiguous views, through a stage that stays in the first-level cache and leaves it line by line.
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -15,6 +13,7 @@
 #include "eval/grid_outputs.h"
 #include "eval/grid_plan_impl.h"
 #include "eval/staged_block.h"
+#include "eval/streaming_threshold.h"
 #include "eval/view_checks.h"
 #include "parallel/parallel_for.h"
 
@@ -25,18 +24,6 @@ namespace {
 constexpr std::size_t points_per_task = 16384;
 /// Below these many points one thread is faster than waking another.
 constexpr std::size_t serial_positions = 32768, serial_normals = 10240;
-
-/// Bytes beyond which streaming stores win: a third of the last-level cache, or eight times a core's second-level one
-/// where that is less. A last-level cache that many cores share is not one call's to fill: with 480 MB of it beside 2 MB
-/// a core, plain stores are 15% faster up to 28 MB, half as fast at 32 MB, and a sixth as fast at 200 MB.
-std::size_t streaming_threshold() {
-  static const std::size_t bytes = [] {
-    const long own = sysconf(_SC_LEVEL2_CACHE_SIZE), shared = sysconf(_SC_LEVEL3_CACHE_SIZE);
-    const std::size_t by_own = own > 0 ? static_cast<std::size_t>(own) * 8 : std::size_t{8} << 20;
-    return shared > 0 ? std::min(by_own, static_cast<std::size_t>(shared) / 3) : by_own;
-  }();
-  return bytes;
-}
 
 /// A part of a block's grid: rows of parameters u.
 struct Piece {

@@ -68,6 +68,17 @@ struct Lanes<float> {
   static Batch load_first(const float* p, int count) {
     return _mm512_maskz_loadu_ps(static_cast<__mmask16>((1u << count) - 1u), p);
   }
+  // Halves of eight lanes, each from or to a place of its own.
+  static Batch broadcast_halves(const float* low, const float* high) {
+    return _mm512_mask_broadcastss_ps(_mm512_set1_ps(*low), 0xff00, _mm_load_ss(high));
+  }
+  static Batch load_halves(const float* low, const float* high) {
+    return _mm512_insertf32x8(_mm512_castps256_ps512(_mm256_load_ps(low)), _mm256_load_ps(high), 1);
+  }
+  static void store_halves(float* low, float* high, Batch a) {  // the high half last
+    _mm256_storeu_ps(low, _mm512_castps512_ps256(a));
+    _mm256_storeu_ps(high, _mm512_extractf32x8_ps(a, 1));
+  }
   /// The first four values become the last.
   static Batch rotated(Batch a) {
     const __m512i bits = _mm512_castps_si512(a);

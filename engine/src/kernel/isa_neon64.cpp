@@ -107,6 +107,8 @@ template <class T>
 batch<T> sqrt(batch<T> a) {
   return Neon<T>::root(a);
 }
+inline batch<float> floor(batch<float> a) { return vrndmq_f32(a); }
+inline batch<float> ceil(batch<float> a) { return vrndpq_f32(a); }
 /// As x86 has it: the second where one is not a number.
 template <class T>
 batch<T> min(batch<T> a, batch<T> b) {

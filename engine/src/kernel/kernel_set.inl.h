@@ -17,6 +17,10 @@ inline constexpr int max_order = 16;  // coefficients of the highest degree
 #include "kernel/point_slots.inl.h"
 #include "kernel/point_kernel.inl.h"
 #include "kernel/point_store.inl.h"
+#include "kernel/chord_kernel.inl.h"
+#include "kernel/mesh_kernel.inl.h"
+#include "kernel/mesh_index.inl.h"
+#include "kernel/border_hash.inl.h"
 
 constexpr KernelTable table = {
     this_isa,
@@ -43,6 +47,12 @@ constexpr KernelTable table = {
     locate,
     store_points<Lanes<float>>,
     store_points<Lanes<double>>,
+    hash_borders<Lanes<float>>,
+    bound_chords<Lanes<float>>,
+    find_rates<Lanes<float>>,
+    write_mesh_vertices<Lanes<float>>,
+    write_mesh_indices<Lanes<float>>,
+    stream_lines<Lanes<float>>,
     fma_rate<Lanes<float>>,
     fma_rate<Lanes<double>>,
     fill_memory<Lanes<float>>,

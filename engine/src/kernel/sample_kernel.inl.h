@@ -46,6 +46,10 @@ template <class L>
 inline typename L::Batch in_lanes(const typename L::Scalar (&weight)[L::width]) {
   return L::load(weight);
 }
+template <class L>
+inline const typename L::Batch& in_lanes(const typename L::Batch& weight) {
+  return weight;
+}
 
 /// sum_j weights[j] * curve[component][j], in ascending order: one multiplication, then fused multiply-adds.
 template <class L, class Weights, int Components, int Capacity>

@@ -16,7 +16,7 @@
 namespace tessera {
 namespace {
 
-constexpr std::size_t patches_a_piece = 64;
+constexpr std::size_t patches_a_piece = 64, blocks_a_piece = 8;
 constexpr std::uint64_t most_vertices = std::uint64_t{1} << 32;  // 32-bit indices
 
 Status invalid(std::string message, std::size_t patch) {
@@ -30,11 +30,15 @@ float rounded_up(double x) {
 
 }  // namespace
 
+double vertex_rounding(int degree_u, int degree_v, bool rational, double size) {
+  const double roundings = (rational ? 2 : 1) * (degree_u + degree_v + 6.0);
+  return std::numbers::sqrt3 * roundings * 0x1p-24 * size;
+}
+
 double vertex_rounding(const BezierPatch& patch, const Vec3& origin) {
   double size = 0;
   for (const Vec3& p : patch.points()) size = std::max(size, max_abs(p - origin));
-  const double roundings = (patch.is_rational() ? 2 : 1) * (patch.degree_u() + patch.degree_v() + 6.0);
-  return std::numbers::sqrt3 * roundings * 0x1p-24 * size;
+  return vertex_rounding(patch.degree_u(), patch.degree_v(), patch.is_rational(), size);
 }
 
 Result<CertifiedPlanner> CertifiedPlanner::make(const PatchSet::Impl& set, const PlannerOptions& options,
@@ -43,14 +47,20 @@ Result<CertifiedPlanner> CertifiedPlanner::make(const PatchSet::Impl& set, const
   const std::size_t patches = set.patches.size();
   planner.shapes_.resize(patches);
   planner.roundings_.resize(patches);
-  planner.chords_.resize(patches);
-  Status status = parallel_for(patches, patches_a_piece, execution, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      planner.shapes_[k] = PatchShape::of(set.patches[k]);
-      planner.roundings_[k] = vertex_rounding(set.patches[k], set.origin);
-      planner.chords_[k] = ChordBound(set.patches[k]);
+  const auto bound = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t block = begin; block < end; ++block) {
+      planner.chords_.bound(set, block);
+      for (std::size_t lane = 0; lane < set.lane_counts[block]; ++lane) {
+        const std::size_t k = set.lane_patches[block * PatchSet::lanes + lane];
+        const BezierPatch& patch = set.patches[k];
+        const std::optional<double> size = planner.chords_.size(block, lane);
+        planner.shapes_[k] = PatchShape::of(patch, set.collapsed[k]);
+        planner.roundings_[k] = size ? vertex_rounding(patch.degree_u(), patch.degree_v(), false, *size)
+                                     : vertex_rounding(patch, set.origin);
+      }
     }
-  });
+  };
+  Status status = parallel_for(set.lane_counts.size(), blocks_a_piece, execution, bound);
   if (!status.ok()) return status;
   if (options.weld > 0) {
     planner.weld_ = weld_borders(set, planner.shapes_, planner.roundings_, options.weld, planner.edges_);
@@ -83,20 +93,21 @@ Status CertifiedPlanner::bound_turning_and_picture(const PatchSet::Impl& set, co
   return {};
 }
 
-std::optional<Rates> CertifiedPlanner::rates_for(const CellLimits& limits, std::size_t patch, int most) const {
+std::optional<Rates> CertifiedPlanner::rates_for(const CellLimits& limits, int most) const {
   const bool distance_alone = limits.chord && !limits.turning && !limits.picture;
-  return distance_alone ? chords_[patch].cheapest(limits.distance, most) : cheapest(limits, most);
+  return distance_alone ? limits.chord->cheapest(limits.distance, most) : cheapest(limits, most);
 }
 
 CertifiedPlanner::Choice CertifiedPlanner::choose(std::size_t patch, double tolerance, int most) const {
   const double given = roundings_[patch] + fit_error_;
   const PatchInPicture* const picture = options_.camera ? &pictures_[patch] : nullptr;
   const TurningBound* const turning = options_.angle && !shapes_[patch].is_curve ? &turnings_[patch] : nullptr;
+  const ChordBound chord = this->chord(patch);
   Choice choice;
   CellLimits limits;
   const double distance = picture ? std::min(tolerance, picture->distance()) : tolerance;
   if (!(given < distance)) choice.failure = given < tolerance ? Failure::rough_pixels : Failure::rough;
-  if (std::isfinite(distance)) limits.chord = &chords_[patch];
+  if (std::isfinite(distance)) limits.chord = &chord;
   limits.distance = distance - given;
   if (picture && picture->projected()) {
     limits.picture = picture->projected();
@@ -109,14 +120,14 @@ CertifiedPlanner::Choice CertifiedPlanner::choose(std::size_t patch, double tole
     limits.turning = turning;
     limits.angle = *options_.angle;
   }
-  std::optional<Rates> rates = rates_for(limits, patch, most);
+  std::optional<Rates> rates = rates_for(limits, most);
   if (rates && turning && !bounded)
     rates = Rates{std::max(rates->u, options_.angle_rate), std::max(rates->v, options_.angle_rate)};
   if (!rates) return {Failure::wide, {}};
   choice.rates = *rates;
   // Rates that were raised may be odd now: what holds for a half may not hold for the whole.
   if (!(limits.keeps(*rates))) choice.rates = {rates->u + rates->u % 2, rates->v + rates->v % 2};
-  choice.bound = chords_[patch].distance(choice.rates) + given;
+  choice.bound = chord.distance(choice.rates) + given;
   if (turning) choice.angle = bounded ? turning->angle(choice.rates) : std::numeric_limits<double>::infinity();
   if (picture) choice.pixels = picture->pixels(choice.rates, choice.bound);
   return choice;
@@ -156,9 +167,35 @@ Status CertifiedPlanner::refusal(Failure failure, std::size_t patch, double tole
                  patch);
 }
 
+Status CertifiedPlanner::choose_by_distance(double tolerance, std::vector<Rates>& rates, CertifiedPlan& plan,
+                                            const Execution& execution) const {
+  LeastIndex failed;
+  const auto choose_some = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t block = begin; block < end; ++block) {
+      const std::uint32_t* patches = set_->lane_patches.data() + block * PatchSet::lanes;
+      const std::size_t count = set_->lane_counts[block];
+      ChordBlocks::Lanes<double> left;
+      left.fill(tolerance);
+      for (std::size_t lane = 0; lane < count; ++lane) left[lane] = tolerance - (roundings_[patches[lane]] + fit_error_);
+      const ChordBlocks::Choice choice = chords_.cheapest(block, count, left, most_rate);
+      for (std::size_t lane = 0; lane < count; ++lane) {
+        const std::size_t k = patches[lane];
+        if (!(left[lane] > 0) || choice.rates[lane].u == 0) failed.add(k);
+        rates[k] = choice.rates[lane];
+        plan.bounds_[k] = rounded_up(choice.distance[lane] + (roundings_[k] + fit_error_));
+      }
+    }
+  };
+  if (Status status = parallel_for(set_->lane_counts.size(), blocks_a_piece, execution, choose_some); !status.ok())
+    return status;
+  if (!failed.found()) return {};
+  return refusal(choose(failed.index(), tolerance, most_rate).failure, failed.index(), tolerance);
+}
+
 Status CertifiedPlanner::choose_rates(double tolerance, std::vector<Rates>& rates, CertifiedPlan& plan,
                                       const Execution& execution) const {
   plan.bounds_.resize(rates.size());
+  if (!options_.angle && !options_.camera) return choose_by_distance(tolerance, rates, plan, execution);
   if (options_.angle) plan.angles_.resize(rates.size());
   if (options_.camera) plan.pixels_.resize(rates.size());
   LeastIndex failed;
@@ -233,10 +270,10 @@ Result<CertifiedPlan> CertifiedPlanner::plan(double tolerance, std::uint64_t mos
 Result<double> CertifiedPlanner::smallest_tolerance(std::uint64_t most_triangles, const Execution& execution) const {
   // One cell a patch keeps `high`; float vertices keep no more than `low`.
   double low = 0, high = 0;
-  for (std::size_t k = 0; k < chords_.size(); ++k) {
+  for (std::size_t k = 0; k < shapes_.size(); ++k) {
     const double given = roundings_[k] + fit_error_;
     low = std::max(low, given);
-    high = std::max(high, 1.001 * (given + chords_[k].distance({1, 1})));
+    high = std::max(high, 1.001 * (given + chord(k).distance({1, 1})));
   }
   high = std::max(high, 1.001 * low);
   if (Result<CertifiedPlan> plan = this->plan(high, most_triangles, execution); !plan) return plan.status();

@@ -9,7 +9,7 @@
 
 #include "block/patch_set_impl.h"
 #include "tess/cell_limits.h"
-#include "tess/chord_bound.h"
+#include "tess/chord_blocks.h"
 #include "tess/picture.h"
 #include "tess/shared_edges.h"
 #include "tess/stitched_patch.h"
@@ -23,6 +23,8 @@ namespace tessera {
 /// coefficient, of the weights, and of the sums (Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., sec. 3.1).
 /// The terms' sizes add up to at most the largest |V|, and so they do for rational patches, over the sum of weights.
 double vertex_rounding(const BezierPatch& patch, const Vec3& origin);
+/// The same by `size`, the largest |x|, |y|, |z| of its control points relative to the origin.
+double vertex_rounding(int degree_u, int degree_v, bool rational, double size);
 
 /// Rates stay at most this: parameters i / rate are then well apart in float.
 inline constexpr int most_rate = 4096;
@@ -57,7 +59,7 @@ struct PlannerOptions {
 /// What is known of a set before a tolerance is.
 class CertifiedPlanner {
  public:
-  /// Errors: cancelled, out_of_memory.
+  /// Errors: cancelled, out_of_memory. The set must outlive the planner.
   static Result<CertifiedPlanner> make(const PatchSet::Impl& set, const PlannerOptions& options,
                                        const Execution& execution);
 
@@ -87,25 +89,30 @@ class CertifiedPlanner {
   };
 
   CertifiedPlanner(const PatchSet::Impl& set, const PlannerOptions& options)
-      : options_(options), edges_(set), fit_error_(set.fit_error.distance) {}
+      : set_(&set), options_(options), edges_(set), fit_error_(set.fit_error.distance), chords_(set) {}
+  ChordBound chord(std::size_t patch) const { return chords_.chord(set_->slots[patch].block, set_->slots[patch].lane); }
   Status bound_turning_and_picture(const PatchSet::Impl& set, const Execution& execution);
   Choice choose(std::size_t patch, double tolerance, int most) const;
-  std::optional<Rates> rates_for(const CellLimits& limits, std::size_t patch, int most) const;
+  std::optional<Rates> rates_for(const CellLimits& limits, int most) const;
   /// Rates and bounds of all patches.
   Status choose_rates(double tolerance, std::vector<Rates>& rates, CertifiedPlan& plan,
                       const Execution& execution) const;
+  /// The same where nothing but a distance is to be kept, block by block.
+  Status choose_by_distance(double tolerance, std::vector<Rates>& rates, CertifiedPlan& plan,
+                            const Execution& execution) const;
   Status refusal(Failure failure, std::size_t patch, double tolerance) const;
   std::string wanted(double tolerance) const;
   std::vector<Division> divide(std::span<const Rates> rates) const;
   std::span<const PatchShape> divided_shapes() const { return weld_.shapes.empty() ? shapes_ : weld_.shapes; }
 
+  const PatchSet::Impl* set_;
   PlannerOptions options_;
   SharedEdges edges_;
   double fit_error_;
   std::vector<PatchShape> shapes_;
   Weld weld_;
   std::vector<double> roundings_;  ///< vertex_rounding() of each patch, or by how much its vertices are off when welded
-  std::vector<ChordBound> chords_;
+  ChordBlocks chords_;
   std::vector<TurningBound> turnings_;    ///< if there is an angle
   std::vector<PatchInPicture> pictures_;  ///< if there is a camera
 };

@@ -8,33 +8,32 @@
 
 #include "base/guard.h"
 #include "base/text.h"
+#include "kernel/kernel_table.h"
 #include "parallel/parallel_for.h"
-#include "tess/border_points.h"
 #include "tess/certified_plan.h"
+#include "tess/mesh_tables.h"
 #include "tess/mesh_views.h"
+#include "tess/patch_writer.h"
 #include "tess/welded_vertices.h"
 
 namespace tessera {
 namespace {
 
-constexpr std::size_t patches_a_piece = 16;
+constexpr std::size_t patches_a_piece = 64;
 
 }  // namespace
 
 class CertifiedTessellation::Impl {
  public:
-  Impl(const PatchSet& set, CertifiedPlan plan, const CertifiedPlanner& planner)
+  Impl(const PatchSet& set, CertifiedPlan plan, const CertifiedPlanner& planner, Isa isa)
       : plan_(std::move(plan)),
         shapes_(planner.shapes().begin(), planner.shapes().end()),
         weld_(planner.weld()),
         origin_(set.origin()),
-        certified_(set.fit_error().certified) {
+        certified_(set.fit_error().certified),
+        isa_(isa) {
     for (std::size_t k = 0; k < plan_.patch_count(); ++k)
-      for (const Side side : all_sides) {
-        const BezierPatch& patch = set.patch(k);
-        weights_.add(runs_along_u(side) ? patch.degree_u() : patch.degree_v(),
-                     plan_.division(k).border[static_cast<std::size_t>(side)]);
-      }
+      tables_.add(shapes_[k].degree_u, shapes_[k].degree_v, plan_.division(k));
     for (const float bound : plan_.bounds()) bound_ = std::max(bound_, bound);
     for (const float pixels : plan_.pixels()) pixels_ = std::max(pixels_, pixels);
     for (const float angle : plan_.angles()) {
@@ -55,50 +54,24 @@ class CertifiedTessellation::Impl {
   Status run(const PatchSet& set, const MeshViews& out, const Execution& execution) const {
     if (Status status = check_views(out, plan_.capacity()); !status.ok()) return status;
     if (Status status = check_shapes(set, shapes_); !status.ok()) return status;
-    const auto write = [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) write_patch(set, k, out);
-    };
+    const PatchWriter writer(set.impl(), plan_, tables_, kernel::kernels(isa_), out, execution.stores);
+    const auto write = [&](std::size_t begin, std::size_t end) { writer.write(begin, end); };
     if (Status status = parallel_for(plan_.patch_count(), patches_a_piece, execution, write); !status.ok()) return status;
+    if (execution.report) {
+      execution.report->isa = isa_;
+      execution.report->streaming = writer.streaming();
+    }
     return write_welded(weld_, plan_, set, out, execution);
   }
 
  private:
-  void write_patch(const PatchSet& set, std::size_t k, const MeshViews& out) const {
-    const Division& division = plan_.division(k);
-    if (division.empty) return;
-    const std::size_t first = plan_.first_vertex(k);
-    std::size_t vertex = first;
-    division.for_parameters([&](double u, double v) { write_vertex(set.patch(k), u, v, vertex++, out); });
-    vertex = first + division.inner_count();
-    for (const Side side : all_sides) {
-      const int rate = division.border[static_cast<std::size_t>(side)];
-      write_border(set.impl(), k, side, rate, weights_, out.position, vertex);
-      vertex += static_cast<std::size_t>(rate);
-    }
-    division.write_triangles(static_cast<std::uint32_t>(first), out.indices.data() + 3 * plan_.first_triangle(k));
-    if (!out.patch.empty())
-      std::fill(out.patch.data() + plan_.first_triangle(k), out.patch.data() + plan_.first_triangle(k + 1),
-                static_cast<std::uint32_t>(k));
-  }
-
-  void write_vertex(const BezierPatch& patch, double u, double v, std::size_t vertex, const MeshViews& out) const {
-    const Vec3 p = de_casteljau(patch, u, v) - origin_, n = unit_normal(patch, u, v).direction;
-    const double position[3] = {p.x, p.y, p.z}, normal[3] = {n.x, n.y, n.z};
-    for (int c = 0; c < 3; ++c) {
-      out.position.at(vertex, c) = static_cast<float>(position[c]);
-      if (!out.normal.empty()) out.normal.at(vertex, c) = static_cast<float>(normal[c]);
-    }
-    if (out.parameter.empty()) return;
-    out.parameter.at(vertex, 0) = static_cast<float>(u);
-    out.parameter.at(vertex, 1) = static_cast<float>(v);
-  }
-
   CertifiedPlan plan_;
   std::vector<PatchShape> shapes_;
   Weld weld_;
   Vec3 origin_;
   bool certified_;
-  BorderWeights weights_;
+  Isa isa_;
+  MeshTables tables_;
   float bound_ = 0, angle_ = 0, pixels_ = 0;
   std::size_t without_angle_ = 0;
 };
@@ -146,6 +119,8 @@ Result<CertifiedTessellation> CertifiedTessellation::make(const PatchSet& set, c
       return Status(StatusCode::unsupported, "a tessellation needs float Bernstein blocks, the set has none");
     const Result<PlannerOptions> planned = checked(options, set);
     if (!planned) return planned.status();
+    const Result<Isa> isa = options.isa ? parse_isa(name(*options.isa)) : default_isa();
+    if (!isa) return isa.status();
     Result<CertifiedPlanner> planner = CertifiedPlanner::make(set.impl(), *planned, execution);
     if (!planner) return planner.status();
     double tolerance = std::numeric_limits<double>::infinity();
@@ -159,7 +134,7 @@ Result<CertifiedTessellation> CertifiedTessellation::make(const PatchSet& set, c
     }
     Result<CertifiedPlan> plan = planner->plan(tolerance, options.most_triangles, execution);
     if (!plan) return plan.status();
-    return CertifiedTessellation(std::make_unique<Impl>(set, std::move(*plan), *planner));
+    return CertifiedTessellation(std::make_unique<Impl>(set, std::move(*plan), *planner, *isa));
   });
 }
 

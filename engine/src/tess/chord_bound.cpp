@@ -14,6 +14,14 @@ struct Net {
   int rows = 0, columns = 0;
   std::array<Homogeneous, (max_degree + 1) * (max_degree + 1)> at;
 
+  Net() = default;
+  Net(const Net& other) { *this = other; }
+  Net& operator=(const Net& other) {  // no more than there is
+    rows = other.rows;
+    columns = other.columns;
+    std::copy_n(other.at.begin(), other.size(), at.begin());
+    return *this;
+  }
   int size() const { return rows * columns; }
   Homogeneous& operator()(int i, int j) { return at[static_cast<std::size_t>(i * columns + j)]; }
 };

@@ -37,6 +37,9 @@ class ChordBound {
   /// Exact but for rounding, which is added: a proven bound. Infinite where it is beyond double.
   explicit ChordBound(const BezierPatch& patch);
   ChordBound() = default;  ///< of a plane
+  using Pieces = std::array<SecondDerivatives, 9>;  ///< whole; u < 1/2, u > 1/2; v < 1/2, v > 1/2; quarters
+  explicit ChordBound(const Pieces& pieces) : pieces_(pieces) {}
+  const Pieces& pieces() const { return pieces_; }
 
   /// The largest distance between the patch and a mesh of it, each of whose triangles has a parameter box of at most
   /// 1 / rates.u x 1 / rates.v, and where a rate is even none straddles the middle of that parameter.
@@ -56,7 +59,7 @@ class ChordBound {
   /// The smallest rate along the other parameter, with `fixed` along u or v.
   std::optional<Rates> with_rate(double tolerance, int fixed, bool fixed_u, int most) const;
 
-  std::array<SecondDerivatives, 9> pieces_;  // whole; u < 1/2, u > 1/2; v < 1/2, v > 1/2; quarters
+  Pieces pieces_;
 };
 
 }  // namespace tessera

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "block/patch_set_impl.h"
 #include "parallel/least_index.h"
 #include "parallel/parallel_for.h"
 
@@ -61,7 +62,7 @@ Status check_shapes(const PatchSet& set, std::span<const PatchShape> planned) {
   LeastIndex changed;
   const auto compare = [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      if (PatchShape::of(set.patch(k)) == planned[k]) continue;
+      if (PatchShape::of(set.impl().patches[k], set.impl().collapsed[k]) == planned[k]) continue;
       changed.add(k);
       return;
     }

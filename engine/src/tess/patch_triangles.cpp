@@ -58,11 +58,11 @@ std::uint32_t* write_whole_cells(std::uint32_t first, std::uint32_t row, int cou
 
 }  // namespace
 
-PatchShape PatchShape::of(const BezierPatch& patch) {
+PatchShape PatchShape::of(const BezierPatch& patch, EdgeMask collapsed) {
   PatchShape shape;
   shape.degree_u = static_cast<std::uint8_t>(patch.degree_u());
   shape.degree_v = static_cast<std::uint8_t>(patch.degree_v());
-  shape.collapsed = patch.collapsed_edges();
+  shape.collapsed = collapsed;
   shape.is_curve = shape.collapsed.any() && has_no_area(patch);
   return shape;
 }

@@ -14,7 +14,8 @@ struct PatchShape {
   EdgeMask collapsed;
   bool is_curve = false;  ///< a curve or a point: no triangle has an area
 
-  static PatchShape of(const BezierPatch& patch);
+  static PatchShape of(const BezierPatch& patch) { return of(patch, patch.collapsed_edges()); }
+  static PatchShape of(const BezierPatch& patch, EdgeMask collapsed);  ///< patch.collapsed_edges()
   friend bool operator==(const PatchShape& a, const PatchShape& b) {
     return a.degree_u == b.degree_u && a.degree_v == b.degree_v && a.collapsed.bits == b.collapsed.bits &&
            a.is_curve == b.is_curve;

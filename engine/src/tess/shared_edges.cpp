@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 
+#include "kernel/kernel_table.h"
+
 namespace tessera {
 namespace {
 
@@ -11,22 +13,18 @@ std::uint32_t bits(const PackedBorder& border, int point, int component) {
   return std::bit_cast<std::uint32_t>(border.value(point, component));
 }
 
-/// The finaliser of MurmurHash3 (Appleby 2011): every bit of x moves every bit of the result.
-std::uint64_t mixed(std::uint64_t x) {
-  x = (x ^ x >> 33) * 0xff51afd7ed558ccdULL;
-  x = (x ^ x >> 33) * 0xc4ceb9fe1a85ec53ULL;
-  return x ^ x >> 33;
-}
-
-/// The same for both directions: a sum over the points, each mixed with its distance to the nearer end.
-std::uint64_t hash(const PackedBorder& border) {
-  std::uint64_t sum = static_cast<std::uint64_t>(border.count() * 8 + border.components());
-  for (int k = 0; k < border.count(); ++k) {
-    auto point = static_cast<std::uint64_t>(std::min(k, border.count() - 1 - k)) + 1;
-    for (int c = 0; c < border.components(); ++c) point = mixed(point ^ std::uint64_t{bits(border, k, c)} << 16);
-    sum += point;
-  }
-  return mixed(sum);
+/// Of all borders, `[block][side][lane]`: the same for borders that are equal(), in either direction.
+std::vector<std::uint32_t> hashes_of(const PatchSet::Impl& set) {
+  std::vector<std::uint32_t> hashes(set.lane_counts.size() * 4 * PatchSet::lanes);
+  const kernel::KernelTable& kernels = kernel::default_kernels();
+  for (const BlockGroup& group : set.groups)
+    for (std::size_t block = 0; block < group.block_count; ++block)
+      kernels.hash_borders({.net = set.single.bernstein.data() + group.first_value + block * group.block_values,
+                            .degree_u = group.degree_u,
+                            .degree_v = group.degree_v,
+                            .rational = group.rational,
+                            .hash = hashes.data() + (group.first_block + block) * 4 * PatchSet::lanes});
+  return hashes;
 }
 
 }  // namespace
@@ -62,26 +60,39 @@ PackedBorder::PackedBorder(const PatchSet::Impl& set, std::size_t patch, Side si
 }
 
 SharedEdges::SharedEdges(const PatchSet::Impl& set) : edges_(4 * set.patches.size(), none) {
-  // Open addressing, at most half full; an entry is a border's number + 1.
-  const std::size_t mask = std::bit_ceil(2 * edges_.size() + 1) - 1;
-  std::vector<std::uint32_t> table(mask + 1, 0);
-  for (std::size_t patch = 0; patch < set.patches.size(); ++patch)
+  // Open addressing, at most four fifths full. A border's number + 1, and the hash, which is compared before the border.
+  struct Entry {
+    std::uint32_t hash = 0, border = 0;
+  };
+  const std::size_t mask = std::bit_ceil(edges_.size() + edges_.size() / 4 + 1) - 1;
+  std::vector<Entry> table(mask + 1);
+  const std::vector<std::uint32_t> hashes = hashes_of(set);
+  const auto hash_of = [&](std::size_t patch, std::size_t side) {
+    const PatchSet::Slot slot = set.slots[patch];
+    return hashes[(std::size_t{slot.block} * 4 + side) * PatchSet::lanes + slot.lane];
+  };
+  constexpr std::size_t ahead = 8;  // patches, from a fetch to its use
+  for (std::size_t patch = 0; patch < set.patches.size(); ++patch) {
+    if (patch + ahead < set.patches.size())
+      for (std::size_t side = 0; side < 4; ++side) __builtin_prefetch(&table[hash_of(patch + ahead, side) & mask]);
     for (const Side side : all_sides) {
       if (set.collapsed[patch].has(edge_of(side))) continue;
-      const PackedBorder border(set, patch, side);
       const std::size_t number = 4 * patch + static_cast<std::size_t>(side);
-      std::size_t at = hash(border) & mask;
-      for (; table[at] != 0; at = (at + 1) & mask) {
-        const std::size_t other = table[at] - 1;
-        const PackedBorder met(set, other / 4, all_sides[other % 4]);
+      const std::uint32_t hash = hash_of(patch, static_cast<std::size_t>(side));
+      std::size_t at = hash & mask;
+      for (; table[at].border != 0; at = (at + 1) & mask) {
+        if (table[at].hash != hash) continue;
+        const std::size_t other = table[at].border - 1;
+        const PackedBorder border(set, patch, side), met(set, other / 4, all_sides[other % 4]);
         if (!equal(border, met, false) && !equal(border, met, true)) continue;
         edges_[number] = edges_[other];
         break;
       }
-      if (table[at] != 0) continue;
-      table[at] = static_cast<std::uint32_t>(number + 1);
+      if (table[at].border != 0) continue;
+      table[at] = {hash, static_cast<std::uint32_t>(number + 1)};
       edges_[number] = static_cast<std::uint32_t>(count_++);
     }
+  }
 }
 
 void SharedEdges::renumber(std::span<const std::uint32_t> numbers) {

@@ -28,6 +28,7 @@ class PackedBorder {
   PackedBorder(const PatchSet::Impl& set, std::size_t patch, Side side);
   int count() const { return count_; }
   int components() const { return components_; }
+  float scale() const { return scale_; }  ///< a power of two
   float value(int point, int component) const {
     return scale_ * first_[point * step_ + component * std::ptrdiff_t{PatchSet::lanes}];
   }

@@ -73,6 +73,27 @@ std::size_t Division::triangle_count() const {
   return count + 2 * size(inner.u - 2) + 2 * size(inner.v - 2) + 2 * size(inner.u - 2) * size(inner.v - 2);
 }
 
+Division::Parameters Division::parameters(std::size_t vertex) const {
+  if (vertex < inner_count()) {
+    const auto row = static_cast<std::size_t>(inner.v - 1);
+    return {double(vertex / row + 1) / inner.u, double(vertex % row + 1) / inner.v};
+  }
+  vertex -= inner_count();
+  std::size_t side = 0;
+  for (; side < 3 && vertex >= static_cast<std::size_t>(border[side]); ++side) vertex -= static_cast<std::size_t>(border[side]);
+  const double rate = border[side], along = double(vertex) / rate, back = (rate - double(vertex)) / rate;
+  const Parameters at[] = {{along, 0}, {1, along}, {back, 1}, {0, back}};
+  return at[side];
+}
+
+std::vector<std::uint32_t> strip_codes(int rate, int inner, std::uint32_t border_code) {
+  std::vector<std::uint32_t> corners(static_cast<std::size_t>(3 * (rate + inner - 2)));
+  const auto number = [](int k) { return static_cast<std::uint32_t>(k); };
+  write_strip(Line{rate, 0, rate, false, [=](int k) { return border_code + number(k); }},
+              Line{inner, 1, inner - 1, false, [=](int k) { return number(k - 1); }}, corners.data());
+  return corners;
+}
+
 std::uint32_t* Division::write_triangles(std::uint32_t first, std::uint32_t* to) const {
   if (empty) return to;
   const std::uint32_t ring = first + static_cast<std::uint32_t>(inner_count());

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "tess/patch_triangles.h"
 #include "tess/shared_edges.h"
@@ -36,16 +37,23 @@ struct Division {
   std::size_t vertex_count() const { return empty ? 0 : inner_count() + ring_count(); }
   std::size_t triangle_count() const;
 
+  bool has_inner_points() const { return inner.u > 1; }
+  /// The place of a vertex.
+  struct Parameters {
+    double u, v;
+  };
+  Parameters parameters(std::size_t vertex) const;
   /// visit(u, v) for each vertex, in order.
   template <class Visit>
   void for_parameters(Visit visit) const;
   /// Writes the corners of all triangles, counter-clockwise seen from where r_u x r_v points; vertices are counted from
   /// `first`. Returns the end of what it wrote.
   std::uint32_t* write_triangles(std::uint32_t first, std::uint32_t* indices) const;
-
- private:
-  bool has_inner_points() const { return inner.u > 1; }
 };
+
+/// The corners of the triangles between a border at `rate` and inner points at `inner` >= 2 beside it, as
+/// Division::write_triangles writes them: border point k is border_code + k, inner point k / inner is k - 1.
+std::vector<std::uint32_t> strip_codes(int rate, int inner, std::uint32_t border_code);
 
 template <class Visit>
 void Division::for_parameters(Visit visit) const {

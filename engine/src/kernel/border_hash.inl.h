@@ -1,0 +1,49 @@
+// Hashes of the borders of a block of patches, lanes = patches: the same for both directions, and for weights that differ by
+// a power of two (tess/shared_edges.h). A sum over the control points, each mixed with its distance to the nearer end, by
+// multiplications and shifts as in MurmurHash3 (Appleby 2011). Included by isa_*.cpp as sample_kernel.inl.h is.
+
+template <class L>
+[[gnu::always_inline]] inline Indices<L> mixed_bits(const Indices<L>& x) {
+  const Indices<L> y = (x ^ x >> 16) * 0x85ebca6bu;
+  return y ^ y >> 13;
+}
+
+template <class L>
+void hash_border(const BorderHashJob& job, const float* first, std::ptrdiff_t step, int count, std::uint32_t* hash) {
+  const int components = job.rational ? 4 : 3;
+  for (int lane = 0; lane < block_lanes; lane += L::width) {
+    auto scale = L::broadcast(1);
+    if (job.rational) {
+      auto heaviest = L::broadcast(0);
+      for (int k = 0; k < count; ++k) heaviest = xsimd::max(heaviest, L::load(first + k * step + 3 * block_lanes + lane));
+      alignas(64) float weight[L::width];
+      L::store(weight, heaviest);
+      // 2^-k for a weight of at least 2^(k-1) and below 2^k
+      for (float& w : weight) w = __builtin_bit_cast(float, (253u - (__builtin_bit_cast(std::uint32_t, w) >> 23)) << 23);
+      scale = L::load(weight);
+    }
+    Indices<L> sum = Indices<L>{} + static_cast<std::uint32_t>(count * 8 + components);
+    for (int k = 0; k < count; ++k) {
+      Indices<L> point = Indices<L>{} + static_cast<std::uint32_t>(k < count - 1 - k ? k + 1 : count - k);
+      for (int c = 0; c < components; ++c) {
+        alignas(64) float value[L::width];
+        L::store(value, scale * L::load(first + k * step + c * block_lanes + lane));
+        Indices<L> bits;
+        __builtin_memcpy(&bits, value, sizeof bits);
+        point = mixed_bits<L>(point * 0x9e3779b1u ^ bits);
+      }
+      sum += point;
+    }
+    sum = mixed_bits<L>(sum * 0xc2b2ae35u);
+    __builtin_memcpy(hash + lane, &sum, sizeof sum);
+  }
+}
+
+template <class L>
+void hash_borders(const BorderHashJob& job) {
+  const std::ptrdiff_t column = std::ptrdiff_t{job.rational ? 4 : 3} * block_lanes, row = column * (job.degree_v + 1);
+  hash_border<L>(job, job.net, row, job.degree_u + 1, job.hash);
+  hash_border<L>(job, job.net + row * job.degree_u, column, job.degree_v + 1, job.hash + block_lanes);
+  hash_border<L>(job, job.net + column * job.degree_v, row, job.degree_u + 1, job.hash + 2 * block_lanes);
+  hash_border<L>(job, job.net, column, job.degree_v + 1, job.hash + 3 * block_lanes);
+}

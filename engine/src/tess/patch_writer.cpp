@@ -1,0 +1,234 @@
+#include "tess/patch_writer.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "eval/streaming_threshold.h"
+#include "kernel/kernel_table.h"
+#include "tess/line_stream.h"
+
+namespace tessera {
+namespace {
+
+/// What an exact normal is made from.
+struct ExactPatch {
+  const BezierPatch* patch = nullptr;
+  const Division* division = nullptr;
+};
+
+/// See kernel::ExactNormal and MeshVertexJob::grid.
+int exact_normal(void* context, int first, int second, int lane, float* normal) {
+  const auto& exact = *static_cast<const ExactPatch*>(context);
+  const auto vertex = static_cast<std::size_t>(lane < kernel::mesh_tile ? first + lane : second + lane - kernel::mesh_tile);
+  const auto at = exact.division->parameters(std::min(vertex, exact.division->vertex_count() - 1));
+  const UnitNormal found = unit_normal(*exact.patch, at.u, at.v);
+  normal[0] = static_cast<float>(found.direction.x);
+  normal[1] = static_cast<float>(found.direction.y);
+  normal[2] = static_cast<float>(found.direction.z);
+  return static_cast<int>(found.kind);
+}
+
+/// A side's first control point as packed: w p / w would depend on the weight.
+std::array<float, 3> start_of(const BezierPatch& net, const Vec3& origin, Side side) {
+  const bool end_u = side == Side::u1 || side == Side::v1, end_v = side == Side::v1 || side == Side::u0;
+  const Vec3 p = net.point(end_u ? net.degree_u() : 0, end_v ? net.degree_v() : 0) - origin + Vec3{};
+  return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+}
+
+bool is_packed(const View3<float>& view) {
+  return view.stride == 3 && view.component[1] == view.component[0] + 1 && view.component[2] == view.component[0] + 2;
+}
+
+kernel::MeshRecords packed_records(float* first) {
+  return {.out = {first, first + 1, first + 2}, .stride = 3};
+}
+
+kernel::MeshRecords records(const View3<float>& view, std::size_t first) {
+  kernel::MeshRecords out;
+  if (view.empty()) return out;
+  out.stride = view.stride;
+  for (int c = 0; c < 3; ++c) out.out[c] = &view.at(first, c);
+  return out;
+}
+
+}  // namespace
+
+/// A job and what it points to; patches of one range take turns with it.
+struct PatchWriter::VertexJob {
+  kernel::MeshVertexJob job;
+  alignas(cache_line) std::array<float, kernel::block_lanes> doubt, noise;
+  std::array<std::array<float, 3>, 4> starts;
+  ExactPatch exact;
+
+  VertexJob() {
+    job.grid.doubt = doubt.data();
+    job.grid.noise = noise.data();
+    job.grid.exact_normal = exact_normal;
+    job.grid.exact_context = &exact;
+  }
+  VertexJob(const VertexJob&) = delete;
+  VertexJob& operator=(const VertexJob&) = delete;
+};
+
+struct PatchWriter::Streams {
+  std::array<kernel::LineQueue, kernel::line_queues> queues;
+  LineStream<float> positions, normals;
+  LineStream<std::uint32_t> indices;
+  explicit Streams(const kernel::KernelTable& kernels)
+      : positions(kernels, queues[0]), normals(kernels, queues[1]), indices(kernels, queues[2]) {}
+
+  /// Spreads what waits over a patch's vertices.
+  void share(kernel::MeshVertexJob& job, std::size_t vertices) {
+    const std::size_t lines = queues[0].lines + queues[1].lines + queues[2].lines, vectors = vertices / 16 + 2;
+    job.queues = queues.data();
+    job.lines_a_vector = static_cast<int>(lines / vectors + 1);
+  }
+};
+
+PatchWriter::PatchWriter(const PatchSet::Impl& set, const CertifiedPlan& plan, const MeshTables& tables,
+                         const kernel::KernelTable& kernels, const MeshViews& out, Stores stores)
+    : set_(set), plan_(plan), tables_(tables), kernels_(kernels), out_(out) {
+  const MeshCapacity size = plan.capacity();
+  const std::size_t bytes = sizeof(float) * size.vertices * (out.normal.empty() ? 3 : 6) + 3 * sizeof(std::uint32_t) * size.triangles;
+  const bool large = stores == Stores::streaming || (stores == Stores::automatic && bytes > streaming_threshold());
+  streaming_ = large && is_packed(out.position) && (out.normal.empty() || is_packed(out.normal));
+}
+
+void PatchWriter::write(std::size_t begin, std::size_t end) const {
+  if (streaming_) return write_streaming(begin, end);
+  VertexJob vertices;
+  for (std::size_t k = begin; k < end; ++k) {
+    if (plan_.division(k).empty) continue;
+    prepare(k, vertices);
+    const std::size_t first = plan_.first_vertex(k);
+    vertices.job.position = records(out_.position, first);
+    vertices.job.normal = records(out_.normal, first);
+    vertices.job.writable = static_cast<int>(std::min<std::size_t>(plan_.first_vertex(end) - first, std::numeric_limits<int>::max()));
+    kernels_.mesh_vertices(vertices.job);
+    write_triangles(k, out_.indices.data() + 3 * plan_.first_triangle(k), out_.indices.data() + 3 * plan_.first_triangle(end));
+    if (!out_.parameter.empty()) write_parameters(k);
+    if (!out_.patch.empty()) write_patch_numbers(k);
+  }
+}
+
+void PatchWriter::write_streaming(std::size_t begin, std::size_t end) const {
+  VertexJob vertices;
+  Streams streams(kernels_);
+  streams.positions.start(out_.position.component[0] + 3 * plan_.first_vertex(begin));
+  if (!out_.normal.empty()) streams.normals.start(out_.normal.component[0] + 3 * plan_.first_vertex(begin));
+  streams.indices.start(out_.indices.data() + 3 * plan_.first_triangle(begin));
+  for (std::size_t k = begin; k < end; ++k) {
+    if (plan_.division(k).empty) continue;
+    prepare(k, vertices);
+    const std::size_t vertex_count = plan_.first_vertex(k + 1) - plan_.first_vertex(k);
+    const std::size_t index_count = 3 * (plan_.first_triangle(k + 1) - plan_.first_triangle(k));
+    float* const position = streams.positions.next(3 * vertex_count);
+    float* const normal = out_.normal.empty() ? nullptr : streams.normals.next(3 * vertex_count);
+    std::uint32_t* const indices = streams.indices.next(index_count);
+    vertices.job.position = packed_records(position ? position : streams.positions.out());
+    vertices.job.normal = out_.normal.empty() ? kernel::MeshRecords{} : packed_records(normal ? normal : streams.normals.out());
+    vertices.job.writable = static_cast<int>(vertex_count + (position && (normal || out_.normal.empty()) ? LineStream<float>::slack / 3 : 0));
+    streams.share(vertices.job, vertex_count);
+    kernels_.mesh_vertices(vertices.job);
+    if (indices) {
+      write_triangles(k, indices, indices + index_count + LineStream<std::uint32_t>::slack);
+    } else {
+      write_triangles(k, streams.indices.out(), streams.indices.out() + index_count);
+    }
+    position ? streams.positions.commit(3 * vertex_count) : streams.positions.skip(3 * vertex_count);
+    if (!out_.normal.empty()) normal ? streams.normals.commit(3 * vertex_count) : streams.normals.skip(3 * vertex_count);
+    indices ? streams.indices.commit(index_count) : streams.indices.skip(index_count);
+    if (!out_.parameter.empty()) write_parameters(k);
+    if (!out_.patch.empty()) write_patch_numbers(k);
+  }
+  streams.positions.finish();
+  if (!out_.normal.empty()) streams.normals.finish();
+  streams.indices.finish();
+  kernels_.finish_streaming();
+}
+
+void PatchWriter::write_patch_numbers(std::size_t k) const {
+  std::fill(out_.patch.data() + plan_.first_triangle(k), out_.patch.data() + plan_.first_triangle(k + 1),
+            static_cast<std::uint32_t>(k));
+}
+
+void PatchWriter::prepare(std::size_t k, VertexJob& vertices) const {
+  const Division& division = plan_.division(k);
+  const PatchSet::Slot slot = set_.slots[k];
+  const BlockGroup& group = set_.group_of_block(slot.block);
+  kernel::MeshVertexJob& job = vertices.job;
+  job.net = set_.single.bernstein.data() + group.first_value + (slot.block - group.first_block) * group.block_values + slot.lane;
+  job.grid.degree_u = group.degree_u;
+  job.grid.degree_v = group.degree_v;
+  job.grid.rational = group.rational;
+  const float* doubts = set_.single.bernstein_doubt.data() + 2 * std::size_t{PatchSet::lanes} * slot.block + slot.lane;
+  std::fill(vertices.doubt.begin(), vertices.doubt.end(), doubts[0]);
+  std::fill(vertices.noise.begin(), vertices.noise.end(), doubts[PatchSet::lanes]);
+  vertices.exact = {&set_.patches[k], &division};
+  job.inner_u = division.inner.u;
+  job.inner_v = division.inner.v;
+  if (division.has_inner_points()) {
+    job.u_weights = tables_.inner_weights(group.degree_u, division.inner.u);
+    job.v_weights = tables_.inner_weights(group.degree_v, division.inner.v);
+  }
+  for (const Side side : all_sides) {
+    const auto s = static_cast<std::size_t>(side);
+    kernel::MeshBorder& border = job.border[s];
+    border.rate = division.border[s];
+    border.weights = tables_.border_weights(runs_along_u(side) ? group.degree_u : group.degree_v, border.rate);
+    border.is_point = division.collapsed.has(edge_of(side));
+    if (!border.is_point && !group.rational) continue;  // all others are as set
+    vertices.starts[s] = start_of(set_.patches[k], set_.origin, side);
+    border.start = vertices.starts[s].data();
+    border.scale = group.rational ? PackedBorder(set_, k, side).scale() : 1;
+  }
+}
+
+void PatchWriter::write_parameters(std::size_t k) const {
+  const Division& division = plan_.division(k);
+  std::size_t vertex = plan_.first_vertex(k);
+  const auto put = [&](float u, float v) {
+    out_.parameter.at(vertex, 0) = u;
+    out_.parameter.at(vertex++, 1) = v;
+  };
+  const float *inner_u = tables_.parameters(division.inner.u), *inner_v = tables_.parameters(division.inner.v);
+  for (int iu = 1; iu < division.inner.u; ++iu)
+    for (int iv = 1; iv < division.inner.v; ++iv) put(inner_u[iu], inner_v[iv]);
+  const float* along[4];
+  for (std::size_t side = 0; side < 4; ++side) along[side] = tables_.parameters(division.border[side]);
+  for (int n = 0; n < division.border[0]; ++n) put(along[0][n], 0);
+  for (int n = 0; n < division.border[1]; ++n) put(1, along[1][n]);
+  for (int n = division.border[2]; n > 0; --n) put(along[2][n], 1);
+  for (int n = division.border[3]; n > 0; --n) put(0, along[3][n]);
+}
+
+void PatchWriter::write_triangles(std::size_t k, std::uint32_t* out, std::uint32_t* end) const {
+  const Division& division = plan_.division(k);
+  const auto first = static_cast<std::uint32_t>(plan_.first_vertex(k));
+  if (!division.has_inner_points() || division.collapsed.any()) {
+    division.write_triangles(first, out);
+    return;
+  }
+  const auto number = [](auto n) { return static_cast<std::uint32_t>(n); };
+  const std::uint32_t row = number(division.inner.v - 1), last_row = number(division.inner.u - 2) * row;
+  kernel::MeshIndexJob job;
+  job.ring = first + number(division.inner_count());
+  job.ring_size = number(division.ring_count());
+  job.first = first;
+  job.row = row;
+  job.cells_u = division.inner.u - 2;
+  job.cells_v = division.inner.v - 2;
+  job.out = out;
+  job.end = end;
+  const std::uint32_t start[4] = {0, last_row, last_row + row - 1, row - 1}, step[4] = {row, 1, 0 - row, 0 - 1u};
+  std::uint32_t ring = job.ring;
+  for (const Side side : all_sides) {
+    const auto s = static_cast<std::size_t>(side);
+    const auto& strip = tables_.strip(division.border[s], runs_along_u(side) ? division.inner.u : division.inner.v);
+    job.strip[s] = {strip.codes.data(), strip.count, ring, first + start[s], step[s]};
+    ring += number(division.border[s]);
+  }
+  kernels_.mesh_indices(job);
+}
+
+}  // namespace tessera

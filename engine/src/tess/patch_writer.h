@@ -1,0 +1,47 @@
+#pragma once
+// One patch of a certified mesh, from its packed control points into the caller's memory.
+
+#include "block/patch_set_impl.h"
+#include "tess/certified_plan.h"
+#include "tess/mesh_tables.h"
+#include "tessera/execution.h"
+#include "tessera/mesh.h"
+
+namespace tessera {
+
+namespace kernel {
+struct KernelTable;
+}
+
+/// Writes patches [begin, end) of a plan, and nothing outside their records. The bits of a vertex do not depend on the
+/// range; borders of patches that are one edge have the same positions.
+class PatchWriter {
+ public:
+  PatchWriter(const PatchSet::Impl& set, const CertifiedPlan& plan, const MeshTables& tables,
+              const kernel::KernelTable& kernels, const MeshViews& out, Stores stores);
+
+  bool streaming() const { return streaming_; }
+
+  void write(std::size_t begin, std::size_t end) const;
+
+ private:
+  struct VertexJob;
+  struct Streams;
+  /// The same through memory that is sent past the caches.
+  void write_streaming(std::size_t begin, std::size_t end) const;
+  /// What a patch's vertices and triangles are written from, but for where they go.
+  void prepare(std::size_t k, VertexJob& vertices) const;
+  /// `end`: of what may be written, whatever it then holds.
+  void write_triangles(std::size_t k, std::uint32_t* out, std::uint32_t* end) const;
+  void write_parameters(std::size_t k) const;
+  void write_patch_numbers(std::size_t k) const;
+
+  const PatchSet::Impl& set_;
+  const CertifiedPlan& plan_;
+  const MeshTables& tables_;
+  const kernel::KernelTable& kernels_;
+  const MeshViews& out_;
+  bool streaming_;
+};
+
+}  // namespace tessera

@@ -1,0 +1,108 @@
+// Chord bounds in float, sixteen patches at a time, against those in double, patch by patch.
+
+#include "tess/chord_blocks.h"
+
+#include <bit>
+
+#include "kernel/kernel_table.h"
+#include "support/synthetic_sets.h"
+#include "tess/tessellate_support.h"
+
+namespace tessera::test {
+namespace {
+
+std::vector<PatchSet> sets() {
+  std::vector<PatchSet> all;
+  all.push_back(set_of(wavy_field(5, 7)));
+  all.push_back(set_of(closed_body()));
+  all.push_back(set_of(mixed_patches(7, 60)));
+  all.push_back(set_of(placed(closed_body(), 1e-30, {})));
+  all.push_back(set_of(placed(closed_body(), 1e30, {})));
+  all.push_back(set_of(placed(closed_body(), 1e37, {})));
+  all.push_back(set_of(placed(mixed_patches(9, 20), 1e-3, {1e3, -2e3, 5e2})));
+  return all;
+}
+
+ChordBlocks bounds_of(const PatchSet& set) {
+  ChordBlocks blocks(set.impl());
+  for (std::size_t block = 0; block < set.impl().lane_counts.size(); ++block) blocks.bound(set.impl(), block);
+  return blocks;
+}
+
+TEST(ChordBlocks, HoldTheBoundsInDoubleAndLittleMore) {
+  for (const PatchSet& set : sets()) {
+    const ChordBlocks blocks = bounds_of(set);
+    for (std::size_t k = 0; k < set.patch_count(); ++k) {
+      const ChordBound exact(set.impl().patches[k]), found = blocks.chord(set.slot(k).block, set.slot(k).lane);
+      double size = 0;
+      for (const Vec3& p : set.impl().patches[k].points()) size = std::max(size, max_abs(p - set.origin()));
+      const double m = set.impl().patches[k].degree_u(), n = set.impl().patches[k].degree_v();
+      for (std::size_t piece = 0; piece < 9; ++piece) {
+        const SecondDerivatives &a = exact.pieces()[piece], &b = found.pieces()[piece];
+        const double most = 0x1p-24 * 2 * 1.7321 * (40 + 4 * (m + n)) * size;
+        EXPECT_GE(b.uu, a.uu * (1 - 1e-9));
+        EXPECT_GE(b.uv, a.uv * (1 - 1e-9));
+        EXPECT_GE(b.vv, a.vv * (1 - 1e-9));
+        if (set.impl().patches[k].is_rational()) continue;
+        EXPECT_LE(b.uu, a.uu * (1 + 1e-4) + m * m * most);
+        EXPECT_LE(b.uv, a.uv * (1 + 1e-4) + m * n * most);
+        EXPECT_LE(b.vv, a.vv * (1 + 1e-4) + n * n * most);
+      }
+    }
+  }
+}
+
+TEST(ChordBlocks, RatesKeepTheDistanceWithAboutTheFewestCells) {
+  for (const PatchSet& set : sets()) {
+    const ChordBlocks blocks = bounds_of(set);
+    double cells = 0, fewest = 0;
+    for (const double relative : {0.1, 1e-2, 1e-3, 1e-4}) {
+      ChordBlocks::Lanes<double> distance;
+      distance.fill(relative * set.box().diagonal());
+      for (std::size_t block = 0; block < set.impl().lane_counts.size(); ++block) {
+        const std::size_t count = set.impl().lane_counts[block];
+        const ChordBlocks::Choice choice = blocks.cheapest(block, count, distance, 4096);
+        for (std::size_t lane = 0; lane < count; ++lane) {
+          const ChordBound chord = blocks.chord(block, lane);
+          const auto best = chord.cheapest(distance[lane], 4096);
+          ASSERT_EQ(best.has_value(), choice.rates[lane].u > 0);
+          if (!best) continue;
+          EXPECT_LE(choice.distance[lane], distance[lane]);
+          EXPECT_LE(chord.distance(choice.rates[lane]), choice.distance[lane]);
+          cells += double(choice.rates[lane].u) * choice.rates[lane].v;
+          fewest += double(best->u) * best->v;
+        }
+      }
+    }
+    EXPECT_LE(cells, 1.025 * fewest);  // reached on random nets; equal on smooth surfaces
+  }
+}
+
+TEST(ChordBlocks, TheSameBitsOnEveryInstructionSet) {
+  for (const PatchSet& set : sets()) {
+    const BlockGroup& group = set.impl().groups.front();
+    if (group.rational) continue;
+    std::vector<std::uint32_t> first;
+    for (const Isa isa : available_isas()) {
+      alignas(64) float pieces[27 * 16], unit[16], size[16], chord[16], distance[16];
+      alignas(64) std::int32_t rate_u[16], rate_v[16];
+      std::uint32_t hash[64];
+      const float* net = set.impl().single.bernstein.data() + group.first_value;
+      kernel::kernels(isa).bound_chords({net, group.degree_u, group.degree_v, pieces, unit, size});
+      std::fill(std::begin(distance), std::end(distance), 1e-3f);
+      kernel::kernels(isa).find_rates({pieces, distance, 4096, rate_u, rate_v, chord});
+      kernel::kernels(isa).hash_borders({net, group.degree_u, group.degree_v, false, hash});
+      std::vector<std::uint32_t> bits(hash, hash + 64);
+      for (const float x : pieces) bits.push_back(std::bit_cast<std::uint32_t>(x));
+      for (int lane = 0; lane < 16; ++lane)
+        for (const std::uint32_t x : {std::bit_cast<std::uint32_t>(unit[lane]), std::bit_cast<std::uint32_t>(chord[lane]),
+                                      static_cast<std::uint32_t>(rate_u[lane]), static_cast<std::uint32_t>(rate_v[lane])})
+          bits.push_back(x);
+      if (first.empty()) first = bits;
+      EXPECT_EQ(bits, first) << name(isa);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tessera::test
