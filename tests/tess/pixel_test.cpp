@@ -78,7 +78,7 @@ Found found_over_bound(const PatchSet& set, const CertifiedTessellation& plan, c
                        Random& random) {
   const Pinhole camera(view);
   Found found;
-  const std::size_t step = std::max<std::size_t>(mesh.triangle_count() / 3000, 1);
+  const std::size_t step = std::max<std::size_t>(mesh.triangle_count() / 1500, 1);
   for (std::size_t t = random() % step; t < mesh.triangle_count(); t += step) {
     const std::uint32_t* k = &mesh.indices[3 * t];
     Vec3 corner[3];
@@ -148,7 +148,7 @@ TEST(Pixels, AreNeverExceeded) {
         continue;
       }
       EXPECT_LE(plan->pixels(), 2 * (1 + 1e-6));
-      if (plan->capacity().triangles > 3'000'000) continue;
+      if (plan->capacity().triangles > 300'000) continue;
       const Found found = found_over_bound(set, *plan, mesh_of(set, *plan), view, random);
       EXPECT_LE(found.share, 1) << chosen.name << (view.orthographic ? ", orthographic" : "");
       most = std::max(most, found.share);
