@@ -250,7 +250,11 @@ void run_lines(void (*begin)(LineState<T>&, T* const*), void (*put)(const LineJo
       AlignedVector<T> rows((count + 16) * static_cast<std::size_t>(step)), out(block_lanes * (2 * count + 3));
       for (T& x : rows) x = static_cast<T>(uniform(random));
       T* lane[block_lanes];
-      for (std::size_t l = 0; l < block_lanes; ++l) lane[l] = out.data() + 1 + (l < 13 ? l * (2 * count + l % 2) : 0);
+      for (std::size_t l = 0; l < block_lanes; ++l) {
+        const std::size_t same_as = l < 13 ? l : 0;
+        lane[l] = out.data() + 1 + same_as * (2 * count + 1);
+        for (std::size_t k = 0; k < rows.size(); k += block_lanes) rows[k + l] = rows[k + same_as];
+      }
       LineState<T> state;
       begin(state, lane);
       for (int piece = 0; piece < 2; ++piece) put({&state, rows.data(), step, static_cast<std::ptrdiff_t>(count), 13, false});
