@@ -71,7 +71,7 @@ enum class RayMode : std::uint8_t {
   /// The surface itself: pieces of patches in an Embree BVH, each searched by branch and bound in double with every
   /// rounding bounded, far origins included. What the surface of the control points in double meets is hit, at shared
   /// borders and poles too, silhouettes down to the tolerance; a returned hit lies within the tolerance of the ray.
-  /// Hits that are not flagged uncertified are roots up to rounding. Slower than grid.
+  /// Hits that are not flagged uncertified are roots up to rounding. Slower than grid for coherent rays.
   exact,
 };
 
@@ -80,7 +80,8 @@ struct RaySceneOptions {
   int rate = 8;                  ///< grid mode: grid segments a patch and direction, 1 to 4096
   bool refine = true;            ///< grid mode: false leaves hits on the facets (for comparison)
   std::optional<Isa> isa = {};   ///< grid mode
-  int pieces = 2;                ///< exact mode: pieces a patch and direction, 1, 2, 4 or 8; more for long thin patches
+  int pieces = 1;                ///< exact mode: pieces a patch and direction, 1, 2, 4 or 8; more for long thin patches.
+                                 ///< More take memory, and are quicker where patches are large and strongly curved
   /// Exact mode: how far from the ray a point that is returned may lie, in the model's unit; above 0. It counts where
   /// the ray touches the surface or passes a border: there points within it may be hits. By default 2e-12 of the set's
   /// size; smaller ones than twice the bound on rounding (2e-12 of the size for bicubic patches, 9e-12 at degree 15,

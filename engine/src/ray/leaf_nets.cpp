@@ -70,52 +70,65 @@ void halve_all(const NetShape<0, 0>& shape, int components, double* nets, std::s
 
 }  // namespace
 
-Status LeafNets::build(const SetView& set, const SceneFrame& frame, int pieces, const Execution& execution) {
+/// Where the pieces of a patch stand.
+struct LeafNets::Plan {
+  int halvings_u = 0, halvings_v = 0;
+  std::size_t first_leaf = 0, first_value = 0;
+  std::size_t count() const { return std::size_t{1} << (halvings_u + halvings_v); }
+};
+
+/// Makes room and says for what.
+std::vector<LeafNets::Plan> LeafNets::plan(const SetView& set, int pieces) {
   const int halvings = std::ilogb(static_cast<double>(pieces));
-  std::vector<Cuts> cuts(set.patch_count());
-  std::vector<std::size_t> first_leaf(set.patch_count() + 1, 0);
-  std::size_t values = 0;
+  std::vector<Plan> plans(set.patch_count());
+  std::size_t leaves = 0, values = 0;
   largest_ = 0;
   most_halvings_ = 0;
-  std::vector<std::size_t> first_value(set.patch_count());
-  for (std::size_t k = 0; k < set.patch_count(); ++k) {
+  for (std::size_t k = 0; k < plans.size(); ++k) {
     const BezierPatch& patch = set.patch(k);
-    cuts[k] = cuts_of(patch, halvings);
-    const std::size_t count = std::size_t{1} << (cuts[k].u + cuts[k].v);
+    const Cuts cuts = cuts_of(patch, halvings);
     const std::size_t net = patch.points().size() * (patch.is_rational() ? 4 : 3);
-    first_leaf[k + 1] = first_leaf[k] + count;
-    first_value[k] = values;
-    values += count * net;
+    plans[k] = {cuts.u, cuts.v, leaves, values};
+    leaves += plans[k].count();
+    values += plans[k].count() * net;
     largest_ = std::max(largest_, net);
-    most_halvings_ = std::max(most_halvings_, cuts[k].u + cuts[k].v);
+    most_halvings_ = std::max(most_halvings_, cuts.u + cuts.v);
   }
-  leaves_.resize(first_leaf.back());
+  leaves_.resize(leaves);
   coefficients_.resize(values);
-  return parallel_for(set.patch_count(), patches_a_task, execution, [&](std::size_t begin, std::size_t end) {
+  return plans;
+}
+
+/// `halves`: memory that is used again.
+void LeafNets::cut(const BezierPatch& patch, std::uint32_t index, const Plan& plan, const SceneFrame& frame,
+                   std::vector<double>& halves) {
+  const NetShape<0, 0> shape{patch.degree_u(), patch.degree_v()};
+  const int components = patch.is_rational() ? 4 : 3;
+  double* const nets = coefficients_.data() + plan.first_value;
+  write_patch(patch, frame, nets);
+  std::size_t count = 1;
+  for (int k = 0; k < plan.halvings_u; ++k, count *= 2) halve_all(shape, components, nets, count, true, halves);
+  for (int k = 0; k < plan.halvings_v; ++k, count *= 2) halve_all(shape, components, nets, count, false, halves);
+  const std::size_t along_v = std::size_t{1} << plan.halvings_v;
+  for (std::size_t piece = 0; piece < count; ++piece) {
+    Leaf& leaf = leaves_[plan.first_leaf + piece];
+    leaf.patch = index;
+    leaf.degree_u = static_cast<std::uint8_t>(patch.degree_u());
+    leaf.degree_v = static_cast<std::uint8_t>(patch.degree_v());
+    leaf.rational = patch.is_rational();
+    leaf.halvings = static_cast<std::uint8_t>(plan.halvings_u + plan.halvings_v);
+    leaf.first = plan.first_value + piece * static_cast<std::size_t>(leaf.size() * components);
+    leaf.du = std::ldexp(1.0, -plan.halvings_u), leaf.dv = std::ldexp(1.0, -plan.halvings_v);
+    leaf.u0 = static_cast<double>(piece / along_v) * leaf.du;
+    leaf.v0 = static_cast<double>(piece % along_v) * leaf.dv;
+  }
+}
+
+Status LeafNets::build(const SetView& set, const SceneFrame& frame, int pieces, const Execution& execution) {
+  const std::vector<Plan> plans = plan(set, pieces);
+  return parallel_for(plans.size(), patches_a_task, execution, [&](std::size_t begin, std::size_t end) {
     std::vector<double> halves;
-    for (std::size_t k = begin; k < end; ++k) {
-      const BezierPatch& patch = set.patch(k);
-      const NetShape<0, 0> shape{patch.degree_u(), patch.degree_v()};
-      const int components = patch.is_rational() ? 4 : 3;
-      double* const nets = coefficients_.data() + first_value[k];
-      write_patch(patch, frame, nets);
-      std::size_t count = 1;
-      for (int cut = 0; cut < cuts[k].u; ++cut, count *= 2) halve_all(shape, components, nets, count, true, halves);
-      for (int cut = 0; cut < cuts[k].v; ++cut, count *= 2) halve_all(shape, components, nets, count, false, halves);
-      const std::size_t along_v = std::size_t{1} << cuts[k].v;
-      for (std::size_t piece = 0; piece < count; ++piece) {
-        Leaf& leaf = leaves_[first_leaf[k] + piece];
-        leaf.patch = static_cast<std::uint32_t>(k);
-        leaf.degree_u = static_cast<std::uint8_t>(patch.degree_u());
-        leaf.degree_v = static_cast<std::uint8_t>(patch.degree_v());
-        leaf.rational = patch.is_rational();
-        leaf.halvings = static_cast<std::uint8_t>(cuts[k].u + cuts[k].v);
-        leaf.first = first_value[k] + piece * static_cast<std::size_t>(leaf.size() * components);
-        leaf.du = std::ldexp(1.0, -cuts[k].u), leaf.dv = std::ldexp(1.0, -cuts[k].v);
-        leaf.u0 = static_cast<double>(piece / along_v) * leaf.du;
-        leaf.v0 = static_cast<double>(piece % along_v) * leaf.dv;
-      }
-    }
+    for (std::size_t k = begin; k < end; ++k) cut(set.patch(k), static_cast<std::uint32_t>(k), plans[k], frame, halves);
   });
 }
 

@@ -46,6 +46,11 @@ class LeafNets {
   }
 
  private:
+  struct Plan;
+  std::vector<Plan> plan(const SetView& set, int pieces);
+  void cut(const BezierPatch& patch, std::uint32_t index, const Plan& plan, const SceneFrame& frame,
+           std::vector<double>& halves);
+
   std::vector<Leaf> leaves_;
   std::vector<double> coefficients_;
   std::size_t largest_ = 0;
