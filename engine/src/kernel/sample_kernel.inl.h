@@ -35,10 +35,6 @@ template <class L, bool ByLane>
 
 /// A weight of all lanes, or one a lane.
 template <class L>
-inline typename L::Batch in_lanes(const typename L::Batch& weight) {
-  return weight;
-}
-template <class L>
 inline typename L::Batch in_lanes(typename L::Scalar weight) {
   return L::broadcast(weight);
 }
