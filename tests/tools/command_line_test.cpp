@@ -41,7 +41,7 @@ TEST_F(CommandLine, EveryOptionIsInTheHelp) {
       {"info", {"MODEL", "--json"}},
       {"eval", {"MODEL", "--grid", "--params", "--derivs", "--format", "--output"}},
       {"tessellate", {"MODEL", "--output", "--grid", "--json"}},
-      {"raycast", {"MODEL", "--output", "--size", "--shade", "--camera", "--rays", "--hits"}},
+      {"raycast", {"MODEL", "--output", "--size", "--shade", "--camera", "--rays", "--hits", "--mode", "--all-hits"}},
       {"check", {"MESH", "--json"}}};
   for (const auto& [command, options] : commands) {
     const std::string help = output_of({command, "--help"});

@@ -149,5 +149,27 @@ TEST_F(RaycastTool, AnInterruptedPictureDoesNotAppear) {
   EXPECT_TRUE(folder_.names().empty());
 }
 
+TEST_F(RaycastTool, AllHitsAreRowsInOrder) {
+  folder_.file("rays.csv", "ox,oy,oz,dx,dy,dz\n-9,0.1,1,1,0,0\n-9,0.1,9,1,0,0\n");
+  output_of({"raycast", teapot, "--rays", "rays.csv", "--hits", "all.csv", "--all-hits"});
+  output_of({"raycast", teapot, "--rays", "rays.csv", "--hits", "first.csv", "--mode", "exact"});
+  const auto all = cells_of(content_of(folder_ / "all.csv")), first = cells_of(content_of(folder_ / "first.csv"));
+  ASSERT_EQ(first.size(), 3u);
+  ASSERT_GE(all.size(), 4u);  // in and out at least
+  EXPECT_EQ(all[1], first[1]);
+  EXPECT_EQ(all.back(), first[2]);
+  EXPECT_EQ(all.back()[1], "0");
+  for (std::size_t k = 2; k + 1 < all.size(); ++k) EXPECT_GT(std::stod(all[k][2]), std::stod(all[k - 1][2]));
+  expect_failure({"raycast", teapot, "--rays", "rays.csv", "--hits", "a.csv", "--all-hits", "--mode", "grid"}, 2,
+                 "--all-hits");
+  expect_failure({"raycast", teapot, "-o", "a.png", "--all-hits"}, 2, "--rays");
+  expect_failure({"raycast", teapot, "-o", "a.png", "--mode", "fast"}, 2, "--mode");
+}
+
+TEST_F(RaycastTool, ExactPicturesHaveTheSizeAskedFor) {
+  output_of({"raycast", teapot, "-o", "exact.png", "--size", "40x30", "--mode", "exact"});
+  EXPECT_EQ(png_size(content_of(folder_ / "exact.png")), (std::pair{40u, 30u}));
+}
+
 }  // namespace
 }  // namespace tessera::test

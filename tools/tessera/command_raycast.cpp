@@ -3,6 +3,8 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "arguments.h"
 #include "commands.h"
@@ -25,6 +27,8 @@ struct Options {
   std::string picture, rays, hits, colour = "auto";
   bool terminal = false;
   bool sized = false;  // --size was given
+  bool all_hits = false;
+  std::optional<RayMode> mode;
   render::Settings settings;
 };
 
@@ -43,12 +47,19 @@ int scene_rate(std::size_t patches) {
   return rate;
 }
 
-Result<Scene> make_scene(Loaded loaded, Timings& timings) {
+RayMode mode_of(const Options& options) {
+  return options.mode.value_or(options.all_hits ? RayMode::exact : RayMode::grid);
+}
+
+const char* name_of(RayMode mode) { return mode == RayMode::exact ? "exact" : "grid"; }
+
+Result<Scene> make_scene(Loaded loaded, RayMode mode, Timings& timings) {
   Result<PatchSet> set = pack(loaded, timings);
   if (!set) return set.status();
   const auto phase = timings.phase("build");
   Progress progress("building the scene");
   RaySceneOptions options;
+  options.mode = mode;
   options.rate = scene_rate(set->patch_count());
   Result<RayScene> rays = RayScene::make(*set, options, progress.execution());
   if (!rays) return in_file(loaded.files[0], rays.status());
@@ -103,6 +114,7 @@ Status draw_file(const Job& job, const Options& options, const CommonOptions& co
   object["output"] = job.output;
   object["width"] = settings.width;
   object["height"] = settings.height;
+  object["mode"] = name_of(mode_of(options));
   object["caption"] = is_exr(job.output) ? "" : trims;
   add_model_facts(object, scene.loaded, scene.set);
   add_seconds(object, common, timings);
@@ -125,30 +137,51 @@ Status draw_characters(const Options& options, const Scene& scene, OutputFile& o
   return out.commit();
 }
 
-Status trace(const Job& job, const CommonOptions& common, const Scene& scene, std::span<const Ray> rays,
-             OutputFile& out, Timings& timings) {
+/// The hits of given rays: the closest ones, a list of one or none a ray, or all.
+Result<HitLists> cast(const Scene& scene, std::span<const Ray> rays, bool all, Timings& timings) {
+  const auto phase = timings.phase("evaluate");
+  Progress progress("casting rays");
+  HitLists lists;
+  if (all) {
+    const Status status = scene.rays.all(rays, lists, progress.execution());
+    return status.ok() ? Result<HitLists>(std::move(lists)) : status;
+  }
   std::vector<Hit> hits(rays.size());
-  const Status traced = [&] {
-    const auto phase = timings.phase("evaluate");
-    Progress progress("casting rays");
-    return scene.rays.closest(rays, hits, progress.execution());
-  }();
-  if (!traced.ok()) return traced;
-  const HitCounts counts = use_own_parameters(scene.loaded.model, hits);
+  if (const Status status = scene.rays.closest(rays, hits, progress.execution()); !status.ok()) return status;
+  lists.first.push_back(0);
+  for (const Hit& hit : hits) {
+    if (hit.kind == HitKind::hit) lists.hits.push_back(hit);
+    lists.first.push_back(lists.hits.size());
+  }
+  return lists;
+}
+
+Status trace(const Job& job, const Options& options, const CommonOptions& common, const Scene& scene,
+             std::span<const Ray> rays, OutputFile& out, Timings& timings) {
+  Result<HitLists> lists = cast(scene, rays, options.all_hits, timings);
+  if (!lists) return lists.status();
+  const HitCounts counts = use_own_parameters(scene.loaded.model, *lists);
   {
     const auto phase = timings.phase("write");
-    write_hits(out, hits);
+    write_hits(out, *lists);
     if (Status status = out.commit(); !status.ok()) return status;
   }
+  const bool exact = mode_of(options) == RayMode::exact;
   if (!common.json) {
-    return print(job.output + ": " + std::to_string(counts.rays) + " rays, " + std::to_string(counts.hits) + " hits, " +
-                 std::to_string(counts.unrefined) + " of them on facets only\n");
+    return print(job.output + ": " + std::to_string(counts.rays) + " rays, " + std::to_string(counts.hits) + " hits" +
+                 (options.all_hits ? ", " + std::to_string(counts.points) + " points" : "") + ", " +
+                 (exact ? std::to_string(counts.uncertified) + " of them uncertified\n"
+                        : std::to_string(counts.unrefined) + " of them on facets only\n"));
   }
   Json object = files_json(scene.loaded);
   object["output"] = job.output;
+  object["mode"] = name_of(mode_of(options));
   object["rays"] = counts.rays;
   object["hits"] = counts.hits;
+  object["points"] = counts.points;
   object["unrefined"] = counts.unrefined;
+  object["uncertified"] = counts.uncertified;
+  object["incomplete"] = counts.incomplete;
   add_model_facts(object, scene.loaded, scene.set);
   add_seconds(object, common, timings);
   return print_json(object);
@@ -165,9 +198,9 @@ Status run_raycast(const Job& job, const Options& options, const CommonOptions& 
     if (!read) return read.status();
     rays = *std::move(read);
   }
-  const Result<Scene> scene = make_scene(*std::move(loaded), timings);
+  const Result<Scene> scene = make_scene(*std::move(loaded), mode_of(options), timings);
   if (!scene) return scene.status();
-  const Status status = !options.rays.empty()      ? trace(job, common, *scene, rays, *out, timings)
+  const Status status = !options.rays.empty()      ? trace(job, options, common, *scene, rays, *out, timings)
                         : !options.picture.empty() ? draw_file(job, options, common, *scene, *out, timings)
                                                    : draw_characters(options, *scene, *out, timings);
   return status.ok() ? scene->loaded.status() : status;
@@ -209,13 +242,19 @@ constexpr const char* footer =
     "ox,oy,oz,dx,dy,dz,tnear,tfar: numbers of at most 1.844e18, the direction not zero, 0 <= tnear <= tfar, tfar may\n"
     "be inf; # begins a comment. Hits are the table ray,hit,t,surface,patch,u,v,x,y,z,nx,ny,nz, a row for each ray in "
     "the\n"
-    "order of the rays, counted from 0; a miss has hit = 0 and empty fields. 17 significant digits.\n"
+    "order of the rays, counted from 0; a miss has hit = 0 and empty fields. 17 significant digits. With --all-hits a\n"
+    "ray has a row for each point that it meets, in the order of t.\n"
+    "--mode grid looks at facets first and then at the surface: quick, but a silhouette may be missed. --mode exact "
+    "looks "
+    "at\n"
+    "the surface itself and misses nothing.\n"
     "\nExamples:\n"
     "  tessera raycast teapot.bpt\n"
     "  tessera raycast teapot.bpt -o teapot.png --size 1280x720\n"
     "  tessera raycast teapot.bpt -o teapot.png --shade normals --camera=4,-8,5,0,0,1.5,40\n"
     "  tessera raycast 'parts/*.step' -o 'pictures/{name}.png'\n"
-    "  tessera raycast teapot.bpt --rays rays.csv --hits hits.csv";
+    "  tessera raycast teapot.bpt --rays rays.csv --hits hits.csv\n"
+    "  tessera raycast teapot.bpt --rays rays.csv --hits hits.csv --all-hits";
 
 const std::map<std::string, render::Shade> shades{{"lambert", render::Shade::lambert},
                                                   {"normals", render::Shade::normals},
@@ -259,6 +298,8 @@ void add_ray_options(CLI::App& command, Options& options, const std::vector<CLI:
       command.add_option("--hits", options.hits, "The table of hits to be written, or a folder, or a name with {name}");
   hits->check(fault_of_name)->type_name("FILE.csv")->needs(rays);
   rays->needs(hits);
+  command.add_flag("--all-hits", options.all_hits, "All points that a ray meets, in exact mode, not the closest alone")
+      ->needs(rays);
   for (CLI::Option* const picture : of_pictures) rays->excludes(picture);
 }
 
@@ -277,6 +318,17 @@ Plan plan_raycast(const Options& options, const CommonOptions& common) {
   return plan_jobs(options.models.files, options.picture, {"--output", picture_extension, false});
 }
 
+void add_mode(CLI::App& command, Options& options) {
+  const auto set_mode = [&options](const std::string& text) {
+    options.mode = text == "exact" ? RayMode::exact : RayMode::grid;
+  };
+  command
+      .add_option_function<std::string>("--mode", set_mode,
+                                        "What rays meet: surfaces (exact) or facets first (grid) [grid]")
+      ->type_name("MODE")
+      ->check(one_of({"grid", "exact"}));
+}
+
 }  // namespace
 
 void add_raycast(CLI::App& app, Session& session) {
@@ -293,11 +345,14 @@ void add_raycast(CLI::App& app, Session& session) {
   }
   of_pictures.push_back(picture);
   add_ray_options(*command, *options, of_pictures);
+  add_mode(*command, *options);
   add_common(*command, session.common);
   command->footer(footer);
   command->callback([options, shade = of_pictures[1], &session] {
     if (shade->count() > 0 && is_exr(options->picture))
       throw CLI::ValidationError("--shade", "pictures of numbers (.exr) have no shade");
+    if (options->all_hits && options->mode == RayMode::grid)
+      throw CLI::ValidationError("--all-hits", "all hits are known in --mode exact alone");
     const Plan plan = plan_raycast(*options, session.common);
     session.command = [options, plan, &session] {
       return run_jobs(plan, session.common, [&](const Job& job, Timings& timings) {

@@ -9,10 +9,14 @@ namespace {
 
 constexpr std::string_view header = "ray,hit,t,surface,patch,u,v,x,y,z,nx,ny,nz\n";
 
+void write_miss(OutputFile& out, std::size_t ray) {
+  out.write_number(ray);
+  out.write(",0,,,,,,,,,,,\n");
+}
+
 void write_hit(OutputFile& out, std::size_t ray, const Hit& hit) {
   constexpr int digits = 17;
   out.write_number(ray);
-  if (hit.kind != HitKind::hit) return out.write(",0,,,,,,,,,,,\n");
   out.write(",1,");
   out.write_number(hit.t, digits);
   out.write(',');
@@ -29,22 +33,26 @@ void write_hit(OutputFile& out, std::size_t ray, const Hit& hit) {
 
 }  // namespace
 
-HitCounts use_own_parameters(const Model& model, std::span<Hit> hits) {
-  HitCounts counts{.rays = hits.size()};
-  for (Hit& hit : hits) {
-    if (hit.kind != HitKind::hit) continue;
+HitCounts use_own_parameters(const Model& model, HitLists& lists) {
+  HitCounts counts{.rays = lists.first.size() - 1, .points = lists.hits.size()};
+  for (std::size_t ray = 0; ray < counts.rays; ++ray) counts.hits += lists.first[ray + 1] > lists.first[ray];
+  for (Hit& hit : lists.hits) {
     const auto own = own_parameters(model.surfaces[hit.surface].surface, hit.u, hit.v);
     hit.u = own[0];
     hit.v = own[1];
-    ++counts.hits;
     counts.unrefined += hit.flags.unrefined;
+    counts.uncertified += hit.flags.uncertified;
+    counts.incomplete += hit.flags.incomplete;
   }
   return counts;
 }
 
-void write_hits(OutputFile& out, std::span<const Hit> hits) {
+void write_hits(OutputFile& out, const HitLists& lists) {
   out.write(header);
-  for (std::size_t k = 0; k < hits.size() && !out.failed(); ++k) write_hit(out, k, hits[k]);
+  for (std::size_t ray = 0; ray + 1 < lists.first.size() && !out.failed(); ++ray) {
+    if (lists.first[ray] == lists.first[ray + 1]) write_miss(out, ray);
+    for (std::size_t k = lists.first[ray]; k < lists.first[ray + 1]; ++k) write_hit(out, ray, lists.hits[k]);
+  }
 }
 
 }  // namespace tessera::cli

@@ -1,7 +1,7 @@
 #pragma once
 // The hits of given rays as a table.
 
-#include <span>
+#include <cstddef>
 
 #include "io/output_file.h"
 #include "tessera/model.h"
@@ -10,13 +10,17 @@
 namespace tessera::cli {
 
 struct HitCounts {
-  std::size_t rays = 0, hits = 0, unrefined = 0;
+  std::size_t rays = 0;
+  std::size_t hits = 0;  ///< rays that meet anything
+  std::size_t points = 0;
+  std::size_t unrefined = 0, uncertified = 0, incomplete = 0;  ///< points with that flag
 };
 
 /// u and v become the surfaces' own parameters.
-HitCounts use_own_parameters(const Model& model, std::span<Hit> hits);
+HitCounts use_own_parameters(const Model& model, HitLists& lists);
 
-/// ray,hit,t,surface,patch,u,v,x,y,z,nx,ny,nz: a row for each ray; a miss has hit = 0 and empty fields.
-void write_hits(OutputFile& out, std::span<const Hit> hits);
+/// ray,hit,t,surface,patch,u,v,x,y,z,nx,ny,nz: a row for each hit; of a ray without one a row with hit = 0 and empty
+/// fields.
+void write_hits(OutputFile& out, const HitLists& lists);
 
 }  // namespace tessera::cli
