@@ -66,7 +66,8 @@ Reading reading_of(const Result<Model>& model) {
     content.add(d);
     for (const auto& [s, t] : {std::pair(0.0, 0.0), {0.25, 0.8}, {0.7, 0.4}, {1.0, 1.0}}) {
       const Result<SurfaceJet> jet = evaluate_jet(surface, d.u_at(s), d.v_at(t));
-      if (jet ? !is_finite(jet->position) : !may_have_functions(surface.surface))
+      const bool placed_too_far = jet.status().code() == StatusCode::non_finite && *surface.placement != Affine{};
+      if (jet ? !is_finite(jet->position) : !placed_too_far && !may_have_functions(surface.surface))
         reading.unsound = "a position that is not finite";
       if (jet) content.add(jet->position);
       if (jet) content.add(jet->du);
