@@ -15,7 +15,7 @@ bool is_aligned(const Vector& vector, std::size_t to) {
 }
 
 TEST(Aligned, VectorsOfEverySize) {
-  constexpr std::size_t most_small = 2 * large_page / sizeof(double);
+  constexpr std::size_t most_small = least_in_large_pages / sizeof(double);
   for (const std::size_t size : {std::size_t{1}, std::size_t{9}, most_small - 1, most_small, most_small + 7}) {
     AlignedVector<double> vector(size, 3.0);
     EXPECT_TRUE(is_aligned(vector, size < most_small ? cache_line : large_page)) << size;

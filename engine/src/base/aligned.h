@@ -9,13 +9,13 @@ namespace tessera {
 
 inline constexpr std::size_t cache_line = 64;
 
-/// Memory of some pages of this size is asked for in them, where the system has them: scattered reads of 4 KiB pages
-/// wait longer for the page's address than for the values.
-inline constexpr std::size_t large_page = std::size_t{2} << 20;
+/// Memory of several pages of this size is asked for in them, where the system has them: scattered reads of 4 KiB pages
+/// wait longer for the page's address than for the values. Less memory is not worth the time that getting them takes.
+inline constexpr std::size_t large_page = std::size_t{2} << 20, least_in_large_pages = 8 * large_page;
 
 /// Alignment of so many bytes.
 constexpr std::align_val_t alignment_of(std::size_t bytes) {
-  return std::align_val_t{bytes >= 2 * large_page ? large_page : cache_line};
+  return std::align_val_t{bytes >= least_in_large_pages ? large_page : cache_line};
 }
 /// `bytes` at that alignment. Throws std::bad_alloc.
 void* allocate_aligned(std::size_t bytes);
