@@ -31,7 +31,9 @@ double tolerance_for(const PatchSet& set, double rate) {
   double low = 1e-6, high = 1;
   for (int step = 0; step < 24; ++step) {
     const double middle = std::sqrt(low * high);
-    (mean_rate(plan_for(set, middle)) > rate ? low : high) = middle;
+    const Result<CertifiedTessellation> plan = CertifiedTessellation::make(set, {.tolerance = middle});
+    const bool too_fine = !plan || mean_rate(*plan) > rate;  // refused: below what float vertices keep
+    (too_fine ? low : high) = middle;
   }
   return high;
 }
