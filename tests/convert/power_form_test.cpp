@@ -6,7 +6,7 @@
 namespace tessera::test {
 namespace {
 
-/// M of mathematics.md, section 1: B_{k,n}(t) = sum_i M_ik t^i.
+/// M in B_{k,n}(t) = sum_i M_ik t^i.
 Real matrix_entry(int n, int i, int k) {
   const auto choose = [](int a, int b) {
     Real value = 1;

@@ -16,13 +16,6 @@ namespace {
 
 constexpr double degree = std::numbers::pi / 180;
 
-Mesh mesh_of(const PatchSet& set, const CertifiedTessellation& plan) {
-  Mesh mesh = good(plan.allocate());
-  const Status status = plan.run(set, mesh.views());
-  EXPECT_TRUE(status.ok()) << status.message();
-  return mesh;
-}
-
 double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(length(cross(a, b)), dot(a, b)); }
 
 /// The largest angle found, over the patch's bound, at random points of random triangles of patches that have one.

@@ -15,13 +15,6 @@
 namespace tessera::test {
 namespace {
 
-Mesh mesh_of(const PatchSet& set, const CertifiedTessellation& plan) {
-  Mesh mesh = good(plan.allocate());
-  const Status status = plan.run(set, mesh.views());
-  EXPECT_TRUE(status.ok()) << status.message();
-  return mesh;
-}
-
 CertifiedTessellation plan_of(const PatchSet& set, double tolerance) {
   return good(CertifiedTessellation::make(set, {.tolerance = tolerance}));
 }

@@ -13,13 +13,6 @@
 namespace tessera::test {
 namespace {
 
-Mesh mesh_of(const PatchSet& set, const CertifiedTessellation& plan) {
-  Mesh mesh = good(plan.allocate());
-  const Status status = plan.run(set, mesh.views());
-  EXPECT_TRUE(status.ok()) << status.message();
-  return mesh;
-}
-
 /// A camera of this test's own: a pinhole whose picture plane is spanned by two directions.
 class Pinhole {
  public:

@@ -2,6 +2,7 @@
 // Short ways to sets and meshes that must be good.
 
 #include "support/random_patches.h"
+#include "tessera/certified_tessellation.h"
 #include "tessera/tessellate.h"
 
 namespace tessera::test {
@@ -17,6 +18,13 @@ T good(Result<T> result) {
 }
 
 inline PatchSet set_of(const std::vector<BezierPatch>& patches) { return good(PatchSet::from(patches)); }
+
+inline Mesh mesh_of(const PatchSet& set, const CertifiedTessellation& plan) {
+  Mesh mesh = good(plan.allocate());
+  const Status status = plan.run(set, mesh.views());
+  EXPECT_TRUE(status.ok()) << status.message();
+  return mesh;
+}
 
 inline Mesh tessellate(const PatchSet& set, int rate_u, int rate_v) {
   const TessellationPlan plan = good(TessellationPlan::make(set, {.rate_u = rate_u, .rate_v = rate_v, .isa = {}}));

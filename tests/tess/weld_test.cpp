@@ -14,13 +14,6 @@
 namespace tessera::test {
 namespace {
 
-Mesh mesh_of(const PatchSet& set, const CertifiedTessellation& plan) {
-  Mesh mesh = good(plan.allocate());
-  const Status status = plan.run(set, mesh.views());
-  EXPECT_TRUE(status.ok()) << status.message();
-  return mesh;
-}
-
 Mesh welded_mesh(const PatchSet& set, double tolerance, double weld) {
   return mesh_of(set, good(CertifiedTessellation::make(set, {.tolerance = tolerance, .weld = weld})));
 }

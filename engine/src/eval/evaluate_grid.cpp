@@ -20,7 +20,7 @@
 namespace tessera {
 namespace {
 
-/// Points a task: enough to hide its cost, few enough to balance (kernels.md: 5,000 to 20,000).
+/// Points a task: enough to hide its cost, few enough to balance.
 constexpr std::size_t points_per_task = 16384;
 /// Below these many points one thread is faster than waking another.
 constexpr std::size_t serial_positions = 32768, serial_normals = 10240;
