@@ -8,10 +8,10 @@ namespace tessera::house {
 namespace {
 
 constexpr std::array<IsaUnit, 4> units{{
-    {"sse2", "sse2", "sse2"},
-    {"avx2_fma", "avx2", "avx|avx2|fma3|fma5"},
-    {"avx512", "avx512", "avx512[a-z]*"},
-    {"neon64", "neon64", "neon64"},
+    {"sse2", "sse2"},
+    {"avx2", "avx|avx2|fma3|fma5"},
+    {"avx512", "avx512[a-z]*"},
+    {"neon64", "neon64"},
 }};
 
 // Functions that the linker sees: global and weak ones, and indirect ones. Data holds no instructions.
@@ -31,16 +31,14 @@ bool is_own(const IsaUnit& unit, const std::string& symbol) {
     if (!std::regex_match((*found)[1].str(), own)) return false;
     over_own = true;
   }
-  const std::string isa(unit.isa), kernel = "tessera::kernel::";
-  return over_own || symbol.find(kernel + "isa_" + isa + "::") != std::string::npos ||
-         symbol == kernel + isa + "_kernels()";
+  return over_own || symbol.find("tessera::kernel::isa_" + std::string(unit.isa) + "::") != std::string::npos;
 }
 
 }  // namespace
 
 std::optional<IsaUnit> isa_unit_of(std::string_view object_path) {
   for (const IsaUnit& unit : units) {
-    if (object_path.find("/isa_" + std::string(unit.name) + ".") != std::string_view::npos) return unit;
+    if (object_path.find("/tessera_kernel_" + std::string(unit.isa) + ".dir/") != std::string_view::npos) return unit;
   }
   return std::nullopt;
 }

@@ -9,10 +9,9 @@
 
 namespace tessera::house {
 
-/// What marks a symbol of the unit isa_NAME.cpp as its own.
+/// What marks a symbol of the units of one ISA, those of the target tessera_kernel_ISA, as its own.
 struct IsaUnit {
-  std::string_view name;
-  std::string_view isa;            ///< tessera::kernel::isa_ISA:: and the accessor tessera::kernel::ISA_kernels()
+  std::string_view isa;            ///< tessera::kernel::isa_ISA::
   std::string_view architectures;  ///< those of xsimd that are of this ISA, as a regular expression
 };
 

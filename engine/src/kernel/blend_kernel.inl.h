@@ -1,35 +1,6 @@
 // Kernel 3, transfinite blending, lanes = parameters v: what the border curves give for one u is broadcast, what they
 // give for v streams through, as many columns at a time as stay in the second-level cache (a first-level tile would cut
-// the runs of stores short, which cost more than the loads). Included by isa_*.cpp as grid_kernel.inl.h is.
-
-/// How records lie in memory.
-enum class Records { packed, arrays, strided };
-
-/// The first `count` lanes of three components to the job's `out` and `stride`, from a record on.
-template <class L, Records Layout, class Job>
-inline void store_records(const Job& job, std::ptrdiff_t record, typename L::Batch (&p)[3], int count) {
-  using T = typename L::Scalar;
-  if constexpr (Layout == Records::arrays) {
-    for (int c = 0; c < 3; ++c) L::store_first(job.out[c] + record, p[c], count);
-  } else if constexpr (Layout == Records::packed) {
-    L::interleave(p);
-    T* out = job.out[0] + 3 * record;
-    if (count == L::width) {
-      for (int k = 0; k < 3; ++k) L::store_first(out + k * L::width, p[k], L::width);
-      return;
-    }
-    for (int k = 0; k * L::width < 3 * count; ++k) {
-      const int rest = 3 * count - k * L::width;
-      L::store_first(out + k * L::width, p[k], rest < L::width ? rest : int{L::width});
-    }
-  } else {
-    alignas(64) T values[L::width];
-    for (int c = 0; c < 3; ++c) {
-      L::store(values, p[c]);
-      for (int l = 0; l < count; ++l) job.out[c][(record + l) * job.stride] = values[l];
-    }
-  }
-}
+// the runs of stores short, which cost more than the loads). Included by the units as grid_kernel.inl.h is.
 
 /// Columns begin .. end of one row: ((g1 C1 + g2 C2) + f1 K1) + f2 K2 in this order, all but the first product fused.
 template <class L, Records Layout>

@@ -1,6 +1,6 @@
 // Hashes of the borders of a block of patches, lanes = patches: the same for both directions, and for weights that differ by
 // a power of two (tess/shared_edges.h). A sum over the control points, each mixed with its distance to the nearer end, by
-// multiplications and shifts as in MurmurHash3 (Appleby 2011). Included by isa_*.cpp as sample_kernel.inl.h is.
+// multiplications and shifts as in MurmurHash3 (Appleby 2011). Included by the units as sample_kernel.inl.h is.
 
 template <class L>
 [[gnu::always_inline]] inline Indices<L> mixed_bits(const Indices<L>& x) {

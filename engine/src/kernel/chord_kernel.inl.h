@@ -1,5 +1,5 @@
 // Bounds on the second derivatives of polynomial patches and the rates that keep a distance (tess/chord_bound.h), lanes =
-// patches of a block. Included by isa_*.cpp as sample_kernel.inl.h is. No multiply-add is fused, so that every
+// patches of a block. Included by the units as sample_kernel.inl.h is. No multiply-add is fused, so that every
 // instruction set finds the same rates.
 
 /// Cuts the curve of `count` points, `step` apart, at 1/2: cut[0 .. 2 count - 2] are its lower half's points, then, from

@@ -3,7 +3,7 @@
 // k2 don't suffer from H^2 - K (do Carmo, Differential Geometry of Curves and Surfaces, sec. 3.3). By E = r_u.r_u, F =
 // r_u.r_v, L = r_uu.N, ...:
 //   s11 = L / E,  s12 = (M - (F/E) L) / |r_u x r_v|,  s22 = (N - 2 (F/E) M + (F/E)^2 L) E / |r_u x r_v|^2.
-// Included by isa_*.cpp as sample_kernel.inl.h is.
+// Included by the units as sample_kernel.inl.h is.
 
 template <class L>
 struct Curvature {

@@ -1,20 +1,7 @@
 // Kernel 1, lanes = patches: each vector holds one coefficient of 4, 8 or 16 patches of a block. For each u the row
 // curves q_j = sum_i f_i(u) c_ij stay in registers while v runs: r = sum_j g_j(v) q_j. The weights f, g are tabulated,
 // so the same code evaluates Bernstein and power coefficients. Any subset of the outputs in one pass. Included by
-// isa_*.cpp as sample_kernel.inl.h is.
-
-template <class L, bool Streaming>
-[[gnu::always_inline]] inline void store(typename L::Scalar* memory, const typename L::Batch& vector) {
-  if constexpr (Streaming) {
-    L::stream(memory, vector);
-  } else {
-    L::store(memory, vector);
-  }
-}
-template <class L, bool Streaming>
-[[gnu::always_inline]] inline void store(typename L::Scalar* memory, const typename L::Batch (&vector)[3]) {
-  for (int c = 0; c < 3; ++c) store<L, Streaming>(memory + c * block_lanes, vector[c]);
-}
+// the units as sample_kernel.inl.h is.
 
 /// Where the outputs of one sample go, for one vector of patches.
 struct Offsets {

@@ -1,7 +1,7 @@
 // Kernel 2's way out, patch-contiguous: values of a block, `[value][lane]`, are transposed for a few lanes at once, and
 // what a lane gets is joined with what was left of its last vector, so that memory sees whole aligned vectors alone,
 // plain or streamed. Vectors in which one lane ends and the next begins are put together when all are through. Included
-// by isa_*.cpp as sample_kernel.inl.h is.
+// by the units as sample_kernel.inl.h is.
 
 /// Lanes whose values fit 16 bytes: what is transposed at once. More would cost shuffles across a vector, which one port
 /// alone executes.

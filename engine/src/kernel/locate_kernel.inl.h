@@ -1,5 +1,5 @@
 // Span search for a batch of parameters, without a branch that depends on them: binary search in as many steps for each,
-// in loops over lanes that the compiler turns into gathers and comparisons. Included by isa_*.cpp as sample_kernel.inl.h
+// in loops over lanes that the compiler turns into gathers and comparisons. Included by the units as sample_kernel.inl.h
 // is.
 
 inline void locate_batch(const LocateJob& job, std::size_t first) {

@@ -3,9 +3,13 @@
 #include "kernel/kernel_table.h"
 
 namespace tessera::kernel {
+namespace isa_neon64 {
+constexpr Isa this_isa = Isa::neon64;
+#include "kernel/isa_tables.inl.h"
+}  // namespace isa_neon64
 
 std::span<const KernelTable* const> machine_kernels() {
-  static const KernelTable* const only = &neon64_kernels();
+  static const KernelTable* const only = &isa_neon64::table();
   return {&only, 1};
 }
 

@@ -5,6 +5,19 @@
 #include "kernel/kernel_table.h"
 
 namespace tessera::kernel {
+namespace isa_sse2 {
+constexpr Isa this_isa = Isa::sse2;
+#include "kernel/isa_tables.inl.h"
+}  // namespace isa_sse2
+namespace isa_avx2 {
+constexpr Isa this_isa = Isa::avx2;
+#include "kernel/isa_tables.inl.h"
+}  // namespace isa_avx2
+namespace isa_avx512 {
+constexpr Isa this_isa = Isa::avx512;
+#include "kernel/isa_tables.inl.h"
+}  // namespace isa_avx512
+
 namespace {
 
 struct Machine {
@@ -16,12 +29,12 @@ struct Machine {
 Machine detect() {
   __builtin_cpu_init();
   Machine found;
-  found.tables[found.count++] = &sse2_kernels();
+  found.tables[found.count++] = &isa_sse2::table();
   const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  if (avx2) found.tables[found.count++] = &avx2_kernels();
+  if (avx2) found.tables[found.count++] = &isa_avx2::table();
   if (avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
       __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl"))
-    found.tables[found.count++] = &avx512_kernels();
+    found.tables[found.count++] = &isa_avx512::table();
   return found;
 }
 

@@ -1,4 +1,4 @@
-// The end of streaming, and the probes of the machine's limits. Included by isa_*.cpp as grid_kernel.inl.h is.
+// The end of streaming, and the probes of the machine's limits. Included by the units as grid_kernel.inl.h is.
 
 /// 16 independent chains hide the latency of the multiply-adds; the sum of all keeps the compiler from dropping them.
 template <class L>

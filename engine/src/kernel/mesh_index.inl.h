@@ -1,9 +1,5 @@
-// The triangles of one patch of a mesh (tess/stitched_patch.h), written in whole vectors. What runs over the end of a part is overwritten by the next. Included by isa_*.cpp as
+// The triangles of one patch of a mesh (tess/stitched_patch.h), written in whole vectors. What runs over the end of a part is overwritten by the next. Included by the units as
 // sample_kernel.inl.h is.
-
-/// As many indices as a vector holds.
-template <class L>
-using Indices [[gnu::vector_size(sizeof(std::uint32_t) * L::width)]] = std::uint32_t;
 
 template <class L>
 [[gnu::always_inline]] inline Indices<L> load_indices(const std::uint32_t* from) {

@@ -6,7 +6,7 @@
 // Border points: by the sum of border_kernel.inl.h, whose bits are those of every patch that has the border. Their normals
 // come from the border's own tangent and the one across it, degree (second row - first row), which points inwards: as the
 // ring runs counter-clockwise, along x inwards is r_u x r_v on every side.
-// Included by isa_*.cpp as sample_kernel.inl.h is.
+// Included by the units as sample_kernel.inl.h is.
 
 /// One number a tile in its lanes.
 template <class L>
@@ -69,7 +69,7 @@ class PatchVertices {
 
  private:
   using Batch = typename L::Batch;
-  static constexpr int components = Rational ? 4 : 3, capacity = point_capacity<Degree>, rows_at_once = 16;
+  static constexpr int components = Rational ? 4 : 3, capacity = capacity_of<Degree>, rows_at_once = 16;
   static constexpr int tiles_a_vector = L::width > mesh_tile ? L::width / mesh_tile : 1;
   static constexpr int staged = 1024;
   static constexpr int outputs = Order > 0 ? 6 : 3;

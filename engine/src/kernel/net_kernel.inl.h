@@ -1,4 +1,4 @@
-// Control nets of a block's patches, `[number]` in the memory of each, taken as `[number][lane]`. Included by isa_*.cpp as
+// Control nets of a block's patches, `[number]` in the memory of each, taken as `[number][lane]`. Included by the units as
 // grid_kernel.inl.h is.
 
 /// use(number, component, values of the lanes) for each number of L::width nets; the component is known when compiled.

@@ -2,23 +2,19 @@
 // vectors of its patch's rows are summed, q = sum_i f_i(u) row_i; a transpose of `width` samples then gives the row
 // curves with lanes = samples, from where on everything goes as in a grid. Where all samples of a slot lie on one patch
 // its coefficients are broadcast instead: the same sums in the same order, so that the choice does not change a bit.
-// Included by isa_*.cpp as sample_kernel.inl.h is.
-
-/// Coefficients of the highest degree that an evaluation is made for. Degree 0: any.
-template <int Degree>
-constexpr int point_capacity = Degree > 0 ? Degree + 1 : max_order;
+// Included by the units as sample_kernel.inl.h is.
 
 /// The Bernstein weights of one parameter of a slot's samples: `[vector][order * (degree + 1) + i][lane]`.
 template <class L, int Degree, int Order>
 struct SlotWeights {
-  static constexpr int count = (Order + 1) * point_capacity<Degree>;
+  static constexpr int count = (Order + 1) * capacity_of<Degree>;
   alignas(64) typename L::Scalar of[block_lanes / L::width][count][L::width];
 
   /// Of the first `samples`, and of those that share their vectors.
   [[gnu::always_inline]] void fill(const typename L::Scalar* parameters, int samples, int degree) {
     for (int lane = 0; lane < samples; lane += L::width) {
       typename L::Batch weights[count];
-      bernstein_weights<L, Order, point_capacity<Degree>>(L::Batch::load_unaligned(parameters + lane), degree, weights);
+      bernstein_weights<L, Order, capacity_of<Degree>>(L::Batch::load_unaligned(parameters + lane), degree, weights);
       for (int i = 0; i < (Order + 1) * (degree + 1); ++i) L::store(of[lane / L::width][i], weights[i]);
     }
   }
@@ -166,7 +162,7 @@ template <class L, int Degree, bool Rational, int Order>
 inline void evaluate_slot(const PointJob<typename L::Scalar>& job, int k,
                           const SlotWeights<L, Degree, Order>& u_weights,
                           const SlotWeights<L, Degree, Order>& v_weights) {
-  constexpr int components = Rational ? 4 : 3, capacity = point_capacity<Degree>;
+  constexpr int components = Rational ? 4 : 3, capacity = capacity_of<Degree>;
   const int count_u = Degree > 0 ? Degree + 1 : job.grid.degree_u + 1;
   const int count_v = Degree > 0 ? Degree + 1 : job.grid.degree_v + 1;
   const PointSlot slot = job.slots[k];

@@ -1,5 +1,5 @@
 // What precedes the evaluation of scattered samples: whether they can be evaluated, and which go together. Loops over
-// lanes that the compiler turns into vectors. Included by isa_*.cpp as sample_kernel.inl.h is.
+// lanes that the compiler turns into vectors. Included by the units as sample_kernel.inl.h is.
 
 template <class T>
 inline bool all_within(const T* values, std::size_t count, T low, T high) {

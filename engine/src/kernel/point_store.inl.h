@@ -1,4 +1,4 @@
-// Outputs of scattered samples from the stage to the caller's records. Included by isa_*.cpp as sample_kernel.inl.h is.
+// Outputs of scattered samples from the stage to the caller's records. Included by the units as sample_kernel.inl.h is.
 
 /// The samples of a slot as neighbouring records of three, or as numbers one after the other.
 template <class L, Records Layout>

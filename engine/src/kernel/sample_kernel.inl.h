@@ -1,5 +1,9 @@
 // One sample of a block from the row curves of its u: position and derivatives up to an order, polynomial or rational.
-// Included by isa_*.cpp inside the ISA's namespace, after Lanes<T> and this_isa.
+// Included by the units, in the ISA's namespace, after kernel/lanes.h.
+
+/// Coefficients of the highest degree that an evaluation is made for. Degree 0: any.
+template <int Degree>
+constexpr int capacity_of = Degree > 0 ? Degree + 1 : max_order;
 
 /// r(u,v) and its derivatives in Cartesian coordinates, three components each; what lies above the order is left as it
 /// is.

@@ -1,4 +1,5 @@
-// The kernels for SSE2, the baseline of x86-64. There is no fused multiply-add: results differ in their last bits from
+#pragma once
+// What the kernels call on SSE2, the baseline of x86-64. There is no fused multiply-add: results differ in their last bits from
 // those of the other units, within the same stated bounds.
 
 #include <emmintrin.h>
@@ -8,7 +9,7 @@
 #include <limits>
 #include <xsimd/xsimd.hpp>
 
-#include "kernel/kernel_table.h"
+#include "tessera/isa.h"
 
 namespace tessera::kernel {
 namespace isa_sse2 {
@@ -169,11 +170,8 @@ struct Lanes<double> {
   }
 };
 
-#include "kernel/kernel_set.inl.h"
-
 }  // namespace
 }  // namespace isa_sse2
-
-const KernelTable& sse2_kernels() { return isa_sse2::table; }
-
 }  // namespace tessera::kernel
+
+#define TESSERA_ISA_NAMESPACE isa_sse2

@@ -1,4 +1,5 @@
-// The kernels for AVX-512 (F, DQ, BW, VL).
+#pragma once
+// What the kernels call on AVX-512 (F, DQ, BW, VL).
 
 #include <immintrin.h>
 
@@ -7,7 +8,7 @@
 #include <limits>
 #include <xsimd/xsimd.hpp>
 
-#include "kernel/kernel_table.h"
+#include "tessera/isa.h"
 
 namespace tessera::kernel {
 namespace isa_avx512 {
@@ -237,11 +238,8 @@ struct Lanes<double> {
   }
 };
 
-#include "kernel/kernel_set.inl.h"
-
 }  // namespace
 }  // namespace isa_avx512
-
-const KernelTable& avx512_kernels() { return isa_avx512::table; }
-
 }  // namespace tessera::kernel
+
+#define TESSERA_ISA_NAMESPACE isa_avx512

@@ -1,4 +1,5 @@
-// The kernels for AVX2 with FMA.
+#pragma once
+// What the kernels call on AVX2 with FMA.
 
 #include <immintrin.h>
 
@@ -8,7 +9,7 @@
 #include <type_traits>
 #include <xsimd/xsimd.hpp>
 
-#include "kernel/kernel_table.h"
+#include "tessera/isa.h"
 
 namespace tessera::kernel {
 namespace isa_avx2 {
@@ -206,11 +207,8 @@ struct Lanes<double> {
   }
 };
 
-#include "kernel/kernel_set.inl.h"
-
 }  // namespace
 }  // namespace isa_avx2
-
-const KernelTable& avx2_kernels() { return isa_avx2::table; }
-
 }  // namespace tessera::kernel
+
+#define TESSERA_ISA_NAMESPACE isa_avx2

@@ -1,4 +1,5 @@
-// The kernels for NEON of AArch64, with fused multiply-adds: the bytes of AVX2 and AVX-512.
+#pragma once
+// What the kernels call on NEON of AArch64, with fused multiply-adds: the bytes of AVX2 and AVX-512.
 
 #include <arm_neon.h>
 
@@ -6,7 +7,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "kernel/kernel_table.h"
+#include "tessera/isa.h"
 
 namespace tessera::kernel {
 namespace isa_neon64 {
@@ -261,11 +262,8 @@ struct Lanes<double> : ThroughMemory<double> {
   }
 };
 
-#include "kernel/kernel_set.inl.h"
-
 }  // namespace
 }  // namespace isa_neon64
-
-const KernelTable& neon64_kernels() { return isa_neon64::table; }
-
 }  // namespace tessera::kernel
+
+#define TESSERA_ISA_NAMESPACE isa_neon64

@@ -1,0 +1,44 @@
+#pragma once
+// What a certified plan asks of blocks of patches: bounds, rates, the hashes by which borders find each other.
+
+#include <cstdint>
+
+#include "kernel/block_lanes.h"
+
+namespace tessera::kernel {
+
+/// Bounds on the second derivatives of a block of polynomial patches, over the whole patch, its halves and quarters: see
+/// ChordBound. They include the rounding of the packed coefficients.
+struct ChordJob {
+  const float* net = nullptr;   ///< `[i][j][component][lane]`
+  int degree_u = 0, degree_v = 0;
+  float* pieces = nullptr;      ///< `[piece of 9][uu, uv, vv][lane]`, in units of `unit`
+  float* unit = nullptr;        ///< `[lane]`: a power of two above the largest coefficient
+  float* size = nullptr;        ///< `[lane]`: the largest coefficient, at least 2^-120
+};
+
+/// The rates with the fewest cells that keep a distance, for the patches of a block.
+struct RateJob {
+  const float* pieces = nullptr;    ///< as above
+  const float* distance = nullptr;  ///< `[lane]`, in the patch's unit
+  int most_rate = 0;
+  std::int32_t* rate_u = nullptr;   ///< `[lane]`: 0 where the search failed, which does not prove that there are none
+  std::int32_t* rate_v = nullptr;
+  float* chord = nullptr;           ///< `[lane]`: the bound that the rates keep, in the patch's unit
+};
+
+/// Hashes of the borders of a block of patches, of the bits of their control points.
+struct BorderHashJob {
+  const float* net = nullptr;     ///< `[i][j][component][lane]`
+  int degree_u = 0, degree_v = 0;
+  bool rational = false;
+  std::uint32_t* hash = nullptr;  ///< `[side v = 0, u = 1, v = 1, u = 0][lane]`
+};
+
+struct ChordKernels {
+  void (*hash_borders)(const BorderHashJob&);
+  void (*bound_chords)(const ChordJob&);
+  void (*find_rates)(const RateJob&);
+};
+
+}  // namespace tessera::kernel

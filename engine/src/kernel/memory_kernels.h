@@ -1,0 +1,21 @@
+#pragma once
+// Stores past the caches, and the probes of the machine's limits.
+
+#include <cstddef>
+
+namespace tessera::kernel {
+
+
+struct MemoryKernels {
+  /// Copies lines of 64 bytes past the caches, both aligned to 64 bytes. finish_streaming() comes after the last.
+  void (*stream_lines)(const void* from, void* to, std::size_t lines);
+  /// For limits.h: `rounds` times 16 independent fused multiply-adds of whole vectors; returns the lanes of a vector.
+  int (*fma_f32)(std::size_t rounds, float* sink);
+  int (*fma_f64)(std::size_t rounds, double* sink);
+  /// For limits.h: fills bytes (a multiple of 64, aligned to 64) with full-width stores.
+  void (*fill)(void* memory, std::size_t bytes, bool streaming);
+  /// Once a task has streamed, before its results are given to other threads. Not once a block: a fence waits for memory.
+  void (*finish_streaming)();
+};
+
+}  // namespace tessera::kernel

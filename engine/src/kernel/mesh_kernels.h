@@ -1,0 +1,83 @@
+#pragma once
+// Vertices and triangles of the patches of a mesh.
+
+#include <cstddef>
+#include <cstdint>
+
+#include "kernel/grid_kernels.h"
+
+namespace tessera::kernel {
+
+/// Neighbouring samples of a row of a mesh's vertices that are evaluated together.
+inline constexpr int mesh_tile = 8;
+
+/// A border of a patch of a mesh, as the ring of border points runs.
+struct MeshBorder {
+  int rate = 0;
+  /// Weights at k / rate, `[k / 8][order 0, 1][i][k % 8]`, those of order 0 bitwise symmetric (see BorderJob).
+  const float* weights = nullptr;
+  float scale = 1;                 ///< of the homogeneous control points; 1 for polynomial patches
+  bool is_point = false;           ///< the whole border lies at `start`
+  const float* start = nullptr;    ///< x y z; for borders that are points, and for rational patches
+};
+
+/// Vectors of neighbouring vertices: component c of vertex k goes to out[c][k * stride].
+struct MeshRecords {
+  float* out[3] = {nullptr, nullptr, nullptr};
+  std::ptrdiff_t stride = 1;
+};
+
+/// Lines of 64 bytes, both ends aligned to that, on their way past the caches.
+struct LineQueue {
+  const float* from = nullptr;
+  float* to = nullptr;
+  std::size_t lines = 0;
+};
+inline constexpr int line_queues = 3;
+
+/// The vertices of one patch: inner points at (iu / inner_u, iv / inner_v), v fastest, then the border points.
+struct MeshVertexJob {
+  /// Degrees, rationality, `doubt` and `noise` (sixteen times the patch's), and exact_normal, which is asked for vertex
+  /// lane < 8 ? iu + lane : iv + lane - 8; a lane beyond the last vertex means nothing.
+  GridJob<float> grid;
+  const float* net = nullptr;        ///< `[i][j][component]`, block_lanes apart
+  int inner_u = 1, inner_v = 1;      ///< both 1, or both at least 2
+  /// Weights at the inner k / inner_u, k = 1 .., `[(k - 1) / 8][order 0, 1][i][(k - 1) % 8]`, an even number of eights.
+  const float* u_weights = nullptr;
+  const float* v_weights = nullptr;
+  MeshBorder border[4];              ///< v = 0, u = 1, v = 1, u = 0
+  MeshRecords position, normal;      ///< from the patch's first vertex on; normal.out[0] null: not wanted
+  /// Others' lines, line_queues queues; so many are sent with each vector of vertices: stores to memory take place while the
+  /// next vertices are computed. The kernel counts them off.
+  LineQueue* queues = nullptr;
+  int lines_a_vector = 0;
+  int writable = 0;                  ///< records of them that may be written, whatever they then hold
+};
+
+/// A strip of triangles between a border and the inner points nearest to it: corner k is by codes[k] the
+/// inner point of that number, the first of which is vertex `inner`, or with mesh_border_code the border point. Readable up
+/// to a multiple of 16.
+struct MeshStrip {
+  const std::uint32_t* codes = nullptr;  ///< 64-byte aligned
+  int count = 0;                 ///< codes, three a triangle
+  std::uint32_t ring = 0;        ///< the vertex of the border's first point
+  std::uint32_t inner = 0, inner_step = 0;  ///< modulo 2^32
+};
+inline constexpr std::uint32_t mesh_border_code = 0x80000000;
+
+/// The triangles of one patch.
+struct MeshIndexJob {
+  MeshStrip strip[4];
+  std::uint32_t ring = 0, ring_size = 0;      ///< border points: the vertex behind the last is the first
+  std::uint32_t first = 0, row = 0;           ///< inner vertices: the first, and from one row to the next
+  int cells_u = 0, cells_v = 0;               ///< between inner points
+  std::uint32_t* out = nullptr;
+  std::uint32_t* end = nullptr;               ///< of what may be written
+};
+
+struct MeshKernels {
+  void (*mesh_vertices)(const MeshVertexJob&);
+  void (*mesh_indices)(const MeshIndexJob&);
+};
+
+}  // namespace tessera::kernel

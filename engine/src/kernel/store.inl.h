@@ -1,0 +1,43 @@
+// Vectors to memory. Included by the units as sample_kernel.inl.h is.
+
+template <class L, bool Streaming>
+[[gnu::always_inline]] inline void store(typename L::Scalar* memory, const typename L::Batch& vector) {
+  if constexpr (Streaming) {
+    L::stream(memory, vector);
+  } else {
+    L::store(memory, vector);
+  }
+}
+template <class L, bool Streaming>
+[[gnu::always_inline]] inline void store(typename L::Scalar* memory, const typename L::Batch (&vector)[3]) {
+  for (int c = 0; c < 3; ++c) store<L, Streaming>(memory + c * block_lanes, vector[c]);
+}
+
+/// How records lie in memory.
+enum class Records { packed, arrays, strided };
+
+/// The first `count` lanes of three components to the job's `out` and `stride`, from a record on.
+template <class L, Records Layout, class Job>
+inline void store_records(const Job& job, std::ptrdiff_t record, typename L::Batch (&p)[3], int count) {
+  using T = typename L::Scalar;
+  if constexpr (Layout == Records::arrays) {
+    for (int c = 0; c < 3; ++c) L::store_first(job.out[c] + record, p[c], count);
+  } else if constexpr (Layout == Records::packed) {
+    L::interleave(p);
+    T* out = job.out[0] + 3 * record;
+    if (count == L::width) {
+      for (int k = 0; k < 3; ++k) L::store_first(out + k * L::width, p[k], L::width);
+      return;
+    }
+    for (int k = 0; k * L::width < 3 * count; ++k) {
+      const int rest = 3 * count - k * L::width;
+      L::store_first(out + k * L::width, p[k], rest < L::width ? rest : int{L::width});
+    }
+  } else {
+    alignas(64) T values[L::width];
+    for (int c = 0; c < 3; ++c) {
+      L::store(values, p[c]);
+      for (int l = 0; l < count; ++l) job.out[c][(record + l) * job.stride] = values[l];
+    }
+  }
+}

@@ -1,0 +1,21 @@
+// Bounds, rates and hashes for certified plans. One unit an instruction set: see cmake/TesseraIsaFlags.cmake.
+
+#include "kernel/chord_kernels.h"
+#include "kernel/lanes.h"
+
+namespace tessera::kernel::TESSERA_ISA_NAMESPACE {
+namespace {
+
+#include "kernel/index_vector.inl.h"
+#include "kernel/chord_kernel.inl.h"
+#include "kernel/border_hash.inl.h"
+
+}  // namespace
+
+extern const ChordKernels chord_kernels = {
+    hash_borders<Lanes<float>>,
+    bound_chords<Lanes<float>>,
+    find_rates<Lanes<float>>,
+};
+
+}  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE
