@@ -16,27 +16,30 @@ class BlockNormals {
  public:
   BlockNormals(const PatchSet::Impl& set, const GridPlan::Impl& plan) : set_(set), plan_(plan) {}
 
-  /// Completes the job of a block. It must not outlive this object, nor the next call.
+  /// What the jobs of all blocks have in common. They must not outlive this object.
+  void begin(kernel::GridJob<T>& job) {
+    job.u_edges = plan_.u_edges.data();
+    job.v_edges = plan_.v_edges.data();
+    job.exact_normal = exact_normal;
+    job.exact_context = this;
+    const double smallest_sine = sizeof(T) == 4 ? 1e-6 : 0, smallest_tolerance = sizeof(T) == 4 ? 1e-4 : 0;
+    job.smallest_sine = static_cast<T>(std::max(plan_.options.geometry.smallest_sine, smallest_sine));
+    job.umbilic_tolerance = static_cast<T>(std::max(plan_.options.geometry.umbilic_tolerance, smallest_tolerance));
+  }
+  /// Completes the job of a block, until the next call.
   void prepare(std::size_t block, kernel::GridJob<T>& job) {
     prepare(set_.lane_patches.data() + block * PatchSet::lanes,
             set_.coefficients<T>().doubt_of(plan_.options.representation).data() + block * 2 * PatchSet::lanes, job);
     if (!plan_.by_patch) return;
-    job.u_edges += block * PatchSet::lanes * plan_.count_u;
-    job.v_edges += block * PatchSet::lanes * plan_.count_v;
+    job.u_edges = plan_.u_edges.data() + block * PatchSet::lanes * plan_.count_u;
+    job.v_edges = plan_.v_edges.data() + block * PatchSet::lanes * plan_.count_v;
   }
   /// Of 16 patches that stand in no block together, of a plan with parameters for all; `doubts`: `[doubt, noise][lane]`.
   void prepare(const std::uint32_t* lane_patches, const T* doubts, kernel::GridJob<T>& job) {
     lane_patches_ = lane_patches;
     job.doubt = doubts;
     job.noise = doubts + PatchSet::lanes;
-    job.u_edges = plan_.u_edges.data();
-    job.v_edges = plan_.v_edges.data();
     job.collapsed = find_collapsed() ? collapsed_.data() : nullptr;
-    job.exact_normal = exact_normal;
-    job.exact_context = this;
-    const double smallest_sine = sizeof(T) == 4 ? 1e-6 : 0, smallest_tolerance = sizeof(T) == 4 ? 1e-4 : 0;
-    job.smallest_sine = static_cast<T>(std::max(plan_.options.geometry.smallest_sine, smallest_sine));
-    job.umbilic_tolerance = static_cast<T>(std::max(plan_.options.geometry.umbilic_tolerance, smallest_tolerance));
   }
 
  private:

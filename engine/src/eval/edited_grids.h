@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "base/aligned.h"
-#include "eval/block_normals.h"
+#include "eval/block_jobs.h"
 #include "eval/grid_calls.h"
 #include "eval/staged_block.h"
 #include "eval/touched_blocks.h"
@@ -24,6 +24,7 @@ struct UpdateCall {
   const TouchedBlocks& touched;
   const GridViews<T>& out;
   const StageLayout<T>& layout;
+  int order;  ///< of the derivatives that the outputs are made of
   bool streaming;
 };
 
@@ -33,7 +34,9 @@ template <class T>
 class EditedGrids {
  public:
   explicit EditedGrids(const UpdateCall<T>& call)
-      : call_(call), stage_(call.kernels, call.layout, call.out, call.streaming), normals_(call.set, call.plan) {}
+      : call_(call), stage_(call.kernels, call.layout, call.out, call.streaming), jobs_(call.set, call.plan, call.order) {
+    stage_.place_outputs(jobs_.job());
+  }
 
   void add(std::uint32_t block) {
     if (call_.touched.count(block) == call_.set.lane_counts[block]) {
@@ -62,9 +65,8 @@ class EditedGrids {
     const std::uint32_t* edits = call_.touched.edits(block);
     for (std::size_t lane = 0; lane < call_.set.lane_counts[block]; ++lane) write_points(patches[lane], edits[lane]);
     call_.set.pack_block(block, call_.kernels);  // all fit: they have been checked
-    auto job = block_job_of<T>(call_.set, call_.plan, block);
-    normals_.prepare(block, job);
-    isa_ = stage_.run(job, patches, call_.set.lane_counts[block], call_.plan.samples());
+    jobs_.turn_to(block);
+    evaluate(patches, call_.set.lane_counts[block]);
   }
 
   void add_lanes(std::uint32_t block) {
@@ -97,22 +99,26 @@ class EditedGrids {
 
   void flush() {
     if (gathered_ == 0) return;
-    const std::size_t values = call_.set.group_of_block(block_).block_values;
+    const BlockGroup& group = call_.set.group_of_block(block_);
     const auto repeat_first = [&](auto* row) { std::fill(row + gathered_, row + lanes, row[0]); };
-    for (std::size_t k = 0; k < values; k += lanes) repeat_first(net_.data() + k);
+    for (std::size_t k = 0; k < group.block_values; k += lanes) repeat_first(net_.data() + k);
     repeat_first(doubts_.data());
     repeat_first(doubts_.data() + lanes);
     repeat_first(patches_.data());
-    auto job = block_job_of<T>(call_.set, call_.plan, block_);
-    job.net = net_.data();
-    normals_.prepare(patches_.data(), doubts_.data(), job);
-    isa_ = stage_.run(job, patches_.data(), static_cast<int>(gathered_), call_.plan.samples());
+    jobs_.turn_to(group, net_.data(), patches_.data(), doubts_.data());
+    evaluate(patches_.data(), static_cast<int>(gathered_));
     gathered_ = 0;
+  }
+
+  void evaluate(const std::uint32_t* patches, int count) {
+    const GridPlan::Impl& plan = call_.plan;
+    isa_ = stage_.run(jobs_.job(), 0, static_cast<int>(plan.count_u), static_cast<int>(plan.count_v), patches, count,
+                      plan.samples());
   }
 
   const UpdateCall<T>& call_;
   StagedBlock<T> stage_;
-  BlockNormals<T> normals_;
+  BlockJobs<T> jobs_;
   Isa isa_ = Isa::sse2;
   std::size_t gathered_ = 0;  ///< patches in the net
   std::uint32_t block_ = 0;   ///< the last one that they came from

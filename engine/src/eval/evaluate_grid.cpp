@@ -8,22 +8,19 @@
 
 #include "base/guard.h"
 #include "block/patch_set_impl.h"
-#include "eval/block_normals.h"
+#include "eval/block_jobs.h"
+#include "eval/flat_grid.h"
 #include "eval/grid_calls.h"
 #include "eval/grid_outputs.h"
 #include "eval/grid_plan_impl.h"
 #include "eval/staged_block.h"
 #include "eval/streaming_threshold.h"
+#include "eval/task_size.h"
 #include "eval/view_checks.h"
 #include "parallel/parallel_for.h"
 
 namespace tessera {
 namespace {
-
-/// Points a task: enough to hide its cost, few enough to balance.
-constexpr std::size_t points_per_task = 16384;
-/// Below these many points one thread is faster than waking another.
-constexpr std::size_t serial_positions = 32768, serial_normals = 10240;
 
 /// A part of a block's grid: rows of parameters u.
 struct Piece {
@@ -76,31 +73,6 @@ Status check_plan(const PatchSet::Impl& set, const GridPlan& plan) {
   return {};
 }
 
-/// What every kernel call over one block has in common.
-template <class T>
-kernel::GridJob<T> block_job(const PatchSet::Impl& set, const GridPlan::Impl& plan, const Piece& piece) {
-  const BlockGroup& group = set.group_of_block(piece.block);
-  kernel::GridJob<T> job;
-  job.net = set.coefficients<T>().of(plan.options.representation).data() + group.first_value +
-            (piece.block - group.first_block) * group.block_values;
-  job.degree_u = group.degree_u;
-  job.degree_v = group.degree_v;
-  job.rational = group.rational;
-  const GridWeights<T>& weights = plan.weights<T>();
-  job.by_lane = plan.by_patch;
-  job.u_weights = plan.by_patch ? weights.u_lanes.of(piece.block) : weights.u[static_cast<std::size_t>(group.degree_u)].data();
-  job.v_weights = plan.by_patch ? weights.v_lanes.of(piece.block) : weights.v[static_cast<std::size_t>(group.degree_v)].data();
-  job.u_begin = piece.u_begin;
-  job.u_end = piece.u_end;
-  job.v_end = static_cast<int>(plan.count_v);
-  if constexpr (sizeof(T) == 8) {
-    job.offset[0] = set.origin.x;
-    job.offset[1] = set.origin.y;
-    job.offset[2] = set.origin.z;
-  }
-  return job;
-}
-
 template <class T>
 Isa run_grid(const kernel::KernelTable& kernels, const kernel::GridJob<T>& job) {
   if constexpr (sizeof(T) == 4) {
@@ -119,13 +91,6 @@ Result<int> order_of_outputs(Wanted&& wanted) {
   });
   if (order < 0) return Status(StatusCode::invalid_argument, "no output is wanted");
   return order;
-}
-
-/// What the report says of the ISA comes from the kernel that ran; the plan's own value stands in for an empty run.
-void report(const Execution& execution, Isa isa, bool streaming) {
-  if (!execution.report) return;
-  execution.report->isa = isa;
-  execution.report->streaming = streaming;
 }
 
 // ---- block-interleaved outputs
@@ -186,20 +151,40 @@ std::size_t record_bytes(Wanted&& wanted) {
   return bytes;
 }
 
-/// Points the job at a piece's part of the caller's memory.
+/// The wanted outputs in blocks, from where on a piece's part of them is found.
 template <class T>
-void place_outputs(const GridBlocks<T>& out, const GridPlan::Impl& plan, const Piece& piece, kernel::GridJob<T>& job) {
-  const std::size_t row = piece.block * plan.count_u + static_cast<std::size_t>(piece.u_begin);
-  const std::size_t first = row * plan.count_v * PatchSet::lanes;
-  for_each_value_output<T>([&](const auto& output) {
-    const auto memory = out.*output.memory;
-    job.*output.job = memory.empty() ? nullptr : memory.data() + first * static_cast<std::size_t>(output.width);
-  });
-  for_each_kind_output<T>([&](const auto& output) {
-    const auto memory = out.*output.memory;
-    job.*output.job = memory.empty() ? nullptr : reinterpret_cast<std::uint8_t*>(memory.data() + first);
-  });
-}
+class BlockOutputs {
+ public:
+  explicit BlockOutputs(const GridBlocks<T>& out) {
+    for_each_value_output<T>([&](const auto& output) {
+      const auto memory = out.*output.memory;
+      if (!memory.empty()) values_[value_count_++] = {output.job, memory.data(), static_cast<std::size_t>(output.width)};
+    });
+    for_each_kind_output<T>([&](const auto& output) {
+      const auto memory = out.*output.memory;
+      if (!memory.empty()) kinds_[kind_count_++] = {output.job, reinterpret_cast<std::uint8_t*>(memory.data())};
+    });
+  }
+  /// Points the job at the samples from `first` on.
+  void place(std::size_t first, kernel::GridJob<T>& job) const {
+    for (const Values& output : std::span(values_).first(value_count_)) job.*output.job = output.memory + first * output.width;
+    for (const Kinds& output : std::span(kinds_).first(kind_count_)) job.*output.job = output.memory + first;
+  }
+
+ private:
+  struct Values {
+    T* kernel::GridJob<T>::*job;
+    T* memory;
+    std::size_t width;
+  };
+  struct Kinds {
+    std::uint8_t* kernel::GridJob<T>::*job;
+    std::uint8_t* memory;
+  };
+  std::array<Values, std::size(vector_outputs<T>) + std::size(scalar_outputs<T>)> values_;
+  std::array<Kinds, 2> kinds_;
+  std::size_t value_count_ = 0, kind_count_ = 0;
+};
 
 template <class T>
 Status evaluate_blocks(const PatchSet& set, const GridPlan& plan, const GridBlocks<T>& out,
@@ -215,21 +200,27 @@ Status evaluate_blocks(const PatchSet& set, const GridPlan& plan, const GridBloc
   const bool streaming =
       !inner.by_patch && stores_stream(plan.block_capacity() / 3 * record_bytes<T>(wanted), execution.stores);
   const Pieces pieces(inner, *order > 0);
+  const BlockOutputs<T> outputs(out);
   std::atomic<Isa> isa{inner.isa};
   const Status status =
       parallel_for(pieces.count(), pieces.grain(), execution, [&](std::size_t begin, std::size_t end) {
-        BlockNormals<T> normals(patches, inner);
+        BlockJobs<T> jobs(patches, inner, *order);
+        kernel::GridJob<T>& job = jobs.job();
+        job.streaming = streaming;
+        Isa ran = inner.isa;
         for (std::size_t k = begin; k < end; ++k) {
           const Piece piece = pieces[k];
-          auto job = block_job<T>(patches, inner, piece);
-          normals.prepare(piece.block, job);
-          place_outputs(out, inner, piece, job);
-          job.streaming = streaming;
-          isa.store(run_grid(kernels, job), std::memory_order_relaxed);
+          jobs.turn_to(piece.block);
+          job.u_begin = piece.u_begin;
+          job.u_end = piece.u_end;
+          const std::size_t row = piece.block * inner.count_u + static_cast<std::size_t>(piece.u_begin);
+          outputs.place(row * inner.count_v * PatchSet::lanes, job);
+          ran = run_grid(kernels, job);
         }
+        isa.store(ran, std::memory_order_relaxed);
         if (streaming) kernels.finish_streaming();
       });
-  report(execution, isa, streaming);
+  report_run(execution, isa, streaming);
   return status;
 }
 
@@ -253,23 +244,29 @@ Status evaluate_views(const PatchSet::Impl& patches, const GridPlan& plan, const
   const auto& kernels = kernel::kernels(inner.isa);
   const StageLayout<T> layout(out);
   const bool streaming = views_stream(layout, plan.capacity(), execution.stores);
+  if constexpr (sizeof(T) == 4) {
+    if (*order == 0 && layout.one_record() && inner.is_flat)
+      return evaluate_flat(patches, inner, out.position.component[0], streaming, execution);
+  }
   const Pieces pieces(inner, *order > 0);
   std::atomic<Isa> isa{inner.isa};
   const Status status =
       parallel_for(pieces.count(), pieces.grain(), execution, [&](std::size_t begin, std::size_t end) {
         StagedBlock<T> stage(kernels, layout, out, streaming);
-        BlockNormals<T> normals(patches, inner);
+        BlockJobs<T> jobs(patches, inner, *order);
+        stage.place_outputs(jobs.job());
+        Isa ran = inner.isa;
         for (std::size_t k = begin; k < end; ++k) {
           const Piece piece = pieces[k];
-          auto job = block_job<T>(patches, inner, piece);
-          normals.prepare(piece.block, job);
+          jobs.turn_to(piece.block);
           const std::uint32_t* lane_patches = patches.lane_patches.data() + piece.block * PatchSet::lanes;
-          isa.store(stage.run(job, lane_patches, patches.lane_counts[piece.block], inner.samples()),
-                    std::memory_order_relaxed);
+          ran = stage.run(jobs.job(), piece.u_begin, piece.u_end, static_cast<int>(inner.count_v), lane_patches,
+                          patches.lane_counts[piece.block], inner.samples());
         }
+        isa.store(ran, std::memory_order_relaxed);
         if (streaming) kernels.finish_streaming();
       });
-  report(execution, isa, streaming);
+  report_run(execution, isa, streaming);
   return status;
 }
 
@@ -303,13 +300,6 @@ Result<int> check_grids(const PatchSet::Impl& set, const GridPlan& plan, const G
 }
 template Result<int> check_grids(const PatchSet::Impl&, const GridPlan&, const GridViews<float>&);
 template Result<int> check_grids(const PatchSet::Impl&, const GridPlan&, const GridViews<double>&);
-
-template <class T>
-kernel::GridJob<T> block_job_of(const PatchSet::Impl& set, const GridPlan::Impl& plan, std::size_t block) {
-  return block_job<T>(set, plan, {block, 0, static_cast<int>(plan.count_u)});
-}
-template kernel::GridJob<float> block_job_of(const PatchSet::Impl&, const GridPlan::Impl&, std::size_t);
-template kernel::GridJob<double> block_job_of(const PatchSet::Impl&, const GridPlan::Impl&, std::size_t);
 
 template <class T>
 bool views_stream(const StageLayout<T>& layout, std::size_t records, Stores stores) {

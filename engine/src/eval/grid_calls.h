@@ -1,5 +1,5 @@
 #pragma once
-// What other calls over grids share with evaluate(): its checks, and the jobs of blocks. T is float or double.
+// What other calls over grids share with evaluate(): its checks and decisions. T is float or double.
 
 #include "eval/grid_plan_impl.h"
 #include "eval/staged_block.h"
@@ -10,10 +10,6 @@ namespace tessera {
 /// of. Errors: those of evaluate().
 template <class T>
 Result<int> check_grids(const PatchSet::Impl& set, const GridPlan& plan, const GridViews<T>& out);
-
-/// Over the whole grid of one block; outputs and what normals need are left to be filled in.
-template <class T>
-kernel::GridJob<T> block_job_of(const PatchSet::Impl& set, const GridPlan::Impl& plan, std::size_t block);
 
 /// Whether so many records of views go out by streaming stores.
 template <class T>

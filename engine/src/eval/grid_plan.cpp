@@ -6,6 +6,7 @@
 #include "basis/bernstein.h"
 #include "basis/power.h"
 #include "block/patch_set_impl.h"
+#include "eval/flat_grid.h"
 #include "eval/grid_outputs.h"
 #include "eval/grid_plan_impl.h"
 
@@ -200,6 +201,7 @@ Result<std::unique_ptr<GridPlan::Impl>> make_plan(const PatchSet::Impl& set, std
   }
   if (options.precision == Precision::single_precision) {
     tabulate_set(set, *plan, plan->single);
+    tabulate_flat(set, *plan);
   } else {
     tabulate_set(set, *plan, plan->twice);
   }

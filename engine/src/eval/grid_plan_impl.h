@@ -2,6 +2,7 @@
 // The inside of a GridPlan: parameters, and the weights of each degree at them.
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "base/aligned.h"
@@ -29,6 +30,11 @@ struct GridWeights {
   LaneTables<T> u_lanes, v_lanes;
 };
 
+/// The tables of kernel 3 by degree, see FlatJob.
+struct FlatTables {
+  WeightTables<float> u, v;
+};
+
 /// Degrees and rationality of a group, and its patches: what a plan must find again in the set that it runs over.
 struct PlannedGroup {
   int degree_u, degree_v;
@@ -47,6 +53,8 @@ class GridPlan::Impl {
   std::size_t patch_count = 0, block_count = 0;
   GridWeights<float> single;
   GridWeights<double> twice;
+  bool is_flat = false;  ///< positions alone are evaluated by kernel 3
+  FlatTables flat;
   /// Whether any parameter lies on the edges u = 0, u = 1, v = 0, v = 1: only there can a collapsed edge be met.
   EdgeMask edges;
   /// Of each parameter: edge_start at 0, edge_end at 1 (see kernel_table.h); `[k]`, or `[block][k][lane]`.

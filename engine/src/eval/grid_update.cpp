@@ -7,6 +7,7 @@
 
 #include "base/guard.h"
 #include "eval/edited_grids.h"
+#include "eval/task_size.h"
 #include "parallel/least_index.h"
 #include "parallel/parallel_for.h"
 #include "tessera/update.h"
@@ -90,7 +91,7 @@ class GridUpdate::Impl {
     const auto blocks = touched_.blocks();
     const StageLayout<T> layout(out);
     const bool streaming = views_stream(layout, edits.patch.size() * inner.samples(), execution.stores);
-    const UpdateCall<T> call{set, inner, kernel::kernels(inner.isa), edits, touched_, out, layout, streaming};
+    const UpdateCall<T> call{set, inner, kernel::kernels(inner.isa), edits, touched_, out, layout, *order, streaming};
     std::atomic<Isa> isa{inner.isa};
     const Status status = parallel_for(blocks.size(), blocks_a_task(inner, blocks.size(), *order > 0), execution,
                                        [&](std::size_t begin, std::size_t end) {
@@ -100,10 +101,7 @@ class GridUpdate::Impl {
                                        });
     for (const std::uint32_t patch : edits.patch) set.note_doubt(patch);
     if (!edits.patch.empty()) ++set.revision;
-    if (execution.report) {
-      execution.report->isa = isa;
-      execution.report->streaming = streaming;
-    }
+    report_run(execution, isa, streaming);
     return status;
   }
 

@@ -59,6 +59,8 @@ class StageLayout {
     int width = 3;
     T* kernel::GridJob<T>::*job = nullptr;
     int first = 0;  ///< its place in the record, or in the stage, in rows of lanes
+    int array = -1;            ///< the first of its arrays; -1 if it goes out by columns
+    std::ptrdiff_t step = 1;   ///< of its arrays
 
     bool packed() const { return width == 1 || (component[1] == component[0] + 1 && component[2] == component[0] + 2); }
   };
@@ -84,7 +86,7 @@ class StageLayout {
     int first = 0;
     for (Field& field : std::span(fields_).first(field_count_)) {
       field.first = first;
-      first += field.width * longest_piece();
+      first += field.width * (longest_piece() + static_cast<int>(lanes));
       find_arrays(field);
     }
   }
@@ -102,7 +104,7 @@ class StageLayout {
 
   static constexpr int least_samples = 16, stage_rows = 144;
   /// Rows in the stage at the most, with those that a tile may reach beyond the last.
-  static constexpr std::size_t most_rows = 2 * std::max<std::size_t>(least_samples * most_arrays, stage_rows) + 3 * 16;
+  static constexpr std::size_t most_rows = 2 * std::max<std::size_t>(least_samples * most_arrays, stage_rows) + 3 * lanes * (most_fields + 1);
 
  private:
   /// One record holds all views if their stride is its width and they fill it without a gap.
@@ -115,6 +117,7 @@ class StageLayout {
       const std::ptrdiff_t offset = field.component[0] - first;
       if (!field.packed() || field.stride != record_width_ || offset + field.width > record_width_) return false;
       field.first = static_cast<int>(offset);
+      field.array = 0;
       for (int c = 0; c < field.width; ++c)
         if (std::exchange(filled[static_cast<std::size_t>(offset + c)], true)) return false;
     }
@@ -122,7 +125,8 @@ class StageLayout {
     return one_record_ = true;
   }
 
-  void find_arrays(const Field& field) {
+  void find_arrays(Field& field) {
+    if (field.stride == field.width ? field.packed() : field.stride == 1) field.array = static_cast<int>(array_count_);
     if (field.packed() && field.stride == field.width) {
       arrays_[array_count_++] = {field.component[0], field.width, field.width, field.first, 1};
       return;
@@ -131,6 +135,7 @@ class StageLayout {
       const Array array{field.component[static_cast<std::size_t>(c)], 1, field.stride, field.first + c, field.width};
       (field.stride == 1 ? arrays_[array_count_++] : columns_[column_count_++]) = array;
     }
+    field.step = field.width;
   }
 
   std::array<Field, most_fields> fields_{};
@@ -150,22 +155,33 @@ class StagedBlock {
   StagedBlock(const StagedBlock&) = delete;
   StagedBlock& operator=(const StagedBlock&) = delete;
 
-  /// Evaluates `job` over its part of the grid, whole rows of it, into the records of each lane's patch, `samples` of
-  /// each. Unused lanes repeat a patch, and write what that writes.
-  Isa run(kernel::GridJob<T> job, const std::uint32_t* lane_patches, int lane_count, std::size_t samples) {
+  /// Points a job at the stage.
+  void place_outputs(kernel::GridJob<T>& job) {
+    job.vector_step = (layout_.one_record() ? layout_.record_width() : 3) * lanes;
+    job.scalar_step = (layout_.one_record() ? layout_.record_width() : 1) * lanes;
+    std::size_t kind = 0;
+    for_each_kind_output<T>([&](const auto& output) {
+      job.*output.job = (out_.*output.view).empty() ? nullptr : kinds_[kind].data();
+      ++kind;
+    });
+  }
+
+  /// Evaluates a job that place_outputs() has seen over rows first_u .. end_u - 1 of a grid of `count_v` columns, into the
+  /// records of each lane's patch, `samples` of each. Unused lanes repeat a patch, and write what that writes.
+  Isa run(kernel::GridJob<T>& job, int first_u, int end_u, int count_v, const std::uint32_t* lane_patches, int lane_count,
+          std::size_t samples) {
     std::ptrdiff_t records[lanes];
     for (int lane = 0; lane < lanes; ++lane)
-      records[lane] = static_cast<std::ptrdiff_t>(lane_patches[lane] * samples) + std::ptrdiff_t{job.u_begin} * job.v_end;
-    const int first_u = job.u_begin, end_u = job.u_end, count_v = job.v_end;
+      records[lane] = static_cast<std::ptrdiff_t>(lane_patches[lane] * samples) + std::ptrdiff_t{first_u} * count_v;
     const int parts_v = count_v <= layout_.longest_piece() ? 1 : (count_v + layout_.piece() - 1) / layout_.piece();
     const int piece_v = (count_v + parts_v - 1) / parts_v, piece_u = std::max(1, layout_.piece() / count_v);
     Isa isa = Isa::sse2;
-    place_outputs(job);
     begin(records);
     for (job.u_begin = first_u; job.u_begin < end_u; job.u_begin += piece_u) {
       job.u_end = std::min(end_u, job.u_begin + piece_u);
       for (job.v_begin = 0; job.v_begin < count_v; job.v_begin += piece_v) {
         job.v_end = std::min(count_v, job.v_begin + piece_v);
+        place_fields(job);
         if constexpr (sizeof(T) == 4) {
           isa = kernels_.grid_f32(job);
         } else {
@@ -173,7 +189,7 @@ class StagedBlock {
         }
         const std::ptrdiff_t first = std::ptrdiff_t{job.u_begin - first_u} * count_v + job.v_begin;
         const std::ptrdiff_t count = std::ptrdiff_t{job.u_end - job.u_begin} * (job.v_end - job.v_begin);
-        put(count, lane_count);
+        put(count, lane_count, job.u_end == end_u && job.v_end == count_v);
         put_columns(records, lane_count, first, count);
         put_kinds(records, lane_count, first, count);
       }
@@ -186,35 +202,42 @@ class StagedBlock {
   static constexpr std::ptrdiff_t lanes = kernel::block_lanes;
   using Layout = StageLayout<T>;
 
-  void place_outputs(kernel::GridJob<T>& job) {
-    for (const auto& field : layout_.fields()) job.*field.job = stage_.data() + field.first * lanes;
-    job.vector_step = (layout_.one_record() ? layout_.record_width() : 3) * lanes;
-    job.scalar_step = (layout_.one_record() ? layout_.record_width() : 1) * lanes;
-    std::size_t kind = 0;
-    for_each_kind_output<T>([&](const auto& output) {
-      job.*output.job = (out_.*output.view).empty() ? nullptr : kinds_[kind].data();
-      ++kind;
-    });
-  }
-
   void begin(const std::ptrdiff_t* records) {
     std::size_t k = 0;
     for (const auto& array : layout_.arrays()) {
       T* memory[lanes];
       for (int lane = 0; lane < lanes; ++lane) memory[lane] = array.memory + records[lane] * array.width;
+      waiting_[k] = 0;
       lines_.begin(states_[k++], memory);
     }
   }
 
-  void put(std::ptrdiff_t count, int lane_count) {
+  /// Behind what still waits in the stage.
+  void place_fields(kernel::GridJob<T>& job) {
+    for (const auto& field : layout_.fields()) {
+      const std::ptrdiff_t waiting = field.array < 0 ? 0 : waiting_[static_cast<std::size_t>(field.array)] * field.step;
+      job.*field.job = stage_.data() + (field.first + waiting) * lanes;
+    }
+  }
+
+  /// Whole tiles of `lanes` rows; but for the last piece, the rest waits for the next one.
+  void put(std::ptrdiff_t count, int lane_count, bool last) {
     std::size_t k = 0;
-    for (const auto& array : layout_.arrays())
-      lines_.put({.state = &states_[k++],
-                  .rows = stage_.data() + array.first * lanes,
+    for (const auto& array : layout_.arrays()) {
+      const std::ptrdiff_t rows = waiting_[k] + count * array.width, gone = last ? rows : rows / lanes * lanes;
+      T* stage = stage_.data() + array.first * lanes;
+      waiting_[k] = rows - gone;
+      kernel::LineState<T>& state = states_[k++];
+      if (gone == 0) continue;
+      lines_.put({.state = &state,
+                  .rows = stage,
                   .step = array.step * lanes,
-                  .count = count * array.width,
+                  .count = gone,
                   .lane_count = lane_count,
                   .streaming = streaming_});
+      for (std::ptrdiff_t row = 0; row < rows - gone; ++row)
+        std::copy_n(stage + (gone + row) * array.step * lanes, lanes, stage + row * array.step * lanes);
+    }
   }
 
   void put_columns(const std::ptrdiff_t* records, int lane_count, std::ptrdiff_t first, std::ptrdiff_t count) {
@@ -246,6 +269,7 @@ class StagedBlock {
   bool streaming_;
   alignas(cache_line) std::array<T, Layout::most_rows * lanes> stage_;
   std::array<kernel::LineState<T>, Layout::most_arrays> states_;
+  std::array<std::ptrdiff_t, Layout::most_arrays> waiting_;  ///< rows of each array, the first ones in the stage
   static constexpr std::size_t most_samples = 2 * Layout::stage_rows;  // of kinds alone: as many as of one value
   alignas(cache_line) std::array<std::array<std::uint8_t, most_samples * lanes>, 2> kinds_;
 };

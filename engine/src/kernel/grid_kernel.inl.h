@@ -121,9 +121,7 @@ void evaluate_lanes(const GridJob<typename L::Scalar>& job, int lane) {
     for (int group = 0; group < Groups; ++group) {
       const int first = lane + group * L::width;
       const auto u_weights = weights_at<L, ByLane>(job.u_weights, iu, count_u, first);
-      for (int order = 0; order <= Order; ++order)
-        row_curves<L, DegreeV>(job.net + first, u_weights + order * count_u, count_u, count_v,
-                               curves[group].by_u[order]);
+      row_curves<L, DegreeV>(job.net + first, u_weights, count_u, count_v, curves[group]);
     }
     for (int iv = job.v_begin; iv < job.v_end; ++iv) {
       for (int group = 0; group < Groups; ++group) {

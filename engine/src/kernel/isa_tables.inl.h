@@ -3,6 +3,7 @@
 
 extern const GridKernels grid_kernels;
 extern const DoubleGridKernels double_grid_kernels;
+extern const FlatKernels flat_kernels;
 extern const LineKernels line_kernels;
 extern const NetKernels net_kernels;
 extern const PointKernels point_kernels;
@@ -11,7 +12,7 @@ extern const MeshKernels mesh_kernels;
 extern const MemoryKernels memory_kernels;
 
 inline const KernelTable& table() {
-  static const KernelTable all{grid_kernels, double_grid_kernels, line_kernels, net_kernels, point_kernels,
-                               chord_kernels, mesh_kernels, memory_kernels, this_isa};
+  static const KernelTable all{grid_kernels, double_grid_kernels, flat_kernels, line_kernels, net_kernels,
+                               point_kernels, chord_kernels, mesh_kernels, memory_kernels, this_isa};
   return all;
 }

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "kernel/chord_kernels.h"
+#include "kernel/flat_kernels.h"
 #include "kernel/grid_kernels.h"
 #include "kernel/line_kernels.h"
 #include "kernel/memory_kernels.h"
@@ -15,7 +16,8 @@
 
 namespace tessera::kernel {
 
-struct KernelTable : GridKernels, DoubleGridKernels, LineKernels, NetKernels, PointKernels, ChordKernels, MeshKernels, MemoryKernels {
+struct KernelTable : GridKernels, DoubleGridKernels, FlatKernels, LineKernels, NetKernels, PointKernels, ChordKernels,
+                     MeshKernels, MemoryKernels {
   Isa isa;
 };
 

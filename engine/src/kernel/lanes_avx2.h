@@ -42,6 +42,7 @@ struct Lanes<float> {
   using Scalar = float;
   using Batch = xsimd::batch<float, xsimd::avx2>;
   static constexpr int width = 8;
+  static constexpr int registers = 16;
   static Batch broadcast(float x) { return Batch(x); }
   static Batch load(const float* p) { return Batch::load_aligned(p); }
   static void store(float* p, Batch a) { a.store_aligned(p); }
@@ -137,6 +138,7 @@ struct Lanes<double> {
   using Scalar = double;
   using Batch = xsimd::batch<double, xsimd::avx2>;
   static constexpr int width = 4;
+  static constexpr int registers = 16;
   static Batch broadcast(double x) { return Batch(x); }
   static Batch load(const double* p) { return Batch::load_aligned(p); }
   static void store(double* p, Batch a) { a.store_aligned(p); }

@@ -44,6 +44,7 @@ struct Lanes<float> {
   using Scalar = float;
   using Batch = BatchOf<float>;
   static constexpr int width = 16;
+  static constexpr int registers = 32;
   static Batch broadcast(float x) { return Batch(x); }
   static Batch load(const float* p) { return Batch::load_aligned(p); }
   static void store(float* p, Batch a) { a.store_aligned(p); }
@@ -111,6 +112,18 @@ struct Lanes<float> {
   }
   /// The carry with which the next shift_in() leaves the first lanes of `a` where they are.
   static Batch carried(Batch a, const Shift& shift) { return _mm512_permutexvar_ps(shift.backward, a); }
+  /// x y z x y z ..
+  static Batch triples(const float* x, const float* y, const float* z) {
+    const __m512 xy = _mm512_mask_broadcastss_ps(_mm512_set1_ps(*x), 0x2492, _mm_load_ss(y));
+    return _mm512_mask_broadcastss_ps(xy, 0x4924, _mm_load_ss(z));
+  }
+  /// Each lane from the one that `places` names.
+  static __m512i load_places(const std::int32_t* places) { return _mm512_load_si512(places); }
+  static Batch picked(Batch a, __m512i places) { return _mm512_permutexvar_ps(places, a); }
+  /// The lanes begin .. end - 1.
+  static void store_between(float* p, Batch a, int begin, int end) {
+    _mm512_mask_storeu_ps(p, static_cast<__mmask16>((1u << end) - (1u << begin)), a);
+  }
   /// Vector l becomes value l of the rows at row(0), row(1), ..., of which four values are read: rows k, k + 4, k + 8 and
   /// k + 12 share a vector from the start, which spares half of a transpose's shuffles.
   template <class Row>
@@ -157,6 +170,7 @@ struct Lanes<double> {
   using Scalar = double;
   using Batch = BatchOf<double>;
   static constexpr int width = 8;
+  static constexpr int registers = 32;
   static Batch broadcast(double x) { return Batch(x); }
   static Batch load(const double* p) { return Batch::load_aligned(p); }
   static void store(double* p, Batch a) { a.store_aligned(p); }

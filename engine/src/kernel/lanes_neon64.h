@@ -170,6 +170,7 @@ struct Lanes<float> : ThroughMemory<float> {
   using Scalar = float;
   using Batch = xsimd::batch<float>;
   static constexpr int width = 4;
+  static constexpr int registers = 32;
   static Batch broadcast(float x) { return Batch(x); }
   static Batch load(const float* p) { return vld1q_f32(p); }
   static void store(float* p, Batch a) { vst1q_f32(p, a); }
@@ -220,6 +221,7 @@ struct Lanes<double> : ThroughMemory<double> {
   using Scalar = double;
   using Batch = xsimd::batch<double>;
   static constexpr int width = 2;
+  static constexpr int registers = 32;
   static Batch broadcast(double x) { return Batch(x); }
   static Batch load(const double* p) { return vld1q_f64(p); }
   static void store(double* p, Batch a) { vst1q_f64(p, a); }

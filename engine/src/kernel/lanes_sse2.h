@@ -27,6 +27,7 @@ struct Lanes<float> {
   using Scalar = float;
   using Batch = xsimd::batch<float, xsimd::sse2>;
   static constexpr int width = 4;
+  static constexpr int registers = 16;
   static Batch broadcast(float x) { return Batch(x); }
   static Batch load(const float* p) { return Batch::load_aligned(p); }
   static void store(float* p, Batch a) { a.store_aligned(p); }
@@ -111,6 +112,7 @@ struct Lanes<double> {
   using Scalar = double;
   using Batch = xsimd::batch<double, xsimd::sse2>;
   static constexpr int width = 2;
+  static constexpr int registers = 16;
   static Batch broadcast(double x) { return Batch(x); }
   static Batch load(const double* p) { return Batch::load_aligned(p); }
   static void store(double* p, Batch a) { a.store_aligned(p); }

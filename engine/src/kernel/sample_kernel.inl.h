@@ -64,37 +64,52 @@ inline void combine(const Weights weights, int count, const typename L::Batch (&
   }
 }
 
-/// `Count` neighbouring row curves from index j: independent sums, so that the multiply-adds overlap.
-template <class L, int Count, class Weights, int Components, int Capacity>
-inline void row_curves_from(int j, const typename L::Scalar* net, const Weights weights, int count_u,
-                            std::ptrdiff_t row, typename L::Batch (&curve)[Components][Capacity]) {
+/// `Count` neighbouring row curves from index j, and their derivatives up to the order: each coefficient is read once, and
+/// the sums are independent, so that the multiply-adds overlap.
+template <class L, int Count, int Order, class Weights, int Components, int Capacity>
+[[gnu::always_inline]] inline void row_curves_from(int j, const typename L::Scalar* net, const Weights weights, int count_u,
+                                                   std::ptrdiff_t row, RowCurves<L, Order, Components, Capacity>& curves) {
   const auto* coefficient = net + j * Components * block_lanes;
-  typename L::Batch sum[Count][Components];
-  const auto first = in_lanes<L>(weights[0]);
+  typename L::Batch sum[Order + 1][Count][Components], weight[Order + 1];
+  for (int order = 0; order <= Order; ++order) weight[order] = in_lanes<L>((weights + order * count_u)[0]);
   for (int k = 0; k < Count; ++k)
-    for (int c = 0; c < Components; ++c) sum[k][c] = first * L::load(coefficient + (k * Components + c) * block_lanes);
+    for (int c = 0; c < Components; ++c) {
+      const auto at = L::load(coefficient + (k * Components + c) * block_lanes);
+      for (int order = 0; order <= Order; ++order) sum[order][k][c] = weight[order] * at;
+    }
   for (int i = 1; i < count_u; ++i) {
-    const auto weight = in_lanes<L>(weights[i]);
+    for (int order = 0; order <= Order; ++order) weight[order] = in_lanes<L>((weights + order * count_u)[i]);
     coefficient += row;
     for (int k = 0; k < Count; ++k)
-      for (int c = 0; c < Components; ++c)
-        sum[k][c] = L::fma(weight, L::load(coefficient + (k * Components + c) * block_lanes), sum[k][c]);
+      for (int c = 0; c < Components; ++c) {
+        const auto at = L::load(coefficient + (k * Components + c) * block_lanes);
+        for (int order = 0; order <= Order; ++order) sum[order][k][c] = L::fma(weight[order], at, sum[order][k][c]);
+      }
   }
-  for (int k = 0; k < Count; ++k)
-    for (int c = 0; c < Components; ++c) curve[c][j + k] = sum[k][c];
+  for (int order = 0; order <= Order; ++order)
+    for (int k = 0; k < Count; ++k)
+      for (int c = 0; c < Components; ++c) curves.by_u[order][c][j + k] = sum[order][k][c];
 }
 
-/// The row curves of one u: curve[component][j] = sum_i weights[i] net[i][j][component], i ascending.
-template <class L, int DegreeV, class Weights, int Components, int Capacity>
-inline void row_curves(const typename L::Scalar* net, const Weights weights, int count_u, int count_v,
-                       typename L::Batch (&curve)[Components][Capacity]) {
+/// The row curves of one u: by_u[order][component][j] = sum_i weights[order][i] net[i][j][component], i ascending. As many
+/// at once as the sums of all orders fit the registers.
+template <class L, int DegreeV, int Order, class Weights, int Components, int Capacity>
+[[gnu::always_inline]] inline void row_curves(const typename L::Scalar* net, const Weights weights, int count_u, int count_v,
+                                              RowCurves<L, Order, Components, Capacity>& curves) {
+  constexpr int fitting = (L::registers * 3 / 4) / ((Order + 1) * Components), most = fitting < 4 ? fitting : 4;
   const std::ptrdiff_t row = std::ptrdiff_t{count_v} * Components * block_lanes;
-  if constexpr (DegreeV > 0) {
-    row_curves_from<L, DegreeV + 1>(0, net, weights, count_u, row, curve);
+  if constexpr (DegreeV > 0 && DegreeV < most) {
+    row_curves_from<L, DegreeV + 1>(0, net, weights, count_u, row, curves);
+  } else if constexpr (DegreeV > 0) {
+    constexpr int whole = (DegreeV + 1) / most * most;
+#pragma GCC unroll 4
+    for (int j = 0; j < whole; j += most) row_curves_from<L, most>(j, net, weights, count_u, row, curves);
+#pragma GCC unroll 4
+    for (int j = whole; j <= DegreeV; ++j) row_curves_from<L, 1>(j, net, weights, count_u, row, curves);
   } else {
     int j = 0;
-    for (; j + 4 <= count_v; j += 4) row_curves_from<L, 4>(j, net, weights, count_u, row, curve);
-    for (; j < count_v; ++j) row_curves_from<L, 1>(j, net, weights, count_u, row, curve);
+    for (; j + most <= count_v; j += most) row_curves_from<L, most>(j, net, weights, count_u, row, curves);
+    for (; j < count_v; ++j) row_curves_from<L, 1>(j, net, weights, count_u, row, curves);
   }
 }
 

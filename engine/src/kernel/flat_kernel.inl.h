@@ -1,0 +1,156 @@
+// Kernel 3, lanes = neighbouring numbers of a row of a patch's grid, x y z x y z .., for positions alone. The curves of
+// four rows lie in one vector, q_j = sum_i f_i(row) c_ij; those of one are spread over its vectors, r = sum_j g_j(column)
+// q_j: the same sums in the same order as in grid_kernel.inl.h, without a transpose, and no block of sixteen patches is
+// needed. What leaves goes to memory by whole aligned vectors. Included by the units as sample_kernel.inl.h is.
+
+/// Joins runs of numbers of any length that follow each other in memory.
+template <class L, bool Streaming>
+class LineSink {
+ public:
+  explicit LineSink(float* memory) : shift_(L::shift_by(0)), carry_(L::broadcast(0)) { start(memory); }
+
+  /// Where the next number goes.
+  [[gnu::always_inline]] void turn_to(float* memory) {
+    if (memory == next_ + end_) return;
+    finish();
+    start(memory);
+  }
+  [[gnu::always_inline]] void put(const typename L::Batch& vector) {
+    send(L::shift_in(carry_, vector, shift_));
+  }
+  /// The first `count` numbers of a vector.
+  [[gnu::always_inline]] void put(const typename L::Batch& vector, int count) {
+    auto joined = L::shift_in(carry_, vector, shift_);
+    end_ += count;
+    if (end_ >= L::width) {
+      send(joined);
+      joined = L::shift_in(carry_, vector, shift_);
+      end_ -= L::width;
+    }
+    shift_ = L::shift_by(end_);
+    carry_ = L::carried(joined, shift_);
+  }
+  [[gnu::always_inline]] void finish() {
+    L::store_between(next_, L::shift_in(carry_, carry_, shift_), begin_, end_);
+    begin_ = 0;
+  }
+
+ private:
+  [[gnu::always_inline]] void start(float* memory) {
+    begin_ = end_ = static_cast<int>(reinterpret_cast<std::uintptr_t>(memory) / sizeof(float) % L::width);
+    next_ = memory - begin_;
+    shift_ = L::shift_by(end_);
+  }
+  [[gnu::always_inline]] void send(const typename L::Batch& vector) {
+    if (begin_ > 0) {
+      L::store_between(next_, vector, begin_, L::width);
+      begin_ = 0;
+    } else {
+      store<L, Streaming>(next_, vector);
+    }
+    next_ += L::width;
+  }
+
+  float* next_;              ///< the vector at work, of which the numbers begin_ .. end_ - 1 are known
+  int begin_, end_;
+  typename L::Shift shift_;  ///< by end_
+  typename L::Batch carry_;  ///< its last end_ lanes are those numbers
+};
+
+template <class L, int DegreeV, bool Streaming>
+class FlatGrid {
+ public:
+  explicit FlatGrid(const FlatJob& job)
+      : job_(job) {}
+
+  void run() {
+    LineSink<L, Streaming> sink(job_.out);  // its vectors stay in registers
+    for (int patch = 0; patch < job_.patches; ++patch) {
+      spread(job_.nets[patch]);
+      sink.turn_to(job_.out + patch * job_.patch_step);
+      rows(sink);
+    }
+    sink.finish();
+  }
+
+ private:
+  static constexpr int capacity = capacity_of<DegreeV>;
+  using Curves = typename L::Batch[capacity];
+
+  int count_i() const { return job_.degree_u + 1; }
+  int count_j() const { return DegreeV > 0 ? DegreeV + 1 : job_.degree_v + 1; }
+
+  /// The control points, each as x y z x y z ..
+  void spread(const float* net) {
+    for (int i = 0; i < count_i(); ++i)
+      for (int j = 0; j < count_j(); ++j, net += 3 * block_lanes)
+        triples_[i * capacity + j] = L::triples(net, net + block_lanes, net + 2 * block_lanes);
+  }
+
+  /// Those of group g, rows flat_rows g and following.
+  [[gnu::always_inline]] void row_curves(int g, Curves& curves) const {
+    const float* weights = job_.u_weights + std::ptrdiff_t{g} * count_i() * L::width;
+    auto weight = L::load(weights);
+    for (int j = 0; j < count_j(); ++j) curves[j] = weight * triples_[j];
+    for (int i = 1; i < count_i(); ++i) {
+      weight = L::load(weights + i * L::width);
+      for (int j = 0; j < count_j(); ++j) curves[j] = L::fma(weight, triples_[i * capacity + j], curves[j]);
+    }
+  }
+
+  [[gnu::always_inline]] void rows(LineSink<L, Streaming>& sink) const {
+    const int values = 3 * job_.count_v;
+    Curves curves;
+    for (int row = 0; row < job_.count_u; ++row) {
+      if (row % flat_rows == 0) row_curves(row / flat_rows, curves);
+      // A vector of 16 numbers begins with x, y or z, as its number in the row is 0, 1 or 2 modulo 3.
+      typename L::Batch turned[3][capacity];
+      for (int phase = 0; phase < 3; ++phase) {
+        const auto place = L::load_places(row_places[row % flat_rows][phase]);
+        for (int j = 0; j < count_j(); ++j) turned[phase][j] = L::picked(curves[j], place);
+      }
+      const float* weights = job_.v_weights;
+      for (int value = 0; value < values;) {
+#pragma GCC unroll 3
+        for (int phase = 0; phase < 3; ++phase) {
+          if (value >= values) break;
+          auto sum = L::load(weights) * turned[phase][0];
+          for (int j = 1; j < count_j(); ++j) sum = L::fma(L::load(weights + j * L::width), turned[phase][j], sum);
+          weights += count_j() * L::width;
+          if (values - value >= L::width) {
+            sink.put(sum);
+          } else {
+            sink.put(sum, values - value);
+          }
+          value += L::width;
+        }
+      }
+    }
+  }
+
+  /// Row r of a group for vectors that begin with x, y, z.
+  struct RowPlaces {
+    alignas(64) std::int32_t of[flat_rows][3][flat_lanes]{};
+    constexpr RowPlaces() {
+      for (int row = 0; row < flat_rows; ++row)
+        for (int phase = 0; phase < 3; ++phase)
+          for (int lane = 0; lane < flat_lanes; ++lane) of[row][phase][lane] = 3 * row + (phase + lane) % 3;
+    }
+    const std::int32_t (&operator[](int row) const)[3][flat_lanes] { return of[row]; }
+  };
+  static constexpr RowPlaces row_places{};
+
+  const FlatJob& job_;
+  typename L::Batch triples_[max_order * capacity];
+};
+
+template <class L, int DegreeV>
+void choose_flat(const FlatJob& job) {
+  job.streaming ? FlatGrid<L, DegreeV, true>(job).run() : FlatGrid<L, DegreeV, false>(job).run();
+}
+
+template <class L>
+Isa evaluate_flat(const FlatJob& job) {
+  job.degree_v == 3 ? choose_flat<L, 3>(job) : choose_flat<L, 0>(job);
+  return this_isa;
+}

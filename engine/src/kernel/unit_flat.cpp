@@ -1,0 +1,28 @@
+// Positions patch after patch. One unit an instruction set: see cmake/TesseraIsaFlags.cmake.
+
+#include "kernel/block_lanes.h"
+#include "kernel/flat_kernels.h"
+#include "kernel/lanes.h"
+
+namespace tessera::kernel::TESSERA_ISA_NAMESPACE {
+namespace {
+
+#include "kernel/store.inl.h"
+#include "kernel/sample_kernel.inl.h"
+#include "kernel/flat_kernel.inl.h"
+
+/// Four rows of three components take twelve lanes; in shorter vectors permutations cost more than blocks do.
+template <class L>
+constexpr auto flat_kernel() -> Isa (*)(const FlatJob&) {
+  if constexpr (L::width == flat_lanes) {
+    return evaluate_flat<L>;
+  } else {
+    return nullptr;
+  }
+}
+
+}  // namespace
+
+extern const FlatKernels flat_kernels = {flat_kernel<Lanes<float>>()};
+
+}  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE
