@@ -1,6 +1,8 @@
 #include "sets.h"
 
 #include <filesystem>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "support/synthetic_sets.h"
@@ -30,20 +32,16 @@ const PatchSet& set_named(std::string_view name) {
         test::value_of(read_model(std::filesystem::path(TESSERA_SOURCE_DIR) / "tools" / "models" / "teapot.bpt"))));
     return teapot;
   }
-  if (name == "bicubic1000") {
-    static const PatchSet small = test::value_of(PatchSet::from(test::wavy_field(40, 25)));
-    return small;
-  }
-  if (name == "rational20000") {
-    static const PatchSet rational = test::value_of(PatchSet::from(with_weights(test::wavy_field(200, 100))));
-    return rational;
-  }
-  static const PatchSet field = [] {
-    PatchSetOptions options;
-    options.blocks.double_bernstein = true;
-    return test::value_of(PatchSet::from(test::wavy_field(200, 100), options));
-  }();
-  return field;
+  static std::map<std::string, PatchSet, std::less<>> fields;
+  const auto known = fields.find(name);
+  if (known != fields.end()) return known->second;
+  const bool rational = name.starts_with("rational");
+  const int patches = std::stoi(std::string(name.substr(name.find_first_of("0123456789"))));
+  const int columns = patches < 20000 ? 25 : 100;
+  PatchSetOptions options;
+  options.blocks.double_bernstein = !rational && (patches == 20000 || patches == 100000);
+  const std::vector<BezierPatch> field = test::wavy_field(patches / columns, columns);
+  return fields.emplace(name, test::value_of(PatchSet::from(rational ? with_weights(field) : field, options))).first->second;
 }
 
 }  // namespace tessera::bench

@@ -7,9 +7,9 @@
 
 namespace tessera::bench {
 
-/// "teapot": the 32 patches of tools/models/teapot.bpt. "bicubic1000", "bicubic20000": wavy fields of 40 x 25 and of
-/// 200 x 100 bicubic patches, the larger one in doubles as well. "rational20000": its control points with weights.
-/// Ends the program with a message if the model cannot be read.
+/// "teapot": the 32 patches of tools/models/teapot.bpt. "bicubicN": a wavy field of N bicubic patches, 25 (from N = 20000
+/// on 100) a row; 20000 and 100000 in doubles as well. "rational20000", "rational100000": their control points with
+/// weights. Ends the program with a message if the model cannot be read.
 const PatchSet& set_named(std::string_view name);
 
 }  // namespace tessera::bench

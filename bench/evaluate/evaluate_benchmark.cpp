@@ -24,7 +24,7 @@ namespace {
 enum class Layout { blocks, interleaved };
 
 struct Case {
-  const char* set_name;
+  std::string set_name;
   int size;  ///< parameters a side
   GridOutputs outputs;
   Layout layout;
@@ -34,7 +34,7 @@ struct Case {
   bool cold = false, twice = false;
 
   CaseName name() const {
-    const bool rational = std::string_view(set_name).starts_with("rational");
+    const bool rational = set_name.starts_with("rational");
     return {"evaluate." + outputs_name() + (layout == Layout::blocks ? ".blocks" : ".interleaved") +
                 (twice ? ".double" : "") + (stores == Stores::streaming ? ".streamed" : "") + (cold ? ".cold" : ""),
             set_name, rational ? "3r" : "3", square(static_cast<std::size_t>(size)), std::string(tessera::name(isa)),
@@ -203,6 +203,17 @@ void add(const Case& c) {
   });
 }
 
+/// The smallest set whose results are far larger than the caches: 150 MB.
+std::string large_set(int size, const GridOutputs& outputs, std::size_t value = sizeof(float)) {
+  std::size_t bytes = 0;
+  for_each_value_output<float>([&](const auto& output) {
+    if (outputs.*output.wanted) bytes += static_cast<std::size_t>(output.width * size * size) * value;
+  });
+  for (const int patches : {20000, 50000, 100000, 200000, 500000})
+    if (bytes * static_cast<std::size_t>(patches) >= 150'000'000) return "bicubic" + std::to_string(patches);
+  return "bicubic1000000";
+}
+
 const bool registered = [] {
   const GridOutputs positions{}, normals{.normal = true}, tangents{.du = true, .dv = true};
   const GridOutputs curvatures{
@@ -223,14 +234,15 @@ const bool registered = [] {
     for (const Layout layout : {Layout::blocks, Layout::interleaved}) {
       for (const GridOutputs& outputs : {positions, normals, tangents, curvatures}) {
         add({"bicubic1000", 9, outputs, layout, isa});
-        for (const int size : {9, 33}) add({"bicubic20000", size, outputs, layout, isa, 2, Stores::streaming});
+        for (const int size : {9, 33}) add({large_set(size, outputs), size, outputs, layout, isa, 2, Stores::streaming});
         for (const int size : {4, 5, 8, 9, 16, 33})
-          if (size != 33 || !outputs.duu) add({"bicubic20000", size, outputs, layout, isa, 1, Stores::streaming});
+          if (size != 33 || !outputs.duu) add({large_set(size, outputs), size, outputs, layout, isa, 1, Stores::streaming});
         add({"bicubic20000", 9, outputs, layout, isa, 1, Stores::streaming, true});
       }
       for (const int size : {9, 33}) {
-        add({"rational20000", size, positions, layout, isa, 1, Stores::streaming});
-        add({"bicubic20000", size, positions, layout, isa, 1, Stores::streaming, false, true});
+        const std::string patches = size == 9 ? "100000" : "20000";
+        add({"rational" + patches, size, positions, layout, isa, 1, Stores::streaming});
+        add({"bicubic" + patches, size, positions, layout, isa, 1, Stores::streaming, false, true});
       }
     }
     for (const GridOutputs& outputs : {positions, normals, tangents})
