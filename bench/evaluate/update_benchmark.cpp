@@ -1,5 +1,5 @@
-// Animation: control points in, patch-contiguous grids of the touched patches out: update.OUTPUTS.SHARE. Each case checks
-// what it timed against evaluation of a set made anew. Its limit is the time that its stores take: its work for the
+// Animation: control points in, grids of the touched patches out, patch after patch, or with ".blocks" block-interleaved:
+// update.OUTPUTS.SHARE. Each case checks what it timed against evaluation of a set made anew. Its limit is the time that its stores take: its work for the
 // touched patches, GridPlan::work().
 
 #include <benchmark/benchmark.h>
@@ -23,11 +23,12 @@ struct Case {
   bool normals;
   Isa isa;
   int threads;
+  bool blocks = false;
 
   std::size_t touched() const { return rows * columns / step; }
   CaseName name() const {
     const std::string share = step == 1 ? "all" : "one_in_" + std::to_string(step);
-    return {"update.positions" + std::string(normals ? "+normals." : ".") + share,
+    return {"update.positions" + std::string(normals ? "+normals." : ".") + (blocks ? "blocks." : "") + share,
             "bicubic10000",
             "3",
             square(size),
@@ -53,15 +54,38 @@ struct Animation {
   PatchEdits edits(std::size_t turn) const { return {patch, points[turn % 2]}; }
 };
 
+/// Memory of either layout.
+class Outputs {
+ public:
+  Outputs(const GridPlan& plan, const Case& c)
+      : blocks_(c.blocks), first_(c.blocks ? plan.block_capacity() : plan.capacity() * (c.normals ? 6 : 3)),
+        second_(c.blocks && c.normals ? first_.size() : 0) {
+    if (blocks_) return;
+    views_.position = View3<float>::interleaved(first_, c.normals ? 6 : 3);
+    if (c.normals) views_.normal = View3<float>::interleaved(first_, 6, 3);
+  }
+  GridBlocks<float> in_blocks() { return {.position = first_, .normal = second_}; }
+  Status evaluate(const PatchSet& set, const GridPlan& plan) {
+    return blocks_ ? tessera::evaluate(set, plan, in_blocks()) : tessera::evaluate(set, plan, views_);
+  }
+  Status update(GridUpdate& update, PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const Execution& execution) {
+    return blocks_ ? update.run(set, plan, edits, in_blocks(), execution) : update.run(set, plan, edits, views_, execution);
+  }
+  bool operator==(const Outputs& other) const { return first_ == other.first_ && second_ == other.second_; }
+
+ private:
+  bool blocks_;
+  AlignedVector<float> first_, second_;
+  GridViews<float> views_;
+};
+
 /// Outputs of a set made anew of the same patches.
-bool check_values(const PatchSet& set, const GridPlan& plan, const Case& c, const AlignedVector<float>& vertices) {
+bool check_values(const PatchSet& set, const GridPlan& plan, const Case& c, const Outputs& outputs) {
   std::vector<BezierPatch> patches;
   for (std::size_t k = 0; k < set.patch_count(); ++k) patches.push_back(set.patch(k));
   const auto fresh = PatchSet::from(patches, {.origin = set.origin()});
-  AlignedVector<float> expected(vertices.size());
-  GridViews<float> out{.position = View3<float>::interleaved(expected, c.normals ? 6 : 3)};
-  if (c.normals) out.normal = View3<float>::interleaved(expected, 6, 3);
-  return fresh && evaluate(*fresh, plan, out).ok() && expected == vertices;
+  Outputs expected(plan, c);
+  return fresh && expected.evaluate(*fresh, plan).ok() && expected == outputs;
 }
 
 void run(benchmark::State& state, const Case& c) {
@@ -71,10 +95,8 @@ void run(benchmark::State& state, const Case& c) {
   const GridPlan plan = test::value_of(GridPlan::make(set, t, t, {.isa = c.isa}));
   GridUpdate update = test::value_of(GridUpdate::make(set));
   const Animation animation(c, patches);
-  AlignedVector<float> vertices(plan.capacity() * (c.normals ? 6 : 3));
-  GridViews<float> out{.position = View3<float>::interleaved(vertices, c.normals ? 6 : 3)};
-  if (c.normals) out.normal = View3<float>::interleaved(vertices, 6, 3);
-  if (const Status status = evaluate(set, plan, out); !status.ok())
+  Outputs outputs(plan, c);
+  if (const Status status = outputs.evaluate(set, plan); !status.ok())
     return state.SkipWithError(status.message().c_str());
   Work work = plan.work({.normal = c.normals});
   for (double* amount : {&work.lane_operations, &work.bytes_written, &work.bytes_read})
@@ -85,11 +107,11 @@ void run(benchmark::State& state, const Case& c) {
   execution.report = &report;
   std::size_t turn = 0;
   const auto best =
-      time_calls(state, c.threads, [&] { return update.run(set, plan, animation.edits(turn++), out, execution); });
+      time_calls(state, c.threads, [&] { return outputs.update(update, set, plan, animation.edits(turn++), execution); });
   const auto limits = around.best(state);
   if (!best || !limits) return;
   if (report.isa != c.isa) return state.SkipWithError("another instruction set ran than was asked for");
-  if (!check_values(set, plan, c, vertices)) return state.SkipWithError("the timed values differ from a new set's");
+  if (!check_values(set, plan, c, outputs)) return state.SkipWithError("the timed values differ from a new set's");
   report_rates(state, *best, static_cast<double>(c.touched()) * size * size, work.bytes_written);
   if (c.threads == 1) report_limit(state, *best, *limits, work);
 }
@@ -102,8 +124,10 @@ void add(const Case& c) {
 const bool registered = [] {
   for (const Isa isa : available_isas())
     for (const bool normals : {false, true}) {
-      for (const std::size_t step : {1, 2, 20, 500}) add({step, normals, isa, 1});
-      add({1, normals, isa, 2});
+      for (const bool blocks : {false, true}) {
+        for (const std::size_t step : {1, 2, 20, 500}) add({step, normals, isa, 1, blocks});
+        add({1, normals, isa, 2, blocks});
+      }
     }
   return true;
 }();

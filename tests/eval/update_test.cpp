@@ -124,6 +124,47 @@ TEST(Update, SameBytesAsEditsOneByOneAndFullEvaluation) {
   compare_with_full<double>(field, Representation::power, available_isas().back(), 8);
 }
 
+/// Positions and normals in blocks: touched ones as of a full evaluation, the memory of others as it was.
+TEST(Update, BlocksAreThoseOfFullEvaluation) {
+  Random random(905);
+  const auto patches = mixed_patches(random, 3, 9);
+  const auto t = uniform_parameters(5);
+  for (const Isa isa : available_isas()) {
+    PatchSet set = set_of(patches, every_kind()), expected = set_of(patches, every_kind());
+    const GridPlan plan = value_of(GridPlan::make(set, t, t, {.isa = isa}));
+    GridUpdate update = value_of(GridUpdate::make(set));
+    AlignedVector<float> position(plan.block_capacity()), normal(position.size()), full(position.size()), full_normal(position.size());
+    ASSERT_TRUE(evaluate(set, plan, GridBlocks<float>{.position = position, .normal = normal}).ok());
+    for (const std::size_t count : {std::size_t{1}, patches.size() / 4, patches.size()}) {
+      const Edits edits = random_edits(random, set, count);
+      std::vector<bool> touched(position.size() / (3 * PatchSet::lanes * plan.count_u() * plan.count_v()), false);
+      for (const std::uint32_t patch : edits.patch) touched[set.slot(patch).block] = true;
+      const std::size_t block_values = position.size() / touched.size();
+      for (std::size_t block = 0; block < touched.size(); ++block)
+        if (!touched[block]) std::fill_n(position.begin() + static_cast<std::ptrdiff_t>(block * block_values), block_values, -7.0f);
+      ASSERT_TRUE(run_in(3, update, set, plan, edits, GridBlocks<float>{.position = position, .normal = normal}).ok());
+      edit_one_by_one(expected, edits);
+      expect_same_sets(set, expected);
+      ASSERT_TRUE(evaluate(expected, plan, GridBlocks<float>{.position = full, .normal = full_normal}).ok());
+      EXPECT_TRUE(normal == full_normal);
+      for (std::size_t k = 0; k < position.size(); ++k)
+        ASSERT_EQ(position[k], touched[k / block_values] ? full[k] : -7.0f) << k;
+      position = full;
+    }
+  }
+}
+
+TEST(Update, ParametersOfEachPatchAreRefused) {
+  PatchSet set = set_of(wavy_field(2, 2), {});
+  const std::vector<double> t(12, 0.5);
+  const GridPlan plan = value_of(GridPlan::make(set, PatchParameters{t, t}));
+  GridUpdate update = value_of(GridUpdate::make(set));
+  AllBuffers<float> grids(plan);
+  const Status status = update.run(set, plan, PatchEdits{}, grids.views());
+  EXPECT_EQ(status.code(), StatusCode::unsupported);
+  EXPECT_NE(status.message().find("parameters"), std::string::npos);
+}
+
 TEST(Update, OtherRecordsAreNotTouched) {
   Random random(903);
   PatchSet set = set_of(mixed_patches(random, 3, 9), every_kind());

@@ -41,6 +41,12 @@ class GridUpdate {
              const Execution& execution = {});
   Status run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridViews<double>& out,
              const Execution& execution = {});
+  /// The same into block-interleaved memory of all patches. A block with an edited patch is evaluated whole: its other
+  /// lanes are written, with the bytes that evaluate() gives them.
+  Status run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridBlocks<float>& out,
+             const Execution& execution = {});
+  Status run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridBlocks<double>& out,
+             const Execution& execution = {});
 
  private:
   class Impl;

@@ -53,6 +53,8 @@ class BlockJobs {
     job_.degree_u = group.degree_u;
     job_.degree_v = group.degree_v;
     job_.rational = group.rational;
+    const std::size_t lines = group.block_values * sizeof(T) / cache_line;
+    job_.prefetched_lines = static_cast<int>((lines + plan_.count_u - 1) / plan_.count_u);
     if (plan_.by_patch) return;
     job_.u_weights = plan_.weights<T>().u[static_cast<std::size_t>(group.degree_u)].data();
     job_.v_weights = plan_.weights<T>().v[static_cast<std::size_t>(group.degree_v)].data();

@@ -7,6 +7,7 @@
 
 #include "base/aligned.h"
 #include "eval/block_jobs.h"
+#include "eval/block_outputs.h"
 #include "eval/grid_calls.h"
 #include "eval/staged_block.h"
 #include "eval/touched_blocks.h"
@@ -15,31 +16,82 @@
 namespace tessera {
 
 /// What all tasks of an update share.
-template <class T>
 struct UpdateCall {
   PatchSet::Impl& set;
   const GridPlan::Impl& plan;
   const kernel::KernelTable& kernels;
   const PatchEdits& edits;
   const TouchedBlocks& touched;
-  const GridViews<T>& out;
-  const StageLayout<T>& layout;
   int order;  ///< of the derivatives that the outputs are made of
   bool streaming;
+
+  /// Whether all patches of a block are edited.
+  bool is_whole(std::uint32_t block) const { return touched.count(block) == set.lane_counts[block]; }
+  void write_points(std::uint32_t patch, std::uint32_t edit) const {
+    PatchPieces::overwrite(set.patches[patch], edits.points.data() + touched.first_point(edit));
+  }
+  /// Gives a whole block its edits. They fit: they have been checked.
+  void pack_whole(std::uint32_t block) const {
+    const std::uint32_t* patches = set.lane_patches.data() + block * PatchSet::lanes;
+    for (std::size_t lane = 0; lane < set.lane_counts[block]; ++lane) write_points(patches[lane], touched.edits(block)[lane]);
+    set.pack_block(block, kernels);
+  }
 };
 
-/// Takes block after block. Those whose patches are all edited are evaluated where they lie; the edited patches of others
+/// Takes block after block into block-interleaved memory. A touched block is evaluated whole: the lanes of other patches
+/// get what they had. Lives on a task's stack; allocates nothing.
+template <class T>
+class EditedBlocks {
+ public:
+  EditedBlocks(const UpdateCall& call, const BlockOutputs<T>& out) : call_(call), out_(out), jobs_(call.set, call.plan, call.order) {
+    jobs_.job().streaming = call.streaming;
+  }
+
+  void add(std::uint32_t block) {
+    if (call_.is_whole(block)) {
+      call_.pack_whole(block);
+    } else {
+      pack_lanes(block);
+    }
+    jobs_.turn_to(block);
+    out_.place(block * call_.plan.samples() * PatchSet::lanes, jobs_.job());
+    isa_ = run_grid(call_.kernels, jobs_.job());
+  }
+  /// The ISA that ran last.
+  Isa finish() {
+    if (call_.streaming) call_.kernels.finish_streaming();
+    return isa_;
+  }
+
+ private:
+  void pack_lanes(std::uint32_t block) {
+    for (std::size_t lane = 0; lane < PatchSet::lanes; ++lane) {
+      const std::uint32_t edit = call_.touched.edits(block)[lane];
+      if (edit == TouchedBlocks::none) continue;
+      const std::uint32_t patch = call_.set.lane_patches[block * PatchSet::lanes + lane];
+      call_.write_points(patch, edit);
+      (void)call_.set.pack_lanes(patch);  // fits: it has been checked
+    }
+  }
+
+  const UpdateCall& call_;
+  const BlockOutputs<T>& out_;
+  BlockJobs<T> jobs_;
+  Isa isa_ = Isa::sse2;
+};
+
+/// Takes block after block to patch-contiguous views. Those whose patches are all edited are evaluated where they lie; the edited patches of others
 /// are gathered, 16 at a time, so that no lane goes idle. Lives on a task's stack; allocates nothing.
 template <class T>
 class EditedGrids {
  public:
-  explicit EditedGrids(const UpdateCall<T>& call)
-      : call_(call), stage_(call.kernels, call.layout, call.out, call.streaming), jobs_(call.set, call.plan, call.order) {
+  EditedGrids(const UpdateCall& call, const StageLayout<T>& layout, const GridViews<T>& out)
+      : call_(call), stage_(call.kernels, layout, out, call.streaming), jobs_(call.set, call.plan, call.order) {
     stage_.place_outputs(jobs_.job());
   }
 
   void add(std::uint32_t block) {
-    if (call_.touched.count(block) == call_.set.lane_counts[block]) {
+    if (call_.is_whole(block)) {
       add_whole(block);
     } else {
       add_lanes(block);
@@ -56,17 +108,10 @@ class EditedGrids {
   static constexpr std::size_t lanes = PatchSet::lanes;
   static constexpr std::size_t most_coefficients = (max_degree + 1) * (max_degree + 1) * 4;
 
-  void write_points(std::uint32_t patch, std::uint32_t edit) {
-    PatchPieces::overwrite(call_.set.patches[patch], call_.edits.points.data() + call_.touched.first_point(edit));
-  }
-
   void add_whole(std::uint32_t block) {
-    const std::uint32_t* patches = call_.set.lane_patches.data() + block * lanes;
-    const std::uint32_t* edits = call_.touched.edits(block);
-    for (std::size_t lane = 0; lane < call_.set.lane_counts[block]; ++lane) write_points(patches[lane], edits[lane]);
-    call_.set.pack_block(block, call_.kernels);  // all fit: they have been checked
+    call_.pack_whole(block);
     jobs_.turn_to(block);
-    evaluate(patches, call_.set.lane_counts[block]);
+    evaluate(call_.set.lane_patches.data() + block * lanes, call_.set.lane_counts[block]);
   }
 
   void add_lanes(std::uint32_t block) {
@@ -77,7 +122,7 @@ class EditedGrids {
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       if (edits[lane] == TouchedBlocks::none) continue;
       const std::uint32_t patch = call_.set.lane_patches[block * lanes + lane];
-      write_points(patch, edits[lane]);
+      call_.write_points(patch, edits[lane]);
       (void)call_.set.pack_lanes(patch);  // fits: it has been checked
       gather(group, lane);
       patches_[gathered_++] = patch;
@@ -116,7 +161,7 @@ class EditedGrids {
                       plan.samples());
   }
 
-  const UpdateCall<T>& call_;
+  const UpdateCall& call_;
   StagedBlock<T> stage_;
   BlockJobs<T> jobs_;
   Isa isa_ = Isa::sse2;

@@ -9,6 +9,7 @@
 #include "base/guard.h"
 #include "block/patch_set_impl.h"
 #include "eval/block_jobs.h"
+#include "eval/block_outputs.h"
 #include "eval/flat_grid.h"
 #include "eval/grid_calls.h"
 #include "eval/grid_outputs.h"
@@ -73,15 +74,6 @@ Status check_plan(const PatchSet::Impl& set, const GridPlan& plan) {
   return {};
 }
 
-template <class T>
-Isa run_grid(const kernel::KernelTable& kernels, const kernel::GridJob<T>& job) {
-  if constexpr (sizeof(T) == 4) {
-    return kernels.grid_f32(job);
-  } else {
-    return kernels.grid_f64(job);
-  }
-}
-
 /// The highest derivatives that the wanted outputs are made of. Errors: invalid_argument if none is wanted.
 template <class T, class Wanted>
 Result<int> order_of_outputs(Wanted&& wanted) {
@@ -95,110 +87,19 @@ Result<int> order_of_outputs(Wanted&& wanted) {
 
 // ---- block-interleaved outputs
 
-/// The memory of outputs in blocks, one after the other; the first that shares some with one before is refused.
-class BlockMemory {
- public:
-  template <class T>
-  Status add(const char* name, std::span<T> memory) {
-    const Range range{name, reinterpret_cast<std::uintptr_t>(memory.data()), memory.size_bytes()};
-    for (const Range& other : std::span(ranges_).first(count_))
-      if (range.begin < other.begin + other.bytes && other.begin < range.begin + range.bytes)
-        return Status(StatusCode::invalid_argument, std::string(other.name) + " and " + name + " share memory");
-    ranges_.at(count_++) = range;
-    return {};
-  }
-
- private:
-  struct Range {
-    const char* name;
-    std::uintptr_t begin;
-    std::size_t bytes;
-  };
-  std::array<Range, 24> ranges_{};
-  std::size_t count_ = 0;
-};
-
-template <class T>
-Status check_blocks(const GridPlan& plan, const GridBlocks<T>& out) {
-  Status status;
-  BlockMemory all;
-  for_each_output<T>([&](const auto& output) {
-    const auto memory = out.*output.memory;
-    if (memory.data() == nullptr || !status.ok()) return;
-    const std::size_t needed = plan.block_capacity() / 3 * static_cast<std::size_t>(output.width);
-    if (memory.size() < needed)
-      status = Status(StatusCode::buffer_too_small, std::string(output.name) + " needs " + std::to_string(needed) +
-                                                        " values, not " + std::to_string(memory.size()));
-    else if (reinterpret_cast<std::uintptr_t>(memory.data()) % cache_line != 0)
-      status = Status(StatusCode::invalid_argument, std::string(output.name) + " must be aligned to 64 bytes");
-    else
-      status = all.add(output.name, memory.first(needed));
-  });
-  return status;
-}
-
 bool stores_stream(std::size_t bytes, Stores stores) {
   return stores == Stores::automatic ? bytes > streaming_threshold() : stores == Stores::streaming;
 }
 
-/// Of one record of the values that `wanted` names.
-template <class T, class Wanted>
-std::size_t record_bytes(Wanted&& wanted) {
-  std::size_t bytes = 0;
-  for_each_value_output<T>([&](const auto& output) {
-    if (wanted(output)) bytes += static_cast<std::size_t>(output.width) * sizeof(T);
-  });
-  return bytes;
-}
-
-/// The wanted outputs in blocks, from where on a piece's part of them is found.
-template <class T>
-class BlockOutputs {
- public:
-  explicit BlockOutputs(const GridBlocks<T>& out) {
-    for_each_value_output<T>([&](const auto& output) {
-      const auto memory = out.*output.memory;
-      if (!memory.empty()) values_[value_count_++] = {output.job, memory.data(), static_cast<std::size_t>(output.width)};
-    });
-    for_each_kind_output<T>([&](const auto& output) {
-      const auto memory = out.*output.memory;
-      if (!memory.empty()) kinds_[kind_count_++] = {output.job, reinterpret_cast<std::uint8_t*>(memory.data())};
-    });
-  }
-  /// Points the job at the samples from `first` on.
-  void place(std::size_t first, kernel::GridJob<T>& job) const {
-    for (const Values& output : std::span(values_).first(value_count_)) job.*output.job = output.memory + first * output.width;
-    for (const Kinds& output : std::span(kinds_).first(kind_count_)) job.*output.job = output.memory + first;
-  }
-
- private:
-  struct Values {
-    T* kernel::GridJob<T>::*job;
-    T* memory;
-    std::size_t width;
-  };
-  struct Kinds {
-    std::uint8_t* kernel::GridJob<T>::*job;
-    std::uint8_t* memory;
-  };
-  std::array<Values, std::size(vector_outputs<T>) + std::size(scalar_outputs<T>)> values_;
-  std::array<Kinds, 2> kinds_;
-  std::size_t value_count_ = 0, kind_count_ = 0;
-};
-
 template <class T>
 Status evaluate_blocks(const PatchSet& set, const GridPlan& plan, const GridBlocks<T>& out,
                        const Execution& execution) {
-  if (Status status = check_plan<T>(set.impl(), plan); !status.ok()) return status;
-  if (Status status = check_blocks(plan, out); !status.ok()) return status;
-  const auto wanted = [&](const auto& output) { return (out.*output.memory).data() != nullptr; };
-  const auto order = order_of_outputs<T>(wanted);
+  const Result<int> order = check_grids(set.impl(), plan, out);
   if (!order) return order.status();
   const PatchSet::Impl& patches = set.impl();
   const GridPlan::Impl& inner = plan.impl();
   const auto& kernels = kernel::kernels(inner.isa);
-  const bool streaming =
-      !inner.by_patch && stores_stream(plan.block_capacity() / 3 * record_bytes<T>(wanted), execution.stores);
+  const bool streaming = !inner.by_patch && blocks_stream(out, plan.block_capacity() / 3, execution.stores);
   const Pieces pieces(inner, *order > 0);
   const BlockOutputs<T> outputs(out);
   std::atomic<Isa> isa{inner.isa};
@@ -302,12 +203,32 @@ template Result<int> check_grids(const PatchSet::Impl&, const GridPlan&, const G
 template Result<int> check_grids(const PatchSet::Impl&, const GridPlan&, const GridViews<double>&);
 
 template <class T>
+Result<int> check_grids(const PatchSet::Impl& set, const GridPlan& plan, const GridBlocks<T>& out) {
+  if (Status status = check_plan<T>(set, plan); !status.ok()) return status;
+  if (Status status = check_blocks(plan, out); !status.ok()) return status;
+  return order_of_outputs<T>([&](const auto& output) { return (out.*output.memory).data() != nullptr; });
+}
+template Result<int> check_grids(const PatchSet::Impl&, const GridPlan&, const GridBlocks<float>&);
+template Result<int> check_grids(const PatchSet::Impl&, const GridPlan&, const GridBlocks<double>&);
+
+template <class T>
 bool views_stream(const StageLayout<T>& layout, std::size_t records, Stores stores) {
   if (layout.arrays().empty()) return false;
   return stores_stream(records * static_cast<std::size_t>(layout.record_width()) * sizeof(T), stores);
 }
 template bool views_stream(const StageLayout<float>&, std::size_t, Stores);
 template bool views_stream(const StageLayout<double>&, std::size_t, Stores);
+
+template <class T>
+bool blocks_stream(const GridBlocks<T>& out, std::size_t records, Stores stores) {
+  std::size_t bytes = 0;
+  for_each_value_output<T>([&](const auto& output) {
+    if (!(out.*output.memory).empty()) bytes += static_cast<std::size_t>(output.width) * sizeof(T);
+  });
+  return stores_stream(records * bytes, stores);
+}
+template bool blocks_stream(const GridBlocks<float>&, std::size_t, Stores);
+template bool blocks_stream(const GridBlocks<double>&, std::size_t, Stores);
 
 std::size_t blocks_a_task(const GridPlan::Impl& plan, std::size_t blocks, bool derivatives) {
   const std::size_t points = plan.samples() * PatchSet::lanes;

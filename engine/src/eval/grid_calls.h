@@ -6,14 +6,18 @@
 
 namespace tessera {
 
-/// Of a plan and views for all patches of the set. Else the highest order of the derivatives that the outputs are made
+/// Of a plan and outputs for all patches of the set. Else the highest order of the derivatives that the outputs are made
 /// of. Errors: those of evaluate().
 template <class T>
 Result<int> check_grids(const PatchSet::Impl& set, const GridPlan& plan, const GridViews<T>& out);
+template <class T>
+Result<int> check_grids(const PatchSet::Impl& set, const GridPlan& plan, const GridBlocks<T>& out);
 
-/// Whether so many records of views go out by streaming stores.
+/// Whether so many records go out by streaming stores.
 template <class T>
 bool views_stream(const StageLayout<T>& layout, std::size_t records, Stores stores);
+template <class T>
+bool blocks_stream(const GridBlocks<T>& out, std::size_t records, Stores stores);
 
 /// How many blocks a task takes; all where one thread is faster than two.
 std::size_t blocks_a_task(const GridPlan::Impl& plan, std::size_t blocks, bool derivatives);

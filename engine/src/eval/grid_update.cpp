@@ -78,6 +78,29 @@ class GridUpdate::Impl {
   template <class T>
   Status run(PatchSet::Impl& set, const GridPlan& plan, const PatchEdits& edits, const GridViews<T>& out,
              const Execution& execution) {
+    const Result<int> order = start(set, plan, edits, out, execution);
+    if (!order) return order.status();
+    const StageLayout<T> layout(out);
+    const bool streaming = views_stream(layout, edits.patch.size() * plan.impl().samples(), execution.stores);
+    return each_block(set, plan, edits, *order, streaming, execution,
+                      [&](const UpdateCall& call) { return EditedGrids<T>(call, layout, out); });
+  }
+  template <class T>
+  Status run(PatchSet::Impl& set, const GridPlan& plan, const PatchEdits& edits, const GridBlocks<T>& out,
+             const Execution& execution) {
+    const Result<int> order = start(set, plan, edits, out, execution);
+    if (!order) return order.status();
+    const BlockOutputs<T> outputs(out);
+    const std::size_t records = touched_.blocks().size() * PatchSet::lanes * plan.impl().samples();
+    return each_block(set, plan, edits, *order, blocks_stream(out, records, execution.stores), execution,
+                      [&](const UpdateCall& call) { return EditedBlocks<T>(call, outputs); });
+  }
+
+ private:
+  /// Everything that may fail. The order of the derivatives that the outputs are made of.
+  template <class Outputs>
+  Result<int> start(PatchSet::Impl& set, const GridPlan& plan, const PatchEdits& edits, const Outputs& out,
+                    const Execution& execution) {
     const Result<int> order = check_grids(set, plan, out);
     if (!order) return order.status();
     if (plan.impl().by_patch)
@@ -86,18 +109,22 @@ class GridUpdate::Impl {
       return Status(StatusCode::invalid_argument, "the update was made for another patch set");
     if (Status status = touched_.add(set, edits); !status.ok()) return status;
     if (Status status = prepare(set, edits, touched_, execution); !status.ok()) return status;
+    return *order;
+  }
 
+  /// Gives every touched block to what `make_task` makes for each task.
+  template <class MakeTask>
+  Status each_block(PatchSet::Impl& set, const GridPlan& plan, const PatchEdits& edits, int order, bool streaming,
+                    const Execution& execution, MakeTask&& make_task) {
     const GridPlan::Impl& inner = plan.impl();
     const auto blocks = touched_.blocks();
-    const StageLayout<T> layout(out);
-    const bool streaming = views_stream(layout, edits.patch.size() * inner.samples(), execution.stores);
-    const UpdateCall<T> call{set, inner, kernel::kernels(inner.isa), edits, touched_, out, layout, *order, streaming};
+    const UpdateCall call{set, inner, kernel::kernels(inner.isa), edits, touched_, order, streaming};
     std::atomic<Isa> isa{inner.isa};
-    const Status status = parallel_for(blocks.size(), blocks_a_task(inner, blocks.size(), *order > 0), execution,
+    const Status status = parallel_for(blocks.size(), blocks_a_task(inner, blocks.size(), order > 0), execution,
                                        [&](std::size_t begin, std::size_t end) {
-                                         EditedGrids<T> grids(call);
-                                         for (std::size_t k = begin; k < end; ++k) grids.add(blocks[k]);
-                                         isa.store(grids.finish(), std::memory_order_relaxed);
+                                         auto task = make_task(call);
+                                         for (std::size_t k = begin; k < end; ++k) task.add(blocks[k]);
+                                         isa.store(task.finish(), std::memory_order_relaxed);
                                        });
     for (const std::uint32_t patch : edits.patch) set.note_doubt(patch);
     if (!edits.patch.empty()) ++set.revision;
@@ -105,7 +132,6 @@ class GridUpdate::Impl {
     return status;
   }
 
- private:
   TouchedBlocks touched_;
   std::size_t patch_count_;
 };
@@ -123,7 +149,15 @@ Status GridUpdate::run(PatchSet& set, const GridPlan& plan, const PatchEdits& ed
                        const Execution& execution) {
   return guarded([&] { return impl_->run(set.impl(), plan, edits, out, execution); });
 }
+Status GridUpdate::run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridBlocks<float>& out,
+                       const Execution& execution) {
+  return guarded([&] { return impl_->run(set.impl(), plan, edits, out, execution); });
+}
 Status GridUpdate::run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridViews<double>& out,
+                       const Execution& execution) {
+  return guarded([&] { return impl_->run(set.impl(), plan, edits, out, execution); });
+}
+Status GridUpdate::run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridBlocks<double>& out,
                        const Execution& execution) {
   return guarded([&] { return impl_->run(set.impl(), plan, edits, out, execution); });
 }

@@ -106,6 +106,13 @@ template <class L, bool Rational, bool Streaming, int Order>
   }
 }
 
+/// Lines `first` and following.
+template <class T>
+[[gnu::always_inline]] inline void prefetch_lines(const T* memory, int first, int count) {
+  const char* line = reinterpret_cast<const char*>(memory) + std::ptrdiff_t{first} * 64;
+  for (int k = 0; k < count; ++k) __builtin_prefetch(line + std::ptrdiff_t{k} * 64);
+}
+
 /// `Groups` neighbouring vectors of patches, from `lane`, over the job's part of the grid. DegreeV 0 reads the degree
 /// from the job.
 template <class L, bool ByLane, int DegreeV, bool Rational, int Order, bool Streaming, int Groups>
@@ -116,8 +123,10 @@ void evaluate_lanes(const GridJob<typename L::Scalar>& job, int lane) {
   const int count_v = DegreeV > 0 ? DegreeV + 1 : job.degree_v + 1;
   Offsets out{lane, lane, lane};
 
+  const auto* next_net = job.net + std::ptrdiff_t{count_u} * count_v * components * block_lanes;
   RowCurves<L, Order, components, capacity> curves[Groups];
   for (int iu = job.u_begin; iu < job.u_end; ++iu) {
+    if (lane == 0) prefetch_lines(next_net, iu * job.prefetched_lines, job.prefetched_lines);
     for (int group = 0; group < Groups; ++group) {
       const int first = lane + group * L::width;
       const auto u_weights = weights_at<L, ByLane>(job.u_weights, iu, count_u, first);
@@ -138,13 +147,15 @@ void evaluate_lanes(const GridJob<typename L::Scalar>& job, int lane) {
 }
 
 /// Plain stores take one vector of patches after the other; streaming stores take whole cache lines, since a line that
-/// is streamed in parts goes to memory in parts.
+/// is streamed in parts goes to memory in parts, and vectors of a line two of them: lines of a block that are left out
+/// cost as much as others.
 template <class L, int DegreeV, bool Rational, int Order>
 void evaluate_block(const GridJob<typename L::Scalar>& job) {
   constexpr int line = 64 / static_cast<int>(sizeof(typename L::Scalar));
+  constexpr int streamed = L::width < line ? line : 2 * line < block_lanes ? 2 * line : block_lanes;
   if (job.streaming) {
-    for (int lane = 0; lane < block_lanes; lane += line)
-      evaluate_lanes<L, false, DegreeV, Rational, Order, true, line / L::width>(job, lane);
+    for (int lane = 0; lane < block_lanes; lane += streamed)
+      evaluate_lanes<L, false, DegreeV, Rational, Order, true, streamed / L::width>(job, lane);
   } else {
     for (int lane = 0; lane < block_lanes; lane += L::width)
       evaluate_lanes<L, false, DegreeV, Rational, Order, false, 1>(job, lane);

@@ -60,6 +60,9 @@ struct GridJob {
   std::uint8_t* curvature_kind = nullptr;
   T offset[3] = {0, 0, 0};       ///< added to positions (doubles only: floats stay relative to the origin)
   bool streaming = false;        ///< non-temporal stores; the caller ends them with finish_streaming
+  /// Cache lines behind the net, where the next block's is, that row k asks for: from k * prefetched_lines on. Readable or
+  /// not.
+  int prefetched_lines = 0;
 
   // What decides where r_u x r_v stands for the normal; read where normals or curvatures are wanted.
   const T* doubt = nullptr;      ///< `[lane]`: at or below this |r_u x r_v|^2 the tangents' rounding errors count

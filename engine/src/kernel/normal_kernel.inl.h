@@ -112,7 +112,7 @@ inline OnCollapsed<L> on_collapsed(const GridJob<typename L::Scalar>& job, const
 
 /// r_uv of a sample of first order, made anew from the block: so few points ask for it that the others don't pay.
 template <class L, bool ByLane>
-inline void polynomial_mixed(const GridJob<typename L::Scalar>& job, const Place& place, typename L::Batch (&duv)[3]) {
+[[gnu::noinline, gnu::cold]] void polynomial_mixed(const GridJob<typename L::Scalar>& job, const Place& place, typename L::Batch (&duv)[3]) {
   const int count_u = job.degree_u + 1, count_v = job.degree_v + 1;
   RowCurves<L, 0, 3, max_order> curves;
   const auto u_weights = weights_at<L, ByLane>(job.u_weights, place.iu, count_u, place.lane) + count_u;
@@ -121,7 +121,7 @@ inline void polynomial_mixed(const GridJob<typename L::Scalar>& job, const Place
   combine<L>(v_weights, count_v, curves.by_u[0], duv);
 }
 template <class L, bool ByLane>
-inline void rational_mixed(const GridJob<typename L::Scalar>& job, const Place& place, typename L::Batch (&duv)[3]) {
+[[gnu::noinline, gnu::cold]] void rational_mixed(const GridJob<typename L::Scalar>& job, const Place& place, typename L::Batch (&duv)[3]) {
   const int count_u = job.degree_u + 1, count_v = job.degree_v + 1;
   const auto u_weights = weights_at<L, ByLane>(job.u_weights, place.iu, count_u, place.lane);
   const auto v_weights = weights_at<L, ByLane>(job.v_weights, place.iv, count_v, place.lane);
@@ -149,7 +149,7 @@ inline void mixed_derivative(const GridJob<typename L::Scalar>& job, const Place
 /// k r_uv + ..., so that r_uv x r_v decides, and -r_uv x r_v at v = 1; likewise r_u x r_uv along u = 0. A corner of two
 /// collapsed edges has none. The error of r_uv is taken as 4 max(m, n) times that of the tangents.
 template <class L>
-inline void limit_normals(const GridJob<typename L::Scalar>& job, const Tangents<L>& tangents, const Place& place,
+[[gnu::noinline, gnu::cold]] void limit_normals(const GridJob<typename L::Scalar>& job, const Tangents<L>& tangents, const Place& place,
                           typename L::Batch& doubtful, Normal<L>& normal) {
   const auto zero = L::broadcast(0), one = L::broadcast(1);
   const auto u_edge = on_collapsed<L>(job, job.u_edges, place.iu, 0, place.lane);
@@ -176,7 +176,7 @@ inline void limit_normals(const GridJob<typename L::Scalar>& job, const Tangents
 
 /// Doubtful lanes whose tangents, at their own scale, are safely independent.
 template <class L>
-inline void certain_normals(const Tangents<L>& tangents, typename L::Batch& doubtful, Normal<L>& normal) {
+[[gnu::noinline, gnu::cold]] void certain_normals(const Tangents<L>& tangents, typename L::Batch& doubtful, Normal<L>& normal) {
   const auto zero = L::broadcast(0);
   typename L::Batch n[3];
   const auto certain = certain_direction<L>(tangents.du, tangents.dv, tangents.noise, tangents.noise, n);
@@ -188,7 +188,7 @@ inline void certain_normals(const Tangents<L>& tangents, typename L::Batch& doub
 
 /// Doubtful lanes one by one, in the caller's arithmetic.
 template <class L>
-inline void exact_normals(const GridJob<typename L::Scalar>& job, const Place& place, const typename L::Batch& doubtful,
+[[gnu::noinline, gnu::cold]] void exact_normals(const GridJob<typename L::Scalar>& job, const Place& place, const typename L::Batch& doubtful,
                           Normal<L>& normal) {
   using T = typename L::Scalar;
   alignas(64) T asked[L::width], kind[L::width], direction[3][L::width];
@@ -246,7 +246,7 @@ inline typename L::Batch own_doubts(const GridJob<typename L::Scalar>& job, cons
 /// Lanes whose |r_u x r_v|^2 is out of range or in doubt; `safe` is 1 in the others, which keep what they have, so that
 /// a lane's bits don't depend on its neighbours.
 template <class L>
-__attribute__((noinline)) void degenerate_normals(const GridJob<typename L::Scalar>& job, const Place& place,
+[[gnu::noinline, gnu::cold]] void degenerate_normals(const GridJob<typename L::Scalar>& job, const Place& place,
                                                   const typename L::Batch& assumed_safe, NormalExchange<L>& exchange) {
   const auto zero = L::broadcast(0), one = L::broadcast(1);
   typename L::Batch safe = assumed_safe, noise;

@@ -203,15 +203,17 @@ void evaluate_slots(const PointJob<typename L::Scalar>& job) {
   }
 }
 
-/// Degrees that are fixed where it pays, and any.
+/// Degrees that are fixed where it pays, which for doubles is the cubic alone; and any.
 template <class L, int Order>
 void choose_degree(const PointJob<typename L::Scalar>& job) {
   const int degree = job.grid.degree_u == job.grid.degree_v ? job.grid.degree_u : 0;
   if (job.grid.rational) return evaluate_slots<L, 0, true, Order>(job);
-  if (degree == 3) return evaluate_slots<L, 3, false, Order>(job);
-  if constexpr (Order < 2) {
-    if (degree == 2) return evaluate_slots<L, 2, false, Order>(job);
-    if (degree == 1) return evaluate_slots<L, 1, false, Order>(job);
+  if constexpr (fixed_degrees) {
+    if (degree == 3) return evaluate_slots<L, 3, false, Order>(job);
+    if constexpr (Order < 2 && sizeof(typename L::Scalar) == 4) {
+      if (degree == 2) return evaluate_slots<L, 2, false, Order>(job);
+      if (degree == 1) return evaluate_slots<L, 1, false, Order>(job);
+    }
   }
   evaluate_slots<L, 0, false, Order>(job);
 }

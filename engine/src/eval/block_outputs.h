@@ -1,0 +1,103 @@
+#pragma once
+// Block-interleaved outputs: their checks, and where a kernel finds them.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "base/aligned.h"
+#include "eval/grid_outputs.h"
+#include "tessera/evaluate.h"
+
+namespace tessera {
+
+/// The memory of outputs in blocks, one after the other; the first that shares some with one before is refused.
+class BlockMemory {
+ public:
+  template <class T>
+  Status add(const char* name, std::span<T> memory) {
+    const Range range{name, reinterpret_cast<std::uintptr_t>(memory.data()), memory.size_bytes()};
+    for (const Range& other : std::span(ranges_).first(count_))
+      if (range.begin < other.begin + other.bytes && other.begin < range.begin + range.bytes)
+        return Status(StatusCode::invalid_argument, std::string(other.name) + " and " + name + " share memory");
+    ranges_.at(count_++) = range;
+    return {};
+  }
+
+ private:
+  struct Range {
+    const char* name;
+    std::uintptr_t begin;
+    std::size_t bytes;
+  };
+  std::array<Range, 24> ranges_{};
+  std::size_t count_ = 0;
+};
+
+/// Errors: those of evaluate().
+template <class T>
+Status check_blocks(const GridPlan& plan, const GridBlocks<T>& out) {
+  Status status;
+  BlockMemory all;
+  for_each_output<T>([&](const auto& output) {
+    const auto memory = out.*output.memory;
+    if (memory.data() == nullptr || !status.ok()) return;
+    const std::size_t needed = plan.block_capacity() / 3 * static_cast<std::size_t>(output.width);
+    if (memory.size() < needed)
+      status = Status(StatusCode::buffer_too_small, std::string(output.name) + " needs " + std::to_string(needed) +
+                                                        " values, not " + std::to_string(memory.size()));
+    else if (reinterpret_cast<std::uintptr_t>(memory.data()) % cache_line != 0)
+      status = Status(StatusCode::invalid_argument, std::string(output.name) + " must be aligned to 64 bytes");
+    else
+      status = all.add(output.name, memory.first(needed));
+  });
+  return status;
+}
+
+/// The wanted outputs in blocks, from where on a piece's part of them is found.
+template <class T>
+class BlockOutputs {
+ public:
+  explicit BlockOutputs(const GridBlocks<T>& out) {
+    for_each_value_output<T>([&](const auto& output) {
+      const auto memory = out.*output.memory;
+      if (!memory.empty()) values_[value_count_++] = {output.job, memory.data(), static_cast<std::size_t>(output.width)};
+    });
+    for_each_kind_output<T>([&](const auto& output) {
+      const auto memory = out.*output.memory;
+      if (!memory.empty()) kinds_[kind_count_++] = {output.job, reinterpret_cast<std::uint8_t*>(memory.data())};
+    });
+  }
+  /// Points the job at the samples from `first` on.
+  void place(std::size_t first, kernel::GridJob<T>& job) const {
+    for (const Values& output : std::span(values_).first(value_count_)) job.*output.job = output.memory + first * output.width;
+    for (const Kinds& output : std::span(kinds_).first(kind_count_)) job.*output.job = output.memory + first;
+  }
+
+ private:
+  struct Values {
+    T* kernel::GridJob<T>::*job;
+    T* memory;
+    std::size_t width;
+  };
+  struct Kinds {
+    std::uint8_t* kernel::GridJob<T>::*job;
+    std::uint8_t* memory;
+  };
+  std::array<Values, std::size(vector_outputs<T>) + std::size(scalar_outputs<T>)> values_;
+  std::array<Kinds, 2> kinds_;
+  std::size_t value_count_ = 0, kind_count_ = 0;
+};
+
+/// The kernel of T.
+template <class T>
+Isa run_grid(const kernel::KernelTable& kernels, const kernel::GridJob<T>& job) {
+  if constexpr (sizeof(T) == 4) {
+    return kernels.grid_f32(job);
+  } else {
+    return kernels.grid_f64(job);
+  }
+}
+
+}  // namespace tessera
