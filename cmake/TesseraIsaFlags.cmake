@@ -8,7 +8,7 @@ if(TESSERA_SANITIZE)
   list(TRANSFORM kernel_flags REPLACE -O3 -O1)
 endif()
 get_filename_component(kernel_folder ${CMAKE_CURRENT_LIST_DIR}/../engine/src/kernel ABSOLUTE)
-set(kernel_units unit_grid unit_grid_double unit_flat unit_line unit_net unit_point unit_chord unit_mesh)
+set(kernel_units unit_grid unit_grid_double unit_flat unit_line unit_net unit_point unit_chord unit_mesh unit_ray)
 list(TRANSFORM kernel_units PREPEND ${kernel_folder}/)
 list(TRANSFORM kernel_units APPEND .cpp)
 

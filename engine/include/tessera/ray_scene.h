@@ -68,10 +68,11 @@ enum class RayMode : std::uint8_t {
   /// decide what is met and in which order: a silhouette may be missed or flagged, and of two surfaces nearer to each
   /// other than to their facets the farther one may come first.
   grid,
-  /// The surface itself: pieces of patches in an Embree BVH, each searched by branch and bound in double with every
-  /// rounding bounded, far origins included. What the surface of the control points in double meets is hit, at shared
-  /// borders and poles too, silhouettes down to the tolerance; a returned hit lies within the tolerance of the ray.
-  /// Hits that are not flagged uncertified are roots up to rounding. Slower than grid for coherent rays.
+  /// The surface itself: pieces of patches in an Embree BVH, each searched by interval Newton steps in float and, where
+  /// these prove nothing, by branch and bound in double, with every rounding bounded, far origins included. What the
+  /// surface of the control points in double meets is hit, at shared borders and poles too, silhouettes down to the
+  /// tolerance; a returned hit lies within the tolerance of the ray. Hits that are not flagged uncertified are roots up
+  /// to rounding.
   exact,
 };
 
@@ -79,9 +80,9 @@ struct RaySceneOptions {
   RayMode mode = RayMode::grid;  ///< the faster one
   int rate = 8;                  ///< grid mode: grid segments a patch and direction, 1 to 4096
   bool refine = true;            ///< grid mode: false leaves hits on the facets (for comparison)
-  std::optional<Isa> isa = {};   ///< grid mode
-  int pieces = 1;                ///< exact mode: pieces a patch and direction, 1, 2, 4 or 8; more for long thin patches.
-                                 ///< More take memory, and are quicker where patches are large and strongly curved
+  std::optional<Isa> isa = {};   ///< the hits of exact mode are those of every one, up to rounding
+  int pieces = 1;                ///< exact mode: pieces a patch and direction, 1, 2, 4 or 8; more for patches that are
+                                 ///< strongly bent or long and thin, up to 8 and 64
   /// Exact mode: how far from the ray a point that is returned may lie, in the model's unit; above 0. It counts where
   /// the ray touches the surface or passes a border: there points within it may be hits. By default 2e-12 of the set's
   /// size; smaller ones than twice the bound on rounding (2e-12 of the size for bicubic patches, 9e-12 at degree 15,
@@ -93,10 +94,10 @@ struct RaySceneOptions {
 /// moved). Threads: const calls from any number of threads; refit and edits of the set exclude them.
 class RayScene {
  public:
-  /// Errors: invalid_argument (the rate, the pieces, the tolerance), cancelled, out_of_memory, internal (Embree's own),
-  /// unsupported. Grid mode: isa_unavailable; unsupported are no float Bernstein blocks, a box with a diagonal below
-  /// 1e-9 or reaching further than 1e12 from the set's origin, more than 2^32 grid points. Exact mode: unsupported are
-  /// a diagonal outside of 1e-140 to 1e140, 2^32 pieces.
+  /// Errors: invalid_argument (the rate, the pieces, the tolerance), isa_unavailable, cancelled, out_of_memory, internal
+  /// (Embree's own), unsupported. Grid mode: unsupported are no float Bernstein blocks, a box with a diagonal below 1e-9
+  /// or reaching further than 1e12 from the set's origin, more than 2^32 grid points. Exact mode: unsupported are a
+  /// diagonal outside of 1e-140 to 1e140, 2^32 pieces.
   static Result<RayScene> make(const PatchSet& set, const RaySceneOptions& options = {}, const Execution& execution = {});
 
   RayScene(RayScene&&) noexcept;

@@ -12,12 +12,13 @@
 #include "kernel/mesh_kernels.h"
 #include "kernel/net_kernels.h"
 #include "kernel/point_kernels.h"
+#include "kernel/ray_kernels.h"
 #include "tessera/isa.h"
 
 namespace tessera::kernel {
 
 struct KernelTable : GridKernels, DoubleGridKernels, FlatKernels, LineKernels, NetKernels, PointKernels, ChordKernels,
-                     MeshKernels, MemoryKernels {
+                     MeshKernels, RayKernels, MemoryKernels {
   Isa isa;
 };
 

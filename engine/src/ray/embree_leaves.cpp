@@ -4,7 +4,9 @@
 #include <limits>
 #include <utility>
 
+#include "kernel/kernel_table.h"
 #include "ray/embree_device.h"
+#include "ray/polished_root.h"
 
 namespace tessera {
 namespace {
@@ -12,6 +14,7 @@ namespace {
 // Rays in float: start and direction round by 2^-24 of at most 3.5 and over at most 4, a component by 5e-7. Boxes are
 // larger by four times that on each side; Embree's own arithmetic is conservative in robust scenes.
 constexpr float box_pad = 2e-6f;
+constexpr double probe_pad = 4e-6;  // of s in a kernel, by as much again
 
 /// What a call of Embree's carries to the callbacks: first what Embree knows, so that one points to the other.
 struct Call {
@@ -19,13 +22,25 @@ struct Call {
   RayQuery* query;
   SearchSpace* space;
   float enter_in_float;  ///< s where Embree's ray begins
+  kernel::RayProbe probe;
 };
+
+kernel::RayProbe probe_of(const RayQuery& query) {
+  const auto narrow = [](double x) { return static_cast<float>(x); };
+  const Vec3 &o = query.line.start, &d = query.line.direction;
+  return {{narrow(o.x), narrow(o.y), narrow(o.z), 0},
+          {narrow(d.x), narrow(d.y), narrow(d.z), 0},
+          narrow(std::max(query.near, -8.0) - probe_pad),
+          8,
+          false};
+}
 
 }  // namespace
 
 struct EmbreeLeaves::State {
   EmbreeMonitor monitor;  // outlives the device, which calls it
   const LeafNets* nets = nullptr;
+  const kernel::RayKernels* kernels = nullptr;
   double tolerance = 0;
   Owned<RTCDevice, DeviceRelease> device;
   Owned<RTCScene, SceneRelease> scene;
@@ -41,10 +56,41 @@ struct EmbreeLeaves::State {
 
   static const RayQuery& search(const void* user, unsigned leaf_index, RTCIntersectContext* context) {
     const State& state = *static_cast<const State*>(user);
-    const Call& call = *reinterpret_cast<const Call*>(context);
+    Call& call = *reinterpret_cast<Call*>(context);
     const Leaf& leaf = state.nets->leaves()[leaf_index];
-    search_leaf(leaf, state.nets->net(leaf), state.tolerance, *call.space, *call.query);
+    call.probe.far = static_cast<float>(std::min(call.query->far, 8.0) + probe_pad);
+    if (!state.decide(leaf, leaf_index, call))
+      search_leaf(leaf, state.nets->net(leaf), state.tolerance, *call.space, *call.query);
     return *call.query;
+  }
+
+  /// In float, where that proves what there is; then in double what was found.
+  bool decide(const Leaf& leaf, unsigned leaf_index, Call& call) const {
+    const auto trace = leaf.rational ? kernels->trace_rational_leaf : kernels->trace_polynomial_leaf;
+    const kernel::RayLeaf& local = nets->local(leaf_index);
+    RayQuery& query = *call.query;
+    kernel::RayRoots roots;
+    call.probe.any = query.wanted == RootsWanted::any;
+    if (!trace(local, call.probe, roots)) return false;
+    if (roots.count == 0) return true;
+    if (call.probe.any) {
+      query.found = lies_between(roots.root[0], query.line);
+      if (query.found) return true;
+      call.probe.any = false;  // that one is next to an end: all must be looked at
+      if (!trace(local, call.probe, roots)) return false;
+    }
+    LeafRoot polished[kernel::RayRoots::most];
+    for (int k = 0; k < roots.count; ++k) {
+      if (!polish(leaf, nets->net(leaf), query.line, roots.root[k], polished[k])) return false;
+    }
+    for (int k = 0; k < roots.count; ++k) query.take(polished[k]);
+    return true;
+  }
+
+  /// Whether tnear and tfar are no question.
+  static bool lies_between(const kernel::RayRoot& root, const RayLine& line) {
+    const double s = root.s, off = static_cast<double>(root.s_error) + line.slack;
+    return s - off > line.near && s + off < line.far;
   }
 
   /// Rays come one by one. The end of Embree's ray follows the closest root, rounded up by what boxes are padded with.
@@ -77,8 +123,9 @@ Result<EmbreeLeaves> EmbreeLeaves::make() {
   return EmbreeLeaves(std::move(state));
 }
 
-Status EmbreeLeaves::build(const LeafNets& nets, double tolerance, const Execution& execution) {
+Status EmbreeLeaves::build(const LeafNets& nets, double tolerance, Isa isa, const Execution& execution) {
   State& state = *state_;
+  state.kernels = &kernel::kernels(isa);
   state.scene.reset();
   state.nets = &nets;
   state.tolerance = tolerance;
@@ -102,7 +149,8 @@ Status EmbreeLeaves::build(const LeafNets& nets, double tolerance, const Executi
 void EmbreeLeaves::trace(RayQuery& query, SearchSpace& space) const {
   const RayLine& line = query.line;
   const Vec3 start = line.start + line.enter * line.direction;
-  Call call{context_for(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT), &query, &space, static_cast<float>(line.enter)};
+  Call call{context_for(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT), &query, &space, static_cast<float>(line.enter),
+            probe_of(query)};
   RTCRay ray{};
   ray.org_x = static_cast<float>(start.x), ray.org_y = static_cast<float>(start.y);
   ray.org_z = static_cast<float>(start.z);

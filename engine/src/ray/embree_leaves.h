@@ -24,7 +24,7 @@ class EmbreeLeaves {
 
   /// Builds the BVH, in the caller's arena. `nets` must stay in place and unchanged while the scene is used;
   /// `tolerance` as of search_leaf. On errors the scene is empty. Errors: cancelled, Embree's own.
-  Status build(const LeafNets& nets, double tolerance, const Execution& execution);
+  Status build(const LeafNets& nets, double tolerance, Isa isa, const Execution& execution);
 
   /// Runs the query against all leaves that its line meets. The line must not be empty.
   void trace(RayQuery& query, SearchSpace& space) const;

@@ -24,8 +24,8 @@ constexpr std::size_t most_leaves = 0xffffffff;
 
 class ExactScene final : public RayScene::Impl {
  public:
-  ExactScene(const PatchSet& set, EmbreeLeaves scene, const RaySceneOptions& options)
-      : Impl(set), scene_(std::move(scene)), options_(options) {}
+  ExactScene(const PatchSet& set, EmbreeLeaves scene, const RaySceneOptions& options, Isa isa)
+      : Impl(set), scene_(std::move(scene)), options_(options), isa_(isa) {}
 
   std::size_t memory_bytes() const override {
     return nets_.memory_bytes() + adjacency_.memory_bytes() + scene_.memory_bytes();
@@ -42,6 +42,7 @@ class ExactScene final : public RayScene::Impl {
   LeafNets nets_;  // borrowed by scene_
   EmbreeLeaves scene_;
   RaySceneOptions options_;
+  Isa isa_;
   Adjacency adjacency_;
   SceneFrame frame_;
   Box3 box_, scene_box_;  // of the leaves' control points, in the model's and the scene's coordinates
@@ -68,7 +69,7 @@ Status ExactScene::build(const Execution& execution) {
   box_ = {frame_.to_model(scene_box_.lower), frame_.to_model(scene_box_.upper)};
   const double asked = options_.tolerance.value_or(default_tolerance * size_) * frame_.scale;
   const double rounding = search_rounding(degree_u, degree_v, nets_.most_halvings(), SearchSpace::most_depth);
-  return scene_.build(nets_, std::max(asked, 2 * rounding), execution);
+  return scene_.build(nets_, std::max(asked, 2 * rounding), isa_, execution);
 }
 
 Hit ExactScene::hit_at(const RayLine& line, const LeafRoot& root) const {
@@ -147,9 +148,11 @@ Result<std::unique_ptr<RayScene::Impl>> make_exact_scene(const PatchSet& set, co
     return Status(StatusCode::invalid_argument, "the tolerance of a ray scene must be a finite length above 0, not " +
                                                     std::to_string(*options.tolerance));
   }
+  const Result<Isa> isa = options.isa ? parse_isa(name(*options.isa)) : default_isa();
+  if (!isa) return isa.status();
   Result<EmbreeLeaves> scene = EmbreeLeaves::make();
   if (!scene) return scene.status();
-  return std::unique_ptr<RayScene::Impl>(std::make_unique<ExactScene>(set, *std::move(scene), options));
+  return std::unique_ptr<RayScene::Impl>(std::make_unique<ExactScene>(set, *std::move(scene), options, *isa));
 }
 
 }  // namespace tessera

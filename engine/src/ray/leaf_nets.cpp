@@ -3,15 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <new>
 
 #include "parallel/parallel_for.h"
+#include "ray/local_leaf.h"
 #include "ray/projected_net.h"
 
 namespace tessera {
 namespace {
 
 constexpr std::size_t patches_a_task = 64;
-constexpr int most_halvings_a_side = 6;
+constexpr int most_halvings_a_side = 6, most_halvings_by_bend = 3;
+constexpr double most_bend = 0.12;  // of a piece's length: an arc of nearly a radian
 
 /// The longest line of the net along u or v.
 double net_length(const BezierPatch& patch, bool along_u) {
@@ -27,18 +30,42 @@ double net_length(const BezierPatch& patch, bool along_u) {
   return longest;
 }
 
+/// How far the lines of the net along u or v bend away from their chords, at the most: second differences bound it
+/// (Farin, sec. 5.4).
+double net_bend(const BezierPatch& patch, bool along_u) {
+  const int lines = along_u ? patch.degree_v() : patch.degree_u(),
+            steps = along_u ? patch.degree_u() : patch.degree_v();
+  const auto at = [&](int line, int k) { return along_u ? patch.point(k, line) : patch.point(line, k); };
+  double largest = 0;
+  for (int line = 0; line <= lines; ++line) {
+    for (int k = 0; k + 2 <= steps; ++k)
+      largest = std::max(largest, length(at(line, k + 2) - 2 * at(line, k + 1) + at(line, k)));
+  }
+  return largest * steps * (steps - 1) / 8;
+}
+
 struct Cuts {
   int u = 0, v = 0;  // halvings
 };
 
+/// Each halving takes half of the bend, for its length.
+int halvings_by_bend(double bend, double length) {
+  int halvings = 0;
+  for (double share = bend; share > most_bend * length && halvings < most_halvings_by_bend; share *= 0.5) ++halvings;
+  return halvings;
+}
+
 Cuts cuts_of(const BezierPatch& patch, int halvings) {
   const double u = net_length(patch, true), v = net_length(patch, false);
-  const auto more = [&](double longer, double shorter) {
+  const int by_u = std::max(halvings, halvings_by_bend(net_bend(patch, true), u)),
+            by_v = std::max(halvings, halvings_by_bend(net_bend(patch, false), v));
+  const auto more = [&](double longer, double shorter, int already) {
     if (!(longer > 2 * shorter)) return 0;
     const int extra = shorter > 0 ? std::ilogb(longer / shorter) : most_halvings_a_side;
-    return std::min(extra, most_halvings_a_side - halvings);
+    return std::min(extra, most_halvings_a_side - already);
   };
-  return {halvings + more(u, v), halvings + more(v, u)};
+  const double piece_u = std::ldexp(u, -by_u), piece_v = std::ldexp(v, -by_v);
+  return {by_u + more(piece_u, piece_v, by_u), by_v + more(piece_v, piece_u, by_v)};
 }
 
 void write_patch(const BezierPatch& patch, const SceneFrame& frame, double* out) {
@@ -82,6 +109,7 @@ std::vector<LeafNets::Plan> LeafNets::plan(const SetView& set, int pieces) {
   const int halvings = std::ilogb(static_cast<double>(pieces));
   std::vector<Plan> plans(set.patch_count());
   std::size_t leaves = 0, values = 0;
+  bool rational = false;
   largest_ = 0;
   most_halvings_ = 0;
   for (std::size_t k = 0; k < plans.size(); ++k) {
@@ -90,12 +118,15 @@ std::vector<LeafNets::Plan> LeafNets::plan(const SetView& set, int pieces) {
     const std::size_t net = patch.points().size() * (patch.is_rational() ? 4 : 3);
     plans[k] = {cuts.u, cuts.v, leaves, values};
     leaves += plans[k].count();
+    rational |= patch.is_rational();
     values += plans[k].count() * net;
     largest_ = std::max(largest_, net);
     most_halvings_ = std::max(most_halvings_, cuts.u + cuts.v);
   }
   leaves_.resize(leaves);
   coefficients_.resize(values);
+  local_bytes_ = kernel::ray_leaf_bytes(rational);
+  local_.resize(leaves * local_bytes_);
   return plans;
 }
 
@@ -121,6 +152,8 @@ void LeafNets::cut(const BezierPatch& patch, std::uint32_t index, const Plan& pl
     leaf.du = std::ldexp(1.0, -plan.halvings_u), leaf.dv = std::ldexp(1.0, -plan.halvings_v);
     leaf.u0 = static_cast<double>(piece / along_v) * leaf.du;
     leaf.v0 = static_cast<double>(piece % along_v) * leaf.dv;
+    void* const place = local_.data() + (plan.first_leaf + piece) * local_bytes_;
+    make_local_leaf(shape, leaf.rational, net(leaf), *new (place) kernel::RayLeaf);
   }
 }
 

@@ -1,11 +1,14 @@
 #pragma once
-// The pieces of patches that exact rays are traced against: control nets in the scene's coordinates.
+// The pieces of patches that exact rays are traced against: control nets in the scene's coordinates, and what the
+// kernels take.
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "base/aligned.h"
+#include "kernel/ray_kernels.h"
 #include "ray/ray_line.h"
 #include "ray/set_view.h"
 #include "tessera/execution.h"
@@ -30,19 +33,22 @@ struct Leaf {
 /// largest weight of a patch is scaled by a power of two to [1, 2).
 class LeafNets {
  public:
-  /// Cuts every patch into at least `pieces` x `pieces` (a power of two), more along sides that are much longer than
-  /// the others, so that the pieces are roughly square. Errors: cancelled, out_of_memory.
+  /// Cuts every patch into at least `pieces` x `pieces` (a power of two), more along sides that are strongly bent or much
+  /// longer than the others, so that the pieces are nearly flat and roughly square. Errors: cancelled, out_of_memory.
   Status build(const SetView& set, const SceneFrame& frame, int pieces, const Execution& execution);
 
   std::span<const Leaf> leaves() const { return leaves_; }
   const double* net(const Leaf& leaf) const { return coefficients_.data() + leaf.first; }
+  const kernel::RayLeaf& local(std::size_t leaf) const {
+    return *reinterpret_cast<const kernel::RayLeaf*>(local_.data() + leaf * local_bytes_);
+  }
   /// Of the control points: the piece lies in it but for rounding.
   Box3 box(const Leaf& leaf) const;
   /// Values in the largest net.
   std::size_t largest() const { return largest_; }
   int most_halvings() const { return most_halvings_; }
   std::size_t memory_bytes() const {
-    return leaves_.capacity() * sizeof(Leaf) + coefficients_.capacity() * sizeof(double);
+    return leaves_.capacity() * sizeof(Leaf) + coefficients_.capacity() * sizeof(double) + local_.capacity();
   }
 
  private:
@@ -52,7 +58,9 @@ class LeafNets {
            std::vector<double>& halves);
 
   std::vector<Leaf> leaves_;
-  std::vector<double> coefficients_;
+  UnsetVector<double> coefficients_;
+  UnsetVector<std::byte> local_;
+  std::size_t local_bytes_ = 0;
   std::size_t largest_ = 0;
   int most_halvings_ = 0;
 };

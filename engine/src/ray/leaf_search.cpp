@@ -198,20 +198,10 @@ class LeafSearch {
     root.s = f.s();
     root.residual = f.residual();
     root.certified = certified;
-    set_radius(box, f, root);
-    return query_.take(root);
-  }
-
-  /// The linear model's image of an error of the residual and of rounding; of parts that are taken as a whole, their
-  /// size.
-  void set_radius(const SearchBox& box, const NetValue& f, LeafRoot& root) const {
-    const double error = 4 * f.w * (root.residual + rounding_), determinant = f.xu * f.yv - f.xv * f.yu;
-    double u = box.du, v = box.dv;
-    if (root.certified && determinant != 0) {
-      u = error * (std::abs(f.xv) + std::abs(f.yv)) / std::abs(determinant);
-      v = error * (std::abs(f.xu) + std::abs(f.yu)) / std::abs(determinant);
+    if (!certified || !set_radius(f, rounding_, leaf_.du, leaf_.dv, root)) {  // of parts that are taken as a whole
+      root.radius_u = std::min(1.0, 2 * box.du) * leaf_.du, root.radius_v = std::min(1.0, 2 * box.dv) * leaf_.dv;
     }
-    root.radius_u = std::min(1.0, 2 * u) * leaf_.du, root.radius_v = std::min(1.0, 2 * v) * leaf_.dv;
+    return query_.take(root);
   }
 
   /// Cuts a box down to where its roots are, if that is worth it.
@@ -283,6 +273,16 @@ void run(const Leaf& leaf, const double* net, double tolerance, SearchSpace& spa
 double search_rounding(int degree_u, int degree_v, int halvings, int depth) {
   constexpr double unit = 4 * 0.5 * std::numeric_limits<double>::epsilon();
   return unit * (32 + 4 * (degree_u + degree_v) * (1 + halvings) + 4 * std::max(degree_u, degree_v) * depth);
+}
+
+bool set_radius(const NetValue& f, double rounding, double du, double dv, LeafRoot& root) {
+  const double determinant = f.xu * f.yv - f.xv * f.yu;
+  if (determinant == 0) return false;
+  const double error = 4 * f.w * (root.residual + rounding);
+  const double u = error * (std::abs(f.xv) + std::abs(f.yv)) / std::abs(determinant);
+  const double v = error * (std::abs(f.xu) + std::abs(f.yu)) / std::abs(determinant);
+  root.radius_u = std::min(1.0, 2 * u) * du, root.radius_v = std::min(1.0, 2 * v) * dv;
+  return true;
 }
 
 void search_leaf(const Leaf& leaf, const double* net, double tolerance, SearchSpace& space, RayQuery& query) {

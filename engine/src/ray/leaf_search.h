@@ -6,6 +6,7 @@
 
 #include "base/aligned.h"
 #include "ray/leaf_nets.h"
+#include "ray/projected_net.h"
 #include "ray/ray_query.h"
 
 namespace tessera {
@@ -41,6 +42,10 @@ class SearchSpace {
 ///   Farouki and Rajan, CAGD 4, 1987, sec. 5);
 ///   4 max(m, n) for each cut of the search.
 double search_rounding(int degree_u, int degree_v, int halvings, int depth);
+
+/// Sets how far from `root` another may be that is the same: the linear model's image of an error of the residual and of
+/// rounding, for a leaf of du x dv of its patch. Not where the model says nothing.
+bool set_radius(const NetValue& f, double rounding, double du, double dv, LeafRoot& root);
 
 /// Adds to the query every root of the leaf in [query.near, query.far]: where only the closest is wanted, those nearer
 /// than what the query has. A point of the leaf counts as root up to `tolerance` from the line, where no root can be

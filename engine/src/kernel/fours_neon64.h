@@ -1,0 +1,39 @@
+#pragma once
+// Four floats in a register of NEON.
+
+#include <arm_neon.h>
+
+namespace tessera::kernel::TESSERA_ISA_NAMESPACE {
+namespace {
+
+using Four = float32x4_t;
+
+struct Fours {
+  static Four load(const float* p) { return vld1q_f32(p); }
+  static void store(float* p, Four a) { vst1q_f32(p, a); }
+  static Four all(float x) { return vdupq_n_f32(x); }
+  static Four min(Four a, Four b) { return vminq_f32(a, b); }
+  static Four max(Four a, Four b) { return vmaxq_f32(a, b); }
+  static Four abs(Four a) { return vabsq_f32(a); }
+  static Four fma(Four a, Four b, Four c) { return vfmaq_f32(c, a, b); }             // a b + c
+  static Four fms(Four a, Four b, Four c) { return vfmaq_f32(vnegq_f32(c), a, b); }  // a b - c
+  static Four fnma(Four a, Four b, Four c) { return vfmsq_f32(c, a, b); }            // c - a b
+  /// One of them in all places.
+  template <int k>
+  static Four lane(Four a) {
+    return vdupq_laneq_f32(a, k);
+  }
+  // Of the first three.
+  static float sum3(Four a) { return vgetq_lane_f32(a + lane<1>(a) + lane<2>(a), 0); }
+  static float max3(Four a) { return vgetq_lane_f32(max(max(a, lane<1>(a)), lane<2>(a)), 0); }
+  static float min3(Four a) { return vgetq_lane_f32(min(min(a, lane<1>(a)), lane<2>(a)), 0); }
+  /// Of magnitudes whose reciprocals are finite; signs stay.
+  static Four away_from_zero(Four a) {
+    return vbslq_f32(vdupq_n_u32(0x80000000u), a, vmaxq_f32(vabsq_f32(a), vdupq_n_f32(1e-18f)));
+  }
+  /// The first three of `a`, the last of `b`.
+  static Four with_last(Four a, Four b) { return vcopyq_laneq_f32(a, 3, b, 3); }
+};
+
+}  // namespace
+}  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE

@@ -1,0 +1,48 @@
+#pragma once
+// Four floats in a register of SSE, with fused multiply-adds where the unit is compiled for them.
+
+#include <immintrin.h>
+
+namespace tessera::kernel::TESSERA_ISA_NAMESPACE {
+namespace {
+
+using Four = __m128;
+
+struct Fours {
+  static Four load(const float* p) { return _mm_loadu_ps(p); }
+  static void store(float* p, Four a) { _mm_storeu_ps(p, a); }
+  static Four all(float x) { return _mm_set1_ps(x); }
+  static Four min(Four a, Four b) { return _mm_min_ps(a, b); }
+  static Four max(Four a, Four b) { return _mm_max_ps(a, b); }
+  static Four abs(Four a) { return _mm_andnot_ps(_mm_set1_ps(-0.0f), a); }
+#if defined(__FMA__)
+  static Four fma(Four a, Four b, Four c) { return _mm_fmadd_ps(a, b, c); }    // a b + c
+  static Four fms(Four a, Four b, Four c) { return _mm_fmsub_ps(a, b, c); }    // a b - c
+  static Four fnma(Four a, Four b, Four c) { return _mm_fnmadd_ps(a, b, c); }  // c - a b
+#else
+  static Four fma(Four a, Four b, Four c) { return a * b + c; }
+  static Four fms(Four a, Four b, Four c) { return a * b - c; }
+  static Four fnma(Four a, Four b, Four c) { return c - a * b; }
+#endif
+  /// One of them in all places.
+  template <int k>
+  static Four lane(Four a) {
+    return _mm_shuffle_ps(a, a, 0x55 * k);
+  }
+  // Of the first three.
+  static float sum3(Four a) { return _mm_cvtss_f32(a + lane<1>(a) + lane<2>(a)); }
+  static float max3(Four a) { return _mm_cvtss_f32(max(max(a, lane<1>(a)), lane<2>(a))); }
+  static float min3(Four a) { return _mm_cvtss_f32(min(min(a, lane<1>(a)), lane<2>(a))); }
+  /// Of magnitudes whose reciprocals are finite; signs stay.
+  static Four away_from_zero(Four a) {
+    return _mm_or_ps(_mm_max_ps(abs(a), _mm_set1_ps(1e-18f)), _mm_and_ps(_mm_set1_ps(-0.0f), a));
+  }
+  /// The first three of `a`, the last of `b`.
+  static Four with_last(Four a, Four b) {
+    const Four ends = _mm_shuffle_ps(a, b, _MM_SHUFFLE(3, 3, 2, 2));
+    return _mm_shuffle_ps(a, ends, _MM_SHUFFLE(2, 0, 1, 0));
+  }
+};
+
+}  // namespace
+}  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE

@@ -1,0 +1,250 @@
+// A ray against a piece of a patch: interval Newton steps on rectangles of the parameters, from values, first
+// derivatives and bounds of second ones. One rectangle is nearly always enough.
+//
+// With the ray as x = o + tau d in the piece's coordinates and m the largest component of d, the two other components
+// of q(u,v) = r(u,v) - o give the equations F_k = q_k - (d_k / d_m) q_m = 0. On a rectangle of middle c and half widths
+// h, F(x) = F(c) + J (x - c) + E with |E_k| <= 1/2 sum |second derivatives| h h =: R_k (Taylor), noise included. With
+// A = J^-1 every root lies in c - A F(c) +- |A| R; T(x) = x - A F(x) maps the rectangle into that, and contracts by
+// 2 |A| R / h in the norm that h weighs. So where |A| R < h / 2 there is one root at the most, and one exactly where the
+// image lies inside (Brouwer; Neumaier, Interval Methods for Systems of Equations, sec. 5.1). Everything here rounds by
+// less than RayLeaf::noise and a factor of 1.001 allow for. Needs `Four`, four floats.
+
+/// A rectangle of parameters.
+struct RayBox {
+  float u0, u1, v0, v1;
+};
+
+enum class RayStep { leave, root, narrow, split, open };
+
+template <bool Rational>
+class LeafTrace {
+ public:
+  LeafTrace(const RayLeaf& leaf, const RayProbe& ray) : leaf_(leaf), ray_(ray) {}
+
+  bool run(RayRoots& roots) {
+    roots.count = 0;
+    RayBox stack[stack_size];
+    if (!start(stack[0])) return true;
+    if (!(leaf_.noise < 1)) return false;
+    int size = 1;
+    for (int visited = 0; size > 0; ++visited) {
+      if (visited == most_visits) return false;
+      RayBox& box = stack[size - 1];
+      switch (visit(box, roots)) {
+        case RayStep::leave:
+          --size;
+          break;
+        case RayStep::root:
+          if (ray_.any) return true;
+          --size;
+          break;
+        case RayStep::narrow:
+          break;
+        case RayStep::split:
+          if (size == stack_size) return false;
+          split(box, stack[size]);
+          ++size;
+          break;
+        case RayStep::open:
+          return false;
+      }
+    }
+    return true;
+  }
+
+ private:
+  static constexpr int most_visits = 24, stack_size = 8;
+  static constexpr float epsilon = 0x1p-24f;
+  static constexpr int step = Rational ? 4 : 3;
+
+  /// The ray in the piece's coordinates and the rectangle where its roots lie, wherever the ray begins and ends: what is
+  /// found of a root does not depend on that. False where it passes the box by.
+  bool start(RayBox& box) {
+    const Four from = Fours::load(leaf_.centre) - Fours::load(ray_.origin), d = Fours::load(ray_.direction);
+    shift_ = Fours::sum3(from * d);
+    const Four away = Fours::fms(Fours::all(shift_), d, from);  // from the centre to the ray's nearest point
+    const Four x = Fours::load(leaf_.axis_x), y = Fours::load(leaf_.axis_y), z = Fours::load(leaf_.axis_z);
+    const Four along = Fours::away_from_zero(
+        Fours::fma(x, Fours::lane<0>(d), Fours::fma(y, Fours::lane<1>(d), z * Fours::lane<2>(d))));
+    const Four inverse = Fours::all(1.0f) / along;
+    origin_ = Fours::fma(x, Fours::lane<0>(away), Fours::fma(y, Fours::lane<1>(away), z * Fours::lane<2>(away)));
+    const Four in = (Fours::load(leaf_.lower) - origin_) * inverse,
+               out = (Fours::load(leaf_.upper) - origin_) * inverse;
+    const float enter = Fours::max3(Fours::min(in, out)), leave = Fours::min3(Fours::max(in, out));
+    if (!(max_of(enter, ray_.near - shift_) <= min_of(leave, ray_.far - shift_))) return false;
+    const Four a = Fours::fma(Fours::all(enter), along, origin_), b = Fours::fma(Fours::all(leave), along, origin_);
+    const Four spread = Fours::all(leaf_.spread), reach = Fours::all(RayLeaf::reach);
+    alignas(16) float low[4], high[4];
+    Fours::store(low, Fours::max(Fours::min(a, b) - spread, Fours::all(0.0f) - reach));
+    Fours::store(high, Fours::min(Fours::max(a, b) + spread, reach));
+    box = {low[0], high[0], low[1], high[1]};
+    if (!(low[0] <= high[0] && low[1] <= high[1])) return false;
+    choose_axis(along, inverse);
+    return true;
+  }
+
+  void choose_axis(Four along, Four inverse) {
+    alignas(16) float d[4], over[4];
+    Fours::store(d, along);
+    Fours::store(over, inverse);
+    const float a = magnitude(d[0]), b = magnitude(d[1]), c = magnitude(d[2]);
+    m_ = c >= a && c >= b ? 2 : a >= b ? 0 : 1;
+    x_ = m_ == 2 ? 0 : m_ + 1;
+    y_ = m_ == 0 ? 2 : m_ - 1;
+    inverse_ = over[m_];
+    slope_x_ = d[x_] * inverse_;
+    slope_y_ = d[y_] * inverse_;
+  }
+
+  /// q and its derivatives at one point.
+  struct Value {
+    alignas(16) float q[4], qu[4], qv[4];
+  };
+
+  void evaluate(float u_at, float v_at, Value& out) const {
+    const Four u = Fours::all(u_at), v = Fours::all(v_at);
+    const float* c = leaf_.coefficients();
+    Four row[4], row_v[4];
+    for (int i = 0; i < 4; ++i, c += 4 * step) {
+      Four p = Fours::fma(Fours::load(c + 3 * step), v, Fours::load(c + 2 * step));
+      Four pv = Fours::fma(Fours::load(c + 3 * step), v, p);
+      p = Fours::fma(p, v, Fours::load(c + step));
+      row_v[i] = Fours::fma(pv, v, p);
+      row[i] = Fours::fma(p, v, Fours::load(c));
+    }
+    Four p = Fours::fma(row[3], u, row[2]);
+    Four pu = Fours::fma(row[3], u, p);
+    p = Fours::fma(p, u, row[1]);
+    pu = Fours::fma(pu, u, p);
+    p = Fours::fma(p, u, row[0]);
+    const Four pv = Fours::fma(Fours::fma(Fours::fma(row_v[3], u, row_v[2]), u, row_v[1]), u, row_v[0]);
+    if constexpr (Rational) {  // q = r - o w, homogeneous
+      Fours::store(out.q, Fours::with_last(Fours::fnma(origin_, Fours::lane<3>(p), p), p));
+      Fours::store(out.qu, Fours::with_last(Fours::fnma(origin_, Fours::lane<3>(pu), pu), pu));
+      Fours::store(out.qv, Fours::with_last(Fours::fnma(origin_, Fours::lane<3>(pv), pv), pv));
+    } else {
+      Fours::store(out.q, p - origin_);
+      Fours::store(out.qu, pu);
+      Fours::store(out.qv, pv);
+    }
+  }
+
+  /// Half the second derivatives' bounds on a rectangle of half widths u, v.
+  void remainder(float u, float v, float (&out)[4]) const {
+    Four sum = Fours::fma(Fours::load(leaf_.bend_uu), Fours::all(0.5f * u * u),
+                          Fours::fma(Fours::load(leaf_.bend_uv), Fours::all(u * v),
+                                     Fours::load(leaf_.bend_vv) * Fours::all(0.5f * v * v)));
+    if constexpr (Rational) sum = Fours::with_last(Fours::fma(Fours::abs(origin_), Fours::lane<3>(sum), sum), sum);
+    Fours::store(out, sum);
+  }
+
+  RayStep visit(RayBox& box, RayRoots& roots) const {
+    const float u = 0.5f * (box.u0 + box.u1), v = 0.5f * (box.v0 + box.v1);
+    const float ru = 0.5f * (box.u1 - box.u0) + 2 * epsilon, rv = 0.5f * (box.v1 - box.v0) + 2 * epsilon;
+    Value at;
+    alignas(16) float rest[4];
+    evaluate(u, v, at);
+    remainder(ru, rv, rest);
+    const float f = at.q[x_] - slope_x_ * at.q[m_], g = at.q[y_] - slope_y_ * at.q[m_];
+    const float fu = at.qu[x_] - slope_x_ * at.qu[m_], fv = at.qv[x_] - slope_x_ * at.qv[m_];
+    const float gu = at.qu[y_] - slope_y_ * at.qu[m_], gv = at.qv[y_] - slope_y_ * at.qv[m_];
+    const float noise = 2 * (leaf_.noise + leaf_.slope_noise * (ru + rv));
+    const float ef = 1.001f * (rest[x_] + magnitude(slope_x_) * rest[m_] + noise + 4 * epsilon * magnitude(f));
+    const float eg = 1.001f * (rest[y_] + magnitude(slope_y_) * rest[m_] + noise + 4 * epsilon * magnitude(g));
+    const float afu = magnitude(fu), afv = magnitude(fv), agu = magnitude(gu), agv = magnitude(gv);
+    if (magnitude(f) > 1.001f * (afu * ru + afv * rv) + ef || magnitude(g) > 1.001f * (agu * ru + agv * rv) + eg)
+      return RayStep::leave;
+
+    const float determinant = fu * gv - fv * gu, products = afu * agv + afv * agu;
+    if (magnitude(determinant) > 1e-4f * products) {
+      const float inverse = 1 / determinant, size = magnitude(inverse);
+      const float inexact = 16 * epsilon * products * size;  // of A J from one
+      const float bu = 1.001f * (size * (agv * ef + afv * eg) + inexact * ru) + 4 * epsilon;
+      const float bv = 1.001f * (size * (agu * ef + afu * eg) + inexact * rv) + 4 * epsilon;
+      const float du = -(gv * f - fv * g) * inverse, dv = -(fu * g - gu * f) * inverse;
+      const RayBox image{u + du - bu, u + du + bu, v + dv - bv, v + dv + bv};
+      const RayBox both{max_of(box.u0, image.u0), min_of(box.u1, image.u1), max_of(box.v0, image.v0),
+                        min_of(box.v1, image.v1)};
+      if (both.u0 > both.u1 || both.v0 > both.v1 || both.u0 > 0.5f || both.u1 < -0.5f || both.v0 > 0.5f ||
+          both.v1 < -0.5f)
+        return RayStep::leave;
+      if (bu <= 0.45f * ru && bv <= 0.45f * rv) {
+        if (image.u0 >= max_of(box.u0, -0.5f) && image.u1 <= min_of(box.u1, 0.5f) &&
+            image.v0 >= max_of(box.v0, -0.5f) && image.v1 <= min_of(box.v1, 0.5f))
+          return add_root(at, rest[m_], rest[3], u, v, du, dv, bu, bv, roots);
+        box = both;
+        return RayStep::narrow;
+      }
+      if (ef + eg < 4 * noise) return RayStep::open;  // smaller rectangles say no more
+      if ((both.u1 - both.u0) < 1.2f * ru || (both.v1 - both.v0) < 1.2f * rv) {
+        box = both;
+        return RayStep::narrow;
+      }
+      if (is_off_obliquely(f, g, fu, fv, gu, gv, ru, rv, ef, eg)) return RayStep::leave;
+      box = both;
+      return RayStep::split;
+    }
+    if (is_off_obliquely(f, g, fu, fv, gu, gv, ru, rv, ef, eg)) return RayStep::leave;
+    return ef + eg < 4 * noise ? RayStep::open : RayStep::split;
+  }
+
+  /// Seen edge on: across the larger derivative.
+  static bool is_off_obliquely(float f, float g, float fu, float fv, float gu, float gv, float ru, float rv, float ef,
+                               float eg) {
+    const bool by_u = (magnitude(fu) + magnitude(gu)) * ru >= (magnitude(fv) + magnitude(gv)) * rv;
+    const float nf = by_u ? -gu : -gv, ng = by_u ? fu : fv;
+    const float value = magnitude(nf * f + ng * g);
+    const float other = magnitude(nf * (by_u ? fv : fu) + ng * (by_u ? gv : gu)) * (by_u ? rv : ru);
+    const float sizes = magnitude(nf) * ef + magnitude(ng) * eg;
+    const float rounding =
+        8 * epsilon * (magnitude(nf) + magnitude(ng)) *
+        (magnitude(f) + magnitude(g) + (magnitude(fu) + magnitude(gu)) * ru + (magnitude(fv) + magnitude(gv)) * rv);
+    return value > 1.001f * (other + sizes) + rounding;
+  }
+
+  /// Leaves the half to be visited first in the place of the other's end.
+  static void split(RayBox& box, RayBox& other) {
+    other = box;
+    if (box.u1 - box.u0 >= box.v1 - box.v0) {
+      const float middle = 0.5f * (box.u0 + box.u1);
+      box.u1 = middle, other.u0 = middle;
+    } else {
+      const float middle = 0.5f * (box.v0 + box.v1);
+      box.v1 = middle, other.v0 = middle;
+    }
+  }
+
+  RayStep add_root(const Value& at, float rest, float rest_w, float u, float v, float du, float dv, float bu, float bv,
+                   RayRoots& roots) const {
+    if (roots.count == RayRoots::most) return RayStep::open;
+    float along = at.q[m_] + at.qu[m_] * du + at.qv[m_] * dv;
+    float error = rest + magnitude(at.qu[m_]) * bu + magnitude(at.qv[m_]) * bv + 2 * leaf_.noise;
+    if constexpr (Rational) {
+      along /= at.q[3] + at.qu[3] * du + at.qv[3] * dv;
+      error += magnitude(along) * (rest_w + magnitude(at.qu[3]) * bu + magnitude(at.qv[3]) * bv);
+      error /= leaf_.lightest;
+    }
+    RayRoot& root = roots.root[roots.count];
+    root = {u + du, v + dv, shift_ + along * inverse_, bu, bv, 1.01f * error * magnitude(inverse_) + 2e-6f};
+    if (root.s - root.s_error > ray_.far || root.s + root.s_error < ray_.near) return RayStep::leave;
+    ++roots.count;
+    return RayStep::root;
+  }
+
+  static float magnitude(float x) { return x < 0 ? -x : x; }
+  static float min_of(float a, float b) { return b < a ? b : a; }
+  static float max_of(float a, float b) { return a < b ? b : a; }
+
+  const RayLeaf& leaf_;
+  const RayProbe& ray_;
+  Four origin_;
+  float shift_ = 0, inverse_ = 0, slope_x_ = 0, slope_y_ = 0;
+  int m_ = 2, x_ = 0, y_ = 1;
+};
+
+bool trace_polynomial_leaf(const RayLeaf& leaf, const RayProbe& ray, RayRoots& roots) {
+  return LeafTrace<false>(leaf, ray).run(roots);
+}
+bool trace_rational_leaf(const RayLeaf& leaf, const RayProbe& ray, RayRoots& roots) {
+  return LeafTrace<true>(leaf, ray).run(roots);
+}

@@ -1,0 +1,62 @@
+#pragma once
+// Rays against pieces of patches, in float with every rounding bounded: what the kernels of exact rays are given.
+
+#include <cstddef>
+
+namespace tessera::kernel {
+
+/// A piece of a patch in coordinates of its own: x -> axis[.] (x - centre), in which the piece is nearly (u, v, 0), with
+/// u and v in [-1/2, 1/2]. Its coefficients follow it in memory, those of u^i v^j for i and j up to 3, `[i][j]`: three
+/// a point, or four where it is rational, homogeneous. All bounds below hold for |u|, |v| <= reach, of homogeneous
+/// values, and for the piece as it is in double.
+struct alignas(32) RayLeaf {
+  static constexpr float reach = 0.5f + 1.0f / 32;
+
+  float centre[3];
+  float noise;        ///< how far a coordinate less that of the ray may be off; infinite: kernels decide nothing
+  float axis_x[3];    ///< what x adds to each coordinate
+  float slope_noise;  ///< the same of derivatives
+  float axis_y[3];
+  float lightest;  ///< a lower bound of the weight
+  float axis_z[3];
+  float spread;              ///< bounds |coordinate - u| and |coordinate - v|
+  float lower[4], upper[4];  ///< the box in these coordinates, padded by the noise; the last mean nothing
+  float bend_uu[4], bend_uv[4], bend_vv[4];  ///< bounds of the second derivatives, the weight's last
+
+  const float* coefficients() const { return reinterpret_cast<const float*>(this + 1); }
+  float* coefficients() { return reinterpret_cast<float*>(this + 1); }
+};
+
+/// Points origin + s direction with s in [near, far]. The direction is a unit vector, the origin within 2 of zero, and
+/// both are off by rounding to float; near and far are widened by that.
+struct alignas(16) RayProbe {
+  float origin[4], direction[4];
+  float near, far;
+  bool any;  ///< the first root that is proven will do
+};
+
+/// One root and no other in u +- radius_u, v +- radius_v, inside the piece; s to s_error.
+struct RayRoot {
+  float u, v, s, radius_u, radius_v, s_error;
+};
+
+struct RayRoots {
+  static constexpr int most = 3;
+  int count = 0;
+  RayRoot root[most];
+};
+
+/// Bytes from one piece to the next: one more float than there are coefficients is read.
+constexpr std::size_t ray_leaf_bytes(bool rational) {
+  const std::size_t bytes = sizeof(RayLeaf) + (rational ? 64 : 49) * sizeof(float);
+  return (bytes + alignof(RayLeaf) - 1) / alignof(RayLeaf) * alignof(RayLeaf);
+}
+
+struct RayKernels {
+  /// All roots of the piece on the ray with s in [near, far] (and perhaps others a rounding outside of that), or the first
+  /// that is met where any will do. False: undecided, whatever `roots` holds.
+  bool (*trace_polynomial_leaf)(const RayLeaf& leaf, const RayProbe& ray, RayRoots& roots);
+  bool (*trace_rational_leaf)(const RayLeaf& leaf, const RayProbe& ray, RayRoots& roots);
+};
+
+}  // namespace tessera::kernel

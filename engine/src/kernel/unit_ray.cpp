@@ -1,0 +1,18 @@
+// Exact rays. One unit an instruction set: see cmake/TesseraIsaFlags.cmake.
+
+#include "kernel/fours.h"
+#include "kernel/ray_kernels.h"
+
+namespace tessera::kernel::TESSERA_ISA_NAMESPACE {
+namespace {
+
+#include "kernel/ray_kernel.inl.h"
+
+}  // namespace
+
+extern const RayKernels ray_kernels = {
+    trace_polynomial_leaf,
+    trace_rational_leaf,
+};
+
+}  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE
