@@ -35,5 +35,18 @@ struct Fours {
   static Four with_last(Four a, Four b) { return vcopyq_laneq_f32(a, 3, b, 3); }
 };
 
+/// Three doubles, and a fourth that means nothing.
+struct Triple {
+  float64x2_t low, high;
+  static Triple load(const double* p) { return {vld1q_f64(p), vdupq_n_f64(p[2])}; }
+  static Triple zero() { return {vdupq_n_f64(0), vdupq_n_f64(0)}; }
+  void store(double* p) const { vst1q_f64(p, low), vst1q_f64(p + 2, high); }  // all four
+  friend Triple operator-(Triple a, Triple b) { return {a.low - b.low, a.high - b.high}; }
+  friend Triple operator*(double s, Triple a) { return {vmulq_n_f64(a.low, s), vmulq_n_f64(a.high, s)}; }
+  static Triple fma(double s, Triple a, Triple b) {
+    return {vfmaq_n_f64(b.low, a.low, s), vfmaq_n_f64(b.high, a.high, s)};
+  }
+};
+
 }  // namespace
 }  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE

@@ -44,5 +44,28 @@ struct Fours {
   }
 };
 
+/// Three doubles, and a fourth that means nothing.
+struct Triple {
+#if defined(__AVX2__)
+  __m256d all;
+  static Triple load(const double* p) { return {_mm256_maskload_pd(p, _mm256_setr_epi64x(-1, -1, -1, 0))}; }
+  static Triple zero() { return {_mm256_setzero_pd()}; }
+  void store(double* p) const { _mm256_storeu_pd(p, all); }  // all four
+  friend Triple operator-(Triple a, Triple b) { return {a.all - b.all}; }
+  friend Triple operator*(double s, Triple a) { return {_mm256_set1_pd(s) * a.all}; }
+  static Triple fma(double s, Triple a, Triple b) { return {_mm256_fmadd_pd(_mm256_set1_pd(s), a.all, b.all)}; }
+#else
+  __m128d low, high;
+  static Triple load(const double* p) { return {_mm_loadu_pd(p), _mm_load_sd(p + 2)}; }
+  static Triple zero() { return {_mm_setzero_pd(), _mm_setzero_pd()}; }
+  void store(double* p) const { _mm_storeu_pd(p, low), _mm_storeu_pd(p + 2, high); }  // all four
+  friend Triple operator-(Triple a, Triple b) { return {a.low - b.low, a.high - b.high}; }
+  friend Triple operator*(double s, Triple a) { return {_mm_set1_pd(s) * a.low, _mm_set1_pd(s) * a.high}; }
+  static Triple fma(double s, Triple a, Triple b) {
+    return {_mm_set1_pd(s) * a.low + b.low, _mm_set1_pd(s) * a.high + b.high};
+  }
+#endif
+};
+
 }  // namespace
 }  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE

@@ -52,11 +52,19 @@ constexpr std::size_t ray_leaf_bytes(bool rational) {
   return (bytes + alignof(RayLeaf) - 1) / alignof(RayLeaf) * alignof(RayLeaf);
 }
 
+/// Three numbers each.
+struct RayPoint {
+  double position[4], du[4], dv[4];
+};
+
 struct RayKernels {
   /// All roots of the piece on the ray with s in [near, far] (and perhaps others a rounding outside of that), or the first
   /// that is met where any will do. False: undecided, whatever `roots` holds.
   bool (*trace_polynomial_leaf)(const RayLeaf& leaf, const RayProbe& ray, RayRoots& roots);
   bool (*trace_rational_leaf)(const RayLeaf& leaf, const RayProbe& ray, RayRoots& roots);
+  /// Position less `origin` and both derivatives of a bicubic patch at (u,v) in [0,1]^2, from its control points x y z
+  /// x y z .., `[i][j]`, by convex combinations.
+  void (*cubic_point)(const double* points, const double* origin, double u, double v, RayPoint& out);
 };
 
 }  // namespace tessera::kernel

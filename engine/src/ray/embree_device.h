@@ -7,10 +7,12 @@
 #include <cstddef>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <type_traits>
 
 #include "tessera/execution.h"
+#include "tessera/isa.h"
 #include "tessera/status.h"
 
 namespace tessera {
@@ -35,7 +37,7 @@ class EmbreeMonitor {
   std::size_t bytes() const;
 
  private:
-  friend Result<Owned<RTCDevice, DeviceRelease>> make_device(EmbreeMonitor& monitor);
+  friend Result<Owned<RTCDevice, DeviceRelease>> make_device(EmbreeMonitor& monitor, std::optional<Isa> isa);
   static void on_error(void* self, RTCError code, const char* text);
   static bool on_memory(void* self, ssize_t bytes, bool);
 
@@ -45,8 +47,9 @@ class EmbreeMonitor {
   std::string message_;
 };
 
-/// A device that starts no thread and binds none. The monitor must outlive it. Errors: internal, out_of_memory.
-Result<Owned<RTCDevice, DeviceRelease>> make_device(EmbreeMonitor& monitor);
+/// A device that starts no thread and binds none. `isa`: what Embree's own kernels are held to, by default the machine's
+/// best. The monitor must outlive it. Errors: internal, out_of_memory.
+Result<Owned<RTCDevice, DeviceRelease>> make_device(EmbreeMonitor& monitor, std::optional<Isa> isa = {});
 
 /// Commits a scene in the caller's arena. Errors: cancelled, Embree's own.
 Status commit(RTCScene scene, EmbreeMonitor& monitor, const Execution& execution);

@@ -39,6 +39,7 @@ kernel::RayProbe probe_of(const RayQuery& query) {
 
 struct EmbreeLeaves::State {
   EmbreeMonitor monitor;  // outlives the device, which calls it
+  const SetView* set = nullptr;
   const LeafNets* nets = nullptr;
   const kernel::RayKernels* kernels = nullptr;
   double tolerance = 0;
@@ -47,7 +48,7 @@ struct EmbreeLeaves::State {
 
   static void bounds(const RTCBoundsFunctionArguments* arguments) {
     const State& state = *static_cast<const State*>(arguments->geometryUserPtr);
-    const Box3 box = state.nets->box(state.nets->leaves()[arguments->primID]);
+    const Box3& box = state.nets->boxes()[arguments->primID];
     RTCBounds& out = *arguments->bounds_o;
     out.lower_x = static_cast<float>(box.lower.x) - box_pad, out.upper_x = static_cast<float>(box.upper.x) + box_pad;
     out.lower_y = static_cast<float>(box.lower.y) - box_pad, out.upper_y = static_cast<float>(box.upper.y) + box_pad;
@@ -59,8 +60,10 @@ struct EmbreeLeaves::State {
     Call& call = *reinterpret_cast<Call*>(context);
     const Leaf& leaf = state.nets->leaves()[leaf_index];
     call.probe.far = static_cast<float>(std::min(call.query->far, 8.0) + probe_pad);
-    if (!state.decide(leaf, leaf_index, call))
-      search_leaf(leaf, state.nets->net(leaf), state.tolerance, *call.space, *call.query);
+    if (!state.decide(leaf, leaf_index, call)) {
+      state.nets->write_net(*state.set, leaf, call.space->leaf_net(), call.space->spare_net());
+      search_leaf(leaf, call.space->leaf_net(), state.tolerance, *call.space, *call.query);
+    }
     return *call.query;
   }
 
@@ -81,7 +84,8 @@ struct EmbreeLeaves::State {
     }
     LeafRoot polished[kernel::RayRoots::most];
     for (int k = 0; k < roots.count; ++k) {
-      if (!polish(leaf, nets->net(leaf), query.line, roots.root[k], polished[k])) return false;
+      if (!polish(set->patch(leaf.patch), nets->frame(), leaf, *kernels, query.line, roots.root[k], polished[k]))
+        return false;
     }
     for (int k = 0; k < roots.count; ++k) query.take(polished[k]);
     return true;
@@ -115,18 +119,19 @@ EmbreeLeaves::EmbreeLeaves(EmbreeLeaves&&) noexcept = default;
 EmbreeLeaves& EmbreeLeaves::operator=(EmbreeLeaves&&) noexcept = default;
 EmbreeLeaves::~EmbreeLeaves() = default;
 
-Result<EmbreeLeaves> EmbreeLeaves::make() {
+Result<EmbreeLeaves> EmbreeLeaves::make(Isa isa) {
   auto state = std::make_unique<State>();
-  Result<Owned<RTCDevice, DeviceRelease>> device = make_device(state->monitor);
+  Result<Owned<RTCDevice, DeviceRelease>> device = make_device(state->monitor, isa);
   if (!device) return device.status();
   state->device = *std::move(device);
+  state->kernels = &kernel::kernels(isa);
   return EmbreeLeaves(std::move(state));
 }
 
-Status EmbreeLeaves::build(const LeafNets& nets, double tolerance, Isa isa, const Execution& execution) {
+Status EmbreeLeaves::build(const SetView& set, const LeafNets& nets, double tolerance, const Execution& execution) {
   State& state = *state_;
-  state.kernels = &kernel::kernels(isa);
   state.scene.reset();
+  state.set = &set;
   state.nets = &nets;
   state.tolerance = tolerance;
   RTCDevice device = state.device.get();

@@ -16,15 +16,15 @@ namespace tessera {
 /// inside a FlushDenormals (embree_scene.h).
 class EmbreeLeaves {
  public:
-  /// Errors: internal and out_of_memory, from Embree.
-  static Result<EmbreeLeaves> make();
+  /// `isa`: of this machine, for Embree as well. Errors: internal and out_of_memory, from Embree.
+  static Result<EmbreeLeaves> make(Isa isa);
   EmbreeLeaves(EmbreeLeaves&&) noexcept;
   EmbreeLeaves& operator=(EmbreeLeaves&&) noexcept;
   ~EmbreeLeaves();
 
-  /// Builds the BVH, in the caller's arena. `nets` must stay in place and unchanged while the scene is used;
-  /// `tolerance` as of search_leaf. On errors the scene is empty. Errors: cancelled, Embree's own.
-  Status build(const LeafNets& nets, double tolerance, Isa isa, const Execution& execution);
+  /// Builds the BVH, in the caller's arena. `set` and `nets`, of which only the boxes may be dropped afterwards, must stay
+  /// in place and unchanged while the scene is used; `tolerance` as of search_leaf. On errors the scene is empty. Errors: cancelled, Embree's own.
+  Status build(const SetView& set, const LeafNets& nets, double tolerance, const Execution& execution);
 
   /// Runs the query against all leaves that its line meets. The line must not be empty.
   void trace(RayQuery& query, SearchSpace& space) const;

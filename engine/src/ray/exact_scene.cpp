@@ -1,7 +1,9 @@
 // Exact mode: pieces of patches in an Embree BVH, each searched for all its roots.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "ray/adjacency.h"
@@ -21,11 +23,12 @@ namespace {
 constexpr double smallest_size = 1e-140, largest_size = 1e140;  // squares of lengths stay normal numbers
 constexpr double default_tolerance = 2e-12;                     // of the size
 constexpr std::size_t most_leaves = 0xffffffff;
+constexpr std::size_t rays_a_turn = 16;
 
 class ExactScene final : public RayScene::Impl {
  public:
-  ExactScene(const PatchSet& set, EmbreeLeaves scene, const RaySceneOptions& options, Isa isa)
-      : Impl(set), scene_(std::move(scene)), options_(options), isa_(isa) {}
+  ExactScene(const PatchSet& set, EmbreeLeaves scene, const RaySceneOptions& options)
+      : Impl(set), scene_(std::move(scene)), options_(options) {}
 
   std::size_t memory_bytes() const override {
     return nets_.memory_bytes() + adjacency_.memory_bytes() + scene_.memory_bytes();
@@ -42,7 +45,6 @@ class ExactScene final : public RayScene::Impl {
   LeafNets nets_;  // borrowed by scene_
   EmbreeLeaves scene_;
   RaySceneOptions options_;
-  Isa isa_;
   Adjacency adjacency_;
   SceneFrame frame_;
   Box3 box_, scene_box_;  // of the leaves' control points, in the model's and the scene's coordinates
@@ -62,58 +64,85 @@ Status ExactScene::build(const Execution& execution) {
   adjacency_ = Adjacency(set());
   scene_box_ = {};
   int degree_u = 1, degree_v = 1;
+  for (const Box3& leaf_box : nets_.boxes()) scene_box_.extend(leaf_box);
   for (const Leaf& leaf : nets_.leaves()) {
-    scene_box_.extend(nets_.box(leaf));
     degree_u = std::max<int>(degree_u, leaf.degree_u), degree_v = std::max<int>(degree_v, leaf.degree_v);
   }
   box_ = {frame_.to_model(scene_box_.lower), frame_.to_model(scene_box_.upper)};
   const double asked = options_.tolerance.value_or(default_tolerance * size_) * frame_.scale;
   const double rounding = search_rounding(degree_u, degree_v, nets_.most_halvings(), SearchSpace::most_depth);
-  return scene_.build(nets_, std::max(asked, 2 * rounding), isa_, execution);
+  if (Status status = scene_.build(set(), nets_, std::max(asked, 2 * rounding), execution); !status.ok()) return status;
+  nets_.drop_boxes();
+  return {};
 }
 
 Hit ExactScene::hit_at(const RayLine& line, const LeafRoot& root) const {
   Hit hit;
-  set_surface_point(set(), size_, root.patch, root.u, root.v, first_order(set().patch(root.patch), root.u, root.v),
-                    hit);
+  FirstOrder at{root.position, root.du, root.dv};
+  if (root.has_point) {
+    at.position = frame_.to_model(root.position);
+  } else {
+    at = first_order(set().patch(root.patch), root.u, root.v, frame_.centre);
+    at = {frame_.centre + at.position, frame_.scale * at.du, frame_.scale * at.dv};
+  }
+  set_surface_point(set(), size_ * frame_.scale, root.patch, root.u, root.v, at, hit);
   hit.t = line.t_at(root.s);
   const Vec3 from_start = frame_.to_scene(hit.position) - line.start;
-  hit.residual = std::hypot(dot(line.across[0], from_start), dot(line.across[1], from_start)) / frame_.scale;
+  const double x = dot(line.across[0], from_start), y = dot(line.across[1], from_start);
+  hit.residual = std::sqrt(x * x + y * y) / frame_.scale;
   hit.flags.uncertified = !root.certified;
   return hit;
 }
 
+/// Lines, searches and hits by turns of a few rays each: denormal numbers count in the first and the last alone.
 void ExactScene::closest_piece(std::span<const Ray> rays, std::span<Hit> hits) const {
   SearchSpace space(nets_.largest());
-  for (std::size_t k = 0; k < rays.size(); ++k) {
-    hits[k] = {};
-    if (!is_valid(rays[k])) {
-      hits[k].kind = HitKind::invalid_ray;
-      continue;
+  std::array<RayLine, rays_a_turn> lines;
+  std::array<std::optional<RayQuery>, rays_a_turn> queries;
+  for (std::size_t first = 0; first < rays.size(); first += rays_a_turn) {
+    const std::size_t count = std::min(rays_a_turn, rays.size() - first);
+    for (std::size_t k = 0; k < count; ++k) {
+      const Ray& ray = rays[first + k];
+      queries[k].reset();
+      hits[first + k] = {};
+      if (!is_valid(ray)) {
+        hits[first + k].kind = HitKind::invalid_ray;
+        continue;
+      }
+      lines[k] = line_of(ray, frame_, scene_box_);
+      if (!lines[k].empty) queries[k].emplace(ray, lines[k], RootsWanted::closest);
     }
-    const RayLine line = line_of(rays[k], frame_, scene_box_);
-    if (line.empty) continue;
-    RayQuery query(rays[k], line, RootsWanted::closest);
     {
       const FlushDenormals flush;
-      scene_.trace(query, space);
+      for (std::size_t k = 0; k < count; ++k) {
+        if (queries[k]) scene_.trace(*queries[k], space);
+      }
     }
-    if (query.found) hits[k] = hit_at(line, query.best);
-    hits[k].flags.incomplete = query.incomplete;
+    for (std::size_t k = 0; k < count; ++k) {
+      if (!queries[k]) continue;
+      if (queries[k]->found) hits[first + k] = hit_at(lines[k], queries[k]->best);
+      hits[first + k].flags.incomplete = queries[k]->incomplete;
+    }
   }
 }
 
 void ExactScene::occluded_piece(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const {
   SearchSpace space(nets_.largest());
-  const FlushDenormals flush;
-  for (std::size_t k = 0; k < rays.size(); ++k) {
-    occluded[k] = 0;
-    if (!is_valid(rays[k])) continue;
-    const RayLine line = line_of(rays[k], frame_, scene_box_);
-    if (line.empty) continue;
-    RayQuery query(rays[k], line, RootsWanted::any);
-    scene_.trace(query, space);
-    occluded[k] = query.found;
+  std::array<RayLine, rays_a_turn> lines;
+  for (std::size_t first = 0; first < rays.size(); first += rays_a_turn) {
+    const std::size_t count = std::min(rays_a_turn, rays.size() - first);
+    for (std::size_t k = 0; k < count; ++k) {
+      const Ray& ray = rays[first + k];
+      lines[k] = is_valid(ray) ? line_of(ray, frame_, scene_box_) : RayLine{};
+    }
+    const FlushDenormals flush;
+    for (std::size_t k = 0; k < count; ++k) {
+      occluded[first + k] = 0;
+      if (lines[k].empty) continue;
+      RayQuery query(rays[first + k], lines[k], RootsWanted::any);
+      scene_.trace(query, space);
+      occluded[first + k] = query.found;
+    }
   }
 }
 
@@ -150,9 +179,9 @@ Result<std::unique_ptr<RayScene::Impl>> make_exact_scene(const PatchSet& set, co
   }
   const Result<Isa> isa = options.isa ? parse_isa(name(*options.isa)) : default_isa();
   if (!isa) return isa.status();
-  Result<EmbreeLeaves> scene = EmbreeLeaves::make();
+  Result<EmbreeLeaves> scene = EmbreeLeaves::make(*isa);
   if (!scene) return scene.status();
-  return std::unique_ptr<RayScene::Impl>(std::make_unique<ExactScene>(set, *std::move(scene), options, *isa));
+  return std::unique_ptr<RayScene::Impl>(std::make_unique<ExactScene>(set, *std::move(scene), options));
 }
 
 }  // namespace tessera

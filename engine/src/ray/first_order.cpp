@@ -42,7 +42,7 @@ struct Basis {
 };
 
 template <int M, int N>
-FirstOrder polynomial(const BezierPatch& patch, double u_at, double v_at) {
+FirstOrder polynomial(const BezierPatch& patch, double u_at, double v_at, const Vec3& origin) {
   const Basis<M> u(patch.degree_u(), u_at);
   const Basis<N> v(patch.degree_v(), v_at);
   FirstOrder out;
@@ -50,8 +50,9 @@ FirstOrder polynomial(const BezierPatch& patch, double u_at, double v_at) {
   for (int i = 0; i < u.size(); ++i) {
     Vec3 row, row_dv;
     for (int j = 0; j < v.size(); ++j, ++point) {
-      row += v.value[at(j)] * *point;
-      row_dv += v.derivative[at(j)] * *point;
+      const Vec3 from = *point - origin;
+      row += v.value[at(j)] * from;
+      row_dv += v.derivative[at(j)] * from;
     }
     out.position += u.value[at(i)] * row;
     out.du += u.derivative[at(i)] * row;
@@ -61,7 +62,7 @@ FirstOrder polynomial(const BezierPatch& patch, double u_at, double v_at) {
 }
 
 /// Quotient rule (Piegl and Tiller, The NURBS Book, eq. 4.20): r_u = (A_u - w_u r) / w.
-FirstOrder rational(const BezierPatch& patch, double u_at, double v_at) {
+FirstOrder rational(const BezierPatch& patch, double u_at, double v_at, const Vec3& origin) {
   const Basis<0> u(patch.degree_u(), u_at), v(patch.degree_v(), v_at);
   FirstOrder out;
   double w = 0, w_u = 0, w_v = 0;
@@ -72,7 +73,8 @@ FirstOrder rational(const BezierPatch& patch, double u_at, double v_at) {
     double weight_row = 0, weight_dv = 0;
     for (int j = 0; j < v.size(); ++j, ++point, ++weight) {
       const double b = v.value[at(j)] * *weight, b_dv = v.derivative[at(j)] * *weight;
-      row += b * *point, row_dv += b_dv * *point;
+      const Vec3 from = *point - origin;
+      row += b * from, row_dv += b_dv * from;
       weight_row += b, weight_dv += b_dv;
     }
     const double a = u.value[at(i)], a_du = u.derivative[at(i)];
@@ -90,10 +92,10 @@ FirstOrder rational(const BezierPatch& patch, double u_at, double v_at) {
 
 }  // namespace
 
-FirstOrder first_order(const BezierPatch& patch, double u, double v) {
-  if (patch.is_rational()) return rational(patch, u, v);
-  if (patch.degree_u() == 3 && patch.degree_v() == 3) return polynomial<3, 3>(patch, u, v);
-  return polynomial<0, 0>(patch, u, v);
+FirstOrder first_order(const BezierPatch& patch, double u, double v, const Vec3& origin) {
+  if (patch.is_rational()) return rational(patch, u, v, origin);
+  if (patch.degree_u() == 3 && patch.degree_v() == 3) return polynomial<3, 3>(patch, u, v, origin);
+  return polynomial<0, 0>(patch, u, v, origin);
 }
 
 }  // namespace tessera

@@ -11,7 +11,8 @@ struct FirstOrder {
   bool valid = true;  ///< false where, outside [0,1]^2, the weight function of a rational patch is not positive
 };
 
-/// Any finite (u,v). Agrees with evaluate_jet up to rounding.
-FirstOrder first_order(const BezierPatch& patch, double u, double v);
+/// Any finite (u,v). The position is less `origin`, which is taken off the control points. Agrees with evaluate_jet up to
+/// rounding.
+FirstOrder first_order(const BezierPatch& patch, double u, double v, const Vec3& origin = {});
 
 }  // namespace tessera

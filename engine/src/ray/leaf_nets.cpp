@@ -95,12 +95,23 @@ void halve_all(const NetShape<0, 0>& shape, int components, double* nets, std::s
   std::copy(halves.begin(), halves.end(), nets);
 }
 
+/// Of the control points.
+Box3 box_of(const Leaf& leaf, const double* net) {
+  const std::size_t size = static_cast<std::size_t>(leaf.size());
+  Box3 box;
+  for (std::size_t k = 0; k < size; ++k) {
+    const double w = leaf.rational ? net[3 * size + k] : 1;
+    box.extend(Vec3{net[k] / w, net[size + k] / w, net[2 * size + k] / w});
+  }
+  return box;
+}
+
 }  // namespace
 
 /// Where the pieces of a patch stand.
 struct LeafNets::Plan {
   int halvings_u = 0, halvings_v = 0;
-  std::size_t first_leaf = 0, first_value = 0;
+  std::size_t first_leaf = 0;
   std::size_t count() const { return std::size_t{1} << (halvings_u + halvings_v); }
 };
 
@@ -108,72 +119,77 @@ struct LeafNets::Plan {
 std::vector<LeafNets::Plan> LeafNets::plan(const SetView& set, int pieces) {
   const int halvings = std::ilogb(static_cast<double>(pieces));
   std::vector<Plan> plans(set.patch_count());
-  std::size_t leaves = 0, values = 0;
+  std::size_t leaves = 0;
   bool rational = false;
   largest_ = 0;
   most_halvings_ = 0;
   for (std::size_t k = 0; k < plans.size(); ++k) {
     const BezierPatch& patch = set.patch(k);
     const Cuts cuts = cuts_of(patch, halvings);
-    const std::size_t net = patch.points().size() * (patch.is_rational() ? 4 : 3);
-    plans[k] = {cuts.u, cuts.v, leaves, values};
+    plans[k] = {cuts.u, cuts.v, leaves};
     leaves += plans[k].count();
     rational |= patch.is_rational();
-    values += plans[k].count() * net;
-    largest_ = std::max(largest_, net);
+    largest_ = std::max(largest_, patch.points().size() * (patch.is_rational() ? 4 : 3));
     most_halvings_ = std::max(most_halvings_, cuts.u + cuts.v);
   }
   leaves_.resize(leaves);
-  coefficients_.resize(values);
+  boxes_.resize(leaves);
   local_bytes_ = kernel::ray_leaf_bytes(rational);
   local_.resize(leaves * local_bytes_);
   return plans;
 }
 
-/// `halves`: memory that is used again.
-void LeafNets::cut(const BezierPatch& patch, std::uint32_t index, const Plan& plan, const SceneFrame& frame,
+/// `nets` and `halves`: memory that is used again.
+void LeafNets::cut(const BezierPatch& patch, std::uint32_t index, const Plan& plan, std::vector<double>& nets,
                    std::vector<double>& halves) {
   const NetShape<0, 0> shape{patch.degree_u(), patch.degree_v()};
   const int components = patch.is_rational() ? 4 : 3;
-  double* const nets = coefficients_.data() + plan.first_value;
-  write_patch(patch, frame, nets);
+  const std::size_t values = static_cast<std::size_t>(shape.size() * components);
+  nets.resize(plan.count() * values);
+  write_patch(patch, frame_, nets.data());
   std::size_t count = 1;
-  for (int k = 0; k < plan.halvings_u; ++k, count *= 2) halve_all(shape, components, nets, count, true, halves);
-  for (int k = 0; k < plan.halvings_v; ++k, count *= 2) halve_all(shape, components, nets, count, false, halves);
+  for (int k = 0; k < plan.halvings_u; ++k, count *= 2) halve_all(shape, components, nets.data(), count, true, halves);
+  for (int k = 0; k < plan.halvings_v; ++k, count *= 2) halve_all(shape, components, nets.data(), count, false, halves);
   const std::size_t along_v = std::size_t{1} << plan.halvings_v;
   for (std::size_t piece = 0; piece < count; ++piece) {
-    Leaf& leaf = leaves_[plan.first_leaf + piece];
+    const std::size_t place = plan.first_leaf + piece;
+    const double* const net = nets.data() + piece * values;
+    Leaf& leaf = leaves_[place];
     leaf.patch = index;
     leaf.degree_u = static_cast<std::uint8_t>(patch.degree_u());
     leaf.degree_v = static_cast<std::uint8_t>(patch.degree_v());
     leaf.rational = patch.is_rational();
-    leaf.halvings = static_cast<std::uint8_t>(plan.halvings_u + plan.halvings_v);
-    leaf.first = plan.first_value + piece * static_cast<std::size_t>(leaf.size() * components);
+    leaf.halvings_u = static_cast<std::uint8_t>(plan.halvings_u);
+    leaf.halvings_v = static_cast<std::uint8_t>(plan.halvings_v);
     leaf.du = std::ldexp(1.0, -plan.halvings_u), leaf.dv = std::ldexp(1.0, -plan.halvings_v);
     leaf.u0 = static_cast<double>(piece / along_v) * leaf.du;
     leaf.v0 = static_cast<double>(piece % along_v) * leaf.dv;
-    void* const place = local_.data() + (plan.first_leaf + piece) * local_bytes_;
-    make_local_leaf(shape, leaf.rational, net(leaf), *new (place) kernel::RayLeaf);
+    boxes_[place] = box_of(leaf, net);
+    make_local_leaf(shape, leaf.rational, net, *new (local_.data() + place * local_bytes_) kernel::RayLeaf);
+  }
+}
+
+void LeafNets::write_net(const SetView& set, const Leaf& leaf, double* net, double* other) const {
+  const NetShape<0, 0> shape{leaf.degree_u, leaf.degree_v};
+  write_patch(set.patch(leaf.patch), frame_, net);
+  const auto piece_u = static_cast<unsigned>(leaf.u0 / leaf.du), piece_v = static_cast<unsigned>(leaf.v0 / leaf.dv);
+  for (int k = leaf.halvings_u; k-- > 0;) {
+    const bool upper = piece_u >> k & 1;
+    halve(shape, leaf.components(), net, true, upper ? other : net, upper ? net : other);
+  }
+  for (int k = leaf.halvings_v; k-- > 0;) {
+    const bool upper = piece_v >> k & 1;
+    halve(shape, leaf.components(), net, false, upper ? other : net, upper ? net : other);
   }
 }
 
 Status LeafNets::build(const SetView& set, const SceneFrame& frame, int pieces, const Execution& execution) {
+  frame_ = frame;
   const std::vector<Plan> plans = plan(set, pieces);
   return parallel_for(plans.size(), patches_a_task, execution, [&](std::size_t begin, std::size_t end) {
-    std::vector<double> halves;
-    for (std::size_t k = begin; k < end; ++k) cut(set.patch(k), static_cast<std::uint32_t>(k), plans[k], frame, halves);
+    std::vector<double> nets, halves;
+    for (std::size_t k = begin; k < end; ++k) cut(set.patch(k), static_cast<std::uint32_t>(k), plans[k], nets, halves);
   });
-}
-
-Box3 LeafNets::box(const Leaf& leaf) const {
-  const std::size_t size = static_cast<std::size_t>(leaf.size());
-  const double* x = net(leaf);
-  Box3 box;
-  for (std::size_t k = 0; k < size; ++k) {
-    const double w = leaf.rational ? x[3 * size + k] : 1;
-    box.extend(Vec3{x[k] / w, x[size + k] / w, x[2 * size + k] / w});
-  }
-  return box;
 }
 
 }  // namespace tessera

@@ -1,6 +1,6 @@
 #pragma once
-// The pieces of patches that exact rays are traced against: control nets in the scene's coordinates, and what the
-// kernels take.
+// The pieces of patches that exact rays are traced against: what the kernels take, and control nets in the scene's
+// coordinates where they are asked for.
 
 #include <cstddef>
 #include <cstdint>
@@ -21,16 +21,14 @@ struct Leaf {
   std::uint32_t patch = 0;
   std::uint8_t degree_u = 0, degree_v = 0;
   bool rational = false;
-  std::uint8_t halvings = 0;  ///< of both directions together, from the patch to the piece
-  std::size_t first = 0;      ///< of its coefficients
+  std::uint8_t halvings_u = 0, halvings_v = 0;  ///< from the patch to the piece
   double u0 = 0, v0 = 0, du = 1, dv = 1;
 
   int size() const { return (degree_u + 1) * (degree_v + 1); }
   int components() const { return rational ? 4 : 3; }
+  int halvings() const { return halvings_u + halvings_v; }
 };
 
-/// Nets of homogeneous coefficients w (x, y, z), w, `[component][i][j]`; w is left out of polynomial pieces, else the
-/// largest weight of a patch is scaled by a power of two to [1, 2).
 class LeafNets {
  public:
   /// Cuts every patch into at least `pieces` x `pieces` (a power of two), more along sides that are strongly bent or much
@@ -38,27 +36,33 @@ class LeafNets {
   Status build(const SetView& set, const SceneFrame& frame, int pieces, const Execution& execution);
 
   std::span<const Leaf> leaves() const { return leaves_; }
-  const double* net(const Leaf& leaf) const { return coefficients_.data() + leaf.first; }
   const kernel::RayLeaf& local(std::size_t leaf) const {
     return *reinterpret_cast<const kernel::RayLeaf*>(local_.data() + leaf * local_bytes_);
   }
-  /// Of the control points: the piece lies in it but for rounding.
-  Box3 box(const Leaf& leaf) const;
+  /// Of the control points: the piece lies in it but for rounding. One a leaf, until they are dropped.
+  std::span<const Box3> boxes() const { return boxes_; }
+  void drop_boxes() { boxes_ = {}; }
+  /// The net of homogeneous coefficients w (x, y, z), w, `[component][i][j]`; w is left out of polynomial pieces, else the
+  /// largest weight of a patch is scaled by a power of two to [1, 2). `other`: of the same size, is written as well.
+  /// `set`: as it was built from.
+  void write_net(const SetView& set, const Leaf& leaf, double* net, double* other) const;
+  const SceneFrame& frame() const { return frame_; }
   /// Values in the largest net.
   std::size_t largest() const { return largest_; }
   int most_halvings() const { return most_halvings_; }
   std::size_t memory_bytes() const {
-    return leaves_.capacity() * sizeof(Leaf) + coefficients_.capacity() * sizeof(double) + local_.capacity();
+    return leaves_.capacity() * sizeof(Leaf) + boxes_.capacity() * sizeof(Box3) + local_.capacity();
   }
 
  private:
   struct Plan;
   std::vector<Plan> plan(const SetView& set, int pieces);
-  void cut(const BezierPatch& patch, std::uint32_t index, const Plan& plan, const SceneFrame& frame,
+  void cut(const BezierPatch& patch, std::uint32_t index, const Plan& plan, std::vector<double>& nets,
            std::vector<double>& halves);
 
+  SceneFrame frame_;
   std::vector<Leaf> leaves_;
-  UnsetVector<double> coefficients_;
+  std::vector<Box3> boxes_;
   UnsetVector<std::byte> local_;
   std::size_t local_bytes_ = 0;
   std::size_t largest_ = 0;

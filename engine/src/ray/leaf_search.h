@@ -25,8 +25,11 @@ class SearchSpace {
 
   /// `largest`: values in a net.
   explicit SearchSpace(std::size_t largest)
-      : stride_(largest), nets_(largest * (most_depth + 3)), boxes_(most_depth + 3) {}
+      : stride_(largest), nets_(largest * (most_depth + 5)), boxes_(most_depth + 3) {}
   double* net(int slot) { return nets_.data() + static_cast<std::size_t>(slot) * stride_; }
+  /// Beyond those of the search.
+  double* leaf_net() { return net(most_depth + 3); }
+  double* spare_net() { return net(most_depth + 4); }
   SearchBox& box(int slot) { return boxes_[static_cast<std::size_t>(slot)]; }
 
  private:

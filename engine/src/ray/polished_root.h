@@ -7,8 +7,9 @@
 
 namespace tessera {
 
-/// The one root of the leaf in the surroundings that `proven` names, by Newton's method. False where rounding leaves it
-/// outside of them, which leaf_search.h must then decide. `net`: the leaf's.
-bool polish(const Leaf& leaf, const double* net, const RayLine& line, const kernel::RayRoot& proven, LeafRoot& root);
+/// The one root of the leaf in the surroundings that `proven` names, by Newton's method, with the patch's point. False
+/// where rounding leaves it outside of them, which leaf_search.h must then decide. `patch`: the leaf's.
+bool polish(const BezierPatch& patch, const SceneFrame& frame, const Leaf& leaf, const kernel::RayKernels& kernels,
+            const RayLine& line, const kernel::RayRoot& proven, LeafRoot& root);
 
 }  // namespace tessera

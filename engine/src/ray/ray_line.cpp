@@ -40,7 +40,8 @@ void clip(double start, double direction, double lower, double upper, RayLine& l
     if (start < lower || start > upper) line.leave = -std::numeric_limits<double>::infinity();
     return;
   }
-  double in = (lower - start) / direction, out = (upper - start) / direction;
+  const double inverse = 1 / direction;
+  double in = (lower - start) * inverse, out = (upper - start) * inverse;
   if (in > out) std::swap(in, out);
   line.enter = std::max(line.enter, in);
   line.leave = std::min(line.leave, out);

@@ -1,0 +1,293 @@
+// Exact rays against Embree's robust triangles and its own subdivision geometry of the same patches: the same rays, one
+// by one, in one process by turns, so that the ratios of the times count. Closest hit and any hit; a camera's rays, rays
+// at random, rays that graze the surface; memory and the time of building. A sample of each case is checked against a
+// ray caster that shares no code.
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <memory>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "rival.h"
+#include "suite.h"
+#include "support/random_patches.h"
+#include "support/reference_rays.h"
+#include "tessera/ray_scene.h"
+#include "timing.h"
+#include "torus.h"
+
+namespace {
+
+using namespace tessera;
+using bench::Rival;
+
+constexpr std::size_t ray_count = 65536;
+constexpr int quads = 12;
+constexpr double share_differing = 0.02;  // of rays of which facets and surface say otherwise whether they hit
+
+double uniform(std::mt19937_64& random, double from, double to) {
+  return from + (to - from) * static_cast<double>(random() >> 11) * 0x1p-53;
+}
+
+Vec3 in_ball(std::mt19937_64& random) {
+  for (;;) {
+    const double x = uniform(random, -1, 1), y = uniform(random, -1, 1), z = uniform(random, -1, 1);
+    if (x * x + y * y + z * z <= 1 && x * x + y * y + z * z > 1e-4) return {x, y, z};
+  }
+}
+
+Ray from_to(const Vec3& origin, const Vec3& direction) {
+  Ray ray;
+  ray.origin = origin, ray.direction = direction;
+  return ray;
+}
+
+/// From one eye in rows of pixels, four fifths of them at the torus.
+std::vector<Ray> coherent_rays() {
+  const Vec3 eye{1.3, -1.6, 1.5}, back = normalized(eye), right = normalized(cross({0, 0, 1}, back)),
+                                  up = cross(back, right);
+  std::vector<Ray> rays;
+  for (int y = 0; y < 256; ++y) {
+    for (int x = 0; x < 256; ++x) {
+      const double across = (x + 0.5) / 256 - 0.5, above = 0.5 - (y + 0.5) / 256;
+      rays.push_back(from_to(eye, normalized(-back + 1.1 * across * right + 1.0 * above * up)));
+    }
+  }
+  return rays;
+}
+
+std::vector<Ray> incoherent_rays() {
+  std::mt19937_64 random(7);
+  std::vector<Ray> rays;
+  for (std::size_t k = 0; k < ray_count; ++k) {
+    const Vec3 origin = 1.7 * normalized(in_ball(random)), to = in_ball(random);
+    rays.push_back(from_to(origin, normalized(Vec3{1.3 * to.x, 1.3 * to.y, 0.5 * to.z} - origin)));
+  }
+  return rays;
+}
+
+/// Past a point of the surface along a tangent, 3e-5 to 1e-2 of the size above or below.
+std::vector<Ray> grazing_rays(const std::vector<BezierPatch>& patches) {
+  std::mt19937_64 random(8);
+  std::vector<Ray> rays;
+  for (std::size_t k = 0; k < ray_count; ++k) {
+    const SurfaceJet at =
+        evaluate_jet(patches[random() % patches.size()], uniform(random, 0, 1), uniform(random, 0, 1));
+    const Vec3 normal = normalized(cross(at.du, at.dv)), tangent = normalized(cross(normal, in_ball(random)));
+    const double off = std::pow(10, uniform(random, -4, -1.5)) * (random() % 2 == 0 ? 1 : -1);
+    rays.push_back(from_to(at.position + off * normal - 1.5 * tangent, tangent));
+  }
+  return rays;
+}
+
+/// A torus, and rays at it.
+struct Workload {
+  Workload(std::size_t side, bool rational)
+      : torus(side), patches(torus.patches(rational)), set(make_set(patches)), is_rational(rational) {
+    rays["coherent"] = coherent_rays();
+    rays["incoherent"] = incoherent_rays();
+    rays["grazing"] = grazing_rays(patches);
+  }
+  static PatchSet make_set(const std::vector<BezierPatch>& patches) {
+    PatchSetOptions options;
+    options.origin = Vec3{};  // triangles and rays in the same coordinates
+    return test::value_of(PatchSet::from(patches, options));
+  }
+
+  bench::Torus torus;
+  std::vector<BezierPatch> patches;
+  PatchSet set;
+  bool is_rational;
+  std::map<std::string, std::vector<Ray>> rays;
+};
+
+RayScene exact_scene(const Workload& work, Isa isa) {
+  RaySceneOptions options;
+  options.mode = RayMode::exact;
+  options.isa = isa;
+  return test::value_of(RayScene::make(work.set, options));
+}
+
+/// What the cases of one set and instruction set share. One stands at a time: triangles are large.
+struct Scenes {
+  Scenes(const Workload& of, Isa on)
+      : work(of), isa(on), exact(exact_scene(of, on)), triangles(Rival::triangles(of.set, quads, on)) {
+    if (!of.is_rational) subdivision.emplace(Rival::subdivision(of.torus, quads, on));
+  }
+  const Workload& work;
+  Isa isa;
+  RayScene exact;
+  Rival triangles;
+  std::optional<Rival> subdivision;
+};
+
+struct Subject {
+  std::string name;
+  std::size_t side;
+  bool rational;
+};
+
+const Scenes& scenes_of(const Subject& subject, Isa isa) {
+  static std::unique_ptr<Workload> work;
+  static std::unique_ptr<Scenes> scenes;
+  static std::string which;
+  if (which != subject.name) {
+    scenes.reset();
+    work = std::make_unique<Workload>(subject.side, subject.rational);
+    which = subject.name;
+  }
+  if (!scenes || scenes->isa != isa) {
+    scenes.reset();
+    scenes = std::make_unique<Scenes>(*work, isa);
+  }
+  return *scenes;
+}
+
+/// The better of all turns, in seconds.
+class Stopwatch {
+ public:
+  template <class Work>
+  void time(int threads, Work work) {
+    tbb::task_arena arena(threads);
+    const auto start = std::chrono::steady_clock::now();
+    arena.execute(work);
+    best_ = std::min(best_, bench::seconds_since(start));
+  }
+  double best() const { return best_; }
+
+ private:
+  double best_ = std::numeric_limits<double>::infinity();
+};
+
+struct Times {
+  Stopwatch triangles, subdivision;
+};
+
+void report(benchmark::State& state, double best, const Scenes& scenes, const Times& times) {
+  bench::report_rates(state, best, static_cast<double>(ray_count));
+  state.counters["ns_per_ray"] = best / static_cast<double>(ray_count) * 1e9;
+  state.counters["of_triangles"] = best / times.triangles.best();
+  if (scenes.subdivision) state.counters["of_subdivision"] = best / times.subdivision.best();
+}
+
+/// Rays of a sample, of which the reference is asked; `differ`: of all rays, how many the triangles see otherwise.
+bool good(benchmark::State& state, const Scenes& scenes, const std::vector<Ray>& rays, std::size_t differ,
+          const std::function<bool(std::size_t, const test::ReferenceHit&)>& is_right) {
+  const std::size_t sample = 1'000'000 / scenes.work.patches.size();
+  std::size_t wrong = 0;
+  for (std::size_t k = 0; k < sample; ++k) {
+    const std::size_t ray = (k * rays.size() + rays.size() / 2) / sample;
+    wrong += !is_right(ray, test::reference_closest(scenes.work.patches, rays[ray]));
+  }
+  if (wrong * 50 <= sample && static_cast<double>(differ) <= share_differing * static_cast<double>(rays.size()))
+    return true;
+  state.SkipWithError((std::to_string(wrong) + " of " + std::to_string(sample) + " answers are wrong, " +
+                       std::to_string(differ) + " are not the triangles'")
+                          .c_str());
+  return false;
+}
+
+void closest(benchmark::State& state, const Scenes& scenes, const std::vector<Ray>& rays, int threads) {
+  std::vector<Hit> hits(rays.size());
+  std::vector<float> triangles(rays.size()), subdivision(rays.size());
+  Times times;
+  const auto best = bench::time_calls(
+      state, threads, [&] { return scenes.exact.closest(rays, hits); },
+      [&] {
+        times.triangles.time(threads, [&] { scenes.triangles.closest(rays, triangles); });
+        if (scenes.subdivision)
+          times.subdivision.time(threads, [&] { scenes.subdivision->closest(rays, subdivision); });
+      });
+  if (!best) return;
+  std::size_t differ = 0;
+  for (std::size_t k = 0; k < rays.size(); ++k) differ += (hits[k].kind == HitKind::hit) != std::isfinite(triangles[k]);
+  const bool right = good(state, scenes, rays, differ, [&](std::size_t k, const test::ReferenceHit& expected) {
+    return expected.hit() == (hits[k].kind == HitKind::hit) &&
+           (!expected.hit() || std::abs(hits[k].t - expected.t) <= 1e-9);
+  });
+  if (right) report(state, *best, scenes, times);
+}
+
+void occluded(benchmark::State& state, const Scenes& scenes, const std::vector<Ray>& rays, int threads) {
+  std::vector<std::uint8_t> found(rays.size()), triangles(rays.size()), subdivision(rays.size());
+  Times times;
+  const auto best = bench::time_calls(
+      state, threads, [&] { return scenes.exact.occluded(rays, found); },
+      [&] {
+        times.triangles.time(threads, [&] { scenes.triangles.occluded(rays, triangles); });
+        if (scenes.subdivision)
+          times.subdivision.time(threads, [&] { scenes.subdivision->occluded(rays, subdivision); });
+      });
+  if (!best) return;
+  std::size_t differ = 0;
+  for (std::size_t k = 0; k < rays.size(); ++k) differ += (found[k] != 0) != (triangles[k] != 0);
+  const bool right = good(state, scenes, rays, differ, [&](std::size_t k, const test::ReferenceHit& expected) {
+    return expected.hit() == (found[k] != 0);
+  });
+  if (right) report(state, *best, scenes, times);
+}
+
+/// Pieces and BVH anew, against the triangles' BVH alone, whose vertices stand ready.
+void build(benchmark::State& state, const Scenes& shared, int threads) {
+  const Workload& work = shared.work;
+  RayScene exact = exact_scene(work, shared.isa);
+  Rival triangles = Rival::triangles(work.set, quads, shared.isa);
+  Stopwatch watch;
+  const auto best = bench::time_calls(
+      state, threads, [&] { return exact.refit(); }, [&] { watch.time(threads, [&] { triangles.build(); }); });
+  if (!best) return;
+  const Ray& ray = work.rays.at("coherent")[ray_count / 2];
+  if (exact.closest(ray).t != shared.exact.closest(ray).t) return state.SkipWithError("the refitted scene differs");
+  bench::report_rates(state, *best, static_cast<double>(work.patches.size()));
+  state.counters["of_triangles"] = *best / watch.best();
+  state.counters["bytes_per_patch"] =
+      static_cast<double>(exact.memory_bytes()) / static_cast<double>(work.patches.size());
+  state.counters["memory_of_triangles"] =
+      static_cast<double>(exact.memory_bytes()) / static_cast<double>(triangles.memory_bytes());
+}
+
+using Run = void (*)(benchmark::State&, const Scenes&, const std::vector<Ray>&, int);
+
+void add(const Subject& subject, Isa isa, int threads, bench::Part part) {
+  const auto name_of = [&](const std::string& operation, const std::string& size) {
+    return bench::CaseName{operation, subject.name,           subject.rational ? "3r" : "3",
+                           size,      std::string(name(isa)), threads};
+  };
+  for (const char* kind : {"coherent", "incoherent", "grazing"}) {
+    for (const auto& [operation, run] :
+         {std::pair<std::string, Run>{"ray.exact.closest.", closest}, {"ray.exact.occluded.", occluded}}) {
+      bench::add_case(name_of(operation + kind, std::to_string(ray_count)), part,
+                      [=, run = run](benchmark::State& state) {
+                        const Scenes& scenes = scenes_of(subject, isa);
+                        run(state, scenes, scenes.work.rays.at(kind), threads);
+                      });
+    }
+  }
+  bench::add_case(name_of("ray.exact.build", std::to_string(subject.side * subject.side)), part,
+                  [=](benchmark::State& state) { build(state, scenes_of(subject, isa), threads); });
+}
+
+[[maybe_unused]] const bool registered = [] {
+  const Subject subjects[] = {{"torus3600", 60, false}, {"torus3600", 60, true}, {"torus99856", 316, false}};
+  for (Subject subject : subjects) {
+    if (subject.rational) subject.name += "rational";
+    for (const Isa isa : available_isas()) {
+      if (isa == Isa::sse2) continue;
+      for (const int threads : {1, 2}) {
+        const bool quick = subject.name == "torus3600" && threads == 1;
+        add(subject, isa, threads, quick ? bench::quick_on_fastest(isa) : bench::Part::full);
+      }
+    }
+  }
+  return true;
+}();
+
+}  // namespace

@@ -1,0 +1,44 @@
+#pragma once
+// What exact rays are compared with: Embree's own geometries of the same patches, in robust scenes.
+
+#include <embree3/rtcore.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <type_traits>
+
+#include "tessera/isa.h"
+#include "tessera/patch_set.h"
+#include "tessera/ray_scene.h"
+#include "torus.h"
+
+namespace tessera::bench {
+
+class Rival {
+ public:
+  /// Two triangles for each of quads x quads cells a patch.
+  static Rival triangles(const PatchSet& set, int quads, Isa isa);
+  /// Catmull and Clark's surface of the torus' control points, which is the B-spline surface; `rate` cells a patch.
+  static Rival subdivision(const Torus& torus, int rate, Isa isa);
+
+  /// t of the closest hits, infinity where there are none; in the caller's arena.
+  void closest(std::span<const Ray> rays, std::span<float> t) const;
+  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const;
+
+  /// Builds the BVH anew, in the caller's arena.
+  void build();
+  std::size_t memory_bytes() const;
+
+ private:
+  struct State;
+  struct Release {
+    void operator()(State* state) const;
+  };
+  explicit Rival(Isa isa);
+  std::unique_ptr<State, Release> state_;
+};
+
+}  // namespace tessera::bench
