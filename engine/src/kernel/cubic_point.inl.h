@@ -1,4 +1,4 @@
-// A point of a bicubic patch and its derivatives in double, for the last steps of a ray's root. Needs `Triple`.
+// A point of a patch and its derivatives in double, for the last steps of a ray's root. Needs `Triple`.
 
 /// B_{i,3}(t) and their derivatives (Farin, Curves and Surfaces for CAGD, 5th ed., eqs. 5.2 and 5.23).
 struct CubicBasis {
@@ -30,4 +30,56 @@ void cubic_point(const double* points, const double* origin, double u_at, double
   position.store(out.position);
   du.store(out.du);
   dv.store(out.dv);
+}
+
+/// The same of any degree up to three, by raising it from the one below.
+struct LowBasis {
+  double value[4] = {1, 0, 0, 0}, derivative[4] = {0, 0, 0, 0};
+
+  LowBasis(int degree, double t) {
+    for (int n = 1; n < degree; ++n) raise(n, t);
+    double before = 0;
+    for (int i = 0; i < degree; ++i) {
+      derivative[i] = degree * (before - value[i]);
+      before = value[i];
+    }
+    derivative[degree] = degree * before;
+    raise(degree, t);
+  }
+
+ private:
+  void raise(int n, double t) {
+    value[n] = t * value[n - 1];
+    for (int i = n - 1; i > 0; --i) value[i] = (1 - t) * value[i] + t * value[i - 1];
+    value[0] *= 1 - t;
+  }
+};
+
+/// Quotient rule (Piegl and Tiller, The NURBS Book, eq. 4.20): r_u = (A_u - w_u r) / w.
+void low_rational_point(const double* points, const double* weights, int m, int n, const double* origin, double u_at,
+                        double v_at, RayPoint& out) {
+  const LowBasis u(m, u_at), v(n, v_at);
+  const Triple start = Triple::load(origin);
+  Triple position = Triple::zero(), du = Triple::zero(), dv = Triple::zero();
+  double w = 0, wu = 0, wv = 0;
+  for (int i = 0; i <= m; ++i) {
+    Triple row = Triple::zero(), row_v = Triple::zero();
+    double weight = 0, weight_v = 0;
+    for (int j = 0; j <= n; ++j, points += 3, ++weights) {
+      const Triple point = Triple::load(points) - start;
+      const double b = v.value[j] * *weights, d = v.derivative[j] * *weights;
+      row = Triple::fma(b, point, row);
+      row_v = Triple::fma(d, point, row_v);
+      weight += b, weight_v += d;
+    }
+    position = Triple::fma(u.value[i], row, position);
+    du = Triple::fma(u.derivative[i], row, du);
+    dv = Triple::fma(u.value[i], row_v, dv);
+    w += u.value[i] * weight, wu += u.derivative[i] * weight, wv += u.value[i] * weight_v;
+  }
+  const double inverse = 1 / w;
+  position = inverse * position;
+  position.store(out.position);
+  (inverse * Triple::fma(-wu, position, du)).store(out.du);
+  (inverse * Triple::fma(-wv, position, dv)).store(out.dv);
 }

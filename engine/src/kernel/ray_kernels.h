@@ -65,6 +65,9 @@ struct RayKernels {
   /// Position less `origin` and both derivatives of a bicubic patch at (u,v) in [0,1]^2, from its control points x y z
   /// x y z .., `[i][j]`, by convex combinations.
   void (*cubic_point)(const double* points, const double* origin, double u, double v, RayPoint& out);
+  /// The same of a rational patch of degrees m, n up to 3.
+  void (*low_rational_point)(const double* points, const double* weights, int m, int n, const double* origin, double u,
+                             double v, RayPoint& out);
 };
 
 }  // namespace tessera::kernel

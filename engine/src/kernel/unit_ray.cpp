@@ -15,6 +15,7 @@ extern const RayKernels ray_kernels = {
     trace_polynomial_leaf,
     trace_rational_leaf,
     cubic_point,
+    low_rational_point,
 };
 
 }  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE

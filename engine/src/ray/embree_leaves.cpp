@@ -1,5 +1,7 @@
 #include "ray/embree_leaves.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -16,13 +18,14 @@ namespace {
 constexpr float box_pad = 2e-6f;
 constexpr double probe_pad = 4e-6;  // of s in a kernel, by as much again
 
-/// What a call of Embree's carries to the callbacks: first what Embree knows, so that one points to the other.
+/// What a call of Embree's carries to the callbacks: first what Embree knows, so that one points to the other. Of a
+/// packet's rays, by their ids.
 struct Call {
   RTCIntersectContext context;
-  RayQuery* query;
   SearchSpace* space;
-  float enter_in_float;  ///< s where Embree's ray begins
-  kernel::RayProbe probe;
+  std::array<RayQuery*, EmbreeLeaves::packet> queries;
+  std::array<float, EmbreeLeaves::packet> enter;  ///< s where Embree's ray begins
+  std::array<kernel::RayProbe, EmbreeLeaves::packet> probes;
 };
 
 kernel::RayProbe probe_of(const RayQuery& query) {
@@ -33,6 +36,25 @@ kernel::RayProbe probe_of(const RayQuery& query) {
           narrow(std::max(query.near, -8.0) - probe_pad),
           8,
           false};
+}
+
+void enter(Call& call, unsigned ray, RayQuery& query) {
+  call.queries[ray] = &query;
+  call.enter[ray] = static_cast<float>(query.line.enter);
+  call.probes[ray] = probe_of(query);
+}
+
+/// Start, direction and reach, within the scene's box.
+std::array<float, 7> embree_ray(const RayLine& line) {
+  const Vec3 start = line.start + line.enter * line.direction, &d = line.direction;
+  const auto narrow = [](double x) { return static_cast<float>(x); };
+  return {narrow(start.x),
+          narrow(start.y),
+          narrow(start.z),
+          narrow(d.x),
+          narrow(d.y),
+          narrow(d.z),
+          narrow(line.leave - line.enter) + box_pad};
 }
 
 }  // namespace
@@ -55,39 +77,45 @@ struct EmbreeLeaves::State {
     out.lower_z = static_cast<float>(box.lower.z) - box_pad, out.upper_z = static_cast<float>(box.upper.z) + box_pad;
   }
 
-  static const RayQuery& search(const void* user, unsigned leaf_index, RTCIntersectContext* context) {
-    const State& state = *static_cast<const State*>(user);
-    Call& call = *reinterpret_cast<Call*>(context);
-    const Leaf& leaf = state.nets->leaves()[leaf_index];
-    call.probe.far = static_cast<float>(std::min(call.query->far, 8.0) + probe_pad);
-    if (!state.decide(leaf, leaf_index, call)) {
-      state.nets->write_net(*state.set, leaf, call.space->leaf_net(), call.space->spare_net());
-      search_leaf(leaf, call.space->leaf_net(), state.tolerance, *call.space, *call.query);
+  const RayQuery& search(unsigned leaf_index, Call& call, unsigned ray) const {
+    RayQuery& query = *call.queries[ray];
+    const Leaf& leaf = nets->leaves()[leaf_index];
+    call.probes[ray].far = static_cast<float>(std::min(query.far, 8.0) + probe_pad);
+    if (!decide(leaf, leaf_index, call.probes[ray], query)) {
+      nets->write_net(*set, leaf, call.space->leaf_net(), call.space->spare_net());
+      search_leaf(leaf, call.space->leaf_net(), tolerance, *call.space, query);
     }
-    return *call.query;
+    return query;
   }
 
   /// In float, where that proves what there is; then in double what was found.
-  bool decide(const Leaf& leaf, unsigned leaf_index, Call& call) const {
+  bool decide(const Leaf& leaf, unsigned leaf_index, kernel::RayProbe& probe, RayQuery& query) const {
     const auto trace = leaf.rational ? kernels->trace_rational_leaf : kernels->trace_polynomial_leaf;
     const kernel::RayLeaf& local = nets->local(leaf_index);
-    RayQuery& query = *call.query;
     kernel::RayRoots roots;
-    call.probe.any = query.wanted == RootsWanted::any;
-    if (!trace(local, call.probe, roots)) return false;
+    probe.any = query.wanted == RootsWanted::any;
+    if (!trace(local, probe, roots)) return false;
     if (roots.count == 0) return true;
-    if (call.probe.any) {
+    if (probe.any) {
       query.found = lies_between(roots.root[0], query.line);
       if (query.found) return true;
-      call.probe.any = false;  // that one is next to an end: all must be looked at
-      if (!trace(local, call.probe, roots)) return false;
+      probe.any = false;  // that one is next to an end: all must be looked at
+      if (!trace(local, probe, roots)) return false;
     }
-    LeafRoot polished[kernel::RayRoots::most];
-    for (int k = 0; k < roots.count; ++k) {
-      if (!polish(set->patch(leaf.patch), nets->frame(), leaf, *kernels, query.line, roots.root[k], polished[k]))
-        return false;
+    const auto polished = [&](int k, LeafRoot& root) {
+      return polish(set->patch(leaf.patch), nets->frame(), leaf, *kernels, query.line, roots.root[k],
+                    query.wanted == RootsWanted::all, root);
+    };
+    LeafRoot first;
+    if (!polished(0, first)) return false;
+    if (roots.count > 1) {
+      LeafRoot others[kernel::RayRoots::most - 1];
+      for (int k = 1; k < roots.count; ++k) {
+        if (!polished(k, others[k - 1])) return false;
+      }
+      for (int k = 1; k < roots.count; ++k) query.take(others[k - 1]);
     }
-    for (int k = 0; k < roots.count; ++k) query.take(polished[k]);
+    query.take(first);
     return true;
   }
 
@@ -97,20 +125,30 @@ struct EmbreeLeaves::State {
     return s - off > line.near && s + off < line.far;
   }
 
-  /// Rays come one by one. The end of Embree's ray follows the closest root, rounded up by what boxes are padded with.
+  /// The end of Embree's ray follows the closest root, rounded up by what boxes are padded with. One ray or a packet.
   static void intersect(const RTCIntersectFunctionNArguments* arguments) {
-    if (arguments->N != 1 || arguments->valid[0] == 0) return;
-    const RayQuery& query = search(arguments->geometryUserPtr, arguments->primID, arguments->context);
-    RTCRay& ray = *reinterpret_cast<RTCRay*>(RTCRayHitN_RayN(arguments->rayhit, 1));
-    const Call& call = *reinterpret_cast<const Call*>(arguments->context);
-    ray.tfar = std::min(ray.tfar, static_cast<float>(query.far) - call.enter_in_float + box_pad);
+    const State& state = *static_cast<const State*>(arguments->geometryUserPtr);
+    Call& call = *reinterpret_cast<Call*>(arguments->context);
+    const unsigned count = arguments->N;
+    RTCRayN* const rays = RTCRayHitN_RayN(arguments->rayhit, count);
+    for (unsigned k = 0; k < count; ++k) {
+      if (arguments->valid[k] == 0) continue;
+      const unsigned ray = RTCRayN_id(rays, count, k);
+      const RayQuery& query = state.search(arguments->primID, call, ray);
+      float& far = RTCRayN_tfar(rays, count, k);
+      far = std::min(far, static_cast<float>(query.far) - call.enter[ray] + box_pad);
+    }
   }
 
   static void occluded(const RTCOccludedFunctionNArguments* arguments) {
-    if (arguments->N != 1 || arguments->valid[0] == 0) return;
-    const RayQuery& query = search(arguments->geometryUserPtr, arguments->primID, arguments->context);
-    RTCRay& ray = *reinterpret_cast<RTCRay*>(arguments->ray);
-    if (query.done()) ray.tfar = -std::numeric_limits<float>::infinity();
+    const State& state = *static_cast<const State*>(arguments->geometryUserPtr);
+    Call& call = *reinterpret_cast<Call*>(arguments->context);
+    const unsigned count = arguments->N;
+    for (unsigned k = 0; k < count; ++k) {
+      if (arguments->valid[k] == 0) continue;
+      const RayQuery& query = state.search(arguments->primID, call, RTCRayN_id(arguments->ray, count, k));
+      if (query.done()) RTCRayN_tfar(arguments->ray, count, k) = -std::numeric_limits<float>::infinity();
+    }
   }
 };
 
@@ -152,26 +190,47 @@ Status EmbreeLeaves::build(const SetView& set, const LeafNets& nets, double tole
 }
 
 void EmbreeLeaves::trace(RayQuery& query, SearchSpace& space) const {
-  const RayLine& line = query.line;
-  const Vec3 start = line.start + line.enter * line.direction;
-  Call call{context_for(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT), &query, &space, static_cast<float>(line.enter),
-            probe_of(query)};
-  RTCRay ray{};
-  ray.org_x = static_cast<float>(start.x), ray.org_y = static_cast<float>(start.y);
-  ray.org_z = static_cast<float>(start.z);
-  ray.dir_x = static_cast<float>(line.direction.x), ray.dir_y = static_cast<float>(line.direction.y);
-  ray.dir_z = static_cast<float>(line.direction.z);
-  ray.tfar = static_cast<float>(line.leave - line.enter) + box_pad;
-  ray.mask = ~0u;
+  Call call;
+  call.context = context_for(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+  call.space = &space;
+  RTCRayHit hit{};
+  enter(call, 0, query);
+  const std::array<float, 7> ray = embree_ray(query.line);
+  hit.ray.org_x = ray[0], hit.ray.org_y = ray[1], hit.ray.org_z = ray[2];
+  hit.ray.dir_x = ray[3], hit.ray.dir_y = ray[4], hit.ray.dir_z = ray[5];
+  hit.ray.tfar = ray[6];
+  hit.ray.mask = ~0u;
   if (query.wanted == RootsWanted::any) {
-    rtcOccluded1(state_->scene.get(), &call.context, &ray);
+    rtcOccluded1(state_->scene.get(), &call.context, &hit.ray);
     return;
   }
-  RTCRayHit hit{};
-  hit.ray = ray;
   hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(state_->scene.get(), &call.context, &hit);
+}
+
+void EmbreeLeaves::trace(std::span<RayQuery* const> queries, SearchSpace& space) const {
+  Call call;
+  call.context = context_for(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
+  call.space = &space;
+  RTCRayHit16 hit;
+  alignas(64) std::array<int, packet> valid{};
+  for (unsigned k = 0; k < packet; ++k) {
+    const std::size_t which = k < queries.size() ? k : 0;  // idle lanes repeat the first
+    valid[k] = k < queries.size() ? -1 : 0;
+    if (k < queries.size()) enter(call, k, *queries[k]);
+    const std::array<float, 7> ray = embree_ray(queries[which]->line);
+    hit.ray.org_x[k] = ray[0], hit.ray.org_y[k] = ray[1], hit.ray.org_z[k] = ray[2];
+    hit.ray.dir_x[k] = ray[3], hit.ray.dir_y[k] = ray[4], hit.ray.dir_z[k] = ray[5];
+    hit.ray.tnear[k] = 0, hit.ray.tfar[k] = ray[6];
+    hit.ray.time[k] = 0, hit.ray.mask[k] = ~0u, hit.ray.id[k] = k, hit.ray.flags[k] = 0;
+    hit.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID, hit.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+  }
+  if (queries[0]->wanted == RootsWanted::any) {
+    rtcOccluded16(valid.data(), state_->scene.get(), &call.context, &hit.ray);
+  } else {
+    rtcIntersect16(valid.data(), state_->scene.get(), &call.context, &hit);
+  }
 }
 
 std::size_t EmbreeLeaves::memory_bytes() const { return state_->monitor.bytes(); }

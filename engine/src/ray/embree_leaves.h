@@ -3,6 +3,7 @@
 // embree_leaves.cpp.
 
 #include <memory>
+#include <span>
 
 #include "ray/leaf_nets.h"
 #include "ray/leaf_search.h"
@@ -16,6 +17,8 @@ namespace tessera {
 /// inside a FlushDenormals (embree_scene.h).
 class EmbreeLeaves {
  public:
+  static constexpr std::size_t packet = 16;
+
   /// `isa`: of this machine, for Embree as well. Errors: internal and out_of_memory, from Embree.
   static Result<EmbreeLeaves> make(Isa isa);
   EmbreeLeaves(EmbreeLeaves&&) noexcept;
@@ -28,6 +31,8 @@ class EmbreeLeaves {
 
   /// Runs the query against all leaves that its line meets. The line must not be empty.
   void trace(RayQuery& query, SearchSpace& space) const;
+  /// The same for up to a packet of queries for the same kind of roots; quicker than one by one where they are coherent.
+  void trace(std::span<RayQuery* const> queries, SearchSpace& space) const;
 
   /// What Embree has allocated.
   std::size_t memory_bytes() const;

@@ -23,7 +23,19 @@ namespace {
 constexpr double smallest_size = 1e-140, largest_size = 1e140;  // squares of lengths stay normal numbers
 constexpr double default_tolerance = 2e-12;                     // of the size
 constexpr std::size_t most_leaves = 0xffffffff;
-constexpr std::size_t rays_a_turn = 16;
+constexpr std::size_t rays_a_turn = EmbreeLeaves::packet, least_in_packet = 6;
+
+/// Rays of one turn; none where a ray is not valid or passes the scene by.
+using Queries = std::array<std::optional<RayQuery>, rays_a_turn>;
+
+/// Rays that pass near each other and run nearly the same way are worth a packet.
+bool coherent(std::span<RayQuery* const> queries) {
+  const RayLine& first = queries.front()->line;
+  return std::all_of(queries.begin(), queries.end(), [&](const RayQuery* query) {
+    const RayLine& line = query->line;
+    return dot(first.direction, line.direction) > 0.99 && max_abs(first.start - line.start) < 0.2;
+  });
+}
 
 class ExactScene final : public RayScene::Impl {
  public:
@@ -40,6 +52,7 @@ class ExactScene final : public RayScene::Impl {
   void closest_piece(std::span<const Ray> rays, std::span<Hit> hits) const override;
   void occluded_piece(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const override;
   Status all_of(const Ray& ray, std::vector<Hit>& hits) const override;
+  void trace(std::span<std::optional<RayQuery>> queries, SearchSpace& space) const;
   Hit hit_at(const RayLine& line, const LeafRoot& root) const;
 
   LeafNets nets_;  // borrowed by scene_
@@ -94,34 +107,39 @@ Hit ExactScene::hit_at(const RayLine& line, const LeafRoot& root) const {
   return hit;
 }
 
+/// As a packet where the rays are coherent.
+void ExactScene::trace(std::span<std::optional<RayQuery>> queries, SearchSpace& space) const {
+  std::array<RayQuery*, rays_a_turn> wanted;
+  std::size_t count = 0;
+  for (std::optional<RayQuery>& query : queries) {
+    if (query) wanted[count++] = &*query;
+  }
+  const std::span<RayQuery* const> used = std::span(wanted).first(count);
+  const FlushDenormals flush;
+  if (count >= least_in_packet && coherent(used)) return scene_.trace(used, space);
+  for (RayQuery* query : used) scene_.trace(*query, space);
+}
+
 /// Lines, searches and hits by turns of a few rays each: denormal numbers count in the first and the last alone.
 void ExactScene::closest_piece(std::span<const Ray> rays, std::span<Hit> hits) const {
   SearchSpace space(nets_.largest());
   std::array<RayLine, rays_a_turn> lines;
-  std::array<std::optional<RayQuery>, rays_a_turn> queries;
+  Queries queries;
   for (std::size_t first = 0; first < rays.size(); first += rays_a_turn) {
     const std::size_t count = std::min(rays_a_turn, rays.size() - first);
     for (std::size_t k = 0; k < count; ++k) {
       const Ray& ray = rays[first + k];
       queries[k].reset();
-      hits[first + k] = {};
-      if (!is_valid(ray)) {
-        hits[first + k].kind = HitKind::invalid_ray;
-        continue;
-      }
+      if (!is_valid(ray)) continue;
       lines[k] = line_of(ray, frame_, scene_box_);
       if (!lines[k].empty) queries[k].emplace(ray, lines[k], RootsWanted::closest);
     }
-    {
-      const FlushDenormals flush;
-      for (std::size_t k = 0; k < count; ++k) {
-        if (queries[k]) scene_.trace(*queries[k], space);
-      }
-    }
+    trace(std::span(queries).first(count), space);
     for (std::size_t k = 0; k < count; ++k) {
-      if (!queries[k]) continue;
-      if (queries[k]->found) hits[first + k] = hit_at(lines[k], queries[k]->best);
-      hits[first + k].flags.incomplete = queries[k]->incomplete;
+      Hit& hit = hits[first + k];
+      hit = queries[k] && queries[k]->found ? hit_at(lines[k], queries[k]->best) : Hit{};
+      if (queries[k]) hit.flags.incomplete = queries[k]->incomplete;
+      if (!is_valid(rays[first + k])) hit.kind = HitKind::invalid_ray;
     }
   }
 }
@@ -129,20 +147,18 @@ void ExactScene::closest_piece(std::span<const Ray> rays, std::span<Hit> hits) c
 void ExactScene::occluded_piece(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const {
   SearchSpace space(nets_.largest());
   std::array<RayLine, rays_a_turn> lines;
+  Queries queries;
   for (std::size_t first = 0; first < rays.size(); first += rays_a_turn) {
     const std::size_t count = std::min(rays_a_turn, rays.size() - first);
     for (std::size_t k = 0; k < count; ++k) {
       const Ray& ray = rays[first + k];
-      lines[k] = is_valid(ray) ? line_of(ray, frame_, scene_box_) : RayLine{};
+      queries[k].reset();
+      if (!is_valid(ray)) continue;
+      lines[k] = line_of(ray, frame_, scene_box_);
+      if (!lines[k].empty) queries[k].emplace(ray, lines[k], RootsWanted::any);
     }
-    const FlushDenormals flush;
-    for (std::size_t k = 0; k < count; ++k) {
-      occluded[first + k] = 0;
-      if (lines[k].empty) continue;
-      RayQuery query(rays[first + k], lines[k], RootsWanted::any);
-      scene_.trace(query, space);
-      occluded[first + k] = query.found;
-    }
+    trace(std::span(queries).first(count), space);
+    for (std::size_t k = 0; k < count; ++k) occluded[first + k] = queries[k] && queries[k]->found;
   }
 }
 

@@ -19,6 +19,13 @@ constexpr double ray_rounding = 5e-7;
 
 using Power = std::array<std::array<std::array<double, 4>, 4>, 4>;  // [component][i][j]
 
+/// By exponent.
+constexpr std::array<double, 7> reach_powers = [] {
+  std::array<double, 7> out{1};
+  for (std::size_t k = 1; k < out.size(); ++k) out[k] = reach * out[k - 1];
+  return out;
+}();
+
 /// B_{i,n}(1/2 + x) as coefficients of x^k, `[i][k]`, by B_{i,n} = (1/2 - x) B_{i,n-1} + (1/2 + x) B_{i-1,n-1}.
 std::array<std::array<double, 4>, 4> centred_powers(int degree) {
   std::array<std::array<double, 4>, 4> row{};
@@ -203,7 +210,7 @@ class LeafMaker {
     for (int i = order_u; i < 4; ++i) {
       for (int j = order_v; j < 4; ++j) {
         sum += std::abs(power[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)]) * falling(i, order_u) *
-               falling(j, order_v) * std::pow(reach, i - order_u + j - order_v);
+               falling(j, order_v) * reach_powers[static_cast<std::size_t>(i - order_u + j - order_v)];
       }
     }
     return sum;

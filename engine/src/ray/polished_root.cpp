@@ -13,16 +13,21 @@ namespace {
 constexpr int most_steps = 6;
 constexpr double linear = 1e-9;  // steps up to that leave a square of it
 
+Vec3 triple(const double* x) { return {x[0], x[1], x[2]}; }
+
 /// In the scene's coordinates.
 FirstOrder scene_point(const BezierPatch& patch, const SceneFrame& frame, const kernel::RayKernels& kernels, double u,
                        double v) {
+  const double* const points = &patch.points().data()->x;
+  const int m = patch.degree_u(), n = patch.degree_v();
   FirstOrder out;
-  if (patch.degree_u() == 3 && patch.degree_v() == 3 && !patch.is_rational()) {
-    kernel::RayPoint at;
-    kernels.cubic_point(&patch.points().data()->x, &frame.centre.x, u, v, at);
-    out = {{at.position[0], at.position[1], at.position[2]},
-           {at.du[0], at.du[1], at.du[2]},
-           {at.dv[0], at.dv[1], at.dv[2]}};
+  kernel::RayPoint at;
+  if (std::max(m, n) <= 3 && patch.is_rational()) {
+    kernels.low_rational_point(points, patch.weights().data(), m, n, &frame.centre.x, u, v, at);
+    out = {triple(at.position), triple(at.du), triple(at.dv)};
+  } else if (m == 3 && n == 3 && !patch.is_rational()) {
+    kernels.cubic_point(points, &frame.centre.x, u, v, at);
+    out = {triple(at.position), triple(at.du), triple(at.dv)};
   } else {
     out = first_order(patch, u, v, frame.centre);
   }
@@ -42,7 +47,7 @@ NetValue seen(const FirstOrder& at, const RayLine& line) {
 }  // namespace
 
 bool polish(const BezierPatch& patch, const SceneFrame& frame, const Leaf& leaf, const kernel::RayKernels& kernels,
-            const RayLine& line, const kernel::RayRoot& proven, LeafRoot& root) {
+            const RayLine& line, const kernel::RayRoot& proven, bool with_radius, LeafRoot& root) {
   const double start_u = leaf.u0 + (0.5 + static_cast<double>(proven.u)) * leaf.du,
                start_v = leaf.v0 + (0.5 + static_cast<double>(proven.v)) * leaf.dv;
   // Twice as far as it can be.
@@ -68,7 +73,7 @@ bool polish(const BezierPatch& patch, const SceneFrame& frame, const Leaf& leaf,
     root.s = f.z + (du * dot(line.direction, at.du) + dv * dot(line.direction, at.dv));
     root.residual = search_rounding(leaf.degree_u, leaf.degree_v, 0, 0);
     root.certified = true;
-    return set_radius(f, root.residual, 1, 1, root);
+    return !with_radius || set_radius(f, root.residual, 1, 1, root);
   }
   return false;
 }

@@ -61,12 +61,17 @@ SceneFrame SceneFrame::around(const Box3& box) {
 
 RayLine line_of(const Ray& ray, const SceneFrame& frame, const Box3& box) {
   RayLine line;
-  // By the largest component first, so that neither tiny nor huge directions under- or overflow.
   const double largest = max_abs(ray.direction);
-  const Vec3 scaled{ray.direction.x / largest, ray.direction.y / largest, ray.direction.z / largest};
-  const double stretch = length(scaled);
-  line.direction = {scaled.x / stretch, scaled.y / stretch, scaled.z / stretch};
-  line.speed = largest * stretch * frame.scale;
+  if (largest > 1e-100) {
+    const double stretch = length(ray.direction);
+    line.direction = (1 / stretch) * ray.direction;
+    line.speed = stretch * frame.scale;
+  } else {  // by the largest component first, whose square is no normal number
+    const Vec3 scaled{ray.direction.x / largest, ray.direction.y / largest, ray.direction.z / largest};
+    const double stretch = length(scaled);
+    line.direction = (1 / stretch) * scaled;
+    line.speed = largest * stretch * frame.scale;
+  }
 
   line.base = -dot(frame.to_scene(ray.origin), line.direction) / line.speed;
   if (!std::isfinite(line.base) || !(line.speed > 0)) return line;  // no t in double reaches the scene

@@ -18,7 +18,7 @@ struct LeafRoot {
   double radius_u = 0, radius_v = 0;  ///< how far another root may be that is the same
   bool certified = false;             ///< the one root of its surroundings, up to rounding
   bool has_point = false;
-  Vec3 position, du, dv;              ///< where has_point: of the patch, in the scene's coordinates
+  Vec3 position, du, dv;  ///< where has_point: of the patch, in the scene's coordinates
 };
 
 enum class RootsWanted : std::uint8_t { closest, any, all };

@@ -1,6 +1,7 @@
 #include "ray/surface_hit.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tessera {
 namespace {
@@ -9,9 +10,9 @@ namespace {
 void set_normal(const BezierPatch& patch, double size, double u, double v, const FirstOrder& at, Hit& hit) {
   constexpr double clearly = 1e-6;
   const Vec3 normal = cross(at.du, at.dv);
-  const double du = length(at.du), dv = length(at.dv), area = length(normal);
-  if (std::min(du, dv) > clearly * size && area > clearly * du * dv) {
-    hit.normal = (1 / area) * normal;
+  const double du = dot(at.du, at.du), dv = dot(at.dv, at.dv), area = dot(normal, normal);
+  if (std::min(du, dv) > clearly * clearly * (size * size) && area > clearly * clearly * (du * dv)) {
+    hit.normal = (1 / std::sqrt(area)) * normal;
     return;
   }
   const UnitNormal limit = unit_normal(patch, u, v);
