@@ -20,9 +20,9 @@
 #include "suite.h"
 #include "support/random_patches.h"
 #include "support/reference_rays.h"
+#include "support/torus.h"
 #include "tessera/ray_scene.h"
 #include "timing.h"
-#include "torus.h"
 
 namespace {
 
@@ -102,7 +102,7 @@ struct Workload {
     return test::value_of(PatchSet::from(patches, options));
   }
 
-  bench::Torus torus;
+  test::Torus torus;
   std::vector<BezierPatch> patches;
   PatchSet set;
   bool is_rational;

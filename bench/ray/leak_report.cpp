@@ -89,6 +89,7 @@ struct Case {
 
 bool report(const Case& body, int rate) {
   RaySceneOptions options;
+  options.mode = RayMode::grid;
   options.rate = rate;
   const RayScene refined = test::value_of(RayScene::make(body.set, options));
   options.refine = false;

@@ -6,6 +6,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
 #include <string>
 #include <thread>
 
@@ -65,8 +66,9 @@ bool report(const test::RayClass& rays, std::size_t count) {
   return tally.missed == 0 && tally.false_hits == 0;
 }
 
-/// Rays from inside a closed body that meet nothing: half of them aimed at seams and inner cuts at grazing angles.
-bool report_leaks(const char* name, const std::vector<BezierPatch>& patches, std::size_t count) {
+/// Rays from inside a closed body that meet nothing.
+bool report_leaks(const char* name, const std::vector<BezierPatch>& patches, std::size_t count,
+                  const std::function<Ray(test::Random&)>& draw) {
   const PatchSet set = test::value_of(PatchSet::from(patches));
   const RayScene scene = exact_scene(set);
   const std::size_t threads = std::max(1u, std::thread::hardware_concurrency());
@@ -74,9 +76,7 @@ bool report_leaks(const char* name, const std::vector<BezierPatch>& patches, std
   on_all_cores([&](unsigned thread) {
     test::Random random(200 + thread);
     for (std::size_t k = thread; k < count; k += threads) {
-      auto [inside, ray] = test::chord_of_seam(patches, random);
-      if (k / threads % 2 == 0 || !inside)
-        ray = test::rays::from_to(0.3 * test::rays::unit_vector(random), test::rays::unit_vector(random));
+      const Ray ray = draw(random);
       ++cast[thread];
       leaks[thread] += scene.closest(ray).kind != HitKind::hit;
     }
@@ -84,7 +84,15 @@ bool report_leaks(const char* name, const std::vector<BezierPatch>& patches, std
   std::size_t all = 0, lost = 0;
   for (std::size_t k = 0; k < threads; ++k) all += cast[k], lost += leaks[k];
   std::printf("%s: %zu of %zu rays from inside met nothing\n", name, lost, all);
+  std::fflush(stdout);
   return lost == 0;
+}
+
+/// Half of them at random, half along a chord of a seam or of an inner cut.
+Ray from_inside(const std::vector<BezierPatch>& patches, test::Random& random) {
+  const auto [inside, ray] = test::chord_of_seam(patches, random);
+  if (inside && random() % 2 == 0) return ray;
+  return test::rays::from_to(0.3 * test::rays::unit_vector(random), test::rays::unit_vector(random));
 }
 
 }  // namespace
@@ -101,7 +109,16 @@ int main(int argc, char** argv) {
       "|\n");
   bool good = true;
   for (const test::RayClass& rays : test::ray_classes()) good = report(rays, count) && good;
-  good = report_leaks("bicubic body", test::closed_body(), inside) && good;
-  good = report_leaks("rational sphere", test::sphere(), inside) && good;
+  for (const auto& [name, patches] :
+       {std::pair{"bicubic body", test::closed_body()}, {"rational sphere", test::sphere()}}) {
+    good =
+        report_leaks(name, patches, inside, [&](test::Random& random) { return from_inside(patches, random); }) && good;
+  }
+  for (const auto& [name, patches] : {std::pair{"torus, along seams", test::Torus(60).patches(false)},
+                                      {"rational torus, along seams", test::Torus(12).patches(true)}}) {
+    good = report_leaks(name, patches, inside,
+                        [&](test::Random& random) { return test::skimming_seam(patches, random); }) &&
+           good;
+  }
   return good ? 0 : 1;
 }

@@ -100,7 +100,7 @@ Rival Rival::triangles(const PatchSet& set, int quads, Isa isa) {
   return rival;
 }
 
-Rival Rival::subdivision(const Torus& torus, int rate, Isa isa) {
+Rival Rival::subdivision(const test::Torus& torus, int rate, Isa isa) {
   Rival rival(isa);
   State& state = *rival.state_;
   const auto side = static_cast<unsigned>(torus.side());

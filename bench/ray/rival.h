@@ -13,7 +13,7 @@
 #include "tessera/isa.h"
 #include "tessera/patch_set.h"
 #include "tessera/ray_scene.h"
-#include "torus.h"
+#include "support/torus.h"
 
 namespace tessera::bench {
 
@@ -22,7 +22,7 @@ class Rival {
   /// Two triangles for each of quads x quads cells a patch.
   static Rival triangles(const PatchSet& set, int quads, Isa isa);
   /// Catmull and Clark's surface of the torus' control points, which is the B-spline surface; `rate` cells a patch.
-  static Rival subdivision(const Torus& torus, int rate, Isa isa);
+  static Rival subdivision(const test::Torus& torus, int rate, Isa isa);
 
   /// t of the closest hits, infinity where there are none; in the caller's arena.
   void closest(std::span<const Ray> rays, std::span<float> t) const;

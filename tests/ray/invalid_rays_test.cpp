@@ -114,6 +114,7 @@ TEST(RayOptions, OutOfRange) {
   const PatchSet set = set_of(sphere());
   for (const int rate : {0, -1, 4097, std::numeric_limits<int>::max()}) {
     RaySceneOptions options;
+    options.mode = RayMode::grid;
     options.rate = rate;
     EXPECT_EQ(RayScene::make(set, options).status().code(), StatusCode::invalid_argument) << rate;
   }

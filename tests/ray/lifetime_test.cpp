@@ -89,7 +89,7 @@ TEST(Lifetime, MemoryIsTold) {
 /// A control point that goes far away and comes back leaves no trace.
 TEST(Lifetime, AnOutlierThatIsTakenBackIsForgotten) {
   PatchSet set = value_of(PatchSet::from(closed_body()));
-  RayScene scene = value_of(RayScene::make(set));
+  RayScene scene = scene_of(set);
   const Ray ray{.origin = {}, .direction = {0.1, 0.2, 1}};
   const Hit before = scene.closest(ray);
   const std::vector<Vec3> points(set.patch(0).points().begin(), set.patch(0).points().end());

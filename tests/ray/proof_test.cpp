@@ -74,6 +74,28 @@ TEST(ExactMode, NothingLeavesAClosedBody) {
   }
 }
 
+/// Next to a seam both neighbours see the ray in coordinates of their own: neither may round it to the other's side.
+TEST(ExactMode, NothingLeavesAlongSeams) {
+  for (const auto& [side, rational] : {std::pair<std::size_t, bool>{40, false}, {9, false}, {12, true}}) {
+    const std::vector<BezierPatch> torus = Torus(side).patches(rational);
+    const PatchSet set = set_of(torus);
+    for (const Isa isa : available_isas()) {
+      RaySceneOptions options;
+      options.isa = isa;
+      const RayScene scene = value_of(RayScene::make(set, options));
+      Random random(34);
+      std::vector<Ray> rays;
+      for (int k = 0; k < 20000; ++k) rays.push_back(skimming_seam(torus, random));
+      std::vector<std::uint8_t> occluded(rays.size());
+      ASSERT_TRUE(scene.occluded(rays, occluded).ok());
+      const std::vector<Hit> hits = closest(scene, rays);
+      std::size_t leaks = 0;
+      for (std::size_t k = 0; k < rays.size(); ++k) leaks += hits[k].kind != HitKind::hit || occluded[k] == 0;
+      EXPECT_EQ(leaks, 0u) << side << ' ' << rational << ' ' << name(isa);
+    }
+  }
+}
+
 TEST(ExactMode, LinesCrossClosedBodiesEvenly) {
   // A tangential point counts once: rays that touch are left out. So does one of a crease that the ray passes outside
   // of, which is why only the smooth body is aimed at where patches meet.

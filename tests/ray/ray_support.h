@@ -16,6 +16,7 @@ inline PatchSet set_of(const std::vector<BezierPatch>& patches) { return value_o
 
 inline RayScene scene_of(const PatchSet& set, int rate = 8, bool refine = true) {
   RaySceneOptions options;
+  options.mode = RayMode::grid;
   options.rate = rate;
   options.refine = refine;
   return value_of(RayScene::make(set, options));

@@ -63,8 +63,15 @@ INSTANTIATE_TEST_SUITE_P(Scales, Places,
                          [](const auto& place) { return place.param.name; });
 
 TEST(Scales, BeyondFloatIsAnError) {
-  EXPECT_EQ(RayScene::make(set_of(placed(sphere(), 1e13, {}))).status().code(), StatusCode::unsupported);
-  EXPECT_EQ(RayScene::make(set_of(placed(sphere(), 1e-11, {}))).status().code(), StatusCode::unsupported);
+  RaySceneOptions grid;
+  grid.mode = RayMode::grid;
+  for (const double scale : {1e13, 1e-11}) {
+    const PatchSet set = set_of(placed(sphere(), scale, {}));
+    EXPECT_EQ(RayScene::make(set, grid).status().code(), StatusCode::unsupported);
+    const Hit hit = value_of(RayScene::make(set)).closest(ray({0, 0, 3 * scale}, {0.1, 0.2, -1}));
+    EXPECT_EQ(hit.kind, HitKind::hit);
+    EXPECT_NEAR(length(hit.position), scale, 1e-13 * scale);
+  }
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "support/random_patches.h"
 #include "support/synthetic_sets.h"
+#include "support/torus.h"
 #include "tessera/ray_scene.h"
 
 namespace tessera::test {
@@ -135,6 +136,10 @@ inline std::vector<RayClass> ray_classes() {
   add("silhouettes, rational sphere", sphere(), grazing);
   add("seams and corners, bicubic body", closed_body(), seams);
   add("seams and corners, rational sphere", sphere(), seams);
+  const Set torus = Torus(6).patches(false), heavy_torus = Torus(5).patches(true);
+  add("seams and corners, B-spline torus", torus, seams);
+  add("silhouettes, B-spline torus", torus, grazing);
+  add("seams and corners, rational cubic torus", heavy_torus, seams);
   add("poles, rational sphere", sphere(), [](const Set&, Random& random, double) {
     const double off = random() % 4 == 0 ? 0 : power(random, 1e-12, 1e-1);
     const Vec3 target = Vec3{0, 0, random() % 2 == 0 ? 1.0 : -1.0} + off * unit_vector(random);
@@ -180,6 +185,24 @@ inline std::vector<RayClass> ray_classes() {
   add("degrees 1x1, 1x4, 5x2, 7x7", degrees, aimed);
   add("the same patch twice", {closed_body()[0], closed_body()[0]}, aimed);
   return out;
+}
+
+/// From inside of the tube of a torus of B-spline patches, a little below where patches or pieces of them meet and
+/// nearly along the surface there: nothing may let it out.
+inline Ray skimming_seam(const std::vector<BezierPatch>& torus, Random& random) {
+  const auto line = [&] { return static_cast<double>(random() % 5) / 4; };
+  const double along = uniform(random, 0, 1),
+               across = random() % 3 == 0 ? line() : static_cast<double>(random() % 2);
+  const bool by_u = random() % 2 == 0;
+  const SurfaceJet jet = evaluate_jet(rays::any_of(torus, random), by_u ? across : along, by_u ? along : across);
+  const Vec3 ring = normalized({jet.position.x, jet.position.y, 0});
+  Vec3 normal = normalized(cross(jet.du, jet.dv));
+  if (dot(normal, jet.position - ring) < 0) normal = -normal;
+  const Vec3 tangent = random() % 2 == 0 ? normalized(cross(normal, rays::unit_vector(random)))
+                                         : normalized(random() % 2 == 0 ? jet.du : jet.dv);
+  const double depth = rays::power(random, 1e-9, 1e-2), tilt = rays::power(random, 1e-7, 1e-1);
+  const Vec3 direction = normalized(tangent + (random() % 2 == 0 ? tilt : -tilt) * normal);
+  return rays::from_to(jet.position - depth * normal, random() % 2 == 0 ? direction : -direction);
 }
 
 /// Inside a closed convex-like body about zero, at a seam and grazing: the chord between two near points of a border,

@@ -2,7 +2,6 @@
 
 #include <map>
 #include <memory>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -28,7 +27,7 @@ struct Options {
   bool terminal = false;
   bool sized = false;  // --size was given
   bool all_hits = false;
-  std::optional<RayMode> mode;
+  RayMode mode = RayMode::exact;
   render::Settings settings;
 };
 
@@ -45,10 +44,6 @@ int scene_rate(std::size_t patches) {
   int rate = 64;
   while (rate > 8 && patches * static_cast<std::size_t>(rate * rate) > segments) rate /= 2;
   return rate;
-}
-
-RayMode mode_of(const Options& options) {
-  return options.mode.value_or(options.all_hits ? RayMode::exact : RayMode::grid);
 }
 
 const char* name_of(RayMode mode) { return mode == RayMode::exact ? "exact" : "grid"; }
@@ -114,7 +109,7 @@ Status draw_file(const Job& job, const Options& options, const CommonOptions& co
   object["output"] = job.output;
   object["width"] = settings.width;
   object["height"] = settings.height;
-  object["mode"] = name_of(mode_of(options));
+  object["mode"] = name_of(options.mode);
   object["caption"] = is_exr(job.output) ? "" : trims;
   add_model_facts(object, scene.loaded, scene.set);
   add_seconds(object, common, timings);
@@ -166,7 +161,7 @@ Status trace(const Job& job, const Options& options, const CommonOptions& common
     write_hits(out, *lists);
     if (Status status = out.commit(); !status.ok()) return status;
   }
-  const bool exact = mode_of(options) == RayMode::exact;
+  const bool exact = options.mode == RayMode::exact;
   if (!common.json) {
     return print(job.output + ": " + std::to_string(counts.rays) + " rays, " + std::to_string(counts.hits) + " hits" +
                  (options.all_hits ? ", " + std::to_string(counts.points) + " points" : "") + ", " +
@@ -175,7 +170,7 @@ Status trace(const Job& job, const Options& options, const CommonOptions& common
   }
   Json object = files_json(scene.loaded);
   object["output"] = job.output;
-  object["mode"] = name_of(mode_of(options));
+  object["mode"] = name_of(options.mode);
   object["rays"] = counts.rays;
   object["hits"] = counts.hits;
   object["points"] = counts.points;
@@ -198,7 +193,7 @@ Status run_raycast(const Job& job, const Options& options, const CommonOptions& 
     if (!read) return read.status();
     rays = *std::move(read);
   }
-  const Result<Scene> scene = make_scene(*std::move(loaded), mode_of(options), timings);
+  const Result<Scene> scene = make_scene(*std::move(loaded), options.mode, timings);
   if (!scene) return scene.status();
   const Status status = !options.rays.empty()      ? trace(job, options, common, *scene, rays, *out, timings)
                         : !options.picture.empty() ? draw_file(job, options, common, *scene, *out, timings)
@@ -244,8 +239,8 @@ constexpr const char* footer =
     "the\n"
     "order of the rays, counted from 0; a miss has hit = 0 and empty fields. 17 significant digits. With --all-hits a\n"
     "ray has a row for each point that it meets, in the order of t.\n"
-    "--mode grid looks at facets first and then at the surface: quick, but a silhouette may be missed.\n"
-    "--mode exact looks at the surface itself, silhouettes too, and takes several times as long.\n"
+    "--mode exact looks at the surface itself, silhouettes too; --mode grid at facets first and then at the surface: a\n"
+    "silhouette may be missed.\n"
     "\nExamples:\n"
     "  tessera raycast teapot.bpt\n"
     "  tessera raycast teapot.bpt -o teapot.png --size 1280x720\n"
@@ -322,7 +317,7 @@ void add_mode(CLI::App& command, Options& options) {
   };
   command
       .add_option_function<std::string>("--mode", set_mode,
-                                        "What rays meet: surfaces (exact) or facets first (grid) [grid]")
+                                        "What rays meet: surfaces (exact) or facets first (grid) [exact]")
       ->type_name("MODE")
       ->check(one_of({"grid", "exact"}));
 }

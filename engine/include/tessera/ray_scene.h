@@ -66,7 +66,8 @@ struct HitLists {
 enum class RayMode : std::uint8_t {
   /// Evaluated grids in an Embree BVH, then Newton on the surface: every hit that is not flagged lies on it. Facets
   /// decide what is met and in which order: a silhouette may be missed or flagged, and of two surfaces nearer to each
-  /// other than to their facets the farther one may come first.
+  /// other than to their facets the farther one may come first. What the tessellation shows, with true t, u, v and
+  /// normals.
   grid,
   /// The surface itself: pieces of patches in an Embree BVH, each searched by interval Newton steps in float and, where
   /// these prove nothing, by branch and bound in double, with every rounding bounded, far origins included. What the
@@ -77,7 +78,7 @@ enum class RayMode : std::uint8_t {
 };
 
 struct RaySceneOptions {
-  RayMode mode = RayMode::grid;  ///< the faster one
+  RayMode mode = RayMode::exact;
   int rate = 8;                  ///< grid mode: grid segments a patch and direction, 1 to 4096
   bool refine = true;            ///< grid mode: false leaves hits on the facets (for comparison)
   std::optional<Isa> isa = {};   ///< the hits of exact mode are those of every one, up to rounding

@@ -9,7 +9,7 @@
 #include "support/synthetic_sets.h"
 #include "tessera/bezier_patch.h"
 
-namespace tessera::bench {
+namespace tessera::test {
 
 /// side x side control points, the indices of which wrap around; as many patches.
 class Torus {
@@ -56,7 +56,7 @@ class Torus {
         weights.push_back(1.5 + 0.5 * std::sin(9 * sum.x) * std::cos(7 * sum.y + sum.z));
       }
     }
-    return test::value_of(rational ? BezierPatch::rational(3, 3, points, weights)
+    return value_of(rational ? BezierPatch::rational(3, 3, points, weights)
                                    : BezierPatch::polynomial(3, 3, points));
   }
 
@@ -64,4 +64,4 @@ class Torus {
   std::vector<Vec3> points_;
 };
 
-}  // namespace tessera::bench
+}  // namespace tessera::test
