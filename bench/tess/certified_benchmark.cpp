@@ -3,13 +3,13 @@
 
 #include <benchmark/benchmark.h>
 
-#include <cmath>
 #include <string>
 
 #include "sets.h"
 #include "suite.h"
 #include "support/synthetic_sets.h"
 #include "tess/shared_edges.h"
+#include "tess/tolerance_search.h"
 #include "tessera/certified_tessellation.h"
 #include "timing.h"
 
@@ -17,26 +17,6 @@ namespace tessera::bench {
 namespace {
 
 using test::value_of;
-
-CertifiedTessellation plan_for(const PatchSet& set, double tolerance) {
-  return value_of(CertifiedTessellation::make(set, {.tolerance = tolerance}));
-}
-
-double mean_rate(const CertifiedTessellation& plan) {
-  return std::sqrt(static_cast<double>(plan.capacity().triangles) / (2.0 * static_cast<double>(plan.bounds().size())));
-}
-
-/// The tolerance at which patches have 2 rate^2 triangles on average.
-double tolerance_for(const PatchSet& set, double rate) {
-  double low = 1e-6, high = 1;
-  for (int step = 0; step < 24; ++step) {
-    const double middle = std::sqrt(low * high);
-    const Result<CertifiedTessellation> plan = CertifiedTessellation::make(set, {.tolerance = middle});
-    const bool too_fine = !plan || mean_rate(*plan) > rate;  // refused: below what float vertices keep
-    (too_fine ? low : high) = middle;
-  }
-  return high;
-}
 
 /// Positions, normals and indices, the rest unwanted.
 struct Output {

@@ -113,7 +113,18 @@ class CertifiedTessellation {
   /// Packed views (three floats a record) of large meshes are written past the caches unless execution.stores is plain.
   Status run(const PatchSet& set, const MeshViews& out, const Execution& execution = {}) const;
 
+  /// The plan for the set as it is now, by the options of this one: bounds, edges and welds are found anew, rates change
+  /// only where they must. A patch keeps its own as long as these keep the tolerances and have at most (1 + spare) times
+  /// the cells of the best; `spare` is at least 0. (All give way where triangles run out.) Errors: as make(); stale
+  /// (another number of patches).
+  Result<CertifiedTessellation> retessellate(const PatchSet& set, double spare = 0.25,
+                                             const Execution& execution = {}) const;
+  /// How many patches are divided, or joined to others, otherwise than in another plan for the set. Where there is none, a
+  /// mesh of the one has the same triangles and vertices as one of the other.
+  std::size_t divided_otherwise(const CertifiedTessellation& other) const;
+
   class Impl;
+  const Impl& impl() const { return *impl_; }  ///< for the library's own use
 
  private:
   explicit CertifiedTessellation(std::unique_ptr<Impl> impl);

@@ -9,9 +9,9 @@
 #include "eval/block_jobs.h"
 #include "eval/block_outputs.h"
 #include "eval/grid_calls.h"
+#include "eval/patch_edits.h"
 #include "eval/staged_block.h"
 #include "eval/touched_blocks.h"
-#include "surface/patch_pieces.h"
 
 namespace tessera {
 
@@ -27,15 +27,6 @@ struct UpdateCall {
 
   /// Whether all patches of a block are edited.
   bool is_whole(std::uint32_t block) const { return touched.count(block) == set.lane_counts[block]; }
-  void write_points(std::uint32_t patch, std::uint32_t edit) const {
-    PatchPieces::overwrite(set.patches[patch], edits.points.data() + touched.first_point(edit));
-  }
-  /// Gives a whole block its edits. They fit: they have been checked.
-  void pack_whole(std::uint32_t block) const {
-    const std::uint32_t* patches = set.lane_patches.data() + block * PatchSet::lanes;
-    for (std::size_t lane = 0; lane < set.lane_counts[block]; ++lane) write_points(patches[lane], touched.edits(block)[lane]);
-    set.pack_block(block, kernels);
-  }
 };
 
 /// Takes block after block into block-interleaved memory. A touched block is evaluated whole: the lanes of other patches
@@ -48,11 +39,7 @@ class EditedBlocks {
   }
 
   void add(std::uint32_t block) {
-    if (call_.is_whole(block)) {
-      call_.pack_whole(block);
-    } else {
-      pack_lanes(block);
-    }
+    pack_edits(call_.set, call_.edits, call_.touched, call_.kernels, block);
     jobs_.turn_to(block);
     out_.place(block * call_.plan.samples() * PatchSet::lanes, jobs_.job());
     isa_ = run_grid(call_.kernels, jobs_.job());
@@ -64,16 +51,6 @@ class EditedBlocks {
   }
 
  private:
-  void pack_lanes(std::uint32_t block) {
-    for (std::size_t lane = 0; lane < PatchSet::lanes; ++lane) {
-      const std::uint32_t edit = call_.touched.edits(block)[lane];
-      if (edit == TouchedBlocks::none) continue;
-      const std::uint32_t patch = call_.set.lane_patches[block * PatchSet::lanes + lane];
-      call_.write_points(patch, edit);
-      (void)call_.set.pack_lanes(patch);  // fits: it has been checked
-    }
-  }
-
   const UpdateCall& call_;
   const BlockOutputs<T>& out_;
   BlockJobs<T> jobs_;
@@ -91,6 +68,7 @@ class EditedGrids {
   }
 
   void add(std::uint32_t block) {
+    pack_edits(call_.set, call_.edits, call_.touched, call_.kernels, block);
     if (call_.is_whole(block)) {
       add_whole(block);
     } else {
@@ -109,7 +87,6 @@ class EditedGrids {
   static constexpr std::size_t most_coefficients = (max_degree + 1) * (max_degree + 1) * 4;
 
   void add_whole(std::uint32_t block) {
-    call_.pack_whole(block);
     jobs_.turn_to(block);
     evaluate(call_.set.lane_patches.data() + block * lanes, call_.set.lane_counts[block]);
   }
@@ -122,8 +99,6 @@ class EditedGrids {
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       if (edits[lane] == TouchedBlocks::none) continue;
       const std::uint32_t patch = call_.set.lane_patches[block * lanes + lane];
-      call_.write_points(patch, edits[lane]);
-      (void)call_.set.pack_lanes(patch);  // fits: it has been checked
       gather(group, lane);
       patches_[gathered_++] = patch;
       if (gathered_ == lanes) flush();

@@ -2,75 +2,15 @@
 // evaluated by one task.
 
 #include <atomic>
-#include <cmath>
-#include <string>
 
 #include "base/guard.h"
 #include "eval/edited_grids.h"
+#include "eval/patch_edits.h"
 #include "eval/task_size.h"
-#include "parallel/least_index.h"
 #include "parallel/parallel_for.h"
 #include "tessera/update.h"
 
 namespace tessera {
-namespace {
-
-constexpr std::size_t edits_a_piece = 256;
-
-/// Coordinates up to here, and an origin as near, fit blocks of every kind with weights that did: in float |V - o| is
-/// below 2^71 then, and power coefficients of degree 15 are at most 3^30 times as large.
-constexpr double plain_size = 0x1p70;
-
-bool all_plain(std::span<const Vec3> points) {
-  const double* numbers = &points.front().x;
-  unsigned refused = 0;
-  for (std::size_t k = 0; k < 3 * points.size(); ++k) refused |= !(std::abs(numbers[k]) <= plain_size);
-  return refused == 0;
-}
-
-/// Whether a patch with these points could be in a set of its own.
-bool fits(const PatchSet::Impl& set, const BezierPatch& patch, std::span<const Vec3> points) {
-  const Result<BezierPatch> edited = patch.with_points(points);
-  return edited && PatchSet::from(std::span(&*edited, 1), {.blocks = set.kinds, .origin = set.origin}).ok();
-}
-
-std::span<const Vec3> points_of(const PatchSet::Impl& set, const PatchEdits& edits, const TouchedBlocks& touched,
-                                std::size_t edit) {
-  return edits.points.subspan(touched.first_point(edit), set.patches[edits.patch[edit]].points().size());
-}
-
-Status refused_points(std::size_t edit, std::uint32_t patch, std::span<const Vec3> points) {
-  for (std::size_t k = 0; k < points.size(); ++k)
-    if (!is_finite(points[k]))
-      return refused_edit(
-          StatusCode::non_finite, edit,
-          "control point " + std::to_string(k) + " of patch " + std::to_string(patch) + " is not finite");
-  return refused_edit(StatusCode::non_finite, edit,
-                      "a control point of patch " + std::to_string(patch) +
-                          ", relative to the set's origin, is outside the range of its blocks' numbers");
-}
-
-/// Looks at all new points, and makes room for them: patches get memory of their own.
-Status prepare(PatchSet::Impl& set, const PatchEdits& edits, const TouchedBlocks& touched, const Execution& execution) {
-  const bool near = max_abs(set.origin) <= plain_size;
-  LeastIndex refused;
-  const Execution checking{.cancel = execution.cancel};
-  const Status status =
-      parallel_for(edits.patch.size(), edits_a_piece, checking, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) {
-          BezierPatch& patch = set.patches[edits.patch[k]];
-          const auto points = points_of(set, edits, touched, k);
-          if (!(near && all_plain(points)) && !fits(set, patch, points)) return refused.add(k);
-          PatchPieces::make_sole(patch);
-        }
-      });
-  if (!status.ok() || !refused.found()) return status;
-  const std::size_t k = refused.index();
-  return refused_points(k, edits.patch[k], points_of(set, edits, touched, k));
-}
-
-}  // namespace
-
 class GridUpdate::Impl {
  public:
   explicit Impl(const PatchSet::Impl& set) : touched_(set), patch_count_(set.patches.size()) {}
@@ -108,7 +48,7 @@ class GridUpdate::Impl {
     if (patch_count_ != set.patches.size() || touched_.block_count() != set.lane_counts.size())
       return Status(StatusCode::invalid_argument, "the update was made for another patch set");
     if (Status status = touched_.add(set, edits); !status.ok()) return status;
-    if (Status status = prepare(set, edits, touched_, execution); !status.ok()) return status;
+    if (Status status = prepare_edits(set, edits, touched_, execution); !status.ok()) return status;
     return *order;
   }
 
@@ -126,8 +66,7 @@ class GridUpdate::Impl {
                                          for (std::size_t k = begin; k < end; ++k) task.add(blocks[k]);
                                          isa.store(task.finish(), std::memory_order_relaxed);
                                        });
-    for (const std::uint32_t patch : edits.patch) set.note_doubt(patch);
-    if (!edits.patch.empty()) ++set.revision;
+    finish_edits(set, edits);
     report_run(execution, isa, streaming);
     return status;
   }

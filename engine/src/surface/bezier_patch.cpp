@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/guard.h"
+#include "surface/collapsed_edges.h"
 #include "surface/patch_pieces.h"
 #include "surface/validate.h"
 
@@ -62,19 +63,6 @@ Box3 BezierPatch::hull_box() const {
   return box;
 }
 
-EdgeMask BezierPatch::collapsed_edges() const {
-  const int m = degree_u_, n = degree_v_;
-  const auto coincide = [this](int i, int j, int step_i, int step_j, int steps) {
-    for (int k = 1; k <= steps; ++k)
-      if (point(i + k * step_i, j + k * step_j) != point(i, j)) return false;
-    return true;
-  };
-  EdgeMask edges;
-  if (coincide(0, 0, 0, 1, n)) edges.add(Edge::u0);
-  if (coincide(m, 0, 0, 1, n)) edges.add(Edge::u1);
-  if (coincide(0, 0, 1, 0, m)) edges.add(Edge::v0);
-  if (coincide(0, n, 1, 0, m)) edges.add(Edge::v1);
-  return edges;
-}
+EdgeMask BezierPatch::collapsed_edges() const { return tessera::collapsed_edges(degree_u_, degree_v_, points()); }
 
 }  // namespace tessera

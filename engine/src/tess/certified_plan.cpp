@@ -23,12 +23,19 @@ Status invalid(std::string message, std::size_t patch) {
   return {StatusCode::invalid_argument, std::move(message), static_cast<std::ptrdiff_t>(patch)};
 }
 
+/// Whether rates that a patch has are cheap enough beside the best.
+bool is_spared(const KeptRates& kept, std::size_t patch, Rates best) {
+  if (kept.rates.empty()) return false;
+  const Rates had = kept.rates[patch];
+  return double(had.u) * had.v <= (1 + kept.spare) * best.u * best.v;
+}
+
+}  // namespace
+
 float rounded_up(double x) {
   const auto nearest = static_cast<float>(x);
   return double(nearest) < x ? std::nextafter(nearest, std::numeric_limits<float>::infinity()) : nearest;
 }
-
-}  // namespace
 
 double vertex_rounding(int degree_u, int degree_v, bool rational, double size) {
   const double roundings = (rational ? 2 : 1) * (degree_u + degree_v + 6.0);
@@ -98,7 +105,8 @@ std::optional<Rates> CertifiedPlanner::rates_for(const CellLimits& limits, int m
   return distance_alone ? limits.chord->cheapest(limits.distance, most) : cheapest(limits, most);
 }
 
-CertifiedPlanner::Choice CertifiedPlanner::choose(std::size_t patch, double tolerance, int most) const {
+CertifiedPlanner::Choice CertifiedPlanner::choose(std::size_t patch, double tolerance, int most,
+                                                  const KeptRates& kept) const {
   const double given = roundings_[patch] + fit_error_;
   const PatchInPicture* const picture = options_.camera ? &pictures_[patch] : nullptr;
   const TurningBound* const turning = options_.angle && !shapes_[patch].is_curve ? &turnings_[patch] : nullptr;
@@ -127,6 +135,11 @@ CertifiedPlanner::Choice CertifiedPlanner::choose(std::size_t patch, double tole
   choice.rates = *rates;
   // Rates that were raised may be odd now: what holds for a half may not hold for the whole.
   if (!(limits.keeps(*rates))) choice.rates = {rates->u + rates->u % 2, rates->v + rates->v % 2};
+  if (is_spared(kept, patch, choice.rates)) {
+    const Rates had = kept.rates[patch];
+    const bool as_fine = !turning || bounded || std::min(had.u, had.v) >= options_.angle_rate;
+    if (as_fine && limits.keeps(had)) choice.rates = had;
+  }
   choice.bound = chord.distance(choice.rates) + given;
   if (turning) choice.angle = bounded ? turning->angle(choice.rates) : std::numeric_limits<double>::infinity();
   if (picture) choice.pixels = picture->pixels(choice.rates, choice.bound);
@@ -167,7 +180,7 @@ Status CertifiedPlanner::refusal(Failure failure, std::size_t patch, double tole
                  patch);
 }
 
-Status CertifiedPlanner::choose_by_distance(double tolerance, std::vector<Rates>& rates, CertifiedPlan& plan,
+Status CertifiedPlanner::choose_by_distance(double tolerance, const KeptRates& kept, CertifiedPlan& plan,
                                             const Execution& execution) const {
   LeastIndex failed;
   const auto choose_some = [&](std::size_t begin, std::size_t end) {
@@ -177,11 +190,15 @@ Status CertifiedPlanner::choose_by_distance(double tolerance, std::vector<Rates>
       ChordBlocks::Lanes<double> left;
       left.fill(tolerance);
       for (std::size_t lane = 0; lane < count; ++lane) left[lane] = tolerance - (roundings_[patches[lane]] + fit_error_);
-      const ChordBlocks::Choice choice = chords_.cheapest(block, count, left, most_rate);
+      ChordBlocks::Choice choice = chords_.cheapest(block, count, left, most_rate);
       for (std::size_t lane = 0; lane < count; ++lane) {
         const std::size_t k = patches[lane];
         if (!(left[lane] > 0) || choice.rates[lane].u == 0) failed.add(k);
-        rates[k] = choice.rates[lane];
+        if (is_spared(kept, k, choice.rates[lane])) {
+          const double distance = chords_.chord(block, lane).distance(kept.rates[k]);
+          if (distance <= left[lane]) choice.rates[lane] = kept.rates[k], choice.distance[lane] = distance;
+        }
+        plan.rates_[k] = choice.rates[lane];
         plan.bounds_[k] = rounded_up(choice.distance[lane] + (roundings_[k] + fit_error_));
       }
     }
@@ -192,24 +209,26 @@ Status CertifiedPlanner::choose_by_distance(double tolerance, std::vector<Rates>
   return refusal(choose(failed.index(), tolerance, most_rate).failure, failed.index(), tolerance);
 }
 
-Status CertifiedPlanner::choose_rates(double tolerance, std::vector<Rates>& rates, CertifiedPlan& plan,
+Status CertifiedPlanner::choose_rates(double tolerance, const KeptRates& kept, CertifiedPlan& plan,
                                       const Execution& execution) const {
-  plan.bounds_.resize(rates.size());
-  if (!options_.angle && !options_.camera) return choose_by_distance(tolerance, rates, plan, execution);
-  if (options_.angle) plan.angles_.resize(rates.size());
-  if (options_.camera) plan.pixels_.resize(rates.size());
+  const std::size_t patches = shapes_.size();
+  plan.rates_.resize(patches);
+  plan.bounds_.resize(patches);
+  if (!options_.angle && !options_.camera) return choose_by_distance(tolerance, kept, plan, execution);
+  if (options_.angle) plan.angles_.resize(patches);
+  if (options_.camera) plan.pixels_.resize(patches);
   LeastIndex failed;
   const auto choose_some = [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      const Choice choice = choose(k, tolerance, most_rate);
+      const Choice choice = choose(k, tolerance, most_rate, kept);
       if (choice.failure != Failure::none) failed.add(k);
-      rates[k] = choice.rates;
+      plan.rates_[k] = choice.rates;
       plan.bounds_[k] = rounded_up(choice.bound);
       if (options_.angle) plan.angles_[k] = rounded_up(choice.angle);
       if (options_.camera) plan.pixels_[k] = rounded_up(choice.pixels);
     }
   };
-  if (Status status = parallel_for(rates.size(), patches_a_piece, execution, choose_some); !status.ok()) return status;
+  if (Status status = parallel_for(patches, patches_a_piece, execution, choose_some); !status.ok()) return status;
   if (!failed.found()) return {};
   return refusal(choose(failed.index(), tolerance, most_rate).failure, failed.index(), tolerance);
 }
@@ -244,14 +263,13 @@ std::vector<Division> CertifiedPlanner::divide(std::span<const Rates> rates) con
 }
 
 Result<CertifiedPlan> CertifiedPlanner::plan(double tolerance, std::uint64_t most_triangles,
-                                             const Execution& execution) const {
+                                             const Execution& execution, const KeptRates& kept) const {
   CertifiedPlan plan;
-  std::vector<Rates> rates(shapes_.size());
-  if (Status status = choose_rates(tolerance, rates, plan, execution); !status.ok()) return status;
-  plan.divisions_ = divide(rates);
+  if (Status status = choose_rates(tolerance, kept, plan, execution); !status.ok()) return status;
+  plan.divisions_ = divide(plan.rates_);
   std::size_t vertices = 0, triangles = 0;
-  plan.first_vertex_.reserve(rates.size() + 1);
-  plan.first_triangle_.reserve(rates.size() + 1);
+  plan.first_vertex_.reserve(shapes_.size() + 1);
+  plan.first_triangle_.reserve(shapes_.size() + 1);
   for (const Division& division : plan.divisions_) {
     plan.first_vertex_.push_back(vertices);
     plan.first_triangle_.push_back(triangles);

@@ -26,6 +26,9 @@ double vertex_rounding(const BezierPatch& patch, const Vec3& origin);
 /// The same by `size`, the largest |x|, |y|, |z| of its control points relative to the origin.
 double vertex_rounding(int degree_u, int degree_v, bool rational, double size);
 
+/// To the next float that is not below.
+float rounded_up(double x);
+
 /// Rates stay at most this: parameters i / rate are then well apart in float.
 inline constexpr int most_rate = 4096;
 
@@ -33,6 +36,7 @@ class CertifiedPlan {
  public:
   std::size_t patch_count() const { return divisions_.size(); }
   const Division& division(std::size_t patch) const { return divisions_[patch]; }
+  std::span<const Rates> rates() const { return rates_; }  ///< what each patch needs for itself
   std::size_t first_vertex(std::size_t patch) const { return first_vertex_[patch]; }
   std::size_t first_triangle(std::size_t patch) const { return first_triangle_[patch]; }
   MeshCapacity capacity() const { return {first_vertex_.back(), first_triangle_.back()}; }
@@ -42,6 +46,7 @@ class CertifiedPlan {
 
  private:
   friend class CertifiedPlanner;
+  std::vector<Rates> rates_;
   std::vector<Division> divisions_;
   std::vector<std::size_t> first_vertex_, first_triangle_;  ///< of each patch, and the number of all
   std::vector<float> bounds_, angles_, pixels_;
@@ -56,6 +61,13 @@ struct PlannerOptions {
   double pixels = 0;  ///< above 0 if there is a camera
 };
 
+/// Rates that patches keep, rather than take others, where they keep the tolerances and have at most (1 + spare) times the
+/// cells of the best.
+struct KeptRates {
+  std::span<const Rates> rates = {};  ///< of each patch, or none
+  double spare = 0;
+};
+
 /// What is known of a set before a tolerance is.
 class CertifiedPlanner {
  public:
@@ -68,7 +80,8 @@ class CertifiedPlanner {
   const Weld& weld() const { return weld_; }
   /// `tolerance`: the distance, infinite if any will do. Errors: invalid_argument, as CertifiedTessellation::make says;
   /// cancelled.
-  Result<CertifiedPlan> plan(double tolerance, std::uint64_t most_triangles, const Execution& execution) const;
+  Result<CertifiedPlan> plan(double tolerance, std::uint64_t most_triangles, const Execution& execution,
+                             const KeptRates& kept = {}) const;
   /// The smallest tolerance, within 1 percent, whose mesh has at most so many triangles. Errors: invalid_argument (not
   /// even one cell a patch keeps the budget).
   Result<double> smallest_tolerance(std::uint64_t most_triangles, const Execution& execution) const;
@@ -92,13 +105,12 @@ class CertifiedPlanner {
       : set_(&set), options_(options), edges_(set), fit_error_(set.fit_error.distance), chords_(set) {}
   ChordBound chord(std::size_t patch) const { return chords_.chord(set_->slots[patch].block, set_->slots[patch].lane); }
   Status bound_turning_and_picture(const PatchSet::Impl& set, const Execution& execution);
-  Choice choose(std::size_t patch, double tolerance, int most) const;
+  Choice choose(std::size_t patch, double tolerance, int most, const KeptRates& kept = {}) const;
   std::optional<Rates> rates_for(const CellLimits& limits, int most) const;
   /// Rates and bounds of all patches.
-  Status choose_rates(double tolerance, std::vector<Rates>& rates, CertifiedPlan& plan,
-                      const Execution& execution) const;
+  Status choose_rates(double tolerance, const KeptRates& kept, CertifiedPlan& plan, const Execution& execution) const;
   /// The same where nothing but a distance is to be kept, block by block.
-  Status choose_by_distance(double tolerance, std::vector<Rates>& rates, CertifiedPlan& plan,
+  Status choose_by_distance(double tolerance, const KeptRates& kept, CertifiedPlan& plan,
                             const Execution& execution) const;
   Status refusal(Failure failure, std::size_t patch, double tolerance) const;
   std::string wanted(double tolerance) const;

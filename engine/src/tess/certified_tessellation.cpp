@@ -10,8 +10,7 @@
 #include "base/text.h"
 #include "kernel/kernel_table.h"
 #include "parallel/parallel_for.h"
-#include "tess/certified_plan.h"
-#include "tess/mesh_tables.h"
+#include "tess/certified_tessellation_impl.h"
 #include "tess/mesh_views.h"
 #include "tess/patch_writer.h"
 #include "tess/welded_vertices.h"
@@ -23,58 +22,55 @@ constexpr std::size_t patches_a_piece = 64;
 
 }  // namespace
 
-class CertifiedTessellation::Impl {
- public:
-  Impl(const PatchSet& set, CertifiedPlan plan, const CertifiedPlanner& planner, Isa isa)
-      : plan_(std::move(plan)),
-        shapes_(planner.shapes().begin(), planner.shapes().end()),
-        weld_(planner.weld()),
-        origin_(set.origin()),
-        certified_(set.fit_error().certified),
-        isa_(isa) {
-    for (std::size_t k = 0; k < plan_.patch_count(); ++k)
-      tables_.add(shapes_[k].degree_u, shapes_[k].degree_v, plan_.division(k));
-    for (const float bound : plan_.bounds()) bound_ = std::max(bound_, bound);
-    for (const float pixels : plan_.pixels()) pixels_ = std::max(pixels_, pixels);
-    for (const float angle : plan_.angles()) {
-      if (std::isinf(angle)) ++without_angle_;
-      if (!std::isinf(angle)) angle_ = std::max(angle_, angle);
-    }
+CertifiedTessellation::Impl::Impl(const PatchSet& set, const CertifiedOptions& options, double tolerance,
+                                  CertifiedPlan plan, const CertifiedPlanner& planner, Isa isa)
+    : options_(options),
+      tolerance_(tolerance),
+      plan_(std::move(plan)),
+      shapes_(planner.shapes().begin(), planner.shapes().end()),
+      weld_(planner.weld()),
+      origin_(set.origin()),
+      fit_error_(set.fit_error()),
+      revision_(set.revision()),
+      isa_(isa) {
+  for (std::size_t k = 0; k < plan_.patch_count(); ++k)
+    tables_.add(shapes_[k].degree_u, shapes_[k].degree_v, plan_.division(k));
+  for (const float bound : plan_.bounds()) bound_ = std::max(bound_, bound);
+  for (const float pixels : plan_.pixels()) pixels_ = std::max(pixels_, pixels);
+  for (const float angle : plan_.angles()) {
+    if (std::isinf(angle)) ++without_angle_;
+    if (!std::isinf(angle)) angle_ = std::max(angle_, angle);
   }
+}
 
-  const CertifiedPlan& plan() const { return plan_; }
-  double bound() const { return bound_; }
-  double angle() const { return angle_; }
-  std::size_t patches_without_angle() const { return without_angle_; }
-  double pixels() const { return pixels_; }
-  bool certified() const { return certified_; }
-  std::size_t welded_borders() const { return weld_.borders.size() + weld_.poles.size(); }
-  Mesh allocate() const { return empty_mesh(plan_.capacity(), origin_); }
-
-  Status run(const PatchSet& set, const MeshViews& out, const Execution& execution) const {
-    if (Status status = check_views(out, plan_.capacity()); !status.ok()) return status;
-    if (Status status = check_shapes(set, shapes_); !status.ok()) return status;
-    const PatchWriter writer(set.impl(), plan_, tables_, kernel::kernels(isa_), out, execution.stores);
-    const auto write = [&](std::size_t begin, std::size_t end) { writer.write(begin, end); };
-    if (Status status = parallel_for(plan_.patch_count(), patches_a_piece, execution, write); !status.ok()) return status;
-    if (execution.report) {
-      execution.report->isa = isa_;
-      execution.report->streaming = writer.streaming();
-    }
-    return write_welded(weld_, plan_, set, out, execution);
+Status CertifiedTessellation::Impl::run(const PatchSet& set, const MeshViews& out, const Execution& execution) const {
+  if (Status status = check_views(out, plan_.capacity()); !status.ok()) return status;
+  if (Status status = check_shapes(set, shapes_); !status.ok()) return status;
+  const PatchWriter writer(set.impl(), plan_, tables_, kernel::kernels(isa_), out, execution.stores);
+  const auto write = [&](std::size_t begin, std::size_t end) { writer.write(begin, end); };
+  if (Status status = parallel_for(plan_.patch_count(), patches_a_piece, execution, write); !status.ok()) return status;
+  if (execution.report) {
+    execution.report->isa = isa_;
+    execution.report->streaming = writer.streaming();
   }
+  return write_welded(weld_, plan_, set.impl(), out, execution, [](std::size_t) { return true; });
+}
 
- private:
-  CertifiedPlan plan_;
-  std::vector<PatchShape> shapes_;
-  Weld weld_;
-  Vec3 origin_;
-  bool certified_;
-  Isa isa_;
-  MeshTables tables_;
-  float bound_ = 0, angle_ = 0, pixels_ = 0;
-  std::size_t without_angle_ = 0;
-};
+std::size_t CertifiedTessellation::Impl::divided_otherwise(const Impl& other) const {
+  const std::size_t patches = plan_.patch_count();
+  if (patches != other.plan_.patch_count()) return std::max(patches, other.plan_.patch_count());
+  std::vector<std::uint8_t> changed(patches, 0);
+  for (std::size_t k = 0; k < patches; ++k) changed[k] = !(plan_.division(k) == other.plan_.division(k));
+  const auto compare = [&](const auto& ours, const auto& theirs) {
+    if (ours == theirs) return;
+    for (const auto* copies : {&ours, &theirs})
+      for (const auto& copy : *copies) changed[copy.to / 4] = 1;
+  };
+  compare(weld_.borders, other.weld_.borders);
+  compare(weld_.corners, other.weld_.corners);
+  compare(weld_.poles, other.weld_.poles);
+  return static_cast<std::size_t>(std::count(changed.begin(), changed.end(), 1));
+}
 
 namespace {
 
@@ -110,32 +106,58 @@ Result<PlannerOptions> checked(const CertifiedOptions& options, const PatchSet& 
   return planner;
 }
 
+/// `kept`: rates that patches keep where they may; they give way where triangles run out.
+Result<std::unique_ptr<CertifiedTessellation::Impl>> plan_for(const PatchSet& set, const CertifiedOptions& options,
+                                                              const KeptRates& kept, const Execution& execution) {
+  if (!set.blocks().float_bernstein)
+    return Status(StatusCode::unsupported, "a tessellation needs float Bernstein blocks, the set has none");
+  const Result<PlannerOptions> planned = checked(options, set);
+  if (!planned) return planned.status();
+  const Result<Isa> isa = options.isa ? parse_isa(name(*options.isa)) : default_isa();
+  if (!isa) return isa.status();
+  Result<CertifiedPlanner> planner = CertifiedPlanner::make(set.impl(), *planned, execution);
+  if (!planner) return planner.status();
+  double tolerance = std::numeric_limits<double>::infinity();
+  if (options.tolerance) tolerance = *options.tolerance * (options.relative ? set.box().diagonal() : 1);
+  if (!(tolerance > 0))
+    return Status(StatusCode::invalid_argument, "the tolerance is " + text(tolerance) + ": the model has no size");
+  if (options.smallest) {
+    const Result<double> found = planner->smallest_tolerance(options.most_triangles, execution);
+    if (!found) return found.status();
+    tolerance = *found;
+  }
+  Result<CertifiedPlan> plan = planner->plan(tolerance, options.most_triangles, execution, kept);
+  if (!plan && plan.status().code() == StatusCode::invalid_argument && !kept.rates.empty())
+    plan = planner->plan(tolerance, options.most_triangles, execution);
+  if (!plan) return plan.status();
+  return std::make_unique<CertifiedTessellation::Impl>(set, options, tolerance, std::move(*plan), *planner, *isa);
+}
+
 }  // namespace
 
 Result<CertifiedTessellation> CertifiedTessellation::make(const PatchSet& set, const CertifiedOptions& options,
                                                           const Execution& execution) {
   return guarded([&]() -> Result<CertifiedTessellation> {
-    if (!set.blocks().float_bernstein)
-      return Status(StatusCode::unsupported, "a tessellation needs float Bernstein blocks, the set has none");
-    const Result<PlannerOptions> planned = checked(options, set);
-    if (!planned) return planned.status();
-    const Result<Isa> isa = options.isa ? parse_isa(name(*options.isa)) : default_isa();
-    if (!isa) return isa.status();
-    Result<CertifiedPlanner> planner = CertifiedPlanner::make(set.impl(), *planned, execution);
-    if (!planner) return planner.status();
-    double tolerance = std::numeric_limits<double>::infinity();
-    if (options.tolerance) tolerance = *options.tolerance * (options.relative ? set.box().diagonal() : 1);
-    if (!(tolerance > 0))
-      return Status(StatusCode::invalid_argument, "the tolerance is " + text(tolerance) + ": the model has no size");
-    if (options.smallest) {
-      const Result<double> found = planner->smallest_tolerance(options.most_triangles, execution);
-      if (!found) return found.status();
-      tolerance = *found;
-    }
-    Result<CertifiedPlan> plan = planner->plan(tolerance, options.most_triangles, execution);
-    if (!plan) return plan.status();
-    return CertifiedTessellation(std::make_unique<Impl>(set, std::move(*plan), *planner, *isa));
+    Result<std::unique_ptr<Impl>> made = plan_for(set, options, {}, execution);
+    if (!made) return made.status();
+    return CertifiedTessellation(std::move(*made));
   });
+}
+
+Result<CertifiedTessellation> CertifiedTessellation::retessellate(const PatchSet& set, double spare,
+                                                                  const Execution& execution) const {
+  return guarded([&]() -> Result<CertifiedTessellation> {
+    if (!(spare >= 0 && std::isfinite(spare)))
+      return Status(StatusCode::invalid_argument, "the spare is " + text(spare) + ", it must be finite and at least 0");
+    if (Status status = check_count(set, impl_->plan().patch_count()); !status.ok()) return status;
+    Result<std::unique_ptr<Impl>> made = plan_for(set, impl_->options(), {impl_->plan().rates(), spare}, execution);
+    if (!made) return made.status();
+    return CertifiedTessellation(std::move(*made));
+  });
+}
+
+std::size_t CertifiedTessellation::divided_otherwise(const CertifiedTessellation& other) const {
+  return impl_->divided_otherwise(*other.impl_);
 }
 
 CertifiedTessellation::CertifiedTessellation(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -155,7 +177,7 @@ std::size_t CertifiedTessellation::welded_borders() const { return impl_->welded
 MeshCapacity CertifiedTessellation::capacity() const { return impl_->plan().capacity(); }
 
 Result<Mesh> CertifiedTessellation::allocate() const {
-  return guarded([&]() -> Result<Mesh> { return impl_->allocate(); });
+  return guarded([&]() -> Result<Mesh> { return empty_mesh(impl_->plan().capacity(), impl_->origin()); });
 }
 
 Status CertifiedTessellation::run(const PatchSet& set, const MeshViews& out, const Execution& execution) const {

@@ -22,7 +22,7 @@ float rounded(double x, float towards) {
 ChordBlocks::ChordBlocks(const PatchSet::Impl& set)
     : pieces_(set.lane_counts.size() * block_pieces), unit_(set.lane_counts.size() * lanes, 1.0f), size_(unit_.size(), -1.0f) {}
 
-void ChordBlocks::bound(const PatchSet::Impl& set, std::size_t block) {
+void ChordBlocks::bound(const PatchSet::Impl& set, std::size_t block, std::uint32_t wanted) {
   const BlockGroup& group = set.group_of_block(block);
   float* const pieces = pieces_.data() + block * block_pieces;
   if (!group.rational) {
@@ -37,6 +37,7 @@ void ChordBlocks::bound(const PatchSet::Impl& set, std::size_t block) {
   for (std::size_t lane = 0; lane < set.lane_counts[block]; ++lane) {
     float &size = size_[block * lanes + lane], &unit = unit_[block * lanes + lane];
     if (!group.rational && size < largest_size) continue;
+    if (group.rational && !(wanted >> lane & 1u)) continue;
     size = -1;
     const ChordBound chord(set.patches[set.lane_patches[block * lanes + lane]]);
     // In the unit of the largest, so that float holds squares of the others.

@@ -21,8 +21,8 @@ class ChordBlocks {
 
   explicit ChordBlocks(const PatchSet::Impl& set);
 
-  /// Finds the bounds of a block. Threads: any number, each a block of its own.
-  void bound(const PatchSet::Impl& set, std::size_t block);
+  /// Finds the bounds of a block, of those lanes at least whose bits are set. Threads: any number, each a block of its own.
+  void bound(const PatchSet::Impl& set, std::size_t block, std::uint32_t wanted = ~0u);
   /// The largest |x|, |y|, |z| of the control points relative to the origin, as found on the way, rounded up.
   std::optional<double> size(std::size_t block, std::size_t lane) const;
   /// One patch's bound.

@@ -44,10 +44,14 @@ Mesh empty_mesh(const MeshCapacity& capacity, const Vec3& origin) {
   return mesh;
 }
 
-Status check_views(const MeshViews& out, const MeshCapacity& wanted) {
+Status check_vertex_views(const MeshViews& out, const MeshCapacity& wanted) {
   if (out.position.empty()) return invalid("the position view is empty, it is required");
   if (Status status = check_view("position", out.position, wanted.vertices); !status.ok()) return status;
-  if (Status status = check_view("normal", out.normal, wanted.vertices); !status.ok()) return status;
+  return check_view("normal", out.normal, wanted.vertices);
+}
+
+Status check_views(const MeshViews& out, const MeshCapacity& wanted) {
+  if (Status status = check_vertex_views(out, wanted); !status.ok()) return status;
   if (Status status = check_view("parameter", out.parameter, wanted.vertices); !status.ok()) return status;
   if (Status status = check_size("indices", out.indices.size(), 3 * wanted.triangles, "indices"); !status.ok())
     return status;
@@ -55,10 +59,14 @@ Status check_views(const MeshViews& out, const MeshCapacity& wanted) {
   return check_size("patch", out.patch.size(), wanted.triangles, "triangles");
 }
 
+Status check_count(const PatchSet& set, std::size_t planned) {
+  if (set.patch_count() == planned) return {};
+  return {StatusCode::stale, "the plan is for " + std::to_string(planned) + " patches, the set has " +
+                                 std::to_string(set.patch_count())};
+}
+
 Status check_shapes(const PatchSet& set, std::span<const PatchShape> planned) {
-  if (set.patch_count() != planned.size())
-    return {StatusCode::stale, "the plan is for " + std::to_string(planned.size()) + " patches, the set has " +
-                                   std::to_string(set.patch_count())};
+  if (Status status = check_count(set, planned.size()); !status.ok()) return status;
   LeastIndex changed;
   const auto compare = [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {

@@ -15,6 +15,11 @@ Mesh empty_mesh(const MeshCapacity& capacity, const Vec3& origin);
 /// Errors: buffer_too_small; invalid_argument (no positions, a null component, a stride below 1).
 Status check_views(const MeshViews& out, const MeshCapacity& wanted);
 
+/// Of positions and normals alone.
+Status check_vertex_views(const MeshViews& out, const MeshCapacity& wanted);
+
+/// Whether a set has as many patches as a plan. Errors: stale.
+Status check_count(const PatchSet& set, std::size_t planned);
 /// Whether the patches of a set are still those that a plan was made for. Errors: stale, of the first that is not.
 Status check_shapes(const PatchSet& set, std::span<const PatchShape> planned);
 

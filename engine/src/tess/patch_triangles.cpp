@@ -1,17 +1,20 @@
 #include "tess/patch_triangles.h"
 
+#include "surface/collapsed_edges.h"
+
 namespace tessera {
 namespace {
 
 /// Whether the patch is a curve or a point. Where the points do not depend on one parameter but the weights do, three
 /// points and more are mixed to an area, and two to a segment.
-bool has_no_area(const BezierPatch& patch) {
+bool has_no_area(const BezierPatch& patch, std::span<const Vec3> points) {
   const int m = patch.degree_u(), n = patch.degree_v();
+  const auto point = [&](int i, int j) { return points[static_cast<std::size_t>(i * (n + 1) + j)]; };
   bool points_u = true, points_v = true, weights_u = true, weights_v = true;  // constant along it
   for (int i = 0; i <= m; ++i)
     for (int j = 0; j <= n; ++j) {
-      points_u = points_u && patch.point(i, j) == patch.point(0, j);
-      points_v = points_v && patch.point(i, j) == patch.point(i, 0);
+      points_u = points_u && point(i, j) == point(0, j);
+      points_v = points_v && point(i, j) == point(i, 0);
       weights_u = weights_u && patch.weight(i, j) == patch.weight(0, j);
       weights_v = weights_v && patch.weight(i, j) == patch.weight(i, 0);
     }
@@ -56,15 +59,23 @@ std::uint32_t* write_whole_cells(std::uint32_t first, std::uint32_t row, int cou
   return to;
 }
 
-}  // namespace
-
-PatchShape PatchShape::of(const BezierPatch& patch, EdgeMask collapsed) {
+PatchShape shape_of(const BezierPatch& patch, std::span<const Vec3> points, EdgeMask collapsed) {
   PatchShape shape;
   shape.degree_u = static_cast<std::uint8_t>(patch.degree_u());
   shape.degree_v = static_cast<std::uint8_t>(patch.degree_v());
   shape.collapsed = collapsed;
-  shape.is_curve = shape.collapsed.any() && has_no_area(patch);
+  shape.is_curve = shape.collapsed.any() && has_no_area(patch, points);
   return shape;
+}
+
+}  // namespace
+
+PatchShape PatchShape::of(const BezierPatch& patch, EdgeMask collapsed) {
+  return shape_of(patch, patch.points(), collapsed);
+}
+
+PatchShape PatchShape::of(const BezierPatch& patch, std::span<const Vec3> points) {
+  return shape_of(patch, points, collapsed_edges(patch.degree_u(), patch.degree_v(), points));
 }
 
 std::size_t triangle_count(const PatchShape& shape, Rates rates) {

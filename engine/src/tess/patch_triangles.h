@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "tessera/bezier_patch.h"
 
@@ -16,6 +17,8 @@ struct PatchShape {
 
   static PatchShape of(const BezierPatch& patch) { return of(patch, patch.collapsed_edges()); }
   static PatchShape of(const BezierPatch& patch, EdgeMask collapsed);  ///< patch.collapsed_edges()
+  /// With other control points, as many.
+  static PatchShape of(const BezierPatch& patch, std::span<const Vec3> points);
   friend bool operator==(const PatchShape& a, const PatchShape& b) {
     return a.degree_u == b.degree_u && a.degree_v == b.degree_v && a.collapsed.bits == b.collapsed.bits &&
            a.is_curve == b.is_curve;
@@ -24,6 +27,7 @@ struct PatchShape {
 
 struct Rates {
   int u = 1, v = 1;
+  friend bool operator==(const Rates&, const Rates&) = default;
   std::size_t vertices() const { return static_cast<std::size_t>(u + 1) * static_cast<std::size_t>(v + 1); }
 };
 

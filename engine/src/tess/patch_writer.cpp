@@ -5,28 +5,10 @@
 
 #include "eval/streaming_threshold.h"
 #include "kernel/kernel_table.h"
-#include "tess/line_stream.h"
+#include "tess/vertex_job.h"
 
 namespace tessera {
 namespace {
-
-/// What an exact normal is made from.
-struct ExactPatch {
-  const BezierPatch* patch = nullptr;
-  const Division* division = nullptr;
-};
-
-/// See kernel::ExactNormal and MeshVertexJob::grid.
-int exact_normal(void* context, int first, int second, int lane, float* normal) {
-  const auto& exact = *static_cast<const ExactPatch*>(context);
-  const auto vertex = static_cast<std::size_t>(lane < kernel::mesh_tile ? first + lane : second + lane - kernel::mesh_tile);
-  const auto at = exact.division->parameters(std::min(vertex, exact.division->vertex_count() - 1));
-  const UnitNormal found = unit_normal(*exact.patch, at.u, at.v);
-  normal[0] = static_cast<float>(found.direction.x);
-  normal[1] = static_cast<float>(found.direction.y);
-  normal[2] = static_cast<float>(found.direction.z);
-  return static_cast<int>(found.kind);
-}
 
 /// A side's first control point as packed: w p / w would depend on the weight.
 std::array<float, 3> start_of(const BezierPatch& net, const Vec3& origin, Side side) {
@@ -35,62 +17,16 @@ std::array<float, 3> start_of(const BezierPatch& net, const Vec3& origin, Side s
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
 
-bool is_packed(const View3<float>& view) {
-  return view.stride == 3 && view.component[1] == view.component[0] + 1 && view.component[2] == view.component[0] + 2;
-}
-
-kernel::MeshRecords packed_records(float* first) {
-  return {.out = {first, first + 1, first + 2}, .stride = 3};
-}
-
-kernel::MeshRecords records(const View3<float>& view, std::size_t first) {
-  kernel::MeshRecords out;
-  if (view.empty()) return out;
-  out.stride = view.stride;
-  for (int c = 0; c < 3; ++c) out.out[c] = &view.at(first, c);
-  return out;
-}
-
 }  // namespace
 
-/// A job and what it points to; patches of one range take turns with it.
-struct PatchWriter::VertexJob {
-  kernel::MeshVertexJob job;
-  alignas(cache_line) std::array<float, kernel::block_lanes> doubt, noise;
-  std::array<std::array<float, 3>, 4> starts;
-  ExactPatch exact;
-
-  VertexJob() {
-    job.grid.doubt = doubt.data();
-    job.grid.noise = noise.data();
-    job.grid.exact_normal = exact_normal;
-    job.grid.exact_context = &exact;
-  }
-  VertexJob(const VertexJob&) = delete;
-  VertexJob& operator=(const VertexJob&) = delete;
-};
-
-struct PatchWriter::Streams {
-  std::array<kernel::LineQueue, kernel::line_queues> queues;
-  LineStream<float> positions, normals;
-  LineStream<std::uint32_t> indices;
-  explicit Streams(const kernel::KernelTable& kernels)
-      : positions(kernels, queues[0]), normals(kernels, queues[1]), indices(kernels, queues[2]) {}
-
-  /// Spreads what waits over a patch's vertices.
-  void share(kernel::MeshVertexJob& job, std::size_t vertices) {
-    const std::size_t lines = queues[0].lines + queues[1].lines + queues[2].lines, vectors = vertices / 16 + 2;
-    job.queues = queues.data();
-    job.lines_a_vector = static_cast<int>(lines / vectors + 1);
-  }
-};
-
 PatchWriter::PatchWriter(const PatchSet::Impl& set, const CertifiedPlan& plan, const MeshTables& tables,
-                         const kernel::KernelTable& kernels, const MeshViews& out, Stores stores)
+                         const kernel::KernelTable& kernels, const MeshViews& out, Stores stores,
+                         std::optional<std::size_t> bytes)
     : set_(set), plan_(plan), tables_(tables), kernels_(kernels), out_(out) {
   const MeshCapacity size = plan.capacity();
-  const std::size_t bytes = sizeof(float) * size.vertices * (out.normal.empty() ? 3 : 6) + 3 * sizeof(std::uint32_t) * size.triangles;
-  const bool large = stores == Stores::streaming || (stores == Stores::automatic && bytes > streaming_threshold());
+  if (!bytes)
+    bytes = sizeof(float) * size.vertices * (out.normal.empty() ? 3 : 6) + 3 * sizeof(std::uint32_t) * size.triangles;
+  const bool large = stores == Stores::streaming || (stores == Stores::automatic && *bytes > streaming_threshold());
   streaming_ = large && is_packed(out.position) && (out.normal.empty() || is_packed(out.normal));
 }
 
@@ -113,7 +49,7 @@ void PatchWriter::write(std::size_t begin, std::size_t end) const {
 
 void PatchWriter::write_streaming(std::size_t begin, std::size_t end) const {
   VertexJob vertices;
-  Streams streams(kernels_);
+  MeshStreams streams(kernels_);
   streams.positions.start(out_.position.component[0] + 3 * plan_.first_vertex(begin));
   if (!out_.normal.empty()) streams.normals.start(out_.normal.component[0] + 3 * plan_.first_vertex(begin));
   streams.indices.start(out_.indices.data() + 3 * plan_.first_triangle(begin));

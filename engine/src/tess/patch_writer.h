@@ -1,6 +1,8 @@
 #pragma once
 // One patch of a certified mesh, from its packed control points into the caller's memory.
 
+#include <optional>
+
 #include "block/patch_set_impl.h"
 #include "tess/certified_plan.h"
 #include "tess/mesh_tables.h"
@@ -13,20 +15,23 @@ namespace kernel {
 struct KernelTable;
 }
 
+struct VertexJob;
+
 /// Writes patches [begin, end) of a plan, and nothing outside their records. The bits of a vertex do not depend on the
 /// range; borders of patches that are one edge have the same positions.
 class PatchWriter {
  public:
+  /// `bytes`: how much will be written, if not all.
   PatchWriter(const PatchSet::Impl& set, const CertifiedPlan& plan, const MeshTables& tables,
-              const kernel::KernelTable& kernels, const MeshViews& out, Stores stores);
+              const kernel::KernelTable& kernels, const MeshViews& out, Stores stores,
+              std::optional<std::size_t> bytes = {});
 
   bool streaming() const { return streaming_; }
 
   void write(std::size_t begin, std::size_t end) const;
 
  private:
-  struct VertexJob;
-  struct Streams;
+  friend class VertexPass;
   /// The same through memory that is sent past the caches.
   void write_streaming(std::size_t begin, std::size_t end) const;
   /// What a patch's vertices and triangles are written from, but for where they go.

@@ -24,6 +24,10 @@ struct Division {
   EdgeMask collapsed;             ///< these borders are points: no triangle stands on them
   bool empty = false;             ///< a curve or a point: neither vertices nor triangles
 
+  friend bool operator==(const Division& a, const Division& b) {
+    return a.inner == b.inner && a.border == b.border && a.collapsed.bits == b.collapsed.bits && a.empty == b.empty;
+  }
+
   /// `rates` were asked for the patch; each of `borders` is at least the rate along it.
   static Division of(const PatchShape& shape, Rates rates, const std::array<int, 4>& borders);
 

@@ -29,6 +29,10 @@ Vec3 corner_of(const BezierPatch& patch, std::uint32_t corner) {
   return patch.point(end_u ? patch.degree_u() : 0, end_v ? patch.degree_v() : 0);
 }
 
+BorderCurve curve_of(const PatchSet::Impl& set, std::uint32_t border) {
+  return {set.patches[patch_of(border)], side_of(border)};
+}
+
 /// Edges by the middle of their ends, in cells: those whose middle lies within the tolerance of a point.
 class EdgeCells {
  public:
@@ -87,13 +91,14 @@ class Welder {
     UnionFind corners(4 * set_.patches.size());
     join_corners(corners);
     list_copies(corners);
-    measure(roundings);
+    weld_.displacements.assign(set_.patches.size(), 0);
+    measure_displacements(set_, weld_, roundings, [](std::size_t) { return true; }, weld_.displacements);
     renumber();
     return std::move(weld_);
   }
 
  private:
-  BorderCurve curve(std::uint32_t border) const { return {set_.patches[patch_of(border)], side_of(border)}; }
+  BorderCurve curve(std::uint32_t border) const { return curve_of(set_, border); }
   std::uint32_t edge_of_border(std::uint32_t border) const { return edges_.edge(patch_of(border), side_of(border)); }
 
   /// visit(border, edge) for those of patches with an area.
@@ -192,23 +197,6 @@ class Welder {
     return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
   }
 
-  void measure(std::span<const double> roundings) {
-    weld_.displacements.assign(set_.patches.size(), 0);
-    const auto moved = [&](std::uint32_t to, std::uint32_t from, double distance) {
-      double& most = weld_.displacements[patch_of(to)];
-      most = std::max(most, distance + roundings[patch_of(from)]);
-    };
-    const auto corner = [&](std::uint32_t at) { return corner_of(set_.patches[patch_of(at)], at); };
-    for (const Weld::Border& copy : weld_.borders)
-      moved(copy.to, copy.from, distance_bound(curve(copy.to), curve(copy.from), copy.reversed));
-    for (const Weld::Corner& copy : weld_.corners)
-      moved(copy.to, copy.from, length(corner(copy.to) - corner(copy.from)));
-    for (const Weld::Corner& pole : weld_.poles) {
-      const BorderCurve border = curve(pole.to);
-      for (int k = 0; k <= border.degree(); ++k) moved(pole.to, pole.from, length(border.point(k) - corner(pole.from)));
-    }
-  }
-
   void renumber() {
     std::vector<std::uint32_t> numbers(heads_.size());
     for (std::uint32_t edge = 0; edge < heads_.size(); ++edge)
@@ -231,6 +219,27 @@ class Welder {
 Weld weld_borders(const PatchSet::Impl& set, std::span<const PatchShape> shapes, std::span<const double> roundings,
                   double tolerance, SharedEdges& edges) {
   return Welder(set, shapes, tolerance, edges).run(roundings);
+}
+
+void measure_displacements(const PatchSet::Impl& set, const Weld& weld, std::span<const double> roundings,
+                           FunctionRef<bool(std::size_t patch)> wanted, std::span<double> displacements) {
+  for (std::size_t patch = 0; patch < displacements.size(); ++patch)
+    if (wanted(patch)) displacements[patch] = 0;
+  const auto moved = [&](std::uint32_t to, std::uint32_t from, double distance) {
+    double& most = displacements[patch_of(to)];
+    most = std::max(most, distance + roundings[patch_of(from)]);
+  };
+  const auto corner = [&](std::uint32_t at) { return corner_of(set.patches[patch_of(at)], at); };
+  for (const Weld::Border& copy : weld.borders)
+    if (wanted(patch_of(copy.to)))
+      moved(copy.to, copy.from, distance_bound(curve_of(set, copy.to), curve_of(set, copy.from), copy.reversed));
+  for (const Weld::Corner& copy : weld.corners)
+    if (wanted(patch_of(copy.to))) moved(copy.to, copy.from, length(corner(copy.to) - corner(copy.from)));
+  for (const Weld::Corner& pole : weld.poles) {
+    if (!wanted(patch_of(pole.to))) continue;
+    const BorderCurve border = curve_of(set, pole.to);
+    for (int k = 0; k <= border.degree(); ++k) moved(pole.to, pole.from, length(border.point(k) - corner(pole.from)));
+  }
 }
 
 }  // namespace tessera

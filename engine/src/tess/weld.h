@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "base/function_ref.h"
 #include "tess/patch_triangles.h"
 #include "tess/shared_edges.h"
 
@@ -17,9 +18,11 @@ struct Weld {
   struct Border {
     std::uint32_t to, from;
     bool reversed;  ///< their parameters run in opposite directions
+    friend bool operator==(const Border&, const Border&) = default;
   };
   struct Corner {
     std::uint32_t to, from;
+    friend bool operator==(const Corner&, const Corner&) = default;
   };
   std::vector<Border> borders;
   std::vector<Corner> corners;
@@ -40,5 +43,10 @@ struct Weld {
 /// finite and above 0.
 Weld weld_borders(const PatchSet::Impl& set, std::span<const PatchShape> shapes, std::span<const double> roundings,
                   double tolerance, SharedEdges& edges);
+
+/// How far the vertices of the patches that are `wanted` are moved at most, and rounded: into their places of
+/// `displacements`, 0 where none is moved. As the set is now. Allocates nothing.
+void measure_displacements(const PatchSet::Impl& set, const Weld& weld, std::span<const double> roundings,
+                           FunctionRef<bool(std::size_t patch)> wanted, std::span<double> displacements);
 
 }  // namespace tessera

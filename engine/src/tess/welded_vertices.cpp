@@ -39,12 +39,13 @@ void write_border(const Weld::Border& border, const CertifiedPlan& plan, const M
   for (int k = 1; k < to.rate; ++k) copy(out.position, from(opposite ? to.rate - k : k), to(k));
 }
 
-Status write_pole(const Weld::Corner& pole, const CertifiedPlan& plan, const PatchSet& set, const MeshViews& out) {
+Status write_pole(const Weld::Corner& pole, const CertifiedPlan& plan, const PatchSet::Impl& set,
+                  const MeshViews& out) {
   const RingVertices to(plan, pole.to), from(plan, pole.from);
   for (int k = 1; k < to.rate; ++k) copy(out.position, from(0), to(k));
   if (out.normal.empty()) return {};
   const Side side = all_sides[pole.to % 4];
-  const Result<BezierPatch> patch = with_pole(set.patch(pole.to / 4), side);
+  const Result<BezierPatch> patch = with_pole(set.patches[pole.to / 4], side);
   if (!patch) return patch.status();
   for (int k = 0; k <= to.rate; ++k) {
     const double t = static_cast<double>(is_backward(pole.to) ? to.rate - k : k) / to.rate;
@@ -59,17 +60,20 @@ Status write_pole(const Weld::Corner& pole, const CertifiedPlan& plan, const Pat
 
 }  // namespace
 
-Status write_welded(const Weld& weld, const CertifiedPlan& plan, const PatchSet& set, const MeshViews& out,
-                    const Execution& execution) {
+Status write_welded(const Weld& weld, const CertifiedPlan& plan, const PatchSet::Impl& set, const MeshViews& out,
+                    const Execution& execution, FunctionRef<bool(std::size_t patch)> is_written) {
+  const auto is_due = [&](const auto& copy) { return is_written(copy.to / 4) || is_written(copy.from / 4); };
   const auto borders = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) write_border(weld.borders[k], plan, out);
+    for (std::size_t k = begin; k < end; ++k)
+      if (is_due(weld.borders[k])) write_border(weld.borders[k], plan, out);
   };
   const Execution quiet{.cancel = execution.cancel};
   if (Status status = parallel_for(weld.borders.size(), copies_a_piece, quiet, borders); !status.ok()) return status;
   for (const Weld::Corner& corner : weld.corners)
-    copy(out.position, RingVertices(plan, corner.from)(0), RingVertices(plan, corner.to)(0));
+    if (is_due(corner)) copy(out.position, RingVertices(plan, corner.from)(0), RingVertices(plan, corner.to)(0));
   for (const Weld::Corner& pole : weld.poles)
-    if (Status status = write_pole(pole, plan, set, out); !status.ok()) return status;
+    if (is_due(pole))
+      if (Status status = write_pole(pole, plan, set, out); !status.ok()) return status;
   return {};
 }
 

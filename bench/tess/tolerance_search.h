@@ -1,0 +1,32 @@
+#pragma once
+// Tolerances by how fine the mesh is that they lead to.
+
+#include <cmath>
+
+#include "support/synthetic_sets.h"
+#include "tessera/certified_tessellation.h"
+
+namespace tessera::bench {
+
+inline CertifiedTessellation plan_for(const PatchSet& set, double tolerance) {
+  return test::value_of(CertifiedTessellation::make(set, {.tolerance = tolerance}));
+}
+
+/// Patches have 2 rate^2 triangles on average.
+inline double mean_rate(const CertifiedTessellation& plan) {
+  return std::sqrt(static_cast<double>(plan.capacity().triangles) / (2.0 * static_cast<double>(plan.bounds().size())));
+}
+
+/// The tolerance of a mean rate.
+inline double tolerance_for(const PatchSet& set, double rate) {
+  double low = 1e-6, high = 1;
+  for (int step = 0; step < 24; ++step) {
+    const double middle = std::sqrt(low * high);
+    const Result<CertifiedTessellation> plan = CertifiedTessellation::make(set, {.tolerance = middle});
+    const bool too_fine = !plan || mean_rate(*plan) > rate;  // refused: below what float vertices keep
+    (too_fine ? low : high) = middle;
+  }
+  return high;
+}
+
+}  // namespace tessera::bench

@@ -1,0 +1,101 @@
+#include "eval/patch_edits.h"
+
+#include <cmath>
+#include <string>
+
+#include "kernel/kernel_table.h"
+#include "parallel/least_index.h"
+#include "parallel/parallel_for.h"
+#include "surface/patch_pieces.h"
+
+namespace tessera {
+namespace {
+
+constexpr std::size_t edits_a_piece = 256;
+
+/// Coordinates up to here, and an origin as near, fit blocks of every kind with weights that did: in float |V - o| is
+/// below 2^71 then, and power coefficients of degree 15 are at most 3^30 times as large.
+constexpr double plain_size = 0x1p70;
+
+bool all_plain(std::span<const Vec3> points) {
+  const double* numbers = &points.front().x;
+  unsigned refused = 0;
+  for (std::size_t k = 0; k < 3 * points.size(); ++k) refused |= !(std::abs(numbers[k]) <= plain_size);
+  return refused == 0;
+}
+
+/// Whether a patch with these points could be in a set of its own.
+bool fits(const PatchSet::Impl& set, const BezierPatch& patch, std::span<const Vec3> points) {
+  const Result<BezierPatch> edited = patch.with_points(points);
+  return edited && PatchSet::from(std::span(&*edited, 1), {.blocks = set.kinds, .origin = set.origin}).ok();
+}
+
+std::span<const Vec3> points_of(const PatchSet::Impl& set, const PatchEdits& edits, const TouchedBlocks& touched,
+                                std::size_t edit) {
+  return edits.points.subspan(touched.first_point(edit), set.patches[edits.patch[edit]].points().size());
+}
+
+Status refused_points(std::size_t edit, std::uint32_t patch, std::span<const Vec3> points) {
+  for (std::size_t k = 0; k < points.size(); ++k)
+    if (!is_finite(points[k]))
+      return refused_edit(
+          StatusCode::non_finite, edit,
+          "control point " + std::to_string(k) + " of patch " + std::to_string(patch) + " is not finite");
+  return refused_edit(StatusCode::non_finite, edit,
+                      "a control point of patch " + std::to_string(patch) +
+                          ", relative to the set's origin, is outside the range of its blocks' numbers");
+}
+
+}  // namespace
+
+Status prepare_edits(PatchSet::Impl& set, const PatchEdits& edits, const TouchedBlocks& touched,
+                     const Execution& execution, const KeepsShape* keeps_shape) {
+  const bool near = max_abs(set.origin) <= plain_size;
+  LeastIndex refused, reshaped;
+  const Execution checking{.cancel = execution.cancel};
+  const Status status =
+      parallel_for(edits.patch.size(), edits_a_piece, checking, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+          BezierPatch& patch = set.patches[edits.patch[k]];
+          const auto points = points_of(set, edits, touched, k);
+          if (!(near && all_plain(points)) && !fits(set, patch, points)) return refused.add(k);
+          if (keeps_shape && !(*keeps_shape)(edits.patch[k], points)) return reshaped.add(k);
+          PatchPieces::make_sole(patch);
+        }
+      });
+  if (!status.ok()) return status;
+  if (const std::size_t k = refused.index(); refused.found())
+    return refused_points(k, edits.patch[k], points_of(set, edits, touched, k));
+  if (const std::size_t k = reshaped.index(); reshaped.found())
+    return refused_edit(StatusCode::stale, k,
+                        "patch " + std::to_string(edits.patch[k]) +
+                            " would have other collapsed edges than when the plan was made");
+  return {};
+}
+
+void pack_edits(PatchSet::Impl& set, const PatchEdits& edits, const TouchedBlocks& touched,
+                const kernel::KernelTable& kernels, std::uint32_t block) {
+  const std::uint32_t* patches = set.lane_patches.data() + block * std::size_t{PatchSet::lanes};
+  const std::uint32_t* of_lane = touched.edits(block);
+  const auto write_points = [&](std::size_t lane) {
+    PatchPieces::overwrite(set.patches[patches[lane]], edits.points.data() + touched.first_point(of_lane[lane]));
+  };
+  // All fit: they have been checked.
+  if (touched.count(block) == set.lane_counts[block]) {
+    for (std::size_t lane = 0; lane < set.lane_counts[block]; ++lane) write_points(lane);
+    set.pack_block(block, kernels);
+    return;
+  }
+  for (std::size_t lane = 0; lane < PatchSet::lanes; ++lane) {
+    if (of_lane[lane] == TouchedBlocks::none) continue;
+    write_points(lane);
+    (void)set.pack_lanes(patches[lane]);
+  }
+}
+
+void finish_edits(PatchSet::Impl& set, const PatchEdits& edits) {
+  for (const std::uint32_t patch : edits.patch) set.note_doubt(patch);
+  if (!edits.patch.empty()) ++set.revision;
+}
+
+}  // namespace tessera

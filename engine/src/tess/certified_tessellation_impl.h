@@ -1,0 +1,53 @@
+#pragma once
+// The inside of a CertifiedTessellation.
+
+#include <vector>
+
+#include "tess/certified_plan.h"
+#include "tess/mesh_tables.h"
+#include "tessera/certified_tessellation.h"
+
+namespace tessera {
+
+class CertifiedTessellation::Impl {
+ public:
+  /// `tolerance`: the distance that is kept, infinite if any will do.
+  Impl(const PatchSet& set, const CertifiedOptions& options, double tolerance, CertifiedPlan plan,
+       const CertifiedPlanner& planner, Isa isa);
+
+  const CertifiedOptions& options() const { return options_; }
+  double tolerance() const { return tolerance_; }
+  const CertifiedPlan& plan() const { return plan_; }
+  std::span<const PatchShape> shapes() const { return shapes_; }  ///< before welding
+  const Weld& weld() const { return weld_; }
+  const MeshTables& tables() const { return tables_; }
+  Isa isa() const { return isa_; }
+  Vec3 origin() const { return origin_; }
+  std::uint64_t revision() const { return revision_; }  ///< of the set, when the plan was made
+
+  double bound() const { return bound_; }
+  double angle() const { return angle_; }
+  std::size_t patches_without_angle() const { return without_angle_; }
+  double pixels() const { return pixels_; }
+  bool certified() const { return fit_error_.certified; }
+  std::size_t welded_borders() const { return weld_.borders.size() + weld_.poles.size(); }
+
+  Status run(const PatchSet& set, const MeshViews& out, const Execution& execution) const;
+  std::size_t divided_otherwise(const Impl& other) const;
+
+ private:
+  CertifiedOptions options_;
+  double tolerance_;
+  CertifiedPlan plan_;
+  std::vector<PatchShape> shapes_;
+  Weld weld_;
+  Vec3 origin_;
+  FitError fit_error_;
+  std::uint64_t revision_;
+  Isa isa_;
+  MeshTables tables_;
+  float bound_ = 0, angle_ = 0, pixels_ = 0;
+  std::size_t without_angle_ = 0;
+};
+
+}  // namespace tessera

@@ -1,0 +1,106 @@
+#include "tess/present_bounds.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "parallel/parallel_for.h"
+
+namespace tessera {
+namespace {
+
+constexpr std::size_t blocks_a_piece = 8;
+/// Bounds of one net by different sums differ by less; the planner has added it already.
+constexpr double float_sums = 1 + 0x1p-20;
+
+}  // namespace
+
+PresentBounds::PresentBounds(const PatchSet::Impl& set, const CertifiedTessellation::Impl& plan)
+    : chords_(set),
+      roundings_(set.patches.size()),
+      displacements_(plan.weld().displacements),
+      bounds_(plan.plan().bounds().begin(), plan.plan().bounds().end()),
+      moved_(displacements_.size(), 0),
+      is_unproven_(set.patches.size(), 0),
+      is_unknown_(set.patches.size(), 0),
+      touched_lanes_(set.lane_counts.size(), 0) {
+  touched_blocks_.reserve(set.lane_counts.size());
+  // Welding takes bounds and roundings of patches that are not touched into account.
+  for (std::size_t k = 0; k < displacements_.size(); ++k) roundings_[k] = vertex_rounding(set.patches[k], set.origin);
+  if (displacements_.empty()) return;
+  for (std::uint32_t block = 0; block < set.lane_counts.size(); ++block) chords_.bound(set, block);
+}
+
+void PresentBounds::touch(const PatchSet::Impl& set, std::span<const std::uint32_t> patches) {
+  for (const std::uint32_t patch : patches) {
+    const PatchSet::Slot slot = set.slots[patch];
+    if (touched_lanes_[slot.block] == 0) touched_blocks_.push_back(slot.block);
+    touched_lanes_[slot.block] |= 1u << slot.lane;
+  }
+}
+
+Status PresentBounds::bound_blocks(const PatchSet::Impl& set, const Execution& execution) {
+  return parallel_for(touched_blocks_.size(), blocks_a_piece, execution, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::uint32_t block = touched_blocks_[k], wanted = touched_lanes_[block];
+      chords_.bound(set, block, wanted);
+      for (std::size_t lane = 0; lane < set.lane_counts[block]; ++lane) {
+        if (!(wanted >> lane & 1u)) continue;
+        const std::size_t patch = set.lane_patches[block * PatchSet::lanes + lane];
+        const BezierPatch& net = set.patches[patch];
+        const std::optional<double> size = chords_.size(block, lane);
+        roundings_[patch] = size ? vertex_rounding(net.degree_u(), net.degree_v(), false, *size)
+                                 : vertex_rounding(net, set.origin);
+      }
+    }
+  });
+}
+
+void PresentBounds::find_moved(const PatchSet::Impl& set, const Weld& weld) {
+  std::fill(moved_.begin(), moved_.end(), std::uint8_t{0});
+  const auto look = [&](const auto& copies) {
+    for (const auto& copy : copies)
+      if (is_touched(set, copy.from / 4) || is_touched(set, copy.to / 4)) moved_[copy.to / 4] = 1;
+  };
+  look(weld.borders);
+  look(weld.corners);
+  look(weld.poles);
+  measure_displacements(set, weld, roundings_, [&](std::size_t patch) { return moved_[patch] != 0; }, displacements_);
+}
+
+void PresentBounds::set_bound(const PatchSet::Impl& set, const CertifiedTessellation::Impl& plan, std::size_t patch) {
+  const PatchSet::Slot slot = set.slots[patch];
+  const double moved = displacements_.empty() ? 0 : displacements_[patch];
+  const double bound = chords_.chord(slot.block, slot.lane).distance(plan.plan().rates()[patch]) +
+                       std::max(roundings_[patch], moved) + set.fit_error.distance;
+  bounds_[patch] = rounded_up(bound);
+  if (is_touched(set, patch) && (plan.options().angle || plan.options().pixels)) is_unknown_[patch] = 1;
+  is_unproven_[patch] = is_unknown_[patch] != 0 || !(bound <= plan.tolerance() * float_sums);
+}
+
+Status PresentBounds::restate(const PatchSet::Impl& set, const CertifiedTessellation::Impl& plan,
+                              const Execution& execution) {
+  if (Status status = bound_blocks(set, execution); !status.ok()) return status;
+  if (!displacements_.empty()) find_moved(set, plan.weld());
+  const auto state = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      for (std::size_t lane = 0; lane < PatchSet::lanes; ++lane)
+        if (touched_lanes_[touched_blocks_[k]] >> lane & 1u)
+          set_bound(set, plan, set.lane_patches[touched_blocks_[k] * std::size_t{PatchSet::lanes} + lane]);
+  };
+  if (Status status = parallel_for(touched_blocks_.size(), blocks_a_piece, execution, state); !status.ok())
+    return status;
+  for (std::size_t patch = 0; patch < moved_.size(); ++patch)
+    if (moved_[patch] && !is_touched(set, patch)) set_bound(set, plan, patch);
+  for (const std::uint32_t block : touched_blocks_) touched_lanes_[block] = 0;
+  touched_blocks_.clear();
+  unproven_ = std::accumulate(is_unproven_.begin(), is_unproven_.end(), std::size_t{0});
+  return {};
+}
+
+double PresentBounds::bound() const {
+  double most = 0;
+  for (const float bound : bounds_) most = std::max(most, double(bound));
+  return most;
+}
+
+}  // namespace tessera

@@ -1,0 +1,80 @@
+#pragma once
+// What the vertices of patches are written with: the kernel's job, and the streams that take them past the caches.
+
+#include <algorithm>
+#include <array>
+
+#include "kernel/kernel_table.h"
+#include "tess/line_stream.h"
+#include "tess/stitched_patch.h"
+#include "tessera/views.h"
+
+namespace tessera {
+
+/// What an exact normal is made from.
+struct ExactPatch {
+  const BezierPatch* patch = nullptr;
+  const Division* division = nullptr;
+};
+
+/// See kernel::ExactNormal and MeshVertexJob::grid.
+inline int exact_normal(void* context, int first, int second, int lane, float* normal) {
+  const auto& exact = *static_cast<const ExactPatch*>(context);
+  const auto vertex = static_cast<std::size_t>(lane < kernel::mesh_tile ? first + lane : second + lane - kernel::mesh_tile);
+  const auto at = exact.division->parameters(std::min(vertex, exact.division->vertex_count() - 1));
+  const UnitNormal found = unit_normal(*exact.patch, at.u, at.v);
+  normal[0] = static_cast<float>(found.direction.x);
+  normal[1] = static_cast<float>(found.direction.y);
+  normal[2] = static_cast<float>(found.direction.z);
+  return static_cast<int>(found.kind);
+}
+
+/// A job and what it points to; patches of one range take turns with it.
+struct VertexJob {
+  kernel::MeshVertexJob job;
+  alignas(cache_line) std::array<float, kernel::block_lanes> doubt, noise;
+  std::array<std::array<float, 3>, 4> starts;
+  ExactPatch exact;
+
+  VertexJob() {
+    job.grid.doubt = doubt.data();
+    job.grid.noise = noise.data();
+    job.grid.exact_normal = exact_normal;
+    job.grid.exact_context = &exact;
+  }
+  VertexJob(const VertexJob&) = delete;
+  VertexJob& operator=(const VertexJob&) = delete;
+};
+
+struct MeshStreams {
+  std::array<kernel::LineQueue, kernel::line_queues> queues;
+  LineStream<float> positions, normals;
+  LineStream<std::uint32_t> indices;
+  explicit MeshStreams(const kernel::KernelTable& kernels)
+      : positions(kernels, queues[0]), normals(kernels, queues[1]), indices(kernels, queues[2]) {}
+
+  /// Spreads what waits over a patch's vertices.
+  void share(kernel::MeshVertexJob& job, std::size_t vertices) {
+    const std::size_t lines = queues[0].lines + queues[1].lines + queues[2].lines, vectors = vertices / 16 + 2;
+    job.queues = queues.data();
+    job.lines_a_vector = static_cast<int>(lines / vectors + 1);
+  }
+};
+
+inline bool is_packed(const View3<float>& view) {
+  return view.stride == 3 && view.component[1] == view.component[0] + 1 && view.component[2] == view.component[0] + 2;
+}
+
+inline kernel::MeshRecords packed_records(float* first) {
+  return {.out = {first, first + 1, first + 2}, .stride = 3};
+}
+
+inline kernel::MeshRecords records(const View3<float>& view, std::size_t first) {
+  kernel::MeshRecords out;
+  if (view.empty()) return out;
+  out.stride = view.stride;
+  for (int c = 0; c < 3; ++c) out.out[c] = &view.at(first, c);
+  return out;
+}
+
+}  // namespace tessera

@@ -1,0 +1,33 @@
+#pragma once
+// Positions and normals of some patches of a certified mesh, the rest of which stays as it is.
+
+#include "tess/patch_writer.h"
+#include "tess/vertex_job.h"
+
+namespace tessera {
+
+/// Takes patch after patch: fastest in the order of the mesh. Writes nothing outside their records. Lives on a task's
+/// stack; allocates nothing.
+class VertexPass {
+ public:
+  explicit VertexPass(const PatchWriter& writer) : writer_(writer), streams_(writer.kernels_) {}
+  VertexPass(const VertexPass&) = delete;
+  VertexPass& operator=(const VertexPass&) = delete;
+
+  void write(std::size_t patch);
+  /// What is still on its way. Once, at the end.
+  void finish();
+
+ private:
+  static constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
+
+  void write_streaming(std::size_t first, std::size_t count);
+  void stop();
+
+  const PatchWriter& writer_;
+  std::size_t next_ = nowhere;  ///< the vertex at which the streams stand
+  VertexJob vertices_;
+  MeshStreams streams_;
+};
+
+}  // namespace tessera
