@@ -61,6 +61,8 @@ struct Animated {
   }
 };
 
+enum class Shared { nothing, vertices, normals, both };
+
 /// A field whose patches are moved by rounding, so that they meet by welding alone.
 std::vector<BezierPatch> torn_field(int rows, int columns) {
   Random random(5);
@@ -77,15 +79,19 @@ TEST(MeshUpdate, TheSameBytesAsAMeshWrittenAnew) {
   for (const Stores stores : {Stores::plain, Stores::streaming})
     for (const std::size_t threads : {1u, 3u}) {
       const oneapi::tbb::global_control control(oneapi::tbb::global_control::max_allowed_parallelism, threads);
-      for (const auto& patches : {wavy_field(23, 17), mixed_patches(3, 200), sphere(), torn_field(9, 7)}) {
-        Animated body(patches, {.tolerance = 0.01, .weld = 1e-4});
-        for (const std::size_t step : {1u, 2u, 7u, 100u}) {
-          const std::uint64_t revision = body.set.revision();
-          body.run(swollen(body.set, step, 0.02), {.stores = stores});
-          EXPECT_EQ(body.set.revision(), revision + 1);
-          body.expect_as_anew();
+      for (const auto& patches : {wavy_field(23, 17), mixed_patches(3, 200), sphere(), torn_field(9, 7)})
+        for (const Shared shared : {Shared::nothing, Shared::vertices, Shared::normals, Shared::both}) {
+          CertifiedOptions options{.tolerance = 0.01, .weld = 1e-4};
+          options.share_vertices = shared == Shared::vertices || shared == Shared::both;
+          if (shared == Shared::normals || shared == Shared::both) options.crease_angle = 0.2;
+          Animated body(patches, options);
+          for (const std::size_t step : {1u, 2u, 7u, 100u}) {
+            const std::uint64_t revision = body.set.revision();
+            body.run(swollen(body.set, step, 0.02), {.stores = stores});
+            EXPECT_EQ(body.set.revision(), revision + 1);
+            body.expect_as_anew();
+          }
         }
-      }
     }
 }
 
@@ -116,14 +122,16 @@ TEST(MeshUpdate, WeldedNeighboursFollow) {
   EXPECT_EQ(2 * report.distinct_positions, report.triangles + report.open_edges + 2);  // a disc still
 }
 
-/// The largest distance from any patch of what is meshed from it, over its bound.
-double found_over_bound(const Animated& body) {
+/// The largest distance from any patch of what is meshed from it, over its bound. `apart`: a mesh of the same triangles
+/// whose vertices have the parameters of their own patch.
+double found_over_bound(const Animated& body, const Mesh& apart) {
   double most = 0;
   for (std::size_t t = 0; t < body.mesh.triangle_count(); ++t) {
     MeshTriangle triangle;
     for (std::size_t c = 0; c < 3; ++c) {
       const std::size_t k = body.mesh.indices[3 * t + c];
-      triangle.parameters[c] = {body.mesh.parameters[2 * k], body.mesh.parameters[2 * k + 1]};
+      const std::size_t own = apart.indices[3 * t + c];
+      triangle.parameters[c] = {apart.parameters[2 * own], apart.parameters[2 * own + 1]};
       triangle.corners[c] = body.mesh.origin + Vec3{body.mesh.positions[3 * k], body.mesh.positions[3 * k + 1],
                                                     body.mesh.positions[3 * k + 2]};
     }
@@ -133,6 +141,8 @@ double found_over_bound(const Animated& body) {
   }
   return most;
 }
+
+double found_over_bound(const Animated& body) { return found_over_bound(body, body.mesh); }
 
 TEST(MeshUpdate, RestatedBoundsHold) {
   for (const auto& patches : {wavy_field(5, 4), sphere(), torn_field(3, 3)}) {
@@ -149,6 +159,26 @@ TEST(MeshUpdate, RestatedBoundsHold) {
     }
     EXPECT_GT(body.update.unproven(), 0u);
   }
+}
+
+TEST(MeshUpdate, BoundsHoldWhereSharedBordersPart) {
+  // One patch leaves its neighbours; vertices that it shares stay with them.
+  Animated body(wavy_field(3, 3), {.tolerance = 0.02, .share_vertices = true});
+  const Mesh apart = mesh_of(body.set, good(CertifiedTessellation::make(body.set, {.tolerance = 0.02})));
+  const auto lifted = [&](double by) {
+    Edits edits;
+    edits.patch = {4};
+    for (const Vec3& p : body.set.patch(4).points()) edits.points.push_back(p + Vec3{0, 0, by});
+    return edits;
+  };
+  body.run(lifted(0));
+  ASSERT_TRUE(body.update.restate(body.set).ok());
+  EXPECT_EQ(body.update.unproven(), 0u);
+  body.run(lifted(0.3));
+  ASSERT_TRUE(body.update.restate(body.set).ok());
+  EXPECT_GE(body.update.unproven(), 1u);
+  EXPECT_GE(body.update.bounds()[4], 0.3f);
+  EXPECT_LE(found_over_bound(body, apart), 1);
 }
 
 TEST(MeshUpdate, BoundsOfPatchesThatStayAreThoseOfThePlan) {

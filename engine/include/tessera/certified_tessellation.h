@@ -46,6 +46,15 @@ struct CertifiedOptions {
   /// 1e-6 of the set's size suits files whose neighbours differ by rounding. It should stay below what the smallest patch
   /// measures: thinner ones lose their area.
   double weld = 0;
+  /// Patches that meet: where their normals lie within this angle of each other all along a border, radians, 0 to pi, and
+  /// look the same way, they get one normal a vertex, that of the patch that comes first; so does a pole all around. Borders
+  /// where they do not are creases, with a normal for each patch. 0.01 takes in joins that are G1 but for rounding. It is
+  /// found out by the normals of the mesh when the plan is made, and stays. Without it each patch has its own normals.
+  std::optional<double> crease_angle = {};
+  /// Patches that meet share the vertices of their border by index, and a pole is one vertex: with a crease angle where
+  /// they share normals; without one everywhere, and then there are no normals. A shared vertex counts to the patch that
+  /// comes first: its parameters are those of that patch. Without it each patch has vertices of its own, of the same bits.
+  bool share_vertices = false;
   /// More triangles than this are refused.
   std::uint64_t most_triangles = std::uint64_t{1} << 30;
   /// The tolerance is not given but found: the smallest, within 1 percent, for which most_triangles are enough. Angle and
@@ -70,11 +79,12 @@ struct CertifiedOptions {
 /// vertices are moved is part of the bounds.
 ///
 /// Layout of the vertices, patch after patch: first_vertex(k) + (iu - 1) * (rates v - 1) + iv - 1 for the inner points,
-/// then the border points counter-clockwise from (0,0), each corner once. Immutable. Threads: any number of const calls.
+/// then the border points counter-clockwise from (0,0), each corner once, but for shared ones that count to another patch.
+/// Immutable. Threads: any number of const calls.
 class CertifiedTessellation {
  public:
   /// Errors: invalid_argument (no tolerance of any kind, or one that is not above 0; one that a patch's rounding, welding or
-  /// the fit error exceeds already; a view without a picture; a weld out of range; more triangles or
+  /// the fit error exceeds already; a view without a picture; a weld or a crease angle out of range; more triangles or
   /// vertices than allowed, or more than 4096 segments along a parameter: the message says how many triangles it takes;
   /// fewer triangles than one cell a patch takes), unsupported (the set has no float
   /// Bernstein blocks), isa_unavailable, cancelled.
@@ -103,12 +113,15 @@ class CertifiedTessellation {
   std::span<const float> pixel_bounds() const;
   /// Borders that take the vertices of others, and those made points: joined by welding, not by their bits.
   std::size_t welded_borders() const;
-  MeshCapacity capacity() const;  ///< exact
-  /// A mesh of the right size with all attributes.
+  MeshCapacity capacity() const;  ///< exact, of triangles alone
+  /// The same with quads: as many as there are cells that no strip belongs to, none where they are all in strips.
+  MeshCapacity quad_capacity() const;
+  /// A mesh of the right size with all attributes that there are, of triangles.
   Result<Mesh> allocate() const;
   /// Writes the mesh of the set that the plan was made for, at any revision: the same triangles, whatever the control
   /// points (the bounds hold for the plan's own revision). Errors: buffer_too_small, stale (another number of patches,
-  /// other degrees or collapsed borders), invalid_argument, cancelled. Nothing is written on any but cancelled. The same
+  /// other degrees or collapsed borders), invalid_argument (views; normals of vertices that are shared everywhere),
+  /// cancelled. Nothing is written on any but cancelled. The same
   /// bytes for any number of threads, and on every instruction set that fuses multiply-adds; border positions on all.
   /// Packed views (three floats a record) of large meshes are written past the caches unless execution.stores is plain.
   Status run(const PatchSet& set, const MeshViews& out, const Execution& execution = {}) const;

@@ -16,6 +16,7 @@ namespace tessera {
 struct MeshCapacity {
   std::size_t vertices = 0;
   std::size_t triangles = 0;
+  std::size_t quads = 0;
 };
 
 /// Where a mesh is written. Empty views are not wanted; positions and indices are required.
@@ -25,6 +26,10 @@ struct MeshViews {
   View2<float> parameter = {};           ///< (u,v) of the patch, in [0,1]^2
   std::span<std::uint32_t> patch = {};   ///< the patch of each triangle
   std::span<std::uint32_t> indices = {}; ///< three a triangle, counter-clockwise seen from where r_u x r_v points
+  /// Four a quad, the same way around. Of a certified mesh: then its inner cells come here, and `patch` and `indices`
+  /// hold the triangles of the strips alone; its quad_capacity() says how many.
+  std::span<std::uint32_t> quads = {};
+  std::span<std::uint32_t> quad_patch = {};  ///< the patch of each quad
 };
 
 /// A run of triangles that belong together, such as those of one surface.

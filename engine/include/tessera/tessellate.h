@@ -40,7 +40,7 @@ class TessellationPlan {
   /// A mesh of the right size with all attributes.
   Result<Mesh> allocate() const;
   /// Writes the mesh. `set` is the one that the plan was made for, at any revision that collapses the same edges.
-  /// Errors: buffer_too_small, stale, invalid_argument, cancelled. Nothing is written on any but cancelled.
+  /// Errors: buffer_too_small, stale, invalid_argument, unsupported (quads), cancelled. Nothing is written on any but cancelled.
   /// The same bytes for any number of threads. Allocates nothing after the first call.
   Status run(const PatchSet& set, const MeshViews& out, const Execution& execution = {}) const;
 

@@ -267,17 +267,8 @@ Result<CertifiedPlan> CertifiedPlanner::plan(double tolerance, std::uint64_t mos
   CertifiedPlan plan;
   if (Status status = choose_rates(tolerance, kept, plan, execution); !status.ok()) return status;
   plan.divisions_ = divide(plan.rates_);
-  std::size_t vertices = 0, triangles = 0;
-  plan.first_vertex_.reserve(shapes_.size() + 1);
-  plan.first_triangle_.reserve(shapes_.size() + 1);
-  for (const Division& division : plan.divisions_) {
-    plan.first_vertex_.push_back(vertices);
-    plan.first_triangle_.push_back(triangles);
-    vertices += division.vertex_count();
-    triangles += division.triangle_count();
-  }
-  plan.first_vertex_.push_back(vertices);
-  plan.first_triangle_.push_back(triangles);
+  plan.lay_out();
+  const auto [vertices, triangles, quads] = plan.capacity();
   if (triangles <= most_triangles && vertices <= most_vertices) return plan;
   return Status(StatusCode::invalid_argument, wanted(tolerance) + " takes " + std::to_string(triangles) +
                                                   " triangles and " + std::to_string(vertices) + " vertices, " +

@@ -32,6 +32,8 @@ float rounded_up(double x);
 /// Rates stay at most this: parameters i / rate are then well apart in float.
 inline constexpr int most_rate = 4096;
 
+/// How each patch is divided, and where its vertices and triangles lie. Borders and corners go by 4 * patch + side, as in
+/// VertexCopies.
 class CertifiedPlan {
  public:
   std::size_t patch_count() const { return divisions_.size(); }
@@ -39,18 +41,45 @@ class CertifiedPlan {
   std::span<const Rates> rates() const { return rates_; }  ///< what each patch needs for itself
   std::size_t first_vertex(std::size_t patch) const { return first_vertex_[patch]; }
   std::size_t first_triangle(std::size_t patch) const { return first_triangle_[patch]; }
-  MeshCapacity capacity() const { return {first_vertex_.back(), first_triangle_.back()}; }
+  MeshCapacity capacity() const { return {first_vertex_.back(), first_triangle_.back(), 0}; }
+  /// Cells between inner points may be quads; triangles are then counted without theirs.
+  std::size_t first_quad(std::size_t patch) const { return first_quad_[patch]; }
+  std::size_t first_strip(std::size_t patch) const { return first_triangle_[patch] - 2 * first_quad_[patch]; }
+  MeshCapacity quad_capacity() const { return {first_vertex_.back(), first_strip(patch_count()), first_quad_.back()}; }
   std::span<const float> bounds() const { return bounds_; }
   std::span<const float> angles() const { return angles_; }  ///< empty if none was asked for
   std::span<const float> pixels() const { return pixels_; }  ///< the same
 
+  /// Stores vertices that are copies once. Those of the ring that a patch owns follow its inner points.
+  void share(const VertexCopies& copies);
+  bool shares_vertices() const { return !corner_sources_.empty(); }
+  bool owns_corner(std::size_t corner) const { return !shares_vertices() || corner_sources_[corner] == corner; }
+  /// The points inside a border.
+  bool owns_border(std::size_t border) const {
+    return !shares_vertices() || (border_sources_[border].from == border && !border_sources_[border].is_point);
+  }
+  /// The vertex at point k of a border of a patch with an area, as the ring runs, k = 0 .. rate.
+  std::size_t ring_vertex(std::uint32_t border, int k) const;
+
  private:
   friend class CertifiedPlanner;
+  struct BorderSource {
+    std::uint32_t from;
+    bool reversed = false, is_point = false;  ///< a point: `from` is a corner
+  };
+  void lay_out();
+  std::size_t owned_ring_count(std::size_t patch, std::uint32_t sides = 4) const;
+
   std::vector<Rates> rates_;
   std::vector<Division> divisions_;
-  std::vector<std::size_t> first_vertex_, first_triangle_;  ///< of each patch, and the number of all
+  std::vector<std::size_t> first_vertex_, first_triangle_, first_quad_;  ///< of each patch, and the number of all
   std::vector<float> bounds_, angles_, pixels_;
+  std::vector<std::uint32_t> corner_sources_;  ///< of each corner, itself if it owns its vertex; empty if nothing is shared
+  std::vector<BorderSource> border_sources_;
 };
+
+/// Whether the ring runs against the parameter along a border.
+constexpr bool is_backward(std::uint32_t border) { return border % 4 >= 2; }
 
 /// What is to be kept beside a distance, and how borders are joined.
 struct PlannerOptions {
@@ -78,6 +107,7 @@ class CertifiedPlanner {
   /// Before welding.
   std::span<const PatchShape> shapes() const { return shapes_; }
   const Weld& weld() const { return weld_; }
+  const SharedEdges& edges() const { return edges_; }  ///< welded
   /// `tolerance`: the distance, infinite if any will do. Errors: invalid_argument, as CertifiedTessellation::make says;
   /// cancelled.
   Result<CertifiedPlan> plan(double tolerance, std::uint64_t most_triangles, const Execution& execution,

@@ -11,6 +11,7 @@
 #include "kernel/kernel_table.h"
 #include "parallel/parallel_for.h"
 #include "tess/certified_tessellation_impl.h"
+#include "tess/joins.h"
 #include "tess/mesh_views.h"
 #include "tess/patch_writer.h"
 #include "tess/welded_vertices.h"
@@ -43,8 +44,44 @@ CertifiedTessellation::Impl::Impl(const PatchSet& set, const CertifiedOptions& o
   }
 }
 
+Status CertifiedTessellation::Impl::join(const PatchSet& set, const CertifiedPlanner& planner,
+                                         const Execution& execution) {
+  if (!options_.crease_angle && !options_.share_vertices) return {};
+  Mesh mesh;  // as it is while each patch has vertices of its own
+  MeshViews views;
+  if (options_.crease_angle) {
+    mesh = empty_mesh(plan_.capacity(), origin_);
+    views = mesh.views();
+    const PatchWriter writer(set.impl(), plan_, tables_, kernel::kernels(isa_), views, Stores::plain);
+    const Execution quiet{.cancel = execution.cancel};
+    const auto write = [&](std::size_t begin, std::size_t end) { writer.write(begin, end); };
+    Status status = parallel_for(plan_.patch_count(), patches_a_piece, quiet, write);
+    if (status.ok()) status = write_welded(weld_, plan_, set.impl(), views, quiet, [](std::size_t) { return true; });
+    if (!status.ok()) return status;
+  }
+  joins_ = find_joins(set.impl(), plan_, planner.edges(), weld_, options_.crease_angle ? &views.normal : nullptr,
+                      options_.crease_angle.value_or(0));
+  if (options_.share_vertices) plan_.share(joins_);
+  return {};
+}
+
+Status CertifiedTessellation::Impl::check_normals(const MeshViews& out) const {
+  if (out.normal.empty() || has_normals()) return {};
+  return {StatusCode::invalid_argument, "vertices that patches share have no normals without a crease angle"};
+}
+
+Status CertifiedTessellation::Impl::write_copies(const PatchSet::Impl& set, const MeshViews& out,
+                                                 const Execution& execution,
+                                                 FunctionRef<bool(std::size_t patch)> is_written) const {
+  if (Status status = write_welded(weld_, plan_, set, out, execution, is_written); !status.ok()) return status;
+  if (plan_.shares_vertices() || out.normal.empty()) return {};
+  return write_joined_normals(joins_, plan_, out.normal, execution, is_written);
+}
+
 Status CertifiedTessellation::Impl::run(const PatchSet& set, const MeshViews& out, const Execution& execution) const {
-  if (Status status = check_views(out, plan_.capacity()); !status.ok()) return status;
+  const MeshCapacity wanted = out.quads.empty() ? plan_.capacity() : plan_.quad_capacity();
+  if (Status status = check_views(out, wanted); !status.ok()) return status;
+  if (Status status = check_normals(out); !status.ok()) return status;
   if (Status status = check_shapes(set, shapes_); !status.ok()) return status;
   const PatchWriter writer(set.impl(), plan_, tables_, kernel::kernels(isa_), out, execution.stores);
   const auto write = [&](std::size_t begin, std::size_t end) { writer.write(begin, end); };
@@ -53,7 +90,7 @@ Status CertifiedTessellation::Impl::run(const PatchSet& set, const MeshViews& ou
     execution.report->isa = isa_;
     execution.report->streaming = writer.streaming();
   }
-  return write_welded(weld_, plan_, set.impl(), out, execution, [](std::size_t) { return true; });
+  return write_copies(set.impl(), out, execution, [](std::size_t) { return true; });
 }
 
 std::size_t CertifiedTessellation::Impl::divided_otherwise(const Impl& other) const {
@@ -69,6 +106,9 @@ std::size_t CertifiedTessellation::Impl::divided_otherwise(const Impl& other) co
   compare(weld_.borders, other.weld_.borders);
   compare(weld_.corners, other.weld_.corners);
   compare(weld_.poles, other.weld_.poles);
+  compare(joins_.borders, other.joins_.borders);
+  compare(joins_.corners, other.joins_.corners);
+  compare(joins_.poles, other.joins_.poles);
   return static_cast<std::size_t>(std::count(changed.begin(), changed.end(), 1));
 }
 
@@ -94,6 +134,8 @@ Result<PlannerOptions> checked(const CertifiedOptions& options, const PatchSet& 
     return bad("the weld is " + text(options.weld) + ", it must be finite and at least 0");
   if (const double size = options.weld > 0 ? set.box().diagonal() : 0; options.weld > most_weld * size)
     return bad("the weld is " + text(options.weld) + ", more than a twentieth of the model's size, " + text(size));
+  if (options.crease_angle && !(*options.crease_angle >= 0 && *options.crease_angle <= std::numbers::pi))
+    return bad("the crease angle is " + text(*options.crease_angle) + ", it must be from 0 to pi");
   PlannerOptions planner;
   planner.weld = options.weld;
   planner.angle = options.angle;
@@ -130,7 +172,9 @@ Result<std::unique_ptr<CertifiedTessellation::Impl>> plan_for(const PatchSet& se
   if (!plan && plan.status().code() == StatusCode::invalid_argument && !kept.rates.empty())
     plan = planner->plan(tolerance, options.most_triangles, execution);
   if (!plan) return plan.status();
-  return std::make_unique<CertifiedTessellation::Impl>(set, options, tolerance, std::move(*plan), *planner, *isa);
+  auto made = std::make_unique<CertifiedTessellation::Impl>(set, options, tolerance, std::move(*plan), *planner, *isa);
+  if (Status status = made->join(set, *planner, execution); !status.ok()) return status;
+  return made;
 }
 
 }  // namespace
@@ -175,9 +219,14 @@ double CertifiedTessellation::pixels() const { return impl_->pixels(); }
 std::span<const float> CertifiedTessellation::pixel_bounds() const { return impl_->plan().pixels(); }
 std::size_t CertifiedTessellation::welded_borders() const { return impl_->welded_borders(); }
 MeshCapacity CertifiedTessellation::capacity() const { return impl_->plan().capacity(); }
+MeshCapacity CertifiedTessellation::quad_capacity() const { return impl_->plan().quad_capacity(); }
 
 Result<Mesh> CertifiedTessellation::allocate() const {
-  return guarded([&]() -> Result<Mesh> { return empty_mesh(impl_->plan().capacity(), impl_->origin()); });
+  return guarded([&]() -> Result<Mesh> {
+    Mesh mesh = empty_mesh(capacity(), impl_->origin());
+    if (!impl_->has_normals()) mesh.normals.clear();
+    return mesh;
+  });
 }
 
 Status CertifiedTessellation::run(const PatchSet& set, const MeshViews& out, const Execution& execution) const {

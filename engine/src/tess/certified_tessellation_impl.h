@@ -20,6 +20,7 @@ class CertifiedTessellation::Impl {
   const CertifiedPlan& plan() const { return plan_; }
   std::span<const PatchShape> shapes() const { return shapes_; }  ///< before welding
   const Weld& weld() const { return weld_; }
+  const VertexCopies& joins() const { return joins_; }  ///< vertices that share normals, or that are one
   const MeshTables& tables() const { return tables_; }
   Isa isa() const { return isa_; }
   Vec3 origin() const { return origin_; }
@@ -32,6 +33,14 @@ class CertifiedTessellation::Impl {
   bool certified() const { return fit_error_.certified; }
   std::size_t welded_borders() const { return weld_.borders.size() + weld_.poles.size(); }
 
+  /// Finds what neighbours share, if anything. Once, of the set that the plan was made for. Errors: cancelled.
+  Status join(const PatchSet& set, const CertifiedPlanner& planner, const Execution& execution);
+  /// Errors: invalid_argument.
+  Status check_normals(const MeshViews& out) const;
+  bool has_normals() const { return !options_.share_vertices || options_.crease_angle; }
+  /// What is written once all patches are: vertices of patches that are written, or take from those.
+  Status write_copies(const PatchSet::Impl& set, const MeshViews& out, const Execution& execution,
+                      FunctionRef<bool(std::size_t patch)> is_written) const;
   Status run(const PatchSet& set, const MeshViews& out, const Execution& execution) const;
   std::size_t divided_otherwise(const Impl& other) const;
 
@@ -41,6 +50,7 @@ class CertifiedTessellation::Impl {
   CertifiedPlan plan_;
   std::vector<PatchShape> shapes_;
   Weld weld_;
+  VertexCopies joins_;
   Vec3 origin_;
   FitError fit_error_;
   std::uint64_t revision_;

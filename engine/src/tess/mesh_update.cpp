@@ -9,7 +9,6 @@
 #include "tess/mesh_views.h"
 #include "tess/present_bounds.h"
 #include "tess/vertex_pass.h"
-#include "tess/welded_vertices.h"
 
 namespace tessera {
 namespace {
@@ -40,6 +39,7 @@ class MeshUpdate::Impl {
       return {StatusCode::invalid_argument, "the update was made for another patch set"};
     if (set.revision != revision_) return edited_otherwise(set.revision, revision_);
     if (Status status = check_vertex_views(out, plan.plan().capacity()); !status.ok()) return status;
+    if (Status status = plan.check_normals(out); !status.ok()) return status;
     if (Status status = touched_.add(set, edits); !status.ok()) return status;
     const auto keeps_shape = [&](std::uint32_t patch, std::span<const Vec3> points) {
       return PatchShape::of(set.patches[patch], points) == plan.shapes()[patch];
@@ -50,11 +50,11 @@ class MeshUpdate::Impl {
     finish_edits(set, edits);
     revision_ = set.revision;
     bounds_.touch(set, edits.patch);
-    const Status welded = write_welded(plan.weld(), plan.plan(), set, out, {}, [&](std::size_t patch) {
+    const Status copied = plan.write_copies(set, out, {}, [&](std::size_t patch) {
       const PatchSet::Slot slot = set.slots[patch];
       return touched_.edits(slot.block)[slot.lane] != TouchedBlocks::none;
     });
-    return status.ok() ? welded : status;
+    return status.ok() ? copied : status;
   }
 
   Status restate(const PatchSet::Impl& set, const Execution& execution) {

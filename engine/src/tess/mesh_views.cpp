@@ -55,8 +55,12 @@ Status check_views(const MeshViews& out, const MeshCapacity& wanted) {
   if (Status status = check_view("parameter", out.parameter, wanted.vertices); !status.ok()) return status;
   if (Status status = check_size("indices", out.indices.size(), 3 * wanted.triangles, "indices"); !status.ok())
     return status;
-  if (out.patch.empty()) return {};
-  return check_size("patch", out.patch.size(), wanted.triangles, "triangles");
+  if (!out.patch.empty())
+    if (Status status = check_size("patch", out.patch.size(), wanted.triangles, "triangles"); !status.ok())
+      return status;
+  if (Status status = check_size("quads", out.quads.size(), 4 * wanted.quads, "indices"); !status.ok()) return status;
+  if (out.quad_patch.empty()) return {};
+  return check_size("quad patch", out.quad_patch.size(), wanted.quads, "quads");
 }
 
 Status check_count(const PatchSet& set, std::size_t planned) {

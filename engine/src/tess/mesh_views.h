@@ -12,7 +12,8 @@ namespace tessera {
 /// A mesh with all attributes, zeros, of so many vertices and triangles.
 Mesh empty_mesh(const MeshCapacity& capacity, const Vec3& origin);
 
-/// Errors: buffer_too_small; invalid_argument (no positions, a null component, a stride below 1).
+/// Quads are looked at if the capacity holds any. Errors: buffer_too_small; invalid_argument (no positions, a null
+/// component, a stride below 1).
 Status check_views(const MeshViews& out, const MeshCapacity& wanted);
 
 /// Of positions and normals alone.

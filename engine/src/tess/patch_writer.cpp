@@ -27,7 +27,7 @@ PatchWriter::PatchWriter(const PatchSet::Impl& set, const CertifiedPlan& plan, c
   if (!bytes)
     bytes = sizeof(float) * size.vertices * (out.normal.empty() ? 3 : 6) + 3 * sizeof(std::uint32_t) * size.triangles;
   const bool large = stores == Stores::streaming || (stores == Stores::automatic && *bytes > streaming_threshold());
-  streaming_ = large && is_packed(out.position) && (out.normal.empty() || is_packed(out.normal));
+  streaming_ = large && !plan.shares_vertices() && out.quads.empty() && is_packed(out.position) && (out.normal.empty() || is_packed(out.normal));
 }
 
 void PatchWriter::write(std::size_t begin, std::size_t end) const {
@@ -35,16 +35,29 @@ void PatchWriter::write(std::size_t begin, std::size_t end) const {
   VertexJob vertices;
   for (std::size_t k = begin; k < end; ++k) {
     if (plan_.division(k).empty) continue;
-    prepare(k, vertices);
-    const std::size_t first = plan_.first_vertex(k);
-    vertices.job.position = records(out_.position, first);
-    vertices.job.normal = records(out_.normal, first);
-    vertices.job.writable = static_cast<int>(std::min<std::size_t>(plan_.first_vertex(end) - first, std::numeric_limits<int>::max()));
-    kernels_.mesh_vertices(vertices.job);
-    write_triangles(k, out_.indices.data() + 3 * plan_.first_triangle(k), out_.indices.data() + 3 * plan_.first_triangle(end));
+    if (plan_.shares_vertices()) {
+      write_owned(k, vertices);
+    } else {
+      write_vertices(k, plan_.first_vertex(end), vertices);
+    }
+    if (out_.quads.empty()) {
+      write_triangles(k, out_.indices.data() + 3 * plan_.first_triangle(k),
+                      out_.indices.data() + 3 * plan_.first_triangle(end));
+    } else {
+      write_quads(k);
+    }
     if (!out_.parameter.empty()) write_parameters(k);
-    if (!out_.patch.empty()) write_patch_numbers(k);
+    write_patch_numbers(k);
   }
+}
+
+void PatchWriter::write_vertices(std::size_t k, std::size_t end, VertexJob& vertices) const {
+  prepare(k, vertices);
+  const std::size_t first = plan_.first_vertex(k);
+  vertices.job.position = records(out_.position, first);
+  vertices.job.normal = records(out_.normal, first);
+  vertices.job.writable = static_cast<int>(std::min<std::size_t>(end - first, std::numeric_limits<int>::max()));
+  kernels_.mesh_vertices(vertices.job);
 }
 
 void PatchWriter::write_streaming(std::size_t begin, std::size_t end) const {
@@ -75,7 +88,7 @@ void PatchWriter::write_streaming(std::size_t begin, std::size_t end) const {
     if (!out_.normal.empty()) normal ? streams.normals.commit(3 * vertex_count) : streams.normals.skip(3 * vertex_count);
     indices ? streams.indices.commit(index_count) : streams.indices.skip(index_count);
     if (!out_.parameter.empty()) write_parameters(k);
-    if (!out_.patch.empty()) write_patch_numbers(k);
+    write_patch_numbers(k);
   }
   streams.positions.finish();
   if (!out_.normal.empty()) streams.normals.finish();
@@ -84,8 +97,12 @@ void PatchWriter::write_streaming(std::size_t begin, std::size_t end) const {
 }
 
 void PatchWriter::write_patch_numbers(std::size_t k) const {
-  std::fill(out_.patch.data() + plan_.first_triangle(k), out_.patch.data() + plan_.first_triangle(k + 1),
-            static_cast<std::uint32_t>(k));
+  const auto fill = [k](std::span<std::uint32_t> numbers, std::size_t begin, std::size_t end) {
+    if (!numbers.empty()) std::fill(numbers.data() + begin, numbers.data() + end, static_cast<std::uint32_t>(k));
+  };
+  if (out_.quads.empty()) return fill(out_.patch, plan_.first_triangle(k), plan_.first_triangle(k + 1));
+  fill(out_.patch, plan_.first_strip(k), plan_.first_strip(k + 1));
+  fill(out_.quad_patch, plan_.first_quad(k), plan_.first_quad(k + 1));
 }
 
 void PatchWriter::prepare(std::size_t k, VertexJob& vertices) const {
@@ -130,19 +147,25 @@ void PatchWriter::write_parameters(std::size_t k) const {
   const float *inner_u = tables_.parameters(division.inner.u), *inner_v = tables_.parameters(division.inner.v);
   for (int iu = 1; iu < division.inner.u; ++iu)
     for (int iv = 1; iv < division.inner.v; ++iv) put(inner_u[iu], inner_v[iv]);
-  const float* along[4];
-  for (std::size_t side = 0; side < 4; ++side) along[side] = tables_.parameters(division.border[side]);
-  for (int n = 0; n < division.border[0]; ++n) put(along[0][n], 0);
-  for (int n = 0; n < division.border[1]; ++n) put(1, along[1][n]);
-  for (int n = division.border[2]; n > 0; --n) put(along[2][n], 1);
-  for (int n = division.border[3]; n > 0; --n) put(0, along[3][n]);
+  for (const Side side : all_sides) {
+    const auto s = static_cast<std::size_t>(side);
+    const float* along = tables_.parameters(division.border[s]);
+    const int last = plan_.owns_border(4 * k + s) ? division.border[s] : 1;
+    for (int n = plan_.owns_corner(4 * k + s) ? 0 : 1; n < last; ++n) {
+      const float t = along[is_backward(static_cast<std::uint32_t>(s)) ? division.border[s] - n : n];
+      const float across = side == Side::u1 || side == Side::v1 ? 1.0f : 0.0f;
+      runs_along_u(side) ? put(t, across) : put(across, t);
+    }
+  }
 }
 
 void PatchWriter::write_triangles(std::size_t k, std::uint32_t* out, std::uint32_t* end) const {
   const Division& division = plan_.division(k);
   const auto first = static_cast<std::uint32_t>(plan_.first_vertex(k));
+  const bool cells = out_.quads.empty();
   if (!division.has_inner_points() || division.collapsed.any()) {
-    division.write_triangles(first, out);
+    division.write_triangles(first, out, cells);
+    if (plan_.shares_vertices()) share_indices(k, out);
     return;
   }
   const auto number = [](auto n) { return static_cast<std::uint32_t>(n); };
@@ -152,7 +175,7 @@ void PatchWriter::write_triangles(std::size_t k, std::uint32_t* out, std::uint32
   job.ring_size = number(division.ring_count());
   job.first = first;
   job.row = row;
-  job.cells_u = division.inner.u - 2;
+  job.cells_u = cells ? division.inner.u - 2 : 0;
   job.cells_v = division.inner.v - 2;
   job.out = out;
   job.end = end;
@@ -165,6 +188,7 @@ void PatchWriter::write_triangles(std::size_t k, std::uint32_t* out, std::uint32
     ring += number(division.border[s]);
   }
   kernels_.mesh_indices(job);
+  if (plan_.shares_vertices()) share_indices(k, out);
 }
 
 }  // namespace tessera

@@ -17,14 +17,15 @@ constexpr double float_sums = 1 + 0x1p-20;
 PresentBounds::PresentBounds(const PatchSet::Impl& set, const CertifiedTessellation::Impl& plan)
     : chords_(set),
       roundings_(set.patches.size()),
-      displacements_(plan.weld().displacements),
+      displacements_(plan.plan().shares_vertices() ? set.patches.size() : plan.weld().displacements.size(), 0.0),
       bounds_(plan.plan().bounds().begin(), plan.plan().bounds().end()),
       moved_(displacements_.size(), 0),
       is_unproven_(set.patches.size(), 0),
       is_unknown_(set.patches.size(), 0),
       touched_lanes_(set.lane_counts.size(), 0) {
   touched_blocks_.reserve(set.lane_counts.size());
-  // Welding takes bounds and roundings of patches that are not touched into account.
+  // Then bounds and roundings of patches that are not touched matter as well.
+  std::copy(plan.weld().displacements.begin(), plan.weld().displacements.end(), displacements_.begin());
   for (std::size_t k = 0; k < displacements_.size(); ++k) roundings_[k] = vertex_rounding(set.patches[k], set.origin);
   if (displacements_.empty()) return;
   for (std::uint32_t block = 0; block < set.lane_counts.size(); ++block) chords_.bound(set, block);
@@ -55,16 +56,25 @@ Status PresentBounds::bound_blocks(const PatchSet::Impl& set, const Execution& e
   });
 }
 
-void PresentBounds::find_moved(const PatchSet::Impl& set, const Weld& weld) {
+void PresentBounds::find_moved(const PatchSet::Impl& set, const CertifiedTessellation::Impl& plan) {
   std::fill(moved_.begin(), moved_.end(), std::uint8_t{0});
   const auto look = [&](const auto& copies) {
     for (const auto& copy : copies)
       if (is_touched(set, copy.from / 4) || is_touched(set, copy.to / 4)) moved_[copy.to / 4] = 1;
   };
-  look(weld.borders);
-  look(weld.corners);
-  look(weld.poles);
-  measure_displacements(set, weld, roundings_, [&](std::size_t patch) { return moved_[patch] != 0; }, displacements_);
+  const auto look_at_all = [&](const VertexCopies& copies) {
+    look(copies.borders);
+    look(copies.corners);
+    look(copies.poles);
+  };
+  look_at_all(plan.weld());
+  if (plan.plan().shares_vertices()) look_at_all(plan.joins());
+  for (std::size_t patch = 0; patch < moved_.size(); ++patch)
+    if (moved_[patch]) displacements_[patch] = 0;
+  const auto is_moved = [&](std::size_t patch) { return moved_[patch] != 0; };
+  measure_displacements(set, plan.weld(), roundings_, is_moved, displacements_);
+  // Shared vertices lie beside the border of a patch that has left the one that they count to.
+  if (plan.plan().shares_vertices()) measure_displacements(set, plan.joins(), roundings_, is_moved, displacements_, true);
 }
 
 void PresentBounds::set_bound(const PatchSet::Impl& set, const CertifiedTessellation::Impl& plan, std::size_t patch) {
@@ -80,7 +90,7 @@ void PresentBounds::set_bound(const PatchSet::Impl& set, const CertifiedTessella
 Status PresentBounds::restate(const PatchSet::Impl& set, const CertifiedTessellation::Impl& plan,
                               const Execution& execution) {
   if (Status status = bound_blocks(set, execution); !status.ok()) return status;
-  if (!displacements_.empty()) find_moved(set, plan.weld());
+  if (!displacements_.empty()) find_moved(set, plan);
   const auto state = [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
       for (std::size_t lane = 0; lane < PatchSet::lanes; ++lane)

@@ -28,12 +28,12 @@ class PresentBounds {
     return touched_lanes_[set.slots[patch].block] >> set.slots[patch].lane & 1u;
   }
   Status bound_blocks(const PatchSet::Impl& set, const Execution& execution);
-  void find_moved(const PatchSet::Impl& set, const Weld& weld);
+  void find_moved(const PatchSet::Impl& set, const CertifiedTessellation::Impl& plan);
   void set_bound(const PatchSet::Impl& set, const CertifiedTessellation::Impl& plan, std::size_t patch);
 
   ChordBlocks chords_;
   std::vector<double> roundings_;      ///< of each patch's vertices, before welding
-  std::vector<double> displacements_;  ///< by welding; empty where there is none
+  std::vector<double> displacements_;  ///< of vertices that others' take the place of; empty where there are none
   std::vector<float> bounds_;
   std::vector<std::uint8_t> moved_;    ///< patches with vertices of touched ones
   std::vector<std::uint8_t> is_unproven_, is_unknown_;

@@ -94,7 +94,7 @@ std::vector<std::uint32_t> strip_codes(int rate, int inner, std::uint32_t border
   return corners;
 }
 
-std::uint32_t* Division::write_triangles(std::uint32_t first, std::uint32_t* to) const {
+std::uint32_t* Division::write_triangles(std::uint32_t first, std::uint32_t* to, bool cells) const {
   if (empty) return to;
   const std::uint32_t ring = first + static_cast<std::uint32_t>(inner_count());
   const auto ring_size = static_cast<std::uint32_t>(ring_count());
@@ -123,7 +123,7 @@ std::uint32_t* Division::write_triangles(std::uint32_t first, std::uint32_t* to)
   to = write_strip(line(Side::u1, false), Line{n, 1, n - 1, false, [=](int k) { return inner_vertex(m - 1, k); }}, to);
   to = write_strip(line(Side::v1, false), Line{m, 1, m - 1, false, [=](int k) { return inner_vertex(m - k, n - 1); }}, to);
   to = write_strip(line(Side::u0, false), Line{n, 1, n - 1, false, [=](int k) { return inner_vertex(1, n - k); }}, to);
-  for (int iu = 1; iu < m - 1; ++iu)
+  for (int iu = 1; cells && iu < m - 1; ++iu)
     for (int iv = 1; iv < n - 1; ++iv) {
       const std::uint32_t p00 = inner_vertex(iu, iv), p10 = p00 + row;
       to = write(to, p00, p10, p10 + 1);

@@ -40,6 +40,11 @@ struct Division {
   }
   std::size_t vertex_count() const { return empty ? 0 : inner_count() + ring_count(); }
   std::size_t triangle_count() const;
+  /// Cells between inner points, of two triangles each, which come last.
+  std::size_t cell_count() const {
+    if (empty || !has_inner_points()) return 0;
+    return static_cast<std::size_t>(inner.u - 2) * static_cast<std::size_t>(inner.v - 2);
+  }
 
   bool has_inner_points() const { return inner.u > 1; }
   /// The place of a vertex.
@@ -51,8 +56,8 @@ struct Division {
   template <class Visit>
   void for_parameters(Visit visit) const;
   /// Writes the corners of all triangles, counter-clockwise seen from where r_u x r_v points; vertices are counted from
-  /// `first`. Returns the end of what it wrote.
-  std::uint32_t* write_triangles(std::uint32_t first, std::uint32_t* indices) const;
+  /// `first`; those of the cells between inner points come last, if at all. Returns the end of what it wrote.
+  std::uint32_t* write_triangles(std::uint32_t first, std::uint32_t* indices, bool cells = true) const;
 };
 
 /// The corners of the triangles between a border at `rate` and inner points at `inner` >= 2 beside it, as

@@ -59,11 +59,12 @@ class TessellationPlan::Impl {
   }
 
   Rates rates() const { return rates_; }
-  MeshCapacity capacity() const { return {shapes_.size() * rates_.vertices(), first_triangle_.back()}; }
+  MeshCapacity capacity() const { return {.vertices = shapes_.size() * rates_.vertices(), .triangles = first_triangle_.back()}; }
 
   Mesh allocate() const { return empty_mesh(capacity(), origin_); }
 
   Status run(const PatchSet& set, const MeshViews& out, const Execution& execution) const {
+    if (!out.quads.empty()) return {StatusCode::unsupported, "a uniform tessellation has no quads"};
     if (Status status = check_views(out, capacity()); !status.ok()) return status;
     if (Status status = check_shapes(set, shapes_); !status.ok()) return status;
     if (Status status = write_vertices(set, out, execution); !status.ok()) return status;

@@ -1,18 +1,14 @@
 #include "tess/vertex_pass.h"
 
-#include <limits>
-
 namespace tessera {
 
 void VertexPass::write(std::size_t patch) {
   if (writer_.plan_.division(patch).empty) return;
+  if (writer_.plan_.shares_vertices()) return writer_.write_owned(patch, vertices_);
+  const std::size_t first = writer_.plan_.first_vertex(patch), end = writer_.plan_.first_vertex(patch + 1);
+  if (!writer_.streaming_) return writer_.write_vertices(patch, end, vertices_);
   writer_.prepare(patch, vertices_);
-  const std::size_t first = writer_.plan_.first_vertex(patch), count = writer_.plan_.first_vertex(patch + 1) - first;
-  if (writer_.streaming_) return write_streaming(first, count);
-  vertices_.job.position = records(writer_.out_.position, first);
-  vertices_.job.normal = records(writer_.out_.normal, first);
-  vertices_.job.writable = static_cast<int>(std::min<std::size_t>(count, std::numeric_limits<int>::max()));
-  writer_.kernels_.mesh_vertices(vertices_.job);
+  write_streaming(first, end - first);
 }
 
 void VertexPass::write_streaming(std::size_t first, std::size_t count) {

@@ -17,20 +17,14 @@ constexpr std::uint32_t none = SharedEdges::none;
 Side side_of(std::uint32_t border) { return all_sides[border % 4]; }
 std::size_t patch_of(std::uint32_t border) { return border / 4; }
 
-/// The corners at the ends of a border, in the direction of the parameter along it.
-std::array<std::uint32_t, 2> ends_of(std::uint32_t border) {
-  constexpr std::uint32_t ends[4][2] = {{0, 1}, {1, 2}, {3, 2}, {0, 3}};
-  const std::uint32_t patch = border - border % 4;
-  return {patch + ends[border % 4][0], patch + ends[border % 4][1]};
-}
-
-Vec3 corner_of(const BezierPatch& patch, std::uint32_t corner) {
-  const bool end_u = corner % 4 == 1 || corner % 4 == 2, end_v = corner % 4 >= 2;
-  return patch.point(end_u ? patch.degree_u() : 0, end_v ? patch.degree_v() : 0);
-}
-
 BorderCurve curve_of(const PatchSet::Impl& set, std::uint32_t border) {
   return {set.patches[patch_of(border)], side_of(border)};
+}
+
+/// The bits that a corner's vertex has.
+std::array<float, 3> packed_corner(const PatchSet::Impl& set, std::uint32_t corner) {
+  const Vec3 p = corner_of(set.patches[patch_of(corner)], corner) - set.origin + Vec3{};
+  return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
 
 /// Edges by the middle of their ends, in cells: those whose middle lies within the tolerance of a point.
@@ -191,11 +185,7 @@ class Welder {
       }
     }
   }
-  /// The bits that a corner's vertex has.
-  std::array<float, 3> packed(std::uint32_t corner) const {
-    const Vec3 p = corner_of(set_.patches[patch_of(corner)], corner) - set_.origin + Vec3{};
-    return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
-  }
+  std::array<float, 3> packed(std::uint32_t corner) const { return packed_corner(set_, corner); }
 
   void renumber() {
     std::vector<std::uint32_t> numbers(heads_.size());
@@ -221,22 +211,39 @@ Weld weld_borders(const PatchSet::Impl& set, std::span<const PatchShape> shapes,
   return Welder(set, shapes, tolerance, edges).run(roundings);
 }
 
-void measure_displacements(const PatchSet::Impl& set, const Weld& weld, std::span<const double> roundings,
-                           FunctionRef<bool(std::size_t patch)> wanted, std::span<double> displacements) {
-  for (std::size_t patch = 0; patch < displacements.size(); ++patch)
-    if (wanted(patch)) displacements[patch] = 0;
+std::array<std::uint32_t, 2> ends_of(std::uint32_t border) {
+  constexpr std::uint32_t ends[4][2] = {{0, 1}, {1, 2}, {3, 2}, {0, 3}};
+  const std::uint32_t patch = border - border % 4;
+  return {patch + ends[border % 4][0], patch + ends[border % 4][1]};
+}
+
+Vec3 corner_of(const BezierPatch& patch, std::uint32_t corner) {
+  const bool end_u = corner % 4 == 1 || corner % 4 == 2, end_v = corner % 4 >= 2;
+  return patch.point(end_u ? patch.degree_u() : 0, end_v ? patch.degree_v() : 0);
+}
+
+void measure_displacements(const PatchSet::Impl& set, const VertexCopies& copies, std::span<const double> roundings,
+                           FunctionRef<bool(std::size_t patch)> wanted, std::span<double> displacements,
+                           bool same_bits_stay) {
   const auto moved = [&](std::uint32_t to, std::uint32_t from, double distance) {
     double& most = displacements[patch_of(to)];
     most = std::max(most, distance + roundings[patch_of(from)]);
   };
   const auto corner = [&](std::uint32_t at) { return corner_of(set.patches[patch_of(at)], at); };
-  for (const Weld::Border& copy : weld.borders)
-    if (wanted(patch_of(copy.to)))
-      moved(copy.to, copy.from, distance_bound(curve_of(set, copy.to), curve_of(set, copy.from), copy.reversed));
-  for (const Weld::Corner& copy : weld.corners)
-    if (wanted(patch_of(copy.to))) moved(copy.to, copy.from, length(corner(copy.to) - corner(copy.from)));
-  for (const Weld::Corner& pole : weld.poles) {
+  const auto packed = [&](std::uint32_t border) { return PackedBorder(set, patch_of(border), side_of(border)); };
+  for (const VertexCopies::Border& copy : copies.borders) {
+    if (!wanted(patch_of(copy.to))) continue;
+    if (same_bits_stay && equal(packed(copy.to), packed(copy.from), copy.reversed)) continue;
+    moved(copy.to, copy.from, distance_bound(curve_of(set, copy.to), curve_of(set, copy.from), copy.reversed));
+  }
+  for (const VertexCopies::Corner& copy : copies.corners) {
+    if (!wanted(patch_of(copy.to))) continue;
+    if (same_bits_stay && packed_corner(set, copy.to) == packed_corner(set, copy.from)) continue;
+    moved(copy.to, copy.from, length(corner(copy.to) - corner(copy.from)));
+  }
+  for (const VertexCopies::Corner& pole : copies.poles) {
     if (!wanted(patch_of(pole.to))) continue;
+    if (same_bits_stay && packed_corner(set, pole.to) == packed_corner(set, pole.from)) continue;
     const BorderCurve border = curve_of(set, pole.to);
     for (int k = 0; k <= border.degree(); ++k) moved(pole.to, pole.from, length(border.point(k) - corner(pole.from)));
   }

@@ -1,6 +1,7 @@
 #pragma once
 // Borders that differ by less than a tolerance are made one: which vertices take the place of which others.
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -11,9 +12,9 @@
 
 namespace tessera {
 
-/// Borders and corners go by 4 * patch + side; a corner is the one at which its side starts in the ring of borders.
-/// What is copied from is never copied to.
-struct Weld {
+/// Vertices of the rings of borders that take what others have. Borders and corners go by 4 * patch + side; a corner is the
+/// one at which its side starts in the ring. What is copied from is never copied to.
+struct VertexCopies {
   /// The points inside a border become those of another one.
   struct Border {
     std::uint32_t to, from;
@@ -26,13 +27,23 @@ struct Weld {
   };
   std::vector<Border> borders;
   std::vector<Corner> corners;
-  /// Borders that become a point, all of it a corner's.
+  /// Borders all of which is a point, a corner's.
   std::vector<Corner> poles;
+  friend bool operator==(const VertexCopies&, const VertexCopies&) = default;
+};
+
+/// Positions that are taken from others.
+struct Weld : VertexCopies {
   /// Of each patch, with what has become a point.
   std::vector<PatchShape> shapes;
   /// How far the vertices of each patch lie from its surface at most, rounding included; 0 where none is moved.
   std::vector<double> displacements;
 };
+
+/// The corners at the ends of a border, in the direction of the parameter along it.
+std::array<std::uint32_t, 2> ends_of(std::uint32_t border);
+/// Where a corner's control point lies.
+Vec3 corner_of(const BezierPatch& patch, std::uint32_t corner);
 
 /// Edges that one border has, all in all, are searched for the nearest edge whose distance_bound() is within the tolerance,
 /// at the same parameters in either direction; edges joined so become one number in `edges`, whose borders take the points
@@ -44,9 +55,10 @@ struct Weld {
 Weld weld_borders(const PatchSet::Impl& set, std::span<const PatchShape> shapes, std::span<const double> roundings,
                   double tolerance, SharedEdges& edges);
 
-/// How far the vertices of the patches that are `wanted` are moved at most, and rounded: into their places of
-/// `displacements`, 0 where none is moved. As the set is now. Allocates nothing.
-void measure_displacements(const PatchSet::Impl& set, const Weld& weld, std::span<const double> roundings,
-                           FunctionRef<bool(std::size_t patch)> wanted, std::span<double> displacements);
+/// How far the vertices of the patches that are `wanted` are moved at most, and rounded: raises `displacements` to it. As
+/// the set is now. `same_bits_stay`: nothing is moved by a copy from a border of the same bits. Allocates nothing.
+void measure_displacements(const PatchSet::Impl& set, const VertexCopies& copies, std::span<const double> roundings,
+                           FunctionRef<bool(std::size_t patch)> wanted, std::span<double> displacements,
+                           bool same_bits_stay = false);
 
 }  // namespace tessera

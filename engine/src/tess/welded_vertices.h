@@ -14,4 +14,8 @@ namespace tessera {
 Status write_welded(const Weld& weld, const CertifiedPlan& plan, const PatchSet::Impl& set, const MeshViews& out,
                     const Execution& execution, FunctionRef<bool(std::size_t patch)> is_written);
 
+/// Copies normals of joined vertices, where each has memory of its own. As above.
+Status write_joined_normals(const VertexCopies& joins, const CertifiedPlan& plan, const View3<float>& normals,
+                            const Execution& execution, FunctionRef<bool(std::size_t patch)> is_written);
+
 }  // namespace tessera
