@@ -25,6 +25,7 @@ fail() {
 comparisons=(
   "grid_evaluation|a bicubic B-spline surface at a grid: OpenSubdiv (libosd-dev), OpenCASCADE, SISL (libsisl-dev)"
   "occt_extraction|Bezier extraction of a 200 x 200 bicubic B-spline surface: OpenCASCADE (libocct-modeling-data-dev)"
+  "occt_mesh|meshes of equal error of the same surfaces: OpenCASCADE (libocct-modeling-algorithms-dev)"
 )
 
 # is_comparison NAME: stands in the table.

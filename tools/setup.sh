@@ -24,7 +24,7 @@ demo_packages=(g++ cmake ninja-build libtbb-dev libxsimd-dev libembree-dev libcl
   libtinygltf-dev libpng-dev libopenexr-dev)
 test_packages=(binutils libgtest-dev libgmock-dev libbenchmark-dev libocct-data-exchange-dev)
 neon_packages=(g++-aarch64-linux-gnu qemu-user)
-peer_packages=(libocct-modeling-data-dev libosd-dev libsisl-dev)
+peer_packages=(libocct-modeling-data-dev libocct-modeling-algorithms-dev libosd-dev libsisl-dev)
 gallery_packages=(imagemagick fonts-dejavu-core)
 
 purpose='test'
