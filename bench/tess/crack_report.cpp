@@ -1,0 +1,120 @@
+// Whether certified meshes of models have cracks, at five tolerances each: a row a model with, for each tolerance, the
+// triangles and what is wrong with them; then what was skipped, with reasons. Open edges that are borders of the model
+// itself are no cracks: such borders are counted. Exit status 1 if there is a crack.
+// Usage: tessera_crack_report [MODEL or FOLDER...]; the project's models if none is named.
+
+#include <cstdio>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "support/crack_survey.h"
+#include "tessera/io.h"
+#ifdef TESSERA_HAS_IO_OCCT
+#include "tessera/io_occt.h"
+#endif
+
+namespace {
+
+using namespace tessera;
+
+constexpr double tolerances[] = {1e-2, 3e-3, 1e-3, 3e-4, 1e-4};
+constexpr std::uint64_t most_triangles = 500000;
+
+bool is_cad(const std::filesystem::path& path) {
+#ifdef TESSERA_HAS_IO_OCCT
+  return is_cad_file(path);
+#else
+  (void)path;
+  return false;
+#endif
+}
+
+bool is_model(const std::filesystem::path& path) {
+  static const std::set<std::string> known{".bpt", ".bv", ".g2", ".json", ".obj", ".rib"};
+  return known.contains(path.extension().string()) || is_cad(path);
+}
+
+Result<Model> read(const std::filesystem::path& path) {
+#ifdef TESSERA_HAS_IO_OCCT
+  if (is_cad_file(path)) return read_cad(path);
+#endif
+  return read_model(path);
+}
+
+/// A cell of the table: triangles, and what is wrong.
+std::string cell(const test::CrackCount& count) {
+  std::string text = (count.capped ? "<" : "") + std::to_string(count.report.triangles);
+  const auto add = [&](const char* what, std::size_t n) {
+    if (n > 0) text += std::string(" ") + what + std::to_string(n);
+  };
+  add("crack:", count.cracks);
+  add("manifold:", count.non_manifold);
+  add(count.folded ? "turns:" : "flat:", count.report.degenerate_triangles);
+  add("nan:", count.report.non_finite_vertices);
+  return text;
+}
+
+class Report {
+ public:
+  void survey(const std::filesystem::path& path) {
+    const std::string name = path.parent_path().filename().string() + "/" + path.filename().string();
+    const Result<Model> model = read(path);
+    const Result<PatchSet> set = model ? make_patch_set(*model) : Result<PatchSet>(model.status());
+    if (!set) return skip(name, set.status());
+    std::string row;
+    test::CrackCount last;
+    for (const double tolerance : tolerances) {
+      const Result<test::CrackCount> count = test::count_cracks(*set, tolerance, most_triangles);
+      if (!count) {
+        skip(name + " at " + std::to_string(tolerance), count.status());
+        row += "           -";
+        continue;
+      }
+      const std::string text = cell(*count);
+      row += std::string(text.size() < 12 ? 12 - text.size() : 1, ' ') + text;
+      good_ = good_ && count->good();
+      last = *count;
+      ++meshes_;
+    }
+    ++models_;
+    std::printf("%-52s %7zu %7zu %6zu %6zu%s\n", name.c_str(), set->patch_count(), last.own_borders, last.own_non_manifold,
+                last.report.t_junctions, row.c_str());
+    std::fflush(stdout);
+  }
+
+  bool finish() const {
+    std::printf("%zu models, %zu meshes\n", models_, meshes_);
+    for (const std::string& line : skipped_) std::printf("skipped: %s\n", line.c_str());
+    return good_;
+  }
+
+ private:
+  void skip(const std::string& name, const Status& why) { skipped_.push_back(name + ": " + why.message()); }
+
+  std::size_t models_ = 0, meshes_ = 0;
+  bool good_ = true;
+  std::vector<std::string> skipped_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::vector<std::filesystem::path> named(argv + 1, argv + argc);
+  if (named.empty()) named.push_back(std::filesystem::path(TESSERA_SOURCE_DIR) / "tools" / "models");
+  std::set<std::filesystem::path> files;
+  for (const std::filesystem::path& path : named) {
+    if (!std::filesystem::is_directory(path)) files.insert(path);
+    if (std::filesystem::is_directory(path))
+      for (const auto& entry : std::filesystem::recursive_directory_iterator(path))
+        if (is_model(entry.path())) files.insert(entry.path());
+  }
+  std::printf("%-52s %7s %7s %6s %6s", "model", "patches", "borders", "multi", "T");
+  for (const double tolerance : tolerances) std::printf("%12.0e", tolerance);
+  std::printf("\n(of the model itself: borders that meet none, edges of more than two triangles, T-junctions, of the finest mesh; then "
+              "triangles by tolerance, a share of the size, < where only so many were allowed)\n");
+  Report report;
+  for (const std::filesystem::path& path : files) report.survey(path);
+  return report.finish() ? 0 : 1;
+}
