@@ -1,6 +1,6 @@
-# The floor `kernel`: its units once for each instruction set of the processor that is built for, a target an ISA
-# (tessera_kernel_ISA), and what finds out at run time which of them the machine can run (tessera_kernel). All their
-# objects: tessera_kernel_objects. The units' flags stand here and nowhere else. Optimised in every configuration, so that
+# The units of the floor `kernel`, once for each instruction set of the processor that is built for: a target an ISA,
+# tessera_kernel_ISA; their objects: tessera_isa_objects. tessera_machine is the source that finds out at run time which
+# of them the machine can run. The units' flags stand here and nowhere else. Optimised in every configuration, so that
 # small inline functions don't stay behind as symbols that the linker could merge into the baseline; less under the
 # sanitizers, whose checks make the compiler work for minutes at -O3.
 set(kernel_flags -O3 -fno-trapping-math -fno-exceptions)
@@ -19,19 +19,17 @@ macro(tessera_isa name)
   if(TARGET xsimd)
     target_link_libraries(tessera_kernel_${name} PRIVATE xsimd)
   endif()
-  list(APPEND tessera_kernel_objects $<TARGET_OBJECTS:tessera_kernel_${name}>)
+  list(APPEND tessera_isa_objects $<TARGET_OBJECTS:tessera_kernel_${name}>)
 endmacro()
 
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64)$")
-  set(machine machine_aarch64)
+  set(tessera_machine ${kernel_folder}/machine_aarch64.cpp)
   tessera_isa(neon64)
 else()
-  set(machine machine_x86)
+  set(tessera_machine ${kernel_folder}/machine_x86.cpp)
   tessera_isa(sse2 -msse2)
   tessera_isa(avx2 -mavx2 -mfma)
   # gcc 12 warns of its own _mm512_undefined_ps (its bug 105593).
   tessera_isa(avx512 -mavx512f -mavx512dq -mavx512bw -mavx512vl -mavx2 -mfma -mprefer-vector-width=512
     $<$<CXX_COMPILER_ID:GNU>:-Wno-uninitialized> $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
 endif()
-tessera_floor(kernel SOURCES ${kernel_folder}/${machine}.cpp ${kernel_folder}/select_isa.cpp BELOW base)
-list(APPEND tessera_kernel_objects $<TARGET_OBJECTS:tessera_kernel>)
