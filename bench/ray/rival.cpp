@@ -155,6 +155,31 @@ void Rival::closest(std::span<const Ray> rays, std::span<float> t) const {
   });
 }
 
+void Rival::closest_packets(std::span<const Ray> rays, std::span<float> t) const {
+  constexpr std::size_t packet = 16;
+  for_rays(rays.size() / packet, [&](std::size_t first) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    RTCRayHit16 query;
+    alignas(64) int valid[packet];
+    for (std::size_t k = 0; k < packet; ++k) {
+      const RTCRay ray = to_embree(rays[packet * first + k]);
+      query.ray.org_x[k] = ray.org_x, query.ray.org_y[k] = ray.org_y, query.ray.org_z[k] = ray.org_z;
+      query.ray.dir_x[k] = ray.dir_x, query.ray.dir_y[k] = ray.dir_y, query.ray.dir_z[k] = ray.dir_z;
+      query.ray.tnear[k] = ray.tnear, query.ray.tfar[k] = ray.tfar, query.ray.mask[k] = ray.mask;
+      query.ray.time[k] = 0, query.ray.id[k] = 0, query.ray.flags[k] = 0;
+      query.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID, query.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+      valid[k] = -1;
+    }
+    rtcIntersect16(valid, state_->scene, &context, &query);
+    for (std::size_t k = 0; k < packet; ++k) {
+      t[packet * first + k] =
+          query.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID ? std::numeric_limits<float>::infinity() : query.ray.tfar[k];
+    }
+  });
+}
+
 void Rival::occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const {
   for_rays(rays.size(), [&](std::size_t k) {
     RTCIntersectContext context;

@@ -26,6 +26,8 @@ class Rival {
 
   /// t of the closest hits, infinity where there are none; in the caller's arena.
   void closest(std::span<const Ray> rays, std::span<float> t) const;
+  /// The same in packets of 16: for rays that are coherent.
+  void closest_packets(std::span<const Ray> rays, std::span<float> t) const;
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const;
 
   /// Builds the BVH anew, in the caller's arena.

@@ -138,67 +138,82 @@ class LeafTrace {
     Fours::store(out, sum);
   }
 
-  RayStep visit(RayBox& box, RayRoots& roots) const {
-    const float u = 0.5f * (box.u0 + box.u1), v = 0.5f * (box.v0 + box.v1);
-    const float ru = 0.5f * (box.u1 - box.u0) + 2 * epsilon, rv = 0.5f * (box.v1 - box.v0) + 2 * epsilon;
-    Value at;
-    alignas(16) float rest[4];
-    evaluate(u, v, at);
-    remainder(ru, rv, rest);
-    const float f = at.q[x_] - slope_x_ * at.q[m_], g = at.q[y_] - slope_y_ * at.q[m_];
-    const float fu = at.qu[x_] - slope_x_ * at.qu[m_], fv = at.qv[x_] - slope_x_ * at.qv[m_];
-    const float gu = at.qu[y_] - slope_y_ * at.qu[m_], gv = at.qv[y_] - slope_y_ * at.qv[m_];
-    const float noise = 2 * (leaf_.noise + leaf_.slope_noise * (ru + rv));
-    const float ef = 1.001f * (rest[x_] + magnitude(slope_x_) * rest[m_] + noise + 4 * epsilon * magnitude(f));
-    const float eg = 1.001f * (rest[y_] + magnitude(slope_y_) * rest[m_] + noise + 4 * epsilon * magnitude(g));
-    const float afu = magnitude(fu), afv = magnitude(fv), agu = magnitude(gu), agv = magnitude(gv);
-    if (magnitude(f) > 1.001f * (afu * ru + afv * rv) + ef || magnitude(g) > 1.001f * (agu * ru + agv * rv) + eg)
-      return RayStep::leave;
+  /// F = (f, g) at the middle of a rectangle of half widths ru, rv, its derivatives, and bounds of what the linear model
+  /// leaves out.
+  struct Model {
+    float u, v, ru, rv;
+    float f, g, fu, fv, gu, gv;
+    float ef, eg, noise;
+    float rest_m, rest_w;  ///< of the coordinate along the ray and of the weight
+  };
 
-    const float determinant = fu * gv - fv * gu, products = afu * agv + afv * agu;
+  Model model_of(const RayBox& box, Value& at) const {
+    Model m;
+    m.u = 0.5f * (box.u0 + box.u1), m.v = 0.5f * (box.v0 + box.v1);
+    m.ru = 0.5f * (box.u1 - box.u0) + 2 * epsilon, m.rv = 0.5f * (box.v1 - box.v0) + 2 * epsilon;
+    alignas(16) float rest[4];
+    evaluate(m.u, m.v, at);
+    remainder(m.ru, m.rv, rest);
+    m.f = at.q[x_] - slope_x_ * at.q[m_], m.g = at.q[y_] - slope_y_ * at.q[m_];
+    m.fu = at.qu[x_] - slope_x_ * at.qu[m_], m.fv = at.qv[x_] - slope_x_ * at.qv[m_];
+    m.gu = at.qu[y_] - slope_y_ * at.qu[m_], m.gv = at.qv[y_] - slope_y_ * at.qv[m_];
+    m.noise = 2 * (leaf_.noise + leaf_.slope_noise * (m.ru + m.rv));
+    m.ef = 1.001f * (rest[x_] + magnitude(slope_x_) * rest[m_] + m.noise + 4 * epsilon * magnitude(m.f));
+    m.eg = 1.001f * (rest[y_] + magnitude(slope_y_) * rest[m_] + m.noise + 4 * epsilon * magnitude(m.g));
+    m.rest_m = rest[m_], m.rest_w = rest[3];
+    return m;
+  }
+
+  RayStep visit(RayBox& box, RayRoots& roots) const {
+    Value at;
+    const Model m = model_of(box, at);
+    if (magnitude(m.f) > 1.001f * (magnitude(m.fu) * m.ru + magnitude(m.fv) * m.rv) + m.ef ||
+        magnitude(m.g) > 1.001f * (magnitude(m.gu) * m.ru + magnitude(m.gv) * m.rv) + m.eg)
+      return RayStep::leave;
+    const float determinant = m.fu * m.gv - m.fv * m.gu;
+    const float products = magnitude(m.fu * m.gv) + magnitude(m.fv * m.gu);
     if (magnitude(determinant) > 1e-4f * products) {
-      const float inverse = 1 / determinant, size = magnitude(inverse);
-      const float inexact = 16 * epsilon * products * size;  // of A J from one
-      const float bu = 1.001f * (size * (agv * ef + afv * eg) + inexact * ru) + 4 * epsilon;
-      const float bv = 1.001f * (size * (agu * ef + afu * eg) + inexact * rv) + 4 * epsilon;
-      const float du = -(gv * f - fv * g) * inverse, dv = -(fu * g - gu * f) * inverse;
-      const RayBox image{u + du - bu, u + du + bu, v + dv - bv, v + dv + bv};
-      const RayBox both{max_of(box.u0, image.u0), min_of(box.u1, image.u1), max_of(box.v0, image.v0),
-                        min_of(box.v1, image.v1)};
-      if (both.u0 > both.u1 || both.v0 > both.v1 || both.u0 > 0.5f || both.u1 < -0.5f || both.v0 > 0.5f ||
-          both.v1 < -0.5f)
-        return RayStep::leave;
-      if (bu <= 0.45f * ru && bv <= 0.45f * rv) {
-        if (image.u0 >= max_of(box.u0, -0.5f) && image.u1 <= min_of(box.u1, 0.5f) &&
-            image.v0 >= max_of(box.v0, -0.5f) && image.v1 <= min_of(box.v1, 0.5f))
-          return add_root(at, rest[m_], rest[3], u, v, du, dv, bu, bv, roots);
-        box = both;
-        return RayStep::narrow;
-      }
-      if (ef + eg < 4 * noise) return RayStep::open;  // smaller rectangles say no more
-      if ((both.u1 - both.u0) < 1.2f * ru || (both.v1 - both.v0) < 1.2f * rv) {
-        box = both;
-        return RayStep::narrow;
-      }
-      if (is_off_obliquely(f, g, fu, fv, gu, gv, ru, rv, ef, eg)) return RayStep::leave;
-      box = both;
-      return RayStep::split;
+      const RayStep outcome = newton(m, at, determinant, products, box, roots);
+      if (outcome != RayStep::split) return outcome;
     }
-    if (is_off_obliquely(f, g, fu, fv, gu, gv, ru, rv, ef, eg)) return RayStep::leave;
-    return ef + eg < 4 * noise ? RayStep::open : RayStep::split;
+    if (is_off_obliquely(m)) return RayStep::leave;
+    return m.ef + m.eg < 4 * m.noise ? RayStep::open : RayStep::split;  // smaller rectangles say no more
+  }
+
+  /// The image of the rectangle: all roots lie in it. `split` where that decides nothing.
+  RayStep newton(const Model& m, const Value& at, float determinant, float products, RayBox& box,
+                 RayRoots& roots) const {
+    const float inverse = 1 / determinant, size = magnitude(inverse);
+    const float inexact = 16 * epsilon * products * size;  // of A J from one
+    const float bu = 1.001f * (size * (magnitude(m.gv) * m.ef + magnitude(m.fv) * m.eg) + inexact * m.ru) + 4 * epsilon;
+    const float bv = 1.001f * (size * (magnitude(m.gu) * m.ef + magnitude(m.fu) * m.eg) + inexact * m.rv) + 4 * epsilon;
+    const float du = -(m.gv * m.f - m.fv * m.g) * inverse, dv = -(m.fu * m.g - m.gu * m.f) * inverse;
+    const RayBox image{m.u + du - bu, m.u + du + bu, m.v + dv - bv, m.v + dv + bv};
+    const RayBox both{max_of(box.u0, image.u0), min_of(box.u1, image.u1), max_of(box.v0, image.v0),
+                      min_of(box.v1, image.v1)};
+    if (both.u0 > both.u1 || both.v0 > both.v1 || both.u0 > 0.5f || both.u1 < -0.5f || both.v0 > 0.5f ||
+        both.v1 < -0.5f)
+      return RayStep::leave;
+    const bool unique = bu <= 0.45f * m.ru && bv <= 0.45f * m.rv;
+    if (unique && image.u0 >= max_of(box.u0, -0.5f) && image.u1 <= min_of(box.u1, 0.5f) &&
+        image.v0 >= max_of(box.v0, -0.5f) && image.v1 <= min_of(box.v1, 0.5f))
+      return add_root(m, at, du, dv, bu, bv, roots);
+    if (!unique && m.ef + m.eg < 4 * m.noise) return RayStep::open;
+    const bool narrower = both.u1 - both.u0 < 1.2f * m.ru || both.v1 - both.v0 < 1.2f * m.rv;
+    box = both;
+    return unique || narrower ? RayStep::narrow : RayStep::split;
   }
 
   /// Seen edge on: across the larger derivative.
-  static bool is_off_obliquely(float f, float g, float fu, float fv, float gu, float gv, float ru, float rv, float ef,
-                               float eg) {
-    const bool by_u = (magnitude(fu) + magnitude(gu)) * ru >= (magnitude(fv) + magnitude(gv)) * rv;
-    const float nf = by_u ? -gu : -gv, ng = by_u ? fu : fv;
-    const float value = magnitude(nf * f + ng * g);
-    const float other = magnitude(nf * (by_u ? fv : fu) + ng * (by_u ? gv : gu)) * (by_u ? rv : ru);
-    const float sizes = magnitude(nf) * ef + magnitude(ng) * eg;
-    const float rounding =
-        8 * epsilon * (magnitude(nf) + magnitude(ng)) *
-        (magnitude(f) + magnitude(g) + (magnitude(fu) + magnitude(gu)) * ru + (magnitude(fv) + magnitude(gv)) * rv);
+  static bool is_off_obliquely(const Model& m) {
+    const float size_u = magnitude(m.fu) + magnitude(m.gu), size_v = magnitude(m.fv) + magnitude(m.gv);
+    const bool by_u = size_u * m.ru >= size_v * m.rv;
+    const float nf = by_u ? -m.gu : -m.gv, ng = by_u ? m.fu : m.fv;
+    const float value = magnitude(nf * m.f + ng * m.g);
+    const float other = magnitude(nf * (by_u ? m.fv : m.fu) + ng * (by_u ? m.gv : m.gu)) * (by_u ? m.rv : m.ru);
+    const float sizes = magnitude(nf) * m.ef + magnitude(ng) * m.eg;
+    const float rounding = 8 * epsilon * (magnitude(nf) + magnitude(ng)) *
+                           (magnitude(m.f) + magnitude(m.g) + size_u * m.ru + size_v * m.rv);
     return value > 1.001f * (other + sizes) + rounding;
   }
 
@@ -214,18 +229,17 @@ class LeafTrace {
     }
   }
 
-  RayStep add_root(const Value& at, float rest, float rest_w, float u, float v, float du, float dv, float bu, float bv,
-                   RayRoots& roots) const {
+  RayStep add_root(const Model& m, const Value& at, float du, float dv, float bu, float bv, RayRoots& roots) const {
     if (roots.count == RayRoots::most) return RayStep::open;
     float along = at.q[m_] + at.qu[m_] * du + at.qv[m_] * dv;
-    float error = rest + magnitude(at.qu[m_]) * bu + magnitude(at.qv[m_]) * bv + 2 * leaf_.noise;
+    float error = m.rest_m + magnitude(at.qu[m_]) * bu + magnitude(at.qv[m_]) * bv + 2 * leaf_.noise;
     if constexpr (Rational) {
       along /= at.q[3] + at.qu[3] * du + at.qv[3] * dv;
-      error += magnitude(along) * (rest_w + magnitude(at.qu[3]) * bu + magnitude(at.qv[3]) * bv);
+      error += magnitude(along) * (m.rest_w + magnitude(at.qu[3]) * bu + magnitude(at.qv[3]) * bv);
       error /= leaf_.lightest;
     }
     RayRoot& root = roots.root[roots.count];
-    root = {u + du, v + dv, shift_ + along * inverse_, bu, bv, 1.01f * error * magnitude(inverse_) + 2e-6f};
+    root = {m.u + du, m.v + dv, shift_ + along * inverse_, bu, bv, 1.01f * error * magnitude(inverse_) + 2e-6f};
     if (root.s - root.s_error > ray_.far || root.s + root.s_error < ray_.near) return RayStep::leave;
     ++roots.count;
     return RayStep::root;

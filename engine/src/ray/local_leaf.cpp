@@ -126,6 +126,7 @@ class LeafMaker {
       }
     }
     // A point of the ray next to the piece: the ray's own rounding, and that of the products with the axes.
+    largest_ = std::max(extent, 2 * gain * size);
     line_noise_ = gain * (ray_rounding + 16 * unit * size) + 32 * unit * (1 + extent);
     leaf_.lower[3] = leaf_.upper[3] = 0;
     for (std::size_t c = 0; c < 3; ++c) {
@@ -158,11 +159,9 @@ class LeafMaker {
       leaf_.bend_uv[c] = static_cast<float>(1.001 * bound(power[c], 1, 1));
       leaf_.bend_vv[c] = static_cast<float>(1.001 * bound(power[c], 0, 2));
     }
-    const double largest = std::max({std::abs(leaf_.lower[0]), std::abs(leaf_.lower[1]), std::abs(leaf_.lower[2]),
-                                     std::abs(leaf_.upper[0]), std::abs(leaf_.upper[1]), std::abs(leaf_.upper[2])});
     // Horner's scheme rounds six times, coefficients once, products and differences with the ray's point a few times.
-    leaf_.noise = static_cast<float>(2 * line_noise_ + 16 * unit * (value + largest * (1 + value)));
-    leaf_.slope_noise = static_cast<float>(32 * unit * slope * (1 + largest));
+    leaf_.noise = static_cast<float>(2 * line_noise_ + 16 * unit * (value + largest_ * (1 + value)));
+    leaf_.slope_noise = static_cast<float>(32 * unit * slope * (1 + largest_));
   }
 
   /// Bounds |coordinate - parameter| times the weight, by the hull of their difference, a degree higher.
@@ -221,6 +220,7 @@ class LeafMaker {
   const double* net_;
   kernel::RayLeaf& leaf_;
   double scale_ = 1, lightest_ = 1, line_noise_ = 0;
+  double largest_ = 0;  // coordinate of the piece or of the ray's point nearest to the centre
   std::array<std::array<double, (max_degree + 1) * (max_degree + 1)>, 4> local_;
 };
 
