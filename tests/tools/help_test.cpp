@@ -53,7 +53,7 @@ TEST_F(Help, EveryOptionSaysWhatItTakesAndItsDefault) {
   }
   const std::string raycast = output_of({"raycast", "--help"});
   for (const char* const word : {"Pixels of the picture, 1 to 16384 each [1280x800", "field of view in degrees",
-                                 "{lambert,normals,uv,patch}", "[lambert]", "{auto,always,never}"}) {
+                                 "{lambert,normals,uv,patch,error}", "[lambert]", "{auto,always,never}"}) {
     std::string squeezed = std::regex_replace(raycast, std::regex("\\s+"), " ");
     EXPECT_NE(squeezed.find(word), std::string::npos) << word << squeezed;
   }
@@ -123,7 +123,7 @@ TEST_F(BashCompletion, EveryOptionOfEveryCommand) {
 }
 
 TEST_F(BashCompletion, WordsThatAnOptionTakes) {
-  const Names shades{"lambert", "normals", "patch", "uv"};
+  const Names shades{"error", "lambert", "normals", "patch", "uv"};
   EXPECT_EQ(offers({"raycast", "--shade", ""}), shades);
   EXPECT_EQ(offers({"raycast", "--shade", "="}), shades);
   EXPECT_EQ(offers({"raycast", "--shade", "=", "n"}), Names{"normals"});

@@ -10,6 +10,7 @@
 namespace tessera::test {
 namespace {
 
+using nlohmann::json;
 using RaycastTool = ToolTest;
 
 /// Width and height as the header of a PNG file states them, big endian (PNG specification, 11.2.2).
@@ -25,13 +26,38 @@ std::pair<unsigned, unsigned> png_size(const std::string& bytes) {
 }
 
 TEST_F(RaycastTool, PicturesHaveTheSizeAskedFor) {
-  for (const char* shade : {"lambert", "normals", "uv", "patch"}) {
+  for (const char* shade : {"lambert", "normals", "uv", "patch", "error"}) {
     const std::string name = std::string(shade) + ".png";
     output_of({"raycast", teapot, "-o", name, "--size", "64x48", "--shade", shade});
     EXPECT_EQ(png_size(content_of(folder_ / name)), (std::pair{64u, 48u}));
   }
-  EXPECT_EQ(folder_.names(), (Names{"lambert.png", "normals.png", "patch.png", "uv.png"}));
+  EXPECT_EQ(folder_.names(), (Names{"error.png", "lambert.png", "normals.png", "patch.png", "uv.png"}));
   EXPECT_NE(content_of(folder_ / "uv.png"), content_of(folder_ / "patch.png"));
+}
+
+/// A finer mesh, the same colours by another measure; a given mesh has its own.
+TEST_F(RaycastTool, ErrorsOfMeshesAreShown) {
+  const auto error_of = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"raycast", teapot, "-o", "a.png", "--size", "48x32", "--shade", "error", "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return json::parse(output_of(arguments)).at("error");
+  };
+  const json coarse = error_of({"--relative", "0.01"}), usual = error_of({});
+  EXPECT_TRUE(coarse.at("proven"));
+  EXPECT_GT(coarse.at("red"), usual.at("red"));
+  EXPECT_LT(coarse.at("triangles"), usual.at("triangles"));
+  for (const json& error : {coarse, usual}) {
+    EXPECT_LE(error.at("found"), error.at("red"));
+    EXPECT_GE(error.at("found").get<double>(), 0.2 * error.at("red").get<double>());
+  }
+  output_of({"tessellate", teapot, "-o", "mesh.ply", "--grid", "3x3"});
+  const json given = error_of({"--mesh", "mesh.ply"});
+  EXPECT_FALSE(given.at("proven"));
+  EXPECT_EQ(given.at("found"), given.at("red"));
+  EXPECT_GT(given.at("found"), usual.at("found"));
+  expect_failure({"raycast", teapot, "-o", "a.png", "--shade", "uv", "--mesh", "mesh.ply"}, 2, "--shade error");
+  expect_failure({"raycast", teapot, "-o", "a.png", "--shade", "error", "--relative", "0"}, 2, "above 0");
+  expect_failure({"raycast", teapot, "-o", "a.png", "--shade", "error", "--mesh", "none.ply"}, 1, "none.ply");
 }
 
 TEST_F(RaycastTool, CamerasMatter) {

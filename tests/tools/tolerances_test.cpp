@@ -69,7 +69,23 @@ TEST_F(Tolerances, ACapSaysHowManyItWouldTake) {
   expect_refusal({"--angle", "0.01"}, 1, "triangles in all");
 }
 
+TEST_F(Tolerances, NeighboursShareVertices) {
+  const json apart = made({"--relative", "0.003"});
+  const json all = made({"--relative", "0.003", "--share-vertices"});
+  const json places = checked();
+  EXPECT_EQ(all["vertices"], 1 + places["distinct_positions"].get<int>());  // the handle and the body touch in a corner
+  EXPECT_EQ(all["triangles"], apart["triangles"]);
+  const json smooth = made({"--relative", "0.003", "--share-vertices", "--crease", "5"});
+  EXPECT_LT(smooth["vertices"], apart["vertices"]);
+  EXPECT_GE(smooth["vertices"], all["vertices"]);
+  EXPECT_EQ(checked()["flipped_triangles"], 0);
+  EXPECT_EQ(made({"--relative", "0.003", "--crease", "5"})["vertices"], apart["vertices"]);
+}
+
 TEST_F(Tolerances, WrongOnesAreRefused) {
+  expect_refusal({"--relative", "0.01", "--crease", "200"}, 2, "expected an angle of 0 to 180 degrees");
+  expect_refusal({"--grid", "4x4", "--share-vertices"}, 2, "--grid");
+
   for (const char* const option : {"--angle", "--tolerance", "--relative"})
     for (const char* const wrong : {"0", "-1", "nan", "inf", "x", "", "1,2"})
       expect_refusal({option, wrong}, 2, option);

@@ -1,5 +1,7 @@
-// Shades that show numbers: normals, parameters, patches.
+// Shades that show numbers: normals, parameters, patches, errors.
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -25,12 +27,28 @@ Vec3 uv_colour(const Hit& hit) {
   return check * Vec3{0.12 + 0.85 * hit.patch_u, 0.12 + 0.85 * hit.patch_v, 0.42};
 }
 
-Vec3 colour(const Hit& hit, const Vec3& direction, Shade shade) {
+/// From deep blue over green and yellow to red: each is lighter or warmer than the one before, so that it reads as an order.
+Vec3 error_colour(double share) {
+  constexpr std::array<Vec3, 5> stops{Vec3{0.10, 0.14, 0.38}, {0.13, 0.45, 0.60}, {0.36, 0.72, 0.42}, {0.96, 0.83, 0.28},
+                                      {0.80, 0.16, 0.12}};
+  if (!(share <= 1)) return {0.93, 0.20, 0.85};
+  const double at = std::max(share, 0.0) * (stops.size() - 1);
+  const auto before = std::min(static_cast<std::size_t>(at), stops.size() - 2);
+  const double t = at - static_cast<double>(before);
+  return (1 - t) * stops[before] + t * stops[before + 1];
+}
+
+Vec3 surface_colour(const Hit& hit, const Settings& settings) {
+  if (settings.shade == Shade::uv) return uv_colour(hit);
+  return settings.shade == Shade::error ? error_colour(settings.error(hit.position)) : patch_colour(hit.patch);
+}
+
+Vec3 colour(const Hit& hit, const Vec3& direction, const Settings& settings) {
   if (hit.kind != HitKind::hit) return background;
-  if (shade == Shade::normals) return 0.5 * (hit.normal + Vec3{1, 1, 1});
+  if (settings.shade == Shade::normals) return 0.5 * (hit.normal + Vec3{1, 1, 1});
   // Darker where the surface turns away: the shape stays readable.
   const double facing = 0.62 + 0.38 * std::abs(dot(hit.normal, direction));
-  return facing * (shade == Shade::uv ? uv_colour(hit) : patch_colour(hit.patch));
+  return facing * surface_colour(hit, settings);
 }
 
 }  // namespace
@@ -38,7 +56,7 @@ Vec3 colour(const Hit& hit, const Vec3& direction, Shade shade) {
 void shade_flat(const View& view, Workspace& work) {
   work.colours.resize(work.rays.size());
   for (std::size_t k = 0; k < work.colours.size(); ++k) {
-    work.colours[k] = colour(work.hits[k], work.rays[k].direction, view.settings.shade);
+    work.colours[k] = colour(work.hits[k], work.rays[k].direction, view.settings);
   }
 }
 

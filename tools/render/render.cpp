@@ -118,6 +118,7 @@ Status check(const Settings& settings, const Box3& box) {
   if (std::min(settings.width, settings.height) < 1 || std::max(settings.width, settings.height) > largest_side)
     return bad("a picture's sides run from 1 to 32768 pixels");
   if (settings.samples < 1 || settings.samples > most_samples) return bad("samples run from 1 to 16");
+  if (settings.shade == Shade::error && !settings.error) return bad("there is no error to be shaded");
   return settings.camera ? render::check(*settings.camera) : Status();
 }
 

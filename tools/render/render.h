@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -31,6 +32,7 @@ enum class Shade : std::uint8_t {
   normals,  ///< the unit normal, (n + 1) / 2 as red, green, blue
   uv,       ///< patch parameters: u red, v green, a checkerboard of eighths
   patch,    ///< a colour a patch
+  error,    ///< how far something lies from the surface, of which Settings tells: dark where near, red where furthest
 };
 
 struct Settings {
@@ -38,6 +40,9 @@ struct Settings {
   Shade shade = Shade::lambert;
   std::optional<Camera> camera;  ///< one that fits the box to the picture if empty
   int samples = 4;               ///< samples x samples a pixel, 1 to 16
+  /// For Shade::error: how far, at a point of the surface, as a share of the largest that is to be told apart; what is
+  /// above 1 is magenta. Called from any number of threads.
+  std::function<double(const Vec3&)> error = {};
 };
 
 /// Rows from the top, three bytes a pixel, sRGB.
@@ -47,7 +52,7 @@ struct Image {
 };
 
 /// `box`: what is to be seen, RayScene::box() by default of the commands. The same bytes for any number of threads.
-/// Errors: invalid_argument (an empty box, settings out of range), cancelled, and those of RayScene::closest.
+/// Errors: invalid_argument (an empty box, settings out of range, no error to shade), cancelled, and those of RayScene::closest.
 Result<Image> render(const RayScene& scene, const Box3& box, const Settings& settings, const Execution& execution = {});
 
 /// Keywords and what they say, as tEXt chunks in Latin-1 (PNG specification, 11.3.4.3): "Warning", for example.

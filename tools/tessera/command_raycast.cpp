@@ -11,6 +11,7 @@
 #include "hits_table.h"
 #include "io/formats.h"
 #include "loading.h"
+#include "mesh_error.h"
 #include "progress.h"
 #include "render/camera.h"
 #include "render/caption.h"
@@ -29,6 +30,7 @@ struct Options {
   bool all_hits = false;
   RayMode mode = RayMode::exact;
   render::Settings settings;
+  MeshErrorOptions error;
 };
 
 /// What a job works with. The scene refers to the set.
@@ -36,6 +38,21 @@ struct Scene {
   Loaded loaded;
   PatchSet set;
   RayScene rays;
+  std::optional<MeshError> error;  ///< what is shaded, if that
+
+  render::Settings settings(const Options& options) const {
+    render::Settings own = options.settings;
+    if (error) own.error = [this](const Vec3& point) { return error->share(point); };
+    return own;
+  }
+  /// What stands at the lower border of its picture, the longest first that fits.
+  std::vector<std::string> captions() const {
+    const std::string trims = trims_text(loaded.trimmed());
+    std::vector<std::string> texts;
+    if (error) texts = {error->caption() + (trims.empty() ? "" : ", trims not honoured")};
+    if (!trims.empty()) texts.insert(texts.end(), {trims, "trims not honoured", "trims!"});
+    return texts;
+  }
 };
 
 /// Finer grids for smaller models: facets then are near the pixels' size, and a large model's scene still fits memory.
@@ -58,7 +75,7 @@ Result<Scene> make_scene(Loaded loaded, RayMode mode, Timings& timings) {
   options.rate = scene_rate(set->patch_count());
   Result<RayScene> rays = RayScene::make(*set, options, progress.execution());
   if (!rays) return in_file(loaded.files[0], rays.status());
-  return Scene{std::move(loaded), *std::move(set), *std::move(rays)};
+  return Scene{std::move(loaded), *std::move(set), *std::move(rays), {}};
 }
 
 Result<render::Image> draw(const Scene& scene, const render::Settings& settings, Timings& timings) {
@@ -69,12 +86,14 @@ Result<render::Image> draw(const Scene& scene, const render::Settings& settings,
 
 bool is_exr(const std::string& path) { return lower_extension(path) == ".exr"; }
 
-/// The picture, with a caption where the model is trimmed.
-Status write_colours(const Job& job, const render::Settings& settings, const Scene& scene, const std::string& trims,
-                     OutputFile& out, Timings& timings) {
+/// The picture, with a caption where the model is trimmed or an error is shown.
+Status write_colours(const Job& job, const render::Settings& settings, const Scene& scene, OutputFile& out,
+                     Timings& timings) {
   Result<render::Image> image = draw(scene, settings, timings);
   if (!image) return in_file(job.output, image.status());
-  if (!trims.empty()) render::add_caption(*image, {trims, "trims not honoured", "trims!"});
+  if (const std::vector<std::string> captions = scene.captions(); !captions.empty())
+    render::add_caption(*image, captions);
+  const std::string trims = trims_text(scene.loaded.trimmed());
   const auto phase = timings.phase("write");
   Status status =
       render::write_png(*image, out, trims.empty() ? render::PngTexts{} : render::PngTexts{{"Warning", trims}});
@@ -96,28 +115,30 @@ Status write_numbers(const Job& job, const render::Settings& settings, const Sce
 
 Status draw_file(const Job& job, const Options& options, const CommonOptions& common, const Scene& scene,
                  OutputFile& out, Timings& timings) {
-  const render::Settings& settings = options.settings;
-  const std::string trims = trims_text(scene.loaded.trimmed());
+  const render::Settings settings = scene.settings(options);
   const Status written = is_exr(job.output) ? write_numbers(job, settings, scene, out, timings)
-                                            : write_colours(job, settings, scene, trims, out, timings);
+                                            : write_colours(job, settings, scene, out, timings);
   if (!written.ok()) return written;
   if (!common.json) {
     return print(job.output + ": " + std::to_string(settings.width) + " x " + std::to_string(settings.height) + ", " +
-                 std::to_string(scene.set.patch_count()) + " patches\n" + fit_line(scene.set));
+                 std::to_string(scene.set.patch_count()) + " patches\n" + (scene.error ? scene.error->text() : "") +
+                 fit_line(scene.set));
   }
   Json object = files_json(scene.loaded);
   object["output"] = job.output;
   object["width"] = settings.width;
   object["height"] = settings.height;
   object["mode"] = name_of(options.mode);
-  object["caption"] = is_exr(job.output) ? "" : trims;
+  const std::vector<std::string> captions = scene.captions();
+  object["caption"] = is_exr(job.output) || captions.empty() ? "" : captions.front();
+  if (scene.error) object["error"] = scene.error->json();
   add_model_facts(object, scene.loaded, scene.set);
   add_seconds(object, common, timings);
   return print_json(object);
 }
 
 Status draw_characters(const Options& options, const Scene& scene, OutputFile& out, Timings& timings) {
-  render::Settings settings = options.settings;
+  render::Settings settings = scene.settings(options);
   if (!options.sized) {
     const PixelSize size = picture_size(terminal_size());
     settings.width = size.width;
@@ -127,8 +148,8 @@ Status draw_characters(const Options& options, const Scene& scene, OutputFile& o
   if (!image) return in_file(scene.loaded.files[0], image.status());
   const auto phase = timings.phase("write");
   out.write(as_characters(*image, output_colours(options.colour)));
-  const std::string trims = trims_text(scene.loaded.trimmed());
-  out.write(scene.loaded.files[0] + (trims.empty() ? "" : ": " + trims) + "\n");
+  const std::vector<std::string> captions = scene.captions();
+  out.write(scene.loaded.files[0] + (captions.empty() ? "" : ": " + captions.front()) + "\n");
   return out.commit();
 }
 
@@ -193,8 +214,14 @@ Status run_raycast(const Job& job, const Options& options, const CommonOptions& 
     if (!read) return read.status();
     rays = *std::move(read);
   }
-  const Result<Scene> scene = make_scene(*std::move(loaded), options.mode, timings);
+  Result<Scene> scene = make_scene(*std::move(loaded), options.mode, timings);
   if (!scene) return scene.status();
+  if (options.settings.shade == render::Shade::error) {
+    const auto phase = timings.phase("measure");
+    Result<MeshError> error = measure_error(options.error, scene->set);
+    if (!error) return error.status();
+    scene->error = *std::move(error);
+  }
   const Status status = !options.rays.empty()      ? trace(job, options, common, *scene, rays, *out, timings)
                         : !options.picture.empty() ? draw_file(job, options, common, *scene, *out, timings)
                                                    : draw_characters(options, *scene, *out, timings);
@@ -227,6 +254,9 @@ constexpr const char* footer =
     "models are one scene, or a picture each where the output is a folder or holds {name}. Trims are not honoured yet: "
     "a\n"
     "picture of a trimmed model says so at its lower border and in its metadata (Warning).\n"
+    "--shade error shows how far a mesh lies from the surfaces: deep blue where near, red at the proven bound of a "
+    "certified\n"
+    "mesh or the largest distance found of a given one, magenta beyond.\n"
     ".exr holds numbers, of one ray through the middle of each pixel: floats Z (distance from the eye), N.X N.Y N.Z,\n"
     "UV.U UV.V (parameters of the surface), integers surface and patch; where nothing is met Z is inf, the integers\n"
     "4294967295.\n"
@@ -245,6 +275,8 @@ constexpr const char* footer =
     "  tessera raycast teapot.bpt\n"
     "  tessera raycast teapot.bpt -o teapot.png --size 1280x720\n"
     "  tessera raycast teapot.bpt -o teapot.png --shade normals --camera=4,-8,5,0,0,1.5,40\n"
+    "  tessera raycast teapot.bpt -o error.png --shade error --relative 0.003\n"
+    "  tessera raycast teapot.bpt -o error.png --shade error --mesh teapot.stl\n"
     "  tessera raycast 'parts/*.step' -o 'pictures/{name}.png'\n"
     "  tessera raycast teapot.bpt --rays rays.csv --hits hits.csv\n"
     "  tessera raycast teapot.bpt --rays rays.csv --hits hits.csv --all-hits";
@@ -252,7 +284,8 @@ constexpr const char* footer =
 const std::map<std::string, render::Shade> shades{{"lambert", render::Shade::lambert},
                                                   {"normals", render::Shade::normals},
                                                   {"uv", render::Shade::uv},
-                                                  {"patch", render::Shade::patch}};
+                                                  {"patch", render::Shade::patch},
+                                                  {"error", render::Shade::error}};
 
 /// The options that make sense with a picture alone.
 std::vector<CLI::Option*> add_picture_options(CLI::App& command, Options& options) {
@@ -262,7 +295,10 @@ std::vector<CLI::Option*> add_picture_options(CLI::App& command, Options& option
     options.settings.height = size.second;
     options.sized = true;
   };
-  const auto set_shade = [&options](const std::string& text) { options.settings.shade = shades.at(text); };
+  const auto set_shade = [&options](const std::string& text) {
+    options.settings.shade = shades.at(text);
+    if (options.settings.shade == render::Shade::error) options.settings.samples = 2;  // distances take their time
+  };
   const auto set_camera = [&options](const std::string& text) { options.settings.camera = parse_camera(text); };
   return {command
               .add_option_function<std::string>("--size", set_size,
@@ -270,7 +306,7 @@ std::vector<CLI::Option*> add_picture_options(CLI::App& command, Options& option
               ->type_name("WxH"),
           command.add_option_function<std::string>("--shade", set_shade, "How surfaces are coloured [lambert]")
               ->type_name("NAME")
-              ->check(one_of({"lambert", "normals", "uv", "patch"})),
+              ->check(one_of({"lambert", "normals", "uv", "patch", "error"})),
           command
               .add_option_function<std::string>("--camera", set_camera,
                                                 "Eye, target, field of view in degrees over the picture's shorter side "
@@ -338,12 +374,14 @@ void add_raycast(CLI::App& app, Session& session) {
   }
   of_pictures.push_back(picture);
   add_ray_options(*command, *options, of_pictures);
+  add_error_options(*command, options->error, of_pictures[1]);
   add_mode(*command, *options);
   add_common(*command, session.common);
   command->footer(footer);
-  command->callback([options, shade = of_pictures[1], &session] {
+  command->callback([options, command, shade = of_pictures[1], &session] {
     if (shade->count() > 0 && is_exr(options->picture))
       throw CLI::ValidationError("--shade", "pictures of numbers (.exr) have no shade");
+    check_error_options(*command, options->settings.shade);
     if (options->all_hits && options->mode == RayMode::grid)
       throw CLI::ValidationError("--all-hits", "all hits are known in --mode exact alone");
     const Plan plan = plan_raycast(*options, session.common);

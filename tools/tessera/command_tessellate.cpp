@@ -154,7 +154,8 @@ std::string fault_of_output(const std::string& path) {
 
 constexpr const char* footer =
     "Positions, normals and parameters are written (.stl: triangles alone), a part for each surface in .obj, .glb and\n"
-    ".gltf; neighbours share their borders bit for bit. Several models become\n"
+    ".gltf; neighbours share their borders bit for bit, and with --share-vertices by number: such a vertex has the\n"
+    "parameters of the first of its patches. Several models become\n"
     "one mesh, or one each where the output is a folder (then as .ply) or holds {name}.\n"
     "By --tolerance, --relative or --triangles each patch gets the rates that it needs, neighbours meet without a "
     "crack,\n"
@@ -290,6 +291,28 @@ void add_weld(CLI::App& command, Options& options) {
       ->type_name("LENGTH");
 }
 
+/// What neighbours have in common.
+void add_sharing(CLI::App& command, Options& options) {
+  CLI::Option* const grid = command.get_option("--grid");
+  const auto set_crease = [&options](const std::string& text) {
+    const double angle = parse_numbers("--crease", text, 1, "0 to 180")[0];
+    if (!(angle >= 0 && angle <= 180))
+      throw CLI::ValidationError("--crease", "expected an angle of 0 to 180 degrees, found \"" + text + "\"");
+    options.certified.crease_angle = angle * degree;
+  };
+  command
+      .add_option_function<std::string>("--crease", set_crease,
+                                        "Neighbours whose normals lie within this along their border share them, the "
+                                        "others keep a crease [each patch has its own]")
+      ->type_name("DEGREES")
+      ->excludes(grid);
+  command
+      .add_flag("--share-vertices", options.certified.share_vertices,
+                "Store what neighbours share once: vertices with the same normal by --crease, else all of them, "
+                "without normals")
+      ->excludes(grid);
+}
+
 }  // namespace
 
 void add_tessellate(CLI::App& app, Session& session) {
@@ -306,6 +329,7 @@ void add_tessellate(CLI::App& app, Session& session) {
   add_view(*command, *options);
   add_cap(*command, *options);
   add_weld(*command, *options);
+  add_sharing(*command, *options);
   add_common(*command, session.common);
   command->footer(footer);
   command->callback([options, &session] {

@@ -1,0 +1,63 @@
+// Distances to meshes: those to each triangle, looked at one by one.
+
+#include "render/mesh_distance.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "support/random_patches.h"
+#include "support/triangle_distance.h"
+
+namespace tessera::test {
+namespace {
+
+Mesh random_mesh(Random& random, std::size_t triangles) {
+  Mesh mesh;
+  mesh.origin = {10, -20, 5};
+  for (std::size_t k = 0; k < 3 * triangles; ++k) {
+    const Vec3 p = (k / 3 % 7 == 0 ? 0.1 : 1.0) * uniform_vector(random, -1, 1);
+    for (const double x : {p.x, p.y, p.z}) mesh.positions.push_back(static_cast<float>(x));
+    mesh.indices.push_back(static_cast<std::uint32_t>(k % 11 == 0 ? k / 2 : k));  // some needles and points
+  }
+  return mesh;
+}
+
+TEST(MeshDistance, IsThatToTheNearestTriangle) {
+  Random random(4);
+  for (const std::size_t triangles : {1u, 3u, 5u, 100u, 1000u}) {
+    const Mesh mesh = random_mesh(random, triangles);
+    const auto distance = render::MeshDistance::make(mesh);
+    ASSERT_TRUE(distance.ok());
+    for (int k = 0; k < 200; ++k) {
+      const Vec3 p = mesh.origin + uniform_vector(random, -2, 2);
+      double least = std::numeric_limits<double>::infinity();
+      for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+        Vec3 corner[3];
+        for (std::size_t c = 0; c < 3; ++c) {
+          const float* at = &mesh.positions[3 * mesh.indices[3 * t + c]];
+          corner[c] = mesh.origin + Vec3{double(at[0]), double(at[1]), double(at[2])};
+        }
+        least = std::min(least, distance_to_triangle(p, corner[0], corner[1], corner[2]));
+      }
+      EXPECT_NEAR(distance->distance(p, 100), least, 1e-12);
+      EXPECT_EQ(distance->distance(p, 0.5 * least), 0.5 * least);
+    }
+  }
+}
+
+TEST(MeshDistance, RefusesWhatIsNoMesh) {
+  Random random(5);
+  Mesh mesh = random_mesh(random, 4);
+  mesh.indices[5] = 12;
+  EXPECT_EQ(render::MeshDistance::make(mesh).status().message(), "triangle 1 has vertex 12, there are 12");
+  mesh.indices[5] = 5;
+  mesh.positions[15] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(render::MeshDistance::make(mesh).status().code(), StatusCode::non_finite);
+  mesh.indices.clear();
+  EXPECT_EQ(render::MeshDistance::make(mesh).status().code(), StatusCode::invalid_argument);
+}
+
+}  // namespace
+}  // namespace tessera::test

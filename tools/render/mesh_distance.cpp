@@ -1,0 +1,119 @@
+#include "render/mesh_distance.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+namespace tessera::render {
+namespace {
+
+constexpr std::size_t leaf_triangles = 4;
+
+double coordinate(const Vec3& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
+
+double squared_distance(const Vec3& p, const Box3& box) {
+  double sum = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double x = coordinate(p, axis);
+    const double beside = std::max({coordinate(box.lower, axis) - x, x - coordinate(box.upper, axis), 0.0});
+    sum += beside * beside;
+  }
+  return sum;
+}
+
+double squared_distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 along = b - a, from = p - a;
+  const double length2 = dot(along, along);
+  const double t = length2 > 0 ? std::clamp(dot(from, along) / length2, 0.0, 1.0) : 0;
+  const Vec3 away = from - t * along;
+  return dot(away, away);
+}
+
+/// From the plane where the foot lies inside, else from the edges.
+double squared_distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 normal = cross(b - a, c - a);
+  const double size2 = dot(normal, normal);
+  if (size2 > 0 && dot(cross(b - a, p - a), normal) >= 0 && dot(cross(c - b, p - b), normal) >= 0 &&
+      dot(cross(a - c, p - c), normal) >= 0) {
+    const double height = dot(p - a, normal);
+    return height * height / size2;
+  }
+  return std::min({squared_distance_to_segment(p, a, b), squared_distance_to_segment(p, b, c),
+                   squared_distance_to_segment(p, c, a)});
+}
+
+}  // namespace
+
+Result<MeshDistance> MeshDistance::make(const Mesh& mesh) {
+  const std::size_t vertices = mesh.vertex_count();
+  if (mesh.indices.empty()) return Status(StatusCode::invalid_argument, "the mesh has no triangle");
+  MeshDistance made;
+  for (std::size_t k = 0; k < mesh.triangle_count(); ++k) {
+    std::array<Vec3, 3> corners;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::size_t vertex = mesh.indices[3 * k + c];
+      if (vertex >= vertices)
+        return Status(StatusCode::invalid_argument, "triangle " + std::to_string(k) + " has vertex " +
+                                                        std::to_string(vertex) + ", there are " +
+                                                        std::to_string(vertices));
+      const float* p = &mesh.positions[3 * vertex];
+      corners[c] = mesh.origin + Vec3{double(p[0]), double(p[1]), double(p[2])};
+      if (!is_finite(corners[c]))
+        return Status(StatusCode::non_finite, "vertex " + std::to_string(vertex) + " is not finite");
+    }
+    made.triangles_.push_back({corners[0], corners[1], corners[2]});
+  }
+  made.build(0, made.triangles_.size());
+  return made;
+}
+
+void MeshDistance::build(std::size_t begin, std::size_t end) {
+  const std::size_t at = nodes_.size();
+  nodes_.emplace_back();
+  Box3 box, middles;
+  const auto middle = [](const Triangle& t) { return (1.0 / 3) * (t.a + t.b + t.c); };
+  for (std::size_t k = begin; k < end; ++k) {
+    for (const Vec3& corner : {triangles_[k].a, triangles_[k].b, triangles_[k].c}) box.extend(corner);
+    middles.extend(middle(triangles_[k]));
+  }
+  nodes_[at].box = box;
+  if (end - begin <= leaf_triangles) {
+    nodes_[at].first = static_cast<std::uint32_t>(begin);
+    nodes_[at].count = static_cast<std::uint32_t>(end - begin);
+    return;
+  }
+  const Vec3 extent = middles.upper - middles.lower;
+  const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+  const std::size_t half = (begin + end) / 2;
+  const auto place = [&](std::size_t k) { return triangles_.begin() + static_cast<std::ptrdiff_t>(k); };
+  std::nth_element(place(begin), place(half), place(end), [&](const Triangle& a, const Triangle& b) {
+    return coordinate(middle(a), axis) < coordinate(middle(b), axis);
+  });
+  build(begin, half);
+  nodes_[at].first = static_cast<std::uint32_t>(nodes_.size());
+  build(half, end);
+}
+
+double MeshDistance::distance(const Vec3& point, double within) const {
+  std::array<std::uint32_t, 64> waiting;  // halves of 2^32 triangles are no deeper than 32
+  std::size_t count = 0;
+  waiting[count++] = 0;
+  double least = within * within;
+  while (count > 0) {
+    const std::uint32_t at = waiting[--count];
+    const Node& node = nodes_[at];
+    if (squared_distance(point, node.box) >= least) continue;
+    for (std::uint32_t k = node.first; k < node.first + node.count; ++k)
+      least = std::min(least, squared_distance_to_triangle(point, triangles_[k].a, triangles_[k].b, triangles_[k].c));
+    if (node.count > 0) continue;
+    const std::uint32_t children[] = {at + 1, node.first};
+    const bool second_is_nearer =
+        squared_distance(point, nodes_[children[1]].box) < squared_distance(point, nodes_[children[0]].box);
+    waiting[count++] = children[second_is_nearer ? 0 : 1];
+    waiting[count++] = children[second_is_nearer ? 1 : 0];
+  }
+  return std::sqrt(least);
+}
+
+}  // namespace tessera::render

@@ -1,0 +1,90 @@
+#include "mesh_error.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "arguments.h"
+#include "tessera/certified_tessellation.h"
+#include "tessera/io.h"
+
+namespace tessera::cli {
+namespace {
+
+/// Points of all patches that a mesh is held against.
+constexpr std::size_t most_points = 500000;
+
+Result<Mesh> made(const PatchSet& set, double relative, MeshError& error) {
+  const Result<CertifiedTessellation> plan =
+      CertifiedTessellation::make(set, {.tolerance = relative, .relative = true, .weld = 1e-6 * set.box().diagonal()});
+  if (!plan) return plan.status();
+  Result<Mesh> mesh = plan->allocate();
+  if (!mesh) return mesh;
+  if (const Status status = plan->run(set, mesh->views()); !status.ok()) return status;
+  error.red = plan->bound();
+  error.proven = plan->certified();
+  return mesh;
+}
+
+double largest(const render::MeshDistance& mesh, const PatchSet& set) {
+  int steps = 32;
+  while (steps > 2 && set.patch_count() * static_cast<std::size_t>(steps * steps) > most_points) steps /= 2;
+  const double size = set.box().diagonal();
+  double most = 0;
+  for (std::size_t k = 0; k < set.patch_count(); ++k)
+    for (int i = 0; i <= steps; ++i)
+      for (int j = 0; j <= steps; ++j)
+        most = std::max(most, mesh.distance(de_casteljau(set.patch(k), double(i) / steps, double(j) / steps), size));
+  return most;
+}
+
+}  // namespace
+
+std::string MeshError::text() const {
+  return std::to_string(triangles) + " triangles, up to " + readable(found, 3) + " from the surfaces; red is " +
+         readable(red, 3) + (proven ? ", the proven bound\n" : "\n");
+}
+
+std::string MeshError::caption() const {
+  return "red: " + readable(red, 3) + ", mesh: " + std::to_string(triangles) + " triangles";
+}
+
+Json MeshError::json() const { return {{"triangles", triangles}, {"found", found}, {"red", red}, {"proven", proven}}; }
+
+void add_error_options(CLI::App& command, MeshErrorOptions& options, CLI::Option* shade) {
+  CLI::Option* const mesh = command.add_option(
+      "--mesh", options.mesh, "The mesh whose distance --shade error shows (.obj, .ply, .stl) [a certified one]");
+  mesh->check(fault_of_name)->type_name("FILE")->needs(shade);
+  const auto set_relative = [&options](const std::string& text) {
+    options.relative = parse_numbers("--relative", text, 1, "above 0")[0];
+    if (!(options.relative > 0))
+      throw CLI::ValidationError("--relative", "expected a number above 0, found \"" + text + "\"");
+  };
+  command
+      .add_option_function<std::string>("--relative", set_relative,
+                                        "The tolerance of the certified mesh that --shade error shows, a share of the "
+                                        "model's size [0.001]")
+      ->type_name("SHARE")
+      ->needs(shade)
+      ->excludes(mesh);
+}
+
+void check_error_options(const CLI::App& command, render::Shade shade) {
+  if (command.count("--mesh") + command.count("--relative") > 0 && shade != render::Shade::error)
+    throw CLI::ValidationError("--shade", "--mesh and --relative are for --shade error");
+}
+
+Result<MeshError> measure_error(const MeshErrorOptions& options, const PatchSet& set) {
+  MeshError error;
+  const Result<Mesh> mesh = options.mesh.empty() ? made(set, options.relative, error) : read_mesh(options.mesh);
+  if (!mesh) return mesh.status();
+  Result<render::MeshDistance> distance = render::MeshDistance::make(*mesh);
+  if (!distance) return options.mesh.empty() ? distance.status() : in_file(options.mesh, distance.status());
+  error.triangles = mesh->triangle_count();
+  error.found = largest(*distance, set);
+  if (!options.mesh.empty()) error.red = error.found;
+  error.red = std::max(error.red, 1e-12 * set.box().diagonal());  // of a mesh that is exact
+  error.mesh = std::make_shared<const render::MeshDistance>(std::move(*distance));
+  return error;
+}
+
+}  // namespace tessera::cli
