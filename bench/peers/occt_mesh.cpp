@@ -4,6 +4,7 @@
 // near. (Tessera's is proven besides: the bound stands beside what is measured.) Time is that of all that leads from
 // surfaces in memory, Bezier patches packed in a set or faces of a shape, to positions, normals and triangles.
 
+#include <tbb/global_control.h>
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <BRepTools.hxx>
@@ -17,7 +18,6 @@
 #include <TColgp_Array2OfPnt.hxx>
 #include <TopoDS_Compound.hxx>
 #include <TopoDS_Face.hxx>
-#include <tbb/global_control.h>
 
 #include <cmath>
 #include <cstdio>
@@ -96,9 +96,13 @@ Subject spline_subject(int spans) {
 }
 
 Subject patches_subject(const std::string& name, const std::vector<BezierPatch>& patches) {
-  Subject subject{name, test::value_of(PatchSet::from(patches)), {},
+  Subject subject{name,
+                  test::value_of(PatchSet::from(patches)),
+                  {},
                   [patches](std::size_t face, double u, double v) { return de_casteljau(patches[face], u, v); },
-                  [](std::size_t patch) { return std::pair{patch, Domain{}}; }};
+                  [](std::size_t patch) {
+                    return std::pair{patch, Domain{}};
+                  }};
   for (const BezierPatch& patch : patches) subject.faces.push_back(face_of(occt_surface(patch)));
   return subject;
 }
@@ -116,7 +120,9 @@ double distance(const Subject& subject, const Triangle& t) {
   for (int i = 0; i <= steps; ++i)
     for (int j = 0; i + j <= steps; ++j) {
       const double a = double(i) / steps, b = double(j) / steps, c = 1 - a - b;
-      const auto mixed = [&](std::size_t k) { return a * t.parameters[0][k] + b * t.parameters[1][k] + c * t.parameters[2][k]; };
+      const auto mixed = [&](std::size_t k) {
+        return a * t.parameters[0][k] + b * t.parameters[1][k] + c * t.parameters[2][k];
+      };
       const Vec3 p = subject.at(t.face, mixed(0), mixed(1));
       most = std::max(most, test::distance_to_triangle(p, t.corners[0], t.corners[1], t.corners[2]));
     }
@@ -221,9 +227,10 @@ Measured measure_tessera(const Subject& subject, double error) {
 bool compare(const Subject& subject, double deflection) {
   const Measured occt = measure_occt(subject, deflection);
   const Measured ours = measure_tessera(subject, occt.error);
-  std::printf("%-38s %9.1e | %8zu %9.2e %9.3f | %8zu %9.2e %9.2e %9.5f | %7.0f %9.2f\n", subject.name.c_str(), deflection,
-              occt.triangles, occt.error, 1e3 * occt.seconds, ours.triangles, ours.error, ours.bound, 1e3 * ours.seconds,
-              occt.seconds / ours.seconds, static_cast<double>(ours.triangles) / static_cast<double>(occt.triangles));
+  std::printf("%-38s %9.1e | %8zu %9.2e %9.3f | %8zu %9.2e %9.2e %9.5f | %7.0f %9.2f\n", subject.name.c_str(),
+              deflection, occt.triangles, occt.error, 1e3 * occt.seconds, ours.triangles, ours.error, ours.bound,
+              1e3 * ours.seconds, occt.seconds / ours.seconds,
+              static_cast<double>(ours.triangles) / static_cast<double>(occt.triangles));
   std::fflush(stdout);
   if (ours.error <= ours.bound && ours.error <= occt.error) return true;
   std::fputs("occt_mesh: a bound is exceeded, or the mesh is further away than OpenCASCADE's\n", stderr);

@@ -79,8 +79,8 @@ class Report {
       ++meshes_;
     }
     ++models_;
-    std::printf("%-52s %7zu %7zu %6zu %6zu%s\n", name.c_str(), set->patch_count(), last.own_borders, last.own_non_manifold,
-                last.report.t_junctions, row.c_str());
+    std::printf("%-52s %7zu %7zu %6zu %6zu%s\n", name.c_str(), set->patch_count(), last.own_borders,
+                last.own_non_manifold, last.report.t_junctions, row.c_str());
     std::fflush(stdout);
   }
 
@@ -112,8 +112,10 @@ int main(int argc, char** argv) {
   }
   std::printf("%-52s %7s %7s %6s %6s", "model", "patches", "borders", "multi", "T");
   for (const double tolerance : tolerances) std::printf("%12.0e", tolerance);
-  std::printf("\n(of the model itself: borders that meet none, edges of more than two triangles, T-junctions, of the finest mesh; then "
-              "triangles by tolerance, a share of the size, < where only so many were allowed)\n");
+  std::printf(
+      "\n(of the model itself: borders that meet none, edges of more than two triangles, T-junctions, of the finest "
+      "mesh; then "
+      "triangles by tolerance, a share of the size, < where only so many were allowed)\n");
   Report report;
   for (const std::filesystem::path& path : files) report.survey(path);
   return report.finish() ? 0 : 1;

@@ -27,8 +27,12 @@ struct Case {
 
   CaseName name() const {
     const std::string share = step == 1 ? "all" : "one_in_" + std::to_string(step);
-    return {std::string("update.mesh") + (bounds ? "+bounds." : ".") + share, "bicubic10000", "3",
-            "rate" + std::to_string(rate), "-", threads};
+    return {std::string("update.mesh") + (bounds ? "+bounds." : ".") + share,
+            "bicubic10000",
+            "3",
+            "rate" + std::to_string(rate),
+            "-",
+            threads};
   }
 };
 
@@ -69,8 +73,7 @@ void run(benchmark::State& state, const Case& c) {
   std::vector<std::uint8_t> is_touched(size.vertices, 0);
   if (const Status status = plan.run(set, mesh.views()); !status.ok())
     return state.SkipWithError(status.message().c_str());
-  for (std::size_t k = 0; k < mesh.indices.size(); ++k)
-    is_touched[mesh.indices[k]] = mesh.patches[k / 3] % c.step == 0;
+  for (std::size_t k = 0; k < mesh.indices.size(); ++k) is_touched[mesh.indices[k]] = mesh.patches[k / 3] % c.step == 0;
   const auto touched = static_cast<double>(std::count(is_touched.begin(), is_touched.end(), 1));
   Vertices vertices(size.vertices);
   std::copy(mesh.positions.begin(), mesh.positions.end(), vertices.positions.begin());
@@ -87,7 +90,8 @@ void run(benchmark::State& state, const Case& c) {
   const auto limits = around.best(state);
   if (!best || !limits) return;
   mesh = test::value_of(update.plan().allocate());
-  if (!update.plan().run(set, mesh.views()).ok() || !std::equal(mesh.positions.begin(), mesh.positions.end(), vertices.positions.begin()) ||
+  if (!update.plan().run(set, mesh.views()).ok() ||
+      !std::equal(mesh.positions.begin(), mesh.positions.end(), vertices.positions.begin()) ||
       !std::equal(mesh.normals.begin(), mesh.normals.end(), vertices.normals.begin()))
     return state.SkipWithError("the timed values differ from a new mesh's");
   report_rates(state, *best, touched, work.bytes_written);

@@ -72,7 +72,8 @@ void report(const std::string& name, const PatchSet& set, double relative) {
     best += 2.0 * found.u * found.v;
   }
   std::printf("%-28s %8.0e %8zu %10.1f %10.0f %10.2f %10.2f\n", name.c_str(), relative, set.patch_count(),
-              mesh / (static_cast<double>(set.patch_count()) / static_cast<double>(step)), best, rates / best, mesh / best);
+              mesh / (static_cast<double>(set.patch_count()) / static_cast<double>(step)), best, rates / best,
+              mesh / best);
   std::fflush(stdout);
 }
 

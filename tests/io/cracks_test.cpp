@@ -34,9 +34,9 @@ std::size_t expect_no_cracks(const std::filesystem::path& folder) {
       EXPECT_TRUE(count.ok()) << path << ": " << count.status().message();
       if (!count) continue;
       EXPECT_TRUE(count->good()) << path << " at " << relative << ": " << count->cracks << " cracks, "
-                                 << count->non_manifold << " non-manifold edges, "
-                                 << count->report.degenerate_triangles << " degenerate triangles, "
-                                 << count->report.non_finite_vertices << " vertices with NaN";
+                                 << count->non_manifold << " non-manifold edges, " << count->report.degenerate_triangles
+                                 << " degenerate triangles, " << count->report.non_finite_vertices
+                                 << " vertices with NaN";
       EXPECT_EQ(count->own_edges + count->cracks, count->report.open_edges) << path;
       meshed += relative == 1e-2;
     }

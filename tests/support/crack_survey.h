@@ -21,14 +21,14 @@ namespace tessera::test {
 struct CrackCount {
   MeshReport report;
   double bound = 0;
-  bool capped = false;            ///< the tolerance takes too many triangles: the smallest that does not was taken
-  std::size_t own_borders = 0;    ///< borders of the model itself: of patches, that meet no other
-  std::size_t own_edges = 0;      ///< open edges on those
-  std::size_t cracks = 0;         ///< the other open edges
+  bool capped = false;          ///< the tolerance takes too many triangles: the smallest that does not was taken
+  std::size_t own_borders = 0;  ///< borders of the model itself: of patches, that meet no other
+  std::size_t own_edges = 0;    ///< open edges on those
+  std::size_t cracks = 0;       ///< the other open edges
   /// Edges of more than two triangles where patches meet, lie upon each other or are folded: each patch has two there.
   std::size_t own_non_manifold = 0;
   std::size_t non_manifold = 0;  ///< the others
-  bool folded = false;  ///< a patch lies upon itself: where it turns back triangles have no area
+  bool folded = false;           ///< a patch lies upon itself: where it turns back triangles have no area
   bool good() const {
     return cracks == 0 && non_manifold == 0 && (folded || report.degenerate_triangles == 0) &&
            report.non_finite_vertices == 0;
@@ -96,7 +96,8 @@ inline void count_edges(const Mesh& mesh, const MeetingBorders& borders, CrackCo
   std::unordered_map<PositionBits, std::uint32_t, PlaceHash> places;
   std::vector<std::uint32_t> place(mesh.vertex_count());
   for (std::size_t k = 0; k < place.size(); ++k)
-    place[k] = places.emplace(position_bits(&mesh.positions[3 * k]), static_cast<std::uint32_t>(places.size())).first->second;
+    place[k] =
+        places.emplace(position_bits(&mesh.positions[3 * k]), static_cast<std::uint32_t>(places.size())).first->second;
   struct Edge {
     std::uint64_t ends;
     std::size_t border;  ///< 4 * patch + side, or none
@@ -112,8 +113,8 @@ inline void count_edges(const Mesh& mesh, const MeetingBorders& borders, CrackCo
       const std::uint32_t a = k[c], b = k[(c + 1) % 3];
       const std::uint64_t low = std::min(place[a], place[b]), high = std::max(place[a], place[b]);
       const std::size_t side = side_of_edge(mesh, borders, mesh.patches[t], a, b);
-      edges.push_back({low << 32 | high, side == 4 ? inside : 4 * std::size_t{mesh.patches[t]} + side,
-                       {mesh.patches[t], a, b}});
+      edges.push_back(
+          {low << 32 | high, side == 4 ? inside : 4 * std::size_t{mesh.patches[t]} + side, {mesh.patches[t], a, b}});
     }
   }
   std::sort(edges.begin(), edges.end());
@@ -133,7 +134,8 @@ inline void count_edges(const Mesh& mesh, const MeetingBorders& borders, CrackCo
 inline bool is_folded(const PatchSet& set) {
   for (std::size_t k = 0; k < set.patch_count(); ++k) {
     const Result<PatchSet> alone = PatchSet::from(std::span(&set.patch(k), 1));
-    const auto plan = alone ? TessellationPlan::make(*alone, {.rate_u = 8, .rate_v = 8, .isa = {}}) : Result<TessellationPlan>(alone.status());
+    const auto plan = alone ? TessellationPlan::make(*alone, {.rate_u = 8, .rate_v = 8, .isa = {}})
+                            : Result<TessellationPlan>(alone.status());
     Result<Mesh> mesh = plan ? plan->allocate() : Result<Mesh>(plan.status());
     if (!mesh || !plan->run(*alone, mesh->views()).ok()) continue;
     if (const Result<MeshReport> report = check(*mesh); report && report->non_manifold_edges > 0) return true;

@@ -1,7 +1,9 @@
-// After warm-up a repeated tessellation allocates nothing.
+// After warm-up a repeated tessellation allocates nothing; plans are small.
 
 #include "support/allocations.h"
+#include "support/synthetic_sets.h"
 #include "tess/tessellate_support.h"
+#include "tessera/mesh_update.h"
 
 namespace tessera::test {
 namespace {
@@ -20,6 +22,38 @@ TEST(TessellationAllocation, NoneAfterTheFirstRuns) {
   for (int repeat = 0; repeat < 10; ++repeat) ASSERT_TRUE(plan.run(set, views, execution).ok());
   EXPECT_EQ(allocation_count(), before);
   EXPECT_EQ(done, 1);
+}
+
+/// The most bytes a patch that `make` holds at a time, beside what there was.
+template <class Make>
+double bytes_a_patch(const PatchSet& set, Make make) {
+  const std::size_t before = restart_peak();
+  make();
+  return static_cast<double>(peak_bytes() - before) / static_cast<double>(set.patch_count());
+}
+
+TEST(TessellationMemory, PlansTakeLessThanAKilobyteAPatch) {
+  const PatchSet set = set_of(wavy_field(60, 50));
+  const auto plan = [&](const CertifiedOptions& options) { return good(CertifiedTessellation::make(set, options)); };
+  const View view{.eye = {30, -40, 30}, .target = {30, 25, 0}};
+  CertifiedOptions options{.tolerance = 0.01};
+  EXPECT_LE(bytes_a_patch(set, [&] { (void)plan(options); }), 1024);
+  EXPECT_LE(bytes_a_patch(set, [&] { (void)good(MeshUpdate::make(set, plan(options))); }), 1024);
+  options.weld = 1e-4;
+  options.share_vertices = true;
+  EXPECT_LE(bytes_a_patch(set, [&] { (void)plan(options); }), 1024);
+  EXPECT_LE(bytes_a_patch(set, [&] { (void)plan({.tolerance = 0.01, .angle = 0.1}); }), 1024);
+  EXPECT_LE(bytes_a_patch(set, [&] { (void)plan({.pixels = PixelTolerance{1, view}}); }), 1024);
+}
+
+TEST(TessellationMemory, MeshesAreWrittenWithNextToNothingBeside) {
+  const PatchSet set = set_of(wavy_field(60, 50));
+  for (const bool share : {false, true}) {
+    const auto plan = good(CertifiedTessellation::make(set, {.tolerance = 0.01, .share_vertices = share}));
+    Mesh mesh = good(plan.allocate());
+    const MeshViews views = mesh.views();
+    EXPECT_LE(bytes_a_patch(set, [&] { ASSERT_TRUE(plan.run(set, views).ok()); }), 10);
+  }
 }
 
 }  // namespace

@@ -74,7 +74,9 @@ std::vector<BezierPatch> round_sphere() {
 }
 
 using Place = std::array<float, 3>;
-Place place_of(const std::vector<float>& of, std::size_t vertex) { return {of[3 * vertex], of[3 * vertex + 1], of[3 * vertex + 2]}; }
+Place place_of(const std::vector<float>& of, std::size_t vertex) {
+  return {of[3 * vertex], of[3 * vertex + 1], of[3 * vertex + 2]};
+}
 
 /// What the corners of the triangles are, in order.
 std::vector<Place> corners(const Mesh& mesh, const std::vector<float>& of) {
@@ -117,9 +119,11 @@ TEST(SharedVertices, TheSameTrianglesWithEachPlaceOnce) {
       }
       // Parameters are those of the patch that comes first.
       std::vector<std::uint32_t> first(mesh.vertex_count(), std::uint32_t(-1));
-      for (std::size_t k = 0; k < mesh.indices.size(); ++k) first[mesh.indices[k]] = std::min(first[mesh.indices[k]], mesh.patches[k / 3]);
+      for (std::size_t k = 0; k < mesh.indices.size(); ++k)
+        first[mesh.indices[k]] = std::min(first[mesh.indices[k]], mesh.patches[k / 3]);
       for (std::size_t k = 0; k < mesh.vertex_count(); ++k) {
-        const Vec3 p = de_casteljau(set.patch(first[k]), double(mesh.parameters[2 * k]), double(mesh.parameters[2 * k + 1]));
+        const Vec3 p =
+            de_casteljau(set.patch(first[k]), double(mesh.parameters[2 * k]), double(mesh.parameters[2 * k + 1]));
         const Place at = place_of(mesh.positions, k);
         EXPECT_LE(max_abs(mesh.origin + Vec3{at[0], at[1], at[2]} - p), 2e-6 * set.box().diagonal() + c.weld) << c.name;
       }
@@ -273,7 +277,8 @@ TEST(Quads, CellsAreQuadsAndTheRestIsStrips) {
       std::size_t t = 0, q = 0;
       for (std::uint32_t k = 0; k < set.patch_count(); ++k) {
         for (; t < size.triangles && strips.patches[t] == k; ++t) {
-          indices.insert(indices.end(), strips.indices.begin() + std::ptrdiff_t(3 * t), strips.indices.begin() + std::ptrdiff_t(3 * t + 3));
+          indices.insert(indices.end(), strips.indices.begin() + std::ptrdiff_t(3 * t),
+                         strips.indices.begin() + std::ptrdiff_t(3 * t + 3));
           patches.push_back(k);
         }
         for (; q < size.quads && quad_patch[q] == k; ++q) {

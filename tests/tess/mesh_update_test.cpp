@@ -107,8 +107,9 @@ TEST(MeshUpdate, OtherRecordsAreNotTouched) {
   for (std::size_t t = 0; t < patches.size(); ++t)
     for (std::size_t c = 0; c < 3; ++c) {
       const std::size_t vertex = indices[3 * t + c];
-      const bool same = std::equal(before.begin() + std::ptrdiff_t(3 * vertex), before.begin() + std::ptrdiff_t(3 * vertex + 3),
-                                   body.mesh.positions.begin() + std::ptrdiff_t(3 * vertex));
+      const bool same =
+          std::equal(before.begin() + std::ptrdiff_t(3 * vertex), before.begin() + std::ptrdiff_t(3 * vertex + 3),
+                     body.mesh.positions.begin() + std::ptrdiff_t(3 * vertex));
       EXPECT_TRUE(same || patches[t] % 5 == 0);
     }
 }
@@ -154,7 +155,8 @@ TEST(MeshUpdate, RestatedBoundsHold) {
       ASSERT_TRUE(body.update.restate(body.set).ok());
       EXPECT_LE(found_over_bound(body), 1);
       EXPECT_EQ(body.update.bound(), *std::ranges::max_element(body.update.bounds()));
-      const auto above = std::ranges::count_if(body.update.bounds(), [](float bound) { return bound > 0.02f * 1.0001f; });
+      const auto above =
+          std::ranges::count_if(body.update.bounds(), [](float bound) { return bound > 0.02f * 1.0001f; });
       EXPECT_EQ(body.update.unproven(), std::size_t(above));
     }
     EXPECT_GT(body.update.unproven(), 0u);
@@ -206,7 +208,8 @@ TEST(MeshUpdate, RetessellatingChangesOnlyWhatItMust) {
   body.run(moved(body.set, 1, [](const Vec3& p) { return Vec3{p.x, p.y, p.z * 0.97}; }));
   EXPECT_EQ(good(body.update.retessellate(body.set)), 0u);
   EXPECT_EQ(mesh_of(body.set, body.update.plan()).indices, indices);
-  EXPECT_GT(good(CertifiedTessellation::make(body.set, {.tolerance = 0.003})).divided_otherwise(body.update.plan()), 0u);
+  EXPECT_GT(good(CertifiedTessellation::make(body.set, {.tolerance = 0.003})).divided_otherwise(body.update.plan()),
+            0u);
   // One patch that bulges takes others, and its neighbours' borders with it.
   Edits one = moved(body.set, 1000, [](const Vec3& p) { return p; });
   for (const std::size_t k : {5u, 6u, 9u, 10u}) one.points[k].z += 0.5;
@@ -236,7 +239,8 @@ TEST(MeshUpdate, RatesThatCostTooMuchAreGivenUp) {
 TEST(MeshUpdate, SparedRatesGiveWayWhereTrianglesRunOut) {
   const PatchSet set = set_of(wavy_field(8, 6));
   CertifiedOptions options{.tolerance = 0.003};
-  const std::size_t budget = options.most_triangles = good(CertifiedTessellation::make(set, options)).capacity().triangles;
+  const std::size_t budget = options.most_triangles =
+      good(CertifiedTessellation::make(set, options)).capacity().triangles;
   const CertifiedTessellation plan = good(CertifiedTessellation::make(set, options));
   std::vector<BezierPatch> patches = wavy_field(8, 6);
   for (BezierPatch& patch : patches) {  // rough at one end, smooth at the other
@@ -248,8 +252,9 @@ TEST(MeshUpdate, SparedRatesGiveWayWhereTrianglesRunOut) {
   EXPECT_LE(next.capacity().triangles, budget);
   EXPECT_LE(next.bound(), 0.003 * (1 + 1e-6));
   options.most_triangles = 1u << 30;
-  EXPECT_GT(good(good(CertifiedTessellation::make(set, options)).retessellate(set_of(patches), 1e6)).capacity().triangles,
-            budget);
+  EXPECT_GT(
+      good(good(CertifiedTessellation::make(set, options)).retessellate(set_of(patches), 1e6)).capacity().triangles,
+      budget);
 }
 
 TEST(MeshUpdate, BadEditsAreRefusedBeforeAnythingIsWritten) {

@@ -49,7 +49,8 @@ struct CertifiedOptions {
   /// Patches that meet: where their normals lie within this angle of each other all along a border, radians, 0 to pi, and
   /// look the same way, they get one normal a vertex, that of the patch that comes first; so does a pole all around. Borders
   /// where they do not are creases, with a normal for each patch. 0.01 takes in joins that are G1 but for rounding. It is
-  /// found out by the normals of the mesh when the plan is made, and stays. Without it each patch has its own normals.
+  /// found out by the normals of the mesh when the plan is made, and stays. (The angle that is proven, see above, is that
+  /// of each patch's own normals.) Without it each patch has its own normals.
   std::optional<double> crease_angle = {};
   /// Patches that meet share the vertices of their border by index, and a pole is one vertex: with a crease angle where
   /// they share normals; without one everywhere, and then there are no normals. A shared vertex counts to the patch that

@@ -67,9 +67,9 @@ Status prepare_edits(PatchSet::Impl& set, const PatchEdits& edits, const Touched
   if (const std::size_t k = refused.index(); refused.found())
     return refused_points(k, edits.patch[k], points_of(set, edits, touched, k));
   if (const std::size_t k = reshaped.index(); reshaped.found())
-    return refused_edit(StatusCode::stale, k,
-                        "patch " + std::to_string(edits.patch[k]) +
-                            " would have other collapsed edges than when the plan was made");
+    return refused_edit(
+        StatusCode::stale, k,
+        "patch " + std::to_string(edits.patch[k]) + " would have other collapsed edges than when the plan was made");
   return {};
 }
 

@@ -25,10 +25,7 @@ Status edited_otherwise(std::uint64_t revision, std::uint64_t known) {
 class MeshUpdate::Impl {
  public:
   Impl(const PatchSet& set, CertifiedTessellation plan)
-      : plan_(std::move(plan)),
-        touched_(set.impl()),
-        bounds_(set.impl(), plan_.impl()),
-        revision_(set.revision()) {}
+      : plan_(std::move(plan)), touched_(set.impl()), bounds_(set.impl(), plan_.impl()), revision_(set.revision()) {}
 
   const CertifiedTessellation& plan() const { return plan_; }
   const PresentBounds& bounds() const { return bounds_; }

@@ -49,8 +49,8 @@ Status PresentBounds::bound_blocks(const PatchSet::Impl& set, const Execution& e
         const std::size_t patch = set.lane_patches[block * PatchSet::lanes + lane];
         const BezierPatch& net = set.patches[patch];
         const std::optional<double> size = chords_.size(block, lane);
-        roundings_[patch] = size ? vertex_rounding(net.degree_u(), net.degree_v(), false, *size)
-                                 : vertex_rounding(net, set.origin);
+        roundings_[patch] =
+            size ? vertex_rounding(net.degree_u(), net.degree_v(), false, *size) : vertex_rounding(net, set.origin);
       }
     }
   });
@@ -74,7 +74,8 @@ void PresentBounds::find_moved(const PatchSet::Impl& set, const CertifiedTessell
   const auto is_moved = [&](std::size_t patch) { return moved_[patch] != 0; };
   measure_displacements(set, plan.weld(), roundings_, is_moved, displacements_);
   // Shared vertices lie beside the border of a patch that has left the one that they count to.
-  if (plan.plan().shares_vertices()) measure_displacements(set, plan.joins(), roundings_, is_moved, displacements_, true);
+  if (plan.plan().shares_vertices())
+    measure_displacements(set, plan.joins(), roundings_, is_moved, displacements_, true);
 }
 
 void PresentBounds::set_bound(const PatchSet::Impl& set, const CertifiedTessellation::Impl& plan, std::size_t patch) {

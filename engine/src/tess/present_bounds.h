@@ -35,7 +35,7 @@ class PresentBounds {
   std::vector<double> roundings_;      ///< of each patch's vertices, before welding
   std::vector<double> displacements_;  ///< of vertices that others' take the place of; empty where there are none
   std::vector<float> bounds_;
-  std::vector<std::uint8_t> moved_;    ///< patches with vertices of touched ones
+  std::vector<std::uint8_t> moved_;  ///< patches with vertices of touched ones
   std::vector<std::uint8_t> is_unproven_, is_unknown_;
   std::vector<std::uint32_t> touched_lanes_;   ///< a bit each, of each block
   std::vector<std::uint32_t> touched_blocks_;  ///< those with one

@@ -89,7 +89,8 @@ void PatchWriter::write_quads(std::size_t k) const {
   const std::size_t strip = plan_.first_strip(k);
   write_triangles(k, out_.indices.data() + 3 * strip, out_.indices.data() + 3 * plan_.first_strip(k + 1));
   const Division& division = plan_.division(k);
-  const auto first = static_cast<std::uint32_t>(plan_.first_vertex(k)), row = static_cast<std::uint32_t>(division.inner.v - 1);
+  const auto first = static_cast<std::uint32_t>(plan_.first_vertex(k)),
+             row = static_cast<std::uint32_t>(division.inner.v - 1);
   std::uint32_t* to = out_.quads.data() + 4 * plan_.first_quad(k);
   for (int iu = 0; iu < division.inner.u - 2; ++iu)
     for (int iv = 0; iv < division.inner.v - 2; ++iv) {

@@ -20,7 +20,8 @@ struct ExactPatch {
 /// See kernel::ExactNormal and MeshVertexJob::grid.
 inline int exact_normal(void* context, int first, int second, int lane, float* normal) {
   const auto& exact = *static_cast<const ExactPatch*>(context);
-  const auto vertex = static_cast<std::size_t>(lane < kernel::mesh_tile ? first + lane : second + lane - kernel::mesh_tile);
+  const auto vertex =
+      static_cast<std::size_t>(lane < kernel::mesh_tile ? first + lane : second + lane - kernel::mesh_tile);
   const auto at = exact.division->parameters(std::min(vertex, exact.division->vertex_count() - 1));
   const UnitNormal found = unit_normal(*exact.patch, at.u, at.v);
   normal[0] = static_cast<float>(found.direction.x);
@@ -65,9 +66,7 @@ inline bool is_packed(const View3<float>& view) {
   return view.stride == 3 && view.component[1] == view.component[0] + 1 && view.component[2] == view.component[0] + 2;
 }
 
-inline kernel::MeshRecords packed_records(float* first) {
-  return {.out = {first, first + 1, first + 2}, .stride = 3};
-}
+inline kernel::MeshRecords packed_records(float* first) { return {.out = {first, first + 1, first + 2}, .stride = 3}; }
 
 inline kernel::MeshRecords records(const View3<float>& view, std::size_t first) {
   kernel::MeshRecords out;
