@@ -1,5 +1,5 @@
-// Positions alone, patch after patch with long rows, which have a kernel of their own: the bits of blocks, in any place of
-// memory, for one patch and for many, whole and in parts; and nothing beyond.
+// Positions alone, patch after patch with long rows, which have a kernel of their own: the bits of blocks, in any place
+// of memory, for one patch and for many, whole and in parts; and nothing beyond.
 
 #include <gtest/gtest.h>
 
@@ -20,12 +20,15 @@ PatchSet polynomial_set(int patches) {
   Random random(53);
   std::vector<BezierPatch> all;
   for (int k = 0; k < patches; ++k)
-    all.push_back(k % 7 == 5 ? random_polynomial(random, 2, 5) : k % 7 == 6 ? random_polynomial(random, 1, 1) : random_polynomial(random, 3, 3));
+    all.push_back(k % 7 == 5   ? random_polynomial(random, 2, 5)
+                  : k % 7 == 6 ? random_polynomial(random, 1, 1)
+                               : random_polynomial(random, 3, 3));
   return set_of(all);
 }
 
 void check(int patches, int nu, int nv, std::size_t shift, Stores stores, Isa isa) {
-  SCOPED_TRACE(testing::Message() << patches << " patches, " << nu << "x" << nv << " at " << shift << ", " << name(isa));
+  SCOPED_TRACE(testing::Message() << patches << " patches, " << nu << "x" << nv << " at " << shift << ", "
+                                  << name(isa));
   const PatchSet set = polynomial_set(patches);
   const auto plan = value_of(GridPlan::make(set, parameters(nu), parameters(nv), {.isa = isa}));
   AlignedVector<float> blocks(plan.block_capacity());
@@ -36,7 +39,8 @@ void check(int patches, int nu, int nv, std::size_t shift, Stores stores, Isa is
   for (std::size_t k = 0; k < plan.capacity(); ++k) {
     const PatchSet::Slot slot = set.slot(k / samples);
     for (std::size_t c = 0; c < 3; ++c)
-      expected[shift + 3 * k + c] = blocks[((slot.block * samples + k % samples) * 3 + c) * PatchSet::lanes + slot.lane];
+      expected[shift + 3 * k + c] =
+          blocks[((slot.block * samples + k % samples) * 3 + c) * PatchSet::lanes + slot.lane];
   }
   Execution execution;
   ExecutionReport report;
@@ -59,7 +63,8 @@ TEST(FlatGrid, BitsOfBlocksInAnyPlace) {
 /// Large grids are cut into parts of rows.
 TEST(FlatGrid, PartsOfOnePatch) {
   for (const Isa isa : available_isas())
-    for (const auto& [nu, nv] : {std::pair{300, 200}, {2500, 16}, {3, 20000}}) check(2, nu, nv, 5, Stores::automatic, isa);
+    for (const auto& [nu, nv] : {std::pair{300, 200}, {2500, 16}, {3, 20000}})
+      check(2, nu, nv, 5, Stores::automatic, isa);
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 
 namespace tessera {
 
-/// One job, of which from block to block only that is set which changes: setting up a job takes as long as a small grid.
-/// Outputs are the caller's to fill in, and stay as they are. Lives on a task's stack; allocates nothing.
+/// One job, of which from block to block only that is set which changes: setting up a job takes as long as a small
+/// grid. Outputs are the caller's to fill in, and stay as they are. Lives on a task's stack; allocates nothing.
 template <class T>
 class BlockJobs {
  public:

@@ -62,7 +62,8 @@ class BlockOutputs {
   explicit BlockOutputs(const GridBlocks<T>& out) {
     for_each_value_output<T>([&](const auto& output) {
       const auto memory = out.*output.memory;
-      if (!memory.empty()) values_[value_count_++] = {output.job, memory.data(), static_cast<std::size_t>(output.width)};
+      if (!memory.empty())
+        values_[value_count_++] = {output.job, memory.data(), static_cast<std::size_t>(output.width)};
     });
     for_each_kind_output<T>([&](const auto& output) {
       const auto memory = out.*output.memory;
@@ -71,7 +72,8 @@ class BlockOutputs {
   }
   /// Points the job at the samples from `first` on.
   void place(std::size_t first, kernel::GridJob<T>& job) const {
-    for (const Values& output : std::span(values_).first(value_count_)) job.*output.job = output.memory + first * output.width;
+    for (const Values& output : std::span(values_).first(value_count_))
+      job.*output.job = output.memory + first * output.width;
     for (const Kinds& output : std::span(kinds_).first(kind_count_)) job.*output.job = output.memory + first;
   }
 

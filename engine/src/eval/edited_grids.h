@@ -29,12 +29,13 @@ struct UpdateCall {
   bool is_whole(std::uint32_t block) const { return touched.count(block) == set.lane_counts[block]; }
 };
 
-/// Takes block after block into block-interleaved memory. A touched block is evaluated whole: the lanes of other patches
-/// get what they had. Lives on a task's stack; allocates nothing.
+/// Takes block after block into block-interleaved memory. A touched block is evaluated whole: the lanes of other
+/// patches get what they had. Lives on a task's stack; allocates nothing.
 template <class T>
 class EditedBlocks {
  public:
-  EditedBlocks(const UpdateCall& call, const BlockOutputs<T>& out) : call_(call), out_(out), jobs_(call.set, call.plan, call.order) {
+  EditedBlocks(const UpdateCall& call, const BlockOutputs<T>& out)
+      : call_(call), out_(out), jobs_(call.set, call.plan, call.order) {
     jobs_.job().streaming = call.streaming;
   }
 
@@ -57,8 +58,9 @@ class EditedBlocks {
   Isa isa_ = Isa::sse2;
 };
 
-/// Takes block after block to patch-contiguous views. Those whose patches are all edited are evaluated where they lie; the edited patches of others
-/// are gathered, 16 at a time, so that no lane goes idle. Lives on a task's stack; allocates nothing.
+/// Takes block after block to patch-contiguous views. Those whose patches are all edited are evaluated where they lie;
+/// the edited patches of others are gathered, 16 at a time, so that no lane goes idle. Lives on a task's stack;
+/// allocates nothing.
 template <class T>
 class EditedGrids {
  public:

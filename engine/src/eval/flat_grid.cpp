@@ -58,8 +58,9 @@ class FlatRun {
       group_ = &set_.group_of_block(slot.block);
     }
     if (job_.patches == 0) start(patch, first_row, rows);
-    nets_[static_cast<std::size_t>(job_.patches++)] = set_.single.of(plan_.options.representation).data() + group_->first_value +
-                                                      (slot.block - group_->first_block) * group_->block_values + slot.lane;
+    nets_[static_cast<std::size_t>(job_.patches++)] =
+        set_.single.of(plan_.options.representation).data() + group_->first_value +
+        (slot.block - group_->first_block) * group_->block_values + slot.lane;
     if (rows != plan_.count_u || static_cast<std::size_t>(job_.patches) == nets_.size()) flush();
   }
   /// The ISA that ran last.

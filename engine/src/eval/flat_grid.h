@@ -6,8 +6,8 @@
 
 namespace tessera {
 
-/// Fills plan.flat where the plan's grids can be evaluated so and it pays: floats, polynomial patches, one parameter list
-/// for all, long rows, and an instruction set that is made for it.
+/// Fills plan.flat where the plan's grids can be evaluated so and it pays: floats, polynomial patches, one parameter
+/// list for all, long rows, and an instruction set that is made for it.
 void tabulate_flat(const PatchSet::Impl& set, GridPlan::Impl& plan);
 
 /// Records x y z of all patches from `out` on, for a plan that has flat tables. The same bytes as by blocks.

@@ -58,9 +58,9 @@ class StageLayout {
     std::ptrdiff_t stride = 1;
     int width = 3;
     T* kernel::GridJob<T>::*job = nullptr;
-    int first = 0;  ///< its place in the record, or in the stage, in rows of lanes
-    int array = -1;            ///< the first of its arrays; -1 if it goes out by columns
-    std::ptrdiff_t step = 1;   ///< of its arrays
+    int first = 0;            ///< its place in the record, or in the stage, in rows of lanes
+    int array = -1;           ///< the first of its arrays; -1 if it goes out by columns
+    std::ptrdiff_t step = 1;  ///< of its arrays
 
     bool packed() const { return width == 1 || (component[1] == component[0] + 1 && component[2] == component[0] + 2); }
   };
@@ -104,7 +104,8 @@ class StageLayout {
 
   static constexpr int least_samples = 16, stage_rows = 144;
   /// Rows in the stage at the most, with those that a tile may reach beyond the last.
-  static constexpr std::size_t most_rows = 2 * std::max<std::size_t>(least_samples * most_arrays, stage_rows) + 3 * lanes * (most_fields + 1);
+  static constexpr std::size_t most_rows =
+      2 * std::max<std::size_t>(least_samples * most_arrays, stage_rows) + 3 * lanes * (most_fields + 1);
 
  private:
   /// One record holds all views if their stride is its width and they fill it without a gap.
@@ -166,10 +167,10 @@ class StagedBlock {
     });
   }
 
-  /// Evaluates a job that place_outputs() has seen over rows first_u .. end_u - 1 of a grid of `count_v` columns, into the
-  /// records of each lane's patch, `samples` of each. Unused lanes repeat a patch, and write what that writes.
-  Isa run(kernel::GridJob<T>& job, int first_u, int end_u, int count_v, const std::uint32_t* lane_patches, int lane_count,
-          std::size_t samples) {
+  /// Evaluates a job that place_outputs() has seen over rows first_u .. end_u - 1 of a grid of `count_v` columns, into
+  /// the records of each lane's patch, `samples` of each. Unused lanes repeat a patch, and write what that writes.
+  Isa run(kernel::GridJob<T>& job, int first_u, int end_u, int count_v, const std::uint32_t* lane_patches,
+          int lane_count, std::size_t samples) {
     std::ptrdiff_t records[lanes];
     for (int lane = 0; lane < lanes; ++lane)
       records[lane] = static_cast<std::ptrdiff_t>(lane_patches[lane] * samples) + std::ptrdiff_t{first_u} * count_v;

@@ -1,7 +1,8 @@
 // Kernel 3, lanes = neighbouring numbers of a row of a patch's grid, x y z x y z .., for positions alone. The curves of
-// four rows lie in one vector, q_j = sum_i f_i(row) c_ij; those of one are spread over its vectors, r = sum_j g_j(column)
-// q_j: the same sums in the same order as in grid_kernel.inl.h, without a transpose, and no block of sixteen patches is
-// needed. What leaves goes to memory by whole aligned vectors. Included by the units as sample_kernel.inl.h is.
+// four rows lie in one vector, q_j = sum_i f_i(row) c_ij; those of one are spread over its vectors, r = sum_j
+// g_j(column) q_j: the same sums in the same order as in grid_kernel.inl.h, without a transpose, and no block of
+// sixteen patches is needed. What leaves goes to memory by whole aligned vectors. Included by the units as
+// sample_kernel.inl.h is.
 
 /// Joins runs of numbers of any length that follow each other in memory.
 template <class L, bool Streaming>
@@ -15,9 +16,7 @@ class LineSink {
     finish();
     start(memory);
   }
-  [[gnu::always_inline]] void put(const typename L::Batch& vector) {
-    send(L::shift_in(carry_, vector, shift_));
-  }
+  [[gnu::always_inline]] void put(const typename L::Batch& vector) { send(L::shift_in(carry_, vector, shift_)); }
   /// The first `count` numbers of a vector.
   [[gnu::always_inline]] void put(const typename L::Batch& vector, int count) {
     auto joined = L::shift_in(carry_, vector, shift_);
@@ -51,7 +50,7 @@ class LineSink {
     next_ += L::width;
   }
 
-  float* next_;              ///< the vector at work, of which the numbers begin_ .. end_ - 1 are known
+  float* next_;  ///< the vector at work, of which the numbers begin_ .. end_ - 1 are known
   int begin_, end_;
   typename L::Shift shift_;  ///< by end_
   typename L::Batch carry_;  ///< its last end_ lanes are those numbers
@@ -60,8 +59,7 @@ class LineSink {
 template <class L, int DegreeV, bool Streaming>
 class FlatGrid {
  public:
-  explicit FlatGrid(const FlatJob& job)
-      : job_(job) {}
+  explicit FlatGrid(const FlatJob& job) : job_(job) {}
 
   void run() {
     LineSink<L, Streaming> sink(job_.out);  // its vectors stay in registers

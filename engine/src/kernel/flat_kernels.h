@@ -15,14 +15,14 @@ struct FlatJob {
   const float* const* nets = nullptr;  ///< of each patch: its first coefficient, `[i][j][component]`, block_lanes apart
   int patches = 0;
   int degree_u = 0, degree_v = 0;
-  int count_u = 0, count_v = 0;        ///< of the part of the grid: rows and columns
+  int count_u = 0, count_v = 0;  ///< of the part of the grid: rows and columns
   /// From the part's first row on, `[count_u / flat_rows, rounded up][i][lane]`: lane l has the weights of row l / 3.
   const float* u_weights = nullptr;
   /// `[vector of a row][j][lane]`: lane l of vector k has the weights of column (16 k + l) / 3.
   const float* v_weights = nullptr;
-  float* out = nullptr;                ///< the first number of the first patch
-  std::ptrdiff_t patch_step = 0;       ///< numbers from one patch to the next
-  bool streaming = false;              ///< non-temporal stores; the caller ends them with finish_streaming
+  float* out = nullptr;           ///< the first number of the first patch
+  std::ptrdiff_t patch_step = 0;  ///< numbers from one patch to the next
+  bool streaming = false;         ///< non-temporal stores; the caller ends them with finish_streaming
 };
 
 struct FlatKernels {
