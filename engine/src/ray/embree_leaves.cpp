@@ -1,5 +1,7 @@
 #include "ray/embree_leaves.h"
 
+#include <xmmintrin.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -82,10 +84,23 @@ struct EmbreeLeaves::State {
     const Leaf& leaf = nets->leaves()[leaf_index];
     call.probes[ray].far = static_cast<float>(std::min(query.far, 8.0) + probe_pad);
     if (!decide(leaf, leaf_index, call.probes[ray], query)) {
+      if (!call.space->make_ready()) {
+        query.overflow = query.incomplete = true;
+        return query;
+      }
       nets->write_net(*set, leaf, call.space->leaf_net(), call.space->spare_net());
       search_leaf(leaf, call.space->leaf_net(), tolerance, *call.space, query);
     }
     return query;
+  }
+
+  /// What a root is polished with, while the kernel works.
+  static void fetch(const BezierPatch& patch) {
+    constexpr std::ptrdiff_t points_a_line = 64 / static_cast<std::ptrdiff_t>(sizeof(Vec3));
+    const std::span<const Vec3> points = patch.points();
+    const Vec3* const end = points.data() + std::min<std::size_t>(points.size(), 16);
+    for (const Vec3* point = points.data(); point < end; point += points_a_line)
+      _mm_prefetch(reinterpret_cast<const char*>(point), _MM_HINT_T0);
   }
 
   /// In float, where that proves what there is; then in double what was found.
@@ -94,6 +109,7 @@ struct EmbreeLeaves::State {
     const kernel::RayLeaf& local = nets->local(leaf_index);
     kernel::RayRoots roots;
     probe.any = query.wanted == RootsWanted::any;
+    if (!probe.any) fetch(set->patch(leaf.patch));
     if (!trace(local, probe, roots)) return false;
     if (roots.count == 0) return true;
     if (probe.any) {

@@ -24,8 +24,19 @@ class SearchSpace {
   static constexpr int most_depth = 160;
 
   /// `largest`: values in a net.
-  explicit SearchSpace(std::size_t largest)
-      : stride_(largest), nets_(largest * (most_depth + 5)), boxes_(most_depth + 3) {}
+  explicit SearchSpace(std::size_t largest) : stride_(largest) {}
+  /// Takes the memory when it is first needed: before anything else, and not where rays are decided without a search.
+  /// False where there is none.
+  bool make_ready() noexcept {
+    if (!boxes_.empty()) return true;
+    try {
+      nets_.resize(stride_ * (most_depth + 5));
+      boxes_.resize(most_depth + 3);
+      return true;
+    } catch (...) {  // called from Embree, which knows no exceptions
+      return false;
+    }
+  }
   double* net(int slot) { return nets_.data() + static_cast<std::size_t>(slot) * stride_; }
   /// Beyond those of the search.
   double* leaf_net() { return net(most_depth + 3); }
