@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "counting.h"
+#include "facts.h"
 #include "roofline/roofline.h"
 #include "suite.h"
 
@@ -17,20 +19,26 @@ namespace {
 
 constexpr const char* usage =
     R"(tessera_bench [--set=quick|full] [options of Google Benchmark]
-tessera_bench --roofline[=FILE.png]
+tessera_bench --roofline[=FILE.png|FILE.json]
+tessera_bench --count [--benchmark_filter=REGEX]
+tessera_bench --facts
 
 Times every hot path: operation/surface/degree/size/isa/threads. Each case checks the result that it timed and reports
 items and bytes a second by the best time of a call, and limit_fraction, the time at the limits of this machine over that
 time (include/tessera/limits.h). The set quick takes two minutes; full, the default, holds all. --benchmark_filter=REGEX
 chooses among a set's names, --benchmark_list_tests=true prints them.
---roofline prints the limits of this machine and how near the kernels come to them, and writes the picture (roofline.png).
+--roofline prints the limits of this machine and how near the kernels come to them, and writes the picture (roofline.png),
+or the numbers as JSON.
+--count does the work of the counted cases once each, for callgrind to count its instructions: tools/perf count starts it
+under valgrind and reads the counts. TESSERA_ISA chooses the instruction set.
+--facts prints what the figures of this program depend on, as JSON: compiler, flags, libraries, instruction sets.
 )";
 
 struct Arguments {
   Part part = Part::full;
   std::string roofline;       ///< the picture's path, if that is asked for
   std::vector<char*> others;  ///< Google Benchmark's
-  bool to_file = false, help = false, wrong = false;
+  bool to_file = false, help = false, wrong = false, count = false, facts = false;
 };
 
 Arguments parse(int count, char** words) {
@@ -46,6 +54,10 @@ Arguments parse(int count, char** words) {
       out.others.insert(out.others.begin() + 1, quick_time);  // a time of the caller's own comes later and wins
     } else if (word == "--set=full") {
       out.part = Part::full;
+    } else if (word == "--count") {
+      out.count = true;
+    } else if (word == "--facts") {
+      out.facts = true;
     } else if (word == "--roofline") {
       out.roofline = "roofline.png";
     } else if (word.starts_with("--roofline=") && word.size() > std::strlen("--roofline=")) {
@@ -65,6 +77,7 @@ int run(int count, char** words) {
   Arguments arguments = parse(count, words);
   if (arguments.wrong) return 2;
   if (arguments.help) return std::fputs(usage, stdout), 0;
+  if (arguments.facts) return std::fputs(build_facts().c_str(), stdout), 0;
   if (!arguments.roofline.empty()) {
     const Status status = print_roofline(arguments.roofline);
     if (!status.ok()) return std::fprintf(stderr, "tessera_bench: %s\n", status.message().c_str()), 1;
@@ -73,7 +86,11 @@ int run(int count, char** words) {
   int left = static_cast<int>(arguments.others.size());
   benchmark::Initialize(&left, arguments.others.data());
   if (benchmark::ReportUnrecognizedArguments(left, arguments.others.data())) return 2;
-  const bool good = run_suite(arguments.part, arguments.to_file);
+  if (arguments.count && !under_valgrind())
+    std::fputs("tessera_bench: nothing is counted: valgrind does not run this program, or it was built without "
+               "valgrind/callgrind.h\n",
+               stderr);
+  const bool good = arguments.count ? run_counted() : run_suite(arguments.part, arguments.to_file);
   benchmark::Shutdown();
   return good ? 0 : 1;
 }

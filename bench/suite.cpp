@@ -1,8 +1,12 @@
 #include "suite.h"
 
+#include <algorithm>
+#include <cstdio>
 #include <stdexcept>
 #include <utility>
 #include <vector>
+
+#include "counting.h"
 
 namespace tessera::bench {
 namespace {
@@ -34,17 +38,50 @@ class PlainNames : public Base {
   bool failed = false;
 };
 
-}  // namespace
+/// Names each case before it runs and says what went wrong: there are no times.
+class CountReporter : public benchmark::BenchmarkReporter {
+ public:
+  bool ReportContext(const Context&) override { return true; }
+  void ReportRuns(const std::vector<Run>& runs) override {
+    for (const Run& run : runs) {
+      if (run.error_occurred)
+        std::printf("failed: %s: %s\n", run.run_name.function_name.c_str(), run.error_message.c_str());
+      failed = failed || run.error_occurred;
+    }
+  }
+  bool failed = false;
+};
 
-std::string CaseName::text() const {
+bool is_counted(const Case& c, const std::string& isa) {
+  if (c.name.threads != 1 || (c.name.isa != "-" && c.name.isa != isa)) return false;
+  const auto names = counted_cases();
+  return std::find(names.begin(), names.end(), c.name.work()) != names.end();
+}
+
+bool all_counted_cases_exist() {
+  bool all = true;
+  for (const std::string_view name : counted_cases())
+    if (std::none_of(cases().begin(), cases().end(), [&](const Case& c) { return c.name.work() == name; })) {
+      std::printf("failed: no case has the name %s\n", std::string(name).c_str());
+      all = false;
+    }
+  return all;
+}
+
+std::string joined(std::initializer_list<const std::string*> parts) {
   std::string text;
-  for (const std::string* part : {&operation, &surface, &degree, &size, &isa}) {
+  for (const std::string* part : parts) {
     if (part->empty() || part->find('/') != std::string::npos)
       throw std::invalid_argument("a benchmark's name has the part \"" + *part + "\"");
-    text += *part + '/';
+    text += (text.empty() ? "" : "/") + *part;
   }
-  return text + std::to_string(threads);
+  return text;
 }
+
+}  // namespace
+
+std::string CaseName::work() const { return joined({&operation, &surface, &degree, &size}); }
+std::string CaseName::text() const { return work() + '/' + joined({&isa}) + '/' + std::to_string(threads); }
 
 void add_case(const CaseName& name, Part part, std::function<void(benchmark::State&)> run) {
   cases().push_back({name, part, std::move(run)});
@@ -62,6 +99,26 @@ bool run_suite(Part part, bool to_file) {
     benchmark::RunSpecifiedBenchmarks(&console);
   }
   return !console.failed;
+}
+
+bool run_counted() {
+  const Result<Isa> isa = default_isa();
+  if (!isa) return std::printf("failed: %s\n", isa.status().message().c_str()), false;
+  start_counting();
+  for (const Case& c : cases()) {
+    if (!is_counted(c, std::string(name(*isa)))) continue;
+    const auto run = [&c](benchmark::State& state) {
+      std::printf("counting %s\n", c.name.work().c_str());
+      std::fflush(stdout);
+      name_count(c.name.work());
+      c.run(state);
+    };
+    benchmark::RegisterBenchmark(c.name.work().c_str(), run)->UseManualTime()->Iterations(1);
+  }
+  CountReporter reporter;
+  const bool complete = all_counted_cases_exist();
+  benchmark::RunSpecifiedBenchmarks(&reporter);
+  return complete && !reporter.failed;
 }
 
 }  // namespace tessera::bench

@@ -20,6 +20,8 @@ struct CaseName {
   int threads = 1;
 
   std::string text() const;
+  /// The text without ISA and threads, as counting.h has it.
+  std::string work() const;
 };
 
 /// "9x9".
@@ -38,5 +40,9 @@ void add_case(const CaseName& name, Part part, std::function<void(benchmark::Sta
 /// Runs a set by Google Benchmark's options, which have been taken in; `to_file`: --benchmark_out is among them, for a
 /// file of JSON. False where a case failed.
 bool run_suite(Part part, bool to_file);
+
+/// Runs the counted set (counting.h), each case once: on one thread, and, where a case has an ISA, of default_isa().
+/// False where a case failed or a name of that set is no case.
+bool run_counted();
 
 }  // namespace tessera::bench

@@ -1,6 +1,8 @@
 #pragma once
 // How a case is timed and what it reports: the shortest time of a call, items and bytes a second by it, and how near it
-// comes to the machine's limits, which are measured in the same process around the run.
+// comes to the machine's limits, which are measured in the same process around the run, unless the environment has
+// TESSERA_BENCH_LIMITS=0: tools/perf compare has no use for them. Where instructions are counted (counting.h) a call is
+// made twice, and the second one counts.
 
 #include <benchmark/benchmark.h>
 #include <tbb/global_control.h>
@@ -8,10 +10,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <limits>
 #include <optional>
+#include <string_view>
 
 #include "base/function_ref.h"
+#include "counting.h"
 #include "tessera/limits.h"
 #include "tessera/status.h"
 
@@ -29,10 +34,15 @@ inline std::optional<double> time_calls(benchmark::State& state, int threads, Fu
   tbb::task_arena arena(threads);
   double best = std::numeric_limits<double>::infinity();
   for (auto _ : state) {
+    Status status;
+    if (counting()) arena.execute([&] { status = call(); });
     before();
     const auto start = std::chrono::steady_clock::now();
-    Status status;
-    arena.execute([&] { status = call(); });
+    arena.execute([&] {
+      if (counting()) begin_count();
+      status = call();
+      if (counting()) end_count();
+    });
     const double seconds = seconds_since(start);
     if (!status.ok()) {
       state.SkipWithError(status.message().c_str());
@@ -44,16 +54,21 @@ inline std::optional<double> time_calls(benchmark::State& state, int threads, Fu
   return best;
 }
 
+inline bool limits_are_wanted() {
+  const char* wish = std::getenv("TESSERA_BENCH_LIMITS");
+  return !counting() && (wish == nullptr || std::string_view(wish) != "0");
+}
+
 /// The machine's limits before and after a run: the better rates of both, since a disturbed measurement must not flatter
-/// the run.
+/// the run. Zeros where they are not wanted.
 class LimitsAround {
  public:
   LimitsAround(std::optional<Isa> isa, double bytes)
-      : options_{.isa = isa, .store_bytes = static_cast<std::size_t>(bytes)}, before_(measure_limits(options_)) {}
+      : options_{.isa = isa, .store_bytes = static_cast<std::size_t>(bytes)}, before_(measure()) {}
 
   /// Nothing where they can't be measured, which skips the case.
   std::optional<Limits> best(benchmark::State& state) const {
-    const Result<Limits> after = measure_limits(options_);
+    const Result<Limits> after = measure();
     if (!before_ || !after) {
       state.SkipWithError("the machine's limits could not be measured");
       return {};
@@ -72,6 +87,8 @@ class LimitsAround {
   }
 
  private:
+  Result<Limits> measure() const { return limits_are_wanted() ? measure_limits(options_) : Limits{}; }
+
   LimitsOptions options_;
   Result<Limits> before_;
 };
@@ -85,7 +102,7 @@ inline void report_rates(benchmark::State& state, double best, double items, dou
 /// limit_fraction: the time that `work` takes at the limits of one thread (limits.h) over the best time. Of one thread
 /// alone: what two threads share is no limit of one.
 inline void report_limit(benchmark::State& state, double best, const Limits& limits, const Work& work) {
-  state.counters["limit_fraction"] = seconds_at_limit(limits, work) / best;
+  if (limits.store_bytes_per_second > 0) state.counters["limit_fraction"] = seconds_at_limit(limits, work) / best;
 }
 
 }  // namespace tessera::bench

@@ -10,8 +10,11 @@
 #   tinygltf          libtinygltf-dev 2.7         tessera::io: glTF (engine/src/io alone); tests: its reader
 #   libpng            libpng-dev 1.6              the command line and the benchmarks: pictures
 #   OpenEXR           libopenexr-dev 3.1          the command line: float pictures; tests: its reader
-#   GoogleTest        libgtest-dev 1.12           tests (and libgmock-dev: its matchers)
+#   GoogleTest        libgtest-dev 1.12           tests (and libgmock-dev: its matchers); bench: two reports
 #   Google Benchmark  libbenchmark-dev 1.7        benchmarks
+#   valgrind          valgrind 3.19               tests: instructions counted (tools/perf count), skipped without
+#   Python            python3 3.11                tools/perf and its tests, its standard library alone; skipped without
+#   librsvg           librsvg2-bin 2.54           tools/perf report: plots as PNG; left out without
 #   a cross compiler  g++-aarch64-linux-gnu 12.2  the test of the NEON kernels, with qemu-user 7.2; skipped without
 #   ImageMagick       imagemagick 6.9             tools/gallery.sh alone: pictures on one sheet
 # What Tessera is compared with, where TESSERA_BUILD_PEERS is ON (tools/peers.sh installs it). bench/peers alone looks for
@@ -53,6 +56,8 @@ if(TESSERA_BUILD_TOOLS OR TESSERA_BUILD_BENCH)
 endif()
 if(TESSERA_BUILD_TESTS OR TESSERA_BUILD_BENCH)
   find_package(GTest REQUIRED)
+endif()
+if(TESSERA_BUILD_TESTS)
   find_package(nlohmann_json 3 REQUIRED)
 endif()
 if(TESSERA_BUILD_BENCH)

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 #include <string>
 
 #include "base/aligned.h"
@@ -67,6 +68,21 @@ CoonsPatch patch_of(bool callables) {
       {curve(r00, r10, true), curve(r01, r11, false), curve(r00, r01, false), curve(r10, r11, true)}, options));
 }
 
+/// TESSERA_ISA while it lives, and then what it was.
+class ForcedIsa {
+ public:
+  explicit ForcedIsa(Isa isa) {
+    if (const char* before = std::getenv("TESSERA_ISA")) before_ = before;
+    setenv("TESSERA_ISA", std::string(tessera::name(isa)).c_str(), 1);
+  }
+  ForcedIsa(const ForcedIsa&) = delete;
+  ForcedIsa& operator=(const ForcedIsa&) = delete;
+  ~ForcedIsa() { before_ ? setenv("TESSERA_ISA", before_->c_str(), 1) : unsetenv("TESSERA_ISA"); }
+
+ private:
+  std::optional<std::string> before_;
+};
+
 /// Every 37th point against the scalar evaluator.
 template <class T>
 bool check_values(const CoonsPatch& patch, const std::vector<double>& t, const View3<T>& out) {
@@ -104,19 +120,19 @@ void run(benchmark::State& state, const Case& c) {
   const View3<T> out =
       c.arrays ? View3<T>::soa({all.subspan(0, points), all.subspan(points, points), all.subspan(2 * points)})
                : View3<T>::interleaved(all);
-  setenv("TESSERA_ISA", std::string(tessera::name(c.isa)).c_str(), 1);
+  std::optional<ForcedIsa> forced(c.isa);
   const LimitsAround around(c.isa, static_cast<double>(bytes));
   ExecutionReport report;
   Execution execution;
   execution.report = &report;
   const auto best = time_calls(state, c.threads, [&] { return evaluate(patch, t, t, out, execution); });
   const auto limits = around.best(state);
-  unsetenv("TESSERA_ISA");
+  forced.reset();
   if (!best || !limits) return;
   if (report.isa != c.isa) return state.SkipWithError("another instruction set ran than was asked for");
   if (!check_values(patch, t, out)) return state.SkipWithError("the timed values differ from the scalar evaluator");
   report_rates(state, *best, static_cast<double>(points), static_cast<double>(bytes));
-  if (c.threads == 1) {  // views are written by plain stores
+  if (c.threads == 1 && limits->plain_store_bytes_per_second > 0) {  // views are written by plain stores
     const double seconds = static_cast<double>(bytes) / limits->plain_store_bytes_per_second;
     state.counters["limit_fraction"] = seconds / *best;
   }

@@ -1,4 +1,5 @@
-// Text in memory to a model: read.bpt, bv, g2, json, obj and rib, about 20 MB each, of numbers with 7 digits. Every
+// Text in memory to a model: read.bpt, bv, g2, json, obj and rib, about 20 MB each (1 MB where instructions are counted),
+// of numbers with 7 digits. Every
 // control point is compared with the number that was written before the rate is reported; memcpy_fraction is the time to
 // copy the text, measured in the same process, over the time to read it.
 
@@ -18,8 +19,6 @@
 
 namespace tessera::bench {
 namespace {
-
-constexpr std::size_t text_size = 20'000'000;
 
 struct Text {
   std::string bytes;
@@ -50,7 +49,7 @@ struct Text {
 };
 
 /// Bicubic patches.
-Text bpt_text() {
+Text bpt_text(std::size_t text_size) {
   Text text;
   std::size_t patches = 0;
   for (; text.bytes.size() < text_size; ++patches) {
@@ -62,7 +61,7 @@ Text bpt_text() {
 }
 
 /// Bicubic patches in groups of 100.
-Text bv_text() {
+Text bv_text(std::size_t text_size) {
   Text text;
   for (std::size_t patches = 0; text.bytes.size() < text_size; ++patches) {
     if (patches % 100 == 0) text.bytes += "Group 0 wave" + std::to_string(patches) + "\n";
@@ -73,7 +72,7 @@ Text bv_text() {
 }
 
 /// Bicubic patches, a row of points a line.
-Text json_text() {
+Text json_text(std::size_t text_size) {
   Text text{R"({"format": "tessera", "version": 1, "surfaces": [)", {}};
   while (text.bytes.size() < text_size) {
     text.bytes += text.points.empty() ? "\n" : ",\n";
@@ -95,7 +94,7 @@ Text json_text() {
 constexpr int count = 32;
 
 /// Bicubic B-spline surfaces.
-Text g2_text() {
+Text g2_text(std::size_t text_size) {
   Text text;
   while (text.bytes.size() < text_size) {
     text.bytes += "200 1 0 0\n3 0\n";
@@ -110,7 +109,7 @@ Text g2_text() {
 }
 
 /// Bicubic patches and meshes of bicubic B-splines.
-Text rib_text() {
+Text rib_text(std::size_t text_size) {
   Text text;
   const std::string size = std::to_string(count);
   while (text.bytes.size() < text_size) {
@@ -128,7 +127,7 @@ Text rib_text() {
 }
 
 /// Bicubic B-spline surfaces.
-Text obj_text() {
+Text obj_text(std::size_t text_size) {
   Text text;
   while (text.bytes.size() < text_size) {
     for (int k = 0; k < count * count; ++k) {
@@ -193,9 +192,12 @@ void read(benchmark::State& state, const Text& text, Parser parse, bool patches_
   state.counters["memcpy_fraction"] = seconds_to_copy(text.bytes) / *best;
 }
 
-void add_read(const char* format, const char* surface, Text (*make)(), Parser parse, bool patches_transposed = false) {
-  add_case({std::string("read.") + format, surface, "3", "20MB"}, Part::quick,
-           [=](benchmark::State& state) { read(state, make(), parse, patches_transposed); });
+void add_read(const char* format, const char* surface, Text (*make)(std::size_t), Parser parse,
+              bool patches_transposed = false) {
+  for (const std::size_t megabytes : {20, 1})
+    add_case({std::string("read.") + format, surface, "3", std::to_string(megabytes) + "MB"},
+             megabytes == 20 ? Part::quick : Part::full,
+             [=](benchmark::State& state) { read(state, make(megabytes * 1'000'000), parse, patches_transposed); });
 }
 
 const bool registered = [] {

@@ -184,6 +184,7 @@ void add(const char* operation, const char* surface, const std::string& size, Ru
   add("ray.occluded.random", "teapot", "65536", occluded, teapot, &Workload::random);
   add("ray.occluded.camera", "bicubic20000", "65536", occluded, bicubic20000, &Workload::camera);
   add("ray.occluded.random", "bicubic20000", "65536", occluded, bicubic20000, &Workload::random);
+  add("ray.refit", "teapot", "rate8", refit, teapot, &Workload::camera);
   add("ray.refit", "bicubic20000", "rate8", refit, bicubic20000, &Workload::camera);
   return true;
 }();

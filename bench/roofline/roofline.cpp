@@ -135,14 +135,44 @@ void print(const Roofline& r) {
   }
 }
 
+std::string number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", x);
+  return text;
+}
+
+/// One object: rates a second.
+std::string json_of(const Roofline& r) {
+  std::string text = "{\"machine\": \"" + r.machine + "\", \"cache_store\": " + number(r.cache_store) + ",\n \"isas\": [";
+  for (const Limits& limits : r.isas)
+    text += std::string(&limits == r.isas.data() ? "" : ",") + "\n  {\"isa\": \"" + std::string(name(limits.isa)) +
+            "\", \"float_operations\": " + number(limits.float_operations_per_second) +
+            ", \"double_operations\": " + number(limits.double_operations_per_second) +
+            ", \"plain_store\": " + number(limits.plain_store_bytes_per_second) +
+            ", \"streaming_store\": " + number(limits.streaming_store_bytes_per_second) + "}";
+  text += "],\n \"points\": [";
+  for (const RooflinePoint& p : r.points)
+    text += std::string(&p == r.points.data() ? "" : ",") + "\n  {\"name\": \"" + p.name + "\", \"per_byte\": " +
+            number(p.per_byte) + ", \"operations\": " + number(p.operations) + ", \"points\": " + number(p.points) +
+            ", \"in_cache\": " + (p.in_cache ? "true" : "false") + "}";
+  return text + "]}\n";
+}
+
+Status write_json(const Roofline& roofline, const std::string& path) {
+  std::ofstream file(path);
+  file << json_of(roofline);
+  file.close();
+  return file ? Status{} : Status(StatusCode::io_error, path + ": can't be written");
+}
+
 }  // namespace
 
-Status print_roofline(const std::string& picture) {
+Status print_roofline(const std::string& file) {
   const auto roofline = measure_roofline();
   if (!roofline) return roofline.status();
   print(*roofline);
-  const Status status = draw_roofline(*roofline, picture);
-  if (status.ok()) std::printf("the picture: %s\n", picture.c_str());
+  const Status status = file.ends_with(".json") ? write_json(*roofline, file) : draw_roofline(*roofline, file);
+  if (status.ok()) std::printf("written: %s\n", file.c_str());
   return status;
 }
 

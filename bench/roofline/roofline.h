@@ -25,9 +25,9 @@ struct Roofline {
   std::vector<RooflinePoint> points;
 };
 
-/// Measures (some seconds), prints, and writes the picture.
+/// Measures (some seconds), prints, and writes the picture, or the numbers where the file's name ends in .json.
 /// Errors: those of the measurements, and of writing the file.
-Status print_roofline(const std::string& picture);
+Status print_roofline(const std::string& file);
 
 /// The picture alone.
 Status draw_roofline(const Roofline& roofline, const std::string& path);

@@ -9,6 +9,8 @@
 #include "sets.h"
 #include "suite.h"
 #include "support/synthetic_sets.h"
+#include "tessera/evaluate.h"
+#include "tessera/evaluate_points.h"
 #include "tessera/tessellate.h"
 #include "timing.h"
 
@@ -58,17 +60,79 @@ void tessellate(benchmark::State& state, const char* surface, int threads) {
   if (threads == 1) report_limit(state, *best, *limits, {.bytes_written = bytes});
 }
 
-void pack(benchmark::State& state, int threads) {
-  const std::vector<BezierPatch> patches = test::wavy_field(200, 100);
-  const double bytes = static_cast<double>(patches.size()) * 16 * 3 * sizeof(float);
+/// What is packed: blocks of one kind.
+struct Packing {
+  const char* name;      ///< of the operation
+  bool rational;
+  BlockKinds kinds;
+  double bytes_a_value;  ///< of the blocks
+
+  double bytes_a_patch() const { return 16 * (rational ? 4 : 3) * bytes_a_value; }
+};
+
+constexpr BlockKinds only(bool BlockKinds::*kind) {
+  BlockKinds kinds{.float_bernstein = false};
+  kinds.*kind = true;
+  return kinds;
+}
+
+const Packing packings[] = {{"pack", false, only(&BlockKinds::float_bernstein), 4},
+                            {"pack.rational", true, only(&BlockKinds::float_bernstein), 4},
+                            {"pack.double", false, only(&BlockKinds::double_bernstein), 8},
+                            {"pack.power", false, only(&BlockKinds::float_power), 4},
+                            {"pack.points", false, only(&BlockKinds::float_points), 4}};
+
+/// Grids of 3 x 3 from the blocks, or the middle of patches from points, against the reference evaluator.
+template <class T>
+bool grids_lie_on(const PatchSet& set, const GridPlanOptions& options) {
+  const auto t = uniform_parameters(3);
+  const GridPlan plan = value_of(GridPlan::make(set, t, t, options));
+  std::vector<T> memory(3 * plan.capacity());
+  if (!evaluate(set, plan, GridViews<T>{.position = View3<T>::interleaved(memory)}).ok()) return false;
+  const Vec3 origin = sizeof(T) == 4 ? set.origin() : Vec3{};
+  for (std::size_t patch = 0; patch < set.patch_count(); patch += 50) {
+    const T* p = &memory[3 * (9 * patch + 4)];
+    const Vec3 expected = evaluate_jet(set.patch(patch), 0.5, 0.5).position;
+    const Vec3 apart = origin + Vec3{double{p[0]}, double{p[1]}, double{p[2]}} - expected;
+    if (!(max_abs(apart) <= 1e-5 * set.box().diagonal())) return false;
+  }
+  return true;
+}
+bool points_lie_on(const PatchSet& set) {
+  std::vector<std::uint32_t> patch;
+  for (std::size_t k = 0; k < set.patch_count(); k += 50) patch.push_back(static_cast<std::uint32_t>(k));
+  const std::vector<float> half(patch.size(), 0.5f);
+  std::vector<float> out(3 * patch.size());
+  const PatchSamples<float> samples{View1<const std::uint32_t>::interleaved(patch),
+                                    View1<const float>::interleaved(half), View1<const float>::interleaved(half)};
+  if (!evaluate(set, samples, PointViews<float>{.position = View3<float>::interleaved(out)}, {}).ok()) return false;
+  for (std::size_t k = 0; k < patch.size(); ++k) {
+    const Vec3 p = set.origin() + Vec3{out[3 * k], out[3 * k + 1], out[3 * k + 2]};
+    if (!(max_abs(p - evaluate_jet(set.patch(patch[k]), 0.5, 0.5).position) <= 1e-5 * set.box().diagonal()))
+      return false;
+  }
+  return true;
+}
+bool holds(const PatchSet& set) {
+  if (set.blocks().float_points) return points_lie_on(set);
+  if (set.blocks().double_bernstein) return grids_lie_on<double>(set, {.precision = Precision::double_precision});
+  return grids_lie_on<float>(
+      set, {.representation = set.blocks().float_power ? Representation::power : Representation::bernstein});
+}
+
+void pack(benchmark::State& state, const Packing& packing, int threads) {
+  std::vector<BezierPatch> patches = test::wavy_field(200, 100);
+  if (packing.rational) {
+    const PatchSet& weighted = set_named("rational20000");
+    for (std::size_t k = 0; k < patches.size(); ++k) patches[k] = weighted.patch(k);
+  }
+  const double bytes = static_cast<double>(patches.size()) * packing.bytes_a_patch();
   const LimitsAround around({}, bytes);
-  const auto best = time_calls(state, threads, [&] { return PatchSet::from(patches).status(); });
+  const PatchSetOptions options{.blocks = packing.kinds};
+  const auto best = time_calls(state, threads, [&] { return PatchSet::from(patches, options).status(); });
   const auto limits = around.best(state);
   if (!best || !limits) return;
-  const PatchSet set = value_of(PatchSet::from(patches));
-  const TessellationPlan plan = value_of(TessellationPlan::make(set, {.rate_u = 2, .rate_v = 2}));
-  Mesh mesh = value_of(plan.allocate());
-  if (!plan.run(set, mesh.views()).ok() || !lies_on(set, mesh))
+  if (!holds(value_of(PatchSet::from(patches, options))))
     return state.SkipWithError("the blocks don't hold the patches");
   report_rates(state, *best, static_cast<double>(patches.size()), bytes);
   if (threads == 1) report_limit(state, *best, *limits, {.bytes_written = bytes});
@@ -80,8 +144,9 @@ const bool registered = [] {
     for (const char* surface : {"teapot", "bicubic20000"})
       add_case({"tessellate", surface, "3", square(rate), "-", threads}, part,
                [=](benchmark::State& state) { tessellate(state, surface, threads); });
-    add_case({"pack", "bicubic20000", "3", "20000", "-", threads}, part,
-             [=](benchmark::State& state) { pack(state, threads); });
+    for (const Packing& packing : packings)
+      add_case({packing.name, "bicubic20000", packing.rational ? "3r" : "3", "20000", "-", threads}, part,
+               [&packing, threads](benchmark::State& state) { pack(state, packing, threads); });
   }
   return true;
 }();

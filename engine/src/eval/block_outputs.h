@@ -92,14 +92,4 @@ class BlockOutputs {
   std::size_t value_count_ = 0, kind_count_ = 0;
 };
 
-/// The kernel of T.
-template <class T>
-Isa run_grid(const kernel::KernelTable& kernels, const kernel::GridJob<T>& job) {
-  if constexpr (sizeof(T) == 4) {
-    return kernels.grid_f32(job);
-  } else {
-    return kernels.grid_f64(job);
-  }
-}
-
 }  // namespace tessera

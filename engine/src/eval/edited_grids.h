@@ -10,6 +10,7 @@
 #include "eval/block_outputs.h"
 #include "eval/grid_calls.h"
 #include "eval/patch_edits.h"
+#include "eval/run_grid.h"
 #include "eval/staged_block.h"
 #include "eval/touched_blocks.h"
 

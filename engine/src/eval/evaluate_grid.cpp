@@ -14,6 +14,7 @@
 #include "eval/grid_calls.h"
 #include "eval/grid_outputs.h"
 #include "eval/grid_plan_impl.h"
+#include "eval/run_grid.h"
 #include "eval/staged_block.h"
 #include "eval/streaming_threshold.h"
 #include "eval/task_size.h"

@@ -10,6 +10,7 @@
 
 #include "base/aligned.h"
 #include "eval/grid_outputs.h"
+#include "eval/run_grid.h"
 
 namespace tessera {
 
@@ -183,11 +184,7 @@ class StagedBlock {
       for (job.v_begin = 0; job.v_begin < count_v; job.v_begin += piece_v) {
         job.v_end = std::min(count_v, job.v_begin + piece_v);
         place_fields(job);
-        if constexpr (sizeof(T) == 4) {
-          isa = kernels_.grid_f32(job);
-        } else {
-          isa = kernels_.grid_f64(job);
-        }
+        isa = run_grid(kernels_, job);
         const std::ptrdiff_t first = std::ptrdiff_t{job.u_begin - first_u} * count_v + job.v_begin;
         const std::ptrdiff_t count = std::ptrdiff_t{job.u_end - job.u_begin} * (job.v_end - job.v_begin);
         put(count, lane_count, job.u_end == end_u && job.v_end == count_v);
