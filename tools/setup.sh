@@ -22,9 +22,9 @@ fail() {
 # What each package is for stands in cmake/TesseraDependencies.cmake.
 demo_packages=(g++ cmake ninja-build libtbb-dev libxsimd-dev libembree-dev libcli11-dev nlohmann-json3-dev libmuparser-dev
   libtinygltf-dev libpng-dev libopenexr-dev)
-test_packages=(binutils libgtest-dev libgmock-dev libbenchmark-dev libocct-data-exchange-dev)
+test_packages=(binutils libgtest-dev libgmock-dev libbenchmark-dev libocct-data-exchange-dev python3 valgrind)
 neon_packages=(g++-aarch64-linux-gnu qemu-user)
-peer_packages=(libocct-modeling-data-dev libocct-modeling-algorithms-dev libosd-dev libsisl-dev)
+peer_packages=(libocct-modeling-data-dev libocct-modeling-algorithms-dev libosd-dev libsisl-dev povray python3)
 gallery_packages=(imagemagick fonts-dejavu-core)
 
 purpose='test'

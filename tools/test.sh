@@ -8,7 +8,8 @@ tools/test.sh [--preset dev|asan|tsan|release] [-- CTEST-ARGUMENTS...]
 
 Installs what is missing (tools/setup.sh), configures and builds a preset in build/<preset> (dev by default), and runs
 ctest on all cores. What stands after -- goes to ctest, for example: tools/test.sh -- -R PatchSet
-Real models are tested too where TESSERA_TEST_DATA names their folder.
+Real models are tested too where TESSERA_TEST_DATA names their folder. Two of the tests, perf.counts_avx2 and _sse2, hold the
+instructions of the dev preset to bench/baselines: a minute or two each, skipped where compiler or libraries are others'.
 TEXT
 }
 

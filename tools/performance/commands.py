@@ -1,0 +1,156 @@
+"""The command line of tools/perf."""
+
+import argparse
+
+from . import compare, count, peers, record, report
+from .console import FAILED, GOOD, REGRESSION, SKIPPED, USAGE, Failure, say
+
+DESCRIPTION = """\
+Catches what makes Tessera slower, on machines that do other things as well.
+
+  tools/perf compare main .                  is this tree slower than main? Builds both, runs them in turns
+  tools/perf count --check                   has any counted case come to take more instructions?
+  tools/perf record --roofline               this build's figures, kept in build/perf/records
+  tools/perf report                          a page of what was recorded: history, roofline, peers
+"""
+STATUS = f"""\
+exit status: {GOOD} good, {REGRESSION} something is slower, {USAGE} wrong arguments, {FAILED} could not be done (a build, a program, a file),
+{SKIPPED} count --check was skipped: no valgrind, or the baseline is of another compiler or other libraries
+"""
+
+
+def number(low, high, whole=False):
+    """A type for argparse: a number within a range."""
+    def parse(text):
+        try:
+            value = int(text) if whole else float(text)
+        except ValueError:
+            raise argparse.ArgumentTypeError(f"'{text}' is no {'whole ' if whole else ''}number") from None
+        if not low <= value <= high:
+            raise argparse.ArgumentTypeError(f"{text} is not within {low} to {high}")
+        return value
+    return parse
+
+
+def option(text):
+    name, equals, value = text.partition("=")
+    if not name or not equals or not value:
+        raise argparse.ArgumentTypeError(f"'{text}' is not NAME=VALUE")
+    return text
+
+
+def add_build_options(parser):
+    parser.add_argument("--preset", default="release", help="CMake preset to build (default: release)")
+    parser.add_argument("--jobs", type=number(1, 1024, True), metavar="N", help="compile so many files at a time")
+
+
+def add_compare(commands):
+    parser = commands.add_parser(
+        "compare", help="two builds, run in turns", formatter_class=argparse.RawDescriptionHelpFormatter,
+        description="Builds BASE and HEAD (kept in build/perf, used again), runs them in turns A B B A, and prints the median of the "
+        "ratios of\ntheir times with its 95% bootstrap interval. What looks slower is run again for twice as long, which then counts.\n"
+        "Exit status 1 where a case is slower by more than the threshold and 1 lies below the interval.",
+        epilog="BASE and HEAD: a commit, '.' for this tree, or the path of a tessera_bench that is built already.\n"
+        "example: tools/perf compare main . --filter '^evaluate.*/bicubic1000/'\n" + STATUS)
+    parser.add_argument("base", metavar="BASE")
+    parser.add_argument("head", metavar="HEAD")
+    parser.add_argument("--set", choices=("quick", "full"), default="quick", help="of the suite (default: quick)")
+    parser.add_argument("--filter", metavar="REGEX", help="cases whose name it finds")
+    parser.add_argument("--threshold", type=number(0, 1000), default=1.5, metavar="PERCENT", help="default: 1.5")
+    parser.add_argument("--quads", type=number(2, 1000, True), default=6, metavar="N",
+                        help="turns A B B A of each case; twice as many where it looks slower (default: 6)")
+    parser.add_argument("--seconds", type=number(0.001, 100), default=0.1, metavar="S",
+                        help="of a case in one turn (default: 0.1)")
+    for who in ("base", "head"):
+        parser.add_argument(f"--{who}-option", action="append", default=[], type=option, metavar="NAME=VALUE",
+                            help=f"for CMake, of {who} alone")
+    parser.add_argument("--rebuild", action="store_true", help="build again what is kept")
+    parser.add_argument("--json", metavar="FILE", help="the ratios as JSON too")
+    add_build_options(parser)
+    parser.set_defaults(run=compare.command)
+
+
+def add_count(commands):
+    parser = commands.add_parser(
+        "count", help="instructions of fixed work, by valgrind", formatter_class=argparse.RawDescriptionHelpFormatter,
+        description="Counts the instructions of the counted cases (bench/counting.cpp), one thread, on AVX2 and on SSE2. The same on busy\n"
+        "machines as on idle ones. Counts depend on compiler, flags and libraries: the baselines in bench/baselines say which.",
+        epilog=STATUS)
+    parser.add_argument("--program", metavar="FILE", help="a tessera_bench (default: this tree's build of the preset)")
+    parser.add_argument("--preset", default="dev", help="whose build (default: dev, what tools/test.sh builds)")
+    parser.add_argument("--isa", action="append", choices=count.ISAS, help="on this one alone")
+    parser.add_argument("--filter", metavar="REGEX", help="cases whose name it finds")
+    parser.add_argument("--repeat", type=number(1, 100, True), default=1, metavar="N",
+                        help="in so many processes, and print by how much they differ")
+    parser.add_argument("--check", action="store_true", help="exit status 1 where a count is above the baseline's")
+    parser.add_argument("--threshold", type=number(0, 1000), default=1.0, metavar="PERCENT",
+                        help="that a count may grow by (default: 1)")
+    parser.add_argument("--update", action="store_true", help="write the baselines")
+    parser.add_argument("--baselines", default=count.baselines.FOLDER, metavar="FOLDER",
+                        help="default: bench/baselines")
+    parser.set_defaults(run=count.command)
+
+
+def add_record(commands):
+    parser = commands.add_parser(
+        "record", help="the suite's figures of one build, as JSON", formatter_class=argparse.RawDescriptionHelpFormatter,
+        description="Runs the suite and keeps its rates with machine, instruction set, compiler, libraries and commit.",
+        epilog=STATUS)
+    parser.add_argument("commit", nargs="?", default=".", metavar="COMMIT",
+                        help="a commit, '.' for this tree (the default), or a tessera_bench that is built already")
+    parser.add_argument("--set", choices=("quick", "full"), default="quick", help="of the suite (default: quick)")
+    parser.add_argument("--filter", metavar="REGEX", help="cases whose name it finds")
+    parser.add_argument("--seconds", type=number(0.001, 100), default=0.1, metavar="S", help="of a case (default: 0.1)")
+    parser.add_argument("--passes", type=number(1, 100, True), default=1, metavar="N",
+                        help="over all cases, of which the best counts (default: 1)")
+    parser.add_argument("--no-limits", action="store_true", help="without the distance to the machine's limits: quicker")
+    parser.add_argument("--roofline", action="store_true", help="with the machine's roofline")
+    parser.add_argument("--of", metavar="COMMIT", help="what a program that is built already was built from")
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument("-o", "--output", metavar="FILE", help="default: build/perf/records/DATE_COMMIT.json")
+    where.add_argument("--baseline", action="store_true", help="into bench/baselines/MACHINE_ISA/times.json")
+    add_build_options(parser)
+    parser.set_defaults(run=record.command)
+
+
+def add_report(commands):
+    parser = commands.add_parser(
+        "report", help="a page of what was recorded", formatter_class=argparse.RawDescriptionHelpFormatter,
+        description="Writes one page of HTML that needs no other file: the history of rates and of instructions, the roofline, the peers.\n"
+        "Its plots also as PNG, by rsvg-convert (Debian's package librsvg2-bin).", epilog=STATUS)
+    parser.add_argument("records", nargs="*", metavar="RECORD",
+                        help="of record (default: build/perf/records and the times in bench/baselines)")
+    parser.add_argument("-o", "--output", metavar="FILE", help="default: build/perf/report.html; plots lie beside it")
+    parser.add_argument("--peers", metavar="FILE", help="what tools/peers.sh left (default: build/peers/peers.json, "
+                        "else the table in bench/baselines)")
+    parser.add_argument("--baselines", default=count.baselines.FOLDER, metavar="FOLDER",
+                        help="default: bench/baselines")
+    parser.set_defaults(run=report.command)
+
+
+def add_peers(commands):
+    parser = commands.add_parser(
+        "peers", help="the table of what tools/peers.sh found", formatter_class=argparse.RawDescriptionHelpFormatter,
+        description="Prints the ratios of one run of tools/peers.sh as a table, which runs this in the end.", epilog=STATUS)
+    parser.add_argument("results", metavar="RESULTS", help="lines of JSON (build/peers/results.jsonl)")
+    parser.add_argument("-o", "--output", metavar="FILE", help="all of it as JSON, for the report")
+    parser.set_defaults(run=peers.command)
+
+
+def main(words):
+    parser = argparse.ArgumentParser(prog="tools/perf", description=DESCRIPTION, epilog=STATUS,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    for add in (add_compare, add_count, add_record, add_report, add_peers):
+        add(commands)
+    arguments = parser.parse_args(words)  # ends with status 2 where they are wrong
+    try:
+        return arguments.run(arguments)
+    except Failure as failure:
+        say(f"perf: {failure}")
+        return failure.status
+    except KeyboardInterrupt:
+        say("perf: interrupted")
+        return 130
+    except BrokenPipeError:
+        return FAILED

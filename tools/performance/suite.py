@@ -1,0 +1,95 @@
+"""tessera_bench, run and read."""
+
+import json
+import os
+import re
+import subprocess
+import tempfile
+from pathlib import Path
+
+from .console import Failure
+
+SUFFIX = "/manual_time"  # Google Benchmark's, in lists of names
+
+
+class Case:
+    """One case of one run: `rate`, items a second by the shortest time of a call, and the other counters."""
+
+    def __init__(self, entry):
+        self.name = entry["name"].removesuffix(SUFFIX) if hasattr(str, "removesuffix") else entry["name"].split(SUFFIX)[0]
+        self.error = entry.get("error_message") if entry.get("error_occurred") else None
+        self.rate = float(entry.get("items_per_second", 0))
+        self.limit_fraction = entry.get("limit_fraction")
+        self.bytes = entry.get("bytes_per_second")
+
+
+def start(program, *words, environment=None):
+    try:
+        return subprocess.run([str(program), *words], capture_output=True, text=True, check=False,
+                              env=dict(os.environ, **(environment or {})))
+    except FileNotFoundError:
+        raise Failure(f"there is no program {program}") from None
+    except OSError as error:
+        raise Failure(f"{program} does not start: {error.strerror}") from None
+
+
+def names(program, part="full", filter=None):
+    """The cases of a set, in their order, that the regular expression finds."""
+    done = start(program, f"--set={part}", "--benchmark_list_tests=true")
+    if done.returncode != 0:
+        raise Failure(f"{program} --benchmark_list_tests failed: {done.stderr.strip()[-500:]}")
+    found = [line[: -len(SUFFIX)] if line.endswith(SUFFIX) else line for line in done.stdout.split()]
+    if filter is not None:
+        try:
+            found = [name for name in found if re.search(filter, name)]
+        except re.error as error:
+            raise Failure(f"--filter '{filter}' is no regular expression: {error}", 2) from None
+    if not found:
+        raise Failure(f"{program} has no case" + (f" that '{filter}' finds" if filter is not None else ""))
+    return found
+
+
+def exactly(cases):
+    """The filter of Google Benchmark that finds these names alone."""
+    return "^(" + "|".join(re.sub(r"([.+])", r"\\\1", name) for name in cases) + f")({SUFFIX})?$"
+
+
+def read_json(text, origin):
+    try:
+        return json.loads(text)
+    except ValueError as error:
+        raise Failure(f"{origin} is not JSON: {error}") from None
+
+
+def run(program, cases, seconds, limits=False):
+    """Runs cases for about so many seconds each: a dictionary of name to Case."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "out.json"
+        done = start(program, "--set=full", f"--benchmark_min_time={seconds}", f"--benchmark_filter={exactly(cases)}",
+                     f"--benchmark_out={file}", "--benchmark_out_format=json",
+                     environment={} if limits else {"TESSERA_BENCH_LIMITS": "0"})
+        text = file.read_text(encoding="utf-8") if file.exists() else ""
+    if not text:
+        raise Failure(f"{program} wrote no results (exit status {done.returncode}): {done.stderr.strip()[-500:]}")
+    content = read_json(text, f"what {program} wrote")
+    if not isinstance(content, dict) or not isinstance(content.get("benchmarks"), list):
+        raise Failure(f"{program} wrote JSON that Google Benchmark does not write: no list \"benchmarks\"")
+    found = {}
+    for entry in content["benchmarks"]:
+        case = Case(entry)
+        if case.error:
+            raise Failure(f"{program}: {case.name} failed its check: {case.error}")
+        found[case.name] = case
+    missing = [name for name in cases if name not in found]
+    if missing:
+        raise Failure(f"{program} did not run {missing[0]} (exit status {done.returncode})"
+                      + (f" and {len(missing) - 1} more" if len(missing) > 1 else ""))
+    return found
+
+
+def facts(program):
+    """What the figures depend on; nothing of programs that are older than the question."""
+    done = start(program, "--facts")
+    if done.returncode != 0:
+        return {}
+    return read_json(done.stdout, f"what {program} --facts printed")
