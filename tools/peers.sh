@@ -8,7 +8,8 @@ tools/peers.sh [NAME...]
 
 Installs the peers' Debian packages (tools/setup.sh --for peers), builds the library and the comparisons in build/peers,
 and runs those named, or all. Each checks that both programs agree on what they made before it prints their rates. A
-comparison whose peer is not installed is not built or leaves it out, and says so.
+comparison whose peer is not installed is not built or leaves it out, and says so. In the end one table of all ratios,
+with date, machine and versions; build/peers/peers.json holds it for tools/perf report.
 The names:
 TEXT
   for row in "${comparisons[@]}"; do
@@ -24,6 +25,7 @@ fail() {
 # NAME|what it compares. Each is the source bench/peers/NAME.cpp.
 comparisons=(
   "grid_evaluation|a bicubic B-spline surface at a grid: OpenSubdiv (libosd-dev), OpenCASCADE, SISL (libsisl-dev)"
+  "ray_casting|a camera's rays on a bicubic surface: Embree's triangles, grids, subdivision; SISL; POV-Ray (povray)"
   "occt_extraction|Bezier extraction of a 200 x 200 bicubic B-spline surface: OpenCASCADE (libocct-modeling-data-dev)"
   "occt_mesh|meshes of equal error of the same surfaces: OpenCASCADE (libocct-modeling-algorithms-dev)"
 )
@@ -64,6 +66,9 @@ cmake --preset peers
 rm -f build/peers/bench/peers/tessera_peer_*  # of a peer that is gone
 cmake --build --preset peers
 
+results=build/peers/results.jsonl
+rm -f "$results"
+export TESSERA_PEERS_RESULTS=$PWD/$results
 failed=()
 for name in "${names[@]}"; do
   program=build/peers/bench/peers/tessera_peer_$name
@@ -74,4 +79,8 @@ for name in "${names[@]}"; do
     failed+=("$name")
   fi
 done
+if [[ -e $results ]]; then
+  printf '\n== all ratios of this run\n'
+  tools/perf peers "$results" -o build/peers/peers.json || failed+=("the table")
+fi
 ((${#failed[@]} == 0)) || fail "failed: ${failed[*]}"

@@ -9,6 +9,7 @@
 
 #include "peers/grid_tessera.h"
 #include "peers/interleaved.h"
+#include "peers/results.h"
 
 namespace tessera::bench {
 namespace {
@@ -61,6 +62,18 @@ bool is_right(const GridTask& task, const GridRun& ours) {
   return largest <= 1e-13 * task.side();
 }
 
+/// For the table of all comparisons: each peer beside Tessera's ways in its own precision.
+void report(const GridTask& task, const std::vector<GridRun>& runs, const std::vector<double>& seconds, std::size_t own) {
+  const std::string what = std::string(task.tangents ? "positions + du + dv" : "positions") + " of grids, " +
+                           std::to_string(task.per_span) + " x " + std::to_string(task.per_span) + " points a span";
+  for (std::size_t k = own; k < runs.size(); ++k)
+    for (std::size_t mine = 0; mine < own; ++mine)
+      if (runs[mine].in_double == runs[k].in_double)
+        add_result({what, runs[k].program, runs[k].way + (runs[k].in_double ? ", double" : ", float"),
+                    static_cast<double>(task.points()) / seconds[k], runs[mine].way, seconds[k] / seconds[mine],
+                    mine % 2 == 0});
+}
+
 /// Runs everybody once, compares, times, prints. False where an answer is wrong.
 bool compare(const GridTask& task) {
   std::vector<GridRun> runs = tessera_runs(task);
@@ -97,6 +110,7 @@ bool compare(const GridTask& task) {
     std::printf("\n");
   }
   std::fflush(stdout);
+  report(task, runs, seconds, own);
   return true;
 }
 

@@ -1,0 +1,62 @@
+#pragma once
+// The work that ray casters are compared by: the closest hit of a camera's rays on a bicubic B-spline surface over
+// uniform knots, one thread.
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tessera/bezier_patch.h"
+#include "tessera/bspline_surface.h"
+#include "tessera/patch_set.h"
+#include "tessera/ray_scene.h"
+
+namespace tessera::bench {
+
+/// Segments of a patch and direction, where a program takes a surface apart into facets.
+inline constexpr int facets_a_side = 8;
+
+/// Rays from one eye in rows of pixels: along forward + (x - 1/2) right + (1/2 - y) up, x and y in (0, 1).
+struct RayCamera {
+  Vec3 eye, forward, right, up;
+  int side = 0;  ///< pixels each way
+
+  Ray ray(std::size_t pixel) const {
+    const auto n = static_cast<std::size_t>(side);
+    const double x = (static_cast<double>(pixel % n) + 0.5) / side, y = (static_cast<double>(pixel / n) + 0.5) / side;
+    return {.origin = eye, .direction = forward + (x - 0.5) * right + (0.5 - y) * up};
+  }
+  std::size_t rays() const { return static_cast<std::size_t>(side) * static_cast<std::size_t>(side); }
+};
+
+struct RayTask {
+  int spans = 0;          ///< each way
+  std::vector<Vec3> net;  ///< [i][j], spans + 3 each way
+  RayCamera camera;
+  Box3 box;             ///< of the patches' control points
+  double size = 0;      ///< its diagonal
+  const PatchSet& set;  ///< the surface, a patch a span: patch (a, b) is number a * spans + b
+
+  int side() const { return spans + 3; }
+};
+
+/// One way of one program.
+struct RayRun {
+  std::string program, way;
+  std::size_t step = 1;                      ///< casts ray 0, step, 2 step ..
+  std::function<double()> seconds;           ///< casts them once: the processor time it took
+  std::function<double(std::size_t ray)> t;  ///< of a ray that was cast; infinite where it missed
+};
+
+/// A program that was found. Its runs must not outlive the task.
+struct RayPeer {
+  std::string name;
+  std::function<std::vector<RayRun>(const RayTask&)> runs;
+};
+inline std::vector<RayPeer>& ray_peers() {
+  static std::vector<RayPeer> peers;
+  return peers;
+}
+
+}  // namespace tessera::bench
