@@ -37,13 +37,11 @@ template <class L, bool EndsLine, int Order>
     }
   };
   const Batch first = Batch::load_unaligned(net);
-#pragma GCC unroll 3
   for (int order = 0; order <= Order; ++order) sums[order] = weight(order, 0) * first;
 #pragma GCC unroll 4
   for (int i = 1; i < count_u; ++i) {
     const auto* row = net + i * length;
     const Batch values = i + 1 < count_u ? Batch::load_unaligned(row) : last_values(row);
-#pragma GCC unroll 3
     for (int order = 0; order <= Order; ++order) sums[order] = L::fma(weight(order, i), values, sums[order]);
   }
 }
@@ -94,10 +92,8 @@ template <class L, int Degree, int Order, int Components, int Capacity>
       if (k == 0 && job.prefetched > 0) fetch_ahead<Degree, Components>(job, first + s);
       typename L::Batch sums[Order + 1];
       row_sums<L, ends_line, Order>(net_of(job, first + s) + k, weights + s, count_u, length, length - k, sums);
-#pragma GCC unroll 3
       for (int order = 0; order <= Order; ++order) tiles[order][s] = sums[order];
     }
-#pragma GCC unroll 3
     for (int order = 0; order <= Order; ++order) put_columns<L>(tiles[order], k, count_v, curves.by_u[order]);
   }
 }
