@@ -81,30 +81,105 @@ inline bool wants_curvatures(const GridJob<T>& job) {
          job.first_direction || job.second_direction || job.curvature_kind;
 }
 
+/// What a loop over samples leaves to the job, and what it is made for: a mesh is positions and normals, and nothing else,
+/// of patches of one degree in both directions.
+enum class Wanted { any, mesh };
+
+template <class L, bool Streaming, int Order, Wanted Outputs>
+[[gnu::always_inline]] inline void store_derivatives(const GridJob<typename L::Scalar>& job, const Sample<L>& sample,
+                                                     const Offsets& out) {
+  if (Order == 0 || Outputs == Wanted::mesh || job.position) store_position<L, Streaming>(job, out.vector, sample);
+  if constexpr (Order >= 1 && Outputs == Wanted::any) {
+    if (job.du) store<L, Streaming>(job.du + out.vector, sample.du);
+    if (job.dv) store<L, Streaming>(job.dv + out.vector, sample.dv);
+  }
+  if constexpr (Order >= 2) {
+    if (job.duu) store<L, Streaming>(job.duu + out.vector, sample.duu);
+    if (job.duv) store<L, Streaming>(job.duv + out.vector, sample.duv);
+    if (job.dvv) store<L, Streaming>(job.dvv + out.vector, sample.dvv);
+  }
+}
+
+template <class L, bool Streaming, Wanted Outputs>
+[[gnu::always_inline]] inline void store_normal(const GridJob<typename L::Scalar>& job, const Normal<L>& normal,
+                                                const Offsets& out) {
+  if (Outputs == Wanted::mesh || job.normal) store<L, Streaming>(job.normal + out.vector, normal.direction);
+  if (Outputs == Wanted::any && job.normal_kind) L::store_bytes(job.normal_kind + out.byte, normal.kind);
+}
+
+template <class T>
+inline bool wants_normals(const GridJob<T>& job) {
+  return job.normal || job.normal_kind;
+}
+
 template <class L, bool Rational, bool Streaming, int Order>
 [[gnu::always_inline]] inline void store_sample(const GridJob<typename L::Scalar>& job, const Sample<L>& sample,
                                                 const Place& place, const Offsets& out) {
-  if (Order == 0 || job.position) store_position<L, Streaming>(job, out.vector, sample);
+  store_derivatives<L, Streaming, Order, Wanted::any>(job, sample, out);
   if constexpr (Order >= 1) {
-    if (job.du) store<L, Streaming>(job.du + out.vector, sample.du);
-    if (job.dv) store<L, Streaming>(job.dv + out.vector, sample.dv);
-    bool curvatures = false;
-    if constexpr (Order >= 2) {
-      if (job.duu) store<L, Streaming>(job.duu + out.vector, sample.duu);
-      if (job.duv) store<L, Streaming>(job.duv + out.vector, sample.duv);
-      if (job.dvv) store<L, Streaming>(job.dvv + out.vector, sample.dvv);
-      curvatures = wants_curvatures(job);
-    }
-    if (!job.normal && !job.normal_kind && !curvatures) return;
+    const bool curvatures = Order >= 2 && wants_curvatures(job);
+    if (!wants_normals(job) && !curvatures) return;
     Normal<L> normal;
     unit_normal<L, Rational>(job, sample, place, normal);
-    if (job.normal) store<L, Streaming>(job.normal + out.vector, normal.direction);
-    if (job.normal_kind) L::store_bytes(job.normal_kind + out.byte, normal.kind);
+    store_normal<L, Streaming, Wanted::any>(job, normal, out);
     if constexpr (Order >= 2) {
       if (curvatures) store_curvatures<L, Streaming>(job, out, sample, normal);
     }
   }
 }
+
+/// Normals of grids, each finished once the next sample's is begun: the chain of operations from r_u x r_v to a unit
+/// normal is long, and so runs beside the next sample's sums.
+template <class L, bool ByLane, bool Rational, bool Streaming, Wanted Outputs>
+class NormalsBehind {
+ public:
+  using Job = GridJob<typename L::Scalar>;
+
+  /// `out` is the sample's.
+  [[gnu::always_inline]] void begin(const Job& job, const Sample<L>& sample, int lane, const Offsets& out) {
+    if (Outputs == Wanted::any && !wants_normals(job)) return;
+    typename L::Batch direction[3];
+    const auto squared = cross<L>(sample.du, sample.dv, direction);
+    finish(job, lane, out);
+    copy<L>(direction, direction_);
+    squared_ = squared;
+  }
+  /// The sample before the one whose outputs are `next`, if there is one.
+  [[gnu::always_inline]] void finish(const Job& job, int lane, const Offsets& next) const {
+    if (next.byte < block_lanes || (Outputs == Wanted::any && !wants_normals(job))) return;
+    Normal<L> normal;
+    copy<L>(direction_, normal.direction);
+    normal.squared = squared_;
+    const auto safe = regular_normals<L>(job, lane, normal);
+    if (xsimd::all(safe)) {
+      store_normal<L, Streaming, Outputs>(job, normal, before(job, next));
+    } else {
+      NormalExchange<L> exchange;
+      for (int c = 0; c < 3; ++c) L::store(exchange.direction[c], normal.direction[c]);
+      L::store(exchange.kind, xsimd::select(safe, L::broadcast(1), L::broadcast(0)));
+      finish_degenerate(job, lane, next, exchange);
+    }
+  }
+
+ private:
+  static Offsets before(const Job& job, const Offsets& next) {
+    return {next.vector - job.vector_step, next.scalar - job.scalar_step, next.byte - block_lanes};
+  }
+  /// `exchange.kind`: 1 in the lanes that are safe.
+  [[gnu::noinline, gnu::cold]] static void finish_degenerate(const Job& job, int lane, Offsets next,
+                                                             NormalExchange<L>& exchange) {
+    const Offsets out = before(job, next);
+    const int sample = static_cast<int>(out.byte / block_lanes), columns = job.v_end - job.v_begin;
+    const Place place{job.u_begin + sample / columns, job.v_begin + sample % columns, lane};
+    put_tangents_again<L, ByLane, Rational>(job, place, exchange);
+    degenerate_normals<L>(job, place, L::load(exchange.kind), exchange);
+    Normal<L> normal;
+    take_normal<L>(exchange, normal);
+    store_normal<L, Streaming, Outputs>(job, normal, out);
+  }
+
+  typename L::Batch squared_ = L::broadcast(0), direction_[3] = {squared_, squared_, squared_};
+};
 
 /// Lines `first` and following.
 template <class T>
@@ -115,16 +190,17 @@ template <class T>
 
 /// `Groups` neighbouring vectors of patches, from `lane`, over the job's part of the grid. DegreeV 0 reads the degree
 /// from the job.
-template <class L, bool ByLane, int DegreeV, bool Rational, int Order, bool Streaming, int Groups>
+template <class L, bool ByLane, int DegreeV, bool Rational, int Order, bool Streaming, int Groups, Wanted Outputs>
 void evaluate_lanes(const GridJob<typename L::Scalar>& job, int lane) {
   constexpr int components = Rational ? 4 : 3;
   constexpr int capacity = DegreeV > 0 ? DegreeV + 1 : max_order;
-  const int count_u = job.degree_u + 1;
+  const int count_u = Outputs == Wanted::mesh ? DegreeV + 1 : job.degree_u + 1;
   const int count_v = DegreeV > 0 ? DegreeV + 1 : job.degree_v + 1;
   Offsets out{lane, lane, lane};
 
   const auto* next_net = job.net + std::ptrdiff_t{count_u} * count_v * components * block_lanes;
   RowCurves<L, Order, components, capacity> curves[Groups];
+  NormalsBehind<L, ByLane, Rational, Streaming, Outputs> normals[Groups];
   for (int iu = job.u_begin; iu < job.u_end; ++iu) {
     if (lane == 0) prefetch_lines(next_net, iu * job.prefetched_lines, job.prefetched_lines);
     for (int group = 0; group < Groups; ++group) {
@@ -138,27 +214,38 @@ void evaluate_lanes(const GridJob<typename L::Scalar>& job, int lane) {
         const auto v_weights = weights_at<L, ByLane>(job.v_weights, iv, count_v, lane + group * L::width);
         Sample<L> sample;
         evaluate_sample<L, Order>(curves[group], v_weights, count_v, sample);
-        store_sample<L, Rational, Streaming, Order>(job, sample, {iu, iv, lane + group * L::width},
-                                                    {out.vector + shift, out.scalar + shift, out.byte + shift});
+        const Place place{iu, iv, lane + group * L::width};
+        const Offsets at{out.vector + shift, out.scalar + shift, out.byte + shift};
+        if constexpr (Order == 1) {
+          store_derivatives<L, Streaming, Order, Outputs>(job, sample, at);
+          normals[group].begin(job, sample, place.lane, at);
+        } else {
+          store_sample<L, Rational, Streaming, Order>(job, sample, place, at);
+        }
       }
       out = {out.vector + job.vector_step, out.scalar + job.scalar_step, out.byte + block_lanes};
     }
   }
+  if constexpr (Order == 1)
+    for (int group = 0; group < Groups; ++group) {
+      const std::ptrdiff_t shift = group * L::width;
+      normals[group].finish(job, lane + group * L::width, {out.vector + shift, out.scalar + shift, out.byte + shift});
+    }
 }
 
 /// Plain stores take one vector of patches after the other; streaming stores take whole cache lines, since a line that
 /// is streamed in parts goes to memory in parts, and vectors of a line two of them: lines of a block that are left out
 /// cost as much as others.
-template <class L, int DegreeV, bool Rational, int Order>
+template <class L, int DegreeV, bool Rational, int Order, Wanted Outputs = Wanted::any>
 void evaluate_block(const GridJob<typename L::Scalar>& job) {
   constexpr int line = 64 / static_cast<int>(sizeof(typename L::Scalar));
   constexpr int streamed = L::width < line ? line : 2 * line < block_lanes ? 2 * line : block_lanes;
   if (job.streaming) {
     for (int lane = 0; lane < block_lanes; lane += streamed)
-      evaluate_lanes<L, false, DegreeV, Rational, Order, true, streamed / L::width>(job, lane);
+      evaluate_lanes<L, false, DegreeV, Rational, Order, true, streamed / L::width, Outputs>(job, lane);
   } else {
     for (int lane = 0; lane < block_lanes; lane += L::width)
-      evaluate_lanes<L, false, DegreeV, Rational, Order, false, 1>(job, lane);
+      evaluate_lanes<L, false, DegreeV, Rational, Order, false, 1, Outputs>(job, lane);
   }
 }
 
@@ -166,8 +253,8 @@ void evaluate_block(const GridJob<typename L::Scalar>& job) {
 template <class L, int Order>
 void evaluate_by_lane(const GridJob<typename L::Scalar>& job) {
   for (int lane = 0; lane < block_lanes; lane += L::width)
-    job.rational ? evaluate_lanes<L, true, 0, true, Order, false, 1>(job, lane)
-                 : evaluate_lanes<L, true, 0, false, Order, false, 1>(job, lane);
+    job.rational ? evaluate_lanes<L, true, 0, true, Order, false, 1, Wanted::any>(job, lane)
+                 : evaluate_lanes<L, true, 0, false, Order, false, 1, Wanted::any>(job, lane);
 }
 
 template <class L, int DegreeV, int Order>
@@ -181,6 +268,12 @@ inline int order_of(const GridJob<T>& job) {
   return job.du || job.dv || job.normal || job.normal_kind ? 1 : 0;
 }
 
+template <class T>
+inline bool is_bicubic_mesh(const GridJob<T>& job) {
+  return job.degree_u == 3 && job.degree_v == 3 && !job.rational && job.position && job.normal && !job.du && !job.dv &&
+         !job.normal_kind;
+}
+
 template <class L, int DegreeV>
 void choose_order(const GridJob<typename L::Scalar>& job) {
   order_of(job) == 1 ? choose_weights<L, DegreeV, 1>(job) : choose_weights<L, DegreeV, 0>(job);
@@ -192,6 +285,8 @@ template <class L>
 void choose_degree(const GridJob<typename L::Scalar>& job) {
   if (order_of(job) == 2) {
     job.degree_v == 3 && !job.rational ? evaluate_block<L, 3, false, 2>(job) : choose_weights<L, 0, 2>(job);
+  } else if (is_bicubic_mesh(job)) {
+    evaluate_block<L, 3, false, 1, Wanted::mesh>(job);
   } else if (job.degree_v == 1) {
     choose_order<L, 1>(job);
   } else if (job.degree_v == 2) {

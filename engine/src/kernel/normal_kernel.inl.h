@@ -112,7 +112,8 @@ inline OnCollapsed<L> on_collapsed(const GridJob<typename L::Scalar>& job, const
 
 /// r_uv of a sample of first order, made anew from the block: so few points ask for it that the others don't pay.
 template <class L, bool ByLane>
-[[gnu::noinline, gnu::cold]] void polynomial_mixed(const GridJob<typename L::Scalar>& job, const Place& place, typename L::Batch (&duv)[3]) {
+[[gnu::noinline, gnu::cold]] void polynomial_mixed(const GridJob<typename L::Scalar>& job, const Place& place,
+                                                   typename L::Batch (&duv)[3]) {
   const int count_u = job.degree_u + 1, count_v = job.degree_v + 1;
   RowCurves<L, 0, 3, max_order> curves;
   const auto u_weights = weights_at<L, ByLane>(job.u_weights, place.iu, count_u, place.lane) + count_u;
@@ -121,7 +122,8 @@ template <class L, bool ByLane>
   combine<L>(v_weights, count_v, curves.by_u[0], duv);
 }
 template <class L, bool ByLane>
-[[gnu::noinline, gnu::cold]] void rational_mixed(const GridJob<typename L::Scalar>& job, const Place& place, typename L::Batch (&duv)[3]) {
+[[gnu::noinline, gnu::cold]] void rational_mixed(const GridJob<typename L::Scalar>& job, const Place& place,
+                                                 typename L::Batch (&duv)[3]) {
   const int count_u = job.degree_u + 1, count_v = job.degree_v + 1;
   const auto u_weights = weights_at<L, ByLane>(job.u_weights, place.iu, count_u, place.lane);
   const auto v_weights = weights_at<L, ByLane>(job.v_weights, place.iv, count_v, place.lane);
@@ -149,8 +151,8 @@ inline void mixed_derivative(const GridJob<typename L::Scalar>& job, const Place
 /// k r_uv + ..., so that r_uv x r_v decides, and -r_uv x r_v at v = 1; likewise r_u x r_uv along u = 0. A corner of two
 /// collapsed edges has none. The error of r_uv is taken as 4 max(m, n) times that of the tangents.
 template <class L>
-[[gnu::noinline, gnu::cold]] void limit_normals(const GridJob<typename L::Scalar>& job, const Tangents<L>& tangents, const Place& place,
-                          typename L::Batch& doubtful, Normal<L>& normal) {
+[[gnu::noinline, gnu::cold]] void limit_normals(const GridJob<typename L::Scalar>& job, const Tangents<L>& tangents,
+                                                const Place& place, typename L::Batch& doubtful, Normal<L>& normal) {
   const auto zero = L::broadcast(0), one = L::broadcast(1);
   const auto u_edge = on_collapsed<L>(job, job.u_edges, place.iu, 0, place.lane);
   const auto v_edge = on_collapsed<L>(job, job.v_edges, place.iv, 2, place.lane);
@@ -176,7 +178,8 @@ template <class L>
 
 /// Doubtful lanes whose tangents, at their own scale, are safely independent.
 template <class L>
-[[gnu::noinline, gnu::cold]] void certain_normals(const Tangents<L>& tangents, typename L::Batch& doubtful, Normal<L>& normal) {
+[[gnu::noinline, gnu::cold]] void certain_normals(const Tangents<L>& tangents, typename L::Batch& doubtful,
+                                                  Normal<L>& normal) {
   const auto zero = L::broadcast(0);
   typename L::Batch n[3];
   const auto certain = certain_direction<L>(tangents.du, tangents.dv, tangents.noise, tangents.noise, n);
@@ -188,8 +191,8 @@ template <class L>
 
 /// Doubtful lanes one by one, in the caller's arithmetic.
 template <class L>
-[[gnu::noinline, gnu::cold]] void exact_normals(const GridJob<typename L::Scalar>& job, const Place& place, const typename L::Batch& doubtful,
-                          Normal<L>& normal) {
+[[gnu::noinline, gnu::cold]] void exact_normals(const GridJob<typename L::Scalar>& job, const Place& place,
+                                                const typename L::Batch& doubtful, Normal<L>& normal) {
   using T = typename L::Scalar;
   alignas(64) T asked[L::width], kind[L::width], direction[3][L::width];
   L::store(asked, doubtful);
@@ -247,7 +250,8 @@ inline typename L::Batch own_doubts(const GridJob<typename L::Scalar>& job, cons
 /// a lane's bits don't depend on its neighbours.
 template <class L>
 [[gnu::noinline, gnu::cold]] void degenerate_normals(const GridJob<typename L::Scalar>& job, const Place& place,
-                                                  const typename L::Batch& assumed_safe, NormalExchange<L>& exchange) {
+                                                     const typename L::Batch& assumed_safe,
+                                                     NormalExchange<L>& exchange) {
   const auto zero = L::broadcast(0), one = L::broadcast(1);
   typename L::Batch safe = assumed_safe, noise;
   if (job.lane_doubt) {
@@ -273,28 +277,58 @@ template <class L>
   L::store(exchange.kind, normal.kind);
 }
 
+/// From r_u x r_v in `direction` and its square in `squared` to the unit normal. Returns the lanes where that is one.
+template <class L>
+[[gnu::always_inline]] inline auto regular_normals(const GridJob<typename L::Scalar>& job, int lane,
+                                                   Normal<L>& normal) {
+  normal.reciprocal = inverse_root<L>(normal.squared);
+  normal.kind = L::broadcast(regular_normal);
+  normal.uncertain = L::broadcast(0);
+  for (int c = 0; c < 3; ++c) normal.direction[c] = normal.direction[c] * normal.reciprocal;
+  return (normal.squared > L::load(job.doubt + lane)) &
+         (normal.squared <= L::broadcast(SafeRange<typename L::Scalar>::highest));
+}
+
+template <class L, bool Rational>
+[[gnu::always_inline]] inline void put_tangents(const Sample<L>& sample, NormalExchange<L>& exchange) {
+  for (int c = 0; c < 3; ++c) {
+    L::store(exchange.du[c], sample.du[c]);
+    L::store(exchange.dv[c], sample.dv[c]);
+  }
+  if constexpr (Rational) L::store(exchange.reciprocal_weight, sample.reciprocal_weight);
+}
+
+template <class L>
+[[gnu::always_inline]] inline void take_normal(const NormalExchange<L>& exchange, Normal<L>& normal) {
+  for (int c = 0; c < 3; ++c) normal.direction[c] = L::load(exchange.direction[c]);
+  normal.kind = L::load(exchange.kind);
+  normal.uncertain = L::load(exchange.uncertain);
+}
+
 /// The unit normal; zero where there is none.
 template <class L, bool Rational>
 [[gnu::always_inline]] inline void unit_normal(const GridJob<typename L::Scalar>& job, const Sample<L>& sample,
                                                const Place& place, Normal<L>& normal) {
   normal.squared = cross<L>(sample.du, sample.dv, normal.direction);
-  normal.reciprocal = inverse_root<L>(normal.squared);
-  normal.kind = L::broadcast(regular_normal);
-  normal.uncertain = L::broadcast(0);
-  for (int c = 0; c < 3; ++c) normal.direction[c] = normal.direction[c] * normal.reciprocal;
-  const auto safe = (normal.squared > L::load(job.doubt + place.lane)) &
-                    (normal.squared <= L::broadcast(SafeRange<typename L::Scalar>::highest));
-  if (!xsimd::all(safe)) {
-    NormalExchange<L> exchange;
-    for (int c = 0; c < 3; ++c) {
-      L::store(exchange.du[c], sample.du[c]);
-      L::store(exchange.dv[c], sample.dv[c]);
-      L::store(exchange.direction[c], normal.direction[c]);
-    }
-    if constexpr (Rational) L::store(exchange.reciprocal_weight, sample.reciprocal_weight);
-    degenerate_normals<L>(job, place, xsimd::select(safe, L::broadcast(1), L::broadcast(0)), exchange);
-    for (int c = 0; c < 3; ++c) normal.direction[c] = L::load(exchange.direction[c]);
-    normal.kind = L::load(exchange.kind);
-    normal.uncertain = L::load(exchange.uncertain);
-  }
+  const auto safe = regular_normals<L>(job, place.lane, normal);
+  if (xsimd::all(safe)) return;
+  NormalExchange<L> exchange;
+  put_tangents<L, Rational>(sample, exchange);
+  for (int c = 0; c < 3; ++c) L::store(exchange.direction[c], normal.direction[c]);
+  degenerate_normals<L>(job, place, xsimd::select(safe, L::broadcast(1), L::broadcast(0)), exchange);
+  take_normal<L>(exchange, normal);
+}
+
+/// put_tangents() of a sample that is gone: the same bits, made anew from the block.
+template <class L, bool ByLane, bool Rational>
+[[gnu::noinline, gnu::cold]] void put_tangents_again(const GridJob<typename L::Scalar>& job, const Place& place,
+                                                     NormalExchange<L>& exchange) {
+  constexpr int components = Rational ? 4 : 3;
+  const int count_u = job.degree_u + 1, count_v = job.degree_v + 1;
+  RowCurves<L, 1, components, max_order> curves;
+  row_curves<L, 0>(job.net + place.lane, weights_at<L, ByLane>(job.u_weights, place.iu, count_u, place.lane), count_u,
+                   count_v, curves);
+  Sample<L> sample;
+  evaluate_sample<L, 1>(curves, weights_at<L, ByLane>(job.v_weights, place.iv, count_v, place.lane), count_v, sample);
+  put_tangents<L, Rational>(sample, exchange);
 }
