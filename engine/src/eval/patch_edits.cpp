@@ -1,6 +1,5 @@
 #include "eval/patch_edits.h"
 
-#include <cmath>
 #include <string>
 
 #include "kernel/kernel_table.h"
@@ -18,10 +17,7 @@ constexpr std::size_t edits_a_piece = 256;
 constexpr double plain_size = 0x1p70;
 
 bool all_plain(std::span<const Vec3> points) {
-  const double* numbers = &points.front().x;
-  unsigned refused = 0;
-  for (std::size_t k = 0; k < 3 * points.size(); ++k) refused |= !(std::abs(numbers[k]) <= plain_size);
-  return refused == 0;
+  return kernel::default_kernels().within(&points.front().x, 3 * points.size(), plain_size);
 }
 
 /// Whether a patch with these points could be in a set of its own.
@@ -55,10 +51,13 @@ Status prepare_edits(PatchSet::Impl& set, const PatchEdits& edits, const Touched
   const Execution checking{.cancel = execution.cancel};
   const Status status =
       parallel_for(edits.patch.size(), edits_a_piece, checking, [&](std::size_t begin, std::size_t end) {
+        const auto last = points_of(set, edits, touched, end - 1);
+        const Vec3* first = points_of(set, edits, touched, begin).data();
+        const bool plain = near && all_plain({first, last.data() + last.size()});
         for (std::size_t k = begin; k < end; ++k) {
           BezierPatch& patch = set.patches[edits.patch[k]];
           const auto points = points_of(set, edits, touched, k);
-          if (!(near && all_plain(points)) && !fits(set, patch, points)) return refused.add(k);
+          if (!plain && !(near && all_plain(points)) && !fits(set, patch, points)) return refused.add(k);
           if (keeps_shape && !(*keeps_shape)(edits.patch[k], points)) return reshaped.add(k);
           PatchPieces::make_sole(patch);
         }
@@ -94,7 +93,8 @@ void pack_edits(PatchSet::Impl& set, const PatchEdits& edits, const TouchedBlock
 }
 
 void finish_edits(PatchSet::Impl& set, const PatchEdits& edits) {
-  for (const std::uint32_t patch : edits.patch) set.note_doubt(patch);
+  if (set.kinds.float_points || set.kinds.double_points)
+    for (const std::uint32_t patch : edits.patch) set.note_doubt(patch);
   if (!edits.patch.empty()) ++set.revision;
 }
 

@@ -83,6 +83,23 @@ inline void bound_points(const double* points, std::size_t count, PointBounds& b
   }
 }
 
+inline bool all_within(const double* numbers, std::size_t count, double limit) {
+  using L = Lanes<double>;
+  using Batch = L::Batch;
+  constexpr std::size_t together = 4, run = together * L::width;
+  const Batch most = L::broadcast(limit);
+  std::size_t k = 0;
+  for (; k + run <= count; k += run) {
+    auto within = xsimd::abs(Batch::load_unaligned(numbers + k)) <= most;
+    for (std::size_t t = 1; t < together; ++t)
+      within = within & (xsimd::abs(Batch::load_unaligned(numbers + k + t * L::width)) <= most);
+    if (!xsimd::all(within)) return false;
+  }
+  for (; k < count; ++k)
+    if (!(numbers[k] <= limit && numbers[k] >= -limit)) return false;
+  return true;
+}
+
 /// Products and sums rounded one by one, in order: the same bits on every ISA. Count: std::size_t, or a constant.
 template <class Count>
 inline void combine_rows(const CombineJob& job, Count count) {

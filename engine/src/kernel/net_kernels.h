@@ -44,6 +44,8 @@ struct NetKernels {
   void (*bound_nets)(const double* const* nets, std::size_t count, NetBoxes& boxes);
   /// Extends the bounds by points of `count` numbers, x y z x y z ..
   void (*bound_points)(const double* points, std::size_t count, PointBounds& bounds);
+  /// Whether all numbers lie within [-limit, limit]; a NaN does not.
+  bool (*within)(const double* numbers, std::size_t count, double limit);
   void (*combine)(const CombineJob&);
 };
 

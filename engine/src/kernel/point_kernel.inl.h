@@ -87,12 +87,18 @@ template <class L, int Degree, int Order, int Components, int Capacity>
 #pragma GCC unroll 4
   for (int k = 0; k < length; k += L::width) {
     typename L::Batch tiles[Order + 1][L::width];
-#pragma GCC unroll 16
-    for (int s = 0; s < L::width; ++s) {
+    const auto sum_sample = [&](int s) __attribute__((always_inline)) {
       if (k == 0 && job.prefetched > 0) fetch_ahead<Degree, Components>(job, first + s);
       typename L::Batch sums[Order + 1];
       row_sums<L, ends_line, Order>(net_of(job, first + s) + k, weights + s, count_u, length, length - k, sums);
       for (int order = 0; order <= Order; ++order) tiles[order][s] = sums[order];
+    };
+    if constexpr (Degree > 0) {
+#pragma GCC unroll 16
+      for (int s = 0; s < L::width; ++s) sum_sample(s);
+    } else {
+#pragma GCC unroll 1
+      for (int s = 0; s < L::width; ++s) sum_sample(s);
     }
     for (int order = 0; order <= Order; ++order) put_columns<L>(tiles[order], k, count_v, curves.by_u[order]);
   }

@@ -17,6 +17,7 @@ extern const NetKernels net_kernels = {
     pack_nets<double>,
     bound_nets,
     bound_points,
+    all_within,
     combine_rows,
 };
 extern const MemoryKernels memory_kernels = {
