@@ -25,7 +25,7 @@ constexpr double probe_pad = 4e-6;  // of s in a kernel, by as much again
 struct Call {
   RTCIntersectContext context;
   SearchSpace* space;
-  std::array<RayQuery*, EmbreeLeaves::packet> queries;
+  std::array<RayQuery*, EmbreeLeaves::packet> queries;  ///< null of idle lanes
   std::array<float, EmbreeLeaves::packet> enter;  ///< s where Embree's ray begins
   std::array<kernel::RayProbe, EmbreeLeaves::packet> probes;
 };
@@ -39,6 +39,10 @@ kernel::RayProbe probe_of(const RayQuery& query) {
           8,
           false};
 }
+
+/// Embree 3 takes 16 rays by eights or fours where the machine has no wider vectors, and a part without a ray of ours comes
+/// to the callbacks with lanes that it calls valid.
+bool is_idle(const Call& call, unsigned ray) { return call.queries[ray] == nullptr; }
 
 void enter(Call& call, unsigned ray, RayQuery& query) {
   call.queries[ray] = &query;
@@ -150,6 +154,7 @@ struct EmbreeLeaves::State {
     for (unsigned k = 0; k < count; ++k) {
       if (arguments->valid[k] == 0) continue;
       const unsigned ray = RTCRayN_id(rays, count, k);
+      if (is_idle(call, ray)) continue;
       const RayQuery& query = state.search(arguments->primID, call, ray);
       float& far = RTCRayN_tfar(rays, count, k);
       far = std::min(far, static_cast<float>(query.far) - call.enter[ray] + box_pad);
@@ -162,7 +167,9 @@ struct EmbreeLeaves::State {
     const unsigned count = arguments->N;
     for (unsigned k = 0; k < count; ++k) {
       if (arguments->valid[k] == 0) continue;
-      const RayQuery& query = state.search(arguments->primID, call, RTCRayN_id(arguments->ray, count, k));
+      const unsigned ray = RTCRayN_id(arguments->ray, count, k);
+      if (is_idle(call, ray)) continue;
+      const RayQuery& query = state.search(arguments->primID, call, ray);
       if (query.done()) RTCRayN_tfar(arguments->ray, count, k) = -std::numeric_limits<float>::infinity();
     }
   }
@@ -178,7 +185,7 @@ Result<EmbreeLeaves> EmbreeLeaves::make(Isa isa) {
   Result<Owned<RTCDevice, DeviceRelease>> device = make_device(state->monitor, isa);
   if (!device) return device.status();
   state->device = *std::move(device);
-  state->kernels = &kernel::kernels(isa);
+  state->kernels = &ray_kernels(isa);
   return EmbreeLeaves(std::move(state));
 }
 
@@ -234,7 +241,10 @@ void EmbreeLeaves::trace(std::span<RayQuery* const> queries, SearchSpace& space)
   for (unsigned k = 0; k < packet; ++k) {
     const std::size_t which = k < queries.size() ? k : 0;  // idle lanes repeat the first
     valid[k] = k < queries.size() ? -1 : 0;
-    if (k < queries.size()) enter(call, k, *queries[k]);
+    if (k < queries.size())
+      enter(call, k, *queries[k]);
+    else
+      call.queries[k] = nullptr;
     const std::array<float, 7> ray = embree_ray(queries[which]->line);
     hit.ray.org_x[k] = ray[0], hit.ray.org_y[k] = ray[1], hit.ray.org_z[k] = ray[2];
     hit.ray.dir_x[k] = ray[3], hit.ray.dir_y[k] = ray[4], hit.ray.dir_z[k] = ray[5];
