@@ -1,15 +1,13 @@
 # What `cmake --install` lays down: the libraries, the public headers, the command line, and the package that
-# find_package(tessera) reads. Each component has its own file of targets, so that the core never looks for Embree.
+# find_package(tessera) reads, and pkg-config. Each component has its own file of targets, so that the core never looks for Embree.
 
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
+include(TesseraPkgConfig)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/tessera)
 
 # tessera_install_component(NAME TARGET): the library TARGET as tessera::NAME, in tessera_NAME_targets.cmake.
 function(tessera_install_component name target)
-  # The name of a shared library changes where the interface may.
-  set_target_properties(${target} PROPERTIES
-    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   install(TARGETS ${target} EXPORT tessera_${name}
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
@@ -21,18 +19,26 @@ endfunction()
 # The headers of a component that is not built stay out.
 set(left_out)
 tessera_install_component(core tessera)
+tessera_install_pkg_config(tessera tessera "${PROJECT_DESCRIPTION}" REQUIRES tbb)
 if(TESSERA_BUILD_RAY)
   tessera_install_component(ray tessera_ray_library)
+  tessera_install_pkg_config(tessera-ray tessera_ray_library "Ray queries on Tessera's surfaces" ON tessera
+    LIBS -lembree${embree_VERSION_MAJOR})
 else()
   list(APPEND left_out PATTERN "ray_*.h" EXCLUDE)
 endif()
 if(TESSERA_BUILD_IO)
   tessera_install_component(io tessera_io_library)
+  tessera_install_pkg_config(tessera-io tessera_io_library "Tessera's readers of surfaces and writers of meshes" ON tessera
+    REQUIRES muparser tinygltf)
 else()
   list(APPEND left_out PATTERN "io.h" EXCLUDE)
 endif()
 if(TESSERA_HAS_IO_OCCT)
   tessera_install_component(io_occt tessera_io_occt_library)
+  tessera_names_of(occt_names TKSTEP TKIGES)
+  tessera_install_pkg_config(tessera-io_occt tessera_io_occt_library "Tessera's readers of STEP and IGES" ON tessera-io
+    LIBS "${occt_names}")
   install(FILES ${PROJECT_SOURCE_DIR}/cmake/TesseraOpenCascade.cmake DESTINATION ${package_dir})
 else()
   list(APPEND left_out PATTERN "io_occt.h" EXCLUDE)

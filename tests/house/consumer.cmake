@@ -1,7 +1,7 @@
 # Builds and runs tests/consumer as its users would:
 #   cmake -D WAY=package      against the package that the build in BUILD installs into a fresh prefix
 #   cmake -D WAY=subdirectory with the sources in SOURCE as a subdirectory
-# with -D SOURCE= BUILD= WORK= READELF= GENERATOR= COMPILER= [CONFIG=] -P consumer.cmake. WORK is emptied first.
+# with -D SOURCE= BUILD= WORK= READELF= GENERATOR= COMPILER= [CONFIG= PKG_CONFIG=] -P consumer.cmake. WORK is emptied first.
 
 function(run)
   execute_process(COMMAND ${ARGN} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
@@ -62,6 +62,28 @@ if(WAY STREQUAL "package")
   needs_embree(${WORK}/rays/tessellate_only no)
   build_consumer(no_embree ${package} -D CONSUMER_RAYS=OFF)
   run_in(no_embree tessellate_only)
+
+  if(PKG_CONFIG)
+    file(GLOB_RECURSE found ${prefix}/*/tessera.pc)
+    get_filename_component(folder ${found} DIRECTORY)
+    set(ENV{PKG_CONFIG_PATH} ${folder})
+    get_filename_component(libraries ${folder} DIRECTORY)
+    set(ENV{LD_LIBRARY_PATH} ${libraries})
+    foreach(program tessellate_only main)
+      set(modules tessera)
+      if(program STREQUAL "main")
+        set(modules tessera-ray tessera-io)
+      endif()
+      execute_process(COMMAND ${PKG_CONFIG} --cflags --libs ${modules} OUTPUT_VARIABLE flags
+        OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+      separate_arguments(flags UNIX_COMMAND "${flags}")
+      file(MAKE_DIRECTORY ${WORK}/pkg_config)
+      run(${COMPILER} -std=c++20 ${SOURCE}/tests/consumer/${program}.cpp -o ${WORK}/pkg_config/${program} ${flags})
+      run_in(pkg_config ${program})
+    endforeach()
+  else()
+    message(STATUS "pkg-config is not there: tessera.pc is not tried")
+  endif()
 elseif(WAY STREQUAL "subdirectory")
   # No build type: Tessera must not choose one for a project that left it open. It also compiles fastest.
   set(TARGETS consumer tessellate_only)

@@ -5,11 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cstdio>
 #include <fstream>
 #include <map>
-#include <memory>
 #include <regex>
+
+#include "house/output_of.h"
 
 namespace tessera::house {
 namespace {
@@ -47,16 +47,6 @@ TEST(IsaSymbols, UnitsAreKnownByTheirObjects) {
   EXPECT_EQ(isa_unit_of("engine/CMakeFiles/tessera_kernel_sse2.dir/src/kernel/unit_net.cpp.o")->isa, "sse2");
   EXPECT_EQ(isa_unit_of("engine/CMakeFiles/tessera_kernel_neon64.dir/src/kernel/unit_net.cpp.o")->isa, "neon64");
   EXPECT_FALSE(isa_unit_of("engine/CMakeFiles/tessera_kernel.dir/src/kernel/select_isa.cpp.o"));
-}
-
-std::string output_of(const std::string& command) {
-  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), [](FILE* f) { return pclose(f); });
-  std::string output;
-  std::array<char, 4096> buffer;
-  while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe.get())) {
-    output.append(buffer.data(), count);
-  }
-  return output;
 }
 
 TEST(IsaSymbols, ObjectsHoldOnlyTheirOwn) {

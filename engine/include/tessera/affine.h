@@ -7,6 +7,7 @@
 
 #include "tessera/vec.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// p -> columns[0] p.x + columns[1] p.y + columns[2] p.z + translation.
@@ -57,3 +58,4 @@ inline bool is_finite(const Affine& map) {
 }
 
 }  // namespace tessera
+#pragma GCC visibility pop

@@ -11,6 +11,7 @@
 #include "tessera/status.h"
 #include "tessera/vec.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// A Bezier curve: degree + 1 points, and as many weights > 0, or none for a polynomial one.
@@ -68,3 +69,4 @@ Result<BezierPatch> make_cone(const Vec3& apex, const BezierPolygon& curve);
 Result<BezierPatch> make_hyperbolic_paraboloid(const Vec3& r00, const Vec3& r01, const Vec3& r10, const Vec3& r11);
 
 }  // namespace tessera
+#pragma GCC visibility pop

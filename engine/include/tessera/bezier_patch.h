@@ -9,6 +9,7 @@
 #include "tessera/status.h"
 #include "tessera/vec.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// Degrees run from 1 to this in each direction.
@@ -96,3 +97,4 @@ struct UnitNormal {
 UnitNormal unit_normal(const BezierPatch& patch, double u, double v);
 
 }  // namespace tessera
+#pragma GCC visibility pop

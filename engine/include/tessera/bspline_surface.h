@@ -11,6 +11,7 @@
 #include "tessera/status.h"
 #include "tessera/vec.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// s(u,v) = sum_ij N_{i,p}(u) N_{j,q}(v) P_ij or, rational, sum N N w_ij P_ij / sum N N w_ij, of degrees 1 to
@@ -73,3 +74,4 @@ class BSplineSurface {
 SurfaceJet evaluate_jet(const BSplineSurface& surface, double u, double v);
 
 }  // namespace tessera
+#pragma GCC visibility pop

@@ -13,6 +13,7 @@
 #include "tessera/status.h"
 #include "tessera/view.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// How far mesh and surfaces may lie apart in a picture: every point of either that is seen lies within so many pixels of
@@ -137,7 +138,7 @@ class CertifiedTessellation {
   /// mesh of the one has the same triangles and vertices as one of the other.
   std::size_t divided_otherwise(const CertifiedTessellation& other) const;
 
-  class Impl;
+  class [[gnu::visibility("hidden")]] Impl;
   const Impl& impl() const { return *impl_; }  ///< for the library's own use
 
  private:
@@ -146,3 +147,4 @@ class CertifiedTessellation {
 };
 
 }  // namespace tessera
+#pragma GCC visibility pop

@@ -11,6 +11,7 @@
 #include "tessera/domain.h"
 #include "tessera/status.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 class BSplineSurface;
@@ -76,3 +77,4 @@ class PatchGrid {
 Result<PatchGrid> transformed(const PatchGrid& grid, const Affine& map);
 
 }  // namespace tessera
+#pragma GCC visibility pop

@@ -11,6 +11,7 @@
 #include "tessera/parametric_curve.h"
 #include "tessera/parametric_surface.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// The two blending functions of a direction, on [0,1]: f1 + f2 = 1, f1(0) = 1, f1(1) = 0. Immutable but for
@@ -97,3 +98,4 @@ Result<Vec3> position(const CoonsPatch& patch, double u, double v);
 Result<PatchGrid> to_bezier(const CoonsPatch& patch, const FitOptions& options = {});
 
 }  // namespace tessera
+#pragma GCC visibility pop

@@ -10,6 +10,7 @@
 #include "tessera/status.h"
 #include "tessera/vec.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// An interval of a parameter, from < to.
@@ -71,3 +72,4 @@ CurveJet evaluate_jet(const Curve& curve, double t);
 Vec3 position(const Curve& curve, double t);
 
 }  // namespace tessera
+#pragma GCC visibility pop

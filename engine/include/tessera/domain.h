@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// The rectangle [u0, u1] x [v0, v1] of parameters, u0 < u1 and v0 < v1.
@@ -32,3 +33,4 @@ struct EdgeMask {
 };
 
 }  // namespace tessera
+#pragma GCC visibility pop

@@ -15,6 +15,7 @@
 #include "tessera/status.h"
 #include "tessera/views.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// `count` >= 2 parameters from 0 to 1: i / (count - 1).
@@ -74,7 +75,7 @@ class GridPlan {
   /// What the evaluation must compute and write at the least; see limits.h.
   Work work(const GridOutputs& outputs) const;
 
-  class Impl;
+  class [[gnu::visibility("hidden")]] Impl;
   const Impl& impl() const { return *impl_; }  ///< for the library's own use
 
  private:
@@ -145,3 +146,4 @@ Status evaluate(const PatchSet& set, const GridPlan& plan, const GridBlocks<floa
 Status evaluate(const PatchSet& set, const GridPlan& plan, const GridBlocks<double>& out, const Execution& execution = {});
 
 }  // namespace tessera
+#pragma GCC visibility pop

@@ -13,6 +13,7 @@
 #include "tessera/status.h"
 #include "tessera/views.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// What becomes of parameters outside of a patch's [0,1]^2, or of a surface's domain.
@@ -74,7 +75,7 @@ class SurfaceMap {
   /// Nothing for a number that no patch's source bears. surface < surface_count().
   std::optional<Domain> domain(std::size_t surface) const;
 
-  class Impl;
+  class [[gnu::visibility("hidden")]] Impl;
   const Impl& impl() const { return *impl_; }  ///< for the library's own use
 
  private:
@@ -99,3 +100,4 @@ Status evaluate(const PatchSet& set, const SurfaceMap& map, const SurfaceSamples
                 const PointViews<double>& out, const PointOptions& options = {}, const Execution& execution = {});
 
 }  // namespace tessera
+#pragma GCC visibility pop

@@ -8,6 +8,7 @@
 
 #include "tessera/isa.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// How results of grids are written to memory; scattered points, and what goes value by value, by plain stores always.
@@ -36,3 +37,4 @@ struct Execution {
 };
 
 }  // namespace tessera
+#pragma GCC visibility pop

@@ -9,6 +9,7 @@
 #include "tessera/domain.h"
 #include "tessera/status.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 class PatchGrid;
@@ -50,3 +51,4 @@ SurfaceJet evaluate_jet(const ExplicitPolynomial& surface, double u, double v);
 Result<PatchGrid> to_bezier(const ExplicitPolynomial& surface);
 
 }  // namespace tessera
+#pragma GCC visibility pop

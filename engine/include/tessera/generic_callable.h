@@ -18,6 +18,7 @@
 #include "tessera/parametric_surface.h"
 #include "tessera/taylor.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 namespace generic {
@@ -139,3 +140,4 @@ Result<ParametricSurface> generic_surface_over_disc(const F& f, const Disc& disc
 }
 
 }  // namespace tessera
+#pragma GCC visibility pop

@@ -9,6 +9,7 @@
 
 #include "tessera/hermite_patch.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// How the twists of a network's nodes are estimated.
@@ -81,3 +82,4 @@ SurfaceJet evaluate_jet(const HermiteNetwork& network, double u, double v);
 Result<PatchGrid> to_bezier(const HermiteNetwork& network);
 
 }  // namespace tessera
+#pragma GCC visibility pop

@@ -11,6 +11,7 @@
 #include "tessera/status.h"
 #include "tessera/vec.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 class PatchGrid;  // tessera/convert.h
@@ -102,3 +103,4 @@ SurfaceJet evaluate_jet(const HermitePatch& patch, double u, double v);
 Result<PatchGrid> to_bezier(const HermitePatch& patch);
 
 }  // namespace tessera
+#pragma GCC visibility pop

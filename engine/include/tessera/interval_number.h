@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// All real numbers from lower() to upper(), or, where an operation is not defined or not bounded for all of them (the
@@ -159,3 +160,4 @@ class IntervalNumber {
 };
 
 }  // namespace tessera
+#pragma GCC visibility pop

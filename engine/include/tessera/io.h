@@ -11,6 +11,7 @@
 #include "tessera/model.h"
 #include "tessera/status.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// Reads surfaces: .bpt (Bezier patches; `#` begins a comment), .bv (BezierView: tensor and rational patches), .g2
@@ -77,3 +78,4 @@ Status write_mesh(const Mesh& mesh, const std::filesystem::path& path);
 Result<Mesh> read_mesh(const std::filesystem::path& path);
 
 }  // namespace tessera
+#pragma GCC visibility pop

@@ -26,6 +26,7 @@
 #include "tessera/model.h"
 #include "tessera/status.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// STEP: AP203, AP214, AP242 (ISO 10303-21).
@@ -38,3 +39,4 @@ Result<Model> read_cad(const std::filesystem::path& path);
 bool is_cad_file(const std::filesystem::path& path);
 
 }  // namespace tessera
+#pragma GCC visibility pop

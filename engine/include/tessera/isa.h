@@ -7,6 +7,7 @@
 
 #include "tessera/status.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 enum class Isa : std::uint8_t { sse2, avx2, avx512, neon64 };
@@ -24,3 +25,4 @@ Result<Isa> default_isa();
 Result<Isa> parse_isa(std::string_view text);
 
 }  // namespace tessera
+#pragma GCC visibility pop

@@ -8,6 +8,7 @@
 #include "tessera/domain.h"
 #include "tessera/status.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// One side of a join: a patch (referred to, not copied), which of its edges, and the rectangle of parameters that it
@@ -62,3 +63,4 @@ Result<JoinReport> measure_join(const JoinSide& p, const JoinSide& q, const Join
 Result<BezierPatch> make_join(const JoinSide& p, const JoinSide& q, double k = 1, bool reversed = false);
 
 }  // namespace tessera
+#pragma GCC visibility pop

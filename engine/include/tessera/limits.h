@@ -7,6 +7,7 @@
 #include "tessera/isa.h"
 #include "tessera/status.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// Work that a call cannot avoid, whatever the kernel.
@@ -40,3 +41,4 @@ Result<Limits> measure_limits(const LimitsOptions& options = {});
 double seconds_at_limit(const Limits& limits, const Work& work);
 
 }  // namespace tessera
+#pragma GCC visibility pop

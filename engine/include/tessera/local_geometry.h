@@ -9,6 +9,7 @@
 #include "tessera/status.h"
 #include "tessera/vec.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// A direction of principal curvature.
@@ -74,3 +75,4 @@ struct NetReport {
 Result<NetReport> measure_net(const BezierPatch& patch, const NetOptions& options = {});
 
 }  // namespace tessera
+#pragma GCC visibility pop

@@ -10,6 +10,7 @@
 #include "tessera/vec.h"
 #include "tessera/views.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// What a mesh needs, in records.
@@ -73,3 +74,4 @@ struct MeshReport {
 Result<MeshReport> check(const Mesh& mesh);
 
 }  // namespace tessera
+#pragma GCC visibility pop

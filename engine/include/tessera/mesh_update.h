@@ -8,6 +8,7 @@
 #include "tessera/certified_tessellation.h"
 #include "tessera/update.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// A certified plan and the memory for updates of its mesh, so that repeated ones allocate nothing. An animated model costs
@@ -62,9 +63,10 @@ class MeshUpdate {
   Result<std::size_t> retessellate(const PatchSet& set, double spare = 0.25, const Execution& execution = {});
 
  private:
-  class Impl;
+  class [[gnu::visibility("hidden")]] Impl;
   explicit MeshUpdate(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace tessera
+#pragma GCC visibility pop

@@ -13,6 +13,7 @@
 #include "tessera/status.h"
 #include "tessera/surface.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// A closed chain of curves in the surface's parameters (x = u, y = v, z = 0), each from where the one before it ends.
@@ -60,3 +61,4 @@ Result<PatchSet> make_patch_set(std::span<const PatchGrid> grids, const PatchSet
 Result<PatchSet> make_patch_set(PatchGrid grid, const PatchSetOptions& options = {});
 
 }  // namespace tessera
+#pragma GCC visibility pop

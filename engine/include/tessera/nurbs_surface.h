@@ -6,6 +6,7 @@
 #include "tessera/bspline_surface.h"
 #include "tessera/curve.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// An axis of revolution, and where its angle is zero. Angles grow counter-clockwise as seen from the tip of
@@ -42,3 +43,4 @@ Result<BSplineSurface> nurbs_cone(const Axis& axis, double bottom, double top, d
                                   CircleArcs arcs = CircleArcs::four);
 
 }  // namespace tessera
+#pragma GCC visibility pop

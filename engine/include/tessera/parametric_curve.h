@@ -10,6 +10,7 @@
 #include "tessera/status.h"
 #include "tessera/vec.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// What the caller knows of a curve c(t). Functions are called from one thread at a time, or from several if const
@@ -61,3 +62,4 @@ Result<Vec3> position(const BorderCurve& border, double t);
 Result<CurveJet> evaluate_jet(const BorderCurve& border, double t);
 
 }  // namespace tessera
+#pragma GCC visibility pop

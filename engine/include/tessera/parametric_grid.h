@@ -8,6 +8,7 @@
 #include "tessera/parametric_surface.h"
 #include "tessera/views.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// Which threads may call a surface's functions.
@@ -27,3 +28,4 @@ Status evaluate(const ParametricSurface& surface, std::span<const double> u, std
                 const View3<float>& out, const Execution& execution = {}, Calls calls = Calls::one_thread);
 
 }  // namespace tessera
+#pragma GCC visibility pop

@@ -13,6 +13,7 @@
 #include "tessera/status.h"
 #include "tessera/vec.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 class PatchGrid;  // tessera/convert.h
@@ -123,3 +124,4 @@ struct FitOptions {
 Result<PatchGrid> to_bezier(const ParametricSurface& surface, const FitOptions& options = {});
 
 }  // namespace tessera
+#pragma GCC visibility pop

@@ -12,6 +12,7 @@
 #include "tessera/status.h"
 #include "tessera/vec.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// In which numbers, and over which basis, the coefficients of the blocks are held.
@@ -90,7 +91,7 @@ class PatchSet {
   /// Errors: invalid_argument (no such patch), count_mismatch, non_finite; the set is then unchanged.
   Status set_control_points(std::size_t index, std::span<const Vec3> points);
 
-  class Impl;
+  class [[gnu::visibility("hidden")]] Impl;
   const Impl& impl() const { return *impl_; }  ///< for the library's own use
   Impl& impl() { return *impl_; }
 
@@ -100,3 +101,4 @@ class PatchSet {
 };
 
 }  // namespace tessera
+#pragma GCC visibility pop

@@ -13,6 +13,7 @@
 #include "tessera/status.h"
 #include "tessera/vec.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 class PatchGrid;
@@ -162,3 +163,4 @@ QuadricParameters canonical_parameters(const QuadricPiece& piece, double u, doub
 QuadricParameters grid_parameters(const QuadricPiece& piece, double u, double v);
 
 }  // namespace tessera
+#pragma GCC visibility pop

@@ -15,6 +15,7 @@
 #include "tessera/status.h"
 #include "tessera/vec.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// Points origin + t * direction, tnear <= t <= tfar, in the model's coordinates. The direction need not be a unit
@@ -129,7 +130,7 @@ class RayScene {
   std::uint64_t revision() const;      ///< of the set, when the scene was made or last refitted
   std::size_t memory_bytes() const;    ///< grids or nets, and BVH
 
-  class Impl;
+  class [[gnu::visibility("hidden")]] Impl;
 
  private:
   explicit RayScene(std::unique_ptr<Impl> impl);
@@ -137,3 +138,4 @@ class RayScene {
 };
 
 }  // namespace tessera
+#pragma GCC visibility pop

@@ -7,6 +7,7 @@
 #include "tessera/parametric_curve.h"
 #include "tessera/parametric_surface.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// A direction of parameters.
@@ -50,3 +51,4 @@ Result<Vec3> position(const RuledSurface& surface, double u, double v);
 Result<PatchGrid> to_bezier(const RuledSurface& surface, const FitOptions& options = {});
 
 }  // namespace tessera
+#pragma GCC visibility pop

@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// A constant T that copies share. The default, which is T{}, takes no memory of its own. Stands for T where one is
@@ -46,3 +47,4 @@ class Shared {
 };
 
 }  // namespace tessera
+#pragma GCC visibility pop

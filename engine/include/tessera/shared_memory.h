@@ -6,6 +6,7 @@
 #include <new>
 #include <utility>
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// A handle on memory that is freed with the last of its handles. Unlike those of std::shared_ptr, handles can be made
@@ -96,3 +97,4 @@ class SharedMemory {
 };
 
 }  // namespace tessera
+#pragma GCC visibility pop

@@ -10,6 +10,7 @@
 #include "tessera/convert.h"
 #include "tessera/curve.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 // What is returned is the same curve or surface on the same domain, right to rounding. Control points that stay are the
@@ -63,3 +64,4 @@ struct PatchRange {
 Result<PatchRange> touched_patches(const BSplineSurface& surface, std::size_t i, std::size_t j);
 
 }  // namespace tessera
+#pragma GCC visibility pop

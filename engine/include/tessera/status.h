@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// What kind of thing went wrong. The message says the rest.
@@ -79,3 +80,4 @@ class [[nodiscard]] Result {
 };
 
 }  // namespace tessera
+#pragma GCC visibility pop

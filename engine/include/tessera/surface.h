@@ -16,6 +16,7 @@
 #include "tessera/ruled_surface.h"
 #include "tessera/tensor_patch.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 using Surface = std::variant<BezierPatch, TensorPatch, BSplineSurface, HermitePatch, HermiteNetwork, RuledSurface,
@@ -37,3 +38,4 @@ std::array<double, 2> grid_parameters(const Surface& surface, double u, double v
 Result<PatchGrid> to_bezier(const Surface& surface, const FitOptions& options = {});
 
 }  // namespace tessera
+#pragma GCC visibility pop

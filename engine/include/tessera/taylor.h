@@ -9,6 +9,7 @@
 
 #include "tessera/interval_number.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// sum c_ij (u - u0)^i (v - v0)^j, i + j <= Order, of a function of one or two Variables, c_ij being its derivative of
@@ -275,3 +276,4 @@ class Taylor {
 };
 
 }  // namespace tessera
+#pragma GCC visibility pop

@@ -11,6 +11,7 @@
 #include "tessera/status.h"
 #include "tessera/vec.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 class PatchGrid;  // tessera/convert.h
@@ -102,3 +103,4 @@ Result<TensorPatch> change_basis(const TensorPatch& patch, const BasisMatrix& ba
 Result<PatchGrid> to_bezier(const TensorPatch& patch);
 
 }  // namespace tessera
+#pragma GCC visibility pop

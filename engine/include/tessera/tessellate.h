@@ -11,6 +11,7 @@
 #include "tessera/patch_set.h"
 #include "tessera/status.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 struct Model;
@@ -44,7 +45,7 @@ class TessellationPlan {
   /// The same bytes for any number of threads. Allocates nothing after the first call.
   Status run(const PatchSet& set, const MeshViews& out, const Execution& execution = {}) const;
 
-  class Impl;
+  class [[gnu::visibility("hidden")]] Impl;
 
  private:
   explicit TessellationPlan(std::unique_ptr<Impl> impl);
@@ -57,3 +58,4 @@ class TessellationPlan {
 Result<std::vector<MeshPart>> parts_by_surface(const Mesh& mesh, const PatchSet& set, const Model& model);
 
 }  // namespace tessera
+#pragma GCC visibility pop

@@ -8,6 +8,7 @@
 #include "tessera/ruled_surface.h"
 #include "tessera/views.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// Positions at (u[i], v[j]), record i * v.size() + j. Parameters lie in the domain, in any order. Each border curve
@@ -28,3 +29,4 @@ Status evaluate(const RuledSurface& surface, std::span<const double> u, std::spa
                 const View3<float>& out, const Execution& execution = {});
 
 }  // namespace tessera
+#pragma GCC visibility pop

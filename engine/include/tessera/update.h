@@ -7,6 +7,7 @@
 
 #include "tessera/evaluate.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// New control points for some patches. Those of patch[k] follow those of patch[k - 1]: (degree_u + 1) * (degree_v + 1)
@@ -49,9 +50,10 @@ class GridUpdate {
              const Execution& execution = {});
 
  private:
-  class Impl;
+  class [[gnu::visibility("hidden")]] Impl;
   explicit GridUpdate(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace tessera
+#pragma GCC visibility pop

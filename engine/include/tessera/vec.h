@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// A point or a vector. Lengths are in the model's own unit.
@@ -59,3 +60,4 @@ struct Box3 {
 };
 
 }  // namespace tessera
+#pragma GCC visibility pop

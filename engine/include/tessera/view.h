@@ -5,6 +5,7 @@
 
 #include "tessera/vec.h"
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// A picture of width x height square pixels, its middle in the direction of the target.
@@ -20,3 +21,4 @@ struct View {
 };
 
 }  // namespace tessera
+#pragma GCC visibility pop

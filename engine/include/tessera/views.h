@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <span>
 
+#pragma GCC visibility push(default)
 namespace tessera {
 
 /// `size` records of N components each: component c of record k is `component[c][k * stride]`.
@@ -47,3 +48,4 @@ template <class T>
 using View2 = VectorView<T, 2>;
 
 }  // namespace tessera
+#pragma GCC visibility pop

@@ -5,6 +5,8 @@
 #include <new>
 #include <vector>
 
+#include "base/for_wings.h"
+
 namespace tessera {
 
 inline constexpr std::size_t cache_line = 64;
@@ -18,7 +20,7 @@ constexpr std::align_val_t alignment_of(std::size_t bytes) {
   return std::align_val_t{bytes >= least_in_large_pages ? large_page : cache_line};
 }
 /// `bytes` at that alignment. Throws std::bad_alloc.
-void* allocate_aligned(std::size_t bytes);
+TESSERA_FOR_WINGS void* allocate_aligned(std::size_t bytes);
 
 template <class T>
 struct AlignedAllocator {

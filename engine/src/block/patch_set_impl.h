@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/aligned.h"
+#include "base/for_wings.h"
 #include "tessera/patch_set.h"
 
 namespace tessera {
@@ -80,7 +81,7 @@ class PatchSet::Impl {
       return twice;
     }
   }
-  Box3 box() const;
+  TESSERA_FOR_WINGS Box3 box() const;
   bool has(Precision precision, Representation representation) const {
     const bool bernstein = representation == Representation::bernstein;
     if (precision == Precision::single_precision) return bernstein ? kinds.float_bernstein : kinds.float_power;

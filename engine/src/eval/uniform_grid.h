@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/aligned.h"
+#include "base/for_wings.h"
 #include "tessera/evaluate.h"
 
 namespace tessera {
@@ -16,7 +17,7 @@ namespace tessera {
 class UniformGrid {
  public:
   /// Rates of at least 1. Errors: those of GridPlan::make.
-  static Result<UniformGrid> make(const PatchSet& set, int rate_u, int rate_v, std::optional<Isa> isa);
+  TESSERA_FOR_WINGS static Result<UniformGrid> make(const PatchSet& set, int rate_u, int rate_v, std::optional<Isa> isa);
 
   int rate_u() const { return rate_u_; }
   int rate_v() const { return rate_v_; }
@@ -27,7 +28,7 @@ class UniformGrid {
     return run(set.impl(), out, execution);
   }
   /// The same for those who keep the set's inner state, which stays in place when the set is moved.
-  Status run(const PatchSet::Impl& set, const GridViews<float>& out, const Execution& execution) const;
+  TESSERA_FOR_WINGS Status run(const PatchSet::Impl& set, const GridViews<float>& out, const Execution& execution) const;
 
  private:
   UniformGrid(GridPlan plan, int rate_u, int rate_v) : plan_(std::move(plan)), rate_u_(rate_u), rate_v_(rate_v) {}

@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include "base/for_wings.h"
 #include "kernel/chord_kernels.h"
 #include "kernel/flat_kernels.h"
 #include "kernel/grid_kernels.h"
@@ -32,3 +33,10 @@ const KernelTable& default_kernels();
 const KernelTable& kernels(Isa isa);
 
 }  // namespace tessera::kernel
+
+namespace tessera {
+
+/// Those of rays, for the library of rays: what is named `kernel` stays inside the core.
+TESSERA_FOR_WINGS const kernel::RayKernels& ray_kernels(Isa isa);
+
+}  // namespace tessera

@@ -83,4 +83,7 @@ const KernelTable& default_kernels() {
 }
 
 }  // namespace kernel
+
+const kernel::RayKernels& ray_kernels(Isa isa) { return kernel::kernels(isa); }
+
 }  // namespace tessera

@@ -1,0 +1,96 @@
+#include "house/exported_symbols.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <regex>
+#include <sstream>
+
+namespace tessera::house {
+namespace {
+
+constexpr std::array<std::string_view, 6> for_wings{
+    "tessera::allocate_aligned", "tessera::parallel_for",        "tessera::ray_kernels",
+    "tessera::UniformGrid::make", "tessera::UniformGrid::run",   "tessera::PatchSet::Impl::box",
+};
+
+bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
+
+/// Whether the text has the word, followed by one of these characters if any are given.
+bool has_word(const std::string& text, const std::string& word, std::string_view followed_by = {}) {
+  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
+    const std::size_t end = at + word.size();
+    if (at > 0 && is_word(text[at - 1])) continue;
+    if (end < text.size() && is_word(word.back()) && is_word(text[end])) continue;
+    if (followed_by.empty() || (end < text.size() && followed_by.find(text[end]) != std::string_view::npos)) return true;
+  }
+  return false;
+}
+
+/// The name without arguments, types in front, template arguments and ABI tags: "tessera::GridPlan::make".
+std::string plain_name(std::string_view symbol) {
+  std::string name;
+  int depth = 0;
+  for (std::size_t k = 0; k < symbol.size(); ++k) {
+    const bool is_operator = name.ends_with("::operator");
+    const char c = symbol[k];
+    if (is_operator && (c == '<' || c == '>' || c == '-' || c == '(')) {  // these are its name
+      const std::size_t end = symbol.find('(', k + 1);
+      name += symbol.substr(k, end - k);
+      break;
+    }
+    if (c == '<') ++depth;
+    if (depth == 0 && c == '(') break;
+    if (depth == 0 && c == '[') break;
+    if (depth == 0 && c == ' ' && !name.ends_with("operator")) {
+      name.clear();
+      continue;
+    }
+    if (depth == 0) name += c;
+    if (c == '>') --depth;
+  }
+  return name;
+}
+
+std::vector<std::string> parts_of(const std::string& name) {
+  std::vector<std::string> parts;
+  std::size_t begin = 0;
+  for (std::size_t end = name.find("::"); end != std::string::npos; end = name.find("::", begin)) {
+    parts.push_back(name.substr(begin, end - begin));
+    begin = end + 2;
+  }
+  parts.push_back(name.substr(begin));
+  return parts;
+}
+
+}  // namespace
+
+bool is_declared(std::string_view symbol, const std::string& header) {
+  if (symbol.find("(anonymous namespace)") != std::string_view::npos) return false;
+  std::vector<std::string> parts = parts_of(plain_name(symbol));
+  if (parts.size() < 2 || parts[0] != "tessera") return false;
+  if (std::find(parts.begin(), parts.end(), "Impl") != parts.end()) return false;
+  for (std::size_t k = 1; k + 1 < parts.size(); ++k) {
+    if (!std::regex_search(header, std::regex("\\b(class|struct) " + parts[k] + "\\b[^;(]*\\{"))) return false;
+  }
+  const std::string& last = parts.back();
+  if (parts.size() == 2) return has_word(header, last, "(");
+  return has_word(header, last[0] == '~' ? last.substr(1) : last);
+}
+
+bool is_for_wings(std::string_view symbol) {
+  return std::find(for_wings.begin(), for_wings.end(), plain_name(symbol)) != for_wings.end();
+}
+
+std::vector<Symbol> symbols_of(std::string_view listing) {
+  std::vector<Symbol> symbols;
+  std::istringstream stream{std::string(listing)};
+  for (std::string line; std::getline(stream, line);) {
+    const std::size_t type = line.find(' ');
+    if (type == std::string::npos || type + 3 > line.size()) continue;
+    symbols.push_back({line[type + 1], line.substr(type + 3)});
+  }
+  return symbols;
+}
+
+}  // namespace tessera::house

@@ -1,0 +1,90 @@
+// What the shared libraries show to the loader.
+
+#include "house/exported_symbols.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <set>
+
+#include "house/output_of.h"
+#include "house/tree.h"
+
+namespace tessera::house {
+namespace {
+
+TEST(ExportedSymbols, DeclarationsAreFoundByName) {
+  const std::string header =
+      "namespace tessera {\nclass [[nodiscard]] Status {\n  bool ok() const;\n  ~Status();\n};\n"
+      "class GridPlan {\n  static Result<GridPlan> make(int);\n  class Impl;\n};\nclass Later;\n"
+      "Vec3 operator+(Vec3 a, Vec3 b);\nstruct Map { double operator()(double) const; };\nStatus evaluate(int);\n}";
+  for (const char* declared :
+       {"tessera::GridPlan::make(int)", "tessera::GridPlan::GridPlan(tessera::GridPlan&&)", "tessera::evaluate(int)",
+        "tessera::operator+(tessera::Vec3, tessera::Vec3)", "tessera::Map::operator()(double) const",
+        "tessera::Status tessera::evaluate<float, 3>(int)", "tessera::evaluate[abi:cxx11](int)"})
+    EXPECT_TRUE(is_declared(declared, header)) << declared;
+  for (const char* other :
+       {"tessera::GridPlan::Impl::make(int)", "tessera::GridPlan::run(int)", "tessera::evaluate_all(int)", "std::evaluate(int)",
+        "tessera::kernel::evaluate(int)", "tessera::(anonymous namespace)::evaluate(int)", "tessera::Later::make(int)",
+        "std::vector<tessera::GridPlan>::make(int)", "evaluate", "tessera::operator-(tessera::Vec3, tessera::Vec3)"})
+    EXPECT_FALSE(is_declared(other, header)) << other;
+}
+
+/// By library, what the loader sees.
+const std::map<std::string, std::set<std::string>>& exports() {
+  static const auto all = [] {
+    std::map<std::string, std::set<std::string>> found;
+    std::ifstream list(TESSERA_SHARED_LIBRARIES);
+    for (std::string file; std::getline(list, file);)
+      for (const auto& [type, name] : symbols_of(output_of("'" TESSERA_NM "' -D -C --defined-only '" + file + "'")))
+        if (type != 'A') found[file].insert(name.substr(0, name.find("@@")));  // A: the version itself
+    return found;
+  }();
+  return all;
+}
+
+bool declared_in_public(const std::string& symbol) {
+  static const auto headers = [] {
+    std::vector<std::string> texts;
+    for (const std::string& path : files_under("engine/include/tessera")) texts.push_back(read_text(path));
+    return texts;
+  }();
+  return std::any_of(headers.begin(), headers.end(), [&](const std::string& text) { return is_declared(symbol, text); });
+}
+
+TEST(ExportedSymbols, AreThoseOfThePublicHeaders) {
+  ASSERT_FALSE(exports().empty());
+  for (const auto& [file, symbols] : exports())
+    for (const std::string& symbol : symbols)
+      EXPECT_TRUE(declared_in_public(symbol) || is_for_wings(symbol)) << file << " exports " << symbol;
+}
+
+// Inline functions (weak) are their callers' own.
+TEST(ExportedSymbols, NothingPublicIsLeftOut) {
+  std::set<std::string> exported;
+  for (const auto& [file, symbols] : exports()) exported.insert(symbols.begin(), symbols.end());
+  std::ifstream list(TESSERA_OBJECTS);
+  std::size_t checked = 0;
+  for (std::string object; std::getline(list, object);) {
+    for (const auto& [type, name] : symbols_of(output_of("'" TESSERA_NM "' -C --defined-only '" + object + "'"))) {
+      if (type != 'T' || !declared_in_public(name)) continue;
+      ++checked;
+      EXPECT_TRUE(exported.contains(name)) << object << " hides " << name;
+    }
+  }
+  EXPECT_GT(checked, 100u);
+}
+
+// Each public header exports what it declares, from the namespace's beginning to its end.
+TEST(ExportedSymbols, PublicHeadersSaySo) {
+  for (const std::string& path : files_under("engine/include/tessera")) {
+    const std::string text = read_text(path);
+    EXPECT_NE(text.find("\n#pragma GCC visibility push(default)\nnamespace tessera {\n"), std::string::npos) << path;
+    EXPECT_TRUE(text.ends_with("}  // namespace tessera\n#pragma GCC visibility pop\n")) << path;
+  }
+}
+
+}  // namespace
+}  // namespace tessera::house
