@@ -111,21 +111,20 @@ class FlatGrid {
         for (int j = 0; j < count_j(); ++j) turned[phase][j] = L::picked(curves[j], place);
       }
       const float* weights = job_.v_weights;
-      for (int value = 0; value < values;) {
-#pragma GCC unroll 3
-        for (int phase = 0; phase < 3; ++phase) {
-          if (value >= values) break;
-          auto sum = L::load(weights) * turned[phase][0];
-          for (int j = 1; j < count_j(); ++j) sum = L::fma(L::load(weights + j * L::width), turned[phase][j], sum);
-          weights += count_j() * L::width;
-          if (values - value >= L::width) {
-            sink.put(sum);
-          } else {
-            sink.put(sum, values - value);
-          }
-          value += L::width;
+      int left = values;
+      const auto put = [&](const typename L::Batch* curve) __attribute__((always_inline)) {
+        auto sum = L::load(weights) * curve[0];
+        for (int j = 1; j < count_j(); ++j) sum = L::fma(L::load(weights + j * L::width), curve[j], sum);
+        weights += count_j() * L::width;
+        if (left >= L::width) {
+          sink.put(sum);
+        } else {
+          sink.put(sum, left);
         }
-      }
+        left -= L::width;
+        return left > 0;
+      };
+      while (put(turned[0]) && put(turned[1]) && put(turned[2])) continue;
     }
   }
 

@@ -7,22 +7,26 @@ inline void for_numbers(const double* const* nets, std::size_t count, Use use) {
   constexpr std::size_t width = L::width, run = 3 * width;
   typename L::Batch tile[width];
   std::size_t k = 0;
-  for (; k + run <= count; k += run) {
-#pragma GCC unroll 3
-    for (std::size_t t = 0; t < run; t += width) {
-      for (std::size_t l = 0; l < width; ++l) tile[l] = L::Batch::load_unaligned(nets[l] + k + t);
-      L::transpose(tile);
+  const auto use_tile = [&](std::size_t t) __attribute__((always_inline)) {
+    for (std::size_t l = 0; l < width; ++l) tile[l] = L::Batch::load_unaligned(nets[l] + k + t);
+    L::transpose(tile);
 #pragma GCC unroll 8
-      for (std::size_t r = 0; r < width; ++r) use(k + t + r, (t + r) % 3, tile[r]);
-    }
+    for (std::size_t r = 0; r < width; ++r) use(k + t + r, (t + r) % 3, tile[r]);
+  };
+  for (; k + run <= count; k += run) {
+    use_tile(0);
+    use_tile(width);
+    use_tile(2 * width);
   }
   alignas(64) double values[width];
+  const auto use_rest = [&](std::size_t c) __attribute__((always_inline)) {
+    for (std::size_t l = 0; l < width; ++l) values[l] = nets[l][k + c];
+    use(k + c, c, L::load(values));
+  };
   for (; k < count; k += 3) {
-#pragma GCC unroll 3
-    for (std::size_t c = 0; c < 3; ++c) {
-      for (std::size_t l = 0; l < width; ++l) values[l] = nets[l][k + c];
-      use(k + c, c, L::load(values));
-    }
+    use_rest(0);
+    use_rest(1);
+    use_rest(2);
   }
 }
 
