@@ -30,9 +30,10 @@ void hash_border(const BorderHashJob& job, const float* first, std::ptrdiff_t st
         L::store(value, scale * L::load(first + k * step + c * block_lanes + lane));
         Indices<L> bits;
         __builtin_memcpy(&bits, value, sizeof bits);
-        point = mixed_bits<L>(point * 0x9e3779b1u ^ bits);
+        point = (point ^ bits) * 0x9e3779b1u;
+        point ^= point >> 15;
       }
-      sum += point;
+      sum += mixed_bits<L>(point);
     }
     sum = mixed_bits<L>(sum * 0xc2b2ae35u);
     __builtin_memcpy(hash + lane, &sum, sizeof sum);

@@ -32,11 +32,6 @@ bool is_spared(const KeptRates& kept, std::size_t patch, Rates best) {
 
 }  // namespace
 
-float rounded_up(double x) {
-  const auto nearest = static_cast<float>(x);
-  return double(nearest) < x ? std::nextafter(nearest, std::numeric_limits<float>::infinity()) : nearest;
-}
-
 double vertex_rounding(int degree_u, int degree_v, bool rational, double size) {
   const double roundings = (rational ? 2 : 1) * (degree_u + degree_v + 6.0);
   return std::numbers::sqrt3 * roundings * 0x1p-24 * size;
@@ -57,13 +52,14 @@ Result<CertifiedPlanner> CertifiedPlanner::make(const PatchSet::Impl& set, const
   const auto bound = [&](std::size_t begin, std::size_t end) {
     for (std::size_t block = begin; block < end; ++block) {
       planner.chords_.bound(set, block);
+      const BlockGroup& group = set.group_of_block(block);
+      const PatchShape whole{static_cast<std::uint8_t>(group.degree_u), static_cast<std::uint8_t>(group.degree_v), {}, false};
+      const double rounding = vertex_rounding(group.degree_u, group.degree_v, false, 1);
       for (std::size_t lane = 0; lane < set.lane_counts[block]; ++lane) {
         const std::size_t k = set.lane_patches[block * PatchSet::lanes + lane];
-        const BezierPatch& patch = set.patches[k];
         const std::optional<double> size = planner.chords_.size(block, lane);
-        planner.shapes_[k] = PatchShape::of(patch, set.collapsed[k]);
-        planner.roundings_[k] = size ? vertex_rounding(patch.degree_u(), patch.degree_v(), false, *size)
-                                     : vertex_rounding(patch, set.origin);
+        planner.shapes_[k] = set.collapsed[k].any() ? PatchShape::of(set.patches[k], set.collapsed[k]) : whole;
+        planner.roundings_[k] = size ? rounding * *size : vertex_rounding(set.patches[k], set.origin);
       }
     }
   };
@@ -234,30 +230,32 @@ Status CertifiedPlanner::choose_rates(double tolerance, const KeptRates& kept, C
 }
 
 std::vector<Division> CertifiedPlanner::divide(std::span<const Rates> rates) const {
-  const std::span<const PatchShape> shapes = divided_shapes();
-  const auto rate_along = [&](std::size_t patch, Side side) {
-    return runs_along_u(side) ? rates[patch].u : rates[patch].v;
+  struct Need {
+    std::uint16_t most = 1;     ///< of the rates of its patches
+    std::uint16_t is_even = 0;  ///< one of these: that patch counts on no triangle straddling the middle
   };
-  std::vector<int> edge_rates(edges_.count(), 1);
-  std::vector<std::uint8_t> even(edges_.count(), 0);  // a patch counts on no triangle straddling the middle
-  for (std::size_t k = 0; k < rates.size(); ++k)
+  const std::span<const PatchShape> shapes = divided_shapes();
+  const auto rate_along = [](Rates own, Side side) { return runs_along_u(side) ? own.u : own.v; };
+  std::vector<Need> needs(edges_.count());
+  for (std::size_t k = 0; k < rates.size(); ++k) {
+    if (shapes[k].is_curve) continue;
     for (const Side side : all_sides) {
       const std::uint32_t edge = edges_.edge(k, side);
-      if (edge == SharedEdges::none || shapes[k].is_curve) continue;
-      edge_rates[edge] = std::max(edge_rates[edge], rate_along(k, side));
-      if (rate_along(k, side) % 2 == 0) even[edge] = 1;
+      if (edge == SharedEdges::none) continue;
+      const auto rate = static_cast<std::uint16_t>(rate_along(rates[k], side));
+      needs[edge].most = std::max(needs[edge].most, rate);
+      needs[edge].is_even |= static_cast<std::uint16_t>(~rate & 1);
     }
-  for (std::size_t edge = 0; edge < edge_rates.size(); ++edge)
-    if (even[edge] && edge_rates[edge] % 2 != 0) ++edge_rates[edge];
-  std::vector<Division> divisions;
-  divisions.reserve(rates.size());
+  }
+  std::vector<Division> divisions(rates.size());
   for (std::size_t k = 0; k < rates.size(); ++k) {
     std::array<int, 4> borders{};
     for (const Side side : all_sides) {
       const std::uint32_t edge = edges_.edge(k, side);
-      borders[static_cast<std::size_t>(side)] = edge == SharedEdges::none ? rate_along(k, side) : edge_rates[edge];
+      const auto rate_of = [](Need need) { return need.most + (need.most & need.is_even); };
+      borders[static_cast<std::size_t>(side)] = edge == SharedEdges::none ? rate_along(rates[k], side) : rate_of(needs[edge]);
     }
-    divisions.push_back(Division::of(shapes[k], rates[k], borders));
+    divisions[k] = Division::of(shapes[k], rates[k], borders);
   }
   return divisions;
 }

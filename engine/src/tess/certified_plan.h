@@ -11,6 +11,7 @@
 #include "tess/cell_limits.h"
 #include "tess/chord_blocks.h"
 #include "tess/picture.h"
+#include "tess/rounded_up.h"
 #include "tess/shared_edges.h"
 #include "tess/stitched_patch.h"
 #include "tess/weld.h"
@@ -25,9 +26,6 @@ namespace tessera {
 double vertex_rounding(const BezierPatch& patch, const Vec3& origin);
 /// The same by `size`, the largest |x|, |y|, |z| of its control points relative to the origin.
 double vertex_rounding(int degree_u, int degree_v, bool rational, double size);
-
-/// To the next float that is not below.
-float rounded_up(double x);
 
 /// Rates stay at most this: parameters i / rate are then well apart in float.
 inline constexpr int most_rate = 4096;

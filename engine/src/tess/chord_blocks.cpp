@@ -1,10 +1,11 @@
 #include "tess/chord_blocks.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <limits>
 
 #include "kernel/kernel_table.h"
+#include "tess/rounded_up.h"
 
 namespace tessera {
 namespace {
@@ -12,9 +13,10 @@ namespace {
 /// Kernels are given sizes below this: above, the unit would not fit.
 constexpr float largest_size = 0x1p126f;
 
-float rounded(double x, float towards) {
+/// x >= 0 to a float that is not above.
+float rounded_down(double x) {
   const auto nearest = static_cast<float>(x);
-  return (towards > 0 ? double(nearest) < x : double(nearest) > x) ? std::nextafter(nearest, towards) : nearest;
+  return double(nearest) > x ? std::bit_cast<float>(std::bit_cast<std::uint32_t>(nearest) - 1) : nearest;
 }
 
 }  // namespace
@@ -48,15 +50,9 @@ void ChordBlocks::bound(const PatchSet::Impl& set, std::size_t block, std::uint3
       const SecondDerivatives& d = chord.pieces()[k];
       const double bounds[] = {d.uu, d.uv, d.vv};
       for (std::size_t kind = 0; kind < 3; ++kind)
-        pieces[(k * 3 + kind) * lanes + lane] = rounded(bounds[kind] / double(unit), std::numeric_limits<float>::infinity());
+        pieces[(k * 3 + kind) * lanes + lane] = rounded_up(bounds[kind] / double(unit));
     }
   }
-}
-
-std::optional<double> ChordBlocks::size(std::size_t block, std::size_t lane) const {
-  const float size = size_[block * lanes + lane];
-  if (size < 0) return {};
-  return (1 + 0x1p-22) * double(size);  // the control points were rounded
 }
 
 ChordBound ChordBlocks::chord(std::size_t block, std::size_t lane) const {
@@ -73,7 +69,7 @@ ChordBlocks::Choice ChordBlocks::cheapest(std::size_t block, std::size_t count, 
   alignas(cache_line) Lanes<float> wanted, chord;
   Lanes<std::int32_t> rate_u, rate_v;
   for (std::size_t lane = 0; lane < lanes; ++lane)
-    wanted[lane] = rounded(std::clamp(distance[lane] / double(unit_[block * lanes + lane]), 0.0, 0x1p60), 0);
+    wanted[lane] = rounded_down(std::clamp(distance[lane] / double(unit_[block * lanes + lane]), 0.0, 0x1p60));
   kernel::default_kernels().find_rates({.pieces = pieces_.data() + block * block_pieces,
                                         .distance = wanted.data(),
                                         .most_rate = most,

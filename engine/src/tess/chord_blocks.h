@@ -24,7 +24,11 @@ class ChordBlocks {
   /// Finds the bounds of a block, of those lanes at least whose bits are set. Threads: any number, each a block of its own.
   void bound(const PatchSet::Impl& set, std::size_t block, std::uint32_t wanted = ~0u);
   /// The largest |x|, |y|, |z| of the control points relative to the origin, as found on the way, rounded up.
-  std::optional<double> size(std::size_t block, std::size_t lane) const;
+  std::optional<double> size(std::size_t block, std::size_t lane) const {
+    const float size = size_[block * lanes + lane];
+    if (size < 0) return {};
+    return (1 + 0x1p-22) * double(size);  // the control points were rounded
+  }
   /// One patch's bound.
   ChordBound chord(std::size_t block, std::size_t lane) const;
 

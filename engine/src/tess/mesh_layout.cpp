@@ -5,18 +5,22 @@
 namespace tessera {
 
 void CertifiedPlan::lay_out() {
-  for (auto* first : {&first_vertex_, &first_triangle_, &first_quad_}) {
-    first->clear();
-    first->reserve(divisions_.size() + 1);
-    first->push_back(0);
-  }
-  for (std::size_t patch = 0; patch < divisions_.size(); ++patch) {
+  const std::size_t patches = divisions_.size();
+  for (auto* first : {&first_vertex_, &first_triangle_, &first_quad_}) first->resize(patches + 1);
+  std::size_t vertices = 0, triangles = 0, quads = 0;
+  for (std::size_t patch = 0; patch < patches; ++patch) {
     const Division& division = divisions_[patch];
-    const std::size_t ring = shares_vertices() ? owned_ring_count(patch) : division.ring_count();
-    first_vertex_.push_back(first_vertex_.back() + (division.empty ? 0 : division.inner_count() + ring));
-    first_triangle_.push_back(first_triangle_.back() + division.triangle_count());
-    first_quad_.push_back(first_quad_.back() + division.cell_count());
+    first_vertex_[patch] = vertices;
+    first_triangle_[patch] = triangles;
+    first_quad_[patch] = quads;
+    if (!division.empty)
+      vertices += division.inner_count() + (shares_vertices() ? owned_ring_count(patch) : division.ring_count());
+    triangles += division.triangle_count();
+    quads += division.cell_count();
   }
+  first_vertex_[patches] = vertices;
+  first_triangle_[patches] = triangles;
+  first_quad_[patches] = quads;
 }
 
 void CertifiedPlan::share(const VertexCopies& copies) {

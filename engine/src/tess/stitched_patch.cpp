@@ -50,27 +50,18 @@ bool joins(const PatchShape& shape, Rates rates, const std::array<int, 4>& borde
 
 }  // namespace
 
-Division Division::of(const PatchShape& shape, Rates rates, const std::array<int, 4>& borders) {
-  Division division;
-  division.border = borders;
-  division.collapsed = shape.collapsed;
-  division.empty = shape.is_curve;
-  if (joins(shape, rates, borders, Side::v0, Side::v1) || joins(shape, rates, borders, Side::u0, Side::u1)) {
-    division.inner = {1, 1};
-  } else {
-    division.inner = {std::max(rates.u, 2), std::max(rates.v, 2)};
-  }
-  return division;
+bool Division::joins_borders(const PatchShape& shape, Rates rates, const std::array<int, 4>& borders) {
+  return joins(shape, rates, borders, Side::v0, Side::v1) || joins(shape, rates, borders, Side::u0, Side::u1);
 }
 
-std::size_t Division::triangle_count() const {
+std::size_t Division::special_triangle_count() const {
   if (empty) return 0;
   const auto size = [](int n) { return static_cast<std::size_t>(n); };
   std::size_t count = 0;
   for (const Side side : all_sides)
     if (!collapsed.has(edge_of(side))) count += size(border[static_cast<std::size_t>(side)]);
   if (!has_inner_points()) return count - 2;  // one of each pair of sides is joined by an edge, not by triangles
-  return count + 2 * size(inner.u - 2) + 2 * size(inner.v - 2) + 2 * size(inner.u - 2) * size(inner.v - 2);
+  return count + 2 * (inner_count() - 1);
 }
 
 Division::Parameters Division::parameters(std::size_t vertex) const {

@@ -2,6 +2,7 @@
 // The vertices and triangles of one patch whose four borders have rates of their own: an inner grid, a ring of border
 // points, and strips between them.
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -29,7 +30,11 @@ struct Division {
   }
 
   /// `rates` were asked for the patch; each of `borders` is at least the rate along it.
-  static Division of(const PatchShape& shape, Rates rates, const std::array<int, 4>& borders);
+  static Division of(const PatchShape& shape, Rates rates, const std::array<int, 4>& borders) {
+    const bool joined = std::min(rates.u, rates.v) == 1 && joins_borders(shape, rates, borders);
+    const Rates inner = joined ? Rates{1, 1} : Rates{std::max(rates.u, 2), std::max(rates.v, 2)};
+    return {inner, borders, shape.collapsed, shape.is_curve};
+  }
 
   std::size_t inner_count() const {
     return static_cast<std::size_t>(inner.u - 1) * static_cast<std::size_t>(inner.v - 1);
@@ -39,7 +44,10 @@ struct Division {
            static_cast<std::size_t>(border[2]) + static_cast<std::size_t>(border[3]);
   }
   std::size_t vertex_count() const { return empty ? 0 : inner_count() + ring_count(); }
-  std::size_t triangle_count() const;
+  std::size_t triangle_count() const {
+    if (empty || collapsed.any() || !has_inner_points()) return special_triangle_count();
+    return ring_count() + 2 * (inner_count() - 1);
+  }
   /// Cells between inner points, of two triangles each, which come last.
   std::size_t cell_count() const {
     if (empty || !has_inner_points()) return 0;
@@ -58,6 +66,11 @@ struct Division {
   /// Writes the corners of all triangles, counter-clockwise seen from where r_u x r_v points; vertices are counted from
   /// `first`; those of the cells between inner points come last, if at all. Returns the end of what it wrote.
   std::uint32_t* write_triangles(std::uint32_t first, std::uint32_t* indices, bool cells = true) const;
+
+ private:
+  /// Whether the borders of a pair of sides are joined without inner points between them.
+  static bool joins_borders(const PatchShape& shape, Rates rates, const std::array<int, 4>& borders);
+  std::size_t special_triangle_count() const;
 };
 
 /// The corners of the triangles between a border at `rate` and inner points at `inner` >= 2 beside it, as
