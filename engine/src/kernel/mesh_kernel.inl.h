@@ -51,6 +51,25 @@ struct BorderTile {
   bool starts;                    ///< with the border's first point
 };
 
+/// Sends others' lines.
+template <class L>
+[[gnu::always_inline]] inline void send_lines(const MeshVertexJob& job) {
+  int budget = job.lines_a_vector;
+  for (LineQueue* queue = job.queues; budget > 0 && queue != job.queues + line_queues; ++queue) {
+    const int count = queue->lines < static_cast<std::size_t>(budget) ? static_cast<int>(queue->lines) : budget;
+    const float* from = queue->from;
+    float* to = queue->to;
+    for (int k = 0; k < count; ++k, from += 16, to += 16)
+      for (int l = 0; l < 16; l += L::width) L::stream(to + l, L::load(from + l));
+    *queue = {from, to, queue->lines - static_cast<std::size_t>(count)};
+    budget -= count;
+  }
+}
+
+inline bool is_packed(const MeshRecords& out) {
+  return out.stride == 3 && out.out[1] == out.out[0] + 1 && out.out[2] == out.out[0] + 2;
+}
+
 template <class L, int Degree, bool Rational, int Order>
 class PatchVertices {
  public:
@@ -149,7 +168,7 @@ class PatchVertices {
   }
 
   [[gnu::noinline]] void write_tiles(const InnerTile& a, const InnerTile& b) {
-    send_lines();
+    send_lines<L>(job_);
     for (int lane = 0; lane < mesh_tile; lane += L::width) {
       Sample<L> sample;
       inner_sample(a, b, lane, count_v(), sample);
@@ -157,7 +176,7 @@ class PatchVertices {
     }
   }
   [[gnu::noinline]] void write_tiles(const BorderTile& a, const BorderTile& b, int terms) {
-    send_lines();
+    send_lines<L>(job_);
     for (int lane = 0; lane < mesh_tile; lane += L::width) {
       Sample<L> sample;
       border_sample(a, b, lane, terms, sample);
@@ -165,19 +184,6 @@ class PatchVertices {
     }
     if (needs_fix(a)) fix(a);
     if (needs_fix(b)) fix(b);
-  }
-  /// Sends others' lines.
-  [[gnu::always_inline]] void send_lines() {
-    int budget = job_.lines_a_vector;
-    for (LineQueue* queue = job_.queues; budget > 0 && queue != job_.queues + line_queues; ++queue) {
-      const int count = queue->lines < static_cast<std::size_t>(budget) ? static_cast<int>(queue->lines) : budget;
-      const float* from = queue->from;
-      float* to = queue->to;
-      for (int k = 0; k < count; ++k, from += 16, to += 16)
-        for (int l = 0; l < 16; l += L::width) L::stream(to + l, L::load(from + l));
-      *queue = {from, to, queue->lines - static_cast<std::size_t>(count)};
-      budget -= count;
-    }
   }
   [[gnu::always_inline]] void stage(const Sample<L>& sample, int a, int b, int lane) {
     for (int c = 0; c < 3; ++c) store_tiles<L>(stage_[c] + a, stage_[c] + b, lane, sample.position[c]);
@@ -269,7 +275,7 @@ class PatchVertices {
   }
 
   void write_records(const MeshRecords& out, const float (*stage)[staged + rows_at_once]) const {
-    if (out.stride == 3 && out.out[1] == out.out[0] + 1 && out.out[2] == out.out[0] + 2) {
+    if (is_packed(out)) {
       write_records_as<Records::packed>(out, stage);
     } else if (out.stride == 1) {
       write_records_as<Records::arrays>(out, stage);
@@ -295,23 +301,3 @@ class PatchVertices {
   alignas(64) float rows_[(Order + 1) * components * capacity * rows_at_once];
   alignas(64) float stage_[outputs][staged + rows_at_once];
 };
-
-template <class L, int Order>
-void write_vertices_of_order(const MeshVertexJob& job) {
-  if (job.grid.rational) {
-    PatchVertices<L, 0, true, Order>(job).write();
-  } else if (job.grid.degree_u == 3 && job.grid.degree_v == 3) {
-    PatchVertices<L, 3, false, Order>(job).write();
-  } else {
-    PatchVertices<L, 0, false, Order>(job).write();
-  }
-}
-
-template <class L>
-void write_mesh_vertices(const MeshVertexJob& job) {
-  if (job.normal.out[0]) {
-    write_vertices_of_order<L, 1>(job);
-  } else {
-    write_vertices_of_order<L, 0>(job);
-  }
-}

@@ -11,11 +11,33 @@ namespace tessera::kernel {
 /// Neighbouring samples of a row of a mesh's vertices that are evaluated together.
 inline constexpr int mesh_tile = 8;
 
+/// Of a bicubic patch, `[component][i][j]`.
+inline constexpr int mesh_patch_points = 48;
+/// Weights that a row of a cubic grid takes: see MeshCubicInner.
+inline constexpr int mesh_row_weights = 32;
+
+/// Weights of cubics at the inner k / rate, k = 1 .. rate - 1, for kernels that have mesh_points.
+struct MeshCubicInner {
+  /// For four neighbouring k as rows: `[(k - 1) / 4][order 0, 1][i][(k - 1) % 4][j of 4, all the same]`; an even number
+  /// of fours.
+  const float* rows = nullptr;
+  /// As columns: `[order 0, 1][j][stride]`, at x that of k = x % (rate - 1) + 1; to x = rate + 14.
+  const float* columns = nullptr;
+  const std::int32_t* row_places = nullptr;  ///< 4 (x / (rate - 1)), as far
+  std::ptrdiff_t stride = 0;
+};
+/// At k / rate along a border, `[order 0, 1][i][stride]`, k = 0 .. rate - 1 from 16 on, zeros before.
+struct MeshCubicBorder {
+  const float* weights = nullptr;
+  std::ptrdiff_t stride = 0;
+};
+
 /// A border of a patch of a mesh, as the ring of border points runs.
 struct MeshBorder {
   int rate = 0;
   /// Weights at k / rate, `[k / 8][order 0, 1][i][k % 8]`, those of order 0 bitwise symmetric (see BorderJob).
   const float* weights = nullptr;
+  const MeshCubicBorder* cubic = nullptr;  ///< instead of them, where there are `points`
   float scale = 1;                 ///< of the homogeneous control points; 1 for polynomial patches
   bool is_point = false;           ///< the whole border lies at `start`
   const float* start = nullptr;    ///< x y z; for borders that are points, and for rational patches
@@ -45,6 +67,10 @@ struct MeshVertexJob {
   /// Weights at the inner k / inner_u, k = 1 .., `[(k - 1) / 8][order 0, 1][i][(k - 1) % 8]`, an even number of eights.
   const float* u_weights = nullptr;
   const float* v_weights = nullptr;
+  /// Of a bicubic polynomial patch without collapsed borders, for kernels that have mesh_points: what these made of its
+  /// net, and instead of the weights above:
+  const float* points = nullptr;
+  const MeshCubicInner *cubic_u = nullptr, *cubic_v = nullptr;
   MeshBorder border[4];              ///< v = 0, u = 1, v = 1, u = 0
   MeshRecords position, normal;      ///< from the patch's first vertex on; normal.out[0] null: not wanted
   /// Others' lines, line_queues queues; so many are sent with each vector of vertices: stores to memory take place while the
@@ -78,6 +104,9 @@ struct MeshIndexJob {
 struct MeshKernels {
   void (*mesh_vertices)(const MeshVertexJob&);
   void (*mesh_indices)(const MeshIndexJob&);
+  /// The control points of a block of bicubic polynomial patches, `[i][j][component][lane]`, patch by patch: block_lanes
+  /// times mesh_patch_points floats. Null where vertices are not made from them.
+  void (*mesh_points)(const float* net, float* points);
 };
 
 }  // namespace tessera::kernel

@@ -11,14 +11,45 @@ namespace {
 #include "kernel/normal_kernel.inl.h"
 #include "kernel/symmetric_sum.inl.h"
 #include "kernel/mesh_kernel.inl.h"
+#if defined(__AVX512F__)
+#include "kernel/mesh_cubic_avx512.inl.h"
+#endif
 #include "kernel/index_vector.inl.h"
 #include "kernel/mesh_index.inl.h"
+
+template <class L, int Order>
+void write_vertices_of_order(const MeshVertexJob& job) {
+#if defined(__AVX512F__)
+  if (job.points) return CubicVertices<L, Order>(job).write();
+#endif
+  if (job.grid.rational) {
+    PatchVertices<L, 0, true, Order>(job).write();
+  } else if (job.grid.degree_u == 3 && job.grid.degree_v == 3) {
+    PatchVertices<L, 3, false, Order>(job).write();
+  } else {
+    PatchVertices<L, 0, false, Order>(job).write();
+  }
+}
+
+template <class L>
+void write_mesh_vertices(const MeshVertexJob& job) {
+  if (job.normal.out[0]) {
+    write_vertices_of_order<L, 1>(job);
+  } else {
+    write_vertices_of_order<L, 0>(job);
+  }
+}
 
 }  // namespace
 
 extern const MeshKernels mesh_kernels = {
     write_mesh_vertices<Lanes<float>>,
     write_mesh_indices<Lanes<float>>,
+#if defined(__AVX512F__)
+    write_mesh_points<Lanes<float>>,
+#else
+    nullptr,
+#endif
 };
 
 }  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE

@@ -33,7 +33,8 @@ CertifiedTessellation::Impl::Impl(const PatchSet& set, const CertifiedOptions& o
       origin_(set.origin()),
       fit_error_(set.fit_error()),
       revision_(set.revision()),
-      isa_(isa) {
+      isa_(isa),
+      tables_(kernel::kernels(isa).mesh_points != nullptr) {
   for (std::size_t k = 0; k < plan_.patch_count(); ++k)
     tables_.add(shapes_[k].degree_u, shapes_[k].degree_v, plan_.division(k));
   for (const float bound : plan_.bounds()) bound_ = std::max(bound_, bound);

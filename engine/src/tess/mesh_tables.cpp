@@ -56,11 +56,52 @@ void MeshTables::add_weights(int degree, int inner, int border) {
       weights = tiles_of_weights(degree, inner, 1, inner - 1);
   if (auto& weights = grown(border_[at(degree)], border); weights.empty())
     weights = tiles_of_weights(degree, border, 0, border - 1);
+  if (with_cubic_ && degree == 3) {
+    if (inner > 1) add_cubic_inner(inner);
+    add_cubic_border(border);
+  }
   for (const int rate : {inner, border}) {
     auto& parameters = grown(parameters_, rate);
     if (!parameters.empty()) continue;
     for (int k = 0; k <= rate; ++k) parameters.push_back(static_cast<float>(double(k) / rate));
   }
+}
+
+void MeshTables::add_cubic_inner(int rate) {
+  CubicInner& made = grown(cubic_inner_, rate);
+  if (!made.weights.empty()) return;
+  constexpr std::size_t lanes = 16, row_weights = kernel::mesh_row_weights;
+  const auto count = static_cast<std::size_t>(rate - 1), rows = (count + 7) / 8 * 8, stride = (count + 2 * lanes - 1) / lanes * lanes;
+  made.weights.resize(rows * row_weights + 8 * stride);
+  made.places.resize(stride);
+  float* const columns = made.weights.data() + rows * row_weights;
+  for (std::size_t i = 0; i < 4; ++i)
+    for (const std::size_t order : {0, 1}) {
+      const auto value = [&](std::size_t k) {
+        const int number = static_cast<int>(k) + 1, term = static_cast<int>(i);
+        return static_cast<float>(order == 0 ? weight(3, term, number, rate) : first_derivative(3, term, number, rate));
+      };
+      for (std::size_t k = 0; k < rows; ++k)
+        std::fill_n(made.weights.data() + (k / 4 * 8 + order * 4 + i) * lanes + k % 4 * 4, 4, value(std::min(k, count - 1)));
+      for (std::size_t x = 0; x < stride; ++x) columns[(order * 4 + i) * stride + x] = value(x % count);
+    }
+  for (std::size_t x = 0; x < stride; ++x) made.places[x] = static_cast<std::int32_t>(4 * (x / count));
+  made.table = {made.weights.data(), columns, made.places.data(), static_cast<std::ptrdiff_t>(stride)};
+}
+
+void MeshTables::add_cubic_border(int rate) {
+  CubicBorder& made = grown(cubic_border_, rate);
+  if (!made.weights.empty()) return;
+  constexpr std::size_t lanes = 16;
+  const auto count = static_cast<std::size_t>(rate), stride = lanes + (count + 2 * lanes - 1) / lanes * lanes;
+  made.weights.resize(8 * stride);
+  for (int i = 0; i < 4; ++i)
+    for (int k = 0; k < rate; ++k) {
+      float* const value = made.weights.data() + static_cast<std::size_t>(i) * stride + lanes + static_cast<std::size_t>(k);
+      value[0] = static_cast<float>(weight(3, i, k, rate));
+      value[4 * stride] = static_cast<float>(first_derivative(3, i, k, rate));
+    }
+  made.table = {made.weights.data(), static_cast<std::ptrdiff_t>(stride)};
 }
 
 void MeshTables::add_strip(int border, int inner) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/aligned.h"
+#include "kernel/mesh_kernels.h"
 #include "tess/stitched_patch.h"
 #include "tessera/bezier_patch.h"
 
@@ -15,6 +16,9 @@ namespace tessera {
 /// Made while a mesh is planned, looked up by number while it is written. Rates are at most 4096.
 class MeshTables {
  public:
+  /// `with_cubic`: for kernels that take bicubic patches point by point as well.
+  explicit MeshTables(bool with_cubic) : with_cubic_(with_cubic) {}
+
   /// All that a patch of these degrees needs that is divided so.
   void add(int degree_u, int degree_v, const Division& division) {
     if (division.empty) return;
@@ -28,6 +32,9 @@ class MeshTables {
   // Once added. Layouts: see kernel::MeshVertexJob and MeshBorder. Weights are rounded once, to float.
   const float* inner_weights(int degree, int rate) const { return inner_[at(degree)][at(rate)].data(); }
   const float* border_weights(int degree, int rate) const { return border_[at(degree)][at(rate)].data(); }
+  /// See kernel::MeshVertexJob::points.
+  const kernel::MeshCubicInner* cubic_inner(int rate) const { return &cubic_inner_[at(rate)].table; }
+  const kernel::MeshCubicBorder* cubic_border(int rate) const { return &cubic_border_[at(rate)].table; }
   /// k / rate, k = 0 .. rate, rounded.
   const float* parameters(int rate) const { return parameters_[at(rate)].data(); }
 
@@ -51,10 +58,24 @@ class MeshTables {
     seen = key;
   }
   void add_weights(int degree, int inner, int border);
+  void add_cubic_inner(int rate);
+  void add_cubic_border(int rate);
   void add_strip(int border, int inner);
 
   using ByRate = std::vector<AlignedVector<float>>;
   std::array<ByRate, max_degree + 1> inner_, border_;
+  struct CubicInner {
+    AlignedVector<float> weights;
+    AlignedVector<std::int32_t> places;
+    kernel::MeshCubicInner table;
+  };
+  struct CubicBorder {
+    AlignedVector<float> weights;
+    kernel::MeshCubicBorder table;
+  };
+  bool with_cubic_;
+  std::vector<CubicInner> cubic_inner_;
+  std::vector<CubicBorder> cubic_border_;
   std::vector<std::vector<float>> parameters_;
   std::array<std::uint32_t, 4096> seen_{};  ///< some of what has been added: degrees, inner and border rates
   std::vector<std::vector<Strip>> strips_;  ///< `[inner][border + most_missing - inner]`

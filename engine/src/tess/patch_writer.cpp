@@ -54,8 +54,8 @@ void PatchWriter::write(std::size_t begin, std::size_t end) const {
 void PatchWriter::write_vertices(std::size_t k, std::size_t end, VertexJob& vertices) const {
   prepare(k, vertices);
   const std::size_t first = plan_.first_vertex(k);
-  vertices.job.position = records(out_.position, first);
-  vertices.job.normal = records(out_.normal, first);
+  set_records(vertices.job.position, out_.position, first);
+  set_records(vertices.job.normal, out_.normal, first);
   vertices.job.writable = static_cast<int>(std::min<std::size_t>(end - first, std::numeric_limits<int>::max()));
   kernels_.mesh_vertices(vertices.job);
 }
@@ -74,8 +74,8 @@ void PatchWriter::write_streaming(std::size_t begin, std::size_t end) const {
     float* const position = streams.positions.next(3 * vertex_count);
     float* const normal = out_.normal.empty() ? nullptr : streams.normals.next(3 * vertex_count);
     std::uint32_t* const indices = streams.indices.next(index_count);
-    vertices.job.position = packed_records(position ? position : streams.positions.out());
-    vertices.job.normal = out_.normal.empty() ? kernel::MeshRecords{} : packed_records(normal ? normal : streams.normals.out());
+    set_packed(vertices.job.position, position ? position : streams.positions.out());
+    set_packed(vertices.job.normal, out_.normal.empty() ? nullptr : normal ? normal : streams.normals.out());
     vertices.job.writable = static_cast<int>(vertex_count + (position && (normal || out_.normal.empty()) ? LineStream<float>::slack / 3 : 0));
     streams.share(vertices.job, vertex_count);
     kernels_.mesh_vertices(vertices.job);
@@ -120,6 +120,32 @@ void PatchWriter::prepare(std::size_t k, VertexJob& vertices) const {
   vertices.exact = {&set_.patches[k], &division};
   job.inner_u = division.inner.u;
   job.inner_v = division.inner.v;
+  for (std::size_t side = 0; side < 4; ++side) job.border[side].rate = division.border[side];
+  const bool by_points = kernels_.mesh_points && group.degree_u == 3 && group.degree_v == 3 && !group.rational && !division.collapsed.any();
+  if (by_points) {
+    prepare_points(slot, job.net - slot.lane, division, vertices);
+  } else {
+    job.points = nullptr;
+    prepare_weights(k, group, division, vertices);
+  }
+}
+
+void PatchWriter::prepare_points(const PatchSet::Slot& slot, const float* net, const Division& division, VertexJob& vertices) const {
+  kernel::MeshVertexJob& job = vertices.job;
+  if (vertices.points_block != slot.block) {
+    kernels_.mesh_points(net, vertices.points.data());
+    vertices.points_block = slot.block;
+  }
+  job.points = vertices.points.data() + std::size_t{kernel::mesh_patch_points} * slot.lane;
+  if (division.has_inner_points()) {
+    job.cubic_u = tables_.cubic_inner(division.inner.u);
+    job.cubic_v = tables_.cubic_inner(division.inner.v);
+  }
+  for (kernel::MeshBorder& border : job.border) border.cubic = tables_.cubic_border(border.rate);
+}
+
+void PatchWriter::prepare_weights(std::size_t k, const BlockGroup& group, const Division& division, VertexJob& vertices) const {
+  kernel::MeshVertexJob& job = vertices.job;
   if (division.has_inner_points()) {
     job.u_weights = tables_.inner_weights(group.degree_u, division.inner.u);
     job.v_weights = tables_.inner_weights(group.degree_v, division.inner.v);
@@ -127,7 +153,6 @@ void PatchWriter::prepare(std::size_t k, VertexJob& vertices) const {
   for (const Side side : all_sides) {
     const auto s = static_cast<std::size_t>(side);
     kernel::MeshBorder& border = job.border[s];
-    border.rate = division.border[s];
     border.weights = tables_.border_weights(runs_along_u(side) ? group.degree_u : group.degree_v, border.rate);
     border.is_point = division.collapsed.has(edge_of(side));
     if (!border.is_point && !group.rational) continue;  // all others are as set

@@ -39,6 +39,8 @@ class PatchWriter {
   void write_streaming(std::size_t begin, std::size_t end) const;
   /// What a patch's vertices and triangles are written from, but for where they go.
   void prepare(std::size_t k, VertexJob& vertices) const;
+  void prepare_points(const PatchSet::Slot& slot, const float* net, const Division& division, VertexJob& vertices) const;
+  void prepare_weights(std::size_t k, const BlockGroup& group, const Division& division, VertexJob& vertices) const;
   /// `end`: of what may be written, whatever it then holds.
   void write_triangles(std::size_t k, std::uint32_t* out, std::uint32_t* end) const;
   /// Puts shared vertices in the place of a patch's own in the indices of its strips.

@@ -30,8 +30,8 @@ void PatchWriter::write_owned(std::size_t k, VertexJob& vertices) const {
     part.border = {};
     prepare(k, vertices);
     restrict_to(part, vertices);
-    vertices.job.position = records(out_.position, plan_.first_vertex(k));
-    vertices.job.normal = records(out_.normal, plan_.first_vertex(k));
+    set_records(vertices.job.position, out_.position, plan_.first_vertex(k));
+    set_records(vertices.job.normal, out_.normal, plan_.first_vertex(k));
     vertices.job.writable = static_cast<int>(std::min<std::size_t>(division.inner_count(), std::size_t{1} << 30));
     kernels_.mesh_vertices(vertices.job);
     part.border = division.border;
@@ -49,8 +49,8 @@ void PatchWriter::write_ring(std::size_t k, const Division& part, VertexJob& ver
   alignas(cache_line) std::array<float, 3 * most_points> positions, normals;
   prepare(k, vertices);
   restrict_to(part, vertices);
-  vertices.job.position = packed_records(positions.data());
-  vertices.job.normal = out_.normal.empty() ? kernel::MeshRecords{} : packed_records(normals.data());
+  set_packed(vertices.job.position, positions.data());
+  set_packed(vertices.job.normal, out_.normal.empty() ? nullptr : normals.data());
   vertices.job.writable = static_cast<int>(most_points);
   kernels_.mesh_vertices(vertices.job);
   std::size_t from = 0;

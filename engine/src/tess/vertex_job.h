@@ -36,6 +36,10 @@ struct VertexJob {
   alignas(cache_line) std::array<float, kernel::block_lanes> doubt, noise;
   std::array<std::array<float, 3>, 4> starts;
   ExactPatch exact;
+  /// The patches of a block, by themselves: see kernel::MeshKernels::mesh_points.
+  static constexpr std::size_t no_block = static_cast<std::size_t>(-1);
+  std::size_t points_block = no_block;
+  alignas(cache_line) std::array<float, std::size_t{kernel::mesh_patch_points} * kernel::block_lanes> points;
 
   VertexJob() {
     job.grid.doubt = doubt.data();
@@ -66,14 +70,14 @@ inline bool is_packed(const View3<float>& view) {
   return view.stride == 3 && view.component[1] == view.component[0] + 1 && view.component[2] == view.component[0] + 2;
 }
 
-inline kernel::MeshRecords packed_records(float* first) { return {.out = {first, first + 1, first + 2}, .stride = 3}; }
-
-inline kernel::MeshRecords records(const View3<float>& view, std::size_t first) {
-  kernel::MeshRecords out;
-  if (view.empty()) return out;
+/// Field by field: copies of a record that was just made wait for its stores.
+inline void set_packed(kernel::MeshRecords& out, float* first) {
+  for (int c = 0; c < 3; ++c) out.out[c] = first ? first + c : nullptr;
+  out.stride = 3;
+}
+inline void set_records(kernel::MeshRecords& out, const View3<float>& view, std::size_t first) {
+  for (int c = 0; c < 3; ++c) out.out[c] = view.empty() ? nullptr : &view.at(first, c);
   out.stride = view.stride;
-  for (int c = 0; c < 3; ++c) out.out[c] = &view.at(first, c);
-  return out;
 }
 
 }  // namespace tessera

@@ -23,9 +23,8 @@ void VertexPass::write_streaming(std::size_t first, std::size_t count) {
   float* const position = streams_.positions.next(3 * count);
   float* const normal = with_normals ? streams_.normals.next(3 * count) : nullptr;
   const bool staged = position && (normal || !with_normals);
-  vertices_.job.position = packed_records(position ? position : streams_.positions.out());
-  vertices_.job.normal =
-      with_normals ? packed_records(normal ? normal : streams_.normals.out()) : kernel::MeshRecords{};
+  set_packed(vertices_.job.position, position ? position : streams_.positions.out());
+  set_packed(vertices_.job.normal, !with_normals ? nullptr : normal ? normal : streams_.normals.out());
   vertices_.job.writable = static_cast<int>(count + (staged ? LineStream<float>::slack / 3 : 0));
   streams_.share(vertices_.job, count);
   writer_.kernels_.mesh_vertices(vertices_.job);
