@@ -23,6 +23,11 @@ TEST(Limits, AreMeasuredForEachIsa) {
 }
 
 /// 12, 36, 50 and 72 operations a point of a bicubic; in proportion to the order; 4/3 and 4 more if rational; 30 for curvatures.
+TEST(Limits, ABufferThatNoMemoryHoldsIsRefused) {
+  const auto limits = measure_limits({.store_bytes = std::size_t{1} << 63});
+  EXPECT_EQ(limits.status().code(), StatusCode::out_of_memory);
+}
+
 TEST(Limits, WorkFollowsTheStatedCounts) {
   Random random(61);
   const auto u = uniform_parameters(5), v = uniform_parameters(8);

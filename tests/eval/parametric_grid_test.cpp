@@ -85,6 +85,13 @@ TEST(ParametricGrid, RefusesBadInput) {
   auto unstrided = view;
   unstrided.stride = 0;
   refused(two, two, unstrided, StatusCode::invalid_argument, -1);
+  auto overlapping = view;
+  overlapping.component[1] = overlapping.component[0];
+  refused(two, two, overlapping, StatusCode::invalid_argument, -1);
+  auto misaligned = view;
+  for (auto*& component : misaligned.component)
+    component = reinterpret_cast<double*>(reinterpret_cast<char*>(component) + 1);
+  refused(two, two, misaligned, StatusCode::invalid_argument, -1);
   EXPECT_EQ(memory, std::vector<double>(12));
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <limits>
 
 #include "tess/tessellate_support.h"
 
@@ -138,6 +139,25 @@ TEST_F(BadViews, MissingOrMalformed) {
   views = mesh_.views();
   views.normal.component[2] = nullptr;
   expect_refused(views, StatusCode::invalid_argument, "a component of the normal view is null");
+}
+
+TEST_F(BadViews, MisalignedOrInOnePlace) {
+  MeshViews views = mesh_.views();
+  views.normal = views.position;
+  expect_refused(views, StatusCode::invalid_argument, "position and normal share memory");
+  views = mesh_.views();
+  views.parameter.component[1] = views.position.component[2];
+  expect_refused(views, StatusCode::invalid_argument, "position and parameter share memory");
+  views = mesh_.views();
+  views.patch = views.indices;
+  expect_refused(views, StatusCode::invalid_argument, "indices and patch share memory");
+  views = mesh_.views();
+  for (float*& component : views.position.component)
+    component = reinterpret_cast<float*>(reinterpret_cast<char*>(component) + 1);
+  expect_refused(views, StatusCode::invalid_argument, "position is not aligned to its numbers");
+  views = mesh_.views();
+  views.parameter.stride = std::numeric_limits<std::ptrdiff_t>::max();
+  expect_refused(views, StatusCode::invalid_argument, "parameter: its stride leads out of memory");
 }
 
 TEST(TessellationErrors, StaleAfterAnEditOfThePoles) {

@@ -18,7 +18,7 @@
 #pragma GCC visibility push(default)
 namespace tessera {
 
-/// `count` >= 2 parameters from 0 to 1: i / (count - 1).
+/// `count` parameters from 0 to 1: i / (count - 1). A count below 2 counts as 2.
 std::vector<double> uniform_parameters(int count);
 
 /// Which outputs are meant, for capacity and work: the members of GridViews by name.

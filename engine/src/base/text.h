@@ -3,12 +3,14 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <string>
 
 namespace tessera {
 
-/// The shortest text that reads back as the same double.
+/// The shortest text that reads back as the same double; "nan" for every NaN, whose sign means nothing.
 inline std::string text(double value) {
+  if (std::isnan(value)) return "nan";
   std::array<char, 32> digits;
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
 }

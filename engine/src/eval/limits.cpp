@@ -44,11 +44,14 @@ Result<Limits> measure_limits(const LimitsOptions& options) {
     const auto& kernels = kernel::kernels(*isa);
     Limits limits;
     limits.isa = *isa;
+    const std::size_t bytes = std::max<std::size_t>(options.store_bytes / cache_line, 1) * cache_line;
+    AlignedVector<std::byte> memory;
+    if (bytes > memory.max_size())
+      return Status(StatusCode::out_of_memory, std::to_string(bytes) + " bytes to fill are more than memory can address");
+    memory.resize(bytes);
     limits.float_operations_per_second = operations_per_second(kernels.fma_f32);
     limits.double_operations_per_second = operations_per_second(kernels.fma_f64);
 
-    const std::size_t bytes = std::max<std::size_t>(options.store_bytes / cache_line, 1) * cache_line;
-    AlignedVector<std::byte> memory(bytes);
     const int runs = static_cast<int>(std::clamp<std::size_t>((std::size_t{1} << 30) / bytes, 5, 1000));
     const auto fill_rate = [&](bool streaming) {
       return static_cast<double>(bytes) / best_seconds(runs, [&] { kernels.fill(memory.data(), bytes, streaming); });

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/text.h"
+#include "eval/view_checks.h"
 #include "tessera/status.h"
 #include "tessera/views.h"
 
@@ -22,15 +23,20 @@ inline Status check_parameters(std::span<const double> parameters, const char* n
   return {};
 }
 
-/// Room for count_u * count_v records. Errors: invalid_argument, buffer_too_small.
+/// Room for u.size() * v.size() records, aligned, and apart from each other and the parameters. Errors: invalid_argument,
+/// buffer_too_small.
 template <class T>
-Status check_view(const View3<T>& out, std::size_t count_u, std::size_t count_v) {
+Status check_view(const View3<T>& out, std::span<const double> u, std::span<const double> v) {
   if (out.empty() || out.component[1] == nullptr || out.component[2] == nullptr || out.stride < 1)
     return {StatusCode::invalid_argument, "the view needs three components and a stride of at least 1"};
-  if (count_u > out.size / count_v)
-    return {StatusCode::buffer_too_small, "the output needs " + std::to_string(count_u) + " * " +
-                                              std::to_string(count_v) + " records, not " + std::to_string(out.size)};
-  return {};
+  if (u.size() > out.size / v.size())
+    return {StatusCode::buffer_too_small, "the output needs " + std::to_string(u.size()) + " * " +
+                                              std::to_string(v.size()) + " records, not " + std::to_string(out.size)};
+  ViewChecks checks(u.size() * v.size());
+  checks.add("position", out);
+  checks.add("u", View1<const double>{.component = {u.data()}, .stride = 1, .size = u.size()}, u.size());
+  checks.add("v", View1<const double>{.component = {v.data()}, .stride = 1, .size = v.size()}, v.size());
+  return checks.status();
 }
 
 }  // namespace tessera

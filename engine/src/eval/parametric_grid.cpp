@@ -80,7 +80,7 @@ Status evaluate_grid(const ParametricSurface& surface, std::span<const double> u
   const Domain& domain = surface.domain();
   if (Status status = check_parameters(u, "u", domain.u0, domain.u1); !status.ok()) return status;
   if (Status status = check_parameters(v, "v", domain.v0, domain.v1); !status.ok()) return status;
-  if (Status status = check_view(out, u.size(), v.size()); !status.ok()) return status;
+  if (Status status = check_view(out, u, v); !status.ok()) return status;
   const auto row = [&](std::size_t i) { return evaluate_row(surface, u[i], v, i * v.size(), out); };
   return calls == Calls::concurrent ? rows_on_threads(u.size(), execution, row)
                                     : rows_on_one_thread(u.size(), execution, row);

@@ -139,7 +139,7 @@ Status evaluate_grid(const Surface& surface, std::span<const double> u, std::spa
   const Domain domain = surface.domain();
   if (Status status = check_parameters(u, "u", domain.u0, domain.u1); !status.ok()) return status;
   if (Status status = check_parameters(v, "v", domain.v0, domain.v1); !status.ok()) return status;
-  if (Status status = check_view(out, u.size(), v.size()); !status.ok()) return status;
+  if (Status status = check_view(out, u, v); !status.ok()) return status;
   const auto isa = default_isa();
   if (!isa) return isa.status();
   Samples<T> samples(u.size(), v.size());

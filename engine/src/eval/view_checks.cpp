@@ -12,13 +12,13 @@ void ViewChecks::add(const Array& array, std::size_t size, std::size_t alignment
     error_ = Status(code, std::string(array.name) + why);
   };
   const auto most = static_cast<std::size_t>(std::numeric_limits<std::ptrdiff_t>::max());
-  if (size < records_)
-    return refuse(" needs " + std::to_string(records_) + " records, not " + std::to_string(size),
+  if (size < array.records)
+    return refuse(" needs " + std::to_string(array.records) + " records, not " + std::to_string(size),
                   StatusCode::buffer_too_small);
   if (array.begin == 0 || array.stride < 1)
     return refuse(": a view needs all its components and a stride of at least 1");
   if (array.begin % alignment != 0) return refuse(" is not aligned to its numbers");
-  if (records_ > 0 && static_cast<std::size_t>(array.stride) > most / array.element / records_)
+  if (array.records > 0 && static_cast<std::size_t>(array.stride) > most / array.element / array.records)
     return refuse(": its stride leads out of memory");
   arrays_.at(count_++) = array;
 }
@@ -27,10 +27,10 @@ void ViewChecks::add(const Array& array, std::size_t size, std::size_t alignment
 /// strides are taken to go on forever: numbers then meet that do modulo the strides' common divisor.
 bool ViewChecks::collide(const Array& a, const Array& b) const {
   const auto step = [&](const Array& array) {
-    return records_ == 1 ? 0 : static_cast<std::size_t>(array.stride) * array.element;
+    return array.records == 1 ? 0 : static_cast<std::size_t>(array.stride) * array.element;
   };
-  const auto end = [&](const Array& array) { return array.begin + (records_ - 1) * step(array) + array.element; };
-  if (a.begin >= end(b) || b.begin >= end(a)) return false;
+  const auto end = [&](const Array& array) { return array.begin + (array.records - 1) * step(array) + array.element; };
+  if (a.records == 0 || b.records == 0 || a.begin >= end(b) || b.begin >= end(a)) return false;
   const std::size_t period = std::gcd(step(a), step(b));
   if (period == 0) return true;
   const bool ahead = b.begin >= a.begin;
@@ -39,7 +39,7 @@ bool ViewChecks::collide(const Array& a, const Array& b) const {
 }
 
 Status ViewChecks::status() const {
-  if (!error_.ok() || records_ == 0) return error_;
+  if (!error_.ok()) return error_;
   for (std::size_t i = 0; i < count_; ++i)
     for (std::size_t j = i + 1; j < count_; ++j)
       if ((arrays_[i].written || arrays_[j].written) && collide(arrays_[i], arrays_[j]))

@@ -14,16 +14,20 @@ namespace tessera {
 /// Takes note of the views of one call, one after the other; the first error stands.
 class ViewChecks {
  public:
-  /// Of every view so many records are used.
+  /// Of every view so many records are used, where no other number is given.
   explicit ViewChecks(std::size_t records) : records_(records) {}
 
   /// Errors: invalid_argument (a component is missing or misaligned, the stride is below 1 or leaves memory),
   /// buffer_too_small. `name` must outlive this.
   template <class T, int N>
   void add(const char* name, const VectorView<T, N>& view) {
+    add(name, view, records_);
+  }
+  template <class T, int N>
+  void add(const char* name, const VectorView<T, N>& view, std::size_t records) {
     for (T* component : view.component)
-      add({name, reinterpret_cast<std::uintptr_t>(component), view.stride, sizeof(T), !std::is_const_v<T>}, view.size,
-          alignof(T));
+      add({name, reinterpret_cast<std::uintptr_t>(component), records, view.stride, sizeof(T), !std::is_const_v<T>},
+          view.size, alignof(T));
   }
 
   /// The first error of all views, or invalid_argument if one that is written shares memory with another.
@@ -34,6 +38,7 @@ class ViewChecks {
   struct Array {
     const char* name;
     std::uintptr_t begin;
+    std::size_t records;
     std::ptrdiff_t stride;  ///< in elements
     std::size_t element;    ///< bytes
     bool written;

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "block/patch_set_impl.h"
+#include "eval/view_checks.h"
 #include "parallel/least_index.h"
 #include "parallel/parallel_for.h"
 
@@ -31,6 +32,30 @@ Status check_view(const char* name, const VectorView<float, N>& view, std::size_
   return check_size(name, view.size, vertices, "vertices");
 }
 
+template <class View>
+void add_wanted(ViewChecks& checks, const char* name, const View& view) {
+  if (!view.empty()) checks.add(name, view);
+}
+
+void add_wanted(ViewChecks& checks, const char* name, std::span<std::uint32_t> numbers, std::size_t records) {
+  const View1<std::uint32_t> view{.component = {numbers.data()}, .stride = 1, .size = numbers.size()};
+  if (!numbers.empty()) checks.add(name, view, records);
+}
+
+/// The views of vertices: aligned, and apart from each other.
+ViewChecks vertex_checks(const MeshViews& out, const MeshCapacity& wanted) {
+  ViewChecks checks(wanted.vertices);
+  add_wanted(checks, "position", out.position);
+  add_wanted(checks, "normal", out.normal);
+  return checks;
+}
+
+Status check_lengths(const MeshViews& out, const MeshCapacity& wanted) {
+  if (out.position.empty()) return invalid("the position view is empty, it is required");
+  if (Status status = check_view("position", out.position, wanted.vertices); !status.ok()) return status;
+  return check_view("normal", out.normal, wanted.vertices);
+}
+
 }  // namespace
 
 Mesh empty_mesh(const MeshCapacity& capacity, const Vec3& origin) {
@@ -45,13 +70,12 @@ Mesh empty_mesh(const MeshCapacity& capacity, const Vec3& origin) {
 }
 
 Status check_vertex_views(const MeshViews& out, const MeshCapacity& wanted) {
-  if (out.position.empty()) return invalid("the position view is empty, it is required");
-  if (Status status = check_view("position", out.position, wanted.vertices); !status.ok()) return status;
-  return check_view("normal", out.normal, wanted.vertices);
+  if (Status status = check_lengths(out, wanted); !status.ok()) return status;
+  return vertex_checks(out, wanted).status();
 }
 
 Status check_views(const MeshViews& out, const MeshCapacity& wanted) {
-  if (Status status = check_vertex_views(out, wanted); !status.ok()) return status;
+  if (Status status = check_lengths(out, wanted); !status.ok()) return status;
   if (Status status = check_view("parameter", out.parameter, wanted.vertices); !status.ok()) return status;
   if (Status status = check_size("indices", out.indices.size(), 3 * wanted.triangles, "indices"); !status.ok())
     return status;
@@ -59,8 +83,16 @@ Status check_views(const MeshViews& out, const MeshCapacity& wanted) {
     if (Status status = check_size("patch", out.patch.size(), wanted.triangles, "triangles"); !status.ok())
       return status;
   if (Status status = check_size("quads", out.quads.size(), 4 * wanted.quads, "indices"); !status.ok()) return status;
-  if (out.quad_patch.empty()) return {};
-  return check_size("quad patch", out.quad_patch.size(), wanted.quads, "quads");
+  if (!out.quad_patch.empty())
+    if (Status status = check_size("quad patch", out.quad_patch.size(), wanted.quads, "quads"); !status.ok())
+      return status;
+  ViewChecks checks = vertex_checks(out, wanted);
+  add_wanted(checks, "parameter", out.parameter);
+  add_wanted(checks, "indices", out.indices, 3 * wanted.triangles);
+  add_wanted(checks, "patch", out.patch, wanted.triangles);
+  add_wanted(checks, "quads", out.quads, 4 * wanted.quads);
+  add_wanted(checks, "quad patch", out.quad_patch, wanted.quads);
+  return checks.status();
 }
 
 Status check_count(const PatchSet& set, std::size_t planned) {
