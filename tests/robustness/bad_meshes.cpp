@@ -1,0 +1,226 @@
+// Tessellations, meshes, and the machine.
+
+#include <cstdlib>
+
+#include "robustness/bad_input.h"
+#include "robustness/bad_views.h"
+#include "support/grids.h"
+#include "tessera/certified_tessellation.h"
+#include "tessera/limits.h"
+#include "tessera/model.h"
+#include "tessera/tessellate.h"
+
+namespace tessera::test {
+namespace {
+
+using enum StatusCode;
+
+Mesh filled(Mesh mesh) {
+  for (auto* floats : {&mesh.positions, &mesh.normals, &mesh.parameters}) std::ranges::fill(*floats, -77.0f);
+  for (auto* integers : {&mesh.patches, &mesh.indices}) std::ranges::fill(*integers, 77777777u);
+  return mesh;
+}
+bool same(const Mesh& a, const Mesh& b) {
+  return a.positions == b.positions && a.normals == b.normals && a.parameters == b.parameters &&
+         a.patches == b.patches && a.indices == b.indices;
+}
+
+/// The rows of a plan's run().
+template <class Plan>
+void bad_mesh_views(Table& table, const PatchSet& set, const Plan& plan) {
+  Mesh mesh = filled(value_of(plan.allocate()));
+  const Mesh clean = mesh;
+  const auto refused = [&](const std::string& input, StatusCode code, const MeshViews& views) {
+    table.row(input, code, plan.run(set, views), [&] { return same(mesh, clean); });
+  };
+  const auto with = [&](const std::string& input, StatusCode code, auto change) {
+    MeshViews views = mesh.views();
+    change(views);
+    refused(input, code, views);
+  };
+  const std::size_t vertices = plan.capacity().vertices;
+  refused("no view", invalid_argument, {});
+  bad_view("positions", mesh.views(), vertices, [](auto& views) -> auto& { return views.position; }, refused);
+  bad_view("parameters", mesh.views(), vertices, [](auto& views) -> auto& { return views.parameter; }, refused);
+  with("normals in the place of positions", invalid_argument, [](MeshViews& v) { v.normal = v.position; });
+  with("no indices", buffer_too_small, [](MeshViews& v) { v.indices = {}; });
+  with("indices short by one", buffer_too_small, [](MeshViews& v) { v.indices = v.indices.first(v.indices.size() - 1); });
+  with("patches short by one", buffer_too_small, [](MeshViews& v) { v.patch = v.patch.first(v.patch.size() - 1); });
+  with("patches in the place of indices", invalid_argument, [](MeshViews& v) { v.patch = v.indices; });
+  const std::atomic<bool> cancel = true;
+  table.row("a cancellation before the first task", cancelled, plan.run(set, mesh.views(), {.cancel = &cancel}));
+}
+
+void certified_options(Table& table, const PatchSet& set) {
+  const auto row = [&](const std::string& input, StatusCode code, const CertifiedOptions& options) {
+    table.row(input, code, CertifiedTessellation::make(set, options));
+  };
+  row("no tolerance of any kind", invalid_argument, {});
+  for (const auto& [tolerance, name] : {std::pair{0.0, "0"}, {-1.0, "-1"}, {not_a_number, "NaN"}, {infinity, "infinity"}})
+    row(std::string("a tolerance of ") + name, invalid_argument, {.tolerance = tolerance});
+  row("a tolerance below what float holds", invalid_argument, {.tolerance = 1e-12});
+  row("a subnormal tolerance", invalid_argument, {.tolerance = 5e-324});
+  row("a tolerance that takes too many triangles", invalid_argument, {.tolerance = 1e-4, .most_triangles = 100});
+  row("an angle of 0", invalid_argument, {.angle = 0.0});
+  row("an angle of NaN", invalid_argument, {.angle = not_a_number});
+  row("an angle above pi / 2", invalid_argument, {.angle = 2.0});
+  row("an angle rate of 0", invalid_argument, {.angle = 0.1, .angle_rate = 0});
+  row("an angle rate of 4097", invalid_argument, {.angle = 0.1, .angle_rate = 4097});
+  row("a weld of -1", invalid_argument, {.tolerance = 0.01, .weld = -1});
+  row("a weld of NaN", invalid_argument, {.tolerance = 0.01, .weld = not_a_number});
+  row("a weld of the set's size", invalid_argument, {.tolerance = 0.01, .weld = 3});
+  row("a crease angle of 4", invalid_argument, {.tolerance = 0.01, .crease_angle = 4.0});
+  row("a crease angle of NaN", invalid_argument, {.tolerance = 0.01, .crease_angle = not_a_number});
+  row("the smallest tolerance for no triangle", invalid_argument, {.most_triangles = 0, .smallest = true});
+  row("an instruction set that is none", isa_unavailable, {.tolerance = 0.01, .isa = Isa{9}});
+  const std::atomic<bool> cancel = true;
+  table.row("a cancellation before the first task", cancelled,
+            CertifiedTessellation::make(set, {.tolerance = 0.01}, {.cancel = &cancel}));
+}
+
+void pixel_options(Table& table, const PatchSet& set) {
+  const View sound{.eye = {0, -3, 3}, .target = {1, 1, 0}};
+  const auto row = [&](const std::string& input, double pixels, auto change) {
+    View view = sound;
+    change(view);
+    table.row(input, invalid_argument, CertifiedTessellation::make(set, {.pixels = PixelTolerance{pixels, view}}));
+  };
+  const auto nothing = [](View&) {};
+  row("0 pixels", 0, nothing);
+  row("NaN pixels", not_a_number, nothing);
+  row("an eye of NaN", 1, [](View& v) { v.eye.x = not_a_number; });
+  row("an eye at the target", 1, [](View& v) { v.eye = v.target; });
+  row("a field of view of 0", 1, [](View& v) { v.field_of_view = 0; });
+  row("a field of view of 4", 1, [](View& v) { v.field_of_view = 4; });
+  row("a width of 0", 1, [](View& v) { v.width = 0; });
+  row("a height of -1", 1, [](View& v) { v.height = -1; });
+  row("a negative near distance", 1, [](View& v) { v.near_distance = -1; });
+  row("a near distance of NaN", 1, [](View& v) { v.near_distance = not_a_number; });
+  row("parallel rays that show nothing", 1, [](View& v) {
+    v.orthographic = true;
+    v.extent = 0;
+  });
+  View inside = sound;
+  inside.eye = {1, 1, 0.5};
+  const auto plan = CertifiedTessellation::make(set, {.pixels = PixelTolerance{4, inside}});
+  table.gives("a camera inside the model", "a plan", plan.ok());
+}
+
+template <class Make>
+void other_sets(Table& table, Make plan_for) {
+  const std::vector<BezierPatch> patches = wavy_field(1, 2);
+  PatchSet set = set_of(patches);
+  const auto plan = plan_for(set);
+  Mesh mesh = filled(value_of(plan.allocate()));
+  const Mesh clean = mesh;
+  const PatchSet longer = set_of(wavy_field(1, 3)), steeper = set_of({patches[0], *BezierPatch::polynomial(1, 1, std::vector<Vec3>(4))});
+  table.row("a set of more patches", stale, plan.run(longer, mesh.views()), [&] { return same(mesh, clean); });
+  table.row("a set of other degrees", stale, plan.run(steeper, mesh.views()), [&] { return same(mesh, clean); });
+  (void)set.set_control_points(1, std::vector<Vec3>(16, Vec3{1, 2, 3}));
+  table.row("an edit by which a border collapses", stale, plan.run(set, mesh.views()), [&] { return same(mesh, clean); });
+}
+
+}  // namespace
+
+void fill_tessellations(Table& table) {
+  const PatchSet set = set_of(wavy_field(1, 2));
+  table.of("TessellationPlan::make(set, options)");
+  const auto row = [&](const std::string& input, StatusCode code, const TessellationOptions& options) {
+    table.row(input, code, TessellationPlan::make(set, options));
+  };
+  row("rate 0", invalid_argument, {.rate_u = 0});
+  row("rate -2147483648", invalid_argument, {.rate_v = std::numeric_limits<int>::min()});
+  row("rate 4097", invalid_argument, {.rate_u = 4097});
+  row("an instruction set that is none", isa_unavailable, {.isa = Isa{9}});
+  const std::vector<BezierPatch> many(256, *BezierPatch::polynomial(1, 1, std::vector<Vec3>(4)));
+  table.row("more vertices than 32 bits count", invalid_argument,
+            TessellationPlan::make(set_of(many), {.rate_u = 4096, .rate_v = 4096}));
+  table.row("a set without float blocks", unsupported,
+            TessellationPlan::make(set_of(wavy_field(1, 1), {.blocks = {.float_bernstein = false, .double_bernstein = true}})));
+  const auto plan_for = [](const PatchSet& of) { return value_of(TessellationPlan::make(of, {.rate_u = 3, .rate_v = 2})); };
+  table.of("TessellationPlan::run(set, views, execution)");
+  const TessellationPlan plan = plan_for(set);
+  bad_mesh_views(table, set, plan);
+  Mesh mesh = value_of(plan.allocate());
+  std::vector<std::uint32_t> quads(100);
+  MeshViews views = mesh.views();
+  views.quads = quads;
+  table.row("memory for quads", unsupported, plan.run(set, views));
+  other_sets(table, plan_for);
+}
+
+void fill_certified(Table& table) {
+  const PatchSet set = set_of(wavy_field(2, 2));
+  table.of("CertifiedTessellation::make(set, options, execution)");
+  certified_options(table, set);
+  pixel_options(table, set);
+  table.row("a set without float blocks", unsupported,
+            CertifiedTessellation::make(
+                set_of(wavy_field(1, 1), {.blocks = {.float_bernstein = false, .double_bernstein = true}}), {.tolerance = 1.0}));
+  table.of("CertifiedTessellation::run(set, views, execution)");
+  const auto plan_for = [](const PatchSet& of) { return value_of(CertifiedTessellation::make(of, {.tolerance = 0.01})); };
+  const CertifiedTessellation plan = plan_for(set);
+  bad_mesh_views(table, set, plan);
+  Mesh mesh = value_of(plan.allocate());
+  std::vector<std::uint32_t> quads(4 * plan.quad_capacity().quads - 1);
+  MeshViews views = mesh.views();
+  views.quads = quads;
+  table.row("quads short by one index", buffer_too_small, plan.run(set, views));
+  other_sets(table, plan_for);
+  const auto shared = value_of(CertifiedTessellation::make(set, {.tolerance = 0.01, .share_vertices = true}));
+  mesh = value_of(plan.allocate());
+  table.row("normals of vertices that are shared everywhere", invalid_argument, shared.run(set, mesh.views()));
+  table.of("CertifiedTessellation::retessellate(set, spare, execution)");
+  table.row("a spare of -1", invalid_argument, plan.retessellate(set, -1));
+  table.row("a spare of NaN", invalid_argument, plan.retessellate(set, not_a_number));
+  table.row("a set of more patches", stale, plan.retessellate(set_of(wavy_field(1, 3))));
+}
+
+void fill_meshes(Table& table) {
+  Mesh sound;
+  sound.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  sound.patches = {0};
+  sound.indices = {0, 1, 2};
+  const auto row = [&](const std::string& input, StatusCode code, auto change) {
+    Mesh mesh = sound;
+    change(mesh);
+    table.row(input, code, check(mesh));
+  };
+  table.of("check(mesh)");
+  table.gives("an empty mesh", "a report of nothing, which is not closed", check(Mesh{}).ok() && !check(Mesh{})->closed());
+  row("an index that is out of range", invalid_argument, [](Mesh& m) { m.indices[1] = 3; });
+  row("an index of 4294967295", invalid_argument, [](Mesh& m) { m.indices[2] = 4294967295u; });
+  row("two indices", invalid_argument, [](Mesh& m) { m.indices.pop_back(); });
+  row("eight position numbers", invalid_argument, [](Mesh& m) { m.positions.pop_back(); });
+  row("normals for fewer vertices", invalid_argument, [](Mesh& m) { m.normals = {0, 0, 1}; });
+  row("patches for more triangles", invalid_argument, [](Mesh& m) { m.patches = {0, 0}; });
+  Mesh bad = sound;
+  bad.positions[4] = static_cast<float>(not_a_number);
+  table.gives("NaN in a position", "a report with 1 non-finite vertex", check(bad)->non_finite_vertices == 1);
+  table.of("parts_by_surface(mesh, set, model)");
+  const PatchSet set = set_of(wavy_field(1, 1));
+  const Model model{.name = "m", .surfaces = {{"field", set.patch(0)}}};
+  Mesh without = sound, beyond = sound;
+  without.patches.clear();
+  beyond.patches[0] = 7;
+  table.row("a mesh without patches", count_mismatch, parts_by_surface(without, set, model));
+  table.row("a patch that is none", invalid_argument, parts_by_surface(beyond, set, model));
+  table.row("a model that lacks the surface", invalid_argument, parts_by_surface(sound, set, Model{}));
+}
+
+void fill_machine(Table& table) {
+  table.of("parse_isa(text), default_isa()");
+  table.row("an empty name", isa_unavailable, parse_isa(""));
+  table.row("\"mmx\"", isa_unavailable, parse_isa("mmx"));
+  const char* const before = std::getenv("TESSERA_ISA");
+  const std::string kept = before ? before : "";
+  ::setenv("TESSERA_ISA", "mmx", 1);
+  table.row("TESSERA_ISA=mmx in the environment", isa_unavailable, default_isa());
+  ::setenv("TESSERA_ISA", kept.c_str(), 1);
+  if (!before) ::unsetenv("TESSERA_ISA");
+  table.of("measure_limits(options)");
+  table.row("an instruction set that is none", isa_unavailable, measure_limits({.isa = Isa{9}}));
+  table.row("a buffer of 2^63 bytes", out_of_memory, measure_limits({.store_bytes = std::size_t{1} << 63}));
+}
+
+}  // namespace tessera::test
