@@ -14,7 +14,8 @@ void begin_lines(LineState<typename L::Scalar>& state, typename L::Scalar* const
   for (int l = 0; l < block_lanes; ++l) {
     const int place = static_cast<int>(reinterpret_cast<std::uintptr_t>(memory[l]) / sizeof(T) % L::width);
     state.begin[l] = state.end[l] = place;
-    state.first[l] = state.next[l] = memory[l] - place;
+    state.next[l] = memory[l] - place;
+    state.first[l] = place > 0 ? state.next[l] : nullptr;
   }
 }
 
@@ -26,7 +27,7 @@ struct GroupLines {
   typename L::Scalar* next[lane_group<L>];
 };
 
-/// Vectors that aren't a lane's first go to memory.
+/// Vectors go to memory, but for a lane's first one if that is shared.
 template <class L, bool Streaming>
 [[gnu::always_inline]] inline void put_first(LineState<typename L::Scalar>& state, int l, typename L::Scalar* memory,
                                              const typename L::Batch& vector) {
@@ -152,9 +153,9 @@ template <class L>
 void end_lines(const LineState<typename L::Scalar>& state, int lane_count, bool streaming) {
   PartialVectors<L> partial(streaming);
   for (int l = 0; l < lane_count; ++l) {
-    const bool several = state.next[l] != state.first[l];
+    const bool shared = state.first[l] != nullptr, several = state.next[l] != state.first[l];
     const int begin = several ? 0 : state.begin[l];
-    if (several) partial.put(state.first[l], L::load(state.head[l]), state.begin[l], L::width);
+    if (shared && several) partial.put(state.first[l], L::load(state.head[l]), state.begin[l], L::width);
     if (begin < state.end[l]) partial.put(state.next[l], L::load(state.part[l]), begin, state.end[l]);
   }
   partial.finish();
