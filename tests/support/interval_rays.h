@@ -9,10 +9,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "tessera/bezier_patch.h"
@@ -37,7 +39,9 @@ inline Interval operator*(Interval a, Interval b) {
   const double p = a.lo * b.lo, q = a.lo * b.hi, r = a.hi * b.lo, s = a.hi * b.hi;
   return Interval::around(std::min({p, q, r, s}), std::max({p, q, r, s}));
 }
-inline Interval operator*(double a, Interval b) { return Interval::at(a) * b; }
+inline Interval operator*(double a, Interval b) {
+  return a < 0 ? Interval::around(a * b.hi, a * b.lo) : Interval::around(a * b.lo, a * b.hi);
+}
 /// b does not hold 0.
 inline Interval operator/(Interval a, Interval b) {
   const double p = a.lo / b.lo, q = a.lo / b.hi, r = a.hi / b.lo, s = a.hi / b.hi;
@@ -49,34 +53,43 @@ inline bool meet(Interval a, Interval b) { return a.lo <= b.hi && b.lo <= a.hi; 
 /// Interval coefficients of g_b, g_c, w t, w on a rectangle of a patch.
 class IntervalNet {
  public:
-  IntervalNet(const BezierPatch& patch, const Ray& ray) : m_(patch.degree_u()), n_(patch.degree_v()) {
-    const std::array<double, 3> d{ray.direction.x, ray.direction.y, ray.direction.z};
-    std::size_t a = 0;
-    for (std::size_t k = 1; k < 3; ++k) {
-      if (std::abs(d[k]) > std::abs(d[a])) a = k;
+  static constexpr int most_degree = 7;
+
+  IntervalNet(const BezierPatch& patch, const Ray& ray)
+      : m_(patch.degree_u()), n_(patch.degree_v()), count_(static_cast<std::size_t>((m_ + 1) * (n_ + 1))) {
+    assert(m_ <= most_degree && n_ <= most_degree);
+    const Axes axes(ray);
+    for (std::size_t k = 0; k < count_; ++k) {
+      const Vec3& p = patch.points()[k];
+      const std::array<double, 3> x{p.x, p.y, p.z};
+      const double w = patch.is_rational() ? patch.weights()[k] : 1;
+      for (std::size_t c = 0; c < 2; ++c) c_[c][k] = w * axes.across(x, c);
+      c_[2][k] = w * axes.along(x);
+      c_[3][k] = Interval::at(w);
     }
-    const int exponent = -std::ilogb(d[a]);
-    for (auto& c : c_) c.reserve(static_cast<std::size_t>((m_ + 1) * (n_ + 1)));
-    for (int i = 0; i <= m_; ++i) {
-      for (int j = 0; j <= n_; ++j) {
-        const Vec3 &p = patch.point(i, j), &o = ray.origin;
-        const std::array<double, 3> x{p.x, p.y, p.z}, y{o.x, o.y, o.z};
-        const double w = patch.weight(i, j);
-        for (std::size_t k = 1; k < 3; ++k) c_[k - 1].push_back(across(x, y, d, a, (a + k) % 3, w, exponent));
-        const Quad along = (static_cast<Quad>(x[a]) - static_cast<Quad>(y[a])) / static_cast<Quad>(d[a]);
-        c_[2].push_back(w * enclosed(along, 0));
-        c_[3].push_back(Interval::at(w));
+  }
+  /// Whether it is certain, without quadruple precision, that no point of the patch lies on the ray's line: all g of
+  /// one kind have one sign, beyond what the rounding of differences, products and their difference may be.
+  static bool is_off(const BezierPatch& patch, const Ray& ray) {
+    const Axes axes(ray);
+    for (std::size_t c = 0; c < 2; ++c) {
+      bool above = true, below = true;
+      for (const Vec3& p : patch.points()) {
+        const auto [value, off] = axes.rounded_across({p.x, p.y, p.z}, c);
+        above = above && value > off;
+        below = below && value < -off;
       }
+      if (above || below) return true;
     }
+    return false;
   }
 
   int degree_u() const { return m_; }
   int degree_v() const { return n_; }
 
-  Interval first(std::size_t c) const { return c_[c].front(); }
   Interval hull(std::size_t c) const {
-    Interval out = c_[c].front();
-    for (const Interval& x : c_[c]) out = join(out, x);
+    Interval out = c_[c][0];
+    for (std::size_t k = 1; k < count_; ++k) out = join(out, c_[c][k]);
     return out;
   }
   /// The largest |g|.
@@ -85,8 +98,8 @@ class IntervalNet {
     return std::max(std::max(-a.lo, a.hi), std::max(-b.lo, b.hi));
   }
   Interval t_hull() const {
-    Interval out = c_[2].front() / c_[3].front();
-    for (std::size_t k = 1; k < c_[2].size(); ++k) out = join(out, c_[2][k] / c_[3][k]);
+    Interval out = c_[2][0] / c_[3][0];
+    for (std::size_t k = 1; k < count_; ++k) out = join(out, c_[2][k] / c_[3][k]);
     return out;
   }
   /// Of the derivative of g over the rectangle's own [0,1]^2.
@@ -99,18 +112,20 @@ class IntervalNet {
     }
     return static_cast<double>(by_u ? m_ : n_) * out;
   }
+  /// g in the middle of the rectangle.
+  Interval middle(std::size_t c) const {
+    std::array<Interval, most_degree + 1> column{};
+    for (int i = 0; i <= m_; ++i) column[static_cast<std::size_t>(i)] = halved(&c_[c][index(i, 0)], n_);
+    return halved(column.data(), m_);
+  }
   /// Restricted to [from, to] of its own parameter.
   IntervalNet part(bool along_u, double from, double to) const {
     IntervalNet out = *this;
     const int lines = along_u ? n_ : m_, degree = along_u ? m_ : n_;
+    const std::size_t step = along_u ? index(1, 0) : 1;
     for (std::size_t c = 0; c < 4; ++c) {
-      for (int line = 0; line <= lines; ++line) {
-        std::vector<Interval> row;
-        for (int k = 0; k <= degree; ++k) row.push_back(c_[c][along_u ? index(k, line) : index(line, k)]);
-        restrict_row(row, from, to);
-        for (int k = 0; k <= degree; ++k)
-          out.c_[c][along_u ? index(k, line) : index(line, k)] = row[static_cast<std::size_t>(k)];
-      }
+      for (int line = 0; line <= lines; ++line)
+        restrict_row(&out.c_[c][along_u ? index(0, line) : index(line, 0)], step, degree, from, to);
     }
     return out;
   }
@@ -118,39 +133,85 @@ class IntervalNet {
  private:
   __extension__ typedef __float128 Quad;
 
-  /// `magnitude`: of the terms that were summed up.
-  static Interval enclosed(Quad x, double magnitude) {
-    const double near = static_cast<double>(x), off = Interval::slip(near) + magnitude * 0x1p-100;
-    return {near - off, near + off};
+  /// The ray's largest direction a, and what g and t are of a point.
+  class Axes {
+   public:
+    explicit Axes(const Ray& ray)
+        : d_{ray.direction.x, ray.direction.y, ray.direction.z}, o_{ray.origin.x, ray.origin.y, ray.origin.z} {
+      for (std::size_t k = 1; k < 3; ++k)
+        if (std::abs(d_[k]) > std::abs(d_[a_])) a_ = k;
+      const int exponent = -std::ilogb(d_[a_]);
+      for (std::size_t k = 0; k < 3; ++k) scaled_[k] = std::ldexp(d_[k], exponent);
+    }
+    Interval across(const std::array<double, 3>& x, std::size_t c) const {
+      const std::size_t b = (a_ + 1 + c) % 3;
+      const Quad value = (static_cast<Quad>(x[b]) - static_cast<Quad>(o_[b])) * static_cast<Quad>(scaled_[a_]) -
+                         (static_cast<Quad>(x[a_]) - static_cast<Quad>(o_[a_])) * static_cast<Quad>(scaled_[b]);
+      return enclosed(value, magnitude(x, b));
+    }
+    Interval along(const std::array<double, 3>& x) const {
+      return enclosed((static_cast<Quad>(x[a_]) - static_cast<Quad>(o_[a_])) / static_cast<Quad>(d_[a_]), 0);
+    }
+    /// across() in double, and more than its rounding.
+    std::pair<double, double> rounded_across(const std::array<double, 3>& x, std::size_t c) const {
+      const std::size_t b = (a_ + 1 + c) % 3;
+      return {(x[b] - o_[b]) * scaled_[a_] - (x[a_] - o_[a_]) * scaled_[b], 0x1p-49 * magnitude(x, b) + 0x1p-1000};
+    }
+
+   private:
+    /// Of the terms that are summed up.
+    double magnitude(const std::array<double, 3>& x, std::size_t b) const {
+      return (std::abs(x[b]) + std::abs(o_[b])) * std::abs(scaled_[a_]) +
+             (std::abs(x[a_]) + std::abs(o_[a_])) * std::abs(scaled_[b]);
+    }
+    static Interval enclosed(Quad x, double magnitude) {
+      const double near = static_cast<double>(x), off = Interval::slip(near) + magnitude * 0x1p-100;
+      return {near - off, near + off};
+    }
+
+    std::array<double, 3> d_, o_, scaled_{};
+    std::size_t a_ = 0;
+  };
+
+  /// 0.5 a + 0.5 b.
+  static Interval between(Interval a, Interval b) {
+    return Interval::around(0.5 * a.lo + 0.5 * b.lo, 0.5 * a.hi + 0.5 * b.hi);
   }
-  static Interval across(const std::array<double, 3>& x, const std::array<double, 3>& y, const std::array<double, 3>& d,
-                         std::size_t a, std::size_t b, double w, int exponent) {
-    const double da = std::ldexp(d[a], exponent), db = std::ldexp(d[b], exponent);
-    const Quad value = (static_cast<Quad>(x[b]) - static_cast<Quad>(y[b])) * static_cast<Quad>(da) -
-                       (static_cast<Quad>(x[a]) - static_cast<Quad>(y[a])) * static_cast<Quad>(db);
-    const double magnitude =
-        (std::abs(x[b]) + std::abs(y[b])) * std::abs(da) + (std::abs(x[a]) + std::abs(y[a])) * std::abs(db);
-    return w * enclosed(value, magnitude);
+  static Interval halved(const Interval* row, int degree) {
+    std::array<Interval, most_degree + 1> b{};
+    std::copy_n(row, degree + 1, b.begin());
+    for (int level = 1; level <= degree; ++level)
+      for (int k = 0; k + level <= degree; ++k) {
+        const auto at = static_cast<std::size_t>(k);
+        b[at] = between(b[at], b[at + 1]);
+      }
+    return b[0];
   }
-  static Interval blend(Interval a, Interval b, double t) { return (Interval::at(1) - Interval::at(t)) * a + t * b; }
-  static void restrict_row(std::vector<Interval>& row, double from, double to) {
-    const std::size_t degree = row.size() - 1;
+  /// (1 - t) a + t b for t in [0, 1].
+  static Interval blend(Interval a, Interval b, Interval t) { return (Interval::at(1) - t) * a + t * b; }
+  static void restrict_row(Interval* row, std::size_t step, int degree, double from, double to) {
+    const auto at = [&](int k) -> Interval& { return row[static_cast<std::size_t>(k) * step]; };
+    const bool halves = to == 0.5;
     if (to < 1) {  // the left part, by de Casteljau's algorithm
-      for (std::size_t level = 1; level <= degree; ++level) {
-        for (std::size_t k = degree; k >= level; --k) row[k] = blend(row[k - 1], row[k], to);
+      for (int level = 1; level <= degree; ++level) {
+        for (int k = degree; k >= level; --k)
+          at(k) = halves ? between(at(k - 1), at(k)) : blend(at(k - 1), at(k), Interval::at(to));
       }
     }
     if (from > 0) {  // of that, the right one
-      const Interval at = Interval::at(from) / Interval::at(to);
-      for (std::size_t level = 1; level <= degree; ++level) {
-        for (std::size_t k = 0; k + level <= degree; ++k) row[k] = (Interval::at(1) - at) * row[k] + at * row[k + 1];
+      const bool from_middle = from == 0.5 && to == 1;
+      const Interval t = Interval::at(from) / Interval::at(to);
+      for (int level = 1; level <= degree; ++level) {
+        for (int k = 0; k + level <= degree; ++k)
+          at(k) = from_middle ? between(at(k), at(k + 1)) : blend(at(k), at(k + 1), t);
       }
     }
   }
   std::size_t index(int i, int j) const { return static_cast<std::size_t>(i * (n_ + 1) + j); }
 
   int m_, n_;
-  std::array<std::vector<Interval>, 4> c_;
+  std::size_t count_;
+  std::array<std::array<Interval, (most_degree + 1) * (most_degree + 1)>, 4> c_;
 };
 
 /// What the referee found on a ray.
@@ -174,6 +235,7 @@ class Referee {
  public:
   Referee(std::span<const BezierPatch> patches, const Ray& ray) : ray_(ray) {
     for (patch_ = 0; patch_ < patches.size(); ++patch_) {
+      if (IntervalNet::is_off(patches[patch_], ray)) continue;
       whole_ = IntervalNetHolder(patches[patch_], ray);
       scale_ = whole_.net().magnitude();
       judge(whole_.net(), {{0, 1}, {0, 1}});
@@ -196,7 +258,7 @@ class Referee {
     std::vector<IntervalNet> nets_;
   };
   enum class Test { none, one, at_most_one, open };
-  static constexpr int most_boxes = 3000;   // of one ray
+  static constexpr int most_boxes = 1000;   // of one ray
   static constexpr double smallest = 1e-7;  // of a rectangle's sides; of g its square
 
   /// Krawczyk's operator on the net's square (Neumaier, Interval Methods for Systems of Equations, sec. 5.1): K = c -
@@ -210,9 +272,7 @@ class Referee {
     if (!std::isfinite(inverse[0][0]) || !std::isfinite(inverse[0][1]) || !std::isfinite(inverse[1][0]) ||
         !std::isfinite(inverse[1][1]))
       return Test::open;
-    const IntervalNet corner =
-        net.part(true, 0.5, 1).part(false, 0.5, 1);  // its first coefficient is the middle's value
-    const Interval f[2] = {corner.first(0), corner.first(1)};
+    const Interval f[2] = {net.middle(0), net.middle(1)};
     const Interval half{-0.5, 0.5};
     Interval k[2];
     double norm = 0;
@@ -292,6 +352,7 @@ class Referee {
       const double width = std::max(around.u.width(), around.v.width());
       const bool narrowest = turn > 8 && width > 0.95 * last_width;
       last_width = width;
+      if (narrowest && test != Test::one) return false;
       if (test == Test::one && turn > 1) {
         const IntervalNet close = net.part(true, ku.lo, ku.hi).part(false, kv.lo, kv.hi);
         const Interval t = close.t_hull();

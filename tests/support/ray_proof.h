@@ -23,12 +23,14 @@ struct ProofTally {
   std::size_t touching = 0;      ///< proven misses that the scene met within its tolerance
   std::size_t contradicted = 0;  ///< rays for which occluded() and closest() disagree
   std::size_t incomplete = 0;
+  std::size_t wrong_patch =
+      0;  ///< inside a patch that the ray provably misses, where a hit on another is proven
   std::vector<double> t_errors, u_errors;  ///< of hits whose proven t is narrow; t in shares of the size
 
   void add(const ProofTally& other) {
     rays += other.rays, hits += other.hits, misses += other.misses, undecidable += other.undecidable;
     missed += other.missed, false_hits += other.false_hits, touching += other.touching;
-    contradicted += other.contradicted, incomplete += other.incomplete;
+    contradicted += other.contradicted, incomplete += other.incomplete, wrong_patch += other.wrong_patch;
     t_errors.insert(t_errors.end(), other.t_errors.begin(), other.t_errors.end());
     u_errors.insert(u_errors.end(), other.u_errors.begin(), other.u_errors.end());
   }
@@ -68,6 +70,10 @@ inline void judge_ray(std::span<const BezierPatch> patches, const RayScene& scen
   }
   if (!verdict.hit()) return;
   ++tally.hits;
+  const auto on_hit_patch = [&](const Verdict::Root& root) { return root.patch == hit.patch; };
+  const bool on_border = std::min({hit.patch_u, 1 - hit.patch_u, hit.patch_v, 1 - hit.patch_v}) < 1e-9;
+  tally.wrong_patch += met && !on_border && std::none_of(verdict.hits.begin(), verdict.hits.end(), on_hit_patch) &&
+                       std::none_of(verdict.undecided.begin(), verdict.undecided.end(), on_hit_patch);
   const Verdict::Root& first = verdict.first();
   // Within the tolerance of a tangent the surface is met a square root of it earlier or later.
   const double loose = 4 * std::sqrt(tolerance * size) / speed, strict = 1e-9 * size / speed;
