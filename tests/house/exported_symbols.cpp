@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <regex>
 #include <sstream>
 
 namespace tessera::house {
 namespace {
 
 constexpr std::array<std::string_view, 6> for_wings{
-    "tessera::allocate_aligned", "tessera::parallel_for",        "tessera::ray_kernels",
-    "tessera::UniformGrid::make", "tessera::UniformGrid::run",   "tessera::PatchSet::Impl::box",
+    "tessera::allocate_aligned",  "tessera::parallel_for",     "tessera::ray_kernels",
+    "tessera::UniformGrid::make", "tessera::UniformGrid::run", "tessera::PatchSet::Impl::box",
 };
 
 bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
@@ -22,8 +21,16 @@ bool has_word(const std::string& text, const std::string& word, std::string_view
     const std::size_t end = at + word.size();
     if (at > 0 && is_word(text[at - 1])) continue;
     if (end < text.size() && is_word(word.back()) && is_word(text[end])) continue;
-    if (followed_by.empty() || (end < text.size() && followed_by.find(text[end]) != std::string_view::npos)) return true;
+    if (followed_by.empty() || (end < text.size() && followed_by.find(text[end]) != std::string_view::npos))
+      return true;
   }
+  return false;
+}
+
+/// More than a forward declaration.
+bool defines_class(const std::string& header, const std::string& name) {
+  for (const char* keyword : {"class ", "struct ", "class [[nodiscard]] "})
+    if (has_word(header, keyword + name, " ")) return true;
   return false;
 }
 
@@ -71,11 +78,26 @@ bool is_declared(std::string_view symbol, const std::string& header) {
   if (parts.size() < 2 || parts[0] != "tessera") return false;
   if (std::find(parts.begin(), parts.end(), "Impl") != parts.end()) return false;
   for (std::size_t k = 1; k + 1 < parts.size(); ++k) {
-    if (!std::regex_search(header, std::regex("\\b(class|struct) " + parts[k] + "\\b[^;(]*\\{"))) return false;
+    if (!defines_class(header, parts[k])) return false;
   }
   const std::string& last = parts.back();
   if (parts.size() == 2) return has_word(header, last, "(");
   return has_word(header, last[0] == '~' ? last.substr(1) : last);
+}
+
+bool takes_inner_types(std::string_view symbol, const std::vector<std::string>& headers) {
+  constexpr std::string_view scope = "tessera::";
+  const std::size_t arguments = symbol.find('(');
+  for (std::size_t at = symbol.find(scope, arguments); at < symbol.size(); at = symbol.find(scope, at)) {
+    at += scope.size();
+    std::size_t end = at;
+    while (end < symbol.size() && is_word(symbol[end])) ++end;
+    const std::string type(symbol.substr(at, end - at));
+    if (symbol.substr(end).starts_with("::Impl")) return true;
+    if (std::none_of(headers.begin(), headers.end(), [&](const std::string& text) { return has_word(text, type); }))
+      return true;
+  }
+  return false;
 }
 
 bool is_for_wings(std::string_view symbol) {

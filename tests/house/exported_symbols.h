@@ -13,6 +13,9 @@ namespace tessera::house {
 /// member of a class of it, by their names alone.
 bool is_declared(std::string_view symbol, const std::string& header);
 
+/// Whether an argument of a function is of a type that none of these public headers names, nor can its callers.
+bool takes_inner_types(std::string_view symbol, const std::vector<std::string>& headers);
+
 /// The functions inside the core that the libraries above it call (engine/src/base/for_wings.h).
 bool is_for_wings(std::string_view symbol);
 
