@@ -4,12 +4,13 @@ set -euo pipefail
 
 usage() {
   cat <<'TEXT'
-tools/setup.sh [--for demo|test|neon|peers|gallery]
+tools/setup.sh [--for demo|test|neon|peers|gallery|docs]
 
 Installs, from Debian's packages and by apt-get, what is missing to build Tessera: for the demo (the libraries and the
 command line), for the tests as well (the default), for the test of the NEON kernels too (the tests', and 300 MB of a
 cross compiler and an emulator: without them that test is skipped), for the comparisons with other programs (the demo's,
-and these programs), or for the gallery (the demo's, and what puts pictures on a sheet). As root directly, otherwise by
+and these programs), for the gallery (the demo's, and what puts pictures on a sheet), or for the reference (the demo's, and
+Doxygen). As root directly, otherwise by
 sudo. Says what it installs. Where nothing is missing it does nothing and needs neither network nor rights.
 TEXT
 }
@@ -26,12 +27,13 @@ test_packages=(binutils libgtest-dev libgmock-dev libbenchmark-dev libocct-data-
 neon_packages=(g++-aarch64-linux-gnu qemu-user)
 peer_packages=(libocct-modeling-data-dev libocct-modeling-algorithms-dev libosd-dev libsisl-dev povray python3)
 gallery_packages=(imagemagick fonts-dejavu-core)
+docs_packages=(doxygen python3)
 
 purpose='test'
 while (($#)); do
   case $1 in
     --for)
-      (($# >= 2)) || fail "--for wants a word after it: demo, test, neon, peers or gallery"
+      (($# >= 2)) || fail "--for wants a word after it: demo, test, neon, peers, gallery or docs"
       purpose=$2
       shift 2
       ;;
@@ -52,7 +54,8 @@ case $purpose in
   neon) packages=("${demo_packages[@]}" "${test_packages[@]}" "${neon_packages[@]}") ;;
   peers) packages=("${demo_packages[@]}" "${peer_packages[@]}") ;;
   gallery) packages=("${demo_packages[@]}" "${gallery_packages[@]}") ;;
-  *) fail "--for $purpose: no such purpose; there are demo, test, neon, peers and gallery" ;;
+  docs) packages=("${demo_packages[@]}" "${docs_packages[@]}") ;;
+  *) fail "--for $purpose: no such purpose; there are demo, test, neon, peers, gallery and docs" ;;
 esac
 
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then

@@ -1,7 +1,7 @@
 # Builds and runs tests/consumer as its users would:
 #   cmake -D WAY=package      against the package that the build in BUILD installs into a fresh prefix
 #   cmake -D WAY=subdirectory with the sources in SOURCE as a subdirectory
-# with -D SOURCE= BUILD= WORK= READELF= GENERATOR= COMPILER= [CONFIG= PKG_CONFIG=] -P consumer.cmake. WORK is emptied first.
+# with -D SOURCE= BUILD= WORK= READELF= GENERATOR= COMPILER= [CONFIG= PYTHON= PKG_CONFIG=] -P consumer.cmake. WORK is emptied first.
 
 function(run)
   execute_process(COMMAND ${ARGN} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
@@ -83,6 +83,14 @@ if(WAY STREQUAL "package")
     endforeach()
   else()
     message(STATUS "pkg-config is not there: tessera.pc is not tried")
+  endif()
+  if(PYTHON)
+    foreach(guide tessellation-backend ray-hits tracking-speed)
+      run(${PYTHON} ${SOURCE}/tests/house/guides.py ${SOURCE}/docs/${guide}.md ${WORK}/${guide} ${prefix} ${CMAKE_COMMAND}
+        ${GENERATOR} ${COMPILER})
+    endforeach()
+  else()
+    message(STATUS "Python is not there: the guides are not followed")
   endif()
 elseif(WAY STREQUAL "subdirectory")
   # No build type: Tessera must not choose one for a project that left it open. It also compiles fastest.

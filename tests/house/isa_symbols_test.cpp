@@ -55,12 +55,14 @@ TEST(IsaSymbols, ObjectsHoldOnlyTheirOwn) {
   for (std::string object; std::getline(list, object);) {
     const auto unit = isa_unit_of(object);
     if (!unit) {
-      EXPECT_EQ(object.find("/tessera_kernel_"), std::string::npos) << object << " is a unit that this test does not know";
+      EXPECT_EQ(object.find("/tessera_kernel_"), std::string::npos)
+          << object << " is a unit that this test does not know";
       continue;
     }
     ++units[unit->isa];
     const std::string listing = output_of("'" TESSERA_NM "' -C --defined-only '" + object + "'");
-    EXPECT_TRUE(std::regex_search(listing, std::regex(" [DR] tessera::kernel::isa_" + std::string(unit->isa) + "::[a-z_]+_kernels\n")))
+    EXPECT_TRUE(std::regex_search(
+        listing, std::regex(" [DR] tessera::kernel::isa_" + std::string(unit->isa) + "::[a-z_]+_kernels\n")))
         << object << ": no table of kernels in what nm prints:\n"
         << listing;
     for (const std::string& symbol : foreign_functions(*unit, listing)) ADD_FAILURE() << object << " holds " << symbol;

@@ -12,10 +12,11 @@ namespace tessera {
 
 /// p -> columns[0] p.x + columns[1] p.y + columns[2] p.z + translation.
 struct Affine {
-  std::array<Vec3, 3> columns{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
-  Vec3 translation{};
+  std::array<Vec3, 3> columns{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};  ///< the images of the axes
+  Vec3 translation{};                                                        ///< the image of the origin
 
-  static Affine translated(const Vec3& by) { return {.translation = by}; }
+  static Affine translated(const Vec3& by) { return {.translation = by}; }  ///< moves by a vector
+  /// Stretches along the axes.
   static Affine scaled(const Vec3& by) { return {.columns = {Vec3{by.x, 0, 0}, Vec3{0, by.y, 0}, Vec3{0, 0, by.z}}}; }
   /// By `angle` radians about an axis through the origin, counter-clockwise as seen from its tip. The identity for an
   /// axis of no length.
@@ -27,8 +28,9 @@ struct Affine {
     return {.columns = {turned({1, 0, 0}), turned({0, 1, 0}), turned({0, 0, 1})}};
   }
 
+  /// The image of a direction: the translation has no part in it.
   Vec3 vector(const Vec3& d) const { return d.x * columns[0] + d.y * columns[1] + d.z * columns[2]; }
-  Vec3 point(const Vec3& p) const { return vector(p) + translation; }
+  Vec3 point(const Vec3& p) const { return vector(p) + translation; }  ///< the image of a point
   /// A bound of |vector(d)| / |d|, sharp where the columns are orthogonal: the root of the largest row sum of M^T M.
   double norm_bound() const {
     const double scale = std::max({max_abs(columns[0]), max_abs(columns[1]), max_abs(columns[2])});
@@ -42,6 +44,7 @@ struct Affine {
     }
     return scale * std::sqrt(largest);
   }
+  /// How volumes grow; negative where the map mirrors.
   double determinant() const { return dot(columns[0], cross(columns[1], columns[2])); }
 
   /// First b, then a.
@@ -49,7 +52,7 @@ struct Affine {
     return {.columns = {a.vector(b.columns[0]), a.vector(b.columns[1]), a.vector(b.columns[2])},
             .translation = a.point(b.translation)};
   }
-  friend bool operator==(const Affine&, const Affine&) = default;
+  friend bool operator==(const Affine&, const Affine&) = default;  ///< the same numbers
 };
 
 inline bool is_finite(const Affine& map) {

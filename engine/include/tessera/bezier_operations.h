@@ -16,8 +16,8 @@ namespace tessera {
 
 /// A Bezier curve: degree + 1 points, and as many weights > 0, or none for a polynomial one.
 struct BezierPolygon {
-  std::vector<Vec3> points;
-  std::vector<double> weights;
+  std::vector<Vec3> points;     ///< Bernstein coefficients
+  std::vector<double> weights;  ///< one a point; empty for a polynomial curve
 };
 
 // Results are right to rounding: each coordinate within 2 units of 2^-52 times the largest coordinate of the patch.

@@ -37,13 +37,14 @@ class BezierPatch {
   /// Errors: count_mismatch, non_finite (index = the offending point).
   Result<BezierPatch> with_points(std::span<const Vec3> points) const;
 
-  int degree_u() const { return degree_u_; }
-  int degree_v() const { return degree_v_; }
-  bool is_rational() const { return weights_ != nullptr; }
-  std::span<const Vec3> points() const { return {points_, count()}; }
+  int degree_u() const { return degree_u_; }                           ///< along u
+  int degree_v() const { return degree_v_; }                           ///< along v
+  bool is_rational() const { return weights_ != nullptr; }             ///< whether it has weights that differ
+  std::span<const Vec3> points() const { return {points_, count()}; }  ///< `[i][j]`, not premultiplied
   /// Empty for a polynomial patch. Pieces of one rational surface are rational all, even where their weights are equal.
   std::span<const double> weights() const { return {weights_, is_rational() ? count() : 0}; }
-  const Vec3& point(int i, int j) const { return points_[index(i, j)]; }
+  const Vec3& point(int i, int j) const { return points_[index(i, j)]; }  ///< 0 <= i <= degree_u, 0 <= j <= degree_v
+  /// Of point (i, j); 1 in a polynomial patch.
   double weight(int i, int j) const { return !is_rational() ? 1.0 : weights_[index(i, j)]; }
 
   /// The box of the control points, which contains the patch.
@@ -66,7 +67,7 @@ class BezierPatch {
 
 /// Position and partial derivatives at one (u,v).
 struct SurfaceJet {
-  Vec3 position, du, dv, duu, duv, dvv;
+  Vec3 position, du, dv, duu, duv, dvv;  ///< r and its derivatives by u and v
 };
 
 // Reference evaluators: one point at a time, in double, any finite (u,v), inside [0,1]^2 or not. Slow and plain.
@@ -88,9 +89,10 @@ enum class NormalKind : std::uint8_t {
   limit,      ///< the limit at a degenerate point (a collapsed edge, parallel tangents)
   undefined,  ///< there is none; the vector is zero
 };
+/// A direction of length 1, and how it was found.
 struct UnitNormal {
-  Vec3 direction;
-  NormalKind kind = NormalKind::undefined;
+  Vec3 direction;                           ///< zero where undefined
+  NormalKind kind = NormalKind::undefined;  ///< regular, a limit, or undefined
 };
 /// The unit normal at (u,v) in [0,1]^2. Where r_u x r_v vanishes: the one-sided limit from inside the patch along the
 /// parameter that leads away from the collapsed edge (from r_u and r_uv, or r_v and r_uv).

@@ -44,18 +44,22 @@ class BSplineSurface {
                                          std::span<const double> knots_v, std::vector<Vec3>&& points,
                                          std::vector<double>&& weights, std::optional<Domain> domain = {});
 
-  int degree_u() const { return data_->degree_u; }
-  int degree_v() const { return data_->degree_v; }
+  int degree_u() const { return data_->degree_u; }  ///< along u
+  int degree_v() const { return data_->degree_v; }  ///< along v
+  /// Points along u.
   std::size_t count_u() const { return knots_u().size() - static_cast<std::size_t>(degree_u()) - 1; }
+  /// Points along v.
   std::size_t count_v() const { return knots_v().size() - static_cast<std::size_t>(degree_v()) - 1; }
-  std::span<const double> knots_u() const { return data_->knots_u; }
-  std::span<const double> knots_v() const { return data_->knots_v; }
-  bool is_rational() const { return !data_->weights.empty(); }
-  std::span<const Vec3> points() const { return data_->points; }
+  std::span<const double> knots_u() const { return data_->knots_u; }  ///< as given
+  std::span<const double> knots_v() const { return data_->knots_v; }  ///< as given
+  bool is_rational() const { return !data_->weights.empty(); }        ///< whether it has weights that differ
+  std::span<const Vec3> points() const { return data_->points; }      ///< `[i][j]`, not premultiplied
   std::span<const double> weights() const { return data_->weights; }  ///< empty for a polynomial surface
+  /// i < count_u(), j < count_v().
   const Vec3& point(std::size_t i, std::size_t j) const { return data_->points[i * count_v() + j]; }
+  /// Of point (i, j); 1 in a polynomial surface.
   double weight(std::size_t i, std::size_t j) const { return is_rational() ? data_->weights[i * count_v() + j] : 1.0; }
-  const Domain& domain() const { return data_->domain; }
+  const Domain& domain() const { return data_->domain; }  ///< where it is evaluated
 
  private:
   struct Data {

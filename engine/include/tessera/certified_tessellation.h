@@ -23,7 +23,7 @@ namespace tessera {
 /// camera may stand inside the model, and a patch that it all but touches takes many triangles.
 struct PixelTolerance {
   double pixels = 0.5;  ///< above 0
-  View view;
+  View view;            ///< the camera
 };
 
 /// At least one of tolerance, angle, pixels and smallest.
@@ -40,8 +40,8 @@ struct CertifiedOptions {
   /// more than 32 radians over a patch: such a patch gets at least angle_rate segments along each parameter instead and
   /// counts in patches_without_angle(). Poles have bounds.
   std::optional<double> angle = {};
-  int angle_rate = 64;  ///< 1 to 4096
-  std::optional<PixelTolerance> pixels = {};
+  int angle_rate = 64;                        ///< 1 to 4096
+  std::optional<PixelTolerance> pixels = {};  ///< a tolerance in a camera's picture
   /// Borders that lie within this length of each other are joined: 0 to a twentieth of the set's size; 0 joins those of the
   /// same bits alone. About
   /// 1e-6 of the set's size suits files whose neighbours differ by rounding. It should stay below what the smallest patch
@@ -62,7 +62,7 @@ struct CertifiedOptions {
   /// The tolerance is not given but found: the smallest, within 1 percent, for which most_triangles are enough. Angle and
   /// pixels are kept as well.
   bool smallest = false;
-  std::optional<Isa> isa = {};
+  std::optional<Isa> isa = {};  ///< default_isa() if empty
 };
 
 /// A mesh of the fewest cells that keep the tolerance, patch by patch. The bound of a patch is proven: from the second
@@ -106,7 +106,7 @@ class CertifiedTessellation {
   std::span<const float> bounds() const;
   /// The angle that is proven, radians: the largest of those patches that have a bound. 0 if none was asked for.
   double angle() const;
-  std::size_t patches_without_angle() const;
+  std::size_t patches_without_angle() const;  ///< those that have angle_rate segments instead of a bound
   /// The same of each patch, infinite where there is none; empty if none was asked for.
   std::span<const float> angles() const;
   /// What is proven in the picture, in pixels. 0 if it was not asked for.

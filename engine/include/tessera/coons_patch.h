@@ -27,7 +27,7 @@ class Blend {
   /// Callables, checked at k / 64, k = 0 .. 64, to 1e-9. Errors: as above (says where), invalid_argument (threw).
   static Result<Blend> callable(std::function<double(double)> first, std::function<double(double)> second);
 
-  bool is_polynomial() const { return !first_.empty(); }
+  bool is_polynomial() const { return !first_.empty(); }  ///< false for callables
   /// [k][a]: the k-th derivative of f_a.
   using Jet = std::array<std::array<double, 2>, 3>;
   /// f1, f2 and their first and second derivatives at t in [0,1]; those of callables by differences. At 0 and 1 the
@@ -37,7 +37,7 @@ class Blend {
   Result<std::array<double, 2>> values_at(double t) const;
   /// Power coefficients; empty for callables.
   std::span<const double> first() const { return first_; }
-  std::span<const double> second() const { return second_; }
+  std::span<const double> second() const { return second_; }  ///< as first()
 
  private:
   Blend() = default;
@@ -47,9 +47,10 @@ class Blend {
 
 /// C1 = r(u, v0), C2 = r(u, v1), D1 = r(u0, v), D2 = r(u1, v). Both C are on [u0, u1], both D on [v0, v1].
 struct CoonsBorders {
-  BorderCurve c1, c2, d1, d2;
+  BorderCurve c1, c2, d1, d2;  ///< as above
 };
 
+/// Blends, and how exactly the borders must close.
 struct CoonsOptions {
   Blend f = Blend::linear();  ///< along u: weighs D1, D2
   Blend g = Blend::linear();  ///< along v: weighs C1, C2
@@ -66,12 +67,12 @@ class CoonsPatch {
   /// corner, index = 2 a + b, the two curves and the gap), non_finite, those of functions.
   static Result<CoonsPatch> make(const CoonsBorders& borders, const CoonsOptions& options = {});
 
-  const CoonsBorders& borders() const { return data_->borders; }
-  const Blend& f() const { return data_->f; }
-  const Blend& g() const { return data_->g; }
+  const CoonsBorders& borders() const { return data_->borders; }  ///< as given
+  const Blend& f() const { return data_->f; }                     ///< along u
+  const Blend& g() const { return data_->g; }                     ///< along v
   /// r(u_a, v_b)
   const Vec3& corner(int a, int b) const { return data_->corners[static_cast<std::size_t>(2 * a + b)]; }
-  Domain domain() const;
+  Domain domain() const;  ///< [u0, u1] x [v0, v1] of the borders
   /// Borders are Bezier, B-spline or NURBS curves and blends polynomials: to_bezier() is exact.
   bool is_exact() const;
 

@@ -15,8 +15,8 @@ namespace tessera {
 
 /// An interval of a parameter, from < to.
 struct Interval {
-  double from = 0, to = 1;
-  friend bool operator==(const Interval&, const Interval&) = default;
+  double from = 0, to = 1;                                             ///< from < to
+  friend bool operator==(const Interval&, const Interval&) = default;  ///< by both ends
 };
 
 /// c(t) = sum_i N_{i,p}(t) P_i or, rational, sum N w_i P_i / sum N w_i, of degree 1 to max_degree (Piegl and Tiller,
@@ -40,13 +40,14 @@ class Curve {
   static Result<Curve> nurbs(int degree, std::span<const Vec3> points, std::span<const double> weights,
                              std::span<const double> knots, std::optional<Interval> domain = {});
 
-  int degree() const { return data_->degree; }
-  bool is_rational() const { return !data_->weights.empty(); }
-  std::span<const Vec3> points() const { return data_->points; }
+  int degree() const { return data_->degree; }                        ///< of every piece
+  bool is_rational() const { return !data_->weights.empty(); }        ///< whether it has weights that differ
+  std::span<const Vec3> points() const { return data_->points; }      ///< not premultiplied
   std::span<const double> weights() const { return data_->weights; }  ///< empty for a polynomial curve
+  /// Of point i; 1 in a polynomial curve.
   double weight(std::size_t i) const { return is_rational() ? data_->weights[i] : 1.0; }
-  std::span<const double> knots() const { return data_->knots; }
-  const Interval& domain() const { return data_->domain; }
+  std::span<const double> knots() const { return data_->knots; }  ///< points + degree + 1
+  const Interval& domain() const { return data_->domain; }        ///< where it is evaluated
 
  private:
   struct Data {
@@ -61,7 +62,7 @@ class Curve {
 
 /// Position, first and second derivative by the curve's own parameter.
 struct CurveJet {
-  Vec3 position, first, second;
+  Vec3 position, first, second;  ///< c(t) and its derivatives by t
 };
 
 /// The reference evaluator: de Boor's algorithm, rational curves in homogeneous form. At a knot the span on its right

@@ -23,25 +23,26 @@ std::vector<double> uniform_parameters(int count);
 
 /// Which outputs are meant, for capacity and work: the members of GridViews by name.
 struct GridOutputs {
-  bool position = true, du = false, dv = false, normal = false;
-  bool duu = false, duv = false, dvv = false;
-  bool first_form = false, second_form = false;
-  bool gaussian = false, mean = false, first_curvature = false, second_curvature = false;
-  bool first_direction = false, second_direction = false;
-  bool normal_kind = false, curvature_kind = false;
+  bool position = true, du = false, dv = false, normal = false;                            ///< as in GridViews
+  bool duu = false, duv = false, dvv = false;                                              ///< as in GridViews
+  bool first_form = false, second_form = false;                                            ///< as in GridViews
+  bool gaussian = false, mean = false, first_curvature = false, second_curvature = false;  ///< as in GridViews
+  bool first_direction = false, second_direction = false;                                  ///< as in GridViews
+  bool normal_kind = false, curvature_kind = false;                                        ///< as in GridViews
 };
 
+/// How a grid is evaluated.
 struct GridPlanOptions {
-  Precision precision = Precision::single_precision;
-  Representation representation = Representation::bernstein;
-  std::optional<Isa> isa = {};  ///< default_isa() if empty
+  Precision precision = Precision::single_precision;          ///< of coefficients, arithmetic and outputs
+  Representation representation = Representation::bernstein;  ///< of the blocks that are read
+  std::optional<Isa> isa = {};                                ///< default_isa() if empty
   /// In single precision a smallest sine below 1e-6 counts as 1e-6, and an umbilic tolerance below 1e-4 as 1e-4.
   LocalGeometryOptions geometry = {};
 };
 
 /// Parameters that differ from patch to patch, as many for each: `[patch][iu]` and `[patch][iv]`.
 struct PatchParameters {
-  std::span<const double> u = {}, v = {};
+  std::span<const double> u = {}, v = {};  ///< in [0,1], as many for every patch
 };
 
 /// The grid u_0..u_{N-1} x v_0..v_{M-1} of local parameters, with basis weights tabulated for every degree of a set.
@@ -63,10 +64,10 @@ class GridPlan {
   GridPlan& operator=(GridPlan&&) noexcept;
   ~GridPlan();
 
-  std::size_t count_u() const;
-  std::size_t count_v() const;
-  Isa isa() const;
-  Precision precision() const;
+  std::size_t count_u() const;  ///< parameters along u, of a patch
+  std::size_t count_v() const;  ///< parameters along v, of a patch
+  Isa isa() const;              ///< the one that runs
+  Precision precision() const;  ///< of outputs
   /// Records that a patch-contiguous view must hold: patch_count * count_u * count_v.
   std::size_t capacity() const;
   /// Values that one block-interleaved output of vectors must hold: block_count * count_u * count_v * 3 *
@@ -92,15 +93,15 @@ class GridPlan {
 /// form beyond the numbers, a curvature beyond 2^60 in float, 2^500 in double).
 template <class T>
 struct GridViews {
-  View3<T> position = {}, du = {}, dv = {}, normal = {};
-  View3<T> duu = {}, duv = {}, dvv = {};
-  View3<T> first_form = {};   ///< E, F, G: r_u.r_u, r_u.r_v, r_v.r_v
-  View3<T> second_form = {};  ///< L, M, N: r_uu.N, r_uv.N, r_vv.N
-  View1<T> gaussian = {}, mean = {};
-  View1<T> first_curvature = {}, second_curvature = {};    ///< k1 >= k2
-  View3<T> first_direction = {}, second_direction = {};    ///< their unit tangents, first x second = normal
-  View1<NormalKind> normal_kind = {};
-  View1<CurvatureKind> curvature_kind = {};
+  View3<T> position = {}, du = {}, dv = {}, normal = {};  ///< r, r_u, r_v, the unit normal
+  View3<T> duu = {}, duv = {}, dvv = {};                  ///< r_uu, r_uv, r_vv
+  View3<T> first_form = {};                               ///< E, F, G: r_u.r_u, r_u.r_v, r_v.r_v
+  View3<T> second_form = {};                              ///< L, M, N: r_uu.N, r_uv.N, r_vv.N
+  View1<T> gaussian = {}, mean = {};                      ///< K = k1 k2, H = (k1 + k2) / 2
+  View1<T> first_curvature = {}, second_curvature = {};   ///< k1 >= k2
+  View3<T> first_direction = {}, second_direction = {};   ///< their unit tangents, first x second = normal
+  View1<NormalKind> normal_kind = {};                     ///< regular, a limit, or undefined
+  View1<CurvatureKind> curvature_kind = {};               ///< distinct, umbilic, or undefined
 };
 
 /// Evaluates all patches. Outputs may share memory by interleaving but must not overlap otherwise. Views that fill one
@@ -124,8 +125,10 @@ struct GridViews {
 /// In the power representation the bounds of positions and first derivatives are (1 + 2u)^m (1 + 2v)^n times as large,
 /// m and n the degrees, in rational patches the largest weight over that at the point times again: random bicubic
 /// patches lose 34 units, degrees 5 and 7 lose 1,200 and 140,000.
-Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<float>& out, const Execution& execution = {});
-Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<double>& out, const Execution& execution = {});
+Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<float>& out,
+                const Execution& execution = {});
+Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<double>& out,
+                const Execution& execution = {});
 
 /// Block-interleaved outputs, `[block][iu][iv][component][lane]`, scalars and kinds `[block][iu][iv][lane]`: the
 /// kernels' own order, and the fastest. A patch's place is PatchSet::slot(); unused lanes of a last block repeat a
@@ -133,17 +136,19 @@ Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<doubl
 /// bytes and apart from each other (invalid_argument otherwise). Grids of each patch's own are stored plainly.
 template <class T>
 struct GridBlocks {
-  std::span<T> position = {}, du = {}, dv = {}, normal = {};
-  std::span<T> duu = {}, duv = {}, dvv = {};
-  std::span<T> first_form = {}, second_form = {};
-  std::span<T> gaussian = {}, mean = {};
-  std::span<T> first_curvature = {}, second_curvature = {};
-  std::span<T> first_direction = {}, second_direction = {};
-  std::span<NormalKind> normal_kind = {};
-  std::span<CurvatureKind> curvature_kind = {};
+  std::span<T> position = {}, du = {}, dv = {}, normal = {};  ///< as in GridViews
+  std::span<T> duu = {}, duv = {}, dvv = {};                  ///< as in GridViews
+  std::span<T> first_form = {}, second_form = {};             ///< as in GridViews
+  std::span<T> gaussian = {}, mean = {};                      ///< as in GridViews
+  std::span<T> first_curvature = {}, second_curvature = {};   ///< as in GridViews
+  std::span<T> first_direction = {}, second_direction = {};   ///< as in GridViews
+  std::span<NormalKind> normal_kind = {};                     ///< as in GridViews
+  std::span<CurvatureKind> curvature_kind = {};               ///< as in GridViews
 };
-Status evaluate(const PatchSet& set, const GridPlan& plan, const GridBlocks<float>& out, const Execution& execution = {});
-Status evaluate(const PatchSet& set, const GridPlan& plan, const GridBlocks<double>& out, const Execution& execution = {});
+Status evaluate(const PatchSet& set, const GridPlan& plan, const GridBlocks<float>& out,
+                const Execution& execution = {});
+Status evaluate(const PatchSet& set, const GridPlan& plan, const GridBlocks<double>& out,
+                const Execution& execution = {});
 
 }  // namespace tessera
 #pragma GCC visibility pop

@@ -24,18 +24,19 @@ enum class OutsideDomain : std::uint8_t {
                 ///< be infinite or NaN
 };
 
+/// How samples are evaluated.
 struct PointOptions {
-  OutsideDomain outside = OutsideDomain::error;
-  std::optional<Isa> isa = {};         ///< default_isa() if empty
-  LocalGeometryOptions geometry = {};  ///< as in GridPlanOptions
+  OutsideDomain outside = OutsideDomain::error;  ///< what is done with samples that lie outside
+  std::optional<Isa> isa = {};                   ///< default_isa() if empty
+  LocalGeometryOptions geometry = {};            ///< as in GridPlanOptions
 };
 
 /// Sample k lies at (u[k], v[k]) of patch[k]. There are as many samples as `patch` has records; u and v hold at least as
 /// many.
 template <class T>
 struct PatchSamples {
-  View1<const std::uint32_t> patch = {};
-  View1<const T> u = {}, v = {};
+  View1<const std::uint32_t> patch = {};  ///< below patch_count()
+  View1<const T> u = {}, v = {};          ///< in the patch's [0,1]^2
 };
 
 /// Record k of each view belongs to sample k. Otherwise as GridViews says; any subset in one pass.
@@ -71,7 +72,7 @@ class SurfaceMap {
   SurfaceMap& operator=(SurfaceMap&&) noexcept;
   ~SurfaceMap();
 
-  std::size_t surface_count() const;
+  std::size_t surface_count() const;  ///< one more than the largest number of a source
   /// Nothing for a number that no patch's source bears. surface < surface_count().
   std::optional<Domain> domain(std::size_t surface) const;
 
@@ -87,7 +88,7 @@ class SurfaceMap {
 /// records; v and `surface` hold at least as many.
 struct SurfaceSamples {
   View1<const std::uint32_t> surface = {};  ///< empty: all lie on surface 0
-  View1<const double> u = {}, v = {};
+  View1<const double> u = {}, v = {};       ///< in the surface's domain
 };
 
 /// Finds each sample's patch, the one on the right of a breakpoint, and evaluates there. Derivatives and the two forms

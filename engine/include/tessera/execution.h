@@ -22,9 +22,9 @@ enum class Stores : std::uint8_t {
 
 /// What a call did.
 struct ExecutionReport {
-  Isa isa = Isa::sse2;          ///< as stated by the kernel that ran
-  bool streaming = false;       ///< whether non-temporal stores were used
-  std::size_t tasks = 0;        ///< pieces of work handed to threads
+  Isa isa = Isa::sse2;     ///< as stated by the kernel that ran
+  bool streaming = false;  ///< whether non-temporal stores were used
+  std::size_t tasks = 0;   ///< pieces of work handed to threads
 };
 
 /// Options of long calls. Everything is optional.
@@ -32,7 +32,7 @@ struct Execution {
   const std::atomic<bool>* cancel = nullptr;  ///< seen between tasks; the call then returns StatusCode::cancelled
   /// Called with the share done, 0 to 1, from any thread, one call at a time, seldom.
   std::function<void(double)> progress = {};
-  Stores stores = Stores::automatic;
+  Stores stores = Stores::automatic;  ///< how large outputs are written
   ExecutionReport* report = nullptr;  ///< filled if not null
 };
 

@@ -24,9 +24,10 @@ class ExplicitPolynomial {
   static Result<ExplicitPolynomial> make(int degree_x, int degree_y, std::span<const double> coefficients,
                                          const Domain& rectangle);
 
-  int degree_x() const { return data_->degree_x; }
-  int degree_y() const { return data_->degree_y; }
-  const Domain& rectangle() const { return data_->rectangle; }
+  int degree_x() const { return data_->degree_x; }              ///< of x
+  int degree_y() const { return data_->degree_y; }              ///< of y
+  const Domain& rectangle() const { return data_->rectangle; }  ///< of x and y
+  /// Of x^i y^j.
   double coefficient(int i, int j) const {
     return data_->coefficients[static_cast<std::size_t>(i * (degree_y() + 1) + j)];
   }

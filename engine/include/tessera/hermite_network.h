@@ -51,13 +51,14 @@ class HermiteNetwork {
                                          std::span<const HermiteNode> nodes);
 
   std::size_t count_u() const { return data_->knots_u.size(); }  ///< nodes along u
-  std::size_t count_v() const { return data_->knots_v.size(); }
+  std::size_t count_v() const { return data_->knots_v.size(); }  ///< nodes along v
   /// P, A, B and T of node (i,j).
   const HermiteNode& node(std::size_t i, std::size_t j) const { return data_->nodes[i * count_v() + j]; }
-  std::span<const double> factors_u() const { return data_->k; }
-  std::span<const double> factors_v() const { return data_->l; }
-  std::span<const double> knots_u() const { return data_->knots_u; }
-  std::span<const double> knots_v() const { return data_->knots_v; }
+  std::span<const double> factors_u() const { return data_->k; }      ///< k of each interval along u, as made
+  std::span<const double> factors_v() const { return data_->l; }      ///< l of each interval along v, as made
+  std::span<const double> knots_u() const { return data_->knots_u; }  ///< parameters of the rows of nodes
+  std::span<const double> knots_v() const { return data_->knots_v; }  ///< parameters of the columns of nodes
+  /// Between the first and the last knots.
   Domain domain() const { return {knots_u().front(), knots_u().back(), knots_v().front(), knots_v().back()}; }
   /// Patch (i,j) on [0,1]^2; i < count_u() - 1, j < count_v() - 1.
   HermitePatch patch(std::size_t i, std::size_t j) const;

@@ -24,13 +24,13 @@ enum class HermiteOrder : std::uint8_t {
 
 /// Position, derivatives and twist at a corner or node.
 struct HermiteNode {
-  Vec3 position, du, dv, duv;
+  Vec3 position, du, dv, duv;  ///< r, r_u, r_v, r_uv
 
-  friend bool operator==(const HermiteNode&, const HermiteNode&) = default;
+  friend bool operator==(const HermiteNode&, const HermiteNode&) = default;  ///< by all four
 };
 /// The same with the twist left open.
 struct CornerTangents {
-  Vec3 position, du, dv;
+  Vec3 position, du, dv;  ///< r, r_u, r_v
 };
 
 /// The bicubic patch with given positions, tangents and twists at its corners. Tangents and twists are derivatives by
@@ -40,7 +40,7 @@ class HermitePatch {
  public:
   /// The corners of a domain in the order (u0,v0), (u0,v1), (u1,v0), (u1,v1).
   using Corners = std::array<HermiteNode, 4>;
-  using OpenCorners = std::array<CornerTangents, 4>;
+  using OpenCorners = std::array<CornerTangents, 4>;  ///< as Corners, without twists
   /// 16 vectors [i][j], i along u.
   using Grid = std::array<Vec3, 16>;
 
@@ -50,6 +50,7 @@ class HermitePatch {
   /// r_uv, r_u], [r, r_v, r_v, r]]. Error: count_mismatch.
   static Result<HermitePatch> make(std::span<const Vec3> geometry, const Domain& domain = {},
                                    HermiteOrder order = HermiteOrder::by_end);
+  /// With twists. Errors: as make.
   static Result<HermitePatch> from_corners(const Corners& corners, const Domain& domain = {});
   /// 12 vectors, all twists zero (Ferguson, Multivariable curve interpolation, 1964).
   static Result<HermitePatch> ferguson(const OpenCorners& corners, const Domain& domain = {});
@@ -67,7 +68,7 @@ class HermitePatch {
   /// A polynomial Bezier patch of degrees 1 to 3 each way; exact. Errors: unsupported (rational), unsupported_degree.
   static Result<HermitePatch> from_bezier(const BezierPatch& patch, const Domain& domain = {});
 
-  const Domain& domain() const { return data_->domain; }
+  const Domain& domain() const { return data_->domain; }  ///< by whose parameters derivatives are taken
   /// The geometry matrix, derivatives by u and v of the domain.
   Grid geometry(HermiteOrder order = HermiteOrder::by_end) const;
   /// At u = u0 (a = 0) or u1 (a = 1), v = v0 (b = 0) or v1 (b = 1).

@@ -17,17 +17,17 @@ namespace tessera {
 /// an expression with branches does not compile.
 class IntervalNumber {
  public:
-  IntervalNumber(double value = 0) : lower_(value), upper_(value) {}
+  IntervalNumber(double value = 0) : lower_(value), upper_(value) {}  ///< the one number
   /// lower <= upper; otherwise, and for NaN, no bound.
   IntervalNumber(double lower, double upper) : lower_(lower), upper_(upper) {
     if (!(lower <= upper)) *this = none();
   }
-  static IntervalNumber none() { return std::numeric_limits<double>::quiet_NaN(); }
+  static IntervalNumber none() { return std::numeric_limits<double>::quiet_NaN(); }  ///< bounds of nothing: NaN
 
-  double lower() const { return lower_; }
-  double upper() const { return upper_; }
-  bool is_bounded() const { return std::isfinite(lower_) && std::isfinite(upper_); }
-  bool contains(double value) const { return lower_ <= value && value <= upper_; }
+  double lower() const { return lower_; }                                             ///< the lower end
+  double upper() const { return upper_; }                                             ///< the upper end
+  bool is_bounded() const { return std::isfinite(lower_) && std::isfinite(upper_); }  ///< whether both ends are finite
+  bool contains(double value) const { return lower_ <= value && value <= upper_; }    ///< ends included
   /// The largest absolute value; infinity where there is no bound.
   double magnitude() const {
     const double largest = std::max(std::abs(lower_), std::abs(upper_));
@@ -42,14 +42,16 @@ class IntervalNumber {
     return {low - steps * a_step(low), high + steps * a_step(high)};
   }
 
-  friend bool operator==(const IntervalNumber&, const IntervalNumber&) = default;
-  friend IntervalNumber operator-(const IntervalNumber& a) { return {-a.upper_, -a.lower_}; }
+  friend bool operator==(const IntervalNumber&, const IntervalNumber&) = default;              ///< by both ends
+  friend IntervalNumber operator-(const IntervalNumber& a) { return {-a.upper_, -a.lower_}; }  ///< -a, exactly
+  /// Holds every sum.
   friend IntervalNumber operator+(const IntervalNumber& a, const IntervalNumber& b) {
     if (a == 0.0) return b;
     if (b == 0.0) return a;
     const IntervalNumber sum = around(a.lower_ + b.lower_, a.upper_ + b.upper_);
     return a.lower_ >= 0 && b.lower_ >= 0 ? clamped(sum, 0, infinity) : sum;
   }
+  /// Holds every difference.
   friend IntervalNumber operator-(const IntervalNumber& a, const IntervalNumber& b) { return a + (-b); }
   /// The product of one object with itself is its square, and not negative.
   friend IntervalNumber operator*(const IntervalNumber& a, const IntervalNumber& b) {
@@ -61,59 +63,73 @@ class IntervalNumber {
         around(a.lower_ * b.lower_, a.lower_ * b.upper_, a.upper_ * b.lower_, a.upper_ * b.upper_);
     return a.lower_ >= 0 && b.lower_ >= 0 ? clamped(product, 0, infinity) : product;
   }
+  /// Holds every quotient; everything where b holds 0.
   friend IntervalNumber operator/(const IntervalNumber& a, const IntervalNumber& b) {
     if (!(b.lower_ > 0) && !(b.upper_ < 0)) return none();
     if (b == 1.0) return a;
     return around(a.lower_ / b.lower_, a.lower_ / b.upper_, a.upper_ / b.lower_, a.upper_ / b.upper_);
   }
-  IntervalNumber& operator+=(const IntervalNumber& b) { return *this = *this + b; }
-  IntervalNumber& operator-=(const IntervalNumber& b) { return *this = *this - b; }
-  IntervalNumber& operator*=(const IntervalNumber& b) { return *this = *this * b; }
-  IntervalNumber& operator/=(const IntervalNumber& b) { return *this = *this / b; }
+  IntervalNumber& operator+=(const IntervalNumber& b) { return *this = *this + b; }  ///< as +
+  IntervalNumber& operator-=(const IntervalNumber& b) { return *this = *this - b; }  ///< as -
+  IntervalNumber& operator*=(const IntervalNumber& b) { return *this = *this * b; }  ///< as *
+  IntervalNumber& operator/=(const IntervalNumber& b) { return *this = *this / b; }  ///< as /
 
+  /// Holds every |x|.
   friend IntervalNumber abs(const IntervalNumber& a) {
     if (a.lower_ >= 0) return a;
     if (a.upper_ <= 0) return -a;
     return {0, a.magnitude_or_nan()};
   }
+  /// Holds every x^2.
   friend IntervalNumber square(const IntervalNumber& a) {
     const IntervalNumber b = abs(a);
     return clamped(around(b.lower_ * b.lower_, b.upper_ * b.upper_), 0, infinity);
   }
+  /// Holds every root; none() where a is below 0.
   friend IntervalNumber sqrt(const IntervalNumber& a) {
     if (!(a.lower_ >= 0)) return none();
     return clamped(around(std::sqrt(a.lower_), std::sqrt(a.upper_)), 0, infinity);
   }
+  /// Holds every e^x.
   friend IntervalNumber exp(const IntervalNumber& a) {
     return clamped(around<4>(std::exp(a.lower_), std::exp(a.upper_)), 0, infinity);
   }
+  /// Holds every natural logarithm; none() where a reaches 0.
   friend IntervalNumber log(const IntervalNumber& a) {
     if (!(a.lower_ > 0)) return none();
     return around<4>(std::log(a.lower_), std::log(a.upper_));
   }
+  /// Holds every sine.
   friend IntervalNumber sin(const IntervalNumber& a) {
     return wave(a, std::sin(a.lower_), std::sin(a.upper_), std::numbers::pi / 2);
   }
+  /// Holds every cosine.
   friend IntervalNumber cos(const IntervalNumber& a) { return wave(a, std::cos(a.lower_), std::cos(a.upper_), 0); }
   /// No bound where the interval may hold a pole.
   friend IntervalNumber tan(const IntervalNumber& a) {
     if (holds_multiple(a, std::numbers::pi / 2, std::numbers::pi)) return none();
     return around<4>(std::tan(a.lower_), std::tan(a.upper_));
   }
+  /// Holds every arc tangent.
   friend IntervalNumber atan(const IntervalNumber& a) { return around<4>(std::atan(a.lower_), std::atan(a.upper_)); }
+  /// Holds every arc sine; none() outside of [-1, 1].
   friend IntervalNumber asin(const IntervalNumber& a) {
     if (!(a.lower_ >= -1 && a.upper_ <= 1)) return none();
     return around<4>(std::asin(a.lower_), std::asin(a.upper_));
   }
+  /// Holds every arc cosine; none() outside of [-1, 1].
   friend IntervalNumber acos(const IntervalNumber& a) {
     if (!(a.lower_ >= -1 && a.upper_ <= 1)) return none();
     return around<4>(std::acos(a.lower_), std::acos(a.upper_));
   }
+  /// Holds every hyperbolic sine.
   friend IntervalNumber sinh(const IntervalNumber& a) { return around<4>(std::sinh(a.lower_), std::sinh(a.upper_)); }
+  /// Holds every hyperbolic cosine.
   friend IntervalNumber cosh(const IntervalNumber& a) {
     const IntervalNumber b = abs(a);
     return clamped(around<4>(std::cosh(b.lower_), std::cosh(b.upper_)), 1, infinity);
   }
+  /// Holds every hyperbolic tangent.
   friend IntervalNumber tanh(const IntervalNumber& a) {
     return clamped(around<4>(std::tanh(a.lower_), std::tanh(a.upper_)), -1, 1);
   }

@@ -46,7 +46,7 @@ Result<Model> parse_obj_freeform(std::string_view text, std::string_view name);
 
 /// What write_model has written.
 struct WrittenModel {
-  std::size_t surfaces = 0, patches = 0;
+  std::size_t surfaces = 0, patches = 0;   ///< written
   FitError fit_error = {};                 ///< the largest of all; 0 where every surface is a patch or made of such
   std::vector<std::string> warnings = {};  ///< what of the model the file does not hold, a sentence each
 };

@@ -12,7 +12,7 @@ namespace tessera {
 
 enum class Isa : std::uint8_t { sse2, avx2, avx512, neon64 };
 
-std::string_view name(Isa isa);  ///< "sse2", "avx2" (with FMA), "avx512" (F, DQ, BW, VL), "neon64" (AArch64)
+std::string_view name(Isa isa);  ///< "sse2", "avx2" (with FMA), "avx512" (F, CD, DQ, BW, VL), "neon64" (AArch64)
 
 /// The ones that the library was built with and that processor and operating system support, slowest first.
 std::span<const Isa> available_isas();

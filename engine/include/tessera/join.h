@@ -14,9 +14,9 @@ namespace tessera {
 /// One side of a join: a patch (referred to, not copied), which of its edges, and the rectangle of parameters that it
 /// covers, by which derivatives are taken.
 struct JoinSide {
-  const BezierPatch& patch;
-  Edge edge = Edge::u1;
-  Domain domain = {};
+  const BezierPatch& patch;  ///< must outlive the call
+  Edge edge = Edge::u1;      ///< the border that is meant
+  Domain domain = {};        ///< by whose parameters derivatives are taken
 };
 
 /// What may be taken for zero.
@@ -45,8 +45,8 @@ struct JoinReport {
   double derivative_gap = 0;
   std::optional<double> ratio;  ///< k with p_c = k q_c all along, within the tolerance of derivatives; k > 0
   bool reversed = false;        ///< q's edge runs the other way
-  bool sharp = true;
-  Continuity continuity = Continuity::none;
+  bool sharp = true;            ///< whether the bounds are as tight as stated
+  Continuity continuity = Continuity::none;  ///< the most that holds
 };
 
 /// Measures the join of p with q along the given edges, of any degrees, polynomial or rational. q's edge may run the

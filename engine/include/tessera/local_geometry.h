@@ -14,7 +14,7 @@ namespace tessera {
 
 /// A direction of principal curvature.
 struct PrincipalDirection {
-  double curvature = 0;
+  double curvature = 0;                ///< of the normal section in this direction
   Vec3 direction;                      ///< unit tangent
   std::array<double, 2> parameters{};  ///< (du, dv) with r_u du + r_v dv = direction
 };
@@ -22,7 +22,7 @@ struct PrincipalDirection {
 /// Zero wherever undefined, never NaN. Signs follow the normal r_u x r_v / |r_u x r_v|: a surface that bends towards it
 /// has positive curvatures.
 struct LocalGeometry {
-  UnitNormal normal;
+  UnitNormal normal;                 ///< unit, or zero
   bool defined = false;              ///< the forms and what is made of them
   double e = 0, f = 0, g = 0;        ///< first form: r_u.r_u, r_u.r_v, r_v.r_v
   double l = 0, m = 0, n = 0;        ///< second form: r_uu.N, r_uv.N, r_vv.N
@@ -38,6 +38,7 @@ enum class CurvatureKind : std::uint8_t {
   undefined,  ///< no forms and no curvatures; they are zero
 };
 
+/// What counts as undefined or umbilic.
 struct LocalGeometryOptions {
   double smallest_sine = 1e-10;     ///< of the angle between r_u and r_v; undefined at or below it
   double umbilic_tolerance = 1e-9;  ///< (k1 - k2) / (|k1| + |k2|) at or below which a point is umbilic
@@ -52,6 +53,7 @@ LocalGeometry local_geometry(const SurfaceJet& jet, const LocalGeometryOptions& 
 /// undefined.
 LocalGeometry local_geometry(const BezierPatch& patch, double u, double v, const LocalGeometryOptions& options = {});
 
+/// How a net is measured.
 struct NetOptions {
   int samples = 17;          ///< points each way, equally spaced, ends included; 2 to 1,000
   double tolerance = 1e-12;  ///< for `orthogonal` and `conjugate`

@@ -15,18 +15,18 @@ namespace tessera {
 
 /// What a mesh needs, in records.
 struct MeshCapacity {
-  std::size_t vertices = 0;
-  std::size_t triangles = 0;
-  std::size_t quads = 0;
+  std::size_t vertices = 0;   ///< records of the vertex views
+  std::size_t triangles = 0;  ///< three indices each
+  std::size_t quads = 0;      ///< four indices each
 };
 
 /// Where a mesh is written. Empty views are not wanted; positions and indices are required.
 struct MeshViews {
-  View3<float> position = {};            ///< relative to the origin of the patch set
-  View3<float> normal = {};              ///< unit, or zero where undefined
-  View2<float> parameter = {};           ///< (u,v) of the patch, in [0,1]^2
-  std::span<std::uint32_t> patch = {};   ///< the patch of each triangle
-  std::span<std::uint32_t> indices = {}; ///< three a triangle, counter-clockwise seen from where r_u x r_v points
+  View3<float> position = {};             ///< relative to the origin of the patch set
+  View3<float> normal = {};               ///< unit, or zero where undefined
+  View2<float> parameter = {};            ///< (u,v) of the patch, in [0,1]^2
+  std::span<std::uint32_t> patch = {};    ///< the patch of each triangle
+  std::span<std::uint32_t> indices = {};  ///< three a triangle, counter-clockwise seen from where r_u x r_v points
   /// Four a quad, the same way around. Of a certified mesh: then its inner cells come here, and `patch` and `indices`
   /// hold the triangles of the strips alone; its quad_capacity() says how many.
   std::span<std::uint32_t> quads = {};
@@ -35,30 +35,30 @@ struct MeshViews {
 
 /// A run of triangles that belong together, such as those of one surface.
 struct MeshPart {
-  std::string name;
-  std::size_t first_triangle = 0, triangle_count = 0;
+  std::string name;                                    ///< of the surface
+  std::size_t first_triangle = 0, triangle_count = 0;  ///< a run of the mesh's triangles
 };
 
 /// A mesh that owns its memory, interleaved by attribute: 3 floats a position or normal, 2 a parameter.
 struct Mesh {
-  Vec3 origin;                          ///< add it to positions to get the model's coordinates
-  std::vector<float> positions;
-  std::vector<float> normals;           ///< empty, or as long as positions
-  std::vector<float> parameters;        ///< empty, or two a vertex
-  std::vector<std::uint32_t> patches;   ///< empty, or one a triangle
-  std::vector<std::uint32_t> indices;
-  std::vector<MeshPart> parts;          ///< empty, or runs one after the other that together are all triangles
+  Vec3 origin;                         ///< add it to positions to get the model's coordinates
+  std::vector<float> positions;        ///< three a vertex, relative to the origin
+  std::vector<float> normals;          ///< empty, or as long as positions
+  std::vector<float> parameters;       ///< empty, or two a vertex
+  std::vector<std::uint32_t> patches;  ///< empty, or one a triangle
+  std::vector<std::uint32_t> indices;  ///< three a triangle, counter-clockwise from where the normal points
+  std::vector<MeshPart> parts;         ///< empty, or runs one after the other that together are all triangles
 
-  std::size_t vertex_count() const { return positions.size() / 3; }
-  std::size_t triangle_count() const { return indices.size() / 3; }
-  MeshViews views();
+  std::size_t vertex_count() const { return positions.size() / 3; }  ///< of positions
+  std::size_t triangle_count() const { return indices.size() / 3; }  ///< of indices
+  MeshViews views();                                                 ///< of the mesh's memory, which must stay in place
 };
 
 /// What is wrong with a mesh, if anything. Vertices at bit-equal positions count as one.
 struct MeshReport {
   std::size_t vertices = 0;              ///< as stored
-  std::size_t distinct_positions = 0;
-  std::size_t triangles = 0;
+  std::size_t distinct_positions = 0;    ///< vertices of equal position counted once
+  std::size_t triangles = 0;             ///< as stored
   std::size_t open_edges = 0;            ///< edges of one triangle
   std::size_t non_manifold_edges = 0;    ///< edges of three triangles or more
   std::size_t inconsistent_edges = 0;    ///< edges whose two triangles run along it the same way

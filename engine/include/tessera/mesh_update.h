@@ -29,7 +29,7 @@ class MeshUpdate {
   MeshUpdate& operator=(MeshUpdate&&) noexcept;
   ~MeshUpdate();
 
-  const CertifiedTessellation& plan() const;
+  const CertifiedTessellation& plan() const;  ///< that of the mesh as it is now
 
   /// PatchSet::set_control_points() for each edit, and then the positions and normals of these patches alone: each task
   /// packs the patches that it evaluates while they are in its cache. `out` are the views of the mesh that the plan has

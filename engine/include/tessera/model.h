@@ -19,22 +19,23 @@ namespace tessera {
 /// A closed chain of curves in the surface's parameters (x = u, y = v, z = 0), each from where the one before it ends.
 /// What lies inside a hole is cut away; what lies outside of all other loops too.
 struct TrimLoop {
-  std::vector<Curve> curves;
-  bool hole = false;
+  std::vector<Curve> curves;  ///< each from where the one before it ends
+  bool hole = false;          ///< false: what lies outside is cut away
 };
 
 /// A named surface, and where it stands in the model. Trims are kept for those who ask; neither patches, meshes nor rays
 /// honour them yet. Copies share everything.
 struct ModelSurface {
-  Shared<std::string> name;
-  Surface surface;
-  Shared<Affine> placement = {};
-  Shared<std::vector<TrimLoop>> trims = {};
+  Shared<std::string> name;                  ///< may be empty
+  Surface surface;                           ///< in its own space
+  Shared<Affine> placement = {};             ///< from its own space to the model's
+  Shared<std::vector<TrimLoop>> trims = {};  ///< kept, not honoured
 };
 
+/// What a file holds, or a program makes.
 struct Model {
-  std::string name;
-  std::vector<ModelSurface> surfaces;
+  std::string name;                    ///< may be empty
+  std::vector<ModelSurface> surfaces;  ///< in the order of the file
   /// What a file holds and this model does not, a sentence each, with file and line: "part.obj:12: sp is not read".
   std::vector<std::string> warnings = {};
 };

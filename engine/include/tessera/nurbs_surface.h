@@ -12,7 +12,7 @@ namespace tessera {
 /// An axis of revolution, and where its angle is zero. Angles grow counter-clockwise as seen from the tip of
 /// `direction`.
 struct Axis {
-  Vec3 origin{0, 0, 0};
+  Vec3 origin{0, 0, 0};     ///< a point of the axis
   Vec3 direction{0, 0, 1};  ///< of any length > 0
   Vec3 zero{1, 0, 0};       ///< not parallel to direction; its part across it counts
 };

@@ -16,7 +16,7 @@ namespace tessera {
 /// What the caller knows of a curve c(t). Functions are called from one thread at a time, or from several if const
 /// calls on the curve are; what they throw becomes a Status.
 struct CurveFunctions {
-  std::function<Vec3(double t)> position;
+  std::function<Vec3(double t)> position;  ///< c(t); must be given
   /// Position, first and second derivative; by differences if empty.
   std::function<CurveJet(double t)> jet = {};
   /// A bound of |d^k c / dt^k| over an interval within the domain, k from 0 (|c| itself) to 16; infinity where there is
@@ -32,10 +32,11 @@ class ParametricCurve {
   /// tessera/generic_callable.h.
   static Result<ParametricCurve> make(CurveFunctions functions, const Interval& domain = {});
 
-  const Interval& domain() const { return data_->domain; }
+  const Interval& domain() const { return data_->domain; }  ///< where it is evaluated
   /// Errors: non_finite (names t), invalid_argument (the function threw: its message).
   Result<Vec3> position(double t) const;
-  bool has_derivatives() const { return data_->functions.jet != nullptr; }
+  bool has_derivatives() const { return data_->functions.jet != nullptr; }  ///< false: differences are taken
+  /// False: fits are sampled, not certified.
   bool has_bounds() const { return data_->functions.derivative_bound != nullptr; }
   /// A bound of |d^k c / dt^k| over a part of the domain, k >= 0; infinity where none is known.
   double derivative_bound(const Interval& part, int k) const;

@@ -21,7 +21,7 @@ class PatchGrid;  // tessera/convert.h
 /// What the caller knows of a surface p(u,v). Functions are called from one thread at a time, or from several if const
 /// calls on the surface are; what they throw becomes a Status.
 struct SurfaceFunctions {
-  std::function<Vec3(double u, double v)> position;
+  std::function<Vec3(double u, double v)> position;  ///< p(u,v); must be given
   /// Position and derivatives to the second order; by differences if empty.
   std::function<SurfaceJet(double u, double v)> jet = {};
   /// Bounds of |d^k p / du^k| and |d^k p / dv^k| over a rectangle within the domain, k from 1 to 16; infinity where there
@@ -31,7 +31,7 @@ struct SurfaceFunctions {
 
 /// A disc of parameters.
 struct Disc {
-  double x = 0, y = 0, radius = 1;
+  double x = 0, y = 0, radius = 1;  ///< centre and radius, above 0
 };
 
 /// The polar map of a disc: x = x0 + s rho cos(theta), y = y0 + s rho sin(theta), rho from 0 to the radius R and theta
@@ -44,8 +44,8 @@ class PolarMap {
   /// Errors: non_finite (the disc, or its box), invalid_argument (a radius that is not positive, or lost beside the
   /// centre).
   static Result<PolarMap> make(const Disc& disc);
-  Domain domain() const;
-  const Disc& disc() const { return disc_; }
+  Domain domain() const;                                             ///< [0, R] x [0, 2 pi]
+  const Disc& disc() const { return disc_; }                         ///< as given
   double scale() const { return scale_; }                            ///< s
   std::array<double, 2> operator()(double rho, double theta) const;  ///< x and y
   /// By rho and theta, from position and derivatives by x and y at the same point.
@@ -70,10 +70,11 @@ class ParametricSurface {
   /// and those of PolarMap.
   static Result<ParametricSurface> over_disc(SurfaceFunctions functions, const Disc& disc = {});
 
-  const Domain& domain() const { return data_->domain; }
+  const Domain& domain() const { return data_->domain; }  ///< where it is evaluated
   /// Errors: non_finite (names u and v), invalid_argument (the function threw: its message).
   Result<Vec3> position(double u, double v) const;
-  bool has_derivatives() const { return data_->functions.jet != nullptr; }
+  bool has_derivatives() const { return data_->functions.jet != nullptr; }  ///< false: differences are taken
+  /// False: fits are sampled, not certified.
   bool has_bounds() const { return data_->functions.derivative_bounds != nullptr; }
   /// Bounds over a part of the domain, k >= 0; infinity where none is known.
   std::array<double, 2> derivative_bounds(const Domain& part, int k) const;
@@ -98,12 +99,13 @@ class ParametricSurface {
 /// Errors: as of position(); non_finite (a derivative: names it and (u,v)).
 Result<SurfaceJet> evaluate_jet(const ParametricSurface& surface, double u, double v);
 
+/// How closely, and by how many patches, a callable is fitted.
 struct FitOptions {
   /// How far patches may lie from the surface at equal parameters, in the model's unit; 0 for 1e-6 of the diagonal of
   /// the box of 17 x 17 points.
   double tolerance = 0;
-  int degree = 3;  ///< of the patches, each way; 2 to max_degree
-  std::size_t largest_patch_count = 1u << 16;
+  int degree = 3;                              ///< of the patches, each way; 2 to max_degree
+  std::size_t largest_patch_count = 1u << 16;  ///< more are an error
   /// By the surface's bounds, where it has them. Else by sampling, which takes fewer patches and more calls.
   bool certify = true;
   /// Inner parameters at which the surface is not smooth: breakpoints from the start, so that no patch goes across.

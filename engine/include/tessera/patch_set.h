@@ -24,18 +24,19 @@ enum class Representation : std::uint8_t {
 
 /// Which coefficients a set holds, packed when it is made and again with each edit. Each kind costs (m+1)(n+1) * (3 or 4) coefficients a patch.
 struct BlockKinds {
-  bool float_bernstein = true;
-  bool double_bernstein = false;
-  bool float_power = false;
-  bool double_power = false;
+  bool float_bernstein = true;    ///< what grids, meshes and rays read
+  bool double_bernstein = false;  ///< for grids in double
+  bool float_power = false;       ///< for grids in the power form
+  bool double_power = false;      ///< the same in double
   /// Bernstein coefficients again, patch by patch, each from a cache line on: what scattered points are evaluated from
   /// (evaluate_points.h). 192 bytes a bicubic patch in float.
   bool float_points = false;
-  bool double_points = false;
+  bool double_points = false;  ///< the same in double
 };
 
+/// What a set holds.
 struct PatchSetOptions {
-  BlockKinds blocks = {};
+  BlockKinds blocks = {};  ///< at least one kind
   /// Coefficients of float blocks are relative to this point. By default the centre of the set's box.
   std::optional<Vec3> origin = {};
   /// How far the patches lie from the surfaces that they stand for.
@@ -44,8 +45,8 @@ struct PatchSetOptions {
 
 /// Where a patch came from: a surface of the model, and the rectangle of that surface's parameters that it covers.
 struct PatchSource {
-  std::uint32_t surface = 0;
-  Domain domain = {};
+  std::uint32_t surface = 0;  ///< index into the model's surfaces
+  Domain domain = {};         ///< of the surface's own parameters
 };
 
 /// Owns patches and their SoA blocks: patches of equal degrees and rationality lie together, 16 to a block, coefficients
@@ -68,22 +69,22 @@ class PatchSet {
   PatchSet& operator=(PatchSet&&) noexcept;
   ~PatchSet();
 
-  std::size_t patch_count() const;
-  std::size_t surface_count() const;
-  const BezierPatch& patch(std::size_t index) const;      ///< index < patch_count()
-  const PatchSource& source(std::size_t index) const;     ///< index < patch_count()
-  Vec3 origin() const;
-  Box3 box() const;                   ///< of all control points; looks at each of them
-  const FitError& fit_error() const;  ///< as given; 0 for patches that are exact
-  const BlockKinds& blocks() const;
-  std::size_t block_count() const;
+  std::size_t patch_count() const;                     ///< at least 1
+  std::size_t surface_count() const;                   ///< one more than the largest number of a source
+  const BezierPatch& patch(std::size_t index) const;   ///< index < patch_count()
+  const PatchSource& source(std::size_t index) const;  ///< index < patch_count()
+  Vec3 origin() const;                                 ///< of float positions, in the model
+  Box3 box() const;                                    ///< of all control points; looks at each of them
+  const FitError& fit_error() const;                   ///< as given; 0 for patches that are exact
+  const BlockKinds& blocks() const;                    ///< as given
+  std::size_t block_count() const;                     ///< of all degrees together
   /// Where a patch lies in block-interleaved output. index < patch_count().
   struct Slot {
-    std::uint32_t block = 0;
-    std::uint32_t lane = 0;
+    std::uint32_t block = 0;  ///< below block_count()
+    std::uint32_t lane = 0;   ///< below lanes
   };
-  Slot slot(std::size_t index) const;
-  std::size_t memory_bytes() const;   ///< patches and blocks
+  Slot slot(std::size_t index) const;  ///< where a patch lies
+  std::size_t memory_bytes() const;    ///< patches and blocks
 
   /// Grows by one with each edit. What was made from another revision is stale.
   std::uint64_t revision() const;
@@ -93,7 +94,7 @@ class PatchSet {
 
   class [[gnu::visibility("hidden")]] Impl;
   const Impl& impl() const { return *impl_; }  ///< for the library's own use
-  Impl& impl() { return *impl_; }
+  Impl& impl() { return *impl_; }              ///< for the library's own use
 
  private:
   explicit PatchSet(std::unique_ptr<Impl> impl);

@@ -21,7 +21,7 @@ class PatchGrid;
 /// a x^2 + b y^2 + c z^2 + 2 d xy + 2 e yz + 2 f xz + 2 g x + 2 h y + 2 j z + k = 0, that is P Q P^T = 0 with
 /// P = [x y z 1] and Q = [[a,d,f,g],[d,b,e,h],[f,e,c,j],[g,h,j,k]].
 struct QuadricCoefficients {
-  double a = 0, b = 0, c = 0, d = 0, e = 0, f = 0, g = 0, h = 0, j = 0, k = 0;
+  double a = 0, b = 0, c = 0, d = 0, e = 0, f = 0, g = 0, h = 0, j = 0, k = 0;  ///< as in the equation
 };
 
 /// What a quadric is, with its equation in the canonical frame and the canonical parametrisation of its surface, where
@@ -53,6 +53,7 @@ bool is_surface(QuadricKind kind);
 /// Two for two sheets, two planes and a hyperbolic cylinder, else one; 0 where there is no surface.
 int sheet_count(QuadricKind kind);
 
+/// What may be taken for zero.
 struct QuadricOptions {
   /// An eigenvalue of the quadratic part is 0 below this share of the largest one; the linear part along null
   /// directions below this share of the largest of quadratic, linear and constant part at length L; the constant, taken
@@ -69,12 +70,14 @@ struct QuadricOptions {
 /// Where several frames fit, the axes lie as near to the model's own as can be.
 struct QuadricFrame {
   Vec3 origin;  ///< centre or vertex; where there are many, the one nearest to zero
-  std::array<Vec3, 3> axes{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+  std::array<Vec3, 3> axes{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};  ///< unit, right-handed
 
+  /// From the frame to the model, a direction.
   Vec3 vector(const Vec3& p) const { return p.x * axes[0] + p.y * axes[1] + p.z * axes[2]; }
-  Vec3 point(const Vec3& p) const { return origin + vector(p); }
+  Vec3 point(const Vec3& p) const { return origin + vector(p); }  ///< a point, from the frame to the model
+  /// From the model to the frame, a direction.
   Vec3 local_vector(const Vec3& d) const { return {dot(d, axes[0]), dot(d, axes[1]), dot(d, axes[2])}; }
-  Vec3 local(const Vec3& p) const { return local_vector(p - origin); }
+  Vec3 local(const Vec3& p) const { return local_vector(p - origin); }  ///< a point, from the model to the frame
 };
 
 /// A classified quadric. Immutable but for assignment.
@@ -85,17 +88,17 @@ class Quadric {
   /// (all coefficients are 0; tolerance not in (0, 0.01]; length negative).
   static Result<Quadric> make(const QuadricCoefficients& coefficients, const QuadricOptions& options = {});
 
-  const QuadricCoefficients& coefficients() const { return coefficients_; }
-  QuadricKind kind() const { return kind_; }
-  const QuadricFrame& frame() const { return frame_; }
+  const QuadricCoefficients& coefficients() const { return coefficients_; }  ///< as given
+  QuadricKind kind() const { return kind_; }                                 ///< by eigenvalues
+  const QuadricFrame& frame() const { return frame_; }                       ///< in which the equation is canonical
   const Vec3& size() const { return size_; }  ///< a, b, c of QuadricKind; 1 where the kind has none
 
   /// The canonical equation as squares . (x2, y2, z2) + linear . (x, y, z) + constant = 0.
   struct Diagonal {
-    Vec3 squares, linear;
-    double constant = 0;
+    Vec3 squares, linear;  ///< coefficients of squares and of linear terms
+    double constant = 0;   ///< the term without a variable
   };
-  Diagonal diagonal() const;
+  Diagonal diagonal() const;  ///< the equation in the frame
 
  private:
   Quadric() = default;
@@ -119,8 +122,8 @@ QuadricHits intersect(const Quadric& quadric, const Vec3& origin, const Vec3& di
 
 /// The canonical parameters of a point, and its sheet.
 struct QuadricParameters {
-  double u = 0, v = 0;
-  int sheet = 0;
+  double u = 0, v = 0;  ///< canonical, see QuadricKind
+  int sheet = 0;        ///< below sheet_count()
 };
 
 /// A surface between ranges of the canonical parameters. Immutable but for assignment; copies share their quadric.
@@ -131,9 +134,9 @@ class QuadricPiece {
   /// non_finite, invalid_argument (a range that is empty, reversed or outside these limits; no such sheet).
   static Result<QuadricPiece> make(const Quadric& quadric, const Domain& range, int sheet = 0);
 
-  const Quadric& quadric() const { return data_->quadric; }
-  const Domain& range() const { return data_->range; }
-  int sheet() const { return data_->sheet; }
+  const Quadric& quadric() const { return data_->quadric; }  ///< the whole surface
+  const Domain& range() const { return data_->range; }       ///< of the canonical parameters
+  int sheet() const { return data_->sheet; }                 ///< as given
   /// Parameters of a point of the surface, if it lies in the piece; its borders have a margin of 1e-12 of the ranges.
   std::optional<QuadricParameters> locate(const Vec3& point) const;
 

@@ -22,9 +22,9 @@ namespace tessera {
 /// vector. Valid: finite origin and direction with components of at most 1.844e18, direction not zero, 0 <= tnear <=
 /// tfar; tfar may be infinite. Both ends belong to the interval and hold for the refined t, in double.
 struct Ray {
-  Vec3 origin = {}, direction = {};
-  double tnear = 0;
-  double tfar = std::numeric_limits<double>::infinity();
+  Vec3 origin = {}, direction = {};                       ///< in the model
+  double tnear = 0;                                       ///< at least 0
+  double tfar = std::numeric_limits<double>::infinity();  ///< at least tnear
 };
 
 enum class HitKind : std::uint8_t {
@@ -35,8 +35,8 @@ enum class HitKind : std::uint8_t {
 
 /// What is to be known about a hit beside its numbers.
 struct HitFlags {
-  bool unrefined : 1 = false;         ///< Newton did not converge inside the patch: t, position, u, v are those of the facet
-  bool degenerate_normal : 1 = false; ///< the normal is a limit at a degenerate point, or undefined (zero)
+  bool unrefined : 1 = false;  ///< Newton did not converge inside the patch: t, position, u, v are those of the facet
+  bool degenerate_normal : 1 = false;  ///< the normal is a limit at a degenerate point, or undefined (zero)
   /// Exact mode: the point lies on the ray within the tolerance, but no root of the surface was proven there. The ray
   /// touches the surface or runs along it (t is then good to about the square root of tolerance times size), meets a
   /// pole, or passes a border by less than the tolerance.
@@ -46,21 +46,22 @@ struct HitFlags {
   bool incomplete : 1 = false;
 };
 
+/// Where a ray meets a surface. Of a miss and an invalid ray only the kind counts.
 struct Hit {
-  HitKind kind = HitKind::miss;
-  HitFlags flags;
-  std::uint32_t surface = 0, patch = 0;
-  double t = std::numeric_limits<double>::infinity();
-  double u = 0, v = 0;              ///< in the surface's domain
-  double patch_u = 0, patch_v = 0;  ///< in the patch, [0,1]^2
-  Vec3 position;                    ///< on the surface at (u,v)
-  Vec3 normal;                      ///< unit, along r_u x r_v
+  HitKind kind = HitKind::miss;                        ///< whether the rest means anything
+  HitFlags flags;                                      ///< what the numbers don't say
+  std::uint32_t surface = 0, patch = 0;                ///< PatchSource::surface, and the index in the set
+  double t = std::numeric_limits<double>::infinity();  ///< position = origin + t * direction, up to the residual
+  double u = 0, v = 0;                                 ///< in the surface's domain
+  double patch_u = 0, patch_v = 0;                     ///< in the patch, [0,1]^2
+  Vec3 position;                                       ///< on the surface at (u,v)
+  Vec3 normal;                                         ///< unit, along r_u x r_v
   double residual = 0;  ///< distance from the position to the ray; of an unrefined hit, to the surface at (u,v)
 };
 
 /// The hits of several rays one after the other: of ray k, in the order of t, hits[first[k]] to hits[first[k + 1] - 1].
 struct HitLists {
-  std::vector<Hit> hits;
+  std::vector<Hit> hits;           ///< ray after ray
   std::vector<std::size_t> first;  ///< one more than rays
 };
 
@@ -78,13 +79,14 @@ enum class RayMode : std::uint8_t {
   exact,
 };
 
+/// How a scene is made.
 struct RaySceneOptions {
-  RayMode mode = RayMode::exact;
-  int rate = 8;                  ///< grid mode: grid segments a patch and direction, 1 to 4096
-  bool refine = true;            ///< grid mode: false leaves hits on the facets (for comparison)
-  std::optional<Isa> isa = {};   ///< the hits of exact mode are those of every one, up to rounding
-  int pieces = 1;                ///< exact mode: pieces a patch and direction, 1, 2, 4 or 8; more for patches that are
-                                 ///< strongly bent or long and thin, up to 8 and 64
+  RayMode mode = RayMode::exact;  ///< what rays are to meet
+  int rate = 8;                   ///< grid mode: grid segments a patch and direction, 1 to 4096
+  bool refine = true;             ///< grid mode: false leaves hits on the facets (for comparison)
+  std::optional<Isa> isa = {};    ///< the hits of exact mode are those of every one, up to rounding
+  int pieces = 1;                 ///< exact mode: pieces a patch and direction, 1, 2, 4 or 8; more for patches that are
+                                  ///< strongly bent or long and thin, up to 8 and 64
   /// Exact mode: how far from the ray a point that is returned may lie, in the model's unit; above 0. It counts where
   /// the ray touches the surface or passes a border: there points within it may be hits. By default 2e-12 of the set's
   /// size; smaller ones than twice the bound on rounding (2e-12 of the size for bicubic patches, 9e-12 at degree 15,
@@ -100,7 +102,8 @@ class RayScene {
   /// (Embree's own), unsupported. Grid mode: unsupported are no float Bernstein blocks, a box with a diagonal below 1e-9
   /// or reaching further than 1e12 from the set's origin, more than 2^32 grid points. Exact mode: unsupported are a
   /// diagonal outside of 1e-140 to 1e140, 2^32 pieces.
-  static Result<RayScene> make(const PatchSet& set, const RaySceneOptions& options = {}, const Execution& execution = {});
+  static Result<RayScene> make(const PatchSet& set, const RaySceneOptions& options = {},
+                               const Execution& execution = {});
 
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;
@@ -120,15 +123,15 @@ class RayScene {
   Status all(std::span<const Ray> rays, HitLists& lists, const Execution& execution = {}) const;
   /// One ray. A stale scene gives a miss with HitKind::invalid_ray.
   Hit closest(const Ray& ray) const;
-  bool occluded(const Ray& ray) const;
+  bool occluded(const Ray& ray) const;  ///< one ray; false while the scene is stale
 
   /// After edits of the set: evaluates grids or pieces anew and rebuilds the BVH. Errors: those of make; the scene
   /// then stays stale until a refit succeeds.
   Status refit(const Execution& execution = {});
 
-  Box3 box() const;                    ///< of facets or pieces' nets: tighter than of all control points; empty while stale
-  std::uint64_t revision() const;      ///< of the set, when the scene was made or last refitted
-  std::size_t memory_bytes() const;    ///< grids or nets, and BVH
+  Box3 box() const;                ///< of facets or pieces' nets: tighter than of all control points; empty while stale
+  std::uint64_t revision() const;  ///< of the set, when the scene was made or last refitted
+  std::size_t memory_bytes() const;  ///< grids or nets, and BVH
 
   class [[gnu::visibility("hidden")]] Impl;
 

@@ -22,10 +22,10 @@ class RuledSurface {
   static Result<RuledSurface> make(const BorderCurve& first, const BorderCurve& second, const Interval& across = {},
                                    Direction straight = Direction::v);
 
-  const BorderCurve& first() const { return data_->first; }
-  const BorderCurve& second() const { return data_->second; }
-  Direction straight() const { return data_->straight; }
-  Domain domain() const;
+  const BorderCurve& first() const { return data_->first; }    ///< C1, or D1
+  const BorderCurve& second() const { return data_->second; }  ///< C2, or D2
+  Direction straight() const { return data_->straight; }       ///< the parameter that the straight lines run along
+  Domain domain() const;                                       ///< of the curves, and `across`
   /// Both borders are Bezier, B-spline or NURBS curves: to_bezier() is exact.
   bool is_exact() const;
 

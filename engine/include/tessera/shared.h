@@ -14,20 +14,22 @@ template <class T>
 class Shared {
  public:
   Shared() = default;
+  /// The value.
   template <class U>
   requires(std::convertible_to<U&&, T> && !std::same_as<std::remove_cvref_t<U>, Shared>) Shared(U&& value) {
     T own(std::forward<U>(value));
     if (!is_default(own)) value_ = std::make_shared<const T>(std::move(own));
   }
 
-  const T& operator*() const { return value_ ? *value_ : default_value(); }
-  const T* operator->() const { return &**this; }
-  operator const T&() const { return **this; }
+  const T& operator*() const { return value_ ? *value_ : default_value(); }  ///< the value
+  const T* operator->() const { return &**this; }                            ///< the value's members
+  operator const T&() const { return **this; }                               ///< the value
 
-  friend bool operator==(const Shared& a, const Shared& b) { return a.value_ == b.value_ || *a == *b; }
+  friend bool operator==(const Shared& a, const Shared& b) { return a.value_ == b.value_ || *a == *b; }  ///< by value
+  /// By value.
   template <class U>
-    requires(!std::same_as<U, Shared> && requires(const T& a, const U& b) { a == b; })
-  friend bool operator==(const Shared& a, const U& b) {
+  requires(!std::same_as<U, Shared> && requires(const T& a, const U& b) { a == b; }) friend bool operator==(
+      const Shared& a, const U& b) {
     return *a == b;
   }
 

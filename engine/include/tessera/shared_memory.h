@@ -17,10 +17,13 @@ class SharedMemory {
   SharedMemory() = default;
   /// The first handle on `bytes` of memory, unset. Throws std::bad_alloc.
   explicit SharedMemory(std::size_t bytes) : block_(::new (::operator new(sizeof(Block) + bytes)) Block) {}
+  /// One more handle.
   SharedMemory(const SharedMemory& other) noexcept : block_(other.block_) {
     if (block_) block_->handles.fetch_add(1, std::memory_order_relaxed);
   }
+  /// The same handle; the other one is empty.
   SharedMemory(SharedMemory&& other) noexcept : block_(std::exchange(other.block_, nullptr)) {}
+  /// Gives up the handle that it was.
   SharedMemory& operator=(SharedMemory other) noexcept {
     std::swap(block_, other.block_);
     return *this;
@@ -51,6 +54,7 @@ class SharedMemory {
   /// `count` more handles on the memory of `one`, counted at once.
   class Copies {
    public:
+    /// Counts them.
     Copies(const SharedMemory& one, std::size_t count) noexcept : block_(one.block_), left_(count) {
       block_->handles.fetch_add(count, std::memory_order_relaxed);
     }
@@ -77,6 +81,7 @@ class SharedMemory {
     Sink(const Sink&) = delete;
     Sink& operator=(const Sink&) = delete;
     ~Sink() { flush(); }
+    /// Leaves the handle empty.
     void take(SharedMemory& handle) noexcept {
       if (handle.block_ != block_) {
         flush();

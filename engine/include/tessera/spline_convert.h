@@ -40,9 +40,9 @@ Result<std::pair<Curve, Curve>> compatible(const Curve& a, const Curve& b);
 /// A curve as Bezier pieces that share their end points: piece k has the points k * degree .. (k + 1) * degree and
 /// covers [breaks[k], breaks[k+1]].
 struct BezierPieces {
-  int degree = 1;
-  std::vector<double> breaks;
-  std::vector<Vec3> points;
+  int degree = 1;               ///< of every piece
+  std::vector<double> breaks;   ///< strictly increasing
+  std::vector<Vec3> points;     ///< as many as knots leave room for
   std::vector<double> weights;  ///< empty if the curve is polynomial; not dropped where they are equal
 };
 Result<BezierPieces> to_bezier(const Curve& curve);
@@ -55,9 +55,9 @@ Result<PatchGrid> to_bezier(const BSplineSurface& surface);
 
 /// Patches (a, b) of a grid with a0 <= a < a1, b0 <= b < b1.
 struct PatchRange {
-  std::size_t a0 = 0, a1 = 0, b0 = 0, b1 = 0;
-  bool empty() const { return a0 >= a1 || b0 >= b1; }
-  friend bool operator==(const PatchRange&, const PatchRange&) = default;
+  std::size_t a0 = 0, a1 = 0, b0 = 0, b1 = 0;                              ///< [a0, a1) x [b0, b1)
+  bool empty() const { return a0 >= a1 || b0 >= b1; }                      ///< whether there is no patch in it
+  friend bool operator==(const PatchRange&, const PatchRange&) = default;  ///< by all four
 };
 /// The patches of to_bezier(surface) that control point [i][j] touches: at most (degree_u + 1) (degree_v + 1). Empty
 /// for a point that acts outside the domain alone. Errors: invalid_argument (no such point).

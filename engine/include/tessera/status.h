@@ -26,8 +26,8 @@ enum class StatusCode : std::uint8_t {
   parse_error,         ///< a file whose content is not what its format says
   io_error,            ///< a file that cannot be opened, read or written
   out_of_memory,
-  cancelled,           ///< the caller's cancellation flag was seen; outputs are partly written
-  internal,            ///< a fault of the library or of a dependency
+  cancelled,  ///< the caller's cancellation flag was seen; outputs are partly written
+  internal,   ///< a fault of the library or of a dependency
 };
 
 /// The code's name as written above, for messages and logs.
@@ -36,16 +36,16 @@ std::string_view name(StatusCode code);
 /// Success, or what went wrong: a code, a sentence, and the index of the offending element if there is one.
 class [[nodiscard]] Status {
  public:
-  static constexpr std::ptrdiff_t no_index = -1;
+  static constexpr std::ptrdiff_t no_index = -1;  ///< no element is named
 
   Status() = default;  ///< success; never allocates
   Status(StatusCode code, std::string message, std::ptrdiff_t index = no_index)
-      : code_(code), index_(index), message_(std::move(message)) {}
+      : code_(code), index_(index), message_(std::move(message)) {}  ///< a failure; the message is a sentence
 
-  bool ok() const { return code_ == StatusCode::ok; }
-  StatusCode code() const { return code_; }
-  const std::string& message() const { return message_; }
-  std::ptrdiff_t index() const { return index_; }
+  bool ok() const { return code_ == StatusCode::ok; }      ///< whether it is success
+  StatusCode code() const { return code_; }                ///< what kind of thing went wrong
+  const std::string& message() const { return message_; }  ///< empty for success
+  std::ptrdiff_t index() const { return index_; }          ///< the offending element, or no_index
 
  private:
   StatusCode code_ = StatusCode::ok;
@@ -58,21 +58,21 @@ class [[nodiscard]] Status {
 template <class T>
 class [[nodiscard]] Result {
  public:
-  Result(T value) : value_(std::move(value)) {}
-  Result(Status status) : status_(std::move(status)) {}
+  Result(T value) : value_(std::move(value)) {}          ///< a value
+  Result(Status status) : status_(std::move(status)) {}  ///< a failure
 
-  bool ok() const { return value_.has_value(); }
-  explicit operator bool() const { return ok(); }
-  const Status& status() const { return status_; }
+  bool ok() const { return value_.has_value(); }    ///< whether there is a value
+  explicit operator bool() const { return ok(); }   ///< as ok()
+  const Status& status() const { return status_; }  ///< success where there is a value
 
-  T& value() & { return *value_; }
-  const T& value() const& { return *value_; }
-  T&& value() && { return *std::move(value_); }
-  T& operator*() & { return *value_; }
-  const T& operator*() const& { return *value_; }
-  T&& operator*() && { return *std::move(value_); }
-  T* operator->() { return &*value_; }
-  const T* operator->() const { return &*value_; }
+  T& value() & { return *value_; }                   ///< the value
+  const T& value() const& { return *value_; }        ///< the value
+  T&& value() && { return *std::move(value_); }      ///< the value, moved out
+  T& operator*() & { return *value_; }               ///< the value
+  const T& operator*() const& { return *value_; }    ///< the value
+  T&& operator*() && { return *std::move(value_); }  ///< the value, moved out
+  T* operator->() { return &*value_; }               ///< the value's members
+  const T* operator->() const { return &*value_; }   ///< the value's members
 
  private:
   std::optional<T> value_;

@@ -23,10 +23,11 @@ class Taylor {
   static_assert(Order >= 1 && (Variables == 1 || Variables == 2));
 
  public:
+  /// How many coefficients.
   static constexpr std::size_t size = Variables == 1 ? Order + 1 : (Order + 1) * (Order + 2) / 2;
 
   Taylor() : Taylor(0.0) {}
-  Taylor(double constant) : Taylor(Scalar(constant), Filled{}) {}
+  Taylor(double constant) : Taylor(Scalar(constant), Filled{}) {}  ///< a constant
   /// A constant.
   explicit Taylor(const Scalar& constant) requires(!std::is_same_v<Scalar, double>) : Taylor(constant, Filled{}) {}
   /// The variable u (0) or v (1) at `value`.
@@ -38,7 +39,7 @@ class Taylor {
 
   /// c_ij, i + j <= Order; j = 0 in one variable.
   const Scalar& coefficient(int i, int j = 0) const { return c_[index(i, j)]; }
-  const Scalar& value() const { return c_[0]; }
+  const Scalar& value() const { return c_[0]; }  ///< the coefficient of order 0
   /// The derivative of order (i,j): i! j! c_ij.
   Scalar derivative(int i, int j = 0) const {
     double factor = 1;  // exact up to 18!
@@ -47,17 +48,20 @@ class Taylor {
     return factor * c_[index(i, j)];
   }
 
+  /// By coefficients.
   friend Taylor operator-(const Taylor& a) {
     Taylor r;
     for (std::size_t k = 0; k < size; ++k) r.c_[k] = -a.c_[k];
     return r;
   }
+  /// By coefficients.
   friend Taylor operator+(const Taylor& a, const Taylor& b) {
     Taylor r;
     for (std::size_t k = 0; k < size; ++k) r.c_[k] = a.c_[k] + b.c_[k];
     return r;
   }
-  friend Taylor operator-(const Taylor& a, const Taylor& b) { return a + (-b); }
+  friend Taylor operator-(const Taylor& a, const Taylor& b) { return a + (-b); }  ///< by coefficients
+  /// The product, cut off at the order.
   friend Taylor operator*(const Taylor& a, const Taylor& b) {
     Taylor r = a.times_increment(b);
     if (&a == &b) {  // the square of one number, which intervals know to be no less than 0
@@ -68,12 +72,14 @@ class Taylor {
     for (std::size_t k = 0; k < size; ++k) r.c_[k] += a.c_[k] * b.c_[0];
     return r;
   }
+  /// The quotient, cut off at the order.
   friend Taylor operator/(const Taylor& a, const Taylor& b) { return a * reciprocal(b); }
-  Taylor& operator+=(const Taylor& b) { return *this = *this + b; }
-  Taylor& operator-=(const Taylor& b) { return *this = *this - b; }
-  Taylor& operator*=(const Taylor& b) { return *this = *this * b; }
-  Taylor& operator/=(const Taylor& b) { return *this = *this / b; }
+  Taylor& operator+=(const Taylor& b) { return *this = *this + b; }  ///< as +
+  Taylor& operator-=(const Taylor& b) { return *this = *this - b; }  ///< as -
+  Taylor& operator*=(const Taylor& b) { return *this = *this * b; }  ///< as *
+  Taylor& operator/=(const Taylor& b) { return *this = *this / b; }  ///< as /
 
+  /// The root.
   friend Taylor sqrt(const Taylor& x) { return x.composed(power_series(x.value(), 0.5, root(x.value()))); }
   /// x^exponent by constant exponents; whole ones for any x (a negative one for x without 0), others for x > 0.
   friend Taylor pow(const Taylor& x, double exponent) {
@@ -89,13 +95,15 @@ class Taylor {
     }
     return x.composed(f);
   }
-  friend Taylor pow(const Taylor& x, const Taylor& y) { return exp(y * log(x)); }
+  friend Taylor pow(const Taylor& x, const Taylor& y) { return exp(y * log(x)); }  ///< by exp and log: x above 0
+  /// E^x.
   friend Taylor exp(const Taylor& x) {
     using std::exp;
     Coefficients f{exp(x.value())};
     for (int k = 1; k <= Order; ++k) f[at(k)] = f[at(k - 1)] / double(k);
     return x.composed(f);
   }
+  /// The natural logarithm.
   friend Taylor log(const Taylor& x) {
     using std::log;
     const Scalar r = 1.0 / x.value();
@@ -104,19 +112,22 @@ class Taylor {
     for (int k = 1; k <= Order; ++k, power = -(power * r)) f[at(k)] = power / double(k);
     return x.composed(f);
   }
-  friend Taylor sin(const Taylor& x) { return x.composed(wave(x.value(), 0)); }
-  friend Taylor cos(const Taylor& x) { return x.composed(wave(x.value(), 1)); }
-  friend Taylor sinh(const Taylor& x) { return x.composed(hyperbolic(x.value(), 0)); }
-  friend Taylor cosh(const Taylor& x) { return x.composed(hyperbolic(x.value(), 1)); }
+  friend Taylor sin(const Taylor& x) { return x.composed(wave(x.value(), 0)); }         ///< the sine
+  friend Taylor cos(const Taylor& x) { return x.composed(wave(x.value(), 1)); }         ///< the cosine
+  friend Taylor sinh(const Taylor& x) { return x.composed(hyperbolic(x.value(), 0)); }  ///< the hyperbolic sine
+  friend Taylor cosh(const Taylor& x) { return x.composed(hyperbolic(x.value(), 1)); }  ///< the hyperbolic cosine
+  /// The tangent.
   friend Taylor tan(const Taylor& x) {
     using std::tan;
     return x.composed(tangent(tan(x.value()), 1.0));
   }
+  /// The hyperbolic tangent.
   friend Taylor tanh(const Taylor& x) {
     using std::tanh;
     return x.composed(tangent(tanh(x.value()), -1.0));
   }
-  friend Taylor atan(const Taylor& x) {  // the integral of 1 / (1 + x^2)
+  /// The arc tangent: the integral of 1 / (1 + x^2).
+  friend Taylor atan(const Taylor& x) {
     using std::atan;
     const Scalar r = 1.0 / (1.0 + x.value() * x.value());
     Coefficients f{atan(x.value())};
@@ -129,14 +140,17 @@ class Taylor {
     }
     return x.composed(f);
   }
+  /// The arc sine.
   friend Taylor asin(const Taylor& x) {
     using std::asin;
     return x.composed(arc(x.value(), asin(x.value()), 1.0));
   }
+  /// The arc cosine.
   friend Taylor acos(const Taylor& x) {
     using std::acos;
     return x.composed(arc(x.value(), acos(x.value()), -1.0));
   }
+  /// The absolute value, where x is not 0.
   friend Taylor abs(const Taylor& x) {
     using std::abs;
     Coefficients f{};

@@ -37,7 +37,7 @@ class BasisMatrix {
   /// and convert from, not to. Errors: unsupported_degree, count_mismatch, non_finite (index = the entry).
   static Result<BasisMatrix> custom(int degree, std::span<const double> entries);
 
-  int degree() const { return data_->degree; }
+  int degree() const { return data_->degree; }  ///< of the polynomials: there are degree + 1
   /// M_ki: the coefficient of t^k in f_i.
   double power_coefficient(int k, int i) const { return data_->power[index(k, i)]; }
   /// The coefficient of B_{k,n} in f_i: the matrix M_B^{-1} M that turns geometry into Bezier points.
@@ -47,6 +47,7 @@ class BasisMatrix {
   /// The entry [i][k] of M^{-1} M_B, which turns Bezier points into geometry. is_regular() must hold.
   double inverse_coefficient(int i, int k) const { return data_->from_bernstein[index(i, k)]; }
 
+  /// By the matrices.
   friend bool operator==(const BasisMatrix& a, const BasisMatrix& b) {
     return a.data_ == b.data_ || *a.data_ == *b.data_;
   }
@@ -73,13 +74,14 @@ class TensorPatch {
   static Result<TensorPatch> make(const BasisMatrix& basis_u, const BasisMatrix& basis_v,
                                   std::span<const Vec3> geometry, const Domain& domain = {});
 
-  const BasisMatrix& basis_u() const { return data_->basis_u; }
-  const BasisMatrix& basis_v() const { return data_->basis_v; }
-  std::span<const Vec3> geometry() const { return data_->geometry; }
+  const BasisMatrix& basis_u() const { return data_->basis_u; }       ///< along u
+  const BasisMatrix& basis_v() const { return data_->basis_v; }       ///< along v
+  std::span<const Vec3> geometry() const { return data_->geometry; }  ///< `[i][j]`
+  /// 0 <= i <= degree along u, 0 <= j <= degree along v.
   const Vec3& element(int i, int j) const {
     return data_->geometry[static_cast<std::size_t>(i * (basis_v().degree() + 1) + j)];
   }
-  const Domain& domain() const { return data_->domain; }
+  const Domain& domain() const { return data_->domain; }  ///< where it is evaluated
 
  private:
   struct Data {

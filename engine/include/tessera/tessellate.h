@@ -16,10 +16,11 @@ namespace tessera {
 
 struct Model;
 
+/// How finely patches are divided.
 struct TessellationOptions {
-  int rate_u = 8;  ///< segments along u of every patch, 1 to 4096
-  int rate_v = 8;  ///< segments along v
-  std::optional<Isa> isa = {};
+  int rate_u = 8;               ///< segments along u of every patch, 1 to 4096
+  int rate_v = 8;               ///< segments along v
+  std::optional<Isa> isa = {};  ///< default_isa() if empty
 };
 
 /// Uniform tessellation: every patch at the same rates. Layout of the vertices: `[patch][iu][iv]`, so vertex
@@ -36,8 +37,8 @@ class TessellationPlan {
   ~TessellationPlan();
 
   MeshCapacity capacity() const;  ///< exact
-  int rate_u() const;
-  int rate_v() const;
+  int rate_u() const;             ///< segments along u of every patch
+  int rate_v() const;             ///< segments along v
   /// A mesh of the right size with all attributes.
   Result<Mesh> allocate() const;
   /// Writes the mesh. `set` is the one that the plan was made for, at any revision that collapses the same edges.

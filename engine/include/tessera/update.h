@@ -14,7 +14,7 @@ namespace tessera {
 /// points `[i][j]`, i along u, as BezierPatch::points(). Weights and degrees stay.
 struct PatchEdits {
   std::span<const std::uint32_t> patch = {};  ///< in any order, each at most once; in the set's order is fastest
-  std::span<const Vec3> points = {};
+  std::span<const Vec3> points = {};          ///< patch after patch
 };
 
 /// Memory for updates of one set, so that repeated ones allocate nothing. Threads: one call at a time.
@@ -40,12 +40,14 @@ class GridUpdate {
   /// then has its new control points and its new grid, or neither.
   Status run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridViews<float>& out,
              const Execution& execution = {});
+  /// The same in double.
   Status run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridViews<double>& out,
              const Execution& execution = {});
   /// The same into block-interleaved memory of all patches. A block with an edited patch is evaluated whole: its other
   /// lanes are written, with the bytes that evaluate() gives them.
   Status run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridBlocks<float>& out,
              const Execution& execution = {});
+  /// The same in double.
   Status run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridBlocks<double>& out,
              const Execution& execution = {});
 

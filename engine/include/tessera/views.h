@@ -12,12 +12,15 @@ namespace tessera {
 /// It names both structure-of-arrays and interleaved memory. An empty view (the default) means "not wanted".
 template <class T, int N>
 struct VectorView {
-  std::array<T*, N> component{};
-  std::ptrdiff_t stride = 1;  ///< in elements of T, at least 1
-  std::size_t size = 0;       ///< how many records fit
+  std::array<T*, N> component{};  ///< the first value of each component
+  std::ptrdiff_t stride = 1;      ///< in elements of T, at least 1
+  std::size_t size = 0;           ///< how many records fit
 
-  bool empty() const { return component[0] == nullptr; }
-  T& at(std::size_t k, int c) const { return component[static_cast<std::size_t>(c)][static_cast<std::ptrdiff_t>(k) * stride]; }
+  bool empty() const { return component[0] == nullptr; }  ///< not wanted
+  /// Component c of record k < size.
+  T& at(std::size_t k, int c) const {
+    return component[static_cast<std::size_t>(c)][static_cast<std::ptrdiff_t>(k) * stride];
+  }
 
   /// One array a component. The shortest array bounds the size.
   static VectorView soa(const std::array<std::span<T>, N>& arrays) {

@@ -1,0 +1,54 @@
+#!/usr/bin/env python3
+"""Follows the guides as a newcomer would: guides.py GUIDE.md FOLDER PREFIX CMAKE GENERATOR COMPILER [--print].
+
+A block of a guide whose fence names a file, ```cpp main.cpp, goes to that file, one block after the other. The project is
+built against the package installed in PREFIX, and each ```output PROGRAM block must be what PROGRAM prints. --print shows what
+it prints instead."""
+
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+
+def blocks_of(text):
+    """(language, file or program, content, line) of each fenced block that has a name."""
+    for found in re.finditer(r'^```(\w+) (\S+)\n(.*?)^```$', text, re.M | re.S):
+        yield (*found.groups(), text.count('\n', 0, found.start()) + 1)
+
+
+def main():
+    guide, folder, prefix, cmake, generator, compiler = sys.argv[1:7]
+    guide, folder = pathlib.Path(guide), pathlib.Path(folder)
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    outputs, places = {}, {}
+    for language, name, content, line in blocks_of(guide.read_text(encoding='utf-8')):
+        if language == 'output':
+            outputs[name] = content
+            continue
+        # Messages of the compiler name the guide's own lines.
+        mark = f'#line {line + 1} "{guide}"\n' if language == 'cpp' else ''
+        places[name] = places.get(name, '') + mark + content
+    if not outputs or 'CMakeLists.txt' not in places:
+        sys.exit(f'{guide} has no project, or no program that prints anything')
+    for name, content in places.items():
+        (folder / name).write_text(content, encoding='utf-8')
+    subprocess.run([cmake, '-S', folder, '-B', folder / 'build', '-G', generator, f'-DCMAKE_PREFIX_PATH={prefix}',
+                    '-DCMAKE_BUILD_TYPE=Release', f'-DCMAKE_CXX_COMPILER={compiler}',
+                    '-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror'], check=True)
+    subprocess.run([cmake, '--build', folder / 'build'], check=True)
+    wrong = 0
+    for program, expected in outputs.items():
+        printed = subprocess.run([folder / 'build' / program], check=True, stdout=subprocess.PIPE, text=True, cwd=folder).stdout
+        if '--print' in sys.argv:
+            print(printed, end='')
+        elif printed != expected:
+            wrong += 1
+            print(f'{guide}: {program} prints\n{printed}and not, as the guide says,\n{expected}')
+    return 1 if wrong else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())
