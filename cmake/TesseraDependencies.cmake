@@ -17,6 +17,8 @@
 #   librsvg           librsvg2-bin 2.54           tools/perf report: plots as PNG; left out without
 #   a cross compiler  g++-aarch64-linux-gnu 12.2  the test of the NEON kernels, with qemu-user 7.2; skipped without
 #   ImageMagick       imagemagick 6.9             tools/gallery.sh alone: pictures on one sheet
+#   Doxygen           doxygen 1.9                 the target docs, and its test; skipped without
+#   clang-format      clang-format-14             tools/lint.sh, and its test; skipped without. clang-tidy: tools/lint.sh --tidy
 # What Tessera is compared with, where TESSERA_BUILD_PEERS is ON (tools/peers.sh installs it). bench/peers alone looks for
 # these, and builds what it finds:
 #   OpenCASCADE       libocct-modeling-data-dev 7.6
@@ -24,7 +26,11 @@
 #   SISL              libsisl-dev 4.6             AGPL: linked by one program of its own, which links nothing of Tessera
 
 find_package(TBB 2021 REQUIRED)
-find_package(xsimd 8 REQUIRED)
+# Its version file takes no other major version for compatible.
+find_package(xsimd REQUIRED)
+if(xsimd_VERSION VERSION_LESS 8)
+  message(FATAL_ERROR "xsimd ${xsimd_VERSION} is found, in ${xsimd_DIR}; version 8 or later is needed")
+endif()
 find_package(Threads REQUIRED)
 if(TESSERA_BUILD_RAY)
   find_package(embree 3 REQUIRED)

@@ -3,9 +3,11 @@
 # of them the machine can run. The units' flags stand here and nowhere else. Optimised in every configuration, so that
 # small inline functions don't stay behind as symbols that the linker could merge into the baseline; less under the
 # sanitizers, whose checks make the compiler work for minutes at -O3.
-set(kernel_flags -O3 -fno-trapping-math -fno-exceptions)
+set(TESSERA_KERNEL_LEVEL "-O3" CACHE STRING "How the kernels are optimised: another level than -O3 is for tests of compilers alone")
+mark_as_advanced(TESSERA_KERNEL_LEVEL)
+set(kernel_flags ${TESSERA_KERNEL_LEVEL} -fno-trapping-math -fno-exceptions)
 if(TESSERA_SANITIZE)
-  list(TRANSFORM kernel_flags REPLACE -O3 -O1)
+  list(TRANSFORM kernel_flags REPLACE "^-O3$" -O1)
 endif()
 get_filename_component(kernel_folder ${CMAKE_CURRENT_LIST_DIR}/../engine/src/kernel ABSOLUTE)
 set(kernel_units unit_grid unit_grid_double unit_flat unit_line unit_net unit_point unit_chord unit_mesh unit_ray)
@@ -15,7 +17,9 @@ list(TRANSFORM kernel_units APPEND .cpp)
 # tessera_isa(NAME flags...)
 macro(tessera_isa name)
   tessera_floor(kernel_${name} SOURCES ${kernel_units} BELOW base)
-  target_compile_options(tessera_kernel_${name} PRIVATE ${kernel_flags} ${ARGN})
+  target_compile_options(tessera_kernel_${name} PRIVATE ${kernel_flags} ${ARGN}
+    # Arrays are filled as far as a degree goes, which gcc 14 does not see.
+    $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_GREATER_EQUAL:$<CXX_COMPILER_VERSION>,13>>:-Wno-maybe-uninitialized>)
   if(TARGET xsimd)
     target_link_libraries(tessera_kernel_${name} PRIVATE xsimd)
   endif()
@@ -29,7 +33,12 @@ else()
   set(tessera_machine ${kernel_folder}/machine_x86.cpp)
   tessera_isa(sse2 -msse2)
   tessera_isa(avx2 -mavx2 -mfma)
+  # Later versions of xsimd ask for CD as well, which every machine with F has.
+  set(avx512cd)
+  if(xsimd_VERSION VERSION_GREATER_EQUAL 9)
+    set(avx512cd -mavx512cd)
+  endif()
   # gcc 12 warns of its own _mm512_undefined_ps (its bug 105593).
-  tessera_isa(avx512 -mavx512f -mavx512dq -mavx512bw -mavx512vl -mavx2 -mfma -mprefer-vector-width=512
+  tessera_isa(avx512 -mavx512f ${avx512cd} -mavx512dq -mavx512bw -mavx512vl -mavx2 -mfma -mprefer-vector-width=512
     $<$<CXX_COMPILER_ID:GNU>:-Wno-uninitialized> $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
 endif()
