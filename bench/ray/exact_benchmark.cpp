@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "rival.h"
+#include "stopwatch.h"
 #include "suite.h"
 #include "support/random_patches.h"
 #include "support/reference_rays.h"
@@ -28,6 +29,7 @@ namespace {
 
 using namespace tessera;
 using bench::Rival;
+using bench::Stopwatch;
 
 constexpr std::size_t ray_count = 65536;
 constexpr int coarse = 12;                // cells a patch and direction
@@ -153,22 +155,6 @@ const Scenes& scenes_of(const Subject& subject, Isa isa, int quads) {
   return *scenes;
 }
 
-/// The better of all turns, in seconds.
-class Stopwatch {
- public:
-  template <class Work>
-  void time(int threads, Work work) {
-    tbb::task_arena arena(threads);
-    const auto start = std::chrono::steady_clock::now();
-    arena.execute(work);
-    best_ = std::min(best_, bench::seconds_since(start));
-  }
-  double best() const { return best_; }
-
- private:
-  double best_ = std::numeric_limits<double>::infinity();
-};
-
 struct Times {
   Stopwatch triangles, packets, subdivision;
 };
@@ -259,10 +245,10 @@ void build(benchmark::State& state, const Scenes& shared, int threads) {
   Rival triangles = Rival::triangles(work.set, shared.quads, shared.isa);
   Stopwatch watch;
   const auto best = bench::time_calls(
-      state, threads, [&] { return exact.refit(); }, [&] { watch.time(threads, [&] { triangles.build(); }); });
+      state, threads, [&] { return exact.rebuild(); }, [&] { watch.time(threads, [&] { triangles.build(); }); });
   if (!best) return;
   const Ray& ray = work.rays.at("coherent")[ray_count / 2];
-  if (exact.closest(ray).t != shared.exact.closest(ray).t) return state.SkipWithError("the refitted scene differs");
+  if (exact.closest(ray).t != shared.exact.closest(ray).t) return state.SkipWithError("the rebuilt scene differs");
   bench::report_rates(state, *best, static_cast<double>(work.patches.size()));
   state.counters["of_triangles"] = *best / watch.best();
   state.counters["bytes_per_patch"] =

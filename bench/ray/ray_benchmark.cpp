@@ -152,7 +152,7 @@ void refit(benchmark::State& state, const Workload& work, const std::vector<Ray>
   options.mode = RayMode::grid;
   options.rate = rate;
   RayScene scene = test::value_of(RayScene::make(work.set, options));
-  const auto best = bench::time_calls(state, threads, [&] { return scene.refit(); });
+  const auto best = bench::time_calls(state, threads, [&] { return scene.rebuild(); });
   if (!best) return;
   const Ray& ray = rays[rays.size() / 2 + 128];  // in the middle of the picture
   const Hit hit = scene.closest(ray);

@@ -53,6 +53,7 @@ TEST(Lifetime, AFailedRefitLeavesTheSceneStale) {
   const std::atomic<bool> cancel = true;
   Execution execution;
   execution.cancel = &cancel;
+  ASSERT_TRUE(set.set_control_points(0, sphere()[0].points()).ok());
   EXPECT_EQ(scene.refit(execution).code(), StatusCode::cancelled);
   const Ray down = ray({0.1, 0.1, 5}, {0, 0, -1});
   Hit hit;

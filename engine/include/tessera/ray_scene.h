@@ -90,20 +90,24 @@ struct RaySceneOptions {
   /// Exact mode: how far from the ray a point that is returned may lie, in the model's unit; above 0. It counts where
   /// the ray touches the surface or passes a border: there points within it may be hits. By default 2e-12 of the set's
   /// size; smaller ones than twice the bound on rounding (2e-12 of the size for bicubic patches, 9e-12 at degree 15,
-  /// at the most) are raised to that.
+  /// at the most; a third more after edits) are raised to that.
   std::optional<double> tolerance = {};
+  /// Exact mode: makes ready for edits at once; else the first refit does, which then takes as long as a rebuild. Rays in a
+  /// scene that follows edits take about a fifth longer.
+  bool editable = false;
+  int rebuild_after = 0;  ///< exact mode: of so many refits each last one is a rebuild; 0: none is, 1: all are
 };
 
 /// A patch set ready for rays. Keeps a reference to the set's inner state: the set must outlive the scene (it may be
-/// moved). Threads: const calls from any number of threads; refit and edits of the set exclude them.
+/// moved). Threads: const calls from any number of threads; edits of the set, refit and rebuild exclude them and each
+/// other.
 class RayScene {
  public:
-  /// Errors: invalid_argument (the rate, the pieces, the tolerance), isa_unavailable, cancelled, out_of_memory, internal
-  /// (Embree's own), unsupported. Grid mode: unsupported are no float Bernstein blocks, a box with a diagonal below 1e-9
-  /// or reaching further than 1e12 from the set's origin, more than 2^32 grid points. Exact mode: unsupported are a
-  /// diagonal outside of 1e-140 to 1e140, 2^32 pieces.
-  static Result<RayScene> make(const PatchSet& set, const RaySceneOptions& options = {},
-                               const Execution& execution = {});
+  /// Errors: invalid_argument (the rate, the pieces, the tolerance, rebuild_after), isa_unavailable, cancelled,
+  /// out_of_memory, internal (Embree's own), unsupported. Grid mode: unsupported are no float Bernstein blocks, a box with
+  /// a diagonal below 1e-9 or reaching further than 1e12 from the set's origin, more than 2^32 grid points. Exact mode:
+  /// unsupported are a diagonal outside of 1e-140 to 1e140, 2^32 pieces.
+  static Result<RayScene> make(const PatchSet& set, const RaySceneOptions& options = {}, const Execution& execution = {});
 
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;
@@ -118,16 +122,21 @@ class RayScene {
   Status occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded, const Execution& execution = {}) const;
   /// All hits of each ray, in exact mode. A point that several pieces or neighbours share is one hit: two are the same
   /// where they coincide on a patch or at a shared border, not where they are merely near in t. Rays that are not valid
-  /// have none. Memory of `lists` is used again. Errors: unsupported (grid mode), stale, cancelled, out_of_memory; the
-  /// lists are then empty.
+  /// have none. Memory of `lists` is used again; the first call after a build or a refit looks for the borders that
+  /// patches share. Errors: unsupported (grid mode), stale, cancelled, out_of_memory; the lists are then empty.
   Status all(std::span<const Ray> rays, HitLists& lists, const Execution& execution = {}) const;
   /// One ray. A stale scene gives a miss with HitKind::invalid_ray.
   Hit closest(const Ray& ray) const;
   bool occluded(const Ray& ray) const;  ///< one ray; false while the scene is stale
 
-  /// After edits of the set: evaluates grids or pieces anew and rebuilds the BVH. Errors: those of make; the scene
-  /// then stays stale until a refit succeeds.
+  /// After edits of the set, whichever way they were made; between an edit and its refit all queries are errors. Exact
+  /// mode: makes the pieces of the edited patches anew, cut as they were, and refits the BVH, whose boxes overlap more the
+  /// further patches have moved: rays then take longer, until a rebuild. It is a rebuild where the set's box has left the
+  /// range that coordinates are scaled to, twice as large or half as large at the most, and in grid mode. Nothing is done where nothing was
+  /// edited. Errors: those of make; the scene then stays stale until a refit or a rebuild succeeds.
   Status refit(const Execution& execution = {});
+  /// As made anew: all pieces or grids, and the BVH. Errors: as those of refit.
+  Status rebuild(const Execution& execution = {});
 
   Box3 box() const;                ///< of facets or pieces' nets: tighter than of all control points; empty while stale
   std::uint64_t revision() const;  ///< of the set, when the scene was made or last refitted

@@ -173,6 +173,7 @@ Result<PatchSet> PatchSet::Impl::make(std::vector<BezierPatch> patches, std::vec
     set->origin = known->centre() + Vec3{};  // a zero's sign would depend on the order of the patches
   }
   set->collapsed.resize(set->patches.size());
+  set->edited.resize(set->patches.size());
   lay_out(*set);
   if (Status status = set->pack_all(); !status.ok()) return status;
   find_largest_doubt(set->single);
@@ -222,7 +223,7 @@ std::size_t PatchSet::memory_bytes() const {
            bytes(of.point_doubt);
   };
   std::size_t total = sizeof(Impl) + bytes(impl_->patches) + bytes(impl_->sources) + bytes(impl_->slots) + bytes(impl_->collapsed) +
-                      bytes(impl_->groups) + bytes(impl_->lane_patches) + bytes(impl_->lane_counts) + all_bytes(impl_->single) +
+                      bytes(impl_->groups) + bytes(impl_->edited) + bytes(impl_->lane_patches) + bytes(impl_->lane_counts) + all_bytes(impl_->single) +
                       all_bytes(impl_->twice);
   for (const BezierPatch& patch : impl_->patches) total += patch.points().size_bytes() + patch.weights().size_bytes();
   return total;
@@ -242,7 +243,8 @@ Status PatchSet::set_control_points(std::size_t index, std::span<const Vec3> poi
       (void)impl_->pack(index);  // it fitted before
       return too_large(index);
     }
-    ++impl_->revision;
+    const auto patch = static_cast<std::uint32_t>(index);
+    impl_->note_edits({&patch, 1});
     return {};
   });
 }

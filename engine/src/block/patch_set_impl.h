@@ -71,6 +71,13 @@ class PatchSet::Impl {
   Vec3 origin;
   std::size_t surface_count = 0;
   std::uint64_t revision = 0;
+  std::vector<std::uint64_t> edited;  ///< of each patch: the revision that its last edit made; 0 where there is none
+
+  /// A new revision, in which these patches are not what they were.
+  void note_edits(std::span<const std::uint32_t> of) {
+    ++revision;
+    for (const std::uint32_t patch : of) edited[patch] = revision;
+  }
 
   const BlockGroup& group_of_block(std::size_t block) const;
   template <class T>

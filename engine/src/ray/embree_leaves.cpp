@@ -72,6 +72,7 @@ struct EmbreeLeaves::State {
   const kernel::RayKernels* kernels = nullptr;
   double tolerance = 0;
   Owned<RTCDevice, DeviceRelease> device;
+  Owned<RTCGeometry, GeometryRelease> geometry;
   Owned<RTCScene, SceneRelease> scene;
 
   static void bounds(const RTCBoundsFunctionArguments* arguments) {
@@ -189,27 +190,44 @@ Result<EmbreeLeaves> EmbreeLeaves::make(Isa isa) {
   return EmbreeLeaves(std::move(state));
 }
 
-Status EmbreeLeaves::build(const SetView& set, const LeafNets& nets, double tolerance, const Execution& execution) {
+Status EmbreeLeaves::build(const SetView& set, const LeafNets& nets, double tolerance, bool follows,
+                           const Execution& execution) {
   State& state = *state_;
   state.scene.reset();
   state.set = &set;
   state.nets = &nets;
   state.tolerance = tolerance;
   RTCDevice device = state.device.get();
-  const Owned<RTCGeometry, GeometryRelease> geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER));
+  state.geometry.reset(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER));
   Owned<RTCScene, SceneRelease> scene(rtcNewScene(device));
+  RTCGeometry geometry = state.geometry.get();
   if (!geometry || !scene) return state.monitor.take();
-  rtcSetGeometryUserPrimitiveCount(geometry.get(), static_cast<unsigned>(nets.leaves().size()));
-  rtcSetGeometryUserData(geometry.get(), &state);
-  rtcSetGeometryBoundsFunction(geometry.get(), &State::bounds, nullptr);
-  rtcSetGeometryIntersectFunction(geometry.get(), &State::intersect);
-  rtcSetGeometryOccludedFunction(geometry.get(), &State::occluded);
-  rtcCommitGeometry(geometry.get());
-  rtcAttachGeometry(scene.get(), geometry.get());
-  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(nets.leaves().size()));
+  rtcSetGeometryUserData(geometry, &state);
+  rtcSetGeometryBoundsFunction(geometry, &State::bounds, nullptr);
+  rtcSetGeometryIntersectFunction(geometry, &State::intersect);
+  rtcSetGeometryOccludedFunction(geometry, &State::occluded);
+  // Embree refits in dynamic scenes of low quality alone, which hold a tree for each geometry: this one's is built as
+  // well as any, and later refitted, where it says so from the start.
+  if (follows) {
+    rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_REFIT);
+    rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_LOW);
+  }
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene.get(), geometry);
+  rtcSetSceneFlags(scene.get(), follows ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC : RTC_SCENE_FLAG_ROBUST);
   if (Status status = commit(scene.get(), state.monitor, execution); !status.ok()) return status;
   state.scene = std::move(scene);
   return {};
+}
+
+Status EmbreeLeaves::refit(double tolerance, const Execution& execution) {
+  State& state = *state_;
+  state.tolerance = tolerance;
+  rtcCommitGeometry(state.geometry.get());
+  Status status = commit(state.scene.get(), state.monitor, execution);
+  if (!status.ok()) state.scene.reset();
+  return status;
 }
 
 void EmbreeLeaves::trace(RayQuery& query, SearchSpace& space) const {

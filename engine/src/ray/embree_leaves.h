@@ -25,9 +25,12 @@ class EmbreeLeaves {
   EmbreeLeaves& operator=(EmbreeLeaves&&) noexcept;
   ~EmbreeLeaves();
 
-  /// Builds the BVH, in the caller's arena. `set` and `nets`, of which only the boxes may be dropped afterwards, must stay
-  /// in place and unchanged while the scene is used; `tolerance` as of search_leaf. On errors the scene is empty. Errors: cancelled, Embree's own.
-  Status build(const SetView& set, const LeafNets& nets, double tolerance, const Execution& execution);
+  /// Builds the BVH, in the caller's arena. `set` and `nets` must stay in place, and unchanged while the scene is used;
+  /// `tolerance` as of search_leaf. `follows`: refit() will be called; otherwise the nets' boxes may be dropped
+  /// afterwards. On errors the scene is empty. Errors: cancelled, Embree's own.
+  Status build(const SetView& set, const LeafNets& nets, double tolerance, bool follows, const Execution& execution);
+  /// The boxes of the BVH that was built follow those of the nets. After an error the scene is empty. Errors: as above.
+  Status refit(double tolerance, const Execution& execution);
 
   /// Runs the query against all leaves that its line meets. The line must not be empty.
   void trace(RayQuery& query, SearchSpace& space) const;

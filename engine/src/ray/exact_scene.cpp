@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "ray/adjacency.h"
 #include "ray/distinct_roots.h"
@@ -37,10 +41,35 @@ bool coherent(std::span<RayQuery* const> queries) {
   });
 }
 
+/// Found when it is first asked for: the closest hits need none.
+class LazyAdjacency {
+ public:
+  const Adjacency& of(const SetView& set) const {
+    if (const Adjacency* const made = made_.load(std::memory_order_acquire)) return *made;
+    const std::lock_guard lock(mutex_);
+    if (!owned_) owned_ = std::make_unique<Adjacency>(set);
+    made_.store(owned_.get(), std::memory_order_release);
+    return *owned_;
+  }
+  void forget() {
+    made_ = nullptr;
+    owned_.reset();
+  }
+  std::size_t memory_bytes() const {
+    const Adjacency* const made = made_.load(std::memory_order_acquire);
+    return made ? made->memory_bytes() : 0;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  mutable std::unique_ptr<Adjacency> owned_;
+  mutable std::atomic<const Adjacency*> made_ = nullptr;
+};
+
 class ExactScene final : public RayScene::Impl {
  public:
   ExactScene(const PatchSet& set, EmbreeLeaves scene, const RaySceneOptions& options)
-      : Impl(set), scene_(std::move(scene)), options_(options) {}
+      : Impl(set), scene_(std::move(scene)), options_(options), follows_(options.editable) {}
 
   std::size_t memory_bytes() const override {
     return nets_.memory_bytes() + adjacency_.memory_bytes() + scene_.memory_bytes();
@@ -48,33 +77,29 @@ class ExactScene final : public RayScene::Impl {
 
  private:
   Status build(const Execution& execution) override;
+  Status update(std::span<const std::uint32_t> edited, const Execution& execution) override;
   Box3 model_box() const override { return box_; }
   void closest_piece(std::span<const Ray> rays, std::span<Hit> hits) const override;
   void occluded_piece(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const override;
+  void prepare_for_all() const override { (void)adjacency_.of(set()); }
   Status all_of(const Ray& ray, std::vector<Hit>& hits) const override;
+  double measure();
   void trace(std::span<std::optional<RayQuery>> queries, SearchSpace& space) const;
   Hit hit_at(const RayLine& line, const LeafRoot& root) const;
 
   LeafNets nets_;  // borrowed by scene_
   EmbreeLeaves scene_;
   RaySceneOptions options_;
-  Adjacency adjacency_;
+  LazyAdjacency adjacency_;
   SceneFrame frame_;
   Box3 box_, scene_box_;  // of the leaves' control points, in the model's and the scene's coordinates
   double size_ = 0;
+  bool follows_;    // what stands can be updated
+  int updates_ = 0;  // since the last build
 };
 
-Status ExactScene::build(const Execution& execution) {
-  const Box3 box = set().box();
-  size_ = box.diagonal();
-  if (!(size_ >= smallest_size && size_ <= largest_size))
-    return Status(StatusCode::unsupported,
-                  "an exact ray scene holds models of a size from 1e-140 to 1e140: scale the model");
-  frame_ = SceneFrame::around(box);
-  if (Status status = nets_.build(set(), frame_, options_.pieces, execution); !status.ok()) return status;
-  if (nets_.leaves().size() > most_leaves)
-    return Status(StatusCode::unsupported, "more than the 2^32 - 1 pieces of patches of one ray scene");
-  adjacency_ = Adjacency(set());
+/// Boxes of all pieces as they stand. Returns the tolerance.
+double ExactScene::measure() {
   scene_box_ = {};
   int degree_u = 1, degree_v = 1;
   for (const Box3& leaf_box : nets_.boxes()) scene_box_.extend(leaf_box);
@@ -83,10 +108,35 @@ Status ExactScene::build(const Execution& execution) {
   }
   box_ = {frame_.to_model(scene_box_.lower), frame_.to_model(scene_box_.upper)};
   const double asked = options_.tolerance.value_or(default_tolerance * size_) * frame_.scale;
-  const double rounding = search_rounding(degree_u, degree_v, nets_.most_halvings(), SearchSpace::most_depth);
-  if (Status status = scene_.build(set(), nets_, std::max(asked, 2 * rounding), execution); !status.ok()) return status;
-  nets_.drop_boxes();
+  return std::max(asked,
+                  2 * search_rounding(degree_u, degree_v, nets_.most_halvings(), SearchSpace::most_depth));
+}
+
+Status ExactScene::build(const Execution& execution) {
+  const Box3 box = set().box();
+  size_ = box.diagonal();
+  if (!(size_ >= smallest_size && size_ <= largest_size))
+    return Status(StatusCode::unsupported,
+                  "an exact ray scene holds models of a size from 1e-140 to 1e140: scale the model");
+  frame_ = SceneFrame::around(box);
+  updates_ = 0;
+  adjacency_.forget();
+  if (Status status = nets_.build(set(), frame_, options_.pieces, execution); !status.ok()) return status;
+  if (nets_.leaves().size() > most_leaves)
+    return Status(StatusCode::unsupported, "more than the 2^32 - 1 pieces of patches of one ray scene");
+  if (Status status = scene_.build(set(), nets_, measure(), follows_, execution); !status.ok()) return status;
+  if (!follows_) nets_.drop_boxes();
   return {};
+}
+
+Status ExactScene::update(std::span<const std::uint32_t> edited, const Execution& execution) {
+  const bool stood = std::exchange(follows_, true);
+  const Box3 box = set().box();
+  if (!stood || !frame_.holds(box) || ++updates_ == options_.rebuild_after) return build(execution);
+  size_ = box.diagonal();
+  adjacency_.forget();
+  if (Status status = nets_.update(set(), edited, execution); !status.ok()) return status;
+  return scene_.refit(measure(), execution);
 }
 
 Hit ExactScene::hit_at(const RayLine& line, const LeafRoot& root) const {
@@ -173,7 +223,7 @@ Status ExactScene::all_of(const Ray& ray, std::vector<Hit>& hits) const {
     scene_.trace(query, space);
   }
   if (query.overflow) return Status(StatusCode::out_of_memory, "out of memory");
-  keep_distinct(set(), adjacency_, query.roots);
+  keep_distinct(set(), adjacency_.of(set()), query.roots);
   for (const LeafRoot& root : query.roots) {
     hits.push_back(hit_at(line, root));
     hits.back().flags.incomplete = query.incomplete;
@@ -192,6 +242,10 @@ Result<std::unique_ptr<RayScene::Impl>> make_exact_scene(const PatchSet& set, co
   if (options.tolerance && !(*options.tolerance > 0 && std::isfinite(*options.tolerance))) {
     return Status(StatusCode::invalid_argument, "the tolerance of a ray scene must be a finite length above 0, not " +
                                                     std::to_string(*options.tolerance));
+  }
+  if (options.rebuild_after < 0) {
+    return Status(StatusCode::invalid_argument, "refits until a rebuild are counted from 1, or 0 for none, not " +
+                                                    std::to_string(options.rebuild_after));
   }
   const Result<Isa> isa = options.isa ? parse_isa(name(*options.isa)) : default_isa();
   if (!isa) return isa.status();

@@ -51,6 +51,8 @@ class GridScene final : public RayScene::Impl {
 
  private:
   Status build(const Execution& execution) override;
+  /// Embree refits no grids.
+  Status update(std::span<const std::uint32_t>, const Execution& execution) override { return build(execution); }
   Box3 model_box() const override {
     const Box3 box = scene_.box();
     return {box.lower + set().origin(), box.upper + set().origin()};

@@ -139,6 +139,13 @@ std::vector<LeafNets::Plan> LeafNets::plan(const SetView& set, int pieces) {
   return plans;
 }
 
+/// As it was made.
+LeafNets::Plan LeafNets::plan_of(std::uint32_t patch) const {
+  const auto first = std::lower_bound(leaves_.begin(), leaves_.end(), patch,
+                                      [](const Leaf& leaf, std::uint32_t index) { return leaf.patch < index; });
+  return {first->halvings_u, first->halvings_v, static_cast<std::size_t>(first - leaves_.begin())};
+}
+
 /// `nets` and `halves`: memory that is used again.
 void LeafNets::cut(const BezierPatch& patch, std::uint32_t index, const Plan& plan, std::vector<double>& nets,
                    std::vector<double>& halves) {
@@ -189,6 +196,14 @@ Status LeafNets::build(const SetView& set, const SceneFrame& frame, int pieces, 
   return parallel_for(plans.size(), patches_a_task, execution, [&](std::size_t begin, std::size_t end) {
     std::vector<double> nets, halves;
     for (std::size_t k = begin; k < end; ++k) cut(set.patch(k), static_cast<std::uint32_t>(k), plans[k], nets, halves);
+  });
+}
+
+Status LeafNets::update(const SetView& set, std::span<const std::uint32_t> patches, const Execution& execution) {
+  return parallel_for(patches.size(), patches_a_task, execution, [&](std::size_t begin, std::size_t end) {
+    std::vector<double> nets, halves;
+    for (const std::uint32_t patch : patches.subspan(begin, end - begin))
+      cut(set.patch(patch), patch, plan_of(patch), nets, halves);
   });
 }
 

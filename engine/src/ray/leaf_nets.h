@@ -34,6 +34,10 @@ class LeafNets {
   /// Cuts every patch into at least `pieces` x `pieces` (a power of two), more along sides that are strongly bent or much
   /// longer than the others, so that the pieces are nearly flat and roughly square. Errors: cancelled, out_of_memory.
   Status build(const SetView& set, const SceneFrame& frame, int pieces, const Execution& execution);
+  /// The pieces of these patches anew, with their boxes, which must not have been dropped. Patches are cut as they were
+  /// when they were built, however they bend now. After an error some pieces are as they were. Errors: cancelled,
+  /// out_of_memory.
+  Status update(const SetView& set, std::span<const std::uint32_t> patches, const Execution& execution);
 
   std::span<const Leaf> leaves() const { return leaves_; }
   const kernel::RayLeaf& local(std::size_t leaf) const {
@@ -57,6 +61,7 @@ class LeafNets {
  private:
   struct Plan;
   std::vector<Plan> plan(const SetView& set, int pieces);
+  Plan plan_of(std::uint32_t patch) const;
   void cut(const BezierPatch& patch, std::uint32_t index, const Plan& plan, std::vector<double>& nets,
            std::vector<double>& halves);
 

@@ -1,5 +1,6 @@
 #include "ray/ray_line.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -57,6 +58,11 @@ SceneFrame SceneFrame::around(const Box3& box) {
   std::frexp(reach, &exponent);  // reach < 2^exponent
   frame.scale = std::ldexp(1.0, -exponent);
   return frame;
+}
+
+bool SceneFrame::holds(const Box3& box) const {
+  const Vec3 low = to_scene(box.lower), high = to_scene(box.upper);
+  return std::max(max_abs(low), max_abs(high)) <= 1 && max_abs(high - low) >= 0.75;
 }
 
 RayLine line_of(const Ray& ray, const SceneFrame& frame, const Box3& box) {

@@ -14,6 +14,9 @@ struct SceneFrame {
 
   /// `box`: not empty, of a finite diagonal that is not zero.
   static SceneFrame around(const Box3& box);
+  /// Whether a box that is not empty, another one perhaps, lies in it as well: the longer side may be 3/4 long, so that a
+  /// size that goes up and down by a little does not ask for another frame each time.
+  bool holds(const Box3& box) const;
   Vec3 to_scene(const Vec3& p) const { return scale * (p - centre); }
   Vec3 to_model(const Vec3& x) const { return centre + (1 / scale) * x; }
 };

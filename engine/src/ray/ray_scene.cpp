@@ -25,12 +25,21 @@ Status short_output(std::size_t rays, std::size_t room) {
 
 }  // namespace
 
+Status RayScene::Impl::done(Status status) {
+  ready_ = status.ok();
+  if (ready_) revision_ = set_.revision();
+  return status;
+}
+
 Status RayScene::Impl::rebuild(const Execution& execution) {
-  ready_ = false;
-  if (Status status = build(execution); !status.ok()) return status;
-  revision_ = set_.revision();
-  ready_ = true;
-  return {};
+  ready_ = false;  // whatever build() throws
+  return done(build(execution));
+}
+
+Status RayScene::Impl::refit(const Execution& execution) {
+  if (fresh()) return {};
+  if (!std::exchange(ready_, false)) return done(build(execution));
+  return done(update(set_.edited_since(revision_), execution));
 }
 
 Status RayScene::Impl::closest(std::span<const Ray> rays, std::span<Hit> hits, const Execution& execution) const {
@@ -55,6 +64,7 @@ Status RayScene::Impl::all(std::span<const Ray> rays, HitLists& lists, const Exe
   lists.hits.clear();
   lists.first.assign(1, 0);
   if (!fresh()) return stale();
+  prepare_for_all();
   const std::size_t tasks = (rays.size() + rays_a_task - 1) / rays_a_task;
   std::vector<std::vector<Hit>> found(tasks);
   std::vector<std::size_t> ends(rays.size());
@@ -122,6 +132,10 @@ bool RayScene::occluded(const Ray& ray) const {
 }
 
 Status RayScene::refit(const Execution& execution) {
+  return guarded([&] { return impl_->refit(execution); });
+}
+
+Status RayScene::rebuild(const Execution& execution) {
   return guarded([&] { return impl_->rebuild(execution); });
 }
 

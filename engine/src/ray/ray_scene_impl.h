@@ -16,8 +16,9 @@ class RayScene::Impl {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
-  /// Makes ready for the set as it is now. After an error the scene stays stale.
+  /// Makes ready for the set as it is now, from nothing or from what stands. After an error the scene stays stale.
   Status rebuild(const Execution& execution);
+  Status refit(const Execution& execution);
   Status closest(std::span<const Ray> rays, std::span<Hit> hits, const Execution& execution) const;
   Status occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded, const Execution& execution) const;
   Status all(std::span<const Ray> rays, HitLists& lists, const Execution& execution) const;
@@ -30,6 +31,8 @@ class RayScene::Impl {
   /// Any number of rays of a task. Valid or not; room is checked.
   virtual void closest_piece(std::span<const Ray> rays, std::span<Hit> hits) const = 0;
   virtual void occluded_piece(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const = 0;
+  /// Before all_of() is called, by one thread or several at once.
+  virtual void prepare_for_all() const {}
   /// Appends the hits of one ray, in order.
   virtual Status all_of(const Ray& ray, std::vector<Hit>& hits) const = 0;
 
@@ -37,7 +40,11 @@ class RayScene::Impl {
 
  private:
   virtual Status build(const Execution& execution) = 0;
+  /// build() once something stands: `edited` are the patches that are not what they were when it was made. After an error
+  /// of build() or update() nothing stands.
+  virtual Status update(std::span<const std::uint32_t> edited, const Execution& execution) = 0;
   virtual Box3 model_box() const = 0;
+  Status done(Status status);
   bool fresh() const { return ready_ && revision_ == set_.revision(); }
 
   SetView set_;

@@ -1,6 +1,9 @@
 #pragma once
 // The state of a patch set as a ray scene keeps it: valid while the set lives, wherever the set itself is moved.
 
+#include <cstdint>
+#include <vector>
+
 #include "block/patch_set_impl.h"
 #include "tessera/patch_set.h"
 
@@ -17,6 +20,14 @@ class SetView {
   Vec3 origin() const { return set_->origin; }
   Box3 box() const { return set_->box(); }  ///< looks at every control point
   std::uint64_t revision() const { return set_->revision; }
+  /// The patches that are not what they were in that revision, in order.
+  std::vector<std::uint32_t> edited_since(std::uint64_t revision) const {
+    std::vector<std::uint32_t> out;
+    for (std::uint32_t k = 0; k < set_->edited.size(); ++k) {
+      if (set_->edited[k] > revision) out.push_back(k);
+    }
+    return out;
+  }
   const PatchSet::Impl& impl() const { return *set_; }
 
  private:
