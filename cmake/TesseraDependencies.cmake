@@ -1,7 +1,7 @@
 # Where each dependency comes from. All are packages of Debian 12; tools/setup.sh installs them.
 #   oneTBB            libtbb-dev 2021.8           the core: threads (engine/src/parallel alone includes it)
 #   xsimd             libxsimd-dev 8.1            the core: SIMD batches (engine/src/kernel alone; headers only)
-#   Embree            libembree-dev 3.13          tessera::ray (engine/src/ray alone)
+#   Embree            libembree-dev 3.13          tessera::ray (engine/src/ray alone, and ray_embree.h); 4 will do
 #   OpenCASCADE       libocct-data-exchange-dev 7.6  tessera::io_occt (engine/src/io_occt alone); optional
 #   CLI11             libcli11-dev 2.1            the command line
 #   nlohmann-json     nlohmann-json3-dev 3.11     tessera::io: models (headers only, within engine/src/io);
@@ -33,7 +33,10 @@ if(xsimd_VERSION VERSION_LESS 8)
 endif()
 find_package(Threads REQUIRED)
 if(TESSERA_BUILD_RAY)
-  find_package(embree 3 REQUIRED)
+  find_package(embree 3 QUIET)
+  if(NOT embree_FOUND)
+    find_package(embree 4 REQUIRED)
+  endif()
 endif()
 if(TESSERA_BUILD_IO)
   find_package(nlohmann_json 3 REQUIRED)

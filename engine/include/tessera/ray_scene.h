@@ -143,6 +143,7 @@ class RayScene {
   std::size_t memory_bytes() const;  ///< grids or nets, and BVH
 
   class [[gnu::visibility("hidden")]] Impl;
+  const Impl& impl() const { return *impl_; }  ///< for the library's own use
 
  private:
   explicit RayScene(std::unique_ptr<Impl> impl);

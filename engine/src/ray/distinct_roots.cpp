@@ -28,7 +28,7 @@ class Sameness {
 
  private:
   bool on_one_patch(const LeafRoot& a, const LeafRoot& b) const {
-    if (near(a.u, b.u, a.radius_u + b.radius_u) && near(a.v, b.v, a.radius_v + b.radius_v)) return true;
+    if (same_place(a, b)) return true;
     // All of a collapsed edge is one point.
     const EdgeMask collapsed = set_.collapsed_edges(a.patch);
     for (int edge = 0; edge < 4; ++edge) {

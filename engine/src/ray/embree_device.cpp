@@ -74,11 +74,4 @@ Status commit(RTCScene scene, EmbreeMonitor& monitor, const Execution& execution
   return monitor.take();
 }
 
-RTCIntersectContext context_for(RTCIntersectContextFlags flags) {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = flags;
-  return context;
-}
-
 }  // namespace tessera

@@ -1,8 +1,6 @@
 #pragma once
 // Embree's handles, and what it reports. For the files of this floor that speak to Embree.
 
-#include <embree3/rtcore.h>
-
 #include <atomic>
 #include <cstddef>
 #include <memory>
@@ -11,6 +9,7 @@
 #include <string>
 #include <type_traits>
 
+#include "ray/embree_api.h"
 #include "tessera/execution.h"
 #include "tessera/isa.h"
 #include "tessera/status.h"
@@ -53,8 +52,5 @@ Result<Owned<RTCDevice, DeviceRelease>> make_device(EmbreeMonitor& monitor, std:
 
 /// Commits a scene in the caller's arena. Errors: cancelled, Embree's own.
 Status commit(RTCScene scene, EmbreeMonitor& monitor, const Execution& execution);
-
-/// A context with flags set and no filter.
-RTCIntersectContext context_for(RTCIntersectContextFlags flags);
 
 }  // namespace tessera

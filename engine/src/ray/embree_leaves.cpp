@@ -1,7 +1,5 @@
 #include "ray/embree_leaves.h"
 
-#include <xmmintrin.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,7 +8,7 @@
 
 #include "kernel/kernel_table.h"
 #include "ray/embree_device.h"
-#include "ray/polished_root.h"
+#include "ray/leaf_tracer.h"
 
 namespace tessera {
 namespace {
@@ -18,27 +16,16 @@ namespace {
 // Rays in float: start and direction round by 2^-24 of at most 3.5 and over at most 4, a component by 5e-7. Boxes are
 // larger by four times that on each side; Embree's own arithmetic is conservative in robust scenes.
 constexpr float box_pad = 2e-6f;
-constexpr double probe_pad = 4e-6;  // of s in a kernel, by as much again
 
 /// What a call of Embree's carries to the callbacks: first what Embree knows, so that one points to the other. Of a
 /// packet's rays, by their ids.
 struct Call {
-  RTCIntersectContext context;
+  EmbreeContext context;
   SearchSpace* space;
   std::array<RayQuery*, EmbreeLeaves::packet> queries;  ///< null of idle lanes
   std::array<float, EmbreeLeaves::packet> enter;  ///< s where Embree's ray begins
   std::array<kernel::RayProbe, EmbreeLeaves::packet> probes;
 };
-
-kernel::RayProbe probe_of(const RayQuery& query) {
-  const auto narrow = [](double x) { return static_cast<float>(x); };
-  const Vec3 &o = query.line.start, &d = query.line.direction;
-  return {{narrow(o.x), narrow(o.y), narrow(o.z), 0},
-          {narrow(d.x), narrow(d.y), narrow(d.z), 0},
-          narrow(std::max(query.near, -8.0) - probe_pad),
-          8,
-          false};
-}
 
 /// Embree 3 takes 16 rays by eights or fours where the machine has no wider vectors, and a part without a ray of ours comes
 /// to the callbacks with lanes that it calls valid.
@@ -67,83 +54,23 @@ std::array<float, 7> embree_ray(const RayLine& line) {
 
 struct EmbreeLeaves::State {
   EmbreeMonitor monitor;  // outlives the device, which calls it
-  const SetView* set = nullptr;
-  const LeafNets* nets = nullptr;
-  const kernel::RayKernels* kernels = nullptr;
-  double tolerance = 0;
+  LeafTracer tracer;
   Owned<RTCDevice, DeviceRelease> device;
   Owned<RTCGeometry, GeometryRelease> geometry;
   Owned<RTCScene, SceneRelease> scene;
 
   static void bounds(const RTCBoundsFunctionArguments* arguments) {
     const State& state = *static_cast<const State*>(arguments->geometryUserPtr);
-    const Box3& box = state.nets->boxes()[arguments->primID];
+    const Box3& box = state.tracer.nets->boxes()[arguments->primID];
     RTCBounds& out = *arguments->bounds_o;
     out.lower_x = static_cast<float>(box.lower.x) - box_pad, out.upper_x = static_cast<float>(box.upper.x) + box_pad;
     out.lower_y = static_cast<float>(box.lower.y) - box_pad, out.upper_y = static_cast<float>(box.upper.y) + box_pad;
     out.lower_z = static_cast<float>(box.lower.z) - box_pad, out.upper_z = static_cast<float>(box.upper.z) + box_pad;
   }
 
-  const RayQuery& search(unsigned leaf_index, Call& call, unsigned ray) const {
-    RayQuery& query = *call.queries[ray];
-    const Leaf& leaf = nets->leaves()[leaf_index];
-    call.probes[ray].far = static_cast<float>(std::min(query.far, 8.0) + probe_pad);
-    if (!decide(leaf, leaf_index, call.probes[ray], query)) {
-      if (!call.space->make_ready()) {
-        query.overflow = query.incomplete = true;
-        return query;
-      }
-      nets->write_net(*set, leaf, call.space->leaf_net(), call.space->spare_net());
-      search_leaf(leaf, call.space->leaf_net(), tolerance, *call.space, query);
-    }
-    return query;
-  }
-
-  /// What a root is polished with, while the kernel works.
-  static void fetch(const BezierPatch& patch) {
-    constexpr std::ptrdiff_t points_a_line = 64 / static_cast<std::ptrdiff_t>(sizeof(Vec3));
-    const std::span<const Vec3> points = patch.points();
-    const Vec3* const end = points.data() + std::min<std::size_t>(points.size(), 16);
-    for (const Vec3* point = points.data(); point < end; point += points_a_line)
-      _mm_prefetch(reinterpret_cast<const char*>(point), _MM_HINT_T0);
-  }
-
-  /// In float, where that proves what there is; then in double what was found.
-  bool decide(const Leaf& leaf, unsigned leaf_index, kernel::RayProbe& probe, RayQuery& query) const {
-    const auto trace = leaf.rational ? kernels->trace_rational_leaf : kernels->trace_polynomial_leaf;
-    const kernel::RayLeaf& local = nets->local(leaf_index);
-    kernel::RayRoots roots;
-    probe.any = query.wanted == RootsWanted::any;
-    if (!probe.any) fetch(set->patch(leaf.patch));
-    if (!trace(local, probe, roots)) return false;
-    if (roots.count == 0) return true;
-    if (probe.any) {
-      query.found = lies_between(roots.root[0], query.line);
-      if (query.found) return true;
-      probe.any = false;  // that one is next to an end: all must be looked at
-      if (!trace(local, probe, roots)) return false;
-    }
-    const auto polished = [&](int k, LeafRoot& root) {
-      return polish(set->patch(leaf.patch), nets->frame(), leaf, *kernels, query.line, roots.root[k],
-                    query.wanted == RootsWanted::all, root);
-    };
-    LeafRoot first;
-    if (!polished(0, first)) return false;
-    if (roots.count > 1) {
-      LeafRoot others[kernel::RayRoots::most - 1];
-      for (int k = 1; k < roots.count; ++k) {
-        if (!polished(k, others[k - 1])) return false;
-      }
-      for (int k = 1; k < roots.count; ++k) query.take(others[k - 1]);
-    }
-    query.take(first);
-    return true;
-  }
-
-  /// Whether tnear and tfar are no question.
-  static bool lies_between(const kernel::RayRoot& root, const RayLine& line) {
-    const double s = root.s, off = static_cast<double>(root.s_error) + line.slack;
-    return s - off > line.near && s + off < line.far;
+  const RayQuery& search(unsigned leaf, Call& call, unsigned ray) const {
+    tracer.search(leaf, call.probes[ray], *call.queries[ray], *call.space);
+    return *call.queries[ray];
   }
 
   /// The end of Embree's ray follows the closest root, rounded up by what boxes are padded with. One ray or a packet.
@@ -186,7 +113,7 @@ Result<EmbreeLeaves> EmbreeLeaves::make(Isa isa) {
   Result<Owned<RTCDevice, DeviceRelease>> device = make_device(state->monitor, isa);
   if (!device) return device.status();
   state->device = *std::move(device);
-  state->kernels = &ray_kernels(isa);
+  state->tracer.kernels = &ray_kernels(isa);
   return EmbreeLeaves(std::move(state));
 }
 
@@ -194,9 +121,8 @@ Status EmbreeLeaves::build(const SetView& set, const LeafNets& nets, double tole
                            const Execution& execution) {
   State& state = *state_;
   state.scene.reset();
-  state.set = &set;
-  state.nets = &nets;
-  state.tolerance = tolerance;
+  state.tracer.set = &set, state.tracer.nets = &nets;
+  state.tracer.tolerance = tolerance;
   RTCDevice device = state.device.get();
   state.geometry.reset(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER));
   Owned<RTCScene, SceneRelease> scene(rtcNewScene(device));
@@ -223,7 +149,7 @@ Status EmbreeLeaves::build(const SetView& set, const LeafNets& nets, double tole
 
 Status EmbreeLeaves::refit(double tolerance, const Execution& execution) {
   State& state = *state_;
-  state.tolerance = tolerance;
+  state.tracer.tolerance = tolerance;
   rtcCommitGeometry(state.geometry.get());
   Status status = commit(state.scene.get(), state.monitor, execution);
   if (!status.ok()) state.scene.reset();
@@ -232,7 +158,7 @@ Status EmbreeLeaves::refit(double tolerance, const Execution& execution) {
 
 void EmbreeLeaves::trace(RayQuery& query, SearchSpace& space) const {
   Call call;
-  call.context = context_for(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+  call.context = embree_context();
   call.space = &space;
   RTCRayHit hit{};
   enter(call, 0, query);
@@ -242,17 +168,17 @@ void EmbreeLeaves::trace(RayQuery& query, SearchSpace& space) const {
   hit.ray.tfar = ray[6];
   hit.ray.mask = ~0u;
   if (query.wanted == RootsWanted::any) {
-    rtcOccluded1(state_->scene.get(), &call.context, &hit.ray);
+    occluded(state_->scene.get(), call.context, Coherence::incoherent, hit.ray);
     return;
   }
   hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(state_->scene.get(), &call.context, &hit);
+  intersect(state_->scene.get(), call.context, Coherence::incoherent, hit);
 }
 
 void EmbreeLeaves::trace(std::span<RayQuery* const> queries, SearchSpace& space) const {
   Call call;
-  call.context = context_for(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
+  call.context = embree_context();
   call.space = &space;
   RTCRayHit16 hit;
   alignas(64) std::array<int, packet> valid{};
@@ -271,11 +197,13 @@ void EmbreeLeaves::trace(std::span<RayQuery* const> queries, SearchSpace& space)
     hit.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID, hit.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
   }
   if (queries[0]->wanted == RootsWanted::any) {
-    rtcOccluded16(valid.data(), state_->scene.get(), &call.context, &hit.ray);
+    occluded(state_->scene.get(), call.context, Coherence::coherent, valid.data(), hit.ray);
   } else {
-    rtcIntersect16(valid.data(), state_->scene.get(), &call.context, &hit);
+    intersect(state_->scene.get(), call.context, Coherence::coherent, valid.data(), hit);
   }
 }
+
+const LeafTracer& EmbreeLeaves::tracer() const { return state_->tracer; }
 
 std::size_t EmbreeLeaves::memory_bytes() const { return state_->monitor.bytes(); }
 

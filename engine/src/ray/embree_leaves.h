@@ -7,6 +7,7 @@
 
 #include "ray/leaf_nets.h"
 #include "ray/leaf_search.h"
+#include "ray/leaf_tracer.h"
 #include "ray/ray_query.h"
 #include "tessera/execution.h"
 #include "tessera/status.h"
@@ -37,6 +38,8 @@ class EmbreeLeaves {
   /// The same for up to a packet of queries for the same kind of roots; quicker than one by one where they are coherent.
   void trace(std::span<RayQuery* const> queries, SearchSpace& space) const;
 
+  /// Of what was built.
+  const LeafTracer& tracer() const;
   /// What Embree has allocated.
   std::size_t memory_bytes() const;
 

@@ -104,30 +104,30 @@ Status EmbreeScene::build(const GridVertices& vertices, const Execution& executi
 }
 
 FacetHit EmbreeScene::closest(const FacetRay& ray) const {
-  RTCIntersectContext context = context_for(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+  EmbreeContext context = embree_context();
   RTCRayHit query{};
   query.ray = to_embree(ray);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(state_->scene.get(), &context, &query);
+  intersect(state_->scene.get(), context, Coherence::incoherent, query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
   return {query.hit.primID, query.ray.tfar, query.hit.v, query.hit.u};  // Embree's u runs along the width
 }
 
 bool EmbreeScene::occluded(const FacetRay& ray) const {
-  RTCIntersectContext context = context_for(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+  EmbreeContext context = embree_context();
   RTCRay query = to_embree(ray);
-  rtcOccluded1(state_->scene.get(), &context, &query);
+  tessera::occluded(state_->scene.get(), context, Coherence::incoherent, query);
   return query.tfar < 0;  // -infinity where something was met
 }
 
 void EmbreeScene::closest(std::span<const FacetRay> rays, std::span<FacetHit> hits) const {
-  RTCIntersectContext context = context_for(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
+  EmbreeContext context = embree_context();
   RTCRayHit16 query;
   alignas(64) const Lanes valid = to_embree(rays, query.ray);
   std::fill(std::begin(query.hit.geomID), std::end(query.hit.geomID), RTC_INVALID_GEOMETRY_ID);
   std::fill(std::begin(query.hit.instID[0]), std::end(query.hit.instID[0]), RTC_INVALID_GEOMETRY_ID);
-  rtcIntersect16(valid.data(), state_->scene.get(), &context, &query);
+  intersect(state_->scene.get(), context, Coherence::coherent, valid.data(), query);
   for (std::size_t k = 0; k < rays.size(); ++k) {
     hits[k] = {};
     if (query.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
@@ -136,10 +136,10 @@ void EmbreeScene::closest(std::span<const FacetRay> rays, std::span<FacetHit> hi
 }
 
 void EmbreeScene::occluded(std::span<const FacetRay> rays, std::span<std::uint8_t> occluded) const {
-  RTCIntersectContext context = context_for(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
+  EmbreeContext context = embree_context();
   RTCRay16 query;
   alignas(64) const Lanes valid = to_embree(rays, query);
-  rtcOccluded16(valid.data(), state_->scene.get(), &context, &query);
+  tessera::occluded(state_->scene.get(), context, Coherence::coherent, valid.data(), query);
   for (std::size_t k = 0; k < rays.size(); ++k) occluded[k] = query.tfar[k] < 0;
 }
 

@@ -14,6 +14,7 @@
 #include "ray/distinct_roots.h"
 #include "ray/embree_leaves.h"
 #include "ray/embree_scene.h"
+#include "ray/exact_source.h"
 #include "ray/leaf_nets.h"
 #include "ray/leaf_search.h"
 #include "ray/ray_line.h"
@@ -66,7 +67,7 @@ class LazyAdjacency {
   mutable std::atomic<const Adjacency*> made_ = nullptr;
 };
 
-class ExactScene final : public RayScene::Impl {
+class ExactScene final : public RayScene::Impl, private ExactSource {
  public:
   ExactScene(const PatchSet& set, EmbreeLeaves scene, const RaySceneOptions& options)
       : Impl(set), scene_(std::move(scene)), options_(options), follows_(options.editable) {}
@@ -75,7 +76,14 @@ class ExactScene final : public RayScene::Impl {
     return nets_.memory_bytes() + adjacency_.memory_bytes() + scene_.memory_bytes();
   }
 
+  const ExactSource* exact_source() const override { return this; }
+
  private:
+  bool fresh() const override { return Impl::fresh(); }
+  const LeafTracer& tracer() const override { return scene_.tracer(); }
+  RayLine line(const Ray& ray) const override { return line_of(ray, frame_, scene_box_); }
+  Hit hit_at(const RayLine& line, const LeafRoot& root) const override;
+
   Status build(const Execution& execution) override;
   Status update(std::span<const std::uint32_t> edited, const Execution& execution) override;
   Box3 model_box() const override { return box_; }
@@ -85,7 +93,6 @@ class ExactScene final : public RayScene::Impl {
   Status all_of(const Ray& ray, std::vector<Hit>& hits) const override;
   double measure();
   void trace(std::span<std::optional<RayQuery>> queries, SearchSpace& space) const;
-  Hit hit_at(const RayLine& line, const LeafRoot& root) const;
 
   LeafNets nets_;  // borrowed by scene_
   EmbreeLeaves scene_;
@@ -181,7 +188,7 @@ void ExactScene::closest_piece(std::span<const Ray> rays, std::span<Hit> hits) c
       const Ray& ray = rays[first + k];
       queries[k].reset();
       if (!is_valid(ray)) continue;
-      lines[k] = line_of(ray, frame_, scene_box_);
+      lines[k] = line(ray);
       if (!lines[k].empty) queries[k].emplace(ray, lines[k], RootsWanted::closest);
     }
     trace(std::span(queries).first(count), space);
@@ -204,7 +211,7 @@ void ExactScene::occluded_piece(std::span<const Ray> rays, std::span<std::uint8_
       const Ray& ray = rays[first + k];
       queries[k].reset();
       if (!is_valid(ray)) continue;
-      lines[k] = line_of(ray, frame_, scene_box_);
+      lines[k] = line(ray);
       if (!lines[k].empty) queries[k].emplace(ray, lines[k], RootsWanted::any);
     }
     trace(std::span(queries).first(count), space);
@@ -214,10 +221,10 @@ void ExactScene::occluded_piece(std::span<const Ray> rays, std::span<std::uint8_
 
 Status ExactScene::all_of(const Ray& ray, std::vector<Hit>& hits) const {
   if (!is_valid(ray)) return {};
-  const RayLine line = line_of(ray, frame_, scene_box_);
-  if (line.empty) return {};
+  const RayLine along = line(ray);
+  if (along.empty) return {};
   SearchSpace space(nets_.largest());
-  RayQuery query(ray, line, RootsWanted::all);
+  RayQuery query(ray, along, RootsWanted::all);
   {
     const FlushDenormals flush;
     scene_.trace(query, space);
@@ -225,7 +232,7 @@ Status ExactScene::all_of(const Ray& ray, std::vector<Hit>& hits) const {
   if (query.overflow) return Status(StatusCode::out_of_memory, "out of memory");
   keep_distinct(set(), adjacency_.of(set()), query.roots);
   for (const LeafRoot& root : query.roots) {
-    hits.push_back(hit_at(line, root));
+    hits.push_back(hit_at(along, root));
     hits.back().flags.incomplete = query.incomplete;
   }
   return {};

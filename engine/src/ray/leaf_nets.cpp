@@ -190,6 +190,14 @@ void LeafNets::write_net(const SetView& set, const Leaf& leaf, double* net, doub
   }
 }
 
+Box3 LeafNets::box(const SetView& set, std::size_t leaf) const {
+  if (!boxes_.empty()) return boxes_[leaf];
+  const Leaf& of = leaves_[leaf];
+  std::vector<double> nets(2 * static_cast<std::size_t>(of.size() * of.components()));
+  write_net(set, of, nets.data(), nets.data() + nets.size() / 2);
+  return box_of(of, nets.data());
+}
+
 Status LeafNets::build(const SetView& set, const SceneFrame& frame, int pieces, const Execution& execution) {
   frame_ = frame;
   const std::vector<Plan> plans = plan(set, pieces);

@@ -46,6 +46,8 @@ class LeafNets {
   /// Of the control points: the piece lies in it but for rounding. One a leaf, until they are dropped.
   std::span<const Box3> boxes() const { return boxes_; }
   void drop_boxes() { boxes_ = {}; }
+  /// The box of one leaf, whether they are dropped or not. `set`: as it was built from.
+  Box3 box(const SetView& set, std::size_t leaf) const;
   /// The net of homogeneous coefficients w (x, y, z), w, `[component][i][j]`; w is left out of polynomial pieces, else the
   /// largest weight of a patch is scaled by a power of two to [1, 2). `other`: of the same size, is written as well.
   /// `set`: as it was built from.

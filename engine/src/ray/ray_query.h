@@ -1,6 +1,8 @@
 #pragma once
 // What a ray is asked for in exact mode, and the roots that it has met so far.
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -20,6 +22,13 @@ struct LeafRoot {
   bool has_point = false;
   Vec3 position, du, dv;  ///< where has_point: of the patch, in the scene's coordinates
 };
+
+/// Whether two roots of one patch are the same.
+inline bool same_place(const LeafRoot& a, const LeafRoot& b) {
+  constexpr double rounding = 1e-12;
+  return std::abs(a.u - b.u) <= a.radius_u + b.radius_u + rounding &&
+         std::abs(a.v - b.v) <= a.radius_v + b.radius_v + rounding;
+}
 
 enum class RootsWanted : std::uint8_t { closest, any, all };
 

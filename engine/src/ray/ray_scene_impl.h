@@ -9,6 +9,8 @@
 
 namespace tessera {
 
+class ExactSource;
+
 class RayScene::Impl {
  public:
   explicit Impl(const PatchSet& set) : set_(set) {}
@@ -22,6 +24,10 @@ class RayScene::Impl {
   Status closest(std::span<const Ray> rays, std::span<Hit> hits, const Execution& execution) const;
   Status occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded, const Execution& execution) const;
   Status all(std::span<const Ray> rays, HitLists& lists, const Execution& execution) const;
+
+  /// Of exact mode alone.
+  virtual const ExactSource* exact_source() const { return nullptr; }
+  bool fresh() const { return ready_ && revision_ == set_.revision(); }
 
   Box3 box() const { return fresh() ? model_box() : Box3{}; }
   std::uint64_t revision() const { return revision_; }
@@ -45,7 +51,6 @@ class RayScene::Impl {
   virtual Status update(std::span<const std::uint32_t> edited, const Execution& execution) = 0;
   virtual Box3 model_box() const = 0;
   Status done(Status status);
-  bool fresh() const { return ready_ && revision_ == set_.revision(); }
 
   SetView set_;
   std::uint64_t revision_ = 0;

@@ -1,0 +1,22 @@
+#pragma once
+// What an exact scene lends to Embree's callbacks in scenes of the user's.
+
+#include "ray/leaf_tracer.h"
+#include "ray/ray_line.h"
+#include "ray/ray_query.h"
+#include "tessera/ray_scene.h"
+
+namespace tessera {
+
+/// Stays in place while its ray scene lives. Const calls from any number of threads.
+class ExactSource {
+ public:
+  virtual ~ExactSource() = default;
+  virtual bool fresh() const = 0;
+  virtual const LeafTracer& tracer() const = 0;
+  /// Of a valid ray in the model's coordinates.
+  virtual RayLine line(const Ray& ray) const = 0;
+  virtual Hit hit_at(const RayLine& line, const LeafRoot& root) const = 0;
+};
+
+}  // namespace tessera
