@@ -16,7 +16,6 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-
 namespace tessera {
 
 /// A user geometry of all patches of a scene in exact mode, committed, with one reference, which the caller releases
@@ -45,5 +44,4 @@ Status update_embree_geometry(const RayScene& scene, RTCGeometry geometry);
 Result<unsigned> attach(const RayScene& scene, RTCScene to);
 
 }  // namespace tessera
-
 #pragma GCC visibility pop

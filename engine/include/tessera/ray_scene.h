@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "tessera/affine.h"
 #include "tessera/execution.h"
 #include "tessera/isa.h"
 #include "tessera/patch_set.h"
@@ -51,6 +52,8 @@ struct Hit {
   HitKind kind = HitKind::miss;                        ///< whether the rest means anything
   HitFlags flags;                                      ///< what the numbers don't say
   std::uint32_t surface = 0, patch = 0;                ///< PatchSource::surface, and the index in the set
+  static constexpr std::uint32_t no_instance = std::numeric_limits<std::uint32_t>::max();  ///< of other scenes' hits
+  std::uint32_t instance = no_instance;                ///< index, in a scene of instances
   double t = std::numeric_limits<double>::infinity();  ///< position = origin + t * direction, up to the residual
   double u = 0, v = 0;                                 ///< in the surface's domain
   double patch_u = 0, patch_v = 0;                     ///< in the patch, [0,1]^2
@@ -98,6 +101,15 @@ struct RaySceneOptions {
   int rebuild_after = 0;  ///< exact mode: of so many refits each last one is a rebuild; 0: none is, 1: all are
 };
 
+class RayScene;
+
+/// A scene that stands elsewhere: its patches, taken through an affine map. Mirrors are allowed, and scales that differ by
+/// direction; a condition number above 1e8 is not.
+struct RayInstance {
+  const RayScene* scene = nullptr;  ///< of patches, in exact mode
+  Affine to_world = {};
+};
+
 /// A patch set ready for rays. Keeps a reference to the set's inner state: the set must outlive the scene (it may be
 /// moved). Threads: const calls from any number of threads; edits of the set, refit and rebuild exclude them and each
 /// other.
@@ -108,6 +120,21 @@ class RayScene {
   /// a diagonal below 1e-9 or reaching further than 1e12 from the set's origin, more than 2^32 grid points. Exact mode:
   /// unsupported are a diagonal outside of 1e-140 to 1e140, 2^32 pieces.
   static Result<RayScene> make(const PatchSet& set, const RaySceneOptions& options = {}, const Execution& execution = {});
+
+  /// A scene of instances, of one scene or several, which must outlive it (they may be moved). Positions, normals and
+  /// residuals of its hits are in the world, surface, patch and parameters those of the instance's scene; normals are
+  /// along r_u x r_v there, so on the other side in an instance that is mirrored.
+  /// What exact mode says holds of the ray as taken back into an instance's coordinates, in double: all patches of an
+  /// instance see the same one, so nothing leaks between them. The map rounds it by 1e-15 times its condition number, of
+  /// the instance's size, however far away its origin is, and tnear and tfar hold to the last digit; the residual is the
+  /// distance from the ray as given. Nothing is promised where borders of two instances meet. The tolerance is that of the
+  /// instance's scene, a length there.
+  /// After a refit of one of the scenes this one is stale until it is refitted itself, which is always a rebuild, of the
+  /// boxes of instances alone.
+  /// Errors: invalid_argument (no instance; of the first one: no scene, a map that is not finite or nearly singular),
+  /// unsupported (of the first one: a scene in grid mode or of instances; sizes outside of 1e-140 to 1e140), stale (a
+  /// scene), cancelled, out_of_memory, internal (Embree's own). index = the instance.
+  static Result<RayScene> make(std::span<const RayInstance> instances, const Execution& execution = {});
 
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;
@@ -138,9 +165,9 @@ class RayScene {
   /// As made anew: all pieces or grids, and the BVH. Errors: as those of refit.
   Status rebuild(const Execution& execution = {});
 
-  Box3 box() const;                ///< of facets or pieces' nets: tighter than of all control points; empty while stale
-  std::uint64_t revision() const;  ///< of the set, when the scene was made or last refitted
-  std::size_t memory_bytes() const;  ///< grids or nets, and BVH
+  Box3 box() const;                  ///< of facets or pieces' nets: tighter than of all control points; empty while stale
+  std::uint64_t revision() const;    ///< of the set, when the scene was made or last refitted
+  std::size_t memory_bytes() const;  ///< grids or nets, and BVH; of instances without their scenes
 
   class [[gnu::visibility("hidden")]] Impl;
   const Impl& impl() const { return *impl_; }  ///< for the library's own use

@@ -8,14 +8,11 @@
 
 #include "kernel/kernel_table.h"
 #include "ray/embree_device.h"
+#include "ray/embree_ray.h"
 #include "ray/leaf_tracer.h"
 
 namespace tessera {
 namespace {
-
-// Rays in float: start and direction round by 2^-24 of at most 3.5 and over at most 4, a component by 5e-7. Boxes are
-// larger by four times that on each side; Embree's own arithmetic is conservative in robust scenes.
-constexpr float box_pad = 2e-6f;
 
 /// What a call of Embree's carries to the callbacks: first what Embree knows, so that one points to the other. Of a
 /// packet's rays, by their ids.
@@ -37,19 +34,6 @@ void enter(Call& call, unsigned ray, RayQuery& query) {
   call.probes[ray] = probe_of(query);
 }
 
-/// Start, direction and reach, within the scene's box.
-std::array<float, 7> embree_ray(const RayLine& line) {
-  const Vec3 start = line.start + line.enter * line.direction, &d = line.direction;
-  const auto narrow = [](double x) { return static_cast<float>(x); };
-  return {narrow(start.x),
-          narrow(start.y),
-          narrow(start.z),
-          narrow(d.x),
-          narrow(d.y),
-          narrow(d.z),
-          narrow(line.leave - line.enter) + box_pad};
-}
-
 }  // namespace
 
 struct EmbreeLeaves::State {
@@ -61,11 +45,7 @@ struct EmbreeLeaves::State {
 
   static void bounds(const RTCBoundsFunctionArguments* arguments) {
     const State& state = *static_cast<const State*>(arguments->geometryUserPtr);
-    const Box3& box = state.tracer.nets->boxes()[arguments->primID];
-    RTCBounds& out = *arguments->bounds_o;
-    out.lower_x = static_cast<float>(box.lower.x) - box_pad, out.upper_x = static_cast<float>(box.upper.x) + box_pad;
-    out.lower_y = static_cast<float>(box.lower.y) - box_pad, out.upper_y = static_cast<float>(box.upper.y) + box_pad;
-    out.lower_z = static_cast<float>(box.lower.z) - box_pad, out.upper_z = static_cast<float>(box.upper.z) + box_pad;
+    *arguments->bounds_o = padded(state.tracer.nets->boxes()[arguments->primID]);
   }
 
   const RayQuery& search(unsigned leaf, Call& call, unsigned ray) const {
@@ -162,11 +142,7 @@ void EmbreeLeaves::trace(RayQuery& query, SearchSpace& space) const {
   call.space = &space;
   RTCRayHit hit{};
   enter(call, 0, query);
-  const std::array<float, 7> ray = embree_ray(query.line);
-  hit.ray.org_x = ray[0], hit.ray.org_y = ray[1], hit.ray.org_z = ray[2];
-  hit.ray.dir_x = ray[3], hit.ray.dir_y = ray[4], hit.ray.dir_z = ray[5];
-  hit.ray.tfar = ray[6];
-  hit.ray.mask = ~0u;
+  hit.ray = embree_ray(query.line);
   if (query.wanted == RootsWanted::any) {
     occluded(state_->scene.get(), call.context, Coherence::incoherent, hit.ray);
     return;
@@ -189,10 +165,10 @@ void EmbreeLeaves::trace(std::span<RayQuery* const> queries, SearchSpace& space)
       enter(call, k, *queries[k]);
     else
       call.queries[k] = nullptr;
-    const std::array<float, 7> ray = embree_ray(queries[which]->line);
-    hit.ray.org_x[k] = ray[0], hit.ray.org_y[k] = ray[1], hit.ray.org_z[k] = ray[2];
-    hit.ray.dir_x[k] = ray[3], hit.ray.dir_y[k] = ray[4], hit.ray.dir_z[k] = ray[5];
-    hit.ray.tnear[k] = 0, hit.ray.tfar[k] = ray[6];
+    const RTCRay ray = embree_ray(queries[which]->line);
+    hit.ray.org_x[k] = ray.org_x, hit.ray.org_y[k] = ray.org_y, hit.ray.org_z[k] = ray.org_z;
+    hit.ray.dir_x[k] = ray.dir_x, hit.ray.dir_y[k] = ray.dir_y, hit.ray.dir_z[k] = ray.dir_z;
+    hit.ray.tnear[k] = 0, hit.ray.tfar[k] = ray.tfar;
     hit.ray.time[k] = 0, hit.ray.mask[k] = ~0u, hit.ray.id[k] = k, hit.ray.flags[k] = 0;
     hit.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID, hit.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
   }

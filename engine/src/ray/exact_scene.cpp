@@ -67,10 +67,10 @@ class LazyAdjacency {
   mutable std::atomic<const Adjacency*> made_ = nullptr;
 };
 
-class ExactScene final : public RayScene::Impl, private ExactSource {
+class ExactScene final : public PatchScene, private ExactSource {
  public:
   ExactScene(const PatchSet& set, EmbreeLeaves scene, const RaySceneOptions& options)
-      : Impl(set), scene_(std::move(scene)), options_(options), follows_(options.editable) {}
+      : PatchScene(set), scene_(std::move(scene)), options_(options), follows_(options.editable) {}
 
   std::size_t memory_bytes() const override {
     return nets_.memory_bytes() + adjacency_.memory_bytes() + scene_.memory_bytes();
@@ -82,17 +82,22 @@ class ExactScene final : public RayScene::Impl, private ExactSource {
   bool fresh() const override { return Impl::fresh(); }
   const LeafTracer& tracer() const override { return scene_.tracer(); }
   RayLine line(const Ray& ray) const override { return line_of(ray, frame_, scene_box_); }
+  RayLine line(const Ray& ray, const Placement& placement) const override {
+    return line_of(ray, placement, frame_, scene_box_);
+  }
+  void trace(RayQuery& query) const override;
   Hit hit_at(const RayLine& line, const LeafRoot& root) const override;
+  void hits_of(RayQuery& query, std::vector<Hit>& hits) const override;
 
   Status build(const Execution& execution) override;
-  Status update(std::span<const std::uint32_t> edited, const Execution& execution) override;
+  Status update(std::uint64_t since, const Execution& execution) override;
   Box3 model_box() const override { return box_; }
   void closest_piece(std::span<const Ray> rays, std::span<Hit> hits) const override;
   void occluded_piece(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const override;
   void prepare_for_all() const override { (void)adjacency_.of(set()); }
   Status all_of(const Ray& ray, std::vector<Hit>& hits) const override;
   double measure();
-  void trace(std::span<std::optional<RayQuery>> queries, SearchSpace& space) const;
+  void trace_turn(std::span<std::optional<RayQuery>> queries, SearchSpace& space) const;
 
   LeafNets nets_;  // borrowed by scene_
   EmbreeLeaves scene_;
@@ -136,13 +141,13 @@ Status ExactScene::build(const Execution& execution) {
   return {};
 }
 
-Status ExactScene::update(std::span<const std::uint32_t> edited, const Execution& execution) {
+Status ExactScene::update(std::uint64_t since, const Execution& execution) {
   const bool stood = std::exchange(follows_, true);
   const Box3 box = set().box();
   if (!stood || !frame_.holds(box) || ++updates_ == options_.rebuild_after) return build(execution);
   size_ = box.diagonal();
   adjacency_.forget();
-  if (Status status = nets_.update(set(), edited, execution); !status.ok()) return status;
+  if (Status status = nets_.update(set(), set().edited_since(since), execution); !status.ok()) return status;
   return scene_.refit(measure(), execution);
 }
 
@@ -165,7 +170,7 @@ Hit ExactScene::hit_at(const RayLine& line, const LeafRoot& root) const {
 }
 
 /// As a packet where the rays are coherent.
-void ExactScene::trace(std::span<std::optional<RayQuery>> queries, SearchSpace& space) const {
+void ExactScene::trace_turn(std::span<std::optional<RayQuery>> queries, SearchSpace& space) const {
   std::array<RayQuery*, rays_a_turn> wanted;
   std::size_t count = 0;
   for (std::optional<RayQuery>& query : queries) {
@@ -191,7 +196,7 @@ void ExactScene::closest_piece(std::span<const Ray> rays, std::span<Hit> hits) c
       lines[k] = line(ray);
       if (!lines[k].empty) queries[k].emplace(ray, lines[k], RootsWanted::closest);
     }
-    trace(std::span(queries).first(count), space);
+    trace_turn(std::span(queries).first(count), space);
     for (std::size_t k = 0; k < count; ++k) {
       Hit& hit = hits[first + k];
       hit = queries[k] && queries[k]->found ? hit_at(lines[k], queries[k]->best) : Hit{};
@@ -214,8 +219,21 @@ void ExactScene::occluded_piece(std::span<const Ray> rays, std::span<std::uint8_
       lines[k] = line(ray);
       if (!lines[k].empty) queries[k].emplace(ray, lines[k], RootsWanted::any);
     }
-    trace(std::span(queries).first(count), space);
+    trace_turn(std::span(queries).first(count), space);
     for (std::size_t k = 0; k < count; ++k) occluded[first + k] = queries[k] && queries[k]->found;
+  }
+}
+
+void ExactScene::trace(RayQuery& query) const {
+  SearchSpace space(nets_.largest());
+  scene_.trace(query, space);
+}
+
+void ExactScene::hits_of(RayQuery& query, std::vector<Hit>& hits) const {
+  keep_distinct(set(), adjacency_.of(set()), query.roots);
+  for (const LeafRoot& root : query.roots) {
+    hits.push_back(hit_at(query.line, root));
+    hits.back().flags.incomplete = query.incomplete;
   }
 }
 
@@ -223,18 +241,13 @@ Status ExactScene::all_of(const Ray& ray, std::vector<Hit>& hits) const {
   if (!is_valid(ray)) return {};
   const RayLine along = line(ray);
   if (along.empty) return {};
-  SearchSpace space(nets_.largest());
   RayQuery query(ray, along, RootsWanted::all);
   {
     const FlushDenormals flush;
-    scene_.trace(query, space);
+    trace(query);
   }
   if (query.overflow) return Status(StatusCode::out_of_memory, "out of memory");
-  keep_distinct(set(), adjacency_.of(set()), query.roots);
-  for (const LeafRoot& root : query.roots) {
-    hits.push_back(hit_at(along, root));
-    hits.back().flags.incomplete = query.incomplete;
-  }
+  hits_of(query, hits);
   return {};
 }
 

@@ -1,5 +1,7 @@
 #pragma once
-// What an exact scene lends to Embree's callbacks in scenes of the user's.
+// What an exact scene lends to others: to Embree's callbacks in scenes of the user's, and to scenes of instances.
+
+#include <vector>
 
 #include "ray/leaf_tracer.h"
 #include "ray/ray_line.h"
@@ -16,7 +18,12 @@ class ExactSource {
   virtual const LeafTracer& tracer() const = 0;
   /// Of a valid ray in the model's coordinates.
   virtual RayLine line(const Ray& ray) const = 0;
+  virtual RayLine line(const Ray& ray, const Placement& placement) const = 0;
+  /// Runs the query, of a line that is not empty, inside a FlushDenormals.
+  virtual void trace(RayQuery& query) const = 0;
   virtual Hit hit_at(const RayLine& line, const LeafRoot& root) const = 0;
+  /// Appends what a query for all roots has met, in order and each once.
+  virtual void hits_of(RayQuery& query, std::vector<Hit>& hits) const = 0;
 };
 
 }  // namespace tessera

@@ -40,10 +40,10 @@ bool coherent(std::span<const RaySegment> segments, double size) {
   return true;
 }
 
-class GridScene final : public RayScene::Impl {
+class GridScene final : public PatchScene {
  public:
   GridScene(const PatchSet& set, UniformGrid grid, EmbreeScene scene, const RaySceneOptions& options)
-      : Impl(set), grid_(std::move(grid)), scene_(std::move(scene)), options_(options) {}
+      : PatchScene(set), grid_(std::move(grid)), scene_(std::move(scene)), options_(options) {}
 
   std::size_t memory_bytes() const override {
     return positions_.capacity() * sizeof(float) + adjacency_.memory_bytes() + scene_.memory_bytes();
@@ -52,7 +52,7 @@ class GridScene final : public RayScene::Impl {
  private:
   Status build(const Execution& execution) override;
   /// Embree refits no grids.
-  Status update(std::span<const std::uint32_t>, const Execution& execution) override { return build(execution); }
+  Status update(std::uint64_t, const Execution& execution) override { return build(execution); }
   Box3 model_box() const override {
     const Box3 box = scene_.box();
     return {box.lower + set().origin(), box.upper + set().origin()};

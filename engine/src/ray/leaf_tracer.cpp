@@ -9,7 +9,7 @@
 namespace tessera {
 namespace {
 
-// Of s in a kernel: what the ray's start and direction round by in float (embree_leaves.cpp), and as much again.
+// Of s in a kernel: what the ray's start and direction round by in float (embree_ray.h), and as much again.
 constexpr double probe_pad = 4e-6;
 
 float narrow(double x) { return static_cast<float>(x); }

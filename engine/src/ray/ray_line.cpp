@@ -65,26 +65,32 @@ bool SceneFrame::holds(const Box3& box) const {
   return std::max(max_abs(low), max_abs(high)) <= 1 && max_abs(high - low) >= 0.75;
 }
 
-RayLine line_of(const Ray& ray, const SceneFrame& frame, const Box3& box) {
-  RayLine line;
-  const double largest = max_abs(ray.direction);
+namespace {
+
+/// Sets the unit direction and the speed. `given`: the ray's, in the model's coordinates.
+void set_direction(const Vec3& given, double scale, RayLine& line) {
+  const double largest = max_abs(given);
   if (largest > 1e-100) {
-    const double stretch = length(ray.direction);
-    line.direction = (1 / stretch) * ray.direction;
-    line.speed = stretch * frame.scale;
+    const double stretch = length(given);
+    line.direction = (1 / stretch) * given;
+    line.speed = stretch * scale;
   } else {  // by the largest component first, whose square is no normal number
-    const Vec3 scaled{ray.direction.x / largest, ray.direction.y / largest, ray.direction.z / largest};
+    const Vec3 scaled{given.x / largest, given.y / largest, given.z / largest};
     const double stretch = length(scaled);
     line.direction = (1 / stretch) * scaled;
-    line.speed = largest * stretch * frame.scale;
+    line.speed = largest * stretch * scale;
   }
+}
 
-  line.base = -dot(frame.to_scene(ray.origin), line.direction) / line.speed;
-  if (!std::isfinite(line.base) || !(line.speed > 0)) return line;  // no t in double reaches the scene
-  const Vec3 &o = ray.origin, &d = ray.direction, &c = frame.centre;
-  const Vec3 near_centre{point_on_line(o.x, line.base, d.x, c.x), point_on_line(o.y, line.base, d.y, c.y),
-                         point_on_line(o.z, line.base, d.z, c.z)};
-  line.start = frame.scale * near_centre;
+/// o + line.base d - c.
+Vec3 near_centre(const Ray& ray, const RayLine& line, const Vec3& c) {
+  const Vec3 &o = ray.origin, &d = ray.direction;
+  return {point_on_line(o.x, line.base, d.x, c.x), point_on_line(o.y, line.base, d.y, c.y),
+          point_on_line(o.z, line.base, d.z, c.z)};
+}
+
+/// Once base, start, direction and speed are known.
+void complete(const Ray& ray, const Box3& box, RayLine& line) {
   line.shift = -dot(line.start, line.direction);  // what the rounding of `base` has left
   line.start += line.shift * line.direction;
 
@@ -99,6 +105,49 @@ RayLine line_of(const Ray& ray, const SceneFrame& frame, const Box3& box) {
   clip(line.start.z, line.direction.z, box.lower.z - pad, box.upper.z + pad, line);
   line.empty = !(line.enter <= line.leave);
   if (!line.empty) set_across(line);
+}
+
+}  // namespace
+
+RayLine line_of(const Ray& ray, const SceneFrame& frame, const Box3& box) {
+  RayLine line;
+  set_direction(ray.direction, frame.scale, line);
+  line.base = -dot(frame.to_scene(ray.origin), line.direction) / line.speed;
+  if (!std::isfinite(line.base) || !(line.speed > 0)) return line;  // no t in double reaches the scene
+  line.start = frame.scale * near_centre(ray, line, frame.centre);
+  complete(ray, box, line);
+  return line;
+}
+
+std::optional<Placement> Placement::of(const Affine& to_world, const SceneFrame& frame) {
+  constexpr double most = 1e8;
+  using Long = long double;  // where that is longer than double, the inverse is right to its last digits
+  const auto& c = to_world.columns;
+  const auto cross_of = [](const Vec3& a, const Vec3& b) {
+    const Long x = a.x, y = a.y, z = a.z;
+    return std::array<Long, 3>{y * b.z - z * b.y, z * b.x - x * b.z, x * b.y - y * b.x};
+  };
+  const std::array<std::array<Long, 3>, 3> rows{cross_of(c[1], c[2]), cross_of(c[2], c[0]), cross_of(c[0], c[1])};
+  const Long volume = rows[0][0] * c[0].x + rows[0][1] * c[0].y + rows[0][2] * c[0].z;
+  Placement out;
+  const auto at = [&](std::size_t row, std::size_t column) { return static_cast<double>(rows[row][column] / volume); };
+  for (std::size_t k = 0; k < 3; ++k) out.back.columns[k] = {at(0, k), at(1, k), at(2, k)};
+  out.centre = to_world.point(frame.centre);
+  // Written so that NaN fails.
+  if (!(to_world.norm_bound() * out.back.norm_bound() <= most) || !is_finite(out.back) || !is_finite(out.centre)) return {};
+  return out;
+}
+
+RayLine line_of(const Ray& ray, const Placement& placement, const SceneFrame& frame, const Box3& box) {
+  RayLine line;
+  const Vec3 direction = placement.back.vector(ray.direction);
+  if (!is_finite(direction) || !(max_abs(direction) > 0)) return line;  // no t in double reaches the scene
+  set_direction(direction, frame.scale, line);
+  const Vec3 from = frame.scale * placement.back.vector(ray.origin - placement.centre);
+  line.base = -dot(from, line.direction) / line.speed;
+  if (!std::isfinite(line.base) || !(line.speed > 0)) return line;
+  line.start = frame.scale * placement.back.vector(near_centre(ray, line, placement.centre));
+  complete(ray, box, line);
   return line;
 }
 

@@ -1,6 +1,9 @@
 #pragma once
 // The line of a ray in the coordinates that exact rays are traced in. A far origin costs it no accuracy.
 
+#include <optional>
+
+#include "tessera/affine.h"
 #include "tessera/ray_scene.h"
 #include "tessera/vec.h"
 
@@ -40,5 +43,18 @@ struct RayLine {
 
 /// The line of a valid ray. `box`: of the scene, in its own coordinates.
 RayLine line_of(const Ray& ray, const SceneFrame& frame, const Box3& box);
+
+/// A model that stands elsewhere, as rays need to know it.
+struct Placement {
+  Affine back;  ///< directions into the model's coordinates; the translation counts for nothing
+  Vec3 centre;  ///< where the frame's centre stands
+
+  /// Of a map whose condition number, of which this is a bound, is at most 1e8. Where it is larger: nothing.
+  static std::optional<Placement> of(const Affine& to_world, const SceneFrame& frame);
+};
+
+/// The same where the model of the frame stands elsewhere. The map rounds the direction, and what lies between the line
+/// and the model's centre, but no distance of the origin: by 2^-50 times the map's condition number, of the model's size.
+RayLine line_of(const Ray& ray, const Placement& placement, const SceneFrame& frame, const Box3& box);
 
 }  // namespace tessera

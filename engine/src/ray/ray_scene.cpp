@@ -27,7 +27,7 @@ Status short_output(std::size_t rays, std::size_t room) {
 
 Status RayScene::Impl::done(Status status) {
   ready_ = status.ok();
-  if (ready_) revision_ = set_.revision();
+  if (ready_) revision_ = source_revision();
   return status;
 }
 
@@ -39,7 +39,7 @@ Status RayScene::Impl::rebuild(const Execution& execution) {
 Status RayScene::Impl::refit(const Execution& execution) {
   if (fresh()) return {};
   if (!std::exchange(ready_, false)) return done(build(execution));
-  return done(update(set_.edited_since(revision_), execution));
+  return done(update(revision_, execution));
 }
 
 Status RayScene::Impl::closest(std::span<const Ray> rays, std::span<Hit> hits, const Execution& execution) const {
@@ -101,6 +101,15 @@ Result<RayScene> RayScene::make(const PatchSet& set, const RaySceneOptions& opti
       return Status(StatusCode::invalid_argument, "no such ray mode");
     Result<std::unique_ptr<Impl>> impl =
         options.mode == RayMode::exact ? make_exact_scene(set, options) : make_grid_scene(set, options);
+    if (!impl) return impl.status();
+    if (Status status = (*impl)->rebuild(execution); !status.ok()) return status;
+    return RayScene(*std::move(impl));
+  });
+}
+
+Result<RayScene> RayScene::make(std::span<const RayInstance> instances, const Execution& execution) {
+  return guarded([&]() -> Result<RayScene> {
+    Result<std::unique_ptr<Impl>> impl = make_instance_scene(instances);
     if (!impl) return impl.status();
     if (Status status = (*impl)->rebuild(execution); !status.ok()) return status;
     return RayScene(*std::move(impl));

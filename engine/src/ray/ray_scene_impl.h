@@ -13,7 +13,7 @@ class ExactSource;
 
 class RayScene::Impl {
  public:
-  explicit Impl(const PatchSet& set) : set_(set) {}
+  Impl() = default;
   virtual ~Impl() = default;
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
@@ -24,10 +24,12 @@ class RayScene::Impl {
   Status closest(std::span<const Ray> rays, std::span<Hit> hits, const Execution& execution) const;
   Status occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded, const Execution& execution) const;
   Status all(std::span<const Ray> rays, HitLists& lists, const Execution& execution) const;
+  /// Before all_of() is called, by one thread or several at once.
+  virtual void prepare_for_all() const {}
 
   /// Of exact mode alone.
   virtual const ExactSource* exact_source() const { return nullptr; }
-  bool fresh() const { return ready_ && revision_ == set_.revision(); }
+  bool fresh() const { return ready_ && revision_ == source_revision(); }
 
   Box3 box() const { return fresh() ? model_box() : Box3{}; }
   std::uint64_t revision() const { return revision_; }
@@ -37,28 +39,40 @@ class RayScene::Impl {
   /// Any number of rays of a task. Valid or not; room is checked.
   virtual void closest_piece(std::span<const Ray> rays, std::span<Hit> hits) const = 0;
   virtual void occluded_piece(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const = 0;
-  /// Before all_of() is called, by one thread or several at once.
-  virtual void prepare_for_all() const {}
   /// Appends the hits of one ray, in order.
   virtual Status all_of(const Ray& ray, std::vector<Hit>& hits) const = 0;
 
-  const SetView& set() const { return set_; }
+  /// That of what the scene was made for.
+  virtual std::uint64_t source_revision() const = 0;
 
  private:
   virtual Status build(const Execution& execution) = 0;
-  /// build() once something stands: `edited` are the patches that are not what they were when it was made. After an error
-  /// of build() or update() nothing stands.
-  virtual Status update(std::span<const std::uint32_t> edited, const Execution& execution) = 0;
+  /// build() once something stands, which was made for revision `since`. After an error of build() or update() nothing
+  /// stands.
+  virtual Status update(std::uint64_t since, const Execution& execution) = 0;
   virtual Box3 model_box() const = 0;
   Status done(Status status);
 
-  SetView set_;
   std::uint64_t revision_ = 0;
   bool ready_ = false;  // false after a build that failed
+};
+
+/// What scenes of patches share.
+class PatchScene : public RayScene::Impl {
+ public:
+  explicit PatchScene(const PatchSet& set) : set_(set) {}
+
+ protected:
+  const SetView& set() const { return set_; }
+  std::uint64_t source_revision() const override { return set_.revision(); }
+
+ private:
+  SetView set_;
 };
 
 /// Options are checked here. Not yet built.
 Result<std::unique_ptr<RayScene::Impl>> make_grid_scene(const PatchSet& set, const RaySceneOptions& options);
 Result<std::unique_ptr<RayScene::Impl>> make_exact_scene(const PatchSet& set, const RaySceneOptions& options);
+Result<std::unique_ptr<RayScene::Impl>> make_instance_scene(std::span<const RayInstance> instances);
 
 }  // namespace tessera
