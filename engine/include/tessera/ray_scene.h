@@ -12,6 +12,7 @@
 #include "tessera/affine.h"
 #include "tessera/execution.h"
 #include "tessera/isa.h"
+#include "tessera/local_geometry.h"
 #include "tessera/patch_set.h"
 #include "tessera/status.h"
 #include "tessera/vec.h"
@@ -21,11 +22,19 @@ namespace tessera {
 
 /// Points origin + t * direction, tnear <= t <= tfar, in the model's coordinates. The direction need not be a unit
 /// vector. Valid: finite origin and direction with components of at most 1.844e18, direction not zero, 0 <= tnear <=
-/// tfar; tfar may be infinite. Both ends belong to the interval and hold for the refined t, in double.
+/// tfar; tfar may be infinite; a spawn_offset of 0 to 1.844e18. Both ends belong to the interval and hold for the refined
+/// t, in double.
 struct Ray {
   Vec3 origin = {}, direction = {};                       ///< in the model
   double tnear = 0;                                       ///< at least 0
   double tfar = std::numeric_limits<double>::infinity();  ///< at least tnear
+  /// Exact mode: above 0, the ray leaves the surfaces that pass its origin at no more than this distance: the root of each
+  /// of them that stands for the origin is no hit, wherever rounding has moved it. For an origin that is a hit's position
+  /// this is RayScene::spawn_offset(). Which root that is follows from Kantorovich's theorem, which shows that there is one
+  /// within so much of the origin and no other near it: other hits stay, at however small a distance and angle, as long as
+  /// the surface leaves the ray in between by more than the tolerance. Where it does not, as along a plane or over a chord
+  /// of sqrt(8 tolerance / curvature), all of that is the origin.
+  double spawn_offset = 0;
 };
 
 enum class HitKind : std::uint8_t {
@@ -45,12 +54,17 @@ struct HitFlags {
   /// Exact mode: the bound on the work for one piece of a patch was reached, as where a surface runs along the ray or
   /// is folded up into a line. There may be other hits, of a miss too.
   bool incomplete : 1 = false;
+  /// Exact mode, of uncertified hits: the ray runs along the tangent plane, within 1e-3 of its direction.
+  bool tangential : 1 = false;
+  /// Exact mode, of uncertified hits: the position is off the ray by more than rounding, yet within the tolerance.
+  bool within_tolerance : 1 = false;
 };
 
 /// Where a ray meets a surface. Of a miss and an invalid ray only the kind counts.
 struct Hit {
   HitKind kind = HitKind::miss;                        ///< whether the rest means anything
   HitFlags flags;                                      ///< what the numbers don't say
+  std::uint16_t steps = 0;  ///< exact mode: the work, pieces of patches looked at and parts of them searched; of misses too
   std::uint32_t surface = 0, patch = 0;                ///< PatchSource::surface, and the index in the set
   static constexpr std::uint32_t no_instance = std::numeric_limits<std::uint32_t>::max();  ///< of other scenes' hits
   std::uint32_t instance = no_instance;                ///< index, in a scene of instances
@@ -58,7 +72,8 @@ struct Hit {
   double u = 0, v = 0;                                 ///< in the surface's domain
   double patch_u = 0, patch_v = 0;                     ///< in the patch, [0,1]^2
   Vec3 position;                                       ///< on the surface at (u,v)
-  Vec3 normal;                                         ///< unit, along r_u x r_v
+  Vec3 normal;                                         ///< unit, along du x dv
+  Vec3 du, dv;                                         ///< derivatives of the position by u and by v, the surface's; to about 1e-8
   double residual = 0;  ///< distance from the position to the ray; of an unrefined hit, to the surface at (u,v)
 };
 
@@ -164,6 +179,21 @@ class RayScene {
   Status refit(const Execution& execution = {});
   /// As made anew: all pieces or grids, and the BVH. Errors: as those of refit.
   Status rebuild(const Execution& execution = {});
+
+  /// How far a hit's position may be from its surface, for rounding: the offset of secondary rays. Flags unrefined and
+  /// those of grid mode aside.
+  double spawn_offset() const;
+  /// Curvatures at a hit of this scene, with parameters those of the patch; in a scene of instances those of the surface as
+  /// it stands in the world. Errors: stale, invalid_argument (not a hit; no such patch, point or instance).
+  Result<LocalGeometry> local_geometry(const Hit& hit) const;
+  /// The point (u,v) in [0,1]^2 of a patch as a hit, t and residual 0: what else there is to know of a hit that came through
+  /// one's own Embree scene. Errors: stale, invalid_argument (no such patch or point), unsupported (instances).
+  Result<Hit> resolve(std::uint32_t patch, double u, double v) const;
+  /// The same for a ray that is known to meet the patch near (u,v), in float for example: the root next to it with all the
+  /// digits of double. The hit is unrefined where there is none within the tolerance, and is then the point nearest to the
+  /// ray that was found. tnear and tfar count for nothing. Errors: as above; invalid_argument (the ray); unsupported (grid
+  /// mode).
+  Result<Hit> resolve(const Ray& ray, std::uint32_t patch, double u, double v) const;
 
   Box3 box() const;                  ///< of facets or pieces' nets: tighter than of all control points; empty while stale
   std::uint64_t revision() const;    ///< of the set, when the scene was made or last refitted

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -17,6 +18,7 @@
 #include "ray/exact_source.h"
 #include "ray/leaf_nets.h"
 #include "ray/leaf_search.h"
+#include "ray/polished_root.h"
 #include "ray/ray_line.h"
 #include "ray/ray_scene_impl.h"
 #include "ray/ray_segment.h"
@@ -96,6 +98,9 @@ class ExactScene final : public PatchScene, private ExactSource {
   void occluded_piece(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const override;
   void prepare_for_all() const override { (void)adjacency_.of(set()); }
   Status all_of(const Ray& ray, std::vector<Hit>& hits) const override;
+  double size() const override { return size_; }
+  Result<Hit> resolve(const Ray& ray, std::uint32_t patch, double u, double v) const override;
+  using PatchScene::resolve;
   double measure();
   void trace_turn(std::span<std::optional<RayQuery>> queries, SearchSpace& space) const;
 
@@ -160,12 +165,32 @@ Hit ExactScene::hit_at(const RayLine& line, const LeafRoot& root) const {
     at = first_order(set().patch(root.patch), root.u, root.v, frame_.centre);
     at = {frame_.centre + at.position, frame_.scale * at.du, frame_.scale * at.dv};
   }
-  set_surface_point(set(), size_ * frame_.scale, root.patch, root.u, root.v, at, hit);
+  set_surface_point(set(), size_ * frame_.scale, 1 / frame_.scale, root.patch, root.u, root.v, at, hit);
   hit.t = line.t_at(root.s);
   const Vec3 from_start = frame_.to_scene(hit.position) - line.start;
   const double x = dot(line.across[0], from_start), y = dot(line.across[1], from_start);
   hit.residual = std::sqrt(x * x + y * y) / frame_.scale;
-  hit.flags.uncertified = !root.certified;
+  if (!root.certified) {
+    constexpr double sine = 1e-3;
+    hit.flags.uncertified = true;
+    hit.flags.tangential = !hit.flags.degenerate_normal && std::abs(dot(hit.normal, line.direction)) <= sine;
+    hit.flags.within_tolerance = root.residual > search_rounding(max_degree, max_degree, 0, 0);
+  }
+  return hit;
+}
+
+/// From (u,v) on to the point nearest to the ray, which is a root where there is one.
+Result<Hit> ExactScene::resolve(const Ray& ray, std::uint32_t patch, double u, double v) const {
+  if (Status status = check_point(patch, u, v); !status.ok()) return status;
+  if (!is_valid(ray)) return Status(StatusCode::invalid_argument, "the ray is not valid");
+  Ray whole = ray;
+  whole.tnear = 0, whole.tfar = std::numeric_limits<double>::infinity();
+  const RayLine along = line(whole);
+  if (along.empty) return Status(StatusCode::invalid_argument, "the ray passes the scene by");
+  const LeafRoot root = nearest_to_ray(set().patch(patch), frame_, along, patch, u, v);
+  Hit hit = hit_at(along, root);
+  hit.flags.uncertified = hit.flags.tangential = hit.flags.within_tolerance = false;
+  hit.flags.unrefined = !(root.residual <= tracer().tolerance);
   return hit;
 }
 
@@ -200,7 +225,7 @@ void ExactScene::closest_piece(std::span<const Ray> rays, std::span<Hit> hits) c
     for (std::size_t k = 0; k < count; ++k) {
       Hit& hit = hits[first + k];
       hit = queries[k] && queries[k]->found ? hit_at(lines[k], queries[k]->best) : Hit{};
-      if (queries[k]) hit.flags.incomplete = queries[k]->incomplete;
+      if (queries[k]) hit.flags.incomplete = queries[k]->incomplete, hit.steps = told(queries[k]->steps);
       if (!is_valid(rays[first + k])) hit.kind = HitKind::invalid_ray;
     }
   }
@@ -234,6 +259,7 @@ void ExactScene::hits_of(RayQuery& query, std::vector<Hit>& hits) const {
   for (const LeafRoot& root : query.roots) {
     hits.push_back(hit_at(query.line, root));
     hits.back().flags.incomplete = query.incomplete;
+    hits.back().steps = told(query.steps);
   }
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 // What an exact scene lends to others: to Embree's callbacks in scenes of the user's, and to scenes of instances.
 
+#include <algorithm>
+#include <cstdint>
 #include <vector>
 
 #include "ray/leaf_tracer.h"
@@ -9,6 +11,9 @@
 #include "tessera/ray_scene.h"
 
 namespace tessera {
+
+/// As Hit::steps.
+inline std::uint16_t told(std::uint32_t steps) { return static_cast<std::uint16_t>(std::min(steps, 0xffffu)); }
 
 /// Stays in place while its ray scene lives. Const calls from any number of threads.
 class ExactSource {

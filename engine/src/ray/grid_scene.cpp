@@ -53,6 +53,7 @@ class GridScene final : public PatchScene {
   Status build(const Execution& execution) override;
   /// Embree refits no grids.
   Status update(std::uint64_t, const Execution& execution) override { return build(execution); }
+  double size() const override { return size_; }
   Box3 model_box() const override {
     const Box3 box = scene_.box();
     return {box.lower + set().origin(), box.upper + set().origin()};
@@ -184,7 +185,7 @@ bool GridScene::accept(const Ray& ray, const RaySegment& segment, const FacetHit
   if (!(hit.t >= ray.tnear && hit.t <= ray.tfar) || !std::isfinite(hit.t)) return false;
 
   hit.flags.unrefined = !refined;
-  set_surface_point(set(), size_, root.patch, root.u, root.v, {root.position, root.du, root.dv}, hit);
+  set_surface_point(set(), size_, 1, root.patch, root.u, root.v, {root.position, root.du, root.dv}, hit);
   hit.residual = root.residual;
   if (!refined) {
     hit.position = set().origin() + (segment.start + root.s * segment.direction);

@@ -15,6 +15,7 @@ namespace tessera {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double smallest_size = 1e-140, largest_size = 1e140;  // as of exact scenes
 
 struct Instance {
@@ -34,7 +35,7 @@ Box3 placed_box(const Affine& map, double condition, const Box3& box) {
                           corner & 4 ? box.upper.z : box.lower.z}));
   }
   const double norm = map.norm_bound() * std::max(max_abs(box.lower), max_abs(box.upper)) + max_abs(map.translation);
-  const double rounding = 16 * std::numeric_limits<double>::epsilon() * condition * norm;
+  const double rounding = 16 * epsilon * condition * norm;
   return {out.lower - Vec3{rounding, rounding, rounding}, out.upper + Vec3{rounding, rounding, rounding}};
 }
 
@@ -58,6 +59,8 @@ class InstanceScene final : public RayScene::Impl {
   std::size_t memory_bytes() const override {
     return boxes_.memory_bytes() + instances_.capacity() * sizeof(Instance);
   }
+  double spawn_offset() const override { return spawn_offset_; }
+  Result<LocalGeometry> local_geometry(const Hit& hit) const override;
 
  private:
   /// Grows with each refit of one of the scenes; of no scene that is stale.
@@ -92,13 +95,14 @@ class InstanceScene final : public RayScene::Impl {
   std::vector<Instance> instances_;
   std::vector<const RayScene::Impl*> scenes_;  // each once
   EmbreeBoxes boxes_;
+  double spawn_offset_ = 0;  // the largest of any instance
   SceneFrame frame_;
   Box3 box_, scene_box_;  // of all instances, in the world's and this scene's coordinates
 };
 
 Status InstanceScene::build(const Execution& execution) {
   std::vector<Box3> boxes(instances_.size());
-  box_ = {};
+  box_ = {}, spawn_offset_ = 0;
   for (std::size_t k = 0; k < instances_.size(); ++k) {
     Instance& instance = instances_[k];
     if (!instance.scene->fresh())
@@ -115,6 +119,8 @@ Status InstanceScene::build(const Execution& execution) {
                     static_cast<std::ptrdiff_t>(k));
     instance.placement = *placement;
     box_.extend(boxes[k]);
+    spawn_offset_ = std::max(spawn_offset_, instance.to_world.norm_bound() * instance.scene->spawn_offset() +
+                                                8 * epsilon * std::max(max_abs(boxes[k].lower), max_abs(boxes[k].upper)));
   }
   if (!(box_.diagonal() >= smallest_size && box_.diagonal() <= largest_size))
     return Status(StatusCode::unsupported, "a scene of instances holds sizes from 1e-140 to 1e140");
@@ -148,10 +154,28 @@ Hit InstanceScene::placed_hit(const RayLine& line, unsigned instance, Hit hit) c
   hit.instance = instance;
   hit.position = map.point(hit.position);
   hit.normal = placed_normal(map, hit.normal);
+  hit.du = map.vector(hit.du), hit.dv = map.vector(hit.dv);
   const Vec3 from_start = frame_.to_scene(hit.position) - line.start;
   const double x = dot(line.across[0], from_start), y = dot(line.across[1], from_start);
   hit.residual = std::sqrt(x * x + y * y) / frame_.scale;
   return hit;
+}
+
+Result<LocalGeometry> InstanceScene::local_geometry(const Hit& hit) const {
+  if (hit.instance >= instances_.size())
+    return Status(StatusCode::invalid_argument, "there is no instance " + std::to_string(hit.instance) +
+                                                    " in a scene of " + std::to_string(instances_.size()));
+  const Instance& instance = instances_[hit.instance];
+  Result<LocalGeometry> own = instance.scene->local_geometry(hit);
+  if (!own) return own;
+  SurfaceJet jet = evaluate_jet(instance.source->tracer().set->patch(hit.patch), hit.patch_u, hit.patch_v);
+  for (Vec3* const derivative : {&jet.du, &jet.dv, &jet.duu, &jet.duv, &jet.dvv})
+    *derivative = instance.to_world.vector(*derivative);
+  jet.position = instance.to_world.point(jet.position);
+  LocalGeometry placed = tessera::local_geometry(jet);
+  if (!placed.defined)
+    placed.normal = {placed_normal(instance.to_world, own->normal.direction), own->normal.kind};
+  return placed;
 }
 
 Hit InstanceScene::closest(const Ray& ray) const {
@@ -163,9 +187,10 @@ Hit InstanceScene::closest(const Ray& ray) const {
   const RayLine line = line_of(ray, frame_, scene_box_);
   if (line.empty) return hit;
   unsigned nearest = 0;
+  std::uint32_t steps = 0;
   bool incomplete = false;
   meet(ray, line, RootsWanted::closest, [&](unsigned instance, const RayQuery& query) {
-    incomplete |= query.incomplete;
+    incomplete |= query.incomplete, steps += query.steps;
     if (!query.found) return infinity;
     const Hit own = instances_[instance].source->hit_at(query.line, query.best);
     if (hit.kind == HitKind::hit && !(own.t < hit.t)) return infinity;
@@ -173,7 +198,7 @@ Hit InstanceScene::closest(const Ray& ray) const {
     return hit.t;
   });
   if (hit.kind == HitKind::hit) hit = placed_hit(line, nearest, hit);
-  hit.flags.incomplete = incomplete;
+  hit.flags.incomplete = incomplete, hit.steps = told(steps);
   return hit;
 }
 
@@ -195,10 +220,11 @@ Status InstanceScene::all_of(const Ray& ray, std::vector<Hit>& hits) const {
   const RayLine line = line_of(ray, frame_, scene_box_);
   if (line.empty) return {};
   bool overflow = false, incomplete = false;
+  std::uint32_t steps = 0;
   std::vector<Hit> own;
   const auto first = static_cast<std::ptrdiff_t>(hits.size());
   meet(ray, line, RootsWanted::all, [&](unsigned instance, RayQuery& query) {
-    overflow |= query.overflow, incomplete |= query.incomplete;
+    overflow |= query.overflow, incomplete |= query.incomplete, steps += query.steps;
     try {
       own.clear();
       instances_[instance].source->hits_of(query, own);
@@ -212,7 +238,8 @@ Status InstanceScene::all_of(const Ray& ray, std::vector<Hit>& hits) const {
   std::stable_sort(hits.begin() + first, hits.end(), [](const Hit& a, const Hit& b) {
     return a.t != b.t ? a.t < b.t : a.instance < b.instance;
   });
-  for (auto hit = hits.begin() + first; hit != hits.end(); ++hit) hit->flags.incomplete = incomplete;
+  for (auto hit = hits.begin() + first; hit != hits.end(); ++hit)
+    hit->flags.incomplete = incomplete, hit->steps = told(steps);
   return {};
 }
 

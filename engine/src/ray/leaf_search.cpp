@@ -91,6 +91,7 @@ class LeafSearch {
   void visit(int slot) {
     const double* const net = space_.net(slot);
     const SearchBox& box = space_.box(slot);
+    ++query_.steps;
     rounding_ = search_rounding(shape_.m(), shape_.n(), leaf_.halvings(), box.depth);
     const Extent extent = extent_of(net);
     if (extent.off_ray) return;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "ray/polished_root.h"
+#include "ray/spawn_root.h"
 
 namespace tessera {
 namespace {
@@ -43,6 +44,8 @@ kernel::RayProbe probe_of(const RayQuery& query) {
 void LeafTracer::search(unsigned leaf_index, kernel::RayProbe& probe, RayQuery& query, SearchSpace& space) const {
   const Leaf& leaf = nets->leaves()[leaf_index];
   probe.far = narrow(std::min(query.far, 8.0) + probe_pad);
+  ++query.steps;
+  if (query.line.spawn > 0) query.origin = this;
   if (decide(leaf, leaf_index, probe, query)) return;
   if (!space.make_ready()) {
     query.overflow = query.incomplete = true;
@@ -52,12 +55,16 @@ void LeafTracer::search(unsigned leaf_index, kernel::RayProbe& probe, RayQuery& 
   search_leaf(leaf, space.leaf_net(), tolerance, space, query);
 }
 
+OriginRoot LeafTracer::judge(const RayLine& line, const LeafRoot& root) const {
+  return judge_origin(set->patch(root.patch), nets->frame(), line, root);
+}
+
 /// In float, where that proves what there is; then in double what was found.
 bool LeafTracer::decide(const Leaf& leaf, unsigned leaf_index, kernel::RayProbe& probe, RayQuery& query) const {
   const auto trace = leaf.rational ? kernels->trace_rational_leaf : kernels->trace_polynomial_leaf;
   const kernel::RayLeaf& local = nets->local(leaf_index);
   kernel::RayRoots roots;
-  probe.any = query.wanted == RootsWanted::any;
+  probe.any = query.wanted == RootsWanted::any && query.origin == nullptr;
   if (!probe.any) fetch(set->patch(leaf.patch));
   if (!trace(local, probe, roots)) return false;
   if (roots.count == 0) return true;

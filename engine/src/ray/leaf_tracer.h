@@ -13,7 +13,7 @@ namespace tessera {
 kernel::RayProbe probe_of(const RayQuery& query);
 
 /// Refers to what it is made of. Const calls from any number of threads, each with a search space of its own.
-struct LeafTracer {
+struct LeafTracer final : OriginTest {
   const SetView* set = nullptr;
   const LeafNets* nets = nullptr;
   const kernel::RayKernels* kernels = nullptr;
@@ -21,6 +21,9 @@ struct LeafTracer {
 
   /// Adds to the query what it wants of a leaf. `probe`: of the query, used again from leaf to leaf.
   void search(unsigned leaf, kernel::RayProbe& probe, RayQuery& query, SearchSpace& space) const;
+
+  /// spawn_root.h
+  OriginRoot judge(const RayLine& line, const LeafRoot& root) const override;
 
  private:
   bool decide(const Leaf& leaf, unsigned leaf_index, kernel::RayProbe& probe, RayQuery& query) const;

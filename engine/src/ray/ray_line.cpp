@@ -89,8 +89,8 @@ Vec3 near_centre(const Ray& ray, const RayLine& line, const Vec3& c) {
           point_on_line(o.z, line.base, d.z, c.z)};
 }
 
-/// Once base, start, direction and speed are known.
-void complete(const Ray& ray, const Box3& box, RayLine& line) {
+/// Once base, start, direction and speed are known. `scale`: an upper bound of what lengths grow by.
+void complete(const Ray& ray, double scale, const Box3& box, RayLine& line) {
   line.shift = -dot(line.start, line.direction);  // what the rounding of `base` has left
   line.start += line.shift * line.direction;
 
@@ -105,6 +105,7 @@ void complete(const Ray& ray, const Box3& box, RayLine& line) {
   clip(line.start.z, line.direction.z, box.lower.z - pad, box.upper.z + pad, line);
   line.empty = !(line.enter <= line.leave);
   if (!line.empty) set_across(line);
+  if (ray.spawn_offset > 0) line.spawn = scale * ray.spawn_offset + 2 * line.slack;
 }
 
 }  // namespace
@@ -115,7 +116,7 @@ RayLine line_of(const Ray& ray, const SceneFrame& frame, const Box3& box) {
   line.base = -dot(frame.to_scene(ray.origin), line.direction) / line.speed;
   if (!std::isfinite(line.base) || !(line.speed > 0)) return line;  // no t in double reaches the scene
   line.start = frame.scale * near_centre(ray, line, frame.centre);
-  complete(ray, box, line);
+  complete(ray, frame.scale, box, line);
   return line;
 }
 
@@ -147,7 +148,7 @@ RayLine line_of(const Ray& ray, const Placement& placement, const SceneFrame& fr
   line.base = -dot(from, line.direction) / line.speed;
   if (!std::isfinite(line.base) || !(line.speed > 0)) return line;
   line.start = frame.scale * placement.back.vector(near_centre(ray, line, placement.centre));
-  complete(ray, box, line);
+  complete(ray, frame.scale * placement.back.norm_bound(), box, line);
   return line;
 }
 

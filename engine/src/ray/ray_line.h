@@ -35,8 +35,11 @@ struct RayLine {
   double enter = 0, leave = 0;
   double slack = 0;   ///< how far an s may be off for the rounding of t
   bool empty = true;  ///< passes the scene by
+  double spawn = 0;   ///< as Ray::spawn_offset, with all rounding; 0 where the ray leaves no surface
 
   double t_at(double s) const { return base + (shift + s) / speed; }
+  /// Where t is 0.
+  double s_of_origin() const { return -base * speed - shift; }
 
   double base = 0, shift = 0, speed = 1;  ///< t = base + (shift + s) / speed
 };

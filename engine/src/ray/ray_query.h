@@ -32,6 +32,22 @@ inline bool same_place(const LeafRoot& a, const LeafRoot& b) {
 
 enum class RootsWanted : std::uint8_t { closest, any, all };
 
+/// Whether a root stands for the origin of the ray.
+enum class OriginRoot : std::uint8_t {
+  other,
+  same,
+  indistinct,  ///< it and its neighbours can't be told apart
+};
+
+/// What tells that: spawn_root.h.
+class OriginTest {
+ public:
+  virtual OriginRoot judge(const RayLine& line, const LeafRoot& root) const = 0;
+
+ protected:
+  ~OriginTest() = default;
+};
+
 struct RayQuery {
   RayQuery(const Ray& of, const RayLine& along, RootsWanted which)
       : ray(of), line(along), wanted(which), near(along.near - along.slack), far(along.leave) {}
@@ -41,15 +57,22 @@ struct RayQuery {
   RootsWanted wanted;
   double near, far;  ///< roots outside are of no use; far shrinks to the closest so far
   bool found = false;
+  std::uint32_t steps = 0;      ///< leaves looked at and parts of them searched
   bool incomplete = false;      ///< a bound on work was reached: there may be more
   bool overflow = false;        ///< memory for more roots ran out
   LeafRoot best;                ///< where found
   std::vector<LeafRoot> roots;  ///< where all are wanted
+  const OriginTest* origin = nullptr;  ///< where the line leaves a surface
 
   bool done() const { return (found && wanted == RootsWanted::any) || overflow; }
 
-  /// False where the root's t is outside of [tnear, tfar].
+  /// False where the root's t is outside of [tnear, tfar], or where it stands for the origin that the ray leaves: there
+  /// may be others beside it.
   bool take(const LeafRoot& root) {
+    if (origin != nullptr) {  // first: rounding may have left the origin itself before tnear
+      const OriginRoot is = origin->judge(line, root);
+      if (is != OriginRoot::other) return is == OriginRoot::indistinct;
+    }
     const double t = line.t_at(root.s);
     if (!(t >= ray.tnear && t <= ray.tfar)) return false;
     if (wanted == RootsWanted::all) {

@@ -42,6 +42,14 @@ Status RayScene::Impl::refit(const Execution& execution) {
   return done(update(revision_, execution));
 }
 
+Result<Hit> RayScene::Impl::resolve(std::uint32_t, double, double) const {
+  return Status(StatusCode::unsupported, "points of instances are resolved by the scene that stands there");
+}
+
+Result<Hit> RayScene::Impl::resolve(const Ray&, std::uint32_t, double, double) const {
+  return Status(StatusCode::unsupported, "the root next to a point is known in exact mode only");
+}
+
 Status RayScene::Impl::closest(std::span<const Ray> rays, std::span<Hit> hits, const Execution& execution) const {
   if (hits.size() < rays.size()) return short_output(rays.size(), hits.size());
   if (!fresh()) return stale();
@@ -146,6 +154,31 @@ Status RayScene::refit(const Execution& execution) {
 
 Status RayScene::rebuild(const Execution& execution) {
   return guarded([&] { return impl_->rebuild(execution); });
+}
+
+double RayScene::spawn_offset() const { return impl_->fresh() ? impl_->spawn_offset() : 0; }
+
+Result<LocalGeometry> RayScene::local_geometry(const Hit& hit) const {
+  return guarded([&]() -> Result<LocalGeometry> {
+    if (!impl_->fresh()) return stale();
+    if (hit.kind != HitKind::hit)
+      return Status(StatusCode::invalid_argument, "there is no curvature where a ray meets nothing");
+    return impl_->local_geometry(hit);
+  });
+}
+
+Result<Hit> RayScene::resolve(std::uint32_t patch, double u, double v) const {
+  return guarded([&]() -> Result<Hit> {
+    if (!impl_->fresh()) return stale();
+    return impl_->resolve(patch, u, v);
+  });
+}
+
+Result<Hit> RayScene::resolve(const Ray& ray, std::uint32_t patch, double u, double v) const {
+  return guarded([&]() -> Result<Hit> {
+    if (!impl_->fresh()) return stale();
+    return impl_->resolve(ray, patch, u, v);
+  });
 }
 
 std::uint64_t RayScene::revision() const { return impl_->revision(); }

@@ -31,6 +31,12 @@ class RayScene::Impl {
   virtual const ExactSource* exact_source() const { return nullptr; }
   bool fresh() const { return ready_ && revision_ == source_revision(); }
 
+  /// As those of RayScene; the scene is fresh.
+  virtual double spawn_offset() const = 0;
+  virtual Result<LocalGeometry> local_geometry(const Hit& hit) const = 0;
+  virtual Result<Hit> resolve(std::uint32_t patch, double u, double v) const;
+  virtual Result<Hit> resolve(const Ray& ray, std::uint32_t patch, double u, double v) const;
+
   Box3 box() const { return fresh() ? model_box() : Box3{}; }
   std::uint64_t revision() const { return revision_; }
   virtual std::size_t memory_bytes() const = 0;
@@ -62,9 +68,17 @@ class PatchScene : public RayScene::Impl {
  public:
   explicit PatchScene(const PatchSet& set) : set_(set) {}
 
+  double spawn_offset() const override;
+  Result<LocalGeometry> local_geometry(const Hit& hit) const override;
+  Result<Hit> resolve(std::uint32_t patch, double u, double v) const override;
+  using Impl::resolve;
+
  protected:
   const SetView& set() const { return set_; }
   std::uint64_t source_revision() const override { return set_.revision(); }
+  virtual double size() const = 0;  ///< of the set's box
+  /// Errors: invalid_argument.
+  Status check_point(std::uint32_t patch, double u, double v) const;
 
  private:
   SetView set_;

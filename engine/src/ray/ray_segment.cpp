@@ -29,7 +29,7 @@ bool is_valid(const Ray& ray) {
   // Written so that NaN fails.
   return max_abs(ray.origin) <= max_ray_component && max_abs(ray.direction) <= max_ray_component &&
          is_finite(ray.origin) && is_finite(ray.direction) && max_abs(ray.direction) > 0 && ray.tnear >= 0 &&
-         ray.tnear <= ray.tfar;
+         ray.tnear <= ray.tfar && ray.spawn_offset >= 0 && ray.spawn_offset <= max_ray_component;
 }
 
 FacetRay RaySegment::facet_ray(float s_near) const {

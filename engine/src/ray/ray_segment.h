@@ -10,7 +10,7 @@ namespace tessera {
 /// The largest magnitude of a ray's components, Embree's own limit (the square root of float's range).
 inline constexpr double max_ray_component = 1.844e18;
 
-/// Finite, within the limit, direction not zero, 0 <= tnear <= tfar.
+/// Finite, within the limit, direction not zero, 0 <= tnear <= tfar, no offset below 0.
 bool is_valid(const Ray& ray);
 
 /// The part of a ray that can meet the scene, by arc length: points start + s * direction, 0 <= s <= reach.

@@ -1,0 +1,21 @@
+#pragma once
+// Secondary rays: the root of a patch that stands for the point where the ray starts.
+
+#include "ray/ray_query.h"
+#include "tessera/bezier_patch.h"
+
+namespace tessera {
+
+/// Of a root of the patch on a line that leaves the surfaces within line.spawn of its origin, in the frame's coordinates.
+///
+/// Let x* be the point of the patch nearest to the origin, near the root, and f the patch across the ray, with Jacobian J
+/// at x*. Where the patch passes by, |f(x*)| is at most the offset. With eta = |J^-1| |f(x*)|, K a bound of the second
+/// derivatives of f and h = |J^-1| K eta <= 1/2, Kantorovich's theorem (Deuflhard, Newton Methods for Nonlinear Problems,
+/// 2nd ed., sec. 2.1) gives one root within 2 eta of x*, which is that of the origin, and no other within 1 / (|J^-1| K),
+/// which is no less. A root that the search has not certified, a part of the patch within the tolerance of the ray, is that
+/// of the origin where Newton's method leads from it to that one, and done with where it is small or lies so near. Where h
+/// is larger the ray runs along the patch, or the parameters are degenerate as at a pole: then
+/// all roots up to sqrt(8 offset / K) count as one.
+OriginRoot judge_origin(const BezierPatch& patch, const SceneFrame& frame, const RayLine& line, const LeafRoot& root);
+
+}  // namespace tessera
