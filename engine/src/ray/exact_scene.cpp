@@ -18,7 +18,7 @@
 #include "ray/exact_source.h"
 #include "ray/leaf_nets.h"
 #include "ray/leaf_search.h"
-#include "ray/polished_root.h"
+#include "ray/nearest_root.h"
 #include "ray/ray_line.h"
 #include "ray/ray_scene_impl.h"
 #include "ray/ray_segment.h"

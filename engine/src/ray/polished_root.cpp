@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ray/bounded_step.h"
 #include "ray/first_order.h"
 #include "ray/leaf_search.h"
 #include "ray/projected_net.h"
+#include "ray/seen_point.h"
 
 namespace tessera {
 namespace {
@@ -33,16 +33,6 @@ FirstOrder scene_point(const BezierPatch& patch, const SceneFrame& frame, const 
     out = first_order(patch, u, v, frame.centre);
   }
   return {frame.scale * out.position, frame.scale * out.du, frame.scale * out.dv};
-}
-
-/// As the ray sees it.
-NetValue seen(const FirstOrder& at, const RayLine& line) {
-  const Vec3 from = at.position - line.start;
-  NetValue f;
-  f.x = dot(line.across[0], from), f.y = dot(line.across[1], from), f.z = dot(line.direction, from);
-  f.xu = dot(line.across[0], at.du), f.xv = dot(line.across[0], at.dv);
-  f.yu = dot(line.across[1], at.du), f.yv = dot(line.across[1], at.dv);
-  return f;
 }
 
 }  // namespace
@@ -77,32 +67,6 @@ bool polish(const BezierPatch& patch, const SceneFrame& frame, const Leaf& leaf,
     return !with_radius || set_radius(f, root.residual, 1, 1, root);
   }
   return false;
-}
-
-LeafRoot nearest_to_ray(const BezierPatch& patch, const SceneFrame& frame, const RayLine& line, std::uint32_t index,
-                        double u, double v) {
-  constexpr int most = 20;
-  const auto at = [&](NetPoint point) {
-    const FirstOrder there = first_order(patch, point.u, point.v, frame.centre);
-    return FirstOrder{frame.scale * there.position, frame.scale * there.du, frame.scale * there.dv};
-  };
-  NetPoint best{u, v};
-  FirstOrder point = at(best);
-  NetValue f = seen(point, line);
-  for (int step = 0; step < most; ++step) {
-    const NetPoint next = bounded_step(f, best);
-    const FirstOrder there = at(next);
-    const NetValue value = seen(there, line);
-    if (!(value.residual() < f.residual())) break;
-    best = next, point = there, f = value;
-  }
-  LeafRoot root;
-  root.patch = index;
-  root.u = best.u, root.v = best.v;
-  root.s = f.s(), root.residual = f.residual();
-  root.has_point = true;
-  root.position = point.position, root.du = point.du, root.dv = point.dv;
-  return root;
 }
 
 }  // namespace tessera

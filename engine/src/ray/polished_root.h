@@ -13,8 +13,4 @@ namespace tessera {
 bool polish(const BezierPatch& patch, const SceneFrame& frame, const Leaf& leaf, const kernel::RayKernels& kernels,
             const RayLine& line, const kernel::RayRoot& proven, bool with_radius, LeafRoot& root);
 
-/// The point of the patch nearest to the line, from (u,v) on by Newton's method in the square; not certified.
-LeafRoot nearest_to_ray(const BezierPatch& patch, const SceneFrame& frame, const RayLine& line, std::uint32_t index,
-                        double u, double v);
-
 }  // namespace tessera

@@ -68,6 +68,7 @@ bool SceneFrame::holds(const Box3& box) const {
 namespace {
 
 /// Sets the unit direction and the speed. `given`: the ray's, in the model's coordinates.
+template <bool Placed>
 void set_direction(const Vec3& given, double scale, RayLine& line) {
   const double largest = max_abs(given);
   if (largest > 1e-100) {
@@ -89,7 +90,9 @@ Vec3 near_centre(const Ray& ray, const RayLine& line, const Vec3& c) {
           point_on_line(o.z, line.base, d.z, c.z)};
 }
 
-/// Once base, start, direction and speed are known. `scale`: an upper bound of what lengths grow by.
+/// Once base, start, direction and speed are known. `scale`: an upper bound of what lengths grow by. One a kind of ray, so
+/// that each is inlined where it is used.
+template <bool Placed>
 void complete(const Ray& ray, double scale, const Box3& box, RayLine& line) {
   line.shift = -dot(line.start, line.direction);  // what the rounding of `base` has left
   line.start += line.shift * line.direction;
@@ -112,11 +115,11 @@ void complete(const Ray& ray, double scale, const Box3& box, RayLine& line) {
 
 RayLine line_of(const Ray& ray, const SceneFrame& frame, const Box3& box) {
   RayLine line;
-  set_direction(ray.direction, frame.scale, line);
+  set_direction<false>(ray.direction, frame.scale, line);
   line.base = -dot(frame.to_scene(ray.origin), line.direction) / line.speed;
   if (!std::isfinite(line.base) || !(line.speed > 0)) return line;  // no t in double reaches the scene
   line.start = frame.scale * near_centre(ray, line, frame.centre);
-  complete(ray, frame.scale, box, line);
+  complete<false>(ray, frame.scale, box, line);
   return line;
 }
 
@@ -143,12 +146,12 @@ RayLine line_of(const Ray& ray, const Placement& placement, const SceneFrame& fr
   RayLine line;
   const Vec3 direction = placement.back.vector(ray.direction);
   if (!is_finite(direction) || !(max_abs(direction) > 0)) return line;  // no t in double reaches the scene
-  set_direction(direction, frame.scale, line);
+  set_direction<true>(direction, frame.scale, line);
   const Vec3 from = frame.scale * placement.back.vector(ray.origin - placement.centre);
   line.base = -dot(from, line.direction) / line.speed;
   if (!std::isfinite(line.base) || !(line.speed > 0)) return line;
   line.start = frame.scale * placement.back.vector(near_centre(ray, line, placement.centre));
-  complete(ray, frame.scale * placement.back.norm_bound(), box, line);
+  complete<true>(ray, frame.scale * placement.back.norm_bound(), box, line);
   return line;
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "ray/first_order.h"
-#include "ray/polished_root.h"
+#include "ray/nearest_root.h"
 
 namespace tessera {
 namespace {
