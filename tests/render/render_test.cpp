@@ -96,6 +96,39 @@ TEST(Render, ParametersAreShown) {
   EXPECT_NEAR(high_v.r, low.r, 60);
 }
 
+TEST(Render, CurvatureAndCostAreShown) {
+  const auto middle_of = [](const std::vector<BezierPatch>& patches) {
+    Settings settings = small(Shade::curvature);
+    settings.camera = Camera{{0.45, 0.55, 4}, {0.45, 0.55, 0}, 20, {0, 1, 0}};
+    return pixel(Drawn(patches).image(settings), 30, 20);
+  };
+  const auto over_square = [](double middle, double end) {  // end, middle, end along u; 0, middle, 0 along v
+    std::vector<Vec3> points;
+    for (const double u : {0.0, 0.5, 1.0}) {
+      for (const double v : {0.0, 0.5, 1.0}) points.push_back({u, v, (u == 0.5 ? 0 : end) + (v == 0.5 ? middle : 0)});
+    }
+    return std::vector<BezierPatch>{value_of(BezierPatch::polynomial(2, 2, points))};
+  };
+  const Rgb dome = middle_of(over_square(1, -1)), saddle = middle_of(over_square(1, 1)),
+            trough = middle_of(over_square(0, 1));
+  EXPECT_GT(dome.r, dome.b + 60);
+  EXPECT_GT(saddle.b, saddle.r + 60);
+  EXPECT_NEAR(trough.r, trough.b, 12);
+
+  // Rays that touch the ball cost more than those that meet it squarely; those that pass it far off cost nothing.
+  const Image cost = Drawn(test::sphere()).image(small(Shade::steps));
+  EXPECT_GT(pixel(cost, 30, 20).b, pixel(cost, 30, 20).r);
+  const Rgb nothing = pixel(cost, 0, 0);
+  EXPECT_GT(std::min({nothing.r, nothing.g, nothing.b}), 230);
+  int warmest = 0;
+  for (int y = 0; y < cost.height; ++y) {
+    for (int x = 0; x < cost.width; ++x) {
+      if (pixel(cost, x, y).b < 200) warmest = std::max(warmest, pixel(cost, x, y).r);
+    }
+  }
+  EXPECT_GT(warmest, pixel(cost, 30, 20).r + 10);
+}
+
 TEST(Render, TheModelCastsAShadow) {
   // A plate above the floor: a camera that looks at the floor under it sees light without the plate, shadow with it.
   const std::vector<Vec3> low{{0, 0, 0}, {0, 0.01, 0}, {0.01, 0, 0}, {0.01, 0.01, 0}};

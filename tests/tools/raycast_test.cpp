@@ -26,13 +26,28 @@ std::pair<unsigned, unsigned> png_size(const std::string& bytes) {
 }
 
 TEST_F(RaycastTool, PicturesHaveTheSizeAskedFor) {
-  for (const char* shade : {"lambert", "normals", "uv", "patch", "error"}) {
+  for (const char* shade : {"lambert", "normals", "uv", "patch", "error", "curvature", "steps"}) {
     const std::string name = std::string(shade) + ".png";
     output_of({"raycast", teapot, "-o", name, "--size", "64x48", "--shade", shade});
     EXPECT_EQ(png_size(content_of(folder_ / name)), (std::pair{64u, 48u}));
   }
-  EXPECT_EQ(folder_.names(), (Names{"error.png", "lambert.png", "normals.png", "patch.png", "uv.png"}));
+  EXPECT_EQ(folder_.names(), (Names{"curvature.png", "error.png", "lambert.png", "normals.png", "patch.png",
+                                    "steps.png", "uv.png"}));
   EXPECT_NE(content_of(folder_ / "uv.png"), content_of(folder_ / "patch.png"));
+}
+
+/// The fewer segments, the more of the outline is lost.
+TEST_F(RaycastTool, RatesOfGrids) {
+  const auto picture = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"raycast", teapot, "-o", "a.png", "--size", "96x64", "--shade", "patch"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    output_of(arguments);
+    return content_of(folder_ / "a.png");
+  };
+  EXPECT_NE(picture({"--mode", "grid", "--rate", "2"}), picture({"--mode", "grid", "--rate", "64"}));
+  expect_failure({"raycast", teapot, "-o", "a.png", "--rate", "4"}, 2, "--mode grid");
+  expect_failure({"raycast", teapot, "-o", "a.png", "--mode", "grid", "--rate", "0"}, 2, "--rate");
+  expect_failure({"raycast", teapot, "-o", "a.png", "--mode", "grid", "--shade", "steps"}, 2, "--mode exact");
 }
 
 /// A finer mesh, the same colours by another measure; a given mesh has its own.

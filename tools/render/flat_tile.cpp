@@ -1,4 +1,4 @@
-// Shades that show numbers: normals, parameters, patches, errors.
+// Shades that show numbers: normals, parameters, patches, errors, curvature, cost.
 
 #include <algorithm>
 #include <array>
@@ -38,17 +38,35 @@ Vec3 error_colour(double share) {
   return (1 - t) * stops[before] + t * stops[before + 1];
 }
 
-Vec3 surface_colour(const Hit& hit, const Settings& settings) {
+/// Gaussian curvature: domes red, saddles blue, the grey between where the surface can be unrolled; half of the way to full
+/// colour at a bend of a sixteenth of the model's size.
+Vec3 curvature_colour(const RayScene& scene, double size, const Hit& hit) {
+  const Vec3 flat{0.86, 0.86, 0.84}, dome{0.78, 0.13, 0.10}, saddle{0.09, 0.25, 0.66};
+  const Result<LocalGeometry> geometry = scene.local_geometry(hit);
+  if (!geometry || !geometry->defined) return {0.25, 0.25, 0.25};
+  const double bend = std::sqrt(std::abs(geometry->gaussian)) * size / 16, share = bend / (1 + bend);
+  return (1 - share) * flat + share * (geometry->gaussian > 0 ? dome : saddle);
+}
+
+/// What a ray has cost, hit or not: by the colours of errors, each for four times as much as the one before.
+Vec3 cost_colour(const Hit& hit) {
+  return error_colour(std::min(1.0, std::log(std::max<double>(hit.steps, 1)) / std::log(most_steps_shown)));
+}
+
+Vec3 surface_colour(const Hit& hit, const View& view) {
+  const Settings& settings = view.settings;
   if (settings.shade == Shade::uv) return uv_colour(hit);
+  if (settings.shade == Shade::curvature) return curvature_colour(view.scene, view.size, hit);
   return settings.shade == Shade::error ? error_colour(settings.error(hit.position)) : patch_colour(hit.patch);
 }
 
-Vec3 colour(const Hit& hit, const Vec3& direction, const Settings& settings) {
+Vec3 colour(const Hit& hit, const Vec3& direction, const View& view) {
+  if (view.settings.shade == Shade::steps && hit.steps > 0) return cost_colour(hit);
   if (hit.kind != HitKind::hit) return background;
-  if (settings.shade == Shade::normals) return 0.5 * (hit.normal + Vec3{1, 1, 1});
+  if (view.settings.shade == Shade::normals) return 0.5 * (hit.normal + Vec3{1, 1, 1});
   // Darker where the surface turns away: the shape stays readable.
   const double facing = 0.62 + 0.38 * std::abs(dot(hit.normal, direction));
-  return facing * surface_colour(hit, settings);
+  return facing * surface_colour(hit, view);
 }
 
 }  // namespace
@@ -56,7 +74,7 @@ Vec3 colour(const Hit& hit, const Vec3& direction, const Settings& settings) {
 void shade_flat(const View& view, Workspace& work) {
   work.colours.resize(work.rays.size());
   for (std::size_t k = 0; k < work.colours.size(); ++k) {
-    work.colours[k] = colour(work.hits[k], work.rays[k].direction, view.settings);
+    work.colours[k] = colour(work.hits[k], work.rays[k].direction, view);
   }
 }
 

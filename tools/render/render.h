@@ -28,12 +28,16 @@ struct Camera {
 };
 
 enum class Shade : std::uint8_t {
-  lambert,  ///< glazed porcelain on a floor under a sky: sun with soft shadow, ambient light, one reflection
-  normals,  ///< the unit normal, (n + 1) / 2 as red, green, blue
-  uv,       ///< patch parameters: u red, v green, a checkerboard of eighths
-  patch,    ///< a colour a patch
-  error,    ///< how far something lies from the surface, of which Settings tells: dark where near, red where furthest
+  lambert,    ///< glazed porcelain on a floor under a sky: sun with soft shadow, ambient light, one reflection
+  normals,    ///< the unit normal, (n + 1) / 2 as red, green, blue
+  uv,         ///< patch parameters: u red, v green, a checkerboard of eighths
+  patch,      ///< a colour a patch
+  error,      ///< how far something lies from the surface, of which Settings tells: dark where near, red where furthest
+  curvature,  ///< Gaussian: domes red, saddles blue, grey where it is zero
+  steps,      ///< Hit::steps, the cost of each ray, hits and misses: blue at 1, red at most_steps_shown and more
 };
+
+inline constexpr double most_steps_shown = 256;
 
 struct Settings {
   int width = 1280, height = 800;  ///< 1 to 32768

@@ -13,6 +13,7 @@
 #include "loading.h"
 #include "mesh_error.h"
 #include "progress.h"
+#include "raycast_footer.h"
 #include "render/camera.h"
 #include "render/caption.h"
 #include "render/hit_image.h"
@@ -29,6 +30,7 @@ struct Options {
   bool sized = false;  // --size was given
   bool all_hits = false;
   RayMode mode = RayMode::exact;
+  int rate = 0;  // of grid mode; 0: by the number of patches
   render::Settings settings;
   MeshErrorOptions error;
 };
@@ -65,14 +67,14 @@ int scene_rate(std::size_t patches) {
 
 const char* name_of(RayMode mode) { return mode == RayMode::exact ? "exact" : "grid"; }
 
-Result<Scene> make_scene(Loaded loaded, RayMode mode, Timings& timings) {
+Result<Scene> make_scene(Loaded loaded, const Options& asked, Timings& timings) {
   Result<PatchSet> set = pack(loaded, timings);
   if (!set) return set.status();
   const auto phase = timings.phase("build");
   Progress progress("building the scene");
   RaySceneOptions options;
-  options.mode = mode;
-  options.rate = scene_rate(set->patch_count());
+  options.mode = asked.mode;
+  options.rate = asked.rate > 0 ? asked.rate : scene_rate(set->patch_count());
   Result<RayScene> rays = RayScene::make(*set, options, progress.execution());
   if (!rays) return in_file(loaded.files[0], rays.status());
   return Scene{std::move(loaded), *std::move(set), *std::move(rays), {}};
@@ -214,7 +216,7 @@ Status run_raycast(const Job& job, const Options& options, const CommonOptions& 
     if (!read) return read.status();
     rays = *std::move(read);
   }
-  Result<Scene> scene = make_scene(*std::move(loaded), options.mode, timings);
+  Result<Scene> scene = make_scene(*std::move(loaded), options, timings);
   if (!scene) return scene.status();
   if (options.settings.shade == render::Shade::error) {
     const auto phase = timings.phase("measure");
@@ -248,44 +250,13 @@ std::string fault_of_picture(const std::string& path) {
   return path + ": unsupported format \"" + extension + "\": pictures are written as .png, .exr";
 }
 
-constexpr const char* footer =
-    "A picture: -o, with --size, --shade and --camera. The default camera fits the model; its up is the z axis. "
-    "Several\n"
-    "models are one scene, or a picture each where the output is a folder or holds {name}. Trims are not honoured yet: "
-    "a\n"
-    "picture of a trimmed model says so at its lower border and in its metadata (Warning).\n"
-    "--shade error shows how far a mesh lies from the surfaces: deep blue where near, red at the proven bound of a "
-    "certified\n"
-    "mesh or the largest distance found of a given one, magenta beyond.\n"
-    ".exr holds numbers, of one ray through the middle of each pixel: floats Z (distance from the eye), N.X N.Y N.Z,\n"
-    "UV.U UV.V (parameters of the surface), integers surface and patch; where nothing is met Z is inf, the integers\n"
-    "4294967295.\n"
-    "Without -o the picture is drawn in the terminal, a model after the other, two pixels a character: in 24-bit "
-    "colours\n"
-    "where COLORTERM promises them, in 256 where TERM does, else, with NO_COLOR and in a pipe in plain characters.\n"
-    "Hits of given rays: --rays and --hits. Rays are a table with the header line ox,oy,oz,dx,dy,dz or\n"
-    "ox,oy,oz,dx,dy,dz,tnear,tfar: numbers of at most 1.844e18, the direction not zero, 0 <= tnear <= tfar, tfar may\n"
-    "be inf; # begins a comment. Hits are the table ray,hit,t,surface,patch,u,v,x,y,z,nx,ny,nz, a row for each ray in "
-    "the\n"
-    "order of the rays, counted from 0; a miss has hit = 0 and empty fields. 17 significant digits. With --all-hits a\n"
-    "ray has a row for each point that it meets, in the order of t.\n"
-    "--mode exact looks at the surface itself, silhouettes too; --mode grid at facets first and then at the surface: a\n"
-    "silhouette may be missed.\n"
-    "\nExamples:\n"
-    "  tessera raycast teapot.bpt\n"
-    "  tessera raycast teapot.bpt -o teapot.png --size 1280x720\n"
-    "  tessera raycast teapot.bpt -o teapot.png --shade normals --camera=4,-8,5,0,0,1.5,40\n"
-    "  tessera raycast teapot.bpt -o error.png --shade error --relative 0.003\n"
-    "  tessera raycast teapot.bpt -o error.png --shade error --mesh teapot.stl\n"
-    "  tessera raycast 'parts/*.step' -o 'pictures/{name}.png'\n"
-    "  tessera raycast teapot.bpt --rays rays.csv --hits hits.csv\n"
-    "  tessera raycast teapot.bpt --rays rays.csv --hits hits.csv --all-hits";
-
 const std::map<std::string, render::Shade> shades{{"lambert", render::Shade::lambert},
                                                   {"normals", render::Shade::normals},
                                                   {"uv", render::Shade::uv},
                                                   {"patch", render::Shade::patch},
-                                                  {"error", render::Shade::error}};
+                                                  {"error", render::Shade::error},
+                                                  {"curvature", render::Shade::curvature},
+                                                  {"steps", render::Shade::steps}};
 
 /// The options that make sense with a picture alone.
 std::vector<CLI::Option*> add_picture_options(CLI::App& command, Options& options) {
@@ -306,7 +277,7 @@ std::vector<CLI::Option*> add_picture_options(CLI::App& command, Options& option
               ->type_name("WxH"),
           command.add_option_function<std::string>("--shade", set_shade, "How surfaces are coloured [lambert]")
               ->type_name("NAME")
-              ->check(one_of({"lambert", "normals", "uv", "patch", "error"})),
+              ->check(one_of({"lambert", "normals", "uv", "patch", "error", "curvature", "steps"})),
           command
               .add_option_function<std::string>("--camera", set_camera,
                                                 "Eye, target, field of view in degrees over the picture's shorter side "
@@ -356,6 +327,11 @@ void add_mode(CLI::App& command, Options& options) {
                                         "What rays meet: surfaces (exact) or facets first (grid) [exact]")
       ->type_name("MODE")
       ->check(one_of({"grid", "exact"}));
+  command
+      .add_option("--rate", options.rate,
+                  "Segments of a patch's grid each way in --mode grid, 1 to 256 [64, fewer for many patches]")
+      ->type_name("N")
+      ->check(CLI::Range(1, 256));
 }
 
 }  // namespace
@@ -377,13 +353,17 @@ void add_raycast(CLI::App& app, Session& session) {
   add_error_options(*command, options->error, of_pictures[1]);
   add_mode(*command, *options);
   add_common(*command, session.common);
-  command->footer(footer);
+  command->footer(raycast_footer);
   command->callback([options, command, shade = of_pictures[1], &session] {
     if (shade->count() > 0 && is_exr(options->picture))
       throw CLI::ValidationError("--shade", "pictures of numbers (.exr) have no shade");
     check_error_options(*command, options->settings.shade);
     if (options->all_hits && options->mode == RayMode::grid)
       throw CLI::ValidationError("--all-hits", "all hits are known in --mode exact alone");
+    if (options->settings.shade == render::Shade::steps && options->mode == RayMode::grid)
+      throw CLI::ValidationError("--shade", "steps are counted in --mode exact alone");
+    if (options->rate > 0 && options->mode != RayMode::grid)
+      throw CLI::ValidationError("--rate", "grids are for --mode grid alone");
     const Plan plan = plan_raycast(*options, session.common);
     session.command = [options, plan, &session] {
       return run_jobs(plan, session.common, [&](const Job& job, Timings& timings) {
