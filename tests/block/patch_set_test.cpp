@@ -154,6 +154,32 @@ TEST(PatchSet, CoefficientsFitAsFarAsPromised) {
     for (const float value : *values) ASSERT_TRUE(std::isfinite(value));
 }
 
+/// Where derivatives would be infinite, or NaN, nothing is held: with small weights sooner, by the square of their ratio.
+TEST(PatchSet, DerivativesOfWhatIsHeldAreNumbers) {
+  const auto patch = [](double size, double weight) {
+    std::vector<Vec3> points;
+    std::vector<double> weights;
+    for (int i = 0; i <= 15; ++i)
+      for (int j = 0; j <= 15; ++j) {
+        const double x = (i + j) % 2 == 0 ? size : -size;
+        points.push_back({x, -x, x});
+        weights.push_back((i + j) % 2 == 0 ? 1 : weight);
+      }
+    return value_of(BezierPatch::rational(15, 15, points, weights));
+  };
+  for (const auto& [size, weight, held] : {std::tuple{5e33, 1.0, true}, {1e34, 1.0, false}, {5e29, 1e-2, true}, {1e30, 1e-2, false}, {5e15, 1e-9, true}, {1e16, 1e-9, false}}) {
+    const auto set = PatchSet::from(std::vector{patch(size, weight)}, {.origin = Vec3{}});
+    ASSERT_EQ(set.ok(), held) << size << ' ' << weight;
+    if (!held) continue;
+    const auto t = uniform_parameters(7);
+    const GridPlan plan = value_of(GridPlan::make(*set, t, t));
+    AllBuffers<float> out(plan);
+    ASSERT_TRUE(evaluate(*set, plan, out.views()).ok());
+    for (const auto& values : out.values)
+      for (const float x : values) ASSERT_TRUE(std::isfinite(x)) << size << ' ' << weight;
+  }
+}
+
 TEST(Model, SurfacesBecomeSources) {
   Random random(77);
   Model model;

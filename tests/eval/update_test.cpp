@@ -245,7 +245,7 @@ TEST(Update, FarPointsThatFitAreTaken) {
   const GridPlan plan = value_of(GridPlan::make(set, t, t));
   GridUpdate update = value_of(GridUpdate::make(set));
   GridBuffers<float> grids(plan);
-  for (const double far : {1e25, 1e30, 1e36, 1e39}) {
+  for (const double far : {1e9, 1e16, 1e25, 1e30, 1e33, 1e36, 1e39}) {
     PatchSet expected = set_of({set.patch(0), set.patch(1)}, every_kind());
     for (const std::uint32_t k : {0u, 1u}) {
       Edits edits;

@@ -51,15 +51,16 @@ struct PatchSource {
 
 /// Owns patches and their SoA blocks: patches of equal degrees and rationality lie together, 16 to a block, coefficients
 /// `[i][j][component][lane]` (x, y, z, and w for rational ones, homogeneous, relative to the origin; unused lanes repeat a patch).
-/// Positions in float are relative to origin(); positions in double are absolute.
+/// Positions in float are relative to origin(); positions in double are absolute. Memory to make one: 64 bytes a patch.
 /// Threads: const calls from any number of threads; an edit excludes every other call.
 class PatchSet {
  public:
   static constexpr int lanes = 16;  ///< patches in a block
 
   /// One surface a patch, each on [0,1]^2. Errors: invalid_argument (no patch), out_of_memory, and
-  /// non_finite if a patch does not fit float after the origin is taken off, or its smallest weight is below 1e-9 of the
-  /// largest (1e-70 if there are double blocks alone) (index = the patch).
+  /// non_finite (index = the patch) if the smallest weight is below 1e-9 of the largest (1e-70 if there are double blocks
+  /// alone), or a coordinate, after the origin is taken off, above 5e33 (2.7e303) times the square of that ratio: so
+  /// derivatives are numbers.
   static Result<PatchSet> from(std::span<const BezierPatch> patches, const PatchSetOptions& options = {});
   /// The same with the source of each patch given; sources.size() == patches.size().
   static Result<PatchSet> from(std::span<const BezierPatch> patches, std::span<const PatchSource> sources,

@@ -20,11 +20,11 @@ double largest_vector(std::span<const double> net, std::size_t components) {
   return largest;
 }
 
-/// Whether weights, and coefficients as large as in_range(limit) finds, suit blocks of which some are in float.
-template <class InRange>
-bool fits(const RelativeNet& net, bool in_float, InRange in_range) {
-  return in_range(in_float ? double{std::numeric_limits<float>::max()} : std::numeric_limits<double>::max()) &&
-         !(net.weight_ratio() < (in_float ? least_weight_in_float : least_weight_in_double));
+/// Whether weights, and Bernstein coefficients as large as `largest`, suit blocks of which some are in float.
+bool fits(const RelativeNet& net, bool in_float, double largest) {
+  const double ratio = net.weight_ratio();
+  return largest <= largest_coefficient(in_float, ratio) &&
+         !(ratio < (in_float ? least_weight_in_float : least_weight_in_double));
 }
 
 /// Where a patch goes, and what its doubts rest on.
@@ -113,7 +113,7 @@ bool PatchSet::Impl::pack_bernstein(std::size_t index, const BlockGroup& group, 
   const bool curve = is_curve(patches[index], collapsed[index]);
   const Place place{group, slot, lane_counts[slot.block], net, curve, hull.diagonal()};
   const double largest = net.largest(hull);
-  if (!fits(net, kinds.float_bernstein, [&](double limit) { return largest <= limit; })) return false;
+  if (!fits(net, kinds.float_bernstein, largest)) return false;
   const auto coefficients = [&](auto* lane) { net.write(lane); };
   if (kinds.float_bernstein) place.write(single.bernstein, single.bernstein_doubt, largest, coefficients);
   if (kinds.double_bernstein) place.write(twice.bernstein, twice.bernstein_doubt, largest, coefficients);
@@ -127,7 +127,7 @@ bool PatchSet::Impl::pack_points(std::size_t index, const BlockGroup& group, con
   const bool curve = is_curve(patches[index], collapsed[index]);
   const Place place{group, slot, lane_counts[slot.block], net, curve, hull.diagonal()};
   const double largest = net.largest(hull);
-  if (!fits(net, kinds.float_points, [&](double limit) { return largest <= limit; })) return false;
+  if (!fits(net, kinds.float_points, largest)) return false;
   if (kinds.float_points) place.write_points(single, largest);
   if (kinds.double_points) place.write_points(twice, largest);
   return true;
@@ -141,10 +141,9 @@ bool PatchSet::Impl::pack_power(std::size_t index, const BlockGroup& group, cons
   const Place place{group, slot, lane_counts[slot.block], net, curve, hull.diagonal()};
   RelativeNet::Power memory;
   const std::span<const double> power = net.power(memory);
-  const auto in_range = [&](double limit) {
-    return std::ranges::all_of(power, [&](double value) { return std::abs(value) <= limit; });
-  };
-  if (!fits(net, kinds.float_power, in_range)) return false;
+  const double limit = largest_coefficient(kinds.float_power, 1);
+  const auto in_range = [&](double value) { return std::abs(value) <= limit; };
+  if (!fits(net, kinds.float_power, net.largest(hull)) || !std::ranges::all_of(power, in_range)) return false;
   const double largest = largest_vector(power, static_cast<std::size_t>(coefficient_components(group.rational)));
   const auto coefficients = [&]<class T>(T* lane) {
     for (std::size_t k = 0; k < power.size(); ++k) lane[k * lanes] = static_cast<T>(power[k]);

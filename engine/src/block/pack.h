@@ -26,6 +26,15 @@ constexpr std::size_t point_values(int degree_u, int degree_v, bool rational) {
   return (values + line - 1) / line * line;
 }
 
+/// What the Bernstein coefficients of a patch, relative to the origin, may reach, so that second derivatives are numbers:
+/// those of degree d are at most 4 d^2 times the coefficients, and the quotient rule divides twice by a weight.
+/// `weight_ratio`: of the smallest weight to the largest. Coefficients of powers, of which a second derivative sums up (d +
+/// 1)^2 d^2, may reach what it gives for ratio 1.
+inline double largest_coefficient(bool in_float, double weight_ratio) {
+  const double most = in_float ? double{std::numeric_limits<float>::max()} : std::numeric_limits<double>::max();
+  return 0x1p-16 * most * weight_ratio * weight_ratio;
+}
+
 /// The coefficients of `patch` relative to `origin`, `[i][j][component]`: (V - o, or w (V - o) and w) in the Bernstein
 /// basis, or the same in powers of u and v. Weights are divided by a power of two that brings the largest near 1: they
 /// fit float whatever their size, and borders shared by patches keep their bits.

@@ -77,7 +77,7 @@ std::size_t PatchSet::Impl::pack_block(std::size_t block, const kernel::KernelTa
   for (std::size_t lane = 0; lane < lane_counts[block]; ++lane)
     collapsed[indices[lane]] = patches[indices[lane]].collapsed_edges();
   if (!group.rational && (kinds.float_bernstein || kinds.double_bernstein)) {
-    const double limit = kinds.float_bernstein ? double{std::numeric_limits<float>::max()} : std::numeric_limits<double>::max();
+    const double limit = largest_coefficient(kinds.float_bernstein, 1);
     const PolynomialBlock bernstein{group, block, nets.data(), numbers, origin, largest_coefficients(boxes, origin), diagonals(boxes)};
     for (std::size_t lane = 0; lane < lane_counts[block]; ++lane)
       if (!(bernstein.largest[lane] <= limit)) return lane;

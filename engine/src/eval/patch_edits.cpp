@@ -12,9 +12,10 @@ namespace {
 
 constexpr std::size_t edits_a_piece = 256;
 
-/// Coordinates up to here, and an origin as near, fit blocks of every kind with weights that did: in float |V - o| is
-/// below 2^71 then, and power coefficients of degree 15 are at most 3^30 times as large.
-constexpr double plain_size = 0x1p70;
+/// Coordinates up to here, and an origin as near, fit blocks with weights that did: in float, with the smallest weight 1e-9
+/// of the largest, coefficients may reach 5.2e15 (largest_coefficient), 2^52.2. Those of powers, up to 3^30 times as large, may
+/// reach 2^112.
+constexpr double plain_size = 0x1p51;
 
 bool all_plain(std::span<const Vec3> points) {
   return kernel::default_kernels().within(&points.front().x, 3 * points.size(), plain_size);
