@@ -172,6 +172,23 @@ TEST_P(Geometry, CylinderSaddleAndPlane) {
   }
 }
 
+/// Curvatures whose difference is subnormal: 1 over it is infinite, and directions by it would be NaN.
+TEST_P(Geometry, SubnormalDifferencesCountAsNone) {
+  for (const double height : {1e-39, 1e-41, 1e-44, 1e-308, 1e-310, 5e-324}) {
+    std::vector<Vec3> points;
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j) points.push_back({i / 3.0, j / 3.0, i == 1 && j == 2 ? height : 0});
+    const auto expect_numbers = [&](const auto& evaluated) {
+      for (std::size_t k = 0; k < evaluated.count(); ++k) {
+        EXPECT_NEAR(length(read(evaluated.out.first_direction, k)), 1, 1e-6) << height;
+        EXPECT_NEAR(length(read(evaluated.out.second_direction, k)), 1, 1e-6) << height;
+      }
+    };
+    expect_numbers(Evaluated<float>({polynomial(3, 3, points)}, t, GetParam()));
+    expect_numbers(Evaluated<double>({polynomial(3, 3, points)}, t, GetParam()));
+  }
+}
+
 /// Patches with degenerate points of many sorts.
 std::vector<BezierPatch> degenerate_patches() {
   Random random(95);

@@ -145,7 +145,10 @@ template <class L>
   p.radius = xsimd::select(larger > zero, larger * xsimd::sqrt(L::fma(ratio, ratio, one)), zero);
   p.first = mean + p.radius;
   p.second = mean - p.radius;
-  const auto bound = L::broadcast(job.umbilic_tolerance) * (xsimd::abs(p.first) + xsimd::abs(p.second));
+  // A difference that is subnormal counts as none: it has no inverse, by which the directions are found.
+  using T = typename L::Scalar;
+  const auto bound = L::fma(L::broadcast(job.umbilic_tolerance), xsimd::abs(p.first) + xsimd::abs(p.second),
+                            L::broadcast(4 * std::numeric_limits<T>::min()));
   p.umbilic = xsimd::select(p.radius + p.radius > bound, zero, one);
 }
 
