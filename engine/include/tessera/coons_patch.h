@@ -27,7 +27,7 @@ class Blend {
   /// Callables, checked at k / 64, k = 0 .. 64, to 1e-9. Errors: as above (says where), invalid_argument (threw).
   static Result<Blend> callable(std::function<double(double)> first, std::function<double(double)> second);
 
-  bool is_polynomial() const { return !first_.empty(); }  ///< false for callables
+  bool is_polynomial() const { return count_ > 0; }  ///< false for callables
   /// [k][a]: the k-th derivative of f_a.
   using Jet = std::array<std::array<double, 2>, 3>;
   /// f1, f2 and their first and second derivatives at t in [0,1]; those of callables by differences. At 0 and 1 the
@@ -36,12 +36,13 @@ class Blend {
   /// The values alone: one call of each function. Errors: as above.
   Result<std::array<double, 2>> values_at(double t) const;
   /// Power coefficients; empty for callables.
-  std::span<const double> first() const { return first_; }
-  std::span<const double> second() const { return second_; }  ///< as first()
+  std::span<const double> first() const { return {first_.data(), count_}; }
+  std::span<const double> second() const { return {second_.data(), count_}; }  ///< as first()
 
  private:
   Blend() = default;
-  std::vector<double> first_, second_;
+  std::array<double, max_degree + 1> first_{}, second_{};
+  std::size_t count_ = 0;  ///< of coefficients
   std::array<std::function<double(double)>, 2> callables_;
 };
 

@@ -60,7 +60,7 @@ class HermiteNetwork {
   std::span<const double> knots_v() const { return data_->knots_v; }  ///< parameters of the columns of nodes
   /// Between the first and the last knots.
   Domain domain() const { return {knots_u().front(), knots_u().back(), knots_v().front(), knots_v().back()}; }
-  /// Patch (i,j) on [0,1]^2; i < count_u() - 1, j < count_v() - 1.
+  /// Patch (i,j) on [0,1]^2; i < count_u() - 1, j < count_v() - 1. The one call that throws: std::bad_alloc.
   HermitePatch patch(std::size_t i, std::size_t j) const;
 
  private:
@@ -70,6 +70,7 @@ class HermiteNetwork {
   };
   explicit HermiteNetwork(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
   HermitePatch::Corners patch_corners(std::size_t i, std::size_t j) const;
+  friend SurfaceJet evaluate_jet(const HermiteNetwork& network, double u, double v);
   static Result<HermiteNetwork> checked(HermiteNetwork network);
 
   std::shared_ptr<const Data> data_;

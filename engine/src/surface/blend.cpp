@@ -101,6 +101,7 @@ Blend Blend::linear() {
   Blend blend;
   blend.first_ = {1, -1};
   blend.second_ = {0, 1};
+  blend.count_ = 2;
   return blend;
 }
 
@@ -108,6 +109,7 @@ Blend Blend::cubic() {
   Blend blend;
   blend.first_ = {1, 0, -3, 2};
   blend.second_ = {0, 0, 3, -2};
+  blend.count_ = 4;
   return blend;
 }
 
@@ -129,12 +131,12 @@ Result<Blend> Blend::polynomial(std::span<const double> first, std::span<const d
     if (Status status = check_ends(polynomial_value(*f1, 0), polynomial_value(*f1, 1), tolerance); !status.ok())
       return status;
     Blend blend;
-    blend.first_ = *std::move(f1);
+    blend.count_ = f1->size();
+    std::copy(f1->begin(), f1->end(), blend.first_.begin());
     // What the conditions were missed by is put right, so that patches meet their borders.
     blend.first_[0] = 1;
-    blend.first_[1] -= polynomial_value(blend.first_, 1);
-    for (const double c : blend.first_) blend.second_.push_back(-c);
-    blend.second_[0] = 0;
+    blend.first_[1] -= polynomial_value(blend.first(), 1);
+    for (std::size_t i = 1; i < blend.count_; ++i) blend.second_[i] = -blend.first_[i];
     return blend;
   });
 }
@@ -168,7 +170,7 @@ Result<Blend::Jet> Blend::at(double t) const {
     Jet jet{};
     for (std::size_t a = 0; a < 2; ++a) {
       const Result<std::array<double, 3>> of_one =
-          is_polynomial() ? polynomial_jet(a == 0 ? first_ : second_, t) : jet_by_differences(callables_[a], a, t);
+          is_polynomial() ? polynomial_jet(a == 0 ? first() : second(), t) : jet_by_differences(callables_[a], a, t);
       if (!of_one) return of_one.status();
       for (std::size_t k = 0; k < 3; ++k) jet[k][a] = (*of_one)[k];
     }
@@ -182,7 +184,7 @@ Result<std::array<double, 2>> Blend::values_at(double t) const {
   return guarded([&]() -> Result<std::array<double, 2>> {
     if (t == 0) return std::array<double, 2>{1, 0};
     if (t == 1) return std::array<double, 2>{0, 1};
-    if (is_polynomial()) return std::array{polynomial_value(first_, t), polynomial_value(second_, t)};
+    if (is_polynomial()) return std::array{polynomial_value(first(), t), polynomial_value(second(), t)};
     const auto f1 = value_of(callables_[0], 0, t), f2 = value_of(callables_[1], 1, t);
     if (!f1) return f1.status();
     if (!f2) return f2.status();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <string>
 
 #include "base/guard.h"
@@ -145,14 +146,16 @@ HermitePatch::Corners HermiteNetwork::patch_corners(std::size_t i, std::size_t j
 }
 
 HermitePatch HermiteNetwork::patch(std::size_t i, std::size_t j) const {
-  return *HermitePatch::from_corners(patch_corners(i, j));
+  Result<HermitePatch> patch = HermitePatch::from_corners(patch_corners(i, j));
+  if (!patch) throw std::bad_alloc();  // the nodes are finite
+  return *std::move(patch);
 }
 
 SurfaceJet evaluate_jet(const HermiteNetwork& network, double u, double v) {
   const auto knots_u = network.knots_u(), knots_v = network.knots_v();
   const std::size_t i = span_at(knots_u, u), j = span_at(knots_v, v);
   const Domain d{knots_u[i], knots_u[i + 1], knots_v[j], knots_v[j + 1]};
-  SurfaceJet jet = evaluate_jet(network.patch(i, j), d.local_u(u), d.local_v(v));
+  const SurfaceJet jet = hermite_jet(geometry_of(network.patch_corners(i, j)), d.local_u(u), d.local_v(v));
   const double a = 1 / (d.u1 - d.u0), b = 1 / (d.v1 - d.v0);  // chain rule
   return {jet.position, a * jet.du, b * jet.dv, (a * a) * jet.duu, (a * b) * jet.duv, (b * b) * jet.dvv};
 }

@@ -1,5 +1,5 @@
 #pragma once
-// The check that all that takes a network's nodes shares.
+// What networks and their patches share: the check of nodes, and evaluation that needs no patch of its own.
 
 #include "surface/checks.h"
 #include "tessera/hermite_network.h"
@@ -8,5 +8,10 @@ namespace tessera {
 
 /// At least two nodes each way, as many as the grid has, all four vectors of each finite.
 Status check_nodes(std::size_t count_u, std::size_t count_v, std::span<const HermiteNode> nodes);
+
+/// The geometry matrix, by_end, of a patch with these corners.
+HermitePatch::Grid geometry_of(const HermitePatch::Corners& corners);
+/// The patch with this geometry over [0,1]^2.
+SurfaceJet hermite_jet(const HermitePatch::Grid& geometry, double s, double t);
 
 }  // namespace tessera

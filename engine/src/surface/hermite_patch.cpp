@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "basis/hermite.h"
 #include "surface/checks.h"
+#include "surface/hermite_nodes.h"
 
 namespace tessera {
 namespace {
@@ -90,7 +91,9 @@ void solve_vandermonde(const std::array<double, 4>& t, Vec3* values, std::size_t
     for (std::size_t k = order; k < 3; ++k) values[k * step] += -t[order] * values[(k + 1) * step];
 }
 
-Grid geometry_of(const HermitePatch::Corners& corners) {
+}  // namespace
+
+HermitePatch::Grid geometry_of(const HermitePatch::Corners& corners) {
   Grid g;
   for (int a = 0; a < 2; ++a)
     for (int b = 0; b < 2; ++b) {
@@ -103,7 +106,20 @@ Grid geometry_of(const HermitePatch::Corners& corners) {
   return g;
 }
 
-}  // namespace
+SurfaceJet hermite_jet(const Grid& g, double s, double t) {
+  const std::array<double, 4> f[] = {hermite_values(s), hermite_derivatives(s), hermite_second_derivatives(s)};
+  const std::array<double, 4> h[] = {hermite_values(t), hermite_derivatives(t), hermite_second_derivatives(t)};
+  const auto sum = [&](std::size_t order_u, std::size_t order_v) {
+    Vec3 total;
+    for (std::size_t i = 0; i < 4; ++i) {
+      Vec3 row;
+      for (std::size_t j = 0; j < 4; ++j) row += h[order_v][j] * g[4 * i + j];
+      total += f[order_u][i] * row;
+    }
+    return total;
+  };
+  return {sum(0, 0), sum(1, 0), sum(0, 1), sum(2, 0), sum(1, 1), sum(0, 2)};
+}
 
 Result<HermitePatch> HermitePatch::make(std::span<const Vec3> geometry, const Domain& domain, HermiteOrder order) {
   return guarded([&]() -> Result<HermitePatch> {
@@ -240,21 +256,9 @@ Result<HermitePatch> HermitePatch::reparametrized(const Domain& domain) const {
 
 SurfaceJet evaluate_jet(const HermitePatch& patch, double u, double v) {
   const Domain& d = patch.domain();
-  const double s = d.local_u(u), t = d.local_v(v);
-  const Grid g = patch.local_geometry();
-  const std::array<double, 4> f[] = {hermite_values(s), hermite_derivatives(s), hermite_second_derivatives(s)};
-  const std::array<double, 4> h[] = {hermite_values(t), hermite_derivatives(t), hermite_second_derivatives(t)};
-  const auto sum = [&](std::size_t order_u, std::size_t order_v) {
-    Vec3 total;
-    for (std::size_t i = 0; i < 4; ++i) {
-      Vec3 row;
-      for (std::size_t j = 0; j < 4; ++j) row += h[order_v][j] * g[4 * i + j];
-      total += f[order_u][i] * row;
-    }
-    return total;
-  };
+  const SurfaceJet jet = hermite_jet(patch.local_geometry(), d.local_u(u), d.local_v(v));
   const double a = 1 / (d.u1 - d.u0), b = 1 / (d.v1 - d.v0);  // chain rule
-  return {sum(0, 0), a * sum(1, 0), b * sum(0, 1), (a * a) * sum(2, 0), (a * b) * sum(1, 1), (b * b) * sum(0, 2)};
+  return {jet.position, a * jet.du, b * jet.dv, (a * a) * jet.duu, (a * b) * jet.duv, (b * b) * jet.dvv};
 }
 
 }  // namespace tessera

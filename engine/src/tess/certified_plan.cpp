@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <new>
 #include <numbers>
 #include <string>
 
@@ -85,8 +86,11 @@ Status CertifiedPlanner::bound_turning_and_picture(const PatchSet::Impl& set, co
       if (!options_.angle || shapes_[k].is_curve) continue;
       BezierPatch patch = set.patches[k];
       for (const Side side : all_sides)  // what welding makes a pole is one
-        if (divided_shapes()[k].collapsed.has(edge_of(side)) && !shapes_[k].collapsed.has(edge_of(side)))
-          patch = with_pole(patch, side).value();
+        if (divided_shapes()[k].collapsed.has(edge_of(side)) && !shapes_[k].collapsed.has(edge_of(side))) {
+          Result<BezierPatch> pole = with_pole(patch, side);
+          if (!pole) throw std::bad_alloc();  // the points are those of the patch
+          patch = *std::move(pole);
+        }
       turnings_[k] = TurningBound(patch);
     }
   };
