@@ -100,7 +100,7 @@ class BvReader {
     Result<BezierPatch> patch =
         rational ? BezierPatch::rational(m, n, points, std::span<const double>(weights_).first(wanted))
                  : BezierPatch::polynomial(m, n, points);
-    if (!patch) return cursor_.failure(segment() + ": " + patch.status().message());
+    if (!patch) return refused_element(cursor_, patch.status(), segment() + ": ");
     make_room(model_.surfaces, size_ - cursor_.remaining(), size_);
     model_.surfaces.push_back({group_, pool_.placed(*patch)});
     return {};

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <charconv>
 #include <cmath>
+#include <cstring>
 #include <mutex>
 #include <numbers>
 #include <optional>
@@ -43,12 +46,23 @@ constexpr auto functions2 = std::to_array<NamedFunction2>({
     {"mod", mod},
 });
 
+/// A number at the begin of a text. muParser's own reader works by a stream, to which memory that runs out is a number
+/// that ends.
+int read_number(const char* text, int* at, double* value) {
+  if (!std::isdigit(static_cast<unsigned char>(text[0])) && text[0] != '.') return 0;
+  const auto [end, error] = std::from_chars(text, text + std::strlen(text), *value);
+  if (error != std::errc{} || std::isalpha(static_cast<unsigned char>(*end))) return 0;  // as the stream takes it
+  *at += static_cast<int>(end - text);
+  return 1;
+}
+
 /// muParser with the vocabulary above alone: its own pi has 13 digits, and it has random numbers.
 class Evaluator {
  public:
   Evaluator(const std::string& text, std::span<const std::string> variables) {
     parser_.ClearConst();
     parser_.ClearFun();
+    parser_.AddValIdent(read_number);
     parser_.EnableOptimizer(false);  // it reorders sums
     parser_.DefineConst("pi", std::numbers::pi);
     parser_.DefineConst("e", std::numbers::e);

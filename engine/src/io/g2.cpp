@@ -175,7 +175,7 @@ class G2Reader {
         rational
             ? BSplineSurface::rational(u.degree(), u.knots, v.degree(), v.knots, std::move(points), std::move(weights))
             : BSplineSurface::polynomial(u.degree(), u.knots, v.degree(), v.knots, std::move(points));
-    if (!surface) return numbers.failure(surface.status().message());
+    if (!surface) return refused_element(numbers, surface.status());
     add({{}, *std::move(surface)});
     return {};
   }

@@ -170,7 +170,7 @@ Result<G2Object> read_g2_elementary(std::int64_t kind, G2Numbers& numbers) {
   if (!placement) return numbers.failure("expected a z axis and an x axis of different directions");
   object.placement = *placement;
   Result<Surface> surface = make_surface(kind, e, object.placement);
-  if (!surface) return numbers.failure(surface.status().message());
+  if (!surface) return refused_element(numbers, surface.status());
   object.surface = *std::move(surface);
   return object;
 }

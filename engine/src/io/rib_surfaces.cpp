@@ -84,12 +84,12 @@ Result<std::vector<Surface>> read_mesh(const RibSurfaceText& text, const RibDire
   if (positions.name == "Pz") {
     x = height_field_parameters(u);
     y = height_field_parameters(v);
-    if (!x || !y) return text.failure((x ? y : x).status().message());
+    if (!x || !y) return refused_element(text, (x ? y : x).status());
   }
   RibNet net = make_net(positions, count_u, count_v, *x, *y);
   positions.values = std::vector<double>();  // {} would keep the memory
   Result<std::vector<Surface>> surfaces = mesh_surfaces(u, v, std::move(net));
-  return surfaces ? std::move(surfaces) : text.failure(surfaces.status().message());
+  return surfaces ? std::move(surfaces) : refused_element(text, surfaces.status());
 }
 
 /// One direction of a NuPatch.
@@ -165,7 +165,7 @@ Result<std::vector<Surface>> read_nu_patch(const RibSurfaceText& text) {
   positions.values = std::vector<double>();  // {} would keep the memory
   Result<BSplineSurface> surface = spline_surface(u.degree(), u.knots, v.degree(), v.knots, std::move(net),
                                                   Domain{u.range[0], u.range[1], v.range[0], v.range[1]});
-  if (!surface) return text.failure(surface.status().message());
+  if (!surface) return refused_element(text, surface.status());
   std::vector<Surface> surfaces;
   surfaces.push_back(*std::move(surface));
   return surfaces;

@@ -65,6 +65,7 @@ class LoopMaker {
     Result<Curve> curve = Curve::nurbs(static_cast<int>(order) - 1, points, weights,
                                        std::span(parts_[knots]).subspan(knot_, count + order),
                                        Interval{parts_[minima][curve_], parts_[maxima][curve_]});
+    if (curve.status().code() == StatusCode::out_of_memory) return curve;
     if (!curve) return failure("curve " + std::to_string(curve_) + ": " + curve.status().message());
     ++curve_;
     knot_ += count + order;

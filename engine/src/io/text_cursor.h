@@ -120,4 +120,11 @@ class TextCursor {
 /// `text` in quotes for a message: at most 40 bytes, what cannot be printed as \xNN.
 std::string quote(std::string_view text);
 
+/// What `status` says of an element that `text` holds: a parse_error there, unless memory ran out. `text` is a cursor, or
+/// what has a failure() as cursors have.
+template <class Text>
+Status refused_element(const Text& text, const Status& status, const std::string& element = {}) {
+  return status.code() == StatusCode::out_of_memory ? status : text.failure(element + status.message());
+}
+
 }  // namespace tessera
