@@ -62,10 +62,11 @@ struct HitFlags {
 
 /// Where a ray meets a surface. Of a miss and an invalid ray only the kind counts.
 struct Hit {
-  HitKind kind = HitKind::miss;                        ///< whether the rest means anything
-  HitFlags flags;                                      ///< what the numbers don't say
-  std::uint16_t steps = 0;  ///< exact mode: the work, pieces of patches looked at and parts of them searched; of misses too
-  std::uint32_t surface = 0, patch = 0;                ///< PatchSource::surface, and the index in the set
+  HitKind kind = HitKind::miss;  ///< whether the rest means anything
+  HitFlags flags;                ///< what the numbers don't say
+  std::uint16_t steps =
+      0;  ///< exact mode: the work, pieces of patches looked at and parts of them searched; of misses too
+  std::uint32_t surface = 0, patch = 0;  ///< PatchSource::surface, and the index in the set
   static constexpr std::uint32_t no_instance = std::numeric_limits<std::uint32_t>::max();  ///< of other scenes' hits
   std::uint32_t instance = no_instance;                ///< index, in a scene of instances
   double t = std::numeric_limits<double>::infinity();  ///< position = origin + t * direction, up to the residual
@@ -73,7 +74,7 @@ struct Hit {
   double patch_u = 0, patch_v = 0;                     ///< in the patch, [0,1]^2
   Vec3 position;                                       ///< on the surface at (u,v)
   Vec3 normal;                                         ///< unit, along du x dv
-  Vec3 du, dv;                                         ///< derivatives of the position by u and by v, the surface's; to about 1e-8
+  Vec3 du, dv;          ///< derivatives of the position by u and by v, the surface's; to about 1e-8
   double residual = 0;  ///< distance from the position to the ray; of an unrefined hit, to the surface at (u,v)
 };
 
@@ -134,7 +135,8 @@ class RayScene {
   /// out_of_memory, internal (Embree's own), unsupported. Grid mode: unsupported are no float Bernstein blocks, a box with
   /// a diagonal below 1e-9 or reaching further than 1e12 from the set's origin, more than 2^32 grid points. Exact mode:
   /// unsupported are a diagonal outside of 1e-140 to 1e140, 2^32 pieces.
-  static Result<RayScene> make(const PatchSet& set, const RaySceneOptions& options = {}, const Execution& execution = {});
+  static Result<RayScene> make(const PatchSet& set, const RaySceneOptions& options = {},
+                               const Execution& execution = {});
 
   /// A scene of instances, of one scene or several, which must outlive it (they may be moved). Positions, normals and
   /// residuals of its hits are in the world, surface, patch and parameters those of the instance's scene; normals are
@@ -195,8 +197,8 @@ class RayScene {
   /// mode).
   Result<Hit> resolve(const Ray& ray, std::uint32_t patch, double u, double v) const;
 
-  Box3 box() const;                  ///< of facets or pieces' nets: tighter than of all control points; empty while stale
-  std::uint64_t revision() const;    ///< of the set, when the scene was made or last refitted
+  Box3 box() const;                ///< of facets or pieces' nets: tighter than of all control points; empty while stale
+  std::uint64_t revision() const;  ///< of the set, when the scene was made or last refitted
   std::size_t memory_bytes() const;  ///< grids or nets, and BVH; of instances without their scenes
 
   class [[gnu::visibility("hidden")]] Impl;
