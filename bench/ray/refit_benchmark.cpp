@@ -94,7 +94,8 @@ void refit(benchmark::State& state, std::size_t step, int threads) {
 
 [[maybe_unused]] const bool registered = [] {
   for (const int threads : {1, 2}) {
-    for (const auto& [what, step] : {std::pair<std::string, std::size_t>{"all", 1}, {"tenth", 10}, {"hundredth", 100}}) {
+    for (const auto& [what, step] :
+         {std::pair<std::string, std::size_t>{"all", 1}, {"tenth", 10}, {"hundredth", 100}}) {
       bench::add_case({"ray.exact.refit." + what, "torus14400", "3", std::to_string(side * side), "-", threads},
                       bench::Part::full, [=, step = step](benchmark::State& state) { refit(state, step, threads); });
     }

@@ -22,7 +22,9 @@ constexpr unsigned visible = 1, casts_shadow = 2;  // masks
 /// x, y and z each by a factor, then moved.
 struct Placement {
   Vec3 scale, shift;
-  Vec3 back(const Vec3& p) const { return {(p.x - shift.x) / scale.x, (p.y - shift.y) / scale.y, (p.z - shift.z) / scale.z}; }
+  Vec3 back(const Vec3& p) const {
+    return {(p.x - shift.x) / scale.x, (p.y - shift.y) / scale.y, (p.z - shift.z) / scale.z};
+  }
   Vec3 back_vector(const Vec3& d) const { return {d.x / scale.x, d.y / scale.y, d.z / scale.z}; }
 };
 constexpr std::array<Placement, 2> placements{{{{1, 1.5, 1}, {-1.4, 0, 0}}, {{-0.8, 1, 1.4}, {1.3, 0.2, 0.1}}}};
@@ -56,7 +58,8 @@ void add_instance(RTCDevice device, RTCScene to, RTCScene of, const Placement& p
   const RTCGeometry instance = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
   const auto narrow = [](double x) { return static_cast<float>(x); };
   const Vec3 &s = placement.scale, &t = placement.shift;
-  const float map[12] = {narrow(s.x), 0, 0, 0, narrow(s.y), 0, 0, 0, narrow(s.z), narrow(t.x), narrow(t.y), narrow(t.z)};
+  const float map[12] = {narrow(s.x), 0, 0,           0,           narrow(s.y), 0,
+                         0,           0, narrow(s.z), narrow(t.x), narrow(t.y), narrow(t.z)};
   rtcSetGeometryInstancedScene(instance, of);
   rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, map);
   rtcSetGeometryMask(instance, mask);
@@ -112,7 +115,8 @@ Met trace(RTCScene scene, const Vec3& origin, const Vec3& direction) {
 #endif
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
   const bool on_dome = query.hit.instID[0] != RTC_INVALID_GEOMETRY_ID;
-  return {on_dome ? static_cast<int>(query.hit.instID[0]) : 2, query.ray.tfar,
+  return {on_dome ? static_cast<int>(query.hit.instID[0]) : 2,
+          query.ray.tfar,
           {query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z}};
 }
 
@@ -172,7 +176,7 @@ int main() {
   rtcCommitScene(scene);
 
   const Vec3 eye{0.3, -6, 4.5}, forward = tessera::normalized(Vec3{0, 0.2, 0.2} - eye),
-             right = tessera::normalized(cross(forward, {0, 0, 1})), up = cross(right, forward);
+                                right = tessera::normalized(cross(forward, {0, 0, 1})), up = cross(right, forward);
   std::vector<unsigned char> pixels;
   int wrong = 0, seen[3] = {0, 0, 0};
   for (int row = 0; row < height; ++row) {

@@ -285,8 +285,8 @@ TEST(EmbreeGeometry, InstancesBesideTriangles) {
   (void)value_of(attach(scene, torus.get()));
   rtcCommitScene(torus.get());
   // One long and thin, one mirrored, columns first; and a floor of two triangles.
-  const std::array<std::array<float, 12>, 2> maps{{{2, 0, 0, 0, 0.5f, 0, 0, 0, 1, 3, 0, 0},
-                                                   {-1, 0, 0, 0, 1, 0, 0, 0, 1, -3, 0, 0.25f}}};
+  const std::array<std::array<float, 12>, 2> maps{
+      {{2, 0, 0, 0, 0.5f, 0, 0, 0, 1, 3, 0, 0}, {-1, 0, 0, 0, 1, 0, 0, 0, 1, -3, 0, 0.25f}}};
   for (const auto& map : maps) {
     const Held<RTCGeometry> instance(rtcNewGeometry(world.device.get(), RTC_GEOMETRY_TYPE_INSTANCE));
     rtcSetGeometryInstancedScene(instance.get(), torus.get());
@@ -297,10 +297,12 @@ TEST(EmbreeGeometry, InstancesBesideTriangles) {
   const Held<RTCGeometry> floor(rtcNewGeometry(world.device.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
   const std::array<float, 12> corners{-9, -9, -2, 9, -9, -2, 9, 9, -2, -9, 9, -2};
   const std::array<unsigned, 6> indices{0, 1, 2, 0, 2, 3};
-  std::copy(corners.begin(), corners.end(),
-            static_cast<float*>(rtcSetNewGeometryBuffer(floor.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, 4)));
-  std::copy(indices.begin(), indices.end(),
-            static_cast<unsigned*>(rtcSetNewGeometryBuffer(floor.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, 2)));
+  std::copy(
+      corners.begin(), corners.end(),
+      static_cast<float*>(rtcSetNewGeometryBuffer(floor.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, 4)));
+  std::copy(
+      indices.begin(), indices.end(),
+      static_cast<unsigned*>(rtcSetNewGeometryBuffer(floor.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, 2)));
   rtcCommitGeometry(floor.get());
   const unsigned floor_id = rtcAttachGeometry(world.scene.get(), floor.get());
   rtcCommitScene(world.scene.get());

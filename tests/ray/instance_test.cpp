@@ -116,7 +116,8 @@ TEST(Instances, ManyOfSeveralScenes) {
       for (const Hit& hit : own.hits) expected.emplace_back(hit.t, j);
     }
     std::sort(expected.begin(), expected.end());
-    const std::span<const Hit> hits = std::span(lists.hits).subspan(lists.first[k], lists.first[k + 1] - lists.first[k]);
+    const std::span<const Hit> hits =
+        std::span(lists.hits).subspan(lists.first[k], lists.first[k + 1] - lists.first[k]);
     ASSERT_EQ(hits.size(), expected.size());
     for (std::size_t j = 0; j < hits.size(); ++j) {
       EXPECT_EQ(hits[j].t, expected[j].first);

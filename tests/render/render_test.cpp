@@ -111,8 +111,8 @@ TEST(Render, CurvatureAndCostAreShown) {
   };
   const Rgb dome = middle_of(over_square(1, -1)), saddle = middle_of(over_square(1, 1)),
             trough = middle_of(over_square(0, 1));
-  EXPECT_GT(dome.r, dome.b + 60);
-  EXPECT_GT(saddle.b, saddle.r + 60);
+  EXPECT_GT(dome.r, dome.b + 30);
+  EXPECT_GT(saddle.b, saddle.r + 30);
   EXPECT_NEAR(trough.r, trough.b, 12);
 
   // Rays that touch the ball cost more than those that meet it squarely; those that pass it far off cost nothing.

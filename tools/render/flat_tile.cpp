@@ -29,8 +29,8 @@ Vec3 uv_colour(const Hit& hit) {
 
 /// From deep blue over green and yellow to red: each is lighter or warmer than the one before, so that it reads as an order.
 Vec3 error_colour(double share) {
-  constexpr std::array<Vec3, 5> stops{Vec3{0.10, 0.14, 0.38}, {0.13, 0.45, 0.60}, {0.36, 0.72, 0.42}, {0.96, 0.83, 0.28},
-                                      {0.80, 0.16, 0.12}};
+  constexpr std::array<Vec3, 5> stops{
+      Vec3{0.10, 0.14, 0.38}, {0.13, 0.45, 0.60}, {0.36, 0.72, 0.42}, {0.96, 0.83, 0.28}, {0.80, 0.16, 0.12}};
   if (!(share <= 1)) return {0.93, 0.20, 0.85};
   const double at = std::max(share, 0.0) * (stops.size() - 1);
   const auto before = std::min(static_cast<std::size_t>(at), stops.size() - 2);

@@ -176,8 +176,8 @@ class RayScene {
   /// After edits of the set, whichever way they were made; between an edit and its refit all queries are errors. Exact
   /// mode: makes the pieces of the edited patches anew, cut as they were, and refits the BVH, whose boxes overlap more the
   /// further patches have moved: rays then take longer, until a rebuild. It is a rebuild where the set's box has left the
-  /// range that coordinates are scaled to, twice as large or half as large at the most, and in grid mode. Nothing is done where nothing was
-  /// edited. Errors: those of make; the scene then stays stale until a refit or a rebuild succeeds.
+  /// range that coordinates are scaled to, twice as large or half as large at the most, and in grid mode. Nothing is done
+  /// where nothing was edited. Errors: those of make; the scene then stays stale until a refit or a rebuild succeeds.
   Status refit(const Execution& execution = {});
   /// As made anew: all pieces or grids, and the BVH. Errors: as those of refit.
   Status rebuild(const Execution& execution = {});

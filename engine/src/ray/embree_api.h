@@ -18,15 +18,16 @@ inline EmbreeContext embree_context() {
 }
 
 inline void set_coherence(EmbreeContext& context, Coherence coherence) {
-  context.flags = coherence == Coherence::coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
-                                                   : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  context.flags =
+      coherence == Coherence::coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
 }
 
 inline void intersect(RTCScene scene, EmbreeContext& context, Coherence coherence, RTCRayHit& ray) {
   set_coherence(context, coherence);
   rtcIntersect1(scene, &context, &ray);
 }
-inline void intersect(RTCScene scene, EmbreeContext& context, Coherence coherence, const int* valid, RTCRayHit16& rays) {
+inline void intersect(RTCScene scene, EmbreeContext& context, Coherence coherence, const int* valid,
+                      RTCRayHit16& rays) {
   set_coherence(context, coherence);
   rtcIntersect16(valid, scene, &context, &rays);
 }
@@ -78,7 +79,8 @@ inline void intersect(RTCScene scene, EmbreeContext& context, Coherence coherenc
   RTCIntersectArguments arguments = intersect_arguments(context, coherence);
   rtcIntersect1(scene, &ray, &arguments);
 }
-inline void intersect(RTCScene scene, EmbreeContext& context, Coherence coherence, const int* valid, RTCRayHit16& rays) {
+inline void intersect(RTCScene scene, EmbreeContext& context, Coherence coherence, const int* valid,
+                      RTCRayHit16& rays) {
   RTCIntersectArguments arguments = intersect_arguments(context, coherence);
   rtcIntersect16(valid, scene, &rays, &arguments);
 }

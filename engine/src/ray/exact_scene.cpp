@@ -111,7 +111,7 @@ class ExactScene final : public PatchScene, private ExactSource {
   SceneFrame frame_;
   Box3 box_, scene_box_;  // of the leaves' control points, in the model's and the scene's coordinates
   double size_ = 0;
-  bool follows_;    // what stands can be updated
+  bool follows_;     // what stands can be updated
   int updates_ = 0;  // since the last build
 };
 
@@ -125,8 +125,7 @@ double ExactScene::measure() {
   }
   box_ = {frame_.to_model(scene_box_.lower), frame_.to_model(scene_box_.upper)};
   const double asked = options_.tolerance.value_or(default_tolerance * size_) * frame_.scale;
-  return std::max(asked,
-                  2 * search_rounding(degree_u, degree_v, nets_.most_halvings(), SearchSpace::most_depth));
+  return std::max(asked, 2 * search_rounding(degree_u, degree_v, nets_.most_halvings(), SearchSpace::most_depth));
 }
 
 Status ExactScene::build(const Execution& execution) {

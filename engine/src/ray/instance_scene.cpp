@@ -56,9 +56,7 @@ class InstanceScene final : public RayScene::Impl {
     }
   }
 
-  std::size_t memory_bytes() const override {
-    return boxes_.memory_bytes() + instances_.capacity() * sizeof(Instance);
-  }
+  std::size_t memory_bytes() const override { return boxes_.memory_bytes() + instances_.capacity() * sizeof(Instance); }
   double spawn_offset() const override { return spawn_offset_; }
   Result<LocalGeometry> local_geometry(const Hit& hit) const override;
 
@@ -114,13 +112,15 @@ Status InstanceScene::build(const Execution& execution) {
       boxes[k] = placed_box(instance.to_world, condition, instance.scene->box());
     }
     if (!placement || !is_finite(boxes[k].lower) || !is_finite(boxes[k].upper))
-      return Status(StatusCode::invalid_argument,
-                    name_of(k) + "the map is not finite, or so nearly singular that rays cannot be taken back through it",
-                    static_cast<std::ptrdiff_t>(k));
+      return Status(
+          StatusCode::invalid_argument,
+          name_of(k) + "the map is not finite, or so nearly singular that rays cannot be taken back through it",
+          static_cast<std::ptrdiff_t>(k));
     instance.placement = *placement;
     box_.extend(boxes[k]);
-    spawn_offset_ = std::max(spawn_offset_, instance.to_world.norm_bound() * instance.scene->spawn_offset() +
-                                                8 * epsilon * std::max(max_abs(boxes[k].lower), max_abs(boxes[k].upper)));
+    spawn_offset_ =
+        std::max(spawn_offset_, instance.to_world.norm_bound() * instance.scene->spawn_offset() +
+                                    8 * epsilon * std::max(max_abs(boxes[k].lower), max_abs(boxes[k].upper)));
   }
   if (!(box_.diagonal() >= smallest_size && box_.diagonal() <= largest_size))
     return Status(StatusCode::unsupported, "a scene of instances holds sizes from 1e-140 to 1e140");
@@ -173,8 +173,7 @@ Result<LocalGeometry> InstanceScene::local_geometry(const Hit& hit) const {
     *derivative = instance.to_world.vector(*derivative);
   jet.position = instance.to_world.point(jet.position);
   LocalGeometry placed = tessera::local_geometry(jet);
-  if (!placed.defined)
-    placed.normal = {placed_normal(instance.to_world, own->normal.direction), own->normal.kind};
+  if (!placed.defined) placed.normal = {placed_normal(instance.to_world, own->normal.direction), own->normal.kind};
   return placed;
 }
 
@@ -235,9 +234,8 @@ Status InstanceScene::all_of(const Ray& ray, std::vector<Hit>& hits) const {
     return overflow ? -infinity : infinity;
   });
   if (overflow) return Status(StatusCode::out_of_memory, "out of memory");
-  std::stable_sort(hits.begin() + first, hits.end(), [](const Hit& a, const Hit& b) {
-    return a.t != b.t ? a.t < b.t : a.instance < b.instance;
-  });
+  std::stable_sort(hits.begin() + first, hits.end(),
+                   [](const Hit& a, const Hit& b) { return a.t != b.t ? a.t < b.t : a.instance < b.instance; });
   for (auto hit = hits.begin() + first; hit != hits.end(); ++hit)
     hit->flags.incomplete = incomplete, hit->steps = told(steps);
   return {};

@@ -21,12 +21,12 @@ double PatchScene::spawn_offset() const {
 
 Status PatchScene::check_point(std::uint32_t patch, double u, double v) const {
   if (patch >= set_.patch_count())
-    return Status(StatusCode::invalid_argument, "there is no patch " + std::to_string(patch) + " in a set of " +
-                                                    std::to_string(set_.patch_count()));
+    return Status(StatusCode::invalid_argument,
+                  "there is no patch " + std::to_string(patch) + " in a set of " + std::to_string(set_.patch_count()));
   // Written so that NaN fails.
   if (!(u >= 0 && u <= 1 && v >= 0 && v <= 1))
-    return Status(StatusCode::invalid_argument, "a point of a patch has u and v from 0 to 1, not " + std::to_string(u) +
-                                                    " and " + std::to_string(v));
+    return Status(StatusCode::invalid_argument,
+                  "a point of a patch has u and v from 0 to 1, not " + std::to_string(u) + " and " + std::to_string(v));
   return {};
 }
 

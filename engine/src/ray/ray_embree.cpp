@@ -150,7 +150,8 @@ void occlude_leaf(const RTCOccludedFunctionNArguments* arguments) {
 Result<const ExactSource*> usable_source(const RayScene& scene) {
   const ExactSource* const source = scene.impl().exact_source();
   if (source == nullptr)
-    return Status(StatusCode::unsupported, "a ray scene in grid mode is no geometry for Embree's scenes: make it in exact mode");
+    return Status(StatusCode::unsupported,
+                  "a ray scene in grid mode is no geometry for Embree's scenes: make it in exact mode");
   if (!source->fresh())
     return Status(StatusCode::stale, "the patch set was edited after this ray scene was made: call refit");
   const Box3 box = scene.box();

@@ -138,7 +138,8 @@ std::optional<Placement> Placement::of(const Affine& to_world, const SceneFrame&
   for (std::size_t k = 0; k < 3; ++k) out.back.columns[k] = {at(0, k), at(1, k), at(2, k)};
   out.centre = to_world.point(frame.centre);
   // Written so that NaN fails.
-  if (!(to_world.norm_bound() * out.back.norm_bound() <= most) || !is_finite(out.back) || !is_finite(out.centre)) return {};
+  if (!(to_world.norm_bound() * out.back.norm_bound() <= most) || !is_finite(out.back) || !is_finite(out.centre))
+    return {};
   return out;
 }
 
