@@ -52,8 +52,9 @@ TEST_F(Help, EveryOptionSaysWhatItTakesAndItsDefault) {
     EXPECT_NE(help.find("\n  tessera " + command), std::string::npos) << "no example: " << help;
   }
   const std::string raycast = output_of({"raycast", "--help"});
-  for (const char* const word : {"Pixels of the picture, 1 to 16384 each [1280x800", "field of view in degrees",
-                                 "{lambert,normals,uv,patch,error}", "[lambert]", "{auto,always,never}"}) {
+  for (const char* const word :
+       {"Pixels of the picture, 1 to 16384 each [1280x800", "field of view in degrees",
+        "{lambert,normals,uv,patch,error,curvature,steps}", "[lambert]", "{auto,always,never}"}) {
     std::string squeezed = std::regex_replace(raycast, std::regex("\\s+"), " ");
     EXPECT_NE(squeezed.find(word), std::string::npos) << word << squeezed;
   }

@@ -31,8 +31,8 @@ TEST_F(RaycastTool, PicturesHaveTheSizeAskedFor) {
     output_of({"raycast", teapot, "-o", name, "--size", "64x48", "--shade", shade});
     EXPECT_EQ(png_size(content_of(folder_ / name)), (std::pair{64u, 48u}));
   }
-  EXPECT_EQ(folder_.names(), (Names{"curvature.png", "error.png", "lambert.png", "normals.png", "patch.png",
-                                    "steps.png", "uv.png"}));
+  EXPECT_EQ(folder_.names(),
+            (Names{"curvature.png", "error.png", "lambert.png", "normals.png", "patch.png", "steps.png", "uv.png"}));
   EXPECT_NE(content_of(folder_ / "uv.png"), content_of(folder_ / "patch.png"));
 }
 
@@ -53,7 +53,8 @@ TEST_F(RaycastTool, RatesOfGrids) {
 /// A finer mesh, the same colours by another measure; a given mesh has its own.
 TEST_F(RaycastTool, ErrorsOfMeshesAreShown) {
   const auto error_of = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments{"raycast", teapot, "-o", "a.png", "--size", "48x32", "--shade", "error", "--json"};
+    std::vector<std::string> arguments{"raycast", teapot,    "-o",    "a.png", "--size",
+                                       "48x32",   "--shade", "error", "--json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return json::parse(output_of(arguments)).at("error");
   };

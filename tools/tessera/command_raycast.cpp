@@ -250,13 +250,10 @@ std::string fault_of_picture(const std::string& path) {
   return path + ": unsupported format \"" + extension + "\": pictures are written as .png, .exr";
 }
 
-const std::map<std::string, render::Shade> shades{{"lambert", render::Shade::lambert},
-                                                  {"normals", render::Shade::normals},
-                                                  {"uv", render::Shade::uv},
-                                                  {"patch", render::Shade::patch},
-                                                  {"error", render::Shade::error},
-                                                  {"curvature", render::Shade::curvature},
-                                                  {"steps", render::Shade::steps}};
+const std::map<std::string, render::Shade> shades{
+    {"lambert", render::Shade::lambert}, {"normals", render::Shade::normals}, {"uv", render::Shade::uv},
+    {"patch", render::Shade::patch},     {"error", render::Shade::error},     {"curvature", render::Shade::curvature},
+    {"steps", render::Shade::steps}};
 
 /// The options that make sense with a picture alone.
 std::vector<CLI::Option*> add_picture_options(CLI::App& command, Options& options) {

@@ -20,7 +20,7 @@ struct Call {
   EmbreeContext context;
   SearchSpace* space;
   std::array<RayQuery*, EmbreeLeaves::packet> queries;  ///< null of idle lanes
-  std::array<float, EmbreeLeaves::packet> enter;  ///< s where Embree's ray begins
+  std::array<float, EmbreeLeaves::packet> enter;        ///< s where Embree's ray begins
   std::array<kernel::RayProbe, EmbreeLeaves::packet> probes;
 };
 

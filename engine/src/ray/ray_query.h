@@ -57,11 +57,11 @@ struct RayQuery {
   RootsWanted wanted;
   double near, far;  ///< roots outside are of no use; far shrinks to the closest so far
   bool found = false;
-  std::uint32_t steps = 0;      ///< leaves looked at and parts of them searched
-  bool incomplete = false;      ///< a bound on work was reached: there may be more
-  bool overflow = false;        ///< memory for more roots ran out
-  LeafRoot best;                ///< where found
-  std::vector<LeafRoot> roots;  ///< where all are wanted
+  std::uint32_t steps = 0;             ///< leaves looked at and parts of them searched
+  bool incomplete = false;             ///< a bound on work was reached: there may be more
+  bool overflow = false;               ///< memory for more roots ran out
+  LeafRoot best;                       ///< where found
+  std::vector<LeafRoot> roots;         ///< where all are wanted
   const OriginTest* origin = nullptr;  ///< where the line leaves a surface
 
   bool done() const { return (found && wanted == RootsWanted::any) || overflow; }
