@@ -96,7 +96,7 @@ struct KeptRates {
 };
 
 /// What is known of a set before a tolerance is.
-class CertifiedPlanner {
+class [[gnu::visibility("hidden")]] CertifiedPlanner {
  public:
   /// Errors: cancelled, out_of_memory. The set must outlive the planner.
   static Result<CertifiedPlanner> make(const PatchSet::Impl& set, const PlannerOptions& options,
