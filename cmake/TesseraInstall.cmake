@@ -23,7 +23,7 @@ tessera_install_pkg_config(tessera tessera "${PROJECT_DESCRIPTION}" REQUIRES tbb
 if(TESSERA_BUILD_RAY)
   tessera_install_component(ray tessera_ray_library)
   tessera_install_pkg_config(tessera-ray tessera_ray_library "Ray queries on Tessera's surfaces" ON tessera
-    LIBS -lembree${embree_VERSION_MAJOR})
+    LIBS -lembree${embree_VERSION_MAJOR} CFLAGS -DTESSERA_EMBREE_MAJOR=${embree_VERSION_MAJOR})
 else()
   list(APPEND left_out PATTERN "ray_*.h" EXCLUDE)
 endif()

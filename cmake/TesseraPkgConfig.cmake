@@ -20,14 +20,15 @@ function(tessera_names_of out)
   set(${out} "${seen}" PARENT_SCOPE)
 endfunction()
 
-# tessera_install_pkg_config(NAME TARGET DESCRIPTION [ON names...] [REQUIRES names...] [LIBS "-l..."]): REQUIRES and LIBS are
-# what the library itself needs.
+# tessera_install_pkg_config(NAME TARGET DESCRIPTION [ON names...] [REQUIRES names...] [LIBS "-l..."] [CFLAGS "-D..."]):
+# REQUIRES and LIBS are what the library itself needs.
 function(tessera_install_pkg_config pc_name target pc_description)
-  cmake_parse_arguments(NEEDS "" "LIBS" "ON;REQUIRES" ${ARGN})
+  cmake_parse_arguments(NEEDS "" "LIBS;CFLAGS" "ON;REQUIRES" ${ARGN})
   list(TRANSFORM NEEDS_ON APPEND " = ${PROJECT_VERSION}")
   get_target_property(type ${target} TYPE)
   set(pc_requires ${NEEDS_ON})
   set(pc_libs)
+  set(pc_cflags ${NEEDS_CFLAGS})
   if(type STREQUAL "SHARED_LIBRARY")
     set(pc_requires_private ${NEEDS_REQUIRES})
     set(pc_libs_private ${NEEDS_LIBS})
