@@ -65,7 +65,7 @@ if(WAY STREQUAL "package")
   run_in(no_embree tessellate_only)
 
   if(PKG_CONFIG)
-    file(GLOB_RECURSE found ${prefix}/*/tessera.pc)
+    file(GLOB_RECURSE found ${prefix}/tessera.pc)
     get_filename_component(folder ${found} DIRECTORY)
     set(ENV{PKG_CONFIG_PATH} ${folder})
     get_filename_component(libraries ${folder} DIRECTORY)
