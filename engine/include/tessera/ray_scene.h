@@ -123,7 +123,7 @@ class RayScene;
 /// direction; a condition number above 1e8 is not.
 struct RayInstance {
   const RayScene* scene = nullptr;  ///< of patches, in exact mode
-  Affine to_world = {};
+  Affine to_world = {};             ///< from the scene to where it stands
 };
 
 /// A patch set ready for rays. Keeps a reference to the set's inner state: the set must outlive the scene (it may be
