@@ -20,7 +20,8 @@ std::uint64_t rays(tessera::Isa isa, tessera::RayMode mode) {
   };
   std::vector<tessera::Ray> rays(4000);
   for (tessera::Ray& ray : rays) {
-    ray.origin = point() + tessera::Vec3{0, 0, seeded.between(0, 5)};
+    ray.origin = point();  // one draw after the other: operands have no order
+    ray.origin.z += seeded.between(0, 5);
     ray.direction = point() - ray.origin;
   }
   std::vector<tessera::Hit> hits(rays.size());

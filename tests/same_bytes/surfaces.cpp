@@ -14,9 +14,10 @@ std::uint64_t jets(tessera::Isa) {
   Seeded seeded(1);
   for (const tessera::Surface& surface : some_surfaces()) {
     const tessera::Domain domain = tessera::domain(surface);
-    for (int k = 0; k < 200; ++k)
-      hash.add(value_of(
-          tessera::evaluate_jet(surface, seeded.between(domain.u0, domain.u1), seeded.between(domain.v0, domain.v1))));
+    for (int k = 0; k < 200; ++k) {
+      const double u = seeded.between(domain.u0, domain.u1), v = seeded.between(domain.v0, domain.v1);
+      hash.add(value_of(tessera::evaluate_jet(surface, u, v)));
+    }
   }
   return hash.value();
 }
