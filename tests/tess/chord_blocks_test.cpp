@@ -2,7 +2,9 @@
 
 #include "tess/chord_blocks.h"
 
+#include <algorithm>
 #include <bit>
+#include <span>
 
 #include "kernel/kernel_table.h"
 #include "support/synthetic_sets.h"
@@ -52,6 +54,31 @@ TEST(ChordBlocks, HoldTheBoundsInDoubleAndLittleMore) {
   }
 }
 
+TEST(ChordBlocks, HoldTheProductsOfQuartersInDoubleAndLittleMore) {
+  for (const PatchSet& set : sets()) {
+    const ChordBlocks blocks = bounds_of(set);
+    for (std::size_t k = 0; k < set.patch_count(); ++k) {
+      const BezierPatch& patch = set.impl().patches[k];
+      ChordBlocks::Products products;
+      products.find(blocks, set.impl(), set.slot(k).block);
+      const ChordBound exact(patch, true), found = blocks.chord(set.slot(k).block, set.slot(k).lane, &products);
+      for (std::size_t piece = 5; piece < 9; ++piece) {
+        const SecondDerivatives &a = exact.pieces()[piece], &b = found.pieces()[piece];
+        const double found_products[] = {b.uu_vv, b.uu_uv, b.uv_vv}, exact_products[] = {a.uu_vv, a.uu_uv, a.uv_vv};
+        const double sizes[] = {a.uu * a.vv, a.uu * a.uv, a.uv * a.vv},
+                     spare[] = {b.uu * b.vv, b.uu * b.uv, b.uv * b.vv};
+        for (int which = 0; which < 3; ++which) {
+          if (sizes[which] == 0) continue;  // a degree of 1
+          EXPECT_GE(found_products[which], exact_products[which] - 1e-9 * sizes[which]);
+          if (patch.is_rational() || std::max(patch.degree_u(), patch.degree_v()) > most_product_degree) continue;
+          EXPECT_LE(found_products[which],
+                    exact_products[which] + 1e-2 * spare[which] + (spare[which] - sizes[which]) * 40);
+        }
+      }
+    }
+  }
+}
+
 TEST(ChordBlocks, RatesKeepTheDistanceWithAboutTheFewestCells) {
   for (const PatchSet& set : sets()) {
     const ChordBlocks blocks = bounds_of(set);
@@ -61,9 +88,10 @@ TEST(ChordBlocks, RatesKeepTheDistanceWithAboutTheFewestCells) {
       distance.fill(relative * set.box().diagonal());
       for (std::size_t block = 0; block < set.impl().lane_counts.size(); ++block) {
         const std::size_t count = set.impl().lane_counts[block];
-        const ChordBlocks::Choice choice = blocks.cheapest(block, count, distance, 4096);
+        ChordBlocks::Products products;
+        const ChordBlocks::Choice choice = blocks.cheapest(set.impl(), block, count, distance, 4096, products);
         for (std::size_t lane = 0; lane < count; ++lane) {
-          const ChordBound chord = blocks.chord(block, lane);
+          const ChordBound chord = blocks.chord(block, lane, &products);
           const auto best = chord.cheapest(distance[lane], 4096);
           ASSERT_EQ(best.has_value(), choice.rates[lane].u > 0);
           if (!best) continue;
@@ -91,12 +119,27 @@ TEST(ChordBlocks, TheSameBitsOnEveryInstructionSet) {
       kernel::kernels(isa).bound_chords({net, group.degree_u, group.degree_v, pieces, unit, size});
       std::fill(std::begin(distance), std::end(distance), 1e-3f);
       kernel::kernels(isa).find_rates({pieces, distance, 4096, rate_u, rate_v, chord});
+      alignas(64) float products[27 * 16] = {}, share[16] = {}, sharp_chord[16] = {};
+      alignas(64) std::int32_t sharp_u[16] = {}, sharp_v[16] = {};
+      if (std::max(group.degree_u, group.degree_v) <= kernel::most_product_degree) {
+        kernel::kernels(isa).bound_products({net, group.degree_u, group.degree_v, pieces, unit, products, nullptr});
+        kernel::kernels(isa).share_of_products({net, group.degree_u, group.degree_v, pieces, unit, nullptr, share});
+        kernel::kernels(isa).find_rates({pieces, distance, 4096, sharp_u, sharp_v, sharp_chord, products});
+      }
       kernel::kernels(isa).hash_borders({net, group.degree_u, group.degree_v, false, hash});
       std::vector<std::uint32_t> bits(hash, hash + 64);
-      for (const float x : pieces) bits.push_back(std::bit_cast<std::uint32_t>(x));
+      for (const std::span<const float> values : {std::span<const float>(pieces), std::span<const float>(products),
+                                                  std::span<const float>(share), std::span<const float>(sharp_chord)})
+        for (const float x : values) bits.push_back(std::bit_cast<std::uint32_t>(x));
+      for (int lane = 0; lane < 16; ++lane) {
+        EXPECT_LE(std::int64_t{sharp_u[lane]} * sharp_v[lane], std::int64_t{rate_u[lane]} * rate_v[lane]);
+        bits.push_back(static_cast<std::uint32_t>(sharp_u[lane]));
+        bits.push_back(static_cast<std::uint32_t>(sharp_v[lane]));
+      }
       for (int lane = 0; lane < 16; ++lane)
-        for (const std::uint32_t x : {std::bit_cast<std::uint32_t>(unit[lane]), std::bit_cast<std::uint32_t>(chord[lane]),
-                                      static_cast<std::uint32_t>(rate_u[lane]), static_cast<std::uint32_t>(rate_v[lane])})
+        for (const std::uint32_t x :
+             {std::bit_cast<std::uint32_t>(unit[lane]), std::bit_cast<std::uint32_t>(chord[lane]),
+              static_cast<std::uint32_t>(rate_u[lane]), static_cast<std::uint32_t>(rate_v[lane])})
           bits.push_back(x);
       if (first.empty()) first = bits;
       EXPECT_EQ(bits, first) << name(isa);

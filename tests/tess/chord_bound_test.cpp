@@ -39,7 +39,8 @@ double found_distance(const BezierPatch& patch, const Box& box, Random& random, 
       double a = uniform(random, 0, 1), b = uniform(random, 0, 1);
       if (a + b > 1) a = 1 - a, b = 1 - b;
       if (sample % 3 == 0) b = 0;
-      const Vec3 p = de_casteljau(patch, u[0] + a * (u[1] - u[0]) + b * (u[2] - u[0]), v[0] + a * (v[1] - v[0]) + b * (v[2] - v[0]));
+      const Vec3 p = de_casteljau(patch, u[0] + a * (u[1] - u[0]) + b * (u[2] - u[0]),
+                                  v[0] + a * (v[1] - v[0]) + b * (v[2] - v[0]));
       most = std::max(most, distance_to_triangle(p, corner[0], corner[1], corner[2]));
     }
   }
@@ -51,7 +52,8 @@ double found_distance(const BezierPatch& patch, Rates rates, Random& random) {
   double most = 0;
   for (int cell = 0; cell < 6; ++cell) {
     const double iu = std::floor(uniform(random, 0, rates.u)), iv = std::floor(uniform(random, 0, rates.v));
-    most = std::max(most, found_distance(patch, {iu / rates.u, iv / rates.v, 1.0 / rates.u, 1.0 / rates.v}, random, 4, 12));
+    most = std::max(most,
+                    found_distance(patch, {iu / rates.u, iv / rates.v, 1.0 / rates.u, 1.0 / rates.v}, random, 4, 12));
   }
   return most;
 }
@@ -68,11 +70,35 @@ TEST(ChordBound, IsNeverExceeded) {
   Random random(1);
   for (int kind = 0; kind < 1200; ++kind) {
     const BezierPatch patch = random_patch(random, kind);
-    const ChordBound bound(patch);
+    const ChordBound plain(patch), bound(patch, true);
     const Rates rates{1 + static_cast<int>(random() % 9), 1 + static_cast<int>(random() % 9)};
     const double rounding = 1e-13 * max_abs(patch.point(0, 0));  // of this test's distances
+    ASSERT_LE(bound.distance(rates), plain.distance(rates));
     ASSERT_LE(found_distance(patch, rates, random), bound.distance(rates) + rounding)
         << "kind " << kind << ", rates " << rates.u << " x " << rates.v;
+  }
+}
+
+/// z = a u^2 + b u v + c v^2, x and y being 2 u and 3 v.
+BezierPatch quadric(double a, double b, double c) {
+  std::vector<Vec3> points;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      points.push_back({double(i), 1.5 * j, (i == 2 ? a : 0) + b * i * j / 4.0 + (j == 2 ? c : 0)});
+  return polynomial(2, 2, points);
+}
+
+TEST(ChordBound, KnowsWhichWayPatchesBend) {
+  // Where they bend to one side the errors add up, where they bend to both the larger one counts.
+  EXPECT_NEAR(ChordBound(quadric(1, 0, 1), true).distance({1, 1}), 0.5, 1e-6);
+  EXPECT_NEAR(ChordBound(quadric(1, 0, -1), true).distance({1, 1}), 0.25, 1e-6);
+  EXPECT_NEAR(ChordBound(quadric(1, 0, -1)).distance({1, 1}), 0.5, 1e-6);
+  EXPECT_NEAR(ChordBound(quadric(1, 0, -0.2), true).distance({2, 1}), std::max(0.25 / 4, 0.2 / 4), 1e-6);
+  Random random(9);
+  for (int k = 0; k < 300; ++k) {
+    const BezierPatch patch = quadric(uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1));
+    const ChordBound bound(patch, true);
+    EXPECT_LE(found_distance(patch, {0, 0, 1, 1}, random, 12, 30), bound.distance({1, 1}));
   }
 }
 
@@ -124,7 +150,7 @@ TEST(ChordBound, TheCheapestRatesAreTheCheapest) {
   Random random(5);
   for (int kind = 0; kind < 200; ++kind) {
     const BezierPatch patch = random_patch(random, kind);
-    const ChordBound bound(patch);
+    const ChordBound bound(patch, kind % 3 == 0);
     const double tolerance = bound.distance({1, 1}) * std::exp(uniform(random, -7, 0.2));
     int least = 1 << 30;
     for (int u = 1; u <= 256; ++u)

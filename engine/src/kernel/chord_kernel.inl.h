@@ -22,7 +22,8 @@ template <class L, int Rows, int Columns>
 [[gnu::always_inline]] inline void largest_in_quarters(const typename L::Batch* net, int rows, int columns,
                                                        typename L::Batch (&quarter)[4]) {
   using Batch = typename L::Batch;
-  constexpr int most_rows = Rows > 0 ? 2 * Rows - 1 : 2 * max_order, most_columns = Columns > 0 ? 2 * Columns - 1 : 2 * max_order;
+  constexpr int most_rows = Rows > 0 ? 2 * Rows - 1 : 2 * max_order,
+                most_columns = Columns > 0 ? 2 * Columns - 1 : 2 * max_order;
   if (Rows > 0) rows = Rows, columns = Columns;
   Batch squared[most_rows][most_columns];
   const int cut_rows = 2 * rows - 1, cut_columns = 2 * columns - 1;
@@ -33,8 +34,7 @@ template <class L, int Rows, int Columns>
     for (int i = 0; i < cut_rows; ++i) {
       Batch cut[most_columns];
       cut_curve<L>(by_row + i * columns, 1, columns, cut, 1);
-      for (int j = 0; j < cut_columns; ++j)
-        squared[i][j] = c == 0 ? cut[j] * cut[j] : squared[i][j] + cut[j] * cut[j];
+      for (int j = 0; j < cut_columns; ++j) squared[i][j] = c == 0 ? cut[j] * cut[j] : squared[i][j] + cut[j] * cut[j];
     }
   }
   for (int half_u = 0; half_u < 2; ++half_u)
@@ -120,7 +120,8 @@ void bound_lanes(const ChordJob& job, int lane) {
   if (n > 1) {
     for (int c = 0; c < 3; ++c)
       for (int i = 0; i <= m; ++i)
-        for (int j = 0; j <= n - 2; ++j) d[next++] = (at(c, i, j + 2) - at(c, i, j + 1)) - (at(c, i, j + 1) - at(c, i, j));
+        for (int j = 0; j <= n - 2; ++j)
+          d[next++] = (at(c, i, j + 2) - at(c, i, j + 1)) - (at(c, i, j + 1) - at(c, i, j));
     largest_in_quarters<L, (Degree > 1 ? Degree + 1 : 0), (Degree > 1 ? Degree - 1 : 0)>(d, m + 1, n - 1, quarters);
   }
   store_pieces<L>(job, 2, lane, static_cast<float>(n * (n - 1)), quarters);
@@ -130,136 +131,4 @@ template <class L>
 void bound_chords(const ChordJob& job) {
   for (int lane = 0; lane < block_lanes; lane += L::width)
     job.degree_u == 3 && job.degree_v == 3 ? bound_lanes<L, 3>(job, lane) : bound_lanes<L, 0>(job, lane);
-}
-
-/// The search for rates, one patch a lane. Along one parameter, `first`, whose second derivatives are the smaller, rates are
-/// tried around that of the fewest cells if cells were no whole numbers; the other's follow.
-template <class L>
-class RateSearch {
- public:
-  RateSearch(const RateJob& job, int lane) : job_(job), lane_(lane) {
-    const Batch whole[3] = {piece(0, 0), piece(0, 1), piece(0, 2)};
-    is_u_ = xsimd::select(whole[0] <= whole[2], L::broadcast(1), L::broadcast(0));
-    const auto u = is_u_ > L::broadcast(0);
-    // The same pieces with `first` in the place of u.
-    constexpr int other[9] = {0, 3, 4, 1, 2, 5, 7, 6, 8};
-    for (int k = 0; k < 9; ++k) {
-      first_[k] = xsimd::select(u, piece(k, 0), piece(other[k], 2));
-      mixed_[k] = xsimd::select(u, piece(k, 1), piece(other[k], 1));
-      second_[k] = xsimd::select(u, piece(k, 2), piece(other[k], 0));
-    }
-    room_ = L::broadcast(8) * L::load(job.distance + lane);
-    most_ = L::broadcast(static_cast<float>(job.most_rate));
-  }
-
-  void run() {
-    const Batch zero = L::broadcast(0), one = L::broadcast(1), two = L::broadcast(2), half = L::broadcast(static_cast<float>(0.5));
-    const Batch tiny = L::broadcast(static_cast<float>(0x1p-60));
-    // first^2 cells' h and k: h^2 uu = k^2 vv, hence room / 2 = h^2 (uu + uv sqrt(uu / vv)).
-    const Batch ratio = xsimd::sqrt(first_[0] / xsimd::max(second_[0], tiny));
-    const Batch start = xsimd::sqrt((first_[0] + mixed_[0] * ratio) * two / xsimd::max(room_, tiny));
-    const Batch middle = two * xsimd::floor(half * xsimd::min(start, most_));
-    best_first_ = best_second_ = zero;
-    least_ = L::broadcast(std::numeric_limits<float>::infinity());
-    for (int step = -2; step <= 3; ++step) {
-      const Batch rate = middle + L::broadcast(static_cast<float>(step));
-      step % 2 == 0 ? attempt<true>(rate) : attempt<false>(rate);
-    }
-    widen(middle - two, middle + L::broadcast(3));
-    const auto found = least_ < L::broadcast(std::numeric_limits<float>::infinity());
-    const Batch chord = found_chord();
-    const auto kept = found & (L::broadcast(8) * chord <= room_);
-    const auto u = is_u_ > zero;
-    store(job_.rate_u, xsimd::select(kept, xsimd::select(u, best_first_, best_second_), zero));
-    store(job_.rate_v, xsimd::select(kept, xsimd::select(u, best_second_, best_first_), zero));
-    L::store(job_.chord + lane_, xsimd::select(kept, chord, one));
-  }
-
- private:
-  using Batch = typename L::Batch;
-
-  Batch piece(int k, int kind) const { return L::load(job_.pieces + (k * 3 + kind) * block_lanes + lane_); }
-
-  /// Above the step of a rate in parameters, which are rounded to float: 1 / rate + 2^-24.
-  static Batch step_of(const Batch& rate) {
-    return L::broadcast(1) / rate * L::broadcast(static_cast<float>(1 + 0x1p-22)) + L::broadcast(static_cast<float>(0x1p-24));
-  }
-
-  /// A little above the least rate t >= 1 with h^2 first + 2 h mixed / t + second / t^2 <= room over pieces begin .. end;
-  /// infinite where there is none.
-  Batch needed(int begin, int end, const Batch& h) const {
-    Batch most = L::broadcast(1);
-    for (int k = begin; k < end; ++k) {
-      const Batch room = room_ - h * h * first_[k], b = h * mixed_[k];
-      const Batch root = (b + xsimd::sqrt(b * b + xsimd::max(room, L::broadcast(0)) * second_[k])) / room;
-      const Batch above = root * L::broadcast(static_cast<float>(1 + 0x1p-18));
-      most = xsimd::max(most, xsimd::select(room > L::broadcast(0), above, L::broadcast(std::numeric_limits<float>::infinity())));
-    }
-    return most;
-  }
-
-  /// All pairs with this rate along `first`.
-  template <bool Even>
-  void attempt(const Batch& rate) {
-    const Batch one = L::broadcast(1), two = L::broadcast(2), half = L::broadcast(static_cast<float>(0.5));
-    const Batch first = xsimd::max(rate, Even ? two : one);
-    const Batch h = step_of(first);
-    const Batch odd = two * xsimd::ceil(half * ((Even ? needed(1, 3, h) : needed(0, 1, h)) - one)) + one;
-    const Batch even = two * xsimd::ceil(half * (Even ? needed(5, 9, h) : needed(3, 5, h)));
-    const Batch second = xsimd::min(xsimd::max(odd, one), xsimd::max(even, two));
-    const Batch cells = first * second;
-    const auto better = (second <= most_) & (first <= most_) & (cells < least_);
-    least_ = xsimd::select(better, cells, least_);
-    best_first_ = xsimd::select(better, first, best_first_);
-    best_second_ = xsimd::select(better, second, best_second_);
-  }
-
-  /// Goes on beyond the even rate `low` and the odd rate `high` while a lane has its fewest cells at an end.
-  void widen(Batch low, Batch high) {
-    const Batch one = L::broadcast(1), two = L::broadcast(2);
-    for (int rounds = 0; rounds < 32; ++rounds) {
-      const auto at_end = ((best_first_ <= low) & (low > one)) | ((best_first_ >= high) & (high < most_));
-      if (!xsimd::any(at_end)) return;
-      attempt<true>(low - two);
-      attempt<false>(low - one);
-      attempt<true>(high + one);
-      attempt<false>(high + two);
-      low = low - two;
-      high = high + two;
-    }
-  }
-
-  /// A bound on the chord error of the rates found.
-  Batch found_chord() const {
-    const Batch one = L::broadcast(1), half = L::broadcast(static_cast<float>(0.5));
-    const Batch first = xsimd::max(best_first_, one), second = xsimd::max(best_second_, one);
-    const Batch h = step_of(first), k = step_of(second);
-    const auto most = [&](int begin, int end) {
-      Batch of_pieces = L::broadcast(0);
-      for (int p = begin; p < end; ++p)
-        of_pieces = xsimd::max(of_pieces, h * (h * first_[p] + (k + k) * mixed_[p]) + k * k * second_[p]);
-      return of_pieces;
-    };
-    const auto even_first = xsimd::floor(half * first) * L::broadcast(2) == first;
-    const auto even_second = xsimd::floor(half * second) * L::broadcast(2) == second;
-    const Batch eighth = L::broadcast(static_cast<float>(0.125 * (1 + 0x1p-20)));
-    return eighth * xsimd::select(even_first, xsimd::select(even_second, most(5, 9), most(1, 3)),
-                                  xsimd::select(even_second, most(3, 5), most(0, 1)));
-  }
-
-  void store(std::int32_t* to, const Batch& whole) const {
-    alignas(64) float values[L::width];
-    L::store(values, whole);
-    for (int l = 0; l < L::width; ++l) to[lane_ + l] = static_cast<std::int32_t>(values[l]);
-  }
-
-  const RateJob& job_;
-  const int lane_;
-  Batch first_[9], mixed_[9], second_[9], room_, most_, is_u_;
-  Batch best_first_, best_second_, least_;
-};
-
-template <class L>
-void find_rates(const RateJob& job) {
-  for (int lane = 0; lane < block_lanes; lane += L::width) RateSearch<L>(job, lane).run();
 }

@@ -10,26 +10,38 @@ namespace tessera::kernel {
 /// Bounds on the second derivatives of a block of polynomial patches, over the whole patch, its halves and quarters: see
 /// ChordBound. They include the rounding of the packed coefficients.
 struct ChordJob {
-  const float* net = nullptr;   ///< `[i][j][component][lane]`
+  const float* net = nullptr;  ///< `[i][j][component][lane]`
   int degree_u = 0, degree_v = 0;
-  float* pieces = nullptr;      ///< `[piece of 9][uu, uv, vv][lane]`, in units of `unit`
-  float* unit = nullptr;        ///< `[lane]`: a power of two above the largest coefficient
-  float* size = nullptr;        ///< `[lane]`: the largest coefficient, at least 2^-120
+  float* pieces = nullptr;  ///< `[piece of 9][uu, uv, vv][lane]`, in units of `unit`
+  float* unit = nullptr;    ///< `[lane]`: a power of two above the largest coefficient
+  float* size = nullptr;    ///< `[lane]`: the largest coefficient, at least 2^-120
 };
+
+/// Bounds on products of the second derivatives of such a block: see SecondDerivatives. Of degrees up to most_product_degree.
+struct ChordProductJob {
+  const float* net = nullptr;
+  int degree_u = 0, degree_v = 0;
+  const float* pieces = nullptr;  ///< what ChordJob has led to
+  const float* unit = nullptr;
+  float* products = nullptr;  ///< `[piece of 9][uu_vv, uu_uv, uv_vv][lane]`, in units of unit^2
+  float* share = nullptr;  ///< `[lane]`: about what is left of the chord's bound by them, above 1 if nothing is saved
+};
+inline constexpr int most_product_degree = 5;
 
 /// The rates with the fewest cells that keep a distance, for the patches of a block.
 struct RateJob {
   const float* pieces = nullptr;    ///< as above
   const float* distance = nullptr;  ///< `[lane]`, in the patch's unit
   int most_rate = 0;
-  std::int32_t* rate_u = nullptr;   ///< `[lane]`: 0 where the search failed, which does not prove that there are none
+  std::int32_t* rate_u = nullptr;  ///< `[lane]`: 0 where the search failed, which does not prove that there are none
   std::int32_t* rate_v = nullptr;
   float* chord = nullptr;           ///< `[lane]`: the bound that the rates keep, in the patch's unit
+  const float* products = nullptr;  ///< as above, or null
 };
 
 /// Hashes of the borders of a block of patches, of the bits of their control points.
 struct BorderHashJob {
-  const float* net = nullptr;     ///< `[i][j][component][lane]`
+  const float* net = nullptr;  ///< `[i][j][component][lane]`
   int degree_u = 0, degree_v = 0;
   bool rational = false;
   std::uint32_t* hash = nullptr;  ///< `[side v = 0, u = 1, v = 1, u = 0][lane]`
@@ -38,6 +50,8 @@ struct BorderHashJob {
 struct ChordKernels {
   void (*hash_borders)(const BorderHashJob&);
   void (*bound_chords)(const ChordJob&);
+  void (*bound_products)(const ChordProductJob&);     ///< the products alone
+  void (*share_of_products)(const ChordProductJob&);  ///< the share alone
   void (*find_rates)(const RateJob&);
 };
 

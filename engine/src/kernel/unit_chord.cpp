@@ -8,6 +8,8 @@ namespace {
 
 #include "kernel/index_vector.inl.h"
 #include "kernel/chord_kernel.inl.h"
+#include "kernel/chord_product.inl.h"
+#include "kernel/rate_search.inl.h"
 #include "kernel/border_hash.inl.h"
 
 }  // namespace
@@ -15,6 +17,8 @@ namespace {
 extern const ChordKernels chord_kernels = {
     hash_borders<Lanes<float>>,
     bound_chords<Lanes<float>>,
+    bound_products<Lanes<float>>,
+    share_of_products<Lanes<float>>,
     find_rates<Lanes<float>>,
 };
 

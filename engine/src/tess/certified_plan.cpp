@@ -54,7 +54,8 @@ Result<CertifiedPlanner> CertifiedPlanner::make(const PatchSet::Impl& set, const
     for (std::size_t block = begin; block < end; ++block) {
       planner.chords_.bound(set, block);
       const BlockGroup& group = set.group_of_block(block);
-      const PatchShape whole{static_cast<std::uint8_t>(group.degree_u), static_cast<std::uint8_t>(group.degree_v), {}, false};
+      const PatchShape whole{
+          static_cast<std::uint8_t>(group.degree_u), static_cast<std::uint8_t>(group.degree_v), {}, false};
       const double rounding = vertex_rounding(group.degree_u, group.degree_v, false, 1);
       for (std::size_t lane = 0; lane < set.lane_counts[block]; ++lane) {
         const std::size_t k = set.lane_patches[block * PatchSet::lanes + lane];
@@ -117,8 +118,9 @@ CertifiedPlanner::Choice CertifiedPlanner::choose(std::size_t patch, double tole
   if (!(given < distance)) choice.failure = given < tolerance ? Failure::rough_pixels : Failure::rough;
   if (std::isfinite(distance)) limits.chord = &chord;
   limits.distance = distance - given;
-  if (picture && picture->projected()) {
-    limits.picture = picture->projected();
+  const std::optional<ChordBound> projected = picture ? picture->projected() : std::nullopt;
+  if (projected) {
+    limits.picture = &*projected;
     limits.pixels = options_.pixels - picture->moved_pixels();
     if (!(limits.pixels > 0)) choice.failure = Failure::rough_pixels;
   }
@@ -189,13 +191,19 @@ Status CertifiedPlanner::choose_by_distance(double tolerance, const KeptRates& k
       const std::size_t count = set_->lane_counts[block];
       ChordBlocks::Lanes<double> left;
       left.fill(tolerance);
-      for (std::size_t lane = 0; lane < count; ++lane) left[lane] = tolerance - (roundings_[patches[lane]] + fit_error_);
-      ChordBlocks::Choice choice = chords_.cheapest(block, count, left, most_rate);
+      for (std::size_t lane = 0; lane < count; ++lane)
+        left[lane] = tolerance - (roundings_[patches[lane]] + fit_error_);
+      ChordBlocks::Products products;
+      ChordBlocks::Choice choice = chords_.cheapest(*set_, block, count, left, most_rate, products);
       for (std::size_t lane = 0; lane < count; ++lane) {
         const std::size_t k = patches[lane];
         if (!(left[lane] > 0) || choice.rates[lane].u == 0) failed.add(k);
         if (is_spared(kept, k, choice.rates[lane])) {
-          const double distance = chords_.chord(block, lane).distance(kept.rates[k]);
+          double distance = chords_.chord(block, lane).distance(kept.rates[k]);
+          if (!(distance <= left[lane])) {
+            products.find(chords_, *set_, block);
+            distance = chords_.chord(block, lane, &products).distance(kept.rates[k]);
+          }
           if (distance <= left[lane]) choice.rates[lane] = kept.rates[k], choice.distance[lane] = distance;
         }
         plan.rates_[k] = choice.rates[lane];
@@ -257,15 +265,16 @@ std::vector<Division> CertifiedPlanner::divide(std::span<const Rates> rates) con
     for (const Side side : all_sides) {
       const std::uint32_t edge = edges_.edge(k, side);
       const auto rate_of = [](Need need) { return need.most + (need.most & need.is_even); };
-      borders[static_cast<std::size_t>(side)] = edge == SharedEdges::none ? rate_along(rates[k], side) : rate_of(needs[edge]);
+      borders[static_cast<std::size_t>(side)] =
+          edge == SharedEdges::none ? rate_along(rates[k], side) : rate_of(needs[edge]);
     }
     divisions[k] = Division::of(shapes[k], rates[k], borders);
   }
   return divisions;
 }
 
-Result<CertifiedPlan> CertifiedPlanner::plan(double tolerance, std::uint64_t most_triangles,
-                                             const Execution& execution, const KeptRates& kept) const {
+Result<CertifiedPlan> CertifiedPlanner::plan(double tolerance, std::uint64_t most_triangles, const Execution& execution,
+                                             const KeptRates& kept) const {
   CertifiedPlan plan;
   if (Status status = choose_rates(tolerance, kept, plan, execution); !status.ok()) return status;
   plan.divisions_ = divide(plan.rates_);

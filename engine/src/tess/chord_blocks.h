@@ -29,18 +29,39 @@ class ChordBlocks {
     if (size < 0) return {};
     return (1 + 0x1p-22) * double(size);  // the control points were rounded
   }
-  /// One patch's bound.
-  ChordBound chord(std::size_t block, std::size_t lane) const;
+  /// Bounds on the products of second derivatives, found where they are asked for.
+  class Products {
+   public:
+    /// Of a block that is as it was when it was bounded. Once; then it is free.
+    void find(const ChordBlocks& chords, const PatchSet::Impl& set, std::size_t block);
+    const float* values() const {
+      return is_found_ ? values_.data() : nullptr;
+    }  ///< as pieces_, in units of unit_ squared
+
+   private:
+    bool is_found_ = false;
+    alignas(cache_line) std::array<float, 9 * 3 * PatchSet::lanes> values_;
+  };
+
+  /// One patch's bound, by the products as well if there are `products`.
+  ChordBound chord(std::size_t block, std::size_t lane, const Products* products = nullptr) const;
 
   struct Choice {
-    Lanes<Rates> rates;       ///< 0 where no rates up to the most keep the distance
-    Lanes<double> distance{}; ///< what they keep
+    Lanes<Rates> rates;        ///< 0 where no rates up to the most keep the distance
+    Lanes<double> distance{};  ///< what they keep
   };
   /// Rates with about the fewest cells that keep a distance to each of a block's first `count` patches. The same on every
-  /// instruction set.
-  Choice cheapest(std::size_t block, std::size_t count, const Lanes<double>& distance, int most) const;
+  /// instruction set. Products are looked for where they save more than they take.
+  Choice cheapest(const PatchSet::Impl& set, std::size_t block, std::size_t count, const Lanes<double>& distance,
+                  int most, Products& products) const;
 
  private:
+  /// How many cells a patch products save, about, of those that a choice has.
+  double saved_by_products(const PatchSet::Impl& set, std::size_t block, std::size_t count, const Choice& choice) const;
+  /// By the kernel, and one by one where it has found none.
+  Choice search(std::size_t block, std::size_t count, const Lanes<double>& distance, int most,
+                const Products* products) const;
+
   static constexpr std::size_t lanes = PatchSet::lanes, piece_count = 9, block_pieces = piece_count * 3 * lanes;
 
   AlignedVector<float> pieces_;  ///< `[block][piece][uu, uv, vv][lane]`, in units of unit_

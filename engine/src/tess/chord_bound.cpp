@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "surface/homogeneous.h"
 
@@ -63,7 +64,8 @@ Derivatives differentiate(const HomogeneousNet& net) {
     for (int j = 0; j <= n; ++j) {
       const Homogeneous& a = net.at(i, j);
       if (i + 2 <= m) d.uu(i, j) = m * (m - 1.0) * ((net.at(i + 2, j) - net.at(i + 1, j)) - (net.at(i + 1, j) - a));
-      if (i < m && j < n) d.uv(i, j) = m * double(n) * ((net.at(i + 1, j + 1) - net.at(i + 1, j)) - (net.at(i, j + 1) - a));
+      if (i < m && j < n)
+        d.uv(i, j) = m * double(n) * ((net.at(i + 1, j + 1) - net.at(i + 1, j)) - (net.at(i, j + 1) - a));
       if (j + 2 <= n) d.vv(i, j) = n * (n - 1.0) * ((net.at(i, j + 2) - net.at(i, j + 1)) - (net.at(i, j + 1) - a));
     }
   return d;
@@ -113,6 +115,40 @@ double largest(Net (&quarter)[2][2], unsigned piece, const Place& place) {
   return most / place.lightest;
 }
 
+/// What largest() measures: vectors, each with a ball around it.
+struct Vectors {
+  struct Ball {
+    Vec3 centre;
+    double radius, size;
+  };
+  std::array<Ball, std::size_t{4} * (most_product_degree + 1) * (most_product_degree + 1)> balls;
+  std::size_t count = 0;
+
+  Vectors(Net (&quarter)[2][2], unsigned piece, const Place& place) {
+    for_quarters(piece, [&](int i, int j) {
+      for (int k = 0; k < quarter[i][j].size(); ++k) {
+        const Homogeneous& a = quarter[i][j].at[static_cast<std::size_t>(k)];
+        const Vec3 centre = (1 / place.lightest) * (a.vector() - a.w * place.centre);
+        balls[count++] = {centre, place.radius * std::abs(a.w) / place.lightest, length(centre)};
+      }
+    });
+  }
+};
+
+/// The largest product of vectors in balls of both, or its largest size.
+double largest_product(const Vectors& a, const Vectors& b, bool size) {
+  if (a.count == 0 || b.count == 0) return 0;
+  double most = -std::numeric_limits<double>::infinity();
+  for (const Vectors::Ball& p : std::span(a.balls.data(), a.count))
+    for (const Vectors::Ball& q : std::span(b.balls.data(), b.count)) {
+      const double product = dot(p.centre, q.centre);
+      const double reach = p.size * q.radius + q.size * p.radius + p.radius * q.radius;
+      const double largest = (size ? std::abs(product) : product) + reach;
+      most = !(largest <= most) ? largest : most;  // NaN wins
+    }
+  return most;
+}
+
 /// The smallest t >= 1 with a + b / t + c / t^2 <= limit, a <= limit; infinite if there is none.
 double smallest_rate(double a, double b, double c, double limit) {
   const double room = limit - a;
@@ -123,7 +159,7 @@ double smallest_rate(double a, double b, double c, double limit) {
 
 }  // namespace
 
-ChordBound::ChordBound(const BezierPatch& patch) {
+ChordBound::ChordBound(const BezierPatch& patch, bool products) {
   const HomogeneousNet net(patch, patch.point(0, 0));
   Derivatives whole = differentiate(net);
   Net uu[2][2], uv[2][2], vv[2][2];
@@ -156,6 +192,19 @@ ChordBound::ChordBound(const BezierPatch& patch) {
                   scale * (largest(vv, piece, place) + (n > 1 ? n * (n - 1) * rounding : 0))};
     for (double* bound : {&pieces_[k].uu, &pieces_[k].uv, &pieces_[k].vv})
       if (std::isnan(*bound)) *bound = std::numeric_limits<double>::infinity();
+    if (!products || std::max(net.degree_u, net.degree_v) > most_product_degree) continue;
+    // What was added to the bounds was that for a vector's error, and a product's errors are those with the other vector.
+    const Vectors a(uu, piece, place), b(uv, piece, place), c(vv, piece, place);
+    const auto bound = [&](double product, double x, double y, double degrees) {
+      return scale * scale * product + 0x1p-38 * x * y + scale * degrees * rounding * (x + y);
+    };
+    SecondDerivatives& d = pieces_[k];
+    const double of_uu = m * m, of_uv = m * n, of_vv = n * n;
+    d.uu_vv = bound(largest_product(a, c, false), d.uu, d.vv, std::max(of_uu, of_vv));
+    d.uu_uv = bound(largest_product(a, b, true), d.uu, d.uv, std::max(of_uu, of_uv));
+    d.uv_vv = bound(largest_product(b, c, true), d.uv, d.vv, std::max(of_uv, of_vv));
+    for (double* product : {&d.uu_vv, &d.uu_uv, &d.uv_vv})
+      if (std::isnan(*product)) *product = std::numeric_limits<double>::infinity();
   }
 }
 
@@ -174,8 +223,8 @@ double ChordBound::needed(double tolerance, int fixed, bool fixed_u, bool even) 
   double needed = 1;
   for (int k = split.first; k < split.first + split.count; ++k) {
     const SecondDerivatives& d = pieces_[static_cast<std::size_t>(k)];
-    needed = std::max(needed, smallest_rate(h * h * (fixed_u ? d.uu : d.vv), 2 * h * d.uv, fixed_u ? d.vv : d.uu,
-                                            8 * tolerance));
+    needed = std::max(
+        needed, smallest_rate(h * h * (fixed_u ? d.uu : d.vv), 2 * h * d.uv, fixed_u ? d.vv : d.uu, 8 * tolerance));
   }
   return needed;
 }
@@ -189,7 +238,14 @@ std::optional<Rates> ChordBound::with_rate(double tolerance, int fixed, bool fix
     if ((rate % 2 == 0) != even) ++rate;
     const auto rates = [&] { return fixed_u ? Rates{fixed, rate} : Rates{rate, fixed}; };
     if (!(distance(rates()) <= tolerance)) rate += 2;  // the root was rounded, or the parameters are
-    if (rate <= most && distance(rates()) <= tolerance && (!best || rate < (fixed_u ? best->v : best->u))) best = rates();
+    // By the products it may be less.
+    for (int low = even ? 0 : -1; std::isfinite(pieces_[0].uu_vv) && rate - low > 2;) {
+      const int high = rate;
+      rate = low + (high - low) / 4 * 2;
+      if (!(distance(rates()) <= tolerance)) low = rate, rate = high;
+    }
+    if (rate <= most && distance(rates()) <= tolerance && (!best || rate < (fixed_u ? best->v : best->u)))
+      best = rates();
   }
   return best;
 }
@@ -213,7 +269,8 @@ std::optional<Rates> ChordBound::cheapest(double tolerance, int most) const {
   const int middle = start < most ? std::max(static_cast<int>(start), 1) : most;
   constexpr int patience = 4;
   for (const int step : {1, -1})
-    for (int rate = step > 0 ? middle : middle - 1, left = patience; left > 0 && rate >= 1 && rate <= most; rate += step)
+    for (int rate = step > 0 ? middle : middle - 1, left = patience; left > 0 && rate >= 1 && rate <= most;
+         rate += step)
       left = attempt(rate) ? patience : left - 1;
   for (int rate = 1; rate <= patience; ++rate)
     if (rate <= most) attempt(rate);

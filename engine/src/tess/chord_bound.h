@@ -6,13 +6,20 @@
 // Surface algorithms using bounds on derivatives; for any such triangle: Taylor at the point, the weighted variance of a
 // coordinate over the corners being at most a quarter of its squared range, Cauchy-Schwarz for the mixed term).
 //
+// A direction w has an error of at most (h^2 max(w.uu) + 2 h k max|w.uv| + k^2 max(w.vv)) / 8 there, the maxima at least 0,
+// each at a place of its own: so the distance is at most that of the longest sum h^2 uu + 2 h k uv + k^2 vv of such
+// vectors, or without uu, or vv, which products of them bound.
+//
 // Rational patches: interpolate A = (w (r - c), w) over the triangle's parameters. What comes out, projected, runs
 // through the flat triangle, since the weights are positive; and with the errors e of A's parts
 //   |A / w - A' / w'| = |e_A - (r' - c) e_w| / w <= (|e_A| + R |e_w|) / w_min
 // where r' lies within R of c. So the second derivatives of A and of w take the place of those of r. A bound between sets:
 // it does not ask that equal parameters lie near each other.
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <optional>
 
 #include "tess/patch_triangles.h"
@@ -23,23 +30,45 @@ namespace tessera {
 /// Bounds that hold over a rectangle of the patch, in the patch's lengths over its own parameters.
 struct SecondDerivatives {
   double uu = 0, uv = 0, vv = 0;
+  /// Bounds on products of one derivative at a place and another at another: uu . vv, |uu . uv|, |uv . vv|; infinite where
+  /// they are not known.
+  double uu_vv = std::numeric_limits<double>::infinity(), uu_uv = uu_vv, uv_vv = uu_vv;
 
   /// The largest distance of a triangle with a parameter box h x k.
-  double chord(double h, double k) const { return (h * h * uu + 2 * h * k * uv + k * k * vv) / 8; }
+  double chord(double h, double k) const {
+    const double a = h * h * uu, b = 2 * h * k * uv, c = k * k * vv;
+    const double both = a * a + c * c + 2 * (h * k) * (h * k) * uu_vv;
+    const double squared = b * b + 4 * h * k * (h * h * uu_uv + k * k * uv_vv) + std::max({both, a * a, c * c});
+    const bool is_sound = squared > std::numeric_limits<double>::min() / std::numeric_limits<double>::epsilon();
+    return (is_sound ? std::min(a + b + c, (1 + 0x1p-48) * std::sqrt(squared)) : a + b + c) / 8;
+  }
   /// By rates; a float parameter i / rate lies up to 2^-25 beside it.
   double chord(Rates rates) const { return chord(1.0 / rates.u + 0x1p-24, 1.0 / rates.v + 0x1p-24); }
 };
+
+inline constexpr int most_product_degree = 5;
 
 /// Bounds for the whole patch, its halves and its quarters. Those of a half hold only for triangles that lie in one half:
 /// so they serve even rates, whose cells never straddle the middle.
 class ChordBound {
  public:
   /// Exact but for rounding, which is added: a proven bound. Infinite where it is beyond double.
-  explicit ChordBound(const BezierPatch& patch);
-  ChordBound() = default;  ///< of a plane
+  /// `products`: with those of second derivatives, up to most_product_degree: time goes by the degree's fourth power.
+  explicit ChordBound(const BezierPatch& patch, bool products = false);
+  ChordBound() = default;                           ///< of a plane
   using Pieces = std::array<SecondDerivatives, 9>;  ///< whole; u < 1/2, u > 1/2; v < 1/2, v > 1/2; quarters
   explicit ChordBound(const Pieces& pieces) : pieces_(pieces) {}
   const Pieces& pieces() const { return pieces_; }
+  /// uu, uv and vv alone, for where many bounds are kept.
+  using PlainPieces = std::array<std::array<double, 3>, 9>;
+  explicit ChordBound(const PlainPieces& pieces) {
+    for (std::size_t k = 0; k < pieces.size(); ++k) pieces_[k] = {pieces[k][0], pieces[k][1], pieces[k][2]};
+  }
+  PlainPieces plain_pieces() const {
+    PlainPieces plain;
+    for (std::size_t k = 0; k < plain.size(); ++k) plain[k] = {pieces_[k].uu, pieces_[k].uv, pieces_[k].vv};
+    return plain;
+  }
 
   /// The largest distance between the patch and a mesh of it, each of whose triangles has a parameter box of at most
   /// 1 / rates.u x 1 / rates.v, and where a rate is even none straddles the middle of that parameter.

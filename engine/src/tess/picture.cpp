@@ -174,7 +174,7 @@ PatchInPicture::PatchInPicture(const Camera& camera, const BezierPatch& patch, d
     bound_by_depth(camera, patch, moved, pixels);
     return;
   }
-  projected_ = ChordBound(*picture);
+  projected_ = ChordBound(*picture).plain_pieces();
   double slope = 0, size = 0;
   for (const Vec3& p : picture->points()) {
     const double tangent = camera.orthographic() ? 0 : length(p) / camera.focal();
@@ -209,7 +209,7 @@ void PatchInPicture::bound_by_depth(const Camera& camera, const BezierPatch& pat
 }
 
 double PatchInPicture::pixels(Rates rates, double distance) const {
-  if (projected_) return projected_->distance(rates) + moved_pixels_;
+  if (projected_) return ChordBound(*projected_).distance(rates) + moved_pixels_;
   return depth_ > 0 ? steepest_ * distance / (depth_ - distance) : 0;
 }
 

@@ -51,7 +51,9 @@ class PatchInPicture {
   PatchInPicture(const Camera& camera, const BezierPatch& patch, double moved, double pixels);
 
   /// The patch in the plane, in pixels, where that is what bounds it.
-  const ChordBound* projected() const { return projected_ ? &*projected_ : nullptr; }
+  std::optional<ChordBound> projected() const {
+    return projected_ ? std::optional(ChordBound(*projected_)) : std::nullopt;
+  }
   /// What of the pixels goes to `moved`; 0 if it isn't projected.
   double moved_pixels() const { return moved_pixels_; }
   /// The distance in space to be kept, all in all; infinite if it is projected, or not seen.
@@ -62,7 +64,7 @@ class PatchInPicture {
  private:
   void bound_by_depth(const Camera& camera, const BezierPatch& patch, double moved, double pixels);
 
-  std::optional<ChordBound> projected_;
+  std::optional<ChordBound::PlainPieces> projected_;
   double moved_pixels_ = 0;
   double distance_;
   double steepest_ = 0, depth_ = 0;  ///< of what is bounded by depth; 0 where it is not seen

@@ -78,11 +78,17 @@ void PresentBounds::find_moved(const PatchSet::Impl& set, const CertifiedTessell
     measure_displacements(set, plan.joins(), roundings_, is_moved, displacements_, true);
 }
 
-void PresentBounds::set_bound(const PatchSet::Impl& set, const CertifiedTessellation::Impl& plan, std::size_t patch) {
+void PresentBounds::set_bound(const PatchSet::Impl& set, const CertifiedTessellation::Impl& plan, std::size_t patch,
+                              ChordBlocks::Products& products) {
   const PatchSet::Slot slot = set.slots[patch];
   const double moved = displacements_.empty() ? 0 : displacements_[patch];
-  const double bound = chords_.chord(slot.block, slot.lane).distance(plan.plan().rates()[patch]) +
-                       std::max(roundings_[patch], moved) + set.fit_error.distance;
+  const Rates rates = plan.plan().rates()[patch];
+  const double given = std::max(roundings_[patch], moved) + set.fit_error.distance;
+  double bound = chords_.chord(slot.block, slot.lane).distance(rates) + given;
+  if (!(bound <= plan.tolerance())) {
+    products.find(chords_, set, slot.block);
+    bound = chords_.chord(slot.block, slot.lane, &products).distance(rates) + given;
+  }
   bounds_[patch] = rounded_up(bound);
   if (is_touched(set, patch) && (plan.options().angle || plan.options().pixels)) is_unknown_[patch] = 1;
   is_unproven_[patch] = is_unknown_[patch] != 0 || !(bound <= plan.tolerance() * float_sums);
@@ -93,15 +99,20 @@ Status PresentBounds::restate(const PatchSet::Impl& set, const CertifiedTessella
   if (Status status = bound_blocks(set, execution); !status.ok()) return status;
   if (!displacements_.empty()) find_moved(set, plan);
   const auto state = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k)
+    for (std::size_t k = begin; k < end; ++k) {
+      ChordBlocks::Products products;
       for (std::size_t lane = 0; lane < PatchSet::lanes; ++lane)
         if (touched_lanes_[touched_blocks_[k]] >> lane & 1u)
-          set_bound(set, plan, set.lane_patches[touched_blocks_[k] * std::size_t{PatchSet::lanes} + lane]);
+          set_bound(set, plan, set.lane_patches[touched_blocks_[k] * std::size_t{PatchSet::lanes} + lane], products);
+    }
   };
   if (Status status = parallel_for(touched_blocks_.size(), blocks_a_piece, execution, state); !status.ok())
     return status;
-  for (std::size_t patch = 0; patch < moved_.size(); ++patch)
-    if (moved_[patch] && !is_touched(set, patch)) set_bound(set, plan, patch);
+  for (std::size_t patch = 0; patch < moved_.size(); ++patch) {
+    if (!moved_[patch] || is_touched(set, patch)) continue;
+    ChordBlocks::Products products;
+    set_bound(set, plan, patch, products);
+  }
   for (const std::uint32_t block : touched_blocks_) touched_lanes_[block] = 0;
   touched_blocks_.clear();
   unproven_ = std::accumulate(is_unproven_.begin(), is_unproven_.end(), std::size_t{0});

@@ -29,7 +29,9 @@ class PresentBounds {
   }
   Status bound_blocks(const PatchSet::Impl& set, const Execution& execution);
   void find_moved(const PatchSet::Impl& set, const CertifiedTessellation::Impl& plan);
-  void set_bound(const PatchSet::Impl& set, const CertifiedTessellation::Impl& plan, std::size_t patch);
+  /// `products` of the patch's block.
+  void set_bound(const PatchSet::Impl& set, const CertifiedTessellation::Impl& plan, std::size_t patch,
+                 ChordBlocks::Products& products);
 
   ChordBlocks chords_;
   std::vector<double> roundings_;      ///< of each patch's vertices, before welding
