@@ -41,7 +41,8 @@ class CubicVertices {
       int row = 0, column = 0;
       for (int k = 0; k < count; k += width) {
         Sample<L> sample;
-        const __m512i place = _mm512_add_epi32(_mm512_loadu_si512(along_v.row_places + column), _mm512_set1_epi32(4 * row));
+        const __m512i place =
+            _mm512_add_epi32(_mm512_loadu_si512(along_v.row_places + column), _mm512_set1_epi32(4 * row));
         inner_sample(curves, place, along_v.columns + column, along_v.stride, sample);
         put(sample, count - k < width ? count - k : width);
         for (column += width; column >= columns; column -= columns) ++row;
@@ -65,8 +66,8 @@ class CubicVertices {
     }
   }
 
-  [[gnu::always_inline]] static void inner_sample(const Curves& curves, __m512i place, const float* weights, std::ptrdiff_t stride,
-                                                  Sample<L>& sample) {
+  [[gnu::always_inline]] static void inner_sample(const Curves& curves, __m512i place, const float* weights,
+                                                  std::ptrdiff_t stride, Sample<L>& sample) {
     for (int j = 0; j < 4; ++j) {
       const __m512i at = _mm512_add_epi32(place, _mm512_set1_epi32(j));
       const __m512 weight = _mm512_loadu_ps(weights + j * stride), slope = _mm512_loadu_ps(weights + (4 + j) * stride);
@@ -103,8 +104,8 @@ class CubicVertices {
     }
   }
 
-  [[gnu::always_inline]] void ring_sample(const __m512 (&border)[3], const __m512 (&across)[3], const int (&start)[5], int first,
-                                          Sample<L>& sample) const {
+  [[gnu::always_inline]] void ring_sample(const __m512 (&border)[3], const __m512 (&across)[3], const int (&start)[5],
+                                          int first, Sample<L>& sample) const {
     constexpr int kinds = Order > 0 ? 8 : 4;
     static constexpr float first_corner[8] = {1, 0, 0, 0, -3, 3, 0, 0};  // for lanes beyond the last point
     __m512 weight[kinds];
@@ -116,7 +117,8 @@ class CubicVertices {
       const auto mask = static_cast<__mmask16>((1u << end) - (1u << begin));
       const float* from = lanes.weights + width + (mask != 0 ? first - start[side] : 0);
       place = _mm512_mask_mov_epi32(place, mask, _mm512_set1_epi32(4 * side));
-      for (int kind = 0; kind < kinds; ++kind) weight[kind] = _mm512_mask_loadu_ps(weight[kind], mask, from + kind * lanes.stride);
+      for (int kind = 0; kind < kinds; ++kind)
+        weight[kind] = _mm512_mask_loadu_ps(weight[kind], mask, from + kind * lanes.stride);
     }
     __m512i at[4];
     for (int i = 0; i < 4; ++i) at[i] = _mm512_add_epi32(place, _mm512_set1_epi32(i));

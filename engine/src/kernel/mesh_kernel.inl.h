@@ -43,12 +43,12 @@ struct InnerTile {
 };
 /// Up to eight neighbouring points of a border.
 struct BorderTile {
-  const float* first;             ///< control point
-  std::ptrdiff_t step, inwards;   ///< to the next control point, to the one of the second row
+  const float* first;            ///< control point
+  std::ptrdiff_t step, inwards;  ///< to the next control point, to the one of the second row
   const float* weights;
   int at, count;
   const MeshBorder* border;
-  bool starts;                    ///< with the border's first point
+  bool starts;  ///< with the border's first point
 };
 
 /// Sends others' lines.
@@ -150,9 +150,16 @@ class PatchVertices {
     int side = 0, k = 0;
     const auto next = [&] {
       const MeshBorder& border = job_.border[side];
-      const int count = border.rate - k < mesh_tile ? border.rate - k : mesh_tile, terms = side % 2 == 0 ? count_u() : count_v();
-      const BorderTile tile{job_.net + first[side], step[side], inwards[side], border.weights + std::ptrdiff_t{2} * k * terms,
-                            staged_, count, &border, k == 0};
+      const int count = border.rate - k < mesh_tile ? border.rate - k : mesh_tile,
+                terms = side % 2 == 0 ? count_u() : count_v();
+      const BorderTile tile{job_.net + first[side],
+                            step[side],
+                            inwards[side],
+                            border.weights + std::ptrdiff_t{2} * k * terms,
+                            staged_,
+                            count,
+                            &border,
+                            k == 0};
       staged_ += count;
       k += mesh_tile;
       if (k >= border.rate) k = 0, ++side;
@@ -200,7 +207,8 @@ class PatchVertices {
       for (int c = 0; c < 3; ++c) stage_[c][tile.at + k] = tile.border->start[c];
   }
 
-  [[gnu::always_inline]] void inner_sample(const InnerTile& a, const InnerTile& b, int lane, int terms, Sample<L>& sample) {
+  [[gnu::always_inline]] void inner_sample(const InnerTile& a, const InnerTile& b, int lane, int terms,
+                                           Sample<L>& sample) {
     const int count = Degree > 0 ? Degree + 1 : terms;
     RowCurves<L, Order, components, capacity> curves;
     Batch weights[2 * capacity];
@@ -216,7 +224,8 @@ class PatchVertices {
     evaluate_sample<L, Order>(curves, weights, count, sample);
   }
 
-  [[gnu::always_inline]] void border_sample(const BorderTile& a, const BorderTile& b, int lane, int terms, Sample<L>& sample) {
+  [[gnu::always_inline]] void border_sample(const BorderTile& a, const BorderTile& b, int lane, int terms,
+                                            Sample<L>& sample) {
     const int count = Degree > 0 ? Degree + 1 : terms;
     const int degree = count - 1, degree_across = (count_u() == count ? count_v() : count_u()) - 1;
     const Batch scale = in_tiles<L>(&a.border->scale, &b.border->scale);

@@ -38,9 +38,9 @@ struct MeshBorder {
   /// Weights at k / rate, `[k / 8][order 0, 1][i][k % 8]`, those of order 0 bitwise symmetric (see BorderJob).
   const float* weights = nullptr;
   const MeshCubicBorder* cubic = nullptr;  ///< instead of them, where there are `points`
-  float scale = 1;                 ///< of the homogeneous control points; 1 for polynomial patches
-  bool is_point = false;           ///< the whole border lies at `start`
-  const float* start = nullptr;    ///< x y z; for borders that are points, and for rational patches
+  float scale = 1;                         ///< of the homogeneous control points; 1 for polynomial patches
+  bool is_point = false;                   ///< the whole border lies at `start`
+  const float* start = nullptr;            ///< x y z; for borders that are points, and for rational patches
 };
 
 /// Vectors of neighbouring vertices: component c of vertex k goes to out[c][k * stride].
@@ -62,8 +62,8 @@ struct MeshVertexJob {
   /// Degrees, rationality, `doubt` and `noise` (sixteen times the patch's), and exact_normal, which is asked for vertex
   /// lane < 8 ? iu + lane : iv + lane - 8; a lane beyond the last vertex means nothing.
   GridJob<float> grid;
-  const float* net = nullptr;        ///< `[i][j][component]`, block_lanes apart
-  int inner_u = 1, inner_v = 1;      ///< both 1, or both at least 2
+  const float* net = nullptr;    ///< `[i][j][component]`, block_lanes apart
+  int inner_u = 1, inner_v = 1;  ///< both 1, or both at least 2
   /// Weights at the inner k / inner_u, k = 1 .., `[(k - 1) / 8][order 0, 1][i][(k - 1) % 8]`, an even number of eights.
   const float* u_weights = nullptr;
   const float* v_weights = nullptr;
@@ -71,22 +71,22 @@ struct MeshVertexJob {
   /// net, and instead of the weights above:
   const float* points = nullptr;
   const MeshCubicInner *cubic_u = nullptr, *cubic_v = nullptr;
-  MeshBorder border[4];              ///< v = 0, u = 1, v = 1, u = 0
-  MeshRecords position, normal;      ///< from the patch's first vertex on; normal.out[0] null: not wanted
+  MeshBorder border[4];          ///< v = 0, u = 1, v = 1, u = 0
+  MeshRecords position, normal;  ///< from the patch's first vertex on; normal.out[0] null: not wanted
   /// Others' lines, line_queues queues; so many are sent with each vector of vertices: stores to memory take place while the
   /// next vertices are computed. The kernel counts them off.
   LineQueue* queues = nullptr;
   int lines_a_vector = 0;
-  int writable = 0;                  ///< records of them that may be written, whatever they then hold
+  int writable = 0;  ///< records of them that may be written, whatever they then hold
 };
 
 /// A strip of triangles between a border and the inner points nearest to it: corner k is by codes[k] the
 /// inner point of that number, the first of which is vertex `inner`, or with mesh_border_code the border point. Readable up
 /// to a multiple of 16.
 struct MeshStrip {
-  const std::uint32_t* codes = nullptr;  ///< 64-byte aligned
-  int count = 0;                 ///< codes, three a triangle
-  std::uint32_t ring = 0;        ///< the vertex of the border's first point
+  const std::uint32_t* codes = nullptr;     ///< 64-byte aligned
+  int count = 0;                            ///< codes, three a triangle
+  std::uint32_t ring = 0;                   ///< the vertex of the border's first point
   std::uint32_t inner = 0, inner_step = 0;  ///< modulo 2^32
 };
 inline constexpr std::uint32_t mesh_border_code = 0x80000000;
@@ -94,11 +94,11 @@ inline constexpr std::uint32_t mesh_border_code = 0x80000000;
 /// The triangles of one patch.
 struct MeshIndexJob {
   MeshStrip strip[4];
-  std::uint32_t ring = 0, ring_size = 0;      ///< border points: the vertex behind the last is the first
-  std::uint32_t first = 0, row = 0;           ///< inner vertices: the first, and from one row to the next
-  int cells_u = 0, cells_v = 0;               ///< between inner points
+  std::uint32_t ring = 0, ring_size = 0;  ///< border points: the vertex behind the last is the first
+  std::uint32_t first = 0, row = 0;       ///< inner vertices: the first, and from one row to the next
+  int cells_u = 0, cells_v = 0;           ///< between inner points
   std::uint32_t* out = nullptr;
-  std::uint32_t* end = nullptr;               ///< of what may be written
+  std::uint32_t* end = nullptr;  ///< of what may be written
 };
 
 struct MeshKernels {

@@ -20,7 +20,8 @@ double weight(int degree, int i, int k, int rate) {
 
 /// n (B^{n-1}_{i-1} - B^{n-1}_i).
 double first_derivative(int degree, int i, int k, int rate) {
-  const double before = i > 0 ? weight(degree - 1, i - 1, k, rate) : 0, next = i < degree ? weight(degree - 1, i, k, rate) : 0;
+  const double before = i > 0 ? weight(degree - 1, i - 1, k, rate) : 0,
+               next = i < degree ? weight(degree - 1, i, k, rate) : 0;
   return degree * (before - next);
 }
 
@@ -71,7 +72,8 @@ void MeshTables::add_cubic_inner(int rate) {
   CubicInner& made = grown(cubic_inner_, rate);
   if (!made.weights.empty()) return;
   constexpr std::size_t lanes = 16, row_weights = kernel::mesh_row_weights;
-  const auto count = static_cast<std::size_t>(rate - 1), rows = (count + 7) / 8 * 8, stride = (count + 2 * lanes - 1) / lanes * lanes;
+  const auto count = static_cast<std::size_t>(rate - 1), rows = (count + 7) / 8 * 8,
+             stride = (count + 2 * lanes - 1) / lanes * lanes;
   made.weights.resize(rows * row_weights + 8 * stride);
   made.places.resize(stride);
   float* const columns = made.weights.data() + rows * row_weights;
@@ -82,7 +84,8 @@ void MeshTables::add_cubic_inner(int rate) {
         return static_cast<float>(order == 0 ? weight(3, term, number, rate) : first_derivative(3, term, number, rate));
       };
       for (std::size_t k = 0; k < rows; ++k)
-        std::fill_n(made.weights.data() + (k / 4 * 8 + order * 4 + i) * lanes + k % 4 * 4, 4, value(std::min(k, count - 1)));
+        std::fill_n(made.weights.data() + (k / 4 * 8 + order * 4 + i) * lanes + k % 4 * 4, 4,
+                    value(std::min(k, count - 1)));
       for (std::size_t x = 0; x < stride; ++x) columns[(order * 4 + i) * stride + x] = value(x % count);
     }
   for (std::size_t x = 0; x < stride; ++x) made.places[x] = static_cast<std::int32_t>(4 * (x / count));
@@ -97,7 +100,8 @@ void MeshTables::add_cubic_border(int rate) {
   made.weights.resize(8 * stride);
   for (int i = 0; i < 4; ++i)
     for (int k = 0; k < rate; ++k) {
-      float* const value = made.weights.data() + static_cast<std::size_t>(i) * stride + lanes + static_cast<std::size_t>(k);
+      float* const value =
+          made.weights.data() + static_cast<std::size_t>(i) * stride + lanes + static_cast<std::size_t>(k);
       value[0] = static_cast<float>(weight(3, i, k, rate));
       value[4 * stride] = static_cast<float>(first_derivative(3, i, k, rate));
     }

@@ -50,7 +50,8 @@ class MeshTables {
   static constexpr int most_missing = 1;
   static std::size_t at(int k) { return static_cast<std::size_t>(k); }
   void add(int degree, int inner, int border) {
-    const std::uint32_t key = (static_cast<std::uint32_t>(degree) << 26) + (static_cast<std::uint32_t>(inner) << 13) + static_cast<std::uint32_t>(border);
+    const std::uint32_t key = (static_cast<std::uint32_t>(degree) << 26) + (static_cast<std::uint32_t>(inner) << 13) +
+                              static_cast<std::uint32_t>(border);
     std::uint32_t& seen = seen_[key * 0x9e3779b1u >> 20];
     if (seen == key) return;
     add_weights(degree, inner, border);

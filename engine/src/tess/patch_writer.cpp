@@ -27,7 +27,8 @@ PatchWriter::PatchWriter(const PatchSet::Impl& set, const CertifiedPlan& plan, c
   if (!bytes)
     bytes = sizeof(float) * size.vertices * (out.normal.empty() ? 3 : 6) + 3 * sizeof(std::uint32_t) * size.triangles;
   const bool large = stores == Stores::streaming || (stores == Stores::automatic && *bytes > streaming_threshold());
-  streaming_ = large && !plan.shares_vertices() && out.quads.empty() && is_packed(out.position) && (out.normal.empty() || is_packed(out.normal));
+  streaming_ = large && !plan.shares_vertices() && out.quads.empty() && is_packed(out.position) &&
+               (out.normal.empty() || is_packed(out.normal));
 }
 
 void PatchWriter::write(std::size_t begin, std::size_t end) const {
@@ -76,7 +77,8 @@ void PatchWriter::write_streaming(std::size_t begin, std::size_t end) const {
     std::uint32_t* const indices = streams.indices.next(index_count);
     set_packed(vertices.job.position, position ? position : streams.positions.out());
     set_packed(vertices.job.normal, out_.normal.empty() ? nullptr : normal ? normal : streams.normals.out());
-    vertices.job.writable = static_cast<int>(vertex_count + (position && (normal || out_.normal.empty()) ? LineStream<float>::slack / 3 : 0));
+    vertices.job.writable = static_cast<int>(
+        vertex_count + (position && (normal || out_.normal.empty()) ? LineStream<float>::slack / 3 : 0));
     streams.share(vertices.job, vertex_count);
     kernels_.mesh_vertices(vertices.job);
     if (indices) {
@@ -85,7 +87,8 @@ void PatchWriter::write_streaming(std::size_t begin, std::size_t end) const {
       write_triangles(k, streams.indices.out(), streams.indices.out() + index_count);
     }
     position ? streams.positions.commit(3 * vertex_count) : streams.positions.skip(3 * vertex_count);
-    if (!out_.normal.empty()) normal ? streams.normals.commit(3 * vertex_count) : streams.normals.skip(3 * vertex_count);
+    if (!out_.normal.empty())
+      normal ? streams.normals.commit(3 * vertex_count) : streams.normals.skip(3 * vertex_count);
     indices ? streams.indices.commit(index_count) : streams.indices.skip(index_count);
     if (!out_.parameter.empty()) write_parameters(k);
     write_patch_numbers(k);
@@ -110,7 +113,8 @@ void PatchWriter::prepare(std::size_t k, VertexJob& vertices) const {
   const PatchSet::Slot slot = set_.slots[k];
   const BlockGroup& group = set_.group_of_block(slot.block);
   kernel::MeshVertexJob& job = vertices.job;
-  job.net = set_.single.bernstein.data() + group.first_value + (slot.block - group.first_block) * group.block_values + slot.lane;
+  job.net = set_.single.bernstein.data() + group.first_value + (slot.block - group.first_block) * group.block_values +
+            slot.lane;
   job.grid.degree_u = group.degree_u;
   job.grid.degree_v = group.degree_v;
   job.grid.rational = group.rational;
@@ -121,7 +125,8 @@ void PatchWriter::prepare(std::size_t k, VertexJob& vertices) const {
   job.inner_u = division.inner.u;
   job.inner_v = division.inner.v;
   for (std::size_t side = 0; side < 4; ++side) job.border[side].rate = division.border[side];
-  const bool by_points = kernels_.mesh_points && group.degree_u == 3 && group.degree_v == 3 && !group.rational && !division.collapsed.any();
+  const bool by_points = kernels_.mesh_points && group.degree_u == 3 && group.degree_v == 3 && !group.rational &&
+                         !division.collapsed.any();
   if (by_points) {
     prepare_points(slot, job.net - slot.lane, division, vertices);
   } else {
@@ -130,7 +135,8 @@ void PatchWriter::prepare(std::size_t k, VertexJob& vertices) const {
   }
 }
 
-void PatchWriter::prepare_points(const PatchSet::Slot& slot, const float* net, const Division& division, VertexJob& vertices) const {
+void PatchWriter::prepare_points(const PatchSet::Slot& slot, const float* net, const Division& division,
+                                 VertexJob& vertices) const {
   kernel::MeshVertexJob& job = vertices.job;
   if (vertices.points_block != slot.block) {
     kernels_.mesh_points(net, vertices.points.data());
@@ -144,7 +150,8 @@ void PatchWriter::prepare_points(const PatchSet::Slot& slot, const float* net, c
   for (kernel::MeshBorder& border : job.border) border.cubic = tables_.cubic_border(border.rate);
 }
 
-void PatchWriter::prepare_weights(std::size_t k, const BlockGroup& group, const Division& division, VertexJob& vertices) const {
+void PatchWriter::prepare_weights(std::size_t k, const BlockGroup& group, const Division& division,
+                                  VertexJob& vertices) const {
   kernel::MeshVertexJob& job = vertices.job;
   if (division.has_inner_points()) {
     job.u_weights = tables_.inner_weights(group.degree_u, division.inner.u);

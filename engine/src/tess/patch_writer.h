@@ -20,7 +20,7 @@ struct VertexJob;
 /// Writes patches [begin, end) of a plan, as triangles, or as quads if there are views of these, and nothing outside their
 /// records. The bits of a vertex do not depend on the
 /// range; borders of patches that are one edge have the same positions.
-class PatchWriter {
+class [[gnu::visibility("hidden")]] PatchWriter {
  public:
   /// `bytes`: how much will be written, if not all.
   PatchWriter(const PatchSet::Impl& set, const CertifiedPlan& plan, const MeshTables& tables,
@@ -34,20 +34,21 @@ class PatchWriter {
  private:
   friend class VertexPass;
   /// Positions and normals of a patch whose vertices are its own; records before `end` may be written, whatever they hold.
-  void write_vertices(std::size_t k, std::size_t end, VertexJob& vertices) const;
+  void write_vertices(std::size_t k, std::size_t end, VertexJob & vertices) const;
   /// The same through memory that is sent past the caches.
   void write_streaming(std::size_t begin, std::size_t end) const;
   /// What a patch's vertices and triangles are written from, but for where they go.
-  void prepare(std::size_t k, VertexJob& vertices) const;
-  void prepare_points(const PatchSet::Slot& slot, const float* net, const Division& division, VertexJob& vertices) const;
+  void prepare(std::size_t k, VertexJob & vertices) const;
+  void prepare_points(const PatchSet::Slot& slot, const float* net, const Division& division, VertexJob& vertices)
+      const;
   void prepare_weights(std::size_t k, const BlockGroup& group, const Division& division, VertexJob& vertices) const;
   /// `end`: of what may be written, whatever it then holds.
-  void write_triangles(std::size_t k, std::uint32_t* out, std::uint32_t* end) const;
+  void write_triangles(std::size_t k, std::uint32_t * out, std::uint32_t * end) const;
   /// Puts shared vertices in the place of a patch's own in the indices of its strips.
-  void share_indices(std::size_t k, std::uint32_t* indices) const;
+  void share_indices(std::size_t k, std::uint32_t * indices) const;
   void write_quads(std::size_t k) const;
   /// The vertices that a patch owns where others are shared.
-  void write_owned(std::size_t k, VertexJob& vertices) const;
+  void write_owned(std::size_t k, VertexJob & vertices) const;
   void write_ring(std::size_t k, const Division& part, VertexJob& vertices) const;
   void write_parameters(std::size_t k) const;
   void write_patch_numbers(std::size_t k) const;

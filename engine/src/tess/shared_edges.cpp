@@ -14,7 +14,8 @@ namespace {
 template <int Components>
 bool is_equal(const PackedBorder& a, const PackedBorder& b, int count, bool reversed) {
   const auto bits = [](const PackedBorder& border, int point, int component) {
-    return std::bit_cast<std::uint32_t>(Components == 3 ? border.packed(point, component) : border.value(point, component));
+    return std::bit_cast<std::uint32_t>(Components == 3 ? border.packed(point, component)
+                                                        : border.value(point, component));
   };
   const int last = count - 1;
   const auto differ = [&](int k, int c) { return bits(a, k, c) ^ bits(b, reversed ? last - k : k, c); };
@@ -102,7 +103,8 @@ SharedEdges::SharedEdges(const PatchSet::Impl& set) : edges_(4 * set.patches.siz
   };
   BorderTable table(set.patches.size());
   constexpr std::size_t ahead = 8;  // patches, from a fetch to its use
-  std::array<std::size_t, 4> before{};  // how far back the last edge of each side was met: in rows of patches, so is the next
+  std::array<std::size_t, 4>
+      before{};  // how far back the last edge of each side was met: in rows of patches, so is the next
   for (std::size_t patch = 0; patch < set.patches.size(); ++patch) {
     if (patch + ahead < set.patches.size()) {
       const std::uint32_t* next = hashes_of_patch(patch + ahead);
@@ -119,8 +121,8 @@ SharedEdges::SharedEdges(const PatchSet::Impl& set) : edges_(4 * set.patches.siz
         return is_equal(border, met, false) || is_equal(border, met, true);
       };
       std::size_t first = number - before[s];
-      if (!(first < number && hashes_of_patch(first / 4)[first % 4 * PatchSet::lanes] == hash && edges_[first] != none &&
-            is_same(first)))
+      if (!(first < number && hashes_of_patch(first / 4)[first % 4 * PatchSet::lanes] == hash &&
+            edges_[first] != none && is_same(first)))
         first = table.find_or_add(hash, static_cast<std::uint32_t>(number), is_same);
       edges_[number] = first == number ? static_cast<std::uint32_t>(count_++) : edges_[first];
       if (first != number) before[s] = number - first;

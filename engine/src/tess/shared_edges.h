@@ -31,7 +31,10 @@ class PackedBorder {
     components_ = group.rational ? 4 : 3;
     const std::ptrdiff_t column = components_ * std::ptrdiff_t{PatchSet::lanes}, row = column * (group.degree_v + 1);
     first_ = set.single.bernstein.data() + group.first_value + (slot.block - group.first_block) * group.block_values +
-             slot.lane + (side == Side::v1 ? column * group.degree_v : side == Side::u1 ? row * group.degree_u : 0);
+             slot.lane +
+             (side == Side::v1   ? column * group.degree_v
+              : side == Side::u1 ? row * group.degree_u
+                                 : 0);
     step_ = runs_along_u(side) ? row : column;
     count_ = (runs_along_u(side) ? group.degree_u : group.degree_v) + 1;
     if (group.rational) scale_ = weight_scale();
@@ -40,10 +43,10 @@ class PackedBorder {
   int components() const { return components_; }
   float scale() const { return scale_; }  ///< a power of two; 1 for polynomial patches
   /// The packed number itself, without the scale.
-  float packed(int point, int component) const { return first_[point * step_ + component * std::ptrdiff_t{PatchSet::lanes}]; }
-  float value(int point, int component) const {
-    return scale_ * packed(point, component);
+  float packed(int point, int component) const {
+    return first_[point * step_ + component * std::ptrdiff_t{PatchSet::lanes}];
   }
+  float value(int point, int component) const { return scale_ * packed(point, component); }
 
  private:
   float weight_scale() const;

@@ -29,7 +29,8 @@ template <class Right, class Left>
 std::uint32_t* write_strip(const Line<Right>& right, const Line<Left>& left, std::uint32_t* to) {
   int i = right.first, j = left.first;
   while (i < right.last || j < left.last) {
-    const bool right_goes = j == left.last || (i < right.last && std::int64_t{i + 1} * left.rate <= std::int64_t{j + 1} * right.rate);
+    const bool right_goes =
+        j == left.last || (i < right.last && std::int64_t{i + 1} * left.rate <= std::int64_t{j + 1} * right.rate);
     if (right_goes) {
       if (!right.is_point) to = write(to, right.vertex(i), right.vertex(i + 1), left.vertex(j));
       ++i;
@@ -71,7 +72,8 @@ Division::Parameters Division::parameters(std::size_t vertex) const {
   }
   vertex -= inner_count();
   std::size_t side = 0;
-  for (; side < 3 && vertex >= static_cast<std::size_t>(border[side]); ++side) vertex -= static_cast<std::size_t>(border[side]);
+  for (; side < 3 && vertex >= static_cast<std::size_t>(border[side]); ++side)
+    vertex -= static_cast<std::size_t>(border[side]);
   const double rate = border[side], along = double(vertex) / rate, back = (rate - double(vertex)) / rate;
   const Parameters at[] = {{along, 0}, {1, along}, {back, 1}, {0, back}};
   return at[side];
@@ -90,7 +92,8 @@ std::uint32_t* Division::write_triangles(std::uint32_t first, std::uint32_t* to,
   const std::uint32_t ring = first + static_cast<std::uint32_t>(inner_count());
   const auto ring_size = static_cast<std::uint32_t>(ring_count());
   std::array<std::uint32_t, 4> start{};  // of each side along the ring
-  for (std::size_t side = 1; side < 4; ++side) start[side] = start[side - 1] + static_cast<std::uint32_t>(border[side - 1]);
+  for (std::size_t side = 1; side < 4; ++side)
+    start[side] = start[side - 1] + static_cast<std::uint32_t>(border[side - 1]);
   /// A side as the ring runs, the patch on its left; or the other way.
   const auto line = [&](Side side, bool backward) {
     const int rate = border[static_cast<std::size_t>(side)];
@@ -112,7 +115,8 @@ std::uint32_t* Division::write_triangles(std::uint32_t first, std::uint32_t* to,
   const int m = inner.u, n = inner.v;
   to = write_strip(line(Side::v0, false), Line{m, 1, m - 1, false, [=](int k) { return inner_vertex(k, 1); }}, to);
   to = write_strip(line(Side::u1, false), Line{n, 1, n - 1, false, [=](int k) { return inner_vertex(m - 1, k); }}, to);
-  to = write_strip(line(Side::v1, false), Line{m, 1, m - 1, false, [=](int k) { return inner_vertex(m - k, n - 1); }}, to);
+  to = write_strip(line(Side::v1, false), Line{m, 1, m - 1, false, [=](int k) { return inner_vertex(m - k, n - 1); }},
+                   to);
   to = write_strip(line(Side::u0, false), Line{n, 1, n - 1, false, [=](int k) { return inner_vertex(1, n - k); }}, to);
   for (int iu = 1; cells && iu < m - 1; ++iu)
     for (int iv = 1; iv < n - 1; ++iv) {

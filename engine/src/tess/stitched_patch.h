@@ -20,10 +20,10 @@ namespace tessera {
 /// cell's, and a strip's too, whose border rate is at least n. None straddles the middle of a parameter along which the
 /// rates of the patch and of its borders are even.
 struct Division {
-  Rates inner;                    ///< both 1: no inner points; then the borders of one pair of sides have rate 1
-  std::array<int, 4> border{};    ///< by Side
-  EdgeMask collapsed;             ///< these borders are points: no triangle stands on them
-  bool empty = false;             ///< a curve or a point: neither vertices nor triangles
+  Rates inner;                  ///< both 1: no inner points; then the borders of one pair of sides have rate 1
+  std::array<int, 4> border{};  ///< by Side
+  EdgeMask collapsed;           ///< these borders are points: no triangle stands on them
+  bool empty = false;           ///< a curve or a point: neither vertices nor triangles
 
   friend bool operator==(const Division& a, const Division& b) {
     return a.inner == b.inner && a.border == b.border && a.collapsed.bits == b.collapsed.bits && a.empty == b.empty;
