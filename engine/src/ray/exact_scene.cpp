@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <new>
 #include <optional>
 #include <string>
 #include <utility>
@@ -42,6 +43,12 @@ bool coherent(std::span<RayQuery* const> queries) {
     const RayLine& line = query->line;
     return dot(first.direction, line.direction) > 0.99 && max_abs(first.start - line.start) < 0.2;
   });
+}
+
+/// A search that got no memory has decided nothing. Throws std::bad_alloc, which becomes the call's Status.
+void need_memory(std::span<const std::optional<RayQuery>> queries) {
+  for (const std::optional<RayQuery>& query : queries)
+    if (query && query->overflow) throw std::bad_alloc();
 }
 
 /// Found when it is first asked for: the closest hits need none.
@@ -107,6 +114,7 @@ class ExactScene final : public PatchScene, private ExactSource {
   LeafNets nets_;  // borrowed by scene_
   EmbreeLeaves scene_;
   RaySceneOptions options_;
+  mutable SearchPool pool_;
   LazyAdjacency adjacency_;
   SceneFrame frame_;
   Box3 box_, scene_box_;  // of the leaves' control points, in the model's and the scene's coordinates
@@ -208,7 +216,7 @@ void ExactScene::trace_turn(std::span<std::optional<RayQuery>> queries, SearchSp
 
 /// Lines, searches and hits by turns of a few rays each: denormal numbers count in the first and the last alone.
 void ExactScene::closest_piece(std::span<const Ray> rays, std::span<Hit> hits) const {
-  SearchSpace space(nets_.largest());
+  SearchSpace space(nets_.largest(), &pool_);
   std::array<RayLine, rays_a_turn> lines;
   Queries queries;
   for (std::size_t first = 0; first < rays.size(); first += rays_a_turn) {
@@ -221,6 +229,7 @@ void ExactScene::closest_piece(std::span<const Ray> rays, std::span<Hit> hits) c
       if (!lines[k].empty) queries[k].emplace(ray, lines[k], RootsWanted::closest);
     }
     trace_turn(std::span(queries).first(count), space);
+    need_memory(std::span(queries).first(count));
     for (std::size_t k = 0; k < count; ++k) {
       Hit& hit = hits[first + k];
       hit = queries[k] && queries[k]->found ? hit_at(lines[k], queries[k]->best) : Hit{};
@@ -231,7 +240,7 @@ void ExactScene::closest_piece(std::span<const Ray> rays, std::span<Hit> hits) c
 }
 
 void ExactScene::occluded_piece(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const {
-  SearchSpace space(nets_.largest());
+  SearchSpace space(nets_.largest(), &pool_);
   std::array<RayLine, rays_a_turn> lines;
   Queries queries;
   for (std::size_t first = 0; first < rays.size(); first += rays_a_turn) {
@@ -244,12 +253,13 @@ void ExactScene::occluded_piece(std::span<const Ray> rays, std::span<std::uint8_
       if (!lines[k].empty) queries[k].emplace(ray, lines[k], RootsWanted::any);
     }
     trace_turn(std::span(queries).first(count), space);
+    need_memory(std::span(queries).first(count));
     for (std::size_t k = 0; k < count; ++k) occluded[first + k] = queries[k] && queries[k]->found;
   }
 }
 
 void ExactScene::trace(RayQuery& query) const {
-  SearchSpace space(nets_.largest());
+  SearchSpace space(nets_.largest(), &pool_);
   scene_.trace(query, space);
 }
 

@@ -2,20 +2,14 @@
 // One ray against one piece of a patch: all roots, none missed.
 
 #include <cstddef>
-#include <vector>
+#include <memory>
 
-#include "base/aligned.h"
 #include "ray/leaf_nets.h"
 #include "ray/projected_net.h"
 #include "ray/ray_query.h"
+#include "ray/search_pool.h"
 
 namespace tessera {
-
-/// A part of a leaf's square that may hold roots.
-struct SearchBox {
-  double u0 = 0, v0 = 0, du = 1, dv = 1;
-  int depth = 0;  ///< cuts on the way here
-};
 
 /// The memory of searches, of one thread at a time.
 class SearchSpace {
@@ -23,30 +17,36 @@ class SearchSpace {
   /// A search splits no deeper, for resolution ends long before; a net is cut by halves in depth-first order.
   static constexpr int most_depth = 160;
 
-  /// `largest`: values in a net.
-  explicit SearchSpace(std::size_t largest) : stride_(largest) {}
-  /// Takes the memory when it is first needed: before anything else, and not where rays are decided without a search.
-  /// False where there is none.
-  bool make_ready() noexcept {
-    if (!boxes_.empty()) return true;
-    try {
-      nets_.resize(stride_ * (most_depth + 5));
-      boxes_.resize(most_depth + 3);
-      return true;
-    } catch (...) {  // called from Embree, which knows no exceptions
-      return false;
-    }
+  /// `largest`: values in a net. The pool, if there is one, outlives this and gets the memory back.
+  explicit SearchSpace(std::size_t largest, SearchPool* pool = nullptr) : stride_(largest), pool_(pool) {}
+  SearchSpace(const SearchSpace&) = delete;
+  SearchSpace& operator=(const SearchSpace&) = delete;
+  ~SearchSpace() {
+    if (memory_ && pool_) pool_->give(std::move(memory_));
   }
-  double* net(int slot) { return nets_.data() + static_cast<std::size_t>(slot) * stride_; }
+  /// Takes the memory when it is first needed: before anything else, and not where rays are decided without a search.
+  /// False where there is none. Called from Embree, which knows no exceptions.
+  bool make_ready() noexcept {
+    if (memory_) return true;
+    SearchPool none;
+    memory_ = (pool_ ? *pool_ : none).take(stride_ * (most_depth + 5), most_depth + 3);
+    if (!memory_) return false;
+    nets_ = memory_->nets.data();
+    boxes_ = memory_->boxes.data();
+    return true;
+  }
+  double* net(int slot) { return nets_ + static_cast<std::size_t>(slot) * stride_; }
   /// Beyond those of the search.
   double* leaf_net() { return net(most_depth + 3); }
   double* spare_net() { return net(most_depth + 4); }
-  SearchBox& box(int slot) { return boxes_[static_cast<std::size_t>(slot)]; }
+  SearchBox& box(int slot) { return boxes_[slot]; }
 
  private:
   std::size_t stride_;
-  UnsetVector<double> nets_;
-  std::vector<SearchBox> boxes_;
+  SearchPool* pool_;
+  std::unique_ptr<SearchMemory> memory_;
+  double* nets_ = nullptr;
+  SearchBox* boxes_ = nullptr;
 };
 
 /// How far, in a scene of the size of SceneFrame's, a coefficient of a projected net (per weight) may be off after

@@ -134,7 +134,12 @@ Status RayScene::occluded(std::span<const Ray> rays, std::span<std::uint8_t> occ
 }
 
 Status RayScene::all(std::span<const Ray> rays, HitLists& lists, const Execution& execution) const {
-  return guarded([&] { return impl_->all(rays, lists, execution); });
+  const Status status = guarded([&] { return impl_->all(rays, lists, execution); });
+  if (!status.ok()) {
+    lists.hits.clear();
+    lists.first.clear();
+  }
+  return status;
 }
 
 Hit RayScene::closest(const Ray& ray) const {
