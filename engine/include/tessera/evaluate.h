@@ -106,7 +106,7 @@ struct GridViews {
 
 /// Evaluates all patches. Outputs may share memory by interleaving but must not overlap otherwise. Views that fill one
 /// record together, packed views, and structures of arrays are written by whole vectors, streaming as Execution::stores
-/// says; others value by value, at a small part of the speed.
+/// says; others value by value, at a small part of the speed. Allocates nothing.
 /// Errors: buffer_too_small, invalid_argument (a plan of other precision, or for other patches; a view that lacks a
 /// component, has a stride of 0, is not aligned to its numbers, or shares memory with another), cancelled. Nothing is
 /// written on any error but cancelled. The same bytes for any number of threads, and on

@@ -45,7 +45,7 @@ using PointViews = GridViews<T>;
 
 /// Evaluates all samples, in any order of patches; samples that come sorted by patch, a dozen or more of a patch in
 /// a row, run up to twice as fast as others. Arrays (views of stride 1) are read where they lie, others copied first.
-/// The set must hold BlockKinds::float_points (double_points).
+/// The set must hold BlockKinds::float_points (double_points). Allocates nothing.
 /// Positions in float are relative to the set's origin, in double absolute; derivatives are by the patch's parameters.
 /// Degenerate points as in GridViews, by unit_normal().
 /// Errors, with nothing written: unsupported (the set lacks the coefficients), buffer_too_small, count_mismatch (fewer
@@ -61,7 +61,7 @@ Status evaluate(const PatchSet& set, const PatchSamples<double>& samples, const 
                 const PointOptions& options = {}, const Execution& execution = {});
 
 /// From the parameters of a set's surfaces to its patches: the breakpoints of each surface, from PatchSet::source().
-/// Immutable; edits of control points keep it valid.
+/// Immutable; edits of control points keep it valid. Memory: 128 bytes a patch.
 class SurfaceMap {
  public:
   /// The patches of each surface must be those of a PatchGrid, one after the other in its order, as make_patch_set()

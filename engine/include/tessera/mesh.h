@@ -70,7 +70,7 @@ struct MeshReport {
   bool closed() const { return triangles > degenerate_triangles && open_edges == 0 && non_manifold_edges == 0; }
 };
 
-/// Counts. Errors: invalid_argument (an index out of range, with its place; counts that don't fit).
+/// Counts, in 40 bytes a triangle. Errors: invalid_argument (an index out of range: its place; counts that don't fit).
 Result<MeshReport> check(const Mesh& mesh);
 
 }  // namespace tessera

@@ -22,7 +22,7 @@ namespace tessera {
 class MeshUpdate {
  public:
   /// Takes over a plan of the set as it is. Errors: stale (another revision of the set, or number of patches);
-  /// out_of_memory.
+  /// out_of_memory. Memory: 256 bytes a patch, those of the plan among them.
   static Result<MeshUpdate> make(const PatchSet& set, CertifiedTessellation plan);
 
   MeshUpdate(MeshUpdate&&) noexcept;

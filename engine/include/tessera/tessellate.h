@@ -29,7 +29,7 @@ struct TessellationOptions {
 class TessellationPlan {
  public:
   /// Errors: invalid_argument (a rate out of range, counts that overflow 32-bit indices), isa_unavailable, unsupported
-  /// (the set has no float Bernstein blocks).
+  /// (the set has no float Bernstein blocks). Memory: 16 bytes a patch.
   static Result<TessellationPlan> make(const PatchSet& set, const TessellationOptions& options = {});
 
   TessellationPlan(TessellationPlan&&) noexcept;

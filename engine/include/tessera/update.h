@@ -17,7 +17,7 @@ struct PatchEdits {
   std::span<const Vec3> points = {};          ///< patch after patch
 };
 
-/// Memory for updates of one set, so that repeated ones allocate nothing. Threads: one call at a time.
+/// Memory for updates of one set, 16 bytes a patch; repeated ones allocate nothing. Threads: one call at a time.
 class GridUpdate {
  public:
   /// Errors: out_of_memory.
