@@ -1,0 +1,247 @@
+// Memory that runs out: for each operation, every allocation of it fails once, one run after the other. Each time a Status comes
+// back, nothing leaks, and what was there can still be used.
+
+#include <gtest/gtest.h>
+
+#include "robustness/scene.h"
+#include "support/allocations.h"
+#include "support/borders.h"
+#include "support/random_splines.h"
+#include "tessera/bezier_operations.h"
+#include "tessera/join.h"
+#include "tessera/nurbs_surface.h"
+#include "tessera/parametric_grid.h"
+#include "tessera/spline_convert.h"
+#include "tessera/transfinite.h"
+#ifdef TESSERA_HAS_IO
+#include "support/scratch_folder.h"
+#include "tessera/io.h"
+#endif
+
+namespace tessera::test {
+namespace {
+
+Status status_of(Status status) { return status; }
+template <class T>
+Status status_of(Result<T> result) {
+  return result.ok() ? Status() : result.status();
+}
+
+/// call() returns a Status or a Result, and allocates nothing itself.
+template <class Call>
+void survives(const std::string& name, Call call) {
+  Status status = status_of(call());  // what is made once for all calls
+  ASSERT_TRUE(status.ok()) << name << ": " << status.message();
+  (void)call();
+  std::size_t n = 0;
+  for (bool failed = true; failed; ++n) {
+    ASSERT_LT(n, 100000u) << name;
+    // Twice: what stays of the first time may be an object in another state, or made once; what the second adds is lost.
+    std::size_t before = 0, after = 0;
+    for (int time = 0; time < 2; ++time) {
+      status = {};  // its message is memory, too
+      before = restart_peak();
+      fail_allocation(n);
+      StatusCode code = StatusCode::ok;
+      {
+        Status now = status_of(call());
+        failed = stop_failing();
+        code = now.code();
+        if (code != StatusCode::ok && code != StatusCode::out_of_memory) status = std::move(now);
+      }
+      after = restart_peak();
+      if (!failed || !status.ok()) break;
+    }
+    // A buffer that std::stable_sort does without may be the one.
+    ASSERT_TRUE(status.ok())
+        << name << ", allocation " << n << ": " << status.message();
+    ASSERT_LE(after, before) << name << ", allocation " << n << " fails: " << after - before << " bytes are lost";
+  }
+  EXPECT_TRUE(status.ok()) << name << ": " << status.message();
+  std::printf("%-40s %6zu allocations\n", name.c_str(), n - 1);
+}
+
+TEST(MemoryFails, WhereCurvesAndPatchesAreMade) {
+  Random random(1);
+  const std::vector<Vec3> points = random_cloud(random, 16);
+  const std::vector<double> weights = random_positive(random, 16), knots{0, 0, 0, 0, 1, 2, 2, 2, 2};
+  survives("BezierPatch::rational", [&] { return BezierPatch::rational(3, 3, points, weights); });
+  survives("Curve::nurbs", [&] {
+    return Curve::nurbs(3, std::span(points).first(5), std::span(weights).first(5), knots);
+  });
+  const BSplineSurface surface = random_surface(random, 3, 2, {.multiple = true}, {}, true);
+  survives("BSplineSurface::rational", [&] {
+    return BSplineSurface::rational(3, surface.knots_u(), 2, surface.knots_v(), surface.points(), surface.weights());
+  });
+  survives("to_bezier(BSplineSurface)", [&] { return to_bezier(surface); });
+  survives("degree_elevated(BSplineSurface)", [&] { return degree_elevated(surface, 1, 2); });
+  const double inside = 0.5 * (surface.domain().u0 + surface.domain().u1);
+  survives("refined(BSplineSurface)", [&] { return refined(surface, std::span(&inside, 1), {}); });
+  survives("nurbs_torus", [&] { return nurbs_torus({}, 3, 1); });
+  survives("HermitePatch, to_bezier", [&]() -> Result<PatchGrid> {
+    const auto made = HermitePatch::make(points);
+    return made ? to_bezier(*made) : made.status();
+  });
+  const std::array<double, 3> u{0, 1, 2}, v{0, 1, 3};
+  const std::array<HermiteNode, 9> nodes{};
+  survives("HermiteNetwork, to_bezier", [&]() -> Result<PatchGrid> {
+    const auto made = HermiteNetwork::on_knots(u, v, nodes);
+    return made ? to_bezier(*made) : made.status();
+  });
+  survives("QuadricPiece, to_bezier", [&]() -> Result<PatchGrid> {
+    const auto ball = Quadric::make({.a = 1, .b = 1, .c = 1, .k = -1});
+    if (!ball) return ball.status();
+    const auto piece = QuadricPiece::make(*ball, {0, 6, -1, 1});
+    return piece ? to_bezier(*piece) : piece.status();
+  });
+  survives("Quadric::make", [&] { return Quadric::make({.a = 1, .b = 2, .c = 1, .k = -1}); });
+}
+
+TEST(MemoryFails, WhereSurfacesAreConverted) {
+  Random random(2);
+  const CoonsBorders borders = random_borders(random, {{{3, 1}, {2, 0}, {3, 0}, {3, 2, true}}});
+  survives("CoonsPatch::make", [&] { return CoonsPatch::make(borders); });
+  const CoonsPatch patch = coons(borders);
+  survives("to_bezier(CoonsPatch)", [&] { return to_bezier(patch); });
+  const RuledSurface ruled = value_of(RuledSurface::make(borders.c1, borders.c2));
+  survives("to_bezier(RuledSurface)", [&] { return to_bezier(ruled); });
+  const auto wave = [](double u, double v) { return Vec3{u, v, 0.1 * std::sin(5 * u)}; };
+  const ParametricSurface surface = value_of(ParametricSurface::make({.position = wave}));
+  survives("to_bezier(ParametricSurface)", [&] { return to_bezier(surface, {.tolerance = 1e-3}); });
+  const BezierPatch p = random_rational(random, 3, 3), q = random_polynomial(random, 3, 3);
+  survives("split_u", [&] { return split_u(p, 0.3); });
+  survives("elevate_degree", [&] { return elevate_degree(p, 5, 4); });
+  survives("measure_join", [&] { return measure_join({p, Edge::u1}, {q, Edge::u0}); });
+  survives("make_join", [&] { return make_join({q, Edge::u1}, {q, Edge::u0}); });
+  const std::vector<double> t = uniform_parameters(40);
+  std::vector<float> memory(3 * 1600);
+  survives("evaluate(CoonsPatch)", [&] { return evaluate(patch, t, t, View3<float>::interleaved(memory)); });
+  survives("evaluate(RuledSurface)", [&] { return evaluate(ruled, t, t, View3<float>::interleaved(memory)); });
+  survives("evaluate(ParametricSurface)", [&] { return evaluate(surface, t, t, View3<float>::interleaved(memory)); });
+}
+
+TEST(MemoryFails, WhereSetsAreEvaluated) {
+  const std::vector<BezierPatch> patches = various_patches(3);
+  survives("PatchSet::from", [&] { return PatchSet::from(patches, with_points()); });
+  PatchSet set = set_of(patches, with_points());
+  const std::vector<double> t = uniform_parameters(5);
+  survives("GridPlan::make", [&] { return GridPlan::make(set, t, t); });
+  const GridPlan plan = value_of(GridPlan::make(set, t, t));
+  AllBuffers<float> out(plan);
+  survives("evaluate(set, plan)", [&] { return evaluate(set, plan, out.views()); });
+  Random random(3);
+  const Samples<float> samples = random_samples<float>(random, set.patch_count(), 500);
+  AllBuffers<float> points(500);
+  survives("evaluate(set, samples)", [&] { return evaluate(set, samples.views(), points.views()); });
+  survives("SurfaceMap::make", [&] { return SurfaceMap::make(set); });
+  survives("GridUpdate::make", [&] { return GridUpdate::make(set); });
+  const std::vector<Vec3> net(set.patch(2).points().begin(), set.patch(2).points().end());
+  const std::vector<std::uint32_t> edited{2};
+  survives("GridUpdate::run, all of it", [&]() -> Status {
+    Result<PatchSet> own = PatchSet::from(patches);
+    if (!own) return own.status();
+    Result<GridUpdate> update = GridUpdate::make(*own);
+    if (!update) return update.status();
+    return update->run(*own, plan, {edited, net}, GridViews<float>{.position = out.views().position});
+  });
+  survives("set_control_points", [&] { return set.set_control_points(2, net); });
+  const Model model{.name = "m", .surfaces = {{"a", patches[0], Affine::translated({1, 0, 0})}, {"b", patches[9]}}};
+  survives("make_patch_set(model)", [&] { return make_patch_set(model); });
+}
+
+TEST(MemoryFails, WhereMeshesAreMade) {
+  const std::vector<BezierPatch> patches = various_patches(2);
+  PatchSet set = set_of(various_patches(3));
+  survives("TessellationPlan::make", [&] { return TessellationPlan::make(set); });
+  const TessellationPlan uniform = value_of(TessellationPlan::make(set));
+  survives("TessellationPlan::allocate", [&] { return uniform.allocate(); });
+  Mesh mesh = value_of(uniform.allocate());
+  survives("TessellationPlan::run", [&] { return uniform.run(set, mesh.views()); });
+  survives("check(mesh)", [&] { return check(mesh); });
+  CertifiedOptions options{.tolerance = 0.01};
+  survives("CertifiedTessellation::make", [&] { return CertifiedTessellation::make(set, options); });
+  options.weld = 1e-4;
+  options.crease_angle = 0.1;
+  options.share_vertices = true;
+  options.angle = 0.3;
+  survives("CertifiedTessellation::make, welded", [&] { return CertifiedTessellation::make(set, options); });
+  const auto plan = value_of(CertifiedTessellation::make(set, options));
+  Mesh certified = value_of(plan.allocate());
+  survives("CertifiedTessellation::run", [&] { return plan.run(set, certified.views()); });
+  survives("retessellate", [&] { return plan.retessellate(set); });
+  const std::vector<Vec3> net(set.patch(2).points().begin(), set.patch(2).points().end());
+  const std::vector<std::uint32_t> edited{2};
+  survives("MeshUpdate, all of it", [&]() -> Status {
+    Result<PatchSet> own = PatchSet::from(patches);
+    if (!own) return own.status();
+    auto made = CertifiedTessellation::make(*own, {.tolerance = 0.02});
+    if (!made) return made.status();
+    Result<MeshUpdate> update = MeshUpdate::make(*own, *std::move(made));
+    if (!update) return update.status();
+    Result<Mesh> own_mesh = update->plan().allocate();
+    if (!own_mesh) return own_mesh.status();
+    if (Status status = update->run(*own, {edited, net}, own_mesh->views()); !status.ok()) return status;
+    if (Status status = update->restate(*own); !status.ok()) return status;
+    return update->retessellate(*own).status();
+  });
+}
+
+#ifdef TESSERA_HAS_RAY
+TEST(MemoryFails, WhereRaysAreCast) {
+  const PatchSet set = set_of(various_patches(2));
+  const std::vector<Ray> rays = rays_at(set, 700);
+  std::vector<Hit> hits(rays.size());
+  std::vector<std::uint8_t> dark(rays.size());
+  for (const RayMode mode : {RayMode::exact, RayMode::grid}) {
+    const std::string name = mode == RayMode::exact ? "exact" : "grid";
+    survives("RayScene::make, " + name, [&] { return RayScene::make(set, {.mode = mode, .rate = 3}); });
+    RayScene scene = value_of(RayScene::make(set, {.mode = mode, .rate = 3}));
+    survives("closest, " + name, [&] { return scene.closest(rays, hits); });
+    survives("occluded, " + name, [&] { return scene.occluded(rays, dark); });
+    // A refit that fails leaves the scene in another state, so each has a scene of its own.
+    survives("make and refit, " + name, [&]() -> Status {
+      Result<RayScene> own = RayScene::make(set, {.mode = mode, .rate = 3});
+      if (!own) return own.status();
+      const Status status = own->refit();
+      return status.ok() || own->refit().ok() ? status : Status(StatusCode::internal, "a second refit fails");
+    });
+    if (mode == RayMode::grid) continue;
+    bool defined = true;
+    survives("all, " + name, [&] {
+      HitLists lists;
+      const Status status = scene.all(rays, lists);
+      defined = defined && (status.ok() ? lists.first.size() == rays.size() + 1 : lists.hits.empty());
+      return status;
+    });
+    EXPECT_TRUE(defined);
+  }
+}
+#endif
+
+#ifdef TESSERA_HAS_IO
+TEST(MemoryFails, WhereFilesAreReadAndWritten) {
+  const std::string corpus = TESSERA_SOURCE_DIR "/tests/corpus/", models = TESSERA_SOURCE_DIR "/tools/models/";
+  for (const std::filesystem::path path : {corpus + "bpt/bilinear.bpt", corpus + "bv/kinds.bv", corpus + "g2/splines.g2", corpus + "obj/trimmed.obj",
+                                  corpus + "rib/scene.rib", corpus + "json/coons_own_blends.json", models + "vase.json",
+                                  models + "torus.json", models + "quadric_ellipsoid.json"})
+    survives("read_model " + path.filename().string(), [&] { return read_model(path); });
+  for (const std::filesystem::path path : {corpus + "obj_mesh/quad.obj", corpus + "ply/binary.ply", corpus + "stl/ascii.stl"})
+    survives("read_mesh " + path.filename().string(), [&] { return read_mesh(path); });
+  const ScratchFolder folder;
+  const PatchSet set = set_of(various_patches(1));
+  const TessellationPlan plan = value_of(TessellationPlan::make(set, {.rate_u = 2, .rate_v = 2}));
+  Mesh mesh = value_of(plan.allocate());
+  ASSERT_TRUE(plan.run(set, mesh.views()).ok());
+  for (const char* const name : {"m.obj", "m.ply", "m.stl", "m.glb", "m.gltf"}) {
+    const std::filesystem::path path = folder / name;
+    survives(std::string("write_mesh ") + name, [&] { return write_mesh(mesh, path); });
+  }
+  const Model model{.name = "m", .surfaces = {{"a", set.patch(0)}, {"b", set.patch(3)}}};
+  const std::filesystem::path path = folder / "m.obj";
+  survives("write_model m.obj", [&] { return write_model(model, path); });
+  EXPECT_LE(folder.names().size(), 6u);  // no file beside those that were to be written
+}
+#endif
+
+}  // namespace
+}  // namespace tessera::test

@@ -1,0 +1,122 @@
+// Other people's threads: the same bytes for any number of workers, calls from tasks, arenas and threads of the caller's, and
+// what a cancelled call leaves behind.
+
+#include <gtest/gtest.h>
+#include <tbb/task_group.h>
+
+#include <future>
+
+#include "robustness/scene.h"
+#include "robustness/workers.h"
+#include "support/borders.h"
+#include "tessera/parametric_grid.h"
+
+namespace tessera::test {
+namespace {
+
+TEST(Workers, AnyNumberOfThemGivesTheSameBytes) {
+  Bits expected;
+  EXPECT_EQ(with_workers(1, [&] { expected = everything(); }), 1u);
+  EXPECT_GT(expected.size(), 1000000u);
+  for (const int workers : {2, 3, 8, 64}) {
+    Bits bits;
+    EXPECT_EQ(with_workers(workers, [&] { bits = everything(); }), static_cast<std::size_t>(workers));
+    EXPECT_TRUE(bits == expected) << workers << " workers";
+  }
+}
+
+/// The library's own loop is met by so many threads at a time: a function of the caller's waits for them.
+TEST(Workers, AreAllAtWorkInOneCall) {
+  for (const int workers : {2, 3, 8, 64}) {
+    Meeting meeting(static_cast<std::size_t>(workers));
+    const auto surface = value_of(ParametricSurface::make({.position = [&](double u, double v) {
+      if (u > 0 && u < 1) meeting.join();
+      return Vec3{u, v, u * v};
+    }}));
+    const std::vector<double> u = uniform_parameters(8 * workers), v{0.5};
+    std::vector<double> memory(3 * u.size());
+    with_workers(workers, [&] {
+      EXPECT_TRUE(evaluate(surface, u, v, View3<double>::interleaved(memory), {}, Calls::concurrent).ok());
+    });
+    EXPECT_EQ(meeting.threads(), static_cast<std::size_t>(workers));
+  }
+}
+
+/// Each of these would hang if a call waited for what only its own thread can do; ctest's time limit would tell.
+TEST(CallersThreads, TasksOfTheCallersMayCall) {
+  const Bits expected = everything(3);
+  std::atomic<int> same = 0;
+  tbb::parallel_for(0, 6, [&](int) { same += everything(3) == expected; }, tbb::simple_partitioner());
+  EXPECT_EQ(same, 6);
+  tbb::task_group group;
+  for (int k = 0; k < 4; ++k) group.run([&] { same += everything(3) == expected; });
+  group.wait();
+  EXPECT_EQ(same, 10);
+}
+
+TEST(CallersThreads, ArenasOfOneMayCall) {
+  const Bits expected = everything(3);
+  tbb::task_arena one(1);
+  one.execute([&] { EXPECT_TRUE(everything(3) == expected); });
+  std::atomic<int> same = 0;
+  tbb::task_arena outer(3);
+  outer.execute([&] {
+    tbb::parallel_for(0, 4, [&](int) {
+      tbb::task_arena inner(1);
+      inner.execute([&] { same += everything(3) == expected; });
+    }, tbb::simple_partitioner());
+  });
+  EXPECT_EQ(same, 4);
+  one.execute([&] {
+    tbb::parallel_for(0, 3, [&](int) { same += everything(3) == expected; }, tbb::simple_partitioner());
+  });
+  EXPECT_EQ(same, 7);
+}
+
+TEST(CallersThreads, PoolsOfThreadsMayCall) {
+  const Bits expected = everything(3);
+  std::vector<std::future<bool>> pool;
+  for (int k = 0; k < 6; ++k) pool.push_back(std::async(std::launch::async, [&] { return everything(3) == expected; }));
+  for (auto& result : pool) EXPECT_TRUE(result.get());
+}
+
+/// One set, one plan, one scene, used by all at once; and an edit between, that excludes them.
+TEST(CallersThreads, MayShareConstObjects) {
+  PatchSet set = set_of(various_patches(4), with_points());
+  const std::vector<Vec3> before(set.patch(5).points().begin(), set.patch(5).points().end());
+  std::vector<Vec3> after = before;
+  for (Vec3& p : after) p.z += 0.25;
+  const auto plan = value_of(CertifiedTessellation::make(set, {.tolerance = 2e-3}));
+#ifdef TESSERA_HAS_RAY
+  RayScene scene = value_of(RayScene::make(set));
+  const std::vector<Ray> rays = rays_at(set, 600);
+#endif
+  const auto use = [&] {
+    Bits bits;
+    evaluate_into(bits, set);
+    Mesh mesh = value_of(plan.allocate());
+    EXPECT_TRUE(plan.run(set, mesh.views()).ok());
+    bits.add(mesh);
+#ifdef TESSERA_HAS_RAY
+    std::vector<Hit> hits(rays.size());
+    EXPECT_TRUE(scene.closest(rays, hits).ok());
+    HitLists lists;
+    EXPECT_TRUE(scene.all(rays, lists).ok());
+    for (const Hit& hit : hits) bits.add(hit);
+#endif
+    return bits;
+  };
+  for (const std::vector<Vec3>* points : std::initializer_list<const std::vector<Vec3>*>{&after, &before}) {
+    const Bits expected = use();
+    std::vector<std::future<bool>> users;
+    for (int k = 0; k < 5; ++k) users.push_back(std::async(std::launch::async, [&] { return use() == expected; }));
+    for (auto& user : users) EXPECT_TRUE(user.get());
+    ASSERT_TRUE(set.set_control_points(5, *points).ok());
+#ifdef TESSERA_HAS_RAY
+    ASSERT_TRUE(scene.refit().ok());
+#endif
+  }
+}
+
+}  // namespace
+}  // namespace tessera::test
