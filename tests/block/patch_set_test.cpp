@@ -143,7 +143,7 @@ TEST(PatchSet, CoefficientsFitAsFarAsPromised) {
   std::vector<double> weights;
   for (int i = 0; i <= 15; ++i)
     for (int j = 0; j <= 15; ++j) {
-      const double x = (i + j) % 2 == 0 ? 0x1p49 : -0x1p49;
+      const double x = (i + j) % 2 == 0 ? 0x1p44 : -0x1p44;
       points.push_back({x, -x, x});
       weights.push_back((i + j) % 2 == 0 ? 1e308 : 1e300);
     }

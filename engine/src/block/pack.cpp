@@ -23,7 +23,8 @@ double largest_vector(std::span<const double> net, std::size_t components) {
 /// Whether weights, and Bernstein coefficients as large as `largest`, suit blocks of which some are in float.
 bool fits(const RelativeNet& net, bool in_float, double largest) {
   const double ratio = net.weight_ratio();
-  return largest <= largest_coefficient(in_float, ratio) &&
+  return largest <= largest_coefficient(in_float, 1) &&
+         largest / net.heaviest() <= largest_coefficient(in_float, ratio) &&
          !(ratio < (in_float ? least_weight_in_float : least_weight_in_double));
 }
 

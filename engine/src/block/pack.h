@@ -26,10 +26,10 @@ constexpr std::size_t point_values(int degree_u, int degree_v, bool rational) {
   return (values + line - 1) / line * line;
 }
 
-/// What the Bernstein coefficients of a patch, relative to the origin, may reach, so that second derivatives are numbers:
-/// those of degree d are at most 4 d^2 times the coefficients, and the quotient rule divides twice by a weight.
-/// `weight_ratio`: of the smallest weight to the largest. Coefficients of powers, of which a second derivative sums up (d +
-/// 1)^2 d^2, may reach what it gives for ratio 1.
+/// What the Bernstein coefficients of a patch, relative to the origin and over the largest weight, may reach, so that second
+/// derivatives are numbers: those of degree d are at most 4 d^2 times the coefficients, and the quotient rule divides twice
+/// by a weight. `weight_ratio`: of the smallest weight to the largest. Coefficients of powers, of which a second derivative
+/// sums up (d + 1)^2 d^2, may reach what it gives for ratio 1.
 inline double largest_coefficient(bool in_float, double weight_ratio) {
   const double most = in_float ? double{std::numeric_limits<float>::max()} : std::numeric_limits<double>::max();
   return 0x1p-16 * most * weight_ratio * weight_ratio;
@@ -43,6 +43,7 @@ class RelativeNet {
   RelativeNet(const BezierPatch& patch, const Vec3& origin);
 
   double lightest() const { return scale_ * low_; }       ///< weight, once divided
+  double heaviest() const { return scale_ * high_; }
   double weight_ratio() const { return low_ / high_; }    ///< at most 1
   double weight_spread() const { return high_ / low_; }   ///< at least 1
 
