@@ -5,15 +5,19 @@ set -euo pipefail
 usage() {
   cat <<'TEXT'
 tools/test.sh [--preset dev|asan|tsan|release] [-- CTEST-ARGUMENTS...]
+tools/test.sh --fuzz [SECONDS]
 
 Installs what is missing (tools/setup.sh), configures and builds a preset in build/<preset> (dev by default), and runs
 ctest on all cores. What stands after -- goes to ctest, for example: tools/test.sh -- -R PatchSet
+The preset tsan takes a oneTBB that is instrumented too (tools/instrumented_tbb.sh), where its source can be fetched. --fuzz
+builds the preset fuzz instead and runs each fuzz target for so many seconds (60), from its corpus on.
 Real models are tested too where TESSERA_TEST_DATA names their folder. Two of the tests, perf.counts_avx2 and _sse2, hold the
 instructions of the dev preset to bench/baselines: a minute or two each, skipped where compiler or libraries are others'.
 TEXT
 }
 
 preset=dev
+fuzz_seconds=
 ctest_arguments=()
 while (($#)); do
   case $1 in
@@ -25,6 +29,15 @@ while (($#)); do
     --preset=*)
       preset=${1#--preset=}
       shift
+      ;;
+    --fuzz)
+      preset=fuzz
+      fuzz_seconds=60
+      shift
+      if [[ ${1:-} =~ ^[1-9][0-9]*$ ]]; then
+        fuzz_seconds=$1
+        shift
+      fi
       ;;
     -h | --help)
       usage
@@ -47,6 +60,33 @@ tools/setup.sh --for test
 if [[ -z ${CMAKE_CXX_COMPILER_LAUNCHER:-} ]] && command -v ccache >/dev/null; then
   export CMAKE_CXX_COMPILER_LAUNCHER=ccache
 fi
-cmake --preset "$preset"
+options=()
+if [[ $preset == tsan ]]; then
+  if tools/instrumented_tbb.sh; then
+    options=("-DTBB_DIR=$PWD/build/tbb_tsan/install/lib/cmake/TBB" -DTESSERA_TBB_IS_INSTRUMENTED=ON)
+  else
+    echo "test: oneTBB is not instrumented: that its tasks are ordered as it promises is taken on trust" >&2
+  fi
+fi
+cmake --preset "$preset" "${options[@]}"
 cmake --build --preset "$preset"
+
+# Each target grows new inputs beside its corpus and fails on the first that it may not have.
+fuzz() {
+  local target name arguments
+  for target in build/fuzz/tests/fuzz/tessera_fuzz_*; do
+    [[ -x $target && ! -d $target ]] || continue
+    name=${target##*/tessera_fuzz_}
+    arguments=("-max_total_time=$fuzz_seconds" -max_len=4096 -timeout=5 -rss_limit_mb=1024 -malloc_limit_mb=64 -print_final_stats=1)
+    [[ -e tests/fuzz/$name.dict ]] && arguments+=("-dict=tests/fuzz/$name.dict")
+    mkdir -p "build/fuzz/found/$name"
+    echo "test: fuzz.$name for $fuzz_seconds seconds"
+    "$target" "${arguments[@]}" "-artifact_prefix=build/fuzz/found/" "build/fuzz/found/$name" "tests/corpus/$name" \
+      2>&1 | tail -n 12
+  done
+}
+if [[ -n $fuzz_seconds ]]; then
+  fuzz
+  exit 0
+fi
 ctest --preset "$preset" -j "$(nproc)" "${ctest_arguments[@]}"
