@@ -172,6 +172,14 @@ TEST(QuadricPiece, DerivativesAreThoseOfThePosition) {
     }
 }
 
+/// Parameters far outside of a piece go on around it; quarter turns are not counted in whole numbers there.
+TEST(QuadricPiece, ParametersOfAnySize) {
+  const QuadricPiece part = piece(quadric({.a = 1, .b = 1, .c = 1, .k = -1}), {0, 1, 0, 1});
+  for (const double u : {1e9, -1e19, 1e100, 1.7e308})
+    EXPECT_NEAR(length(evaluate_jet(part, u, 0.5).position), 1, 1e-14) << u;
+  EXPECT_TRUE(std::isnan(evaluate_jet(part, std::nan(""), 0.5).position.x));
+}
+
 TEST(QuadricPiece, LocateKnowsThePieceFromTheRest) {
   const Quadric sphere = quadric({.a = 1, .b = 1, .c = 1, .k = -1});
   const QuadricPiece part = piece(sphere, {3 * pi / 2, 5 * pi / 2, 0, pi / 2});

@@ -12,6 +12,7 @@ constexpr double quarter_turn = std::numbers::pi / 2;
 /// cos and sin, exact at multiples of pi/2 so that poles and quadrants come out as such.
 std::array<double, 2> cos_sin(double t) {
   const double quarters = std::round(t / quarter_turn);
+  if (!(std::abs(quarters) < 1e9)) return {std::cos(t), std::sin(t)};  // NaN too; beyond, no double is a multiple
   if (std::abs(t - quarters * quarter_turn) > 4e-16 * std::max(1.0, std::abs(t))) return {std::cos(t), std::sin(t)};
   switch (static_cast<long>(quarters) & 3) {
     case 0:
