@@ -51,7 +51,9 @@ Status draw_soak(const std::vector<SoakSample>& samples, const std::string& path
   double highest = 1;
   for (const SoakSample& sample : samples) highest = std::max(highest, 1.25 * sample.resident);
   const double minutes = samples.empty() ? 1 : std::max(1.0 / 60, samples.back().seconds / 60);
-  canvas.text(20, 16, "resident memory, MiB: " + number(growth_an_hour(samples), "%+.2f") + " MiB an hour in the second half", ink);
+  canvas.text(20, 16,
+              "resident memory, MiB: " + number(growth_an_hour(samples), "%+.2f") + " MiB an hour in the second half",
+              ink);
   axes(canvas, minutes, highest);
   const auto x = [&](const SoakSample& s) { return left + (right - left) * s.seconds / 60 / minutes; };
   const auto y = [&](const SoakSample& s) { return bottom - (bottom - top) * s.resident / highest; };

@@ -70,7 +70,9 @@ class Work {
     const std::vector<double> t = uniform_parameters(3 + static_cast<int>(random_() % 20));
     const GridPlan plan = value_of(GridPlan::make(set, t, t));
     std::vector<float> grid(6 * plan.capacity());
-    need(evaluate(set, plan, GridViews<float>{.position = View3<float>::interleaved(grid, 6, 0), .normal = View3<float>::interleaved(grid, 6, 3)}));
+    need(evaluate(set, plan,
+                  GridViews<float>{.position = View3<float>::interleaved(grid, 6, 0),
+                                   .normal = View3<float>::interleaved(grid, 6, 3)}));
     const std::size_t count = 1 + random_() % 5000;
     std::vector<std::uint32_t> patch(count);
     std::vector<float> u(count), v(count), points(3 * count);
@@ -79,7 +81,8 @@ class Work {
       u[k] = static_cast<float>(test::uniform(random_, 0, 0.99));
       v[k] = static_cast<float>(test::uniform(random_, 0, 0.99));
     }
-    const PatchSamples<float> samples{View1<const std::uint32_t>::interleaved(patch), View1<const float>::interleaved(u), View1<const float>::interleaved(v)};
+    const PatchSamples<float> samples{View1<const std::uint32_t>::interleaved(patch),
+                                      View1<const float>::interleaved(u), View1<const float>::interleaved(v)};
     need(evaluate(set, samples, PointViews<float>{.position = View3<float>::interleaved(points)}));
   }
 
@@ -122,7 +125,8 @@ class Work {
       need(set.set_control_points(0, points));
       need(scene.refit());
     }
-    if (const Status stale = set.set_control_points(set.patch_count(), {}); stale.ok()) need({StatusCode::internal, "an edit of no patch was taken"});
+    if (const Status stale = set.set_control_points(set.patch_count(), {}); stale.ok())
+      need({StatusCode::internal, "an edit of no patch was taken"});
   }
 
   /// A model, and one that is cut.
@@ -131,7 +135,8 @@ class Work {
         R"({"format": "tessera", "version": 1, "surfaces": [{"kind": "parametric", "name": "wave", "x": "u", "y": "v", "z": "sin(3*u)*v"}]})";
     const Model model = value_of(parse_json_model(text, "m"));
     (void)value_of(make_patch_set(model, {}, {.tolerance = 1e-3}));
-    if (parse_json_model(text.substr(0, random_() % text.size()), "m").ok()) need({StatusCode::internal, "a model that is cut was read"});
+    if (parse_json_model(text.substr(0, random_() % text.size()), "m").ok())
+      need({StatusCode::internal, "a model that is cut was read"});
   }
 
   Random random_{1};
@@ -140,7 +145,9 @@ class Work {
 bool parse(int count, char** words, Options& options) {
   for (int k = 1; k + 1 < count; k += 2) {
     const std::string_view name = words[k], value = words[k + 1];
-    double* const number = name == "--seconds" ? &options.seconds : name == "--most-growth" ? &options.most_growth : nullptr;
+    double* const number = name == "--seconds"       ? &options.seconds
+                           : name == "--most-growth" ? &options.most_growth
+                                                     : nullptr;
     if (number) {
       const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), *number);
       if (error != std::errc{} || end != value.data() + value.size() || !(*number > 0)) return false;
@@ -174,7 +181,8 @@ int run(const Options& options) {
     csv << seconds << ',' << samples.back().resident << ',' << rounds << '\n' << std::flush;
   }
   if (!options.png.empty()) need(draw_soak(samples, options.png));
-  const auto [least, most] = std::ranges::minmax(std::span(samples).subspan(samples.size() / 2), {}, &SoakSample::resident);
+  const auto [least, most] =
+      std::ranges::minmax(std::span(samples).subspan(samples.size() / 2), {}, &SoakSample::resident);
   const double growth = growth_an_hour(samples);
   std::printf("%zu rounds in %.0f s; second half: %.1f to %.1f MiB resident, %+.2f MiB an hour\n", rounds,
               samples.back().seconds, least.resident, most.resident, growth);

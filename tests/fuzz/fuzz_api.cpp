@@ -32,7 +32,8 @@ void require(bool holds) {
 /// Whether there is a value; if not, whether it says why.
 bool sound(const Status& status) {
   if (status.ok()) return true;
-  require(!status.message().empty() && status.code() != StatusCode::internal && status.code() != StatusCode::out_of_memory);
+  require(!status.message().empty() && status.code() != StatusCode::internal &&
+          status.code() != StatusCode::out_of_memory);
   return false;
 }
 template <class T>
@@ -49,7 +50,8 @@ class Program {
     if (!sound(surface)) return;
     const Result<SurfaceJet> jet = evaluate_jet(*surface, number(), number());
     (void)sound(jet);
-    const Result<PatchGrid> grid = to_bezier(*surface, {.tolerance = number(), .degree = small(), .largest_patch_count = 16});
+    const Result<PatchGrid> grid =
+        to_bezier(*surface, {.tolerance = number(), .degree = small(), .largest_patch_count = 16});
     if (!sound(grid)) return;
     PatchSetOptions options;
     options.blocks = {data_.ConsumeBool(), data_.ConsumeBool(), data_.ConsumeBool(), false, data_.ConsumeBool(), false};
@@ -62,13 +64,18 @@ class Program {
  private:
   double number() {
     static constexpr double infinity = std::numeric_limits<double>::infinity();
-    static constexpr double special[] = {0,     1,      -1,     0.5,   2,         1e-9,     1e30,
-                                         1e300, 5e-324, 1e-300, 1e38, infinity, -infinity, std::numeric_limits<double>::quiet_NaN()};
+    static constexpr double special[] = {
+        0,     1,      -1,     0.5,  2,        1e-9,      1e30,
+        1e300, 5e-324, 1e-300, 1e38, infinity, -infinity, std::numeric_limits<double>::quiet_NaN()};
     switch (data_.ConsumeIntegralInRange(0, 3)) {
-      case 0: return special[data_.ConsumeIntegralInRange<std::size_t>(0, std::size(special) - 1)];
-      case 1: return data_.ConsumeIntegralInRange(-8, 8) * 0.25;
-      case 2: return data_.ConsumeFloatingPointInRange(-4.0, 4.0);
-      default: return data_.ConsumeFloatingPoint<double>();
+      case 0:
+        return special[data_.ConsumeIntegralInRange<std::size_t>(0, std::size(special) - 1)];
+      case 1:
+        return data_.ConsumeIntegralInRange(-8, 8) * 0.25;
+      case 2:
+        return data_.ConsumeFloatingPointInRange(-4.0, 4.0);
+      default:
+        return data_.ConsumeFloatingPoint<double>();
     }
   }
   Vec3 point() {
@@ -100,15 +107,20 @@ class Program {
     const int m = data_.ConsumeIntegralInRange(1, 4), n = data_.ConsumeIntegralInRange(1, 4);
     const std::size_t net = static_cast<std::size_t>((m + 1) * (n + 1));
     switch (data_.ConsumeIntegralInRange(0, 6)) {
-      case 0: return as_surface(BezierPatch::polynomial(m, n, points(net)));
-      case 1: return as_surface(BezierPatch::rational(m, n, points(net), numbers(net)));
+      case 0:
+        return as_surface(BezierPatch::polynomial(m, n, points(net)));
+      case 1:
+        return as_surface(BezierPatch::rational(m, n, points(net), numbers(net)));
       case 2: {
-        const std::vector<double> u = numbers(static_cast<std::size_t>(2 * m + 3)), v = numbers(static_cast<std::size_t>(2 * n + 2));
+        const std::vector<double> u = numbers(static_cast<std::size_t>(2 * m + 3)),
+                                  v = numbers(static_cast<std::size_t>(2 * n + 2));
         const std::vector<Vec3> list = points(static_cast<std::size_t>((m + 2) * (n + 1)));
         return as_surface(BSplineSurface::polynomial(m, u, n, v, std::span(list)));
       }
-      case 3: return as_surface(HermitePatch::make(points(16), domain()));
-      case 4: return as_surface(ExplicitPolynomial::make(m, n, numbers(net), domain()));
+      case 3:
+        return as_surface(HermitePatch::make(points(16), domain()));
+      case 4:
+        return as_surface(ExplicitPolynomial::make(m, n, numbers(net), domain()));
       case 5: {
         const std::vector<double> c = numbers(10);
         const Result<Quadric> made = Quadric::make({c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7], c[8], c[9]});
@@ -116,7 +128,8 @@ class Program {
         return as_surface(QuadricPiece::make(*made, domain(), small()));
       }
       default: {
-        const Result<Curve> a = Curve::bezier(points(static_cast<std::size_t>(m + 1))), b = Curve::bezier(points(static_cast<std::size_t>(n + 1)));
+        const Result<Curve> a = Curve::bezier(points(static_cast<std::size_t>(m + 1))),
+                            b = Curve::bezier(points(static_cast<std::size_t>(n + 1)));
         if (!a) return a.status();
         return b ? as_surface(RuledSurface::make(*a, *b)) : b.status();
       }
@@ -125,11 +138,17 @@ class Program {
 
   void call(PatchSet& set) {
     switch (data_.ConsumeIntegralInRange(0, 4)) {
-      case 0: return evaluate_grid(set);
-      case 1: return evaluate_points(set);
-      case 2: return tessellate(set);
-      case 3: return cast(set);
-      default: (void)sound(set.set_control_points(data_.ConsumeIntegralInRange<std::size_t>(0, 4), points(set.patch(0).points().size())));
+      case 0:
+        return evaluate_grid(set);
+      case 1:
+        return evaluate_points(set);
+      case 2:
+        return tessellate(set);
+      case 3:
+        return cast(set);
+      default:
+        (void)sound(set.set_control_points(data_.ConsumeIntegralInRange<std::size_t>(0, 4),
+                                           points(set.patch(0).points().size())));
     }
   }
 
@@ -147,12 +166,15 @@ class Program {
   }
 
   void evaluate_points(const PatchSet& set) {
-    const std::vector<std::uint32_t> patch{0, data_.ConsumeIntegral<std::uint32_t>() >> data_.ConsumeIntegralInRange(0, 31)};
+    const std::vector<std::uint32_t> patch{
+        0, data_.ConsumeIntegral<std::uint32_t>() >> data_.ConsumeIntegralInRange(0, 31)};
     const std::vector<double> u{0.5, number()}, v{number(), 0.25};
     std::vector<float> fu(u.begin(), u.end()), fv(v.begin(), v.end()), memory(6);
-    const PatchSamples<float> samples{View1<const std::uint32_t>::interleaved(patch), View1<const float>::interleaved(fu), View1<const float>::interleaved(fv)};
+    const PatchSamples<float> samples{View1<const std::uint32_t>::interleaved(patch),
+                                      View1<const float>::interleaved(fu), View1<const float>::interleaved(fv)};
     const PointOptions options{.outside = data_.ConsumeBool() ? OutsideDomain::clamp : OutsideDomain::error};
-    if (!sound(evaluate(set, samples, PointViews<float>{.position = View3<float>::interleaved(memory)}, options))) return;
+    if (!sound(evaluate(set, samples, PointViews<float>{.position = View3<float>::interleaved(memory)}, options)))
+      return;
     for (const float x : memory) require(!std::isnan(x));
   }
 
@@ -174,7 +196,8 @@ class Program {
 
 #ifdef TESSERA_HAS_RAY
   void cast(const PatchSet& set) {
-    RaySceneOptions options{.mode = data_.ConsumeBool() ? RayMode::grid : RayMode::exact, .rate = small(), .pieces = small()};
+    RaySceneOptions options{
+        .mode = data_.ConsumeBool() ? RayMode::grid : RayMode::exact, .rate = small(), .pieces = small()};
     if (data_.ConsumeBool()) options.tolerance = number();
     const auto scene = RayScene::make(set, options);
     if (!sound(scene)) return;

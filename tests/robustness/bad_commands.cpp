@@ -38,7 +38,8 @@ class Commands {
   ScratchFolder folder_;
 };
 
-const std::vector<std::string> bad_grids{"3", "3x", "x3", "3x3x3", "0x3", "-3x3", "3.5x3", "axb", "3x4097", "99999999999x3", ""};
+const std::vector<std::string> bad_grids{"3",     "3x",  "x3",     "3x3x3",         "0x3", "-3x3",
+                                         "3.5x3", "axb", "3x4097", "99999999999x3", ""};
 
 }  // namespace
 
@@ -53,7 +54,8 @@ void fill_commands(Table& table) {
   tool.row(2, {"info", "teapot.bpt", "--colour"});
   tool.row(2, {"info", "teapot.bpt"}, {"TESSERA_ISA=mmx"});
   tool.row(2, {"info", "teapot.bpt", "--isa", "avx3"});
-  for (const char* const threads : {"0", "-1", "x", "1.5", "1025"}) tool.row(2, {"info", "teapot.bpt", "--threads", threads});
+  for (const char* const threads : {"0", "-1", "x", "1.5", "1025"})
+    tool.row(2, {"info", "teapot.bpt", "--threads", threads});
   table.of("tessera tessellate MODEL -o MESH");
   tool.row(2, {"tessellate", "teapot.bpt", "--grid", "3x3"});
   tool.row(2, {"tessellate", "teapot.bpt", "-o", "a.ply"});
@@ -75,7 +77,8 @@ void fill_commands(Table& table) {
   tool.row(2, {"raycast", "teapot.bpt", "-o", "a.gif"});
   tool.row(2, {"raycast", "teapot.bpt", "--rays", "rays.csv"});
   tool.row(2, {"raycast", "teapot.bpt", "-o", "a.png", "--mode", "both"});
-  for (const char* const size : {"0x10", "10x16385", "10"}) tool.row(2, {"raycast", "teapot.bpt", "-o", "a.png", "--size", size});
+  for (const char* const size : {"0x10", "10x16385", "10"})
+    tool.row(2, {"raycast", "teapot.bpt", "-o", "a.png", "--size", size});
   for (const char* const camera : {"1,2,3", "1,2,3,4,5,6,x", "1,2,3,4,5,6,nan", "0,0,0,1e999,0,0,40", "1,2,3,1,2,3,40",
                                    "1,2,3,4,5,6,0", "1,2,3,4,5,6,180", "1e19,0,0,0,0,0,40"})
     tool.row(2, {"raycast", "teapot.bpt", "-o", "a.png", "--camera", camera});

@@ -33,7 +33,8 @@ void grid_plans(Table& table, const PatchSet& set) {
             GridPlan::make(set, t, t, {.representation = Representation::power}));
   table.row("a precision that is none", unsupported, GridPlan::make(set, t, t, {.precision = Precision{7}}));
   table.row("an instruction set that is none", isa_unavailable, GridPlan::make(set, t, t, {.isa = Isa{9}}));
-  table.row("a smallest sine of -1e-9", invalid_argument, GridPlan::make(set, t, t, {.geometry = {.smallest_sine = -1e-9}}));
+  table.row("a smallest sine of -1e-9", invalid_argument,
+            GridPlan::make(set, t, t, {.geometry = {.smallest_sine = -1e-9}}));
   table.row("an umbilic tolerance of NaN", invalid_argument,
             GridPlan::make(set, t, t, {.geometry = {.umbilic_tolerance = not_a_number}}));
   table.of("GridPlan::make(set, PatchParameters, options)");
@@ -53,9 +54,11 @@ void grid_views(Table& table, const PatchSet& set) {
   };
   table.of("evaluate(set, plan, GridViews, execution)");
   refused("no view", invalid_argument, {});
-  bad_view("positions", memory.views(), plan.capacity(), [](auto& views) -> auto& { return views.position; }, refused);
-  bad_view("directions", memory.views(), plan.capacity(), [](auto& views) -> auto& { return views.second_direction; },
-           refused);
+  bad_view(
+      "positions", memory.views(), plan.capacity(), [](auto& views) -> auto& { return views.position; }, refused);
+  bad_view(
+      "directions", memory.views(), plan.capacity(), [](auto& views) -> auto& { return views.second_direction; },
+      refused);
   GridViews<float> views = memory.views();
   views.gaussian.size = 0;
   refused("curvatures in a view of no records", buffer_too_small, views);
@@ -67,12 +70,14 @@ void grid_views(Table& table, const PatchSet& set) {
   refused("derivatives that begin within positions", invalid_argument, views);
 
   AllBuffers<double> doubles(plan), clean_doubles(plan);
-  table.row("a plan of the other precision", invalid_argument, evaluate(set, plan, doubles.views()), [&] { return doubles == clean_doubles; });
+  table.row("a plan of the other precision", invalid_argument, evaluate(set, plan, doubles.views()),
+            [&] { return doubles == clean_doubles; });
   const PatchSet other = set_of(wavy_field(1, 1));
-  table.row("a plan for another set", invalid_argument, evaluate(other, plan, memory.views()), [&] { return memory == clean; });
+  table.row("a plan for another set", invalid_argument, evaluate(other, plan, memory.views()),
+            [&] { return memory == clean; });
   const std::atomic<bool> cancel = true;
-  table.row("a cancellation before the first task", cancelled,
-            evaluate(set, plan, memory.views(), {.cancel = &cancel}), [&] { return memory == clean; });
+  table.row("a cancellation before the first task", cancelled, evaluate(set, plan, memory.views(), {.cancel = &cancel}),
+            [&] { return memory == clean; });
 }
 
 void grid_blocks(Table& table, const PatchSet& set) {
@@ -137,7 +142,8 @@ void samples_by_patch(Table& table, const PatchSet& set) {
   rows.with_samples("patch 4294967295", invalid_argument, [](auto& s) { s.patch[4] = 4294967295u; });
   rows.with_samples("u of -0.001", invalid_argument, [](auto& s) { s.u[2] = -0.001f; });
   rows.with_samples("v of 1e30", invalid_argument, [](auto& s) { s.v[1] = 1e30f; });
-  for (const auto& [outside, name] : {std::pair{OutsideDomain::error, ""}, {OutsideDomain::clamp, ", clamping"},
+  for (const auto& [outside, name] : {std::pair{OutsideDomain::error, ""},
+                                      {OutsideDomain::clamp, ", clamping"},
                                       {OutsideDomain::extrapolate, ", extrapolating"}}) {
     rows.with_samples(std::string("u of NaN") + name, non_finite, [&](auto& s) { s.u[2] = nan; }, {.outside = outside});
     rows.with_samples(std::string("v of infinity") + name, non_finite, [&](auto& s) { s.v[2] = inf; },
@@ -151,7 +157,8 @@ void samples_by_patch(Table& table, const PatchSet& set) {
     rows.refused(input, code, rows.sound().views(), views);
   };
   refused("no view", invalid_argument, {});
-  bad_view("positions", rows.views(), 5, [](auto& views) -> auto& { return views.position; }, refused);
+  bad_view(
+      "positions", rows.views(), 5, [](auto& views) -> auto& { return views.position; }, refused);
   PointViews<float> same = rows.views();
   same.du = same.dv;
   refused("two derivatives in one place", invalid_argument, same);
@@ -192,7 +199,8 @@ void samples_by_surface(Table& table, const PatchSet& set) {
   const PatchSet three = set_of(wavy_field(1, 3), with_points());
   const Numbers half{0.5, 0.5};
   const SurfaceSamples sound{{}, View1<const double>::interleaved(half), View1<const double>::interleaved(half)};
-  table.row("a map of another set", invalid_argument, evaluate(three, map, sound, memory.views()), [&] { return memory == clean; });
+  table.row("a map of another set", invalid_argument, evaluate(three, map, sound, memory.views()),
+            [&] { return memory == clean; });
 }
 
 }  // namespace

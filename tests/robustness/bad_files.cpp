@@ -73,13 +73,19 @@ void scene_texts(Table& table) {
   obj.row("index 0", bezier + "surf 0 1 0 1 0 2 3 4\nparm u 0 1\nparm v 0 1\nend\n", parse_error);
   obj.row("no parameters", bezier + "surf 0 1 0 1 1 2 3 4\nend\n", parse_error);
   obj.row("a surface without an end", bezier + "surf 0 1 0 1 1 2 3 4\nparm u 0 1\n", parse_error);
-  obj.row("a step of 0", "v 0 0 0\ncstype bmatrix\ndeg 1 1\nbmat u 1 0 -1 1\nbmat v 1 0 -1 1\nstep 0 0\nsurf 0 1 0 1 1 1 1 1\nparm u 0 1\nparm v 0 1\nend\n", invalid_argument);
+  obj.row("a step of 0",
+          "v 0 0 0\ncstype bmatrix\ndeg 1 1\nbmat u 1 0 -1 1\nbmat v 1 0 -1 1\nstep 0 0\nsurf 0 1 0 1 1 1 1 1\nparm u "
+          "0 1\nparm v 0 1\nend\n",
+          invalid_argument);
   Texts rib(table, parse<parse_rib>, "parse_rib(text, name)");
   rib.row("an array without an end", "Patch \"bilinear\" \"P\" [0 0 0 0 1 0", parse_error);
   rib.row("a point too few", "Patch \"bilinear\" \"P\" [0 0 0 0 1 0 1 0 0]\n", parse_error);
-  rib.row("an order of 99", "NuPatch 2 99 [0 0 1 1] 0 1 2 2 [0 0 1 1] 0 1 \"P\" [0 0 0 0 1 0 1 0 0 1 1 0]\n", parse_error);
+  rib.row("an order of 99", "NuPatch 2 99 [0 0 1 1] 0 1 2 2 [0 0 1 1] 0 1 \"P\" [0 0 0 0 1 0 1 0 0 1 1 0]\n",
+          parse_error);
   Texts json(table, parse<parse_json_model>, "parse_json_model(text, name)");
-  const auto surface = [](const std::string& members) { return "{\"format\": \"tessera\", \"version\": 1, \"surfaces\": [\n{" + members + "}]}"; };
+  const auto surface = [](const std::string& members) {
+    return "{\"format\": \"tessera\", \"version\": 1, \"surfaces\": [\n{" + members + "}]}";
+  };
   json.row("a text that is cut", "{\"surfaces\": [", parse_error);
   json.row("another format", "{\"format\": \"gltf\", \"surfaces\": []}", parse_error);
   json.row("no surfaces", "{\"format\": \"tessera\", \"version\": 1, \"surfaces\": []}", parse_error);
@@ -95,8 +101,10 @@ void mesh_texts(Table& table) {
   obj.row("an index that is none", "v 0 0 0\nv 1 0 0\nf 1 2 3\n", parse_error);
   obj.row("a face of two", "v 0 0 0\nv 1 0 0\nf 1 2\n", parse_error);
   Texts ply(table, parse<parse_ply>, "read_mesh(\"m.ply\")");
-  ply.row("4,000,000,000 vertices", "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\n"
-                                    "property float y\nproperty float z\nend_header\n", parse_error);
+  ply.row("4,000,000,000 vertices",
+          "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\n"
+          "property float y\nproperty float z\nend_header\n",
+          parse_error);
   ply.row("a format that is none", "ply\nformat binary_middle_endian 1.0\nend_header\n", parse_error);
   ply.row("a header without an end", "ply\nformat ascii 1.0\nelement vertex 1\n", parse_error);
   Texts stl(table, parse<parse_stl>, "read_mesh(\"m.stl\")");
@@ -164,7 +172,8 @@ void writing(Table& table) {
   mesh_row("an index that is out of range", invalid_argument, "m.ply", [](Mesh& m) { m.indices[1] = 3; });
   mesh_row("two indices", count_mismatch, "m.ply", [](Mesh& m) { m.indices.pop_back(); });
   mesh_row("eight position numbers", count_mismatch, "m.stl", [](Mesh& m) { m.positions.pop_back(); });
-  mesh_row("NaN in a position", non_finite, "m.glb", [](Mesh& m) { m.positions[4] = static_cast<float>(not_a_number); });
+  mesh_row("NaN in a position", non_finite, "m.glb",
+           [](Mesh& m) { m.positions[4] = static_cast<float>(not_a_number); });
   mesh_row("an origin of 1e300", non_finite, "m.stl", [](Mesh& m) { m.origin.x = 1e300; });
   mesh_row("a part that is out of range", invalid_argument, "m.gltf", [](Mesh& m) { m.parts = {{"a", 0, 9}}; });
 
@@ -177,13 +186,15 @@ void writing(Table& table) {
   table.of("write_model(model, path, fit)");
   model_row("no surfaces", invalid_argument, {}, "m.obj");
   model_row("an extension that is not known", unsupported, {.name = "m", .surfaces = {{"a", plain}}}, "m.step");
-  model_row("a rational surface for .bpt", unsupported, {.name = "m", .surfaces = {{"a", plain}, {"b", rational}}}, "m.bpt");
+  model_row("a rational surface for .bpt", unsupported, {.name = "m", .surfaces = {{"a", plain}, {"b", rational}}},
+            "m.bpt");
   model_row("a placement with NaN", non_finite,
             {.name = "m", .surfaces = {{"a", plain, Affine::translated({not_a_number, 0, 0})}}}, "m.obj");
   model_row("a folder that is not there", io_error, {.name = "m", .surfaces = {{"a", plain}}}, "none/m.obj");
   table.of("write_model(set, path)");
   const PatchSet set = value_of(PatchSet::from(std::vector{plain, rational}));
-  table.row("a rational patch for .bpt", unsupported, write_model(set, "m.bpt"), [&] { return here.folder.names() == before; });
+  table.row("a rational patch for .bpt", unsupported, write_model(set, "m.bpt"),
+            [&] { return here.folder.names() == before; });
 }
 
 }  // namespace

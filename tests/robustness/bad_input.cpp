@@ -8,7 +8,8 @@ namespace {
 /// In a cell of a Markdown table. What is another on another machine is left out.
 std::string cell(std::string text) {
   const std::string_view machine = "this machine has ";
-  if (const std::size_t at = text.find(machine); at != std::string::npos) text.replace(at + machine.size(), std::string::npos, "...");
+  if (const std::size_t at = text.find(machine); at != std::string::npos)
+    text.replace(at + machine.size(), std::string::npos, "...");
   std::string out;
   for (const char c : text) {
     if (c == '|' || c == '<' || c == '>' || c == '*' || c == '_') out += '\\';
@@ -43,7 +44,8 @@ void Table::row(const std::string& input, StatusCode code, const Status& status)
   line(input, answer_of(status));
 }
 
-void Table::row(const std::string& input, StatusCode code, const Status& status, const std::function<bool()>& untouched) {
+void Table::row(const std::string& input, StatusCode code, const Status& status,
+                const std::function<bool()>& untouched) {
   EXPECT_TRUE(untouched()) << call_ << ": " << input << ": something was written";
   row(input, code, status);
 }

@@ -99,9 +99,10 @@ TEST_P(BadInputSections, AreAnsweredAsTheDocumentSays) {
     const std::size_t begin = text.rfind('\n', at == 0 ? 0 : at - 1) + 1;
     return text.substr(begin, text.find('\n', at) - begin);
   };
-  ADD_FAILURE() << "docs/bad-input.md is not what the tests get (it is written anew as bad_input_test.cpp says).\nthey get: "
-                << line_at(found, static_cast<std::size_t>(a - found.begin()))
-                << "\nit says:  " << line_at(stated, static_cast<std::size_t>(b - stated.begin()));
+  ADD_FAILURE()
+      << "docs/bad-input.md is not what the tests get (it is written anew as bad_input_test.cpp says).\nthey get: "
+      << line_at(found, static_cast<std::size_t>(a - found.begin()))
+      << "\nit says:  " << line_at(stated, static_cast<std::size_t>(b - stated.begin()));
 }
 
 std::string name_of_section(const ::testing::TestParamInfo<Section>& info) {

@@ -43,8 +43,9 @@ void callable_curves(Table& table) {
   const auto line = [](double t) { return Vec3{t, 0, 0}; };
   table.row("an empty interval", invalid_argument, ParametricCurve::make({.position = line}, {2, 2}));
   table.row("an infinite interval", non_finite, ParametricCurve::make({.position = line}, {0, infinity}));
-  table.row("a function that gives NaN at an end", non_finite,
-            ParametricCurve::make({.position = [](double) { return Vec3{not_a_number, 0, 0}; }}));
+  table.row("a function that gives NaN at an end", non_finite, ParametricCurve::make({.position = [](double) {
+              return Vec3{not_a_number, 0, 0};
+            }}));
   table.row("a function that throws", invalid_argument,
             ParametricCurve::make({.position = [](double) -> Vec3 { throw std::runtime_error("no such place"); }}));
   table.row("a function that throws what is no std::exception", invalid_argument,
@@ -57,8 +58,7 @@ void callable_fits(Table& table) {
   table.row("NaN at (u,v)", non_finite, evaluate_jet(*hole, 0.5, 0.5));
   const auto thrower = surface([](double, double) -> Vec3 { throw std::runtime_error("not here"); });
   table.row("a function that throws", invalid_argument, evaluate_jet(*thrower, 0.5, 0.5));
-  table.row("parameters of NaN", non_finite,
-            evaluate_jet(*surface(plane), not_a_number, 0.5));
+  table.row("parameters of NaN", non_finite, evaluate_jet(*surface(plane), not_a_number, 0.5));
 
   table.of("to_bezier(ParametricSurface, FitOptions)");
   const Result<ParametricSurface> flat = surface(plane);
@@ -119,7 +119,8 @@ void coons_borders(Table& table) {
   table.of("Blend::polynomial(first, second)");
   table.row("no coefficients", unsupported_degree, Blend::polynomial({}, {}));
   table.row("blends that do not sum to 1", invalid_argument, Blend::polynomial(Numbers{1, -1}, Numbers{0, 0.5}));
-  table.row("blends that are not 1 and 0 at 0", invalid_argument, Blend::polynomial(Numbers{0.5, 0.1}, Numbers{0.5, -0.1}));
+  table.row("blends that are not 1 and 0 at 0", invalid_argument,
+            Blend::polynomial(Numbers{0.5, 0.1}, Numbers{0.5, -0.1}));
   table.row("NaN in a coefficient", non_finite, Blend::polynomial(Numbers{1, not_a_number}, Numbers{0, 1}));
   table.row("a coefficient of 1e300", invalid_argument, Blend::polynomial(Numbers{1, 1e300}, Numbers{0, -1e300}));
   table.row("degree 16", unsupported_degree, Blend::polynomial(Numbers(17, 1.0), Numbers(17, 0.0)));
@@ -142,7 +143,9 @@ void fill_callables(Table& table) {
   table.row("a rectangle that is empty", invalid_argument, ParametricSurface::make({.position = plane}, {0, 0, 0, 1}));
   table.row("a rectangle with NaN", non_finite, ParametricSurface::make({.position = plane}, {0, not_a_number, 0, 1}));
   table.row("a function that is infinite at a corner", non_finite,
-            ParametricSurface::make({.position = [](double u, double) { return Vec3{1 / u, 0, 0}; }}));
+            ParametricSurface::make({.position = [](double u, double) {
+              return Vec3{1 / u, 0, 0};
+            }}));
   table.of("ParametricSurface::over_disc(functions, disc), PolarMap::make(disc)");
   table.row("an empty std::function", invalid_argument, ParametricSurface::over_disc({}));
   table.row("radius 0", invalid_argument, ParametricSurface::over_disc({.position = plane}, {0, 0, 0}));
@@ -186,7 +189,8 @@ void fill_hermite(Table& table) {
   table.row("counts whose product overflows", count_mismatch,
             HermiteNetwork::from_factors(std::size_t{1} << 33, std::size_t{1} << 33, nodes, two, one));
   table.row("a factor of 0", invalid_argument, HermiteNetwork::from_factors(3, 2, nodes, Numbers{1, 0}, one));
-  table.row("a first factor that is not 1", invalid_argument, HermiteNetwork::from_factors(3, 2, nodes, Numbers{2, 2}, one));
+  table.row("a first factor that is not 1", invalid_argument,
+            HermiteNetwork::from_factors(3, 2, nodes, Numbers{2, 2}, one));
   table.row("a factor of NaN", non_finite, HermiteNetwork::from_factors(3, 2, nodes, Numbers{1, not_a_number}, one));
   table.of("HermiteNetwork::on_knots(u, v, nodes), estimate_twists(estimate, u, v, nodes)");
   table.row("knots that do not increase", invalid_argument,
@@ -226,8 +230,9 @@ void fill_borders(Table& table) {
   others[7] = 3;
   const Result<RuledSurface> high = RuledSurface::make(*Curve::bezier(line, weights), *Curve::bezier(line, others));
   table.row("rational borders whose products exceed degree 15", unsupported_degree, to_bezier(*high));
-  const auto hole = ParametricCurve::make(
-      {.position = [](double t) { return t > 0.4 && t < 0.6 ? Vec3{not_a_number, 0, 0} : Vec3{t, 0, 0}; }});
+  const auto hole = ParametricCurve::make({.position = [](double t) {
+    return t > 0.4 && t < 0.6 ? Vec3{not_a_number, 0, 0} : Vec3{t, 0, 0};
+  }});
   table.row("a border that gives NaN inside", non_finite, to_bezier(*RuledSurface::make(*hole, a)));
 }
 

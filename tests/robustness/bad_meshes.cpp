@@ -40,11 +40,14 @@ void bad_mesh_views(Table& table, const PatchSet& set, const Plan& plan) {
   };
   const std::size_t vertices = plan.capacity().vertices;
   refused("no view", invalid_argument, {});
-  bad_view("positions", mesh.views(), vertices, [](auto& views) -> auto& { return views.position; }, refused);
-  bad_view("parameters", mesh.views(), vertices, [](auto& views) -> auto& { return views.parameter; }, refused);
+  bad_view(
+      "positions", mesh.views(), vertices, [](auto& views) -> auto& { return views.position; }, refused);
+  bad_view(
+      "parameters", mesh.views(), vertices, [](auto& views) -> auto& { return views.parameter; }, refused);
   with("normals in the place of positions", invalid_argument, [](MeshViews& v) { v.normal = v.position; });
   with("no indices", buffer_too_small, [](MeshViews& v) { v.indices = {}; });
-  with("indices short by one", buffer_too_small, [](MeshViews& v) { v.indices = v.indices.first(v.indices.size() - 1); });
+  with("indices short by one", buffer_too_small,
+       [](MeshViews& v) { v.indices = v.indices.first(v.indices.size() - 1); });
   with("patches short by one", buffer_too_small, [](MeshViews& v) { v.patch = v.patch.first(v.patch.size() - 1); });
   with("patches in the place of indices", invalid_argument, [](MeshViews& v) { v.patch = v.indices; });
   const std::atomic<bool> cancel = true;
@@ -56,7 +59,8 @@ void certified_options(Table& table, const PatchSet& set) {
     table.row(input, code, CertifiedTessellation::make(set, options));
   };
   row("no tolerance of any kind", invalid_argument, {});
-  for (const auto& [tolerance, name] : {std::pair{0.0, "0"}, {-1.0, "-1"}, {not_a_number, "NaN"}, {infinity, "infinity"}})
+  for (const auto& [tolerance, name] :
+       {std::pair{0.0, "0"}, {-1.0, "-1"}, {not_a_number, "NaN"}, {infinity, "infinity"}})
     row(std::string("a tolerance of ") + name, invalid_argument, {.tolerance = tolerance});
   row("a tolerance below what float holds", invalid_argument, {.tolerance = 1e-12});
   row("a subnormal tolerance", invalid_argument, {.tolerance = 5e-324});
@@ -113,11 +117,13 @@ void other_sets(Table& table, Make plan_for) {
   const auto plan = plan_for(set);
   Mesh mesh = filled(value_of(plan.allocate()));
   const Mesh clean = mesh;
-  const PatchSet longer = set_of(wavy_field(1, 3)), steeper = set_of({patches[0], *BezierPatch::polynomial(1, 1, std::vector<Vec3>(4))});
+  const PatchSet longer = set_of(wavy_field(1, 3)),
+                 steeper = set_of({patches[0], *BezierPatch::polynomial(1, 1, std::vector<Vec3>(4))});
   table.row("a set of more patches", stale, plan.run(longer, mesh.views()), [&] { return same(mesh, clean); });
   table.row("a set of other degrees", stale, plan.run(steeper, mesh.views()), [&] { return same(mesh, clean); });
   (void)set.set_control_points(1, std::vector<Vec3>(16, Vec3{1, 2, 3}));
-  table.row("an edit by which a border collapses", stale, plan.run(set, mesh.views()), [&] { return same(mesh, clean); });
+  table.row("an edit by which a border collapses", stale, plan.run(set, mesh.views()),
+            [&] { return same(mesh, clean); });
 }
 
 }  // namespace
@@ -136,8 +142,11 @@ void fill_tessellations(Table& table) {
   table.row("more vertices than 32 bits count", invalid_argument,
             TessellationPlan::make(set_of(many), {.rate_u = 4096, .rate_v = 4096}));
   table.row("a set without float blocks", unsupported,
-            TessellationPlan::make(set_of(wavy_field(1, 1), {.blocks = {.float_bernstein = false, .double_bernstein = true}})));
-  const auto plan_for = [](const PatchSet& of) { return value_of(TessellationPlan::make(of, {.rate_u = 3, .rate_v = 2})); };
+            TessellationPlan::make(
+                set_of(wavy_field(1, 1), {.blocks = {.float_bernstein = false, .double_bernstein = true}})));
+  const auto plan_for = [](const PatchSet& of) {
+    return value_of(TessellationPlan::make(of, {.rate_u = 3, .rate_v = 2}));
+  };
   table.of("TessellationPlan::run(set, views, execution)");
   const TessellationPlan plan = plan_for(set);
   bad_mesh_views(table, set, plan);
@@ -156,9 +165,12 @@ void fill_certified(Table& table) {
   pixel_options(table, set);
   table.row("a set without float blocks", unsupported,
             CertifiedTessellation::make(
-                set_of(wavy_field(1, 1), {.blocks = {.float_bernstein = false, .double_bernstein = true}}), {.tolerance = 1.0}));
+                set_of(wavy_field(1, 1), {.blocks = {.float_bernstein = false, .double_bernstein = true}}),
+                {.tolerance = 1.0}));
   table.of("CertifiedTessellation::run(set, views, execution)");
-  const auto plan_for = [](const PatchSet& of) { return value_of(CertifiedTessellation::make(of, {.tolerance = 0.01})); };
+  const auto plan_for = [](const PatchSet& of) {
+    return value_of(CertifiedTessellation::make(of, {.tolerance = 0.01}));
+  };
   const CertifiedTessellation plan = plan_for(set);
   bad_mesh_views(table, set, plan);
   Mesh mesh = value_of(plan.allocate());
@@ -187,7 +199,8 @@ void fill_meshes(Table& table) {
     table.row(input, code, check(mesh));
   };
   table.of("check(mesh)");
-  table.gives("an empty mesh", "a report of nothing, which is not closed", check(Mesh{}).ok() && !check(Mesh{})->closed());
+  table.gives("an empty mesh", "a report of nothing, which is not closed",
+              check(Mesh{}).ok() && !check(Mesh{})->closed());
   row("an index that is out of range", invalid_argument, [](Mesh& m) { m.indices[1] = 3; });
   row("an index of 4294967295", invalid_argument, [](Mesh& m) { m.indices[2] = 4294967295u; });
   row("two indices", invalid_argument, [](Mesh& m) { m.indices.pop_back(); });

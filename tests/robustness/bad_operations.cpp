@@ -95,7 +95,8 @@ void grids_of_patches(Table& table, const BezierPatch& patch) {
   table.gives("parameters outside the domain", "nothing", !grid->locate(1.5, 0) && !grid->evaluate_jet(0, -1));
   table.of("transformed(grid, map)");
   table.row("a map with NaN", non_finite, transformed(*grid, Affine::translated({0, not_a_number, 0})));
-  table.row("a map by which points overflow", non_finite, transformed(*grid, Affine{{Vec3{1.7e308, 0, 0}, {1.7e308, 0, 0}, {1.7e308, 0, 0}}, {}}));
+  table.row("a map by which points overflow", non_finite,
+            transformed(*grid, Affine{{Vec3{1.7e308, 0, 0}, {1.7e308, 0, 0}, {1.7e308, 0, 0}}, {}}));
 }
 
 /// Two sound surfaces with one that is not between them.
@@ -111,7 +112,8 @@ void models(Table& table, const BezierPatch& patch) {
   table.row("a placement with infinity, evaluated", non_finite, evaluate_jet(far, 0.5, 0.5));
   table.of("make_patch_set(model, options, fit)");
   table.row("no surfaces", invalid_argument, make_patch_set(Model{}));
-  table.row("a placement with NaN", non_finite, make_patch_set(model_with(patch, Affine::translated({0, 0, not_a_number}))));
+  table.row("a placement with NaN", non_finite,
+            make_patch_set(model_with(patch, Affine::translated({0, 0, not_a_number}))));
   const auto hole = ParametricSurface::make({.position = [](double u, double v) {
     return u == 0.5 ? Vec3{not_a_number, 0, 0} : Vec3{u, v, 0};
   }});
@@ -158,7 +160,8 @@ void fill_sets(Table& table) {
 
   table.of("PatchSet::set_control_points(index, points)");
   PatchSet set = value_of(PatchSet::from(patches));
-  const auto refused = [&](const std::string& input, StatusCode code, std::size_t index, const std::vector<Vec3>& points) {
+  const auto refused = [&](const std::string& input, StatusCode code, std::size_t index,
+                           const std::vector<Vec3>& points) {
     const std::uint64_t revision = set.revision();
     const Status status = set.set_control_points(index, points);
     table.row(input, code, status, [&] {

@@ -22,15 +22,16 @@ void scenes(Table& table) {
   row("a mode that is none", invalid_argument, {.mode = RayMode{7}});
   row("grid mode, rate 0", invalid_argument, {.mode = RayMode::grid, .rate = 0});
   row("grid mode, rate 4097", invalid_argument, {.mode = RayMode::grid, .rate = 4097});
-  for (const int pieces : {0, 3, 16, -1})
-    row(std::to_string(pieces) + " pieces", invalid_argument, {.pieces = pieces});
-  for (const auto& [tolerance, name] : {std::pair{0.0, "0"}, {-1.0, "-1"}, {not_a_number, "NaN"}, {infinity, "infinity"}})
+  for (const int pieces : {0, 3, 16, -1}) row(std::to_string(pieces) + " pieces", invalid_argument, {.pieces = pieces});
+  for (const auto& [tolerance, name] :
+       {std::pair{0.0, "0"}, {-1.0, "-1"}, {not_a_number, "NaN"}, {infinity, "infinity"}})
     row(std::string("a tolerance of ") + name, invalid_argument, {.tolerance = tolerance});
   row("an instruction set that is none", isa_unavailable, {.isa = Isa{9}});
   const std::vector<Vec3> point(16, Vec3{1, 2, 3});
   const PatchSet degenerate = set_of({*BezierPatch::polynomial(3, 3, point), *BezierPatch::polynomial(3, 3, point)});
   table.row("a set whose every patch is one point", unsupported, RayScene::make(degenerate));
-  table.row("a set whose every patch is one point, grid mode", unsupported, RayScene::make(degenerate, {.mode = RayMode::grid}));
+  table.row("a set whose every patch is one point, grid mode", unsupported,
+            RayScene::make(degenerate, {.mode = RayMode::grid}));
   std::vector<Vec3> line;
   for (int k = 0; k < 16; ++k) line.push_back({static_cast<double>(k / 4), 0, 0});
   const PatchSet curve = set_of({*BezierPatch::polynomial(3, 3, line)});
@@ -89,9 +90,9 @@ void unusual_rays(Table& table, const RayScene& scene) {
               kind([](Ray& r) { r.direction.z = -5e-324; }) == HitKind::miss);
   table.gives("an infinite tnear", "a miss", kind([](Ray& r) { r.tnear = infinity; }) == HitKind::miss);
   table.gives("an origin of 1e18, looking away", "a miss", kind([](Ray& r) {
-                r.origin = {0, 0, 1e18};
-                r.direction = {1, 0, 0};
-              }) == HitKind::miss);
+                                                             r.origin = {0, 0, 1e18};
+                                                             r.direction = {1, 0, 0};
+                                                           }) == HitKind::miss);
 }
 
 void batches(Table& table, const std::string& mode, const RaySceneOptions& options) {
@@ -111,7 +112,8 @@ void batches(Table& table, const std::string& mode, const RaySceneOptions& optio
   table.row("hits short by one", buffer_too_small, scene.closest(rays, std::span(hits).first(4)), untouched);
   table.row("occlusions short by one", buffer_too_small, scene.occluded(rays, std::span(dark).first(4)), untouched);
   const std::atomic<bool> cancel = true;
-  table.row("a cancellation before the first task", cancelled, scene.closest(rays, hits, {.cancel = &cancel}), untouched);
+  table.row("a cancellation before the first task", cancelled, scene.closest(rays, hits, {.cancel = &cancel}),
+            untouched);
   HitLists lists{.hits = std::vector<Hit>(3), .first = {0, 3}};
   const auto empty = [&] { return lists.hits.empty() && lists.first.size() <= 1; };
   if (options.mode == RayMode::grid) {

@@ -33,8 +33,9 @@ void surface_grid(Table& table, const Surface& surface) {
   refused("a parameter of NaN", invalid_argument, t, {0, not_a_number, 1}, sound);
   refused("an infinite parameter", invalid_argument, t, {-infinity}, sound);
   refused("no view", invalid_argument, t, t, {});
-  bad_view("positions", sound, 9, [](auto& view) -> auto& { return view; },
-           [&](const std::string& input, StatusCode code, const View3<double>& out) { refused(input, code, t, t, out); });
+  bad_view(
+      "positions", sound, 9, [](auto& view) -> auto& { return view; },
+      [&](const std::string& input, StatusCode code, const View3<double>& out) { refused(input, code, t, t, out); });
   const std::atomic<bool> cancel = true;
   table.row("a cancellation before the first task", cancelled, evaluate(surface, t, t, sound, {.cancel = &cancel}));
 }
@@ -52,11 +53,17 @@ void functions(Table& table) {
   std::vector<float> floats(27);
   const auto out = View3<double>::interleaved(memory);
   table.row("a function that gives NaN", non_finite,
-            evaluate(with([](double, double) { return Vec3{not_a_number, 0, 0}; }), t, t, out));
+            evaluate(with([](double, double) {
+                       return Vec3{not_a_number, 0, 0};
+                     }),
+                     t, t, out));
   table.row("a function that throws", invalid_argument,
             evaluate(with([](double, double) -> Vec3 { throw std::runtime_error("no value here"); }), t, t, out));
   table.row("a position of 1e300, in float", non_finite,
-            evaluate(with([](double, double) { return Vec3{1e300, 0, 0}; }), t, t, View3<float>::interleaved(floats)));
+            evaluate(with([](double, double) {
+                       return Vec3{1e300, 0, 0};
+                     }),
+                     t, t, View3<float>::interleaved(floats)));
 }
 
 void transfinite(Table& table) {
@@ -125,13 +132,16 @@ void grid_updates(Table& table) {
     return update.run(e.set, plan, {e.patch, e.points}, out);
   };
   const auto untouched = [&] { return memory == clean; };
-  bad_edits(table, edited, [&](Edited& e) { return run(e, memory.views()); }, untouched);
+  bad_edits(
+      table, edited, [&](Edited& e) { return run(e, memory.views()); }, untouched);
   const auto refused = [&](const std::string& input, StatusCode code, const GridViews<float>& views) {
     table.row(input, code, run(edited, views), untouched);
   };
-  bad_view("positions", memory.views(), plan.capacity(), [](auto& views) -> auto& { return views.position; }, refused);
+  bad_view(
+      "positions", memory.views(), plan.capacity(), [](auto& views) -> auto& { return views.position; }, refused);
   refused("no view", invalid_argument, {});
-  const GridPlan own = value_of(GridPlan::make(edited.set, PatchParameters{.u = Numbers(4, 0.5), .v = Numbers(4, 0.5)}));
+  const GridPlan own =
+      value_of(GridPlan::make(edited.set, PatchParameters{.u = Numbers(4, 0.5), .v = Numbers(4, 0.5)}));
   table.row("parameters of each patch's own", unsupported,
             update.run(edited.set, own, {edited.patch, edited.points}, memory.views()), untouched);
   PatchSet other = set_of(wavy_field(2, 2));
@@ -143,7 +153,9 @@ void grid_updates(Table& table) {
 
 void mesh_updates(Table& table) {
   Edited edited;
-  const auto plan_for = [](const PatchSet& set) { return value_of(CertifiedTessellation::make(set, {.tolerance = 0.01})); };
+  const auto plan_for = [](const PatchSet& set) {
+    return value_of(CertifiedTessellation::make(set, {.tolerance = 0.01}));
+  };
   table.of("MeshUpdate::make(set, plan)");
   const PatchSet other = set_of(wavy_field(3, 3));
   table.row("a plan for another number of patches", stale, MeshUpdate::make(other, plan_for(edited.set)));
@@ -156,14 +168,21 @@ void mesh_updates(Table& table) {
   Mesh mesh = value_of(update.plan().allocate());
   const std::vector<float> clean = mesh.positions;
   const auto untouched = [&] { return mesh.positions == clean; };
-  bad_edits(table, edited, [&](Edited& e) { return update.run(e.set, {e.patch, e.points}, mesh.views()); }, untouched);
+  bad_edits(
+      table, edited,
+      [&](Edited& e) {
+        return update.run(e.set, {e.patch, e.points}, mesh.views());
+      },
+      untouched);
   const auto refused = [&](const std::string& input, StatusCode code, const MeshViews& views) {
     table.row(input, code, update.run(edited.set, {edited.patch, edited.points}, views), untouched);
   };
   refused("no positions", invalid_argument, {});
-  bad_view("normals", mesh.views(), mesh.vertex_count(), [](auto& views) -> auto& { return views.normal; }, refused);
+  bad_view(
+      "normals", mesh.views(), mesh.vertex_count(), [](auto& views) -> auto& { return views.normal; }, refused);
   const std::vector<Vec3> pole(16, Vec3{1, 2, 3});
-  table.row("points that collapse a border", stale, update.run(edited.set, {edited.patch, pole}, mesh.views()), untouched);
+  table.row("points that collapse a border", stale, update.run(edited.set, {edited.patch, pole}, mesh.views()),
+            untouched);
   (void)edited.set.set_control_points(0, edited.patches[0].points());
   refused("a set that was edited by other means", stale, mesh.views());
   table.of("MeshUpdate::restate(set), retessellate(set, spare)");

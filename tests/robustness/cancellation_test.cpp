@@ -29,7 +29,8 @@ void cancelled_at_many_places(Call call, Look look) {
 
 /// Counts records of `width` numbers that are neither as before nor as when all is done.
 template <class T>
-std::size_t torn(const std::vector<T>& now, const std::vector<T>& before, const std::vector<T>& done, std::size_t width) {
+std::size_t torn(const std::vector<T>& now, const std::vector<T>& before, const std::vector<T>& done,
+                 std::size_t width) {
   std::size_t count = 0;
   const std::size_t bytes = width * sizeof(T);
   for (std::size_t k = 0; k + width <= now.size(); k += width)
@@ -93,7 +94,8 @@ void check_meshes(const PatchSet& set, const Plan& plan) {
                            [&](const Status&) {
                              // Borders are written twice, the second time with bits that neighbours share.
                              for (std::size_t k = 0; k < out.positions.size(); ++k)
-                               if (std::abs(out.positions[k] - done.positions[k]) < 1e-5f) out.positions[k] = done.positions[k];
+                               if (std::abs(out.positions[k] - done.positions[k]) < 1e-5f)
+                                 out.positions[k] = done.positions[k];
                              EXPECT_EQ(torn(out.positions, before.positions, done.positions, 3), 0u);
                              EXPECT_EQ(torn(out.normals, before.normals, done.normals, 3), 0u);
                              EXPECT_EQ(torn(out.indices, before.indices, done.indices, 3), 0u);
@@ -124,7 +126,9 @@ TEST_F(Cancelled, Updates) {
   ASSERT_TRUE(evaluate(set_, plan, out.views()).ok());
   const GridViews<float> views{.position = out.views().position};
   cancelled_at_many_places(
-      [&](const Execution& execution) { return update.run(set_, plan, {patches, points}, views, execution); },
+      [&](const Execution& execution) {
+        return update.run(set_, plan, {patches, points}, views, execution);
+      },
       [&](const Status&) {
         ASSERT_TRUE(evaluate(set_, plan, fresh.views()).ok());
         EXPECT_TRUE(out.position == fresh.position);

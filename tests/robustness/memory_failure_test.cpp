@@ -53,8 +53,7 @@ void survives(const std::string& name, Call call) {
       if (!failed || !status.ok()) break;
     }
     // A buffer that std::stable_sort does without may be the one.
-    ASSERT_TRUE(status.ok())
-        << name << ", allocation " << n << ": " << status.message();
+    ASSERT_TRUE(status.ok()) << name << ", allocation " << n << ": " << status.message();
     ASSERT_LE(after, before) << name << ", allocation " << n << " fails: " << after - before << " bytes are lost";
   }
   EXPECT_TRUE(status.ok()) << name << ": " << status.message();
@@ -66,9 +65,8 @@ TEST(MemoryFails, WhereCurvesAndPatchesAreMade) {
   const std::vector<Vec3> points = random_cloud(random, 16);
   const std::vector<double> weights = random_positive(random, 16), knots{0, 0, 0, 0, 1, 2, 2, 2, 2};
   survives("BezierPatch::rational", [&] { return BezierPatch::rational(3, 3, points, weights); });
-  survives("Curve::nurbs", [&] {
-    return Curve::nurbs(3, std::span(points).first(5), std::span(weights).first(5), knots);
-  });
+  survives("Curve::nurbs",
+           [&] { return Curve::nurbs(3, std::span(points).first(5), std::span(weights).first(5), knots); });
   const BSplineSurface surface = random_surface(random, 3, 2, {.multiple = true}, {}, true);
   survives("BSplineSurface::rational", [&] {
     return BSplineSurface::rational(3, surface.knots_u(), 2, surface.knots_v(), surface.points(), surface.weights());
@@ -221,11 +219,13 @@ TEST(MemoryFails, WhereRaysAreCast) {
 #ifdef TESSERA_HAS_IO
 TEST(MemoryFails, WhereFilesAreReadAndWritten) {
   const std::string corpus = TESSERA_SOURCE_DIR "/tests/corpus/", models = TESSERA_SOURCE_DIR "/tools/models/";
-  for (const std::filesystem::path path : {corpus + "bpt/bilinear.bpt", corpus + "bv/kinds.bv", corpus + "g2/splines.g2", corpus + "obj/trimmed.obj",
-                                  corpus + "rib/scene.rib", corpus + "json/coons_own_blends.json", models + "vase.json",
-                                  models + "torus.json", models + "quadric_ellipsoid.json"})
+  for (const std::filesystem::path path :
+       {corpus + "bpt/bilinear.bpt", corpus + "bv/kinds.bv", corpus + "g2/splines.g2", corpus + "obj/trimmed.obj",
+        corpus + "rib/scene.rib", corpus + "json/coons_own_blends.json", models + "vase.json", models + "torus.json",
+        models + "quadric_ellipsoid.json"})
     survives("read_model " + path.filename().string(), [&] { return read_model(path); });
-  for (const std::filesystem::path path : {corpus + "obj_mesh/quad.obj", corpus + "ply/binary.ply", corpus + "stl/ascii.stl"})
+  for (const std::filesystem::path path :
+       {corpus + "obj_mesh/quad.obj", corpus + "ply/binary.ply", corpus + "stl/ascii.stl"})
     survives("read_mesh " + path.filename().string(), [&] { return read_mesh(path); });
   const ScratchFolder folder;
   const PatchSet set = set_of(various_patches(1));

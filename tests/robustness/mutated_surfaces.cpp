@@ -35,7 +35,8 @@ Result<Surface> tensor(Mutator& m) {
   static const std::array bases{*BasisMatrix::hermite(), *BasisMatrix::catmull_rom(), *BasisMatrix::power(3),
                                 *BasisMatrix::uniform_b_spline(3)};
   const BasisMatrix& u = bases[m.below(bases.size())];
-  return as_surface(TensorPatch::make(u, bases[m.below(bases.size())], m.list(random_points(m.random(), 3, 3)), m.domain({})));
+  return as_surface(
+      TensorPatch::make(u, bases[m.below(bases.size())], m.list(random_points(m.random(), 3, 3)), m.domain({})));
 }
 
 Result<Surface> hermite(Mutator& m) {
@@ -47,7 +48,8 @@ Result<Surface> network(Mutator& m) {
   for (HermiteNode& node : nodes)
     for (Vec3* vector : {&node.position, &node.du, &node.dv, &node.duv})
       *vector = m.point(uniform_vector(m.random(), -1, 1));
-  return as_surface(HermiteNetwork::on_knots(m.list(std::vector<double>{0, 1, 2.5}), m.list(std::vector<double>{0, 2}), nodes));
+  return as_surface(
+      HermiteNetwork::on_knots(m.list(std::vector<double>{0, 1, 2.5}), m.list(std::vector<double>{0, 2}), nodes));
 }
 
 Result<Curve> curve(Mutator& m, const Interval& domain) {
@@ -72,37 +74,46 @@ Result<Surface> coons(Mutator& m) {
                       d2 = line({1, 0, 0}, {1, 1, 0});
   for (const Result<Curve>* border : {&c1, &c2, &d1, &d2})
     if (!*border) return border->status();
-  return as_surface(CoonsPatch::make({*c1, *c2, *d1, *d2},
-                                     {.f = m.chance(0.5) ? Blend::linear() : Blend::cubic(), .closing_tolerance = m.number(1e-9)}));
+  return as_surface(CoonsPatch::make({*c1, *c2, *d1, *d2}, {.f = m.chance(0.5) ? Blend::linear() : Blend::cubic(),
+                                                            .closing_tolerance = m.number(1e-9)}));
 }
 
 Result<Surface> quadric(Mutator& m) {
   const auto signed_one = [&] { return m.number(m.chance(0.3) ? -1.0 : 1.0); };
-  const Result<Quadric> made = Quadric::make({.a = signed_one(), .b = signed_one(), .c = m.number(m.chance(0.3) ? 0.0 : 1.0),
-                                              .d = m.number(0), .g = m.number(0.1), .j = m.number(0), .k = m.number(-1)});
+  const Result<Quadric> made = Quadric::make({.a = signed_one(),
+                                              .b = signed_one(),
+                                              .c = m.number(m.chance(0.3) ? 0.0 : 1.0),
+                                              .d = m.number(0),
+                                              .g = m.number(0.1),
+                                              .j = m.number(0),
+                                              .k = m.number(-1)});
   if (!made) return made.status();
   return as_surface(QuadricPiece::make(*made, m.domain({0, 1, 0, 1}), m.integer(0)));
 }
 
 Result<Surface> explicit_polynomial(Mutator& m) {
-  return as_surface(ExplicitPolynomial::make(m.integer(2), m.integer(1), m.list(std::vector<double>{1, 0, -0.5, 0.3, 0, 2}),
-                                             m.domain({-1, 1, 0, 1})));
+  return as_surface(ExplicitPolynomial::make(
+      m.integer(2), m.integer(1), m.list(std::vector<double>{1, 0, -0.5, 0.3, 0, 2}), m.domain({-1, 1, 0, 1})));
 }
 
 /// A function that is not what it should be at some places.
 Result<Surface> function(Mutator& m) {
   const double threshold = uniform(m.random(), 0, 4), answer = m.number(0.25);
   const bool throws = m.chance(0.05);
-  return as_surface(ParametricSurface::make({.position = [=](double u, double v) {
-    if (u + v > threshold && throws) throw std::runtime_error("no place");
-    return Vec3{u, v, u + v > threshold ? answer : 0.25};
-  }}, m.domain({})));
+  return as_surface(ParametricSurface::make({.position =
+                                                 [=](double u, double v) {
+                                                   if (u + v > threshold && throws)
+                                                     throw std::runtime_error("no place");
+                                                   return Vec3{u, v, u + v > threshold ? answer : 0.25};
+                                                 }},
+                                            m.domain({})));
 }
 
 }  // namespace
 
 Result<Surface> mutated_surface(Mutator& m) {
-  static constexpr std::array<Result<Surface> (*)(Mutator&), 12> makers{bezier, b_spline, bezier, tensor, hermite, network, ruled, coons, quadric, explicit_polynomial, bezier, function};
+  static constexpr std::array<Result<Surface> (*)(Mutator&), 12> makers{
+      bezier, b_spline, bezier, tensor, hermite, network, ruled, coons, quadric, explicit_polynomial, bezier, function};
   return makers[m.below(makers.size())](m);
 }
 

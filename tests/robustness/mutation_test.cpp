@@ -68,7 +68,10 @@ class Case {
     map.translation = m_.point({10, 0, 0});
     return map;
   }
-  FitOptions fit() { return {.tolerance = m_.number(0.01), .degree = m_.integer(3), .largest_patch_count = 64, .certify = m_.chance(0.5)}; }
+  FitOptions fit() {
+    return {
+        .tolerance = m_.number(0.01), .degree = m_.integer(3), .largest_patch_count = 64, .certify = m_.chance(0.5)};
+  }
   PatchSetOptions options() {
     PatchSetOptions made;
     made.blocks = {!m_.chance(0.05), m_.chance(0.3), m_.chance(0.1), m_.chance(0.1), m_.chance(0.5), m_.chance(0.1)};
@@ -113,8 +116,8 @@ class Case {
     AllBuffers<float> out(patch.size());
     const PointOptions how{.outside = m_.chance(0.5) ? OutsideDomain::clamp : OutsideDomain::error,
                            .geometry = {m_.number(1e-10), m_.number(1e-9)}};
-    const PatchSamples<float> samples{View1<const std::uint32_t>::interleaved(patch), View1<const float>::interleaved(u),
-                                      View1<const float>::interleaved(v)};
+    const PatchSamples<float> samples{View1<const std::uint32_t>::interleaved(patch),
+                                      View1<const float>::interleaved(u), View1<const float>::interleaved(v)};
     if (!sound(evaluate(set, samples, out.views(), how))) return;
     std::size_t k = 0;
     for_each_value_output<float>([&](const auto& output) { expect_numbers(out.values[k++], output.name); });
@@ -139,7 +142,8 @@ class Case {
     how.most_triangles = 5000;
     if (m_.chance(0.2)) how.angle = m_.number(0.5);
     if (m_.chance(0.1)) how.smallest = true;
-    if (m_.chance(0.1)) how.pixels = PixelTolerance{m_.number(2), {.eye = m_.point({3, 4, 5}), .target = m_.point({0, 0, 0})}};
+    if (m_.chance(0.1))
+      how.pixels = PixelTolerance{m_.number(2), {.eye = m_.point({3, 4, 5}), .target = m_.point({0, 0, 0})}};
     how.share_vertices = m_.chance(0.2);
     if (m_.chance(0.2)) how.crease_angle = m_.number(0.1);
     how.relative = m_.chance(0.1);
@@ -150,7 +154,8 @@ class Case {
   void expect_sound(const Hit& hit, const Ray& ray) {
     if (hit.kind != HitKind::hit) return;
     EXPECT_TRUE(hit.t >= ray.tnear && hit.t <= ray.tfar) << hit.t;
-    for (const double x : {hit.u, hit.v, hit.patch_u, hit.patch_v, hit.residual, hit.normal.x, hit.normal.y, hit.normal.z})
+    for (const double x :
+         {hit.u, hit.v, hit.patch_u, hit.patch_v, hit.residual, hit.normal.x, hit.normal.y, hit.normal.z})
       EXPECT_FALSE(std::isnan(x));
     EXPECT_TRUE(is_finite(hit.position));
   }
@@ -169,7 +174,8 @@ class Case {
     for (int k = 0; k < 12; ++k) {
       const Vec3 origin = centre + size * uniform_vector(m_.random(), -1, 1);
       const Vec3 target = centre + 0.3 * size * uniform_vector(m_.random(), -1, 1);
-      rays.push_back({m_.point(origin), m_.point(target - origin), m_.number(0), m_.number(std::numeric_limits<double>::max())});
+      rays.push_back(
+          {m_.point(origin), m_.point(target - origin), m_.number(0), m_.number(std::numeric_limits<double>::max())});
     }
     std::vector<Hit> hits(rays.size());
     std::vector<std::uint8_t> dark(rays.size());
@@ -187,7 +193,8 @@ class Case {
   void edit(PatchSet& set) {
     const std::size_t patch = m_.below(set.patch_count());
     const auto points = set.patch(patch).points();
-    if (sound(set.set_control_points(patch, m_.list(std::vector(points.begin(), points.end()))))) evaluate_grid<float>(set);
+    if (sound(set.set_control_points(patch, m_.list(std::vector(points.begin(), points.end())))))
+      evaluate_grid<float>(set);
   }
 
   Mutator m_;

@@ -28,7 +28,8 @@ class Mutator {
   Vec3 point(const Vec3& p) { return {number(p.x), number(p.y), number(p.z)}; }
   Domain domain(const Domain& d) { return {number(d.u0), number(d.u1), number(d.v0), number(d.v1)}; }
   int integer(int value) {
-    static constexpr std::array others{0, -1, 1, 2, 16, 4097, std::numeric_limits<int>::max(), std::numeric_limits<int>::min()};
+    static constexpr std::array others{
+        0, -1, 1, 2, 16, 4097, std::numeric_limits<int>::max(), std::numeric_limits<int>::min()};
     return chance(rate_) ? others[below(others.size())] : value;
   }
   template <class T>
@@ -52,14 +53,19 @@ class Mutator {
  private:
   double mutated(double value) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    static constexpr std::array others{0.0,   -0.0,  1.0,    -1.0,   5e-324,  -5e-324,  2e-308,   1e-45,
-                                       1e-30, 1e30,  1e38,   4e38,   1e300,   -1e300,   infinity, -infinity,
-                                       1e16,  -1e16, 1e-100, 1e-101, 1.7e308, -1.7e308, 1e-9,     std::numeric_limits<double>::quiet_NaN()};
+    static constexpr std::array others{
+        0.0,   -0.0,  1.0,    -1.0,   5e-324,  -5e-324,  2e-308,   1e-45,
+        1e-30, 1e30,  1e38,   4e38,   1e300,   -1e300,   infinity, -infinity,
+        1e16,  -1e16, 1e-100, 1e-101, 1.7e308, -1.7e308, 1e-9,     std::numeric_limits<double>::quiet_NaN()};
     switch (below(4)) {
-      case 0: return others[below(others.size())];
-      case 1: return std::nextafter(value, others[below(others.size())]);
-      case 2: return std::ldexp(value, static_cast<int>(below(200)) - 100);
-      default: return -value;
+      case 0:
+        return others[below(others.size())];
+      case 1:
+        return std::nextafter(value, others[below(others.size())]);
+      case 2:
+        return std::ldexp(value, static_cast<int>(below(200)) - 100);
+      default:
+        return -value;
     }
   }
   template <class T>

@@ -41,7 +41,8 @@ TEST_F(PeakMemory, Sets) {
     return random_surface(random, 3, 3, {.inner = 50}, {.inner = 50}, false);
   }();
   expect_at_most("to_bezier(BSplineSurface)", 128, 51 * 51, [&] { return value_of(to_bezier(surface)); });
-  expect_at_most("SurfaceMap::make", 8, count_, [&] { return value_of(SurfaceMap::make(set_)); }, 128);
+  expect_at_most(
+      "SurfaceMap::make", 8, count_, [&] { return value_of(SurfaceMap::make(set_)); }, 128);
 }
 
 TEST_F(PeakMemory, Evaluation) {
@@ -50,7 +51,8 @@ TEST_F(PeakMemory, Evaluation) {
   const GridPlan plan = value_of(GridPlan::make(set_, t, t));
   AllBuffers<float> out(plan);
   expect_at_most("evaluate(set, plan)", 0, 1, [&] { return evaluate(set_, plan, out.views()); });
-  expect_at_most("GridUpdate::make", 8, count_, [&] { return value_of(GridUpdate::make(set_)); }, 16);
+  expect_at_most(
+      "GridUpdate::make", 8, count_, [&] { return value_of(GridUpdate::make(set_)); }, 16);
   const PatchSet points = set_of(patches_, with_points());
   Random random(4);
   const Samples<float> samples = random_samples<float>(random, count_, 100000);
@@ -60,16 +62,21 @@ TEST_F(PeakMemory, Evaluation) {
 
 TEST_F(PeakMemory, Meshes) {
   const auto uniform = [&] { return value_of(TessellationPlan::make(set_)); };
-  expect_at_most("TessellationPlan::make", 8, count_, [&] { return uniform(); }, 16);
+  expect_at_most(
+      "TessellationPlan::make", 8, count_, [&] { return uniform(); }, 16);
   const TessellationPlan plan = uniform();
   Mesh mesh = value_of(plan.allocate());
   expect_at_most("TessellationPlan::run", 0, 1, [&] { return plan.run(set_, mesh.views()); });
   expect_at_most("check(mesh)", 40, mesh.triangle_count(), [&] { return value_of(check(mesh)); });
   const auto certified = value_of(CertifiedTessellation::make(set_, {.tolerance = 0.01}));
-  expect_at_most("retessellate", 1024, count_, [&] { return value_of(certified.retessellate(set_)); }, 256);
-  expect_at_most("MeshUpdate::make", 1024, count_, [&] {
-    return value_of(MeshUpdate::make(set_, value_of(CertifiedTessellation::make(set_, {.tolerance = 0.01}))));
-  }, 256);
+  expect_at_most(
+      "retessellate", 1024, count_, [&] { return value_of(certified.retessellate(set_)); }, 256);
+  expect_at_most(
+      "MeshUpdate::make", 1024, count_,
+      [&] {
+        return value_of(MeshUpdate::make(set_, value_of(CertifiedTessellation::make(set_, {.tolerance = 0.01}))));
+      },
+      256);
 }
 
 #ifdef TESSERA_HAS_RAY

@@ -38,8 +38,8 @@ class Bits {
   }
 #ifdef TESSERA_HAS_RAY
   void add(const Hit& h) {
-    add(std::vector{h.t, h.u, h.v, h.patch_u, h.patch_v, h.residual, h.position.x, h.position.y, h.position.z, h.normal.x,
-                    h.normal.y, h.normal.z});
+    add(std::vector{h.t, h.u, h.v, h.patch_u, h.patch_v, h.residual, h.position.x, h.position.y, h.position.z,
+                    h.normal.x, h.normal.y, h.normal.z});
     add(std::vector<std::uint32_t>{h.surface, h.patch, static_cast<std::uint32_t>(h.kind), h.flags.unrefined,
                                    h.flags.degenerate_normal, h.flags.uncertified, h.flags.incomplete});
   }
@@ -109,7 +109,8 @@ inline std::vector<Ray> rays_at(const PatchSet& set, std::size_t count, std::uin
   std::vector<Ray> rays;
   for (std::size_t k = 0; k < count; ++k) {
     const Vec3 origin = box.centre() + box.diagonal() * uniform_vector(random, -1, 1);
-    rays.push_back({.origin = origin, .direction = box.centre() + 0.4 * box.diagonal() * uniform_vector(random, -1, 1) - origin});
+    rays.push_back(
+        {.origin = origin, .direction = box.centre() + 0.4 * box.diagonal() * uniform_vector(random, -1, 1) - origin});
   }
   return rays;
 }

@@ -46,7 +46,8 @@ TEST(Workers, AreAllAtWorkInOneCall) {
 TEST(CallersThreads, TasksOfTheCallersMayCall) {
   const Bits expected = everything(3);
   std::atomic<int> same = 0;
-  tbb::parallel_for(0, 6, [&](int) { same += everything(3) == expected; }, tbb::simple_partitioner());
+  tbb::parallel_for(
+      0, 6, [&](int) { same += everything(3) == expected; }, tbb::simple_partitioner());
   EXPECT_EQ(same, 6);
   tbb::task_group group;
   for (int k = 0; k < 4; ++k) group.run([&] { same += everything(3) == expected; });
@@ -61,14 +62,18 @@ TEST(CallersThreads, ArenasOfOneMayCall) {
   std::atomic<int> same = 0;
   tbb::task_arena outer(3);
   outer.execute([&] {
-    tbb::parallel_for(0, 4, [&](int) {
-      tbb::task_arena inner(1);
-      inner.execute([&] { same += everything(3) == expected; });
-    }, tbb::simple_partitioner());
+    tbb::parallel_for(
+        0, 4,
+        [&](int) {
+          tbb::task_arena inner(1);
+          inner.execute([&] { same += everything(3) == expected; });
+        },
+        tbb::simple_partitioner());
   });
   EXPECT_EQ(same, 4);
   one.execute([&] {
-    tbb::parallel_for(0, 3, [&](int) { same += everything(3) == expected; }, tbb::simple_partitioner());
+    tbb::parallel_for(
+        0, 3, [&](int) { same += everything(3) == expected; }, tbb::simple_partitioner());
   });
   EXPECT_EQ(same, 7);
 }

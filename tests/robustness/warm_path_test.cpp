@@ -53,7 +53,8 @@ TEST_F(WarmPath, Updates) {
     for (const Vec3& p : set_.patch(k).points()) points.push_back(p);
   }
   expect_no_allocation("grids that follow", [&] { return update.run(set_, plan, {patches, points}, out.views()); });
-  MeshUpdate mesh_update = value_of(MeshUpdate::make(set_, value_of(CertifiedTessellation::make(set_, {.tolerance = 0.01}))));
+  MeshUpdate mesh_update =
+      value_of(MeshUpdate::make(set_, value_of(CertifiedTessellation::make(set_, {.tolerance = 0.01}))));
   Mesh mesh = value_of(mesh_update.plan().allocate());
   ASSERT_TRUE(mesh_update.plan().run(set_, mesh.views()).ok());
   expect_no_allocation("meshes that follow", [&] {

@@ -44,7 +44,8 @@ std::size_t with_workers(int threads, Body&& body) {
   tbb::task_arena arena(threads);
   Meeting meeting(static_cast<std::size_t>(threads));
   arena.execute([&] {
-    tbb::parallel_for(0, threads, [&](int) { meeting.join(); }, tbb::simple_partitioner());
+    tbb::parallel_for(
+        0, threads, [&](int) { meeting.join(); }, tbb::simple_partitioner());
     body();
   });
   return meeting.threads();
