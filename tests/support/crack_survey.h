@@ -36,7 +36,7 @@ struct CrackCount {
 };
 
 /// How many borders meet on each border of a patch, by 4 * patch + side; 0 where it is a point.
-class MeetingBorders {
+class [[gnu::visibility("hidden")]] MeetingBorders {
  public:
   MeetingBorders(const PatchSet& set, double weld) : counts_(4 * set.patch_count(), 0) {
     const Result<CertifiedPlanner> planner =
