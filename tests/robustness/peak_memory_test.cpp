@@ -16,7 +16,7 @@ template <class Call>
 void expect_at_most(const char* name, double bytes, std::size_t count, Call&& call, double kept_bytes = 1e9) {
   (void)call();
   const std::size_t before = restart_peak();
-  const auto result = call();
+  [[maybe_unused]] const auto result = call();
   const std::size_t peak = peak_bytes(), kept = restart_peak();
   const auto each = [&](std::size_t held) { return static_cast<double>(held) / static_cast<double>(count); };
   std::printf("%-40s %9.1f bytes each beside the result, %8.1f for it\n", name, each(peak - kept), each(kept - before));
