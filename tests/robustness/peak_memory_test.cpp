@@ -88,7 +88,7 @@ TEST_F(PeakMemory, Rays) {
     std::vector<Hit> hits(rays.size());
     expect_at_most("closest", 4096, 1, [&] { return scene.closest(rays, hits); });
     if (mode == RayMode::grid) continue;
-    expect_at_most("all", 160, rays.size(), [&] {
+    expect_at_most("all", sizeof(Hit) + 16, rays.size(), [&] {
       HitLists lists;
       EXPECT_TRUE(scene.all(rays, lists).ok());
       return lists;

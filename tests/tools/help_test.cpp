@@ -124,7 +124,7 @@ TEST_F(BashCompletion, EveryOptionOfEveryCommand) {
 }
 
 TEST_F(BashCompletion, WordsThatAnOptionTakes) {
-  const Names shades{"error", "lambert", "normals", "patch", "uv"};
+  const Names shades{"curvature", "error", "lambert", "normals", "patch", "steps", "uv"};
   EXPECT_EQ(offers({"raycast", "--shade", ""}), shades);
   EXPECT_EQ(offers({"raycast", "--shade", "="}), shades);
   EXPECT_EQ(offers({"raycast", "--shade", "=", "n"}), Names{"normals"});
