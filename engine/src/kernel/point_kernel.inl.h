@@ -93,7 +93,7 @@ template <class L, int Degree, int Order, int Components, int Capacity>
       row_sums<L, ends_line, Order>(net_of(job, first + s) + k, weights + s, count_u, length, length - k, sums);
       for (int order = 0; order <= Order; ++order) tiles[order][s] = sums[order];
     };
-    if constexpr (Degree > 0) {
+    if constexpr (Degree > 0 || !fixed_degrees) {
 #pragma GCC unroll 16
       for (int s = 0; s < L::width; ++s) sum_sample(s);
     } else {
