@@ -71,7 +71,9 @@ inline void judge_ray(std::span<const BezierPatch> patches, const RayScene& scen
   if (!verdict.hit()) return;
   ++tally.hits;
   const auto on_hit_patch = [&](const Verdict::Root& root) { return root.patch == hit.patch; };
-  const bool on_border = std::min({hit.patch_u, 1 - hit.patch_u, hit.patch_v, 1 - hit.patch_v}) < 1e-9;
+  // Like t, below, the parameters of what lies along the ray within the tolerance are its square root off.
+  const double near_border = hit.flags.uncertified ? 4 * std::sqrt(tolerance / size) : 1e-9;
+  const bool on_border = std::min({hit.patch_u, 1 - hit.patch_u, hit.patch_v, 1 - hit.patch_v}) < near_border;
   tally.wrong_patch += met && !on_border && std::none_of(verdict.hits.begin(), verdict.hits.end(), on_hit_patch) &&
                        std::none_of(verdict.undecided.begin(), verdict.undecided.end(), on_hit_patch);
   const Verdict::Root& first = verdict.first();
