@@ -43,4 +43,16 @@ inline Vec3 random_direction(Random& random) {
   }
 }
 
+/// From a sphere around the box through the box.
+inline std::vector<Ray> rays_through(const Box3& box, std::size_t count, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<Ray> rays;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Vec3 half = 0.5 * (box.upper - box.lower), in = uniform_vector(random, -1, 1);
+    const Vec3 origin = box.centre() + box.diagonal() * normalized(random_direction(random));
+    rays.push_back(ray(origin, box.centre() + Vec3{half.x * in.x, half.y * in.y, half.z * in.z} - origin));
+  }
+  return rays;
+}
+
 }  // namespace tessera::test

@@ -18,18 +18,6 @@ RayScene editable_scene(const PatchSet& set, int rebuild_after = 0) {
 
 std::vector<Vec3> points_of(const BezierPatch& patch) { return {patch.points().begin(), patch.points().end()}; }
 
-/// From a sphere around the box through the box.
-std::vector<Ray> rays_through(const Box3& box, std::size_t count, std::uint64_t seed) {
-  Random random(seed);
-  std::vector<Ray> rays;
-  for (std::size_t k = 0; k < count; ++k) {
-    const Vec3 half = 0.5 * (box.upper - box.lower), in = uniform_vector(random, -1, 1);
-    const Vec3 origin = box.centre() + box.diagonal() * normalized(random_direction(random));
-    rays.push_back(ray(origin, box.centre() + Vec3{half.x * in.x, half.y * in.y, half.z * in.z} - origin));
-  }
-  return rays;
-}
-
 bool contains(const Box3& box, const Box3& other, double by) {
   const Vec3 low = other.lower - box.lower, high = box.upper - other.upper;
   return std::min({low.x, low.y, low.z, high.x, high.y, high.z}) >= -by;
