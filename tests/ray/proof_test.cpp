@@ -52,6 +52,35 @@ TEST(ExactMode, MissesNothingThatIsProven) {
   EXPECT_LT(undecidable, hits / 3);
 }
 
+/// At seams of a torus, almost along it: the ray enters 1e-6 before the seam, over which the surface rises by 1e-13, and
+/// meets the neighbour on the seam itself, a root by all proofs.
+TEST(ExactMode, NoProvenRootHidesWhatBeginsBeforeIt) {
+  const std::vector<BezierPatch> torus = Torus(5).patches(true);
+  const PatchSet set = value_of(PatchSet::from(torus));
+  RaySceneOptions options;
+  options.mode = RayMode::exact;
+  const RayScene scene = value_of(RayScene::make(set, options));
+  const double size = set.box().diagonal();
+  const Vec3 lines[][2] = {{{0x1.95234064da1a3p+1, 0x1.b743c9beb5a32p+0, 0x1.6fa3add5d7cf1p+1},
+                            {-0x1.662ed2e8ccea4p-1, -0x1.9719c1965496ep-2, -0x1.30001e1c715c8p-1}},
+                           {{-0x1.8286bebdd613dp+0, -0x1.bcfa45b6b3eb8p+0, 0x1.5c6414f206d63p-2},
+                            {0x1.223f3d51ef3f5p-1, 0x1.a59f8e3c42e1cp-1, -0x1.7318bee937161p-6}},
+                           {{0x1.ffa9bdea4471ep-2, 0x1.d70282aea2524p+0, -0x1.7fd1b755666d7p+1},
+                            {-0x1.e9bbe84352526p-5, -0x1.1c0ec17601e5bp-2, 0x1.eaf3fe0c2b86bp-1}}};
+  for (const auto& line : lines) {
+    const Ray ray = rays::from_to(line[0], line[1]);
+    ProofTally tally;
+    judge_ray(torus, scene, ray, 5e-12 * size, size, tally);
+    EXPECT_EQ(tally.hits, 1u);
+    EXPECT_EQ(tally.missed, 0u);
+    EXPECT_EQ(tally.false_hits, 0u);
+    HitLists lists;
+    ASSERT_TRUE(scene.all(std::span(&ray, 1), lists).ok());
+    ASSERT_FALSE(lists.hits.empty());
+    EXPECT_TRUE(lists.hits.front().flags.uncertified);
+  }
+}
+
 TEST(ExactMode, NothingLeavesAClosedBody) {
   for (const auto& patches : {closed_body(), sphere(), placed(closed_body(), 1e-5, {3e-2, 0, 7e-2})}) {
     const PatchSet set = set_of(patches);

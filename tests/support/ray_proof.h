@@ -23,8 +23,7 @@ struct ProofTally {
   std::size_t touching = 0;      ///< proven misses that the scene met within its tolerance
   std::size_t contradicted = 0;  ///< rays for which occluded() and closest() disagree
   std::size_t incomplete = 0;
-  std::size_t wrong_patch =
-      0;  ///< inside a patch that the ray provably misses, where a hit on another is proven
+  std::size_t wrong_patch = 0;   ///< inside a patch that the ray provably misses, where a hit on another is proven
   std::vector<double> t_errors, u_errors;  ///< of hits whose proven t is narrow; t in shares of the size
 
   void add(const ProofTally& other) {
@@ -77,8 +76,12 @@ inline void judge_ray(std::span<const BezierPatch> patches, const RayScene& scen
   tally.wrong_patch += met && !on_border && std::none_of(verdict.hits.begin(), verdict.hits.end(), on_hit_patch) &&
                        std::none_of(verdict.undecided.begin(), verdict.undecided.end(), on_hit_patch);
   const Verdict::Root& first = verdict.first();
-  // Within the tolerance of a tangent the surface is met a square root of it earlier or later.
-  const double loose = 4 * std::sqrt(tolerance * size) / speed, strict = 1e-9 * size / speed;
+  // Within the tolerance of a tangent the surface is met a square root of it earlier or later. Elsewhere t is known as
+  // well as the surface's height over the ray, to a rounding of the coordinates, and the slope give it.
+  const SurfaceJet jet = evaluate_jet(patches[first.patch], first.u.middle(), first.v.middle());
+  const double sine = std::abs(dot(normalized(cross(jet.du, jet.dv)), ray.direction)) / speed;
+  const double strict = std::max(1e-9, 16 * 0x1p-53 / sine) * size / speed;  // NaN of no normal: 1e-9
+  const double loose = 4 * std::sqrt(tolerance * size) / speed;
   if (!met || hit.t > first.t.hi + (hit.flags.uncertified ? loose : strict)) {
     ++tally.missed;
     return;

@@ -47,9 +47,9 @@ enum class HitKind : std::uint8_t {
 struct HitFlags {
   bool unrefined : 1 = false;  ///< Newton did not converge inside the patch: t, position, u, v are those of the facet
   bool degenerate_normal : 1 = false;  ///< the normal is a limit at a degenerate point, or undefined (zero)
-  /// Exact mode: the point lies on the ray within the tolerance, but no root of the surface was proven there. The ray
-  /// touches the surface or runs along it (t is then good to about the square root of tolerance times size), meets a
-  /// pole, or passes a border by less than the tolerance.
+  /// Exact mode: the point lies on the ray within the tolerance, but it was not proven to be the one root of the surface
+  /// thereabouts. The ray touches the surface or runs along it (t is then good to about the square root of tolerance
+  /// times size), meets a pole, or passes a border by less than the tolerance.
   bool uncertified : 1 = false;
   /// Exact mode: the bound on the work for one piece of a patch was reached, as where a surface runs along the ray or
   /// is folded up into a line. There may be other hits, of a miss too.

@@ -91,7 +91,10 @@ void keep_distinct(const SetView& set, const Adjacency& adjacency, std::vector<L
   for (std::size_t k = 0; k < roots.size(); ++k) {
     LeafRoot& first = roots[root_of(k)];
     const LeafRoot& here = roots[k];
+    const double from = std::min(first.from, here.from);
     if (std::tuple(!here.certified, here.residual) < std::tuple(!first.certified, first.residual)) first = here;
+    first.from = from;
+    if (from < first.s) first.certified = false;  // the part may hold a root that comes before
   }
   std::size_t kept = 0;
   for (std::size_t k = 0; k < roots.size(); ++k) {

@@ -95,7 +95,7 @@ class LeafSearch {
     rounding_ = search_rounding(shape_.m(), shape_.n(), leaf_.halvings(), box.depth);
     const Extent extent = extent_of(net);
     if (extent.off_ray) return;
-    if (lies_on_ray(extent)) return take_nearest_corner(slot);
+    if (lies_on_ray(extent)) return take_nearest_corner(slot, extent.z.low);
     const DerivativeHulls x = derivative_hulls(shape_, net), y = derivative_hulls(shape_, net + shape_.size());
     if (is_off_obliquely(net, x.v.centre(), y.v.centre()) || is_off_obliquely(net, x.u.centre(), y.u.centre())) return;
     const RootCertificate certificate = certify(x, y, shape_.m(), shape_.n(), rounding_, extent.heaviest);
@@ -107,7 +107,7 @@ class LeafSearch {
       if (within.empty()) return;
       if (certificate.contraction() < sure_contraction && decide(slot, certificate, f, middle)) return;
     }
-    if (is_small(extent) && take_closest_point(slot)) return;
+    if (is_small(extent) && take_closest_point(slot, extent.z.low)) return;
     if (box.depth + 4 > SearchSpace::most_depth) {
       query_.incomplete = true;
       return;
@@ -127,7 +127,7 @@ class LeafSearch {
     return std::max({extent.x.radius(), extent.y.radius(), extent.z.radius()}) <= 0.5 * extent_;
   }
 
-  void take_nearest_corner(int slot) {
+  void take_nearest_corner(int slot, double from) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     NetPoint nearest;
     double s = infinity;
@@ -137,11 +137,11 @@ class LeafSearch {
         if (here >= query_.line.near ? here < s || s < query_.line.near : s == infinity) s = here, nearest = {u, v};
       }
     }
-    take(slot, nearest, false);
+    take(slot, nearest, false, from);
   }
 
-  /// The point nearest to the ray, where it is a root within the tolerance.
-  bool take_closest_point(int slot) {
+  /// The point nearest to the ray, where it is a root within the tolerance. Others of the part may come before it.
+  bool take_closest_point(int slot, double from) {
     NetPoint at{0.5, 0.5};
     NetValue f = value(space_.net(slot), at);
     for (int step = 0; step < most_newton_steps && f.residual() > rounding_; ++step) {
@@ -150,15 +150,17 @@ class LeafSearch {
       if (!(there.residual() < f.residual())) break;
       at = next, f = there;
     }
-    return f.residual() <= tolerance_ && take(slot, at, false);
+    return f.residual() <= tolerance_ && take(slot, at, false, from);
   }
 
   /// Decides a box with one root at the most. False where it could not.
   bool decide(int slot, const RootCertificate& certificate, NetValue f, NetPoint at) {
     const Outcome outcome = solve(space_.net(slot), certificate, f, at);
-    if (outcome == Outcome::found) take(slot, at, f.residual() <= 4 * rounding_);
+    if (outcome == Outcome::found) take(slot, at, is_root(f), no_part);
     return outcome != Outcome::open;
   }
+
+  bool is_root(const NetValue& f) const { return f.residual() <= 4 * rounding_; }
 
   Outcome solve(const double* net, const RootCertificate& certificate, NetValue& f, NetPoint& at) const {
     const auto excluded = [&] {
@@ -171,19 +173,25 @@ class LeafSearch {
       if (f.residual() > tolerance_ && excluded()) return Outcome::none;
       if (moved < 1e-15) break;
     }
-    if (f.residual() <= tolerance_) return Outcome::found;
-    // The clamped contraction comes to stand at the root or where it proves that there is none.
-    for (int step = 0; step < most_contractions; ++step) {
+    if (is_root(f)) return Outcome::found;
+    const NetValue nearest = f;
+    const NetPoint there = at;
+    const bool touches = f.residual() <= tolerance_;
+    // The clamped contraction comes to stand at the root or where it proves that there is none: then a point within the
+    // tolerance is not the box's root, and touches.
+    bool none = false;
+    for (int step = 0; step < most_contractions && !(none = excluded()); ++step) {
       const std::array<double, 2> by = certificate.step(f);
       at = {std::clamp(at.u - by[0], 0.0, 1.0), std::clamp(at.v - by[1], 0.0, 1.0)};
       f = value(net, at);
-      if (f.residual() <= tolerance_) return Outcome::found;
-      if (excluded()) return Outcome::none;
+      if (is_root(f)) return Outcome::found;
     }
-    return Outcome::open;
+    if (!touches) return none ? Outcome::none : f.residual() <= tolerance_ ? Outcome::found : Outcome::open;
+    at = there, f = nearest;
+    return Outcome::found;
   }
 
-  bool take(int slot, NetPoint at, bool certified) {
+  bool take(int slot, NetPoint at, bool certified, double from) {
     const SearchBox& box = space_.box(slot);
     NetPoint in_leaf{box.u0 + at.u * box.du, box.v0 + at.v * box.dv};
     NetValue f = value(space_.net(0), in_leaf);
@@ -199,6 +207,7 @@ class LeafSearch {
     root.s = f.s();
     root.residual = f.residual();
     root.certified = certified;
+    root.from = from;
     if (!certified || !set_radius(f, rounding_, leaf_.du, leaf_.dv, root)) {  // of parts that are taken as a whole
       root.radius_u = std::min(1.0, 2 * box.du) * leaf_.du, root.radius_v = std::min(1.0, 2 * box.dv) * leaf_.dv;
     }

@@ -11,11 +11,14 @@
 
 namespace tessera {
 
+constexpr double no_part = std::numeric_limits<double>::infinity();
+
 /// A point of a patch on a ray.
 struct LeafRoot {
   std::uint32_t patch = 0;
   double u = 0, v = 0;                ///< in the patch
   double s = 0;                       ///< along the line
+  double from = no_part;              ///< of a part that is taken as one root: nothing of it comes before that s
   double residual = 0;                ///< distance from the line, in the scene's coordinates
   double radius_u = 0, radius_v = 0;  ///< how far another root may be that is the same
   bool certified = false;             ///< the one root of its surroundings, up to rounding
@@ -56,6 +59,7 @@ struct RayQuery {
   const RayLine& line;
   RootsWanted wanted;
   double near, far;  ///< roots outside are of no use; far shrinks to the closest so far
+  double unsure = no_part;  ///< least `from` of the roots so far
   bool found = false;
   std::uint32_t steps = 0;             ///< leaves looked at and parts of them searched
   bool incomplete = false;             ///< a bound on work was reached: there may be more
@@ -85,6 +89,8 @@ struct RayQuery {
       best = root;
       far = std::min(far, root.s);
     }
+    unsure = std::min(unsure, root.from);
+    if (unsure < best.s) best.certified = false;  // the part may hold a root that comes before
     found = true;
     return true;
   }
