@@ -57,7 +57,33 @@ struct RayPoint {
   double position[4], du[4], dv[4];
 };
 
+/// Rays side by side.
+struct alignas(64) RayBundle {
+  static constexpr int size = 16;
+  static constexpr double most_component = 1.844e18;  ///< of a valid ray
+  double origin[3][size], direction[3][size];
+  double near[size], far[size];  ///< of t
+};
+
+/// Where their lines begin and end: a box in the coordinates scale (p - centre).
+struct RayRoom {
+  double centre[3], scale;
+  double lower[3], upper[3];
+};
+
+/// What line_of (ray/ray_line.h) makes of them. Where `plain` is 0 the ray is not valid or has numbers that this does not
+/// take, and nothing else is said.
+struct alignas(64) RayLines {
+  static constexpr int size = RayBundle::size;
+  double start[3][size], direction[3][size], across[2][3][size];
+  double near[size], far[size], enter[size], leave[size], slack[size];
+  double base[size], shift[size], speed[size];
+  double plain[size];
+};
+
 struct RayKernels {
+  /// Null where the machine has no fused multiply-add.
+  void (*lines)(const RayBundle& rays, const RayRoom& room, RayLines& lines);
   /// All roots of the piece on the ray with s in [near, far] (and perhaps others a rounding outside of that), or the first
   /// that is met where any will do. False: undecided, whatever `roots` holds.
   bool (*trace_polynomial_leaf)(const RayLeaf& leaf, const RayProbe& ray, RayRoots& roots);

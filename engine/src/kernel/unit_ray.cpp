@@ -1,5 +1,7 @@
 // Exact rays. One unit an instruction set: see cmake/TesseraIsaFlags.cmake.
 
+#include <limits>
+
 #include "kernel/fours.h"
 #include "kernel/ray_kernels.h"
 
@@ -8,10 +10,17 @@ namespace {
 
 #include "kernel/ray_kernel.inl.h"
 #include "kernel/cubic_point.inl.h"
+#if !defined(__SSE2__) || defined(__FMA__)
+#include "kernel/ray_line_kernel.inl.h"
+constexpr auto lines = ray_lines;
+#else
+constexpr decltype(RayKernels::lines) lines = nullptr;
+#endif
 
 }  // namespace
 
 extern const RayKernels ray_kernels = {
+    lines,
     trace_polynomial_leaf,
     trace_rational_leaf,
     cubic_point,

@@ -20,7 +20,7 @@
 #include "ray/leaf_nets.h"
 #include "ray/leaf_search.h"
 #include "ray/nearest_root.h"
-#include "ray/ray_line.h"
+#include "ray/ray_lines.h"
 #include "ray/ray_scene_impl.h"
 #include "ray/ray_segment.h"
 #include "ray/surface_hit.h"
@@ -31,7 +31,8 @@ namespace {
 constexpr double smallest_size = 1e-140, largest_size = 1e140;  // squares of lengths stay normal numbers
 constexpr double default_tolerance = 2e-12;                     // of the size
 constexpr std::size_t most_leaves = 0xffffffff;
-constexpr std::size_t rays_a_turn = EmbreeLeaves::packet, least_in_packet = 6;
+constexpr std::size_t rays_a_turn = RayTurn::size, least_in_packet = 6;
+static_assert(rays_a_turn <= EmbreeLeaves::packet);
 
 /// Rays of one turn; none where a ray is not valid or passes the scene by.
 using Queries = std::array<std::optional<RayQuery>, rays_a_turn>;
@@ -43,12 +44,6 @@ bool coherent(std::span<RayQuery* const> queries) {
     const RayLine& line = query->line;
     return dot(first.direction, line.direction) > 0.99 && max_abs(first.start - line.start) < 0.2;
   });
-}
-
-/// A search that got no memory has decided nothing. Throws std::bad_alloc, which becomes the call's Status.
-void need_memory(std::span<const std::optional<RayQuery>> queries) {
-  for (const std::optional<RayQuery>& query : queries)
-    if (query && query->overflow) throw std::bad_alloc();
 }
 
 /// Found when it is first asked for: the closest hits need none.
@@ -109,6 +104,8 @@ class ExactScene final : public PatchScene, private ExactSource {
   Result<Hit> resolve(const Ray& ray, std::uint32_t patch, double u, double v) const override;
   using PatchScene::resolve;
   double measure();
+  template <class Done>
+  void trace_all(std::span<const Ray> rays, RootsWanted wanted, const Done& done) const;
   void trace_turn(std::span<std::optional<RayQuery>> queries, SearchSpace& space) const;
 
   LeafNets nets_;  // borrowed by scene_
@@ -215,47 +212,41 @@ void ExactScene::trace_turn(std::span<std::optional<RayQuery>> queries, SearchSp
 }
 
 /// Lines, searches and hits by turns of a few rays each: denormal numbers count in the first and the last alone.
-void ExactScene::closest_piece(std::span<const Ray> rays, std::span<Hit> hits) const {
+/// `done(k, valid, query)`: of ray k; no query where it is not valid or passes the scene by.
+template <class Done>
+void ExactScene::trace_all(std::span<const Ray> rays, RootsWanted wanted, const Done& done) const {
   SearchSpace space(nets_.largest(), &pool_);
-  std::array<RayLine, rays_a_turn> lines;
+  RayTurn turn(frame_, scene_box_, *tracer().kernels);
   Queries queries;
   for (std::size_t first = 0; first < rays.size(); first += rays_a_turn) {
-    const std::size_t count = std::min(rays_a_turn, rays.size() - first);
-    for (std::size_t k = 0; k < count; ++k) {
-      const Ray& ray = rays[first + k];
+    const std::span<const Ray> now = rays.subspan(first, std::min(rays_a_turn, rays.size() - first));
+    turn.set(now);
+    for (std::size_t k = 0; k < now.size(); ++k) {
       queries[k].reset();
-      if (!is_valid(ray)) continue;
-      lines[k] = line(ray);
-      if (!lines[k].empty) queries[k].emplace(ray, lines[k], RootsWanted::closest);
+      if (!turn.line(k).empty) queries[k].emplace(now[k], turn.line(k), wanted);
     }
-    trace_turn(std::span(queries).first(count), space);
-    need_memory(std::span(queries).first(count));
-    for (std::size_t k = 0; k < count; ++k) {
-      Hit& hit = hits[first + k];
-      hit = queries[k] && queries[k]->found ? hit_at(lines[k], queries[k]->best) : Hit{};
-      if (queries[k]) hit.flags.incomplete = queries[k]->incomplete, hit.steps = told(queries[k]->steps);
-      if (!is_valid(rays[first + k])) hit.kind = HitKind::invalid_ray;
+    trace_turn(std::span(queries).first(now.size()), space);
+    for (std::size_t k = 0; k < now.size(); ++k) {
+      // A search that got no memory has decided nothing; this becomes the call's Status.
+      if (queries[k] && queries[k]->overflow) throw std::bad_alloc();
+      done(first + k, turn.is_valid(k), queries[k]);
     }
   }
 }
 
+void ExactScene::closest_piece(std::span<const Ray> rays, std::span<Hit> hits) const {
+  trace_all(rays, RootsWanted::closest, [&](std::size_t k, bool valid, const std::optional<RayQuery>& query) {
+    Hit& hit = hits[k];
+    hit = query && query->found ? hit_at(query->line, query->best) : Hit{};
+    if (query) hit.flags.incomplete = query->incomplete, hit.steps = told(query->steps);
+    if (!valid) hit.kind = HitKind::invalid_ray;
+  });
+}
+
 void ExactScene::occluded_piece(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const {
-  SearchSpace space(nets_.largest(), &pool_);
-  std::array<RayLine, rays_a_turn> lines;
-  Queries queries;
-  for (std::size_t first = 0; first < rays.size(); first += rays_a_turn) {
-    const std::size_t count = std::min(rays_a_turn, rays.size() - first);
-    for (std::size_t k = 0; k < count; ++k) {
-      const Ray& ray = rays[first + k];
-      queries[k].reset();
-      if (!is_valid(ray)) continue;
-      lines[k] = line(ray);
-      if (!lines[k].empty) queries[k].emplace(ray, lines[k], RootsWanted::any);
-    }
-    trace_turn(std::span(queries).first(count), space);
-    need_memory(std::span(queries).first(count));
-    for (std::size_t k = 0; k < count; ++k) occluded[first + k] = queries[k] && queries[k]->found;
-  }
+  trace_all(rays, RootsWanted::any, [&](std::size_t k, bool, const std::optional<RayQuery>& query) {
+    occluded[k] = query && query->found;
+  });
 }
 
 void ExactScene::trace(RayQuery& query) const {

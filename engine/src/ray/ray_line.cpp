@@ -65,6 +65,12 @@ bool SceneFrame::holds(const Box3& box) const {
   return std::max(max_abs(low), max_abs(high)) <= 1 && max_abs(high - low) >= 0.75;
 }
 
+Box3 clipping_box(const Box3& box) {
+  constexpr double pad = 1e-12;
+  constexpr Vec3 by{pad, pad, pad};
+  return {box.lower - by, box.upper + by};
+}
+
 namespace {
 
 /// Sets the unit direction and the speed. `given`: the ray's, in the model's coordinates.
@@ -102,10 +108,10 @@ void complete(const Ray& ray, double scale, const Box3& box, RayLine& line) {
   line.far = (ray.tfar - line.base) * line.speed - line.shift;
   line.enter = line.near - line.slack;
   line.leave = line.far + line.slack;
-  constexpr double pad = 1e-12;  // above the rounding of start, direction and the quotients
-  clip(line.start.x, line.direction.x, box.lower.x - pad, box.upper.x + pad, line);
-  clip(line.start.y, line.direction.y, box.lower.y - pad, box.upper.y + pad, line);
-  clip(line.start.z, line.direction.z, box.lower.z - pad, box.upper.z + pad, line);
+  const Box3 room = clipping_box(box);
+  clip(line.start.x, line.direction.x, room.lower.x, room.upper.x, line);
+  clip(line.start.y, line.direction.y, room.lower.y, room.upper.y, line);
+  clip(line.start.z, line.direction.z, room.lower.z, room.upper.z, line);
   line.empty = !(line.enter <= line.leave);
   if (!line.empty) set_across(line);
   if (ray.spawn_offset > 0) line.spawn = scale * ray.spawn_offset + 2 * line.slack;

@@ -44,6 +44,9 @@ struct RayLine {
   double base = 0, shift = 0, speed = 1;  ///< t = base + (shift + s) / speed
 };
 
+/// What lines are cut to: the scene's box in its own coordinates, and the rounding of start, direction and quotients.
+Box3 clipping_box(const Box3& box);
+
 /// The line of a valid ray. `box`: of the scene, in its own coordinates.
 RayLine line_of(const Ray& ray, const SceneFrame& frame, const Box3& box);
 
