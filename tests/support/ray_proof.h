@@ -23,7 +23,7 @@ struct ProofTally {
   std::size_t touching = 0;      ///< proven misses that the scene met within its tolerance
   std::size_t contradicted = 0;  ///< rays for which occluded() and closest() disagree
   std::size_t incomplete = 0;
-  std::size_t wrong_patch = 0;   ///< inside a patch that the ray provably misses, where a hit on another is proven
+  std::size_t wrong_patch = 0;  ///< inside a patch that the ray provably misses, where a hit on another is proven
   std::vector<double> t_errors, u_errors;  ///< of hits whose proven t is narrow; t in shares of the size
 
   void add(const ProofTally& other) {

@@ -108,6 +108,9 @@ template <class T>
 batch<T> sqrt(batch<T> a) {
   return Neon<T>::root(a);
 }
+inline batch<float> copysign(batch<float> size, batch<float> sign) {
+  return vbslq_f32(vdupq_n_u32(0x80000000u), sign, size);
+}
 inline batch<float> floor(batch<float> a) { return vrndmq_f32(a); }
 inline batch<float> ceil(batch<float> a) { return vrndpq_f32(a); }
 /// As x86 has it: the second where one is not a number.

@@ -35,6 +35,14 @@ struct alignas(16) RayProbe {
   bool any;  ///< the first root that is proven will do
 };
 
+/// The rays of several probes side by side.
+struct alignas(64) RayPacket {
+  static constexpr int size = 16;
+  float origin[3][size], direction[3][size];
+  float near[size], far[size];
+  float touches[size];  ///< what is found out
+};
+
 /// One root and no other in u +- radius_u, v +- radius_v, inside the piece; s to s_error.
 struct RayRoot {
   float u, v, s, radius_u, radius_v, s_error;
@@ -84,6 +92,9 @@ struct alignas(64) RayLines {
 struct RayKernels {
   /// Null where the machine has no fused multiply-add.
   void (*lines)(const RayBundle& rays, const RayRoom& room, RayLines& lines);
+  /// Sets `touches` to 0 where the ray passes the piece's box by, so that it has no root there, else to 1. Of rays whose bits
+  /// are set in `lanes`, and others. Null where vectors are too short for that.
+  void (*rays_that_touch)(const RayLeaf& leaf, RayPacket& rays, unsigned lanes);
   /// All roots of the piece on the ray with s in [near, far] (and perhaps others a rounding outside of that), or the first
   /// that is met where any will do. False: undecided, whatever `roots` holds.
   bool (*trace_polynomial_leaf)(const RayLeaf& leaf, const RayProbe& ray, RayRoots& roots);

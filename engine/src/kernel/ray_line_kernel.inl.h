@@ -38,8 +38,8 @@ class RayLineLanes {
     clip(near - slack, far + slack);
     set_across();
     constexpr double finite = std::numeric_limits<double>::max();
-    store(lines_.plain, xsimd::select(is_plain() && speed > Batch(0.0) && xsimd::abs(base) <= Batch(finite), Batch(1.0),
-                                      Batch(0.0)));
+    store(lines_.plain, xsimd::select(is_plain() & (speed > Batch(0.0)) & (xsimd::abs(base) <= Batch(finite)),
+                                      Batch(1.0), Batch(0.0)));
   }
 
  private:
@@ -61,14 +61,14 @@ class RayLineLanes {
   Where is_plain() const {
     constexpr double smallest = 1e-100, parallel = 1e-300;
     const Batch most(RayBundle::most_component), near = load(rays_.near);
-    Where yes = near >= Batch(0.0) && near <= load(rays_.far);
+    Where yes = (near >= Batch(0.0)) & (near <= load(rays_.far));
     Batch largest(0.0);
     for (int i = 0; i < 3; ++i) {
-      yes = yes && xsimd::abs(origin_[i]) <= most && xsimd::abs(given_[i]) <= most &&
-            xsimd::abs(direction_[i]) >= Batch(parallel);
+      yes = yes & (xsimd::abs(origin_[i]) <= most) & (xsimd::abs(given_[i]) <= most) &
+            (xsimd::abs(direction_[i]) >= Batch(parallel));
       largest = xsimd::max(largest, xsimd::abs(given_[i]));
     }
-    return yes && largest > Batch(smallest);
+    return yes & (largest > Batch(smallest));
   }
 
   void clip(Batch enter, Batch leave) const {

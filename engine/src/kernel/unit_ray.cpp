@@ -12,15 +12,19 @@ namespace {
 #include "kernel/cubic_point.inl.h"
 #if !defined(__SSE2__) || defined(__FMA__)
 #include "kernel/ray_line_kernel.inl.h"
+#include "kernel/ray_packet_kernel.inl.h"
 constexpr auto lines = ray_lines;
+constexpr auto packet = rays_that_touch;
 #else
 constexpr decltype(RayKernels::lines) lines = nullptr;
+constexpr decltype(RayKernels::rays_that_touch) packet = nullptr;  // four at a time are no quicker than each
 #endif
 
 }  // namespace
 
 extern const RayKernels ray_kernels = {
     lines,
+    packet,
     trace_polynomial_leaf,
     trace_rational_leaf,
     cubic_point,

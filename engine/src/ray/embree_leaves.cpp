@@ -22,7 +22,9 @@ struct Call {
   std::array<RayQuery*, EmbreeLeaves::packet> queries;  ///< null of idle lanes
   std::array<float, EmbreeLeaves::packet> enter;        ///< s where Embree's ray begins
   std::array<kernel::RayProbe, EmbreeLeaves::packet> probes;
+  kernel::RayPacket packet;  ///< the same side by side, of calls with more than one ray
 };
+static_assert(EmbreeLeaves::packet == kernel::RayPacket::size);
 
 /// Embree 3 takes 16 rays by eights or fours where the machine has no wider vectors, and a part without a ray of ours comes
 /// to the callbacks with lanes that it calls valid.
@@ -32,6 +34,14 @@ void enter(Call& call, unsigned ray, RayQuery& query) {
   call.queries[ray] = &query;
   call.enter[ray] = static_cast<float>(query.line.enter);
   call.probes[ray] = probe_of(query);
+}
+
+void put_in_packet(Call& call, unsigned ray) {
+  const kernel::RayProbe& probe = call.probes[ray];
+  for (std::size_t i = 0; i < 3; ++i) {
+    call.packet.origin[i][ray] = probe.origin[i], call.packet.direction[i][ray] = probe.direction[i];
+  }
+  call.packet.near[ray] = probe.near, call.packet.far[ray] = probe_far(*call.queries[ray]);
 }
 
 }  // namespace
@@ -48,9 +58,24 @@ struct EmbreeLeaves::State {
     *arguments->bounds_o = padded(state.tracer.nets->boxes()[arguments->primID]);
   }
 
-  const RayQuery& search(unsigned leaf, Call& call, unsigned ray) const {
-    tracer.search(leaf, call.probes[ray], *call.queries[ray], *call.space);
-    return *call.queries[ray];
+  /// Searches a leaf for the valid rays of a call, then does `then` with each. Of a packet Embree names more rays than meet
+  /// the leaf's box; which do is found for all of them at once.
+  template <class IdOf, class Then>
+  void search(unsigned leaf, Call& call, unsigned count, const int* valid, const IdOf& id_of, const Then& then) const {
+    unsigned lanes = 0;
+    for (unsigned k = 0; k < count; ++k) {
+      if (valid[k] != 0 && !is_idle(call, id_of(k))) lanes |= 1u << id_of(k);
+    }
+    const bool several = count > 1 && tracer.kernels->rays_that_touch != nullptr;
+    if (several) tracer.kernels->rays_that_touch(tracer.nets->local(leaf), call.packet, lanes);
+    for (unsigned k = 0; k < count; ++k) {
+      const unsigned ray = id_of(k);
+      if ((lanes >> ray & 1u) == 0 || (several && !(call.packet.touches[ray] > 0))) continue;
+      RayQuery& query = *call.queries[ray];
+      tracer.search(leaf, call.probes[ray], query, *call.space);
+      if (several) call.packet.far[ray] = probe_far(query);
+      then(k, ray, query);
+    }
   }
 
   /// The end of Embree's ray follows the closest root, rounded up by what boxes are padded with. One ray or a packet.
@@ -59,27 +84,24 @@ struct EmbreeLeaves::State {
     Call& call = *reinterpret_cast<Call*>(arguments->context);
     const unsigned count = arguments->N;
     RTCRayN* const rays = RTCRayHitN_RayN(arguments->rayhit, count);
-    for (unsigned k = 0; k < count; ++k) {
-      if (arguments->valid[k] == 0) continue;
-      const unsigned ray = RTCRayN_id(rays, count, k);
-      if (is_idle(call, ray)) continue;
-      const RayQuery& query = state.search(arguments->primID, call, ray);
-      float& far = RTCRayN_tfar(rays, count, k);
-      far = std::min(far, static_cast<float>(query.far) - call.enter[ray] + box_pad);
-    }
+    state.search(
+        arguments->primID, call, count, arguments->valid, [&](unsigned k) { return RTCRayN_id(rays, count, k); },
+        [&](unsigned k, unsigned ray, const RayQuery& query) {
+          float& far = RTCRayN_tfar(rays, count, k);
+          far = std::min(far, static_cast<float>(query.far) - call.enter[ray] + box_pad);
+        });
   }
 
   static void occluded(const RTCOccludedFunctionNArguments* arguments) {
     const State& state = *static_cast<const State*>(arguments->geometryUserPtr);
     Call& call = *reinterpret_cast<Call*>(arguments->context);
     const unsigned count = arguments->N;
-    for (unsigned k = 0; k < count; ++k) {
-      if (arguments->valid[k] == 0) continue;
-      const unsigned ray = RTCRayN_id(arguments->ray, count, k);
-      if (is_idle(call, ray)) continue;
-      const RayQuery& query = state.search(arguments->primID, call, ray);
-      if (query.done()) RTCRayN_tfar(arguments->ray, count, k) = -std::numeric_limits<float>::infinity();
-    }
+    state.search(
+        arguments->primID, call, count, arguments->valid,
+        [&](unsigned k) { return RTCRayN_id(arguments->ray, count, k); },
+        [&](unsigned k, unsigned, const RayQuery& query) {
+          if (query.done()) RTCRayN_tfar(arguments->ray, count, k) = -std::numeric_limits<float>::infinity();
+        });
   }
 };
 
@@ -161,10 +183,12 @@ void EmbreeLeaves::trace(std::span<RayQuery* const> queries, SearchSpace& space)
   for (unsigned k = 0; k < packet; ++k) {
     const std::size_t which = k < queries.size() ? k : 0;  // idle lanes repeat the first
     valid[k] = k < queries.size() ? -1 : 0;
-    if (k < queries.size())
+    if (k < queries.size()) {
       enter(call, k, *queries[k]);
-    else
+      put_in_packet(call, k);
+    } else {
       call.queries[k] = nullptr;
+    }
     const RTCRay ray = embree_ray(queries[which]->line);
     hit.ray.org_x[k] = ray.org_x, hit.ray.org_y[k] = ray.org_y, hit.ray.org_z[k] = ray.org_z;
     hit.ray.dir_x[k] = ray.dir_x, hit.ray.dir_y[k] = ray.dir_y, hit.ray.dir_z[k] = ray.dir_z;

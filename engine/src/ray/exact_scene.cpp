@@ -31,7 +31,7 @@ namespace {
 constexpr double smallest_size = 1e-140, largest_size = 1e140;  // squares of lengths stay normal numbers
 constexpr double default_tolerance = 2e-12;                     // of the size
 constexpr std::size_t most_leaves = 0xffffffff;
-constexpr std::size_t rays_a_turn = RayTurn::size, least_in_packet = 6;
+constexpr std::size_t rays_a_turn = RayTurn::size, least_in_packet = 6, least_in_turn = 4;
 static_assert(rays_a_turn <= EmbreeLeaves::packet);
 
 /// Rays of one turn; none where a ray is not valid or passes the scene by.
@@ -106,6 +106,10 @@ class ExactScene final : public PatchScene, private ExactSource {
   double measure();
   template <class Done>
   void trace_all(std::span<const Ray> rays, RootsWanted wanted, const Done& done) const;
+  template <class Done>
+  void trace_each(std::span<const Ray> rays, RootsWanted wanted, SearchSpace& space, const Done& done) const;
+  template <class Done>
+  void trace_turns(std::span<const Ray> rays, RootsWanted wanted, SearchSpace& space, const Done& done) const;
   void trace_turn(std::span<std::optional<RayQuery>> queries, SearchSpace& space) const;
 
   LeafNets nets_;  // borrowed by scene_
@@ -211,11 +215,37 @@ void ExactScene::trace_turn(std::span<std::optional<RayQuery>> queries, SearchSp
   for (RayQuery* query : used) scene_.trace(*query, space);
 }
 
-/// Lines, searches and hits by turns of a few rays each: denormal numbers count in the first and the last alone.
-/// `done(k, valid, query)`: of ray k; no query where it is not valid or passes the scene by.
+/// Does `done(k, valid, query)` after each ray k; no query where it is not valid or passes the scene by.
 template <class Done>
 void ExactScene::trace_all(std::span<const Ray> rays, RootsWanted wanted, const Done& done) const {
   SearchSpace space(nets_.largest(), &pool_);
+  const auto end = [&](std::size_t k, bool valid, const std::optional<RayQuery>& query) {
+    // A search that got no memory has decided nothing; this becomes the call's Status.
+    if (query && query->overflow) throw std::bad_alloc();
+    done(k, valid, query);
+  };
+  rays.size() < least_in_turn ? trace_each(rays, wanted, space, end) : trace_turns(rays, wanted, space, end);
+}
+
+template <class Done>
+void ExactScene::trace_each(std::span<const Ray> rays, RootsWanted wanted, SearchSpace& space, const Done& done) const {
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    const bool valid = is_valid(rays[k]);
+    const RayLine along = valid ? line(rays[k]) : RayLine{};
+    std::optional<RayQuery> query;
+    if (!along.empty) {
+      query.emplace(rays[k], along, wanted);
+      const FlushDenormals flush;
+      scene_.trace(*query, space);
+    }
+    done(k, valid, query);
+  }
+}
+
+/// Lines, searches and hits by turns of a few rays: denormal numbers count in the first and the last alone.
+template <class Done>
+void ExactScene::trace_turns(std::span<const Ray> rays, RootsWanted wanted, SearchSpace& space,
+                             const Done& done) const {
   RayTurn turn(frame_, scene_box_, *tracer().kernels);
   Queries queries;
   for (std::size_t first = 0; first < rays.size(); first += rays_a_turn) {
@@ -226,11 +256,7 @@ void ExactScene::trace_all(std::span<const Ray> rays, RootsWanted wanted, const 
       if (!turn.line(k).empty) queries[k].emplace(now[k], turn.line(k), wanted);
     }
     trace_turn(std::span(queries).first(now.size()), space);
-    for (std::size_t k = 0; k < now.size(); ++k) {
-      // A search that got no memory has decided nothing; this becomes the call's Status.
-      if (queries[k] && queries[k]->overflow) throw std::bad_alloc();
-      done(first + k, turn.is_valid(k), queries[k]);
-    }
+    for (std::size_t k = 0; k < now.size(); ++k) done(first + k, turn.is_valid(k), queries[k]);
   }
 }
 
@@ -244,9 +270,8 @@ void ExactScene::closest_piece(std::span<const Ray> rays, std::span<Hit> hits) c
 }
 
 void ExactScene::occluded_piece(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const {
-  trace_all(rays, RootsWanted::any, [&](std::size_t k, bool, const std::optional<RayQuery>& query) {
-    occluded[k] = query && query->found;
-  });
+  trace_all(rays, RootsWanted::any,
+            [&](std::size_t k, bool, const std::optional<RayQuery>& query) { occluded[k] = query && query->found; });
 }
 
 void ExactScene::trace(RayQuery& query) const {

@@ -41,9 +41,11 @@ kernel::RayProbe probe_of(const RayQuery& query) {
           false};
 }
 
+float probe_far(const RayQuery& query) { return narrow(std::min(query.far, 8.0) + probe_pad); }
+
 void LeafTracer::search(unsigned leaf_index, kernel::RayProbe& probe, RayQuery& query, SearchSpace& space) const {
   const Leaf& leaf = nets->leaves()[leaf_index];
-  probe.far = narrow(std::min(query.far, 8.0) + probe_pad);
+  probe.far = probe_far(query);
   ++query.steps;
   if (query.line.spawn > 0) query.origin = this;
   if (decide(leaf, leaf_index, probe, query)) return;

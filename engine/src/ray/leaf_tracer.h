@@ -11,6 +11,8 @@ namespace tessera {
 
 /// The ray of a query as kernels take it.
 kernel::RayProbe probe_of(const RayQuery& query);
+/// Its end, which comes nearer with each root.
+float probe_far(const RayQuery& query);
 
 /// Refers to what it is made of. Const calls from any number of threads, each with a search space of its own.
 struct LeafTracer final : OriginTest {

@@ -58,7 +58,7 @@ struct RayQuery {
   const Ray& ray;
   const RayLine& line;
   RootsWanted wanted;
-  double near, far;  ///< roots outside are of no use; far shrinks to the closest so far
+  double near, far;         ///< roots outside are of no use; far shrinks to the closest so far
   double unsure = no_part;  ///< least `from` of the roots so far
   bool found = false;
   std::uint32_t steps = 0;             ///< leaves looked at and parts of them searched
