@@ -35,12 +35,14 @@ struct alignas(16) RayProbe {
   bool any;  ///< the first root that is proven will do
 };
 
-/// The rays of several probes side by side.
+/// The rays of several probes side by side, and what is found of each.
 struct alignas(64) RayPacket {
   static constexpr int size = 16;
+  static constexpr float nothing = 0, root = 1, undecided = 2;
   float origin[3][size], direction[3][size];
   float near[size], far[size];
-  float touches[size];  ///< what is found out
+  float state[size];  ///< nothing; the one root that follows, as RayRoot has it; or not known
+  float u[size], v[size], s[size], radius_u[size], radius_v[size], s_error[size];
 };
 
 /// One root and no other in u +- radius_u, v +- radius_v, inside the piece; s to s_error.
@@ -89,12 +91,41 @@ struct alignas(64) RayLines {
   double plain[size];
 };
 
-struct RayKernels {
-  /// Null where the machine has no fused multiply-add.
+/// Roots of a patch to be polished on rays side by side: control points x y z x y z .., `[i][j]`; lines and points in the
+/// coordinates scale (p - centre). Roots are looked for inside [u0, u1] x [v0, v1].
+struct PolishJob {
+  static constexpr int most_steps = 6;
+  static constexpr double linear = 1e-9;  ///< steps up to that leave a square of it
+  const double *points, *weights;  ///< no weights of a polynomial patch
+  int degree_u, degree_v;
+  double centre[3], scale;
+  double u0, u1, v0, v1;
+};
+struct alignas(64) PolishedRays {
+  static constexpr int size = RayPacket::size;
+  static constexpr double idle = 0, asked = 1, found = 2, failed = 3;
+  double start[3][size], direction[3][size], across[2][3][size];  ///< of the lines
+  double state[size];                                             ///< `asked`, then `found` or `failed`; others stay
+  double u[size], v[size], reach_u[size], reach_v[size];          ///< begin, and leave it by no more
+  double root_u[size], root_v[size], s[size];                     ///< where found
+  double position[3][size], du[3][size], dv[3][size];
+};
+
+/// Rays side by side. Each has the numbers that it has alone.
+struct RayPacketKernels {
   void (*lines)(const RayBundle& rays, const RayRoom& room, RayLines& lines);
-  /// Sets `touches` to 0 where the ray passes the piece's box by, so that it has no root there, else to 1. Of rays whose bits
-  /// are set in `lanes`, and others. Null where vectors are too short for that.
-  void (*rays_that_touch)(const RayLeaf& leaf, RayPacket& rays, unsigned lanes);
+  /// As those of RayKernels, for the rays whose bits are set in `lanes`, as far as one rectangle decides; of other rays
+  /// `state` means nothing.
+  void (*trace_polynomial_leaf)(const RayLeaf& leaf, RayPacket& rays, unsigned lanes);
+  void (*trace_rational_leaf)(const RayLeaf& leaf, RayPacket& rays, unsigned lanes);
+  /// Of bicubic patches, and of rational ones of degrees up to three.
+  void (*polish_cubic)(const PolishJob& job, PolishedRays& rays, unsigned lanes);
+  void (*polish_low_rational)(const PolishJob& job, PolishedRays& rays, unsigned lanes);
+};
+
+struct RayKernels {
+  /// Null where vectors are too short to pay, or have no fused multiply-add.
+  const RayPacketKernels* packets;
   /// All roots of the piece on the ray with s in [near, far] (and perhaps others a rounding outside of that), or the first
   /// that is met where any will do. False: undecided, whatever `roots` holds.
   bool (*trace_polynomial_leaf)(const RayLeaf& leaf, const RayProbe& ray, RayRoots& roots);

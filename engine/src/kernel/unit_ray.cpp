@@ -13,18 +13,18 @@ namespace {
 #if !defined(__SSE2__) || defined(__FMA__)
 #include "kernel/ray_line_kernel.inl.h"
 #include "kernel/ray_packet_kernel.inl.h"
-constexpr auto lines = ray_lines;
-constexpr auto packet = rays_that_touch;
+#include "kernel/ray_polish_kernel.inl.h"
+constexpr RayPacketKernels packet_kernels{ray_lines, trace_packet<false>, trace_packet<true>,
+                                          polish_roots<false>, polish_roots<true>};
+constexpr const RayPacketKernels* packets = &packet_kernels;
 #else
-constexpr decltype(RayKernels::lines) lines = nullptr;
-constexpr decltype(RayKernels::rays_that_touch) packet = nullptr;  // four at a time are no quicker than each
+constexpr const RayPacketKernels* packets = nullptr;
 #endif
 
 }  // namespace
 
 extern const RayKernels ray_kernels = {
-    lines,
-    packet,
+    packets,
     trace_polynomial_leaf,
     trace_rational_leaf,
     cubic_point,

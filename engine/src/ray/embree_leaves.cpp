@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -19,30 +20,14 @@ namespace {
 struct Call {
   EmbreeContext context;
   SearchSpace* space;
-  std::array<RayQuery*, EmbreeLeaves::packet> queries;  ///< null of idle lanes
-  std::array<float, EmbreeLeaves::packet> enter;        ///< s where Embree's ray begins
-  std::array<kernel::RayProbe, EmbreeLeaves::packet> probes;
-  kernel::RayPacket packet;  ///< the same side by side, of calls with more than one ray
+  std::array<float, EmbreeLeaves::packet> enter;  ///< s where Embree's ray begins
+  QueryPacket packet;                             ///< a single ray is in the first lane
 };
-static_assert(EmbreeLeaves::packet == kernel::RayPacket::size);
+static_assert(EmbreeLeaves::packet == QueryPacket::size);
 
 /// Embree 3 takes 16 rays by eights or fours where the machine has no wider vectors, and a part without a ray of ours comes
 /// to the callbacks with lanes that it calls valid.
-bool is_idle(const Call& call, unsigned ray) { return call.queries[ray] == nullptr; }
-
-void enter(Call& call, unsigned ray, RayQuery& query) {
-  call.queries[ray] = &query;
-  call.enter[ray] = static_cast<float>(query.line.enter);
-  call.probes[ray] = probe_of(query);
-}
-
-void put_in_packet(Call& call, unsigned ray) {
-  const kernel::RayProbe& probe = call.probes[ray];
-  for (std::size_t i = 0; i < 3; ++i) {
-    call.packet.origin[i][ray] = probe.origin[i], call.packet.direction[i][ray] = probe.direction[i];
-  }
-  call.packet.near[ray] = probe.near, call.packet.far[ray] = probe_far(*call.queries[ray]);
-}
+bool is_idle(const Call& call, unsigned ray) { return call.packet.queries[ray] == nullptr; }
 
 }  // namespace
 
@@ -58,23 +43,23 @@ struct EmbreeLeaves::State {
     *arguments->bounds_o = padded(state.tracer.nets->boxes()[arguments->primID]);
   }
 
-  /// Searches a leaf for the valid rays of a call, then does `then` with each. Of a packet Embree names more rays than meet
-  /// the leaf's box; which do is found for all of them at once.
+  /// Searches a leaf for the valid rays of a call, then does `then(k, ray, query)` with each.
   template <class IdOf, class Then>
   void search(unsigned leaf, Call& call, unsigned count, const int* valid, const IdOf& id_of, const Then& then) const {
     unsigned lanes = 0;
     for (unsigned k = 0; k < count; ++k) {
       if (valid[k] != 0 && !is_idle(call, id_of(k))) lanes |= 1u << id_of(k);
     }
-    const bool several = count > 1 && tracer.kernels->rays_that_touch != nullptr;
-    if (several) tracer.kernels->rays_that_touch(tracer.nets->local(leaf), call.packet, lanes);
+    if (lanes == 0) return;
+    if (std::has_single_bit(lanes)) {
+      const auto ray = static_cast<std::size_t>(std::countr_zero(lanes));
+      tracer.search(leaf, call.packet.probes[ray], *call.packet.queries[ray], *call.space);
+    } else {
+      tracer.search(leaf, call.packet, lanes, *call.space);
+    }
     for (unsigned k = 0; k < count; ++k) {
       const unsigned ray = id_of(k);
-      if ((lanes >> ray & 1u) == 0 || (several && !(call.packet.touches[ray] > 0))) continue;
-      RayQuery& query = *call.queries[ray];
-      tracer.search(leaf, call.probes[ray], query, *call.space);
-      if (several) call.packet.far[ray] = probe_far(query);
-      then(k, ray, query);
+      if (lanes >> ray & 1u) then(k, ray, *call.packet.queries[ray]);
     }
   }
 
@@ -163,7 +148,9 @@ void EmbreeLeaves::trace(RayQuery& query, SearchSpace& space) const {
   call.context = embree_context();
   call.space = &space;
   RTCRayHit hit{};
-  enter(call, 0, query);
+  call.enter[0] = static_cast<float>(query.line.enter);
+  call.packet.queries[0] = &query;
+  call.packet.probes[0] = probe_of(query);
   hit.ray = embree_ray(query.line);
   if (query.wanted == RootsWanted::any) {
     occluded(state_->scene.get(), call.context, Coherence::incoherent, hit.ray);
@@ -184,10 +171,10 @@ void EmbreeLeaves::trace(std::span<RayQuery* const> queries, SearchSpace& space)
     const std::size_t which = k < queries.size() ? k : 0;  // idle lanes repeat the first
     valid[k] = k < queries.size() ? -1 : 0;
     if (k < queries.size()) {
-      enter(call, k, *queries[k]);
-      put_in_packet(call, k);
+      call.enter[k] = static_cast<float>(queries[k]->line.enter);
+      call.packet.set(k, *queries[k]);
     } else {
-      call.queries[k] = nullptr;
+      call.packet.queries[k] = nullptr;
     }
     const RTCRay ray = embree_ray(queries[which]->line);
     hit.ray.org_x[k] = ray.org_x, hit.ray.org_y[k] = ray.org_y, hit.ray.org_z[k] = ray.org_z;

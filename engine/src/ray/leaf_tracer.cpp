@@ -30,6 +30,13 @@ bool lies_between(const kernel::RayRoot& root, const RayLine& line) {
   return s - off > line.near && s + off < line.far;
 }
 
+kernel::RayRoot root_of(const kernel::RayPacket& rays, std::size_t lane) {
+  return {rays.u[lane], rays.v[lane], rays.s[lane], rays.radius_u[lane], rays.radius_v[lane], rays.s_error[lane]};
+}
+
+/// Of a kernel's ray.
+float probe_far(const RayQuery& query) { return narrow(std::min(query.far, 8.0) + probe_pad); }
+
 }  // namespace
 
 kernel::RayProbe probe_of(const RayQuery& query) {
@@ -41,7 +48,19 @@ kernel::RayProbe probe_of(const RayQuery& query) {
           false};
 }
 
-float probe_far(const RayQuery& query) { return narrow(std::min(query.far, 8.0) + probe_pad); }
+void QueryPacket::set(std::size_t lane, RayQuery& query) {
+  queries[lane] = &query;
+  const kernel::RayProbe& probe = probes[lane] = probe_of(query);
+  const RayLine& line = query.line;
+  for (std::size_t i = 0; i < 3; ++i)
+    rays.origin[i][lane] = probe.origin[i], rays.direction[i][lane] = probe.direction[i];
+  rays.near[lane] = probe.near;
+  const auto put = [&](const Vec3& v, double(&to)[3][size]) {
+    to[0][lane] = v.x, to[1][lane] = v.y, to[2][lane] = v.z;
+  };
+  put(line.start, polished.start), put(line.direction, polished.direction);
+  put(line.across[0], polished.across[0]), put(line.across[1], polished.across[1]);
+}
 
 void LeafTracer::search(unsigned leaf_index, kernel::RayProbe& probe, RayQuery& query, SearchSpace& space) const {
   const Leaf& leaf = nets->leaves()[leaf_index];
@@ -55,6 +74,105 @@ void LeafTracer::search(unsigned leaf_index, kernel::RayProbe& probe, RayQuery& 
   }
   nets->write_net(*set, leaf, space.leaf_net(), space.spare_net());
   search_leaf(leaf, space.leaf_net(), tolerance, space, query);
+}
+
+void LeafTracer::search(unsigned leaf_index, QueryPacket& packet, unsigned lanes, SearchSpace& space) const {
+  unsigned open = kernels->packets == nullptr ? lanes : decide(leaf_index, packet, lanes);
+  for (std::size_t lane = 0; open != 0; ++lane, open >>= 1) {
+    if (open & 1u) search(leaf_index, packet.probes[lane], *packet.queries[lane], space);
+  }
+}
+
+/// What is decided for all at once. Returns the lanes for which it is not.
+unsigned LeafTracer::decide(unsigned leaf_index, QueryPacket& packet, unsigned lanes) const {
+  const Leaf& leaf = nets->leaves()[leaf_index];
+  fetch(set->patch(leaf.patch));
+  for (std::size_t lane = 0; lane < QueryPacket::size; ++lane) {
+    if (lanes >> lane & 1u) packet.rays.far[lane] = probe_far(*packet.queries[lane]);
+  }
+  const kernel::RayPacketKernels& side_by_side = *kernels->packets;
+  (leaf.rational ? side_by_side.trace_rational_leaf : side_by_side.trace_polynomial_leaf)(nets->local(leaf_index),
+                                                                                          packet.rays, lanes);
+  unsigned open = 0, roots = 0;
+  for (std::size_t lane = 0; lane < QueryPacket::size; ++lane) {
+    if ((lanes >> lane & 1u) == 0 || packet.rays.state[lane] == kernel::RayPacket::nothing) continue;
+    RayQuery& query = *packet.queries[lane];
+    const bool has_root = packet.rays.state[lane] == kernel::RayPacket::root && !(query.line.spawn > 0);
+    if (has_root && query.wanted == RootsWanted::any && lies_between(root_of(packet.rays, lane), query.line)) {
+      query.found = true;
+      ++query.steps;
+    } else {
+      (has_root && query.wanted == RootsWanted::closest ? roots : open) |= 1u << lane;
+    }
+  }
+  return roots == 0 ? open : open | take_roots(leaf, packet, roots);
+}
+
+/// Takes the roots of those lanes. Returns the lanes where rounding leaves something to be decided.
+unsigned LeafTracer::take_roots(const Leaf& leaf, QueryPacket& packet, unsigned lanes) const {
+  const BezierPatch& patch = set->patch(leaf.patch);
+  const int least = std::min(leaf.degree_u, leaf.degree_v), most = std::max(leaf.degree_u, leaf.degree_v);
+  if (leaf.rational ? most > 3 : least != 3 || most != 3) return take_each_root(leaf, packet, lanes);
+  const Vec3& centre = nets->frame().centre;
+  const kernel::PolishJob job{.points = &patch.points().data()->x,
+                              .weights = patch.weights().data(),
+                              .degree_u = leaf.degree_u,
+                              .degree_v = leaf.degree_v,
+                              .centre = {centre.x, centre.y, centre.z},
+                              .scale = nets->frame().scale,
+                              .u0 = leaf.u0,
+                              .u1 = leaf.u0 + leaf.du,
+                              .v0 = leaf.v0,
+                              .v1 = leaf.v0 + leaf.dv};
+  kernel::PolishedRays& rays = packet.polished;
+  for (std::size_t lane = 0; lane < QueryPacket::size; ++lane) {
+    rays.state[lane] = lanes >> lane & 1u ? kernel::PolishedRays::asked : kernel::PolishedRays::idle;
+    const RootStart start = start_of(leaf, root_of(packet.rays, lane));
+    rays.u[lane] = start.u, rays.v[lane] = start.v, rays.reach_u[lane] = start.reach_u,
+    rays.reach_v[lane] = start.reach_v;
+  }
+  (leaf.rational ? kernels->packets->polish_low_rational : kernels->packets->polish_cubic)(job, rays, lanes);
+  unsigned open = 0;
+  for (std::size_t lane = 0; lane < QueryPacket::size; ++lane) {
+    if ((lanes >> lane & 1u) == 0) continue;
+    if (rays.state[lane] != kernel::PolishedRays::found) {
+      open |= 1u << lane;
+      continue;
+    }
+    const auto vector = [&](const double(&from)[3][QueryPacket::size]) {
+      return Vec3{from[0][lane], from[1][lane], from[2][lane]};
+    };
+    LeafRoot root;
+    root.patch = leaf.patch;
+    root.u = rays.root_u[lane], root.v = rays.root_v[lane];
+    root.position = vector(rays.position), root.du = vector(rays.du), root.dv = vector(rays.dv);
+    root.has_point = true;
+    root.s = rays.s[lane];
+    root.residual = search_rounding(leaf.degree_u, leaf.degree_v, 0, 0);
+    root.certified = true;
+    RayQuery& query = *packet.queries[lane];
+    ++query.steps;
+    query.take(root);
+  }
+  return open;
+}
+
+/// The same one by one, of patches that the kernels don't take.
+unsigned LeafTracer::take_each_root(const Leaf& leaf, QueryPacket& packet, unsigned lanes) const {
+  unsigned open = 0;
+  for (std::size_t lane = 0; lane < QueryPacket::size; ++lane) {
+    if ((lanes >> lane & 1u) == 0) continue;
+    RayQuery& query = *packet.queries[lane];
+    LeafRoot root;
+    if (polish(set->patch(leaf.patch), nets->frame(), leaf, *kernels, query.line, root_of(packet.rays, lane), false,
+               root)) {
+      ++query.steps;
+      query.take(root);
+    } else {
+      open |= 1u << lane;
+    }
+  }
+  return open;
 }
 
 OriginRoot LeafTracer::judge(const RayLine& line, const LeafRoot& root) const {

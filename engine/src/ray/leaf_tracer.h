@@ -1,6 +1,9 @@
 #pragma once
 // One ray against one piece of a patch: the kernels in float first, then the search in double where they prove nothing.
 
+#include <array>
+#include <cstddef>
+
 #include "kernel/ray_kernels.h"
 #include "ray/leaf_nets.h"
 #include "ray/leaf_search.h"
@@ -11,8 +14,18 @@ namespace tessera {
 
 /// The ray of a query as kernels take it.
 kernel::RayProbe probe_of(const RayQuery& query);
-/// Its end, which comes nearer with each root.
-float probe_far(const RayQuery& query);
+
+/// The queries of rays that are traced together, all for the closest or all for any root, and what kernels are told of them.
+struct QueryPacket {
+  static constexpr std::size_t size = kernel::RayPacket::size;
+
+  std::array<RayQuery*, size> queries;  ///< null of idle lanes
+  std::array<kernel::RayProbe, size> probes;
+  kernel::RayPacket rays;
+  kernel::PolishedRays polished;
+
+  void set(std::size_t lane, RayQuery& query);
+};
 
 /// Refers to what it is made of. Const calls from any number of threads, each with a search space of its own.
 struct LeafTracer final : OriginTest {
@@ -24,10 +37,16 @@ struct LeafTracer final : OriginTest {
   /// Adds to the query what it wants of a leaf. `probe`: of the query, used again from leaf to leaf.
   void search(unsigned leaf, kernel::RayProbe& probe, RayQuery& query, SearchSpace& space) const;
 
+  /// The same for the queries of a packet whose bits are set in `lanes`, each as if alone.
+  void search(unsigned leaf, QueryPacket& packet, unsigned lanes, SearchSpace& space) const;
+
   /// spawn_root.h
   OriginRoot judge(const RayLine& line, const LeafRoot& root) const override;
 
  private:
+  unsigned decide(unsigned leaf_index, QueryPacket& packet, unsigned lanes) const;
+  unsigned take_roots(const Leaf& leaf, QueryPacket& packet, unsigned lanes) const;
+  unsigned take_each_root(const Leaf& leaf, QueryPacket& packet, unsigned lanes) const;
   bool decide(const Leaf& leaf, unsigned leaf_index, kernel::RayProbe& probe, RayQuery& query) const;
 };
 

@@ -11,8 +11,7 @@
 namespace tessera {
 namespace {
 
-constexpr int most_steps = 6;
-constexpr double linear = 1e-9;  // steps up to that leave a square of it
+using kernel::PolishJob;
 
 Vec3 triple(const double* x) { return {x[0], x[1], x[2]}; }
 
@@ -39,13 +38,9 @@ FirstOrder scene_point(const BezierPatch& patch, const SceneFrame& frame, const 
 
 bool polish(const BezierPatch& patch, const SceneFrame& frame, const Leaf& leaf, const kernel::RayKernels& kernels,
             const RayLine& line, const kernel::RayRoot& proven, bool with_radius, LeafRoot& root) {
-  const double start_u = leaf.u0 + (0.5 + static_cast<double>(proven.u)) * leaf.du,
-               start_v = leaf.v0 + (0.5 + static_cast<double>(proven.v)) * leaf.dv;
-  // Twice as far as it can be.
-  const double reach_u = 2 * static_cast<double>(proven.radius_u) * leaf.du,
-               reach_v = 2 * static_cast<double>(proven.radius_v) * leaf.dv;
+  const auto [start_u, start_v, reach_u, reach_v] = start_of(leaf, proven);
   double u = start_u, v = start_v;
-  for (int step = 0; step < most_steps; ++step) {
+  for (int step = 0; step < PolishJob::most_steps; ++step) {
     const FirstOrder at = scene_point(patch, frame, kernels, u, v);
     const NetValue f = seen(at, line);
     const double inverse = 1 / (f.xu * f.yv - f.xv * f.yu);
@@ -55,7 +50,7 @@ bool polish(const BezierPatch& patch, const SceneFrame& frame, const Leaf& leaf,
     if (!(std::abs(u - start_u) <= reach_u && std::abs(v - start_v) <= reach_v && u >= leaf.u0 &&
           u <= leaf.u0 + leaf.du && v >= leaf.v0 && v <= leaf.v0 + leaf.dv))
       return false;
-    if (std::max(std::abs(du), std::abs(dv)) > linear) continue;
+    if (std::max(std::abs(du), std::abs(dv)) > PolishJob::linear) continue;
     root.patch = leaf.patch;
     root.u = u, root.v = v;
     root.position = at.position + (du * at.du + dv * at.dv);

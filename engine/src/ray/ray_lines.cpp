@@ -20,7 +20,7 @@ RayTurn::RayTurn(const SceneFrame& frame, const Box3& box, const kernel::RayKern
 }
 
 void RayTurn::set(std::span<const Ray> rays) {
-  if (kernels_.lines == nullptr) {
+  if (kernels_.packets == nullptr) {
     for (std::size_t k = 0; k < rays.size(); ++k) set_one(rays[k], k);
     return;
   }
@@ -30,7 +30,7 @@ void RayTurn::set(std::span<const Ray> rays) {
     copy(ray.direction, bundle_.direction, k);
     bundle_.near[k] = ray.tnear, bundle_.far[k] = ray.tfar;
   }
-  kernels_.lines(bundle_, room_, made_);
+  kernels_.packets->lines(bundle_, room_, made_);
   for (std::size_t k = 0; k < rays.size(); ++k) {
     const double spawn = rays[k].spawn_offset;
     if (!(made_.plain[k] > 0 && spawn == 0)) {
