@@ -25,7 +25,7 @@ fail() {
 # NAME|what it compares. Each is the source bench/peers/NAME.cpp.
 comparisons=(
   "grid_evaluation|a bicubic B-spline surface at a grid: OpenSubdiv (libosd-dev), OpenCASCADE, SISL (libsisl-dev)"
-  "ray_casting|a camera's rays on a bicubic surface: Embree's triangles, grids, subdivision; SISL; POV-Ray (povray)"
+  "ray_casting|a camera's rays on a bicubic surface: Embree's triangles, grids, subdivision; OpenCASCADE; SISL; POV-Ray (povray)"
   "occt_extraction|Bezier extraction of a 200 x 200 bicubic B-spline surface: OpenCASCADE (libocct-modeling-data-dev)"
   "occt_mesh|meshes of equal error of the same surfaces: OpenCASCADE (libocct-modeling-algorithms-dev)"
 )

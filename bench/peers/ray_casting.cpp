@@ -23,7 +23,10 @@ using test::value_of;
 constexpr int spans = 16, pixels = 512;
 
 constexpr std::pair<const char*, const char*> packages[] = {
-    {"Embree", "libembree-dev"}, {"SISL", "libsisl-dev"}, {"POV-Ray", "povray"}};
+    {"Embree", "libembree-dev"},
+    {"SISL", "libsisl-dev"},
+    {"OpenCASCADE", "libocct-modeling-algorithms-dev"},
+    {"POV-Ray", "povray"}};
 
 /// Waves of height 1 over about 16 x 16.
 std::vector<Vec3> net_of() {
@@ -79,9 +82,12 @@ Difference difference(const RayTask& task, const RayRun& run, const RayRun& trut
   return {wrong / rays, apart[apart.size() / 2], apart.back()};
 }
 
-/// SISL at double's precision, facets as good as facets are, silhouettes apart.
+/// Whether a program meets the surface itself, in double.
+bool is_exact(const RayRun& run) { return run.program.starts_with("SISL") || run.program.starts_with("OpenCASCADE"); }
+
+/// Exact ones at double's precision, facets as good as facets are, silhouettes apart.
 bool is_acceptable(const Difference& d, const RayRun& run) {
-  if (run.program.starts_with("SISL")) return d.wrong <= 0.02 && d.median <= 1e-9;
+  if (is_exact(run)) return d.wrong <= 0.02 && d.median <= 1e-9;
   return d.wrong <= 0.01 && d.median <= 1e-3;
 }
 
@@ -100,7 +106,7 @@ void print(const RayTask& task, const std::vector<RayRun>& runs, const std::vect
     for (std::size_t mine = 0; mine < own && k >= own; ++mine) {
       std::printf(" %8.3g", rate(mine) / rate(k));
       // Facets alone beside those who cast at facets; the exact mode beside who finds all roots.
-      const bool exact = runs[k].program.starts_with("SISL"), main = exact ? mine == 0 : mine == 2;
+      const bool main = is_exact(runs[k]) ? mine == 0 : mine == 2;
       add_result({"closest hits of camera rays", runs[k].program, runs[k].way, rate(k), runs[mine].way,
                   rate(mine) / rate(k), main});
     }

@@ -9,9 +9,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <map>
 #include <memory>
-#include <random>
 #include <string>
 #include <thread>
 #include <vector>
@@ -19,100 +17,24 @@
 #include "rival.h"
 #include "stopwatch.h"
 #include "suite.h"
-#include "support/random_patches.h"
 #include "support/reference_rays.h"
-#include "support/torus.h"
 #include "tessera/ray_scene.h"
 #include "timing.h"
+#include "torus_rays.h"
 
 namespace {
 
 using namespace tessera;
+using bench::ray_count;
 using bench::Rival;
 using bench::Stopwatch;
+using bench::TorusRays;
 
-constexpr std::size_t ray_count = 65536;
 constexpr int coarse = 12;                // cells a patch and direction
 constexpr int fine = 54;                  // on 3,600 patches: t to 1e-6 of the size
 constexpr double share_differing = 0.02;  // of rays of which facets and surface say otherwise whether they hit
 
-double uniform(std::mt19937_64& random, double from, double to) {
-  return from + (to - from) * static_cast<double>(random() >> 11) * 0x1p-53;
-}
-
-Vec3 in_ball(std::mt19937_64& random) {
-  for (;;) {
-    const double x = uniform(random, -1, 1), y = uniform(random, -1, 1), z = uniform(random, -1, 1);
-    if (x * x + y * y + z * z <= 1 && x * x + y * y + z * z > 1e-4) return {x, y, z};
-  }
-}
-
-Ray from_to(const Vec3& origin, const Vec3& direction) {
-  Ray ray;
-  ray.origin = origin, ray.direction = direction;
-  return ray;
-}
-
-/// From one eye in rows of pixels, four fifths of them at the torus.
-std::vector<Ray> coherent_rays() {
-  const Vec3 eye{1.3, -1.6, 1.5}, back = normalized(eye), right = normalized(cross({0, 0, 1}, back)),
-                                  up = cross(back, right);
-  std::vector<Ray> rays;
-  for (int y = 0; y < 256; ++y) {
-    for (int x = 0; x < 256; ++x) {
-      const double across = (x + 0.5) / 256 - 0.5, above = 0.5 - (y + 0.5) / 256;
-      rays.push_back(from_to(eye, normalized(-back + 1.1 * across * right + 1.0 * above * up)));
-    }
-  }
-  return rays;
-}
-
-std::vector<Ray> incoherent_rays() {
-  std::mt19937_64 random(7);
-  std::vector<Ray> rays;
-  for (std::size_t k = 0; k < ray_count; ++k) {
-    const Vec3 origin = 1.7 * normalized(in_ball(random)), to = in_ball(random);
-    rays.push_back(from_to(origin, normalized(Vec3{1.3 * to.x, 1.3 * to.y, 0.5 * to.z} - origin)));
-  }
-  return rays;
-}
-
-/// Past a point of the surface along a tangent, 3e-5 to 1e-2 of the size above or below.
-std::vector<Ray> grazing_rays(const std::vector<BezierPatch>& patches) {
-  std::mt19937_64 random(8);
-  std::vector<Ray> rays;
-  for (std::size_t k = 0; k < ray_count; ++k) {
-    const SurfaceJet at =
-        evaluate_jet(patches[random() % patches.size()], uniform(random, 0, 1), uniform(random, 0, 1));
-    const Vec3 normal = normalized(cross(at.du, at.dv)), tangent = normalized(cross(normal, in_ball(random)));
-    const double off = std::pow(10, uniform(random, -4, -1.5)) * (random() % 2 == 0 ? 1 : -1);
-    rays.push_back(from_to(at.position + off * normal - 1.5 * tangent, tangent));
-  }
-  return rays;
-}
-
-/// A torus, and rays at it.
-struct Workload {
-  Workload(std::size_t side, bool rational)
-      : torus(side), patches(torus.patches(rational)), set(make_set(patches)), is_rational(rational) {
-    rays["coherent"] = coherent_rays();
-    rays["incoherent"] = incoherent_rays();
-    rays["grazing"] = grazing_rays(patches);
-  }
-  static PatchSet make_set(const std::vector<BezierPatch>& patches) {
-    PatchSetOptions options;
-    options.origin = Vec3{};  // triangles and rays in the same coordinates
-    return test::value_of(PatchSet::from(patches, options));
-  }
-
-  test::Torus torus;
-  std::vector<BezierPatch> patches;
-  PatchSet set;
-  bool is_rational;
-  std::map<std::string, std::vector<Ray>> rays;
-};
-
-RayScene exact_scene(const Workload& work, Isa isa) {
+RayScene exact_scene(const TorusRays& work, Isa isa) {
   RaySceneOptions options;
   options.mode = RayMode::exact;
   options.isa = isa;
@@ -121,11 +43,11 @@ RayScene exact_scene(const Workload& work, Isa isa) {
 
 /// What the cases of one set and instruction set share. One stands at a time: triangles are large.
 struct Scenes {
-  Scenes(const Workload& of, Isa on, int cells)
+  Scenes(const TorusRays& of, Isa on, int cells)
       : work(of), isa(on), quads(cells), exact(exact_scene(of, on)), triangles(Rival::triangles(of.set, cells, on)) {
     if (!of.is_rational) subdivision.emplace(Rival::subdivision(of.torus, cells, on));
   }
-  const Workload& work;
+  const TorusRays& work;
   Isa isa;
   int quads;
   RayScene exact;
@@ -140,12 +62,12 @@ struct Subject {
 };
 
 const Scenes& scenes_of(const Subject& subject, Isa isa, int quads) {
-  static std::unique_ptr<Workload> work;
+  static std::unique_ptr<TorusRays> work;
   static std::unique_ptr<Scenes> scenes;
   static std::string which;
   if (which != subject.name) {
     scenes.reset();
-    work = std::make_unique<Workload>(subject.side, subject.rational);
+    work = std::make_unique<TorusRays>(subject.side, subject.rational);
     which = subject.name;
   }
   if (!scenes || scenes->isa != isa || scenes->quads != quads) {
@@ -240,7 +162,7 @@ void occluded(benchmark::State& state, const Scenes& scenes, const std::vector<R
 
 /// Pieces and BVH anew, against the triangles' BVH alone, whose vertices stand ready.
 void build(benchmark::State& state, const Scenes& shared, int threads) {
-  const Workload& work = shared.work;
+  const TorusRays& work = shared.work;
   RayScene exact = exact_scene(work, shared.isa);
   Rival triangles = Rival::triangles(work.set, shared.quads, shared.isa);
   Stopwatch watch;

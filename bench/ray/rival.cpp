@@ -74,14 +74,21 @@ Rival::Rival(Isa isa) : state_(new State) {
       state_.get());
 }
 
+/// A geometry of the points of quads x quads cells a patch.
+void Rival::evaluate(const PatchSet& set, int quads, Isa isa, RTCGeometryType type) {
+  const UniformGrid grid = test::value_of(UniformGrid::make(set, quads, quads, isa));
+  state_->positions.resize(3 * grid.capacity() + 1);
+  const auto views = View3<float>::interleaved(std::span(state_->positions).first(3 * grid.capacity()));
+  if (!grid.run(set.impl(), GridViews<float>{.position = views, .du = {}, .dv = {}, .normal = {}}, {}).ok())
+    std::abort();
+  state_->geometry = rtcNewGeometry(state_->device, type);
+  rtcSetSharedGeometryBuffer(state_->geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, state_->positions.data(),
+                             0, 3 * sizeof(float), grid.capacity());
+}
+
 Rival Rival::triangles(const PatchSet& set, int quads, Isa isa) {
   Rival rival(isa);
   State& state = *rival.state_;
-  const UniformGrid grid = test::value_of(UniformGrid::make(set, quads, quads, isa));
-  state.positions.resize(3 * grid.capacity() + 1);
-  const auto views = View3<float>::interleaved(std::span(state.positions).first(3 * grid.capacity()));
-  if (!grid.run(set.impl(), GridViews<float>{.position = views, .du = {}, .dv = {}, .normal = {}}, {}).ok())
-    std::abort();
   const auto side = static_cast<unsigned>(quads) + 1, per_patch = side * side;
   for (unsigned patch = 0; patch < set.patch_count(); ++patch) {
     for (unsigned i = 0; i + 1 < side; ++i) {
@@ -91,11 +98,21 @@ Rival Rival::triangles(const PatchSet& set, int quads, Isa isa) {
       }
     }
   }
-  state.geometry = rtcNewGeometry(state.device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  rtcSetSharedGeometryBuffer(state.geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, state.positions.data(), 0,
-                             3 * sizeof(float), grid.capacity());
+  rival.evaluate(set, quads, isa, RTC_GEOMETRY_TYPE_TRIANGLE);
   rtcSetSharedGeometryBuffer(state.geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, state.indices.data(), 0,
                              3 * sizeof(unsigned), state.indices.size() / 3);
+  rival.build();
+  return rival;
+}
+
+Rival Rival::grids(const PatchSet& set, int quads, Isa isa) {
+  Rival rival(isa);
+  rival.evaluate(set, quads, isa, RTC_GEOMETRY_TYPE_GRID);
+  auto* out = static_cast<RTCGrid*>(rtcSetNewGeometryBuffer(rival.state_->geometry, RTC_BUFFER_TYPE_GRID, 0,
+                                                            RTC_FORMAT_GRID, sizeof(RTCGrid), set.patch_count()));
+  const auto side = static_cast<unsigned>(quads) + 1;
+  for (unsigned patch = 0; patch < set.patch_count(); ++patch)
+    out[patch] = {patch * side * side, side, static_cast<unsigned short>(side), static_cast<unsigned short>(side)};
   rival.build();
   return rival;
 }

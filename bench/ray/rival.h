@@ -10,10 +10,10 @@
 #include <string>
 #include <type_traits>
 
+#include "support/torus.h"
 #include "tessera/isa.h"
 #include "tessera/patch_set.h"
 #include "tessera/ray_scene.h"
-#include "support/torus.h"
 
 namespace tessera::bench {
 
@@ -21,6 +21,8 @@ class Rival {
  public:
   /// Two triangles for each of quads x quads cells a patch.
   static Rival triangles(const PatchSet& set, int quads, Isa isa);
+  /// Embree's grids of as many cells.
+  static Rival grids(const PatchSet& set, int quads, Isa isa);
   /// Catmull and Clark's surface of the torus' control points, which is the B-spline surface; `rate` cells a patch.
   static Rival subdivision(const test::Torus& torus, int rate, Isa isa);
 
@@ -40,6 +42,7 @@ class Rival {
     void operator()(State* state) const;
   };
   explicit Rival(Isa isa);
+  void evaluate(const PatchSet& set, int quads, Isa isa, RTCGeometryType type);
   std::unique_ptr<State, Release> state_;
 };
 

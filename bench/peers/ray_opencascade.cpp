@@ -1,0 +1,81 @@
+// The rays by OpenCASCADE's IntCurvesFace_Intersector, which meets a face's surface itself: all hits of a line, of which
+// the first is taken. Slow, so that one ray of many is cast.
+
+#include <BRepBuilderAPI_MakeFace.hxx>
+#include <Geom_BSplineSurface.hxx>
+#include <IntCurvesFace_Intersector.hxx>
+#include <Standard_Version.hxx>
+#include <TColStd_Array1OfInteger.hxx>
+#include <TColStd_Array1OfReal.hxx>
+#include <TColgp_Array2OfPnt.hxx>
+#include <TopoDS_Face.hxx>
+#include <gp_Lin.hxx>
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+
+#include "peers/interleaved.h"
+#include "peers/ray_task.h"
+
+namespace tessera::bench {
+namespace {
+
+constexpr std::size_t step = 211;  // a prime: not one column of pixels
+
+class Casting {
+ public:
+  explicit Casting(const RayTask& task) : task_(task), intersector_(face_of(task), 1e-7), t_(task.camera.rays() / step + 1) {}
+
+  double run() {
+    return seconds_of([&] {
+      for (std::size_t k = 0; k < t_.size() && k * step < task_.camera.rays(); ++k) t_[k] = closest(k * step);
+    });
+  }
+  double t(std::size_t ray) const { return t_[ray / step]; }
+
+ private:
+  static TopoDS_Face face_of(const RayTask& task) {
+    const int count = task.spans + 7;
+    TColStd_Array1OfReal knots(1, count);
+    TColStd_Array1OfInteger once(1, count);
+    for (int k = 1; k <= count; ++k) knots.SetValue(k, k - 4), once.SetValue(k, 1);
+    TColgp_Array2OfPnt poles(1, task.side(), 1, task.side());
+    for (int i = 0; i < task.side(); ++i)
+      for (int j = 0; j < task.side(); ++j) {
+        const Vec3& p = task.net[static_cast<std::size_t>(i * task.side() + j)];
+        poles.SetValue(i + 1, j + 1, gp_Pnt(p.x, p.y, p.z));
+      }
+    const Handle(Geom_BSplineSurface) surface = new Geom_BSplineSurface(poles, knots, knots, once, once, 3, 3);
+    return BRepBuilderAPI_MakeFace(surface, 0.0, task.spans, 0.0, task.spans, 1e-7).Face();
+  }
+
+  /// Its parameters along the line are lengths.
+  double closest(std::size_t pixel) {
+    const Ray ray = task_.camera.ray(pixel);
+    const Vec3 &o = ray.origin, &d = ray.direction;
+    intersector_.Perform(gp_Lin(gp_Pnt(o.x, o.y, o.z), gp_Dir(d.x, d.y, d.z)), 0.0, 4 * task_.size);
+    double nearest = std::numeric_limits<double>::infinity();
+    if (!intersector_.IsDone()) return nearest;
+    for (int k = 1; k <= intersector_.NbPnt(); ++k) nearest = std::min(nearest, intersector_.WParameter(k));
+    return nearest / length(d);
+  }
+
+  const RayTask& task_;
+  IntCurvesFace_Intersector intersector_;
+  std::vector<double> t_;
+};
+
+const bool registered = [] {
+  ray_peers().push_back({"OpenCASCADE", [](const RayTask& task) {
+                           const auto casting = std::make_shared<Casting>(task);
+                           return std::vector<RayRun>{{"OpenCASCADE " OCC_VERSION_COMPLETE,
+                                                       "IntCurvesFace_Intersector", step,
+                                                       [=] { return casting->run(); },
+                                                       [=](std::size_t ray) { return casting->t(ray); }}};
+                         }});
+  return true;
+}();
+
+}  // namespace
+}  // namespace tessera::bench
