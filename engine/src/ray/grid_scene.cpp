@@ -8,9 +8,11 @@
 
 #include "base/aligned.h"
 #include "eval/uniform_grid.h"
+#include "kernel/kernel_table.h"
 #include "ray/adjacency.h"
 #include "ray/embree_scene.h"
 #include "ray/facet_deviation.h"
+#include "ray/packet_refine.h"
 #include "ray/ray_scene_impl.h"
 #include "ray/ray_segment.h"
 #include "ray/refine.h"
@@ -42,8 +44,12 @@ bool coherent(std::span<const RaySegment> segments, double size) {
 
 class GridScene final : public PatchScene {
  public:
-  GridScene(const PatchSet& set, UniformGrid grid, EmbreeScene scene, const RaySceneOptions& options)
-      : PatchScene(set), grid_(std::move(grid)), scene_(std::move(scene)), options_(options) {}
+  GridScene(const PatchSet& set, UniformGrid grid, EmbreeScene scene, const RaySceneOptions& options, Isa isa)
+      : PatchScene(set),
+        grid_(std::move(grid)),
+        scene_(std::move(scene)),
+        options_(options),
+        kernels_(ray_kernels(isa)) {}
 
   std::size_t memory_bytes() const override {
     return positions_.capacity() * sizeof(float) + adjacency_.memory_bytes() + scene_.memory_bytes();
@@ -70,11 +76,13 @@ class GridScene final : public PatchScene {
   void occluded_packet(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const;
   void trace(std::span<const RaySegment> segments, std::span<FacetHit> facets) const;
   Hit resolve(const Ray& ray, const RaySegment& segment, FacetHit facet) const;
-  bool accept(const Ray& ray, const RaySegment& segment, const FacetHit& facet, Hit& hit) const;
+  bool refine(const RaySegment& segment, const FacetHit& facet, SurfaceRoot& root) const;
+  bool accept(const Ray& ray, const RaySegment& segment, const SurfaceRoot& root, bool refined, Hit& hit) const;
 
   UniformGrid grid_;
   EmbreeScene scene_;
   RaySceneOptions options_;
+  const kernel::RayKernels& kernels_;
   AlignedVector<float> positions_;  // `[patch][iu][iv]`, borrowed by scene_
   Adjacency adjacency_;
   Box3 set_box_;  // in the model's coordinates
@@ -140,7 +148,12 @@ void GridScene::closest_packet(std::span<const Ray> rays, std::span<Hit> hits) c
     }
   }
   trace(std::span(segments).first(rays.size()), facets);
+  PacketRefiner refiner(set(), kernels_, Refiner::reach(options_.rate));
+  if (options_.refine) refiner.run(std::span(segments).first(rays.size()), std::span(facets).first(rays.size()));
   for (std::size_t k = 0; k < rays.size(); ++k) {
+    SurfaceRoot root;
+    if (refiner.get_root(k, segments[k], facets[k], root) && accept(rays[k], segments[k], root, true, hits[k]))
+      continue;
     if (facets[k].hit()) hits[k] = resolve(rays[k], segments[k], facets[k]);
   }
 }
@@ -161,7 +174,9 @@ void GridScene::trace(std::span<const RaySegment> segments, std::span<FacetHit> 
 /// From the first facet on, the first one whose point of the surface lies in [tnear, tfar].
 Hit GridScene::resolve(const Ray& ray, const RaySegment& segment, FacetHit facet) const {
   for (Hit hit; facet.hit();) {
-    if (accept(ray, segment, facet, hit)) return hit;
+    SurfaceRoot root;
+    const bool refined = refine(segment, facet, root);
+    if (accept(ray, segment, root, refined, hit)) return hit;
     // Embree takes a denormal tnear for 0, and would find a facet at 0 again without end.
     const float next = std::nextafter(facet.t, std::numeric_limits<float>::max());
     const FacetRay behind = segment.facet_ray(std::max(next, std::numeric_limits<float>::min()));
@@ -172,15 +187,19 @@ Hit GridScene::resolve(const Ray& ray, const RaySegment& segment, FacetHit facet
   return {};
 }
 
-bool GridScene::accept(const Ray& ray, const RaySegment& segment, const FacetHit& facet, Hit& hit) const {
+/// Where that fails, `root` is the facet's own point.
+bool GridScene::refine(const RaySegment& segment, const FacetHit& facet, SurfaceRoot& root) const {
   const Refiner refiner(set(), adjacency_, set_box_, options_.rate);
   const double facet_u = std::clamp(facet.u, 0.0f, 1.0f), facet_v = std::clamp(facet.v, 0.0f, 1.0f);
-  SurfaceRoot root;
-  const bool refined = options_.refine && refiner.refine(segment, facet.grid, facet_u, facet_v, root);
-  if (!refined) {
-    refiner.evaluate(segment, facet.grid, facet_u, facet_v, root);  // on [0,1]^2 this is always defined
-    root.s = facet.t;
-  }
+  if (options_.refine && refiner.refine(segment, facet.grid, facet_u, facet_v, root)) return true;
+  refiner.evaluate(segment, facet.grid, facet_u, facet_v, root);  // on [0,1]^2 this is always defined
+  root.s = facet.t;
+  return false;
+}
+
+/// False where t is not between the ray's ends.
+bool GridScene::accept(const Ray& ray, const RaySegment& segment, const SurfaceRoot& root, bool refined,
+                       Hit& hit) const {
   hit.t = segment.t_at(root.s);
   if (!(hit.t >= ray.tnear && hit.t <= ray.tfar) || !std::isfinite(hit.t)) return false;
 
@@ -229,10 +248,12 @@ Result<std::unique_ptr<RayScene::Impl>> make_grid_scene(const PatchSet& set, con
   }
   Result<UniformGrid> grid = UniformGrid::make(set, options.rate, options.rate, options.isa);
   if (!grid) return grid.status();
+  const Result<Isa> isa = options.isa ? parse_isa(name(*options.isa)) : default_isa();
+  if (!isa) return isa.status();
   Result<EmbreeScene> scene = EmbreeScene::make();
   if (!scene) return scene.status();
   return std::unique_ptr<RayScene::Impl>(
-      std::make_unique<GridScene>(set, *std::move(grid), *std::move(scene), options));
+      std::make_unique<GridScene>(set, *std::move(grid), *std::move(scene), options, *isa));
 }
 
 }  // namespace tessera

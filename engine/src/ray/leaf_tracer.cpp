@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "ray/lane_vectors.h"
 #include "ray/polished_root.h"
 #include "ray/spawn_root.h"
 
@@ -55,11 +56,8 @@ void QueryPacket::set(std::size_t lane, RayQuery& query) {
   for (std::size_t i = 0; i < 3; ++i)
     rays.origin[i][lane] = probe.origin[i], rays.direction[i][lane] = probe.direction[i];
   rays.near[lane] = probe.near;
-  const auto put = [&](const Vec3& v, double(&to)[3][size]) {
-    to[0][lane] = v.x, to[1][lane] = v.y, to[2][lane] = v.z;
-  };
-  put(line.start, polished.start), put(line.direction, polished.direction);
-  put(line.across[0], polished.across[0]), put(line.across[1], polished.across[1]);
+  put(line.start, polished.start, lane), put(line.direction, polished.direction, lane);
+  put(line.across[0], polished.across[0], lane), put(line.across[1], polished.across[1], lane);
 }
 
 void LeafTracer::search(unsigned leaf_index, kernel::RayProbe& probe, RayQuery& query, SearchSpace& space) const {
@@ -111,27 +109,15 @@ unsigned LeafTracer::decide(unsigned leaf_index, QueryPacket& packet, unsigned l
 /// Takes the roots of those lanes. Returns the lanes where rounding leaves something to be decided.
 unsigned LeafTracer::take_roots(const Leaf& leaf, QueryPacket& packet, unsigned lanes) const {
   const BezierPatch& patch = set->patch(leaf.patch);
-  const int least = std::min(leaf.degree_u, leaf.degree_v), most = std::max(leaf.degree_u, leaf.degree_v);
-  if (leaf.rational ? most > 3 : least != 3 || most != 3) return take_each_root(leaf, packet, lanes);
-  const Vec3& centre = nets->frame().centre;
-  const kernel::PolishJob job{.points = &patch.points().data()->x,
-                              .weights = patch.weights().data(),
-                              .degree_u = leaf.degree_u,
-                              .degree_v = leaf.degree_v,
-                              .centre = {centre.x, centre.y, centre.z},
-                              .scale = nets->frame().scale,
-                              .u0 = leaf.u0,
-                              .u1 = leaf.u0 + leaf.du,
-                              .v0 = leaf.v0,
-                              .v1 = leaf.v0 + leaf.dv};
+  if (!polished_side_by_side(patch)) return take_each_root(leaf, packet, lanes);
   kernel::PolishedRays& rays = packet.polished;
   for (std::size_t lane = 0; lane < QueryPacket::size; ++lane) {
-    rays.state[lane] = lanes >> lane & 1u ? kernel::PolishedRays::asked : kernel::PolishedRays::idle;
+    if ((lanes >> lane & 1u) == 0) continue;
     const RootStart start = start_of(leaf, root_of(packet.rays, lane));
-    rays.u[lane] = start.u, rays.v[lane] = start.v, rays.reach_u[lane] = start.reach_u,
-    rays.reach_v[lane] = start.reach_v;
+    rays.u[lane] = start.u, rays.v[lane] = start.v;
+    rays.reach_u[lane] = start.reach_u, rays.reach_v[lane] = start.reach_v;
   }
-  (leaf.rational ? kernels->packets->polish_low_rational : kernels->packets->polish_cubic)(job, rays, lanes);
+  polish_side_by_side(patch, nets->frame(), *kernels, start_of(leaf, {}), rays, lanes);
   unsigned open = 0;
   for (std::size_t lane = 0; lane < QueryPacket::size; ++lane) {
     if ((lanes >> lane & 1u) == 0) continue;
@@ -139,13 +125,10 @@ unsigned LeafTracer::take_roots(const Leaf& leaf, QueryPacket& packet, unsigned 
       open |= 1u << lane;
       continue;
     }
-    const auto vector = [&](const double(&from)[3][QueryPacket::size]) {
-      return Vec3{from[0][lane], from[1][lane], from[2][lane]};
-    };
     LeafRoot root;
     root.patch = leaf.patch;
     root.u = rays.root_u[lane], root.v = rays.root_v[lane];
-    root.position = vector(rays.position), root.du = vector(rays.du), root.dv = vector(rays.dv);
+    root.position = get(rays.position, lane), root.du = get(rays.du, lane), root.dv = get(rays.dv, lane);
     root.has_point = true;
     root.s = rays.s[lane];
     root.residual = search_rounding(leaf.degree_u, leaf.degree_v, 0, 0);
@@ -157,15 +140,16 @@ unsigned LeafTracer::take_roots(const Leaf& leaf, QueryPacket& packet, unsigned 
   return open;
 }
 
-/// The same one by one, of patches that the kernels don't take.
+/// The same one by one.
 unsigned LeafTracer::take_each_root(const Leaf& leaf, QueryPacket& packet, unsigned lanes) const {
   unsigned open = 0;
   for (std::size_t lane = 0; lane < QueryPacket::size; ++lane) {
     if ((lanes >> lane & 1u) == 0) continue;
     RayQuery& query = *packet.queries[lane];
     LeafRoot root;
-    if (polish(set->patch(leaf.patch), nets->frame(), leaf, *kernels, query.line, root_of(packet.rays, lane), false,
-               root)) {
+    root.patch = leaf.patch;
+    if (polish(set->patch(leaf.patch), nets->frame(), *kernels, query.line, start_of(leaf, root_of(packet.rays, lane)),
+               false, root)) {
       ++query.steps;
       query.take(root);
     } else {
@@ -195,7 +179,8 @@ bool LeafTracer::decide(const Leaf& leaf, unsigned leaf_index, kernel::RayProbe&
     if (!trace(local, probe, roots)) return false;
   }
   const auto polished = [&](int k, LeafRoot& root) {
-    return polish(set->patch(leaf.patch), nets->frame(), leaf, *kernels, query.line, roots.root[k],
+    root.patch = leaf.patch;
+    return polish(set->patch(leaf.patch), nets->frame(), *kernels, query.line, start_of(leaf, roots.root[k]),
                   query.wanted == RootsWanted::all, root);
   };
   LeafRoot first;

@@ -36,10 +36,9 @@ FirstOrder scene_point(const BezierPatch& patch, const SceneFrame& frame, const 
 
 }  // namespace
 
-bool polish(const BezierPatch& patch, const SceneFrame& frame, const Leaf& leaf, const kernel::RayKernels& kernels,
-            const RayLine& line, const kernel::RayRoot& proven, bool with_radius, LeafRoot& root) {
-  const auto [start_u, start_v, reach_u, reach_v] = start_of(leaf, proven);
-  double u = start_u, v = start_v;
+bool polish(const BezierPatch& patch, const SceneFrame& frame, const kernel::RayKernels& kernels, const RayLine& line,
+            const RootStart& start, bool with_radius, LeafRoot& root) {
+  double u = start.u, v = start.v;
   for (int step = 0; step < PolishJob::most_steps; ++step) {
     const FirstOrder at = scene_point(patch, frame, kernels, u, v);
     const NetValue f = seen(at, line);
@@ -47,21 +46,43 @@ bool polish(const BezierPatch& patch, const SceneFrame& frame, const Leaf& leaf,
     const double du = -(f.x * f.yv - f.y * f.xv) * inverse, dv = -(f.y * f.xu - f.x * f.yu) * inverse;
     u += du, v += dv;
     // Written so that NaN fails.
-    if (!(std::abs(u - start_u) <= reach_u && std::abs(v - start_v) <= reach_v && u >= leaf.u0 &&
-          u <= leaf.u0 + leaf.du && v >= leaf.v0 && v <= leaf.v0 + leaf.dv))
+    if (!(std::abs(u - start.u) <= start.reach_u && std::abs(v - start.v) <= start.reach_v && u >= start.u0 &&
+          u <= start.u1 && v >= start.v0 && v <= start.v1))
       return false;
     if (std::max(std::abs(du), std::abs(dv)) > PolishJob::linear) continue;
-    root.patch = leaf.patch;
     root.u = u, root.v = v;
     root.position = at.position + (du * at.du + dv * at.dv);
     root.du = at.du, root.dv = at.dv;
     root.has_point = true;
     root.s = f.z + (du * dot(line.direction, at.du) + dv * dot(line.direction, at.dv));
-    root.residual = search_rounding(leaf.degree_u, leaf.degree_v, 0, 0);
+    root.residual = search_rounding(patch.degree_u(), patch.degree_v(), 0, 0);
     root.certified = true;
     return !with_radius || set_radius(f, root.residual, 1, 1, root);
   }
   return false;
+}
+
+bool polished_side_by_side(const BezierPatch& patch) {
+  const int least = std::min(patch.degree_u(), patch.degree_v()), most = std::max(patch.degree_u(), patch.degree_v());
+  return patch.is_rational() ? most <= 3 : least == 3 && most == 3;
+}
+
+void polish_side_by_side(const BezierPatch& patch, const SceneFrame& frame, const kernel::RayKernels& kernels,
+                         const RootStart& bounds, kernel::PolishedRays& rays, unsigned lanes) {
+  const Vec3& c = frame.centre;
+  const PolishJob job{.points = &patch.points().data()->x,
+                      .weights = patch.weights().data(),
+                      .degree_u = patch.degree_u(),
+                      .degree_v = patch.degree_v(),
+                      .centre = {c.x, c.y, c.z},
+                      .scale = frame.scale,
+                      .u0 = bounds.u0,
+                      .u1 = bounds.u1,
+                      .v0 = bounds.v0,
+                      .v1 = bounds.v1};
+  for (std::size_t k = 0; k < kernel::PolishedRays::size; ++k)
+    rays.state[k] = lanes >> k & 1u ? kernel::PolishedRays::asked : kernel::PolishedRays::idle;
+  (patch.is_rational() ? kernels.packets->polish_low_rational : kernels.packets->polish_cubic)(job, rays, lanes);
 }
 
 }  // namespace tessera

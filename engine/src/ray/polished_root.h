@@ -1,5 +1,5 @@
 #pragma once
-// Roots that a kernel has proven in float, to the last digits of double.
+// Roots that are known in float, to the last digits of double.
 
 #include "kernel/ray_kernels.h"
 #include "ray/leaf_nets.h"
@@ -7,19 +7,34 @@
 
 namespace tessera {
 
-/// Where Newton's method begins in the patch, and how far from there the root can be, twice over.
+/// Where Newton's method begins in a patch, how far from there the root can be, and where it must lie.
 struct RootStart {
   double u, v, reach_u, reach_v;
+  double u0 = 0, u1 = 1, v0 = 0, v1 = 1;
 };
-inline RootStart start_of(const Leaf& leaf, const kernel::RayRoot& root) {
-  const double u = root.u, v = root.v, radius_u = root.radius_u, radius_v = root.radius_v;
-  return {leaf.u0 + (0.5 + u) * leaf.du, leaf.v0 + (0.5 + v) * leaf.dv, 2 * radius_u * leaf.du, 2 * radius_v * leaf.dv};
+/// Of what a kernel has proven of a piece of a patch; twice as far as it can be.
+inline RootStart start_of(const Leaf& leaf, const kernel::RayRoot& proven) {
+  const double u = proven.u, v = proven.v, radius_u = proven.radius_u, radius_v = proven.radius_v;
+  return {leaf.u0 + (0.5 + u) * leaf.du,
+          leaf.v0 + (0.5 + v) * leaf.dv,
+          2 * radius_u * leaf.du,
+          2 * radius_v * leaf.dv,
+          leaf.u0,
+          leaf.u0 + leaf.du,
+          leaf.v0,
+          leaf.v0 + leaf.dv};
 }
 
-/// The one root of the leaf in the surroundings that `proven` names, by Newton's method, with the patch's point. False
-/// where rounding leaves it outside of them, which leaf_search.h must then decide. `patch`: the leaf's; `with_radius`: how
-/// far another may be that is the same is wanted too.
-bool polish(const BezierPatch& patch, const SceneFrame& frame, const Leaf& leaf, const kernel::RayKernels& kernels,
-            const RayLine& line, const kernel::RayRoot& proven, bool with_radius, LeafRoot& root);
+/// The root by Newton's method from there on, with the patch's point, and, `with_radius`, how far another may be that is the
+/// same. False where an iterate leaves what is named.
+bool polish(const BezierPatch& patch, const SceneFrame& frame, const kernel::RayKernels& kernels, const RayLine& line,
+            const RootStart& start, bool with_radius, LeafRoot& root);
+
+/// Whether polish_side_by_side() takes roots of that patch.
+bool polished_side_by_side(const BezierPatch& patch);
+/// The same for the rays whose bits are set in `lanes`, with the numbers that each has alone; others are left as they are.
+/// Lines, starts and reaches are set; of `bounds` the rectangle counts. For kernels that have packets.
+void polish_side_by_side(const BezierPatch& patch, const SceneFrame& frame, const kernel::RayKernels& kernels,
+                         const RootStart& bounds, kernel::PolishedRays& rays, unsigned lanes);
 
 }  // namespace tessera

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "ray/across.h"
+
 namespace tessera {
 namespace {
 
@@ -24,14 +26,6 @@ double point_on_line(double origin, double t, double d, double centre) {
   const double product = t * d, rest = std::fma(t, d, -product);
   const TwoSum from(origin, -centre), sum(from.high, product);
   return sum.high + (sum.low + (from.low + rest));
-}
-
-/// An orthonormal basis with the unit vector d: Duff et al., Building an orthonormal basis, revisited, JCGT 6(1), 2017.
-void set_across(RayLine& line) {
-  const Vec3& d = line.direction;
-  const double sign = std::copysign(1.0, d.z), a = -1 / (sign + d.z), b = d.x * d.y * a;
-  line.across[0] = {1 + sign * d.x * d.x * a, sign * b, -sign * d.x};
-  line.across[1] = {b, sign + d.y * d.y * a, -d.y};
 }
 
 /// Narrows [enter, leave] to where start + s * direction lies in [lower, upper].
@@ -113,7 +107,10 @@ void complete(const Ray& ray, double scale, const Box3& box, RayLine& line) {
   clip(line.start.y, line.direction.y, room.lower.y, room.upper.y, line);
   clip(line.start.z, line.direction.z, room.lower.z, room.upper.z, line);
   line.empty = !(line.enter <= line.leave);
-  if (!line.empty) set_across(line);
+  if (!line.empty) {
+    const Across across(line.direction);
+    line.across[0] = across.first, line.across[1] = across.second;
+  }
   if (ray.spawn_offset > 0) line.spawn = scale * ray.spawn_offset + 2 * line.slack;
 }
 

@@ -1,17 +1,9 @@
 #include "ray/ray_lines.h"
 
+#include "ray/lane_vectors.h"
 #include "ray/ray_segment.h"
 
 namespace tessera {
-namespace {
-
-void copy(const Vec3& from, double (&to)[3][RayTurn::size], std::size_t k) {
-  to[0][k] = from.x, to[1][k] = from.y, to[2][k] = from.z;
-}
-Vec3 vector_of(const double (&from)[3][RayTurn::size], std::size_t k) { return {from[0][k], from[1][k], from[2][k]}; }
-
-}  // namespace
-
 RayTurn::RayTurn(const SceneFrame& frame, const Box3& box, const kernel::RayKernels& kernels)
     : frame_(frame), box_(box), kernels_(kernels) {
   const Box3 room = clipping_box(box);
@@ -26,8 +18,8 @@ void RayTurn::set(std::span<const Ray> rays) {
   }
   for (std::size_t k = 0; k < size; ++k) {
     const Ray& ray = rays[k < rays.size() ? k : 0];
-    copy(ray.origin, bundle_.origin, k);
-    copy(ray.direction, bundle_.direction, k);
+    put(ray.origin, bundle_.origin, k);
+    put(ray.direction, bundle_.direction, k);
     bundle_.near[k] = ray.tnear, bundle_.far[k] = ray.tfar;
   }
   kernels_.packets->lines(bundle_, room_, made_);
@@ -41,8 +33,8 @@ void RayTurn::set(std::span<const Ray> rays) {
     RayLine& line = lines_[k];
     line.empty = !(made_.enter[k] <= made_.leave[k]);
     if (line.empty) continue;
-    line.start = vector_of(made_.start, k), line.direction = vector_of(made_.direction, k);
-    line.across[0] = vector_of(made_.across[0], k), line.across[1] = vector_of(made_.across[1], k);
+    line.start = get(made_.start, k), line.direction = get(made_.direction, k);
+    line.across[0] = get(made_.across[0], k), line.across[1] = get(made_.across[1], k);
     line.near = made_.near[k], line.far = made_.far[k];
     line.enter = made_.enter[k], line.leave = made_.leave[k];
     line.slack = made_.slack[k], line.spawn = 0;

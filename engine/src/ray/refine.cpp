@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ray/across.h"
 #include "ray/first_order.h"
 
 namespace tessera {
@@ -16,26 +17,15 @@ constexpr int most_steps = 16;      // quadratic convergence takes 2 to 4
 constexpr int most_halvings = 6;
 constexpr std::size_t most_patches = 8;  // visited for one hit: all around a vertex of usual valence
 
-/// Solves [a.x b.x; a.y b.y] (x, y) = c in the plane across the ray; false where a and b are parallel or zero.
-struct Plane {
-  Vec3 e1, e2;  // an orthonormal basis across the unit direction d
-
-  /// Duff et al., Building an orthonormal basis, revisited, JCGT 6(1), 2017.
-  explicit Plane(const Vec3& d) {
-    const double sign = std::copysign(1.0, d.z), a = -1 / (sign + d.z), b = d.x * d.y * a;
-    e1 = {1 + sign * d.x * d.x * a, sign * b, -sign * d.x};
-    e2 = {b, sign + d.y * d.y * a, -d.y};
-  }
-
-  bool solve(const Vec3& a, const Vec3& b, const Vec3& c, double& x, double& y) const {
-    const double a1 = dot(e1, a), a2 = dot(e2, a), b1 = dot(e1, b), b2 = dot(e2, b);
-    const double c1 = dot(e1, c), c2 = dot(e2, c);
-    const double determinant = a1 * b2 - a2 * b1;
-    x = (c1 * b2 - c2 * b1) / determinant;
-    y = (a1 * c2 - a2 * c1) / determinant;
-    return std::isfinite(x) && std::isfinite(y);
-  }
-};
+/// Solves x a + y b = c as seen along the ray; false where a and b are parallel or zero.
+bool solve(const Across& e, const Vec3& a, const Vec3& b, const Vec3& c, double& x, double& y) {
+  const double a1 = dot(e.first, a), a2 = dot(e.second, a), b1 = dot(e.first, b), b2 = dot(e.second, b);
+  const double c1 = dot(e.first, c), c2 = dot(e.second, c);
+  const double determinant = a1 * b2 - a2 * b1;
+  x = (c1 * b2 - c2 * b1) / determinant;
+  y = (a1 * c2 - a2 * c1) / determinant;
+  return std::isfinite(x) && std::isfinite(y);
+}
 
 }  // namespace
 
@@ -73,8 +63,10 @@ class Refiner::Frontier {
   std::size_t count_ = 0, next_ = 0;
 };
 
+double Refiner::reach(int rate) { return leash_cells / rate; }
+
 Refiner::Refiner(const SetView& set, const Adjacency& adjacency, const Box3& box, int rate)
-    : set_(set), adjacency_(adjacency), cells_(leash_cells / rate) {
+    : set_(set), adjacency_(adjacency), cells_(reach(rate)) {
   // Positions round by their absolute size. The tolerance is far above that for models near zero.
   rounding_ = 4 * std::numeric_limits<double>::epsilon() * std::max(max_abs(box.lower), max_abs(box.upper));
   tolerance_ = 1e-10 * box.diagonal() + 16 * rounding_;
@@ -102,7 +94,7 @@ bool Refiner::evaluate(const RaySegment& segment, std::uint32_t patch, double u,
 bool Refiner::descend(const RaySegment& segment, const Leash& leash, SurfaceRoot& root) const {
   const Vec3 error = root.position - set_.origin() - segment.start;
   double du = 0, dv = 0;
-  if (!Plane(segment.direction).solve(root.du, root.dv, error, du, dv)) return false;
+  if (!solve(Across(segment.direction), root.du, root.dv, error, du, dv)) return false;
   const int halvings = root.residual > tolerance_ ? most_halvings : 0;  // below, only rounding can be in the way
   for (int halving = 0; halving <= halvings; ++halving) {
     const double u = leash.u(root.u - du), v = leash.v(root.v - dv);

@@ -33,6 +33,9 @@ class Refiner {
   /// (first_order.h).
   bool evaluate(const RaySegment& segment, std::uint32_t patch, double u, double v, SurfaceRoot& root) const;
 
+  /// How far a root may lie from its facet, in parameters.
+  static double reach(int rate);
+
   /// The residual up to which a point of the surface counts as a root.
   double tolerance() const { return tolerance_; }
 

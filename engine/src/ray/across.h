@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cmath>
+
+#include "tessera/vec.h"
+
+namespace tessera {
+
+/// Two unit vectors that make an orthonormal basis with the unit vector d: Duff et al., Building an orthonormal basis,
+/// revisited, JCGT 6(1), 2017.
+struct Across {
+  Vec3 first, second;
+
+  explicit Across(const Vec3& d) {
+    const double sign = std::copysign(1.0, d.z), a = -1 / (sign + d.z), b = d.x * d.y * a;
+    first = {1 + sign * d.x * d.x * a, sign * b, -sign * d.x};
+    second = {b, sign + d.y * d.y * a, -d.y};
+  }
+};
+
+}  // namespace tessera

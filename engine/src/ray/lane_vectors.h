@@ -1,0 +1,19 @@
+#pragma once
+// Vectors of rays side by side, `[coordinate][ray]`, as the kernels have them.
+
+#include <cstddef>
+
+#include "tessera/vec.h"
+
+namespace tessera {
+
+template <std::size_t Size>
+void put(const Vec3& v, double (&to)[3][Size], std::size_t k) {
+  to[0][k] = v.x, to[1][k] = v.y, to[2][k] = v.z;
+}
+template <std::size_t Size>
+Vec3 get(const double (&from)[3][Size], std::size_t k) {
+  return {from[0][k], from[1][k], from[2][k]};
+}
+
+}  // namespace tessera
