@@ -10,6 +10,7 @@
 #include "io/mesh_formats.h"
 #include "io/mesh_samples.h"
 #include "support/scratch_folder.h"
+#include "support/synthetic_sets.h"
 #include "tessera/io.h"
 
 namespace tessera {
@@ -42,6 +43,43 @@ TEST_P(MeshFiles, EveryBitComesBack) {
     }
   }
   EXPECT_EQ(folder_.names().size(), 1u);
+}
+
+/// A mesh of triangles and quads in three parts, one of triangles alone and one of nothing.
+Mesh mesh_of_parts() {
+  Mesh mesh = random_mesh(30, 9, {true, true, true});
+  for (std::uint32_t k = 0; k < 4 * 7; ++k) mesh.quads.push_back((11 * k + 3) % 30);
+  mesh.quad_patches = {0, 0, 1, 1, 1, 4, 4};
+  mesh.parts = {{"a", 0, 4, 0, 5}, {"none", 4, 0, 5, 0}, {"b", 4, 3, 5, 0}, {"c", 7, 2, 5, 2}};
+  return mesh;
+}
+
+TEST_P(MeshFiles, QuadsComeBack) {
+  const Mesh mesh = mesh_of_parts(), split = test::value_of(split_quads(mesh));
+  ASSERT_TRUE(write_mesh(mesh, path()).ok());
+  const Mesh read = test::value_of(read_mesh(path(), {.keep_quads = true}));
+  EXPECT_EQ(read.positions, mesh.positions);
+  EXPECT_EQ(read.indices, mesh.indices);
+  EXPECT_EQ(read.quads, mesh.quads);
+  const Mesh triangles = test::value_of(read_mesh(path()));
+  EXPECT_TRUE(triangles.quads.empty());
+  EXPECT_EQ(triangles.indices.size(), split.indices.size());
+  if (GetParam() == ".obj") {
+    EXPECT_EQ(triangles.indices, split.indices);  // part by part
+    const std::string text = test::content_of(path());
+    EXPECT_NE(text.find("\ng a\n"), std::string::npos);
+    EXPECT_EQ(text.find("\ng none\n"), std::string::npos);
+  } else {
+    EXPECT_EQ(read.patches, mesh.patches);
+    EXPECT_EQ(read.quad_patches, mesh.quad_patches);
+    EXPECT_EQ(triangles.patches.size(), split.patches.size());
+  }
+  Mesh quads_alone = mesh;
+  quads_alone.indices.clear();
+  quads_alone.patches.clear();
+  quads_alone.parts.clear();
+  ASSERT_TRUE(write_mesh(quads_alone, path()).ok());
+  EXPECT_EQ(test::value_of(read_mesh(path(), {.keep_quads = true})).quads, mesh.quads);
 }
 
 TEST_P(MeshFiles, ExtremeFloatsComeBack) {
@@ -93,7 +131,7 @@ INSTANTIATE_TEST_SUITE_P(Formats, MeshWriters, testing::Values(".obj", ".ply", "
 TEST_P(MeshWriters, BadMeshesAreRefusedAndNothingAppears) {
   std::vector<std::pair<StatusCode, Mesh>> cases;
   const Mesh good = random_mesh(5, 4);
-  for (int k = 0; k < 14; ++k) cases.emplace_back(StatusCode::count_mismatch, good);
+  for (int k = 0; k < 19; ++k) cases.emplace_back(StatusCode::count_mismatch, good);
   cases[0].second.positions.pop_back();
   cases[1].second.normals.pop_back();
   cases[2].second.parameters.pop_back();
@@ -116,6 +154,14 @@ TEST_P(MeshWriters, BadMeshesAreRefusedAndNothingAppears) {
   cases[12].first = StatusCode::invalid_argument;
   cases[13].second.parts = {{"a", 0, 3}, {"b", 3, ~std::size_t{0}}};
   cases[13].first = StatusCode::invalid_argument;
+  for (std::size_t k = 14; k < 19; ++k) cases[k].second.quads = {0, 1, 2, 3, 1, 2, 3, 4};
+  cases[14].second.quads.pop_back();
+  cases[15].second.quad_patches = {1};
+  cases[16].second.quads[6] = 5;
+  cases[16].first = StatusCode::invalid_argument;
+  cases[17].second.parts = {{"a", 0, 4, 0, 1}};
+  cases[18].second.parts = {{"a", 0, 4, 0, 1}, {"b", 4, 0, 2, 1}};
+  cases[18].first = StatusCode::invalid_argument;
   for (const auto& [code, mesh] : cases) {
     const Status status = write_mesh(mesh, path());
     EXPECT_EQ(status.code(), code) << status.message();
@@ -126,6 +172,7 @@ TEST_P(MeshWriters, BadMeshesAreRefusedAndNothingAppears) {
   EXPECT_EQ(write_mesh(cases[8].second, path()).index(), 1);
   EXPECT_EQ(write_mesh(cases[9].second, path()).index(), 4);
   EXPECT_EQ(write_mesh(cases[13].second, path()).index(), 1);
+  EXPECT_EQ(write_mesh(cases[16].second, path()).index(), 6);
   EXPECT_TRUE(folder_.names().empty());
 }
 
@@ -136,6 +183,14 @@ TEST_P(MeshWriters, TheFirstOfSeveralBadVerticesIsNamed) {
     mesh.positions[3 * vertex + 2] = std::numeric_limits<float>::infinity();
   EXPECT_EQ(write_mesh(mesh, path()).index(), 70000);
   EXPECT_TRUE(folder_.names().empty());
+}
+
+TEST_P(MeshWriters, QuadsBecomeTrianglesWhereThereIsNothingElse) {
+  if (GetParam() == ".obj" || GetParam() == ".ply") return;
+  const Mesh mesh = mesh_of_parts();
+  ASSERT_TRUE(write_mesh(mesh, path()).ok());
+  ASSERT_TRUE(write_mesh(test::value_of(split_quads(mesh)), path("split")).ok());
+  EXPECT_EQ(test::content_of(path()), test::content_of(path("split")));
 }
 
 TEST_P(MeshWriters, MeshesWithoutTriangles) {

@@ -85,13 +85,13 @@ Reading reading_of(const Result<Mesh>& mesh) {
   if (!mesh) return reading;
   Content content;
   for (const auto* values : {&mesh->positions, &mesh->normals, &mesh->parameters}) content.add(*values);
-  content.add(mesh->indices);
-  content.add(mesh->patches);
+  for (const auto* values : {&mesh->indices, &mesh->patches, &mesh->quads, &mesh->quad_patches}) content.add(*values);
   reading.content = content.take();
-  reading.parts = mesh->triangle_count();
+  reading.parts = mesh->triangle_count() + 2 * mesh->quad_count();
   const std::size_t vertices = mesh->vertex_count();
-  if (std::any_of(mesh->indices.begin(), mesh->indices.end(), [&](auto index) { return index >= vertices; }))
-    reading.unsound = "an index beyond the vertices";
+  for (const auto* indices : {&mesh->indices, &mesh->quads})
+    if (std::any_of(indices->begin(), indices->end(), [&](auto index) { return index >= vertices; }))
+      reading.unsound = "an index beyond the vertices";
   return reading;
 }
 
@@ -99,8 +99,12 @@ template <auto Parse>
 Reading parsed(std::string_view text, std::string_view name) {
   return reading_of(Parse(text, name));
 }
+template <auto Parse>
+Reading parsed_faces(std::string_view text, std::string_view name) {
+  return reading_of(Parse(text, name, {.keep_quads = true}));
+}
 Reading opened_model(const std::filesystem::path& path) { return reading_of(read_model(path)); }
-Reading opened_mesh(const std::filesystem::path& path) { return reading_of(read_mesh(path)); }
+Reading opened_mesh(const std::filesystem::path& path) { return reading_of(read_mesh(path, {.keep_quads = true})); }
 
 }  // namespace
 
@@ -122,8 +126,8 @@ const std::vector<TextFormat>& text_formats() {
       {"json", ".json", parsed<parse_json_model>, opened_model},
       {"obj", ".obj", parsed<parse_obj_freeform>, opened_model},
       {"rib", ".rib", parsed<parse_rib>, opened_model},
-      {"obj_mesh", ".obj", parsed<parse_obj>, opened_mesh},
-      {"ply", ".ply", parsed<parse_ply>, opened_mesh},
+      {"obj_mesh", ".obj", parsed_faces<parse_obj>, opened_mesh},
+      {"ply", ".ply", parsed_faces<parse_ply>, opened_mesh},
   };
   return formats;
 }

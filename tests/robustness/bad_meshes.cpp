@@ -151,10 +151,10 @@ void fill_tessellations(Table& table) {
   const TessellationPlan plan = plan_for(set);
   bad_mesh_views(table, set, plan);
   Mesh mesh = value_of(plan.allocate());
-  std::vector<std::uint32_t> quads(100);
+  std::vector<std::uint32_t> quads(4 * plan.quad_capacity().quads - 1);
   MeshViews views = mesh.views();
   views.quads = quads;
-  table.row("memory for quads", unsupported, plan.run(set, views));
+  table.row("quads short by one index", buffer_too_small, plan.run(set, views));
   other_sets(table, plan_for);
 }
 
@@ -207,9 +207,21 @@ void fill_meshes(Table& table) {
   row("eight position numbers", invalid_argument, [](Mesh& m) { m.positions.pop_back(); });
   row("normals for fewer vertices", invalid_argument, [](Mesh& m) { m.normals = {0, 0, 1}; });
   row("patches for more triangles", invalid_argument, [](Mesh& m) { m.patches = {0, 0}; });
+  row("a corner of a quad that is out of range", invalid_argument, [](Mesh& m) { m.quads = {0, 1, 2, 3}; });
+  row("five indices of quads", invalid_argument, [](Mesh& m) { m.quads = {0, 1, 2, 0, 1}; });
+  row("patches without quads", invalid_argument, [](Mesh& m) { m.quad_patches = {0}; });
   Mesh bad = sound;
   bad.positions[4] = static_cast<float>(not_a_number);
   table.gives("NaN in a position", "a report with 1 non-finite vertex", check(bad)->non_finite_vertices == 1);
+  table.of("split_quads(mesh)");
+  Mesh parted = sound;
+  parted.quads = {0, 1, 2};
+  table.row("three indices of quads", count_mismatch, split_quads(parted));
+  parted.quads = {0, 1, 2, 0};
+  parted.parts = {{"a", 0, 1}};
+  table.row("parts without the quads", count_mismatch, split_quads(parted));
+  parted.parts[0].first_triangle = 1;
+  table.row("a part beyond the triangles", invalid_argument, split_quads(parted));
   table.of("parts_by_surface(mesh, set, model)");
   const PatchSet set = set_of(wavy_field(1, 1));
   const Model model{.name = "m", .surfaces = {{"field", set.patch(0)}}};

@@ -292,12 +292,6 @@ TEST(Quads, CellsAreQuadsAndTheRestIsStrips) {
       views.quads = views.quads.first(quads.size() - 1);
       EXPECT_EQ(plan.run(set, views).code(), StatusCode::buffer_too_small);
     }
-  const PatchSet set = set_of(closed_body());
-  const TessellationPlan uniform = good(TessellationPlan::make(set, {.rate_u = 4, .rate_v = 4, .isa = {}}));
-  Mesh mesh = good(uniform.allocate());
-  MeshViews views = mesh.views();
-  views.quads = views.indices;
-  EXPECT_EQ(uniform.run(set, views).code(), StatusCode::unsupported);
 }
 
 }  // namespace

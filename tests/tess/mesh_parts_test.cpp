@@ -58,6 +58,30 @@ TEST(MeshParts, PatchesOfOneSurfaceAreOnePart) {
   EXPECT_EQ(parts[1].triangle_count, 3 * 12u);
 }
 
+TEST(MeshParts, QuadsGoWithTheTrianglesOfTheirPatch) {
+  const Model surfaces = model();
+  // Patches 0 to 3 are of surface 0, 4 to 7 of surface 3.
+  std::vector<PatchSource> sources(8);
+  for (std::size_t k = 4; k < 8; ++k) sources[k].surface = 3;
+  const PatchSet two = value_of(PatchSet::from(test::sphere(), sources));
+  const TessellationPlan plan = value_of(TessellationPlan::make(two, {.rate_u = 3, .rate_v = 2, .isa = {}}));
+  Mesh mesh = value_of(plan.allocate_quads());
+  ASSERT_TRUE(plan.run(two, mesh.views()).ok());
+  ASSERT_GT(mesh.triangle_count(), 0u);  // at the poles
+  const std::vector<MeshPart> parts = value_of(parts_by_surface(mesh, two, surfaces));
+  ASSERT_EQ(parts.size(), 2u);
+  EXPECT_EQ(parts[1].name, "back");
+  EXPECT_EQ(parts[0].triangle_count, mesh.triangle_count() / 2);
+  EXPECT_EQ(parts[1].first_triangle, mesh.triangle_count() / 2);
+  EXPECT_EQ(parts[0].quad_count, mesh.quad_count() / 2);
+  EXPECT_EQ(parts[1].first_quad, mesh.quad_count() / 2);
+  EXPECT_EQ(parts[1].quad_count, mesh.quad_count() / 2);
+  mesh.quad_patches[2] = 9;
+  EXPECT_EQ(parts_by_surface(mesh, two, surfaces).status().message(), "quad 2 is of patch 9, there are 8");
+  mesh.quad_patches.pop_back();
+  EXPECT_EQ(parts_by_surface(mesh, two, surfaces).status().code(), StatusCode::count_mismatch);
+}
+
 TEST(MeshParts, WhatDoesNotBelongTogetherIsRefused) {
   Model surfaces = model();
   const PatchSet set = value_of(make_patch_set(surfaces));

@@ -95,6 +95,28 @@ TEST(MeshUpdate, TheSameBytesAsAMeshWrittenAnew) {
     }
 }
 
+TEST(MeshUpdate, QuadsStay) {
+  for (const bool share : {false, true}) {
+    Animated body(wavy_field(9, 9), {.tolerance = 0.003, .share_vertices = share});
+    const auto written = [&] {
+      Mesh mesh = good(body.update.plan().allocate_quads());
+      EXPECT_TRUE(body.update.plan().run(body.set, mesh.views()).ok());
+      return mesh;
+    };
+    body.mesh = written();
+    const Mesh before = body.mesh;
+    ASSERT_GT(before.quad_count(), 100u);
+    body.run(swollen(body.set, 3, 0.05));
+    const Mesh anew = written();
+    EXPECT_NE(body.mesh.positions, before.positions);
+    EXPECT_EQ(body.mesh.positions, anew.positions);
+    EXPECT_EQ(body.mesh.normals, anew.normals);
+    EXPECT_EQ(body.mesh.quads, before.quads);
+    EXPECT_EQ(anew.quads, before.quads);
+    EXPECT_EQ(body.mesh.indices, before.indices);
+  }
+}
+
 TEST(MeshUpdate, OtherRecordsAreNotTouched) {
   Animated body(wavy_field(9, 9), {.tolerance = 0.003});
   const std::vector<float> before = body.mesh.positions;

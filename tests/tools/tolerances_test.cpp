@@ -82,6 +82,25 @@ TEST_F(Tolerances, NeighboursShareVertices) {
   EXPECT_EQ(made({"--relative", "0.003", "--crease", "5"})["vertices"], apart["vertices"]);
 }
 
+TEST_F(Tolerances, CellsAreQuads) {
+  const json plain = made({"--relative", "0.003"}), places = checked();
+  EXPECT_EQ(plain["quads"], 0);
+  EXPECT_EQ(places["quads"], 0);
+  const json quads = made({"--relative", "0.003", "--quads"});
+  EXPECT_GT(quads["quads"], 100);
+  EXPECT_EQ(quads["triangles"].get<int>() + 2 * quads["quads"].get<int>(), plain["triangles"]);
+  json report = checked();
+  EXPECT_EQ(report["quads"], quads["quads"]);
+  report["quads"] = 0;
+  EXPECT_EQ(report, places);
+  const std::string text = output_of({"tessellate", teapot, "-o", "a.obj", "--grid", "4x3", "--quads"});
+  EXPECT_NE(text.find(" triangles, "), std::string::npos) << text;
+  EXPECT_NE(text.find(" quads"), std::string::npos) << text;
+  EXPECT_GT(json::parse(output_of({"check", "a.obj", "--json"}))["quads"], 28 * 9);
+  for (const char* const name : {"b.stl", "b.glb", "b.gltf"})
+    expect_failure({"tessellate", teapot, "-o", name, "--grid", "4x3", "--quads"}, 2, "holds triangles alone");
+}
+
 TEST_F(Tolerances, WrongOnesAreRefused) {
   expect_refusal({"--relative", "0.01", "--crease", "200"}, 2, "expected an angle of 0 to 180 degrees");
   expect_refusal({"--grid", "4x4", "--share-vertices"}, 2, "--grid");

@@ -15,6 +15,7 @@ Json as_json(const std::string& mesh, const MeshReport& report) {
           {"vertices", report.vertices},
           {"distinct_positions", report.distinct_positions},
           {"triangles", report.triangles},
+          {"quads", report.quads},
           {"open_edges", report.open_edges},
           {"non_manifold_edges", report.non_manifold_edges},
           {"inconsistent_edges", report.inconsistent_edges},
@@ -31,7 +32,8 @@ std::string as_text(const std::string& mesh, const MeshReport& report) {
   };
   return mesh + ": " + (report.closed() ? "closed" : "not closed") + "\n" +
          line("vertices              ", report.vertices) + line("distinct positions    ", report.distinct_positions) +
-         line("triangles             ", report.triangles) +
+         line("triangles             ", report.triangles, report.quads > 0 ? "  (two of each quad among them)" : "") +
+         line("quads                 ", report.quads) +
          line("open edges            ", report.open_edges, "  (of one triangle)") +
          line("non-manifold edges    ", report.non_manifold_edges, "  (of three triangles or more)") +
          line("inconsistent edges    ", report.inconsistent_edges,
@@ -45,7 +47,7 @@ std::string as_text(const std::string& mesh, const MeshReport& report) {
 Status run_check(const std::string& file, const CommonOptions& common, Timings& timings) {
   const Result<Mesh> mesh = [&] {
     const auto phase = timings.phase("read");
-    return read_mesh(file);
+    return read_mesh(file, {.keep_quads = true});
   }();
   if (!mesh) return mesh.status();
   const Result<MeshReport> report = [&] {

@@ -1,6 +1,8 @@
 // tessera tessellate: surfaces to a mesh.
 
+#include <algorithm>
 #include <functional>
+#include <iterator>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -21,6 +23,7 @@ struct Options {
   std::string output;
   std::optional<Extent> grid;
   CertifiedOptions certified;  ///< if there is no grid
+  bool quads = false;
   bool weld_rounding = false;  ///< a weld that is a share of the size
   double pixels = 0;           ///< above 0 if they are asked for
   View view;
@@ -44,9 +47,9 @@ struct Tessellated {
 
 /// By a plan of either kind.
 template <class Plan>
-Result<Mesh> run_plan(const Result<Plan>& plan, const PatchSet& set) {
+Result<Mesh> run_plan(const Result<Plan>& plan, const PatchSet& set, bool quads) {
   if (!plan) return plan.status();
-  Result<Mesh> mesh = plan->allocate();
+  Result<Mesh> mesh = quads ? plan->allocate_quads() : plan->allocate();
   if (!mesh) return mesh;
   Progress progress("tessellating");
   const Status status = plan->run(set, mesh->views(), progress.execution());
@@ -59,7 +62,8 @@ Result<Tessellated> tessellate(const Options& options, const Model& model, const
   Result<Mesh> mesh = [&] {
     if (options.grid)
       return run_plan(
-          TessellationPlan::make(set, {.rate_u = options.grid->first, .rate_v = options.grid->second, .isa = {}}), set);
+          TessellationPlan::make(set, {.rate_u = options.grid->first, .rate_v = options.grid->second, .isa = {}}), set,
+          options.quads);
     CertifiedOptions certified = options.certified;
     if (options.pixels > 0) certified.pixels = PixelTolerance{options.pixels, options.view};
     if (options.weld_rounding) certified.weld = rounding_share * set.box().diagonal();
@@ -73,7 +77,7 @@ Result<Tessellated> tessellate(const Options& options, const Model& model, const
       made.bound = plan->bound();
       made.proven = plan->certified();
     }
-    return run_plan(plan, set);
+    return run_plan(plan, set, options.quads);
   }();
   if (!mesh) return mesh.status();
   Result<std::vector<MeshPart>> parts = parts_by_surface(*mesh, set, model);
@@ -101,11 +105,14 @@ Status report(const Job& job, const Options& options, const CommonOptions& commo
   const Mesh& mesh = made.mesh;
   if (!common.json)
     return print(job.output + ": " + std::to_string(mesh.vertex_count()) + " vertices, " +
-                 std::to_string(mesh.triangle_count()) + " triangles" + kept(options, made) + "\n" + fit_line(set));
+                 std::to_string(mesh.triangle_count()) + " triangles" +
+                 (options.quads ? ", " + std::to_string(mesh.quad_count()) + " quads" : "") + kept(options, made) +
+                 "\n" + fit_line(set));
   Json object = files_json(loaded);
   object["output"] = job.output;
   object["vertices"] = mesh.vertex_count();
   object["triangles"] = mesh.triangle_count();
+  object["quads"] = mesh.quad_count();
   if (options.grid) {
     object["rate_u"] = options.grid->first;
     object["rate_v"] = options.grid->second;
@@ -159,7 +166,8 @@ constexpr const char* footer =
     "one mesh, or one each where the output is a folder (then as .ply) or holds {name}.\n"
     "By --tolerance, --relative or --triangles each patch gets the rates that it needs, neighbours meet without a "
     "crack,\n"
-    "and the bound that is printed is proven, float rounding and fits included.\n"
+    "and the bound that is printed is proven, float rounding and fits included. With --quads whole cells are faces of\n"
+    "four corners, those of strips along borders and at poles triangles.\n"
     "\nExamples:\n"
     "  tessera tessellate teapot.bpt -o teapot.ply --grid 16x16\n"
     "  tessera tessellate teapot.bpt -o teapot.ply --tolerance 0.001 --angle 10\n"
@@ -313,6 +321,18 @@ void add_sharing(CLI::App& command, Options& options) {
       ->excludes(grid);
 }
 
+/// The formats without faces of four corners.
+constexpr const char* triangle_formats[] = {".stl", ".glb", ".gltf"};
+
+/// Throws CLI::ValidationError where a file could hold no quads.
+void check_quads(const Plan& plan) {
+  for (const Job& job : plan.jobs) {
+    const std::string extension = lower_extension(job.output);
+    if (std::find(std::begin(triangle_formats), std::end(triangle_formats), extension) != std::end(triangle_formats))
+      throw CLI::ValidationError("--quads", extension + " holds triangles alone; .obj and .ply hold quads");
+  }
+}
+
 }  // namespace
 
 void add_tessellate(CLI::App& app, Session& session) {
@@ -330,10 +350,12 @@ void add_tessellate(CLI::App& app, Session& session) {
   add_cap(*command, *options);
   add_weld(*command, *options);
   add_sharing(*command, *options);
+  command->add_flag("--quads", options->quads, "Quads where a cell is whole, in .obj and .ply [triangles alone]");
   add_common(*command, session.common);
   command->footer(footer);
   command->callback([options, &session] {
     const Plan plan = plan_jobs(options->models.files, options->output, {"--output", extension_in_folders});
+    if (options->quads) check_quads(plan);
     session.command = [options, plan, &session] {
       return run_jobs(plan, session.common, [&](const Job& job, Timings& timings) {
         return run_tessellate(job, *options, session.common, timings);

@@ -116,11 +116,16 @@ class CertifiedTessellation {
   /// Borders that take the vertices of others, and those made points: joined by welding, not by their bits.
   std::size_t welded_borders() const;
   MeshCapacity capacity() const;  ///< exact, of triangles alone
-  /// The same with quads: as many as there are cells that no strip belongs to, none where they are all in strips.
+  /// The same with quads: as many as there are cells that no strip belongs to, none where they are all in strips. A quad's
+  /// corners are those of a box of the patch's parameters, in which all of its triangles lie: whatever is proven of the
+  /// mesh holds for both, by either diagonal.
   MeshCapacity quad_capacity() const;
   /// A mesh of the right size with all attributes that there are, of triangles.
   Result<Mesh> allocate() const;
-  /// Writes the mesh of the set that the plan was made for, at any revision: the same triangles, whatever the control
+  /// The same for quads and the triangles of strips.
+  Result<Mesh> allocate_quads() const;
+  /// Writes the mesh of the set that the plan was made for, with quads if there is a view of them, at any revision: the same
+  /// triangles, whatever the control
   /// points (the bounds hold for the plan's own revision). Errors: buffer_too_small, stale (another number of patches,
   /// other degrees or collapsed borders), invalid_argument (views; normals of vertices that are shared everywhere),
   /// cancelled. Nothing is written on any but cancelled. The same

@@ -68,14 +68,21 @@ Status write_model(const PatchSet& set, const std::filesystem::path& path);
 /// .obj (text, floats in shortest round-trip form; parts as groups), .ply and .stl (binary, little endian; .stl holds the
 /// triangles' corners alone): the origin is added in double, what does not fit float exactly is rounded. .glb and .gltf
 /// (glTF 2.0, one file with all in it): a mesh for each of Mesh::parts, positions as they are, and the origin as the
-/// translation of their node; normals are made unit, parameters are texture coordinates.
+/// translation of their node; normals are made unit, parameters are texture coordinates. Quads are faces of four corners
+/// in .obj, after a part's triangles, and in .ply, after all triangles; .stl and glTF have no such faces and get two
+/// triangles a quad, see split_quads().
 /// Errors: io_error, unsupported (the extension; a glTF file beyond 2 GiB), and of a mesh that no file can hold:
 /// invalid_argument (no vertices; for .stl, .glb and .gltf no triangles; an index or a part out of range), count_mismatch,
 /// non_finite.
 Status write_mesh(const Mesh& mesh, const std::filesystem::path& path);
+
+/// What read_mesh makes of polygons.
+struct MeshReadOptions {
+  bool keep_quads = false;  ///< those of four corners become Mesh::quads
+};
 /// Reads .obj, .ply and .stl (binary or ascii), polygons split as fans; the corners of .stl's triangles become one vertex
 /// where their bits are equal. Errors: io_error, parse_error, unsupported.
-Result<Mesh> read_mesh(const std::filesystem::path& path);
+Result<Mesh> read_mesh(const std::filesystem::path& path, const MeshReadOptions& options = {});
 
 }  // namespace tessera
 #pragma GCC visibility pop

@@ -29,20 +29,25 @@ struct TessellationOptions {
 class TessellationPlan {
  public:
   /// Errors: invalid_argument (a rate out of range, counts that overflow 32-bit indices), isa_unavailable, unsupported
-  /// (the set has no float Bernstein blocks). Memory: 16 bytes a patch.
+  /// (the set has no float Bernstein blocks). Memory: 24 bytes a patch.
   static Result<TessellationPlan> make(const PatchSet& set, const TessellationOptions& options = {});
 
   TessellationPlan(TessellationPlan&&) noexcept;
   TessellationPlan& operator=(TessellationPlan&&) noexcept;
   ~TessellationPlan();
 
-  MeshCapacity capacity() const;  ///< exact
+  MeshCapacity capacity() const;  ///< exact, of triangles alone
+  /// The same with quads: cells that are whole are quads, those at poles stay triangles.
+  MeshCapacity quad_capacity() const;
   int rate_u() const;             ///< segments along u of every patch
   int rate_v() const;             ///< segments along v
-  /// A mesh of the right size with all attributes.
+  /// A mesh of the right size with all attributes, of triangles.
   Result<Mesh> allocate() const;
-  /// Writes the mesh. `set` is the one that the plan was made for, at any revision that collapses the same edges.
-  /// Errors: buffer_too_small, stale, invalid_argument, unsupported (quads), cancelled. Nothing is written on any but cancelled.
+  /// The same for quads, and for triangles where there are none.
+  Result<Mesh> allocate_quads() const;
+  /// Writes the mesh, with quads if there is a view of them. `set` is the one that the plan was made for, at any revision
+  /// that collapses the same edges.
+  /// Errors: buffer_too_small, stale, invalid_argument, cancelled. Nothing is written on any but cancelled.
   /// The same bytes for any number of threads. Allocates nothing after the first call.
   Status run(const PatchSet& set, const MeshViews& out, const Execution& execution = {}) const;
 
@@ -53,9 +58,10 @@ class TessellationPlan {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Mesh::parts by surfaces: a part for each run of triangles whose patches come from one surface, with its name in the
-/// model ("surface 3" if it has none). `set` is the one of mesh.patches, made of `model`. Errors: count_mismatch (not one
-/// patch a triangle), invalid_argument (no such patch in the set, or surface in the model; index = the triangle).
+/// Mesh::parts by surfaces: a part for each run of triangles and quads whose patches come from one surface, with its name in
+/// the model ("surface 3" if it has none); they are gone through together, always the next one of the lower patch. `set` is
+/// the one of mesh.patches, made of `model`. Errors: count_mismatch (not one patch a triangle and a quad), invalid_argument
+/// (no such patch in the set, or surface in the model; index = the triangle or quad).
 Result<std::vector<MeshPart>> parts_by_surface(const Mesh& mesh, const PatchSet& set, const Model& model);
 
 }  // namespace tessera

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 struct Format {
   std::string_view extension;
   Result<Model> (*read_model)(std::string_view, std::string_view) = nullptr;
-  Result<Mesh> (*read_mesh)(std::string_view, std::string_view) = nullptr;
+  Result<Mesh> (*read_mesh)(std::string_view, std::string_view, const MeshReadOptions&) = nullptr;
   Status (*write_mesh)(const Mesh&, OutputFile&) = nullptr;
   decltype(&write_bpt) write_model = nullptr;
 };
@@ -58,15 +58,16 @@ Result<const Format*> find_format(const fs::path& path, Ability Format::*member,
 }
 
 /// The file's bytes and its format. What cannot be opened is said before what cannot be understood.
-template <class Content, class Ability>
-Result<Content> read_as(const fs::path& path, Ability Format::*member, std::string_view what) {
+template <class Content, class Ability, class... Options>
+Result<Content> read_as(const fs::path& path, Ability Format::*member, std::string_view what,
+                        const Options&... options) {
   const Result<const Format*> format = find_format(path, member, what);
   std::error_code error;
   if (!format && fs::exists(path, error) && !fs::is_directory(path, error)) return format.status();
   const Result<std::string> bytes = read_file(path);
   if (!bytes) return bytes.status();
   if (!format) return format.status();
-  return ((*format)->*member)(*bytes, path.string());
+  return ((*format)->*member)(*bytes, path.string(), options...);
 }
 
 /// That tessera::io_occt reads these files, if it does; else `status`.
@@ -109,8 +110,8 @@ Result<Model> read_model(const fs::path& path) {
   });
 }
 
-Result<Mesh> read_mesh(const fs::path& path) {
-  return guarded([&] { return read_as<Mesh>(path, &Format::read_mesh, "meshes are read"); });
+Result<Mesh> read_mesh(const fs::path& path, const MeshReadOptions& options) {
+  return guarded([&] { return read_as<Mesh>(path, &Format::read_mesh, "meshes are read", options); });
 }
 
 Status write_mesh(const Mesh& mesh, const fs::path& path, OutputFile& out) {

@@ -222,6 +222,10 @@ class GltfMesh {
 };
 
 Status write(const Mesh& mesh, OutputFile& out, bool binary) {
+  if (!mesh.quads.empty()) {
+    const Result<Mesh> split = split_quads(mesh);
+    return split ? write(*split, out, binary) : split.status();
+  }
   if (mesh.triangle_count() == 0) return {StatusCode::invalid_argument, "the mesh has no triangles, glTF wants some"};
   if (const std::size_t bytes = GltfMesh::byte_count(mesh); bytes > most_bytes)
     return {StatusCode::unsupported, "the mesh takes " + std::to_string(bytes) + " bytes, glTF files of up to " +

@@ -7,6 +7,7 @@
 #include "io/mesh_formats.h"
 #include "io/obj_index.h"
 #include "io/obj_name.h"
+#include "io/polygon.h"
 #include "io/text_cursor.h"
 
 namespace tessera {
@@ -39,10 +40,17 @@ constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 /// Position, parameter and normal of one corner of a polygon, zero-based.
 using Corner = std::array<std::uint32_t, 3>;
 
+/// The corners of a face.
+void write_face(OutputFile& out, std::span<const std::uint32_t> corners, bool parameters, bool normals) {
+  out.write('f');
+  for (const std::uint32_t corner : corners) write_corner(out, corner, parameters, normals);
+  out.write('\n');
+}
+
 class ObjReader {
  public:
-  ObjReader(std::string_view text, std::string_view name)
-      : cursor_(text, name, {.separators = "/", .continuation = '\\'}) {}
+  ObjReader(std::string_view text, std::string_view name, const MeshReadOptions& options)
+      : cursor_(text, name, {.separators = "/", .continuation = '\\'}), options_(options) {}
 
   Result<Mesh> read() {
     for (cursor_.skip_space(); !cursor_.at_end(); cursor_.skip_space()) {
@@ -104,6 +112,7 @@ class ObjReader {
       ++corners;
     }
     if (corners < 3) return cursor_.expected("at least 3 corners after f");
+    if (corners == 4 && options_.keep_quads) join_last_quad(mesh_);
     return {};
   }
 
@@ -124,6 +133,7 @@ class ObjReader {
   }
 
   TextCursor cursor_;
+  MeshReadOptions options_;
   Mesh mesh_;
   bool one_parameter_a_vertex_ = true, one_normal_a_vertex_ = true;
 };
@@ -132,8 +142,9 @@ class ObjReader {
 
 Status write_obj(const Mesh& mesh, OutputFile& out) {
   const bool normals = !mesh.normals.empty(), parameters = !mesh.parameters.empty();
+  const std::string quads = mesh.quads.empty() ? "" : ", " + std::to_string(mesh.quad_count()) + " quads";
   out.write("# Tessera: " + std::to_string(mesh.vertex_count()) + " vertices, " +
-            std::to_string(mesh.triangle_count()) + " triangles\n");
+            std::to_string(mesh.triangle_count()) + " triangles" + quads + "\n");
   for (std::size_t k = 0; k < mesh.vertex_count() && !out.failed(); ++k) {
     const float* const p = mesh.positions.data() + 3 * k;
     const std::array<float, 3> position{file_coordinate(mesh.origin.x, p[0]), file_coordinate(mesh.origin.y, p[1]),
@@ -142,17 +153,22 @@ Status write_obj(const Mesh& mesh, OutputFile& out) {
     if (parameters) write_record(out, "vt", std::span(mesh.parameters).subspan(2 * k, 2));
     if (normals) write_record(out, "vn", std::span(mesh.normals).subspan(3 * k, 3));
   }
-  auto part = mesh.parts.begin();
-  for (std::size_t k = 0; k < mesh.triangle_count() && !out.failed(); ++k) {
-    for (; part != mesh.parts.end() && part->first_triangle == k; ++part)
-      if (part->triangle_count > 0) out.write("g " + obj_name(part->name) + "\n");
-    out.write('f');
-    for (std::size_t c = 0; c < 3; ++c) write_corner(out, mesh.indices[3 * k + c], parameters, normals);
-    out.write('\n');
+  const auto write_part = [&](const MeshPart& part) {
+    for (std::size_t k = 0; k < part.triangle_count && !out.failed(); ++k)
+      write_face(out, std::span(mesh.indices).subspan(3 * (part.first_triangle + k), 3), parameters, normals);
+    for (std::size_t k = 0; k < part.quad_count && !out.failed(); ++k)
+      write_face(out, std::span(mesh.quads).subspan(4 * (part.first_quad + k), 4), parameters, normals);
+  };
+  if (mesh.parts.empty()) write_part({{}, 0, mesh.triangle_count(), 0, mesh.quad_count()});
+  for (const MeshPart& part : mesh.parts) {
+    if (part.triangle_count + part.quad_count > 0) out.write("g " + obj_name(part.name) + "\n");
+    write_part(part);
   }
   return {};
 }
 
-Result<Mesh> parse_obj(std::string_view text, std::string_view name) { return ObjReader(text, name).read(); }
+Result<Mesh> parse_obj(std::string_view text, std::string_view name, const MeshReadOptions& options) {
+  return ObjReader(text, name, options).read();
+}
 
 }  // namespace tessera

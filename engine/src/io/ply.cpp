@@ -11,6 +11,7 @@
 #include "io/mesh_formats.h"
 #include "io/packed_records.h"
 #include "io/ply_header.h"
+#include "io/polygon.h"
 #include "io/text_cursor.h"
 
 namespace tessera {
@@ -108,7 +109,7 @@ bool is_index(double value) {
 template <class Values>
 class BodyReader {
  public:
-  explicit BodyReader(Values values) : values_(values) {}
+  BodyReader(Values values, const MeshReadOptions& options) : values_(values), options_(options) {}
 
   Result<Mesh> read(const PlyHeader& header) {
     for (const PlyElement& element : header.elements) {
@@ -122,11 +123,12 @@ class BodyReader {
     }
     if (!values_.at_end()) return values_.error("there is more after the last element");
     if (mesh_.positions.empty()) return values_.error("there are no vertices");
-    const auto bad = std::find_if(mesh_.indices.begin(), mesh_.indices.end(),
-                                  [&](std::uint32_t index) { return index >= mesh_.vertex_count(); });
-    if (bad != mesh_.indices.end()) {
-      return values_.error("a face has the vertex index " + std::to_string(*bad) + ", but there are " +
-                           std::to_string(mesh_.vertex_count()) + " vertices");
+    for (const auto* indices : {&mesh_.indices, &mesh_.quads}) {
+      const auto bad = std::find_if(indices->begin(), indices->end(),
+                                    [&](std::uint32_t index) { return index >= mesh_.vertex_count(); });
+      if (bad != indices->end())
+        return values_.error("a face has the vertex index " + std::to_string(*bad) + ", but there are " +
+                             std::to_string(mesh_.vertex_count()) + " vertices");
     }
     return std::move(mesh_);
   }
@@ -177,7 +179,7 @@ class BodyReader {
 
   Status read_faces(const PlyElement& element) {
     for (std::uint64_t k = 0; k < element.count; ++k) {
-      const std::size_t first = mesh_.triangle_count();
+      const std::size_t before = mesh_.triangle_count() + mesh_.quad_count();
       double patch = -1;
       for (const PlyProperty& property : element.properties) {
         Status status;
@@ -190,10 +192,17 @@ class BodyReader {
         }
         if (!status.ok()) return status;
       }
-      if (is_index(patch)) mesh_.patches.resize(mesh_.triangle_count(), static_cast<std::uint32_t>(patch));
-      if (mesh_.triangle_count() == first) return values_.error(record_of(element, k) + " has no vertex_indices");
+      if (is_index(patch)) {
+        mesh_.patches.resize(mesh_.triangle_count(), static_cast<std::uint32_t>(patch));
+        mesh_.quad_patches.resize(mesh_.quad_count(), static_cast<std::uint32_t>(patch));
+      }
+      if (mesh_.triangle_count() + mesh_.quad_count() == before)
+        return values_.error(record_of(element, k) + " has no vertex_indices");
     }
-    if (mesh_.patches.size() != mesh_.triangle_count()) mesh_.patches.clear();
+    if (!mesh_.has_patches()) {
+      mesh_.patches.clear();
+      mesh_.quad_patches.clear();
+    }
     return {};
   }
 
@@ -211,6 +220,7 @@ class BodyReader {
       if (c >= 2) mesh_.indices.insert(mesh_.indices.end(), {first, last, index});
       last = index;
     }
+    if (corners == 4 && options_.keep_quads) join_last_quad(mesh_);
     return {};
   }
 
@@ -237,6 +247,7 @@ class BodyReader {
   }
 
   Values values_;
+  MeshReadOptions options_;
   Mesh mesh_;
 };
 
@@ -253,16 +264,30 @@ void write_header(const Mesh& mesh, OutputFile& out) {
     if ((k >= 3 && k < 6 && mesh.normals.empty()) || (k >= 6 && mesh.parameters.empty())) continue;
     text += "property float " + std::string(vertex_names[k]) + "\n";
   }
-  text += "element face " + std::to_string(mesh.triangle_count()) + "\nproperty list uchar int vertex_indices\n";
-  if (!mesh.patches.empty()) text += "property int patch\n";
+  text += "element face " + std::to_string(mesh.triangle_count() + mesh.quad_count()) +
+          "\nproperty list uchar int vertex_indices\n";
+  if (mesh.has_patches()) text += "property int patch\n";
   out.write(text + "end_header\n");
+}
+
+/// Faces of so many corners, each with its patch if `patches` are not empty.
+Status write_faces(OutputFile& out, std::size_t corners, std::span<const std::uint32_t> indices,
+                   std::span<const std::uint32_t> patches) {
+  const std::size_t face_bytes = 1 + sizeof(std::uint32_t) * (corners + (patches.empty() ? 0 : 1));
+  return write_packed(out, indices.size() / corners, face_bytes, [&](std::size_t first, std::size_t last, char* to) {
+    for (std::size_t k = first; k < last; ++k) {
+      *to++ = static_cast<char>(corners);
+      to = put(to, indices.data() + corners * k, corners);
+      if (!patches.empty()) to = put(to, patches.data() + k, 1);
+    }
+  });
 }
 
 }  // namespace
 
 Status write_ply(const Mesh& mesh, OutputFile& out) {
   write_header(mesh, out);
-  const bool normals = !mesh.normals.empty(), parameters = !mesh.parameters.empty(), patches = !mesh.patches.empty();
+  const bool normals = !mesh.normals.empty(), parameters = !mesh.parameters.empty(), patches = mesh.has_patches();
   const std::size_t vertex_bytes = sizeof(float) * (3 + (normals ? 3 : 0) + (parameters ? 2 : 0));
   Status status =
       write_packed(out, mesh.vertex_count(), vertex_bytes, [&](std::size_t first, std::size_t last, char* to) {
@@ -275,21 +300,18 @@ Status write_ply(const Mesh& mesh, OutputFile& out) {
         }
       });
   if (!status.ok()) return status;
-  const std::size_t face_bytes = 1 + sizeof(std::uint32_t) * (3 + (patches ? 1 : 0));
-  return write_packed(out, mesh.triangle_count(), face_bytes, [&](std::size_t first, std::size_t last, char* to) {
-    for (std::size_t k = first; k < last; ++k) {
-      *to++ = 3;
-      to = put(to, mesh.indices.data() + 3 * k, 3);
-      if (patches) to = put(to, mesh.patches.data() + k, 1);
-    }
-  });
+  const auto known = [patches](const std::vector<std::uint32_t>& of) {
+    return patches ? std::span(of) : std::span<const std::uint32_t>();
+  };
+  if (status = write_faces(out, 3, mesh.indices, known(mesh.patches)); !status.ok()) return status;
+  return write_faces(out, 4, mesh.quads, known(mesh.quad_patches));
 }
 
-Result<Mesh> parse_ply(std::string_view bytes, std::string_view name) {
+Result<Mesh> parse_ply(std::string_view bytes, std::string_view name, const MeshReadOptions& options) {
   const Result<PlyHeader> header = parse_ply_header(bytes, name);
   if (!header) return header.status();
-  if (header->binary) return BodyReader(BinaryValues(bytes, header->bytes, name)).read(*header);
-  return BodyReader(AsciiValues(bytes, header->bytes, name)).read(*header);
+  if (header->binary) return BodyReader(BinaryValues(bytes, header->bytes, name), options).read(*header);
+  return BodyReader(AsciiValues(bytes, header->bytes, name), options).read(*header);
 }
 
 }  // namespace tessera

@@ -156,6 +156,10 @@ class AsciiReader {
 }  // namespace
 
 Status write_stl(const Mesh& mesh, OutputFile& out) {
+  if (!mesh.quads.empty()) {
+    const Result<Mesh> split = split_quads(mesh);
+    return split ? write_stl(*split, out) : split.status();
+  }
   const std::size_t triangles = mesh.triangle_count();
   if (triangles == 0 || triangles > most_vertices)
     return {StatusCode::invalid_argument, "the mesh has " + std::to_string(triangles) +
@@ -171,7 +175,7 @@ Status write_stl(const Mesh& mesh, OutputFile& out) {
   });
 }
 
-Result<Mesh> parse_stl(std::string_view bytes, std::string_view name) {
+Result<Mesh> parse_stl(std::string_view bytes, std::string_view name, const MeshReadOptions&) {
   const bool has_header = bytes.size() >= header_bytes;
   // The size decides: there are binary files that begin with "solid" all the same.
   if (has_header && (bytes.size() - header_bytes) == stated_triangles(bytes) * triangle_bytes)

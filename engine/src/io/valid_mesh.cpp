@@ -10,6 +10,7 @@
 
 #include "io/mesh_formats.h"
 #include "parallel/parallel_for.h"
+#include "tess/mesh_parts.h"
 
 namespace tessera {
 namespace {
@@ -75,7 +76,9 @@ Status check_lengths(const Mesh& mesh) {
   const bool lengths_fit = mesh.positions.size() == 3 * vertices && mesh.indices.size() == 3 * triangles &&
                            (mesh.normals.empty() || mesh.normals.size() == 3 * vertices) &&
                            (mesh.parameters.empty() || mesh.parameters.size() == 2 * vertices) &&
-                           (mesh.patches.empty() || mesh.patches.size() == triangles);
+                           (mesh.patches.empty() || mesh.patches.size() == triangles) &&
+                           mesh.quads.size() == 4 * mesh.quad_count() &&
+                           (mesh.quad_patches.empty() || mesh.quad_patches.size() == mesh.quad_count());
   if (!lengths_fit) return {StatusCode::count_mismatch, "the mesh's arrays have lengths that do not fit each other"};
   if (vertices == 0) return {StatusCode::invalid_argument, "the mesh has no vertices"};
   if (vertices > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
@@ -84,13 +87,15 @@ Status check_lengths(const Mesh& mesh) {
 }
 
 Status check_indices(const Mesh& mesh) {
-  const std::span indices(mesh.indices);
   const auto vertices = static_cast<std::uint32_t>(mesh.vertex_count());
-  const Result<std::size_t> bad = first_of(indices.size(), [&](std::size_t begin, std::size_t end) {
-    return first_bad(begin, end, [&](std::size_t k) { return indices[k] >= vertices; });
-  });
-  if (!bad) return bad.status();
-  return *bad == indices.size() ? Status() : invalid("an index of the mesh is beyond its vertices", *bad);
+  for (const std::span<const std::uint32_t> indices : {std::span(mesh.indices), std::span(mesh.quads)}) {
+    const Result<std::size_t> bad = first_of(indices.size(), [&](std::size_t begin, std::size_t end) {
+      return first_bad(begin, end, [&](std::size_t k) { return indices[k] >= vertices; });
+    });
+    if (!bad) return bad.status();
+    if (*bad != indices.size()) return invalid("an index of the mesh is beyond its vertices", *bad);
+  }
+  return {};
 }
 
 Status check_numbers(const Mesh& mesh) {
@@ -105,20 +110,6 @@ Status check_numbers(const Mesh& mesh) {
     return {StatusCode::non_finite, "a parameter of the mesh is not finite",
             static_cast<std::ptrdiff_t>(*parameter / 2)};
   return {};
-}
-
-Status check_parts(const Mesh& mesh) {
-  std::size_t next = 0;
-  for (std::size_t k = 0; k < mesh.parts.size(); ++k) {
-    const MeshPart& part = mesh.parts[k];
-    if (part.first_triangle != next || part.triangle_count > mesh.triangle_count() - next)
-      return invalid(
-          "part " + std::to_string(k) + " of the mesh does not follow on the one before, within its triangles", k);
-    next += part.triangle_count;
-  }
-  if (mesh.parts.empty() || next == mesh.triangle_count()) return {};
-  return {StatusCode::count_mismatch, "the mesh's parts have " + std::to_string(next) + " triangles, the mesh " +
-                                          std::to_string(mesh.triangle_count())};
 }
 
 }  // namespace

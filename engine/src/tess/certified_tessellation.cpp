@@ -66,6 +66,12 @@ Status CertifiedTessellation::Impl::join(const PatchSet& set, const CertifiedPla
   return {};
 }
 
+Mesh CertifiedTessellation::Impl::allocate(const MeshCapacity& capacity) const {
+  Mesh mesh = empty_mesh(capacity, origin_);
+  if (!has_normals()) mesh.normals.clear();
+  return mesh;
+}
+
 Status CertifiedTessellation::Impl::check_normals(const MeshViews& out) const {
   if (out.normal.empty() || has_normals()) return {};
   return {StatusCode::invalid_argument, "vertices that patches share have no normals without a crease angle"};
@@ -223,11 +229,11 @@ MeshCapacity CertifiedTessellation::capacity() const { return impl_->plan().capa
 MeshCapacity CertifiedTessellation::quad_capacity() const { return impl_->plan().quad_capacity(); }
 
 Result<Mesh> CertifiedTessellation::allocate() const {
-  return guarded([&]() -> Result<Mesh> {
-    Mesh mesh = empty_mesh(capacity(), impl_->origin());
-    if (!impl_->has_normals()) mesh.normals.clear();
-    return mesh;
-  });
+  return guarded([&]() -> Result<Mesh> { return impl_->allocate(capacity()); });
+}
+
+Result<Mesh> CertifiedTessellation::allocate_quads() const {
+  return guarded([&]() -> Result<Mesh> { return impl_->allocate(quad_capacity()); });
 }
 
 Status CertifiedTessellation::run(const PatchSet& set, const MeshViews& out, const Execution& execution) const {

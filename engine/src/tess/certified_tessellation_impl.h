@@ -23,7 +23,6 @@ class CertifiedTessellation::Impl {
   const VertexCopies& joins() const { return joins_; }  ///< vertices that share normals, or that are one
   const MeshTables& tables() const { return tables_; }
   Isa isa() const { return isa_; }
-  Vec3 origin() const { return origin_; }
   std::uint64_t revision() const { return revision_; }  ///< of the set, when the plan was made
 
   double bound() const { return bound_; }
@@ -35,6 +34,8 @@ class CertifiedTessellation::Impl {
 
   /// Finds what neighbours share, if anything. Once, of the set that the plan was made for. Errors: cancelled.
   Status join(const PatchSet& set, const CertifiedPlanner& planner, const Execution& execution);
+  /// A mesh of that size.
+  Mesh allocate(const MeshCapacity& capacity) const;
   /// Errors: invalid_argument.
   Status check_normals(const MeshViews& out) const;
   bool has_normals() const { return !options_.share_vertices || options_.crease_angle; }

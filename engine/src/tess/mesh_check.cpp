@@ -52,6 +52,7 @@ Status check_counts(const Mesh& mesh) {
     return bad(std::to_string(mesh.positions.size()) + " numbers in positions are not three a vertex");
   if (mesh.indices.size() % 3 != 0)
     return bad(std::to_string(mesh.indices.size()) + " indices are not three a triangle");
+  if (mesh.quads.size() % 4 != 0) return bad(std::to_string(mesh.quads.size()) + " indices are not four a quad");
   if (mesh.vertex_count() > most_vertices)
     return bad(std::to_string(mesh.vertex_count()) + " vertices are more than " + std::to_string(most_vertices));
   if (!fits(mesh.normals, mesh.positions.size()))
@@ -63,18 +64,21 @@ Status check_counts(const Mesh& mesh) {
   if (!fits(mesh.patches, mesh.triangle_count()))
     return bad(std::to_string(mesh.patches.size()) + " patches for " + std::to_string(mesh.triangle_count()) +
                " triangles");
+  if (!fits(mesh.quad_patches, mesh.quad_count()))
+    return bad(std::to_string(mesh.quad_patches.size()) + " patches for " + std::to_string(mesh.quad_count()) +
+               " quads");
   return {};
 }
 
-Status check_indices(const Mesh& mesh) {
-  const std::size_t vertices = mesh.vertex_count();
-  const auto bad =
-      std::find_if(mesh.indices.begin(), mesh.indices.end(), [&](std::uint32_t k) { return k >= vertices; });
-  if (bad == mesh.indices.end()) return {};
-  const std::ptrdiff_t place = bad - mesh.indices.begin();
+/// `corners` of each face.
+Status check_indices(std::span<const std::uint32_t> indices, std::ptrdiff_t corners, const char* face,
+                     std::size_t vertices) {
+  const auto bad = std::find_if(indices.begin(), indices.end(), [&](std::uint32_t k) { return k >= vertices; });
+  if (bad == indices.end()) return {};
+  const std::ptrdiff_t place = bad - indices.begin();
   return {StatusCode::invalid_argument,
-          "corner " + std::to_string(place % 3) + " of triangle " + std::to_string(place / 3) + " is vertex " +
-              std::to_string(*bad) + ", the mesh has " + std::to_string(vertices),
+          "corner " + std::to_string(place % corners) + " of " + face + " " + std::to_string(place / corners) +
+              " is vertex " + std::to_string(*bad) + ", the mesh has " + std::to_string(vertices),
           place};
 }
 
@@ -90,14 +94,14 @@ Vec3 vertex(const std::vector<float>& values, std::size_t k) {
   return {values[3 * k], values[3 * k + 1], values[3 * k + 2]};
 }
 
+using Triangle = std::array<std::uint32_t, 3>;
+
 /// Whether the corners of a triangle lie on one line. Products of differences of floats are exact in double unless
 /// their exponents lie far apart, so this is no matter of tolerance.
-bool has_no_area(const Mesh& mesh, const std::uint32_t* corners) {
-  const auto point = [&](int k) { return vertex(mesh.positions, corners[k]); };
+bool has_no_area(const Mesh& mesh, const Triangle& corners) {
+  const auto point = [&](std::size_t k) { return vertex(mesh.positions, corners[k]); };
   return cross(point(1) - point(0), point(2) - point(0)) == Vec3{};
 }
-
-using Triangle = std::array<std::uint32_t, 3>;
 
 /// The edges of triangles, gathered by their lower vertex: each as twice the upper one, plus 1 if it runs downwards.
 class EdgeTable {
@@ -136,10 +140,10 @@ class EdgeTable {
 };
 
 /// Whether the triangle looks the other way than the normals at its corners do, taken together.
-bool is_flipped(const Mesh& mesh, const std::uint32_t* corners) {
-  const auto at = [&](int k) { return vertex(mesh.positions, corners[k]); };
+bool is_flipped(const Mesh& mesh, const Triangle& corners) {
+  const auto at = [&](std::size_t k) { return vertex(mesh.positions, corners[k]); };
   Vec3 normals;
-  for (int k = 0; k < 3; ++k) normals += vertex(mesh.normals, corners[k]);
+  for (const std::uint32_t corner : corners) normals += vertex(mesh.normals, corner);
   return dot(cross(at(1) - at(0), at(2) - at(0)), normals) < 0;
 }
 
@@ -148,16 +152,22 @@ MeshReport count(const Mesh& mesh) {
   const Welded welded = weld(mesh);
   report.vertices = mesh.vertex_count();
   report.distinct_positions = welded.count;
-  report.triangles = mesh.triangle_count();
+  report.triangles = mesh.triangle_count() + 2 * mesh.quad_count();
+  report.quads = mesh.quad_count();
   report.non_finite_vertices = count_non_finite(mesh);
   std::vector<Triangle> sound;
   sound.reserve(report.triangles);
-  for (std::size_t k = 0; k < report.triangles; ++k) {
-    const std::uint32_t* corners = &mesh.indices[3 * k];
+  const auto look_at = [&](const Triangle& corners) {
     const Triangle t{welded.place[corners[0]], welded.place[corners[1]], welded.place[corners[2]]};
-    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0] || has_no_area(mesh, corners)) continue;
+    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0] || has_no_area(mesh, corners)) return;
     sound.push_back(t);
     report.flipped_triangles += !mesh.normals.empty() && is_flipped(mesh, corners);
+  };
+  for (auto corner = mesh.indices.begin(); corner != mesh.indices.end(); corner += 3)
+    look_at({corner[0], corner[1], corner[2]});
+  for (auto corner = mesh.quads.begin(); corner != mesh.quads.end(); corner += 4) {
+    look_at({corner[0], corner[1], corner[2]});
+    look_at({corner[0], corner[2], corner[3]});
   }
   report.degenerate_triangles = report.triangles - sound.size();
   std::vector<std::array<std::uint32_t, 2>> open;
@@ -173,7 +183,9 @@ MeshReport count(const Mesh& mesh) {
 Result<MeshReport> check(const Mesh& mesh) {
   return guarded([&]() -> Result<MeshReport> {
     if (Status status = check_counts(mesh); !status.ok()) return status;
-    if (Status status = check_indices(mesh); !status.ok()) return status;
+    const std::size_t vertices = mesh.vertex_count();
+    if (Status status = check_indices(mesh.indices, 3, "triangle", vertices); !status.ok()) return status;
+    if (Status status = check_indices(mesh.quads, 4, "quad", vertices); !status.ok()) return status;
     return count(mesh);
   });
 }

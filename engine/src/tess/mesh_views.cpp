@@ -66,6 +66,8 @@ Mesh empty_mesh(const MeshCapacity& capacity, const Vec3& origin) {
   mesh.parameters.resize(2 * capacity.vertices);
   mesh.patches.resize(capacity.triangles);
   mesh.indices.resize(3 * capacity.triangles);
+  mesh.quads.resize(4 * capacity.quads);
+  mesh.quad_patches.resize(capacity.quads);
   return mesh;
 }
 

@@ -9,7 +9,7 @@
 
 namespace tessera {
 
-/// A mesh with all attributes, zeros, of so many vertices and triangles.
+/// A mesh with all attributes, zeros, of so many vertices, triangles and quads.
 Mesh empty_mesh(const MeshCapacity& capacity, const Vec3& origin);
 
 /// Quads are looked at if the capacity holds any. Errors: buffer_too_small; invalid_argument (no positions, a null

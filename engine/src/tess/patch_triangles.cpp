@@ -50,6 +50,26 @@ std::uint32_t* write(std::uint32_t* to, std::uint32_t a, std::uint32_t b, std::u
   return to + 3;
 }
 
+/// How much is left of the cells of a patch: `all` of each, but `count(remaining())` of those at collapsed edges.
+template <class Count>
+std::size_t remaining_count(const PatchShape& shape, Rates rates, std::size_t all, const Count& count) {
+  if (shape.is_curve) return 0;
+  std::size_t sum = all * static_cast<std::size_t>(rates.u) * static_cast<std::size_t>(rates.v);
+  if (!shape.collapsed.any()) return sum;
+  const auto take_off = [&](int iu, int iv) {
+    sum -= all - static_cast<std::size_t>(count(remaining(edges_of_cell(shape.collapsed, rates, iu, iv))));
+  };
+  for (int iu = 0; iu < rates.u; ++iu) {  // the cells of the border, each once
+    take_off(iu, 0);
+    if (rates.v > 1) take_off(iu, rates.v - 1);
+  }
+  for (int iv = 1; iv < rates.v - 1; ++iv) {
+    take_off(0, iv);
+    if (rates.u > 1) take_off(rates.u - 1, iv);
+  }
+  return sum;
+}
+
 /// Both triangles of each of `count` cells in a row, p00 being vertices first, first + 1, ..
 std::uint32_t* write_whole_cells(std::uint32_t first, std::uint32_t row, int count, std::uint32_t* to) {
   for (std::uint32_t p00 = first; p00 != first + static_cast<std::uint32_t>(count); ++p00) {
@@ -79,22 +99,11 @@ PatchShape PatchShape::of(const BezierPatch& patch, std::span<const Vec3> points
 }
 
 std::size_t triangle_count(const PatchShape& shape, Rates rates) {
-  if (shape.is_curve) return 0;
-  std::size_t count = 2 * static_cast<std::size_t>(rates.u) * static_cast<std::size_t>(rates.v);
-  if (!shape.collapsed.any()) return count;
-  const auto take_off = [&](int iu, int iv) {
-    const unsigned left = remaining(edges_of_cell(shape.collapsed, rates, iu, iv));
-    count -= 2 - ((left & lower) != 0) - ((left & upper) != 0);
-  };
-  for (int iu = 0; iu < rates.u; ++iu) {  // the cells of the border, each once
-    take_off(iu, 0);
-    if (rates.v > 1) take_off(iu, rates.v - 1);
-  }
-  for (int iv = 1; iv < rates.v - 1; ++iv) {
-    take_off(0, iv);
-    if (rates.u > 1) take_off(rates.u - 1, iv);
-  }
-  return count;
+  return remaining_count(shape, rates, 2, [](unsigned left) { return ((left & lower) != 0) + ((left & upper) != 0); });
+}
+
+std::size_t quad_count(const PatchShape& shape, Rates rates) {
+  return remaining_count(shape, rates, 1, [](unsigned left) { return left == (lower | upper) ? 1 : 0; });
 }
 
 std::uint32_t* write_triangles(const PatchShape& shape, Rates rates, std::uint32_t first, std::uint32_t* indices) {
@@ -113,6 +122,23 @@ std::uint32_t* write_triangles(const PatchShape& shape, Rates rates, std::uint32
     }
   }
   return indices;
+}
+
+void write_quads(const PatchShape& shape, Rates rates, std::uint32_t first, std::uint32_t* indices,
+                 std::uint32_t* quads) {
+  if (shape.is_curve) return;
+  const std::uint32_t row = static_cast<std::uint32_t>(rates.v) + 1;
+  for (int iu = 0; iu < rates.u; ++iu, first += row)
+    for (int iv = 0; iv < rates.v; ++iv) {
+      const std::uint32_t p00 = first + static_cast<std::uint32_t>(iv), p10 = p00 + row;
+      const unsigned left = remaining(edges_of_cell(shape.collapsed, rates, iu, iv));
+      if (left == (lower | upper)) {
+        for (const std::uint32_t corner : {p00, p10, p10 + 1, p00 + 1}) *quads++ = corner;
+      } else {
+        if (left & lower) indices = write(indices, p00, p10, p10 + 1);
+        if (left & upper) indices = write(indices, p00, p10 + 1, p00 + 1);
+      }
+    }
 }
 
 }  // namespace tessera

@@ -33,9 +33,14 @@ struct Rates {
 
 /// How many triangles a patch has.
 std::size_t triangle_count(const PatchShape& shape, Rates rates);
+/// How many of its cells are whole, two triangles each: those that may be quads.
+std::size_t quad_count(const PatchShape& shape, Rates rates);
 
 /// Writes their corners, three indices a triangle, vertex [iu][iv] being `first` + iu * (rates.v + 1) + iv;
 /// counter-clockwise seen from where r_u x r_v points. Returns the end of what it wrote.
 std::uint32_t* write_triangles(const PatchShape& shape, Rates rates, std::uint32_t first, std::uint32_t* indices);
+/// The same with whole cells as quads, four indices each, and the triangles of the others alone.
+void write_quads(const PatchShape& shape, Rates rates, std::uint32_t first, std::uint32_t* indices,
+                 std::uint32_t* quads);
 
 }  // namespace tessera

@@ -50,22 +50,30 @@ class TessellationPlan::Impl {
         v_(parameters(rates_.v)),
         origin_(set.origin()) {
     shapes_.reserve(set.patch_count());
-    first_triangle_.reserve(set.patch_count() + 1);
-    first_triangle_.push_back(0);
+    for (auto* first : {&first_triangle_, &first_quad_}) {
+      first->reserve(set.patch_count() + 1);
+      first->push_back(0);
+    }
     for (std::size_t k = 0; k < set.patch_count(); ++k) {
       shapes_.push_back(PatchShape::of(set.patch(k)));
       first_triangle_.push_back(first_triangle_.back() + triangle_count(shapes_.back(), rates_));
+      first_quad_.push_back(first_quad_.back() + quad_count(shapes_.back(), rates_));
     }
   }
 
   Rates rates() const { return rates_; }
-  MeshCapacity capacity() const { return {.vertices = shapes_.size() * rates_.vertices(), .triangles = first_triangle_.back()}; }
+  MeshCapacity capacity() const {
+    return {.vertices = shapes_.size() * rates_.vertices(), .triangles = first_triangle_.back()};
+  }
 
-  Mesh allocate() const { return empty_mesh(capacity(), origin_); }
+  MeshCapacity quad_capacity() const {
+    return {capacity().vertices, first_lone_triangle(shapes_.size()), first_quad_.back()};
+  }
+
+  Mesh allocate(const MeshCapacity& capacity) const { return empty_mesh(capacity, origin_); }
 
   Status run(const PatchSet& set, const MeshViews& out, const Execution& execution) const {
-    if (!out.quads.empty()) return {StatusCode::unsupported, "a uniform tessellation has no quads"};
-    if (Status status = check_views(out, capacity()); !status.ok()) return status;
+    if (Status status = check_views(out, out.quads.empty() ? capacity() : quad_capacity()); !status.ok()) return status;
     if (Status status = check_shapes(set, shapes_); !status.ok()) return status;
     if (Status status = write_vertices(set, out, execution); !status.ok()) return status;
     return write_rest(out, execution);
@@ -90,16 +98,30 @@ class TessellationPlan::Impl {
     Status status = parallel_for(shapes_.size(), patches_a_piece, part, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         if (!out.parameter.empty()) write_parameters(k, out.parameter);
-        write_triangles(shapes_[k], rates_, static_cast<std::uint32_t>(k * rates_.vertices()),
-                        out.indices.data() + 3 * first_triangle_[k]);
-        if (!out.patch.empty())
-          std::fill(out.patch.data() + first_triangle_[k], out.patch.data() + first_triangle_[k + 1],
-                    static_cast<std::uint32_t>(k));
+        write_faces(k, out);
       }
     });
     if (execution.report) execution.report->tasks += report.tasks;
     return status;
   }
+
+  void write_faces(std::size_t k, const MeshViews& out) const {
+    const auto first = static_cast<std::uint32_t>(k * rates_.vertices()), patch = static_cast<std::uint32_t>(k);
+    const auto fill = [patch](std::span<std::uint32_t> numbers, std::size_t begin, std::size_t end) {
+      if (!numbers.empty()) std::fill(numbers.data() + begin, numbers.data() + end, patch);
+    };
+    if (out.quads.empty()) {
+      write_triangles(shapes_[k], rates_, first, out.indices.data() + 3 * first_triangle_[k]);
+      return fill(out.patch, first_triangle_[k], first_triangle_[k + 1]);
+    }
+    write_quads(shapes_[k], rates_, first, out.indices.data() + 3 * first_lone_triangle(k),
+                out.quads.data() + 4 * first_quad_[k]);
+    fill(out.patch, first_lone_triangle(k), first_lone_triangle(k + 1));
+    fill(out.quad_patch, first_quad_[k], first_quad_[k + 1]);
+  }
+
+  /// Of those that are no half of a quad.
+  std::size_t first_lone_triangle(std::size_t patch) const { return first_triangle_[patch] - 2 * first_quad_[patch]; }
 
   void write_parameters(std::size_t patch, const View2<float>& view) const {
     std::size_t vertex = patch * rates_.vertices();
@@ -115,7 +137,7 @@ class TessellationPlan::Impl {
   std::vector<float> u_, v_;
   Vec3 origin_;
   std::vector<PatchShape> shapes_;
-  std::vector<std::size_t> first_triangle_;  ///< of each patch, and the number of all
+  std::vector<std::size_t> first_triangle_, first_quad_;  ///< of each patch, and the number of all
 };
 
 Result<TessellationPlan> TessellationPlan::make(const PatchSet& set, const TessellationOptions& options) {
@@ -136,11 +158,16 @@ TessellationPlan& TessellationPlan::operator=(TessellationPlan&&) noexcept = def
 TessellationPlan::~TessellationPlan() = default;
 
 MeshCapacity TessellationPlan::capacity() const { return impl_->capacity(); }
+MeshCapacity TessellationPlan::quad_capacity() const { return impl_->quad_capacity(); }
 int TessellationPlan::rate_u() const { return impl_->rates().u; }
 int TessellationPlan::rate_v() const { return impl_->rates().v; }
 
 Result<Mesh> TessellationPlan::allocate() const {
-  return guarded([&]() -> Result<Mesh> { return impl_->allocate(); });
+  return guarded([&]() -> Result<Mesh> { return impl_->allocate(impl_->capacity()); });
+}
+
+Result<Mesh> TessellationPlan::allocate_quads() const {
+  return guarded([&]() -> Result<Mesh> { return impl_->allocate(impl_->quad_capacity()); });
 }
 
 Status TessellationPlan::run(const PatchSet& set, const MeshViews& out, const Execution& execution) const {

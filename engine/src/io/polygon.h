@@ -1,0 +1,15 @@
+#pragma once
+// Polygons of files, which are read as fans of triangles.
+
+#include "tessera/mesh.h"
+
+namespace tessera {
+
+/// The last two triangles, a fan of four corners, become a quad.
+inline void join_last_quad(Mesh& mesh) {
+  const auto fan = mesh.indices.end() - 6;  // a b c a c d
+  mesh.quads.insert(mesh.quads.end(), {fan[0], fan[1], fan[2], fan[5]});
+  mesh.indices.erase(fan, mesh.indices.end());
+}
+
+}  // namespace tessera
