@@ -32,6 +32,24 @@ struct Corners {
   double high_v() const { return std::max({a.v, b.v, c.v}); }
 };
 
+/// A triangle straddles the middle of an even rate only at a border of an odd one, within that one's segment, and across
+/// it keeps to a half where that rate is even.
+void expect_border_triangle(const Division& division, Rates asked, Side side, std::array<double, 2> along,
+                            std::array<double, 2> across) {
+  const auto s = static_cast<std::size_t>(side);
+  int widest = 0;  // the odd one with the widest segments
+  for (const int border : {division.border[s], division.border[(s + 2) % 4]})
+    if (border % 2 == 1) widest = widest == 0 ? border : std::min(widest, border);
+  ASSERT_GT(widest, 0);
+  EXPECT_LE(along[1] - along[0], 1.0 / widest + 1e-12);
+  const int across_rate = runs_along_u(side) ? asked.v : asked.u;
+  EXPECT_TRUE(across_rate == 1 || across[0] == 0 || across[1] == 1);
+  if (across_rate % 2 == 1 || across_rate == 1) return;
+  EXPECT_TRUE(across[1] <= 0.5 || across[0] >= 0.5);
+  const int border = division.border[across[0] == 0 ? (side == Side::v0 ? 0 : 3) : (side == Side::v0 ? 2 : 1)];
+  EXPECT_EQ(border % 2, 1);
+}
+
 /// Checks everything that the header promises for a patch without collapsed borders.
 void expect_triangulation(const Division& division, Rates asked) {
   const std::vector<Place> at = places(division);
@@ -52,8 +70,13 @@ void expect_triangulation(const Division& division, Rates asked) {
     area += place.twice_area() / 2;
     EXPECT_LE(place.high_u() - place.low_u(), 1.0 / asked.u + 1e-12);
     EXPECT_LE(place.high_v() - place.low_v(), 1.0 / asked.v + 1e-12);
-    EXPECT_TRUE(asked.u % 2 == 1 || place.high_u() <= 0.5 || place.low_u() >= 0.5);
-    EXPECT_TRUE(asked.v % 2 == 1 || place.high_v() <= 0.5 || place.low_v() >= 0.5);
+    const auto straddles = [](double low, double high) { return low < 0.5 && high > 0.5; };
+    if (asked.u % 2 == 0 && straddles(place.low_u(), place.high_u()))
+      expect_border_triangle(division, asked, Side::v0, {place.low_u(), place.high_u()},
+                             {place.low_v(), place.high_v()});
+    if (asked.v % 2 == 0 && straddles(place.low_v(), place.high_v()))
+      expect_border_triangle(division, asked, Side::u1, {place.low_v(), place.high_v()},
+                             {place.low_u(), place.high_u()});
   }
   EXPECT_NEAR(area, 1, 1e-9);
   std::size_t open = 0;
@@ -78,13 +101,25 @@ TEST(StitchedPatch, TrianglesCoverTheSquareWithinTheCellsOfTheRates) {
     const Rates asked{rate(random), rate(random)};
     const auto border = [&](int n) {
       const int e = n + more(random);
-      return n % 2 == 0 ? e + e % 2 : e;
+      return n % 2 == 0 && repeat % 5 != 0 ? e + e % 2 : e;
     };
     const std::array<int, 4> borders{border(asked.u), border(asked.v), border(asked.u), border(asked.v)};
     SCOPED_TRACE(testing::Message() << asked.u << " x " << asked.v << ", borders " << borders[0] << " " << borders[1]
                                     << " " << borders[2] << " " << borders[3]);
     expect_triangulation(Division::of(plain, asked, borders), asked);
   }
+}
+
+TEST(StitchedPatch, FewSegmentsNeedNoInnerPoints) {
+  const PatchShape plain{3, 3, {}, false};
+  for (const std::array<int, 4>& borders : {std::array{2, 1, 1, 1}, {3, 2, 2, 3}, {1, 4, 3, 5}, {2, 7, 3, 6}}) {
+    const Division division = Division::of(plain, {1, 1}, borders);
+    EXPECT_EQ(division.inner_count(), 0u);
+    EXPECT_EQ(division.triangle_count(), division.ring_count() - 2);
+  }
+  EXPECT_EQ(Division::of(plain, {1, 1}, {4, 4, 1, 1}).inner_count(), 1u);
+  EXPECT_EQ(Division::of(plain, {1, 1}, {1, 4, 4, 1}).inner_count(), 1u);
+  EXPECT_EQ(Division::of(plain, {1, 6}, {4, 6, 1, 6}).inner_count(), 5u);
 }
 
 TEST(StitchedPatch, EqualRatesGiveTheCellsOfTheGrid) {
@@ -109,7 +144,8 @@ TEST(StitchedPatch, NoTriangleStandsOnACollapsedBorder) {
         return side == Side::v0 ? p.v == 0 : side == Side::v1 ? p.v == 1 : side == Side::u0 ? p.u == 0 : p.u == 1;
       };
       const Division whole = Division::of({3, 3, {}, false}, asked, division.border);
-      EXPECT_GE(division.triangle_count() + static_cast<std::size_t>(division.border[static_cast<std::size_t>(side)]), whole.triangle_count());
+      EXPECT_GE(division.triangle_count() + static_cast<std::size_t>(division.border[static_cast<std::size_t>(side)]),
+                whole.triangle_count());
       for (std::size_t t = 0; t < indices.size(); t += 3)
         EXPECT_LT(on_side(indices[t]) + on_side(indices[t + 1]) + on_side(indices[t + 2]), 2);
     }

@@ -42,17 +42,36 @@ std::uint32_t* write_strip(const Line<Right>& right, const Line<Left>& left, std
   return to;
 }
 
-/// Two lines of border points, where there are no inner ones, can be joined unless the borders between them are points.
-bool joins(const PatchShape& shape, Rates rates, const std::array<int, 4>& borders, Side a, Side b) {
-  const int along = runs_along_u(a) ? rates.u : rates.v;
-  return along == 1 && borders[static_cast<std::size_t>(a)] == 1 && borders[static_cast<std::size_t>(b)] == 1 &&
-         !shape.collapsed.has(edge_of(a)) && !shape.collapsed.has(edge_of(b));
+/// The triangles between two borders that run the same way, as write_strip(), and those at their ends: `first` runs from the
+/// begin of `left` to that of `right`, `last` from the end of `right` to that of `left`. Where an end has more than one
+/// segment, they make a fan with the next point of one of the borders: no triangle there is higher than that one's step.
+template <class Vertex>
+std::uint32_t* write_joined(const Line<Vertex>& first, Line<Vertex> right, const Line<Vertex>& last, Line<Vertex> left,
+                            std::uint32_t* to) {
+  if (first.rate > 1) {
+    for (int k = 0; k < first.rate; ++k) to = write(to, first.vertex(k), first.vertex(k + 1), left.vertex(1));
+    left.first = 1;
+  }
+  if (last.rate > 1) {
+    for (int k = 0; k < last.rate; ++k)
+      to = write(to, last.vertex(k), last.vertex(k + 1), right.vertex(right.rate - 1));
+    right.last = right.rate - 1;
+  }
+  return write_strip(right, left, to);
 }
+
+/// Borders between joined ones that have more segments than this are joined to a point in the middle of the patch: by fans
+/// from a corner their triangles would be needles.
+constexpr int most_at_ends = 3;
 
 }  // namespace
 
-bool Division::joins_borders(const PatchShape& shape, Rates rates, const std::array<int, 4>& borders) {
-  return joins(shape, rates, borders, Side::v0, Side::v1) || joins(shape, rates, borders, Side::u0, Side::u1);
+bool Division::joins_borders(const PatchShape& shape, Rates rates, const std::array<int, 4>& borders, bool across_u) {
+  const Side first = across_u ? Side::v0 : Side::u0, last = across_u ? Side::v1 : Side::u1;
+  if ((across_u ? rates.u : rates.v) != 1 || shape.collapsed.has(edge_of(first)) || shape.collapsed.has(edge_of(last)))
+    return false;
+  const int most = std::max(borders[static_cast<std::size_t>(first)], borders[static_cast<std::size_t>(last)]);
+  return most == 1 || (most <= most_at_ends && !shape.collapsed.any());
 }
 
 std::size_t Division::special_triangle_count() const {
@@ -104,9 +123,10 @@ std::uint32_t* Division::write_triangles(std::uint32_t first, std::uint32_t* to,
                 }};
   };
   if (!has_inner_points()) {
-    const bool across = border[0] == 1 && border[2] == 1 && !collapsed.has(Edge::v0) && !collapsed.has(Edge::v1);
-    return across ? write_strip(line(Side::u1, false), line(Side::u0, true), to)
-                  : write_strip(line(Side::v0, false), line(Side::v1, true), to);
+    return across_u ? write_joined(line(Side::v0, false), line(Side::u1, false), line(Side::v1, false),
+                                   line(Side::u0, true), to)
+                    : write_joined(line(Side::u0, false), line(Side::v0, false), line(Side::u1, false),
+                                   line(Side::v1, true), to);
   }
   const auto row = static_cast<std::uint32_t>(inner.v - 1);
   const auto inner_vertex = [=](int iu, int iv) {

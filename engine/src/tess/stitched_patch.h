@@ -18,22 +18,27 @@ namespace tessera {
 ///
 /// Every triangle's parameter box is at most 1 / n wide along a parameter, n being the rate asked for there: an inner
 /// cell's, and a strip's too, whose border rate is at least n. None straddles the middle of a parameter along which the
-/// rates of the patch and of its borders are even.
+/// rates of the patch and of its borders are even. Where a border's is odd beside an even one of the patch, only triangles
+/// at it do, no wider than its segments, or those of the opposite border if that is odd too.
 struct Division {
-  Rates inner;                  ///< both 1: no inner points; then the borders of one pair of sides have rate 1
+  Rates inner;                  ///< both 1: no inner points
   std::array<int, 4> border{};  ///< by Side
   EdgeMask collapsed;           ///< these borders are points: no triangle stands on them
   bool empty = false;           ///< a curve or a point: neither vertices nor triangles
+  bool across_u = false;        ///< without inner points: triangles go from border u0 to u1, else from v0 to v1
 
   friend bool operator==(const Division& a, const Division& b) {
-    return a.inner == b.inner && a.border == b.border && a.collapsed.bits == b.collapsed.bits && a.empty == b.empty;
+    return a.inner == b.inner && a.border == b.border && a.collapsed.bits == b.collapsed.bits && a.empty == b.empty &&
+           a.across_u == b.across_u;
   }
 
   /// `rates` were asked for the patch; each of `borders` is at least the rate along it.
   static Division of(const PatchShape& shape, Rates rates, const std::array<int, 4>& borders) {
-    const bool joined = std::min(rates.u, rates.v) == 1 && joins_borders(shape, rates, borders);
-    const Rates inner = joined ? Rates{1, 1} : Rates{std::max(rates.u, 2), std::max(rates.v, 2)};
-    return {inner, borders, shape.collapsed, shape.is_curve};
+    if (std::min(rates.u, rates.v) == 1)
+      for (const bool across_u : {true, false})
+        if (joins_borders(shape, rates, borders, across_u))
+          return {{1, 1}, borders, shape.collapsed, shape.is_curve, across_u};
+    return {{std::max(rates.u, 2), std::max(rates.v, 2)}, borders, shape.collapsed, shape.is_curve};
   }
 
   std::size_t inner_count() const {
@@ -68,8 +73,8 @@ struct Division {
   std::uint32_t* write_triangles(std::uint32_t first, std::uint32_t* indices, bool cells = true) const;
 
  private:
-  /// Whether the borders of a pair of sides are joined without inner points between them.
-  static bool joins_borders(const PatchShape& shape, Rates rates, const std::array<int, 4>& borders);
+  /// Whether the borders u0 and u1, or v0 and v1, are joined without inner points between them.
+  static bool joins_borders(const PatchShape& shape, Rates rates, const std::array<int, 4>& borders, bool across_u);
   std::size_t special_triangle_count() const;
 };
 
