@@ -4,11 +4,13 @@ set -euo pipefail
 
 usage() {
   cat <<'TEXT'
-tools/test.sh [--preset dev|asan|tsan|release] [-- CTEST-ARGUMENTS...]
+tools/test.sh [--preset dev|asan|tsan|release] [--target NAME]... [-- CTEST-ARGUMENTS...]
 tools/test.sh --fuzz [SECONDS]
 
 Installs what is missing (tools/setup.sh), configures and builds a preset in build/<preset> (dev by default), and runs
 ctest on all cores. What stands after -- goes to ctest, for example: tools/test.sh -- -R PatchSet
+With targets named, those alone are built, for some of the tests:
+  tools/test.sh --preset tsan --target tessera_test_threads --target tessera_planted_race -- -L threads
 The preset tsan takes a oneTBB that is instrumented too (tools/instrumented_tbb.sh), where its source can be fetched. --fuzz
 builds the preset fuzz instead and runs each fuzz target for so many seconds (60), from its corpus on.
 Real models are tested too where TESSERA_TEST_DATA names their folder. Two of the tests, perf.counts_avx2 and _sse2, hold the
@@ -18,6 +20,7 @@ TEXT
 
 preset=dev
 fuzz_seconds=
+targets=()
 ctest_arguments=()
 while (($#)); do
   case $1 in
@@ -29,6 +32,11 @@ while (($#)); do
     --preset=*)
       preset=${1#--preset=}
       shift
+      ;;
+    --target)
+      (($# >= 2)) || { echo "test: --target wants a name after it" >&2; exit 2; }
+      targets+=(--target "$2")
+      shift 2
       ;;
     --fuzz)
       preset=fuzz
@@ -69,7 +77,8 @@ if [[ $preset == tsan ]]; then
   fi
 fi
 cmake --preset "$preset" "${options[@]}"
-cmake --build --preset "$preset"
+[[ $fuzz_seconds ]] && targets=(--target tessera_fuzz)
+cmake --build --preset "$preset" "${targets[@]}"
 
 # Each target grows new inputs beside its corpus and fails on the first that it may not have.
 fuzz() {
