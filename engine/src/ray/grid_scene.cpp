@@ -75,7 +75,7 @@ class GridScene final : public PatchScene {
   void closest_packet(std::span<const Ray> rays, std::span<Hit> hits) const;
   void occluded_packet(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const;
   void trace(std::span<const RaySegment> segments, std::span<FacetHit> facets) const;
-  Hit resolve(const Ray& ray, const RaySegment& segment, FacetHit facet) const;
+  Hit hit_of(const Ray& ray, const RaySegment& segment, FacetHit facet) const;
   bool refine(const RaySegment& segment, const FacetHit& facet, SurfaceRoot& root) const;
   bool accept(const Ray& ray, const RaySegment& segment, const SurfaceRoot& root, bool refined, Hit& hit) const;
 
@@ -154,7 +154,7 @@ void GridScene::closest_packet(std::span<const Ray> rays, std::span<Hit> hits) c
     SurfaceRoot root;
     if (refiner.get_root(k, segments[k], facets[k], root) && accept(rays[k], segments[k], root, true, hits[k]))
       continue;
-    if (facets[k].hit()) hits[k] = resolve(rays[k], segments[k], facets[k]);
+    if (facets[k].hit()) hits[k] = hit_of(rays[k], segments[k], facets[k]);
   }
 }
 
@@ -172,7 +172,7 @@ void GridScene::trace(std::span<const RaySegment> segments, std::span<FacetHit> 
 }
 
 /// From the first facet on, the first one whose point of the surface lies in [tnear, tfar].
-Hit GridScene::resolve(const Ray& ray, const RaySegment& segment, FacetHit facet) const {
+Hit GridScene::hit_of(const Ray& ray, const RaySegment& segment, FacetHit facet) const {
   for (Hit hit; facet.hit();) {
     SurfaceRoot root;
     const bool refined = refine(segment, facet, root);
