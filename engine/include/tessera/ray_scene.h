@@ -13,6 +13,7 @@
 #include "tessera/execution.h"
 #include "tessera/isa.h"
 #include "tessera/local_geometry.h"
+#include "tessera/mesh.h"
 #include "tessera/patch_set.h"
 #include "tessera/status.h"
 #include "tessera/vec.h"
@@ -137,6 +138,18 @@ class RayScene {
   /// unsupported are a diagonal outside of 1e-140 to 1e140, 2^32 pieces.
   static Result<RayScene> make(const PatchSet& set, const RaySceneOptions& options = {},
                                const Execution& execution = {});
+
+  /// Grid mode on facets that are there: the triangles and quads of a mesh of the set, such as one that keeps a tolerance,
+  /// in the memory where they are. It must stay there, and change only between edit and refit of the set. Of its positions
+  /// a copy is made if their vector has no room for one number more. Of the options `refine` and `isa` count.
+  /// Errors: invalid_argument (no patch of each face or no parameters of each vertex, as where vertices are shared; another
+  /// origin than the set's; index = the vertex or the face: numbers that are not finite, parameters outside of [0, 1], an
+  /// index that is no vertex, a patch that the set does not have), and those of grid mode.
+  static Result<RayScene> make(const PatchSet& set, const Mesh& mesh, const RaySceneOptions& options = {},
+                               const Execution& execution = {});
+  /// Not of a mesh that would not stay.
+  static Result<RayScene> make(const PatchSet& set, Mesh&& mesh, const RaySceneOptions& options = {},
+                               const Execution& execution = {}) = delete;
 
   /// A scene of instances, of one scene or several, which must outlive it (they may be moved). Positions, normals and
   /// residuals of its hits are in the world, surface, patch and parameters those of the instance's scene; normals are

@@ -24,6 +24,8 @@ RTCRay to_embree(const FacetRay& ray) {
   return out;
 }
 
+constexpr unsigned quad_geometry = 1;  // triangles and grids: 0
+
 using Lanes = std::array<int, EmbreeScene::packet>;  // -1: active, 0: not
 
 /// Fills the lanes of a packet; returns which are active. Idle lanes repeat the first ray.
@@ -48,10 +50,15 @@ FlushDenormals::FlushDenormals() : saved_(_mm_getcsr()) {
 FlushDenormals::~FlushDenormals() { _mm_setcsr(saved_); }
 
 struct EmbreeScene::State {
-  EmbreeMonitor monitor;       // outlives the device, which calls it
-  std::vector<RTCGrid> grids;  // borrowed by the geometry
+  EmbreeMonitor monitor;        // outlives the device, which calls it
+  std::vector<RTCGrid> grids;   // borrowed by the geometry
+  std::uint32_t triangles = 0;  // in front of quads
   Owned<RTCDevice, DeviceRelease> device;
   Owned<RTCScene, SceneRelease> scene;
+
+  std::uint32_t facet(unsigned geometry, unsigned primitive) const {
+    return geometry == quad_geometry ? triangles + primitive : primitive;
+  }
 };
 
 EmbreeScene::EmbreeScene(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -103,6 +110,37 @@ Status EmbreeScene::build(const GridVertices& vertices, const Execution& executi
   return {};
 }
 
+Status EmbreeScene::build(const FacetVertices& facets, const Execution& execution) {
+  State& state = *state_;
+  state.scene.reset();
+  constexpr std::size_t most = FacetHit::nothing;
+  const std::size_t triangles = facets.triangles.size() / 3, quads = facets.quads.size() / 4;
+  if (facets.vertices > most || triangles + quads >= most)
+    return Status(StatusCode::unsupported, "more than the 2^32 vertices or faces of one ray scene");
+  state.grids = {};
+  state.triangles = static_cast<std::uint32_t>(triangles);
+  RTCDevice device = state.device.get();
+  Owned<RTCScene, SceneRelease> scene(rtcNewScene(device));
+  if (!scene) return state.monitor.take();
+  const auto attach = [&](RTCGeometryType type, RTCFormat format, std::span<const std::uint32_t> indices,
+                          std::size_t corners, unsigned id) {
+    const Owned<RTCGeometry, GeometryRelease> geometry(rtcNewGeometry(device, type));
+    if (!geometry) return;
+    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, format, indices.data(), 0,
+                               corners * sizeof(std::uint32_t), indices.size() / corners);
+    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, facets.data, 0,
+                               3 * sizeof(float), facets.vertices);
+    rtcCommitGeometry(geometry.get());
+    rtcAttachGeometryByID(scene.get(), geometry.get(), id);
+  };
+  if (triangles > 0) attach(RTC_GEOMETRY_TYPE_TRIANGLE, RTC_FORMAT_UINT3, facets.triangles, 3, 0);
+  if (quads > 0) attach(RTC_GEOMETRY_TYPE_QUAD, RTC_FORMAT_UINT4, facets.quads, 4, quad_geometry);
+  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+  if (Status status = commit(scene.get(), state.monitor, execution); !status.ok()) return status;
+  state.scene = std::move(scene);
+  return {};
+}
+
 FacetHit EmbreeScene::closest(const FacetRay& ray) const {
   EmbreeContext context = embree_context();
   RTCRayHit query{};
@@ -111,7 +149,8 @@ FacetHit EmbreeScene::closest(const FacetRay& ray) const {
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   intersect(state_->scene.get(), context, Coherence::incoherent, query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-  return {query.hit.primID, query.ray.tfar, query.hit.v, query.hit.u};  // Embree's u runs along the width
+  return {state_->facet(query.hit.geomID, query.hit.primID), query.ray.tfar, query.hit.v,
+          query.hit.u};  // Embree's u runs along the width
 }
 
 bool EmbreeScene::occluded(const FacetRay& ray) const {
@@ -131,7 +170,8 @@ void EmbreeScene::closest(std::span<const FacetRay> rays, std::span<FacetHit> hi
   for (std::size_t k = 0; k < rays.size(); ++k) {
     hits[k] = {};
     if (query.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
-    hits[k] = {query.hit.primID[k], query.ray.tfar[k], query.hit.v[k], query.hit.u[k]};
+    hits[k] = {state_->facet(query.hit.geomID[k], query.hit.primID[k]), query.ray.tfar[k], query.hit.v[k],
+               query.hit.u[k]};
   }
 }
 

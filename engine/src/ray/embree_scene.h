@@ -1,5 +1,5 @@
 #pragma once
-// Embree's side of a ray scene: one grid geometry over borrowed vertices, and the tracing of single rays and packets.
+// Embree's side of a ray scene: grids, or triangles and quads, over borrowed vertices, and the tracing of single rays and packets.
 // Embree's types stay in embree_scene.cpp.
 
 #include <array>
@@ -24,13 +24,21 @@ struct GridVertices {
   int height = 0, width = 0;
 };
 
+/// Triangles and quads by their corners, 3 and 4 indices each, over vertices of which the last is read in the same way.
+struct FacetVertices {
+  const float* data = nullptr;
+  std::size_t vertices = 0;
+  std::span<const std::uint32_t> triangles, quads;
+};
+
 /// A ray as Embree takes it: every number finite, 0 <= tnear <= tfar, direction not zero.
 struct FacetRay {
   std::array<float, 3> origin{}, direction{};
   float tnear = 0, tfar = 0;
 };
 
-/// Where a ray meets a facet. u runs along the grid's height, v along its width, both from 0 to 1.
+/// Where a ray meets a facet of a grid: u runs along its height, v along its width, both from 0 to 1. Of triangles and quads
+/// `grid` counts first those and then these, and u and v are Embree's v and u.
 struct FacetHit {
   static constexpr std::uint32_t nothing = std::numeric_limits<std::uint32_t>::max();
   std::uint32_t grid = nothing;
@@ -71,6 +79,7 @@ class EmbreeScene {
   /// unchanged while the scene is used. On errors the scene is empty. Errors: unsupported (too many vertices),
   /// cancelled, Embree's own.
   Status build(const GridVertices& vertices, const Execution& execution);
+  Status build(const FacetVertices& facets, const Execution& execution);
 
   FacetHit closest(const FacetRay& ray) const;
   bool occluded(const FacetRay& ray) const;

@@ -27,9 +27,8 @@ double scalar_norm(double a) { return std::abs(a); }
 
 }  // namespace
 
-double facet_deviation(const BezierPatch& patch, int rate_u, int rate_v) {
+double facet_deviation(const BezierPatch& patch, double h, double k) {
   const int m = patch.degree_u(), n = patch.degree_v();
-  const double h = 1.0 / rate_u, k = 1.0 / rate_v;
   const Box3 hull = patch.hull_box();
   const double farthest = hull.diagonal();  // facets and surface both lie in the hull
   if (!patch.is_rational()) {

@@ -1,11 +1,12 @@
 #pragma once
-// How far the facets of a uniform grid lie from the surface.
+// How far facets lie from the surface.
 
 #include "tessera/bezier_patch.h"
 
 namespace tessera {
 
-/// An upper bound on the distance between r(u,v) and the facets of the grid of rate_u x rate_v cells.
-double facet_deviation(const BezierPatch& patch, int rate_u, int rate_v);
+/// An upper bound on the distance between the patch and facets with corners on it, in boxes of its parameters of h x k at the
+/// most.
+double facet_deviation(const BezierPatch& patch, double h, double k);
 
 }  // namespace tessera

@@ -6,12 +6,10 @@
 #include <limits>
 #include <string>
 
-#include "base/aligned.h"
-#include "eval/uniform_grid.h"
 #include "kernel/kernel_table.h"
 #include "ray/adjacency.h"
 #include "ray/embree_scene.h"
-#include "ray/facet_deviation.h"
+#include "ray/facet_source.h"
 #include "ray/packet_refine.h"
 #include "ray/ray_scene_impl.h"
 #include "ray/ray_segment.h"
@@ -22,12 +20,12 @@ namespace tessera {
 namespace {
 
 constexpr int max_rate = 4096;
-constexpr std::size_t padding = 1;  // floats behind the last vertex, which Embree reads as 16 bytes
 // Products of three lengths must stay in float's range on a facet far smaller than the model, and on the whole model.
 constexpr double smallest_size = 1e-9, largest_size = 1e12;
 // Facets lie before or behind the surface: so far are rays traced beyond their ends, in units of the bound on the
 // distance, for rays that meet the surface at less than a right angle.
 constexpr double margin_deviations = 4;
+constexpr double reach_cells = 3;        // a facet of a tame grid lies within one cell of its root
 constexpr double float_rounding = 1e-6;  // of the size: positions, origins and directions in float
 
 using Packet = std::array<FacetRay, EmbreeScene::packet>;
@@ -44,15 +42,15 @@ bool coherent(std::span<const RaySegment> segments, double size) {
 
 class GridScene final : public PatchScene {
  public:
-  GridScene(const PatchSet& set, UniformGrid grid, EmbreeScene scene, const RaySceneOptions& options, Isa isa)
+  GridScene(const PatchSet& set, std::unique_ptr<FacetSource> facets, EmbreeScene scene, bool refines, Isa isa)
       : PatchScene(set),
-        grid_(std::move(grid)),
+        facets_(std::move(facets)),
         scene_(std::move(scene)),
-        options_(options),
+        refines_(refines),
         kernels_(ray_kernels(isa)) {}
 
   std::size_t memory_bytes() const override {
-    return positions_.capacity() * sizeof(float) + adjacency_.memory_bytes() + scene_.memory_bytes();
+    return facets_->memory_bytes() + adjacency_.memory_bytes() + scene_.memory_bytes();
   }
 
  private:
@@ -70,7 +68,6 @@ class GridScene final : public PatchScene {
     return Status(StatusCode::unsupported, "all hits of a ray are known in exact mode only");
   }
 
-  Status evaluate_grids(const Execution& execution);
   void measure();
   void closest_packet(std::span<const Ray> rays, std::span<Hit> hits) const;
   void occluded_packet(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const;
@@ -79,37 +76,31 @@ class GridScene final : public PatchScene {
   bool refine(const RaySegment& segment, const FacetHit& facet, SurfaceRoot& root) const;
   bool accept(const Ray& ray, const RaySegment& segment, const SurfaceRoot& root, bool refined, Hit& hit) const;
 
-  UniformGrid grid_;
+  FacetHit closest_facet(const FacetRay& ray) const { return located(scene_.closest(ray)); }
+  FacetHit located(const FacetHit& hit) const { return hit.hit() ? facets_->located(hit) : hit; }
+
+  std::unique_ptr<FacetSource> facets_;  // borrowed by scene_
   EmbreeScene scene_;
-  RaySceneOptions options_;
+  bool refines_;
   const kernel::RayKernels& kernels_;
-  AlignedVector<float> positions_;  // `[patch][iu][iv]`, borrowed by scene_
   Adjacency adjacency_;
   Box3 set_box_;  // in the model's coordinates
   Box3 box_;      // relative to the origin, a little larger than the set's
   double size_ = 0;
   double margin_ = 0;
+  double reach_ = 0;  // of roots from their facets, in parameters
 };
-
-Status GridScene::evaluate_grids(const Execution& execution) {
-  positions_.resize(3 * grid_.capacity() + padding);
-  const auto vertices = View3<float>::interleaved(std::span(positions_).first(3 * grid_.capacity()));
-  return grid_.run(set().impl(), GridViews<float>{.position = vertices, .du = {}, .dv = {}, .normal = {}}, execution);
-}
 
 /// What the rays need to know of the set: neighbours, box, and how far facets lie from the surface.
 void GridScene::measure() {
   adjacency_ = Adjacency(set());
-  double deviation = 0;
-  for (std::size_t k = 0; k < set().patch_count(); ++k) {
-    deviation = std::max(deviation, facet_deviation(set().patch(k), options_.rate, options_.rate));
-  }
   const Vec3 origin = set().origin();
   box_ = {set_box_.lower - origin, set_box_.upper - origin};
   const double rounding = float_rounding * std::max(max_abs(box_.lower), max_abs(box_.upper));
   box_.lower += {-rounding, -rounding, -rounding};
   box_.upper += {rounding, rounding, rounding};
-  margin_ = margin_deviations * deviation + rounding;
+  margin_ = margin_deviations * facets_->deviation(set()) + rounding;
+  reach_ = reach_cells * facets_->largest_cell();
 }
 
 Status GridScene::build(const Execution& execution) {
@@ -119,13 +110,10 @@ Status GridScene::build(const Execution& execution) {
   if (!(size_ >= smallest_size && reach <= largest_size)) {
     return Status(StatusCode::unsupported, "a ray scene holds models of a size from 1e-9 to 1e12: scale the model");
   }
-  GridVertices vertices{nullptr, set().patch_count(), options_.rate + 1, options_.rate + 1};
-  if (Status status = EmbreeScene::check_size(vertices); !status.ok()) return status;
   // Until the BVH stands again nothing may trace in it, so a failure on the way leaves the scene stale.
-  if (Status status = evaluate_grids(execution); !status.ok()) return status;
+  if (Status status = facets_->build(set(), scene_, execution); !status.ok()) return status;
   measure();
-  vertices.data = positions_.data();
-  return scene_.build(vertices, execution);
+  return {};
 }
 
 void GridScene::closest_piece(std::span<const Ray> rays, std::span<Hit> hits) const {
@@ -148,8 +136,8 @@ void GridScene::closest_packet(std::span<const Ray> rays, std::span<Hit> hits) c
     }
   }
   trace(std::span(segments).first(rays.size()), facets);
-  PacketRefiner refiner(set(), kernels_, Refiner::reach(options_.rate));
-  if (options_.refine) refiner.run(std::span(segments).first(rays.size()), std::span(facets).first(rays.size()));
+  PacketRefiner refiner(set(), kernels_, reach_);
+  if (refines_) refiner.run(std::span(segments).first(rays.size()), std::span(facets).first(rays.size()));
   for (std::size_t k = 0; k < rays.size(); ++k) {
     SurfaceRoot root;
     if (refiner.get_root(k, segments[k], facets[k], root) && accept(rays[k], segments[k], root, true, hits[k]))
@@ -164,10 +152,11 @@ void GridScene::trace(std::span<const RaySegment> segments, std::span<FacetHit> 
     Packet rays;
     for (std::size_t k = 0; k < segments.size(); ++k) rays[k] = segments[k].facet_ray();
     scene_.closest(std::span(rays).first(segments.size()), facets);
+    for (FacetHit& facet : facets.first(segments.size())) facet = located(facet);
     return;
   }
   for (std::size_t k = 0; k < segments.size(); ++k) {
-    if (!segments[k].empty) facets[k] = scene_.closest(segments[k].facet_ray());
+    if (!segments[k].empty) facets[k] = closest_facet(segments[k].facet_ray());
   }
 }
 
@@ -182,17 +171,16 @@ Hit GridScene::hit_of(const Ray& ray, const RaySegment& segment, FacetHit facet)
     const FacetRay behind = segment.facet_ray(std::max(next, std::numeric_limits<float>::min()));
     if (!(behind.tnear <= behind.tfar)) break;
     const FlushDenormals flush;
-    facet = scene_.closest(behind);
+    facet = closest_facet(behind);
   }
   return {};
 }
 
 /// Where that fails, `root` is the facet's own point.
 bool GridScene::refine(const RaySegment& segment, const FacetHit& facet, SurfaceRoot& root) const {
-  const Refiner refiner(set(), adjacency_, set_box_, options_.rate);
-  const double facet_u = std::clamp(facet.u, 0.0f, 1.0f), facet_v = std::clamp(facet.v, 0.0f, 1.0f);
-  if (options_.refine && refiner.refine(segment, facet.grid, facet_u, facet_v, root)) return true;
-  refiner.evaluate(segment, facet.grid, facet_u, facet_v, root);  // on [0,1]^2 this is always defined
+  const Refiner refiner(set(), adjacency_, set_box_, reach_);
+  if (refines_ && refiner.refine(segment, facet.grid, facet.u, facet.v, root)) return true;
+  refiner.evaluate(segment, facet.grid, facet.u, facet.v, root);  // on [0,1]^2 this is always defined
   root.s = facet.t;
   return false;
 }
@@ -241,19 +229,33 @@ void GridScene::occluded_packet(std::span<const Ray> rays, std::span<std::uint8_
 
 }  // namespace
 
-Result<std::unique_ptr<RayScene::Impl>> make_grid_scene(const PatchSet& set, const RaySceneOptions& options) {
-  if (options.rate < 1 || options.rate > max_rate) {
-    return Status(StatusCode::invalid_argument, "the rate of a ray scene must lie between 1 and " +
-                                                    std::to_string(max_rate) + ", not " + std::to_string(options.rate));
-  }
-  Result<UniformGrid> grid = UniformGrid::make(set, options.rate, options.rate, options.isa);
-  if (!grid) return grid.status();
+namespace {
+
+Result<std::unique_ptr<RayScene::Impl>> scene_of(const PatchSet& set, std::unique_ptr<FacetSource> facets,
+                                                 const RaySceneOptions& options) {
   const Result<Isa> isa = options.isa ? parse_isa(name(*options.isa)) : default_isa();
   if (!isa) return isa.status();
   Result<EmbreeScene> scene = EmbreeScene::make();
   if (!scene) return scene.status();
   return std::unique_ptr<RayScene::Impl>(
-      std::make_unique<GridScene>(set, *std::move(grid), *std::move(scene), options, *isa));
+      std::make_unique<GridScene>(set, std::move(facets), *std::move(scene), options.refine, *isa));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<RayScene::Impl>> make_grid_scene(const PatchSet& set, const RaySceneOptions& options) {
+  if (options.rate < 1 || options.rate > max_rate) {
+    return Status(StatusCode::invalid_argument, "the rate of a ray scene must lie between 1 and " +
+                                                    std::to_string(max_rate) + ", not " + std::to_string(options.rate));
+  }
+  Result<std::unique_ptr<FacetSource>> facets = grid_facets(set, options.rate, options.isa);
+  if (!facets) return facets.status();
+  return scene_of(set, *std::move(facets), options);
+}
+
+Result<std::unique_ptr<RayScene::Impl>> make_mesh_scene(const PatchSet& set, const Mesh& mesh,
+                                                        const RaySceneOptions& options) {
+  return scene_of(set, mesh_facets(mesh), options);
 }
 
 }  // namespace tessera

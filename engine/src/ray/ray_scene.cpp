@@ -115,6 +115,16 @@ Result<RayScene> RayScene::make(const PatchSet& set, const RaySceneOptions& opti
   });
 }
 
+Result<RayScene> RayScene::make(const PatchSet& set, const Mesh& mesh, const RaySceneOptions& options,
+                                const Execution& execution) {
+  return guarded([&]() -> Result<RayScene> {
+    Result<std::unique_ptr<Impl>> impl = make_mesh_scene(set, mesh, options);
+    if (!impl) return impl.status();
+    if (Status status = (*impl)->rebuild(execution); !status.ok()) return status;
+    return RayScene(*std::move(impl));
+  });
+}
+
 Result<RayScene> RayScene::make(std::span<const RayInstance> instances, const Execution& execution) {
   return guarded([&]() -> Result<RayScene> {
     Result<std::unique_ptr<Impl>> impl = make_instance_scene(instances);

@@ -86,6 +86,9 @@ class PatchScene : public RayScene::Impl {
 
 /// Options are checked here. Not yet built.
 Result<std::unique_ptr<RayScene::Impl>> make_grid_scene(const PatchSet& set, const RaySceneOptions& options);
+/// The mesh is looked at when it is built.
+Result<std::unique_ptr<RayScene::Impl>> make_mesh_scene(const PatchSet& set, const Mesh& mesh,
+                                                        const RaySceneOptions& options);
 Result<std::unique_ptr<RayScene::Impl>> make_exact_scene(const PatchSet& set, const RaySceneOptions& options);
 Result<std::unique_ptr<RayScene::Impl>> make_instance_scene(std::span<const RayInstance> instances);
 

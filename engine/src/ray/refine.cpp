@@ -11,7 +11,6 @@
 namespace tessera {
 namespace {
 
-constexpr double leash_cells = 3;   // a facet of a tame grid lies within one cell of its root
 constexpr double overshoot = 0.25;  // how far outside [0,1] Newton may wander before it comes back or changes the patch
 constexpr int most_steps = 16;      // quadratic convergence takes 2 to 4
 constexpr int most_halvings = 6;
@@ -63,10 +62,8 @@ class Refiner::Frontier {
   std::size_t count_ = 0, next_ = 0;
 };
 
-double Refiner::reach(int rate) { return leash_cells / rate; }
-
-Refiner::Refiner(const SetView& set, const Adjacency& adjacency, const Box3& box, int rate)
-    : set_(set), adjacency_(adjacency), cells_(reach(rate)) {
+Refiner::Refiner(const SetView& set, const Adjacency& adjacency, const Box3& box, double reach)
+    : set_(set), adjacency_(adjacency), cells_(reach) {
   // Positions round by their absolute size. The tolerance is far above that for models near zero.
   rounding_ = 4 * std::numeric_limits<double>::epsilon() * std::max(max_abs(box.lower), max_abs(box.upper));
   tolerance_ = 1e-10 * box.diagonal() + 16 * rounding_;

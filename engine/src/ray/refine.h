@@ -20,10 +20,8 @@ struct SurfaceRoot {
 /// Moves hits onto the surface of one patch set.
 class Refiner {
  public:
-  /// `rate`: grid cells a patch and direction, which bound how far a root may lie from its facet. The adjacency must
-  /// outlive this.
-  /// `box`: the set's.
-  Refiner(const SetView& set, const Adjacency& adjacency, const Box3& box, int rate);
+  /// `reach`: how far a root may lie from its facet, in parameters. The adjacency must outlive this. `box`: the set's.
+  Refiner(const SetView& set, const Adjacency& adjacency, const Box3& box, double reach);
 
   /// The root near (u,v) on `patch` or, where it lies over a seam, on the patches behind. False if there is none within
   /// a few grid cells: the ray grazes the surface, or the surface is too crooked for its grid.
@@ -32,9 +30,6 @@ class Refiner {
   /// Position and derivatives at (u,v), with s and residual towards the segment. False where there are none
   /// (first_order.h).
   bool evaluate(const RaySegment& segment, std::uint32_t patch, double u, double v, SurfaceRoot& root) const;
-
-  /// How far a root may lie from its facet, in parameters.
-  static double reach(int rate);
 
   /// The residual up to which a point of the surface counts as a root.
   double tolerance() const { return tolerance_; }

@@ -61,6 +61,7 @@ Status check_lengths(const MeshViews& out, const MeshCapacity& wanted) {
 Mesh empty_mesh(const MeshCapacity& capacity, const Vec3& origin) {
   Mesh mesh;
   mesh.origin = origin;
+  mesh.positions.reserve(3 * capacity.vertices + 1);  // room that rays need behind the last (RayScene::make)
   mesh.positions.resize(3 * capacity.vertices);
   mesh.normals.resize(3 * capacity.vertices);
   mesh.parameters.resize(2 * capacity.vertices);
