@@ -185,10 +185,11 @@ class Program {
     options.weld = number();
     options.share_vertices = data_.ConsumeBool();
     options.smallest = data_.ConsumeBool();
+    options.fewest = data_.ConsumeBool();
     options.most_triangles = 2000;
     const auto plan = CertifiedTessellation::make(set, options);
     if (!sound(plan)) return;
-    Result<Mesh> mesh = plan->allocate();
+    Result<Mesh> mesh = data_.ConsumeBool() ? plan->allocate_quads() : plan->allocate();
     if (!sound(mesh) || !sound(plan->run(set, mesh->views()))) return;
     const Result<MeshReport> report = check(*mesh);
     require(report.ok() && report->non_finite_vertices == 0);

@@ -162,10 +162,15 @@ TEST(MemoryFails, WhereMeshesAreMade) {
   options.crease_angle = 0.1;
   options.share_vertices = true;
   options.angle = 0.3;
+  options.fewest = true;
   survives("CertifiedTessellation::make, welded", [&] { return CertifiedTessellation::make(set, options); });
   const auto plan = value_of(CertifiedTessellation::make(set, options));
   Mesh certified = value_of(plan.allocate());
   survives("CertifiedTessellation::run", [&] { return plan.run(set, certified.views()); });
+  survives("CertifiedTessellation::allocate_quads", [&] { return plan.allocate_quads(); });
+  Mesh quads = value_of(plan.allocate_quads());
+  survives("CertifiedTessellation::run, quads", [&] { return plan.run(set, quads.views()); });
+  survives("split_quads", [&] { return split_quads(quads); });
   survives("retessellate", [&] { return plan.retessellate(set); });
   const std::vector<Vec3> net(set.patch(2).points().begin(), set.patch(2).points().end());
   const std::vector<std::uint32_t> edited{2};

@@ -126,7 +126,7 @@ class Case {
   template <class Plan>
   void write(const PatchSet& set, const Result<Plan>& plan) {
     if (!sound(plan)) return;
-    Result<Mesh> mesh = plan->allocate();
+    Result<Mesh> mesh = m_.chance(0.2) ? plan->allocate_quads() : plan->allocate();
     if (!sound(mesh) || !sound(plan->run(set, mesh->views()))) return;
     expect_numbers(mesh->positions, "a mesh's positions");
     expect_numbers(mesh->normals, "a mesh's normals");
@@ -142,6 +142,7 @@ class Case {
     how.most_triangles = 5000;
     if (m_.chance(0.2)) how.angle = m_.number(0.5);
     if (m_.chance(0.1)) how.smallest = true;
+    how.fewest = m_.chance(0.1);
     if (m_.chance(0.1))
       how.pixels = PixelTolerance{m_.number(2), {.eye = m_.point({3, 4, 5}), .target = m_.point({0, 0, 0})}};
     how.share_vertices = m_.chance(0.2);

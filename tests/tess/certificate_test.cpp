@@ -5,6 +5,7 @@
 
 #include "support/true_distance.h"
 #include "tess/certificate_sets.h"
+#include "tess/certified_tessellation_impl.h"
 #include "tess/tessellate_support.h"
 #include "tessera/certified_tessellation.h"
 
@@ -16,8 +17,8 @@ TEST(TrueDistance, OfAParaboloid) {
   // z = u^2 + v^2 over the triangle (0,0), (1,0), (0,1): the plane is z = u + v, and the largest distance from it lies
   // at (1/2, 1/2): (u + v - u^2 - v^2) / sqrt 3 = 0.5 / sqrt 3.
   const double h = 0.5;
-  const BezierPatch patch = polynomial(2, 2, {{0, 0, 0}, {0, h, 0}, {0, 1, 1}, {h, 0, 0}, {h, h, 0}, {h, 1, 1},
-                                              {1, 0, 1}, {1, h, 1}, {1, 1, 2}});
+  const BezierPatch patch = polynomial(
+      2, 2, {{0, 0, 0}, {0, h, 0}, {0, 1, 1}, {h, 0, 0}, {h, h, 0}, {h, 1, 1}, {1, 0, 1}, {1, h, 1}, {1, 1, 2}});
   const MeshTriangle triangle{{{{0, 0}, {1, 0}, {0, 1}}}, {Vec3{0, 0, 0}, Vec3{1, 0, 1}, Vec3{0, 1, 1}}};
   const DistanceRange found = largest_distance(patch, triangle, 1e-4, 20000);
   EXPECT_LE(found.low, 0.5 / std::sqrt(3.0) + 1e-12);
@@ -25,31 +26,64 @@ TEST(TrueDistance, OfAParaboloid) {
   EXPECT_LE(found.high, 1.001 * found.low);
 }
 
+MeshTriangle triangle_of(const Mesh& mesh, std::size_t t) {
+  MeshTriangle triangle;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::size_t k = mesh.indices[3 * t + c];
+    triangle.parameters[c] = {mesh.parameters[2 * k], mesh.parameters[2 * k + 1]};
+    triangle.corners[c] =
+        mesh.origin + Vec3{mesh.positions[3 * k], mesh.positions[3 * k + 1], mesh.positions[3 * k + 2]};
+  }
+  return triangle;
+}
+
+/// Thirty triangles of a set's mesh.
+void expect_certificates(const CertificateSet& chosen, const CertifiedOptions& options, Random& random) {
+  const PatchSet set = set_of(chosen.patches);
+  const CertifiedTessellation plan = good(CertifiedTessellation::make(set, options));
+  Mesh mesh = good(plan.allocate());
+  ASSERT_TRUE(plan.run(set, mesh.views()).ok());
+  double tightest = 0;
+  for (int sample = 0; sample < 30; ++sample) {
+    const std::size_t t = random() % mesh.triangle_count();
+    const double bound = plan.bounds()[mesh.patches[t]];
+    const DistanceRange found = largest_distance(set.patch(mesh.patches[t]), triangle_of(mesh, t), 0.1, 60);
+    EXPECT_LE(found.low, bound) << chosen.name;
+    tightest = std::max(tightest, found.high / bound);
+  }
+  EXPECT_GE(tightest, chosen.bicubic ? 0.25 : 1e-4) << chosen.name;
+}
+
 TEST(Certificate, IsNeverExceededByTheTrueDistance) {
   Random random(1);
-  for (const CertificateSet& chosen : certificate_sets()) {
-    const PatchSet set = set_of(chosen.patches);
-    const double tolerance = 0.02 * set.box().diagonal();
-    const CertifiedTessellation plan = good(CertifiedTessellation::make(set, {.tolerance = tolerance}));
-    Mesh mesh = good(plan.allocate());
-    ASSERT_TRUE(plan.run(set, mesh.views()).ok());
-    double tightest = 0;
-    for (int sample = 0; sample < 30; ++sample) {
-      const std::size_t t = random() % mesh.triangle_count();
-      MeshTriangle triangle;
-      for (std::size_t c = 0; c < 3; ++c) {
-        const std::size_t k = mesh.indices[3 * t + c];
-        triangle.parameters[c] = {mesh.parameters[2 * k], mesh.parameters[2 * k + 1]};
-        triangle.corners[c] =
-            mesh.origin + Vec3{mesh.positions[3 * k], mesh.positions[3 * k + 1], mesh.positions[3 * k + 2]};
-      }
-      const double bound = plan.bounds()[mesh.patches[t]];
-      const DistanceRange found = largest_distance(set.patch(mesh.patches[t]), triangle, 0.1, 60);
-      EXPECT_LE(found.low, bound) << chosen.name;
-      tightest = std::max(tightest, found.high / bound);
+  for (const CertificateSet& chosen : certificate_sets())
+    for (const bool fewest : {false, true})
+      expect_certificates(chosen, {.tolerance = 0.02, .relative = true, .fewest = fewest}, random);
+}
+
+/// Bounds of halves, where a border of an odd rate has a triangle across the middle.
+TEST(Certificate, HoldsAcrossTheMiddleOfEvenRates) {
+  std::size_t straddling = 0;
+  for (const double relative : {2e-2, 1e-2, 5e-3, 3e-3, 2e-3}) {
+    const PatchSet set = set_of(wavy_field(9, 9));
+    const CertifiedTessellation plan =
+        good(CertifiedTessellation::make(set, {.tolerance = relative, .relative = true}));
+    const Mesh mesh = mesh_of(set, plan);
+    for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+      const std::uint32_t patch = mesh.patches[t];
+      const Rates rates = plan.impl().plan().rates()[patch];
+      const MeshTriangle triangle = triangle_of(mesh, t);
+      const auto straddles = [&](std::size_t along) {
+        const auto at = [&](std::size_t c) { return triangle.parameters[c][along]; };
+        return std::min({at(0), at(1), at(2)}) < 0.5 && std::max({at(0), at(1), at(2)}) > 0.5;
+      };
+      if (!(rates.u % 2 == 0 && straddles(0)) && !(rates.v % 2 == 0 && straddles(1))) continue;
+      ++straddling;
+      EXPECT_LE(largest_distance(set.patch(patch), triangle, 0.05, 400).low, plan.bounds()[patch]);
+      EXPECT_LE(plan.bounds()[patch], relative * set.box().diagonal() * (1 + 1e-6));
     }
-    EXPECT_GE(tightest, chosen.bicubic ? 0.25 : 1e-4) << chosen.name;
   }
+  EXPECT_GT(straddling, 30u);
 }
 
 }  // namespace

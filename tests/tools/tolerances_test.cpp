@@ -101,6 +101,13 @@ TEST_F(Tolerances, CellsAreQuads) {
     expect_failure({"tessellate", teapot, "-o", name, "--grid", "4x3", "--quads"}, 2, "holds triangles alone");
 }
 
+TEST_F(Tolerances, FewerTrianglesForMoreTime) {
+  const json plain = made({"--relative", "0.001"}), fewest = made({"--relative", "0.001", "--fewest"});
+  EXPECT_LT(fewest["triangles"], 0.9 * plain["triangles"].get<double>());
+  EXPECT_EQ(checked()["t_junctions"], 0);
+  expect_refusal({"--grid", "4x4", "--fewest"}, 2, "--grid");
+}
+
 TEST_F(Tolerances, WrongOnesAreRefused) {
   expect_refusal({"--relative", "0.01", "--crease", "200"}, 2, "expected an angle of 0 to 180 degrees");
   expect_refusal({"--grid", "4x4", "--share-vertices"}, 2, "--grid");

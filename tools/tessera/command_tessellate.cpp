@@ -282,6 +282,10 @@ void add_cap(CLI::App& command, Options& options) {
           "Refuse to make more, and say how many it would take, unless by --grid [1073741824]")
       ->type_name("COUNT")
       ->excludes(command.get_option("--triangles"));
+  command
+      .add_flag("--fewest", options.certified.fewest,
+                "Take some 50 us a patch and more to find out where fewer triangles will do, unless by --grid")
+      ->excludes(command.get_option("--grid"));
 }
 
 void add_weld(CLI::App& command, Options& options) {

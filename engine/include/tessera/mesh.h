@@ -67,7 +67,7 @@ struct Mesh {
 /// all triangles first and then these, or the same part by part; patches, if each face has one. Errors: count_mismatch (indices
 /// that are not three a triangle or four a quad; parts that are not all faces), invalid_argument (a part that does not
 /// follow on the one before; index = the part).
-Result<Mesh> split_quads(Mesh mesh);
+Result<Mesh> split_quads(const Mesh& mesh);
 
 /// What is wrong with a mesh, if anything. Vertices at bit-equal positions count as one, and a quad as the two triangles that
 /// split_quads() makes of it.

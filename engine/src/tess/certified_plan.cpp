@@ -137,15 +137,33 @@ CertifiedPlanner::Choice CertifiedPlanner::choose(std::size_t patch, double tole
   choice.rates = *rates;
   // Rates that were raised may be odd now: what holds for a half may not hold for the whole.
   if (!(limits.keeps(*rates))) choice.rates = {rates->u + rates->u % 2, rates->v + rates->v % 2};
-  if (is_spared(kept, patch, choice.rates)) {
-    const Rates had = kept.rates[patch];
-    const bool as_fine = !turning || bounded || std::min(had.u, had.v) >= options_.angle_rate;
-    if (as_fine && limits.keeps(had)) choice.rates = had;
-  }
-  choice.bound = chord.distance(choice.rates) + given;
+  const int least_rate = turning && !bounded ? options_.angle_rate : 1;
+  choice.bound = given + settle(patch, limits, chord, {least_rate, most}, kept, choice.rates);
   if (turning) choice.angle = bounded ? turning->angle(choice.rates) : std::numeric_limits<double>::infinity();
   if (picture) choice.pixels = picture->pixels(choice.rates, choice.bound);
   return choice;
+}
+
+double CertifiedPlanner::settle(std::size_t patch, const CellLimits& limits, const ChordBound& chord, RateRange range,
+                                const KeptRates& kept, Rates& rates) const {
+  CellLimits others = limits;
+  others.chord = nullptr;
+  const auto keeps_others = [&](Rates r) { return std::min(r.u, r.v) >= range.least && others.keeps(r); };
+  double distance = chord.distance(rates);
+  if (options_.fewest && limits.chord && range.most <= most_rate)
+    if (const auto fewer = find_fewer(set_->patches[patch], rates, limits.distance, keeps_others))
+      rates = fewer->rates, distance = fewer->distance;
+  if (!is_spared(kept, patch, rates) || !keeps_others(kept.rates[patch])) return distance;
+  double had = chord.distance(kept.rates[patch]);
+  if (limits.chord && !(had <= limits.distance)) had = local_distance(patch, kept.rates[patch]);
+  if (limits.chord && !(had <= limits.distance)) return distance;
+  rates = kept.rates[patch];
+  return had;
+}
+
+double CertifiedPlanner::local_distance(std::size_t patch, Rates rates) const {
+  if (!options_.fewest) return std::numeric_limits<double>::infinity();
+  return LocalChord(set_->patches[patch], rates, rates).distance(rates);
 }
 
 std::string CertifiedPlanner::wanted(double tolerance) const {
@@ -182,6 +200,28 @@ Status CertifiedPlanner::refusal(Failure failure, std::size_t patch, double tole
                  patch);
 }
 
+bool CertifiedPlanner::settle_by_distance(std::size_t patch, double distance, const KeptRates& kept,
+                                          ChordBlocks::Products& products, ProvenRates& proven) const {
+  bool is_local = false;
+  const auto no_others = [](Rates) { return true; };
+  if (options_.fewest && proven.rates.u > 0)
+    if (const auto fewer = find_fewer(set_->patches[patch], proven.rates, distance, no_others))
+      proven = *fewer, is_local = true;
+  if (!is_spared(kept, patch, proven.rates)) return is_local;
+  const PatchSet::Slot slot = set_->slots[patch];
+  const Rates had = kept.rates[patch];
+  double keeps = chord(patch).distance(had);
+  if (!(keeps <= distance)) {
+    products.find(chords_, *set_, slot.block);
+    keeps = chords_.chord(slot.block, slot.lane, &products).distance(had);
+  }
+  const bool by_halves = keeps <= distance;
+  if (!by_halves) keeps = local_distance(patch, had);
+  if (!(keeps <= distance)) return is_local;
+  proven = {had, keeps};
+  return !by_halves;
+}
+
 Status CertifiedPlanner::choose_by_distance(double tolerance, const KeptRates& kept, CertifiedPlan& plan,
                                             const Execution& execution) const {
   LeastIndex failed;
@@ -198,16 +238,10 @@ Status CertifiedPlanner::choose_by_distance(double tolerance, const KeptRates& k
       for (std::size_t lane = 0; lane < count; ++lane) {
         const std::size_t k = patches[lane];
         if (!(left[lane] > 0) || choice.rates[lane].u == 0) failed.add(k);
-        if (is_spared(kept, k, choice.rates[lane])) {
-          double distance = chords_.chord(block, lane).distance(kept.rates[k]);
-          if (!(distance <= left[lane])) {
-            products.find(chords_, *set_, block);
-            distance = chords_.chord(block, lane, &products).distance(kept.rates[k]);
-          }
-          if (distance <= left[lane]) choice.rates[lane] = kept.rates[k], choice.distance[lane] = distance;
-        }
-        plan.rates_[k] = choice.rates[lane];
-        plan.bounds_[k] = rounded_up(choice.distance[lane] + (roundings_[k] + fit_error_));
+        ProvenRates proven{choice.rates[lane], choice.distance[lane]};
+        if (settle_by_distance(k, left[lane], kept, products, proven)) plan.straddles_[k] = 1;
+        plan.rates_[k] = proven.rates;
+        plan.bounds_[k] = rounded_up(proven.distance + (roundings_[k] + fit_error_));
       }
     }
   };
@@ -222,6 +256,7 @@ Status CertifiedPlanner::choose_rates(double tolerance, const KeptRates& kept, C
   const std::size_t patches = shapes_.size();
   plan.rates_.resize(patches);
   plan.bounds_.resize(patches);
+  if (options_.fewest) plan.straddles_.resize(patches);
   if (!options_.angle && !options_.camera) return choose_by_distance(tolerance, kept, plan, execution);
   if (options_.angle) plan.angles_.resize(patches);
   if (options_.camera) plan.pixels_.resize(patches);
@@ -241,43 +276,11 @@ Status CertifiedPlanner::choose_rates(double tolerance, const KeptRates& kept, C
   return refusal(choose(failed.index(), tolerance, most_rate).failure, failed.index(), tolerance);
 }
 
-std::vector<Division> CertifiedPlanner::divide(std::span<const Rates> rates) const {
-  struct Need {
-    std::uint16_t most = 1;     ///< of the rates of its patches
-    std::uint16_t is_even = 0;  ///< one of these: that patch counts on no triangle straddling the middle
-  };
-  const std::span<const PatchShape> shapes = divided_shapes();
-  const auto rate_along = [](Rates own, Side side) { return runs_along_u(side) ? own.u : own.v; };
-  std::vector<Need> needs(edges_.count());
-  for (std::size_t k = 0; k < rates.size(); ++k) {
-    if (shapes[k].is_curve) continue;
-    for (const Side side : all_sides) {
-      const std::uint32_t edge = edges_.edge(k, side);
-      if (edge == SharedEdges::none) continue;
-      const auto rate = static_cast<std::uint16_t>(rate_along(rates[k], side));
-      needs[edge].most = std::max(needs[edge].most, rate);
-      needs[edge].is_even |= static_cast<std::uint16_t>(~rate & 1);
-    }
-  }
-  std::vector<Division> divisions(rates.size());
-  for (std::size_t k = 0; k < rates.size(); ++k) {
-    std::array<int, 4> borders{};
-    for (const Side side : all_sides) {
-      const std::uint32_t edge = edges_.edge(k, side);
-      const auto rate_of = [](Need need) { return need.most + (need.most & need.is_even); };
-      borders[static_cast<std::size_t>(side)] =
-          edge == SharedEdges::none ? rate_along(rates[k], side) : rate_of(needs[edge]);
-    }
-    divisions[k] = Division::of(shapes[k], rates[k], borders);
-  }
-  return divisions;
-}
-
 Result<CertifiedPlan> CertifiedPlanner::plan(double tolerance, std::uint64_t most_triangles, const Execution& execution,
                                              const KeptRates& kept) const {
   CertifiedPlan plan;
   if (Status status = choose_rates(tolerance, kept, plan, execution); !status.ok()) return status;
-  plan.divisions_ = divide(plan.rates_);
+  divide(tolerance, plan);
   plan.lay_out();
   const auto [vertices, triangles, quads] = plan.capacity();
   if (triangles <= most_triangles && vertices <= most_vertices) return plan;

@@ -10,6 +10,7 @@
 #include "block/patch_set_impl.h"
 #include "tess/cell_limits.h"
 #include "tess/chord_blocks.h"
+#include "tess/local_chord.h"
 #include "tess/picture.h"
 #include "tess/rounded_up.h"
 #include "tess/shared_edges.h"
@@ -72,6 +73,7 @@ class CertifiedPlan {
   std::vector<Division> divisions_;
   std::vector<std::size_t> first_vertex_, first_triangle_, first_quad_;  ///< of each patch, and the number of all
   std::vector<float> bounds_, angles_, pixels_;
+  std::vector<std::uint8_t> straddles_;  ///< patches whose bound holds wherever triangles lie; empty if there are none
   std::vector<std::uint32_t> corner_sources_;  ///< of each corner, itself if it owns its vertex; empty if nothing is shared
   std::vector<BorderSource> border_sources_;
 };
@@ -86,6 +88,7 @@ struct PlannerOptions {
   int angle_rate = 64;          ///< where the angle has no bound
   std::optional<Camera> camera;
   double pixels = 0;  ///< above 0 if there is a camera
+  bool fewest = false;
 };
 
 /// Rates that patches keep, rather than take others, where they keep the tolerances and have at most (1 + spare) times the
@@ -140,9 +143,25 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   /// The same where nothing but a distance is to be kept, block by block.
   Status choose_by_distance(double tolerance, const KeptRates& kept, CertifiedPlan& plan,
                             const Execution& execution) const;
+  struct RateRange {
+    int least, most;
+  };
+  /// Takes the fewest cells, if these are looked for, or the kept ones in the place of rates that keep the limits. Returns
+  /// the distance that they keep.
+  double settle(std::size_t patch, const CellLimits& limits, const ChordBound& chord, RateRange range,
+                const KeptRates& kept, Rates& rates) const;
+  /// The same where there is nothing but a distance. Whether it is kept wherever triangles lie, by bounds of small pieces.
+  bool settle_by_distance(std::size_t patch, double distance, const KeptRates& kept, ChordBlocks::Products& products,
+                          ProvenRates& proven) const;
+  /// What a patch keeps by bounds of small pieces; infinite where plans don't look for the fewest triangles.
+  double local_distance(std::size_t patch, Rates rates) const;
   Status refusal(Failure failure, std::size_t patch, double tolerance) const;
   std::string wanted(double tolerance) const;
-  std::vector<Division> divide(std::span<const Rates> rates) const;
+  void divide(double tolerance, CertifiedPlan& plan) const;
+  /// Whether a border may have an odd rate where its patch, whose bound is that of halves, has an even one: then the
+  /// patch's bound is that of the triangle which straddles the middle there, too.
+  bool may_straddle(std::size_t patch, Side side, const std::array<int, 4>& borders, double tolerance,
+                    CertifiedPlan& plan) const;
   std::span<const PatchShape> divided_shapes() const { return weld_.shapes.empty() ? shapes_ : weld_.shapes; }
 
   const PatchSet::Impl* set_;

@@ -147,6 +147,7 @@ Result<PlannerOptions> checked(const CertifiedOptions& options, const PatchSet& 
   planner.weld = options.weld;
   planner.angle = options.angle;
   planner.angle_rate = options.angle_rate;
+  planner.fewest = options.fewest;
   if (!options.pixels) return planner;
   Result<Camera> camera = Camera::make(options.pixels->view);
   if (!camera) return camera.status();

@@ -46,6 +46,13 @@ class ChordBlocks {
   /// One patch's bound, by the products as well if there are `products`.
   ChordBound chord(std::size_t block, std::size_t lane, const Products* products = nullptr) const;
 
+  /// One of ChordBound::pieces() without products.
+  SecondDerivatives piece(std::size_t block, std::size_t lane, std::size_t which) const {
+    const double unit = unit_[block * lanes + lane];
+    const float* d = pieces_.data() + block * block_pieces + which * 3 * lanes + lane;
+    return {unit * double(d[0]), unit * double(d[lanes]), unit * double(d[2 * lanes])};
+  }
+
   struct Choice {
     Lanes<Rates> rates;        ///< 0 where no rates up to the most keep the distance
     Lanes<double> distance{};  ///< what they keep

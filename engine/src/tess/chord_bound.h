@@ -49,7 +49,7 @@ struct SecondDerivatives {
 inline constexpr int most_product_degree = 5;
 
 /// Bounds for the whole patch, its halves and its quarters. Those of a half hold only for triangles that lie in one half:
-/// so they serve even rates, whose cells never straddle the middle.
+/// so they serve even rates, whose cells never straddle the middle, but for one triangle at a border of an odd rate.
 class ChordBound {
  public:
   /// Exact but for rounding, which is added: a proven bound. Infinite where it is beyond double.
@@ -73,6 +73,13 @@ class ChordBound {
   /// The largest distance between the patch and a mesh of it, each of whose triangles has a parameter box of at most
   /// 1 / rates.u x 1 / rates.v, and where a rate is even none straddles the middle of that parameter.
   double distance(Rates rates) const;
+  /// At a border of an odd rate beside an even one a triangle straddles the middle of the parameter, its box no wider than
+  /// the border's segments: it lies in this one of pieces(), and keeps what that one says of these rates.
+  struct Straddling {
+    std::size_t piece;
+    Rates rates;
+  };
+  static Straddling straddling(Rates rates, Edge border, int rate);
   /// The smallest real rate along the other parameter that keeps it, `fixed` being that along u or v; among even rates, or
   /// odd ones. Infinite if there is none.
   double needed(double tolerance, int fixed, bool fixed_u, bool even) const;

@@ -33,8 +33,6 @@ class QuadSplitter {
   void put_into(Mesh& mesh) && {
     mesh.indices = std::move(indices_);
     mesh.patches = std::move(patches_);
-    mesh.quads.clear();
-    mesh.quad_patches.clear();
   }
 
  private:
@@ -57,24 +55,28 @@ MeshViews Mesh::views() {
   return views;
 }
 
-Result<Mesh> split_quads(Mesh mesh) {
+Result<Mesh> split_quads(const Mesh& mesh) {
   return guarded([&]() -> Result<Mesh> {
     if (mesh.indices.size() % 3 != 0 || mesh.quads.size() % 4 != 0)
       return Status(StatusCode::count_mismatch, std::to_string(mesh.indices.size()) + " indices of triangles and " +
                                                     std::to_string(mesh.quads.size()) +
                                                     " of quads are not three and four each");
     if (Status status = check_parts(mesh); !status.ok()) return status;
-    if (mesh.quads.empty()) return std::move(mesh);
+    if (mesh.quads.empty()) return mesh;
+    Mesh split;
+    split.origin = mesh.origin;
+    split.positions = mesh.positions;
+    split.normals = mesh.normals;
+    split.parameters = mesh.parameters;
+    split.parts = mesh.parts;
     QuadSplitter splitter(mesh);
-    std::vector<MeshPart> parts = mesh.parts;
-    for (MeshPart& part : parts) {
+    for (MeshPart& part : split.parts) {
       const std::size_t first = splitter.add(part);
       part = {std::move(part.name), first, part.triangle_count + 2 * part.quad_count};
     }
-    if (parts.empty()) splitter.add({{}, 0, mesh.triangle_count(), 0, mesh.quad_count()});
-    std::move(splitter).put_into(mesh);
-    mesh.parts = std::move(parts);
-    return std::move(mesh);
+    if (split.parts.empty()) splitter.add({{}, 0, mesh.triangle_count(), 0, mesh.quad_count()});
+    std::move(splitter).put_into(split);
+    return split;
   });
 }
 

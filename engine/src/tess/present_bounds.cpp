@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "parallel/parallel_for.h"
+#include "tess/local_chord.h"
 
 namespace tessera {
 namespace {
@@ -11,6 +12,20 @@ namespace {
 constexpr std::size_t blocks_a_piece = 8;
 /// Bounds of one net by different sums differ by less; the planner has added it already.
 constexpr double float_sums = 1 + 0x1p-20;
+
+/// With that of triangles at borders of odd rates beside even ones.
+double distance(const ChordBound& chord, Rates rates, const Division& division) {
+  double most = chord.distance(rates);
+  for (const Side side : all_sides) {
+    const auto s = static_cast<std::size_t>(side);
+    const int border = division.border[s], opposite = division.border[(s + 2) % 4];
+    if ((runs_along_u(side) ? rates.u : rates.v) % 2 == 1 || border % 2 == 0) continue;
+    const auto straddling =
+        ChordBound::straddling(rates, edge_of(side), opposite % 2 == 1 ? std::min(border, opposite) : border);
+    most = std::max(most, chord.pieces()[straddling.piece].chord(straddling.rates));
+  }
+  return most;
+}
 
 }  // namespace
 
@@ -84,11 +99,14 @@ void PresentBounds::set_bound(const PatchSet::Impl& set, const CertifiedTessella
   const double moved = displacements_.empty() ? 0 : displacements_[patch];
   const Rates rates = plan.plan().rates()[patch];
   const double given = std::max(roundings_[patch], moved) + set.fit_error.distance;
-  double bound = chords_.chord(slot.block, slot.lane).distance(rates) + given;
+  const Division& division = plan.plan().division(patch);
+  double bound = distance(chords_.chord(slot.block, slot.lane), rates, division) + given;
   if (!(bound <= plan.tolerance())) {
     products.find(chords_, set, slot.block);
-    bound = chords_.chord(slot.block, slot.lane, &products).distance(rates) + given;
+    bound = distance(chords_.chord(slot.block, slot.lane, &products), rates, division) + given;
   }
+  if (!(bound <= plan.tolerance()) && plan.options().fewest)
+    bound = std::min(bound, LocalChord(set.patches[patch], rates, rates).distance(rates) + given);
   bounds_[patch] = rounded_up(bound);
   if (is_touched(set, patch) && (plan.options().angle || plan.options().pixels)) is_unknown_[patch] = 1;
   is_unproven_[patch] = is_unknown_[patch] != 0 || !(bound <= plan.tolerance() * float_sums);

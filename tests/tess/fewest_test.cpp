@@ -1,0 +1,112 @@
+// Fewer triangles by bounds of small pieces: still proven, and without a crack.
+
+#include <algorithm>
+
+#include "support/synthetic_sets.h"
+#include "support/true_distance.h"
+#include "tess/local_chord.h"
+#include "tess/tessellate_support.h"
+#include "tessera/mesh_update.h"
+
+namespace tessera::test {
+namespace {
+
+CertifiedTessellation planned(const PatchSet& set, double relative, bool fewest) {
+  return good(CertifiedTessellation::make(set, {.tolerance = relative, .relative = true, .fewest = fewest}));
+}
+
+/// A bicubic patch that bends near (1, 1) alone.
+BezierPatch bent_in_a_corner() {
+  std::vector<Vec3> points;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) points.push_back({i / 3.0, j / 3.0, i == 3 && j == 3 ? 1.0 : 0.0});
+  return polynomial(3, 3, points);
+}
+
+TEST(Fewest, SavesTrianglesAndOpensNoCrack) {
+  for (const double relative : {1e-2, 1e-3, 1e-4})
+    for (const auto& patches : {closed_body(), sphere(), wavy_field(5, 6), mixed_patches(8, 8)}) {
+      const PatchSet set = set_of(patches);
+      const CertifiedTessellation plain = planned(set, relative, false), fewest = planned(set, relative, true);
+      EXPECT_LE(fewest.capacity().triangles, plain.capacity().triangles);
+      EXPECT_LE(fewest.bound(), relative * set.box().diagonal() * (1 + 1e-6));
+      const MeshReport report = good(check(mesh_of(set, fewest))), before = good(check(mesh_of(set, plain)));
+      EXPECT_EQ(report.t_junctions, 0u);
+      EXPECT_EQ(report.closed(), before.closed());
+      EXPECT_EQ(report.degenerate_triangles, before.degenerate_triangles);
+    }
+  for (const auto& patches : {sphere(), closed_body()}) {
+    const PatchSet set = set_of(patches);
+    const auto triangles = [&](bool fewest) { return double(planned(set, 1e-4, fewest).capacity().triangles); };
+    EXPECT_LE(triangles(true), 0.85 * triangles(false));
+  }
+}
+
+TEST(Fewest, KeepsAnglesAndPixelsAsWell) {
+  const PatchSet set = set_of(wavy_field(4, 4));
+  const View view{.eye = {2, -6, 5}, .target = {2, 2, 0}};
+  CertifiedOptions options{.tolerance = 1e-3, .angle = 0.2, .pixels = PixelTolerance{2, view}};
+  const CertifiedTessellation plain = good(CertifiedTessellation::make(set, options));
+  options.fewest = true;
+  const CertifiedTessellation fewest = good(CertifiedTessellation::make(set, options));
+  EXPECT_LT(fewest.capacity().triangles, plain.capacity().triangles);
+  EXPECT_LE(fewest.bound(), 1e-3 * (1 + 1e-6));
+  EXPECT_LE(fewest.angle(), 0.2 * (1 + 1e-6));
+  EXPECT_LE(fewest.pixels(), 2 * (1 + 1e-6));
+  EXPECT_EQ(good(check(mesh_of(set, fewest))).t_junctions, 0u);
+}
+
+/// Boxes anywhere, whatever the rates: not only cells of a grid.
+TEST(Fewest, LocalBoundsHoldWhereverTrianglesLie) {
+  Random random(3);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (const BezierPatch& patch : {bent_in_a_corner(), random_polynomial(random, 3, 5), random_polynomial(random, 1, 2),
+                                   random_rational(random, 3, 3, 0.5, 2), random_polynomial(random, 8, 6)})
+    for (const Rates rates : {Rates{2, 3}, Rates{5, 4}, Rates{12, 9}}) {
+      const LocalChord local(patch, rates, rates);
+      const double bound = local.distance(rates);
+      EXPECT_TRUE(local.keeps(rates, bound));
+      EXPECT_FALSE(local.keeps(rates, 0.99 * bound));
+      for (int sample = 0; sample < 40; ++sample) {
+        const double u = unit(random) * (1 - 1.0 / rates.u), v = unit(random) * (1 - 1.0 / rates.v);
+        MeshTriangle triangle;
+        for (std::size_t c = 0; c < 3; ++c) {
+          triangle.parameters[c] = {u + (c == 1   ? 1.0
+                                         : c == 2 ? unit(random)
+                                                  : 0.0) /
+                                            rates.u,
+                                    v + (c == 2   ? 1.0
+                                         : c == 1 ? unit(random)
+                                                  : 0.0) /
+                                            rates.v};
+          triangle.corners[c] = de_casteljau(patch, triangle.parameters[c][0], triangle.parameters[c][1]);
+        }
+        EXPECT_LE(largest_distance(patch, triangle, 0.1, 60).low, bound * (1 + 1e-9));
+      }
+    }
+}
+
+TEST(Fewest, UpdatesStateTheirBoundsTheSameWay) {
+  PatchSet set = set_of(wavy_field(6, 6));
+  auto update = good(MeshUpdate::make(set, planned(set, 3e-4, true)));
+  Mesh mesh = mesh_of(set, update.plan());
+  std::vector<std::uint32_t> patches;
+  std::vector<Vec3> points;
+  for (std::uint32_t k = 0; k < set.patch_count(); ++k) {
+    patches.push_back(k);
+    for (const Vec3& p : set.patch(k).points()) points.push_back(p + Vec3{0.25, 0.5, -0.25});
+  }
+  ASSERT_TRUE(update.run(set, {patches, points}, mesh.views()).ok());
+  ASSERT_TRUE(update.restate(set).ok());
+  EXPECT_EQ(update.unproven(), 0u);  // moved alone
+  EXPECT_EQ(good(update.retessellate(set)), 0u);
+  for (Vec3& p : points) p.z *= 4;
+  ASSERT_TRUE(update.run(set, {patches, points}, mesh.views()).ok());
+  ASSERT_TRUE(update.restate(set).ok());
+  EXPECT_GT(update.unproven(), 0u);
+  EXPECT_GT(good(update.retessellate(set)), 0u);
+  EXPECT_EQ(update.unproven(), 0u);
+}
+
+}  // namespace
+}  // namespace tessera::test
