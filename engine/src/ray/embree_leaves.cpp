@@ -174,7 +174,7 @@ void EmbreeLeaves::trace(std::span<RayQuery* const> queries, SearchSpace& space)
       call.enter[k] = static_cast<float>(queries[k]->line.enter);
       call.packet.set(k, *queries[k]);
     } else {
-      call.packet.queries[k] = nullptr;
+      call.packet.set_idle(k);
     }
     const RTCRay ray = embree_ray(queries[which]->line);
     hit.ray.org_x[k] = ray.org_x, hit.ray.org_y[k] = ray.org_y, hit.ray.org_z[k] = ray.org_z;

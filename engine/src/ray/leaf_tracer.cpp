@@ -55,9 +55,16 @@ void QueryPacket::set(std::size_t lane, RayQuery& query) {
   const RayLine& line = query.line;
   for (std::size_t i = 0; i < 3; ++i)
     rays.origin[i][lane] = probe.origin[i], rays.direction[i][lane] = probe.direction[i];
-  rays.near[lane] = probe.near;
+  rays.near[lane] = probe.near, rays.far[lane] = probe_far(query);
   put(line.start, polished.start, lane), put(line.direction, polished.direction, lane);
   put(line.across[0], polished.across[0], lane), put(line.across[1], polished.across[1], lane);
+}
+
+/// A ray that ends before it begins: kernels look at it too, and decide it at once.
+void QueryPacket::set_idle(std::size_t lane) {
+  queries[lane] = nullptr;
+  for (std::size_t i = 0; i < 3; ++i) rays.origin[i][lane] = rays.direction[i][lane] = 0;
+  rays.near[lane] = 1, rays.far[lane] = 0;
 }
 
 void LeafTracer::search(unsigned leaf_index, kernel::RayProbe& probe, RayQuery& query, SearchSpace& space) const {

@@ -25,6 +25,7 @@ struct QueryPacket {
   kernel::PolishedRays polished;
 
   void set(std::size_t lane, RayQuery& query);
+  void set_idle(std::size_t lane);
 };
 
 /// Refers to what it is made of. Const calls from any number of threads, each with a search space of its own.
