@@ -32,11 +32,13 @@ void cubic_point(const double* points, const double* origin, double u_at, double
   dv.store(out.dv);
 }
 
-/// The same of any degree up to three, by raising it from the one below.
+/// The same of any degree up to three, by raising it from the one below. `Fixed` is the degree where it is known.
+template <int Fixed>
 struct LowBasis {
   double value[4] = {1, 0, 0, 0}, derivative[4] = {0, 0, 0, 0};
 
-  LowBasis(int degree, double t) {
+  LowBasis(int any_degree, double t) {
+    const int degree = Fixed ? Fixed : any_degree;
     for (int n = 1; n < degree; ++n) raise(n, t);
     double before = 0;
     for (int i = 0; i < degree; ++i) {
@@ -56,9 +58,11 @@ struct LowBasis {
 };
 
 /// Quotient rule (Piegl and Tiller, The NURBS Book, eq. 4.20): r_u = (A_u - w_u r) / w.
-void low_rational_point(const double* points, const double* weights, int m, int n, const double* origin, double u_at,
-                        double v_at, RayPoint& out) {
-  const LowBasis u(m, u_at), v(n, v_at);
+template <int Fixed>
+void rational_point(const double* points, const double* weights, int any_m, int any_n, const double* origin, double u_at,
+                    double v_at, RayPoint& out) {
+  const int m = Fixed ? Fixed : any_m, n = Fixed ? Fixed : any_n;
+  const LowBasis<Fixed> u(m, u_at), v(n, v_at);
   const Triple start = Triple::load(origin);
   Triple position = Triple::zero(), du = Triple::zero(), dv = Triple::zero();
   double w = 0, wu = 0, wv = 0;
@@ -82,4 +86,10 @@ void low_rational_point(const double* points, const double* weights, int m, int 
   position.store(out.position);
   (inverse * Triple::fma(-wu, position, du)).store(out.du);
   (inverse * Triple::fma(-wv, position, dv)).store(out.dv);
+}
+
+void low_rational_point(const double* points, const double* weights, int m, int n, const double* origin, double u,
+                        double v, RayPoint& out) {
+  if (m == 3 && n == 3) return rational_point<3>(points, weights, m, n, origin, u, v, out);
+  rational_point<0>(points, weights, m, n, origin, u, v, out);
 }
