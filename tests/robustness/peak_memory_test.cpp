@@ -63,7 +63,7 @@ TEST_F(PeakMemory, Evaluation) {
 TEST_F(PeakMemory, Meshes) {
   const auto uniform = [&] { return value_of(TessellationPlan::make(set_)); };
   expect_at_most(
-      "TessellationPlan::make", 8, count_, [&] { return uniform(); }, 16);
+      "TessellationPlan::make", 8, count_, [&] { return uniform(); }, 24);
   const TessellationPlan plan = uniform();
   Mesh mesh = value_of(plan.allocate());
   expect_at_most("TessellationPlan::run", 0, 1, [&] { return plan.run(set_, mesh.views()); });

@@ -139,10 +139,10 @@ void GridScene::closest_packet(std::span<const Ray> rays, std::span<Hit> hits) c
   PacketRefiner refiner(set(), kernels_, reach_);
   if (refines_) refiner.run(std::span(segments).first(rays.size()), std::span(facets).first(rays.size()));
   for (std::size_t k = 0; k < rays.size(); ++k) {
-    SurfaceRoot root;
-    if (refiner.get_root(k, segments[k], facets[k], root) && accept(rays[k], segments[k], root, true, hits[k]))
+    if (!facets[k].hit()) continue;
+    if (refiner.has_root(k) && accept(rays[k], segments[k], refiner.root(k, segments[k], facets[k]), true, hits[k]))
       continue;
-    if (facets[k].hit()) hits[k] = hit_of(rays[k], segments[k], facets[k]);
+    hits[k] = hit_of(rays[k], segments[k], facets[k]);
   }
 }
 

@@ -57,11 +57,10 @@ void PacketRefiner::polish(std::uint32_t index, unsigned lanes, std::span<const 
   }
 }
 
-bool PacketRefiner::get_root(std::size_t k, const RaySegment& segment, const FacetHit& facet, SurfaceRoot& root) const {
-  if ((found_ >> k & 1u) == 0) return false;
+SurfaceRoot PacketRefiner::root(std::size_t k, const RaySegment& segment, const FacetHit& facet) const {
   const Vec3 position = get(rays_.position, k);
   const double s = rays_.s[k];
-  root = {facet.grid,
+  return {facet.grid,
           rays_.root_u[k],
           rays_.root_v[k],
           s,
@@ -69,7 +68,6 @@ bool PacketRefiner::get_root(std::size_t k, const RaySegment& segment, const Fac
           get(rays_.du, k),
           get(rays_.dv, k),
           length(position - segment.start - s * segment.direction)};
-  return true;
 }
 
 }  // namespace tessera

@@ -25,8 +25,9 @@ class PacketRefiner {
   /// The roots next to those facets that were hit, as far as Newton's method goes straight to them inside of their patches.
   /// The same for each ray, whatever others are with it.
   void run(std::span<const RaySegment> segments, std::span<const FacetHit> facets);
-  /// False where there is none. `segment`: that of the ray.
-  bool get_root(std::size_t k, const RaySegment& segment, const FacetHit& facet, SurfaceRoot& root) const;
+  bool has_root(std::size_t k) const { return (found_ >> k & 1u) != 0; }
+  /// Where there is one. `segment`, `facet`: those of the ray.
+  SurfaceRoot root(std::size_t k, const RaySegment& segment, const FacetHit& facet) const;
 
  private:
   void polish(std::uint32_t patch, unsigned lanes, std::span<const RaySegment> segments,
