@@ -140,7 +140,7 @@ TEST_F(Cancelled, Updates) {
 TEST_F(Cancelled, Rays) {
   const std::vector<Ray> rays = rays_at(set_, 20000);
   for (const RayMode mode : {RayMode::exact, RayMode::grid}) {
-    const RayScene scene = value_of(RayScene::make(set_, {.mode = mode}));
+    const RayScene scene = value_of(built([&] { return RayScene::make(set_, {.mode = mode}); }));
     std::vector<Hit> done(rays.size()), out(rays.size());
     ASSERT_TRUE(scene.closest(rays, done).ok());
     cancelled_at_many_places([&](const Execution& execution) { return scene.closest(rays, out, execution); },

@@ -93,7 +93,7 @@ TEST(CallersThreads, MayShareConstObjects) {
   for (Vec3& p : after) p.z += 0.25;
   const auto plan = value_of(CertifiedTessellation::make(set, {.tolerance = 2e-3}));
 #ifdef TESSERA_HAS_RAY
-  RayScene scene = value_of(RayScene::make(set));
+  RayScene scene = value_of(built([&] { return RayScene::make(set); }));
   const std::vector<Ray> rays = rays_at(set, 600);
 #endif
   const auto use = [&] {
@@ -118,7 +118,7 @@ TEST(CallersThreads, MayShareConstObjects) {
     for (auto& user : users) EXPECT_TRUE(user.get());
     ASSERT_TRUE(set.set_control_points(5, *points).ok());
 #ifdef TESSERA_HAS_RAY
-    ASSERT_TRUE(scene.refit().ok());
+    ASSERT_TRUE(built([&] { return scene.refit(); }).ok());
 #endif
   }
 }
