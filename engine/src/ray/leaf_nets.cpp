@@ -163,6 +163,7 @@ void LeafNets::cut(const BezierPatch& patch, std::uint32_t index, const Plan& pl
     const double* const net = nets.data() + piece * values;
     Leaf& leaf = leaves_[place];
     leaf.patch = index;
+    leaf.points = patch.points().data();
     leaf.degree_u = static_cast<std::uint8_t>(patch.degree_u());
     leaf.degree_v = static_cast<std::uint8_t>(patch.degree_v());
     leaf.rational = patch.is_rational();

@@ -23,6 +23,7 @@ struct Leaf {
   bool rational = false;
   std::uint8_t halvings_u = 0, halvings_v = 0;  ///< from the patch to the piece
   double u0 = 0, v0 = 0, du = 1, dv = 1;
+  const Vec3* points = nullptr;  ///< of the patch when the piece was made: to be fetched, not read
 
   int size() const { return (degree_u + 1) * (degree_v + 1); }
   int components() const { return rational ? 4 : 3; }

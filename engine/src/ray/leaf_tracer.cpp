@@ -16,13 +16,15 @@ constexpr double probe_pad = 4e-6;
 
 float narrow(double x) { return static_cast<float>(x); }
 
-/// What a root is polished with, while the kernel works.
-void fetch(const BezierPatch& patch) {
-  constexpr std::ptrdiff_t points_a_line = 64 / static_cast<std::ptrdiff_t>(sizeof(Vec3));
-  const std::span<const Vec3> points = patch.points();
-  const Vec3* const end = points.data() + std::min<std::size_t>(points.size(), 16);
-  for (const Vec3* point = points.data(); point < end; point += points_a_line)
-    _mm_prefetch(reinterpret_cast<const char*>(point), _MM_HINT_T0);
+void fetch(const void* from, std::size_t bytes) {
+  for (std::size_t k = 0; k < bytes; k += 64) _mm_prefetch(static_cast<const char*>(from) + k, _MM_HINT_T0);
+}
+
+/// What a root is polished with and a hit made of, while the kernel works; the points before the patch says where they are.
+void fetch_patch(const SetView& set, const Leaf& leaf) {
+  fetch(&set.patch(leaf.patch), sizeof(BezierPatch));
+  fetch(&set.source(leaf.patch), sizeof(PatchSource));
+  fetch(leaf.points, std::min<std::size_t>(static_cast<std::size_t>(leaf.size()), 16) * sizeof(Vec3));
 }
 
 /// Whether tnear and tfar are no question.
@@ -68,6 +70,7 @@ void QueryPacket::set_idle(std::size_t lane) {
 }
 
 void LeafTracer::search(unsigned leaf_index, kernel::RayProbe& probe, RayQuery& query, SearchSpace& space) const {
+  fetch(&nets->local(leaf_index), kernel::ray_leaf_bytes(false));
   const Leaf& leaf = nets->leaves()[leaf_index];
   probe.far = probe_far(query);
   ++query.steps;
@@ -91,7 +94,7 @@ void LeafTracer::search(unsigned leaf_index, QueryPacket& packet, unsigned lanes
 /// What is decided for all at once. Returns the lanes for which it is not.
 unsigned LeafTracer::decide(unsigned leaf_index, QueryPacket& packet, unsigned lanes) const {
   const Leaf& leaf = nets->leaves()[leaf_index];
-  fetch(set->patch(leaf.patch));
+  fetch_patch(*set, leaf);
   for (std::size_t lane = 0; lane < QueryPacket::size; ++lane) {
     if (lanes >> lane & 1u) packet.rays.far[lane] = probe_far(*packet.queries[lane]);
   }
@@ -176,7 +179,7 @@ bool LeafTracer::decide(const Leaf& leaf, unsigned leaf_index, kernel::RayProbe&
   const kernel::RayLeaf& local = nets->local(leaf_index);
   kernel::RayRoots roots;
   probe.any = query.wanted == RootsWanted::any && query.origin == nullptr;
-  if (!probe.any) fetch(set->patch(leaf.patch));
+  if (!probe.any) fetch_patch(*set, leaf);
   if (!trace(local, probe, roots)) return false;
   if (roots.count == 0) return true;
   if (probe.any) {
