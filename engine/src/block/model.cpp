@@ -29,9 +29,9 @@ struct Gathered {
       patches.insert(patches.end(), std::move_iterator(added.begin()), std::move_iterator(added.end()));
     }
     std::vector<PatchSource> row;
-    for (std::size_t k = 0; k < grid.count_v(); ++k)
+    for (std::size_t k = 0; k + 1 < v.size(); ++k)
       row.push_back({static_cast<std::uint32_t>(surface), {0, 1, v[k], v[k + 1]}});
-    for (std::size_t k = 0; k < grid.count_u(); ++k) {
+    for (std::size_t k = 0; k + 1 < u.size(); ++k) {
       for (PatchSource& source : row) {
         source.domain.u0 = u[k];
         source.domain.u1 = u[k + 1];

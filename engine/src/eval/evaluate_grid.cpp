@@ -104,7 +104,7 @@ Status evaluate_blocks(const PatchSet& set, const GridPlan& plan, const GridBloc
   const Pieces pieces(inner, *order > 0);
   const BlockOutputs<T> outputs(out);
   std::atomic<Isa> isa{inner.isa};
-  const Status status =
+  Status status =
       parallel_for(pieces.count(), pieces.grain(), execution, [&](std::size_t begin, std::size_t end) {
         BlockJobs<T> jobs(patches, inner, *order);
         kernel::GridJob<T>& job = jobs.job();
@@ -152,7 +152,7 @@ Status evaluate_views(const PatchSet::Impl& patches, const GridPlan& plan, const
   }
   const Pieces pieces(inner, *order > 0);
   std::atomic<Isa> isa{inner.isa};
-  const Status status =
+  Status status =
       parallel_for(pieces.count(), pieces.grain(), execution, [&](std::size_t begin, std::size_t end) {
         StagedBlock<T> stage(kernels, layout, out, streaming);
         BlockJobs<T> jobs(patches, inner, *order);

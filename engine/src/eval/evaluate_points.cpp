@@ -54,7 +54,7 @@ Status check_samples(const Source& source, const kernel::KernelTable& kernels, s
                      const Execution& execution) {
   std::atomic<std::size_t> refused{source.count()};
   const Execution checking{.cancel = execution.cancel};
-  const Status status = parallel_for(source.count(), grain, checking, [&](std::size_t begin, std::size_t end) {
+  Status status = parallel_for(source.count(), grain, checking, [&](std::size_t begin, std::size_t end) {
     if (begin >= refused.load(std::memory_order_relaxed)) return;
     const Status found = source.check(begin, end, kernels);
     if (found.ok()) return;
@@ -81,7 +81,7 @@ Status run(const PatchSet::Impl& set, const Source& source, const GridViews<T>& 
 
   const PointCall<T> call{set, kernels, out, options.geometry};
   std::atomic<Isa> ran{*isa};
-  const Status status = parallel_for(source.count(), grain, execution, [&](std::size_t begin, std::size_t end) {
+  Status status = parallel_for(source.count(), grain, execution, [&](std::size_t begin, std::size_t end) {
     PointChunk<T> chunk(call);
     for (; begin < end; begin += capacity) {
       auto& samples = chunk.samples();

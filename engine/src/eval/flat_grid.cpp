@@ -121,7 +121,7 @@ Status evaluate_flat(const PatchSet::Impl& set, const GridPlan::Impl& plan, floa
   }
   const std::size_t parts = (plan.count_u + rows - 1) / rows;
   std::atomic<Isa> isa{plan.isa};
-  const Status status =
+  Status status =
       parallel_for(plan.patch_count * parts, grain, execution, [&](std::size_t begin, std::size_t end) {
         FlatRun run(set, plan, out, streaming);
         for (std::size_t k = begin; k < end; ++k) {

@@ -60,7 +60,7 @@ class GridUpdate::Impl {
     const auto blocks = touched_.blocks();
     const UpdateCall call{set, inner, kernel::kernels(inner.isa), edits, touched_, order, streaming};
     std::atomic<Isa> isa{inner.isa};
-    const Status status = parallel_for(blocks.size(), blocks_a_task(inner, blocks.size(), order > 0), execution,
+    Status status = parallel_for(blocks.size(), blocks_a_task(inner, blocks.size(), order > 0), execution,
                                        [&](std::size_t begin, std::size_t end) {
                                          auto task = make_task(call);
                                          for (std::size_t k = begin; k < end; ++k) task.add(blocks[k]);

@@ -50,7 +50,7 @@ Status prepare_edits(PatchSet::Impl& set, const PatchEdits& edits, const Touched
   const bool near = max_abs(set.origin) <= plain_size;
   LeastIndex refused, reshaped;
   const Execution checking{.cancel = execution.cancel};
-  const Status status =
+  Status status =
       parallel_for(edits.patch.size(), edits_a_piece, checking, [&](std::size_t begin, std::size_t end) {
         const auto last = points_of(set, edits, touched, end - 1);
         const Vec3* first = points_of(set, edits, touched, begin).data();

@@ -149,7 +149,7 @@ Status evaluate_grid(const Surface& surface, std::span<const double> u, std::spa
   const bool serial = u.size() * v.size() <= serial_points;
   const std::size_t grain = serial ? u.size() : std::max<std::size_t>(1, points_per_task / v.size());
   std::atomic<Isa> ran{*isa};
-  const Status status = parallel_for(u.size(), grain, execution, [&](std::size_t begin, std::size_t end) {
+  Status status = parallel_for(u.size(), grain, execution, [&](std::size_t begin, std::size_t end) {
     ran.store(run(kernels, samples.job(begin, end, out)), std::memory_order_relaxed);
   });
   if (execution.report != nullptr) {
