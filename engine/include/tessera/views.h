@@ -34,11 +34,13 @@ struct VectorView {
   }
   /// Records of `record` elements; this vector's components are `first`, `first + 1`, ... of each.
   /// Example: positions and normals in one buffer of 6 floats a vertex: interleaved(buffer, 6, 0) and (buffer, 6, 3).
+  /// Of memory that does not hold one record, or of records of no elements: of size 0, from the memory's begin.
   static VectorView interleaved(std::span<T> memory, std::size_t record = N, std::size_t first = 0) {
     VectorView view;
     view.stride = static_cast<std::ptrdiff_t>(record);
-    if (memory.size() >= first + N) view.size = (memory.size() - first - N) / record + 1;
-    for (std::size_t c = 0; c < N; ++c) view.component[c] = memory.data() + first + c;
+    const bool holds_one = record > 0 && memory.size() >= N && first <= memory.size() - N;
+    if (holds_one) view.size = (memory.size() - first - N) / record + 1;
+    for (std::size_t c = 0; c < N; ++c) view.component[c] = memory.data() + (holds_one ? first + c : 0);
     return view;
   }
 };
