@@ -16,6 +16,7 @@ class Shared {
   Shared() = default;
   /// The value.
   template <class U>
+  // NOLINTNEXTLINE(bugprone-forwarding-reference-overload): the constraint lets copies be copies
   requires(std::convertible_to<U&&, T> && !std::same_as<std::remove_cvref_t<U>, Shared>) Shared(U&& value) {
     T own(std::forward<U>(value));
     if (!is_default(own)) value_ = std::make_shared<const T>(std::move(own));
