@@ -87,9 +87,10 @@ int run(int count, char** words) {
   benchmark::Initialize(&left, arguments.others.data());
   if (benchmark::ReportUnrecognizedArguments(left, arguments.others.data())) return 2;
   if (arguments.count && !under_valgrind())
-    std::fputs("tessera_bench: nothing is counted: valgrind does not run this program, or it was built without "
-               "valgrind/callgrind.h\n",
-               stderr);
+    std::fputs(
+        "tessera_bench: nothing is counted: valgrind does not run this program, or it was built without "
+        "valgrind/callgrind.h\n",
+        stderr);
   const bool good = arguments.count ? run_counted() : run_suite(arguments.part, arguments.to_file);
   benchmark::Shutdown();
   return good ? 0 : 1;

@@ -28,8 +28,8 @@ inline double seconds_since(std::chrono::steady_clock::time_point start) {
 
 /// Calls `before` and then `call` once an iteration, which alone counts, in an arena of `threads`. The shortest time in seconds;
 /// nothing where a call failed, which skips the case with its message.
-inline std::optional<double> time_calls(benchmark::State& state, int threads, FunctionRef<Status()> call,
-                                        FunctionRef<void()> before = [] {}) {
+inline std::optional<double> time_calls(
+    benchmark::State& state, int threads, FunctionRef<Status()> call, FunctionRef<void()> before = [] {}) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   tbb::task_arena arena(threads);
   double best = std::numeric_limits<double>::infinity();

@@ -37,7 +37,10 @@ struct Case {
     const bool rational = set_name.starts_with("rational");
     return {"evaluate." + outputs_name() + (layout == Layout::blocks ? ".blocks" : ".interleaved") +
                 (twice ? ".double" : "") + (stores == Stores::streaming ? ".streamed" : "") + (cold ? ".cold" : ""),
-            set_name, rational ? "3r" : "3", square(static_cast<std::size_t>(size)), std::string(tessera::name(isa)),
+            set_name,
+            rational ? "3r" : "3",
+            square(static_cast<std::size_t>(size)),
+            std::string(tessera::name(isa)),
             threads};
   }
   std::string outputs_name() const {
@@ -178,7 +181,8 @@ template <class T>
 void run(benchmark::State& state, const Case& c) {
   const PatchSet& set = set_named(c.set_name);
   const std::vector<double> t = uniform_parameters(c.size);
-  auto plan = GridPlan::make(set, t, t, {.precision = c.twice ? Precision::double_precision : Precision::single_precision, .isa = c.isa});
+  auto plan = GridPlan::make(
+      set, t, t, {.precision = c.twice ? Precision::double_precision : Precision::single_precision, .isa = c.isa});
   if (!plan) return state.SkipWithError(plan.status().message().c_str());
   Outputs<T> out(*plan, c);
   const Work work = plan->work(c.outputs);
@@ -204,9 +208,8 @@ bool is_quick(const Case& c) {
 }
 
 void add(const Case& c) {
-  add_case(c.name(), is_quick(c) ? quick_on_fastest(c.isa) : Part::full, [c](benchmark::State& state) {
-    c.twice ? run<double>(state, c) : run<float>(state, c);
-  });
+  add_case(c.name(), is_quick(c) ? quick_on_fastest(c.isa) : Part::full,
+           [c](benchmark::State& state) { c.twice ? run<double>(state, c) : run<float>(state, c); });
 }
 
 /// The smallest set whose results are far larger than the caches: 150 MB.
@@ -240,9 +243,11 @@ const bool registered = [] {
     for (const Layout layout : {Layout::blocks, Layout::interleaved}) {
       for (const GridOutputs& outputs : {positions, normals, tangents, curvatures}) {
         add({"bicubic1000", 9, outputs, layout, isa});
-        for (const int size : {9, 33}) add({large_set(size, outputs), size, outputs, layout, isa, 2, Stores::streaming});
+        for (const int size : {9, 33})
+          add({large_set(size, outputs), size, outputs, layout, isa, 2, Stores::streaming});
         for (const int size : {4, 5, 8, 9, 16, 33})
-          if (size != 33 || !outputs.duu) add({large_set(size, outputs), size, outputs, layout, isa, 1, Stores::streaming});
+          if (size != 33 || !outputs.duu)
+            add({large_set(size, outputs), size, outputs, layout, isa, 1, Stores::streaming});
         add({"bicubic20000", 9, outputs, layout, isa, 1, Stores::streaming, true});
       }
       add({"rational1000", 9, positions, layout, isa});

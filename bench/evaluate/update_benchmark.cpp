@@ -58,7 +58,8 @@ struct Animation {
 class Outputs {
  public:
   Outputs(const GridPlan& plan, const Case& c)
-      : blocks_(c.blocks), first_(c.blocks ? plan.block_capacity() : plan.capacity() * (c.normals ? 6 : 3)),
+      : blocks_(c.blocks),
+        first_(c.blocks ? plan.block_capacity() : plan.capacity() * (c.normals ? 6 : 3)),
         second_(c.blocks && c.normals ? first_.size() : 0) {
     if (blocks_) return;
     views_.position = View3<float>::interleaved(first_, c.normals ? 6 : 3);
@@ -68,8 +69,10 @@ class Outputs {
   Status evaluate(const PatchSet& set, const GridPlan& plan) {
     return blocks_ ? tessera::evaluate(set, plan, in_blocks()) : tessera::evaluate(set, plan, views_);
   }
-  Status update(GridUpdate& update, PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const Execution& execution) {
-    return blocks_ ? update.run(set, plan, edits, in_blocks(), execution) : update.run(set, plan, edits, views_, execution);
+  Status update(GridUpdate& update, PatchSet& set, const GridPlan& plan, const PatchEdits& edits,
+                const Execution& execution) {
+    return blocks_ ? update.run(set, plan, edits, in_blocks(), execution)
+                   : update.run(set, plan, edits, views_, execution);
   }
   bool operator==(const Outputs& other) const { return first_ == other.first_ && second_ == other.second_; }
 
@@ -106,8 +109,8 @@ void run(benchmark::State& state, const Case& c) {
   Execution execution;
   execution.report = &report;
   std::size_t turn = 0;
-  const auto best =
-      time_calls(state, c.threads, [&] { return outputs.update(update, set, plan, animation.edits(turn++), execution); });
+  const auto best = time_calls(state, c.threads,
+                               [&] { return outputs.update(update, set, plan, animation.edits(turn++), execution); });
   const auto limits = around.best(state);
   if (!best || !limits) return;
   if (report.isa != c.isa) return state.SkipWithError("another instruction set ran than was asked for");

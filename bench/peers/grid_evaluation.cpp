@@ -63,7 +63,8 @@ bool is_right(const GridTask& task, const GridRun& ours) {
 }
 
 /// For the table of all comparisons: each peer beside Tessera's ways in its own precision.
-void report(const GridTask& task, const std::vector<GridRun>& runs, const std::vector<double>& seconds, std::size_t own) {
+void report(const GridTask& task, const std::vector<GridRun>& runs, const std::vector<double>& seconds,
+            std::size_t own) {
   const std::string what = std::string(task.tangents ? "positions + du + dv" : "positions") + " of grids, " +
                            std::to_string(task.per_span) + " x " + std::to_string(task.per_span) + " points a span";
   for (std::size_t k = own; k < runs.size(); ++k)

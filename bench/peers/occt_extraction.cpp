@@ -3,6 +3,7 @@
 // They take turns. What is timed is checked first: the control points of all patches agree with OpenCASCADE's to 1e-12 of the surface's size,
 // and the blocks hold them to float's rounding.
 
+#include <tbb/task_arena.h>
 #include <GeomConvert_BSplineSurfaceToBezierSurface.hxx>
 #include <Geom_BSplineSurface.hxx>
 #include <Geom_BezierSurface.hxx>
@@ -11,7 +12,6 @@
 #include <TColStd_Array1OfInteger.hxx>
 #include <TColStd_Array1OfReal.hxx>
 #include <TColgp_Array2OfPnt.hxx>
-#include <tbb/task_arena.h>
 
 #include <cmath>
 #include <cstdio>
@@ -118,8 +118,7 @@ int run() {
   const auto to_blocks_alone = [&] { return seconds_of([&] { alone.execute(make_blocks); }); };
   const auto to_patches = [&] { return wall_seconds_of(make_patches); };
   const auto to_blocks = [&] { return wall_seconds_of(make_blocks); };
-  const auto seconds =
-      best_interleaved(rounds, {with_occt, to_patches_alone, to_blocks_alone, to_patches, to_blocks});
+  const auto seconds = best_interleaved(rounds, {with_occt, to_patches_alone, to_blocks_alone, to_patches, to_blocks});
   const char* names[] = {"OpenCASCADE, to patches", "Tessera, to patches, one thread", "Tessera, to blocks, one thread",
                          "Tessera, to patches", "Tessera, to blocks"};
   for (std::size_t k = 0; k < seconds.size(); ++k)
@@ -127,8 +126,8 @@ int run() {
                 seconds[0] / seconds[k]);
   for (const std::size_t k : {1, 2})
     add_result({"Bezier extraction, 200 x 200 spans", "OpenCASCADE " OCC_VERSION_COMPLETE,
-                "GeomConvert_BSplineSurfaceToBezierSurface", spans * spans / seconds[0], names[k] + 9, seconds[0] / seconds[k],
-                k == 1});
+                "GeomConvert_BSplineSurfaceToBezierSurface", spans * spans / seconds[0], names[k] + 9,
+                seconds[0] / seconds[k], k == 1});
   return 0;
 }
 

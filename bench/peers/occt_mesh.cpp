@@ -238,7 +238,8 @@ bool compare(const Subject& subject, double deflection) {
   std::snprintf(deflected, sizeof deflected, "%.2g", deflection);
   add_result({"meshes of equal error: " + subject.name, "OpenCASCADE " OCC_VERSION_COMPLETE,
               std::string("BRepMesh_IncrementalMesh, deflection ") + deflected,
-              static_cast<double>(occt.triangles) / occt.seconds, "certified mesh, by its time", occt.seconds / ours.seconds});
+              static_cast<double>(occt.triangles) / occt.seconds, "certified mesh, by its time",
+              occt.seconds / ours.seconds});
   if (ours.error <= ours.bound && ours.error <= occt.error) return true;
   std::fputs("occt_mesh: a bound is exceeded, or the mesh is further away than OpenCASCADE's\n", stderr);
   return false;

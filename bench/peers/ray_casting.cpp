@@ -22,11 +22,10 @@ using test::value_of;
 
 constexpr int spans = 16, pixels = 512;
 
-constexpr std::pair<const char*, const char*> packages[] = {
-    {"Embree", "libembree-dev"},
-    {"SISL", "libsisl-dev"},
-    {"OpenCASCADE", "libocct-modeling-algorithms-dev"},
-    {"POV-Ray", "povray"}};
+constexpr std::pair<const char*, const char*> packages[] = {{"Embree", "libembree-dev"},
+                                                            {"SISL", "libsisl-dev"},
+                                                            {"OpenCASCADE", "libocct-modeling-algorithms-dev"},
+                                                            {"POV-Ray", "povray"}};
 
 /// Waves of height 1 over about 16 x 16.
 std::vector<Vec3> net_of() {

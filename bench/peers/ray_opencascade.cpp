@@ -25,7 +25,8 @@ constexpr std::size_t step = 211;  // a prime: not one column of pixels
 
 class Casting {
  public:
-  explicit Casting(const RayTask& task) : task_(task), intersector_(face_of(task), 1e-7), t_(task.camera.rays() / step + 1) {}
+  explicit Casting(const RayTask& task)
+      : task_(task), intersector_(face_of(task), 1e-7), t_(task.camera.rays() / step + 1) {}
 
   double run() {
     return seconds_of([&] {
@@ -69,9 +70,8 @@ class Casting {
 const bool registered = [] {
   ray_peers().push_back({"OpenCASCADE", [](const RayTask& task) {
                            const auto casting = std::make_shared<Casting>(task);
-                           return std::vector<RayRun>{{"OpenCASCADE " OCC_VERSION_COMPLETE,
-                                                       "IntCurvesFace_Intersector", step,
-                                                       [=] { return casting->run(); },
+                           return std::vector<RayRun>{{"OpenCASCADE " OCC_VERSION_COMPLETE, "IntCurvesFace_Intersector",
+                                                       step, [=] { return casting->run(); },
                                                        [=](std::size_t ray) { return casting->t(ray); }}};
                          }});
   return true;

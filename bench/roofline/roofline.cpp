@@ -143,7 +143,8 @@ std::string number(double x) {
 
 /// One object: rates a second.
 std::string json_of(const Roofline& r) {
-  std::string text = "{\"machine\": \"" + r.machine + "\", \"cache_store\": " + number(r.cache_store) + ",\n \"isas\": [";
+  std::string text =
+      "{\"machine\": \"" + r.machine + "\", \"cache_store\": " + number(r.cache_store) + ",\n \"isas\": [";
   for (const Limits& limits : r.isas)
     text += std::string(&limits == r.isas.data() ? "" : ",") + "\n  {\"isa\": \"" + std::string(name(limits.isa)) +
             "\", \"float_operations\": " + number(limits.float_operations_per_second) +
@@ -152,9 +153,9 @@ std::string json_of(const Roofline& r) {
             ", \"streaming_store\": " + number(limits.streaming_store_bytes_per_second) + "}";
   text += "],\n \"points\": [";
   for (const RooflinePoint& p : r.points)
-    text += std::string(&p == r.points.data() ? "" : ",") + "\n  {\"name\": \"" + p.name + "\", \"per_byte\": " +
-            number(p.per_byte) + ", \"operations\": " + number(p.operations) + ", \"points\": " + number(p.points) +
-            ", \"in_cache\": " + (p.in_cache ? "true" : "false") + "}";
+    text += std::string(&p == r.points.data() ? "" : ",") + "\n  {\"name\": \"" + p.name +
+            "\", \"per_byte\": " + number(p.per_byte) + ", \"operations\": " + number(p.operations) +
+            ", \"points\": " + number(p.points) + ", \"in_cache\": " + (p.in_cache ? "true" : "false") + "}";
   return text + "]}\n";
 }
 

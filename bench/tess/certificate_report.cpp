@@ -42,7 +42,8 @@ test::MeshTriangle triangle_of(const Mesh& mesh, std::size_t t) {
 }
 
 Looseness measure(const PatchSet& set, double tolerance, bool fewest) {
-  const CertifiedTessellation plan = test::value_of(CertifiedTessellation::make(set, {.tolerance = tolerance, .fewest = fewest}));
+  const CertifiedTessellation plan =
+      test::value_of(CertifiedTessellation::make(set, {.tolerance = tolerance, .fewest = fewest}));
   Mesh mesh = test::value_of(plan.allocate());
   if (const Status status = plan.run(set, mesh.views()); !status.ok()) {
     std::fprintf(stderr, "%s\n", status.message().c_str());
@@ -75,10 +76,12 @@ Looseness measure(const PatchSet& set, double tolerance, bool fewest) {
 bool report(const std::string& name, const PatchSet& set, double relative, bool bicubic, bool fewest) {
   const Looseness result = measure(set, relative * set.box().diagonal(), fewest);
   const auto at = [&](double share) {
-    return result.ratios.empty() ? 0 : result.ratios[static_cast<std::size_t>(share * static_cast<double>(result.ratios.size() - 1))];
+    return result.ratios.empty()
+               ? 0
+               : result.ratios[static_cast<std::size_t>(share * static_cast<double>(result.ratios.size() - 1))];
   };
-  std::printf("%-28s %8.0e %8zu %9zu %9zu %8.2f %8.2f %8.2f\n", name.c_str(), relative, result.patches, result.triangles,
-              result.exceeded, at(0), at(0.5), at(0.99));
+  std::printf("%-28s %8.0e %8zu %9zu %9zu %8.2f %8.2f %8.2f\n", name.c_str(), relative, result.patches,
+              result.triangles, result.exceeded, at(0), at(0.5), at(0.99));
   std::fflush(stdout);
   return result.exceeded == 0 && (!bicubic || at(0.5) <= 3);
 }
@@ -88,8 +91,8 @@ bool report(const std::string& name, const PatchSet& set, double relative, bool 
 int main(int argc, char** argv) {
   bool good = true;
   const bool fewest = argc > 1 && argv[1] == std::string_view("--fewest");
-  std::printf("%-28s %8s %8s %9s %9s %8s %8s %8s\n", "set", "relative", "patches", "triangles", "exceeded", "least", "median",
-              "p99");
+  std::printf("%-28s %8s %8s %9s %9s %8s %8s %8s\n", "set", "relative", "patches", "triangles", "exceeded", "least",
+              "median", "p99");
   for (const test::CertificateSet& set : test::certificate_sets())
     for (const double relative : {3e-3, 3e-4})
       good = report(set.name, test::value_of(PatchSet::from(set.patches)), relative, set.bicubic, fewest) && good;

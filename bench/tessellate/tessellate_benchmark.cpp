@@ -62,7 +62,7 @@ void tessellate(benchmark::State& state, const char* surface, int threads) {
 
 /// What is packed: blocks of one kind.
 struct Packing {
-  const char* name;      ///< of the operation
+  const char* name;  ///< of the operation
   bool rational;
   BlockKinds kinds;
   double bytes_a_value;  ///< of the blocks

@@ -7,9 +7,9 @@
 #include <set>
 
 #include "block/patch_set_impl.h"
-#include "surface/homogeneous.h"
 #include "support/grids.h"
 #include "support/reference.h"
+#include "surface/homogeneous.h"
 #include "tessera/model.h"
 
 namespace tessera::test {
@@ -61,7 +61,8 @@ TEST(PatchSet, BlocksHoldTheRelativeNets) {
 
 TEST(PatchSet, OriginAndBox) {
   Random random(73);
-  const std::vector<BezierPatch> patches = {random_polynomial(random, 3, 3, {100, 0, 0}), random_polynomial(random, 2, 4, {-50, 3, 3})};
+  const std::vector<BezierPatch> patches = {random_polynomial(random, 3, 3, {100, 0, 0}),
+                                            random_polynomial(random, 2, 4, {-50, 3, 3})};
   const PatchSet set = set_of(patches);
   EXPECT_EQ(set.origin(), set.box().centre());
   for (const BezierPatch& patch : patches)
@@ -129,7 +130,8 @@ TEST(PatchSet, RefusesWhatItCannotHold) {
   EXPECT_EQ(huge.code(), StatusCode::non_finite);
   EXPECT_EQ(huge.index(), 0);  // the origin is the centre of a box of 1e200: the small patch does not fit float either
   EXPECT_TRUE(PatchSet::from(patches, {.blocks = {false, true, false, false}}).ok());  // doubles hold it
-  EXPECT_EQ(PatchSet::from(patches, {.origin = Vec3{0, std::numeric_limits<double>::infinity(), 0}}).status().code(), StatusCode::non_finite);
+  EXPECT_EQ(PatchSet::from(patches, {.origin = Vec3{0, std::numeric_limits<double>::infinity(), 0}}).status().code(),
+            StatusCode::non_finite);
   const std::vector<PatchSource> one(1);
   EXPECT_EQ(PatchSet::from(patches, one).status().code(), StatusCode::count_mismatch);
   std::vector<PatchSource> flat(2);
@@ -167,7 +169,12 @@ TEST(PatchSet, DerivativesOfWhatIsHeldAreNumbers) {
       }
     return value_of(BezierPatch::rational(15, 15, points, weights));
   };
-  for (const auto& [size, weight, held] : {std::tuple{5e33, 1.0, true}, {1e34, 1.0, false}, {5e29, 1e-2, true}, {1e30, 1e-2, false}, {5e15, 1e-9, true}, {1e16, 1e-9, false}}) {
+  for (const auto& [size, weight, held] : {std::tuple{5e33, 1.0, true},
+                                           {1e34, 1.0, false},
+                                           {5e29, 1e-2, true},
+                                           {1e30, 1e-2, false},
+                                           {5e15, 1e-9, true},
+                                           {1e16, 1e-9, false}}) {
     const auto set = PatchSet::from(std::vector{patch(size, weight)}, {.origin = Vec3{}});
     ASSERT_EQ(set.ok(), held) << size << ' ' << weight;
     if (!held) continue;

@@ -343,7 +343,8 @@ TEST(BezierExtraction, RefusesMeansThatAreNotFinite) {
       EXPECT_EQ(grid.status().code(), StatusCode::non_finite);
       continue;
     }
-    for (const BezierPatch& patch : grid->patches()) EXPECT_TRUE(std::ranges::all_of(patch.points(), [](const Vec3& p) { return is_finite(p); }));
+    for (const BezierPatch& patch : grid->patches())
+      EXPECT_TRUE(std::ranges::all_of(patch.points(), [](const Vec3& p) { return is_finite(p); }));
   }
 }
 

@@ -117,7 +117,8 @@ TEST_F(EvaluateErrors, EachBlockOfLocalGeometry) {
     using Value = typename std::remove_reference_t<decltype(blocks.*output.memory)>::element_type;
     AlignedVector<Value> memory(needed + 1, Value(9));
     const std::span<Value> all = memory;
-    for (const auto& [span, code] : {std::pair{all.first(needed - 1), StatusCode::buffer_too_small}, {all.subspan(1), StatusCode::invalid_argument}}) {
+    for (const auto& [span, code] : {std::pair{all.first(needed - 1), StatusCode::buffer_too_small},
+                                     {all.subspan(1), StatusCode::invalid_argument}}) {
       blocks.*output.memory = span;
       const Status status = evaluate(set, plan, blocks);
       EXPECT_EQ(status.code(), code) << output.name;
@@ -130,15 +131,18 @@ TEST_F(EvaluateErrors, EachBlockOfLocalGeometry) {
 TEST_F(EvaluateErrors, GeometryOptions) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const double bad : {-1e-9, 1.0, nan}) {
-    EXPECT_EQ(GridPlan::make(set, t, t, {.geometry = {.smallest_sine = bad}}).status().code(), StatusCode::invalid_argument);
-    EXPECT_EQ(GridPlan::make(set, t, t, {.geometry = {.umbilic_tolerance = bad}}).status().code(), StatusCode::invalid_argument);
+    EXPECT_EQ(GridPlan::make(set, t, t, {.geometry = {.smallest_sine = bad}}).status().code(),
+              StatusCode::invalid_argument);
+    EXPECT_EQ(GridPlan::make(set, t, t, {.geometry = {.umbilic_tolerance = bad}}).status().code(),
+              StatusCode::invalid_argument);
   }
 }
 
 TEST_F(EvaluateErrors, BlockMemory) {
   AlignedVector<float> memory(plan.block_capacity() + 1, -7.0f);
   const std::span<float> all = memory;
-  EXPECT_EQ(evaluate(set, plan, GridBlocks<float>{.position = all.first(plan.block_capacity() - 1)}).code(), StatusCode::buffer_too_small);
+  EXPECT_EQ(evaluate(set, plan, GridBlocks<float>{.position = all.first(plan.block_capacity() - 1)}).code(),
+            StatusCode::buffer_too_small);
   EXPECT_EQ(evaluate(set, plan, GridBlocks<float>{.position = all.subspan(1)}).code(), StatusCode::invalid_argument);
   EXPECT_EQ(evaluate(set, plan, GridBlocks<float>{}).code(), StatusCode::invalid_argument);
   EXPECT_TRUE(std::ranges::all_of(memory, [](float x) { return x == -7.0f; }));
@@ -171,8 +175,10 @@ TEST_F(EvaluateErrors, MorePointsThanMemoryCanAddress) {
 }
 
 TEST_F(EvaluateErrors, BlocksThatTheSetLacks) {
-  EXPECT_EQ(GridPlan::make(set, t, t, {.precision = Precision::double_precision}).status().code(), StatusCode::unsupported);
-  EXPECT_EQ(GridPlan::make(set, t, t, {.representation = Representation::power}).status().code(), StatusCode::unsupported);
+  EXPECT_EQ(GridPlan::make(set, t, t, {.precision = Precision::double_precision}).status().code(),
+            StatusCode::unsupported);
+  EXPECT_EQ(GridPlan::make(set, t, t, {.representation = Representation::power}).status().code(),
+            StatusCode::unsupported);
 }
 
 TEST_F(EvaluateErrors, CancelledBeforeTheFirstTask) {

@@ -45,12 +45,14 @@ void check_layouts(int nu, int nv, Isa isa) {
   // Structure of arrays, misaligned by one value.
   std::vector<T> soa(6 * count + 1, T(-7));
   const auto array = [&](std::size_t k) { return std::span<T>(soa).subspan(1 + k * count, count); };
-  const auto positions = View3<T>::soa({array(0), array(1), array(2)}), normals = View3<T>::soa({array(3), array(4), array(5)});
+  const auto positions = View3<T>::soa({array(0), array(1), array(2)}),
+             normals = View3<T>::soa({array(3), array(4), array(5)});
   ASSERT_TRUE(evaluate(c.set, c.plan, GridViews<T>{.position = positions, .normal = normals}).ok());
   // One record of normal and position; and one with a gap.
   std::vector<T> tight(6 * count + 1, T(-7)), gap(8 * count, T(-7));
   const std::span<T> off_by_one = std::span<T>(tight).subspan(1);
-  const auto tight_normals = View3<T>::interleaved(off_by_one, 6, 0), tight_positions = View3<T>::interleaved(off_by_one, 6, 3);
+  const auto tight_normals = View3<T>::interleaved(off_by_one, 6, 0),
+             tight_positions = View3<T>::interleaved(off_by_one, 6, 3);
   ASSERT_TRUE(evaluate(c.set, c.plan, GridViews<T>{.position = tight_positions, .normal = tight_normals}).ok());
   const auto gap_positions = View3<T>::interleaved(gap, 8, 1), gap_normals = View3<T>::interleaved(gap, 8, 5);
   ASSERT_TRUE(evaluate(c.set, c.plan, GridViews<T>{.position = gap_positions, .normal = gap_normals}).ok());
@@ -67,11 +69,13 @@ void check_layouts(int nu, int nv, Isa isa) {
 
 TEST(Layout, ViewsOfAnySizeFloat) {
   for (const Isa isa : available_isas())
-    for (const auto& [nu, nv] : {std::pair{1, 1}, {2, 3}, {5, 3}, {4, 16}, {17, 2}, {3, 100}, {33, 33}}) check_layouts<float>(nu, nv, isa);
+    for (const auto& [nu, nv] : {std::pair{1, 1}, {2, 3}, {5, 3}, {4, 16}, {17, 2}, {3, 100}, {33, 33}})
+      check_layouts<float>(nu, nv, isa);
 }
 TEST(Layout, ViewsOfAnySizeDouble) {
   for (const Isa isa : available_isas())
-    for (const auto& [nu, nv] : {std::pair{1, 1}, {2, 3}, {5, 3}, {4, 16}, {17, 2}, {3, 100}}) check_layouts<double>(nu, nv, isa);
+    for (const auto& [nu, nv] : {std::pair{1, 1}, {2, 3}, {5, 3}, {4, 16}, {17, 2}, {3, 100}})
+      check_layouts<double>(nu, nv, isa);
 }
 
 template <class T>
@@ -86,7 +90,9 @@ void check_blocks(Isa isa, Stores stores) {
     const PatchSet::Slot slot = c.set.slot(patch);
     for (std::size_t s = 0; s < samples; ++s) {
       const std::size_t first = (slot.block * samples + s) * 3 * lanes + slot.lane;
-      const auto at = [&](const auto& values) { return Vec3{values[first], values[first + lanes], values[first + 2 * lanes]}; };
+      const auto at = [&](const auto& values) {
+        return Vec3{values[first], values[first + lanes], values[first + 2 * lanes]};
+      };
       c.expect_at(patch * samples + s, at(position), at(normal));
       EXPECT_EQ(at(du), vector_at(c.expected.du, patch * samples + s));
     }
@@ -109,10 +115,22 @@ TEST(Layout, AnySubsetOfOutputs) {
       GridBuffers<float> out(c.plan);
       GridViews<float> views = out.views();
       GridBuffers<float> expected(c.plan);
-      if (subset & 1) expected.position = c.expected.position; else views.position = {};
-      if (subset & 2) expected.du = c.expected.du; else views.du = {};
-      if (subset & 4) expected.dv = c.expected.dv; else views.dv = {};
-      if (subset & 8) expected.normal = c.expected.normal; else views.normal = {};
+      if (subset & 1)
+        expected.position = c.expected.position;
+      else
+        views.position = {};
+      if (subset & 2)
+        expected.du = c.expected.du;
+      else
+        views.du = {};
+      if (subset & 4)
+        expected.dv = c.expected.dv;
+      else
+        views.dv = {};
+      if (subset & 8)
+        expected.normal = c.expected.normal;
+      else
+        views.normal = {};
       ASSERT_TRUE(evaluate(c.set, c.plan, views).ok());
       EXPECT_TRUE(out == expected) << "subset " << subset << " " << name(isa);
     }

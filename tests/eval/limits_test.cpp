@@ -18,7 +18,8 @@ TEST(Limits, AreMeasuredForEachIsa) {
       EXPECT_GT(rate, 1e8);
       EXPECT_LT(rate, 1e13);
     }
-    EXPECT_EQ(limits.store_bytes_per_second, std::max(limits.plain_store_bytes_per_second, limits.streaming_store_bytes_per_second));
+    EXPECT_EQ(limits.store_bytes_per_second,
+              std::max(limits.plain_store_bytes_per_second, limits.streaming_store_bytes_per_second));
   }
 }
 
@@ -41,7 +42,8 @@ TEST(Limits, WorkFollowsTheStatedCounts) {
   EXPECT_EQ(work(cubic, {.normal = true}).lane_operations, 40 * 50);
   EXPECT_EQ(work(cubic, {.normal = true}).bytes_written, 40 * 24);
   EXPECT_EQ(work(cubic, {.duu = true}).lane_operations, 40 * 72);
-  const GridOutputs twenty{.du = true, .dv = true, .duu = true, .duv = true, .dvv = true, .gaussian = true, .mean = true};
+  const GridOutputs twenty{
+      .du = true, .dv = true, .duu = true, .duv = true, .dvv = true, .gaussian = true, .mean = true};
   EXPECT_EQ(work(cubic, twenty).lane_operations, 40 * 102);
   EXPECT_EQ(work(cubic, twenty).bytes_written, 40 * 80);
   EXPECT_EQ(work(cubic, {.position = false, .normal_kind = true}).bytes_written, 40);
@@ -56,7 +58,8 @@ TEST(Limits, TheSlowerOfComputingAndStoringCounts) {
   limits.double_operations_per_second = 50;
   limits.store_bytes_per_second = 10;
   EXPECT_DOUBLE_EQ(seconds_at_limit(limits, {.lane_operations = 1000, .bytes_written = 20}), 10);
-  EXPECT_DOUBLE_EQ(seconds_at_limit(limits, {.lane_operations = 1000, .bytes_written = 20, .double_precision = true}), 20);
+  EXPECT_DOUBLE_EQ(seconds_at_limit(limits, {.lane_operations = 1000, .bytes_written = 20, .double_precision = true}),
+                   20);
   EXPECT_DOUBLE_EQ(seconds_at_limit(limits, {.lane_operations = 10, .bytes_written = 20}), 2);
 }
 

@@ -84,11 +84,13 @@ void check_grid(int nu, int nv, Isa isa, const std::vector<std::size_t>& shifts)
   const Reference<T> r(nu, nv, isa);
   const std::size_t count = r.plan.capacity();
   for (const Stores stores : {Stores::plain, Stores::streaming}) {
-    SCOPED_TRACE(testing::Message() << nu << "x" << nv << " " << name(isa) << (stores == Stores::plain ? "" : " streamed"));
+    SCOPED_TRACE(testing::Message() << nu << "x" << nv << " " << name(isa)
+                                    << (stores == Stores::plain ? "" : " streamed"));
     for (const std::size_t shift : shifts) {  // one record of both; two packed arrays
       check(r, 6 * count + shift, stores, [&](std::span<T> all) {
         const auto memory = all.subspan(shift);
-        return GridViews<T>{.position = View3<T>::interleaved(memory, 6, 3), .normal = View3<T>::interleaved(memory, 6, 0)};
+        return GridViews<T>{.position = View3<T>::interleaved(memory, 6, 3),
+                            .normal = View3<T>::interleaved(memory, 6, 0)};
       });
       check(r, 6 * count + 2 * shift, stores, [&](std::span<T> all) {
         return GridViews<T>{.position = View3<T>::interleaved(all.subspan(shift, 3 * count)),
@@ -123,7 +125,8 @@ TEST(Lines, AnyPlaceInALine) {
 
 TEST(Lines, AnySizeOfGrid) {
   for (const Isa isa : available_isas())
-    for (const auto& [nu, nv] : {std::pair{1, 1}, {1, 2}, {2, 2}, {1, 5}, {2, 3}, {4, 4}, {5, 5}, {1, 16}, {17, 1}, {8, 8}, {9, 7}, {33, 5}}) {
+    for (const auto& [nu, nv] :
+         {std::pair{1, 1}, {1, 2}, {2, 2}, {1, 5}, {2, 3}, {4, 4}, {5, 5}, {1, 16}, {17, 1}, {8, 8}, {9, 7}, {33, 5}}) {
       check_grid<float>(nu, nv, isa, {0, 3, 5});
       check_grid<double>(nu, nv, isa, {0, 3, 5});
     }

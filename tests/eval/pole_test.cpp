@@ -58,10 +58,11 @@ TEST(SharedBorders, AreTheSameBits) {
   Random random(51);
   for (int degree = 1; degree <= max_degree; ++degree)
     for (const int rate : {1, 2, 7, 130})
-      for (int way = 0; way < 8; way += degree > 4 ? 3 : 1)
+      for (int way = 0; way < 8; way += (degree > 4 ? 3 : 1))
         for (const bool is_rational : {false, true}) {
           std::vector<Vec3> a = random_points(random, 2, degree), b = random_points(random, 3, degree);
-          std::vector<double> wa = random_weights(random, 2, degree, 0.5, 2), wb = random_weights(random, 3, degree, 0.5, 2);
+          std::vector<double> wa = random_weights(random, 2, degree, 0.5, 2),
+                              wb = random_weights(random, 3, degree, 0.5, 2);
           for (std::size_t j = 0; j <= static_cast<std::size_t>(degree); ++j) {  // a at u = 1 is b at u = 0
             b[j] = a[2 * static_cast<std::size_t>(degree + 1) + j];
             wb[j] = wa[2 * static_cast<std::size_t>(degree + 1) + j];
@@ -80,7 +81,8 @@ TEST(SharedBorders, AreTheSameBits) {
             if (way & 2) iv = n - iv;
             if (way & 4) std::swap(iu, iv);
             ASSERT_EQ(vector_at(positions, n * side + k), vector_at(positions, side * side + iu * side + iv))
-                << "degree " << degree << " rate " << rate << " way " << way << " rational " << is_rational << " k " << k;
+                << "degree " << degree << " rate " << rate << " way " << way << " rational " << is_rational << " k "
+                << k;
           }
         }
 }
@@ -94,7 +96,8 @@ TEST(SharedBorders, StayWithinTheErrorBound) {
   for (std::size_t record = 0; record < grid.capacity(); ++record) {
     const std::size_t patch = record / 70, iu = record % 70 / 10, iv = record % 10;
     const double unit = float_unit * largest_coefficient(set.patch(patch), set.origin());
-    const Vec3 expected = reference_position(set.patch(patch), static_cast<double>(iu) / 6, static_cast<double>(iv) / 9) - set.origin();
+    const Vec3 expected =
+        reference_position(set.patch(patch), static_cast<double>(iu) / 6, static_cast<double>(iv) / 9) - set.origin();
     EXPECT_TRUE(within_units(vector_at(positions, record), expected, unit, set.patch(patch).is_rational() ? 4 : 2));
   }
 }

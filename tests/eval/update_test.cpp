@@ -133,7 +133,8 @@ TEST(Update, BlocksAreThoseOfFullEvaluation) {
     PatchSet set = set_of(patches, every_kind()), expected = set_of(patches, every_kind());
     const GridPlan plan = value_of(GridPlan::make(set, t, t, {.isa = isa}));
     GridUpdate update = value_of(GridUpdate::make(set));
-    AlignedVector<float> position(plan.block_capacity()), normal(position.size()), full(position.size()), full_normal(position.size());
+    AlignedVector<float> position(plan.block_capacity()), normal(position.size()), full(position.size()),
+        full_normal(position.size());
     ASSERT_TRUE(evaluate(set, plan, GridBlocks<float>{.position = position, .normal = normal}).ok());
     for (const std::size_t count : {std::size_t{1}, patches.size() / 4, patches.size()}) {
       const Edits edits = random_edits(random, set, count);
@@ -141,7 +142,8 @@ TEST(Update, BlocksAreThoseOfFullEvaluation) {
       for (const std::uint32_t patch : edits.patch) touched[set.slot(patch).block] = true;
       const std::size_t block_values = position.size() / touched.size();
       for (std::size_t block = 0; block < touched.size(); ++block)
-        if (!touched[block]) std::fill_n(position.begin() + static_cast<std::ptrdiff_t>(block * block_values), block_values, -7.0f);
+        if (!touched[block])
+          std::fill_n(position.begin() + static_cast<std::ptrdiff_t>(block * block_values), block_values, -7.0f);
       ASSERT_TRUE(run_in(3, update, set, plan, edits, GridBlocks<float>{.position = position, .normal = normal}).ok());
       edit_one_by_one(expected, edits);
       expect_same_sets(set, expected);

@@ -336,7 +336,9 @@ TEST(ReadCad, IgesExponentsAreWrittenWithEOrD) {
   const Result<Model> with_e = read_cad(folder / "e.igs"), with_d = read_cad(folder.file("d.igs", text));
   ASSERT_TRUE(with_e.ok()) << with_e.status().message();
   ASSERT_TRUE(with_d.ok()) << with_d.status().message();
-  const auto points = [](const Model& model) { return std::get<BSplineSurface>(model.surfaces.at(0).surface).points(); };
+  const auto points = [](const Model& model) {
+    return std::get<BSplineSurface>(model.surfaces.at(0).surface).points();
+  };
   EXPECT_NEAR(points(*with_e).back().x, 3.75e-5, 1e-18);
   EXPECT_TRUE(std::ranges::equal(points(*with_e), points(*with_d)));
 }

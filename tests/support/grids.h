@@ -44,7 +44,8 @@ struct GridBuffers {
   explicit GridBuffers(const GridPlan& plan, T fill = T(-7))
       : position(3 * plan.capacity(), fill), du(position), dv(position), normal(position) {}
   GridViews<T> views() {
-    return {View3<T>::interleaved(position), View3<T>::interleaved(du), View3<T>::interleaved(dv), View3<T>::interleaved(normal)};
+    return {View3<T>::interleaved(position), View3<T>::interleaved(du), View3<T>::interleaved(dv),
+            View3<T>::interleaved(normal)};
   }
   bool operator==(const GridBuffers&) const = default;
 };

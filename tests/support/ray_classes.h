@@ -191,8 +191,7 @@ inline std::vector<RayClass> ray_classes() {
 /// nearly along the surface there: nothing may let it out.
 inline Ray skimming_seam(const std::vector<BezierPatch>& torus, Random& random) {
   const auto line = [&] { return static_cast<double>(random() % 5) / 4; };
-  const double along = uniform(random, 0, 1),
-               across = random() % 3 == 0 ? line() : static_cast<double>(random() % 2);
+  const double along = uniform(random, 0, 1), across = random() % 3 == 0 ? line() : static_cast<double>(random() % 2);
   const bool by_u = random() % 2 == 0;
   const SurfaceJet jet = evaluate_jet(rays::any_of(torus, random), by_u ? across : along, by_u ? along : across);
   const Vec3 ring = normalized({jet.position.x, jet.position.y, 0});

@@ -60,8 +60,8 @@ inline ReferenceBernstein reference_bernsteins(int degree, Real t) {
 }
 
 /// Derivative of order (a, b) of the numerator, and of the denominator in `weight`.
-inline RealVec3 reference_sum(const BezierPatch& patch, const ReferenceBernstein& u, const ReferenceBernstein& v, int a, int b,
-                              Real& weight) {
+inline RealVec3 reference_sum(const BezierPatch& patch, const ReferenceBernstein& u, const ReferenceBernstein& v, int a,
+                              int b, Real& weight) {
   RealVec3 sum;
   weight = 0;
   for (int i = 0; i <= patch.degree_u(); ++i)
@@ -75,7 +75,8 @@ inline RealVec3 reference_sum(const BezierPatch& patch, const ReferenceBernstein
   return sum;
 }
 inline RealVec3 reference_sum(const BezierPatch& patch, Real u, Real v, int a, int b, Real& weight) {
-  return reference_sum(patch, reference_bernsteins(patch.degree_u(), u), reference_bernsteins(patch.degree_v(), v), a, b, weight);
+  return reference_sum(patch, reference_bernsteins(patch.degree_u(), u), reference_bernsteins(patch.degree_v(), v), a,
+                       b, weight);
 }
 
 inline RealJet reference_jet(const BezierPatch& patch, Real u, Real v) {

@@ -56,8 +56,7 @@ class Torus {
         weights.push_back(1.5 + 0.5 * std::sin(9 * sum.x) * std::cos(7 * sum.y + sum.z));
       }
     }
-    return value_of(rational ? BezierPatch::rational(3, 3, points, weights)
-                                   : BezierPatch::polynomial(3, 3, points));
+    return value_of(rational ? BezierPatch::rational(3, 3, points, weights) : BezierPatch::polynomial(3, 3, points));
   }
 
   std::size_t side_;

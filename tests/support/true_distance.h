@@ -38,7 +38,9 @@ inline double lerp(double a, double b, double t) { return (1 - t) * a + t * b; }
 /// The part from `t` on, or up to `t`, of each line of a net.
 inline void cut(Piece& piece, int lines, int line_step, int count, int step, double t, bool keep_low) {
   for (int line = 0; line < lines; ++line) {
-    const auto at = [&](int i) -> std::array<double, 4>& { return piece.net[static_cast<std::size_t>(line * line_step + i * step)]; };
+    const auto at = [&](int i) -> std::array<double, 4>& {
+      return piece.net[static_cast<std::size_t>(line * line_step + i * step)];
+    };
     for (int round = 1; round < count; ++round) {
       for (int k = 0; k + round < count; ++k) {
         const int to = keep_low ? count - 1 - k : k;
@@ -130,7 +132,8 @@ class Search {
   void add(Piece piece) {
     if (outside(piece)) return;
     piece.bound = 0;
-    for (const auto& a : piece.net) piece.bound = std::max(piece.bound, distance({a[0] / a[3], a[1] / a[3], a[2] / a[3]}));
+    for (const auto& a : piece.net)
+      piece.bound = std::max(piece.bound, distance({a[0] / a[3], a[1] / a[3], a[2] / a[3]}));
     const std::size_t row = static_cast<std::size_t>(n_) + 1, last = piece.net.size() - 1;
     const std::array<std::pair<std::size_t, std::array<double, 2>>, 4> ends{{{0, {piece.u0, piece.v0}},
                                                                              {row - 1, {piece.u0, piece.v1}},

@@ -51,7 +51,8 @@ TEST_F(CommandLine, EveryOptionIsInTheHelp) {
 }
 
 TEST_F(CommandLine, WhatIsNoCommandLineEndsWithTwo) {
-  expect_failure({}, 2, "expected a command (info, eval, tessellate, raycast, convert, check, completion or man), found none");
+  expect_failure({}, 2,
+                 "expected a command (info, eval, tessellate, raycast, convert, check, completion or man), found none");
   expect_failure({"paint"}, 2, "paint");
   expect_failure({"info"}, 2, "MODEL");
   expect_failure({"info", teapot, "--colour"}, 2, "--colour");
@@ -62,7 +63,8 @@ TEST_F(CommandLine, WhatIsNoCommandLineEndsWithTwo) {
   expect_failure({"eval", teapot, "--grid", "3x3", "--format", "xml"}, 2, "--format");
   expect_failure({"tessellate", teapot, "--grid", "3x3"}, 2, "--output");
   expect_failure({"tessellate", teapot, "-o", "a.ply"}, 2, "--grid");
-  expect_failure({"tessellate", teapot, "-o", "a.off", "--grid", "3x3"}, 2, "meshes are written as .obj, .ply, .stl, .glb, .gltf");
+  expect_failure({"tessellate", teapot, "-o", "a.off", "--grid", "3x3"}, 2,
+                 "meshes are written as .obj, .ply, .stl, .glb, .gltf");
   expect_failure({"raycast", teapot}, 2, "expected -o");
   expect_failure({"raycast", teapot, "-o", "a.gif"}, 2, "pictures are written as .png");
   expect_failure({"raycast", teapot, "--rays", "a.csv"}, 2, "--hits");

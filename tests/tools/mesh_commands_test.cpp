@@ -139,7 +139,8 @@ TEST_F(MeshTools, WeldingClosesRealBodiesWhosePatchesAreRounded) {
 TEST_F(MeshTools, WeldsAreLengthsOrAuto) {
   for (const char* const wrong : {"-1", "nan", "inf", "x", "1,2", ""})
     expect_failure({"tessellate", teapot, "-o", "d.ply", "--tolerance", "1", "--weld", wrong}, 2, "--weld");
-  const json made = json::parse(output_of({"tessellate", teapot, "-o", "a.ply", "--tolerance", "0.01", "--weld", "1e-5", "--json"}));
+  const json made =
+      json::parse(output_of({"tessellate", teapot, "-o", "a.ply", "--tolerance", "0.01", "--weld", "1e-5", "--json"}));
   EXPECT_EQ(made["weld"], 1e-5);
   EXPECT_EQ(made["welded_borders"], 0);
 }

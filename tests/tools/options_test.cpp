@@ -22,8 +22,9 @@ TEST_F(CommonOptions, WrongWordsAreNamedWithWhatMayBeMeant) {
   expect_failure({"info", "--jsno"}, 2, "tessera info has no option --jsno; did you mean --json?");
   expect_failure({"info", teapot, "--colourful"}, 2, "tessera info has no option --colourful\n");
   expect_failure({"--versoin"}, 2, "there is no option --versoin before a command; did you mean --version?");
-  expect_failure({"raycast", teapot, "-o", "a.png", "--shade", "normal"}, 2,
-                 "expected lambert, normals, uv, patch, error, curvature or steps, found \"normal\"; did you mean normals?");
+  expect_failure(
+      {"raycast", teapot, "-o", "a.png", "--shade", "normal"}, 2,
+      "expected lambert, normals, uv, patch, error, curvature or steps, found \"normal\"; did you mean normals?");
 }
 
 TEST_F(CommonOptions, InstructionSetsAreForced) {

@@ -16,10 +16,10 @@ struct HitImage {
   static constexpr std::uint32_t nothing = ~std::uint32_t{0};
 
   int width = 0, height = 0;
-  std::vector<float> depths;                      ///< distance from the eye
-  std::vector<std::array<float, 3>> normals;      ///< unit, along r_u x r_v; zero where undefined
-  std::vector<std::array<float, 2>> parameters;   ///< (u,v) of the surface, its own
-  std::vector<std::uint32_t> surfaces, patches;   ///< counted from 0
+  std::vector<float> depths;                     ///< distance from the eye
+  std::vector<std::array<float, 3>> normals;     ///< unit, along r_u x r_v; zero where undefined
+  std::vector<std::array<float, 2>> parameters;  ///< (u,v) of the surface, its own
+  std::vector<std::uint32_t> surfaces, patches;  ///< counted from 0
 };
 
 /// Of the settings, size and camera count. `model`: what the scene was made of. The same bytes for any number of threads.

@@ -58,7 +58,8 @@ std::string fault_of_output(const std::string& path) {
 }
 
 constexpr const char* footer =
-    ".obj keeps weights, names, trims and the ranges of parameters; .bpt holds polynomial patches alone. What the file\n"
+    ".obj keeps weights, names, trims and the ranges of parameters; .bpt holds polynomial patches alone. What the "
+    "file\n"
     "does not hold is said as a warning. Several models become one file, or one each where the output is a folder\n"
     "(then as .obj) or holds {name}.\n"
     "\nExample:\n"

@@ -39,8 +39,8 @@ class TessellationPlan {
   MeshCapacity capacity() const;  ///< exact, of triangles alone
   /// The same with quads: cells that are whole are quads, those at poles stay triangles.
   MeshCapacity quad_capacity() const;
-  int rate_u() const;             ///< segments along u of every patch
-  int rate_v() const;             ///< segments along v
+  int rate_u() const;  ///< segments along u of every patch
+  int rate_v() const;  ///< segments along v
   /// A mesh of the right size with all attributes, of triangles.
   Result<Mesh> allocate() const;
   /// The same for quads, and for triangles where there are none.

@@ -69,11 +69,15 @@ Result<SurfaceJet> evaluate_jet(const ModelSurface& surface, double u, double v)
   const Affine& map = surface.placement;
   const Vec3 position = map.point(jet->position);
   if (!is_finite(position))
-    return Status(StatusCode::non_finite, "the surface's point at (" + text(u) + ", " + text(v) + ") is (" + text(position.x) +
-                                              ", " + text(position.y) + ", " + text(position.z) +
+    return Status(StatusCode::non_finite, "the surface's point at (" + text(u) + ", " + text(v) + ") is (" +
+                                              text(position.x) + ", " + text(position.y) + ", " + text(position.z) +
                                               ") where it is placed: beyond the range of numbers");
-  return SurfaceJet{position,           map.vector(jet->du),  map.vector(jet->dv),
-                    map.vector(jet->duu), map.vector(jet->duv), map.vector(jet->dvv)};
+  return SurfaceJet{position,
+                    map.vector(jet->du),
+                    map.vector(jet->dv),
+                    map.vector(jet->duu),
+                    map.vector(jet->duv),
+                    map.vector(jet->dvv)};
 }
 
 Result<PatchGrid> to_bezier(const ModelSurface& surface, const FitOptions& options) {

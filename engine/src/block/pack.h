@@ -42,10 +42,10 @@ class RelativeNet {
  public:
   RelativeNet(const BezierPatch& patch, const Vec3& origin);
 
-  double lightest() const { return scale_ * low_; }       ///< weight, once divided
+  double lightest() const { return scale_ * low_; }  ///< weight, once divided
   double heaviest() const { return scale_ * high_; }
-  double weight_ratio() const { return low_ / high_; }    ///< at most 1
-  double weight_spread() const { return high_ / low_; }   ///< at least 1
+  double weight_ratio() const { return low_ / high_; }   ///< at most 1
+  double weight_spread() const { return high_ / low_; }  ///< at least 1
 
   /// Largest x, y or z of the Bernstein coefficients. `hull`: patch.hull_box(), whose corners hold that of a polynomial
   /// patch, for rounding a difference keeps order.

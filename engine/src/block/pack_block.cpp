@@ -52,7 +52,9 @@ struct PolynomialBlock {
   template <class T>
   void write(void (*pack_nets)(const kernel::PackJob<T>&), UnsetVector<T>& coefficients, UnsetVector<T>& doubts) const {
     const Vec3 shift = Vec3{} - origin;  // as in RelativeNet
-    pack_nets({nets, numbers, {shift.x, shift.y, shift.z},
+    pack_nets({nets,
+               numbers,
+               {shift.x, shift.y, shift.z},
                coefficients.data() + group.first_value + (block - group.first_block) * group.block_values});
     T* rows = doubts.data() + 2 * PatchSet::lanes * block;
     const int degree = std::max(group.degree_u, group.degree_v);
@@ -78,7 +80,8 @@ std::size_t PatchSet::Impl::pack_block(std::size_t block, const kernel::KernelTa
     collapsed[indices[lane]] = patches[indices[lane]].collapsed_edges();
   if (!group.rational && (kinds.float_bernstein || kinds.double_bernstein)) {
     const double limit = largest_coefficient(kinds.float_bernstein, 1);
-    const PolynomialBlock bernstein{group, block, nets.data(), numbers, origin, largest_coefficients(boxes, origin), diagonals(boxes)};
+    const PolynomialBlock bernstein{
+        group, block, nets.data(), numbers, origin, largest_coefficients(boxes, origin), diagonals(boxes)};
     for (std::size_t lane = 0; lane < lane_counts[block]; ++lane)
       if (!(bernstein.largest[lane] <= limit)) return lane;
     if (kinds.float_bernstein) bernstein.write(kernels.pack_f32, single.bernstein, single.bernstein_doubt);

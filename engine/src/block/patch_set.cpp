@@ -54,9 +54,14 @@ void lay_out(PatchSet::Impl& set) {
   for (std::size_t begin = 0; begin < order.size();) {
     const BezierPatch& first = set.patches[order[begin]];
     const auto end = static_cast<std::size_t>(std::ranges::upper_bound(keys, keys[begin]) - keys.begin());
-    BlockGroup group{first.degree_u(), first.degree_v(), first.is_rational(), set.lane_counts.size(),
-                     (end - begin + lanes - 1) / lanes, next_value,
-                     block_values(first.degree_u(), first.degree_v(), first.is_rational()), next_point_value,
+    BlockGroup group{first.degree_u(),
+                     first.degree_v(),
+                     first.is_rational(),
+                     set.lane_counts.size(),
+                     (end - begin + lanes - 1) / lanes,
+                     next_value,
+                     block_values(first.degree_u(), first.degree_v(), first.is_rational()),
+                     next_point_value,
                      point_values(first.degree_u(), first.degree_v(), first.is_rational())};
     next_value += group.block_count * group.block_values;
     next_point_value += (end - begin) * group.point_values;
@@ -101,7 +106,9 @@ void find_largest_doubt(Coefficients<T>& of) {
 
 Status too_large(std::size_t patch) {
   return Status(StatusCode::non_finite,
-                "patch " + std::to_string(patch) + ": a coefficient relative to the set's origin, or a weight relative to the largest, is outside the range of its blocks' numbers",
+                "patch " + std::to_string(patch) +
+                    ": a coefficient relative to the set's origin, or a weight relative to the largest, is outside the "
+                    "range of its blocks' numbers",
                 static_cast<std::ptrdiff_t>(patch));
 }
 
@@ -112,7 +119,8 @@ Status check_sources(std::span<const BezierPatch> patches, std::span<const Patch
   for (std::size_t k = 0; k < sources.size(); ++k) {
     const Domain& d = sources[k].domain;
     if (!(d.u0 < d.u1 && d.v0 < d.v1) || !std::isfinite(d.u1 - d.u0) || !std::isfinite(d.v1 - d.v0))
-      return Status(StatusCode::invalid_argument, "the domain of patch " + std::to_string(k) + " is not a finite rectangle",
+      return Status(StatusCode::invalid_argument,
+                    "the domain of patch " + std::to_string(k) + " is not a finite rectangle",
                     static_cast<std::ptrdiff_t>(k));
   }
   return {};
@@ -143,7 +151,8 @@ Status PatchSet::Impl::pack_all() {
       const std::size_t fitting = pack_block(block, kernels);
       if (fitting == lanes) continue;
       std::size_t first = refused;
-      while (block * lanes + fitting < first && !refused.compare_exchange_weak(first, block * lanes + fitting)) continue;
+      while (block * lanes + fitting < first && !refused.compare_exchange_weak(first, block * lanes + fitting))
+        continue;
       return;
     }
   };
@@ -156,7 +165,8 @@ Result<PatchSet> PatchSet::Impl::make(std::vector<BezierPatch> patches, std::vec
                                       const PatchSetOptions& options) {
   if (patches.empty()) return Status(StatusCode::invalid_argument, "a patch set needs at least one patch");
   if (patches.size() > std::numeric_limits<std::uint32_t>::max())
-    return Status(StatusCode::invalid_argument, "a patch set holds at most 2^32 - 1 patches, not " + std::to_string(patches.size()));
+    return Status(StatusCode::invalid_argument,
+                  "a patch set holds at most 2^32 - 1 patches, not " + std::to_string(patches.size()));
   if (options.origin && !is_finite(*options.origin))
     return Status(StatusCode::non_finite, "the origin of a patch set must be finite");
   auto set = std::make_unique<Impl>();
@@ -219,11 +229,12 @@ std::uint64_t PatchSet::revision() const { return impl_->revision; }
 std::size_t PatchSet::memory_bytes() const {
   const auto bytes = [](const auto& vector) { return vector.capacity() * sizeof(vector[0]); };
   const auto all_bytes = [&](const auto& of) {
-    return bytes(of.bernstein) + bytes(of.power) + bytes(of.bernstein_doubt) + bytes(of.power_doubt) + bytes(of.points) +
-           bytes(of.point_doubt);
+    return bytes(of.bernstein) + bytes(of.power) + bytes(of.bernstein_doubt) + bytes(of.power_doubt) +
+           bytes(of.points) + bytes(of.point_doubt);
   };
-  std::size_t total = sizeof(Impl) + bytes(impl_->patches) + bytes(impl_->sources) + bytes(impl_->slots) + bytes(impl_->collapsed) +
-                      bytes(impl_->groups) + bytes(impl_->edited) + bytes(impl_->lane_patches) + bytes(impl_->lane_counts) + all_bytes(impl_->single) +
+  std::size_t total = sizeof(Impl) + bytes(impl_->patches) + bytes(impl_->sources) + bytes(impl_->slots) +
+                      bytes(impl_->collapsed) + bytes(impl_->groups) + bytes(impl_->edited) +
+                      bytes(impl_->lane_patches) + bytes(impl_->lane_counts) + all_bytes(impl_->single) +
                       all_bytes(impl_->twice);
   for (const BezierPatch& patch : impl_->patches) total += patch.points().size_bytes() + patch.weights().size_bytes();
   return total;

@@ -22,8 +22,8 @@ struct BlockGroup {
   int degree_u = 0, degree_v = 0;
   bool rational = false;
   std::size_t first_block = 0, block_count = 0;
-  std::size_t first_value = 0;    ///< in the coefficient arrays, which all have the same layout
-  std::size_t block_values = 0;   ///< values a block
+  std::size_t first_value = 0;        ///< in the coefficient arrays, which all have the same layout
+  std::size_t block_values = 0;       ///< values a block
   std::size_t first_point_value = 0;  ///< in the coefficients for points
   std::size_t point_values = 0;       ///< values from one patch to the next there, a multiple of 16
 
@@ -44,7 +44,7 @@ struct Coefficients {
   UnsetVector<T> points;
   /// `[block * lanes + lane]`: doubt and noise, see NormalDoubt; that of a curve is finite, and its noise negative.
   std::vector<std::array<T, 2>> point_doubt;
-  T largest_doubt = 0;                        ///< no patch's is larger
+  T largest_doubt = 0;  ///< no patch's is larger
   const UnsetVector<T>& of(Representation representation) const {
     return representation == Representation::bernstein ? bernstein : power;
   }

@@ -130,7 +130,8 @@ class ExtractedRows {
     UnsetVector<double> numbers(count * c);
     for (std::size_t i = begin; i < end; ++i) {
       const auto weights = scales_ ? surface_.weights().subspan(i * count, count) : std::span<const double>{};
-      write_numbers(surface_.points().subspan(i * count, count), weights, scales_ ? &*scales_ : nullptr, numbers.data());
+      write_numbers(surface_.points().subspan(i * count, count), weights, scales_ ? &*scales_ : nullptr,
+                    numbers.data());
       double* to = values_.data() + i * row_size();
       for (const Extraction::Row& row : v_.rows) {
         apply(v_, row, numbers.data(), c, c, to);

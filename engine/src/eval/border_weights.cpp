@@ -17,7 +17,8 @@ AlignedVector<float> symmetric_weights(int degree, int rate) {
       s[i] = s[i - 1] * (static_cast<double>(rate - k) / rate);
     }
     for (int i = 0; i <= degree; ++i)
-      weights.push_back(static_cast<float>(binomial(degree, i) * (t[static_cast<std::size_t>(i)] * s[static_cast<std::size_t>(degree - i)])));
+      weights.push_back(static_cast<float>(binomial(degree, i) *
+                                           (t[static_cast<std::size_t>(i)] * s[static_cast<std::size_t>(degree - i)])));
   }
   return weights;
 }

@@ -104,24 +104,23 @@ Status evaluate_blocks(const PatchSet& set, const GridPlan& plan, const GridBloc
   const Pieces pieces(inner, *order > 0);
   const BlockOutputs<T> outputs(out);
   std::atomic<Isa> isa{inner.isa};
-  Status status =
-      parallel_for(pieces.count(), pieces.grain(), execution, [&](std::size_t begin, std::size_t end) {
-        BlockJobs<T> jobs(patches, inner, *order);
-        kernel::GridJob<T>& job = jobs.job();
-        job.streaming = streaming;
-        Isa ran = inner.isa;
-        for (std::size_t k = begin; k < end; ++k) {
-          const Piece piece = pieces[k];
-          jobs.turn_to(piece.block);
-          job.u_begin = piece.u_begin;
-          job.u_end = piece.u_end;
-          const std::size_t row = piece.block * inner.count_u + static_cast<std::size_t>(piece.u_begin);
-          outputs.place(row * inner.count_v * PatchSet::lanes, job);
-          ran = run_grid(kernels, job);
-        }
-        isa.store(ran, std::memory_order_relaxed);
-        if (streaming) kernels.finish_streaming();
-      });
+  Status status = parallel_for(pieces.count(), pieces.grain(), execution, [&](std::size_t begin, std::size_t end) {
+    BlockJobs<T> jobs(patches, inner, *order);
+    kernel::GridJob<T>& job = jobs.job();
+    job.streaming = streaming;
+    Isa ran = inner.isa;
+    for (std::size_t k = begin; k < end; ++k) {
+      const Piece piece = pieces[k];
+      jobs.turn_to(piece.block);
+      job.u_begin = piece.u_begin;
+      job.u_end = piece.u_end;
+      const std::size_t row = piece.block * inner.count_u + static_cast<std::size_t>(piece.u_begin);
+      outputs.place(row * inner.count_v * PatchSet::lanes, job);
+      ran = run_grid(kernels, job);
+    }
+    isa.store(ran, std::memory_order_relaxed);
+    if (streaming) kernels.finish_streaming();
+  });
   report_run(execution, isa, streaming);
   return status;
 }
@@ -152,22 +151,21 @@ Status evaluate_views(const PatchSet::Impl& patches, const GridPlan& plan, const
   }
   const Pieces pieces(inner, *order > 0);
   std::atomic<Isa> isa{inner.isa};
-  Status status =
-      parallel_for(pieces.count(), pieces.grain(), execution, [&](std::size_t begin, std::size_t end) {
-        StagedBlock<T> stage(kernels, layout, out, streaming);
-        BlockJobs<T> jobs(patches, inner, *order);
-        stage.place_outputs(jobs.job());
-        Isa ran = inner.isa;
-        for (std::size_t k = begin; k < end; ++k) {
-          const Piece piece = pieces[k];
-          jobs.turn_to(piece.block);
-          const std::uint32_t* lane_patches = patches.lane_patches.data() + piece.block * PatchSet::lanes;
-          ran = stage.run(jobs.job(), piece.u_begin, piece.u_end, static_cast<int>(inner.count_v), lane_patches,
-                          patches.lane_counts[piece.block], inner.samples());
-        }
-        isa.store(ran, std::memory_order_relaxed);
-        if (streaming) kernels.finish_streaming();
-      });
+  Status status = parallel_for(pieces.count(), pieces.grain(), execution, [&](std::size_t begin, std::size_t end) {
+    StagedBlock<T> stage(kernels, layout, out, streaming);
+    BlockJobs<T> jobs(patches, inner, *order);
+    stage.place_outputs(jobs.job());
+    Isa ran = inner.isa;
+    for (std::size_t k = begin; k < end; ++k) {
+      const Piece piece = pieces[k];
+      jobs.turn_to(piece.block);
+      const std::uint32_t* lane_patches = patches.lane_patches.data() + piece.block * PatchSet::lanes;
+      ran = stage.run(jobs.job(), piece.u_begin, piece.u_end, static_cast<int>(inner.count_v), lane_patches,
+                      patches.lane_counts[piece.block], inner.samples());
+    }
+    isa.store(ran, std::memory_order_relaxed);
+    if (streaming) kernels.finish_streaming();
+  });
   report_run(execution, isa, streaming);
   return status;
 }

@@ -121,15 +121,14 @@ Status evaluate_flat(const PatchSet::Impl& set, const GridPlan::Impl& plan, floa
   }
   const std::size_t parts = (plan.count_u + rows - 1) / rows;
   std::atomic<Isa> isa{plan.isa};
-  Status status =
-      parallel_for(plan.patch_count * parts, grain, execution, [&](std::size_t begin, std::size_t end) {
-        FlatRun run(set, plan, out, streaming);
-        for (std::size_t k = begin; k < end; ++k) {
-          const std::size_t first = k % parts * rows;
-          run.add(k / parts, first, std::min(rows, plan.count_u - first));
-        }
-        isa.store(run.finish(), std::memory_order_relaxed);
-      });
+  Status status = parallel_for(plan.patch_count * parts, grain, execution, [&](std::size_t begin, std::size_t end) {
+    FlatRun run(set, plan, out, streaming);
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::size_t first = k % parts * rows;
+      run.add(k / parts, first, std::min(rows, plan.count_u - first));
+    }
+    isa.store(run.finish(), std::memory_order_relaxed);
+  });
   report_run(execution, isa, streaming);
   return status;
 }

@@ -36,16 +36,20 @@ struct KindOutput : GridOutput<T, View1<Kind>, Kind> {
 };
 
 // The five structures name an output alike.
-#define TESSERA_OUTPUT(name, order)                                                                      \
+#define TESSERA_OUTPUT(name, order) \
   {#name, order, &GridOutputs::name, &GridViews<T>::name, &GridBlocks<T>::name}, &kernel::GridJob<T>::name
 template <class T>
-inline constexpr VectorOutput<T> vector_outputs[] = {
-    {TESSERA_OUTPUT(position, 0)},        {TESSERA_OUTPUT(du, 1)},
-    {TESSERA_OUTPUT(dv, 1)},              {TESSERA_OUTPUT(normal, 1)},
-    {TESSERA_OUTPUT(duu, 2)},             {TESSERA_OUTPUT(duv, 2)},
-    {TESSERA_OUTPUT(dvv, 2)},             {TESSERA_OUTPUT(first_form, 2)},
-    {TESSERA_OUTPUT(second_form, 2)},     {TESSERA_OUTPUT(first_direction, 2)},
-    {TESSERA_OUTPUT(second_direction, 2)}};
+inline constexpr VectorOutput<T> vector_outputs[] = {{TESSERA_OUTPUT(position, 0)},
+                                                     {TESSERA_OUTPUT(du, 1)},
+                                                     {TESSERA_OUTPUT(dv, 1)},
+                                                     {TESSERA_OUTPUT(normal, 1)},
+                                                     {TESSERA_OUTPUT(duu, 2)},
+                                                     {TESSERA_OUTPUT(duv, 2)},
+                                                     {TESSERA_OUTPUT(dvv, 2)},
+                                                     {TESSERA_OUTPUT(first_form, 2)},
+                                                     {TESSERA_OUTPUT(second_form, 2)},
+                                                     {TESSERA_OUTPUT(first_direction, 2)},
+                                                     {TESSERA_OUTPUT(second_direction, 2)}};
 template <class T>
 inline constexpr ScalarOutput<T> scalar_outputs[] = {{TESSERA_OUTPUT(gaussian, 2)},
                                                      {TESSERA_OUTPUT(mean, 2)},

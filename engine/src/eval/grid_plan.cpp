@@ -45,7 +45,9 @@ void tabulate_degree(int degree, std::span<const double> parameters, const GridP
 template <class T>
 void tabulate_blocks(const PatchSet::Impl& set, std::span<const double> parameters, std::size_t count,
                      int BlockGroup::*degree, Representation representation, LaneTables<T>& tables) {
-  const auto row = [&](std::size_t block) { return 3 * static_cast<std::size_t>(set.group_of_block(block).*degree + 1); };
+  const auto row = [&](std::size_t block) {
+    return 3 * static_cast<std::size_t>(set.group_of_block(block).*degree + 1);
+  };
   std::size_t values = 0;
   for (std::size_t block = 0; block < set.lane_counts.size(); ++block) {
     tables.first.push_back(values);
@@ -100,9 +102,9 @@ Status check_count(std::size_t count, const char* direction) {
 
 Status check_lists(std::span<const double> parameters, std::size_t patches, const char* direction) {
   if (parameters.size() % patches == 0) return check_count(parameters.size() / patches, direction);
-  return Status(StatusCode::invalid_argument,
-                std::to_string(parameters.size()) + " parameters along " + direction + " are not as many for each of " +
-                    std::to_string(patches) + " patches");
+  return Status(StatusCode::invalid_argument, std::to_string(parameters.size()) + " parameters along " + direction +
+                                                  " are not as many for each of " + std::to_string(patches) +
+                                                  " patches");
 }
 
 /// Records, values and bytes of every output must be countable.
@@ -115,9 +117,7 @@ Status check_size(const PatchSet::Impl& set, std::size_t count_u, std::size_t co
                                                   " patches has more points than memory can address");
 }
 
-std::uint8_t edge_of(double t) {
-  return t == 0 ? kernel::edge_start : t == 1 ? kernel::edge_end : kernel::edge_inside;
-}
+std::uint8_t edge_of(double t) { return t == 0 ? kernel::edge_start : t == 1 ? kernel::edge_end : kernel::edge_inside; }
 
 std::vector<std::uint8_t> edges_of(std::span<const double> parameters, std::size_t count, bool by_patch,
                                    const PatchSet::Impl& set) {

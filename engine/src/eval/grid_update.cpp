@@ -61,11 +61,11 @@ class GridUpdate::Impl {
     const UpdateCall call{set, inner, kernel::kernels(inner.isa), edits, touched_, order, streaming};
     std::atomic<Isa> isa{inner.isa};
     Status status = parallel_for(blocks.size(), blocks_a_task(inner, blocks.size(), order > 0), execution,
-                                       [&](std::size_t begin, std::size_t end) {
-                                         auto task = make_task(call);
-                                         for (std::size_t k = begin; k < end; ++k) task.add(blocks[k]);
-                                         isa.store(task.finish(), std::memory_order_relaxed);
-                                       });
+                                 [&](std::size_t begin, std::size_t end) {
+                                   auto task = make_task(call);
+                                   for (std::size_t k = begin; k < end; ++k) task.add(blocks[k]);
+                                   isa.store(task.finish(), std::memory_order_relaxed);
+                                 });
     finish_edits(set, edits);
     report_run(execution, isa, streaming);
     return status;

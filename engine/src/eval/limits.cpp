@@ -47,7 +47,8 @@ Result<Limits> measure_limits(const LimitsOptions& options) {
     const std::size_t bytes = std::max<std::size_t>(options.store_bytes / cache_line, 1) * cache_line;
     AlignedVector<std::byte> memory;
     if (bytes > memory.max_size())
-      return Status(StatusCode::out_of_memory, std::to_string(bytes) + " bytes to fill are more than memory can address");
+      return Status(StatusCode::out_of_memory,
+                    std::to_string(bytes) + " bytes to fill are more than memory can address");
     memory.resize(bytes);
     limits.float_operations_per_second = operations_per_second(kernels.fma_f32);
     limits.double_operations_per_second = operations_per_second(kernels.fma_f64);
@@ -58,14 +59,16 @@ Result<Limits> measure_limits(const LimitsOptions& options) {
     };
     limits.plain_store_bytes_per_second = fill_rate(false);
     limits.streaming_store_bytes_per_second = fill_rate(true);
-    limits.store_bytes_per_second = std::max(limits.plain_store_bytes_per_second, limits.streaming_store_bytes_per_second);
+    limits.store_bytes_per_second =
+        std::max(limits.plain_store_bytes_per_second, limits.streaming_store_bytes_per_second);
     return limits;
   });
 }
 
 double seconds_at_limit(const Limits& limits, const Work& work) {
   const double rate = work.double_precision ? limits.double_operations_per_second : limits.float_operations_per_second;
-  return std::max(work.lane_operations / rate, std::max(work.bytes_written, work.bytes_read) / limits.store_bytes_per_second);
+  return std::max(work.lane_operations / rate,
+                  std::max(work.bytes_written, work.bytes_read) / limits.store_bytes_per_second);
 }
 
 }  // namespace tessera

@@ -50,19 +50,18 @@ Status prepare_edits(PatchSet::Impl& set, const PatchEdits& edits, const Touched
   const bool near = max_abs(set.origin) <= plain_size;
   LeastIndex refused, reshaped;
   const Execution checking{.cancel = execution.cancel};
-  Status status =
-      parallel_for(edits.patch.size(), edits_a_piece, checking, [&](std::size_t begin, std::size_t end) {
-        const auto last = points_of(set, edits, touched, end - 1);
-        const Vec3* first = points_of(set, edits, touched, begin).data();
-        const bool plain = near && all_plain({first, last.data() + last.size()});
-        for (std::size_t k = begin; k < end; ++k) {
-          BezierPatch& patch = set.patches[edits.patch[k]];
-          const auto points = points_of(set, edits, touched, k);
-          if (!plain && !(near && all_plain(points)) && !fits(set, patch, points)) return refused.add(k);
-          if (keeps_shape && !(*keeps_shape)(edits.patch[k], points)) return reshaped.add(k);
-          PatchPieces::make_sole(patch);
-        }
-      });
+  Status status = parallel_for(edits.patch.size(), edits_a_piece, checking, [&](std::size_t begin, std::size_t end) {
+    const auto last = points_of(set, edits, touched, end - 1);
+    const Vec3* first = points_of(set, edits, touched, begin).data();
+    const bool plain = near && all_plain({first, last.data() + last.size()});
+    for (std::size_t k = begin; k < end; ++k) {
+      BezierPatch& patch = set.patches[edits.patch[k]];
+      const auto points = points_of(set, edits, touched, k);
+      if (!plain && !(near && all_plain(points)) && !fits(set, patch, points)) return refused.add(k);
+      if (keeps_shape && !(*keeps_shape)(edits.patch[k], points)) return reshaped.add(k);
+      PatchPieces::make_sole(patch);
+    }
+  });
   if (!status.ok()) return status;
   if (const std::size_t k = refused.index(); refused.found())
     return refused_points(k, edits.patch[k], points_of(set, edits, touched, k));

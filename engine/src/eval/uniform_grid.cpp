@@ -16,8 +16,8 @@ namespace {
 /// Where one edge of a patch lies in its net and in its grid.
 struct EdgePlace {
   Edge edge;
-  bool along_u;         ///< the curve's parameter is u
-  bool at_end;          ///< the other parameter is 1
+  bool along_u;  ///< the curve's parameter is u
+  bool at_end;   ///< the other parameter is 1
 };
 constexpr EdgePlace edge_places[] = {
     {Edge::v0, true, false}, {Edge::v1, true, true}, {Edge::u0, false, false}, {Edge::u1, false, true}};
@@ -25,13 +25,21 @@ constexpr EdgePlace edge_places[] = {
 /// Evaluates the borders of one block and writes them to the records of its patches.
 class BorderWriter {
  public:
-  BorderWriter(const PatchSet::Impl& set, const kernel::KernelTable& kernels, int rate_u, int rate_v, const View3<float>& out,
-               std::span<const AlignedVector<float>> weights_u, std::span<const AlignedVector<float>> weights_v)
-      : set_(set), kernels_(kernels), rate_u_(rate_u), rate_v_(rate_v), out_(out), weights_u_(weights_u), weights_v_(weights_v) {}
+  BorderWriter(const PatchSet::Impl& set, const kernel::KernelTable& kernels, int rate_u, int rate_v,
+               const View3<float>& out, std::span<const AlignedVector<float>> weights_u,
+               std::span<const AlignedVector<float>> weights_v)
+      : set_(set),
+        kernels_(kernels),
+        rate_u_(rate_u),
+        rate_v_(rate_v),
+        out_(out),
+        weights_u_(weights_u),
+        weights_v_(weights_v) {}
 
   void run(std::size_t block) const {
     const BlockGroup& group = set_.group_of_block(block);
-    const float* net = set_.single.bernstein.data() + group.first_value + (block - group.first_block) * group.block_values;
+    const float* net =
+        set_.single.bernstein.data() + group.first_value + (block - group.first_block) * group.block_values;
     const std::ptrdiff_t coefficient = (group.rational ? 4 : 3) * PatchSet::lanes;
     const std::ptrdiff_t row = coefficient * (group.degree_v + 1);
     for (const EdgePlace& place : edge_places) {
@@ -77,7 +85,8 @@ class BorderWriter {
   void write_corners(std::size_t patch) const {
     const BezierPatch& net = set_.patches[patch];
     for (const EdgePlace& place : edge_places) {
-      const int i = place.at_end && !place.along_u ? net.degree_u() : 0, j = place.at_end && place.along_u ? net.degree_v() : 0;
+      const int i = place.at_end && !place.along_u ? net.degree_u() : 0,
+                j = place.at_end && place.along_u ? net.degree_v() : 0;
       const int last = place.along_u ? rate_u_ : rate_v_;
       write_point(record(patch, place, 0), net.point(i, j));
       if (set_.collapsed[patch].has(place.edge))
@@ -126,7 +135,8 @@ Result<UniformGrid> UniformGrid::make(const PatchSet& set, int rate_u, int rate_
 Status UniformGrid::run(const PatchSet::Impl& set, const GridViews<float>& out, const Execution& execution) const {
   if (Status status = evaluate(set, plan_, out, execution); !status.ok()) return status;
   if (out.position.empty()) return {};
-  const BorderWriter borders(set, kernel::kernels(plan_.isa()), rate_u_, rate_v_, out.position, border_weights_u_, border_weights_v_);
+  const BorderWriter borders(set, kernel::kernels(plan_.isa()), rate_u_, rate_v_, out.position, border_weights_u_,
+                             border_weights_v_);
   const std::size_t border_points = static_cast<std::size_t>(2 * (rate_u_ + rate_v_)) * PatchSet::lanes;
   const std::size_t grain = std::max<std::size_t>(1, 16384 / border_points);
   Execution quiet;  // progress and the report are evaluate()'s

@@ -17,7 +17,8 @@ namespace tessera {
 class UniformGrid {
  public:
   /// Rates of at least 1. Errors: those of GridPlan::make.
-  TESSERA_FOR_WINGS static Result<UniformGrid> make(const PatchSet& set, int rate_u, int rate_v, std::optional<Isa> isa);
+  TESSERA_FOR_WINGS static Result<UniformGrid> make(const PatchSet& set, int rate_u, int rate_v,
+                                                    std::optional<Isa> isa);
 
   int rate_u() const { return rate_u_; }
   int rate_v() const { return rate_v_; }
@@ -28,7 +29,8 @@ class UniformGrid {
     return run(set.impl(), out, execution);
   }
   /// The same for those who keep the set's inner state, which stays in place when the set is moved.
-  TESSERA_FOR_WINGS Status run(const PatchSet::Impl& set, const GridViews<float>& out, const Execution& execution) const;
+  TESSERA_FOR_WINGS Status run(const PatchSet::Impl& set, const GridViews<float>& out,
+                               const Execution& execution) const;
 
  private:
   UniformGrid(GridPlan plan, int rate_u, int rate_v) : plan_(std::move(plan)), rate_u_(rate_u), rate_v_(rate_v) {}

@@ -16,7 +16,8 @@ constexpr std::size_t pieces_in_buffer = 16;               // which stays in a c
 Status write_packed(OutputFile& out, std::size_t count, std::size_t bytes,
                     FunctionRef<void(std::size_t, std::size_t, char*)> pack) {
   const std::size_t piece = piece_bytes / bytes, room = std::min(count, pieces_in_buffer * piece);
-  auto buffer = std::make_unique_for_overwrite<char[]>(room * bytes), packed_before = std::make_unique_for_overwrite<char[]>(room * bytes);
+  auto buffer = std::make_unique_for_overwrite<char[]>(room * bytes),
+       packed_before = std::make_unique_for_overwrite<char[]>(room * bytes);
   std::string_view before;  // in packed_before: written by one thread while the others pack the next records
   for (std::size_t first = 0; first < count && !out.failed(); first += room) {
     const std::size_t records = std::min(room, count - first);
