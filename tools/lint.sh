@@ -46,7 +46,9 @@ done
 # Files are named from where the caller stands.
 for k in "${!files[@]}"; do files[k]=$(realpath "${files[k]}"); done
 cd "$(dirname -- "${BASH_SOURCE[0]}")/.."
-if ((${#files[@]} == 0)); then mapfile -t files < <(git ls-files '*.cpp' '*.h'); fi
+if ((${#files[@]} == 0)); then
+  mapfile -t files < <(git ls-files '*.cpp' '*.h' 2>/dev/null || find bench engine tests tools -name '*.cpp' -o -name '*.h')
+fi
 
 # Of several versions of clang-format each has its own opinion; this one's is meant.
 find_version_14() {
