@@ -54,8 +54,8 @@ void check(const Kernels<T>& kernels, const Way& way) {
     first += count;
   }
   kernels.end(*state, way.lanes, way.streaming);
-  EXPECT_EQ(memory, expected) << way.pieces.size() << " pieces, " << total << " values, " << way.lanes << " lanes, step "
-                              << way.step << ", first " << way.first << ", gap " << way.gap;
+  EXPECT_EQ(memory, expected) << way.pieces.size() << " pieces, " << total << " values, " << way.lanes
+                              << " lanes, step " << way.step << ", first " << way.first << ", gap " << way.gap;
 }
 
 template <class T>

@@ -44,7 +44,8 @@ void check_packing(void (*pack)(const kernel::PackJob<T>&), const Nets& nets) {
   pack({nets.lane.data(), nets.size, {shift[0], shift[1], shift[2]}, out.data()});
   for (std::size_t k = 0; k <= nets.size; ++k)
     for (std::size_t l = 0; l < lanes; ++l)
-      ASSERT_EQ(out[k * lanes + l], k < nets.size ? static_cast<T>(nets.lane[l][k] + shift[k % 3]) : T(-1)) << k << " " << l;
+      ASSERT_EQ(out[k * lanes + l], k < nets.size ? static_cast<T>(nets.lane[l][k] + shift[k % 3]) : T(-1))
+          << k << " " << l;
 }
 
 TEST(NetKernels, PackEveryLane) {
@@ -87,7 +88,8 @@ TEST(NetKernels, BoundPointsExtendsBounds) {
         expected.upper[k] = bounds.upper[k] = k % 3 == 0 ? -90 : k % 3 == 1 ? -infinity : 3;
       }
       for (std::size_t k = 0; k < count; ++k) {
-        double &low = expected.lower[k % kernel::PointBounds::run], &high = expected.upper[k % kernel::PointBounds::run];
+        double &low = expected.lower[k % kernel::PointBounds::run],
+               &high = expected.upper[k % kernel::PointBounds::run];
         low = std::min(low, points[k + 1]);
         high = std::max(high, points[k + 1]);
       }

@@ -105,15 +105,24 @@ TEST(MeshScene, SaysWhatIsWrongWithAMesh) {
     EXPECT_EQ(scene.status().code(), StatusCode::invalid_argument) << why;
     EXPECT_EQ(scene.status().index(), index) << why;
   };
-  refused("no patches", [](Mesh& m) { m.patches.clear(); }, 0);
-  refused("no parameters", [](Mesh& m) { m.parameters.clear(); }, 0);
-  refused("nothing", [](Mesh& m) { m = Mesh{}; }, 0);
-  refused("another origin", [](Mesh& m) { m.origin.x += 1; }, 0);
-  refused("a position that is NaN", [](Mesh& m) { m.positions[3 * 7 + 1] = std::nanf(""); }, 7);
-  refused("a parameter above 1", [](Mesh& m) { m.parameters[2 * 5] = 1.5f; }, 5);
-  refused("an index too many", [](Mesh& m) { m.indices[3 * 4 + 2] = 0xffffffff; }, 4);
-  refused("a patch too many", [](Mesh& m) { m.patches[3] = 36; }, 3);
-  refused("half a triangle", [](Mesh& m) { m.indices.pop_back(); }, 0);
+  refused(
+      "no patches", [](Mesh& m) { m.patches.clear(); }, 0);
+  refused(
+      "no parameters", [](Mesh& m) { m.parameters.clear(); }, 0);
+  refused(
+      "nothing", [](Mesh& m) { m = Mesh{}; }, 0);
+  refused(
+      "another origin", [](Mesh& m) { m.origin.x += 1; }, 0);
+  refused(
+      "a position that is NaN", [](Mesh& m) { m.positions[3 * 7 + 1] = std::nanf(""); }, 7);
+  refused(
+      "a parameter above 1", [](Mesh& m) { m.parameters[2 * 5] = 1.5f; }, 5);
+  refused(
+      "an index too many", [](Mesh& m) { m.indices[3 * 4 + 2] = 0xffffffff; }, 4);
+  refused(
+      "a patch too many", [](Mesh& m) { m.patches[3] = 36; }, 3);
+  refused(
+      "half a triangle", [](Mesh& m) { m.indices.pop_back(); }, 0);
 }
 
 }  // namespace

@@ -54,7 +54,8 @@ std::vector<BezierPatch> turned(std::vector<BezierPatch> patches, std::uint64_t 
 }
 
 TEST(CertifiedTessellation, ClosedBodiesStayClosedAtEveryTolerance) {
-  for (const auto& body : {closed_body(), sphere(), placed(closed_body(), 1e-6, {}), placed(sphere(), 1e5, {3e5, -1e5, 7e4})})
+  for (const auto& body :
+       {closed_body(), sphere(), placed(closed_body(), 1e-6, {}), placed(sphere(), 1e5, {3e5, -1e5, 7e4})})
     for (int seed = 0; seed < 3; ++seed) {
       const PatchSet set = set_of(turned(body, static_cast<std::uint64_t>(seed)));
       double largest = 0;
@@ -127,7 +128,8 @@ TEST(CertifiedTessellation, TheSameBytesForAnyNumberOfThreads) {
 TEST(CertifiedTessellation, ABudgetGivesTheSmallestTolerance) {
   const PatchSet set = set_of(wavy_field(6, 6));
   for (const std::uint64_t budget : {72u, 100u, 1000u, 50000u}) {
-    const CertifiedTessellation plan = good(CertifiedTessellation::make(set, {.most_triangles = budget, .smallest = true}));
+    const CertifiedTessellation plan =
+        good(CertifiedTessellation::make(set, {.most_triangles = budget, .smallest = true}));
     EXPECT_LE(plan.capacity().triangles, budget);
     const auto finer = CertifiedTessellation::make(set, {.tolerance = plan.bound() / 1.05, .most_triangles = budget});
     EXPECT_TRUE(budget <= 100 || !finer.ok()) << budget;
@@ -178,10 +180,12 @@ TEST(CertifiedTessellation, RefusesWhatItCannotKeep) {
   const auto rough = CertifiedTessellation::make(set, {.tolerance = 1e-9});
   ASSERT_FALSE(rough.ok());
   EXPECT_EQ(rough.status().index(), 0);
-  EXPECT_NE(rough.status().message().find("is not above what float vertices of patch 0 keep"), std::string::npos) << rough.status().message();
+  EXPECT_NE(rough.status().message().find("is not above what float vertices of patch 0 keep"), std::string::npos)
+      << rough.status().message();
   const auto many = CertifiedTessellation::make(set, {.tolerance = 1e-4, .most_triangles = 1000});
   ASSERT_FALSE(many.ok());
-  EXPECT_NE(many.status().message().find("1000 and 4294967296 are allowed"), std::string::npos) << many.status().message();
+  EXPECT_NE(many.status().message().find("1000 and 4294967296 are allowed"), std::string::npos)
+      << many.status().message();
   const auto fitted = PatchSet::from(closed_body(), PatchSetOptions{.fit_error = {0.01, true}});
   EXPECT_FALSE(CertifiedTessellation::make(*fitted, {.tolerance = 0.01}).ok());
   EXPECT_GT(good(CertifiedTessellation::make(*fitted, {.tolerance = 0.011})).bound(), 0.01);

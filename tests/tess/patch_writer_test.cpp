@@ -143,7 +143,8 @@ TEST(PatchWriter, TrianglesAreThoseOfTheDivisions) {
     const Mesh mesh = mesh_of(set, tolerance);
     std::vector<std::uint32_t> expected(mesh.indices.size());
     for (std::size_t k = 0; k < plan.patch_count(); ++k)
-      plan.division(k).write_triangles(static_cast<std::uint32_t>(plan.first_vertex(k)), expected.data() + 3 * plan.first_triangle(k));
+      plan.division(k).write_triangles(static_cast<std::uint32_t>(plan.first_vertex(k)),
+                                       expected.data() + 3 * plan.first_triangle(k));
     EXPECT_EQ(mesh.indices, expected);
   }
 }

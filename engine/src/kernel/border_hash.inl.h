@@ -15,11 +15,13 @@ void hash_border(const BorderHashJob& job, const float* first, std::ptrdiff_t st
     auto scale = L::broadcast(1);
     if (job.rational) {
       auto heaviest = L::broadcast(0);
-      for (int k = 0; k < count; ++k) heaviest = xsimd::max(heaviest, L::load(first + k * step + 3 * block_lanes + lane));
+      for (int k = 0; k < count; ++k)
+        heaviest = xsimd::max(heaviest, L::load(first + k * step + 3 * block_lanes + lane));
       alignas(64) float weight[L::width];
       L::store(weight, heaviest);
       // 2^-k for a weight of at least 2^(k-1) and below 2^k
-      for (float& w : weight) w = __builtin_bit_cast(float, (253u - (__builtin_bit_cast(std::uint32_t, w) >> 23)) << 23);
+      for (float& w : weight)
+        w = __builtin_bit_cast(float, (253u - (__builtin_bit_cast(std::uint32_t, w) >> 23)) << 23);
       scale = L::load(weight);
     }
     Indices<L> sum = Indices<L>{} + static_cast<std::uint32_t>(count * 8 + components);

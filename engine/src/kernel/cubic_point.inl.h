@@ -59,8 +59,8 @@ struct LowBasis {
 
 /// Quotient rule (Piegl and Tiller, The NURBS Book, eq. 4.20): r_u = (A_u - w_u r) / w.
 template <int Fixed>
-void rational_point(const double* points, const double* weights, int any_m, int any_n, const double* origin, double u_at,
-                    double v_at, RayPoint& out) {
+void rational_point(const double* points, const double* weights, int any_m, int any_n, const double* origin,
+                    double u_at, double v_at, RayPoint& out) {
   const int m = Fixed ? Fixed : any_m, n = Fixed ? Fixed : any_n;
   const LowBasis<Fixed> u(m, u_at), v(n, v_at);
   const Triple start = Triple::load(origin);

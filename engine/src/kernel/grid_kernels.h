@@ -24,7 +24,7 @@ using LaneDoubt = void (*)(void* context, int iu, int lane, T* doubt, T* noise);
 /// A block of patches over a grid of tabulated weights. T is float or double.
 template <class T>
 struct GridJob {
-  const T* net = nullptr;        ///< `[i][j][component][lane]`, 64-byte aligned; 3 components, or 4 if rational (homogeneous)
+  const T* net = nullptr;  ///< `[i][j][component][lane]`, 64-byte aligned; 3 components, or 4 if rational (homogeneous)
   int degree_u = 0, degree_v = 0;
   bool rational = false;
   const T* u_weights = nullptr;  ///< `[iu][order][i]`: values, first and second derivatives, degree_u + 1 of each
@@ -32,7 +32,7 @@ struct GridJob {
   /// Each lane has parameters of its own: weights are `[iu][order][i][lane]`, edges `[iu][lane]`, likewise along v.
   /// Stores are plain then.
   bool by_lane = false;
-  int u_begin = 0, u_end = 0;    ///< the part of the grid to evaluate
+  int u_begin = 0, u_end = 0;  ///< the part of the grid to evaluate
   int v_begin = 0, v_end = 0;
 
   /// Outputs `[sample][component][lane]`, samples in the order of the part, v fastest, `vector_step` elements apart;
@@ -44,8 +44,8 @@ struct GridJob {
   T* duu = nullptr;
   T* duv = nullptr;
   T* dvv = nullptr;
-  T* first_form = nullptr;       ///< r_u.r_u, r_u.r_v, r_v.r_v
-  T* second_form = nullptr;      ///< r_uu.N, r_uv.N, r_vv.N
+  T* first_form = nullptr;   ///< r_u.r_u, r_u.r_v, r_v.r_v
+  T* second_form = nullptr;  ///< r_uu.N, r_uv.N, r_vv.N
   T* first_direction = nullptr;
   T* second_direction = nullptr;
   std::ptrdiff_t vector_step = 3 * block_lanes;
@@ -58,14 +58,14 @@ struct GridJob {
   /// Outputs `[sample][lane]` without gaps, of the values of NormalKind and CurvatureKind.
   std::uint8_t* normal_kind = nullptr;
   std::uint8_t* curvature_kind = nullptr;
-  T offset[3] = {0, 0, 0};       ///< added to positions (doubles only: floats stay relative to the origin)
-  bool streaming = false;        ///< non-temporal stores; the caller ends them with finish_streaming
+  T offset[3] = {0, 0, 0};  ///< added to positions (doubles only: floats stay relative to the origin)
+  bool streaming = false;   ///< non-temporal stores; the caller ends them with finish_streaming
   /// Cache lines behind the net, where the next block's is, that row k asks for: from k * prefetched_lines on. Readable or
   /// not.
   int prefetched_lines = 0;
 
   // What decides where r_u x r_v stands for the normal; read where normals or curvatures are wanted.
-  const T* doubt = nullptr;      ///< `[lane]`: at or below this |r_u x r_v|^2 the tangents' rounding errors count
+  const T* doubt = nullptr;  ///< `[lane]`: at or below this |r_u x r_v|^2 the tangents' rounding errors count
   /// `[lane]`: error of a tangent's component, times the weight at the point; negative: no normal anywhere.
   const T* noise = nullptr;
   const T* collapsed = nullptr;  ///< `[edge u0, u1, v0, v1][lane]`: 1 where that edge is one point; null if none is
@@ -75,8 +75,8 @@ struct GridJob {
   void* exact_context = nullptr;
   /// Where lanes are samples of many patches, `doubt` holds an upper bound of all, and this says what one lane's is.
   LaneDoubt<T> lane_doubt = nullptr;
-  T smallest_sine = 0;           ///< of the tangents' angle, below which curvatures are undefined
-  T umbilic_tolerance = 0;       ///< (k1 - k2) / (|k1| + |k2|) at or below which a point is umbilic
+  T smallest_sine = 0;      ///< of the tangents' angle, below which curvatures are undefined
+  T umbilic_tolerance = 0;  ///< (k1 - k2) / (|k1| + |k2|) at or below which a point is umbilic
 };
 
 /// Each returns its own ISA, which the report hands to the caller.

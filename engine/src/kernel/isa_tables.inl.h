@@ -13,7 +13,8 @@ extern const RayKernels ray_kernels;
 extern const MemoryKernels memory_kernels;
 
 inline const KernelTable& table() {
-  static const KernelTable all{grid_kernels, double_grid_kernels, flat_kernels, line_kernels, net_kernels, point_kernels,
-                               chord_kernels, mesh_kernels, ray_kernels, memory_kernels, this_isa};
+  static const KernelTable all{grid_kernels, double_grid_kernels, flat_kernels,  line_kernels,
+                               net_kernels,  point_kernels,       chord_kernels, mesh_kernels,
+                               ray_kernels,  memory_kernels,      this_isa};
   return all;
 }

@@ -18,8 +18,16 @@
 
 namespace tessera::kernel {
 
-struct KernelTable : GridKernels, DoubleGridKernels, FlatKernels, LineKernels, NetKernels, PointKernels, ChordKernels,
-                     MeshKernels, RayKernels, MemoryKernels {
+struct KernelTable : GridKernels,
+                     DoubleGridKernels,
+                     FlatKernels,
+                     LineKernels,
+                     NetKernels,
+                     PointKernels,
+                     ChordKernels,
+                     MeshKernels,
+                     RayKernels,
+                     MemoryKernels {
   Isa isa;
 };
 

@@ -47,12 +47,13 @@ struct Lanes<float> {
   static Batch load(const float* p) { return Batch::load_aligned(p); }
   static void store(float* p, Batch a) { a.store_aligned(p); }
   static void stream(float* p, Batch a) { _mm256_stream_ps(p, a); }
-  static void fence() { _mm_sfence(); }  // after the last stream
+  static void fence() { _mm_sfence(); }                                               // after the last stream
   static Batch fma(Batch a, Batch b, Batch c) { return _mm256_fmadd_ps(a, b, c); }    // a b + c
   static Batch fms(Batch a, Batch b, Batch c) { return _mm256_fmsub_ps(a, b, c); }    // a b - c
   static Batch fnma(Batch a, Batch b, Batch c) { return _mm256_fnmadd_ps(a, b, c); }  // c - a b
-  static Batch inverse_root_guess(Batch a) {  // halves the exponent
-    return _mm256_castsi256_ps(_mm256_sub_epi32(_mm256_set1_epi32(0x5f3759df), _mm256_srli_epi32(_mm256_castps_si256(a), 1)));
+  static Batch inverse_root_guess(Batch a) {                                          // halves the exponent
+    return _mm256_castsi256_ps(
+        _mm256_sub_epi32(_mm256_set1_epi32(0x5f3759df), _mm256_srli_epi32(_mm256_castps_si256(a), 1)));
   }
   static void store_bytes(std::uint8_t* p, Batch a) {  // small whole numbers
     const __m256i whole = _mm256_cvttps_epi32(a);

@@ -49,12 +49,13 @@ struct Lanes<float> {
   static Batch load(const float* p) { return Batch::load_aligned(p); }
   static void store(float* p, Batch a) { a.store_aligned(p); }
   static void stream(float* p, Batch a) { _mm512_stream_ps(p, a); }
-  static void fence() { _mm_sfence(); }  // after the last stream
+  static void fence() { _mm_sfence(); }                                               // after the last stream
   static Batch fma(Batch a, Batch b, Batch c) { return _mm512_fmadd_ps(a, b, c); }    // a b + c
   static Batch fms(Batch a, Batch b, Batch c) { return _mm512_fmsub_ps(a, b, c); }    // a b - c
   static Batch fnma(Batch a, Batch b, Batch c) { return _mm512_fnmadd_ps(a, b, c); }  // c - a b
-  static Batch inverse_root_guess(Batch a) {  // halves the exponent
-    return _mm512_castsi512_ps(_mm512_sub_epi32(_mm512_set1_epi32(0x5f3759df), _mm512_srli_epi32(_mm512_castps_si512(a), 1)));
+  static Batch inverse_root_guess(Batch a) {                                          // halves the exponent
+    return _mm512_castsi512_ps(
+        _mm512_sub_epi32(_mm512_set1_epi32(0x5f3759df), _mm512_srli_epi32(_mm512_castps_si512(a), 1)));
   }
   static void store_bytes(std::uint8_t* p, Batch a) {  // small whole numbers
     _mm_storeu_si128(reinterpret_cast<__m128i*>(p), _mm512_cvtepi32_epi8(_mm512_cvttps_epi32(a)));
@@ -97,12 +98,15 @@ struct Lanes<float> {
   }
   /// A shift by `count` lanes, below `width`.
   struct Shift {
-    __m512i lanes;     ///< from the vector before where bit 4 is set
+    __m512i lanes;  ///< from the vector before where bit 4 is set
     __m512i backward;
   };
   static Shift shift_by(int count) {
-    const __m512i each = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15), by = _mm512_set1_epi32(count);
-    return {_mm512_xor_si512(_mm512_sub_epi32(each, _mm512_sub_epi32(by, _mm512_set1_epi32(width))), _mm512_set1_epi32(width)), _mm512_add_epi32(each, by)};
+    const __m512i each = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15),
+                  by = _mm512_set1_epi32(count);
+    return {_mm512_xor_si512(_mm512_sub_epi32(each, _mm512_sub_epi32(by, _mm512_set1_epi32(width))),
+                             _mm512_set1_epi32(width)),
+            _mm512_add_epi32(each, by)};
   }
   /// The last lanes of the vector before `next` and the first ones of `next`; `carry` keeps what the following call needs.
   static Batch shift_in(Batch& carry, Batch next, const Shift& shift) {
@@ -154,7 +158,8 @@ struct Lanes<float> {
       b[i + 3] = _mm512_shuffle_ps(a[i + 1], a[i + 3], 0xee);
     }
     for (int c = 0; c < 4; ++c) {  // quarters of 128 bits
-      const __m512 even_low = _mm512_shuffle_f32x4(b[c], b[4 + c], 0x88), odd_low = _mm512_shuffle_f32x4(b[c], b[4 + c], 0xdd);
+      const __m512 even_low = _mm512_shuffle_f32x4(b[c], b[4 + c], 0x88),
+                   odd_low = _mm512_shuffle_f32x4(b[c], b[4 + c], 0xdd);
       const __m512 even_high = _mm512_shuffle_f32x4(b[8 + c], b[12 + c], 0x88);
       const __m512 odd_high = _mm512_shuffle_f32x4(b[8 + c], b[12 + c], 0xdd);
       row[c] = _mm512_shuffle_f32x4(even_low, even_high, 0x88);
@@ -208,12 +213,14 @@ struct Lanes<double> {
   }
   /// A shift by `count` lanes, below `width`.
   struct Shift {
-    __m512i lanes;     ///< from the vector before where bit 3 is set
+    __m512i lanes;  ///< from the vector before where bit 3 is set
     __m512i backward;
   };
   static Shift shift_by(int count) {
     const __m512i each = _mm512_setr_epi64(0, 1, 2, 3, 4, 5, 6, 7), by = _mm512_set1_epi64(count);
-    return {_mm512_xor_si512(_mm512_sub_epi64(each, _mm512_sub_epi64(by, _mm512_set1_epi64(width))), _mm512_set1_epi64(width)), _mm512_add_epi64(each, by)};
+    return {_mm512_xor_si512(_mm512_sub_epi64(each, _mm512_sub_epi64(by, _mm512_set1_epi64(width))),
+                             _mm512_set1_epi64(width)),
+            _mm512_add_epi64(each, by)};
   }
   /// The last lanes of the vector before `next` and the first ones of `next`; `carry` keeps what the following call needs.
   static Batch shift_in(Batch& carry, Batch next, const Shift& shift) {
@@ -241,7 +248,8 @@ struct Lanes<double> {
       a[i + 1] = _mm512_unpackhi_pd(row[i], row[i + 1]);
     }
     for (int c = 0; c < 2; ++c) {  // a[2 i + c] holds column 2 q + c of rows 2 i, 2 i + 1 in its quarter q
-      const __m512d even_low = _mm512_shuffle_f64x2(a[c], a[2 + c], 0x88), odd_low = _mm512_shuffle_f64x2(a[c], a[2 + c], 0xdd);
+      const __m512d even_low = _mm512_shuffle_f64x2(a[c], a[2 + c], 0x88),
+                    odd_low = _mm512_shuffle_f64x2(a[c], a[2 + c], 0xdd);
       const __m512d even_high = _mm512_shuffle_f64x2(a[4 + c], a[6 + c], 0x88);
       const __m512d odd_high = _mm512_shuffle_f64x2(a[4 + c], a[6 + c], 0xdd);
       row[c] = _mm512_shuffle_f64x2(even_low, even_high, 0x88);

@@ -84,11 +84,16 @@ struct Lanes<float> {
   /// `count` last lanes of a, then the first ones of b.
   static Batch shifted(__m128 a, __m128 b, int count) {
     switch (count) {
-      case 0: return b;
-      case 1: return _mm_move_ss(_mm_shuffle_ps(b, b, 0x90), _mm_shuffle_ps(a, a, 0xff));
-      case 2: return _mm_shuffle_ps(a, b, 0x4e);
-      case 3: return _mm_shuffle_ps(_mm_shuffle_ps(a, a, 0xf9), _mm_shuffle_ps(a, b, 0x0f), 0x84);
-      default: return a;
+      case 0:
+        return b;
+      case 1:
+        return _mm_move_ss(_mm_shuffle_ps(b, b, 0x90), _mm_shuffle_ps(a, a, 0xff));
+      case 2:
+        return _mm_shuffle_ps(a, b, 0x4e);
+      case 3:
+        return _mm_shuffle_ps(_mm_shuffle_ps(a, a, 0xf9), _mm_shuffle_ps(a, b, 0x0f), 0x84);
+      default:
+        return a;
     }
   }
   /// Vector l becomes value l of the rows at row(0), row(1), ...

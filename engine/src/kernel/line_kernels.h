@@ -12,13 +12,13 @@ namespace tessera::kernel {
 /// Border curves of a block, evaluated so that the direction of the parameter does not change a bit.
 template <class T>
 struct BorderJob {
-  const T* control = nullptr;    ///< the first control point, `[component][lane]`
+  const T* control = nullptr;       ///< the first control point, `[component][lane]`
   std::ptrdiff_t control_step = 0;  ///< elements from one control point of the border to the next
   int degree = 0;
   bool rational = false;
-  const T* weights = nullptr;    ///< `[k][degree + 1]`, bitwise symmetric: weights[k][i] == weights[count-1-k][degree-i]
+  const T* weights = nullptr;  ///< `[k][degree + 1]`, bitwise symmetric: weights[k][i] == weights[count-1-k][degree-i]
   int count = 0;
-  T* position = nullptr;         ///< `[k][component][lane]`
+  T* position = nullptr;  ///< `[k][component][lane]`
 };
 
 /// Results of a block's lanes on their way to an array each, from piece to piece of the grid: what falls short of a whole
@@ -28,7 +28,7 @@ struct LineState {
   static constexpr int values = 64 / static_cast<int>(sizeof(T));
   alignas(64) T part[block_lanes][values];  ///< the vector at `next` as far as it is known, up to `end`
   alignas(64) T head[block_lanes][values];  ///< once next is beyond first: that one, which another lane may share
-  T* first[block_lanes];                    ///< the vector in which the lane begins, at value `begin`; null where that is 0
+  T* first[block_lanes];  ///< the vector in which the lane begins, at value `begin`; null where that is 0
   T* next[block_lanes];
   int begin[block_lanes], end[block_lanes];
 };
@@ -48,9 +48,9 @@ struct LineJob {
 /// Rows of a transfinite grid: g1_j C1_i + g2_j C2_i + f1_i K1_j + f2_i K2_j at record i * column_count + j.
 template <class T>
 struct BlendJob {
-  const T* rows = nullptr;       ///< `[i][8]`: C1 and C2, three components each, then f1 and f2
-  const T* columns = nullptr;    ///< `[8][column_step]`: g1, g2, then K1 and K2, three components each; 64-byte aligned
-  std::ptrdiff_t column_step = 0;   ///< at least column_count, a multiple of 16: whole vectors are read
+  const T* rows = nullptr;     ///< `[i][8]`: C1 and C2, three components each, then f1 and f2
+  const T* columns = nullptr;  ///< `[8][column_step]`: g1, g2, then K1 and K2, three components each; 64-byte aligned
+  std::ptrdiff_t column_step = 0;  ///< at least column_count, a multiple of 16: whole vectors are read
   std::ptrdiff_t row_count = 0, column_count = 0;
   T* out[3] = {nullptr, nullptr, nullptr};  ///< component c of record k goes to out[c][k * stride]
   std::ptrdiff_t stride = 1;

@@ -5,7 +5,6 @@
 
 namespace tessera::kernel {
 
-
 struct MemoryKernels {
   /// Copies lines of 64 bytes past the caches, both aligned to 64 bytes. finish_streaming() comes after the last.
   void (*stream_lines)(const void* from, void* to, std::size_t lines);

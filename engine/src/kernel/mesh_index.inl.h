@@ -9,7 +9,8 @@ template <class L>
 }
 /// A vector of indices, or as much of it as fits.
 template <class L>
-[[gnu::always_inline]] inline void store_indices(std::uint32_t* out, const std::uint32_t* end, const Indices<L>& indices) {
+[[gnu::always_inline]] inline void store_indices(std::uint32_t* out, const std::uint32_t* end,
+                                                 const Indices<L>& indices) {
   if (end - out >= L::width) {
     __builtin_memcpy(out, &indices, sizeof indices);
   } else {
@@ -22,7 +23,8 @@ template <class L>
 std::uint32_t* write_strip(const MeshIndexJob& job, const MeshStrip& strip, std::uint32_t* out) {
   const std::uint32_t wrap = job.ring + job.ring_size;
   for (int k = 0; k < strip.count; k += L::width) {
-    const Indices<L> code = load_indices<L>(strip.codes + k), at = code & (mesh_border_code - 1), border = 0 - (code >> 31);
+    const Indices<L> code = load_indices<L>(strip.codes + k), at = code & (mesh_border_code - 1),
+                     border = 0 - (code >> 31);
     Indices<L> index = ((strip.ring + at) & border) | ((strip.inner + at * strip.inner_step) & ~border);
     index -= reinterpret_cast<Indices<L>>(index == wrap) & job.ring_size;
     store_indices<L>(out + k, job.end, index);
@@ -47,7 +49,8 @@ std::uint32_t* write_cells(const MeshIndexJob& job, std::uint32_t* out) {
   static constexpr CellCorners<cells> corners;
   Indices<L> pattern[length / L::width];
   for (int k = 0; k < length / L::width; ++k)
-    pattern[k] = load_indices<L>(corners.along + k * L::width) + job.row * load_indices<L>(corners.across + k * L::width);
+    pattern[k] =
+        load_indices<L>(corners.along + k * L::width) + job.row * load_indices<L>(corners.across + k * L::width);
   std::uint32_t first = job.first;
   for (int iu = 0; iu < job.cells_u; ++iu, first += job.row) {
     for (int iv = 0; iv < job.cells_v; iv += cells) {
@@ -56,7 +59,8 @@ std::uint32_t* write_cells(const MeshIndexJob& job, std::uint32_t* out) {
       if (job.end - to >= length) {
         for (int k = 0; k < length / L::width; ++k) store_indices<L>(to + k * L::width, to + length, pattern[k] + base);
       } else {
-        for (int k = 0; k < length && to + k < job.end; k += L::width) store_indices<L>(to + k, job.end, pattern[k / L::width] + base);
+        for (int k = 0; k < length && to + k < job.end; k += L::width)
+          store_indices<L>(to + k, job.end, pattern[k / L::width] + base);
       }
     }
     out += 6 * job.cells_v;

@@ -34,7 +34,8 @@ inline void for_numbers(const double* const* nets, std::size_t count, Use use) {
 template <class T>
 void pack_nets(const PackJob<T>& job) {
   using L = Lanes<double>;
-  const typename L::Batch shift[3] = {L::broadcast(job.shift[0]), L::broadcast(job.shift[1]), L::broadcast(job.shift[2])};
+  const typename L::Batch shift[3] = {L::broadcast(job.shift[0]), L::broadcast(job.shift[1]),
+                                      L::broadcast(job.shift[2])};
   for (int lane = 0; lane < block_lanes; lane += L::width)
     for_numbers<L>(job.nets + lane, job.count, [&](std::size_t k, std::size_t c, typename L::Batch values) {
       L::store_as(job.out + k * block_lanes + static_cast<std::size_t>(lane), values + shift[c]);
@@ -126,9 +127,13 @@ inline void combine_rows(const CombineJob& job, Count count) {
 
 inline void combine_rows(const CombineJob& job) {
   switch (job.count) {  // those of degrees 1 to 3
-    case 2: return combine_rows(job, std::integral_constant<std::size_t, 2>{});
-    case 3: return combine_rows(job, std::integral_constant<std::size_t, 3>{});
-    case 4: return combine_rows(job, std::integral_constant<std::size_t, 4>{});
-    default: return combine_rows(job, job.count);
+    case 2:
+      return combine_rows(job, std::integral_constant<std::size_t, 2>{});
+    case 3:
+      return combine_rows(job, std::integral_constant<std::size_t, 3>{});
+    case 4:
+      return combine_rows(job, std::integral_constant<std::size_t, 4>{});
+    default:
+      return combine_rows(job, job.count);
   }
 }

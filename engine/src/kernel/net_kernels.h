@@ -11,9 +11,9 @@ namespace tessera::kernel {
 template <class T>
 struct PackJob {
   const double* const* nets = nullptr;  ///< one a lane, `[number]`: x y z x y z ..
-  std::size_t count = 0;         ///< numbers in each, a multiple of 3
-  double shift[3] = {0, 0, 0};   ///< added to x, y, z
-  T* out = nullptr;              ///< `[number][lane]`, 64-byte aligned
+  std::size_t count = 0;                ///< numbers in each, a multiple of 3
+  double shift[3] = {0, 0, 0};          ///< added to x, y, z
+  T* out = nullptr;                     ///< `[number][lane]`, 64-byte aligned
 };
 
 /// The boxes of the control points of a block's patches.
@@ -31,7 +31,7 @@ struct PointBounds {
 /// out[x] = weights[0] rows[x] + weights[1] rows[stride + x] + .. for x < width.
 struct CombineJob {
   const double* weights = nullptr;
-  std::size_t count = 0;         ///< of rows, at least 1
+  std::size_t count = 0;  ///< of rows, at least 1
   const double* rows = nullptr;
   std::size_t stride = 0, width = 0;
   double* out = nullptr;

@@ -23,15 +23,15 @@ struct PointJob {
   /// Degrees, rationality, what decides about normals, and the stage: outputs `[slot][component][lane]` and
   /// `[slot][lane]`. A sample's Place is (slot, 0, lane). net, weights and ranges are not read.
   GridJob<T> grid;
-  const T* points = nullptr;        ///< coefficients of patch 0, `[i][component][j]`, from a cache line on
-  std::size_t patch_values = 0;     ///< from one patch to the next
+  const T* points = nullptr;     ///< coefficients of patch 0, `[i][component][j]`, from a cache line on
+  std::size_t patch_values = 0;  ///< from one patch to the next
   /// `[sample]`: the patch. Like u and v it is readable for point_padding samples beyond the last.
   const std::uint32_t* patch = nullptr;
-  const T* u = nullptr;             ///< `[sample]`
+  const T* u = nullptr;  ///< `[sample]`
   const T* v = nullptr;
-  int count = 0;                    ///< samples in all
-  std::size_t prefetched = 0;       ///< bytes of a patch to fetch ahead; 0 where all stay in the first-level cache
-  bool far = false;                 ///< patches are not even in the second-level cache
+  int count = 0;               ///< samples in all
+  std::size_t prefetched = 0;  ///< bytes of a patch to fetch ahead; 0 where all stay in the first-level cache
+  bool far = false;            ///< patches are not even in the second-level cache
 
   // What a call leaves: the slots that it cut from sample `next` on, and the sample behind them.
   int next = 0;
@@ -71,8 +71,8 @@ inline constexpr std::size_t locate_lanes = 16;
 /// Moves one output of slots from the stage to records of the caller's.
 template <class T>
 struct PointStoreJob {
-  const T* stage = nullptr;            ///< `[slot][component][lane]`
-  int width = 3;                       ///< components
+  const T* stage = nullptr;  ///< `[slot][component][lane]`
+  int width = 3;             ///< components
   const PointSlot* slots = nullptr;
   int slot_count = 0;
   const std::uint32_t* records = nullptr;   ///< `[sample]`; null: sample k has the record k

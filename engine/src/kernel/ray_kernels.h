@@ -96,7 +96,7 @@ struct alignas(64) RayLines {
 struct PolishJob {
   static constexpr int most_steps = 6;
   static constexpr double linear = 1e-9;  ///< steps up to that leave a square of it
-  const double *points, *weights;  ///< no weights of a polynomial patch
+  const double *points, *weights;         ///< no weights of a polynomial patch
   int degree_u, degree_v;
   double centre[3], scale;
   double u0, u1, v0, v1;

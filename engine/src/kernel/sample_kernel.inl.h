@@ -67,8 +67,9 @@ inline void combine(const Weights weights, int count, const typename L::Batch (&
 /// `Count` neighbouring row curves from index j, and their derivatives up to the order: each coefficient is read once, and
 /// the sums are independent, so that the multiply-adds overlap.
 template <class L, int Count, int Order, class Weights, int Components, int Capacity>
-[[gnu::always_inline]] inline void row_curves_from(int j, const typename L::Scalar* net, const Weights weights, int count_u,
-                                                   std::ptrdiff_t row, RowCurves<L, Order, Components, Capacity>& curves) {
+[[gnu::always_inline]] inline void row_curves_from(int j, const typename L::Scalar* net, const Weights weights,
+                                                   int count_u, std::ptrdiff_t row,
+                                                   RowCurves<L, Order, Components, Capacity>& curves) {
   const auto* coefficient = net + j * Components * block_lanes;
   typename L::Batch sum[Order + 1][Count][Components], weight[Order + 1];
   for (int order = 0; order <= Order; ++order) weight[order] = in_lanes<L>((weights + order * count_u)[0]);
@@ -94,8 +95,8 @@ template <class L, int Count, int Order, class Weights, int Components, int Capa
 /// The row curves of one u: by_u[order][component][j] = sum_i weights[order][i] net[i][j][component], i ascending. As many
 /// at once as the sums of all orders fit the registers.
 template <class L, int DegreeV, int Order, class Weights, int Components, int Capacity>
-[[gnu::always_inline]] inline void row_curves(const typename L::Scalar* net, const Weights weights, int count_u, int count_v,
-                                              RowCurves<L, Order, Components, Capacity>& curves) {
+[[gnu::always_inline]] inline void row_curves(const typename L::Scalar* net, const Weights weights, int count_u,
+                                              int count_v, RowCurves<L, Order, Components, Capacity>& curves) {
   constexpr int fitting = (L::registers * 3 / 4) / ((Order + 1) * Components), most = fitting < 4 ? fitting : 4;
   const std::ptrdiff_t row = std::ptrdiff_t{count_v} * Components * block_lanes;
   if constexpr (DegreeV > 0 && DegreeV < most) {

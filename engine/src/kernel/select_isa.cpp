@@ -36,10 +36,14 @@ std::string available_names() {
 
 std::string_view name(Isa isa) {
   switch (isa) {
-    case Isa::sse2: return "sse2";
-    case Isa::avx2: return "avx2";
-    case Isa::avx512: return "avx512";
-    case Isa::neon64: return "neon64";
+    case Isa::sse2:
+      return "sse2";
+    case Isa::avx2:
+      return "avx2";
+    case Isa::avx512:
+      return "avx512";
+    case Isa::neon64:
+      return "neon64";
   }
   return "unknown";
 }
@@ -54,8 +58,8 @@ Result<Isa> parse_isa(std::string_view text) {
     if (text == name(isa)) return isa;
   for (const Isa isa : all_isas) {
     if (text == name(isa))
-      return Status(StatusCode::isa_unavailable,
-                    "this machine lacks the instruction set \"" + std::string(text) + "\"; it has " + available_names());
+      return Status(StatusCode::isa_unavailable, "this machine lacks the instruction set \"" + std::string(text) +
+                                                     "\"; it has " + available_names());
   }
   return Status(StatusCode::isa_unavailable,
                 "unknown instruction set \"" + std::string(text) + "\"; this machine has " + available_names());

@@ -15,15 +15,9 @@ namespace {
 }  // namespace
 
 extern const LineKernels line_kernels = {
-    evaluate_border<Lanes<float>>,
-    begin_lines<Lanes<float>>,
-    begin_lines<Lanes<double>>,
-    put_lines<Lanes<float>>,
-    put_lines<Lanes<double>>,
-    end_lines<Lanes<float>>,
-    end_lines<Lanes<double>>,
-    blend<Lanes<float>>,
-    blend<Lanes<double>>,
+    evaluate_border<Lanes<float>>, begin_lines<Lanes<float>>, begin_lines<Lanes<double>>,
+    put_lines<Lanes<float>>,       put_lines<Lanes<double>>,  end_lines<Lanes<float>>,
+    end_lines<Lanes<double>>,      blend<Lanes<float>>,       blend<Lanes<double>>,
 };
 
 }  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE

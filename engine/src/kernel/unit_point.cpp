@@ -20,13 +20,8 @@ namespace {
 }  // namespace
 
 extern const PointKernels point_kernels = {
-    evaluate_points<Lanes<float>>,
-    evaluate_points<Lanes<double>>,
-    check_points<float>,
-    check_points<double>,
-    locate,
-    store_points<Lanes<float>>,
-    store_points<Lanes<double>>,
+    evaluate_points<Lanes<float>>, evaluate_points<Lanes<double>>, check_points<float>, check_points<double>, locate,
+    store_points<Lanes<float>>,    store_points<Lanes<double>>,
 };
 
 }  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE

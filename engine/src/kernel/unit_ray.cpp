@@ -14,8 +14,8 @@ namespace {
 #include "kernel/ray_line_kernel.inl.h"
 #include "kernel/ray_packet_kernel.inl.h"
 #include "kernel/ray_polish_kernel.inl.h"
-constexpr RayPacketKernels packet_kernels{ray_lines, trace_packet<false>, trace_packet<true>,
-                                          polish_roots<false>, polish_roots<true>};
+constexpr RayPacketKernels packet_kernels{ray_lines, trace_packet<false>, trace_packet<true>, polish_roots<false>,
+                                          polish_roots<true>};
 constexpr const RayPacketKernels* packets = &packet_kernels;
 #else
 constexpr const RayPacketKernels* packets = nullptr;
@@ -24,11 +24,7 @@ constexpr const RayPacketKernels* packets = nullptr;
 }  // namespace
 
 extern const RayKernels ray_kernels = {
-    packets,
-    trace_polynomial_leaf,
-    trace_rational_leaf,
-    cubic_point,
-    low_rational_point,
+    packets, trace_polynomial_leaf, trace_rational_leaf, cubic_point, low_rational_point,
 };
 
 }  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE

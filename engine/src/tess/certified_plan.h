@@ -74,7 +74,8 @@ class CertifiedPlan {
   std::vector<std::size_t> first_vertex_, first_triangle_, first_quad_;  ///< of each patch, and the number of all
   std::vector<float> bounds_, angles_, pixels_;
   std::vector<std::uint8_t> straddles_;  ///< patches whose bound holds wherever triangles lie; empty if there are none
-  std::vector<std::uint32_t> corner_sources_;  ///< of each corner, itself if it owns its vertex; empty if nothing is shared
+  std::vector<std::uint32_t>
+      corner_sources_;  ///< of each corner, itself if it owns its vertex; empty if nothing is shared
   std::vector<BorderSource> border_sources_;
 };
 
@@ -141,8 +142,8 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   /// Rates and bounds of all patches.
   Status choose_rates(double tolerance, const KeptRates& kept, CertifiedPlan& plan, const Execution& execution) const;
   /// The same where nothing but a distance is to be kept, block by block.
-  Status choose_by_distance(double tolerance, const KeptRates& kept, CertifiedPlan& plan,
-                            const Execution& execution) const;
+  Status choose_by_distance(double tolerance, const KeptRates& kept, CertifiedPlan& plan, const Execution& execution)
+      const;
   struct RateRange {
     int least, most;
   };

@@ -134,7 +134,8 @@ Result<PlannerOptions> checked(const CertifiedOptions& options, const PatchSet& 
   if (options.angle && !(*options.angle > 0 && *options.angle <= std::numbers::pi / 2))
     return bad("the angle is " + text(*options.angle) + ", it must be above 0 and at most pi / 2");
   if (options.angle_rate < 1 || options.angle_rate > most_rate)
-    return bad("the angle's rate is " + std::to_string(options.angle_rate) + ", it must be from 1 to " + std::to_string(most_rate));
+    return bad("the angle's rate is " + std::to_string(options.angle_rate) + ", it must be from 1 to " +
+               std::to_string(most_rate));
   if (options.pixels && !(options.pixels->pixels > 0 && std::isfinite(options.pixels->pixels)))
     return bad("the tolerance is " + text(options.pixels->pixels) + " pixels, it must be finite and above 0");
   if (!(options.weld >= 0 && std::isfinite(options.weld)))

@@ -50,7 +50,8 @@ class LineStream {
     T* const memory = memory_[active_].data();
     if (begin_ > 0) std::copy(memory + begin_, memory + line, out_ + begin_);
     const std::size_t first = begin_ > 0 ? line : 0, whole = filled_ / line * line;
-    queue_ = {reinterpret_cast<const float*>(memory + first), reinterpret_cast<float*>(out_ + first), (whole - first) / line};
+    queue_ = {reinterpret_cast<const float*>(memory + first), reinterpret_cast<float*>(out_ + first),
+              (whole - first) / line};
     active_ = 1 - active_;
     std::memcpy(memory_[active_].data(), memory + whole, cache_line);
     out_ += whole;

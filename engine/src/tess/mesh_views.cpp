@@ -100,8 +100,8 @@ Status check_views(const MeshViews& out, const MeshCapacity& wanted) {
 
 Status check_count(const PatchSet& set, std::size_t planned) {
   if (set.patch_count() == planned) return {};
-  return {StatusCode::stale, "the plan is for " + std::to_string(planned) + " patches, the set has " +
-                                 std::to_string(set.patch_count())};
+  return {StatusCode::stale,
+          "the plan is for " + std::to_string(planned) + " patches, the set has " + std::to_string(set.patch_count())};
 }
 
 Status check_shapes(const PatchSet& set, std::span<const PatchShape> planned) {
@@ -116,9 +116,10 @@ Status check_shapes(const PatchSet& set, std::span<const PatchShape> planned) {
   };
   if (Status status = parallel_for(planned.size(), patches_a_piece, {}, compare); !status.ok()) return status;
   if (!changed.found()) return {};
-  return {StatusCode::stale,
-          "patch " + std::to_string(changed.index()) + " has other degrees or collapsed edges than when the plan was made",
-          static_cast<std::ptrdiff_t>(changed.index())};
+  return {
+      StatusCode::stale,
+      "patch " + std::to_string(changed.index()) + " has other degrees or collapsed edges than when the plan was made",
+      static_cast<std::ptrdiff_t>(changed.index())};
 }
 
 }  // namespace tessera

@@ -13,7 +13,8 @@ double component(const Vec3& p, int axis) { return axis == 0 ? p.x : axis == 1 ?
 /// (Bentley 1975, Multidimensional binary search trees).
 class PointTree {
  public:
-  PointTree(std::span<const Vec3> points, std::vector<std::uint32_t> order) : points_(points), order_(std::move(order)) {
+  PointTree(std::span<const Vec3> points, std::vector<std::uint32_t> order)
+      : points_(points), order_(std::move(order)) {
     divide(0, order_.size(), 0);
   }
 

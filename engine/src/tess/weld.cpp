@@ -86,7 +86,8 @@ class Welder {
     join_corners(corners);
     list_copies(corners);
     weld_.displacements.assign(set_.patches.size(), 0);
-    measure_displacements(set_, weld_, roundings, [](std::size_t) { return true; }, weld_.displacements);
+    measure_displacements(
+        set_, weld_, roundings, [](std::size_t) { return true; }, weld_.displacements);
     renumber();
     return std::move(weld_);
   }

@@ -257,7 +257,8 @@ void run_lines(void (*begin)(LineState<T>&, T* const*), void (*put)(const LineJo
       }
       LineState<T> state;
       begin(state, lane);
-      for (int piece = 0; piece < 2; ++piece) put({&state, rows.data(), step, static_cast<std::ptrdiff_t>(count), 13, false});
+      for (int piece = 0; piece < 2; ++piece)
+        put({&state, rows.data(), step, static_cast<std::ptrdiff_t>(count), 13, false});
       end(state, 13, false);
       print_hash(std::string("lines/") + type_name<T> + "/" + std::to_string(count) + "/" + std::to_string(step),
                  "values", out.data(), out.size());
