@@ -1,6 +1,7 @@
 #pragma once
 // A ray made ready for tracing: checked, moved to the set's origin and cut to the scene's box, all in double.
 
+#include "kernel/ray_kernels.h"
 #include "ray/embree_scene.h"
 #include "tessera/ray_scene.h"
 #include "tessera/vec.h"
@@ -8,7 +9,7 @@
 namespace tessera {
 
 /// The largest magnitude of a ray's components, Embree's own limit (the square root of float's range).
-inline constexpr double max_ray_component = 1.844e18;
+inline constexpr double max_ray_component = kernel::RayBundle::most_component;
 
 /// Finite, within the limit, direction not zero, 0 <= tnear <= tfar, no offset below 0.
 bool is_valid(const Ray& ray);
