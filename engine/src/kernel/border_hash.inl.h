@@ -1,11 +1,19 @@
 // Hashes of the borders of a block of patches, lanes = patches: the same for both directions, and for weights that differ by
 // a power of two (tess/shared_edges.h). A sum over the control points, each mixed with its distance to the nearer end, by
-// multiplications and shifts as in MurmurHash3 (Appleby 2011). Included by the units as sample_kernel.inl.h is.
+// multiplications and shifts as in MurmurHash3 (Appleby 2011). And whether those with one hash are the same curve. Included by
+// the units as sample_kernel.inl.h is.
 
 template <class L>
 [[gnu::always_inline]] inline Indices<L> mixed_bits(const Indices<L>& x) {
   const Indices<L> y = (x ^ x >> 16) * 0x85ebca6bu;
   return y ^ y >> 13;
+}
+
+template <class L>
+[[gnu::always_inline]] inline Indices<L> load_bits(const float* values) {
+  Indices<L> bits;
+  __builtin_memcpy(&bits, values, sizeof bits);
+  return bits;
 }
 
 template <class L>
@@ -30,9 +38,7 @@ void hash_border(const BorderHashJob& job, const float* first, std::ptrdiff_t st
       for (int c = 0; c < components; ++c) {
         alignas(64) float value[L::width];
         L::store(value, scale * L::load(first + k * step + c * block_lanes + lane));
-        Indices<L> bits;
-        __builtin_memcpy(&bits, value, sizeof bits);
-        point = (point ^ bits) * 0x9e3779b1u;
+        point = (point ^ load_bits<L>(value)) * 0x9e3779b1u;
         point ^= point >> 15;
       }
       sum += mixed_bits<L>(point);
@@ -49,4 +55,19 @@ void hash_borders(const BorderHashJob& job) {
   hash_border<L>(job, job.net + row * job.degree_u, column, job.degree_v + 1, job.hash + block_lanes);
   hash_border<L>(job, job.net + column * job.degree_v, row, job.degree_u + 1, job.hash + 2 * block_lanes);
   hash_border<L>(job, job.net, column, job.degree_v + 1, job.hash + 3 * block_lanes);
+}
+
+template <class L>
+void match_borders(const BorderMatchJob& job) {
+  for (int lane = 0; lane < block_lanes; lane += L::width) {
+    Indices<L> differing{};
+    for (int k = 0; k < job.count; ++k)
+      for (int c = 0; c < job.components; ++c) {
+        const float* const own = job.first + k * job.step + c * block_lanes + lane;
+        alignas(64) float other[L::width];
+        L::store(other, L::gather(job.others + k * job.other_step + c * block_lanes, job.place + lane));
+        differing |= load_bits<L>(own) ^ load_bits<L>(other);
+      }
+    __builtin_memcpy(job.differing + lane, &differing, sizeof differing);
+  }
 }

@@ -1,6 +1,7 @@
 #pragma once
 // What a certified plan asks of blocks of patches: bounds, rates, the hashes by which borders find each other.
 
+#include <cstddef>
 #include <cstdint>
 
 #include "kernel/block_lanes.h"
@@ -47,8 +48,20 @@ struct BorderHashJob {
   std::uint32_t* hash = nullptr;  ///< `[side v = 0, u = 1, v = 1, u = 0][lane]`
 };
 
+/// Borders of a block of patches, each beside one that may be the same curve.
+struct BorderMatchJob {
+  const float* first = nullptr;  ///< control point of the block's borders, `[component][lane]`
+  std::ptrdiff_t step = 0;       ///< to the next
+  int count = 0, components = 0;
+  const float* others = nullptr;        ///< where their control points are, one lane of each
+  const std::int32_t* place = nullptr;  ///< `[lane]`: of the other's first, from there on
+  std::ptrdiff_t other_step = 0;        ///< to its next: backwards where it runs the other way
+  std::uint32_t* differing = nullptr;   ///< `[lane]`: 0 where all bits are the same
+};
+
 struct ChordKernels {
   void (*hash_borders)(const BorderHashJob&);
+  void (*match_borders)(const BorderMatchJob&);
   void (*bound_chords)(const ChordJob&);
   void (*bound_products)(const ChordProductJob&);     ///< the products alone
   void (*share_of_products)(const ChordProductJob&);  ///< the share alone

@@ -68,6 +68,10 @@ struct Lanes<float> {
       _mm256_maskstore_ps(p, _mm256_cmpgt_epi32(_mm256_set1_epi32(count), index), a);
     }
   }
+  /// from[places[lane]]
+  static Batch gather(const float* from, const std::int32_t* places) {
+    return _mm256_i32gather_ps(from, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(places)), sizeof(float));
+  }
   /// The first `count` values, zeros in the other lanes; reads no more.
   static Batch load_first(const float* p, int count) {
     if (count == 4) return _mm256_zextps128_ps256(_mm_loadu_ps(p));

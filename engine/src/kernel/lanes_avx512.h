@@ -67,6 +67,10 @@ struct Lanes<float> {
       _mm512_mask_storeu_ps(p, static_cast<__mmask16>((1u << count) - 1u), a);
     }
   }
+  /// from[places[lane]]
+  static Batch gather(const float* from, const std::int32_t* places) {
+    return _mm512_i32gather_ps(_mm512_loadu_si512(places), from, sizeof(float));
+  }
   /// The first `count` values, zeros in the other lanes; reads no more.
   static Batch load_first(const float* p, int count) {
     return _mm512_maskz_loadu_ps(static_cast<__mmask16>((1u << count) - 1u), p);

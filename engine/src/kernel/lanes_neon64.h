@@ -185,6 +185,11 @@ struct Lanes<float> : ThroughMemory<float> {
   static Batch inverse_root_guess(Batch a) {                                             // halves the exponent
     return vreinterpretq_f32_u32(vsubq_u32(vdupq_n_u32(0x5f3759df), vshrq_n_u32(vreinterpretq_u32_f32(a), 1)));
   }
+  /// from[places[lane]]
+  static Batch gather(const float* from, const std::int32_t* places) {
+    const float values[width] = {from[places[0]], from[places[1]], from[places[2]], from[places[3]]};
+    return vld1q_f32(values);
+  }
   static void store_bytes(std::uint8_t* p, Batch a) {  // small whole numbers
     const uint16x4_t pairs = vqmovn_u32(vcvtq_u32_f32(a));
     vst1_lane_u32(reinterpret_cast<std::uint32_t*>(p), vreinterpret_u32_u8(vqmovn_u16(vcombine_u16(pairs, pairs))), 0);

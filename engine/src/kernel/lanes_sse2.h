@@ -52,6 +52,10 @@ struct Lanes<float> {
       for (int i = 0; i < count; ++i) p[i] = values[i];
     }
   }
+  /// from[places[lane]]
+  static Batch gather(const float* from, const std::int32_t* places) {
+    return _mm_setr_ps(from[places[0]], from[places[1]], from[places[2]], from[places[3]]);
+  }
   /// The first `count` values, zeros in the other lanes; reads no more.
   static Batch load_first(const float* p, int count) {
     if (count == width) return _mm_loadu_ps(p);

@@ -114,8 +114,9 @@ class CubicVertices {
     for (int side = 0; side < 4; ++side) {
       const MeshCubicBorder& lanes = *job_.border[side].cubic;
       const int begin = within(start[side] - first, 0), end = within(start[side + 1] - first, 0);
+      if (begin == end) continue;
       const auto mask = static_cast<__mmask16>((1u << end) - (1u << begin));
-      const float* from = lanes.weights + width + (mask != 0 ? first - start[side] : 0);
+      const float* from = lanes.weights + width + (first - start[side]);
       place = _mm512_mask_mov_epi32(place, mask, _mm512_set1_epi32(4 * side));
       for (int kind = 0; kind < kinds; ++kind)
         weight[kind] = _mm512_mask_loadu_ps(weight[kind], mask, from + kind * lanes.stride);

@@ -15,8 +15,8 @@ namespace {
 }  // namespace
 
 extern const ChordKernels chord_kernels = {
-    hash_borders<Lanes<float>>,      bound_chords<Lanes<float>>, bound_products<Lanes<float>>,
-    share_of_products<Lanes<float>>, find_rates<Lanes<float>>,
+    hash_borders<Lanes<float>>,   match_borders<Lanes<float>>,     bound_chords<Lanes<float>>,
+    bound_products<Lanes<float>>, share_of_products<Lanes<float>>, find_rates<Lanes<float>>,
 };
 
 }  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE

@@ -50,6 +50,13 @@ Result<CertifiedPlanner> CertifiedPlanner::make(const PatchSet::Impl& set, const
   const std::size_t patches = set.patches.size();
   planner.shapes_.resize(patches);
   planner.roundings_.resize(patches);
+  const std::size_t blocks = set.lane_counts.size();
+  BorderHashes hashes(set);
+  const auto hash = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t block = begin; block < end; ++block) hashes.find(set, block);
+  };
+  Status status = parallel_for(blocks, 4 * blocks_a_piece, {.cancel = execution.cancel}, hash);
+  if (!status.ok()) return status;
   const auto bound = [&](std::size_t begin, std::size_t end) {
     for (std::size_t block = begin; block < end; ++block) {
       planner.chords_.bound(set, block);
@@ -65,7 +72,18 @@ Result<CertifiedPlanner> CertifiedPlanner::make(const PatchSet::Impl& set, const
       }
     }
   };
-  Status status = parallel_for(set.lane_counts.size(), blocks_a_piece, execution, bound);
+  // Edges are found one after the other: beside the bounds, by whichever thread comes first.
+  const std::size_t pieces = 1 + (blocks + blocks_a_piece - 1) / blocks_a_piece;
+  const auto find_or_bound = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t piece = begin; piece < end; ++piece) {
+      if (piece == 0) {
+        planner.edges_ = SharedEdges(set, hashes);
+      } else {
+        bound((piece - 1) * blocks_a_piece, std::min(blocks, piece * blocks_a_piece));
+      }
+    }
+  };
+  status = parallel_for(pieces, pieces > 2 ? 1 : 2, execution, find_or_bound);
   if (!status.ok()) return status;
   if (options.weld > 0) {
     planner.weld_ = weld_borders(set, planner.shapes_, planner.roundings_, options.weld, planner.edges_);

@@ -134,7 +134,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   };
 
   CertifiedPlanner(const PatchSet::Impl& set, const PlannerOptions& options)
-      : set_(&set), options_(options), edges_(set), fit_error_(set.fit_error.distance), chords_(set) {}
+      : set_(&set), options_(options), fit_error_(set.fit_error.distance), chords_(set) {}
   ChordBound chord(std::size_t patch) const { return chords_.chord(set_->slots[patch].block, set_->slots[patch].lane); }
   Status bound_turning_and_picture(const PatchSet::Impl& set, const Execution& execution);
   Choice choose(std::size_t patch, double tolerance, int most, const KeptRates& kept = {}) const;

@@ -34,7 +34,11 @@ double pairs_of_products(const BlockGroup& group) {
 ChordBlocks::ChordBlocks(const PatchSet::Impl& set)
     : pieces_(set.lane_counts.size() * block_pieces),
       unit_(set.lane_counts.size() * lanes, 1.0f),
-      size_(unit_.size(), -1.0f) {}
+      size_(unit_.size(), -1.0f) {
+  for (const BlockGroup& group : set.groups)  // whose lanes are not all bounded
+    if (group.rational)
+      std::fill_n(pieces_.data() + group.first_block * block_pieces, group.block_count * block_pieces, 0.0f);
+}
 
 void ChordBlocks::bound(const PatchSet::Impl& set, std::size_t block, std::uint32_t wanted) {
   const BlockGroup& group = set.group_of_block(block);

@@ -53,15 +53,14 @@ void CertifiedPlanner::divide(double tolerance, CertifiedPlan& plan) const {
       needs[edge].is_even |= static_cast<std::uint16_t>(~rate & never);
     }
   }
+  const auto border_of = [&](std::size_t k, Side side) -> int {
+    const std::uint32_t edge = edges_.edge(k, side);
+    if (edge == SharedEdges::none) return rate_along(rates[k], side);
+    const Need need = needs[edge];
+    return need.most + (need.most & need.is_even);
+  };
   const auto borders_of = [&](std::size_t k) {
-    std::array<int, 4> borders{};
-    for (const Side side : all_sides) {
-      const std::uint32_t edge = edges_.edge(k, side);
-      const auto rate_of = [](Need need) { return need.most + (need.most & need.is_even); };
-      borders[static_cast<std::size_t>(side)] =
-          edge == SharedEdges::none ? rate_along(rates[k], side) : rate_of(needs[edge]);
-    }
-    return borders;
+    return std::array{border_of(k, Side::v0), border_of(k, Side::u1), border_of(k, Side::v1), border_of(k, Side::u0)};
   };
   for (std::size_t k = 0; k < rates.size(); ++k) {
     if (!is_coarse(k) || shapes[k].is_curve || always_straddles(k)) continue;
@@ -72,8 +71,8 @@ void CertifiedPlanner::divide(double tolerance, CertifiedPlan& plan) const {
         needs[edge].is_even = 1;
     }
   }
-  plan.divisions_.resize(rates.size());
-  for (std::size_t k = 0; k < rates.size(); ++k) plan.divisions_[k] = Division::of(shapes[k], rates[k], borders_of(k));
+  plan.divisions_.reserve(rates.size());
+  for (std::size_t k = 0; k < rates.size(); ++k) plan.divisions_.emplace_back().set(shapes[k], rates[k], borders_of(k));
 }
 
 }  // namespace tessera

@@ -20,6 +20,19 @@ constexpr Edge edge_of(Side side) {
   return edges[static_cast<int>(side)];
 }
 
+/// Where the control points of a side lie in a block, in floats.
+struct BorderPlaces {
+  std::ptrdiff_t first, step;
+  int count, components;
+
+  BorderPlaces(const BlockGroup& group, Side side) : components(group.rational ? 4 : 3) {
+    const std::ptrdiff_t column = components * std::ptrdiff_t{PatchSet::lanes}, row = column * (group.degree_v + 1);
+    first = side == Side::v1 ? column * group.degree_v : side == Side::u1 ? row * group.degree_u : 0;
+    step = runs_along_u(side) ? row : column;
+    count = (runs_along_u(side) ? group.degree_u : group.degree_v) + 1;
+  }
+};
+
 /// A border's packed float control points, relative to the set's origin, homogeneous if there are 4 components; they run
 /// with u or v. Patches scale their weights by powers of two, each its own: here they are scaled so that the border's
 /// largest weight lies in [1/2, 1). The set must have float Bernstein blocks.
@@ -28,15 +41,12 @@ class PackedBorder {
   PackedBorder(const PatchSet::Impl& set, std::size_t patch, Side side) {
     const PatchSet::Slot slot = set.slots[patch];
     const BlockGroup& group = set.groups.size() == 1 ? set.groups.front() : set.group_of_block(slot.block);
-    components_ = group.rational ? 4 : 3;
-    const std::ptrdiff_t column = components_ * std::ptrdiff_t{PatchSet::lanes}, row = column * (group.degree_v + 1);
+    const BorderPlaces places(group, side);
+    components_ = places.components;
     first_ = set.single.bernstein.data() + group.first_value + (slot.block - group.first_block) * group.block_values +
-             slot.lane +
-             (side == Side::v1   ? column * group.degree_v
-              : side == Side::u1 ? row * group.degree_u
-                                 : 0);
-    step_ = runs_along_u(side) ? row : column;
-    count_ = (runs_along_u(side) ? group.degree_u : group.degree_v) + 1;
+             slot.lane + places.first;
+    step_ = places.step;
+    count_ = places.count;
     if (group.rational) scale_ = weight_scale();
   }
   int count() const { return count_; }
@@ -60,6 +70,24 @@ class PackedBorder {
 /// Whether borders are the same bits, the one running backwards if `reversed`.
 bool equal(const PackedBorder& a, const PackedBorder& b, bool reversed);
 
+/// Hashes of all borders of a set: the same for borders that are equal(), in either direction.
+class BorderHashes {
+ public:
+  /// The set must have float Bernstein blocks.
+  explicit BorderHashes(const PatchSet::Impl& set) : hashes_(set.lane_counts.size() * 4 * PatchSet::lanes) {}
+  /// Finds those of a block. Threads: any number, each a block of its own.
+  void find(const PatchSet::Impl& set, std::size_t block);
+
+  /// Of a block's sides, `[side][lane]`; once found.
+  const std::uint32_t* of_block(std::size_t block) const { return hashes_.data() + block * 4 * PatchSet::lanes; }
+  std::uint32_t of(PatchSet::Slot slot, std::size_t side) const {
+    return of_block(slot.block)[side * PatchSet::lanes + slot.lane];
+  }
+
+ private:
+  UnsetVector<std::uint32_t> hashes_;
+};
+
 /// The edges of a set: borders whose packed float control points and weights are the same bits, in either direction, are one edge. It
 /// is these floats that get evaluated, so equal bits make equal curves. Borders of different degree are different edges.
 /// Collapsed borders belong to none.
@@ -67,12 +95,15 @@ class SharedEdges {
  public:
   static constexpr std::uint32_t none = 0xffffffff;
 
-  /// The set must have float Bernstein blocks. Edges are numbered by the first border of each, in the order of the
-  /// patches and of `all_sides`.
+  SharedEdges() = default;
+  /// Edges are numbered by the first border of each, in the order of the blocks, of their patches and of `all_sides`.
+  SharedEdges(const PatchSet::Impl& set, const BorderHashes& hashes);
   explicit SharedEdges(const PatchSet::Impl& set);
 
   std::size_t count() const { return count_; }
   std::uint32_t edge(std::size_t patch, Side side) const { return edges_[4 * patch + static_cast<std::size_t>(side)]; }
+  /// Of the four sides.
+  const std::uint32_t* edges(std::size_t patch) const { return edges_.data() + 4 * patch; }
   /// Gives each edge another number, below count(), or none.
   void renumber(std::span<const std::uint32_t> numbers);
 

@@ -34,11 +34,24 @@ struct Division {
 
   /// `rates` were asked for the patch; each of `borders` is at least the rate along it.
   static Division of(const PatchShape& shape, Rates rates, const std::array<int, 4>& borders) {
-    if (std::min(rates.u, rates.v) == 1)
-      for (const bool across_u : {true, false})
-        if (joins_borders(shape, rates, borders, across_u))
-          return {{1, 1}, borders, shape.collapsed, shape.is_curve, across_u};
-    return {{std::max(rates.u, 2), std::max(rates.v, 2)}, borders, shape.collapsed, shape.is_curve};
+    Division division;
+    division.set(shape, rates, borders);
+    return division;
+  }
+  /// The same in place: copies of a record that was just made wait for its stores.
+  void set(const PatchShape& shape, Rates rates, const std::array<int, 4>& borders) {
+    inner = {std::max(rates.u, 2), std::max(rates.v, 2)};
+    border = borders;
+    collapsed = shape.collapsed;
+    empty = shape.is_curve;
+    across_u = false;
+    if (std::min(rates.u, rates.v) > 1) return;
+    for (const bool way : {true, false}) {
+      if (!joins_borders(shape, rates, border, way)) continue;
+      inner = {1, 1};
+      across_u = way;
+      return;
+    }
   }
 
   std::size_t inner_count() const {

@@ -62,7 +62,7 @@ struct MeshStreams {
   void share(kernel::MeshVertexJob& job, std::size_t vertices) {
     const std::size_t lines = queues[0].lines + queues[1].lines + queues[2].lines, vectors = vertices / 16 + 2;
     job.queues = queues.data();
-    job.lines_a_vector = static_cast<int>(lines / vectors + 1);
+    job.lines_a_vector = static_cast<int>(static_cast<std::uint32_t>(lines) / static_cast<std::uint32_t>(vectors)) + 1;
   }
 };
 
