@@ -1,6 +1,7 @@
 #include "tess/mesh_tables.h"
 
 #include <algorithm>
+#include <array>
 
 #include "basis/bernstein.h"
 #include "kernel/kernel_table.h"
@@ -10,32 +11,54 @@ namespace {
 
 constexpr std::size_t tile = kernel::mesh_tile;
 
-/// C(n,i) (t^i s^(n-i)) with t = k / rate and s = (rate - k) / rate: B_i at k is B_{n-i} at rate - k, bit for bit.
-double weight(int degree, int i, int k, int rate) {
-  double t = 1, s = 1;
-  for (int n = 0; n < i; ++n) t *= double(k) / rate;
-  for (int n = i; n < degree; ++n) s *= double(rate - k) / rate;
-  return binomial(degree, i) * (t * s);
-}
+/// The Bernstein polynomials of a degree and their derivatives at k / rate.
+class WeightsAt {
+ public:
+  explicit WeightsAt(int degree) : degree_(degree) {
+    for (int i = 0; i <= degree; ++i) binomial_[at(i)] = binomial(degree, i);
+    for (int i = 0; i < degree; ++i) below_[at(i)] = binomial(degree - 1, i);
+  }
 
-/// n (B^{n-1}_{i-1} - B^{n-1}_i).
-double first_derivative(int degree, int i, int k, int rate) {
-  const double before = i > 0 ? weight(degree - 1, i - 1, k, rate) : 0,
-               next = i < degree ? weight(degree - 1, i, k, rate) : 0;
-  return degree * (before - next);
-}
+  void set(int k, int rate) {
+    const double along = double(k) / rate, back = double(rate - k) / rate;
+    std::array<double, max_degree + 1> t, s;  // their powers
+    t[0] = s[0] = 1;
+    for (int n = 1; n <= degree_; ++n) {
+      t[at(n)] = t[at(n - 1)] * along;
+      s[at(n)] = s[at(n - 1)] * back;
+    }
+    // C(n,i) (t^i s^(n-i)): B_i at k is B_{n-i} at rate - k, bit for bit.
+    for (int i = 0; i <= degree_; ++i) value_[at(i)] = binomial_[at(i)] * (t[at(i)] * s[at(degree_ - i)]);
+    // n (B^{n-1}_{i-1} - B^{n-1}_i)
+    double before = 0;
+    for (int i = 0; i <= degree_; ++i) {
+      const double next = i < degree_ ? below_[at(i)] * (t[at(i)] * s[at(degree_ - 1 - i)]) : 0;
+      slope_[at(i)] = degree_ * (before - next);
+      before = next;
+    }
+  }
+  float value(int i) const { return static_cast<float>(value_[at(i)]); }
+  float slope(int i) const { return static_cast<float>(slope_[at(i)]); }
+
+ private:
+  static std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+  int degree_;
+  std::array<double, max_degree + 1> binomial_{}, below_{}, value_, slope_;
+};
 
 /// `[tile][order][i][8]` for k = first .. last, which then repeats; an even number of tiles.
 AlignedVector<float> tiles_of_weights(int degree, int rate, int first, int last) {
   const auto count = static_cast<std::size_t>(last - first + 1), terms = static_cast<std::size_t>(degree) + 1;
   const std::size_t tiles = (count + 2 * tile - 1) / (2 * tile) * 2;
   AlignedVector<float> weights(tiles * 2 * terms * tile);
+  WeightsAt at(degree);
   for (std::size_t k = 0; k < tiles * tile; ++k) {
-    const int number = first + static_cast<int>(std::min(k, count - 1));
+    if (k < count) at.set(first + static_cast<int>(k), rate);
     for (std::size_t i = 0; i < terms; ++i) {
       float* value = weights.data() + (k / tile * 2 * terms + i) * tile + k % tile;
-      value[0] = static_cast<float>(weight(degree, static_cast<int>(i), number, rate));
-      value[terms * tile] = static_cast<float>(first_derivative(degree, static_cast<int>(i), number, rate));
+      value[0] = at.value(static_cast<int>(i));
+      value[terms * tile] = at.slope(static_cast<int>(i));
     }
   }
   return weights;
@@ -77,17 +100,20 @@ void MeshTables::add_cubic_inner(int rate) {
   made.weights.resize(rows * row_weights + 8 * stride);
   made.places.resize(stride);
   float* const columns = made.weights.data() + rows * row_weights;
-  for (std::size_t i = 0; i < 4; ++i)
-    for (const std::size_t order : {0, 1}) {
-      const auto value = [&](std::size_t k) {
-        const int number = static_cast<int>(k) + 1, term = static_cast<int>(i);
-        return static_cast<float>(order == 0 ? weight(3, term, number, rate) : first_derivative(3, term, number, rate));
-      };
-      for (std::size_t k = 0; k < rows; ++k)
-        std::fill_n(made.weights.data() + (k / 4 * 8 + order * 4 + i) * lanes + k % 4 * 4, 4,
-                    value(std::min(k, count - 1)));
-      for (std::size_t x = 0; x < stride; ++x) columns[(order * 4 + i) * stride + x] = value(x % count);
+  WeightsAt at(3);
+  for (std::size_t k = 0; k < rows; ++k) {
+    if (k < count) at.set(static_cast<int>(k) + 1, rate);
+    for (int i = 0; i < 4; ++i) {
+      const auto term = static_cast<std::size_t>(i);
+      float* const row = made.weights.data() + (k / 4 * 8 + term) * lanes + k % 4 * 4;
+      std::fill_n(row, 4, at.value(i));
+      std::fill_n(row + 4 * lanes, 4, at.slope(i));
+      for (std::size_t x = k; k < count && x < stride; x += count) {
+        columns[term * stride + x] = at.value(i);
+        columns[(4 + term) * stride + x] = at.slope(i);
+      }
     }
+  }
   for (std::size_t x = 0; x < stride; ++x) made.places[x] = static_cast<std::int32_t>(4 * (x / count));
   made.table = {made.weights.data(), columns, made.places.data(), static_cast<std::ptrdiff_t>(stride)};
 }
@@ -98,13 +124,16 @@ void MeshTables::add_cubic_border(int rate) {
   constexpr std::size_t lanes = 16;
   const auto count = static_cast<std::size_t>(rate), stride = lanes + (count + 2 * lanes - 1) / lanes * lanes;
   made.weights.resize(8 * stride);
-  for (int i = 0; i < 4; ++i)
-    for (int k = 0; k < rate; ++k) {
+  WeightsAt at(3);
+  for (int k = 0; k < rate; ++k) {
+    at.set(k, rate);
+    for (int i = 0; i < 4; ++i) {
       float* const value =
           made.weights.data() + static_cast<std::size_t>(i) * stride + lanes + static_cast<std::size_t>(k);
-      value[0] = static_cast<float>(weight(3, i, k, rate));
-      value[4 * stride] = static_cast<float>(first_derivative(3, i, k, rate));
+      value[0] = at.value(i);
+      value[4 * stride] = at.slope(i);
     }
+  }
   made.table = {made.weights.data(), static_cast<std::ptrdiff_t>(stride)};
 }
 
