@@ -16,22 +16,24 @@ template <class L>
   return bits;
 }
 
+/// Of a rational border of `count` points: a power of two that brings the largest weight into [1/2, 1).
+template <class L, class Weight>
+[[gnu::always_inline]] inline typename L::Batch weight_scale(int count, const Weight& weight) {
+  auto heaviest = weight(0);
+  for (int k = 1; k < count; ++k) heaviest = xsimd::max(heaviest, weight(k));
+  alignas(64) float scale[L::width];
+  L::store(scale, heaviest);
+  // 2^-k for a weight of at least 2^(k-1) and below 2^k
+  for (float& w : scale) w = __builtin_bit_cast(float, (253u - (__builtin_bit_cast(std::uint32_t, w) >> 23)) << 23);
+  return L::load(scale);
+}
+
 template <class L>
 void hash_border(const BorderHashJob& job, const float* first, std::ptrdiff_t step, int count, std::uint32_t* hash) {
   const int components = job.rational ? 4 : 3;
   for (int lane = 0; lane < block_lanes; lane += L::width) {
-    auto scale = L::broadcast(1);
-    if (job.rational) {
-      auto heaviest = L::broadcast(0);
-      for (int k = 0; k < count; ++k)
-        heaviest = xsimd::max(heaviest, L::load(first + k * step + 3 * block_lanes + lane));
-      alignas(64) float weight[L::width];
-      L::store(weight, heaviest);
-      // 2^-k for a weight of at least 2^(k-1) and below 2^k
-      for (float& w : weight)
-        w = __builtin_bit_cast(float, (253u - (__builtin_bit_cast(std::uint32_t, w) >> 23)) << 23);
-      scale = L::load(weight);
-    }
+    const auto weight = [&](int k) { return L::load(first + k * step + 3 * block_lanes + lane); };
+    const auto scale = job.rational ? weight_scale<L>(count, weight) : L::broadcast(1);
     Indices<L> sum = Indices<L>{} + static_cast<std::uint32_t>(count * 8 + components);
     for (int k = 0; k < count; ++k) {
       Indices<L> point = Indices<L>{} + static_cast<std::uint32_t>(k < count - 1 - k ? k + 1 : count - k);
@@ -60,13 +62,22 @@ void hash_borders(const BorderHashJob& job) {
 template <class L>
 void match_borders(const BorderMatchJob& job) {
   for (int lane = 0; lane < block_lanes; lane += L::width) {
+    const auto own = [&](int k, int c) { return L::load(job.first + k * job.step + c * block_lanes + lane); };
+    const auto other = [&](int k, int c) {
+      return L::gather(job.others + k * job.other_step + c * block_lanes, job.place + lane);
+    };
+    auto scale = L::broadcast(1), other_scale = scale;
+    if (job.components == 4) {
+      scale = weight_scale<L>(job.count, [&](int k) { return own(k, 3); });
+      other_scale = weight_scale<L>(job.count, [&](int k) { return other(k, 3); });
+    }
     Indices<L> differing{};
     for (int k = 0; k < job.count; ++k)
       for (int c = 0; c < job.components; ++c) {
-        const float* const own = job.first + k * job.step + c * block_lanes + lane;
-        alignas(64) float other[L::width];
-        L::store(other, L::gather(job.others + k * job.other_step + c * block_lanes, job.place + lane));
-        differing |= load_bits<L>(own) ^ load_bits<L>(other);
+        alignas(64) float a[L::width], b[L::width];
+        L::store(a, scale * own(k, c));
+        L::store(b, other_scale * other(k, c));
+        differing |= load_bits<L>(a) ^ load_bits<L>(b);
       }
     __builtin_memcpy(job.differing + lane, &differing, sizeof differing);
   }

@@ -62,6 +62,22 @@ template <class L>
   for (int k = 0; k < 9; ++k) L::store(job.pieces + (k * 3 + kind) * block_lanes + lane, pieces[k]);
 }
 
+/// The inverse of the power of two above `size`, at least 2^-120, which goes to job.unit.
+template <class L>
+[[gnu::always_inline]] inline typename L::Batch inverse_unit(const ChordJob& job, int lane,
+                                                             const typename L::Batch& size) {
+  alignas(64) float sizes[L::width], inverse[L::width];
+  L::store(sizes, size);
+  for (int l = 0; l < L::width; ++l) {
+    // The exponent's bits alone are the power of two at or below; 2^k has the inverse 2^-k.
+    std::uint32_t bits = __builtin_bit_cast(std::uint32_t, sizes[l]) >> 23;
+    if (bits > 252) bits = 252;
+    job.unit[lane + l] = __builtin_bit_cast(float, (bits + 1) << 23);
+    inverse[l] = __builtin_bit_cast(float, (253 - bits) << 23);
+  }
+  return L::load(inverse);
+}
+
 /// Control points in units of the power of two above the largest, which go to job.unit, so that squares stay in range.
 template <class L, int Degree>
 [[gnu::always_inline]] inline void scaled_net(const ChordJob& job, int lane, typename L::Batch* net) {
@@ -75,16 +91,7 @@ template <class L, int Degree>
       size = xsimd::max(size, xsimd::abs(value));
     }
   L::store(job.size + lane, size);
-  alignas(64) float sizes[L::width], inverse[L::width];
-  L::store(sizes, size);
-  for (int l = 0; l < L::width; ++l) {
-    // The exponent's bits alone are the power of two at or below; 2^k has the inverse 2^-k.
-    std::uint32_t bits = __builtin_bit_cast(std::uint32_t, sizes[l]) >> 23;
-    if (bits > 252) bits = 252;
-    job.unit[lane + l] = __builtin_bit_cast(float, (bits + 1) << 23);
-    inverse[l] = __builtin_bit_cast(float, (253 - bits) << 23);
-  }
-  const Batch scale = L::load(inverse);
+  const Batch scale = inverse_unit<L>(job, lane, size);
   for (int k = 0; k < 3 * points; ++k) net[k] = net[k] * scale;
 }
 

@@ -15,8 +15,12 @@ struct ChordJob {
   int degree_u = 0, degree_v = 0;
   float* pieces = nullptr;  ///< `[piece of 9][uu, uv, vv][lane]`, in units of `unit`
   float* unit = nullptr;    ///< `[lane]`: a power of two above the largest coefficient
-  float* size = nullptr;    ///< `[lane]`: the largest coefficient, at least 2^-120
+  float* size = nullptr;    ///< `[lane]`: the largest coordinate of a control point, at least 2^-120
 };
+
+/// Rational patches up to this degree have their bounds in blocks, in float. `net` then has four components; `unit` is above
+/// the coefficients as well, and `size` is negative where rounding is too much of a bound, or weights are too uneven.
+inline constexpr int most_rational_degree = 7;
 
 /// Bounds on products of the second derivatives of such a block: see SecondDerivatives. Of degrees up to most_product_degree.
 struct ChordProductJob {
@@ -48,7 +52,7 @@ struct BorderHashJob {
   std::uint32_t* hash = nullptr;  ///< `[side v = 0, u = 1, v = 1, u = 0][lane]`
 };
 
-/// Borders of a block of patches, each beside one that may be the same curve.
+/// Borders of a block of patches, each beside one that may be the same curve: with 4 components, but for a power of two.
 struct BorderMatchJob {
   const float* first = nullptr;  ///< control point of the block's borders, `[component][lane]`
   std::ptrdiff_t step = 0;       ///< to the next
@@ -63,6 +67,7 @@ struct ChordKernels {
   void (*hash_borders)(const BorderHashJob&);
   void (*match_borders)(const BorderMatchJob&);
   void (*bound_chords)(const ChordJob&);
+  void (*bound_rational_chords)(const ChordJob&);
   void (*bound_products)(const ChordProductJob&);     ///< the products alone
   void (*share_of_products)(const ChordProductJob&);  ///< the share alone
   void (*find_rates)(const RateJob&);

@@ -63,7 +63,7 @@ Result<CertifiedPlanner> CertifiedPlanner::make(const PatchSet::Impl& set, const
       const BlockGroup& group = set.group_of_block(block);
       const PatchShape whole{
           static_cast<std::uint8_t>(group.degree_u), static_cast<std::uint8_t>(group.degree_v), {}, false};
-      const double rounding = vertex_rounding(group.degree_u, group.degree_v, false, 1);
+      const double rounding = vertex_rounding(group.degree_u, group.degree_v, group.rational, 1);
       for (std::size_t lane = 0; lane < set.lane_counts[block]; ++lane) {
         const std::size_t k = set.lane_patches[block * PatchSet::lanes + lane];
         const std::optional<double> size = planner.chords_.size(block, lane);

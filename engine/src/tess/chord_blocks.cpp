@@ -22,6 +22,10 @@ float rounded_down(double x) {
   return double(nearest) > x ? std::bit_cast<float>(std::bit_cast<std::uint32_t>(nearest) - 1) : nearest;
 }
 
+bool is_bounded_in_blocks(const BlockGroup& group) {
+  return !group.rational || std::max(group.degree_u, group.degree_v) <= kernel::most_rational_degree;
+}
+
 /// How many pairs of control points of different second derivatives there are; 0 where products are not looked for.
 double pairs_of_products(const BlockGroup& group) {
   if (std::max(group.degree_u, group.degree_v) > most_product_degree) return 0;
@@ -36,26 +40,26 @@ ChordBlocks::ChordBlocks(const PatchSet::Impl& set)
       unit_(set.lane_counts.size() * lanes, 1.0f),
       size_(unit_.size(), -1.0f) {
   for (const BlockGroup& group : set.groups)  // whose lanes are not all bounded
-    if (group.rational)
+    if (!is_bounded_in_blocks(group))
       std::fill_n(pieces_.data() + group.first_block * block_pieces, group.block_count * block_pieces, 0.0f);
 }
 
 void ChordBlocks::bound(const PatchSet::Impl& set, std::size_t block, std::uint32_t wanted) {
   const BlockGroup& group = set.group_of_block(block);
   float* const pieces = pieces_.data() + block * block_pieces;
-  if (!group.rational) {
-    kernel::default_kernels().bound_chords(
+  const bool in_block = is_bounded_in_blocks(group);
+  const kernel::KernelTable& kernels = kernel::default_kernels();
+  if (in_block)
+    (group.rational ? kernels.bound_rational_chords : kernels.bound_chords)(
         {.net = set.single.bernstein.data() + group.first_value + (block - group.first_block) * group.block_values,
          .degree_u = group.degree_u,
          .degree_v = group.degree_v,
          .pieces = pieces,
          .unit = unit_.data() + block * lanes,
          .size = size_.data() + block * lanes});
-  }
   for (std::size_t lane = 0; lane < set.lane_counts[block]; ++lane) {
     float &size = size_[block * lanes + lane], &unit = unit_[block * lanes + lane];
-    if (!group.rational && size < largest_size) continue;
-    if (group.rational && !(wanted >> lane & 1u)) continue;
+    if (in_block ? size >= 0 && size < largest_size : !(wanted >> lane & 1u)) continue;
     size = -1;
     const ChordBound chord(set.patches[set.lane_patches[block * lanes + lane]]);
     // In the unit of the largest, so that float holds squares of the others.

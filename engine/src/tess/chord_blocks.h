@@ -12,8 +12,9 @@
 
 namespace tessera {
 
-/// ChordBound in float, rounded up, of a set with float Bernstein blocks. Bounds of polynomial patches come from the packed
-/// coefficients, sixteen patches at a time, and include their rounding; those of rational ones, one by one, from double.
+/// ChordBound in float, rounded up, of a set with float Bernstein blocks. Bounds come from the packed coefficients, sixteen
+/// patches at a time, and include their rounding; those of rational patches of high degrees or uneven weights, or which are
+/// small beside the model, one by one, from double.
 class ChordBlocks {
  public:
   template <class T>

@@ -64,8 +64,8 @@ Status PresentBounds::bound_blocks(const PatchSet::Impl& set, const Execution& e
         const std::size_t patch = set.lane_patches[block * PatchSet::lanes + lane];
         const BezierPatch& net = set.patches[patch];
         const std::optional<double> size = chords_.size(block, lane);
-        roundings_[patch] =
-            size ? vertex_rounding(net.degree_u(), net.degree_v(), false, *size) : vertex_rounding(net, set.origin);
+        roundings_[patch] = size ? vertex_rounding(net.degree_u(), net.degree_v(), net.is_rational(), *size)
+                                 : vertex_rounding(net, set.origin);
       }
     }
   });

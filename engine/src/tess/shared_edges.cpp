@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <utility>
 
 #include "kernel/kernel_table.h"
@@ -125,7 +124,7 @@ class EdgeFinder {
     const std::size_t back = back_[s];
     const std::size_t other_side = (s - back) % 4;
     const BorderPlaces own(group, side), other(group, all_sides[other_side]);
-    if (group.rational || own.count != other.count) return;
+    if (own.count != other.count) return;
     const auto start_of = [&](std::size_t at) {
       return static_cast<std::ptrdiff_t>((at - group.first_block) * group.block_values);
     };
@@ -185,7 +184,8 @@ bool equal(const PackedBorder& a, const PackedBorder& b, bool reversed) { return
 float PackedBorder::weight_scale() const {
   float heaviest = 0;
   for (int k = 0; k < count_; ++k) heaviest = std::max(heaviest, packed(k, 3));
-  return std::ldexp(1.0f, -std::ilogb(heaviest) - 1);
+  // 2^-k for a weight of at least 2^(k-1) and below 2^k, all of which are far from the ends of float's range.
+  return std::bit_cast<float>((253u - (std::bit_cast<std::uint32_t>(heaviest) >> 23)) << 23);
 }
 
 void BorderHashes::find(const PatchSet::Impl& set, std::size_t block) {
