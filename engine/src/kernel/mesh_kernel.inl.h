@@ -5,7 +5,8 @@
 // points, sum_j g_j(v) q_j with lanes = v. The same sums in the same order as in a grid (grid_kernel.inl.h).
 // Border points: by the sum of border_kernel.inl.h, whose bits are those of every patch that has the border. Their normals
 // come from the border's own tangent and the one across it, degree (second row - first row), which points inwards: as the
-// ring runs counter-clockwise, along x inwards is r_u x r_v on every side.
+// ring runs counter-clockwise, along x inwards is r_u x r_v on every side. Where the border is a point, its own tangent is
+// zero, but that of the row next to it, relative to the point, is what r_u tends to.
 // Included by the units as sample_kernel.inl.h is.
 
 /// One number a tile in its lanes.
@@ -229,6 +230,8 @@ class PatchVertices {
     const int count = Degree > 0 ? Degree + 1 : terms;
     const int degree = count - 1, degree_across = (count_u() == count ? count_v() : count_u()) - 1;
     const Batch scale = in_tiles<L>(&a.border->scale, &b.border->scale);
+    const float poles[2] = {a.border->is_point ? 1.0f : 0.0f, b.border->is_point ? 1.0f : 0.0f};
+    const auto at_pole = in_tiles<L>(&poles[0], &poles[1]) > L::broadcast(0);
     Batch terms_of[components][capacity], p[components], along[components], inwards[components];
     for (int c = 0; c < components; ++c) along[c] = inwards[c] = L::broadcast(0);
     for (int i = 0; i < count; ++i) {
@@ -244,7 +247,7 @@ class PatchVertices {
           if constexpr (Rational) across = across * scale;
           across = across - point;
           const Batch slope = load_tiles<L>(a.weights + derivative, b.weights + derivative, lane);
-          along[c] = L::fma(slope, point, along[c]);
+          along[c] = L::fma(slope, xsimd::select(at_pole, across, point), along[c]);
           inwards[c] = L::fma(weight, across, inwards[c]);
         }
       }
