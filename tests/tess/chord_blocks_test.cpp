@@ -84,7 +84,7 @@ TEST(ChordBlocks, HoldTheProductsOfQuartersInDoubleAndLittleMore) {
         for (int which = 0; which < 3; ++which) {
           if (sizes[which] == 0) continue;  // a degree of 1
           EXPECT_GE(found_products[which], exact_products[which] - 1e-9 * sizes[which]);
-          if (patch.is_rational() || std::max(patch.degree_u(), patch.degree_v()) > most_product_degree) continue;
+          if (std::max(patch.degree_u(), patch.degree_v()) > most_product_degree) continue;
           EXPECT_LE(found_products[which],
                     exact_products[which] + 1e-2 * spare[which] + (spare[which] - sizes[which]) * 40);
         }
@@ -145,12 +145,15 @@ TEST(ChordBlocks, RationalBoundsAreTheSameBitsOnEveryInstructionSet) {
       if (!group.rational || std::max(group.degree_u, group.degree_v) > kernel::most_rational_degree) continue;
       std::vector<std::uint32_t> first;
       for (const Isa isa : available_isas()) {
-        alignas(64) float pieces[27 * 16], unit[16], size[16];
+        alignas(64) float pieces[27 * 16], products[27 * 16] = {}, unit[16], size[16];
         const float* net = set.impl().single.bernstein.data() + group.first_value;
         kernel::kernels(isa).bound_rational_chords({net, group.degree_u, group.degree_v, pieces, unit, size});
+        if (std::max(group.degree_u, group.degree_v) <= kernel::most_product_degree)
+          kernel::kernels(isa).bound_rational_products(
+              {net, group.degree_u, group.degree_v, pieces, unit, products, nullptr});
         std::vector<std::uint32_t> bits;
-        for (const std::span<const float> values :
-             {std::span<const float>(pieces), std::span<const float>(unit), std::span<const float>(size)})
+        for (const std::span<const float> values : {std::span<const float>(pieces), std::span<const float>(products),
+                                                    std::span<const float>(unit), std::span<const float>(size)})
           for (const float x : values) bits.push_back(std::bit_cast<std::uint32_t>(x));
         if (first.empty()) first = bits;
         EXPECT_EQ(bits, first) << name(isa);

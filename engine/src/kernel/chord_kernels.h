@@ -68,8 +68,9 @@ struct ChordKernels {
   void (*match_borders)(const BorderMatchJob&);
   void (*bound_chords)(const ChordJob&);
   void (*bound_rational_chords)(const ChordJob&);
-  void (*bound_products)(const ChordProductJob&);     ///< the products alone
-  void (*share_of_products)(const ChordProductJob&);  ///< the share alone
+  void (*bound_products)(const ChordProductJob&);           ///< the products alone
+  void (*bound_rational_products)(const ChordProductJob&);  ///< the same, of rational patches
+  void (*share_of_products)(const ChordProductJob&);        ///< the share alone, of polynomial ones
   void (*find_rates)(const RateJob&);
 };
 
