@@ -12,12 +12,14 @@ namespace tessera::bench {
 
 namespace {
 
-/// The same control points with weights from 1 to 2.
+/// The same control points with weights from 1 to 2, the same ones at opposite borders: neighbours still share theirs.
 std::vector<BezierPatch> with_weights(const std::vector<BezierPatch>& patches) {
   std::vector<BezierPatch> out;
   for (const BezierPatch& patch : patches) {
     std::vector<double> weights;
-    for (std::size_t k = 0; k < patch.points().size(); ++k) weights.push_back(1 + static_cast<double>(k % 5) / 4);
+    for (int i = 0; i <= patch.degree_u(); ++i)
+      for (int j = 0; j <= patch.degree_v(); ++j)
+        weights.push_back(1 + (i % patch.degree_u() == 0 ? 0 : 0.25) + (j % patch.degree_v() == 0 ? 0 : 0.75));
     const std::vector<Vec3> points(patch.points().begin(), patch.points().end());
     out.push_back(test::value_of(BezierPatch::rational(patch.degree_u(), patch.degree_v(), points, weights)));
   }

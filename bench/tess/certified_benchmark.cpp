@@ -87,17 +87,22 @@ void certify(benchmark::State& state, const char* surface, int rate, int threads
   if (threads == 1 && bytes > 0) report_limit(state, *best, *limits, {.bytes_written = bytes});
 }
 
+void add_surface(const char* surface, int rate, int threads) {
+  for (const auto& [name, timed] :
+       {std::pair{"mesh", Timed::mesh}, {"plan", Timed::plan}, {"run", Timed::run}, {"edges", Timed::edges}}) {
+    const bool quick = threads == 1 && rate == 8 && timed == Timed::mesh;
+    if (timed == Timed::edges && (rate != 4 || threads != 1)) continue;  // of the set alone
+    add_case({std::string("certified.") + name, surface, "3", "rate" + std::to_string(rate), "-", threads},
+             quick ? Part::quick : Part::full,
+             [=, timed = timed](benchmark::State& state) { certify(state, surface, rate, threads, timed); });
+  }
+}
+
 const bool registered = [] {
-  for (const int threads : {1, 2})
-    for (const int rate : {4, 8, 12, 17})
-      for (const auto& [name, timed] :
-           {std::pair{"mesh", Timed::mesh}, {"plan", Timed::plan}, {"run", Timed::run}, {"edges", Timed::edges}}) {
-        const Part part = threads == 1 && rate == 8 && timed == Timed::mesh ? Part::quick : Part::full;
-        if (timed == Timed::edges && (rate != 4 || threads != 1)) continue;  // of the set alone
-        add_case({std::string("certified.") + name, "bicubic20000", "3", "rate" + std::to_string(rate), "-", threads},
-                 part,
-                 [=, timed = timed](benchmark::State& state) { certify(state, "bicubic20000", rate, threads, timed); });
-      }
+  for (const int threads : {1, 2}) {
+    for (const int rate : {4, 8, 12, 17}) add_surface("bicubic20000", rate, threads);
+    for (const int rate : {4, 8}) add_surface("rational10000", rate, threads);
+  }
   return true;
 }();
 
