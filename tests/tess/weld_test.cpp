@@ -6,7 +6,7 @@
 
 #include "support/synthetic_sets.h"
 #include "support/triangle_distance.h"
-#include "tess/border_curve.h"
+#include "tess/side_curve.h"
 #include "tess/tessellate_support.h"
 #include "tessera/bezier_operations.h"
 #include "tessera/certified_tessellation.h"
@@ -204,7 +204,7 @@ TEST(Weld, WrongLengthsAreRefused) {
     EXPECT_TRUE(CertifiedTessellation::make(apart, {.tolerance = 0.05, .weld = weld}).ok());
 }
 
-TEST(BorderCurve, TheDistanceBoundIsNotExceeded) {
+TEST(SideCurve, TheDistanceBoundIsNotExceeded) {
   Random random(4);
   double tightest = 0;
   for (int kind = 0; kind < 300; ++kind) {
@@ -221,7 +221,7 @@ TEST(BorderCurve, TheDistanceBoundIsNotExceeded) {
         good(elevate_degree(kind % 2 ? rational(m, 2, points, weights) : polynomial(m, 2, points), m + kind % 3, 2));
     const bool reversed = kind % 5 == 0;
     const BezierPatch other = reversed ? good(reverse_u(raised)) : raised;
-    const double bound = distance_bound(BorderCurve(patch, Side::v0), BorderCurve(other, Side::v0), reversed);
+    const double bound = distance_bound(SideCurve(patch, Side::v0), SideCurve(other, Side::v0), reversed);
     double most = 0;
     for (int k = 0; k <= 50; ++k)
       most = std::max(

@@ -12,7 +12,7 @@
 #include "base/text.h"
 #include "parallel/least_index.h"
 #include "parallel/parallel_for.h"
-#include "tess/border_curve.h"
+#include "tess/side_curve.h"
 
 namespace tessera {
 namespace {

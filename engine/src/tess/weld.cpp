@@ -6,7 +6,7 @@
 #include <limits>
 #include <unordered_map>
 
-#include "tess/border_curve.h"
+#include "tess/side_curve.h"
 #include "tess/union_find.h"
 
 namespace tessera {
@@ -17,7 +17,7 @@ constexpr std::uint32_t none = SharedEdges::none;
 Side side_of(std::uint32_t border) { return all_sides[border % 4]; }
 std::size_t patch_of(std::uint32_t border) { return border / 4; }
 
-BorderCurve curve_of(const PatchSet::Impl& set, std::uint32_t border) {
+SideCurve curve_of(const PatchSet::Impl& set, std::uint32_t border) {
   return {set.patches[patch_of(border)], side_of(border)};
 }
 
@@ -93,7 +93,7 @@ class Welder {
   }
 
  private:
-  BorderCurve curve(std::uint32_t border) const { return curve_of(set_, border); }
+  SideCurve curve(std::uint32_t border) const { return curve_of(set_, border); }
   std::uint32_t edge_of_border(std::uint32_t border) const { return edges_.edge(patch_of(border), side_of(border)); }
 
   /// visit(border, edge) for those of patches with an area.
@@ -108,20 +108,20 @@ class Welder {
   void join_edges() {
     EdgeCells cells(set_.box(), tolerance_);
     const auto middle = [&](std::uint32_t edge) {
-      const BorderCurve border = curve(heads_[edge]);
+      const SideCurve border = curve(heads_[edge]);
       return 0.5 * border.first() + 0.5 * border.last();
     };
     for (std::uint32_t edge = 0; edge < heads_.size(); ++edge)
       if (heads_[edge] != none) cells.add(middle(edge), edge);
     for (std::uint32_t edge = 0; edge < heads_.size(); ++edge) {
       if (heads_[edge] == none || borders_of_[edge] > 1) continue;
-      const BorderCurve border = curve(heads_[edge]);
+      const SideCurve border = curve(heads_[edge]);
       double least = tolerance_;
       std::uint32_t nearest = none;
       bool reversed = false;
       cells.for_near(middle(edge), [&](std::uint32_t other) {
         if (other == edge) return;
-        const BorderCurve met = curve(heads_[other]);
+        const SideCurve met = curve(heads_[other]);
         for (const bool turned : {false, true}) {
           const Vec3 first = turned ? met.last() : met.first(), last = turned ? met.first() : met.last();
           if (!(length(border.first() - first) <= tolerance_ && length(border.last() - last) <= tolerance_)) continue;
@@ -245,7 +245,7 @@ void measure_displacements(const PatchSet::Impl& set, const VertexCopies& copies
   for (const VertexCopies::Corner& pole : copies.poles) {
     if (!wanted(patch_of(pole.to))) continue;
     if (same_bits_stay && packed_corner(set, pole.to) == packed_corner(set, pole.from)) continue;
-    const BorderCurve border = curve_of(set, pole.to);
+    const SideCurve border = curve_of(set, pole.to);
     for (int k = 0; k <= border.degree(); ++k) moved(pole.to, pole.from, length(border.point(k) - corner(pole.from)));
   }
 }

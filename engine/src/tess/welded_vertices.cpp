@@ -3,8 +3,8 @@
 #include <array>
 
 #include "parallel/parallel_for.h"
-#include "tess/border_curve.h"
 #include "tess/ring_vertices.h"
+#include "tess/side_curve.h"
 
 namespace tessera {
 namespace {

@@ -10,9 +10,9 @@ namespace tessera {
 
 /// A border of a patch in homogeneous form relative to its patch's points, running with u or v. Weights are scaled so that
 /// those of both ends add up to 2.
-class BorderCurve {
+class SideCurve {
  public:
-  BorderCurve(const BezierPatch& patch, Side side);
+  SideCurve(const BezierPatch& patch, Side side);
 
   int degree() const { return degree_; }
   Vec3 point(int k) const { return points_[static_cast<std::size_t>(k)]; }
@@ -35,7 +35,7 @@ class BorderCurve {
 ///   |p(t) - q(t)| = |sum B_k (w_k (p_k - q_k) + (w_k - v_k) (q_k - q(t)))| / sum B_k w_k
 ///                <= max |p_k - q_k| + max(|w_k - v_k| / w_k) D,   D the diagonal of the box of the q_k.
 /// Degrees that differ are elevated.
-double distance_bound(BorderCurve a, BorderCurve b, bool reversed);
+double distance_bound(SideCurve a, SideCurve b, bool reversed);
 
 /// The patch with a border made a point, its first. Errors: out_of_memory.
 Result<BezierPatch> with_pole(const BezierPatch& patch, Side side);

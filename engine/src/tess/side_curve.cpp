@@ -1,4 +1,4 @@
-#include "tess/border_curve.h"
+#include "tess/side_curve.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 namespace tessera {
 
-BorderCurve::BorderCurve(const BezierPatch& patch, Side side) {
+SideCurve::SideCurve(const BezierPatch& patch, Side side) {
   const bool along_u = runs_along_u(side);
   degree_ = along_u ? patch.degree_u() : patch.degree_v();
   const int across = along_u ? (side == Side::v1 ? patch.degree_v() : 0) : (side == Side::u1 ? patch.degree_u() : 0);
@@ -20,13 +20,13 @@ BorderCurve::BorderCurve(const BezierPatch& patch, Side side) {
   }
 }
 
-Box3 BorderCurve::box() const {
+Box3 SideCurve::box() const {
   Box3 box;
   for (int k = 0; k <= degree_; ++k) box.extend(point(k));
   return box;
 }
 
-void BorderCurve::elevate(int degree) {
+void SideCurve::elevate(int degree) {
   // Farin, Curves and Surfaces for CAGD, 5th ed., sec. 6.1, in ratios so that points stay what they are where they agree.
   for (; degree_ < degree; ++degree_) {
     const auto n = static_cast<std::size_t>(degree_);
@@ -41,7 +41,7 @@ void BorderCurve::elevate(int degree) {
   }
 }
 
-double distance_bound(BorderCurve a, BorderCurve b, bool reversed) {
+double distance_bound(SideCurve a, SideCurve b, bool reversed) {
   a.elevate(b.degree());
   b.elevate(a.degree());
   double apart = 0, weights = 0;
