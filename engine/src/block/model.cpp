@@ -21,6 +21,9 @@ struct Gathered {
 
   void add(std::size_t surface, PatchGrid grid) {
     const auto u = grid.breaks_u(), v = grid.breaks_v();
+    box.extend(grid.box());
+    fit_error.distance = std::max(fit_error.distance, grid.fit_error().distance);
+    fit_error.certified = fit_error.certified && grid.fit_error().certified;
     std::vector<BezierPatch> added = std::move(grid).take_patches();
     if (patches.empty()) {
       patches = std::move(added);
@@ -39,9 +42,6 @@ struct Gathered {
       sources.insert(sources.end(), row.begin(), row.end());
     }
     surface_count = surface + 1;
-    box.extend(grid.box());
-    fit_error.distance = std::max(fit_error.distance, grid.fit_error().distance);
-    fit_error.certified = fit_error.certified && grid.fit_error().certified;
   }
 
   Result<PatchSet> packed(PatchSetOptions options) && {

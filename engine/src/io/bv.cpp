@@ -171,7 +171,7 @@ class BvReader {
   Status pass_over_pn_quad(const TextCursor& begin) {
     std::array<std::int64_t, 4> degrees{};
     for (std::int64_t& degree : degrees) {
-      const Status status = read_integer("a degree", 0, degree_limit, degree);
+      Status status = read_integer("a degree", 0, degree_limit, degree);
       if (!status.ok()) return status;
     }
     const auto points = [](std::int64_t m, std::int64_t n) { return (m + 1) * (n + 1); };

@@ -222,7 +222,7 @@ Result<std::vector<Curve>> curve_pieces(const FreeformState& state, const Contro
               basis->bernstein_coefficient(k, i) * premultiplied(points[piece * step + std::size_t(i)], state.rational);
       net.add_projected(sum, state.rational);
     }
-    const Result<std::vector<Curve>> curve =
+    Result<std::vector<Curve>> curve =
         one_curve(degree, bezier_knots(degree, std::span(state.u.parm).subspan(piece, 2)), net);
     if (!curve) return curve;
     curves.push_back(curve->front());

@@ -102,7 +102,7 @@ class ObjReader {
     Corner first{}, last{}, corner{};
     int corners = 0;
     for (cursor_.skip_blanks(); !cursor_.at_line_end(); cursor_.skip_blanks()) {
-      const Status status = read_corner(corner);
+      Status status = read_corner(corner);
       if (!status.ok()) return status;
       if (corners == 0) first = corner;
       if (corners >= 2) {
@@ -124,7 +124,7 @@ class ObjReader {
     for (std::size_t k = 0; k < 3; ++k) {
       if (k > 0 && !cursor_.take('/')) break;
       if (k == 1 && !cursor_.at_end() && *cursor_.position() == '/') continue;  // a//c
-      const Status status = read_obj_index(cursor_, "an index of a corner", kinds[k], counts[k], corner[k]);
+      Status status = read_obj_index(cursor_, "an index of a corner", kinds[k], counts[k], corner[k]);
       if (!status.ok()) return status;
     }
     one_parameter_a_vertex_ &= corner[1] == corner[0];

@@ -21,7 +21,7 @@ Status write_packed(OutputFile& out, std::size_t count, std::size_t bytes,
   std::string_view before;  // in packed_before: written by one thread while the others pack the next records
   for (std::size_t first = 0; first < count && !out.failed(); first += room) {
     const std::size_t records = std::min(room, count - first);
-    const Status status = parallel_for(1 + (records + piece - 1) / piece, 1, {}, [&](std::size_t k, std::size_t) {
+    Status status = parallel_for(1 + (records + piece - 1) / piece, 1, {}, [&](std::size_t k, std::size_t) {
       if (k == 0) return out.write(before);
       const std::size_t begin = (k - 1) * piece, end = std::min(records, k * piece);
       pack(first + begin, first + end, buffer.get() + begin * bytes);

@@ -62,7 +62,7 @@ Result<std::size_t> first_misplaced(const Mesh& mesh) {
   const std::array<double, 3> origin{mesh.origin.x, mesh.origin.y, mesh.origin.z};
   constexpr float ample = 1e38f;  // it and an origin as large give a sum within float
   const auto is_small = [](double x) { return std::abs(x) <= double{ample}; };
-  const Result<std::size_t> large = first_beyond(mesh.positions, ample);
+  Result<std::size_t> large = first_beyond(mesh.positions, ample);
   if (!large) return large;
   const bool all_small = std::all_of(origin.begin(), origin.end(), is_small);
   if (all_small && *large == mesh.positions.size()) return mesh.vertex_count();

@@ -63,7 +63,7 @@ Status write(const PatchSet& set, const fs::path& path, OutputFile& out) {
     patches[k] = {names[k], std::span(breaks[k]).first(2), std::span(breaks[k]).last(2), {&set.patch(k), 1}, {}};
   }
   std::vector<std::string> no_warnings;
-  const Status status = writer->write(patches, out, no_warnings);
+  Status status = writer->write(patches, out, no_warnings);
   if (status.ok()) return status;
   return Status(status.code(), path.string() + ": patch " + std::to_string(status.index()) + ": " + status.message(),
                 status.index());

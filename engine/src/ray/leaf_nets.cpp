@@ -170,8 +170,9 @@ void LeafNets::cut(const BezierPatch& patch, std::uint32_t index, const Plan& pl
     leaf.halvings_u = static_cast<std::uint8_t>(plan.halvings_u);
     leaf.halvings_v = static_cast<std::uint8_t>(plan.halvings_v);
     leaf.du = std::ldexp(1.0, -plan.halvings_u), leaf.dv = std::ldexp(1.0, -plan.halvings_v);
-    leaf.u0 = static_cast<double>(piece / along_v) * leaf.du;
-    leaf.v0 = static_cast<double>(piece % along_v) * leaf.dv;
+    const std::size_t across = piece / along_v, along = piece % along_v;
+    leaf.u0 = static_cast<double>(across) * leaf.du;
+    leaf.v0 = static_cast<double>(along) * leaf.dv;
     boxes_[place] = box_of(leaf, net);
     make_local_leaf(shape, leaf.rational, net, *new (local_.data() + place * local_bytes_) kernel::RayLeaf);
   }

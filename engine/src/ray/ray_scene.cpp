@@ -77,7 +77,7 @@ Status RayScene::Impl::all(std::span<const Ray> rays, HitLists& lists, const Exe
   std::vector<std::vector<Hit>> found(tasks);
   std::vector<std::size_t> ends(rays.size());
   std::vector<Status> faults(tasks);
-  const Status status = parallel_for(tasks, 1, execution, [&](std::size_t begin, std::size_t end) {
+  Status status = parallel_for(tasks, 1, execution, [&](std::size_t begin, std::size_t end) {
     for (std::size_t task = begin; task < end; ++task) {
       const std::size_t last = std::min(rays.size(), (task + 1) * rays_a_task);
       for (std::size_t k = task * rays_a_task; k < last && faults[task].ok(); ++k) {
@@ -144,7 +144,7 @@ Status RayScene::occluded(std::span<const Ray> rays, std::span<std::uint8_t> occ
 }
 
 Status RayScene::all(std::span<const Ray> rays, HitLists& lists, const Execution& execution) const {
-  const Status status = guarded([&] { return impl_->all(rays, lists, execution); });
+  Status status = guarded([&] { return impl_->all(rays, lists, execution); });
   if (!status.ok()) {
     lists.hits.clear();
     lists.first.clear();

@@ -115,7 +115,7 @@ Status CertifiedPlanner::bound_turning_and_picture(const PatchSet::Impl& set, co
   };
   if (Status status = parallel_for(shapes_.size(), patches_a_piece, execution, bound); !status.ok()) return status;
   pictures_.reserve(pictures.size());
-  for (std::optional<PatchInPicture>& picture : pictures) pictures_.push_back(*std::move(picture));
+  for (const std::optional<PatchInPicture>& picture : pictures) pictures_.push_back(*picture);
   return {};
 }
 

@@ -45,7 +45,7 @@ ChordBound::ChordBound(const BezierPatch& patch, bool products) {
 }
 
 double ChordBound::distance(Rates rates) const {
-  const Split split = splits_[rates.u % 2 == 0][rates.v % 2 == 0];
+  const Split split = splits[rates.u % 2 == 0][rates.v % 2 == 0];
   double most = 0;
   for (int k = split.first; k < split.first + split.count; ++k)
     most = std::max(most, pieces_[static_cast<std::size_t>(k)].chord(rates));
@@ -62,7 +62,7 @@ ChordBound::Straddling ChordBound::straddling(Rates rates, Edge border, int rate
 double ChordBound::needed(double tolerance, int fixed, bool fixed_u, bool even) const {
   const double h = 1.0 / fixed + 0x1p-24;
   const bool fixed_even = fixed % 2 == 0;
-  const Split split = fixed_u ? splits_[fixed_even][even] : splits_[even][fixed_even];
+  const Split split = fixed_u ? splits[fixed_even][even] : splits[even][fixed_even];
   double needed = 1;
   for (int k = split.first; k < split.first + split.count; ++k) {
     const SecondDerivatives& d = pieces_[static_cast<std::size_t>(k)];

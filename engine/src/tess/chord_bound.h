@@ -91,7 +91,7 @@ class ChordBound {
   struct Split {
     int first, count;
   };
-  static constexpr Split splits_[2][2] = {{{0, 1}, {3, 2}}, {{1, 2}, {5, 4}}};
+  static constexpr Split splits[2][2] = {{{0, 1}, {3, 2}}, {{1, 2}, {5, 4}}};
   /// The smallest rate along the other parameter, with `fixed` along u or v.
   std::optional<Rates> with_rate(double tolerance, int fixed, bool fixed_u, int most) const;
 

@@ -91,7 +91,7 @@ class MeshUpdate::Impl {
       }
       pass.finish();
     };
-    const Status status = parallel_for(blocks.size(), blocks_a_piece, execution, write_blocks);
+    Status status = parallel_for(blocks.size(), blocks_a_piece, execution, write_blocks);
     if (execution.report) {
       execution.report->isa = plan.isa();
       execution.report->streaming = writer.streaming();

@@ -59,7 +59,7 @@ Scaled<Vec3> normal_numerator(const HomogeneousNet& net, bool rational) {
   const auto vector = [](const Homogeneous& a) { return a.vector(); };
   const auto weight = [](const Homogeneous& a) { return a.w; };
   const Scaled<Vec3> au = scaled(net, 1, 0, vector), av = scaled(net, 0, 1, vector);
-  const Scaled<Vec3> direct = cross_product(au, av);
+  Scaled<Vec3> direct = cross_product(au, av);
   if (!rational) return direct;
   const Scaled<Vec3> a = scaled(net, 0, 0, vector);
   Scaled<Vec3> sum = multiple(scaled(net, 0, 0, weight), direct);

@@ -87,7 +87,8 @@ std::size_t Division::special_triangle_count() const {
 Division::Parameters Division::parameters(std::size_t vertex) const {
   if (vertex < inner_count()) {
     const auto row = static_cast<std::size_t>(inner.v - 1);
-    return {double(vertex / row + 1) / inner.u, double(vertex % row + 1) / inner.v};
+    const std::size_t i = vertex / row + 1, j = vertex % row + 1;
+    return {double(i) / inner.u, double(j) / inner.v};
   }
   vertex -= inner_count();
   std::size_t side = 0;
