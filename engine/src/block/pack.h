@@ -120,24 +120,35 @@ bool is_curve(const BezierPatch& patch, EdgeMask collapsed);
 /// Of a curve.
 inline constexpr NormalDoubt no_normal{.squared_length = std::numeric_limits<double>::infinity(), .noise = -1};
 
+/// The error of a tangent where the largest coefficient is 1, `degree` = max(m, n).
+template <class T>
+constexpr double tangent_noise(int degree) {
+  return 6 * degree * double{std::numeric_limits<T>::epsilon()};
+}
+/// |r_u|, |r_v| at the most where the hull's box has the diameter 1.
+constexpr double longest_tangent(int degree, double weight_spread = 1) { return degree * weight_spread; }
+
+/// Squared lengths below, 2^-80 or 2^-600, are out of the range of a float's or a double's squares.
+template <class T>
+inline constexpr double least_doubt = sizeof(T) == 4 ? 0x1p-80 : 0x1p-600;
+
 /// Of a patch that is no curve, `degree` = max(m, n), in blocks of T. With 6 max(m, n) units of the largest coefficient
 /// for the error of a tangent, over the weight for rational patches: random nets of all degrees reach 4, tangents that
 /// vanish 1.6. And |r_u|, |r_v| <= max(m, n) (largest weight / smallest) diameter (Floater 1992, Derivatives of rational
 /// Bezier curves, eq. 10). `largest`: x, y or z of the coefficients; `diameter`: of the hull's box.
 template <class T>
-NormalDoubt normal_doubt(int degree, double largest, double diameter, double lightest = 1, double weight_spread = 1) {
-  const double noise = 6 * degree * double{std::numeric_limits<T>::epsilon()} * largest;
-  const double longest = degree * weight_spread * diameter;
+NormalDoubt normal_doubt(int degree, double largest, double diameter, double lightest, double weight_spread) {
+  const double noise = tangent_noise<T>(degree) * largest;
+  const double longest = longest_tangent(degree, weight_spread) * diameter;
   const double length = 4 * (noise / lightest) * longest;  // 2 sqrt(3) noise |r_u|
   return {.squared_length = length * length, .noise = noise};
 }
 
-/// The same as a kernel reads it: squared length, noise. Squared lengths below `lowest`, 2^-80 or 2^-600, are out of the
-/// range of a float's or a double's squares.
+/// The same as a kernel reads it: squared length, noise.
 template <class T>
 std::array<T, 2> doubt_in(const NormalDoubt& doubt) {
-  const double lowest = sizeof(T) == 4 ? 0x1p-80 : 0x1p-600, largest = std::numeric_limits<T>::max();
-  return {static_cast<T>(std::clamp(doubt.squared_length, lowest, largest)),
+  const double largest = std::numeric_limits<T>::max();
+  return {static_cast<T>(std::clamp(doubt.squared_length, least_doubt<T>, largest)),
           static_cast<T>(std::min(doubt.noise, largest))};
 }
 

@@ -15,7 +15,10 @@ namespace tessera {
 
 namespace kernel {
 struct KernelTable;
-}
+struct NetBoxes;
+template <class T>
+struct PackJob;
+}  // namespace kernel
 
 /// Blocks of equal degrees and rationality, one after the other.
 struct BlockGroup {
@@ -106,8 +109,9 @@ class PatchSet::Impl {
   bool pack_lanes(std::size_t index);
   void note_doubt(std::size_t index);
   /// The lanes of all patches of a block, with the same bits; note_doubt() completes it for each of them. The first lane
-  /// that doesn't fit; lanes if all do.
-  std::size_t pack_block(std::size_t block, const kernel::KernelTable& kernels);
+  /// that doesn't fit; lanes if all do. `edits`: new points for every lane, which become the patches' own first (these
+  /// have memory of their own); null: the patches' own are packed.
+  std::size_t pack_block(std::size_t block, const kernel::KernelTable& kernels, const Vec3* const* edits = nullptr);
 
   /// PatchSet::from, without a copy, of sources that are known to be good. `box`: of all control points, where known.
   static Result<PatchSet> make(std::vector<BezierPatch> patches, std::vector<PatchSource> sources,
@@ -115,6 +119,14 @@ class PatchSet::Impl {
                                const PatchSetOptions& options);
 
  private:
+  /// The Bernstein coefficients of a block of polynomial patches, their collapsed edges and boxes; as pack_block().
+  std::size_t pack_polynomials(std::size_t block, const kernel::KernelTable& kernels, const Vec3* const* edits,
+                               kernel::NetBoxes& boxes);
+  template <class T>
+  kernel::PackJob<T> pack_job(const BlockGroup& group, std::size_t block, const double* const* nets,
+                              double* const* copies, Coefficients<T>& to) const;
+  /// Collapsed edges and boxes alone.
+  void bound_block(std::size_t block, const kernel::KernelTable& kernels, kernel::NetBoxes& boxes);
   /// A patch of `group` whose collapsed edges are known into its lane over one basis; `hull` is its box.
   bool pack_bernstein(std::size_t index, const BlockGroup& group, const Box3& hull);
   bool pack_points(std::size_t index, const BlockGroup& group, const Box3& hull);

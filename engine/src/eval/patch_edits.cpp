@@ -1,5 +1,6 @@
 #include "eval/patch_edits.h"
 
+#include <array>
 #include <string>
 
 #include "kernel/kernel_table.h"
@@ -74,20 +75,21 @@ Status prepare_edits(PatchSet::Impl& set, const PatchEdits& edits, const Touched
 
 void pack_edits(PatchSet::Impl& set, const PatchEdits& edits, const TouchedBlocks& touched,
                 const kernel::KernelTable& kernels, std::uint32_t block) {
-  const std::uint32_t* patches = set.lane_patches.data() + block * std::size_t{PatchSet::lanes};
+  constexpr std::size_t lanes = PatchSet::lanes;
+  const std::uint32_t* patches = set.lane_patches.data() + block * lanes;
   const std::uint32_t* of_lane = touched.edits(block);
-  const auto write_points = [&](std::size_t lane) {
-    PatchPieces::overwrite(set.patches[patches[lane]], edits.points.data() + touched.first_point(of_lane[lane]));
-  };
+  const std::size_t used = set.lane_counts[block];
+  const auto points = [&](std::size_t lane) { return edits.points.data() + touched.first_point(of_lane[lane]); };
   // All fit: they have been checked.
   if (touched.count(block) == set.lane_counts[block]) {
-    for (std::size_t lane = 0; lane < set.lane_counts[block]; ++lane) write_points(lane);
-    set.pack_block(block, kernels);
+    std::array<const Vec3*, lanes> nets;
+    for (std::size_t lane = 0; lane < lanes; ++lane) nets[lane] = points(lane < used ? lane : 0);
+    (void)set.pack_block(block, kernels, nets.data());
     return;
   }
-  for (std::size_t lane = 0; lane < PatchSet::lanes; ++lane) {
+  for (std::size_t lane = 0; lane < used; ++lane) {
     if (of_lane[lane] == TouchedBlocks::none) continue;
-    write_points(lane);
+    PatchPieces::overwrite(set.patches[patches[lane]], points(lane));
     (void)set.pack_lanes(patches[lane]);
   }
 }

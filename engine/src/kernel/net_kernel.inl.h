@@ -2,13 +2,16 @@
 // grid_kernel.inl.h is.
 
 /// use(number, component, values of the lanes) for each number of L::width nets; the component is known when compiled.
+/// `copies`: as in PackJob.
 template <class L, class Use>
-inline void for_numbers(const double* const* nets, std::size_t count, Use use) {
+inline void for_numbers(const double* const* nets, double* const* copies, std::size_t count, Use use) {
   constexpr std::size_t width = L::width, run = 3 * width;
   typename L::Batch tile[width];
   std::size_t k = 0;
   const auto use_tile = [&](std::size_t t) __attribute__((always_inline)) {
     for (std::size_t l = 0; l < width; ++l) tile[l] = L::Batch::load_unaligned(nets[l] + k + t);
+    if (copies)
+      for (std::size_t l = 0; l < width; ++l) tile[l].store_unaligned(copies[l] + k + t);
     L::transpose(tile);
 #pragma GCC unroll 8
     for (std::size_t r = 0; r < width; ++r) use(k + t + r, (t + r) % 3, tile[r]);
@@ -21,6 +24,8 @@ inline void for_numbers(const double* const* nets, std::size_t count, Use use) {
   alignas(64) double values[width];
   const auto use_rest = [&](std::size_t c) __attribute__((always_inline)) {
     for (std::size_t l = 0; l < width; ++l) values[l] = nets[l][k + c];
+    if (copies)
+      for (std::size_t l = 0; l < width; ++l) copies[l][k + c] = values[l];
     use(k + c, c, L::load(values));
   };
   for (; k < count; k += 3) {
@@ -30,32 +35,101 @@ inline void for_numbers(const double* const* nets, std::size_t count, Use use) {
   }
 }
 
+/// The box of each of L::width nets, from `lane` on.
+template <class L>
+class BoxesOfLanes {
+ public:
+  using Batch = typename L::Batch;
+
+  void extend(std::size_t component, Batch values) {
+    lower_[component] = xsimd::min(lower_[component], values);
+    upper_[component] = xsimd::max(upper_[component], values);
+  }
+  void store(NetBoxes& boxes, int lane) const {
+    for (int c = 0; c < 3; ++c) {
+      L::store(boxes.lower[c] + lane, lower_[c]);
+      L::store(boxes.upper[c] + lane, upper_[c]);
+    }
+  }
+  /// The largest |x|, |y|, |z| of what is in the box, once the origin is taken off: rounding keeps order.
+  Batch largest(const double (&origin)[3]) const {
+    Batch result = L::broadcast(0);
+    for (int c = 0; c < 3; ++c) {
+      const Batch low = xsimd::abs(lower_[c] - L::broadcast(origin[c]));
+      const Batch high = xsimd::abs(upper_[c] - L::broadcast(origin[c]));
+      result = xsimd::max(result, xsimd::max(low, high));
+    }
+    return result;
+  }
+  Batch diagonal() const {
+    const Batch x = upper_[0] - lower_[0], y = upper_[1] - lower_[1], z = upper_[2] - lower_[2];
+    return xsimd::sqrt(x * x + y * y + z * z);
+  }
+
+ private:
+  const Batch infinity_ = L::broadcast(std::numeric_limits<double>::infinity());
+  Batch lower_[3] = {infinity_, infinity_, infinity_}, upper_[3] = {-infinity_, -infinity_, -infinity_};
+};
+
+/// Whether an edge of some lane begins with two equal points: if none does, no edge is a point. Equal doubles are equal
+/// in T too.
+template <class T>
+inline bool may_have_pointed_edge(const PackJob<T>& job) {
+  using L = Lanes<T>;
+  const int m = job.degree_u, n = job.degree_v, row = n + 1;
+  const int first[] = {0, m * row, 0, n}, second[] = {1, m * row + 1, row, n + row};
+  for (int edge = 0; edge < 4; ++edge) {
+    const T *a = job.out + 3 * block_lanes * first[edge], *b = job.out + 3 * block_lanes * second[edge];
+    for (int lane = 0; lane < block_lanes; lane += L::width) {
+      auto equal = L::load(a + lane) == L::load(b + lane);
+      for (int c = 1; c < 3; ++c)
+        equal = equal & (L::load(a + c * block_lanes + lane) == L::load(b + c * block_lanes + lane));
+      if (xsimd::any(equal)) return true;
+    }
+  }
+  return false;
+}
+
+/// See PackJob::doubts.
+template <class T, class L>
+inline void write_doubts(const PackJob<T>& job, typename L::Batch largest, typename L::Batch diagonal, int lane) {
+  const auto most = L::broadcast(double{std::numeric_limits<T>::max()});
+  const auto noise = L::broadcast(job.noise) * largest, longest = L::broadcast(job.longest) * diagonal;
+  const auto length = L::broadcast(4) * noise * longest;
+  const auto doubt = xsimd::max(length * length, L::broadcast(job.least_doubt));
+  L::store_as(job.doubts + lane, xsimd::min(doubt, most));
+  L::store_as(job.doubts + block_lanes + lane, xsimd::min(noise, most));
+}
+
 /// The same bits on every ISA: a sum of doubles, rounded to T.
 template <class T>
-void pack_nets(const PackJob<T>& job) {
+void pack_nets(const PackJob<T>& job, PackedNets& found) {
   using L = Lanes<double>;
-  const typename L::Batch shift[3] = {L::broadcast(job.shift[0]), L::broadcast(job.shift[1]),
-                                      L::broadcast(job.shift[2])};
-  for (int lane = 0; lane < block_lanes; lane += L::width)
-    for_numbers<L>(job.nets + lane, job.count, [&](std::size_t k, std::size_t c, typename L::Batch values) {
-      L::store_as(job.out + k * block_lanes + static_cast<std::size_t>(lane), values + shift[c]);
-    });
+  typename L::Batch shift[3];  // 0 - x is never -0, nor is a sum with it
+  for (int c = 0; c < 3; ++c) shift[c] = L::broadcast(0) - L::broadcast(job.origin[c]);
+  const std::size_t count = 3 * static_cast<std::size_t>((job.degree_u + 1) * (job.degree_v + 1));
+  for (int lane = 0; lane < block_lanes; lane += L::width) {
+    BoxesOfLanes<L> box;
+    for_numbers<L>(job.nets + lane, job.copies ? job.copies + lane : nullptr, count,
+                   [&](std::size_t k, std::size_t c, typename L::Batch values) {
+                     box.extend(c, values);
+                     L::store_as(job.out + k * block_lanes + static_cast<std::size_t>(lane), values + shift[c]);
+                   });
+    box.store(found.boxes, lane);
+    const auto largest = box.largest(job.origin);
+    L::store(found.largest + lane, largest);
+    write_doubts<T, L>(job, largest, box.diagonal(), lane);
+  }
+  found.edges_may_be_points = may_have_pointed_edge(job);
 }
 
 inline void bound_nets(const double* const* nets, std::size_t count, NetBoxes& boxes) {
   using L = Lanes<double>;
-  using Batch = L::Batch;
   for (int lane = 0; lane < block_lanes; lane += L::width) {
-    const Batch infinity = L::broadcast(std::numeric_limits<double>::infinity());
-    Batch lower[3] = {infinity, infinity, infinity}, upper[3] = {-infinity, -infinity, -infinity};
-    for_numbers<L>(nets + lane, count, [&](std::size_t, std::size_t c, Batch values) {
-      lower[c] = xsimd::min(lower[c], values);
-      upper[c] = xsimd::max(upper[c], values);
-    });
-    for (int c = 0; c < 3; ++c) {
-      L::store(boxes.lower[c] + lane, lower[c]);
-      L::store(boxes.upper[c] + lane, upper[c]);
-    }
+    BoxesOfLanes<L> box;
+    for_numbers<L>(nets + lane, nullptr, count,
+                   [&](std::size_t, std::size_t c, typename L::Batch values) { box.extend(c, values); });
+    box.store(boxes, lane);
   }
 }
 

@@ -46,10 +46,14 @@ class PatchPieces {
   static void make_sole(BezierPatch& patch) {
     if (!patch.memory_.sole()) patch = single(patch.degree_u(), patch.degree_v(), patch.points(), patch.weights());
   }
-  /// New control points for a patch that has memory of its own: as many as before, finite.
-  static void overwrite(BezierPatch& patch, const Vec3* points) {
+  /// The points of a patch that has memory of its own, to be written: finite ones.
+  static Vec3* sole_points(const BezierPatch& patch) {
     assert(patch.memory_.sole());
-    std::copy_n(points, patch.count(), const_cast<Vec3*>(patch.points_));
+    return const_cast<Vec3*>(patch.points_);
+  }
+  /// New control points for such a patch: as many as before, finite.
+  static void overwrite(BezierPatch& patch, const Vec3* points) {
+    std::copy_n(points, patch.count(), sole_points(patch));
   }
   /// Ends what patches hold, all pieces of a surface at once; they can then only be destroyed.
   static void release(std::span<BezierPatch> patches) {
