@@ -64,7 +64,7 @@ struct CertifiedOptions {
   bool smallest = false;
   /// Fewer triangles for more time: rates that bounds of many small pieces of each patch prove, where those of its halves ask
   /// for more. It saves a twentieth to a third, most on rational patches and on those that bend along u in one place and
-  /// along v in another. Takes about 50 us a bicubic patch, 300 at degree 5, hundreds of times what a plan takes without
+  /// along v in another. Takes 30 to 100 us a bicubic patch, 300 at degree 5, hundreds of times what a plan takes without
   /// (seconds for a budget of triangles, which tries many): for meshes that are drawn, stored or updated often.
   bool fewest = false;
   std::optional<Isa> isa = {};  ///< default_isa() if empty
