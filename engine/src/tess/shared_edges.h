@@ -102,8 +102,6 @@ class SharedEdges {
 
   std::size_t count() const { return count_; }
   std::uint32_t edge(std::size_t patch, Side side) const { return edges_[4 * patch + static_cast<std::size_t>(side)]; }
-  /// Of the four sides.
-  const std::uint32_t* edges(std::size_t patch) const { return edges_.data() + 4 * patch; }
   /// Gives each edge another number, below count(), or none.
   void renumber(std::span<const std::uint32_t> numbers);
 
