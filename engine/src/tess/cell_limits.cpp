@@ -45,8 +45,9 @@ std::optional<Rates> cheapest(const CellLimits& limits, int most) {
   };
   // u v is large at both ends: first in steps of an eighth, then from the best of them one by one, both ways.
   constexpr int small = 16, patience = 4;
-  for (int u = 1; u <= most; u += u < small ? 1 : u / 8) attempt(u);
-  if (most > small) attempt(most);
+  const auto may_be_fewer = [&](int u) { return !best || u < double(best->u) * best->v; };
+  for (int u = 1; u <= most && may_be_fewer(u); u += u < small ? 1 : u / 8) attempt(u);
+  if (most > small && may_be_fewer(most)) attempt(most);
   if (!best) return best;
   const int middle = best->u;
   for (const int step : {1, -1})
