@@ -36,7 +36,7 @@ class Pieces {
  public:
   Pieces(const GridPlan::Impl& plan, bool derivatives) : rows_(plan.count_u), count_u_(rows_) {
     const std::size_t row_points = plan.count_v * PatchSet::lanes, points = row_points * count_u_;
-    grain_ = std::max<std::size_t>(1, points_per_task / points);
+    grain_ = items_per_task(plan.block_count, points);
     if (points * plan.block_count <= (derivatives ? serial_normals : serial_positions)) {
       grain_ = plan.block_count;
     } else if (points > 2 * points_per_task) {
@@ -232,7 +232,7 @@ template bool blocks_stream(const GridBlocks<double>&, std::size_t, Stores);
 std::size_t blocks_a_task(const GridPlan::Impl& plan, std::size_t blocks, bool derivatives) {
   const std::size_t points = plan.samples() * PatchSet::lanes;
   if (points * blocks <= (derivatives ? serial_normals : serial_positions)) return blocks;
-  return std::max<std::size_t>(1, points_per_task / points);
+  return items_per_task(blocks, points);
 }
 
 }  // namespace tessera

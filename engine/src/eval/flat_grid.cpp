@@ -113,7 +113,7 @@ void tabulate_flat(const PatchSet::Impl& set, GridPlan::Impl& plan) {
 Status evaluate_flat(const PatchSet::Impl& set, const GridPlan::Impl& plan, float* out, bool streaming,
                      const Execution& execution) {
   // Many patches a task, or some rows of one.
-  std::size_t rows = plan.count_u, grain = std::max<std::size_t>(1, points_per_task / plan.samples());
+  std::size_t rows = plan.count_u, grain = items_per_task(plan.patch_count, plan.samples());
   if (plan.samples() * plan.patch_count <= serial_positions) {
     grain = plan.patch_count;
   } else if (plan.samples() > 2 * points_per_task) {
