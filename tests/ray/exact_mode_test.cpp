@@ -82,6 +82,36 @@ TEST(ExactMode, SharedPointsAreOneHit) {
   EXPECT_EQ(hits[0].t, hits[1].t);
 }
 
+TEST(ExactMode, DenormalEndsOfTheRayAreKept) {
+  const std::vector<Vec3> corners{{-1, -1, 0}, {-1, 1, 0}, {1, -1, 0}, {1, 1, 0}};
+  const PatchSet set = set_of({value_of(BezierPatch::polynomial(1, 1, corners))});
+  const RayScene scene = exact_scene(set);
+  const std::vector<double> small{0, 5e-324, 1e-310, 2.3e-308, 1e-300, 1e-20};
+  std::vector<Ray> rays;
+  for (const double z : small)
+    for (const double dz : {-4.0, -1.0, 1.0})
+      for (const double sideways : {0.0, 5e-324, 0.5})
+        for (const double near : small)
+          for (const double far : {near, 2 * near, 1.0}) {
+            rays.push_back(ray({0.3, 0.4, z}, {sideways, 0, dz}));
+            rays.back().tnear = near, rays.back().tfar = far;
+          }
+  const std::vector<Hit> hits = closest(scene, rays);
+  std::size_t met = 0;
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    std::vector<Hit> found = all_of(scene, rays[k]);
+    EXPECT_EQ(scene.occluded(rays[k]), !found.empty()) << k;
+    found.push_back(scene.closest(rays[k])), found.push_back(hits[k]);
+    for (const Hit& hit : found) {
+      if (hit.kind != HitKind::hit) continue;
+      ++met;
+      EXPECT_GE(hit.t, rays[k].tnear) << k;
+      EXPECT_LE(hit.t, rays[k].tfar) << k;
+    }
+  }
+  EXPECT_GT(met, 100u);
+}
+
 TEST(ExactMode, BadRaysAreMissesOfTheirOwnKind) {
   const PatchSet set = set_of(sphere());
   const RayScene scene = exact_scene(set);

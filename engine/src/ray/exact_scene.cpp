@@ -263,7 +263,8 @@ void ExactScene::trace_turns(std::span<const Ray> rays, RootsWanted wanted, Sear
 void ExactScene::closest_piece(std::span<const Ray> rays, std::span<Hit> hits) const {
   trace_all(rays, RootsWanted::closest, [&](std::size_t k, bool valid, const std::optional<RayQuery>& query) {
     Hit& hit = hits[k];
-    hit = query && query->found ? hit_at(query->line, query->best) : Hit{};
+    hit = {};
+    if (query && query->found) hit = hit_at(query->line, query->best), hit.t = query->t_of(query->best);
     if (query) hit.flags.incomplete = query->incomplete, hit.steps = told(query->steps);
     if (!valid) hit.kind = HitKind::invalid_ray;
   });
@@ -283,6 +284,7 @@ void ExactScene::hits_of(RayQuery& query, std::vector<Hit>& hits) const {
   keep_distinct(set(), adjacency_.of(set()), query.roots);
   for (const LeafRoot& root : query.roots) {
     hits.push_back(hit_at(query.line, root));
+    hits.back().t = query.t_of(root);
     hits.back().flags.incomplete = query.incomplete;
     hits.back().steps = told(query.steps);
   }

@@ -2,6 +2,7 @@
 // What a ray is asked for in exact mode, and the roots that it has met so far.
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -51,13 +52,25 @@ class OriginTest {
   ~OriginTest() = default;
 };
 
+/// The least number from x on, x >= 0, that counts in a search, which takes denormal ones for 0: told by its bits.
+inline double least_normal(double x) {
+  constexpr double least = std::numeric_limits<double>::min();
+  return std::bit_cast<std::uint64_t>(x) - 1 < std::bit_cast<std::uint64_t>(least) - 1 ? least : x;
+}
+
 struct RayQuery {
   RayQuery(const Ray& of, const RayLine& along, RootsWanted which)
-      : ray(of), line(along), wanted(which), near(along.near - along.slack), far(along.leave) {}
+      : ray(of),
+        line(along),
+        wanted(which),
+        least(least_normal(of.tnear)),
+        near(along.near - along.slack),
+        far(along.leave) {}
 
   const Ray& ray;
   const RayLine& line;
   RootsWanted wanted;
+  double least;             ///< t of roots
   double near, far;         ///< roots outside are of no use; far shrinks to the closest so far
   double unsure = no_part;  ///< least `from` of the roots so far
   bool found = false;
@@ -68,6 +81,8 @@ struct RayQuery {
   std::vector<LeafRoot> roots;         ///< where all are wanted
   const OriginTest* origin = nullptr;  ///< where the line leaves a surface
 
+  /// Of a root that was taken, seen from where denormal numbers count.
+  double t_of(const LeafRoot& root) const { return std::clamp(line.t_at(root.s), ray.tnear, ray.tfar); }
   bool done() const { return (found && wanted == RootsWanted::any) || overflow; }
 
   /// False where the root's t is outside of [tnear, tfar], or where it stands for the origin that the ray leaves: there
@@ -78,7 +93,7 @@ struct RayQuery {
       if (is != OriginRoot::other) return is == OriginRoot::indistinct;
     }
     const double t = line.t_at(root.s);
-    if (!(t >= ray.tnear && t <= ray.tfar)) return false;
+    if (!(t >= least && t <= ray.tfar)) return false;
     if (wanted == RootsWanted::all) {
       try {
         roots.push_back(root);
