@@ -91,6 +91,23 @@ TEST(InvalidRays, UnusualButValid) {
   EXPECT_EQ(scene.closest(ray({0, 0, 1e18}, {1, 0, 0})).kind, HitKind::miss);
 }
 
+TEST(InvalidRays, NoneReachesASetTooFarAway) {
+  for (const double away : {1e20, 1e34, 1e36, 1e100, 1e290, 1.7e308}) {
+    const std::vector<Vec3> corners{{0, 0, away}, {0, 1, away}, {1, 0, away}, {1, 1, away}};
+    const PatchSet set = set_of({value_of(BezierPatch::polynomial(1, 1, corners))});
+    const RayScene scene = scene_of(set, 3);
+    std::vector<Ray> rays;
+    for (const Vec3& direction : {Vec3{0, 0, 1}, Vec3{-1.25, -0.25, 1.5}, Vec3{0, 0, -1}, Vec3{1, 0, 1e-17}})
+      for (const double origin : {0.5, 1e18, -1e18}) rays.push_back(ray({0.5, 0.5, origin}, direction));
+    for (const Hit& hit : closest(scene, rays)) EXPECT_NE(hit.kind, HitKind::invalid_ray) << away;
+    for (const Ray& one : rays)
+      if (away > 1e35) {
+        EXPECT_EQ(scene.closest(one).kind, HitKind::miss) << away;
+        EXPECT_FALSE(scene.occluded(one)) << away;
+      }
+  }
+}
+
 TEST(RayBatches, EmptyAndShortBuffers) {
   const PatchSet set = set_of(sphere());
   const RayScene scene = scene_of(set);

@@ -60,6 +60,8 @@ RaySegment cut(const Ray& ray, const Vec3& origin, const Box3& box, double margi
   if (!std::isfinite(near) || !(near <= far + slack)) return out;
   out.offset = near - slack;
   out.start = from + out.offset * d;
+  // A set so far away rounds by more than Embree takes; nor could it be told what is met.
+  if (!(max_abs(out.start) <= max_ray_component)) return out;
   out.reach = std::max(far - near, 0.0) + 2 * slack;
   out.empty = false;
   return out;
