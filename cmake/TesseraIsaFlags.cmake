@@ -1,8 +1,8 @@
 # The units of the floor `kernel`, once for each instruction set of the processor that is built for: a target an ISA,
-# tessera_kernel_ISA; their objects: tessera_isa_objects. tessera_machine is the source that finds out at run time which
-# of them the machine can run. The units' flags stand here and nowhere else. Optimised in every configuration, so that
-# small inline functions don't stay behind as symbols that the linker could merge into the baseline; less under the
-# sanitizers, whose checks make the compiler work for minutes at -O3.
+# tessera_kernel_ISA, or two where units' flags differ; their objects: tessera_isa_objects. tessera_machine is the source
+# that finds out at run time which of them the machine can run. The units' flags stand here and nowhere else. Optimised in
+# every configuration, so that small inline functions don't stay behind as symbols that the linker could merge into the
+# baseline; less under the sanitizers, whose checks make the compiler work for minutes at -O3.
 set(TESSERA_KERNEL_LEVEL "-O3" CACHE STRING "How the kernels are optimised: another level than -O3 is for tests of compilers alone")
 mark_as_advanced(TESSERA_KERNEL_LEVEL)
 set(kernel_flags ${TESSERA_KERNEL_LEVEL} -fno-trapping-math -fno-exceptions)
@@ -10,13 +10,19 @@ if(TESSERA_SANITIZE)
   list(TRANSFORM kernel_flags REPLACE "^-O3$" -O1)
 endif()
 get_filename_component(kernel_folder ${CMAKE_CURRENT_LIST_DIR}/../engine/src/kernel ABSOLUTE)
-set(kernel_units unit_grid unit_grid_double unit_flat unit_line unit_net unit_point unit_chord unit_mesh unit_ray)
+set(kernel_units unit_grid unit_grid_double unit_flat unit_line unit_net unit_point unit_chord unit_chord_any unit_mesh unit_ray)
 list(TRANSFORM kernel_units PREPEND ${kernel_folder}/)
 list(TRANSFORM kernel_units APPEND .cpp)
+set(less_code)
+if(TESSERA_KERNEL_LEVEL STREQUAL -O3 AND NOT TESSERA_SANITIZE)
+  set(less_code -O2)
+endif()
+# Loops over a degree that is not known gain nothing by being laid out in full.
+set_source_files_properties(${kernel_folder}/unit_chord_any.cpp PROPERTIES COMPILE_OPTIONS "${less_code}")
 
-# tessera_isa(NAME flags...)
-macro(tessera_isa name)
-  tessera_floor(kernel_${name} SOURCES ${kernel_units} BELOW base)
+# tessera_isa(NAME "units" flags...)
+macro(tessera_isa name units)
+  tessera_floor(kernel_${name} SOURCES ${units} BELOW base)
   target_compile_options(tessera_kernel_${name} PRIVATE ${kernel_flags} ${ARGN}
     # Arrays are filled as far as a degree goes, which gcc 14 does not see.
     $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_GREATER_EQUAL:$<CXX_COMPILER_VERSION>,13>>:-Wno-maybe-uninitialized>)
@@ -28,17 +34,24 @@ endmacro()
 
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64)$")
   set(tessera_machine ${kernel_folder}/machine_aarch64.cpp)
-  tessera_isa(neon64)
+  tessera_isa(neon64 "${kernel_units}")
 else()
   set(tessera_machine ${kernel_folder}/machine_x86.cpp)
-  tessera_isa(sse2 -msse2)
-  tessera_isa(avx2 -mavx2 -mfma)
+  # Machines without AVX2 are few and old. For them plans and meshes, a quarter slower at -O2, are half as much code; grids
+  # and points would take twice the time for a tenth less.
+  set(mesh_units ${kernel_units})
+  list(FILTER mesh_units INCLUDE REGEX "unit_(chord|mesh)\\.cpp$")
+  set(other_units ${kernel_units})
+  list(REMOVE_ITEM other_units ${mesh_units})
+  tessera_isa(sse2 "${other_units}" -msse2)
+  tessera_isa(sse2_mesh "${mesh_units}" -msse2 ${less_code})
+  tessera_isa(avx2 "${kernel_units}" -mavx2 -mfma)
   # Later versions of xsimd ask for CD as well, which every machine with F has.
   set(avx512cd)
   if(xsimd_VERSION VERSION_GREATER_EQUAL 9)
     set(avx512cd -mavx512cd)
   endif()
   # gcc 12 warns of its own _mm512_undefined_ps (its bug 105593).
-  tessera_isa(avx512 -mavx512f ${avx512cd} -mavx512dq -mavx512bw -mavx512vl -mavx2 -mfma -mprefer-vector-width=512
+  tessera_isa(avx512 "${kernel_units}" -mavx512f ${avx512cd} -mavx512dq -mavx512bw -mavx512vl -mavx2 -mfma -mprefer-vector-width=512
     $<$<CXX_COMPILER_ID:GNU>:-Wno-uninitialized> $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
 endif()

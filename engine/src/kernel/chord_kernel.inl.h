@@ -134,8 +134,7 @@ void bound_lanes(const ChordJob& job, int lane) {
   store_pieces<L>(job, 2, lane, static_cast<float>(n * (n - 1)), quarters);
 }
 
-template <class L>
+template <class L, int Degree>
 void bound_chords(const ChordJob& job) {
-  for (int lane = 0; lane < block_lanes; lane += L::width)
-    job.degree_u == 3 && job.degree_v == 3 ? bound_lanes<L, 3>(job, lane) : bound_lanes<L, 0>(job, lane);
+  for (int lane = 0; lane < block_lanes; lane += L::width) bound_lanes<L, Degree>(job, lane);
 }

@@ -213,24 +213,12 @@ class ChordProducts {
   Batch uu_[3 * order * order], uv_[3 * order * order], vv_[3 * order * order];
 };
 
-template <class L>
+template <class L, int Degree>
 void bound_products(const ChordProductJob& job) {
-  for (int lane = 0; lane < block_lanes; lane += L::width) {
-    if (job.degree_u == 3 && job.degree_v == 3) {
-      ChordProducts<L, 3>(job, lane).write();
-    } else {
-      ChordProducts<L, 0>(job, lane).write();
-    }
-  }
+  for (int lane = 0; lane < block_lanes; lane += L::width) ChordProducts<L, Degree>(job, lane).write();
 }
 
-template <class L>
+template <class L, int Degree>
 void share_of_products(const ChordProductJob& job) {
-  for (int lane = 0; lane < block_lanes; lane += L::width) {
-    if (job.degree_u == 3 && job.degree_v == 3) {
-      ChordProducts<L, 3>(job, lane).write_share();
-    } else {
-      ChordProducts<L, 0>(job, lane).write_share();
-    }
-  }
+  for (int lane = 0; lane < block_lanes; lane += L::width) ChordProducts<L, Degree>(job, lane).write_share();
 }
