@@ -207,11 +207,12 @@ class BodyReader {
   }
 
   Status read_polygon(const PlyProperty& property, const PlyElement& element, std::uint64_t k) {
-    double corners = 0;
-    if (!values_.take(property.count_type, corners)) return values_.failure(record_of(element, k));
-    if (!is_index(corners) || corners < 3) return values_.error(record_of(element, k) + " has fewer than 3 corners");
+    double count = 0;
+    if (!values_.take(property.count_type, count)) return values_.failure(record_of(element, k));
+    if (!is_index(count) || count < 3) return values_.error(record_of(element, k) + " has fewer than 3 corners");
+    const auto corners = static_cast<std::uint32_t>(count);
     std::uint32_t first = 0, last = 0;
-    for (double c = 0; c < corners; ++c) {
+    for (std::uint32_t c = 0; c < corners; ++c) {
       double value = 0;
       if (!values_.take(property.type, value)) return values_.failure(record_of(element, k));
       if (!is_index(value)) return values_.error(record_of(element, k) + " has a corner that is no index");
@@ -227,7 +228,8 @@ class BodyReader {
   bool skip_list(const PlyProperty& property) {
     double count = 0, ignored = 0;
     if (!values_.take(property.count_type, count) || !is_index(count)) return false;
-    for (double k = 0; k < count; ++k) {
+    const auto values = static_cast<std::uint32_t>(count);
+    for (std::uint32_t k = 0; k < values; ++k) {
       if (!values_.take(property.type, ignored)) return false;
     }
     return true;
