@@ -37,9 +37,9 @@ bool is_own(const IsaUnit& unit, const std::string& symbol) {
 }  // namespace
 
 std::optional<IsaUnit> isa_unit_of(std::string_view object_path) {
-  for (const IsaUnit& unit : units) {
-    if (object_path.find("/tessera_kernel_" + std::string(unit.isa) + ".dir/") != std::string_view::npos) return unit;
-  }
+  for (const IsaUnit& unit : units)
+    for (const char* const target : {".dir/", "_mesh.dir/"})
+      if (object_path.find("/tessera_kernel_" + std::string(unit.isa) + target) != std::string_view::npos) return unit;
   return std::nullopt;
 }
 

@@ -9,7 +9,7 @@
 
 namespace tessera::house {
 
-/// What marks a symbol of the units of one ISA, those of the target tessera_kernel_ISA, as its own.
+/// What marks a symbol of the units of one ISA, those of the targets tessera_kernel_ISA and tessera_kernel_ISA_mesh, as its own.
 struct IsaUnit {
   std::string_view isa;            ///< tessera::kernel::isa_ISA::
   std::string_view architectures;  ///< those of xsimd that are of this ISA, as a regular expression

@@ -46,6 +46,7 @@ TEST(IsaSymbols, UnitsAreKnownByTheirObjects) {
   EXPECT_EQ(isa_unit_of("engine/CMakeFiles/tessera_kernel_avx2.dir/src/kernel/unit_grid.cpp.o")->isa, "avx2");
   EXPECT_EQ(isa_unit_of("engine/CMakeFiles/tessera_kernel_sse2.dir/src/kernel/unit_net.cpp.o")->isa, "sse2");
   EXPECT_EQ(isa_unit_of("engine/CMakeFiles/tessera_kernel_neon64.dir/src/kernel/unit_net.cpp.o")->isa, "neon64");
+  EXPECT_EQ(isa_unit_of("engine/CMakeFiles/tessera_kernel_sse2_mesh.dir/src/kernel/unit_mesh.cpp.o")->isa, "sse2");
   EXPECT_FALSE(isa_unit_of("engine/CMakeFiles/tessera_kernel.dir/src/kernel/select_isa.cpp.o"));
 }
 

@@ -58,10 +58,11 @@ TEST_P(BadFile, WhatIsNoFileIsNamed) {
 }
 
 TEST_P(BadFile, NoPermissionIsSaid) {
+  const std::string text = sample();  // the tests may lie in a folder of root's
   const WithoutPrivileges ordinary;
   ASSERT_TRUE(ordinary.done());
   const ScratchFolder folder;
-  const std::string path = folder.file(name("m"), sample());
+  const std::string path = folder.file(name("m"), text);
   ::chmod(path.c_str(), 0);
   expect_refused(path, StatusCode::io_error, ": cannot be opened: Permission denied");
 }

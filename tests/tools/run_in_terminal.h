@@ -30,6 +30,13 @@ struct TerminalKind {
   std::vector<std::string> variables{"TERM=xterm-256color", "COLORTERM=truecolor", "NO_COLOR="};
 };
 
+/// Whether this machine has pseudo-terminals: some containers have none.
+inline bool has_pseudo_terminals() {
+  const int master = ::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+  if (master >= 0) ::close(master);
+  return master >= 0;
+}
+
 /// The built binary with these arguments, in the folder `where`; its streams are a pseudo-terminal.
 inline TerminalRun run_in_terminal(const ScratchFolder& where, const std::vector<std::string>& arguments,
                                    const TerminalKind& kind = {}) {

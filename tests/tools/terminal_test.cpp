@@ -11,6 +11,9 @@ namespace {
 
 class Terminal : public ToolTest {
  protected:
+  void SetUp() override {
+    if (!has_pseudo_terminals()) GTEST_SKIP() << "this machine has no pseudo-terminals";
+  }
   TerminalRun show(const std::vector<std::string>& arguments, const TerminalKind& kind = {}) const {
     return run_in_terminal(folder_, arguments, kind);
   }
