@@ -166,7 +166,7 @@ double ChordBlocks::saved_by_products(const PatchSet::Impl& set, std::size_t blo
   double saved = 0;
   for (std::size_t lane = 0; lane < count; ++lane)
     saved += std::max(0.0, 1 - double(share[lane])) * choice.rates[lane].u * choice.rates[lane].v;
-  // These take 3.5 times as long as those of polynomial patches, and what is made of a cell twice as long.
+  // These take 3.5 times as long as those of polynomial patches, and what is made of a cell up to twice as long.
   return (group.rational ? 0.5 : 1) * saved / double(count);
 }
 
