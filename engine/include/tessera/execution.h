@@ -11,7 +11,8 @@
 #pragma GCC visibility push(default)
 namespace tessera {
 
-/// How results of grids are written to memory; scattered points, and what goes value by value, by plain stores always.
+/// How results of grids and meshes are written to memory; scattered points, what goes value by value, and meshes on
+/// SSE2 by plain stores always.
 enum class Stores : std::uint8_t {
   /// Streaming where the output is larger than a third of the last-level cache or eight times a core's second-level
   /// cache, plain otherwise.

@@ -4,58 +4,6 @@
 // sixteen patches is needed. What leaves goes to memory by whole aligned vectors. Included by the units as
 // sample_kernel.inl.h is.
 
-/// Joins runs of numbers of any length that follow each other in memory.
-template <class L, bool Streaming>
-class LineSink {
- public:
-  explicit LineSink(float* memory) : shift_(L::shift_by(0)), carry_(L::broadcast(0)) { start(memory); }
-
-  /// Where the next number goes.
-  [[gnu::always_inline]] void turn_to(float* memory) {
-    if (memory == next_ + end_) return;
-    finish();
-    start(memory);
-  }
-  [[gnu::always_inline]] void put(const typename L::Batch& vector) { send(L::shift_in(carry_, vector, shift_)); }
-  /// The first `count` numbers of a vector.
-  [[gnu::always_inline]] void put(const typename L::Batch& vector, int count) {
-    auto joined = L::shift_in(carry_, vector, shift_);
-    end_ += count;
-    if (end_ >= L::width) {
-      send(joined);
-      joined = L::shift_in(carry_, vector, shift_);
-      end_ -= L::width;
-    }
-    shift_ = L::shift_by(end_);
-    carry_ = L::carried(joined, shift_);
-  }
-  [[gnu::always_inline]] void finish() {
-    L::store_between(next_, L::shift_in(carry_, carry_, shift_), begin_, end_);
-    begin_ = 0;
-  }
-
- private:
-  [[gnu::always_inline]] void start(float* memory) {
-    begin_ = end_ = static_cast<int>(reinterpret_cast<std::uintptr_t>(memory) / sizeof(float) % L::width);
-    next_ = memory - begin_;
-    shift_ = L::shift_by(end_);
-  }
-  [[gnu::always_inline]] void send(const typename L::Batch& vector) {
-    if (begin_ > 0) {
-      L::store_between(next_, vector, begin_, L::width);
-      begin_ = 0;
-    } else {
-      store<L, Streaming>(next_, vector);
-    }
-    next_ += L::width;
-  }
-
-  float* next_;  ///< the vector at work, of which the numbers begin_ .. end_ - 1 are known
-  int begin_, end_;
-  typename L::Shift shift_;  ///< by end_
-  typename L::Batch carry_;  ///< its last end_ lanes are those numbers
-};
-
 template <class L, int DegreeV, bool Streaming>
 class FlatGrid {
  public:

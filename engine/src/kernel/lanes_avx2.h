@@ -104,6 +104,12 @@ struct Lanes<float> {
   }
   /// The carry with which the next shift_in() leaves the first lanes of `a` where they are.
   static Batch carried(Batch a, const Shift&) { return a; }
+  /// The lanes begin .. end - 1.
+  static void store_between(float* p, Batch a, int begin, int end) {
+    const __m256i index = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+    const __m256i from = _mm256_cmpgt_epi32(_mm256_set1_epi32(begin), index);
+    _mm256_maskstore_ps(p, _mm256_andnot_si256(from, _mm256_cmpgt_epi32(_mm256_set1_epi32(end), index)), a);
+  }
   /// Vector l becomes value l of the rows at row(0), row(1), ..., of which four values are read: rows k and k + 4 share a
   /// vector from the start, which spares a third of a transpose's shuffles.
   template <class Row>

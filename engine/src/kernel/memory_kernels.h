@@ -6,8 +6,6 @@
 namespace tessera::kernel {
 
 struct MemoryKernels {
-  /// Copies lines of 64 bytes past the caches, both aligned to 64 bytes. finish_streaming() comes after the last.
-  void (*stream_lines)(const void* from, void* to, std::size_t lines);
   /// For limits.h: `rounds` times 16 independent fused multiply-adds of whole vectors; returns the lanes of a vector.
   int (*fma_f32)(std::size_t rounds, float* sink);
   int (*fma_f64)(std::size_t rounds, double* sink);

@@ -34,10 +34,3 @@ void fill_memory(void* memory, std::size_t bytes, bool streaming) {
     for (std::size_t k = 0; k < count; k += L::width) L::store(out + k, value);
   }
 }
-
-template <class L>
-void stream_lines(const void* from, void* to, std::size_t lines) {
-  const auto* in = static_cast<const float*>(from);
-  auto* out = static_cast<float*>(to);
-  for (std::size_t k = 0; k < 16 * lines; k += L::width) L::stream(out + k, L::load(in + k));
-}

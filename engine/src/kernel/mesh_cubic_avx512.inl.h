@@ -3,9 +3,10 @@
 // time wherever rows and sides end. What each point takes comes by permutations from registers that hold the patch.
 // Included by the unit as sample_kernel.inl.h is, after mesh_kernel.inl.h.
 
-/// From a block `[i][j][component][lane]` to its patches, `[lane][component][i][j]`.
+/// From a block `[i][j][component][lane]` to its patches, `[lane][component][i][j]`. Asks for the block behind it.
 template <class L>
 void write_mesh_points(const float* net, float* points) {
+  for (int k = 0; k < mesh_patch_points; ++k) __builtin_prefetch(net + (mesh_patch_points + k) * block_lanes);
   for (int c = 0; c < 3; ++c) {
     typename L::Batch row[16];
     for (int k = 0; k < 16; ++k) row[k] = L::load(net + (k * 3 + c) * block_lanes);
@@ -17,11 +18,13 @@ void write_mesh_points(const float* net, float* points) {
 template <class L, int Order>
 class CubicVertices {
  public:
-  explicit CubicVertices(const MeshVertexJob& job) : job_(job) {}
+  explicit CubicVertices(const MeshVertexJob& job) : job_(job), positions_(job.position), normals_(job.normal) {}
 
   void write() {
     if (job_.inner_u > 1) write_inner();
     write_ring();
+    positions_.stop();
+    if constexpr (Order > 0) normals_.stop();
   }
 
  private:
@@ -144,28 +147,19 @@ class CubicVertices {
 
   /// The next `count` vertices.
   [[gnu::always_inline]] void put(const Sample<L>& sample, int count) {
-    send_lines<L>(job_);
     const int writable = vertex_ + width <= job_.writable ? width : count;
     Batch p[3];
     copy<L>(sample.position, p);
-    store_to(job_.position, p, count, writable);
+    positions_.put(vertex_, p, count, writable);
     if constexpr (Order > 0) {
       Normal<L> normal;
       unit_normal<L, false>(job_.grid, sample, {vertex_, vertex_ + mesh_tile, 0}, normal);
-      store_to(job_.normal, normal.direction, count, writable);
+      normals_.put(vertex_, normal.direction, count, writable);
     }
     vertex_ += count;
   }
-  [[gnu::always_inline]] void store_to(const MeshRecords& out, Batch (&p)[3], int count, int writable) const {
-    if (is_packed(out)) {
-      store_records<L, Records::packed>(out, vertex_, p, writable);
-    } else if (out.stride == 1) {
-      store_records<L, Records::arrays>(out, vertex_, p, writable);
-    } else {
-      store_records<L, Records::strided>(out, vertex_, p, count);
-    }
-  }
 
   const MeshVertexJob& job_;
+  RecordSink<L> positions_, normals_;
   int vertex_ = 0;
 };

@@ -52,24 +52,58 @@ struct BorderTile {
   bool starts;  ///< with the border's first point
 };
 
-/// Sends others' lines.
-template <class L>
-[[gnu::always_inline]] inline void send_lines(const MeshVertexJob& job) {
-  int budget = job.lines_a_vector;
-  for (LineQueue* queue = job.queues; budget > 0 && queue != job.queues + line_queues; ++queue) {
-    const int count = queue->lines < static_cast<std::size_t>(budget) ? static_cast<int>(queue->lines) : budget;
-    const float* from = queue->from;
-    float* to = queue->to;
-    for (int k = 0; k < count; ++k, from += 16, to += 16)
-      for (int l = 0; l < 16; l += L::width) L::stream(to + l, L::load(from + l));
-    *queue = {from, to, queue->lines - static_cast<std::size_t>(count)};
-    budget -= count;
-  }
-}
-
 inline bool is_packed(const MeshRecords& out) {
   return out.stride == 3 && out.out[1] == out.out[0] + 1 && out.out[2] == out.out[0] + 2;
 }
+
+/// Records of three that follow each other, or go to places of their own.
+template <class L>
+class RecordSink {
+ public:
+  explicit RecordSink(const MeshRecords& out) : out_(out), sink_(start(out)) {}
+  RecordSink(const RecordSink&) = delete;
+  RecordSink& operator=(const RecordSink&) = delete;
+
+  /// The first `count` of a vector, from a record on; memory of `writable` may be written, whatever it then holds.
+  [[gnu::always_inline]] void put(int record, typename L::Batch (&p)[3], int count, int writable) {
+    if constexpr (has_lines<L>)
+      if (out_.lines) return put_to_lines(p, count);
+    if (is_packed(out_)) {
+      store_records<L, Records::packed>(out_, record, p, writable);
+    } else if (out_.stride == 1) {
+      store_records<L, Records::arrays>(out_, record, p, writable);
+    } else {
+      store_records<L, Records::strided>(out_, record, p, count);
+    }
+  }
+  void stop() const {
+    if constexpr (has_lines<L>)
+      if (out_.lines) sink_.stop(*out_.lines);
+  }
+
+ private:
+  struct None {};
+  static auto start(const MeshRecords& out) {
+    if constexpr (has_lines<L>) {
+      return out.lines ? LineSink<L, true>(*out.lines) : LineSink<L, true>(nullptr);
+    } else {
+      return None();
+    }
+  }
+
+  [[gnu::always_inline]] void put_to_lines(typename L::Batch (&p)[3], int count) {
+    L::interleave(p);
+    if (count == L::width) {
+      for (int k = 0; k < 3; ++k) sink_.put(p[k]);
+    } else {
+      for (int k = 0, left = 3 * count; left > 0; ++k, left -= L::width)
+        sink_.put(p[k], left < L::width ? left : int{L::width});
+    }
+  }
+
+  const MeshRecords& out_;
+  std::conditional_t<has_lines<L>, LineSink<L, true>, None> sink_;
+};
 
 template <class L, int Degree, bool Rational, int Order>
 class PatchVertices {
@@ -176,7 +210,6 @@ class PatchVertices {
   }
 
   [[gnu::noinline]] void write_tiles(const InnerTile& a, const InnerTile& b) {
-    send_lines<L>(job_);
     for (int lane = 0; lane < mesh_tile; lane += L::width) {
       Sample<L> sample;
       inner_sample(a, b, lane, count_v(), sample);
@@ -184,7 +217,6 @@ class PatchVertices {
     }
   }
   [[gnu::noinline]] void write_tiles(const BorderTile& a, const BorderTile& b, int terms) {
-    send_lines<L>(job_);
     for (int lane = 0; lane < mesh_tile; lane += L::width) {
       Sample<L> sample;
       border_sample(a, b, lane, terms, sample);
@@ -286,25 +318,16 @@ class PatchVertices {
     staged_ = 0;
   }
 
-  void write_records(const MeshRecords& out, const float (*stage)[staged + rows_at_once]) const {
-    if (is_packed(out)) {
-      write_records_as<Records::packed>(out, stage);
-    } else if (out.stride == 1) {
-      write_records_as<Records::arrays>(out, stage);
-    } else {
-      write_records_as<Records::strided>(out, stage);
-    }
-  }
   /// Packed vectors run over the end into records that the same thread writes later.
-  template <Records Layout>
-  void write_records_as(const MeshRecords& out, const float (*stage)[staged + rows_at_once]) const {
+  void write_records(const MeshRecords& out, const float (*stage)[staged + rows_at_once]) const {
+    RecordSink<L> sink(out);
     for (int k = 0; k < staged_; k += L::width) {
       Batch p[3];
       for (int c = 0; c < 3; ++c) p[c] = Batch::load_unaligned(stage[c] + k);
-      const int valid = staged_ - k < L::width ? staged_ - k : int{L::width};
-      const bool whole = Layout != Records::strided && vertex_ + k + L::width <= job_.writable;
-      store_records<L, Layout>(out, vertex_ + k, p, whole ? int{L::width} : valid);
+      const int count = staged_ - k < L::width ? staged_ - k : int{L::width};
+      sink.put(vertex_ + k, p, count, vertex_ + k + L::width <= job_.writable ? int{L::width} : count);
     }
+    sink.stop();
   }
 
   const MeshVertexJob& job_;

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "kernel/grid_kernels.h"
+#include "kernel/stream_state.h"
 
 namespace tessera::kernel {
 
@@ -47,15 +48,10 @@ struct MeshBorder {
 struct MeshRecords {
   float* out[3] = {nullptr, nullptr, nullptr};
   std::ptrdiff_t stride = 1;
-};
+  StreamState* lines = nullptr;  ///< there instead, x y z x y z .., past the caches
 
-/// Lines of 64 bytes, both ends aligned to that, on their way past the caches.
-struct LineQueue {
-  const float* from = nullptr;
-  float* to = nullptr;
-  std::size_t lines = 0;
+  bool wanted() const { return out[0] || lines; }
 };
-inline constexpr int line_queues = 3;
 
 /// The vertices of one patch: inner points at (iu / inner_u, iv / inner_v), v fastest, then the border points.
 struct MeshVertexJob {
@@ -72,12 +68,8 @@ struct MeshVertexJob {
   const float* points = nullptr;
   const MeshCubicInner *cubic_u = nullptr, *cubic_v = nullptr;
   MeshBorder border[4];          ///< v = 0, u = 1, v = 1, u = 0
-  MeshRecords position, normal;  ///< from the patch's first vertex on; normal.out[0] null: not wanted
-  /// Others' lines, line_queues queues; so many are sent with each vector of vertices: stores to memory take place while the
-  /// next vertices are computed. The kernel counts them off.
-  LineQueue* queues = nullptr;
-  int lines_a_vector = 0;
-  int writable = 0;  ///< records of them that may be written, whatever they then hold
+  MeshRecords position, normal;  ///< from the patch's first vertex on; normal may be unwanted
+  int writable = 0;              ///< records of them that may be written, whatever they then hold
 };
 
 /// A strip of triangles between a border and the inner points nearest to it: corner k is by codes[k] the
@@ -99,6 +91,7 @@ struct MeshIndexJob {
   int cells_u = 0, cells_v = 0;           ///< between inner points
   std::uint32_t* out = nullptr;
   std::uint32_t* end = nullptr;  ///< of what may be written
+  StreamState* lines = nullptr;  ///< there instead, past the caches
 };
 
 struct MeshKernels {
@@ -107,6 +100,8 @@ struct MeshKernels {
   /// The control points of a block of bicubic polynomial patches, `[i][j][component][lane]`, patch by patch: block_lanes
   /// times mesh_patch_points floats. Null where vertices are not made from them.
   void (*mesh_points)(const float* net, float* points);
+  /// Stores what waits. Null where the others take no lines. finish_streaming comes after the last.
+  void (*finish_lines)(StreamState& lines);
 };
 
 }  // namespace tessera::kernel

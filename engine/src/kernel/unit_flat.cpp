@@ -3,11 +3,13 @@
 #include "kernel/block_lanes.h"
 #include "kernel/flat_kernels.h"
 #include "kernel/lanes.h"
+#include "kernel/stream_state.h"
 
 namespace tessera::kernel::TESSERA_ISA_NAMESPACE {
 namespace {
 
 #include "kernel/store.inl.h"
+#include "kernel/line_sink.inl.h"
 #include "kernel/sample_kernel.inl.h"
 #include "kernel/flat_kernel.inl.h"
 

@@ -7,6 +7,7 @@ namespace tessera::kernel::TESSERA_ISA_NAMESPACE {
 namespace {
 
 #include "kernel/store.inl.h"
+#include "kernel/line_sink.inl.h"
 #include "kernel/sample_kernel.inl.h"
 #include "kernel/normal_kernel.inl.h"
 #include "kernel/symmetric_sum.inl.h"
@@ -35,10 +36,19 @@ void write_vertices_of_order(const MeshVertexJob& job) {
 
 template <class L>
 void write_mesh_vertices(const MeshVertexJob& job) {
-  if (job.normal.out[0]) {
+  if (job.normal.wanted()) {
     write_vertices_of_order<L, 1>(job);
   } else {
     write_vertices_of_order<L, 0>(job);
+  }
+}
+
+template <class L>
+constexpr auto finish_lines_kernel() -> void (*)(StreamState&) {
+  if constexpr (has_lines<L>) {
+    return [](StreamState& lines) { LineSink<L, true>(lines).finish(); };
+  } else {
+    return nullptr;
   }
 }
 
@@ -52,6 +62,7 @@ extern const MeshKernels mesh_kernels = {
 #else
     nullptr,
 #endif
+    finish_lines_kernel<Lanes<float>>(),
 };
 
 }  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE

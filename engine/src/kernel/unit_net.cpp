@@ -16,8 +16,10 @@ extern const NetKernels net_kernels = {
     pack_nets<float>, pack_nets<double>, bound_nets, bound_points, all_within, combine_rows,
 };
 extern const MemoryKernels memory_kernels = {
-    stream_lines<Lanes<float>>, fma_rate<Lanes<float>>,         fma_rate<Lanes<double>>,
-    fill_memory<Lanes<float>>,  finish_streaming<Lanes<float>>,
+    fma_rate<Lanes<float>>,
+    fma_rate<Lanes<double>>,
+    fill_memory<Lanes<float>>,
+    finish_streaming<Lanes<float>>,
 };
 
 }  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE

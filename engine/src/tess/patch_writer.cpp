@@ -17,6 +17,9 @@ std::array<float, 3> start_of(const BezierPatch& net, const Vec3& origin, Side s
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
 
+/// Kernels move indices as they move numbers.
+kernel::StreamState lines_from(std::uint32_t* index) { return kernel::StreamState(reinterpret_cast<float*>(index)); }
+
 }  // namespace
 
 PatchWriter::PatchWriter(const PatchSet::Impl& set, const CertifiedPlan& plan, const MeshTables& tables,
@@ -27,13 +30,17 @@ PatchWriter::PatchWriter(const PatchSet::Impl& set, const CertifiedPlan& plan, c
   if (!bytes)
     bytes = sizeof(float) * size.vertices * (out.normal.empty() ? 3 : 6) + 3 * sizeof(std::uint32_t) * size.triangles;
   const bool large = stores == Stores::streaming || (stores == Stores::automatic && *bytes > streaming_threshold());
-  streaming_ = large && !plan.shares_vertices() && out.quads.empty() && is_packed(out.position) &&
-               (out.normal.empty() || is_packed(out.normal));
+  streaming_ = large && kernels.finish_lines && !plan.shares_vertices() && out.quads.empty() &&
+               is_packed(out.position) && (out.normal.empty() || is_packed(out.normal));
 }
 
 void PatchWriter::write(std::size_t begin, std::size_t end) const {
-  if (streaming_) return write_streaming(begin, end);
   VertexJob vertices;
+  std::optional<kernel::StreamState> lines;  // of indices
+  if (streaming_) {
+    vertices.start_lines(out_, plan_.first_vertex(begin));
+    lines = lines_from(out_.indices.data() + 3 * plan_.first_triangle(begin));
+  }
   for (std::size_t k = begin; k < end; ++k) {
     if (plan_.division(k).empty) continue;
     if (plan_.shares_vertices()) {
@@ -43,13 +50,17 @@ void PatchWriter::write(std::size_t begin, std::size_t end) const {
     }
     if (out_.quads.empty()) {
       write_triangles(k, out_.indices.data() + 3 * plan_.first_triangle(k),
-                      out_.indices.data() + 3 * plan_.first_triangle(end));
+                      out_.indices.data() + 3 * plan_.first_triangle(end), lines ? &*lines : nullptr);
     } else {
       write_quads(k);
     }
     if (!out_.parameter.empty()) write_parameters(k);
     write_patch_numbers(k);
   }
+  if (!streaming_) return;
+  vertices.finish_lines(kernels_);
+  kernels_.finish_lines(*lines);
+  kernels_.finish_streaming();
 }
 
 void PatchWriter::write_vertices(std::size_t k, std::size_t end, VertexJob& vertices) const {
@@ -59,44 +70,6 @@ void PatchWriter::write_vertices(std::size_t k, std::size_t end, VertexJob& vert
   set_records(vertices.job.normal, out_.normal, first);
   vertices.job.writable = static_cast<int>(std::min<std::size_t>(end - first, std::numeric_limits<int>::max()));
   kernels_.mesh_vertices(vertices.job);
-}
-
-void PatchWriter::write_streaming(std::size_t begin, std::size_t end) const {
-  VertexJob vertices;
-  MeshStreams streams(kernels_);
-  streams.positions.start(out_.position.component[0] + 3 * plan_.first_vertex(begin));
-  if (!out_.normal.empty()) streams.normals.start(out_.normal.component[0] + 3 * plan_.first_vertex(begin));
-  streams.indices.start(out_.indices.data() + 3 * plan_.first_triangle(begin));
-  for (std::size_t k = begin; k < end; ++k) {
-    if (plan_.division(k).empty) continue;
-    prepare(k, vertices);
-    const std::size_t vertex_count = plan_.first_vertex(k + 1) - plan_.first_vertex(k);
-    const std::size_t index_count = 3 * (plan_.first_triangle(k + 1) - plan_.first_triangle(k));
-    float* const position = streams.positions.next(3 * vertex_count);
-    float* const normal = out_.normal.empty() ? nullptr : streams.normals.next(3 * vertex_count);
-    std::uint32_t* const indices = streams.indices.next(index_count);
-    set_packed(vertices.job.position, position ? position : streams.positions.out());
-    set_packed(vertices.job.normal, out_.normal.empty() ? nullptr : normal ? normal : streams.normals.out());
-    vertices.job.writable = static_cast<int>(
-        vertex_count + (position && (normal || out_.normal.empty()) ? LineStream<float>::slack / 3 : 0));
-    streams.share(vertices.job, vertex_count);
-    kernels_.mesh_vertices(vertices.job);
-    if (indices) {
-      write_triangles(k, indices, indices + index_count + LineStream<std::uint32_t>::slack);
-    } else {
-      write_triangles(k, streams.indices.out(), streams.indices.out() + index_count);
-    }
-    position ? streams.positions.commit(3 * vertex_count) : streams.positions.skip(3 * vertex_count);
-    if (!out_.normal.empty())
-      normal ? streams.normals.commit(3 * vertex_count) : streams.normals.skip(3 * vertex_count);
-    indices ? streams.indices.commit(index_count) : streams.indices.skip(index_count);
-    if (!out_.parameter.empty()) write_parameters(k);
-    write_patch_numbers(k);
-  }
-  streams.positions.finish();
-  if (!out_.normal.empty()) streams.normals.finish();
-  streams.indices.finish();
-  kernels_.finish_streaming();
 }
 
 void PatchWriter::write_patch_numbers(std::size_t k) const {
@@ -191,12 +164,15 @@ void PatchWriter::write_parameters(std::size_t k) const {
   }
 }
 
-void PatchWriter::write_triangles(std::size_t k, std::uint32_t* out, std::uint32_t* end) const {
+void PatchWriter::write_triangles(std::size_t k, std::uint32_t* out, std::uint32_t* end,
+                                  kernel::StreamState* lines) const {
   const Division& division = plan_.division(k);
   const auto first = static_cast<std::uint32_t>(plan_.first_vertex(k));
   const bool cells = out_.quads.empty();
   if (!division.has_inner_points() || division.collapsed.any()) {
-    division.write_triangles(first, out, cells);
+    if (lines) kernels_.finish_lines(*lines);
+    std::uint32_t* const last = division.write_triangles(first, out, cells);
+    if (lines) *lines = lines_from(last);
     if (plan_.shares_vertices()) share_indices(k, out);
     return;
   }
@@ -211,6 +187,7 @@ void PatchWriter::write_triangles(std::size_t k, std::uint32_t* out, std::uint32
   job.cells_v = division.inner.v - 2;
   job.out = out;
   job.end = end;
+  job.lines = lines;
   const std::uint32_t start[4] = {0, last_row, last_row + row - 1, row - 1}, step[4] = {row, 1, 0 - row, 0 - 1u};
   std::uint32_t ring = job.ring;
   for (const Side side : all_sides) {

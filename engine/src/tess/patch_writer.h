@@ -13,7 +13,8 @@ namespace tessera {
 
 namespace kernel {
 struct KernelTable;
-}
+struct StreamState;
+}  // namespace kernel
 
 struct VertexJob;
 
@@ -35,15 +36,14 @@ class [[gnu::visibility("hidden")]] PatchWriter {
   friend class VertexPass;
   /// Positions and normals of a patch whose vertices are its own; records before `end` may be written, whatever they hold.
   void write_vertices(std::size_t k, std::size_t end, VertexJob & vertices) const;
-  /// The same through memory that is sent past the caches.
-  void write_streaming(std::size_t begin, std::size_t end) const;
   /// What a patch's vertices and triangles are written from, but for where they go.
   void prepare(std::size_t k, VertexJob & vertices) const;
   void prepare_points(const PatchSet::Slot& slot, const float* net, const Division& division, VertexJob& vertices)
       const;
   void prepare_weights(std::size_t k, const BlockGroup& group, const Division& division, VertexJob& vertices) const;
-  /// `end`: of what may be written, whatever it then holds.
-  void write_triangles(std::size_t k, std::uint32_t * out, std::uint32_t * end) const;
+  /// `end`: of what may be written, whatever it then holds. `lines`: stand at `out`, and take the indices past the caches.
+  void write_triangles(std::size_t k, std::uint32_t * out, std::uint32_t * end, kernel::StreamState* lines = nullptr)
+      const;
   /// Puts shared vertices in the place of a patch's own in the indices of its strips.
   void share_indices(std::size_t k, std::uint32_t * indices) const;
   void write_quads(std::size_t k) const;

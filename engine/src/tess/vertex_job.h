@@ -1,13 +1,12 @@
 #pragma once
-// What the vertices of patches are written with: the kernel's job, and the streams that take them past the caches.
+// What the vertices of patches are written with: the kernel's job, and what that points to.
 
 #include <algorithm>
 #include <array>
 
 #include "kernel/kernel_table.h"
-#include "tess/line_stream.h"
 #include "tess/stitched_patch.h"
-#include "tessera/views.h"
+#include "tessera/mesh.h"
 
 namespace tessera {
 
@@ -33,6 +32,7 @@ inline int exact_normal(void* context, int first, int second, int lane, float* n
 /// A job and what it points to; patches of one range take turns with it.
 struct VertexJob {
   kernel::MeshVertexJob job;
+  std::array<kernel::StreamState, 2> lines;  ///< of positions and normals
   alignas(cache_line) std::array<float, kernel::block_lanes> doubt, noise;
   std::array<std::array<float, 3>, 4> starts;
   ExactPatch exact;
@@ -49,20 +49,19 @@ struct VertexJob {
   }
   VertexJob(const VertexJob&) = delete;
   VertexJob& operator=(const VertexJob&) = delete;
-};
 
-struct MeshStreams {
-  std::array<kernel::LineQueue, kernel::line_queues> queues;
-  LineStream<float> positions, normals;
-  LineStream<std::uint32_t> indices;
-  explicit MeshStreams(const kernel::KernelTable& kernels)
-      : positions(kernels, queues[0]), normals(kernels, queues[1]), indices(kernels, queues[2]) {}
-
-  /// Spreads what waits over a patch's vertices.
-  void share(kernel::MeshVertexJob& job, std::size_t vertices) {
-    const std::size_t lines = queues[0].lines + queues[1].lines + queues[2].lines, vectors = vertices / 16 + 2;
-    job.queues = queues.data();
-    job.lines_a_vector = static_cast<int>(static_cast<std::uint32_t>(lines) / static_cast<std::uint32_t>(vectors)) + 1;
+  /// Vertices go past the caches from now on, from this one of a mesh on, each patch behind the one before.
+  void start_lines(const MeshViews& out, std::size_t vertex) {
+    lines[0] = kernel::StreamState(out.position.component[0] + 3 * vertex);
+    job.position.lines = &lines[0];
+    if (out.normal.empty()) return;
+    lines[1] = kernel::StreamState(out.normal.component[0] + 3 * vertex);
+    job.normal.lines = &lines[1];
+  }
+  /// What is still on its way.
+  void finish_lines(const kernel::KernelTable& kernels) {
+    for (const kernel::MeshRecords* records : {&job.position, &job.normal})
+      if (records->lines) kernels.finish_lines(*records->lines);
   }
 };
 

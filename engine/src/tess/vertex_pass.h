@@ -10,7 +10,7 @@ namespace tessera {
 /// stack; allocates nothing.
 class VertexPass {
  public:
-  explicit VertexPass(const PatchWriter& writer) : writer_(writer), streams_(writer.kernels_) {}
+  explicit VertexPass(const PatchWriter& writer) : writer_(writer) {}
   VertexPass(const VertexPass&) = delete;
   VertexPass& operator=(const VertexPass&) = delete;
 
@@ -21,13 +21,9 @@ class VertexPass {
  private:
   static constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
 
-  void write_streaming(std::size_t first, std::size_t count);
-  void stop();
-
   const PatchWriter& writer_;
-  std::size_t next_ = nowhere;  ///< the vertex at which the streams stand
+  std::size_t next_ = nowhere;  ///< the vertex at which the lines stand
   VertexJob vertices_;
-  MeshStreams streams_;
 };
 
 }  // namespace tessera
