@@ -7,6 +7,7 @@
 
 #include "support/triangle_distance.h"
 #include "tess/certificate_sets.h"
+#include "tess/picture.h"
 #include "tess/tessellate_support.h"
 #include "tessera/certified_tessellation.h"
 
@@ -148,6 +149,39 @@ TEST(Pixels, AreNeverExceeded) {
     }
     EXPECT_GE(most, chosen.bicubic ? 0.2 : 0) << chosen.name;
   }
+}
+
+/// What a picture says of a patch by itself, and of it in its block.
+TEST(Pixels, PicturesInBlocksHoldThoseInDoubleAndLittleMore) {
+  std::size_t sharp = 0, all = 0;
+  for (const CertificateSet& chosen : certificate_sets()) {
+    const PatchSet set = set_of(chosen.patches);
+    const PatchSet::Impl& inner = set.impl();
+    for (const View& view : views_of(set)) {
+      const Camera camera = good(Camera::make(view));
+      std::array<double, PatchSet::lanes> moved;
+      moved.fill(1e-6 * set.box().diagonal());
+      std::vector<PatchInPicture> pictures(set.patch_count());
+      for (std::size_t block = 0; block < inner.lane_counts.size(); ++block)
+        PatchInPicture::find(camera, inner, block, moved, 0.5, pictures.data());
+      for (std::size_t k = 0; k < pictures.size(); ++k) {
+        const PatchInPicture exact(camera, inner.patches[k], moved[0], 0.5);
+        ASSERT_EQ(pictures[k].projected().has_value(), exact.projected().has_value());
+        EXPECT_EQ(pictures[k].distance(), exact.distance());
+        EXPECT_EQ(pictures[k].moved_pixels(), exact.moved_pixels());
+        if (!exact.projected()) continue;
+        for (const Rates rates : {Rates{1, 1}, Rates{1, 4}, Rates{6, 3}, Rates{2, 2}}) {
+          const double in_double = exact.projected()->distance(rates), found = pictures[k].projected()->distance(rates);
+          EXPECT_GE(found, in_double * (1 - 1e-9)) << chosen.name;
+          // Roots are up to 0.36% too large, rounding up to an eighth; or both are next to nothing.
+          EXPECT_LE(found, std::max(1.2 * in_double, 0.05)) << chosen.name;
+          sharp += found <= 1.01 * in_double;
+          ++all;
+        }
+      }
+    }
+  }
+  EXPECT_GT(sharp, all * 9 / 10);
 }
 
 TEST(Pixels, ClosedBodiesStayClosedFromAnywhere) {

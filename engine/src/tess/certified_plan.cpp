@@ -96,13 +96,23 @@ Result<CertifiedPlanner> CertifiedPlanner::make(const PatchSet::Impl& set, const
 
 Status CertifiedPlanner::bound_turning_and_picture(const PatchSet::Impl& set, const Execution& execution) {
   if (!options_.angle && !options_.camera) return {};
-  std::vector<std::optional<PatchInPicture>> pictures(options_.camera ? shapes_.size() : 0);
+  if (options_.camera) pictures_.resize(shapes_.size());
   if (options_.angle) turnings_.resize(shapes_.size());
+  const auto see = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t block = begin; block < end; ++block) {
+      std::array<double, PatchSet::lanes> moved{};
+      for (std::size_t lane = 0; lane < set.lane_counts[block]; ++lane)
+        moved[lane] = roundings_[set.lane_patches[block * PatchSet::lanes + lane]] + fit_error_;
+      PatchInPicture::find(*options_.camera, set, block, moved, options_.pixels, pictures_.data());
+    }
+  };
+  if (options_.camera)
+    if (Status status = parallel_for(set.lane_counts.size(), blocks_a_piece, execution, see); !status.ok())
+      return status;
+  if (!options_.angle) return {};
   const auto bound = [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      if (options_.camera)
-        pictures[k].emplace(*options_.camera, set.patches[k], roundings_[k] + fit_error_, options_.pixels);
-      if (!options_.angle || shapes_[k].is_curve) continue;
+      if (shapes_[k].is_curve) continue;
       BezierPatch patch = set.patches[k];
       for (const Side side : all_sides)  // what welding makes a pole is one
         if (divided_shapes()[k].collapsed.has(edge_of(side)) && !shapes_[k].collapsed.has(edge_of(side))) {
@@ -113,10 +123,7 @@ Status CertifiedPlanner::bound_turning_and_picture(const PatchSet::Impl& set, co
       turnings_[k] = TurningBound(patch);
     }
   };
-  if (Status status = parallel_for(shapes_.size(), patches_a_piece, execution, bound); !status.ok()) return status;
-  pictures_.reserve(pictures.size());
-  for (const std::optional<PatchInPicture>& picture : pictures) pictures_.push_back(*picture);
-  return {};
+  return parallel_for(shapes_.size(), patches_a_piece, execution, bound);
 }
 
 std::optional<Rates> CertifiedPlanner::rates_for(const CellLimits& limits, int most) const {

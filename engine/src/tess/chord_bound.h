@@ -37,6 +37,7 @@ struct SecondDerivatives {
   /// The largest distance of a triangle with a parameter box h x k.
   double chord(double h, double k) const {
     const double a = h * h * uu, b = 2 * h * k * uv, c = k * k * vv;
+    if (std::isinf(uu_vv)) return (a + b + c) / 8;
     const double both = a * a + c * c + 2 * (h * k) * (h * k) * uu_vv;
     const double squared = b * b + 4 * h * k * (h * h * uu_uv + k * k * uv_vv) + std::max({both, a * a, c * c});
     const bool is_sound = squared > std::numeric_limits<double>::min() / std::numeric_limits<double>::epsilon();

@@ -1,12 +1,15 @@
 #include "tess/picture.h"
 
 #include <algorithm>
+#include <bitset>
 #include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
 
+#include "base/aligned.h"
 #include "base/text.h"
+#include "kernel/kernel_table.h"
 
 namespace tessera {
 namespace {
@@ -18,17 +21,24 @@ Status bad(const std::string& message) { return {StatusCode::invalid_argument, m
 
 /// Points in the camera's axes, with weights.
 struct LocalNet {
-  int rows, columns;
+  int rows = 0, columns = 0;
   std::vector<Vec3> points;
   std::vector<double> weights;
 
-  LocalNet(const Camera& camera, const BezierPatch& patch) : rows(patch.degree_u() + 1), columns(patch.degree_v() + 1) {
+  LocalNet() = default;
+  LocalNet(const Camera& camera, const BezierPatch& patch) { place(camera, patch); }
+  void place(const Camera& camera, const BezierPatch& patch) {
+    rows = patch.degree_u() + 1;
+    columns = patch.degree_v() + 1;
+    points.clear();
+    weights.clear();
     for (int i = 0; i < rows; ++i)
       for (int j = 0; j < columns; ++j) {
         points.push_back(camera.local(patch.point(i, j)));
         weights.push_back(patch.weight(i, j));
       }
   }
+  bool is_in_front(const Camera& camera) const { return camera.orthographic() || shallowest() >= camera.nearest(); }
 
   double shallowest() const {
     double z = infinity;
@@ -96,18 +106,81 @@ class NearestSeen {
   double margin_, depth_ = infinity;
 };
 
-/// The picture of the patch: its points in pixels, all deeper than 0 in perspective.
-Result<BezierPatch> project(const Camera& camera, const LocalNet& net) {
-  std::vector<Vec3> points;
-  std::vector<double> weights;
+/// The picture of a net, in place: its points in pixels, all deeper than 0 in perspective.
+void project(const Camera& camera, LocalNet& net) {
   for (std::size_t k = 0; k < net.points.size(); ++k) {
-    const Vec3& p = net.points[k];
+    Vec3& p = net.points[k];
     const double depth = camera.orthographic() ? 1 : p.z;
-    points.push_back({camera.focal() * p.x / depth, camera.focal() * p.y / depth, 0});
-    weights.push_back(net.weights[k] * depth);
+    p = {camera.focal() * p.x / depth, camera.focal() * p.y / depth, 0};
+    net.weights[k] *= depth;
   }
-  return BezierPatch::rational(net.rows - 1, net.columns - 1, points, weights);
 }
+
+Result<BezierPatch> patch_of(const LocalNet& net) {
+  return BezierPatch::rational(net.rows - 1, net.columns - 1, net.points, net.weights);
+}
+
+double size_of(const LocalNet& net) {
+  double size = 0;
+  for (const Vec3& p : net.points) size = std::max(size, length(p));
+  return size;
+}
+
+/// The pictures of some patches of a block, for the kernel.
+class PictureBlock {
+ public:
+  PictureBlock(int degree_u, int degree_v) : degree_u_(degree_u), degree_v_(degree_v) {
+    const std::size_t count = static_cast<std::size_t>(degree_u + 1) * static_cast<std::size_t>(degree_v + 1);
+    for (std::size_t k = 0; k < 4 * lanes * count; ++k) net_[k] = k / lanes % 4 == 3 ? 1.0f : 0.0f;
+  }
+
+  /// Takes a picture if float may hold it.
+  bool add(std::size_t lane, const LocalNet& net) {
+    const auto [lightest, heaviest] = std::minmax_element(net.weights.begin(), net.weights.end());
+    if (!(*lightest >= least_weight * *heaviest && *heaviest <= largest && *heaviest >= 1 / largest)) return false;
+    Box3 box;
+    for (const Vec3& p : net.points) box.extend(p);
+    const Vec3 middle = 0.5 * (box.lower + box.upper);
+    const double size = max_abs(box.upper - box.lower);
+    if (!(size <= largest && size >= 1 / largest)) return false;
+    const double scale = std::ldexp(1, -std::ilogb(*heaviest) - 1);
+    for (std::size_t k = 0; k < net.points.size(); ++k) {
+      const double weight = scale * net.weights[k];
+      const Vec3 p = weight * (net.points[k] - middle);
+      float* const to = net_.data() + 4 * lanes * k + lane;
+      to[0] = static_cast<float>(p.x);
+      to[lanes] = static_cast<float>(p.y);
+      to[3 * lanes] = static_cast<float>(weight);
+    }
+    return true;
+  }
+  void bound() {
+    kernel::default_kernels().bound_rational_chords({.net = net_.data(),
+                                                     .degree_u = degree_u_,
+                                                     .degree_v = degree_v_,
+                                                     .pieces = pieces_.data(),
+                                                     .unit = unit_.data(),
+                                                     .size = size_.data()});
+  }
+  ChordBound::PlainPieces pieces(std::size_t lane) const {
+    ChordBound::PlainPieces pieces;
+    for (std::size_t k = 0; k < pieces.size(); ++k)
+      for (std::size_t kind = 0; kind < 3; ++kind)
+        pieces[k][kind] = double(unit_[lane]) * double(pieces_[(3 * k + kind) * lanes + lane]);
+    return pieces;
+  }
+  /// Whether rounding is little of what was found. It holds in any case.
+  bool is_sharp(std::size_t lane) const { return size_[lane] >= 0; }
+
+ private:
+  static constexpr std::size_t lanes = PatchSet::lanes, most_terms = kernel::most_rational_degree + 1;
+  static constexpr double least_weight = 1.0 / 16, largest = 1e30;
+
+  int degree_u_, degree_v_;
+  alignas(cache_line) std::array<float, most_terms * most_terms * 4 * lanes> net_;
+  alignas(cache_line) std::array<float, 9 * 3 * lanes> pieces_;
+  alignas(cache_line) std::array<float, lanes> unit_, size_;
+};
 
 }  // namespace
 
@@ -162,28 +235,60 @@ double Camera::outside(const Vec3& p, int plane) const {
   return orthographic_ ? side - half : (side - half * p.z) / std::sqrt(1 + half * half);
 }
 
-PatchInPicture::PatchInPicture(const Camera& camera, const BezierPatch& patch, double moved, double pixels)
-    : distance_(infinity) {
-  const LocalNet net(camera, patch);
+PatchInPicture::PatchInPicture(const Camera& camera, const BezierPatch& patch, double moved, double pixels) {
+  LocalNet net(camera, patch);
   if (net.is_unseen(camera, moved)) return;
   const double shallowest = net.shallowest();
-  const bool in_front = camera.orthographic() || shallowest >= camera.nearest();
+  const bool in_front = net.is_in_front(camera);
+  if (in_front) project(camera, net);
   const Result<BezierPatch> picture =
-      in_front ? project(camera, net) : Status(StatusCode::unsupported, "not in front of the eye");
+      in_front ? patch_of(net) : Status(StatusCode::unsupported, "not in front of the eye");
   if (!picture) {
     bound_by_depth(camera, patch, moved, pixels);
     return;
   }
   projected_ = ChordBound(*picture).plain_pieces();
-  double slope = 0, size = 0;
-  for (const Vec3& p : picture->points()) {
-    const double tangent = camera.orthographic() ? 0 : length(p) / camera.focal();
-    slope = std::max(slope, camera.focal() * std::sqrt(1 + tangent * tangent));
-    size = std::max(size, length(p));
-  }
+  allow_for(camera, moved, shallowest, size_of(net));
+}
+
+void PatchInPicture::allow_for(const Camera& camera, double moved, double shallowest, double size) {
+  const double tangent = camera.orthographic() ? 0 : size / camera.focal();
+  const double slope = camera.focal() * std::sqrt(1 + tangent * tangent);
   // What arithmetic did to the points in the plane is far below 2^-40 of them.
   const double room = camera.orthographic() ? 1 : shallowest - moved;
   moved_pixels_ = room > 0 ? slope * moved / room + 0x1p-40 * size : infinity;
+}
+
+void PatchInPicture::find(const Camera& camera, const PatchSet::Impl& set, std::size_t block,
+                          const std::array<double, PatchSet::lanes>& moved, double pixels, PatchInPicture* pictures) {
+  constexpr double little = 0.1;  // of the pixels that are to be kept
+  const BlockGroup& group = set.group_of_block(block);
+  const std::uint32_t* const patches = set.lane_patches.data() + block * PatchSet::lanes;
+  const std::size_t count = set.lane_counts[block];
+  const bool in_block = std::max(group.degree_u, group.degree_v) <= kernel::most_rational_degree;
+  std::bitset<PatchSet::lanes> is_open, is_added;
+  PictureBlock flat(in_block ? group.degree_u : 0, in_block ? group.degree_v : 0);
+  LocalNet net;
+  for (std::size_t lane = 0; lane < count; ++lane) {
+    net.place(camera, set.patches[patches[lane]]);
+    PatchInPicture& picture = pictures[patches[lane]] = PatchInPicture();
+    if (net.is_unseen(camera, moved[lane])) continue;
+    is_open.set(lane);
+    if (!in_block || !net.is_in_front(camera)) continue;
+    const double shallowest = net.shallowest();
+    project(camera, net);
+    if (!flat.add(lane, net)) continue;
+    is_added.set(lane);
+    picture.allow_for(camera, moved[lane], shallowest, size_of(net));
+  }
+  if (is_added.any()) flat.bound();
+  for (std::size_t lane = 0; lane < count; ++lane) {
+    PatchInPicture& picture = pictures[patches[lane]];
+    if (is_added[lane]) picture.projected_ = flat.pieces(lane);
+    const bool is_bounded =
+        is_added[lane] && (flat.is_sharp(lane) || picture.projected()->distance({1, 1}) <= little * pixels);
+    if (is_open[lane] && !is_bounded) picture = PatchInPicture(camera, set.patches[patches[lane]], moved[lane], pixels);
+  }
 }
 
 void PatchInPicture::bound_by_depth(const Camera& camera, const BezierPatch& patch, double moved, double pixels) {

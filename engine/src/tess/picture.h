@@ -3,14 +3,18 @@
 //
 // In the camera's axes, x to the right, y up and z deep, a point is seen at f (x, y) / z pixels: so the picture of a patch with
 // points (x, y, z) and weights w is the rational patch in the plane with points f (x, y) / z and weights w z, and since
-// flat triangles become flat ones, ChordBound of that patch bounds distances in the picture. A point p that lies within
+// flat triangles become flat ones, ChordBound of that patch bounds distances in the picture: sixteen patches at a time, in
+// float, relative to the middle of each; one by one where that is too rough. A point p that lies within
 // d of q is seen within
 //   |f p / z_p - f q / z_q| = f |(p - q)_xy - q_xy / z_q (p - q)_z| / z_p <= f d sqrt(1 + |q_xy / z_q|^2) / z_p.
 // That serves roundings; and patches whose hull comes too near to the eye, or behind it: from the depth at which anything of
 // them is seen it says to which distance in space they must be kept.
 
+#include <array>
+#include <limits>
 #include <optional>
 
+#include "block/patch_set_impl.h"
 #include "tess/chord_bound.h"
 #include "tessera/status.h"
 #include "tessera/view.h"
@@ -47,8 +51,12 @@ class Camera {
 /// One patch in a picture. Those none of which is in the frame are not seen, and keep any tolerance.
 class PatchInPicture {
  public:
+  PatchInPicture() = default;  ///< of one that is not seen
   /// `moved`: how far vertices and surfaces may lie beside the patch; `pixels` > 0: what is to be kept.
   PatchInPicture(const Camera& camera, const BezierPatch& patch, double moved, double pixels);
+  /// Those of a block's patches, at their places in `pictures`; `moved` by lane.
+  static void find(const Camera& camera, const PatchSet::Impl& set, std::size_t block,
+                   const std::array<double, PatchSet::lanes>& moved, double pixels, PatchInPicture* pictures);
 
   /// The patch in the plane, in pixels, where that is what bounds it.
   std::optional<ChordBound> projected() const {
@@ -63,10 +71,11 @@ class PatchInPicture {
 
  private:
   void bound_by_depth(const Camera& camera, const BezierPatch& patch, double moved, double pixels);
+  void allow_for(const Camera& camera, double moved, double shallowest, double size);
 
   std::optional<ChordBound::PlainPieces> projected_;
   double moved_pixels_ = 0;
-  double distance_;
+  double distance_ = std::numeric_limits<double>::infinity();
   double steepest_ = 0, depth_ = 0;  ///< of what is bounded by depth; 0 where it is not seen
 };
 
