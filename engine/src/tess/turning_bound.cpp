@@ -39,11 +39,13 @@ class Piece {
     for (const Vec3& n : net.at) sum += n;
     axis_ = normalized(sum);
     least_ = infinity;
+    double steepest = 0, beside = 1;  // of the widest angle with the axis: its sides
     for (const Vec3& n : net.at) {
-      least_ = std::min(least_, dot(n, axis_) - rounding);
-      const double across = length(n - dot(n, axis_) * axis_) + rounding;
-      sine_ = std::max(sine_, across / std::hypot(across, std::max(dot(n, axis_) - rounding, 0.0)));
+      const double along = dot(n, axis_), across = length(n - along * axis_) + rounding;
+      least_ = std::min(least_, along - rounding);
+      if (across * beside > steepest * (along - rounding)) steepest = across, beside = along - rounding;
     }
+    sine_ = steepest / std::hypot(steepest, beside);  // where there is a bound: all of the net lies along the axis
   }
 
   /// With N within the angle phi of the axis, |N_u x n| <= |N_u across the axis| + |N_u along it| sin phi.
@@ -89,7 +91,7 @@ class Piece {
   const VectorNet& net_;
   double scale_, rounding_;
   Vec3 axis_;
-  double least_, sine_ = 0;
+  double least_, sine_;
 };
 
 /// The bounds over one quarter.
