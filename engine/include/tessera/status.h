@@ -39,8 +39,8 @@ class [[nodiscard]] Status {
   static constexpr std::ptrdiff_t no_index = -1;  ///< no element is named
 
   Status() = default;  ///< success; never allocates
-  Status(StatusCode code, std::string message, std::ptrdiff_t index = no_index)
-      : code_(code), index_(index), message_(std::move(message)) {}  ///< a failure; the message is a sentence
+  /// A failure; the message is a sentence. Cold: what leads to a call is compiled for size.
+  [[gnu::cold]] Status(StatusCode code, std::string message, std::ptrdiff_t index = no_index);
 
   bool ok() const { return code_ == StatusCode::ok; }      ///< whether it is success
   StatusCode code() const { return code_; }                ///< what kind of thing went wrong

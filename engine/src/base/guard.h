@@ -10,12 +10,11 @@
 
 namespace tessera {
 
-/// Calls body() and returns what it returns; an exception becomes a Status. R is Status or Result<T>.
-template <class Body>
-auto guarded(Body&& body) noexcept -> decltype(body()) {
+/// Of the exception that is being handled.
+[[gnu::cold]] inline Status status_of_exception() noexcept {
   try {
     try {
-      return std::forward<Body>(body)();
+      throw;
     } catch (const std::bad_alloc&) {
       return Status(StatusCode::out_of_memory, "out of memory");
     } catch (const std::exception& error) {
@@ -25,6 +24,16 @@ auto guarded(Body&& body) noexcept -> decltype(body()) {
     }
   } catch (...) {  // not even the message could be stored
     return Status(StatusCode::out_of_memory, {});
+  }
+}
+
+/// Calls body() and returns what it returns; an exception becomes a Status. R is Status or Result<T>.
+template <class Body>
+auto guarded(Body&& body) noexcept -> decltype(body()) {
+  try {
+    return std::forward<Body>(body)();
+  } catch (...) {
+    return status_of_exception();
   }
 }
 

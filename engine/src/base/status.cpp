@@ -2,6 +2,9 @@
 
 namespace tessera {
 
+Status::Status(StatusCode code, std::string message, std::ptrdiff_t index)
+    : code_(code), index_(index), message_(std::move(message)) {}
+
 std::string_view name(StatusCode code) {
   switch (code) {
     case StatusCode::ok:

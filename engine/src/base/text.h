@@ -8,8 +8,9 @@
 
 namespace tessera {
 
-/// The shortest text that reads back as the same double; "nan" for every NaN, whose sign means nothing.
-inline std::string text(double value) {
+/// The shortest text that reads back as the same double; "nan" for every NaN, whose sign means nothing. For messages of
+/// failures: what leads to a call is compiled for size.
+[[gnu::cold]] inline std::string text(double value) {
   if (std::isnan(value)) return "nan";
   std::array<char, 32> digits;
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
