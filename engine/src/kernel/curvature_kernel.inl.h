@@ -44,12 +44,16 @@ template <class L>
 /// The vectors that go to a call and back through memory: those that a call may see can't stay in registers.
 template <class L>
 struct ShapeExchange {
-  alignas(64) typename L::Scalar tangents[5][3][L::width];  ///< r_u, r_v, r_uu, r_uv, r_vv
+  using Vector = typename L::Scalar[L::width];
+  alignas(64) Vector tangents[5][3];  ///< r_u, r_v, r_uu, r_uv, r_vv
+  alignas(64) Vector normal[3];
+  alignas(64) Vector safe;                                      ///< 1 in the lanes that keep what they have
+  alignas(64) Vector s11, s12, s22, inverse_e, skewed, r_u[3];  ///< in and out
 
-  void put(const typename L::Batch (&from)[3], typename L::Scalar (&to)[3][L::width]) {
+  static void put(const typename L::Batch (&from)[3], Vector (&to)[3]) {
     for (int c = 0; c < 3; ++c) L::store(to[c], from[c]);
   }
-  void take(const typename L::Scalar (&from)[3][L::width], typename L::Batch (&to)[3]) const {
+  static void take(const Vector (&from)[3], typename L::Batch (&to)[3]) {
     for (int c = 0; c < 3; ++c) to[c] = L::load(from[c]);
   }
 };
@@ -57,7 +61,7 @@ struct ShapeExchange {
 /// Tangents and second derivatives by parameters scaled so that the largest components of r_u and r_v are 1, which
 /// changes the forms and not the curvatures.
 template <class L>
-__attribute__((noinline)) void rescale(ShapeExchange<L>& exchange) {
+inline void rescale(ShapeExchange<L>& exchange) {
   typename L::Batch du[3], dv[3];
   exchange.take(exchange.tangents[0], du);
   exchange.take(exchange.tangents[1], dv);
@@ -74,17 +78,9 @@ __attribute__((noinline)) void rescale(ShapeExchange<L>& exchange) {
   }
 }
 
-/// The shape operator of lanes whose squares leave the range. Lanes that are `safe` keep what they have.
+/// The shape operator of lanes whose squares leave the range.
 template <class L>
-[[gnu::always_inline]] inline void rescaled_shape(const GridJob<typename L::Scalar>& job, const Sample<L>& at,
-                                                  const Normal<L>& normal, const typename L::Batch& safe,
-                                                  Curvature<L>& k) {
-  ShapeExchange<L> exchange;
-  exchange.put(at.du, exchange.tangents[0]);
-  exchange.put(at.dv, exchange.tangents[1]);
-  exchange.put(at.duu, exchange.tangents[2]);
-  exchange.put(at.duv, exchange.tangents[3]);
-  exchange.put(at.dvv, exchange.tangents[4]);
+[[gnu::noinline, gnu::cold]] void rescaled_shape(const GridJob<typename L::Scalar>& job, ShapeExchange<L>& exchange) {
   rescale<L>(exchange);
   Sample<L> scaled;
   exchange.take(exchange.tangents[0], scaled.du);
@@ -95,17 +91,45 @@ template <class L>
   Normal<L> unit;
   unit.squared = cross<L>(scaled.du, scaled.dv, unit.direction);
   unit.reciprocal = inverse_root<L>(unit.squared);
-  copy<L>(normal.direction, unit.direction);
+  exchange.take(exchange.normal, unit.direction);
   Curvature<L> other;
   shape_operator<L>(job, scaled, unit, other);
-  const auto keep = safe > L::broadcast(0);
-  const auto choose = [&](auto& mine, const auto& its) { mine = xsimd::select(keep, mine, its); };
-  choose(k.s11, other.s11);
-  choose(k.s12, other.s12);
-  choose(k.s22, other.s22);
-  choose(k.inverse_e, other.inverse_e);
-  choose(k.skewed, other.skewed);
-  for (int c = 0; c < 3; ++c) choose(k.r_u[c], other.r_u[c]);
+  const auto keep = L::load(exchange.safe) > L::broadcast(0);
+  const auto choose = [&](auto& mine, const auto& its) { L::store(mine, xsimd::select(keep, L::load(mine), its)); };
+  choose(exchange.s11, other.s11);
+  choose(exchange.s12, other.s12);
+  choose(exchange.s22, other.s22);
+  choose(exchange.inverse_e, other.inverse_e);
+  choose(exchange.skewed, other.skewed);
+  for (int c = 0; c < 3; ++c) choose(exchange.r_u[c], other.r_u[c]);
+}
+
+/// The same of vectors in registers. Lanes that are `safe` keep what they have.
+template <class L>
+[[gnu::always_inline]] inline void rescale_unsafe(const GridJob<typename L::Scalar>& job, const Sample<L>& at,
+                                                  const Normal<L>& normal, const typename L::Batch& safe,
+                                                  Curvature<L>& k) {
+  ShapeExchange<L> exchange;
+  exchange.put(at.du, exchange.tangents[0]);
+  exchange.put(at.dv, exchange.tangents[1]);
+  exchange.put(at.duu, exchange.tangents[2]);
+  exchange.put(at.duv, exchange.tangents[3]);
+  exchange.put(at.dvv, exchange.tangents[4]);
+  exchange.put(normal.direction, exchange.normal);
+  exchange.put(k.r_u, exchange.r_u);
+  L::store(exchange.safe, safe);
+  L::store(exchange.s11, k.s11);
+  L::store(exchange.s12, k.s12);
+  L::store(exchange.s22, k.s22);
+  L::store(exchange.inverse_e, k.inverse_e);
+  L::store(exchange.skewed, k.skewed);
+  rescaled_shape<L>(job, exchange);
+  k.s11 = L::load(exchange.s11);
+  k.s12 = L::load(exchange.s12);
+  k.s22 = L::load(exchange.s22);
+  k.inverse_e = L::load(exchange.inverse_e);
+  k.skewed = L::load(exchange.skewed);
+  exchange.take(exchange.r_u, k.r_u);
 }
 
 template <class L>
@@ -117,7 +141,7 @@ template <class L>
   shape_operator<L>(job, at, normal, k);
   const auto safe = (xsimd::min(xsimd::min(k.e, k.g), normal.squared) >= lowest) &
                     (xsimd::max(xsimd::max(k.e, k.g), normal.squared) <= highest);
-  if (!xsimd::all(safe)) rescaled_shape<L>(job, at, normal, xsimd::select(safe, one, zero), k);
+  if (!xsimd::all(safe)) rescale_unsafe<L>(job, at, normal, xsimd::select(safe, one, zero), k);
   // Sums, since a maximum may lose a NaN.
   const auto forms = (k.e + k.g) + (xsimd::abs(k.f) + (xsimd::abs(k.l) + (xsimd::abs(k.m) + xsimd::abs(k.n))));
   const auto shape = xsimd::abs(k.s11) + (xsimd::abs(k.s12) + xsimd::abs(k.s22));
@@ -126,6 +150,41 @@ template <class L>
                        (shape <= L::broadcast(largest_curvature<T>));
   k.defined = xsimd::select(defined, one, zero);
 }
+
+template <class L>
+inline typename L::Batch mean_curvature(const Curvature<L>& k) {
+  return L::broadcast(static_cast<typename L::Scalar>(0.5)) * (k.s11 + k.s22);
+}
+
+/// What the principal curvatures are made of, by way of memory as in ShapeExchange.
+template <class L>
+struct CurvatureExchange {
+  using Vector = typename L::Scalar[L::width];
+  alignas(64) Vector s11, s12, s22, inverse_e, defined, r_u[3], normal[3];
+
+  [[gnu::always_inline]] void put(const Curvature<L>& k, const typename L::Batch (&direction)[3]) {
+    L::store(s11, k.s11);
+    L::store(s12, k.s12);
+    L::store(s22, k.s22);
+    L::store(inverse_e, k.inverse_e);
+    L::store(defined, k.defined);
+    for (int c = 0; c < 3; ++c) {
+      L::store(r_u[c], k.r_u[c]);
+      L::store(normal[c], direction[c]);
+    }
+  }
+  [[gnu::always_inline]] void take(Curvature<L>& k, typename L::Batch (&direction)[3]) const {
+    k.s11 = L::load(s11);
+    k.s12 = L::load(s12);
+    k.s22 = L::load(s22);
+    k.inverse_e = L::load(inverse_e);
+    k.defined = L::load(defined);
+    for (int c = 0; c < 3; ++c) {
+      k.r_u[c] = L::load(r_u[c]);
+      direction[c] = L::load(normal[c]);
+    }
+  }
+};
 
 /// k1 >= k2 and their kind. The radius of Mohr's circle, hypot((s11 - s22) / 2, s12), is taken without squares that
 /// leave the range.
@@ -137,8 +196,8 @@ struct Principal {
 
 template <class L>
 [[gnu::always_inline]] inline void principal_curvatures(const GridJob<typename L::Scalar>& job, const Curvature<L>& k,
-                                                        const typename L::Batch& mean, Principal<L>& p) {
-  const auto zero = L::broadcast(0), one = L::broadcast(1);
+                                                        Principal<L>& p) {
+  const auto zero = L::broadcast(0), one = L::broadcast(1), mean = mean_curvature<L>(k);
   p.half_difference = L::broadcast(static_cast<typename L::Scalar>(0.5)) * (k.s11 - k.s22);
   const auto a = xsimd::abs(p.half_difference), b = xsimd::abs(k.s12);
   const auto larger = xsimd::max(a, b), ratio = xsimd::min(a, b) / larger;
@@ -155,7 +214,7 @@ template <class L>
 /// The unit tangents of k1 and k2, first x second = N, by the half angle of (half_difference, s12); at an umbilic e1
 /// and e2.
 template <class L>
-[[gnu::always_inline]] inline void principal_directions(const Curvature<L>& k, const Normal<L>& normal,
+[[gnu::always_inline]] inline void principal_directions(const Curvature<L>& k, const typename L::Batch (&normal)[3],
                                                         const Principal<L>& p, typename L::Batch (&first)[3],
                                                         typename L::Batch (&second)[3]) {
   using T = typename L::Scalar;
@@ -170,7 +229,7 @@ template <class L>
   const auto inverse_length = xsimd::sqrt(k.inverse_e);
   typename L::Batch e1[3], e2[3];
   for (int c = 0; c < 3; ++c) e1[c] = k.r_u[c] * inverse_length;
-  cross<L>(normal.direction, e1, e2);
+  cross<L>(normal, e1, e2);
   for (int c = 0; c < 3; ++c) {
     first[c] = L::fma(sine, e2[c], cosine * e1[c]);
     second[c] = L::fms(cosine, e2[c], sine * e1[c]);

@@ -3,12 +3,26 @@
 // so the same code evaluates Bernstein and power coefficients. Any subset of the outputs in one pass. Included by
 // the units as sample_kernel.inl.h is.
 
+/// How values go to memory: by plain stores, by streaming ones, or as the job says.
+enum class Way { plain, streaming, asked };
+
+/// A vector, or three.
+template <class L, Way How, class Value>
+[[gnu::always_inline]] inline void put(const GridJob<typename L::Scalar>& job, typename L::Scalar* memory,
+                                       const Value& value) {
+  if (How == Way::streaming || (How == Way::asked && job.streaming)) {
+    store<L, true>(memory, value);
+  } else {
+    store<L, false>(memory, value);
+  }
+}
+
 /// Where the outputs of one sample go, for one vector of patches.
 struct Offsets {
   std::ptrdiff_t vector, scalar, byte;
 };
 
-template <class L, bool Streaming>
+template <class L, Way How>
 [[gnu::always_inline]] inline void store_position(const GridJob<typename L::Scalar>& job, std::ptrdiff_t out,
                                                   const Sample<L>& sample) {
   typename L::Batch position[3];
@@ -16,18 +30,20 @@ template <class L, bool Streaming>
   if constexpr (sizeof(typename L::Scalar) == 8) {
     for (int c = 0; c < 3; ++c) position[c] = position[c] + L::broadcast(job.offset[c]);
   }
-  store<L, Streaming>(job.position + out, position);
+  put<L, How>(job, job.position + out, position);
 }
 
 /// Values where they are defined, zero elsewhere.
-template <class L, bool Streaming>
+template <class L>
 class DefinedStore {
  public:
-  explicit DefinedStore(const typename L::Batch& defined) : defined_(defined) {}
+  using Job = GridJob<typename L::Scalar>;
+
+  DefinedStore(const Job& job, const typename L::Batch& defined) : job_(job), defined_(defined) {}
   [[gnu::always_inline]] void operator()(typename L::Scalar* memory, std::ptrdiff_t out,
                                          const typename L::Batch& value) const {
     const auto zero = L::broadcast(0);
-    if (memory) store<L, Streaming>(memory + out, xsimd::select(defined_ > zero, value, zero));
+    if (memory) put<L, Way::asked>(job_, memory + out, xsimd::select(defined_ > zero, value, zero));
   }
   [[gnu::always_inline]] void operator()(typename L::Scalar* memory, std::ptrdiff_t out, const typename L::Batch& x,
                                          const typename L::Batch& y, const typename L::Batch& z) const {
@@ -38,41 +54,48 @@ class DefinedStore {
   }
 
  private:
+  const Job& job_;
   typename L::Batch defined_;
 };
 
-template <class L, bool Streaming>
-[[gnu::always_inline]] inline void store_principal(const GridJob<typename L::Scalar>& job, const Offsets& out,
-                                                   const Normal<L>& normal, const Curvature<L>& k,
-                                                   const typename L::Batch& mean) {
-  const DefinedStore<L, Streaming> put(k.defined);
+/// Principal curvatures and directions: out of line, since they are much code.
+template <class L>
+[[gnu::noinline]] void store_principal(const GridJob<typename L::Scalar>& job, const Offsets& out,
+                                       const CurvatureExchange<L>& exchange) {
+  Curvature<L> k;
+  typename L::Batch normal[3];
+  exchange.take(k, normal);
+  const DefinedStore<L> put_defined(job, k.defined);
   Principal<L> principal;
-  principal_curvatures<L>(job, k, mean, principal);
-  put(job.first_curvature, out.scalar, principal.first);
-  put(job.second_curvature, out.scalar, principal.second);
+  principal_curvatures<L>(job, k, principal);
+  put_defined(job.first_curvature, out.scalar, principal.first);
+  put_defined(job.second_curvature, out.scalar, principal.second);
   if (job.curvature_kind)
     L::store_bytes(job.curvature_kind + out.byte,
                    xsimd::select(k.defined > L::broadcast(0), principal.umbilic, L::broadcast(undefined_curvatures)));
   if (!job.first_direction && !job.second_direction) return;
   typename L::Batch first[3], second[3];
   principal_directions<L>(k, normal, principal, first, second);
-  put(job.first_direction, out.vector, first[0], first[1], first[2]);
-  put(job.second_direction, out.vector, second[0], second[1], second[2]);
+  put_defined(job.first_direction, out.vector, first[0], first[1], first[2]);
+  put_defined(job.second_direction, out.vector, second[0], second[1], second[2]);
 }
 
-template <class L, bool Streaming>
+template <class L>
 [[gnu::always_inline]] inline void store_curvatures(const GridJob<typename L::Scalar>& job, const Offsets& out,
                                                     const Sample<L>& sample, const Normal<L>& normal) {
   Curvature<L> k;
   curvature<L>(job, sample, normal, k);
-  const DefinedStore<L, Streaming> put(k.defined);
-  const auto mean = L::broadcast(static_cast<typename L::Scalar>(0.5)) * (k.s11 + k.s22);
-  put(job.first_form, out.vector, k.e, k.f, k.g);
-  put(job.second_form, out.vector, k.l, k.m, k.n);
-  put(job.gaussian, out.scalar, L::fms(k.s11, k.s22, k.s12 * k.s12));
-  put(job.mean, out.scalar, mean);
-  if (job.first_curvature || job.second_curvature || job.curvature_kind || job.first_direction || job.second_direction)
-    store_principal<L, Streaming>(job, out, normal, k, mean);
+  const DefinedStore<L> put_defined(job, k.defined);
+  put_defined(job.first_form, out.vector, k.e, k.f, k.g);
+  put_defined(job.second_form, out.vector, k.l, k.m, k.n);
+  put_defined(job.gaussian, out.scalar, L::fms(k.s11, k.s22, k.s12 * k.s12));
+  put_defined(job.mean, out.scalar, mean_curvature<L>(k));
+  if (job.first_curvature || job.second_curvature || job.curvature_kind || job.first_direction ||
+      job.second_direction) {
+    CurvatureExchange<L> exchange;
+    exchange.put(k, normal.direction);
+    store_principal<L>(job, out, exchange);
+  }
 }
 
 template <class T>
@@ -85,25 +108,25 @@ inline bool wants_curvatures(const GridJob<T>& job) {
 /// of patches of one degree in both directions.
 enum class Wanted { any, mesh };
 
-template <class L, bool Streaming, int Order, Wanted Outputs>
+template <class L, Way How, int Order, Wanted Outputs>
 [[gnu::always_inline]] inline void store_derivatives(const GridJob<typename L::Scalar>& job, const Sample<L>& sample,
                                                      const Offsets& out) {
-  if (Order == 0 || Outputs == Wanted::mesh || job.position) store_position<L, Streaming>(job, out.vector, sample);
+  if (Order == 0 || Outputs == Wanted::mesh || job.position) store_position<L, How>(job, out.vector, sample);
   if constexpr (Order >= 1 && Outputs == Wanted::any) {
-    if (job.du) store<L, Streaming>(job.du + out.vector, sample.du);
-    if (job.dv) store<L, Streaming>(job.dv + out.vector, sample.dv);
+    if (job.du) put<L, How>(job, job.du + out.vector, sample.du);
+    if (job.dv) put<L, How>(job, job.dv + out.vector, sample.dv);
   }
   if constexpr (Order >= 2) {
-    if (job.duu) store<L, Streaming>(job.duu + out.vector, sample.duu);
-    if (job.duv) store<L, Streaming>(job.duv + out.vector, sample.duv);
-    if (job.dvv) store<L, Streaming>(job.dvv + out.vector, sample.dvv);
+    if (job.duu) put<L, How>(job, job.duu + out.vector, sample.duu);
+    if (job.duv) put<L, How>(job, job.duv + out.vector, sample.duv);
+    if (job.dvv) put<L, How>(job, job.dvv + out.vector, sample.dvv);
   }
 }
 
-template <class L, bool Streaming, Wanted Outputs>
+template <class L, Way How, Wanted Outputs>
 [[gnu::always_inline]] inline void store_normal(const GridJob<typename L::Scalar>& job, const Normal<L>& normal,
                                                 const Offsets& out) {
-  if (Outputs == Wanted::mesh || job.normal) store<L, Streaming>(job.normal + out.vector, normal.direction);
+  if (Outputs == Wanted::mesh || job.normal) put<L, How>(job, job.normal + out.vector, normal.direction);
   if (Outputs == Wanted::any && job.normal_kind) L::store_bytes(job.normal_kind + out.byte, normal.kind);
 }
 
@@ -112,25 +135,47 @@ inline bool wants_normals(const GridJob<T>& job) {
   return job.normal || job.normal_kind;
 }
 
-template <class L, bool Rational, bool Streaming, int Order>
+template <class L, bool Rational, Way How, int Order>
 [[gnu::always_inline]] inline void store_sample(const GridJob<typename L::Scalar>& job, const Sample<L>& sample,
                                                 const Place& place, const Offsets& out) {
-  store_derivatives<L, Streaming, Order, Wanted::any>(job, sample, out);
+  store_derivatives<L, How, Order, Wanted::any>(job, sample, out);
   if constexpr (Order >= 1) {
     const bool curvatures = Order >= 2 && wants_curvatures(job);
     if (!wants_normals(job) && !curvatures) return;
     Normal<L> normal;
     unit_normal<L, Rational>(job, sample, place, normal);
-    store_normal<L, Streaming, Wanted::any>(job, normal, out);
+    store_normal<L, How, Wanted::any>(job, normal, out);
     if constexpr (Order >= 2) {
-      if (curvatures) store_curvatures<L, Streaming>(job, out, sample, normal);
+      if (curvatures) store_curvatures<L>(job, out, sample, normal);
     }
   }
 }
 
+template <class L>
+Offsets sample_before(const GridJob<typename L::Scalar>& job, const Offsets& next) {
+  return {next.vector - job.vector_step, next.scalar - job.scalar_step, next.byte - block_lanes};
+}
+
+/// The normals of the sample before the one whose outputs are `next`, whose tangents are gone. `exchange.kind`: 1 in the
+/// lanes that are safe.
+template <class L>
+[[gnu::noinline, gnu::cold]] void finish_degenerate(const GridJob<typename L::Scalar>& job, int lane, Offsets next,
+                                                    NormalExchange<L>& exchange) {
+  const Offsets out = sample_before<L>(job, next);
+  const int k = static_cast<int>(out.byte / block_lanes), columns = job.v_end - job.v_begin;
+  const Place place{job.u_begin + k / columns, job.v_begin + k % columns, lane};
+  Sample<L> sample;
+  derive_again<L>(job, place, sample);
+  put_tangents<L>(job.rational, sample, exchange);
+  degenerate_normals<L>(job, place, L::load(exchange.kind), exchange);
+  Normal<L> normal;
+  take_normal<L>(exchange, normal);
+  store_normal<L, Way::asked, Wanted::any>(job, normal, out);
+}
+
 /// Normals of grids, each finished once the next sample's is begun: the chain of operations from r_u x r_v to a unit
 /// normal is long, and so runs beside the next sample's sums.
-template <class L, bool ByLane, bool Rational, bool Streaming, Wanted Outputs>
+template <class L, Way How, Wanted Outputs>
 class NormalsBehind {
  public:
   using Job = GridJob<typename L::Scalar>;
@@ -152,32 +197,16 @@ class NormalsBehind {
     normal.squared = squared_;
     const auto safe = regular_normals<L>(job, lane, normal);
     if (xsimd::all(safe)) {
-      store_normal<L, Streaming, Outputs>(job, normal, before(job, next));
+      store_normal<L, How, Outputs>(job, normal, sample_before<L>(job, next));
     } else {
       NormalExchange<L> exchange;
       for (int c = 0; c < 3; ++c) L::store(exchange.direction[c], normal.direction[c]);
       L::store(exchange.kind, xsimd::select(safe, L::broadcast(1), L::broadcast(0)));
-      finish_degenerate(job, lane, next, exchange);
+      finish_degenerate<L>(job, lane, next, exchange);
     }
   }
 
  private:
-  static Offsets before(const Job& job, const Offsets& next) {
-    return {next.vector - job.vector_step, next.scalar - job.scalar_step, next.byte - block_lanes};
-  }
-  /// `exchange.kind`: 1 in the lanes that are safe.
-  [[gnu::noinline, gnu::cold]] static void finish_degenerate(const Job& job, int lane, Offsets next,
-                                                             NormalExchange<L>& exchange) {
-    const Offsets out = before(job, next);
-    const int sample = static_cast<int>(out.byte / block_lanes), columns = job.v_end - job.v_begin;
-    const Place place{job.u_begin + sample / columns, job.v_begin + sample % columns, lane};
-    put_tangents_again<L, ByLane, Rational>(job, place, exchange);
-    degenerate_normals<L>(job, place, L::load(exchange.kind), exchange);
-    Normal<L> normal;
-    take_normal<L>(exchange, normal);
-    store_normal<L, Streaming, Outputs>(job, normal, out);
-  }
-
   typename L::Batch squared_ = L::broadcast(0), direction_[3] = {squared_, squared_, squared_};
 };
 
@@ -190,7 +219,7 @@ template <class T>
 
 /// `Groups` neighbouring vectors of patches, from `lane`, over the job's part of the grid. DegreeV 0 reads the degree
 /// from the job.
-template <class L, bool ByLane, int DegreeV, bool Rational, int Order, bool Streaming, int Groups, Wanted Outputs>
+template <class L, bool ByLane, int DegreeV, bool Rational, int Order, Way How, int Groups, Wanted Outputs>
 void evaluate_lanes(const GridJob<typename L::Scalar>& job, int lane) {
   constexpr int components = Rational ? 4 : 3;
   constexpr int capacity = DegreeV > 0 ? DegreeV + 1 : max_order;
@@ -200,7 +229,7 @@ void evaluate_lanes(const GridJob<typename L::Scalar>& job, int lane) {
 
   const auto* next_net = job.net + std::ptrdiff_t{count_u} * count_v * components * block_lanes;
   RowCurves<L, Order, components, capacity> curves[Groups];
-  NormalsBehind<L, ByLane, Rational, Streaming, Outputs> normals[Groups];
+  NormalsBehind<L, How, Outputs> normals[Groups];
   for (int iu = job.u_begin; iu < job.u_end; ++iu) {
     if (lane == 0) prefetch_lines(next_net, iu * job.prefetched_lines, job.prefetched_lines);
     for (int group = 0; group < Groups; ++group) {
@@ -214,13 +243,13 @@ void evaluate_lanes(const GridJob<typename L::Scalar>& job, int lane) {
         const auto v_weights = weights_at<L, ByLane>(job.v_weights, iv, count_v, lane + group * L::width);
         Sample<L> sample;
         evaluate_sample<L, Order>(curves[group], v_weights, count_v, sample);
-        const Place place{iu, iv, lane + group * L::width};
         const Offsets at{out.vector + shift, out.scalar + shift, out.byte + shift};
+        const int first = lane + group * L::width;
         if constexpr (Order == 1) {
-          store_derivatives<L, Streaming, Order, Outputs>(job, sample, at);
-          normals[group].begin(job, sample, place.lane, at);
+          store_derivatives<L, How, Order, Outputs>(job, sample, at);
+          normals[group].begin(job, sample, first, at);
         } else {
-          store_sample<L, Rational, Streaming, Order>(job, sample, place, at);
+          store_sample<L, Rational, How, Order>(job, sample, {iu, iv, first}, at);
         }
       }
       out = {out.vector + job.vector_step, out.scalar + job.scalar_step, out.byte + block_lanes};
@@ -235,17 +264,20 @@ void evaluate_lanes(const GridJob<typename L::Scalar>& job, int lane) {
 
 /// Plain stores take one vector of patches after the other; streaming stores take whole cache lines, since a line that
 /// is streamed in parts goes to memory in parts, and vectors of a line two of them: lines of a block that are left out
-/// cost as much as others.
+/// cost as much as others. Both share one loop where it is much code: any degree, and second derivatives.
 template <class L, int DegreeV, bool Rational, int Order, Wanted Outputs = Wanted::any>
 void evaluate_block(const GridJob<typename L::Scalar>& job) {
   constexpr int line = 64 / static_cast<int>(sizeof(typename L::Scalar));
   constexpr int streamed = L::width < line ? line : 2 * line < block_lanes ? 2 * line : block_lanes;
-  if (job.streaming) {
+  if constexpr (DegreeV == 0 || Order == 2) {
     for (int lane = 0; lane < block_lanes; lane += streamed)
-      evaluate_lanes<L, false, DegreeV, Rational, Order, true, streamed / L::width, Outputs>(job, lane);
+      evaluate_lanes<L, false, DegreeV, Rational, Order, Way::asked, streamed / L::width, Outputs>(job, lane);
+  } else if (job.streaming) {
+    for (int lane = 0; lane < block_lanes; lane += streamed)
+      evaluate_lanes<L, false, DegreeV, Rational, Order, Way::streaming, streamed / L::width, Outputs>(job, lane);
   } else {
     for (int lane = 0; lane < block_lanes; lane += L::width)
-      evaluate_lanes<L, false, DegreeV, Rational, Order, false, 1, Outputs>(job, lane);
+      evaluate_lanes<L, false, DegreeV, Rational, Order, Way::plain, 1, Outputs>(job, lane);
   }
 }
 
@@ -253,13 +285,22 @@ void evaluate_block(const GridJob<typename L::Scalar>& job) {
 template <class L, int Order>
 void evaluate_by_lane(const GridJob<typename L::Scalar>& job) {
   for (int lane = 0; lane < block_lanes; lane += L::width)
-    job.rational ? evaluate_lanes<L, true, 0, true, Order, false, 1, Wanted::any>(job, lane)
-                 : evaluate_lanes<L, true, 0, false, Order, false, 1, Wanted::any>(job, lane);
+    job.rational ? evaluate_lanes<L, true, 0, true, Order, Way::plain, 1, Wanted::any>(job, lane)
+                 : evaluate_lanes<L, true, 0, false, Order, Way::plain, 1, Wanted::any>(job, lane);
 }
+
+/// Degrees are fixed where it pays: the loop over any degree is within 15% but for positions of low degree. Rational second
+/// derivatives are as much code as all the rest.
+template <class L, int DegreeV, bool Rational, int Order>
+inline constexpr bool is_fixed = fixed_degrees &&
+                                 (DegreeV == 3 ? !Rational || Order < 2
+                                               : Order < 2 && (!Rational || sizeof(typename L::Scalar) == 4));
 
 template <class L, int DegreeV, int Order>
 void choose_weights(const GridJob<typename L::Scalar>& job) {
-  job.rational ? evaluate_block<L, DegreeV, true, Order>(job) : evaluate_block<L, DegreeV, false, Order>(job);
+  constexpr int polynomial = is_fixed<L, DegreeV, false, Order> ? DegreeV : 0;
+  constexpr int rational = is_fixed<L, DegreeV, true, Order> ? DegreeV : 0;
+  job.rational ? evaluate_block<L, rational, true, Order>(job) : evaluate_block<L, polynomial, false, Order>(job);
 }
 
 template <class T>
@@ -276,16 +317,21 @@ inline bool is_bicubic_mesh(const GridJob<T>& job) {
 
 template <class L, int DegreeV>
 void choose_order(const GridJob<typename L::Scalar>& job) {
-  order_of(job) == 1 ? choose_weights<L, DegreeV, 1>(job) : choose_weights<L, DegreeV, 0>(job);
+  const int order = order_of(job);
+  if (order == 2) {
+    choose_weights<L, DegreeV, 2>(job);
+  } else if (order == 1) {
+    choose_weights<L, DegreeV, 1>(job);
+  } else {
+    choose_weights<L, DegreeV, 0>(job);
+  }
 }
 
-/// Degrees are fixed where it matters most: the run-time loop is within 15% of them, and rational second derivatives are
-/// as much code as all the rest.
 template <class L>
-void choose_degree(const GridJob<typename L::Scalar>& job) {
-  if (order_of(job) == 2) {
-    job.degree_v == 3 && !job.rational ? evaluate_block<L, 3, false, 2>(job) : choose_weights<L, 0, 2>(job);
-  } else if (is_bicubic_mesh(job)) {
+Isa evaluate_grid(const GridJob<typename L::Scalar>& job) {
+  if (job.by_lane) {
+    order_of(job) == 2 ? evaluate_by_lane<L, 2>(job) : evaluate_by_lane<L, 1>(job);
+  } else if (fixed_degrees && sizeof(typename L::Scalar) == 4 && is_bicubic_mesh(job)) {
     evaluate_block<L, 3, false, 1, Wanted::mesh>(job);
   } else if (job.degree_v == 1) {
     choose_order<L, 1>(job);
@@ -295,18 +341,6 @@ void choose_degree(const GridJob<typename L::Scalar>& job) {
     choose_order<L, 3>(job);
   } else {
     choose_order<L, 0>(job);
-  }
-}
-
-template <class L>
-Isa evaluate_grid(const GridJob<typename L::Scalar>& job) {
-  const int order = order_of(job);
-  if (job.by_lane) {
-    order == 2 ? evaluate_by_lane<L, 2>(job) : evaluate_by_lane<L, 1>(job);
-  } else if constexpr (fixed_degrees) {
-    choose_degree<L>(job);
-  } else {
-    order == 2 ? choose_weights<L, 0, 2>(job) : choose_order<L, 0>(job);
   }
   return this_isa;
 }

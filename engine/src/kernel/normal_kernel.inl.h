@@ -110,41 +110,71 @@ inline OnCollapsed<L> on_collapsed(const GridJob<typename L::Scalar>& job, const
   return {L::load(on), L::load(inwards)};
 }
 
-/// r_uv of a sample of first order, made anew from the block: so few points ask for it that the others don't pay.
-template <class L, bool ByLane>
-[[gnu::noinline, gnu::cold]] void polynomial_mixed(const GridJob<typename L::Scalar>& job, const Place& place,
-                                                   typename L::Batch (&duv)[3]) {
-  const int count_u = job.degree_u + 1, count_v = job.degree_v + 1;
-  RowCurves<L, 0, 3, max_order> curves;
-  const auto u_weights = weights_at<L, ByLane>(job.u_weights, place.iu, count_u, place.lane) + count_u;
-  const auto v_weights = weights_at<L, ByLane>(job.v_weights, place.iv, count_v, place.lane) + count_v;
-  row_curves<L, 0>(job.net + place.lane, u_weights, count_u, count_v, curves);
-  combine<L>(v_weights, count_v, curves.by_u[0], duv);
-}
-template <class L, bool ByLane>
-[[gnu::noinline, gnu::cold]] void rational_mixed(const GridJob<typename L::Scalar>& job, const Place& place,
-                                                 typename L::Batch (&duv)[3]) {
-  const int count_u = job.degree_u + 1, count_v = job.degree_v + 1;
-  const auto u_weights = weights_at<L, ByLane>(job.u_weights, place.iu, count_u, place.lane);
-  const auto v_weights = weights_at<L, ByLane>(job.v_weights, place.iv, count_v, place.lane);
-  RowCurves<L, 1, 4, max_order> curves;
-  row_curves<L, 0>(job.net + place.lane, u_weights, count_u, count_v, curves);
-  Sample<L> sample;
-  evaluate_sample<L, 1>(curves, v_weights, count_v, sample);
-  typename L::Batch p_u[4], p_v[4], p_uv[4];
-  combine<L>(v_weights, count_v, curves.by_u[1], p_u);
-  combine<L>(v_weights + count_v, count_v, curves.by_u[0], p_v);
-  combine<L>(v_weights + count_v, count_v, curves.by_u[1], p_uv);
-  divide_mixed<L>(p_uv, p_u[3], p_v[3], sample, duv);
+/// Weight i of parameter k, from its derivatives of an order on: of all lanes, or of each its own.
+template <class L>
+inline typename L::Batch weight_at(const GridJob<typename L::Scalar>& job, const typename L::Scalar* table, int k,
+                                   int count, int i, int lane) {
+  const std::ptrdiff_t at = std::ptrdiff_t{k} * 3 * count + i;
+  return job.by_lane ? L::load(table + at * block_lanes + lane) : L::broadcast(table[at]);
 }
 
+/// sum = weight * value, or sum + weight * value after the first.
+template <class L, int Components>
+inline void add_product(bool first, const typename L::Batch& weight, const typename L::Batch (&value)[Components],
+                        typename L::Batch (&sum)[Components]) {
+  for (int c = 0; c < Components; ++c) sum[c] = first ? weight * value[c] : L::fma(weight, value[c], sum[c]);
+}
+
+/// From sums over the net to Cartesian derivatives.
 template <class L>
-inline void mixed_derivative(const GridJob<typename L::Scalar>& job, const Place& place, typename L::Batch (&duv)[3]) {
-  if (job.by_lane) {
-    job.rational ? rational_mixed<L, true>(job, place, duv) : polynomial_mixed<L, true>(job, place, duv);
-  } else {
-    job.rational ? rational_mixed<L, false>(job, place, duv) : polynomial_mixed<L, false>(job, place, duv);
+inline void derivatives_of(const typename L::Batch (&)[3], const typename L::Batch (&p_u)[3],
+                           const typename L::Batch (&p_v)[3], const typename L::Batch (&p_uv)[3], Sample<L>& sample) {
+  copy<L>(p_u, sample.du);
+  copy<L>(p_v, sample.dv);
+  copy<L>(p_uv, sample.duv);
+}
+template <class L>
+inline void derivatives_of(const typename L::Batch (&p)[4], const typename L::Batch (&p_u)[4],
+                           const typename L::Batch (&p_v)[4], const typename L::Batch (&p_uv)[4], Sample<L>& sample) {
+  const auto q = L::broadcast(1) / p[3];
+  sample.reciprocal_weight = q;
+  for (int c = 0; c < 3; ++c) sample.position[c] = p[c] * q;
+  divide_first<L>(p_u, q, sample.position, sample.du);
+  divide_first<L>(p_v, q, sample.position, sample.dv);
+  divide_mixed<L>(p_uv, p_u[3], p_v[3], sample, sample.duv);
+}
+
+/// The first derivatives of a sample, and r_uv, made anew from the block with the same bits: so few points ask for them
+/// that the others don't keep them.
+template <class L, bool Rational>
+[[gnu::noinline, gnu::cold]] void derive_again(const GridJob<typename L::Scalar>& job, const Place& place,
+                                               Sample<L>& sample) {
+  constexpr int components = Rational ? 4 : 3;
+  const int count_u = job.degree_u + 1, count_v = job.degree_v + 1, lane = place.lane;
+  typename L::Batch p[components], p_u[components], p_v[components], p_uv[components];
+#pragma GCC unroll 1
+  for (int j = 0; j < count_v; ++j) {
+    typename L::Batch row[components], row_u[components];
+#pragma GCC unroll 1
+    for (int i = 0; i < count_u; ++i) {
+      typename L::Batch point[components];
+      for (int c = 0; c < components; ++c)
+        point[c] = L::load(job.net + ((std::ptrdiff_t{i} * count_v + j) * components + c) * block_lanes + lane);
+      add_product<L>(i == 0, weight_at<L>(job, job.u_weights, place.iu, count_u, i, lane), point, row);
+      add_product<L>(i == 0, weight_at<L>(job, job.u_weights, place.iu, count_u, count_u + i, lane), point, row_u);
+    }
+    const auto weight = weight_at<L>(job, job.v_weights, place.iv, count_v, j, lane);
+    const auto weight_v = weight_at<L>(job, job.v_weights, place.iv, count_v, count_v + j, lane);
+    if (Rational) add_product<L>(j == 0, weight, row, p);
+    add_product<L>(j == 0, weight, row_u, p_u);
+    add_product<L>(j == 0, weight_v, row, p_v);
+    add_product<L>(j == 0, weight_v, row_u, p_uv);
   }
+  derivatives_of<L>(p, p_u, p_v, p_uv, sample);
+}
+template <class L>
+inline void derive_again(const GridJob<typename L::Scalar>& job, const Place& place, Sample<L>& sample) {
+  job.rational ? derive_again<L, true>(job, place, sample) : derive_again<L, false>(job, place, sample);
 }
 
 /// The limit normals of lanes on a collapsed edge, by one derivative more: where r_u vanishes along v = 0, r_u(u, k) =
@@ -158,12 +188,13 @@ template <class L>
   const auto v_edge = on_collapsed<L>(job, job.v_edges, place.iv, 2, place.lane);
   const auto on_u = u_edge.on, on_v = v_edge.on;
   if (!xsimd::any((on_u + on_v) > zero)) return;
-  typename L::Batch duv[3], a[3], b[3], n[3];
-  mixed_derivative<L>(job, place, duv);
+  Sample<L> sample;
+  derive_again<L>(job, place, sample);
+  typename L::Batch a[3], b[3], n[3];
   const auto along_v = on_v > zero;
   for (int c = 0; c < 3; ++c) {
-    a[c] = xsimd::select(along_v, duv[c], tangents.du[c]);
-    b[c] = xsimd::select(along_v, tangents.dv[c], duv[c]);
+    a[c] = xsimd::select(along_v, sample.duv[c], tangents.du[c]);
+    b[c] = xsimd::select(along_v, tangents.dv[c], sample.duv[c]);
   }
   const int degree = job.degree_u > job.degree_v ? job.degree_u : job.degree_v;
   const auto noise = tangents.noise, noise_uv = noise * L::broadcast(static_cast<typename L::Scalar>(4 * degree));
@@ -289,13 +320,13 @@ template <class L>
          (normal.squared <= L::broadcast(SafeRange<typename L::Scalar>::highest));
 }
 
-template <class L, bool Rational>
-[[gnu::always_inline]] inline void put_tangents(const Sample<L>& sample, NormalExchange<L>& exchange) {
+template <class L>
+[[gnu::always_inline]] inline void put_tangents(bool rational, const Sample<L>& sample, NormalExchange<L>& exchange) {
   for (int c = 0; c < 3; ++c) {
     L::store(exchange.du[c], sample.du[c]);
     L::store(exchange.dv[c], sample.dv[c]);
   }
-  if constexpr (Rational) L::store(exchange.reciprocal_weight, sample.reciprocal_weight);
+  if (rational) L::store(exchange.reciprocal_weight, sample.reciprocal_weight);
 }
 
 template <class L>
@@ -313,22 +344,8 @@ template <class L, bool Rational>
   const auto safe = regular_normals<L>(job, place.lane, normal);
   if (xsimd::all(safe)) return;
   NormalExchange<L> exchange;
-  put_tangents<L, Rational>(sample, exchange);
+  put_tangents<L>(Rational, sample, exchange);
   for (int c = 0; c < 3; ++c) L::store(exchange.direction[c], normal.direction[c]);
   degenerate_normals<L>(job, place, xsimd::select(safe, L::broadcast(1), L::broadcast(0)), exchange);
   take_normal<L>(exchange, normal);
-}
-
-/// put_tangents() of a sample that is gone: the same bits, made anew from the block.
-template <class L, bool ByLane, bool Rational>
-[[gnu::noinline, gnu::cold]] void put_tangents_again(const GridJob<typename L::Scalar>& job, const Place& place,
-                                                     NormalExchange<L>& exchange) {
-  constexpr int components = Rational ? 4 : 3;
-  const int count_u = job.degree_u + 1, count_v = job.degree_v + 1;
-  RowCurves<L, 1, components, max_order> curves;
-  row_curves<L, 0>(job.net + place.lane, weights_at<L, ByLane>(job.u_weights, place.iu, count_u, place.lane), count_u,
-                   count_v, curves);
-  Sample<L> sample;
-  evaluate_sample<L, 1>(curves, weights_at<L, ByLane>(job.v_weights, place.iv, count_v, place.lane), count_v, sample);
-  put_tangents<L, Rational>(sample, exchange);
 }
