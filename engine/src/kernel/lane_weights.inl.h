@@ -25,23 +25,23 @@ struct Powers {
   [[gnu::always_inline]] void fill(const typename L::Batch& t, int degree) {
     value[0] = L::broadcast(1);
     value[1] = t;
-#pragma GCC unroll 4
-    for (int k = 2; k < degree; ++k) {
-      value[k] = value[k - 1] * t;
-      const auto product_rest = L::fms(value[k - 1], t, value[k]);
-      rest[k] = k == 2 ? product_rest : L::fma(rest[k - 1], t, product_rest);
-    }
+    for_each_coefficient<Capacity>(
+        2, degree, [&](int k) __attribute__((always_inline)) {
+          value[k] = value[k - 1] * t;
+          const auto product_rest = L::fms(value[k - 1], t, value[k]);
+          rest[k] = k == 2 ? product_rest : L::fma(rest[k - 1], t, product_rest);
+        });
   }
   [[gnu::always_inline]] void fill(const typename L::Batch& t, const typename L::Batch& t_rest, int degree) {
     value[0] = L::broadcast(1);
     value[1] = t;
     rest[1] = t_rest;
-#pragma GCC unroll 4
-    for (int k = 2; k < degree; ++k) {
-      value[k] = value[k - 1] * t;
-      const auto product_rest = L::fms(value[k - 1], t, value[k]);
-      rest[k] = L::fma(rest[k - 1], t, L::fma(value[k - 1], t_rest, product_rest));
-    }
+    for_each_coefficient<Capacity>(
+        2, degree, [&](int k) __attribute__((always_inline)) {
+          value[k] = value[k - 1] * t;
+          const auto product_rest = L::fms(value[k - 1], t, value[k]);
+          rest[k] = L::fma(rest[k - 1], t, L::fma(value[k - 1], t_rest, product_rest));
+        });
   }
 };
 
@@ -52,15 +52,15 @@ template <class L, int Capacity>
   const int n = degree - 1;
   weights[0] = s.value[1];
   if (n > 0) weights[0] = L::fma(s.value[n], s.value[1], L::fma(s.rest[n], s.value[1], s.value[n] * s.rest[1]));
-#pragma GCC unroll 4
-  for (int i = 1; i < degree; ++i) {
-    const auto product = t.value[i] * s.value[degree - i];
-    auto rest = L::fms(t.value[i], s.value[degree - i], product);
-    rest = L::fma(t.value[i], s.rest[degree - i], rest);
-    if (i > 1) rest = L::fma(t.rest[i], s.value[degree - i], rest);
-    const auto factor = L::broadcast(binomials<typename L::Scalar>.of[degree][i]);
-    weights[i] = L::fma(factor, product, factor * rest);
-  }
+  for_each_coefficient<Capacity>(
+      1, degree, [&](int i) __attribute__((always_inline)) {
+        const auto product = t.value[i] * s.value[degree - i];
+        auto rest = L::fms(t.value[i], s.value[degree - i], product);
+        rest = L::fma(t.value[i], s.rest[degree - i], rest);
+        if (i > 1) rest = L::fma(t.rest[i], s.value[degree - i], rest);
+        const auto factor = L::broadcast(binomials<typename L::Scalar>.of[degree][i]);
+        weights[i] = L::fma(factor, product, factor * rest);
+      });
   weights[degree] = n > 1   ? L::fma(t.value[n], t.value[1], t.rest[n] * t.value[1])
                     : n > 0 ? t.value[1] * t.value[1]
                             : t.value[1];
@@ -80,12 +80,12 @@ template <class L, int Capacity>
 [[gnu::always_inline]] inline void bernstein_first(const Powers<L, Capacity>& t, const Powers<L, Capacity>& s,
                                                    int degree, typename L::Batch* weights) {
   auto before = L::broadcast(0);
-#pragma GCC unroll 4
-  for (int i = 0; i < degree; ++i) {
-    const auto next = plain_bernstein<L>(t, s, degree - 1, i, degree);
-    weights[i] = before - next;
-    before = next;
-  }
+  for_each_coefficient<Capacity>(
+      0, degree, [&](int i) __attribute__((always_inline)) {
+        const auto next = plain_bernstein<L>(t, s, degree - 1, i, degree);
+        weights[i] = before - next;
+        before = next;
+      });
   weights[degree] = before;
 }
 
@@ -94,14 +94,14 @@ template <class L, int Capacity>
 [[gnu::always_inline]] inline void bernstein_second(const Powers<L, Capacity>& t, const Powers<L, Capacity>& s,
                                                     int degree, typename L::Batch* weights) {
   auto before = L::broadcast(0), last = before;  // of i - 2 and i - 1
-#pragma GCC unroll 4
-  for (int i = 0; i <= degree; ++i) {
-    auto next = L::broadcast(0);
-    if (i <= degree - 2) next = plain_bernstein<L>(t, s, degree - 2, i, degree * (degree - 1));
-    weights[i] = (before - last) + (next - last);
-    before = last;
-    last = next;
-  }
+  for_each_coefficient<Capacity>(
+      0, degree + 1, [&](int i) __attribute__((always_inline)) {
+        auto next = L::broadcast(0);
+        if (i <= degree - 2) next = plain_bernstein<L>(t, s, degree - 2, i, degree * (degree - 1));
+        weights[i] = (before - last) + (next - last);
+        before = last;
+        last = next;
+      });
 }
 
 /// `weights[order * (degree + 1) + i]` at t, for orders up to Order.

@@ -70,10 +70,15 @@ template <class L, int Components, int Capacity>
   L::transpose(tile);
   const int rest = Components * count_v - k, columns = rest < L::width ? rest : int{L::width};
   int c = k / count_v, j = k % count_v;
-#pragma GCC unroll 16
-  for (int l = 0; l < columns; ++l) {
+  const auto put_column = [&](int l) __attribute__((always_inline)) {
     curve[c][j] = tile[l];
     if (++j == count_v) j = 0, ++c;
+  };
+  if constexpr (Capacity < max_order) {
+#pragma GCC unroll 16
+    for (int l = 0; l < columns; ++l) put_column(l);
+  } else {
+    for (int l = 0; l < columns; ++l) put_column(l);
   }
 }
 
@@ -93,7 +98,7 @@ template <class L, int Degree, int Order, int Components, int Capacity>
       row_sums<L, ends_line, Order>(net_of(job, first + s) + k, weights + s, count_u, length, length - k, sums);
       for (int order = 0; order <= Order; ++order) tiles[order][s] = sums[order];
     };
-    if constexpr (Degree > 0 || !fixed_degrees) {
+    if constexpr (Order < 2 && (Degree > 0 || !fixed_degrees)) {
 #pragma GCC unroll 16
       for (int s = 0; s < L::width; ++s) sum_sample(s);
     } else {

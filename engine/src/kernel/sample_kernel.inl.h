@@ -37,6 +37,19 @@ template <class L, bool ByLane>
   }
 }
 
+/// use(i) from `first` to before `end`: laid out in full where the capacity says that the degree is known, for there it
+/// pays, and a loop elsewhere.
+template <int Capacity, class Use>
+[[gnu::always_inline]] inline void for_each_coefficient(int first, int end, Use use) {
+  if constexpr (Capacity < max_order) {
+#pragma GCC unroll 4
+    for (int i = first; i < end; ++i) use(i);
+  } else {
+#pragma GCC unroll 1
+    for (int i = first; i < end; ++i) use(i);
+  }
+}
+
 /// A weight of all lanes, or one a lane.
 template <class L>
 inline typename L::Batch in_lanes(typename L::Scalar weight) {
@@ -57,11 +70,11 @@ inline void combine(const Weights weights, int count, const typename L::Batch (&
                     typename L::Batch (&sum)[Components]) {
   const auto first = in_lanes<L>(weights[0]);
   for (int c = 0; c < Components; ++c) sum[c] = first * curve[c][0];
-#pragma GCC unroll 4
-  for (int j = 1; j < count; ++j) {
-    const auto weight = in_lanes<L>(weights[j]);
-    for (int c = 0; c < Components; ++c) sum[c] = L::fma(weight, curve[c][j], sum[c]);
-  }
+  for_each_coefficient<Capacity>(
+      1, count, [&](int j) __attribute__((always_inline)) {
+        const auto weight = in_lanes<L>(weights[j]);
+        for (int c = 0; c < Components; ++c) sum[c] = L::fma(weight, curve[c][j], sum[c]);
+      });
 }
 
 /// `Count` neighbouring row curves from index j, and their derivatives up to the order: each coefficient is read once, and
