@@ -132,22 +132,28 @@ struct Lanes<float> {
   static void store_between(float* p, Batch a, int begin, int end) {
     _mm512_mask_storeu_ps(p, static_cast<__mmask16>((1u << end) - (1u << begin)), a);
   }
-  /// Vector l becomes value l of the rows at row(0), row(1), ..., of which four values are read: rows k, k + 4, k + 8 and
-  /// k + 12 share a vector from the start, which spares half of a transpose's shuffles.
+  /// Vector l becomes value l of the rows at row(0), row(1), ..., of which eight values are read: rows k and k + 4 share a
+  /// vector from the start, which spares half of the shuffles across a vector.
   template <class Row>
-  static void load_columns(const Row& row, Batch (&column)[4]) {
-    __m512 a[4];
-#pragma GCC unroll 4
-    for (int k = 0; k < 4; ++k) {
-      a[k] = _mm512_insertf32x4(_mm512_castps128_ps512(_mm_load_ps(row(k))), _mm_load_ps(row(4 + k)), 1);
-      a[k] = _mm512_insertf32x4(_mm512_insertf32x4(a[k], _mm_load_ps(row(8 + k)), 2), _mm_load_ps(row(12 + k)), 3);
+  static void load_columns(const Row& row, Batch (&column)[8]) {
+    __m512 a[8];
+#pragma GCC unroll 8
+    for (int k = 0; k < 8; ++k) {
+      const int first = k / 4 * 8 + k % 4;
+      a[k] = _mm512_insertf32x8(_mm512_castps256_ps512(_mm256_load_ps(row(first))), _mm256_load_ps(row(first + 4)), 1);
     }
-    const __m512 b0 = _mm512_unpacklo_ps(a[0], a[1]), b1 = _mm512_unpackhi_ps(a[0], a[1]);
-    const __m512 b2 = _mm512_unpacklo_ps(a[2], a[3]), b3 = _mm512_unpackhi_ps(a[2], a[3]);
-    column[0] = _mm512_shuffle_ps(b0, b2, 0x44);
-    column[1] = _mm512_shuffle_ps(b0, b2, 0xee);
-    column[2] = _mm512_shuffle_ps(b1, b3, 0x44);
-    column[3] = _mm512_shuffle_ps(b1, b3, 0xee);
+    for (int i = 0; i < 8; i += 4) {  // fours of rows: a[i + l] gets columns l and 4 + l
+      const __m512 b0 = _mm512_unpacklo_ps(a[i], a[i + 1]), b1 = _mm512_unpackhi_ps(a[i], a[i + 1]);
+      const __m512 b2 = _mm512_unpacklo_ps(a[i + 2], a[i + 3]), b3 = _mm512_unpackhi_ps(a[i + 2], a[i + 3]);
+      a[i] = _mm512_shuffle_ps(b0, b2, 0x44);
+      a[i + 1] = _mm512_shuffle_ps(b0, b2, 0xee);
+      a[i + 2] = _mm512_shuffle_ps(b1, b3, 0x44);
+      a[i + 3] = _mm512_shuffle_ps(b1, b3, 0xee);
+    }
+    for (int l = 0; l < 4; ++l) {
+      column[l] = _mm512_shuffle_f32x4(a[l], a[4 + l], 0x88);
+      column[4 + l] = _mm512_shuffle_f32x4(a[l], a[4 + l], 0xdd);
+    }
   }
   static void transpose(Batch (&row)[width]) {
     __m512 a[16], b[16];
@@ -235,15 +241,19 @@ struct Lanes<double> {
   /// The carry with which the next shift_in() leaves the first lanes of `a` where they are.
   static Batch carried(Batch a, const Shift& shift) { return _mm512_permutexvar_pd(shift.backward, a); }
   template <class Row>
-  static void load_columns(const Row& row, Batch (&column)[2]) {
-    __m512d a[2];
-#pragma GCC unroll 2
-    for (int k = 0; k < 2; ++k) {
-      a[k] = _mm512_insertf64x2(_mm512_castpd128_pd512(_mm_load_pd(row(k))), _mm_load_pd(row(2 + k)), 1);
-      a[k] = _mm512_insertf64x2(_mm512_insertf64x2(a[k], _mm_load_pd(row(4 + k)), 2), _mm_load_pd(row(6 + k)), 3);
+  static void load_columns(const Row& row, Batch (&column)[4]) {
+    __m512d a[4];
+#pragma GCC unroll 4
+    for (int k = 0; k < 4; ++k) {
+      const int first = k / 2 * 4 + k % 2;
+      a[k] = _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_load_pd(row(first))), _mm256_load_pd(row(first + 2)), 1);
     }
-    column[0] = _mm512_unpacklo_pd(a[0], a[1]);
-    column[1] = _mm512_unpackhi_pd(a[0], a[1]);
+    const __m512d b0 = _mm512_unpacklo_pd(a[0], a[1]), b1 = _mm512_unpackhi_pd(a[0], a[1]);
+    const __m512d b2 = _mm512_unpacklo_pd(a[2], a[3]), b3 = _mm512_unpackhi_pd(a[2], a[3]);
+    column[0] = _mm512_shuffle_f64x2(b0, b2, 0x88);
+    column[1] = _mm512_shuffle_f64x2(b1, b3, 0x88);
+    column[2] = _mm512_shuffle_f64x2(b0, b2, 0xdd);
+    column[3] = _mm512_shuffle_f64x2(b1, b3, 0xdd);
   }
   static void transpose(Batch (&row)[width]) {
     __m512d a[8];

@@ -3,10 +3,10 @@
 // plain or streamed. Vectors in which one lane ends and the next begins are put together when all are through. Included
 // by the units as sample_kernel.inl.h is.
 
-/// Lanes whose values fit 16 bytes: what is transposed at once. More would cost shuffles across a vector, which one port
-/// alone executes.
+/// Lanes that are transposed at once: 16 bytes of a row, or half a vector of 64. Fewer would cost more loads, more would
+/// cost more shuffles across a vector, which few ports execute.
 template <class L>
-inline constexpr int lane_group = 16 / static_cast<int>(sizeof(typename L::Scalar));
+inline constexpr int lane_group = (L::width * sizeof(typename L::Scalar) == 64 ? 32 : 16) / sizeof(typename L::Scalar);
 
 template <class L>
 void begin_lines(LineState<typename L::Scalar>& state, typename L::Scalar* const* memory) {
@@ -52,7 +52,7 @@ template <class L, bool Streaming, int Step>
   constexpr int group = lane_group<L>, width = L::width;
   LineState<typename L::Scalar>& state = *job.state;
   GroupLines<L> out;
-#pragma GCC unroll 4
+#pragma GCC unroll 8
   for (int k = 0; k < group; ++k) {
     out.shift[k] = L::shift_by(state.end[l + k]);
     out.carry[k] = L::carried(L::load(state.part[l + k]), out.shift[k]);
@@ -64,12 +64,12 @@ template <class L, bool Streaming, int Step>
   for (std::ptrdiff_t tile = 0; tile < tiles; ++tile, rows += width * step) {
     typename L::Batch column[group];
     load_group<L, Step>(job, rows, column);
-#pragma GCC unroll 4
+#pragma GCC unroll 8
     for (int k = 0; k < group; ++k) column[k] = L::shift_in(out.carry[k], column[k], out.shift[k]);
     if (tile == 0) {
       for (int k = 0; k < group; ++k) put_first<L, Streaming>(state, l + k, out.next[k], column[k]);
     } else {
-#pragma GCC unroll 4
+#pragma GCC unroll 8
       for (int k = 0; k < group; ++k) store<L, Streaming>(out.next[k] + tile * width, column[k]);
     }
   }
@@ -80,7 +80,7 @@ template <class L, bool Streaming, int Step>
   } else {
     for (int k = 0; k < group; ++k) column[k] = L::broadcast(0);
   }
-#pragma GCC unroll 4
+#pragma GCC unroll 8
   for (int k = 0; k < group; ++k) {
     auto* next = out.next[k] + tiles * width;
     int end = state.end[l + k] + rest;
