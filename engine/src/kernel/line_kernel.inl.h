@@ -28,13 +28,15 @@ struct GroupLines {
 };
 
 /// Vectors go to memory, but for a lane's first one if that is shared.
-template <class L, bool Streaming>
-[[gnu::always_inline]] inline void put_first(LineState<typename L::Scalar>& state, int l, typename L::Scalar* memory,
+template <class L>
+[[gnu::always_inline]] inline void put_first(const LineJob<typename L::Scalar>& job, int l, typename L::Scalar* memory,
                                              const typename L::Batch& vector) {
-  if (memory == state.first[l]) {
-    L::store(state.head[l], vector);
+  if (memory == job.state->first[l]) {
+    L::store(job.state->head[l], vector);
+  } else if (job.streaming) {
+    L::stream(memory, vector);
   } else {
-    store<L, Streaming>(memory, vector);
+    L::store(memory, vector);
   }
 }
 
@@ -47,7 +49,7 @@ template <class L, int Step>
 }
 
 /// The lanes from l on.
-template <class L, bool Streaming, int Step>
+template <class L, int Step>
 [[gnu::always_inline]] inline void put_group(const LineJob<typename L::Scalar>& job, int l) {
   constexpr int group = lane_group<L>, width = L::width;
   LineState<typename L::Scalar>& state = *job.state;
@@ -67,10 +69,13 @@ template <class L, bool Streaming, int Step>
 #pragma GCC unroll 8
     for (int k = 0; k < group; ++k) column[k] = L::shift_in(out.carry[k], column[k], out.shift[k]);
     if (tile == 0) {
-      for (int k = 0; k < group; ++k) put_first<L, Streaming>(state, l + k, out.next[k], column[k]);
+      for (int k = 0; k < group; ++k) put_first<L>(job, l + k, out.next[k], column[k]);
+    } else if (job.streaming) {
+#pragma GCC unroll 8
+      for (int k = 0; k < group; ++k) L::stream(out.next[k] + tile * width, column[k]);
     } else {
 #pragma GCC unroll 8
-      for (int k = 0; k < group; ++k) store<L, Streaming>(out.next[k] + tile * width, column[k]);
+      for (int k = 0; k < group; ++k) L::store(out.next[k] + tile * width, column[k]);
     }
   }
   const int rest = static_cast<int>(job.count % width);
@@ -86,7 +91,7 @@ template <class L, bool Streaming, int Step>
     int end = state.end[l + k] + rest;
     auto vector = L::shift_in(out.carry[k], column[k], out.shift[k]);
     if (end >= width) {
-      put_first<L, Streaming>(state, l + k, next, vector);
+      put_first<L>(job, l + k, next, vector);
       vector = L::shift_in(out.carry[k], column[k], out.shift[k]);
       next += width;
       end -= width;
@@ -97,18 +102,14 @@ template <class L, bool Streaming, int Step>
   }
 }
 
-template <class L, bool Streaming, int Step>
+template <class L, int Step>
 void put_groups(const LineJob<typename L::Scalar>& job) {
-  for (int l = 0; l < job.lane_count; l += lane_group<L>) put_group<L, Streaming, Step>(job, l);
+  for (int l = 0; l < job.lane_count; l += lane_group<L>) put_group<L, Step>(job, l);
 }
 
 template <class L>
 void put_lines(const LineJob<typename L::Scalar>& job) {
-  if (job.step == block_lanes) {
-    job.streaming ? put_groups<L, true, block_lanes>(job) : put_groups<L, false, block_lanes>(job);
-  } else {
-    job.streaming ? put_groups<L, true, 0>(job) : put_groups<L, false, 0>(job);
-  }
+  job.step == block_lanes ? put_groups<L, block_lanes>(job) : put_groups<L, 0>(job);
 }
 
 /// Parts of vectors, one after the other: neighbours in one vector become one store.
