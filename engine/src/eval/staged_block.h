@@ -103,7 +103,8 @@ class StageLayout {
   /// At the most: a row of the grid is rather not cut, since its curves would be made twice.
   int longest_piece() const { return 2 * piece(); }
 
-  static constexpr int least_samples = 16, stage_rows = 144;
+  /// 12 kB of floats, 18 kB of doubles: a first-level cache of 32 kB holds the net and the weights as well.
+  static constexpr int least_samples = 16, stage_rows = sizeof(T) == 4 ? 192 : 144;
   /// Rows in the stage at the most, with those that a tile may reach beyond the last.
   static constexpr std::size_t most_rows =
       2 * std::max<std::size_t>(least_samples * most_arrays, stage_rows) + 3 * lanes * (most_fields + 1);
