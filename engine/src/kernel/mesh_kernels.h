@@ -49,8 +49,6 @@ struct MeshRecords {
   float* out[3] = {nullptr, nullptr, nullptr};
   std::ptrdiff_t stride = 1;
   StreamState* lines = nullptr;  ///< there instead, x y z x y z .., past the caches
-
-  bool wanted() const { return out[0] || lines; }
 };
 
 /// The vertices of one patch: inner points at (iu / inner_u, iv / inner_v), v fastest, then the border points.
@@ -68,7 +66,7 @@ struct MeshVertexJob {
   const float* points = nullptr;
   const MeshCubicInner *cubic_u = nullptr, *cubic_v = nullptr;
   MeshBorder border[4];          ///< v = 0, u = 1, v = 1, u = 0
-  MeshRecords position, normal;  ///< from the patch's first vertex on; normal may be unwanted
+  MeshRecords position, normal;  ///< from the patch's first vertex on; normal unwanted if all of it is null
   int writable = 0;              ///< records of them that may be written, whatever they then hold
 };
 

@@ -4,14 +4,12 @@
 namespace tessera::kernel {
 
 /// Numbers that follow each other in memory, in pieces by several calls of kernels: those of a line that isn't whole yet wait
-/// here. The first and the last line may be shared with others, and are stored plainly.
+/// here. The first and the last line may be shared with others, and are stored plainly. It begins with both pointers where
+/// the first number goes.
 struct StreamState {
   float* first = nullptr;  ///< of the numbers that wait, or a whole number of lines before it
   float* next = nullptr;   ///< where the next number goes
   alignas(64) float carry[16] = {};
-
-  StreamState() = default;
-  explicit StreamState(float* memory) : first(memory), next(memory) {}
 };
 
 }  // namespace tessera::kernel

@@ -36,7 +36,7 @@ void write_vertices_of_order(const MeshVertexJob& job) {
 
 template <class L>
 void write_mesh_vertices(const MeshVertexJob& job) {
-  if (job.normal.wanted()) {
+  if (job.normal.out[0] || job.normal.lines) {
     write_vertices_of_order<L, 1>(job);
   } else {
     write_vertices_of_order<L, 0>(job);

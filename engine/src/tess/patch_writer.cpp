@@ -18,7 +18,7 @@ std::array<float, 3> start_of(const BezierPatch& net, const Vec3& origin, Side s
 }
 
 /// Kernels move indices as they move numbers.
-kernel::StreamState lines_from(std::uint32_t* index) { return kernel::StreamState(reinterpret_cast<float*>(index)); }
+kernel::StreamState lines_from(std::uint32_t* index) { return stream_from(reinterpret_cast<float*>(index)); }
 
 }  // namespace
 

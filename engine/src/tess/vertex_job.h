@@ -29,6 +29,8 @@ inline int exact_normal(void* context, int first, int second, int lane, float* n
   return static_cast<int>(found.kind);
 }
 
+inline kernel::StreamState stream_from(float* memory) { return {.first = memory, .next = memory}; }
+
 /// A job and what it points to; patches of one range take turns with it.
 struct VertexJob {
   kernel::MeshVertexJob job;
@@ -52,10 +54,10 @@ struct VertexJob {
 
   /// Vertices go past the caches from now on, from this one of a mesh on, each patch behind the one before.
   void start_lines(const MeshViews& out, std::size_t vertex) {
-    lines[0] = kernel::StreamState(out.position.component[0] + 3 * vertex);
+    lines[0] = stream_from(out.position.component[0] + 3 * vertex);
     job.position.lines = &lines[0];
     if (out.normal.empty()) return;
-    lines[1] = kernel::StreamState(out.normal.component[0] + 3 * vertex);
+    lines[1] = stream_from(out.normal.component[0] + 3 * vertex);
     job.normal.lines = &lines[1];
   }
   /// What is still on its way.
