@@ -30,17 +30,6 @@ struct Looseness {
   std::vector<double> ratios;  ///< bound over true distance, of each patch that is not flat within rounding
 };
 
-test::MeshTriangle triangle_of(const Mesh& mesh, std::size_t t) {
-  test::MeshTriangle triangle;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const std::size_t k = mesh.indices[3 * t + c];
-    triangle.parameters[c] = {mesh.parameters[2 * k], mesh.parameters[2 * k + 1]};
-    triangle.corners[c] =
-        mesh.origin + Vec3{mesh.positions[3 * k], mesh.positions[3 * k + 1], mesh.positions[3 * k + 2]};
-  }
-  return triangle;
-}
-
 Looseness measure(const PatchSet& set, double tolerance, bool fewest) {
   const CertifiedTessellation plan =
       test::value_of(CertifiedTessellation::make(set, {.tolerance = tolerance, .fewest = fewest}));
@@ -59,7 +48,7 @@ Looseness measure(const PatchSet& set, double tolerance, bool fewest) {
     double low = 0, high = 0;
     const std::size_t count = first[k + 1] - first[k], stride = 1 + count / most_triangles;
     for (std::size_t t = first[k]; t < first[k + 1]; t += stride) {
-      const test::DistanceRange found = test::largest_distance(set.patch(k), triangle_of(mesh, t), 0.03, 400);
+      const test::DistanceRange found = test::largest_distance(set.patch(k), test::triangle_of(mesh, t), 0.03, 400);
       low = std::max(low, found.low);
       high = std::max(high, found.high);
       ++result.triangles;

@@ -1,12 +1,13 @@
 // Whether certified meshes of models have cracks, at five tolerances each: a row a model with, for each tolerance, the
 // triangles and what is wrong with them; then what was skipped, with reasons. Open edges that are borders of the model
 // itself are no cracks: such borders are counted. Exit status 1 if there is a crack.
-// Usage: tessera_crack_report [MODEL or FOLDER...]; the project's models if none is named.
+// Usage: tessera_crack_report [--fewest] [MODEL or FOLDER...]; the project's models if none is named.
 
 #include <cstdio>
 #include <filesystem>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "support/crack_survey.h"
@@ -58,6 +59,8 @@ std::string cell(const test::CrackCount& count) {
 
 class Report {
  public:
+  explicit Report(bool fewest) : fewest_(fewest) {}
+
   void survey(const std::filesystem::path& path) {
     const std::string name = path.parent_path().filename().string() + "/" + path.filename().string();
     const Result<Model> model = read(path);
@@ -66,7 +69,7 @@ class Report {
     std::string row;
     test::CrackCount last;
     for (const double tolerance : tolerances) {
-      const Result<test::CrackCount> count = test::count_cracks(*set, tolerance, most_triangles);
+      const Result<test::CrackCount> count = test::count_cracks(*set, tolerance, most_triangles, fewest_);
       if (!count) {
         skip(name + " at " + std::to_string(tolerance), count.status());
         row += "           -";
@@ -93,6 +96,7 @@ class Report {
  private:
   void skip(const std::string& name, const Status& why) { skipped_.push_back(name + ": " + why.message()); }
 
+  bool fewest_;
   std::size_t models_ = 0, meshes_ = 0;
   bool good_ = true;
   std::vector<std::string> skipped_;
@@ -101,7 +105,8 @@ class Report {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::vector<std::filesystem::path> named(argv + 1, argv + argc);
+  const bool fewest = argc > 1 && argv[1] == std::string_view("--fewest");
+  std::vector<std::filesystem::path> named(argv + (fewest ? 2 : 1), argv + argc);
   if (named.empty()) named.push_back(std::filesystem::path(TESSERA_SOURCE_DIR) / "tools" / "models");
   std::set<std::filesystem::path> files;
   for (const std::filesystem::path& path : named) {
@@ -116,7 +121,7 @@ int main(int argc, char** argv) {
       "\n(of the model itself: borders that meet none, edges of more than two triangles, T-junctions, of the finest "
       "mesh; then "
       "triangles by tolerance, a share of the size, < where only so many were allowed)\n");
-  Report report;
+  Report report(fewest);
   for (const std::filesystem::path& path : files) report.survey(path);
   return report.finish() ? 0 : 1;
 }

@@ -145,9 +145,11 @@ inline bool is_folded(const PatchSet& set) {
 
 /// The mesh that keeps a share of the model's size, borders welded that lie within a millionth of it. Errors: those of
 /// CertifiedTessellation::make.
-inline Result<CrackCount> count_cracks(const PatchSet& set, double relative, std::uint64_t most_triangles) {
+inline Result<CrackCount> count_cracks(const PatchSet& set, double relative, std::uint64_t most_triangles,
+                                       bool fewest = false) {
   const double size = set.box().diagonal();
   CertifiedOptions options{.tolerance = relative * size, .weld = 1e-6 * size, .most_triangles = most_triangles};
+  options.fewest = fewest;
   Result<CertifiedTessellation> plan = CertifiedTessellation::make(set, options);
   CrackCount count;
   if (!plan && plan.status().code() == StatusCode::invalid_argument) {

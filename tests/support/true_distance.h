@@ -9,6 +9,7 @@
 
 #include "support/triangle_distance.h"
 #include "tessera/bezier_patch.h"
+#include "tessera/mesh.h"
 
 namespace tessera::test {
 
@@ -17,6 +18,18 @@ struct MeshTriangle {
   std::array<std::array<double, 2>, 3> parameters;
   std::array<Vec3, 3> corners;
 };
+
+/// One of a mesh, by the parameters of its vertices.
+inline MeshTriangle triangle_of(const Mesh& mesh, std::size_t t) {
+  MeshTriangle triangle;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::size_t k = mesh.indices[3 * t + c];
+    triangle.parameters[c] = {mesh.parameters[2 * k], mesh.parameters[2 * k + 1]};
+    triangle.corners[c] =
+        mesh.origin + Vec3{mesh.positions[3 * k], mesh.positions[3 * k + 1], mesh.positions[3 * k + 2]};
+  }
+  return triangle;
+}
 
 /// An interval that holds the largest distance.
 struct DistanceRange {

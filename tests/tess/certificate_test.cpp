@@ -26,17 +26,6 @@ TEST(TrueDistance, OfAParaboloid) {
   EXPECT_LE(found.high, 1.001 * found.low);
 }
 
-MeshTriangle triangle_of(const Mesh& mesh, std::size_t t) {
-  MeshTriangle triangle;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const std::size_t k = mesh.indices[3 * t + c];
-    triangle.parameters[c] = {mesh.parameters[2 * k], mesh.parameters[2 * k + 1]};
-    triangle.corners[c] =
-        mesh.origin + Vec3{mesh.positions[3 * k], mesh.positions[3 * k + 1], mesh.positions[3 * k + 2]};
-  }
-  return triangle;
-}
-
 /// Thirty triangles of a set's mesh.
 void expect_certificates(const CertificateSet& chosen, const CertifiedOptions& options, Random& random) {
   const PatchSet set = set_of(chosen.patches);
@@ -71,7 +60,7 @@ TEST(Certificate, HoldsAcrossTheMiddleOfEvenRates) {
     const Mesh mesh = mesh_of(set, plan);
     for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
       const std::uint32_t patch = mesh.patches[t];
-      const Rates rates = plan.impl().plan().rates()[patch];
+      const Rates rates = plan.impl().plan().segments()[patch].rates();
       const MeshTriangle triangle = triangle_of(mesh, t);
       const auto straddles = [&](std::size_t along) {
         const auto at = [&](std::size_t c) { return triangle.parameters[c][along]; };

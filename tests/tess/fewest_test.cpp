@@ -4,6 +4,7 @@
 
 #include "support/synthetic_sets.h"
 #include "support/true_distance.h"
+#include "tess/certified_tessellation_impl.h"
 #include "tess/local_chord.h"
 #include "tess/tessellate_support.h"
 #include "tessera/mesh_update.h"
@@ -39,6 +40,60 @@ TEST(Fewest, SavesTrianglesAndOpensNoCrack) {
     const PatchSet set = set_of(patches);
     const auto triangles = [&](bool fewest) { return double(planned(set, 1e-4, fewest).capacity().triangles); };
     EXPECT_LE(triangles(true), 0.85 * triangles(false));
+  }
+}
+
+/// The field, with patches that run the other way along u, along v or both between the others.
+std::vector<BezierPatch> turned(std::vector<BezierPatch> patches) {
+  for (std::size_t k = 0; k < patches.size(); ++k) {
+    const BezierPatch& patch = patches[k];
+    const int m = patch.degree_u(), n = patch.degree_v();
+    std::vector<Vec3> points;
+    for (int i = 0; i <= m; ++i)
+      for (int j = 0; j <= n; ++j) points.push_back(patch.point(k % 2 ? m - i : i, k % 3 ? n - j : j));
+    patches[k] = polynomial(m, n, points);
+  }
+  return patches;
+}
+
+/// Segments of borders that one patch has.
+std::size_t lone_segments(const PatchSet& set, const CertifiedTessellation& plan) {
+  const SharedEdges edges(set.impl());
+  std::vector<std::size_t> patches(edges.count(), 0), segments(edges.count(), 0);
+  for (std::size_t k = 0; k < set.patch_count(); ++k)
+    for (const Side side : all_sides) {
+      const std::uint32_t edge = edges.edge(k, side);
+      ++patches[edge];
+      segments[edge] = plan.impl().plan().division(k).border[static_cast<std::size_t>(side)].rate;
+    }
+  std::size_t lone = 0;
+  for (std::size_t edge = 0; edge < edges.count(); ++edge) lone += patches[edge] == 1 ? segments[edge] : 0;
+  return lone;
+}
+
+TEST(Fewest, HalvesOfPatchesHaveSegmentsOfTheirOwnWhereThatSaves) {
+  const PatchSet field = set_of(turned(wavy_field(7, 7)));
+  const CertifiedTessellation plan = planned(field, 1e-4, true);
+  std::size_t in_halves = 0;
+  double cells = 0, if_uniform = 0;
+  for (std::size_t k = 0; k < field.patch_count(); ++k) {
+    const PatchSegments segments = plan.impl().plan().segments()[k];
+    in_halves += !segments.are_uniform();
+    cells += segments.cells();
+    const Rates finest{std::max(segments.u.lower_rate(), segments.u.upper_rate()),
+                       std::max(segments.v.lower_rate(), segments.v.upper_rate())};
+    if_uniform += double(finest.u) * finest.v;
+  }
+  EXPECT_GT(in_halves, field.patch_count() / 4);
+  EXPECT_LT(cells, 0.9 * if_uniform);
+  const Mesh mesh = mesh_of(field, plan);
+  const MeshReport report = good(check(mesh));
+  EXPECT_EQ(report.t_junctions, 0u);
+  EXPECT_EQ(report.open_edges, lone_segments(field, plan));
+  for (std::size_t t = 0; t < mesh.triangle_count(); t += 7) {
+    const std::uint32_t patch = mesh.patches[t];
+    if (plan.impl().plan().segments()[patch].are_uniform()) continue;
+    EXPECT_LE(largest_distance(field.patch(patch), triangle_of(mesh, t), 0.1, 60).low, plan.bounds()[patch]);
   }
 }
 

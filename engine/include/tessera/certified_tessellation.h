@@ -63,14 +63,15 @@ struct CertifiedOptions {
   /// pixels are kept as well.
   bool smallest = false;
   /// Fewer triangles for more time: rates that bounds of many small pieces of each patch prove, where those of its halves ask
-  /// for more. It saves a twentieth to a third, most on rational patches and on those that bend along u in one place and
-  /// along v in another. Takes 30 to 100 us a bicubic patch, 300 at degree 5, hundreds of times what a plan takes without
-  /// (seconds for a budget of triangles, which tries many): for meshes that are drawn, stored or updated often.
+  /// for more; and where a patch bends unevenly, segments of their own in the halves of its parameters, and of its borders
+  /// with the neighbours'. It saves a twentieth to a third, most on rational patches and on those that bend along u in one
+  /// place and along v in another. Takes 100 to 400 us a bicubic patch, a thousand times what a plan takes without (many
+  /// seconds for a budget of triangles, which tries many): for meshes that are drawn, stored or updated often.
   bool fewest = false;
   std::optional<Isa> isa = {};  ///< default_isa() if empty
 };
 
-/// A mesh of the fewest cells that keep the tolerance, patch by patch. The bound of a patch is proven: from the second
+/// A mesh of the fewest cells of one size that keep the tolerance, patch by patch. The bound of a patch is proven: from the second
 /// differences of its control net (Filip, Magedson, Markot 1986; rational patches in homogeneous form), the rounding of
 /// float vertices and the set's fit error.
 ///

@@ -47,7 +47,7 @@ class MeshUpdate {
   Status run(PatchSet& set, const PatchEdits& edits, const MeshViews& out, const Execution& execution = {});
 
   /// Proves anew how far the mesh lies from the patches that were touched since the last call: about a quarter of what
-  /// an update of theirs costs, but for plans of the fewest triangles, some 20 us a patch. Distances alone: angles and pixels are proven by a plan, and count as not proven for
+  /// an update of theirs costs, but for plans of the fewest triangles, 20 to 100 us a patch. Distances alone: angles and pixels are proven by a plan, and count as not proven for
   /// patches that were touched. Allocates nothing. Errors: stale (the set was edited by other means), cancelled.
   Status restate(const PatchSet& set, const Execution& execution = {});
   /// How far mesh and patches lie apart at most, as of the last restate(); at first the plan's bounds().

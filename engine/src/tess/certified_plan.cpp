@@ -24,11 +24,9 @@ Status invalid(std::string message, std::size_t patch) {
   return {StatusCode::invalid_argument, std::move(message), static_cast<std::ptrdiff_t>(patch)};
 }
 
-/// Whether rates that a patch has are cheap enough beside the best.
-bool is_spared(const KeptRates& kept, std::size_t patch, Rates best) {
-  if (kept.rates.empty()) return false;
-  const Rates had = kept.rates[patch];
-  return double(had.u) * had.v <= (1 + kept.spare) * best.u * best.v;
+/// Whether segments that a patch has are few enough beside the best.
+bool is_spared(const KeptSegments& kept, std::size_t patch, PatchSegments best) {
+  return !kept.segments.empty() && kept.segments[patch].cells() <= (1 + kept.spare) * best.cells();
 }
 
 }  // namespace
@@ -132,7 +130,7 @@ std::optional<Rates> CertifiedPlanner::rates_for(const CellLimits& limits, int m
 }
 
 CertifiedPlanner::Choice CertifiedPlanner::choose(std::size_t patch, double tolerance, int most,
-                                                  const KeptRates& kept) const {
+                                                  const KeptSegments& kept) const {
   const double given = roundings_[patch] + fit_error_;
   const PatchInPicture* const picture = options_.camera ? &pictures_[patch] : nullptr;
   const TurningBound* const turning = options_.angle && !shapes_[patch].is_curve ? &turnings_[patch] : nullptr;
@@ -158,37 +156,41 @@ CertifiedPlanner::Choice CertifiedPlanner::choose(std::size_t patch, double tole
   std::optional<Rates> rates = rates_for(limits, most);
   if (rates && turning && !bounded)
     rates = Rates{std::max(rates->u, options_.angle_rate), std::max(rates->v, options_.angle_rate)};
-  if (!rates) return {Failure::wide, {}};
-  choice.rates = *rates;
+  if (!rates) {
+    choice.failure = Failure::wide;
+    return choice;
+  }
   // Rates that were raised may be odd now: what holds for a half may not hold for the whole.
-  if (!(limits.keeps(*rates))) choice.rates = {rates->u + rates->u % 2, rates->v + rates->v % 2};
+  if (!(limits.keeps(*rates))) rates = {rates->u + rates->u % 2, rates->v + rates->v % 2};
   const int least_rate = turning && !bounded ? options_.angle_rate : 1;
-  choice.bound = given + settle(patch, limits, chord, {least_rate, most}, kept, choice.rates);
-  if (turning) choice.angle = bounded ? turning->angle(choice.rates) : std::numeric_limits<double>::infinity();
-  if (picture) choice.pixels = picture->pixels(choice.rates, choice.bound);
+  const ProvenSegments proven = settle(patch, limits, chord, {least_rate, most}, kept, *rates);
+  choice.segments = proven.segments;
+  choice.bound = given + proven.distance;
+  const Rates coarsest = proven.segments.coarsest();
+  if (turning) choice.angle = bounded ? turning->angle(coarsest) : std::numeric_limits<double>::infinity();
+  if (picture) choice.pixels = picture->pixels(coarsest, choice.bound);
   return choice;
 }
 
-double CertifiedPlanner::settle(std::size_t patch, const CellLimits& limits, const ChordBound& chord, RateRange range,
-                                const KeptRates& kept, Rates& rates) const {
+ProvenSegments CertifiedPlanner::settle(std::size_t patch, const CellLimits& limits, const ChordBound& chord,
+                                        RateRange range, const KeptSegments& kept, Rates rates) const {
   CellLimits others = limits;
   others.chord = nullptr;
   const auto keeps_others = [&](Rates r) { return std::min(r.u, r.v) >= range.least && others.keeps(r); };
-  double distance = chord.distance(rates);
+  ProvenSegments proven{rates, chord.distance(rates)};
   if (options_.fewest && limits.chord && range.most <= most_rate)
-    if (const auto fewer = find_fewer(set_->patches[patch], rates, limits.distance, keeps_others))
-      rates = fewer->rates, distance = fewer->distance;
-  if (!is_spared(kept, patch, rates) || !keeps_others(kept.rates[patch])) return distance;
-  double had = chord.distance(kept.rates[patch]);
-  if (limits.chord && !(had <= limits.distance)) had = local_distance(patch, kept.rates[patch]);
-  if (limits.chord && !(had <= limits.distance)) return distance;
-  rates = kept.rates[patch];
-  return had;
+    if (const auto fewer = find_fewer(set_->patches[patch], rates, limits.distance, keeps_others)) proven = *fewer;
+  if (!is_spared(kept, patch, proven.segments) || !keeps_others(kept.segments[patch].coarsest())) return proven;
+  const PatchSegments had = kept.segments[patch];
+  double keeps = chord.distance_of(had);
+  if (limits.chord && !(keeps <= limits.distance)) keeps = local_distance(patch, had);
+  if (limits.chord && !(keeps <= limits.distance)) return proven;
+  return {had, keeps};
 }
 
-double CertifiedPlanner::local_distance(std::size_t patch, Rates rates) const {
+double CertifiedPlanner::local_distance(std::size_t patch, PatchSegments segments) const {
   if (!options_.fewest) return std::numeric_limits<double>::infinity();
-  return LocalChord(set_->patches[patch], rates, rates).distance(rates);
+  return tessera::local_distance(set_->patches[patch], segments);
 }
 
 std::string CertifiedPlanner::wanted(double tolerance) const {
@@ -214,8 +216,7 @@ Status CertifiedPlanner::refusal(Failure failure, std::size_t patch, double tole
   double triangles = 0;
   for (std::size_t k = 0; k < shapes_.size(); ++k) {
     const Choice choice = choose(k, tolerance, unlimited);
-    triangles +=
-        choice.failure == Failure::none ? 2.0 * choice.rates.u * choice.rates.v : double{unlimited} * unlimited;
+    triangles += choice.failure == Failure::none ? 2 * choice.segments.cells() : double{unlimited} * unlimited;
   }
   std::array<char, 32> count;
   std::snprintf(count.data(), count.size(), "%.2g", triangles);
@@ -225,29 +226,29 @@ Status CertifiedPlanner::refusal(Failure failure, std::size_t patch, double tole
                  patch);
 }
 
-bool CertifiedPlanner::settle_by_distance(std::size_t patch, double distance, const KeptRates& kept,
-                                          ChordBlocks::Products& products, ProvenRates& proven) const {
+bool CertifiedPlanner::settle_by_distance(std::size_t patch, double distance, const KeptSegments& kept,
+                                          ChordBlocks::Products& products, ProvenSegments& proven) const {
   bool is_local = false;
   const auto no_others = [](Rates) { return true; };
-  if (options_.fewest && proven.rates.u > 0)
-    if (const auto fewer = find_fewer(set_->patches[patch], proven.rates, distance, no_others))
-      proven = *fewer, is_local = true;
-  if (!is_spared(kept, patch, proven.rates)) return is_local;
+  if (options_.fewest && proven.segments.u.rate > 0)
+    if (const auto fewer = find_fewer(set_->patches[patch], proven.segments.rates(), distance, no_others))
+      proven = *fewer, is_local = proven.segments.are_uniform();
+  if (!is_spared(kept, patch, proven.segments)) return is_local;
   const PatchSet::Slot slot = set_->slots[patch];
-  const Rates had = kept.rates[patch];
-  double keeps = chord(patch).distance(had);
+  const PatchSegments had = kept.segments[patch];
+  double keeps = chord(patch).distance_of(had);
   if (!(keeps <= distance)) {
     products.find(chords_, *set_, slot.block);
-    keeps = chords_.chord(slot.block, slot.lane, &products).distance(had);
+    keeps = chords_.chord(slot.block, slot.lane, &products).distance_of(had);
   }
   const bool by_halves = keeps <= distance;
   if (!by_halves) keeps = local_distance(patch, had);
   if (!(keeps <= distance)) return is_local;
   proven = {had, keeps};
-  return !by_halves;
+  return !by_halves && had.are_uniform();
 }
 
-Status CertifiedPlanner::choose_by_distance(double tolerance, const KeptRates& kept, CertifiedPlan& plan,
+Status CertifiedPlanner::choose_by_distance(double tolerance, const KeptSegments& kept, CertifiedPlan& plan,
                                             const Execution& execution) const {
   LeastIndex failed;
   const auto choose_some = [&](std::size_t begin, std::size_t end) {
@@ -263,9 +264,9 @@ Status CertifiedPlanner::choose_by_distance(double tolerance, const KeptRates& k
       for (std::size_t lane = 0; lane < count; ++lane) {
         const std::size_t k = patches[lane];
         if (!(left[lane] > 0) || choice.rates[lane].u == 0) failed.add(k);
-        ProvenRates proven{choice.rates[lane], choice.distance[lane]};
+        ProvenSegments proven{choice.rates[lane], choice.distance[lane]};
         if (settle_by_distance(k, left[lane], kept, products, proven)) plan.straddles_[k] = 1;
-        plan.rates_[k] = proven.rates;
+        plan.segments_[k] = proven.segments;
         plan.bounds_[k] = rounded_up(proven.distance + (roundings_[k] + fit_error_));
       }
     }
@@ -276,10 +277,10 @@ Status CertifiedPlanner::choose_by_distance(double tolerance, const KeptRates& k
   return refusal(choose(failed.index(), tolerance, most_rate).failure, failed.index(), tolerance);
 }
 
-Status CertifiedPlanner::choose_rates(double tolerance, const KeptRates& kept, CertifiedPlan& plan,
+Status CertifiedPlanner::choose_rates(double tolerance, const KeptSegments& kept, CertifiedPlan& plan,
                                       const Execution& execution) const {
   const std::size_t patches = shapes_.size();
-  plan.rates_.resize(patches);
+  plan.segments_.resize(patches);
   plan.bounds_.resize(patches);
   if (options_.fewest) plan.straddles_.resize(patches);
   if (!options_.angle && !options_.camera) return choose_by_distance(tolerance, kept, plan, execution);
@@ -290,7 +291,7 @@ Status CertifiedPlanner::choose_rates(double tolerance, const KeptRates& kept, C
     for (std::size_t k = begin; k < end; ++k) {
       const Choice choice = choose(k, tolerance, most_rate, kept);
       if (choice.failure != Failure::none) failed.add(k);
-      plan.rates_[k] = choice.rates;
+      plan.segments_[k] = choice.segments;
       plan.bounds_[k] = rounded_up(choice.bound);
       if (options_.angle) plan.angles_[k] = rounded_up(choice.angle);
       if (options_.camera) plan.pixels_[k] = rounded_up(choice.pixels);
@@ -302,7 +303,7 @@ Status CertifiedPlanner::choose_rates(double tolerance, const KeptRates& kept, C
 }
 
 Result<CertifiedPlan> CertifiedPlanner::plan(double tolerance, std::uint64_t most_triangles, const Execution& execution,
-                                             const KeptRates& kept) const {
+                                             const KeptSegments& kept) const {
   CertifiedPlan plan;
   if (Status status = choose_rates(tolerance, kept, plan, execution); !status.ok()) return status;
   divide(tolerance, plan);

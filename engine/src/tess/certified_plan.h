@@ -37,7 +37,7 @@ class CertifiedPlan {
  public:
   std::size_t patch_count() const { return divisions_.size(); }
   const Division& division(std::size_t patch) const { return divisions_[patch]; }
-  std::span<const Rates> rates() const { return rates_; }  ///< what each patch needs for itself
+  std::span<const PatchSegments> segments() const { return segments_; }  ///< what each patch needs for itself
   std::size_t first_vertex(std::size_t patch) const { return first_vertex_[patch]; }
   std::size_t first_triangle(std::size_t patch) const { return first_triangle_[patch]; }
   MeshCapacity capacity() const { return {first_vertex_.back(), first_triangle_.back(), 0}; }
@@ -69,7 +69,7 @@ class CertifiedPlan {
   void lay_out();
   std::size_t owned_ring_count(std::size_t patch, std::uint32_t sides = 4) const;
 
-  std::vector<Rates> rates_;
+  std::vector<PatchSegments> segments_;
   std::vector<Division> divisions_;
   std::vector<std::size_t> first_vertex_, first_triangle_, first_quad_;  ///< of each patch, and the number of all
   std::vector<float> bounds_, angles_, pixels_;
@@ -79,8 +79,7 @@ class CertifiedPlan {
   std::vector<BorderSource> border_sources_;
 };
 
-/// Whether the ring runs against the parameter along a border.
-constexpr bool is_backward(std::uint32_t border) { return border % 4 >= 2; }
+constexpr bool is_backward(std::uint32_t border) { return is_backward(all_sides[border % 4]); }
 
 /// What is to be kept beside a distance, and how borders are joined.
 struct PlannerOptions {
@@ -92,10 +91,10 @@ struct PlannerOptions {
   bool fewest = false;
 };
 
-/// Rates that patches keep, rather than take others, where they keep the tolerances and have at most (1 + spare) times the
-/// cells of the best.
-struct KeptRates {
-  std::span<const Rates> rates = {};  ///< of each patch, or none
+/// Segments that patches keep, rather than take others, where they keep the tolerances and have at most (1 + spare) times
+/// the cells of the best.
+struct KeptSegments {
+  std::span<const PatchSegments> segments = {};  ///< of each patch, or none
   double spare = 0;
 };
 
@@ -113,7 +112,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   /// `tolerance`: the distance, infinite if any will do. Errors: invalid_argument, as CertifiedTessellation::make says;
   /// cancelled.
   Result<CertifiedPlan> plan(double tolerance, std::uint64_t most_triangles, const Execution& execution,
-                             const KeptRates& kept = {}) const;
+                             const KeptSegments& kept = {}) const;
   /// The smallest tolerance, within 1 percent, whose mesh has at most so many triangles. Errors: invalid_argument (not
   /// even one cell a patch keeps the budget).
   Result<double> smallest_tolerance(std::uint64_t most_triangles, const Execution& execution) const;
@@ -129,7 +128,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   /// What a patch needs for itself, and what that keeps.
   struct Choice {
     Failure failure = Failure::none;
-    Rates rates;
+    PatchSegments segments;
     double bound = 0, angle = 0, pixels = 0;
   };
 
@@ -137,32 +136,34 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
       : set_(&set), options_(options), fit_error_(set.fit_error.distance), chords_(set) {}
   ChordBound chord(std::size_t patch) const { return chords_.chord(set_->slots[patch].block, set_->slots[patch].lane); }
   Status bound_turning_and_picture(const PatchSet::Impl& set, const Execution& execution);
-  Choice choose(std::size_t patch, double tolerance, int most, const KeptRates& kept = {}) const;
+  Choice choose(std::size_t patch, double tolerance, int most, const KeptSegments& kept = {}) const;
   std::optional<Rates> rates_for(const CellLimits& limits, int most) const;
   /// Rates and bounds of all patches.
-  Status choose_rates(double tolerance, const KeptRates& kept, CertifiedPlan& plan, const Execution& execution) const;
+  Status choose_rates(double tolerance, const KeptSegments& kept, CertifiedPlan& plan, const Execution& execution)
+      const;
   /// The same where nothing but a distance is to be kept, block by block.
-  Status choose_by_distance(double tolerance, const KeptRates& kept, CertifiedPlan& plan, const Execution& execution)
+  Status choose_by_distance(double tolerance, const KeptSegments& kept, CertifiedPlan& plan, const Execution& execution)
       const;
   struct RateRange {
     int least, most;
   };
-  /// Takes the fewest cells, if these are looked for, or the kept ones in the place of rates that keep the limits. Returns
-  /// the distance that they keep.
-  double settle(std::size_t patch, const CellLimits& limits, const ChordBound& chord, RateRange range,
-                const KeptRates& kept, Rates& rates) const;
+  /// Takes the fewest cells, if these are looked for, or the kept ones in the place of rates that keep the limits.
+  ProvenSegments settle(std::size_t patch, const CellLimits& limits, const ChordBound& chord, RateRange range,
+                        const KeptSegments& kept, Rates rates) const;
   /// The same where there is nothing but a distance. Whether it is kept wherever triangles lie, by bounds of small pieces.
-  bool settle_by_distance(std::size_t patch, double distance, const KeptRates& kept, ChordBlocks::Products& products,
-                          ProvenRates& proven) const;
+  bool settle_by_distance(std::size_t patch, double distance, const KeptSegments& kept, ChordBlocks::Products& products,
+                          ProvenSegments& proven) const;
   /// What a patch keeps by bounds of small pieces; infinite where plans don't look for the fewest triangles.
-  double local_distance(std::size_t patch, Rates rates) const;
+  double local_distance(std::size_t patch, PatchSegments segments) const;
   Status refusal(Failure failure, std::size_t patch, double tolerance) const;
   std::string wanted(double tolerance) const;
   void divide(double tolerance, CertifiedPlan& plan) const;
   /// Whether a border may have an odd rate where its patch, whose bound is that of halves, has an even one: then the
   /// patch's bound is that of the triangle which straddles the middle there, too.
-  bool may_straddle(std::size_t patch, Side side, const std::array<int, 4>& borders, double tolerance,
+  bool may_straddle(std::size_t patch, Side side, const std::array<Segments, 4>& borders, double tolerance,
                     CertifiedPlan& plan) const;
+  /// Of each border, whether it runs against the first one of its edge.
+  std::vector<std::uint8_t> borders_against() const;
   std::span<const PatchShape> divided_shapes() const { return weld_.shapes.empty() ? shapes_ : weld_.shapes; }
 
   const PatchSet::Impl* set_;

@@ -157,9 +157,9 @@ Result<PlannerOptions> checked(const CertifiedOptions& options, const PatchSet& 
   return planner;
 }
 
-/// `kept`: rates that patches keep where they may; they give way where triangles run out.
+/// `kept`: segments that patches keep where they may; they give way where triangles run out.
 Result<std::unique_ptr<CertifiedTessellation::Impl>> plan_for(const PatchSet& set, const CertifiedOptions& options,
-                                                              const KeptRates& kept, const Execution& execution) {
+                                                              const KeptSegments& kept, const Execution& execution) {
   if (!set.blocks().float_bernstein)
     return Status(StatusCode::unsupported, "a tessellation needs float Bernstein blocks, the set has none");
   const Result<PlannerOptions> planned = checked(options, set);
@@ -178,7 +178,7 @@ Result<std::unique_ptr<CertifiedTessellation::Impl>> plan_for(const PatchSet& se
     tolerance = *found;
   }
   Result<CertifiedPlan> plan = planner->plan(tolerance, options.most_triangles, execution, kept);
-  if (!plan && plan.status().code() == StatusCode::invalid_argument && !kept.rates.empty())
+  if (!plan && plan.status().code() == StatusCode::invalid_argument && !kept.segments.empty())
     plan = planner->plan(tolerance, options.most_triangles, execution);
   if (!plan) return plan.status();
   auto made = std::make_unique<CertifiedTessellation::Impl>(set, options, tolerance, std::move(*plan), *planner, *isa);
@@ -203,7 +203,7 @@ Result<CertifiedTessellation> CertifiedTessellation::retessellate(const PatchSet
     if (!(spare >= 0 && std::isfinite(spare)))
       return Status(StatusCode::invalid_argument, "the spare is " + text(spare) + ", it must be finite and at least 0");
     if (Status status = check_count(set, impl_->plan().patch_count()); !status.ok()) return status;
-    Result<std::unique_ptr<Impl>> made = plan_for(set, impl_->options(), {impl_->plan().rates(), spare}, execution);
+    Result<std::unique_ptr<Impl>> made = plan_for(set, impl_->options(), {impl_->plan().segments(), spare}, execution);
     if (!made) return made.status();
     return CertifiedTessellation(std::move(*made));
   });

@@ -52,6 +52,16 @@ double ChordBound::distance(Rates rates) const {
   return most;
 }
 
+double ChordBound::distance_of(PatchSegments segments) const {
+  if (segments.are_uniform()) return distance(segments.rates());
+  constexpr std::size_t quarters = 5;  // the first of them
+  double most = 0;
+  for (const int i : {0, 1})
+    for (const int j : {0, 1})
+      most = std::max(most, pieces_[quarters + static_cast<std::size_t>(2 * i + j)].chord(segments.of_quarter(i, j)));
+  return most;
+}
+
 ChordBound::Straddling ChordBound::straddling(Rates rates, Edge border, int rate) {
   const bool along_u = border == Edge::v0 || border == Edge::v1, begin = border == Edge::v0 || border == Edge::u0;
   const std::size_t half = along_u ? (begin ? 3 : 4) : (begin ? 1 : 2);

@@ -22,7 +22,7 @@
 #include <limits>
 #include <optional>
 
-#include "tess/patch_triangles.h"
+#include "tess/segments.h"
 #include "tessera/bezier_patch.h"
 
 namespace tessera {
@@ -74,6 +74,8 @@ class ChordBound {
   /// The largest distance between the patch and a mesh of it, each of whose triangles has a parameter box of at most
   /// 1 / rates.u x 1 / rates.v, and where a rate is even none straddles the middle of that parameter.
   double distance(Rates rates) const;
+  /// Of segments of any length in the halves, the same.
+  double distance_of(PatchSegments segments) const;
   /// At a border of an odd rate beside an even one a triangle straddles the middle of the parameter, its box no wider than
   /// the border's segments: it lies in this one of pieces(), and keeps what that one says of these rates.
   struct Straddling {

@@ -13,12 +13,32 @@ constexpr int most_to_straddle = 2;
 
 }  // namespace
 
-bool CertifiedPlanner::may_straddle(std::size_t patch, Side side, const std::array<int, 4>& borders, double tolerance,
-                                    CertifiedPlan& plan) const {
+std::vector<std::uint8_t> CertifiedPlanner::borders_against() const {
+  constexpr std::uint32_t none = SharedEdges::none;
+  const std::size_t borders = 4 * shapes_.size();
+  std::vector<std::uint32_t> welds(borders, none), heads(edges_.count(), none);
+  for (std::uint32_t k = 0; k < weld_.borders.size(); ++k) welds[weld_.borders[k].to] = k;
+  const auto edge = [&](std::uint32_t border) { return edges_.edge(border / 4, all_sides[border % 4]); };
+  const auto packed = [&](std::uint32_t border) { return PackedBorder(*set_, border / 4, all_sides[border % 4]); };
+  for (std::uint32_t border = 0; border < borders; ++border)
+    if (edge(border) != none && welds[border] == none && heads[edge(border)] == none) heads[edge(border)] = border;
+  std::vector<std::uint8_t> against(borders, 0);
+  for (std::uint32_t border = 0; border < borders; ++border) {
+    if (edge(border) == none) continue;
+    const VertexCopies::Border weld =
+        welds[border] == none ? VertexCopies::Border{border, border, false} : weld_.borders[welds[border]];
+    against[border] = weld.reversed == equal(packed(weld.from), packed(heads[edge(border)]), false);
+  }
+  return against;
+}
+
+bool CertifiedPlanner::may_straddle(std::size_t patch, Side side, const std::array<Segments, 4>& borders,
+                                    double tolerance, CertifiedPlan& plan) const {
   // Where no inner points lie between them, the opposite border's segment may do it as well.
   const auto s = static_cast<std::size_t>(side);
-  const int opposite = borders[(s + 2) % 4], rate = opposite % 2 == 1 ? std::min(borders[s], opposite) : borders[s];
-  const auto [piece, rates] = ChordBound::straddling(plan.rates_[patch], edge_of(side), rate);
+  const Segments border = borders[s], opposite = borders[(s + 2) % 4];
+  const int rate = opposite.parts_halves() ? border.rate : std::min(border.rate, opposite.rate);
+  const auto [piece, rates] = ChordBound::straddling(plan.segments_[patch].rates(), edge_of(side), rate);
   const PatchSet::Slot slot = set_->slots[patch];
   const double given = roundings_[patch] + fit_error_,
                distance = chords_.piece(slot.block, slot.lane, piece).chord(rates) + given;
@@ -27,52 +47,95 @@ bool CertifiedPlanner::may_straddle(std::size_t patch, Side side, const std::arr
   return true;
 }
 
+namespace {
+
+/// What the patches at an edge need of it.
+struct Need {
+  std::uint16_t most = 1;     ///< of their rates
+  std::uint16_t is_even = 0;  ///< the edge's must be, as one of them counts on no triangle straddling the middle
+
+  Segments segments() const { return most + (most & is_even); }
+};
+/// The most of rates in the halves of an edge, as its first border runs.
+struct HalfNeeds {
+  std::uint16_t lower = 1, upper = 1;
+
+  void add(Segments along, bool against) {
+    if (against) along = along.reversed();
+    lower = std::max(lower, static_cast<std::uint16_t>(along.lower_rate()));
+    upper = std::max(upper, static_cast<std::uint16_t>(along.upper_rate()));
+  }
+  Segments segments(bool against, std::uint16_t is_even) const {
+    if (lower == upper) return Need{lower, is_even}.segments();
+    const Segments along = Segments::halves((lower + 1) / 2, (upper + 1) / 2);
+    return against ? along.reversed() : along;
+  }
+};
+
+constexpr Segments along(PatchSegments patch, Side side) { return runs_along_u(side) ? patch.u : patch.v; }
+
+/// Of each edge. `against`: of each border, whether it runs against the edge.
+std::vector<HalfNeeds> half_needs(std::span<const PatchSegments> segments, std::span<const PatchShape> shapes,
+                                  const SharedEdges& edges, std::span<const std::uint8_t> against) {
+  std::vector<HalfNeeds> needs(edges.count());
+  for (std::size_t k = 0; k < segments.size(); ++k)
+    for (const Side side : all_sides)
+      if (const std::uint32_t edge = edges.edge(k, side); edge != SharedEdges::none && !shapes[k].is_curve)
+        needs[edge].add(along(segments[k], side), against[4 * k + static_cast<std::size_t>(side)]);
+  return needs;
+}
+
+}  // namespace
+
 void CertifiedPlanner::divide(double tolerance, CertifiedPlan& plan) const {
-  struct Need {
-    std::uint16_t most = 1;     ///< of the rates of its patches
-    std::uint16_t is_even = 0;  ///< the edge's must be, as one of them counts on no triangle straddling the middle
-  };
   const std::span<const PatchShape> shapes = divided_shapes();
-  const std::span<const Rates> rates = plan.rates_;
-  const auto rate_along = [](Rates own, Side side) { return runs_along_u(side) ? own.u : own.v; };
+  const std::span<const PatchSegments> segments = plan.segments_;
   // Angles and pixels are known of halves alone.
   const bool by_distance = !options_.angle && !options_.camera;
   const auto is_coarse = [&](std::size_t k) {
-    return by_distance && std::max(rates[k].u, rates[k].v) <= most_to_straddle;
+    return by_distance && std::max(segments[k].u.rate, segments[k].v.rate) <= most_to_straddle;
   };
   const auto always_straddles = [&](std::size_t k) { return !plan.straddles_.empty() && plan.straddles_[k]; };
   std::vector<Need> needs(edges_.count());
-  for (std::size_t k = 0; k < rates.size(); ++k) {
+  for (std::size_t k = 0; k < segments.size(); ++k) {
     if (shapes[k].is_curve) continue;
-    const auto never = static_cast<std::uint16_t>(!is_coarse(k) && !always_straddles(k));
+    const bool never = !is_coarse(k) && !always_straddles(k);
     for (const Side side : all_sides) {
       const std::uint32_t edge = edges_.edge(k, side);
       if (edge == SharedEdges::none) continue;
-      const auto rate = static_cast<std::uint16_t>(rate_along(rates[k], side));
-      needs[edge].most = std::max(needs[edge].most, rate);
-      needs[edge].is_even |= static_cast<std::uint16_t>(~rate & never);
+      const Segments own = along(segments[k], side);
+      needs[edge].most = std::max(needs[edge].most, own.rate);
+      needs[edge].is_even |= static_cast<std::uint16_t>(never && own.parts_halves());
     }
   }
-  const auto border_of = [&](std::size_t k, Side side) -> int {
+  std::vector<std::uint8_t> against;
+  std::vector<HalfNeeds> halves;  // where there are any, and so it matters which way edges run
+  if (options_.fewest && !std::all_of(segments.begin(), segments.end(), [](auto s) { return s.are_uniform(); })) {
+    against = borders_against();
+    halves = half_needs(segments, shapes, edges_, against);
+  }
+  const auto border_of = [&](std::size_t k, Side side) {
     const std::uint32_t edge = edges_.edge(k, side);
-    if (edge == SharedEdges::none) return rate_along(rates[k], side);
-    const Need need = needs[edge];
-    return need.most + (need.most & need.is_even);
+    if (edge == SharedEdges::none) return along(segments[k], side);
+    if (halves.empty()) [[likely]]
+      return needs[edge].segments();
+    return halves[edge].segments(against[4 * k + static_cast<std::size_t>(side)], needs[edge].is_even);
   };
   const auto borders_of = [&](std::size_t k) {
     return std::array{border_of(k, Side::v0), border_of(k, Side::u1), border_of(k, Side::v1), border_of(k, Side::u0)};
   };
-  for (std::size_t k = 0; k < rates.size(); ++k) {
+  for (std::size_t k = 0; k < segments.size(); ++k) {
     if (!is_coarse(k) || shapes[k].is_curve || always_straddles(k)) continue;
     for (const Side side : all_sides) {
       const std::uint32_t edge = edges_.edge(k, side);
-      if (rate_along(rates[k], side) % 2 == 1 || edge == SharedEdges::none) continue;
-      if (needs[edge].most % 2 == 1 && !needs[edge].is_even && !may_straddle(k, side, borders_of(k), tolerance, plan))
+      if (!along(segments[k], side).parts_halves() || edge == SharedEdges::none) continue;
+      if (!border_of(k, side).parts_halves() && !may_straddle(k, side, borders_of(k), tolerance, plan))
         needs[edge].is_even = 1;
     }
   }
-  plan.divisions_.reserve(rates.size());
-  for (std::size_t k = 0; k < rates.size(); ++k) plan.divisions_.emplace_back().set(shapes[k], rates[k], borders_of(k));
+  plan.divisions_.reserve(segments.size());
+  for (std::size_t k = 0; k < segments.size(); ++k)
+    plan.divisions_.emplace_back().set(shapes[k], segments[k], borders_of(k));
 }
 
 }  // namespace tessera

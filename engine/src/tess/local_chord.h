@@ -6,9 +6,12 @@
 
 #include "base/function_ref.h"
 #include "tess/chord_bound.h"
+#include "tess/segments.h"
 #include "tessera/domain.h"
 
 namespace tessera {
+
+struct DerivativeNets;
 
 /// Bounds over rectangles that tile the patch, small where it bends most. A triangle's parameter box, at most h x k, has its
 /// centre in one of them, and so lies within that one widened by h / 2 and k / 2: for this part of the patch it is bounded.
@@ -19,6 +22,8 @@ class LocalChord {
 
   /// For rates of at least `least`; rectangles, at most so many, are chosen for rates of about `about`.
   LocalChord(const BezierPatch& patch, Rates least, Rates about, std::size_t pieces = most_pieces);
+  /// For triangles inside a part of the patch alone.
+  LocalChord(const DerivativeNets& patch, const Domain& part, Rates least, Rates about, std::size_t pieces);
 
   Rates least() const { return least_; }
   /// As ChordBound::distance, of rates not below least().
@@ -37,12 +42,15 @@ class LocalChord {
   std::size_t count_ = 0;
 };
 
-struct ProvenRates {
-  Rates rates;
+struct ProvenSegments {
+  PatchSegments segments;
   double distance = 0;
 };
-/// Rates with fewer cells than `known`, that keep a distance and `also` hold; empty if there are none.
-std::optional<ProvenRates> find_fewer(const BezierPatch& patch, Rates known, double distance,
-                                      FunctionRef<bool(Rates)> also);
+/// Segments with fewer cells than `known` has, that keep a distance and `also` hold at the coarsest rates; empty if there
+/// are none. Uniform ones keep it wherever triangles lie; others where none straddles the middle of a parameter.
+std::optional<ProvenSegments> find_fewer(const BezierPatch& patch, Rates known, double distance,
+                                         FunctionRef<bool(Rates)> also);
+/// What they keep, so.
+double local_distance(const BezierPatch& patch, PatchSegments segments);
 
 }  // namespace tessera

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t tile = kernel::mesh_tile;
 
-/// The Bernstein polynomials of a degree and their derivatives at k / rate.
+/// The Bernstein polynomials of a degree and their derivatives at a fraction.
 class WeightsAt {
  public:
   explicit WeightsAt(int degree) : degree_(degree) {
@@ -19,15 +19,15 @@ class WeightsAt {
     for (int i = 0; i < degree; ++i) below_[at(i)] = binomial(degree - 1, i);
   }
 
-  void set(int k, int rate) {
-    const double along = double(k) / rate, back = double(rate - k) / rate;
+  void set(Segments::Fraction at_parameter) {
+    const double along = at_parameter.value(), back = at_parameter.rest();
     std::array<double, max_degree + 1> t, s;  // their powers
     t[0] = s[0] = 1;
     for (int n = 1; n <= degree_; ++n) {
       t[at(n)] = t[at(n - 1)] * along;
       s[at(n)] = s[at(n - 1)] * back;
     }
-    // C(n,i) (t^i s^(n-i)): B_i at k is B_{n-i} at rate - k, bit for bit.
+    // C(n,i) (t^i s^(n-i)): B_i is B_{n-i} at the rest, bit for bit.
     for (int i = 0; i <= degree_; ++i) value_[at(i)] = binomial_[at(i)] * (t[at(i)] * s[at(degree_ - i)]);
     // n (B^{n-1}_{i-1} - B^{n-1}_i)
     double before = 0;
@@ -47,14 +47,14 @@ class WeightsAt {
   std::array<double, max_degree + 1> binomial_{}, below_{}, value_, slope_;
 };
 
-/// `[tile][order][i][8]` for k = first .. last, which then repeats; an even number of tiles.
-AlignedVector<float> tiles_of_weights(int degree, int rate, int first, int last) {
-  const auto count = static_cast<std::size_t>(last - first + 1), terms = static_cast<std::size_t>(degree) + 1;
+/// `[tile][order][i][8]` where segments k = first .. begin, the last of which then repeats; an even number of tiles.
+AlignedVector<float> tiles_of_weights(int degree, Segments along, int first) {
+  const auto count = static_cast<std::size_t>(along.rate - first), terms = static_cast<std::size_t>(degree) + 1;
   const std::size_t tiles = (count + 2 * tile - 1) / (2 * tile) * 2;
   AlignedVector<float> weights(tiles * 2 * terms * tile);
   WeightsAt at(degree);
   for (std::size_t k = 0; k < tiles * tile; ++k) {
-    if (k < count) at.set(first + static_cast<int>(k), rate);
+    if (k < count) at.set(along.at(first + static_cast<int>(k)));
     for (std::size_t i = 0; i < terms; ++i) {
       float* value = weights.data() + (k / tile * 2 * terms + i) * tile + k % tile;
       value[0] = at.value(static_cast<int>(i));
@@ -66,43 +66,48 @@ AlignedVector<float> tiles_of_weights(int degree, int rate, int first, int last)
 
 /// The entry of a vector that grows to hold it.
 template <class T>
-T& grown(std::vector<T>& entries, int k) {
-  const auto at = static_cast<std::size_t>(k);
+T& grown(std::vector<T>& entries, std::size_t at) {
   if (at >= entries.size()) entries.resize(at + 1);
   return entries[at];
 }
 
 }  // namespace
 
-void MeshTables::add_weights(int degree, int inner, int border) {
-  if (inner > 1)
-    if (auto& weights = grown(inner_[at(degree)], inner); weights.empty())
-      weights = tiles_of_weights(degree, inner, 1, inner - 1);
-  if (auto& weights = grown(border_[at(degree)], border); weights.empty())
-    weights = tiles_of_weights(degree, border, 0, border - 1);
-  if (with_cubic_ && degree == 3) {
-    if (inner > 1) add_cubic_inner(inner);
-    add_cubic_border(border);
-  }
-  for (const int rate : {inner, border}) {
-    auto& parameters = grown(parameters_, rate);
-    if (!parameters.empty()) continue;
-    for (int k = 0; k <= rate; ++k) parameters.push_back(static_cast<float>(double(k) / rate));
-  }
+std::size_t MeshTables::other_place(Segments along) const { return other_places_.find(key(along))->second; }
+
+const MeshTables::Strip& MeshTables::other_strip(Segments border, Segments inner) const {
+  return other_strips_.find(key(border, inner))->second;
 }
 
-void MeshTables::add_cubic_inner(int rate) {
-  CubicInner& made = grown(cubic_inner_, rate);
+void MeshTables::add_weights(int degree, Segments inner, Segments border) {
+  for (const Segments along : {inner, inner.reversed(), border, border.reversed()}) {
+    if (!along.is_uniform()) other_places_.try_emplace(key(along), other_places_.size());
+    auto& parameters = grown(tables(along).parameters, place(along));
+    if (!parameters.empty()) continue;
+    for (int k = 0; k <= along.rate; ++k) parameters.push_back(static_cast<float>(along.at(k).value()));
+  }
+  if (inner.rate > 1)
+    if (auto& weights = grown(tables(inner).inner[at(degree)], place(inner)); weights.empty())
+      weights = tiles_of_weights(degree, inner, 1);
+  if (auto& weights = grown(tables(border).border[at(degree)], place(border)); weights.empty())
+    weights = tiles_of_weights(degree, border, 0);
+  if (!with_cubic_ || degree != 3) return;
+  if (inner.rate > 1) add_cubic_inner(inner);
+  add_cubic_border(border);
+}
+
+void MeshTables::add_cubic_inner(Segments along) {
+  CubicInner& made = grown(tables(along).cubic_inner, place(along));
   if (!made.weights.empty()) return;
   constexpr std::size_t lanes = 16, row_weights = kernel::mesh_row_weights;
-  const auto count = static_cast<std::size_t>(rate - 1), rows = (count + 7) / 8 * 8,
+  const auto count = static_cast<std::size_t>(along.rate - 1), rows = (count + 7) / 8 * 8,
              stride = (count + 2 * lanes - 1) / lanes * lanes;
   made.weights.resize(rows * row_weights + 8 * stride);
   made.places.resize(stride);
   float* const columns = made.weights.data() + rows * row_weights;
   WeightsAt at(3);
   for (std::size_t k = 0; k < rows; ++k) {
-    if (k < count) at.set(static_cast<int>(k) + 1, rate);
+    if (k < count) at.set(along.at(static_cast<int>(k) + 1));
     for (int i = 0; i < 4; ++i) {
       const auto term = static_cast<std::size_t>(i);
       float* const row = made.weights.data() + (k / 4 * 8 + term) * lanes + k % 4 * 4;
@@ -118,15 +123,15 @@ void MeshTables::add_cubic_inner(int rate) {
   made.table = {made.weights.data(), columns, made.places.data(), static_cast<std::ptrdiff_t>(stride)};
 }
 
-void MeshTables::add_cubic_border(int rate) {
-  CubicBorder& made = grown(cubic_border_, rate);
+void MeshTables::add_cubic_border(Segments along) {
+  CubicBorder& made = grown(tables(along).cubic_border, place(along));
   if (!made.weights.empty()) return;
   constexpr std::size_t lanes = 16;
-  const auto count = static_cast<std::size_t>(rate), stride = lanes + (count + 2 * lanes - 1) / lanes * lanes;
+  const auto count = std::size_t{along.rate}, stride = lanes + (count + 2 * lanes - 1) / lanes * lanes;
   made.weights.resize(8 * stride);
   WeightsAt at(3);
-  for (int k = 0; k < rate; ++k) {
-    at.set(k, rate);
+  for (int k = 0; k < along.rate; ++k) {
+    at.set(along.at(k));
     for (int i = 0; i < 4; ++i) {
       float* const value =
           made.weights.data() + static_cast<std::size_t>(i) * stride + lanes + static_cast<std::size_t>(k);
@@ -137,8 +142,10 @@ void MeshTables::add_cubic_border(int rate) {
   made.table = {made.weights.data(), static_cast<std::ptrdiff_t>(stride)};
 }
 
-void MeshTables::add_strip(int border, int inner) {
-  Strip& strip = grown(grown(strips_, inner), border + most_missing - inner);
+void MeshTables::add_strip(Segments border, Segments inner) {
+  const bool are_uniform = border.is_uniform() && inner.is_uniform();
+  Strip& strip = are_uniform ? grown(grown(strips_, inner.rate), at(border.rate + most_missing - inner.rate))
+                             : other_strips_[key(border, inner)];
   if (!strip.codes.empty()) return;
   const std::vector<std::uint32_t> codes = strip_codes(border, inner, kernel::mesh_border_code);
   strip.count = static_cast<int>(codes.size());

@@ -1,9 +1,9 @@
 #pragma once
-// What the meshes of many patches share: weights, parameters and strips of triangles of each rate that is in use.
+// What the meshes of many patches share: weights, parameters and strips of triangles of all segments that are in use.
 
 #include <array>
 #include <cstdint>
-#include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "base/aligned.h"
@@ -22,49 +22,59 @@ class MeshTables {
   /// All that a patch of these degrees needs that is divided so.
   void add(int degree_u, int degree_v, const Division& division) {
     if (division.empty) return;
-    for (const Side side : all_sides) {
-      const bool along_u = runs_along_u(side);
-      add(along_u ? degree_u : degree_v, along_u ? division.inner.u : division.inner.v,
-          division.border[static_cast<std::size_t>(side)]);
-    }
+    for (const Side side : all_sides)
+      add(runs_along_u(side) ? degree_u : degree_v, division.inner_along_ring(side), division.along_ring(side));
   }
 
   // Once added. Layouts: see kernel::MeshVertexJob and MeshBorder. Weights are rounded once, to float.
-  const float* inner_weights(int degree, int rate) const { return inner_[at(degree)][at(rate)].data(); }
-  const float* border_weights(int degree, int rate) const { return border_[at(degree)][at(rate)].data(); }
+  const float* inner_weights(int degree, Segments along) const {
+    return tables(along).inner[at(degree)][place(along)].data();
+  }
+  const float* border_weights(int degree, Segments along) const {
+    return tables(along).border[at(degree)][place(along)].data();
+  }
   /// See kernel::MeshVertexJob::points.
-  const kernel::MeshCubicInner* cubic_inner(int rate) const { return &cubic_inner_[at(rate)].table; }
-  const kernel::MeshCubicBorder* cubic_border(int rate) const { return &cubic_border_[at(rate)].table; }
-  /// k / rate, k = 0 .. rate, rounded.
-  const float* parameters(int rate) const { return parameters_[at(rate)].data(); }
+  const kernel::MeshCubicInner* cubic_inner(Segments along) const {
+    return &tables(along).cubic_inner[place(along)].table;
+  }
+  const kernel::MeshCubicBorder* cubic_border(Segments along) const {
+    return &tables(along).cubic_border[place(along)].table;
+  }
+  /// Where segments begin, and 1; rounded.
+  const float* parameters(Segments along) const { return tables(along).parameters[place(along)].data(); }
 
-  /// A strip between a border of a rate and inner points of another: see kernel::MeshStrip.
+  /// A strip between a border and inner points, as the ring runs: see kernel::MeshStrip.
   struct Strip {
     AlignedVector<std::uint32_t> codes;  ///< whole sixteens
     int count = 0;
   };
-  const Strip& strip(int border, int inner) const { return strips_[at(inner)][at(border + most_missing - inner)]; }
+  const Strip& strip(Segments border, Segments inner) const {
+    if (border.is_uniform() && inner.is_uniform())
+      return strips_[inner.rate][at(border.rate + most_missing - inner.rate)];
+    return other_strip(border, inner);
+  }
 
  private:
   /// A border has at least one segment, the inner points at least two.
   static constexpr int most_missing = 1;
   static std::size_t at(int k) { return static_cast<std::size_t>(k); }
-  void add(int degree, int inner, int border) {
-    const std::uint32_t key = (static_cast<std::uint32_t>(degree) << 26) + (static_cast<std::uint32_t>(inner) << 13) +
-                              static_cast<std::uint32_t>(border);
-    std::uint32_t& seen = seen_[key * 0x9e3779b1u >> 20];
-    if (seen == key) return;
+  /// Below 2^26.
+  static std::uint32_t key(Segments along) { return std::uint32_t{along.lower} << 13 | along.rate; }
+  static std::uint64_t key(Segments border, Segments inner) { return std::uint64_t{key(border)} << 26 | key(inner); }
+  void add(int degree, Segments inner, Segments border) {
+    const std::uint64_t wanted = std::uint64_t{at(degree)} << 52 | key(border, inner);
+    std::uint64_t& seen = seen_[wanted * 0x9e3779b97f4a7c15u >> 53];
+    if (seen == wanted) return;
     add_weights(degree, inner, border);
-    if (inner > 1) add_strip(border, inner);
-    seen = key;
+    if (inner.rate > 1) add_strip(border, inner);
+    seen = wanted;
   }
-  void add_weights(int degree, int inner, int border);
-  void add_cubic_inner(int rate);
-  void add_cubic_border(int rate);
-  void add_strip(int border, int inner);
+  void add_weights(int degree, Segments inner, Segments border);
+  void add_cubic_inner(Segments along);
+  void add_cubic_border(Segments along);
+  void add_strip(Segments border, Segments inner);
 
-  using ByRate = std::vector<AlignedVector<float>>;
-  std::array<ByRate, max_degree + 1> inner_, border_;
+  using BySegments = std::vector<AlignedVector<float>>;
   struct CubicInner {
     AlignedVector<float> weights;
     AlignedVector<std::int32_t> places;
@@ -74,12 +84,25 @@ class MeshTables {
     AlignedVector<float> weights;
     kernel::MeshCubicBorder table;
   };
+  struct Tables {
+    std::array<BySegments, max_degree + 1> inner, border;
+    std::vector<CubicInner> cubic_inner;
+    std::vector<CubicBorder> cubic_border;
+    std::vector<std::vector<float>> parameters;
+  };
+  Tables& tables(Segments along) { return along.is_uniform() ? uniform_ : others_; }
+  const Tables& tables(Segments along) const { return along.is_uniform() ? uniform_ : others_; }
+  std::size_t place(Segments along) const { return along.is_uniform() ? along.rate : other_place(along); }
+  [[gnu::cold]] std::size_t other_place(Segments along) const;
+  [[gnu::cold]] const Strip& other_strip(Segments border, Segments inner) const;
+
   bool with_cubic_;
-  std::vector<CubicInner> cubic_inner_;
-  std::vector<CubicBorder> cubic_border_;
-  std::vector<std::vector<float>> parameters_;
-  std::array<std::uint32_t, 4096> seen_{};  ///< some of what has been added: degrees, inner and border rates
-  std::vector<std::vector<Strip>> strips_;  ///< `[inner][border + most_missing - inner]`
+  Tables uniform_;  ///< by rate
+  Tables others_;   ///< by other_places_
+  std::unordered_map<std::uint32_t, std::size_t> other_places_;
+  std::array<std::uint64_t, 2048> seen_{};  ///< some of what has been added: degrees, inner and border segments
+  std::vector<std::vector<Strip>> strips_;  ///< of uniform segments, `[inner][border + most_missing - inner]`
+  std::unordered_map<std::uint64_t, Strip> other_strips_;
 };
 
 }  // namespace tessera

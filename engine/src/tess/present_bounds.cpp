@@ -14,14 +14,14 @@ constexpr std::size_t blocks_a_piece = 8;
 constexpr double float_sums = 1 + 0x1p-20;
 
 /// With that of triangles at borders of odd rates beside even ones.
-double distance(const ChordBound& chord, Rates rates, const Division& division) {
-  double most = chord.distance(rates);
+double distance(const ChordBound& chord, PatchSegments segments, const Division& division) {
+  double most = chord.distance_of(segments);
   for (const Side side : all_sides) {
     const auto s = static_cast<std::size_t>(side);
-    const int border = division.border[s], opposite = division.border[(s + 2) % 4];
-    if ((runs_along_u(side) ? rates.u : rates.v) % 2 == 1 || border % 2 == 0) continue;
-    const auto straddling =
-        ChordBound::straddling(rates, edge_of(side), opposite % 2 == 1 ? std::min(border, opposite) : border);
+    const Segments border = division.border[s], opposite = division.border[(s + 2) % 4];
+    if (!(runs_along_u(side) ? segments.u : segments.v).parts_halves() || border.parts_halves()) continue;
+    const int rate = opposite.parts_halves() ? border.rate : std::min(border.rate, opposite.rate);
+    const auto straddling = ChordBound::straddling(segments.rates(), edge_of(side), rate);
     most = std::max(most, chord.pieces()[straddling.piece].chord(straddling.rates));
   }
   return most;
@@ -97,16 +97,16 @@ void PresentBounds::set_bound(const PatchSet::Impl& set, const CertifiedTessella
                               ChordBlocks::Products& products) {
   const PatchSet::Slot slot = set.slots[patch];
   const double moved = displacements_.empty() ? 0 : displacements_[patch];
-  const Rates rates = plan.plan().rates()[patch];
+  const PatchSegments segments = plan.plan().segments()[patch];
   const double given = std::max(roundings_[patch], moved) + set.fit_error.distance;
   const Division& division = plan.plan().division(patch);
-  double bound = distance(chords_.chord(slot.block, slot.lane), rates, division) + given;
+  double bound = distance(chords_.chord(slot.block, slot.lane), segments, division) + given;
   if (!(bound <= plan.tolerance())) {
     products.find(chords_, set, slot.block);
-    bound = distance(chords_.chord(slot.block, slot.lane, &products), rates, division) + given;
+    bound = distance(chords_.chord(slot.block, slot.lane, &products), segments, division) + given;
   }
   if (!(bound <= plan.tolerance()) && plan.options().fewest)
-    bound = std::min(bound, LocalChord(set.patches[patch], rates, rates).distance(rates) + given);
+    bound = std::min(bound, local_distance(set.patches[patch], segments) + given);
   bounds_[patch] = rounded_up(bound);
   if (is_touched(set, patch) && (plan.options().angle || plan.options().pixels)) is_unknown_[patch] = 1;
   is_unproven_[patch] = is_unknown_[patch] != 0 || !(bound <= plan.tolerance() * float_sums);

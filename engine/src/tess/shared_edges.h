@@ -15,6 +15,8 @@ namespace tessera {
 enum class Side : std::uint8_t { v0, u1, v1, u0 };
 inline constexpr std::array<Side, 4> all_sides{Side::v0, Side::u1, Side::v1, Side::u0};
 constexpr bool runs_along_u(Side side) { return side == Side::v0 || side == Side::v1; }
+/// Whether the ring runs against the parameter along a border.
+constexpr bool is_backward(Side side) { return side == Side::v1 || side == Side::u0; }
 constexpr Edge edge_of(Side side) {
   constexpr Edge edges[] = {Edge::v0, Edge::u1, Edge::v1, Edge::u0};
   return edges[static_cast<int>(side)];

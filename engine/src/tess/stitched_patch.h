@@ -8,46 +8,46 @@
 #include <cstdint>
 #include <vector>
 
-#include "tess/patch_triangles.h"
+#include "tess/segments.h"
 #include "tess/shared_edges.h"
 
 namespace tessera {
 
-/// How a patch is divided. Vertices: the inner points [iu - 1][iv - 1] at (iu / inner.u, iv / inner.v), then the ring:
-/// border points at k / rate, counter-clockwise from (0,0), each corner once.
+/// How a patch is divided. Vertices: the inner points [iu - 1][iv - 1] where the segments of `inner` begin, then the ring:
+/// border points where segments begin, counter-clockwise from (0,0), each corner once.
 ///
-/// Every triangle's parameter box is at most 1 / n wide along a parameter, n being the rate asked for there: an inner
-/// cell's, and a strip's too, whose border rate is at least n. None straddles the middle of a parameter along which the
-/// rates of the patch and of its borders are even. Where a border's is odd beside an even one of the patch, only triangles
-/// at it do, no wider than its segments, or those of the opposite border if that is odd too.
+/// Every triangle's parameter box is no wider along a parameter than the segments asked for there: an inner cell's, and a
+/// strip's too, whose border has no longer ones. None straddles the middle of a parameter along which no segment of the
+/// patch and of its borders does. Where a border's does beside a patch's that don't, only triangles
+/// at it do, no wider than its segments, or those of the opposite border if one of these does too.
 struct Division {
-  Rates inner;                  ///< both 1: no inner points
-  std::array<int, 4> border{};  ///< by Side
-  EdgeMask collapsed;           ///< these borders are points: no triangle stands on them
-  bool empty = false;           ///< a curve or a point: neither vertices nor triangles
-  bool across_u = false;        ///< without inner points: triangles go from border u0 to u1, else from v0 to v1
+  PatchSegments inner;               ///< both 1: no inner points
+  std::array<Segments, 4> border{};  ///< by Side, along the parameter
+  EdgeMask collapsed;                ///< these borders are points: no triangle stands on them
+  bool empty = false;                ///< a curve or a point: neither vertices nor triangles
+  bool across_u = false;             ///< without inner points: triangles go from border u0 to u1, else from v0 to v1
 
   friend bool operator==(const Division& a, const Division& b) {
     return a.inner == b.inner && a.border == b.border && a.collapsed.bits == b.collapsed.bits && a.empty == b.empty &&
            a.across_u == b.across_u;
   }
 
-  /// `rates` were asked for the patch; each of `borders` is at least the rate along it.
-  static Division of(const PatchShape& shape, Rates rates, const std::array<int, 4>& borders) {
+  /// `asked` for the patch; none of the segments of `borders` is longer than what is asked there.
+  static Division of(const PatchShape& shape, PatchSegments asked, const std::array<Segments, 4>& borders) {
     Division division;
-    division.set(shape, rates, borders);
+    division.set(shape, asked, borders);
     return division;
   }
   /// The same in place: copies of a record that was just made wait for its stores.
-  void set(const PatchShape& shape, Rates rates, const std::array<int, 4>& borders) {
-    inner = {std::max(rates.u, 2), std::max(rates.v, 2)};
+  void set(const PatchShape& shape, PatchSegments asked, const std::array<Segments, 4>& borders) {
+    inner = {asked.u.rate > 1 ? asked.u : 2, asked.v.rate > 1 ? asked.v : 2};
     border = borders;
     collapsed = shape.collapsed;
     empty = shape.is_curve;
     across_u = false;
-    if (std::min(rates.u, rates.v) > 1) return;
+    if (std::min(asked.u.rate, asked.v.rate) > 1) return;
     for (const bool way : {true, false}) {
-      if (!joins_borders(shape, rates, border, way)) continue;
+      if (!joins_borders(shape, asked, border, way)) continue;
       inner = {1, 1};
       across_u = way;
       return;
@@ -55,11 +55,10 @@ struct Division {
   }
 
   std::size_t inner_count() const {
-    return static_cast<std::size_t>(inner.u - 1) * static_cast<std::size_t>(inner.v - 1);
+    return static_cast<std::size_t>(inner.u.rate - 1) * static_cast<std::size_t>(inner.v.rate - 1);
   }
   std::size_t ring_count() const {
-    return static_cast<std::size_t>(border[0]) + static_cast<std::size_t>(border[1]) +
-           static_cast<std::size_t>(border[2]) + static_cast<std::size_t>(border[3]);
+    return std::size_t{border[0].rate} + border[1].rate + border[2].rate + border[3].rate;
   }
   std::size_t vertex_count() const { return empty ? 0 : inner_count() + ring_count(); }
   std::size_t triangle_count() const {
@@ -69,10 +68,19 @@ struct Division {
   /// Cells between inner points, of two triangles each, which come last.
   std::size_t cell_count() const {
     if (empty || !has_inner_points()) return 0;
-    return static_cast<std::size_t>(inner.u - 2) * static_cast<std::size_t>(inner.v - 2);
+    return static_cast<std::size_t>(inner.u.rate - 2) * static_cast<std::size_t>(inner.v.rate - 2);
   }
 
-  bool has_inner_points() const { return inner.u > 1; }
+  bool has_inner_points() const { return inner.u.rate > 1; }
+  /// A border's segments as the ring runs, and those of the inner points beside it.
+  Segments along_ring(Side side) const {
+    const Segments along = border[static_cast<std::size_t>(side)];
+    return is_backward(side) ? along.reversed() : along;
+  }
+  Segments inner_along_ring(Side side) const {
+    const Segments along = runs_along_u(side) ? inner.u : inner.v;
+    return is_backward(side) ? along.reversed() : along;
+  }
   /// The place of a vertex.
   struct Parameters {
     double u, v;
@@ -87,22 +95,23 @@ struct Division {
 
  private:
   /// Whether the borders u0 and u1, or v0 and v1, are joined without inner points between them.
-  static bool joins_borders(const PatchShape& shape, Rates rates, const std::array<int, 4>& borders, bool across_u);
+  static bool joins_borders(const PatchShape& shape, PatchSegments asked, const std::array<Segments, 4>& borders,
+                            bool across_u);
   std::size_t special_triangle_count() const;
 };
 
-/// The corners of the triangles between a border at `rate` and inner points at `inner` >= 2 beside it, as
-/// Division::write_triangles writes them: border point k is border_code + k, inner point k / inner is k - 1.
-std::vector<std::uint32_t> strip_codes(int rate, int inner, std::uint32_t border_code);
+/// The corners of the triangles between a border and at least 2 `inner` segments beside it, both as the ring runs, as
+/// Division::write_triangles writes them: border point k is border_code + k, the one where inner segment k begins k - 1.
+std::vector<std::uint32_t> strip_codes(Segments border, Segments inner, std::uint32_t border_code);
 
 template <class Visit>
 void Division::for_parameters(Visit visit) const {
-  for (int iu = 1; iu < inner.u; ++iu)
-    for (int iv = 1; iv < inner.v; ++iv) visit(double(iu) / inner.u, double(iv) / inner.v);
-  for (int k = 0; k < border[0]; ++k) visit(double(k) / border[0], 0.0);
-  for (int k = 0; k < border[1]; ++k) visit(1.0, double(k) / border[1]);
-  for (int k = border[2]; k > 0; --k) visit(double(k) / border[2], 1.0);
-  for (int k = border[3]; k > 0; --k) visit(0.0, double(k) / border[3]);
+  for (int iu = 1; iu < inner.u.rate; ++iu)
+    for (int iv = 1; iv < inner.v.rate; ++iv) visit(inner.u.at(iu).value(), inner.v.at(iv).value());
+  for (int k = 0; k < border[0].rate; ++k) visit(border[0].at(k).value(), 0.0);
+  for (int k = 0; k < border[1].rate; ++k) visit(1.0, border[1].at(k).value());
+  for (int k = border[2].rate; k > 0; --k) visit(border[2].at(k).value(), 1.0);
+  for (int k = border[3].rate; k > 0; --k) visit(0.0, border[3].at(k).value());
 }
 
 }  // namespace tessera

@@ -37,7 +37,8 @@ Status write_pole(const VertexCopies::Corner& pole, const CertifiedPlan& plan, c
   };
   for (int k = 0; k <= to.rate(); ++k) {
     if (!owns(k)) continue;
-    const double t = static_cast<double>(is_backward(pole.to) ? to.rate() - k : k) / to.rate();
+    const Segments::Fraction at = plan.division(pole.to / 4).along_ring(side).at(k);
+    const double t = is_backward(side) ? at.rest() : at.value();
     const double across = side == Side::u1 || side == Side::v1 ? 1 : 0;
     const Vec3 n =
         runs_along_u(side) ? unit_normal(*patch, t, across).direction : unit_normal(*patch, across, t).direction;
