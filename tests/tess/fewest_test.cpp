@@ -97,6 +97,42 @@ TEST(Fewest, HalvesOfPatchesHaveSegmentsOfTheirOwnWhereThatSaves) {
   }
 }
 
+/// Of segments that do as well for themselves patches have those that suit their neighbours.
+TEST(Fewest, PatchesChooseTogether) {
+  const PatchSet field = set_of(wavy_field(8, 8));
+  const PatchShape shape{3, 3, {}, false};
+  std::vector<PatchShape> shapes(field.patch_count(), shape);
+  const SharedEdges edges(field.impl());
+  const std::vector<std::uint8_t> against(4 * shapes.size(), 0);
+  std::vector<SegmentChoices> choices;
+  for (std::size_t k = 0; k < shapes.size(); ++k) {
+    const Rates one{3, 4}, other{4, 3};
+    choices.emplace_back(ProvenSegments{k % 2 ? one : other, 1, true});
+    choices.back().add({k % 2 ? other : one, 1, true});
+    choices.back().add({Rates{8, 8}, 0.1, true});
+    EXPECT_EQ(choices.back().count(), 2u);  // eights have too many cells
+  }
+  const std::vector<std::uint8_t> chosen = choose_together(shapes, edges, against, choices);
+  std::size_t unlike = 0;
+  for (std::size_t k = 0; k < shapes.size(); ++k)
+    unlike += !(choices[k][chosen[k]].segments == choices[0][chosen[0]].segments);
+  EXPECT_LE(unlike, shapes.size() / 8);  // at first half of them are
+}
+
+TEST(Fewest, HalvesHaveNoMoreSegmentsThanWholesMay) {
+  std::vector<Vec3> points;  // bends where u is small alone
+  for (int i = 0; i <= 6; ++i)
+    for (int j = 0; j < 2; ++j) points.push_back({double(i), double(j), i == 0 ? 6.0 : 0.0});
+  const PatchSet set = set_of({polynomial(6, 1, points)});
+  const CertifiedTessellation plan = good(CertifiedTessellation::make(set, {.tolerance = 5.5e-6, .fewest = true}));
+  const Segments along = plan.impl().plan().division(0).border[0];
+  EXPECT_FALSE(along.is_uniform());
+  EXPECT_GT(along.lower_rate(), 1500);
+  EXPECT_LE(along.lower_rate(), most_rate);
+  const MeshReport report = good(check(mesh_of(set, plan)));
+  EXPECT_EQ(report.open_edges, 2u * along.rate + 2u * plan.impl().plan().division(0).border[1].rate);
+}
+
 TEST(Fewest, KeepsAnglesAndPixelsAsWell) {
   const PatchSet set = set_of(wavy_field(4, 4));
   const View view{.eye = {2, -6, 5}, .target = {2, 2, 0}};

@@ -178,8 +178,11 @@ ProvenSegments CertifiedPlanner::settle(std::size_t patch, const CellLimits& lim
   others.chord = nullptr;
   const auto keeps_others = [&](Rates r) { return std::min(r.u, r.v) >= range.least && others.keeps(r); };
   ProvenSegments proven{rates, chord.distance(rates)};
-  if (options_.fewest && limits.chord && range.most <= most_rate)
-    if (const auto fewer = find_fewer(set_->patches[patch], rates, limits.distance, keeps_others)) proven = *fewer;
+  if (options_.fewest && limits.chord && range.most <= most_rate) {
+    SegmentChoices choices(proven);
+    find_fewer(set_->patches[patch], limits.distance, keeps_others, choices);
+    proven = choices.fewest();
+  }
   if (!is_spared(kept, patch, proven.segments) || !keeps_others(kept.segments[patch].coarsest())) return proven;
   const PatchSegments had = kept.segments[patch];
   double keeps = chord.distance_of(had);
@@ -226,14 +229,9 @@ Status CertifiedPlanner::refusal(Failure failure, std::size_t patch, double tole
                  patch);
 }
 
-bool CertifiedPlanner::settle_by_distance(std::size_t patch, double distance, const KeptSegments& kept,
-                                          ChordBlocks::Products& products, ProvenSegments& proven) const {
-  bool is_local = false;
-  const auto no_others = [](Rates) { return true; };
-  if (options_.fewest && proven.segments.u.rate > 0)
-    if (const auto fewer = find_fewer(set_->patches[patch], proven.segments.rates(), distance, no_others))
-      proven = *fewer, is_local = proven.segments.are_uniform();
-  if (!is_spared(kept, patch, proven.segments)) return is_local;
+void CertifiedPlanner::keep_by_distance(std::size_t patch, double distance, const KeptSegments& kept,
+                                        ChordBlocks::Products& products, ProvenSegments& proven) const {
+  if (!is_spared(kept, patch, proven.segments)) return;
   const PatchSet::Slot slot = set_->slots[patch];
   const PatchSegments had = kept.segments[patch];
   double keeps = chord(patch).distance_of(had);
@@ -243,14 +241,34 @@ bool CertifiedPlanner::settle_by_distance(std::size_t patch, double distance, co
   }
   const bool by_halves = keeps <= distance;
   if (!by_halves) keeps = local_distance(patch, had);
-  if (!(keeps <= distance)) return is_local;
-  proven = {had, keeps};
-  return !by_halves && had.are_uniform();
+  if (keeps <= distance) proven = {had, keeps, !by_halves && had.are_uniform()};
+}
+
+Result<std::vector<ProvenSegments>> CertifiedPlanner::find_fewest(double tolerance, std::vector<SegmentChoices> choices,
+                                                                  const Execution& execution) const {
+  const auto no_others = [](Rates) { return true; };
+  const auto find = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      find_fewer(set_->patches[k], tolerance - (roundings_[k] + fit_error_), no_others, choices[k]);
+  };
+  if (Status status = parallel_for(choices.size(), 1, execution, find); !status.ok()) return status;
+  const std::vector<std::uint8_t> chosen = choose_together(divided_shapes(), edges_, borders_against(), choices);
+  std::vector<ProvenSegments> proven(choices.size());
+  for (std::size_t k = 0; k < proven.size(); ++k) proven[k] = choices[k][chosen[k]];
+  return proven;
 }
 
 Status CertifiedPlanner::choose_by_distance(double tolerance, const KeptSegments& kept, CertifiedPlan& plan,
                                             const Execution& execution) const {
   LeastIndex failed;
+  std::vector<SegmentChoices> choices(options_.fewest ? shapes_.size() : 0);
+  const auto take = [&](std::size_t k, ProvenSegments proven, ChordBlocks::Products& products) {
+    const double given = roundings_[k] + fit_error_;
+    keep_by_distance(k, tolerance - given, kept, products, proven);
+    plan.segments_[k] = proven.segments;
+    plan.bounds_[k] = rounded_up(proven.distance + given);
+    if (proven.anywhere) plan.straddles_[k] = 1;
+  };
   const auto choose_some = [&](std::size_t begin, std::size_t end) {
     for (std::size_t block = begin; block < end; ++block) {
       const std::uint32_t* patches = set_->lane_patches.data() + block * PatchSet::lanes;
@@ -264,17 +282,27 @@ Status CertifiedPlanner::choose_by_distance(double tolerance, const KeptSegments
       for (std::size_t lane = 0; lane < count; ++lane) {
         const std::size_t k = patches[lane];
         if (!(left[lane] > 0) || choice.rates[lane].u == 0) failed.add(k);
-        ProvenSegments proven{choice.rates[lane], choice.distance[lane]};
-        if (settle_by_distance(k, left[lane], kept, products, proven)) plan.straddles_[k] = 1;
-        plan.segments_[k] = proven.segments;
-        plan.bounds_[k] = rounded_up(proven.distance + (roundings_[k] + fit_error_));
+        const ProvenSegments proven{choice.rates[lane], choice.distance[lane]};
+        if (choices.empty()) {
+          take(k, proven, products);
+        } else {
+          choices[k] = SegmentChoices(proven);
+        }
       }
     }
   };
-  if (Status status = parallel_for(set_->lane_counts.size(), blocks_a_piece, execution, choose_some); !status.ok())
+  const Execution quiet{.cancel = execution.cancel}, &first = choices.empty() ? execution : quiet;
+  if (Status status = parallel_for(set_->lane_counts.size(), blocks_a_piece, first, choose_some); !status.ok())
     return status;
-  if (!failed.found()) return {};
-  return refusal(choose(failed.index(), tolerance, most_rate).failure, failed.index(), tolerance);
+  if (failed.found()) return refusal(choose(failed.index(), tolerance, most_rate).failure, failed.index(), tolerance);
+  if (choices.empty()) return {};
+  const auto fewest = find_fewest(tolerance, std::move(choices), execution);
+  if (!fewest) return fewest.status();
+  for (std::size_t k = 0; k < fewest->size(); ++k) {
+    ChordBlocks::Products products;
+    take(k, (*fewest)[k], products);
+  }
+  return {};
 }
 
 Status CertifiedPlanner::choose_rates(double tolerance, const KeptSegments& kept, CertifiedPlan& plan,

@@ -28,9 +28,6 @@ double vertex_rounding(const BezierPatch& patch, const Vec3& origin);
 /// The same by `size`, the largest |x|, |y|, |z| of its control points relative to the origin.
 double vertex_rounding(int degree_u, int degree_v, bool rational, double size);
 
-/// Rates stay at most this: parameters i / rate are then well apart in float.
-inline constexpr int most_rate = 4096;
-
 /// How each patch is divided, and where its vertices and triangles lie. Borders and corners go by 4 * patch + side, as in
 /// VertexCopies.
 class CertifiedPlan {
@@ -150,9 +147,12 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   /// Takes the fewest cells, if these are looked for, or the kept ones in the place of rates that keep the limits.
   ProvenSegments settle(std::size_t patch, const CellLimits& limits, const ChordBound& chord, RateRange range,
                         const KeptSegments& kept, Rates rates) const;
-  /// The same where there is nothing but a distance. Whether it is kept wherever triangles lie, by bounds of small pieces.
-  bool settle_by_distance(std::size_t patch, double distance, const KeptSegments& kept, ChordBlocks::Products& products,
-                          ProvenSegments& proven) const;
+  /// Takes the kept segments, where there is nothing but a distance.
+  void keep_by_distance(std::size_t patch, double distance, const KeptSegments& kept, ChordBlocks::Products& products,
+                        ProvenSegments& proven) const;
+  /// Those, or others, with which the patches together have the fewest triangles.
+  Result<std::vector<ProvenSegments>> find_fewest(double tolerance, std::vector<SegmentChoices> choices,
+                                                  const Execution& execution) const;
   /// What a patch keeps by bounds of small pieces; infinite where plans don't look for the fewest triangles.
   double local_distance(std::size_t patch, PatchSegments segments) const;
   Status refusal(Failure failure, std::size_t patch, double tolerance) const;

@@ -54,11 +54,13 @@ double ChordBound::distance(Rates rates) const {
 
 double ChordBound::distance_of(PatchSegments segments) const {
   if (segments.are_uniform()) return distance(segments.rates());
-  constexpr std::size_t quarters = 5;  // the first of them
+  const bool parts_u = segments.u.parts_halves(), parts_v = segments.v.parts_halves();
+  const Split split = splits[parts_u][parts_v];
   double most = 0;
-  for (const int i : {0, 1})
-    for (const int j : {0, 1})
-      most = std::max(most, pieces_[quarters + static_cast<std::size_t>(2 * i + j)].chord(segments.of_quarter(i, j)));
+  for (int k = 0; k < split.count; ++k) {
+    const int i = parts_v ? k / 2 : k, j = parts_v ? k % 2 : 0;
+    most = std::max(most, pieces_[static_cast<std::size_t>(split.first + k)].chord(segments.of_quarter(i, j)));
+  }
   return most;
 }
 

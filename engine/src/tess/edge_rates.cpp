@@ -4,6 +4,7 @@
 #include <array>
 
 #include "tess/certified_plan.h"
+#include "tess/edge_needs.h"
 
 namespace tessera {
 namespace {
@@ -49,31 +50,6 @@ bool CertifiedPlanner::may_straddle(std::size_t patch, Side side, const std::arr
 
 namespace {
 
-/// What the patches at an edge need of it.
-struct Need {
-  std::uint16_t most = 1;     ///< of their rates
-  std::uint16_t is_even = 0;  ///< the edge's must be, as one of them counts on no triangle straddling the middle
-
-  Segments segments() const { return most + (most & is_even); }
-};
-/// The most of rates in the halves of an edge, as its first border runs.
-struct HalfNeeds {
-  std::uint16_t lower = 1, upper = 1;
-
-  void add(Segments along, bool against) {
-    if (against) along = along.reversed();
-    lower = std::max(lower, static_cast<std::uint16_t>(along.lower_rate()));
-    upper = std::max(upper, static_cast<std::uint16_t>(along.upper_rate()));
-  }
-  Segments segments(bool against, std::uint16_t is_even) const {
-    if (lower == upper) return Need{lower, is_even}.segments();
-    const Segments along = Segments::halves((lower + 1) / 2, (upper + 1) / 2);
-    return against ? along.reversed() : along;
-  }
-};
-
-constexpr Segments along(PatchSegments patch, Side side) { return runs_along_u(side) ? patch.u : patch.v; }
-
 /// Of each edge. `against`: of each border, whether it runs against the edge.
 std::vector<HalfNeeds> half_needs(std::span<const PatchSegments> segments, std::span<const PatchShape> shapes,
                                   const SharedEdges& edges, std::span<const std::uint8_t> against) {
@@ -96,7 +72,7 @@ void CertifiedPlanner::divide(double tolerance, CertifiedPlan& plan) const {
     return by_distance && std::max(segments[k].u.rate, segments[k].v.rate) <= most_to_straddle;
   };
   const auto always_straddles = [&](std::size_t k) { return !plan.straddles_.empty() && plan.straddles_[k]; };
-  std::vector<Need> needs(edges_.count());
+  std::vector<EdgeNeeds> needs(edges_.count());
   for (std::size_t k = 0; k < segments.size(); ++k) {
     if (shapes[k].is_curve) continue;
     const bool never = !is_coarse(k) && !always_straddles(k);

@@ -16,7 +16,11 @@ constexpr std::size_t at(int k) { return static_cast<std::size_t>(k); }
 double margin(int least) { return 0.5 / least + 0x1p-24; }
 
 constexpr Domain whole{0, 1, 0, 1};
-Domain quarter(int half_u, int half_v) { return {0.5 * half_u, 0.5 * half_u + 0.5, 0.5 * half_v, 0.5 * half_v + 0.5}; }
+/// Of so many parts.
+Domain part(Rates parts, int i, int j) {
+  const auto begin = [](int k, int count) { return double(k) / count; };
+  return {begin(i, parts.u), begin(i + 1, parts.u), begin(j, parts.v), begin(j + 1, parts.v)};
+}
 
 /// Bounds of rectangles, each widened inside a part of the patch.
 class Widened {
@@ -100,126 +104,133 @@ bool LocalChord::keeps(Rates rates, double distance) const {
 
 namespace {
 
-/// The same in double the length: whole halves' segments.
-Rates evened(Rates rates) { return {rates.u + rates.u % 2, rates.v + rates.v % 2}; }
+/// Bounds are first made roughly, then of smaller pieces about what was found.
+struct Pass {
+  double share;  ///< of rates, down to which they hold
+  std::size_t pieces;
+};
 
-/// The fewest cells among uniform segments.
-std::optional<ProvenSegments> find_uniform(const DerivativeNets& patch, Rates known, double distance,
-                                           FunctionRef<bool(Rates)> also) {
-  std::optional<ProvenSegments> best;
-  Rates rates = known;
-  // First roughly, then by smaller pieces about what was found.
-  struct Pass {
-    double share;
-    std::size_t pieces;
-  };
+/// Adds uniform segments.
+void add_uniform(const DerivativeNets& patch, double distance, FunctionRef<bool(Rates)> also, SegmentChoices& choices) {
   for (const Pass pass : {Pass{0.65, 16}, Pass{0.85, 32}}) {
+    const Rates rates = choices.fewest().segments.rates();
     if (rates.u * rates.v < 2) break;
     const LocalChord local(patch, whole, shrunk(rates, pass.share), rates, pass.pieces);
     const auto keeps = [&](Rates r) { return local.keeps(r, distance) && also(r); };
     const int most_u = rates.u + rates.u / 2 + 1;
     for (int u = local.least().u; u <= most_u; ++u) {
-      const auto v = least_v(u, local.least().v, (rates.u * rates.v - 1) / u, keeps);
-      if (!v) continue;
-      rates = {u, *v};
-      best = {rates, local.distance(rates)};
+      const auto v = least_v(u, local.least().v, static_cast<int>(choices.most_cells()) / u, keeps);
+      if (const Rates found{u, v.value_or(0)}; v && choices.has_room_for(found))
+        choices.add({found, local.distance(found), true});
     }
   }
-  return best;
 }
 
-/// What a quarter of a patch needs: for each number of segments along its part of u the least along its part of v.
-class QuarterNeeds {
+/// Into how many parts the parameters are taken.
+using PartCounts = Rates;
+
+/// The rates of segments of a part, and the segments of both.
+int rate_of(int count, int parts) { return parts * count; }
+Segments joined(int lower, int upper, int parts) { return parts == 2 ? Segments::halves(lower, upper) : lower; }
+
+/// What a part of a patch needs: for each number of segments along its u the least along its v.
+class PartNeeds {
  public:
-  /// Of segments a half: at most `most`.
-  QuarterNeeds(const LocalChord& local, Rates most, double distance) : least_v_(at(most.u) + 1, most.v + 1) {
-    const auto keeps = [&](Rates halves) { return local.keeps({2 * halves.u, 2 * halves.v}, distance); };
-    for (int u = local.least().u / 2; u <= most.u; ++u)
-      if (const auto v = least_v(u, local.least().v / 2, most.v, keeps)) least_v_[at(u)] = *v;
+  /// Of segments a part: at most `most`.
+  PartNeeds(const LocalChord& local, PartCounts parts, Rates most, double distance)
+      : least_v_(at(most.u) + 1, most.v + 1) {
+    const auto keeps = [&](Rates counts) {
+      return local.keeps({rate_of(counts.u, parts.u), rate_of(counts.v, parts.v)}, distance);
+    };
+    for (int u = local.least().u / parts.u; u <= most.u; ++u)
+      if (const auto v = least_v(u, local.least().v / parts.v, most.v, keeps)) least_v_[at(u)] = *v;
   }
   int least_v_for(int u) const { return least_v_[at(u)]; }  ///< above the most if none will do
 
  private:
-  static std::size_t at(int u) { return static_cast<std::size_t>(u); }
   std::vector<int> least_v_;
 };
 
-/// The four quarters, `[half of u][half of v]`.
-using QuarterChords = std::array<std::array<std::optional<LocalChord>, 2>, 2>;
+/// Bounds of the parts of a patch: quarters, or halves where the other parameter is one segment that none would part.
+class PartChords {
+ public:
+  PartChords(const DerivativeNets& patch, PatchSegments about, Pass pass)
+      : parts_{about.u.rate > 1 ? 2 : 1, about.v.rate > 1 ? 2 : 1} {
+    for (int i = 0; i < parts_.u; ++i)
+      for (int j = 0; j < parts_.v; ++j) {
+        const Rates rates = about.of_quarter(i, j);
+        Rates least = shrunk(rates, pass.share);
+        least = {least.u + least.u % parts_.u, least.v + least.v % parts_.v};  // whole parts' segments
+        chords_[at(2 * i + j)].emplace(patch, part(parts_, i, j), least, rates, pass.pieces);
+      }
+  }
 
-double distance_of(const QuarterChords& quarters, PatchSegments segments) {
-  double most = 0;
-  for (const int i : {0, 1})
-    for (const int j : {0, 1}) most = std::max(most, quarters[at(i)][at(j)]->distance(segments.of_quarter(i, j)));
-  return most;
-}
+  PartCounts parts() const { return parts_; }
+  const LocalChord& of(int half_u, int half_v) const {
+    return *chords_[at(2 * std::min(half_u, parts_.u - 1) + std::min(half_v, parts_.v - 1))];
+  }
+  double distance(PatchSegments segments) const {
+    double most = 0;
+    for (int i = 0; i < parts_.u; ++i)
+      for (int j = 0; j < parts_.v; ++j) most = std::max(most, of(i, j).distance(segments.of_quarter(i, j)));
+    return most;
+  }
 
-/// The fewest cells among segments that differ between halves, fewer than `known` has.
-std::optional<PatchSegments> fewest_halves(const QuarterChords& quarters, PatchSegments known, double distance,
-                                           FunctionRef<bool(Rates)> also) {
-  const Rates most{3 * known.u.rate / 4 + 1, 3 * known.v.rate / 4 + 1};
-  const auto needs = [&](std::size_t i, std::size_t j) { return QuarterNeeds(*quarters[i][j], most, distance); };
-  const QuarterNeeds needs00 = needs(0, 0), needs01 = needs(0, 1), needs10 = needs(1, 0), needs11 = needs(1, 1);
-  std::optional<PatchSegments> best;
-  double least = known.cells();
+ private:
+  PartCounts parts_;
+  std::array<std::optional<LocalChord>, 4> chords_;
+};
+
+/// Adds segments of any length in the halves.
+void add_halves(const PartChords& chords, double distance, FunctionRef<bool(Rates)> also, SegmentChoices& choices) {
+  const PatchSegments known = choices.fewest().segments;
+  const PartCounts parts = chords.parts();
+  const auto most_of = [](Segments had, int count) {
+    return count == 2 ? std::min(3 * had.rate / 4 + 1, most_rate / 2) : int{had.rate};
+  };
+  const Rates most{most_of(known.u, parts.u), most_of(known.v, parts.v)};
+  const auto needs = [&](int i, int j) { return PartNeeds(chords.of(i, j), parts, most, distance); };
+  const PartNeeds needs00 = needs(0, 0), needs01 = needs(0, 1), needs10 = needs(1, 0), needs11 = needs(1, 1);
   for (int low_u = 1; low_u <= most.u; ++low_u)
-    for (int high_u = 1; high_u <= most.u && (low_u + high_u) * 2 < least; ++high_u) {
+    for (int high_u = parts.u == 2 ? 1 : low_u; high_u <= (parts.u == 2 ? most.u : low_u); ++high_u) {
+      const Segments u = joined(low_u, high_u, parts.u);
+      if (u.rate * parts.v > choices.most_cells()) break;
       const int low_v = std::max(needs00.least_v_for(low_u), needs10.least_v_for(high_u)),
                 high_v = std::max(needs01.least_v_for(low_u), needs11.least_v_for(high_u));
       if (std::max(low_v, high_v) > most.v) continue;
-      const PatchSegments found{Segments::halves(low_u, high_u), Segments::halves(low_v, high_v)};
-      if (!(found.cells() < least) || !also(found.coarsest())) continue;
-      best = found;
-      least = found.cells();
+      const PatchSegments found{u, joined(low_v, high_v, parts.v)};
+      if (choices.has_room_for(found) && also(found.coarsest())) choices.add({found, chords.distance(found)});
     }
-  return best;
 }
 
-std::optional<ProvenSegments> find_halves(const DerivativeNets& patch, Rates known, double distance,
-                                          FunctionRef<bool(Rates)> also) {
+void add_halves(const DerivativeNets& patch, double distance, FunctionRef<bool(Rates)> also, SegmentChoices& choices) {
   constexpr int least_cells = 12;  // of fewer none is saved
-  std::optional<ProvenSegments> best;
-  if (known.u * known.v < least_cells) return best;
-  PatchSegments segments = known;
-  struct Pass {
-    double share;
-    std::size_t pieces;
-  };
   for (const Pass pass : {Pass{0.5, 12}, Pass{0.8, 24}}) {
-    QuarterChords quarters;
-    for (const int i : {0, 1})
-      for (const int j : {0, 1}) {
-        const Rates about = segments.of_quarter(i, j);
-        quarters[at(i)][at(j)].emplace(patch, quarter(i, j), evened(shrunk(about, pass.share)), about, pass.pieces);
-      }
-    const auto found = fewest_halves(quarters, segments, distance, also);
-    if (!found) break;
-    segments = *found;
-    best = {segments, distance_of(quarters, segments)};
+    const PatchSegments known = choices.fewest().segments;
+    if (known.cells() < least_cells) return;
+    add_halves(PartChords(patch, known, pass), distance, also, choices);
+    if (!(choices.fewest().segments.cells() < known.cells())) return;
   }
-  return best;
 }
 
 }  // namespace
 
-std::optional<ProvenSegments> find_fewer(const BezierPatch& patch, Rates known, double distance,
-                                         FunctionRef<bool(Rates)> also) {
+void find_fewer(const BezierPatch& patch, double distance, FunctionRef<bool(Rates)> also, SegmentChoices& choices) {
   const DerivativeNets nets(patch);
-  const auto uniform = find_uniform(nets, known, distance, also);
-  const auto halves = find_halves(nets, uniform ? uniform->segments.rates() : known, distance, also);
-  return halves ? halves : uniform;
+  add_uniform(nets, distance, also, choices);
+  add_halves(nets, distance, also, choices);
 }
 
 double local_distance(const BezierPatch& patch, PatchSegments segments) {
   const DerivativeNets nets(patch);
-  if (segments.are_uniform())
-    return LocalChord(nets, whole, segments.rates(), segments.rates(), LocalChord::most_pieces)
-        .distance(segments.rates());
+  const PartCounts parts = segments.are_uniform()
+                               ? PartCounts{1, 1}
+                               : PartCounts{segments.u.parts_halves() ? 2 : 1, segments.v.parts_halves() ? 2 : 1};
   double most = 0;
-  for (const int i : {0, 1})
-    for (const int j : {0, 1}) {
+  for (int i = 0; i < parts.u; ++i)
+    for (int j = 0; j < parts.v; ++j) {
       const Rates rates = segments.of_quarter(i, j);
-      const LocalChord local(nets, quarter(i, j), rates, rates, LocalChord::most_pieces);
+      const LocalChord local(nets, part(parts, i, j), rates, rates, LocalChord::most_pieces);
       most = std::max(most, local.distance(rates));
     }
   return most;

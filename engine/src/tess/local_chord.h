@@ -6,7 +6,7 @@
 
 #include "base/function_ref.h"
 #include "tess/chord_bound.h"
-#include "tess/segments.h"
+#include "tess/segment_choices.h"
 #include "tessera/domain.h"
 
 namespace tessera {
@@ -42,14 +42,9 @@ class LocalChord {
   std::size_t count_ = 0;
 };
 
-struct ProvenSegments {
-  PatchSegments segments;
-  double distance = 0;
-};
-/// Segments with fewer cells than `known` has, that keep a distance and `also` hold at the coarsest rates; empty if there
-/// are none. Uniform ones keep it wherever triangles lie; others where none straddles the middle of a parameter.
-std::optional<ProvenSegments> find_fewer(const BezierPatch& patch, Rates known, double distance,
-                                         FunctionRef<bool(Rates)> also);
+/// Adds segments with fewer cells than there are, that keep a distance and `also` hold at the coarsest rates; and others
+/// with about as few.
+void find_fewer(const BezierPatch& patch, double distance, FunctionRef<bool(Rates)> also, SegmentChoices& choices);
 /// What they keep, so.
 double local_distance(const BezierPatch& patch, PatchSegments segments);
 

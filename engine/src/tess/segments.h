@@ -8,6 +8,9 @@
 
 namespace tessera {
 
+/// Rates stay at most this, those of halves too: parameters i / rate are then well apart in float.
+inline constexpr int most_rate = 4096;
+
 /// The segments of a parameter from 0 to 1: all of one length, or those of each half.
 struct Segments {
   std::uint16_t rate = 0;   ///< how many
