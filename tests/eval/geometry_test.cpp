@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
 
 #include "eval/grid_plan_impl.h"
 #include "support/grids.h"
@@ -268,6 +271,19 @@ TEST_P(Geometry, EditsMoveTheLimits) {
   }
 }
 
+/// A block's output is what the views of `all` hold.
+template <class T, class Output>
+void expect_in_blocks(const Evaluated<T>& all, const Output& output, const AlignedVector<T>& blocks) {
+  SCOPED_TRACE(output.name);
+  const std::size_t width = static_cast<std::size_t>(output.width);
+  for (std::size_t record = 0; record < all.count(); ++record)
+    for (std::size_t c = 0; c < width; ++c) {
+      const PatchSet::Slot slot = all.set.slot(record / 9);
+      const T found = blocks[((slot.block * 9 + record % 9) * width + c) * PatchSet::lanes + slot.lane];
+      ASSERT_EQ(found, (all.out.*output.view).at(record, static_cast<int>(c)));
+    }
+}
+
 /// Blocks hold what views hold, each output alone is what it is with the others, and so it is in one interleaved
 /// record.
 template <class T>
@@ -279,20 +295,20 @@ void check_ways_out(Isa isa) {
   for (const Stores stores : {Stores::plain, Stores::streaming}) {
     Execution execution;
     execution.stores = stores;
+    std::map<std::string, AlignedVector<T>> blocks;
+    GridBlocks<T> together;
     for_each_value_output<T>([&](const auto& output) {
-      SCOPED_TRACE(output.name);
-      AlignedVector<T> blocks(all.plan.block_capacity() / 3 * static_cast<std::size_t>(output.width));
-      GridBlocks<T> out;
-      out.*output.memory = blocks;
-      ASSERT_TRUE(evaluate(all.set, all.plan, out, execution).ok());
-      const std::size_t width = static_cast<std::size_t>(output.width);
-      for (std::size_t record = 0; record < all.count(); ++record)
-        for (std::size_t c = 0; c < width; ++c) {
-          const PatchSet::Slot slot = all.set.slot(record / 9);
-          const T found = blocks[((slot.block * 9 + record % 9) * width + c) * PatchSet::lanes + slot.lane];
-          ASSERT_EQ(found, (all.out.*output.view).at(record, static_cast<int>(c)));
-        }
+      AlignedVector<T>& memory = blocks[output.name];
+      memory.resize(all.plan.block_capacity() / 3 * static_cast<std::size_t>(output.width));
+      GridBlocks<T> alone;
+      alone.*output.memory = memory;
+      ASSERT_TRUE(evaluate(all.set, all.plan, alone, execution).ok());
+      expect_in_blocks(all, output, memory);
+      std::fill(memory.begin(), memory.end(), T{0});
+      together.*output.memory = memory;
     });
+    ASSERT_TRUE(evaluate(all.set, all.plan, together, execution).ok());
+    for_each_value_output<T>([&](const auto& output) { expect_in_blocks(all, output, blocks[output.name]); });
   }
   std::vector<T> records(37 * all.count());
   GridViews<T> out;

@@ -3,98 +3,86 @@
 // so the same code evaluates Bernstein and power coefficients. Any subset of the outputs in one pass. Included by
 // the units as sample_kernel.inl.h is.
 
-/// How values go to memory: by plain stores, by streaming ones, or as the job says.
-enum class Way { plain, streaming, asked };
-
-/// A vector, or three.
-template <class L, Way How, class Value>
-[[gnu::always_inline]] inline void put(const GridJob<typename L::Scalar>& job, typename L::Scalar* memory,
-                                       const Value& value) {
-  if (How == Way::streaming || (How == Way::asked && job.streaming)) {
-    store<L, true>(memory, value);
-  } else {
-    store<L, false>(memory, value);
-  }
-}
-
 /// Where the outputs of one sample go, for one vector of patches.
 struct Offsets {
   std::ptrdiff_t vector, scalar, byte;
 };
 
-template <class L, Way How>
+template <class L, class Stores>
 [[gnu::always_inline]] inline void store_position(const GridJob<typename L::Scalar>& job, std::ptrdiff_t out,
-                                                  const Sample<L>& sample) {
+                                                  const Sample<L>& sample, const Stores& stores) {
   typename L::Batch position[3];
   copy<L>(sample.position, position);
   if constexpr (sizeof(typename L::Scalar) == 8) {
     for (int c = 0; c < 3; ++c) position[c] = position[c] + L::broadcast(job.offset[c]);
   }
-  put<L, How>(job, job.position + out, position);
+  stores.put(position_line, job.position + out, position);
 }
 
 /// Values where they are defined, zero elsewhere.
 template <class L>
 class DefinedStore {
  public:
-  using Job = GridJob<typename L::Scalar>;
+  using T = typename L::Scalar;
+  using Stores = AskedStores<L>;
 
-  DefinedStore(const Job& job, const typename L::Batch& defined) : job_(job), defined_(defined) {}
-  [[gnu::always_inline]] void operator()(typename L::Scalar* memory, std::ptrdiff_t out,
+  DefinedStore(const Stores& stores, const typename L::Batch& defined) : stores_(stores), defined_(defined) {}
+  [[gnu::always_inline]] void operator()(int line, T* memory, std::ptrdiff_t out,
                                          const typename L::Batch& value) const {
     const auto zero = L::broadcast(0);
-    if (memory) put<L, Way::asked>(job_, memory + out, xsimd::select(defined_ > zero, value, zero));
+    if (memory) stores_.put(line, memory + out, xsimd::select(defined_ > zero, value, zero));
   }
-  [[gnu::always_inline]] void operator()(typename L::Scalar* memory, std::ptrdiff_t out, const typename L::Batch& x,
+  [[gnu::always_inline]] void operator()(int line, T* memory, std::ptrdiff_t out, const typename L::Batch& x,
                                          const typename L::Batch& y, const typename L::Batch& z) const {
     if (!memory) return;
-    (*this)(memory, out, x);
-    (*this)(memory, out + block_lanes, y);
-    (*this)(memory, out + 2 * block_lanes, z);
+    (*this)(line, memory, out, x);
+    (*this)(line + 1, memory, out + block_lanes, y);
+    (*this)(line + 2, memory, out + 2 * block_lanes, z);
   }
 
  private:
-  const Job& job_;
+  const Stores stores_;
   typename L::Batch defined_;
 };
 
 /// Principal curvatures and directions: out of line, since they are much code.
 template <class L>
 [[gnu::noinline]] void store_principal(const GridJob<typename L::Scalar>& job, const Offsets& out,
-                                       const CurvatureExchange<L>& exchange) {
+                                       const CurvatureExchange<L>& exchange, const AskedStores<L>& stores) {
   Curvature<L> k;
   typename L::Batch normal[3];
   exchange.take(k, normal);
-  const DefinedStore<L> put_defined(job, k.defined);
+  const DefinedStore<L> put_defined(stores, k.defined);
   Principal<L> principal;
   principal_curvatures<L>(job, k, principal);
-  put_defined(job.first_curvature, out.scalar, principal.first);
-  put_defined(job.second_curvature, out.scalar, principal.second);
+  put_defined(first_curvature_line, job.first_curvature, out.scalar, principal.first);
+  put_defined(second_curvature_line, job.second_curvature, out.scalar, principal.second);
   if (job.curvature_kind)
     L::store_bytes(job.curvature_kind + out.byte,
                    xsimd::select(k.defined > L::broadcast(0), principal.umbilic, L::broadcast(undefined_curvatures)));
   if (!job.first_direction && !job.second_direction) return;
   typename L::Batch first[3], second[3];
   principal_directions<L>(k, normal, principal, first, second);
-  put_defined(job.first_direction, out.vector, first[0], first[1], first[2]);
-  put_defined(job.second_direction, out.vector, second[0], second[1], second[2]);
+  put_defined(first_direction_line, job.first_direction, out.vector, first[0], first[1], first[2]);
+  put_defined(second_direction_line, job.second_direction, out.vector, second[0], second[1], second[2]);
 }
 
 template <class L>
 [[gnu::always_inline]] inline void store_curvatures(const GridJob<typename L::Scalar>& job, const Offsets& out,
-                                                    const Sample<L>& sample, const Normal<L>& normal) {
+                                                    const Sample<L>& sample, const Normal<L>& normal,
+                                                    const AskedStores<L>& stores) {
   Curvature<L> k;
   curvature<L>(job, sample, normal, k);
-  const DefinedStore<L> put_defined(job, k.defined);
-  put_defined(job.first_form, out.vector, k.e, k.f, k.g);
-  put_defined(job.second_form, out.vector, k.l, k.m, k.n);
-  put_defined(job.gaussian, out.scalar, L::fms(k.s11, k.s22, k.s12 * k.s12));
-  put_defined(job.mean, out.scalar, mean_curvature<L>(k));
+  const DefinedStore<L> put_defined(stores, k.defined);
+  put_defined(first_form_line, job.first_form, out.vector, k.e, k.f, k.g);
+  put_defined(second_form_line, job.second_form, out.vector, k.l, k.m, k.n);
+  put_defined(gaussian_line, job.gaussian, out.scalar, L::fms(k.s11, k.s22, k.s12 * k.s12));
+  put_defined(mean_line, job.mean, out.scalar, mean_curvature<L>(k));
   if (job.first_curvature || job.second_curvature || job.curvature_kind || job.first_direction ||
       job.second_direction) {
     CurvatureExchange<L> exchange;
     exchange.put(k, normal.direction);
-    store_principal<L>(job, out, exchange);
+    store_principal<L>(job, out, exchange, stores);
   }
 }
 
@@ -108,25 +96,25 @@ inline bool wants_curvatures(const GridJob<T>& job) {
 /// of patches of one degree in both directions.
 enum class Wanted { any, mesh };
 
-template <class L, Way How, int Order, Wanted Outputs>
+template <class L, int Order, Wanted Outputs, class Stores>
 [[gnu::always_inline]] inline void store_derivatives(const GridJob<typename L::Scalar>& job, const Sample<L>& sample,
-                                                     const Offsets& out) {
-  if (Order == 0 || Outputs == Wanted::mesh || job.position) store_position<L, How>(job, out.vector, sample);
+                                                     const Offsets& out, const Stores& stores) {
+  if (Order == 0 || Outputs == Wanted::mesh || job.position) store_position<L>(job, out.vector, sample, stores);
   if constexpr (Order >= 1 && Outputs == Wanted::any) {
-    if (job.du) put<L, How>(job, job.du + out.vector, sample.du);
-    if (job.dv) put<L, How>(job, job.dv + out.vector, sample.dv);
+    if (job.du) stores.put(du_line, job.du + out.vector, sample.du);
+    if (job.dv) stores.put(dv_line, job.dv + out.vector, sample.dv);
   }
   if constexpr (Order >= 2) {
-    if (job.duu) put<L, How>(job, job.duu + out.vector, sample.duu);
-    if (job.duv) put<L, How>(job, job.duv + out.vector, sample.duv);
-    if (job.dvv) put<L, How>(job, job.dvv + out.vector, sample.dvv);
+    if (job.duu) stores.put(duu_line, job.duu + out.vector, sample.duu);
+    if (job.duv) stores.put(duv_line, job.duv + out.vector, sample.duv);
+    if (job.dvv) stores.put(dvv_line, job.dvv + out.vector, sample.dvv);
   }
 }
 
-template <class L, Way How, Wanted Outputs>
+template <class L, Wanted Outputs, class Stores>
 [[gnu::always_inline]] inline void store_normal(const GridJob<typename L::Scalar>& job, const Normal<L>& normal,
-                                                const Offsets& out) {
-  if (Outputs == Wanted::mesh || job.normal) put<L, How>(job, job.normal + out.vector, normal.direction);
+                                                const Offsets& out, const Stores& stores) {
+  if (Outputs == Wanted::mesh || job.normal) stores.put(normal_line, job.normal + out.vector, normal.direction);
   if (Outputs == Wanted::any && job.normal_kind) L::store_bytes(job.normal_kind + out.byte, normal.kind);
 }
 
@@ -135,18 +123,18 @@ inline bool wants_normals(const GridJob<T>& job) {
   return job.normal || job.normal_kind;
 }
 
-template <class L, bool Rational, Way How, int Order>
+template <class L, bool Rational, int Order, class Stores>
 [[gnu::always_inline]] inline void store_sample(const GridJob<typename L::Scalar>& job, const Sample<L>& sample,
-                                                const Place& place, const Offsets& out) {
-  store_derivatives<L, How, Order, Wanted::any>(job, sample, out);
+                                                const Place& place, const Offsets& out, const Stores& stores) {
+  store_derivatives<L, Order, Wanted::any>(job, sample, out, stores);
   if constexpr (Order >= 1) {
     const bool curvatures = Order >= 2 && wants_curvatures(job);
     if (!wants_normals(job) && !curvatures) return;
     Normal<L> normal;
     unit_normal<L, Rational>(job, sample, place, normal);
-    store_normal<L, How, Wanted::any>(job, normal, out);
+    store_normal<L, Wanted::any>(job, normal, out, stores);
     if constexpr (Order >= 2) {
-      if (curvatures) store_curvatures<L>(job, out, sample, normal);
+      if (curvatures) store_curvatures<L>(job, out, sample, normal, stores.asked());
     }
   }
 }
@@ -160,7 +148,7 @@ Offsets sample_before(const GridJob<typename L::Scalar>& job, const Offsets& nex
 /// lanes that are safe.
 template <class L>
 [[gnu::noinline, gnu::cold]] void finish_degenerate(const GridJob<typename L::Scalar>& job, int lane, Offsets next,
-                                                    NormalExchange<L>& exchange) {
+                                                    NormalExchange<L>& exchange, const AskedStores<L>& stores) {
   const Offsets out = sample_before<L>(job, next);
   const int k = static_cast<int>(out.byte / block_lanes), columns = job.v_end - job.v_begin;
   const Place place{job.u_begin + k / columns, job.v_begin + k % columns, lane};
@@ -170,39 +158,42 @@ template <class L>
   degenerate_normals<L>(job, place, L::load(exchange.kind), exchange);
   Normal<L> normal;
   take_normal<L>(exchange, normal);
-  store_normal<L, Way::asked, Wanted::any>(job, normal, out);
+  store_normal<L, Wanted::any>(job, normal, out, stores);
 }
 
 /// Normals of grids, each finished once the next sample's is begun: the chain of operations from r_u x r_v to a unit
 /// normal is long, and so runs beside the next sample's sums.
-template <class L, Way How, Wanted Outputs>
+template <class L, Wanted Outputs>
 class NormalsBehind {
  public:
   using Job = GridJob<typename L::Scalar>;
 
   /// `out` is the sample's.
-  [[gnu::always_inline]] void begin(const Job& job, const Sample<L>& sample, int lane, const Offsets& out) {
+  template <class Stores>
+  [[gnu::always_inline]] void begin(const Job& job, const Sample<L>& sample, int lane, const Offsets& out,
+                                    const Stores& stores) {
     if (Outputs == Wanted::any && !wants_normals(job)) return;
     typename L::Batch direction[3];
     const auto squared = cross<L>(sample.du, sample.dv, direction);
-    finish(job, lane, out);
+    finish(job, lane, out, stores);
     copy<L>(direction, direction_);
     squared_ = squared;
   }
   /// The sample before the one whose outputs are `next`, if there is one.
-  [[gnu::always_inline]] void finish(const Job& job, int lane, const Offsets& next) const {
+  template <class Stores>
+  [[gnu::always_inline]] void finish(const Job& job, int lane, const Offsets& next, const Stores& stores) const {
     if (next.byte < block_lanes || (Outputs == Wanted::any && !wants_normals(job))) return;
     Normal<L> normal;
     copy<L>(direction_, normal.direction);
     normal.squared = squared_;
     const auto safe = regular_normals<L>(job, lane, normal);
     if (xsimd::all(safe)) {
-      store_normal<L, How, Outputs>(job, normal, sample_before<L>(job, next));
+      store_normal<L, Outputs>(job, normal, sample_before<L>(job, next), stores);
     } else {
       NormalExchange<L> exchange;
       for (int c = 0; c < 3; ++c) L::store(exchange.direction[c], normal.direction[c]);
       L::store(exchange.kind, xsimd::select(safe, L::broadcast(1), L::broadcast(0)));
-      finish_degenerate<L>(job, lane, next, exchange);
+      finish_degenerate<L>(job, lane, next, exchange, stores.asked());
     }
   }
 
@@ -223,13 +214,15 @@ template <class L, bool ByLane, int DegreeV, bool Rational, int Order, Way How, 
 void evaluate_lanes(const GridJob<typename L::Scalar>& job, int lane) {
   constexpr int components = Rational ? 4 : 3;
   constexpr int capacity = DegreeV > 0 ? DegreeV + 1 : max_order;
+  constexpr bool constant = How == Way::streaming && line_parts < L >> 1;
   const int count_u = Outputs == Wanted::mesh ? DegreeV + 1 : job.degree_u + 1;
   const int count_v = DegreeV > 0 ? DegreeV + 1 : job.degree_v + 1;
   Offsets out{lane, lane, lane};
 
   const auto* next_net = job.net + std::ptrdiff_t{count_u} * count_v * components * block_lanes;
   RowCurves<L, Order, components, capacity> curves[Groups];
-  NormalsBehind<L, How, Outputs> normals[Groups];
+  NormalsBehind<L, Outputs> normals[Groups];
+  WaitingLines<L, How> waiting;
   for (int iu = job.u_begin; iu < job.u_end; ++iu) {
     if (lane == 0) prefetch_lines(next_net, iu * job.prefetched_lines, job.prefetched_lines);
     for (int group = 0; group < Groups; ++group) {
@@ -238,33 +231,35 @@ void evaluate_lanes(const GridJob<typename L::Scalar>& job, int lane) {
       row_curves<L, DegreeV>(job.net + first, u_weights, count_u, count_v, curves[group]);
     }
     for (int iv = job.v_begin; iv < job.v_end; ++iv) {
-      for (int group = 0; group < Groups; ++group) {
+      for_each_group<Groups, constant>([&](auto group) __attribute__((always_inline)) {
         const std::ptrdiff_t shift = group * L::width;
-        const auto v_weights = weights_at<L, ByLane>(job.v_weights, iv, count_v, lane + group * L::width);
+        const int first = lane + group * L::width;
+        const auto v_weights = weights_at<L, ByLane>(job.v_weights, iv, count_v, first);
         Sample<L> sample;
         evaluate_sample<L, Order>(curves[group], v_weights, count_v, sample);
         const Offsets at{out.vector + shift, out.scalar + shift, out.byte + shift};
-        const int first = lane + group * L::width;
+        const LineStores<L, How, decltype(group)> stores(job.streaming, waiting.line, group);
         if constexpr (Order == 1) {
-          store_derivatives<L, How, Order, Outputs>(job, sample, at);
-          normals[group].begin(job, sample, first, at);
+          store_derivatives<L, Order, Outputs>(job, sample, at, stores);
+          normals[group].begin(job, sample, first, at, stores);
         } else {
-          store_sample<L, Rational, How, Order>(job, sample, {iu, iv, first}, at);
+          store_sample<L, Rational, Order>(job, sample, {iu, iv, first}, at, stores);
         }
-      }
+      });
       out = {out.vector + job.vector_step, out.scalar + job.scalar_step, out.byte + block_lanes};
     }
   }
   if constexpr (Order == 1)
     for (int group = 0; group < Groups; ++group) {
-      const std::ptrdiff_t shift = group * L::width;
-      normals[group].finish(job, lane + group * L::width, {out.vector + shift, out.scalar + shift, out.byte + shift});
+      const int shift = group * L::width;
+      const Offsets end{out.vector + shift, out.scalar + shift, out.byte + shift};
+      const LineStores<L, How, int> stores(job.streaming, waiting.line, group);
+      normals[group].finish(job, lane + shift, end, stores);
     }
 }
 
-/// Plain stores take one vector of patches after the other; streaming stores take whole cache lines, since a line that
-/// is streamed in parts goes to memory in parts, and vectors of a line two of them: lines of a block that are left out
-/// cost as much as others. Both share one loop where it is much code: any degree, and second derivatives.
+/// Plain stores take one vector of patches after the other; streaming stores take whole cache lines, and vectors of a line
+/// two of them: lines of a block that are left out cost as much as others. Both share one loop where it is much code: any degree, and second derivatives.
 template <class L, int DegreeV, bool Rational, int Order, Wanted Outputs = Wanted::any>
 void evaluate_block(const GridJob<typename L::Scalar>& job) {
   constexpr int line = 64 / static_cast<int>(sizeof(typename L::Scalar));

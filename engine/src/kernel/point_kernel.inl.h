@@ -184,7 +184,8 @@ inline void evaluate_slot(const PointJob<typename L::Scalar>& job, int k,
     Sample<L> sample;
     evaluate_sample<L, Order>(curves, v_weights.of[lane / L::width], count_v, sample);
     const std::ptrdiff_t at = std::ptrdiff_t{k} * block_lanes + lane, vector = at + std::ptrdiff_t{2} * k * block_lanes;
-    store_sample<L, Rational, Way::plain, Order>(job.grid, sample, {k, 0, lane}, {vector, at, at});
+    const LineStores<L, Way::plain, int> stores(false, nullptr, 0);
+    store_sample<L, Rational, Order>(job.grid, sample, {k, 0, lane}, {vector, at, at}, stores);
   }
 }
 

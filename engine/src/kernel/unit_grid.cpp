@@ -1,5 +1,7 @@
 // Grids of floats. One unit an instruction set: see cmake/TesseraIsaFlags.cmake.
 
+#include <utility>
+
 #include "kernel/grid_kernels.h"
 #include "kernel/lanes.h"
 
@@ -10,6 +12,7 @@ namespace {
 #include "kernel/sample_kernel.inl.h"
 #include "kernel/normal_kernel.inl.h"
 #include "kernel/curvature_kernel.inl.h"
+#include "kernel/line_stores.inl.h"
 #include "kernel/grid_kernel.inl.h"
 
 }  // namespace
