@@ -86,10 +86,14 @@ struct Lanes<float> {
     _mm256_storeu_ps(low, _mm512_castps512_ps256(a));
     _mm256_storeu_ps(high, _mm512_extractf32x8_ps(a, 1));
   }
-  /// The first four values become the last.
-  static Batch rotated(Batch a) {
-    const __m512i bits = _mm512_castps_si512(a);
-    return _mm512_castsi512_ps(_mm512_alignr_epi32(bits, bits, 4));
+  /// Four rows of 12 values from three aligned vectors; the last four lanes of a row mean nothing. An unaligned load
+  /// takes as long as two.
+  static void load_twelves(const float* p, Batch (&rows)[4]) {
+    const __m512i a = _mm512_load_si512(p), b = _mm512_load_si512(p + 16), c = _mm512_load_si512(p + 32);
+    rows[0] = _mm512_castsi512_ps(a);
+    rows[1] = _mm512_castsi512_ps(_mm512_alignr_epi32(b, a, 12));
+    rows[2] = _mm512_castsi512_ps(_mm512_alignr_epi32(c, b, 8));
+    rows[3] = _mm512_castsi512_ps(_mm512_alignr_epi32(c, c, 4));
   }
   /// x0 x1 .. | y0 y1 .. | z0 z1 .. to x0 y0 z0 x1 ..
   static void interleave(Batch (&p)[3]) {

@@ -22,44 +22,49 @@ struct SlotWeights {
 
 /// sums[order] = sum_i weights[order][i] net[i * length], one vector of a row's `rest` last values; `weights` are
 /// `[order][i][lane]` from one lane on. Reads no value behind the last row: that may lie on another cache line.
-/// `EndsLine`: rows are 12 wide and the last one ends a line.
-template <class L, bool EndsLine, int Order>
+template <class L, int Order>
 [[gnu::always_inline]] inline void row_sums(const typename L::Scalar* net, const typename L::Scalar* weights,
                                             int count_u, std::ptrdiff_t length, int rest,
                                             typename L::Batch (&sums)[Order + 1]) {
   using Batch = typename L::Batch;
   const auto weight = [&](int order, int i) { return L::broadcast(weights[(order * count_u + i) * L::width]); };
-  const auto last_values = [&](const typename L::Scalar* row) -> Batch {
-    if constexpr (EndsLine) {
-      return L::rotated(L::load(row - 4));
-    } else {
-      return rest >= L::width ? Batch::load_unaligned(row) : L::load_first(row, rest);
-    }
-  };
   const Batch first = Batch::load_unaligned(net);
   for (int order = 0; order <= Order; ++order) sums[order] = weight(order, 0) * first;
 #pragma GCC unroll 4
   for (int i = 1; i < count_u; ++i) {
     const auto* row = net + i * length;
-    const Batch values = i + 1 < count_u ? Batch::load_unaligned(row) : last_values(row);
+    const Batch values = i + 1 < count_u || rest >= L::width ? Batch::load_unaligned(row) : L::load_first(row, rest);
     for (int order = 0; order <= Order; ++order) sums[order] = L::fma(weight(order, i), values, sums[order]);
   }
 }
 
-template <class T>
-[[gnu::always_inline]] inline const T* net_of(const PointJob<T>& job, int sample) {
-  return job.points + job.patch[sample] * job.patch_values;
+/// The same of four rows of 12 that fill three vectors.
+template <class L, int Order>
+[[gnu::always_inline]] inline void four_row_sums(const typename L::Scalar* net, const typename L::Scalar* weights,
+                                                 typename L::Batch (&sums)[Order + 1]) {
+  typename L::Batch rows[4];
+  L::load_twelves(net, rows);
+  const auto weight = [&](int order, int i) { return L::broadcast(weights[(4 * order + i) * L::width]); };
+  for (int order = 0; order <= Order; ++order) {
+    sums[order] = weight(order, 0) * rows[0];
+    for (int i = 1; i < 4; ++i) sums[order] = L::fma(weight(order, i), rows[i], sums[order]);
+  }
 }
 
-/// The patches of samples behind this one, towards the near caches.
+template <class T>
+[[gnu::always_inline]] inline const T* net_of(const PointJob<T>& job, std::uint32_t patch) {
+  return job.points + patch * job.patch_values;
+}
+
+/// The patches of samples behind the one at `patch`, towards the near caches.
 template <int Degree, int Components, class T>
-[[gnu::always_inline]] inline void fetch_ahead(const PointJob<T>& job, int sample) {
+[[gnu::always_inline]] inline void fetch_ahead(const PointJob<T>& job, const std::uint32_t* patch) {
   constexpr std::size_t known = std::size_t{(Degree + 1) * (Degree + 1) * Components} * sizeof(T);
   const std::size_t bytes = Degree > 0 ? known : job.prefetched;
-  const auto* near = reinterpret_cast<const char*>(net_of(job, sample + near_distance));
+  const auto* near = reinterpret_cast<const char*>(net_of(job, patch[near_distance]));
   for (std::size_t b = 0; b < bytes; b += 64) __builtin_prefetch(near + b, 0, 3);
   if (!job.far) return;
-  const auto* far = reinterpret_cast<const char*>(net_of(job, sample + far_distance));
+  const auto* far = reinterpret_cast<const char*>(net_of(job, patch[far_distance]));
   for (std::size_t b = 0; b < bytes; b += 64) __builtin_prefetch(far + b, 0, 2);
 }
 
@@ -87,15 +92,21 @@ template <class L, int Degree, int Order, int Components, int Capacity>
 [[gnu::always_inline]] inline void curves_by_rows(const PointJob<typename L::Scalar>& job, int first,
                                                   const typename L::Scalar* weights, int count_u, int count_v,
                                                   RowCurves<L, Order, Components, Capacity>& curves) {
-  constexpr bool ends_line = Degree == 3 && Components == 3 && L::width == 16;
+  constexpr bool three_vectors = Degree == 3 && Components == 3 && L::width == 16;
   const int length = Components * count_v;
+  const std::uint32_t* const patch = job.patch + first;
 #pragma GCC unroll 4
   for (int k = 0; k < length; k += L::width) {
     typename L::Batch tiles[Order + 1][L::width];
     const auto sum_sample = [&](int s) __attribute__((always_inline)) {
-      if (k == 0 && job.prefetched > 0) fetch_ahead<Degree, Components>(job, first + s);
+      if (k == 0 && job.prefetched > 0) fetch_ahead<Degree, Components>(job, patch + s);
+      const auto* net = net_of(job, patch[s]);
       typename L::Batch sums[Order + 1];
-      row_sums<L, ends_line, Order>(net_of(job, first + s) + k, weights + s, count_u, length, length - k, sums);
+      if constexpr (three_vectors) {
+        four_row_sums<L, Order>(net, weights + s, sums);
+      } else {
+        row_sums<L, Order>(net + k, weights + s, count_u, length, length - k, sums);
+      }
       for (int order = 0; order <= Order; ++order) tiles[order][s] = sums[order];
     };
     if constexpr (Order < 2 && (Degree > 0 || !fixed_degrees)) {
@@ -143,7 +154,7 @@ template <class L, int Degree, int Order, int Components, int Capacity>
                                                  const typename L::Scalar* weights, int count_u, int count_v,
                                                  RowCurves<L, Order, Components, Capacity>& curves) {
   if (run) {
-    const auto* net = net_of(job, first);
+    const auto* net = net_of(job, job.patch[first]);
     for (int order = 0; order <= Order; ++order)
       curves_by_run<L, Degree>(net, weights + order * count_u * L::width, count_u, count_v, curves.by_u[order]);
   } else {
