@@ -175,15 +175,22 @@ __attribute__((noinline)) void fill_any(SlotWeights<L, 0, Order>& weights, const
   weights.fill(parameters, samples, degree);
 }
 
-/// The samples of slot k.
+/// The samples of slot k. Each slot's weights come right before it: the rows that follow keep the memory busy, and more
+/// weights at once would leave it idle for longer than instructions overlap.
 template <class L, int Degree, bool Rational, int Order>
-inline void evaluate_slot(const PointJob<typename L::Scalar>& job, int k,
-                          const SlotWeights<L, Degree, Order>& u_weights,
-                          const SlotWeights<L, Degree, Order>& v_weights) {
+inline void evaluate_slot(const PointJob<typename L::Scalar>& job, int k) {
   constexpr int components = Rational ? 4 : 3, capacity = capacity_of<Degree>;
   const int count_u = Degree > 0 ? Degree + 1 : job.grid.degree_u + 1;
   const int count_v = Degree > 0 ? Degree + 1 : job.grid.degree_v + 1;
   const PointSlot slot = job.slots[k];
+  SlotWeights<L, Degree, Order> u_weights, v_weights;
+  if constexpr (Degree > 0) {
+    u_weights.fill(job.u + slot.first, slot.count, Degree);
+    v_weights.fill(job.v + slot.first, slot.count, Degree);
+  } else {
+    fill_any(u_weights, job.u + slot.first, slot.count, count_u - 1);
+    fill_any(v_weights, job.v + slot.first, slot.count, count_v - 1);
+  }
   for (int lane = 0; lane < slot.count; lane += L::width) {
     RowCurves<L, Order, components, capacity> curves;
     const auto* weights = u_weights.of[lane / L::width][0];
@@ -200,26 +207,9 @@ inline void evaluate_slot(const PointJob<typename L::Scalar>& job, int k,
   }
 }
 
-/// Weights of several slots come first: their long chains of products then overlap.
 template <class L, int Degree, bool Rational, int Order>
 void evaluate_slots(const PointJob<typename L::Scalar>& job) {
-  constexpr int at_once = Degree > 0 ? point_slots : 1;
-  SlotWeights<L, Degree, Order> u_weights[at_once], v_weights[at_once];
-  for (int first = 0; first < job.slot_count; first += at_once) {
-    const int count = job.slot_count - first < at_once ? job.slot_count - first : at_once;
-    for (int k = 0; k < count; ++k) {
-      const PointSlot& slot = job.slots[first + k];
-      if constexpr (Degree > 0) {
-        u_weights[k].fill(job.u + slot.first, slot.count, Degree);
-        v_weights[k].fill(job.v + slot.first, slot.count, Degree);
-      } else {
-        fill_any(u_weights[k], job.u + slot.first, slot.count, job.grid.degree_u);
-        fill_any(v_weights[k], job.v + slot.first, slot.count, job.grid.degree_v);
-      }
-    }
-    for (int k = 0; k < count; ++k)
-      evaluate_slot<L, Degree, Rational, Order>(job, first + k, u_weights[k], v_weights[k]);
-  }
+  for (int k = 0; k < job.slot_count; ++k) evaluate_slot<L, Degree, Rational, Order>(job, k);
 }
 
 /// Degrees that are fixed where it pays, which for doubles is the cubic alone; and any.
