@@ -61,7 +61,7 @@ template <int Degree, int Components, class T>
 [[gnu::always_inline]] inline void fetch_ahead(const PointJob<T>& job, const std::uint32_t* patch) {
   constexpr std::size_t known = std::size_t{(Degree + 1) * (Degree + 1) * Components} * sizeof(T);
   const std::size_t bytes = Degree > 0 ? known : job.prefetched;
-  const auto* near = reinterpret_cast<const char*>(net_of(job, patch[near_distance]));
+  const auto* near = reinterpret_cast<const char*>(net_of(job, patch[near_distance<T>]));
   for (std::size_t b = 0; b < bytes; b += 64) __builtin_prefetch(near + b, 0, 3);
   if (!job.far) return;
   const auto* far = reinterpret_cast<const char*>(net_of(job, patch[far_distance]));

@@ -1,11 +1,11 @@
 // Outputs of scattered samples from the stage to the caller's records. Included by the units as sample_kernel.inl.h is.
 
-/// What the next call is to store here, towards the near caches: stores leave in order, so that one to a far line holds up
-/// all that follow it. `width`: values of a record.
+/// What the next call is to store here, towards the second-level cache, since patches need the first: stores leave in order, so
+/// that one to a far line holds up all that follow it. `width`: values of a record.
 template <class T>
 inline void fetch_next(const T* out, int width) {
   const auto* next = reinterpret_cast<const char*>(out + width * point_slots * block_lanes);
-  for (int b = 0; b < width * block_lanes * static_cast<int>(sizeof(T)); b += 64) __builtin_prefetch(next + b, 1, 3);
+  for (int b = 0; b < width * block_lanes * static_cast<int>(sizeof(T)); b += 64) __builtin_prefetch(next + b, 1, 2);
 }
 
 /// The samples of a slot as neighbouring records of three, or as numbers one after the other.
