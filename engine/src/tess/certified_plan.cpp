@@ -231,7 +231,7 @@ Status CertifiedPlanner::refusal(Failure failure, std::size_t patch, double tole
 
 void CertifiedPlanner::keep_by_distance(std::size_t patch, double distance, const KeptSegments& kept,
                                         ChordBlocks::Products& products, ProvenSegments& proven) const {
-  if (!is_spared(kept, patch, proven.segments)) return;
+  if (!is_spared(kept, patch, proven.segments) || kept.segments[patch] == proven.segments) return;
   const PatchSet::Slot slot = set_->slots[patch];
   const PatchSegments had = kept.segments[patch];
   double keeps = chord(patch).distance_of(had);

@@ -90,22 +90,28 @@ void CertifiedPlanner::divide(double tolerance, CertifiedPlan& plan) const {
     against = borders_against();
     halves = half_needs(segments, shapes, edges_, against);
   }
-  const auto border_of = [&](std::size_t k, Side side) {
+  const auto uniform_border = [&](std::size_t k, Side side) {
+    const std::uint32_t edge = edges_.edge(k, side);
+    return edge == SharedEdges::none ? along(segments[k], side) : needs[edge].segments();
+  };
+  const auto border_in_halves = [&](std::size_t k, Side side) {
     const std::uint32_t edge = edges_.edge(k, side);
     if (edge == SharedEdges::none) return along(segments[k], side);
-    if (halves.empty()) [[likely]]
-      return needs[edge].segments();
     return halves[edge].segments(against[4 * k + static_cast<std::size_t>(side)], needs[edge].is_even);
   };
+  const auto borders_by = [](std::size_t k, const auto& border) {
+    return std::array{border(k, Side::v0), border(k, Side::u1), border(k, Side::v1), border(k, Side::u0)};
+  };
   const auto borders_of = [&](std::size_t k) {
-    return std::array{border_of(k, Side::v0), border_of(k, Side::u1), border_of(k, Side::v1), border_of(k, Side::u0)};
+    return halves.empty() ? borders_by(k, uniform_border) : borders_by(k, border_in_halves);
   };
   for (std::size_t k = 0; k < segments.size(); ++k) {
     if (!is_coarse(k) || shapes[k].is_curve || always_straddles(k)) continue;
     for (const Side side : all_sides) {
       const std::uint32_t edge = edges_.edge(k, side);
       if (!along(segments[k], side).parts_halves() || edge == SharedEdges::none) continue;
-      if (!border_of(k, side).parts_halves() && !may_straddle(k, side, borders_of(k), tolerance, plan))
+      const std::array<Segments, 4> borders = borders_of(k);
+      if (!borders[static_cast<std::size_t>(side)].parts_halves() && !may_straddle(k, side, borders, tolerance, plan))
         needs[edge].is_even = 1;
     }
   }
