@@ -264,7 +264,7 @@ Status CertifiedPlanner::choose_by_distance(double tolerance, const KeptSegments
   std::vector<SegmentChoices> choices(options_.fewest ? shapes_.size() : 0);
   const auto take = [&](std::size_t k, ProvenSegments proven, ChordBlocks::Products& products) {
     const double given = roundings_[k] + fit_error_;
-    keep_by_distance(k, tolerance - given, kept, products, proven);
+    if (!kept.segments.empty()) keep_by_distance(k, tolerance - given, kept, products, proven);
     plan.segments_[k] = proven.segments;
     plan.bounds_[k] = rounded_up(proven.distance + given);
     if (proven.anywhere) plan.straddles_[k] = 1;
