@@ -64,7 +64,7 @@ std::size_t lone_segments(const PatchSet& set, const CertifiedTessellation& plan
     for (const Side side : all_sides) {
       const std::uint32_t edge = edges.edge(k, side);
       ++patches[edge];
-      segments[edge] = plan.impl().plan().division(k).border[static_cast<std::size_t>(side)].rate;
+      segments[edge] = plan.impl().plan().division(k).border[static_cast<std::size_t>(side)].rate();
     }
   std::size_t lone = 0;
   for (std::size_t edge = 0; edge < edges.count(); ++edge) lone += patches[edge] == 1 ? segments[edge] : 0;
@@ -130,7 +130,7 @@ TEST(Fewest, HalvesHaveNoMoreSegmentsThanWholesMay) {
   EXPECT_GT(along.lower_rate(), 1500);
   EXPECT_LE(along.lower_rate(), most_rate);
   const MeshReport report = good(check(mesh_of(set, plan)));
-  EXPECT_EQ(report.open_edges, 2u * along.rate + 2u * plan.impl().plan().division(0).border[1].rate);
+  EXPECT_EQ(report.open_edges, 2u * along.rate() + 2u * plan.impl().plan().division(0).border[1].rate());
 }
 
 TEST(Fewest, KeepsAnglesAndPixelsAsWell) {

@@ -39,11 +39,11 @@ void expect_border_triangle(const Division& division, PatchSegments asked, Side 
   const auto s = static_cast<std::size_t>(side);
   int widest = 0;  // the odd one with the widest segments
   for (const Segments border : {division.border[s], division.border[(s + 2) % 4]})
-    if (!border.parts_halves()) widest = widest == 0 ? border.rate : std::min<int>(widest, border.rate);
+    if (!border.parts_halves()) widest = widest == 0 ? border.rate() : std::min<int>(widest, border.rate());
   ASSERT_GT(widest, 0);
   EXPECT_LE(along[1] - along[0], 1.0 / widest + 1e-12);
   const Segments across_asked = runs_along_u(side) ? asked.v : asked.u;
-  EXPECT_TRUE(across_asked.rate == 1 || across[0] == 0 || across[1] == 1);
+  EXPECT_TRUE(across_asked.rate() == 1 || across[0] == 0 || across[1] == 1);
   if (!across_asked.parts_halves()) return;
   EXPECT_TRUE(across[1] <= 0.5 || across[0] >= 0.5);
   const Segments border = division.border[across[0] == 0 ? (side == Side::v0 ? 0 : 3) : (side == Side::v0 ? 2 : 1)];
@@ -53,7 +53,7 @@ void expect_border_triangle(const Division& division, PatchSegments asked, Side 
 /// The longest segment asked for from `low` to `high`.
 double longest(Segments asked, double low, double high) {
   double length = 0;
-  for (int k = 0; k < asked.rate; ++k)
+  for (int k = 0; k < asked.rate(); ++k)
     if (const double begin = asked.at(k).value(), end = asked.at(k + 1).value(); begin < high && end > low)
       length = std::max(length, end - begin);
   return length;
@@ -113,8 +113,8 @@ TEST(StitchedPatch, TrianglesCoverTheSquareWithinTheCellsOfTheRates) {
       return n % 2 == 0 && repeat % 5 != 0 ? e + e % 2 : e;
     };
     const std::array<Segments, 4> borders{border(asked.u), border(asked.v), border(asked.u), border(asked.v)};
-    SCOPED_TRACE(testing::Message() << asked.u << " x " << asked.v << ", borders " << borders[0].rate << " "
-                                    << borders[1].rate << " " << borders[2].rate << " " << borders[3].rate);
+    SCOPED_TRACE(testing::Message() << asked.u << " x " << asked.v << ", borders " << borders[0].rate() << " "
+                                    << borders[1].rate() << " " << borders[2].rate() << " " << borders[3].rate());
     expect_triangulation(Division::of(plain, asked, borders), asked);
   }
 }
@@ -149,13 +149,13 @@ TEST(StitchedPatch, SegmentsBeginAtTheSameBitsEitherWay) {
   for (int lower = 1; lower < 40; ++lower)
     for (int upper = 1; upper < 40; ++upper) {
       const Segments along = Segments::halves(lower, upper), back = along.reversed();
-      EXPECT_EQ(along.rate, lower + upper);
+      EXPECT_EQ(along.rate(), lower + upper);
       EXPECT_EQ(back.reversed(), along);
       EXPECT_EQ(along.at(lower).value(), 0.5);
-      EXPECT_EQ(along.at(along.rate).value(), 1);
-      for (int k = 0; k <= along.rate; ++k) {
-        EXPECT_EQ(along.at(k).value(), back.at(along.rate - k).rest());
-        EXPECT_EQ(along.at(k).rest(), back.at(along.rate - k).value());
+      EXPECT_EQ(along.at(along.rate()).value(), 1);
+      for (int k = 0; k <= along.rate(); ++k) {
+        EXPECT_EQ(along.at(k).value(), back.at(along.rate() - k).rest());
+        EXPECT_EQ(along.at(k).rest(), back.at(along.rate() - k).value());
         EXPECT_TRUE(k == 0 || along.at(k).value() > along.at(k - 1).value());
       }
     }
@@ -196,7 +196,7 @@ TEST(StitchedPatch, NoTriangleStandsOnACollapsedBorder) {
         return side == Side::v0 ? p.v == 0 : side == Side::v1 ? p.v == 1 : side == Side::u0 ? p.u == 0 : p.u == 1;
       };
       const Division whole = Division::of({3, 3, {}, false}, asked, division.border);
-      EXPECT_GE(division.triangle_count() + division.border[static_cast<std::size_t>(side)].rate,
+      EXPECT_GE(division.triangle_count() + division.border[static_cast<std::size_t>(side)].rate(),
                 whole.triangle_count());
       for (std::size_t t = 0; t < indices.size(); t += 3)
         EXPECT_LT(on_side(indices[t]) + on_side(indices[t + 1]) + on_side(indices[t + 2]), 2);

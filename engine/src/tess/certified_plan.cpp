@@ -162,8 +162,10 @@ CertifiedPlanner::Choice CertifiedPlanner::choose(std::size_t patch, double tole
   }
   // Rates that were raised may be odd now: what holds for a half may not hold for the whole.
   if (!(limits.keeps(*rates))) rates = {rates->u + rates->u % 2, rates->v + rates->v % 2};
+  choice.cells = double(rates->u) * rates->v;
+  if (most > most_rate) return choice;
   const int least_rate = turning && !bounded ? options_.angle_rate : 1;
-  const ProvenSegments proven = settle(patch, limits, chord, {least_rate, most}, kept, *rates);
+  const ProvenSegments proven = settle(patch, limits, chord, least_rate, kept, *rates);
   choice.segments = proven.segments;
   choice.bound = given + proven.distance;
   const Rates coarsest = proven.segments.coarsest();
@@ -173,12 +175,12 @@ CertifiedPlanner::Choice CertifiedPlanner::choose(std::size_t patch, double tole
 }
 
 ProvenSegments CertifiedPlanner::settle(std::size_t patch, const CellLimits& limits, const ChordBound& chord,
-                                        RateRange range, const KeptSegments& kept, Rates rates) const {
+                                        int least_rate, const KeptSegments& kept, Rates rates) const {
   CellLimits others = limits;
   others.chord = nullptr;
-  const auto keeps_others = [&](Rates r) { return std::min(r.u, r.v) >= range.least && others.keeps(r); };
+  const auto keeps_others = [&](Rates r) { return std::min(r.u, r.v) >= least_rate && others.keeps(r); };
   ProvenSegments proven{rates, chord.distance(rates)};
-  if (options_.fewest && limits.chord && range.most <= most_rate) {
+  if (options_.fewest && limits.chord) {
     SegmentChoices choices(proven);
     find_fewer(set_->patches[patch], limits.distance, keeps_others, choices);
     proven = choices.fewest();
@@ -219,7 +221,10 @@ Status CertifiedPlanner::refusal(Failure failure, std::size_t patch, double tole
   double triangles = 0;
   for (std::size_t k = 0; k < shapes_.size(); ++k) {
     const Choice choice = choose(k, tolerance, unlimited);
-    triangles += choice.failure == Failure::none ? 2 * choice.segments.cells() : double{unlimited} * unlimited;
+    if (choice.failure != Failure::none)
+      return invalid(
+          wanted(tolerance) + " is not known to be kept by any number of segments of patch " + std::to_string(k), k);
+    triangles += 2 * choice.cells;
   }
   std::array<char, 32> count;
   std::snprintf(count.data(), count.size(), "%.2g", triangles);
@@ -229,9 +234,9 @@ Status CertifiedPlanner::refusal(Failure failure, std::size_t patch, double tole
                  patch);
 }
 
-void CertifiedPlanner::keep_by_distance(std::size_t patch, double distance, const KeptSegments& kept,
-                                        ChordBlocks::Products& products, ProvenSegments& proven) const {
-  if (!is_spared(kept, patch, proven.segments) || kept.segments[patch] == proven.segments) return;
+ProvenSegments CertifiedPlanner::keep_by_distance(std::size_t patch, double distance, const KeptSegments& kept,
+                                                  ChordBlocks::Products& products, const ProvenSegments& best) const {
+  if (!is_spared(kept, patch, best.segments) || kept.segments[patch] == best.segments) return best;
   const PatchSet::Slot slot = set_->slots[patch];
   const PatchSegments had = kept.segments[patch];
   double keeps = chord(patch).distance_of(had);
@@ -241,7 +246,7 @@ void CertifiedPlanner::keep_by_distance(std::size_t patch, double distance, cons
   }
   const bool by_halves = keeps <= distance;
   if (!by_halves) keeps = local_distance(patch, had);
-  if (keeps <= distance) proven = {had, keeps, !by_halves && had.are_uniform()};
+  return keeps <= distance ? ProvenSegments{had, keeps, !by_halves && had.are_uniform()} : best;
 }
 
 Result<std::vector<ProvenSegments>> CertifiedPlanner::find_fewest(double tolerance, std::vector<SegmentChoices> choices,
@@ -262,11 +267,9 @@ Status CertifiedPlanner::choose_by_distance(double tolerance, const KeptSegments
                                             const Execution& execution) const {
   LeastIndex failed;
   std::vector<SegmentChoices> choices(options_.fewest ? shapes_.size() : 0);
-  const auto take = [&](std::size_t k, ProvenSegments proven, ChordBlocks::Products& products) {
-    const double given = roundings_[k] + fit_error_;
-    if (!kept.segments.empty()) keep_by_distance(k, tolerance - given, kept, products, proven);
+  const auto take = [&](std::size_t k, const ProvenSegments& proven) {
     plan.segments_[k] = proven.segments;
-    plan.bounds_[k] = rounded_up(proven.distance + given);
+    plan.bounds_[k] = rounded_up(proven.distance + (roundings_[k] + fit_error_));
     if (proven.anywhere) plan.straddles_[k] = 1;
   };
   const auto choose_some = [&](std::size_t begin, std::size_t end) {
@@ -283,10 +286,12 @@ Status CertifiedPlanner::choose_by_distance(double tolerance, const KeptSegments
         const std::size_t k = patches[lane];
         if (!(left[lane] > 0) || choice.rates[lane].u == 0) failed.add(k);
         const ProvenSegments proven{choice.rates[lane], choice.distance[lane]};
-        if (choices.empty()) {
-          take(k, proven, products);
-        } else {
+        if (!choices.empty()) {
           choices[k] = SegmentChoices(proven);
+        } else if (kept.segments.empty()) {
+          take(k, proven);
+        } else {
+          take(k, keep_by_distance(k, left[lane], kept, products, proven));
         }
       }
     }
@@ -299,8 +304,12 @@ Status CertifiedPlanner::choose_by_distance(double tolerance, const KeptSegments
   const auto fewest = find_fewest(tolerance, std::move(choices), execution);
   if (!fewest) return fewest.status();
   for (std::size_t k = 0; k < fewest->size(); ++k) {
-    ChordBlocks::Products products;
-    take(k, (*fewest)[k], products);
+    if (kept.segments.empty()) {
+      take(k, (*fewest)[k]);
+    } else {
+      ChordBlocks::Products products;
+      take(k, keep_by_distance(k, tolerance - (roundings_[k] + fit_error_), kept, products, (*fewest)[k]));
+    }
   }
   return {};
 }

@@ -125,7 +125,8 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   /// What a patch needs for itself, and what that keeps.
   struct Choice {
     Failure failure = Failure::none;
-    PatchSegments segments;
+    double cells = 0;        ///< of uniform segments
+    PatchSegments segments;  ///< these or fewer; like the rest, if the rates allowed are at most most_rate
     double bound = 0, angle = 0, pixels = 0;
   };
 
@@ -141,15 +142,12 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   /// The same where nothing but a distance is to be kept, block by block.
   Status choose_by_distance(double tolerance, const KeptSegments& kept, CertifiedPlan& plan, const Execution& execution)
       const;
-  struct RateRange {
-    int least, most;
-  };
   /// Takes the fewest cells, if these are looked for, or the kept ones in the place of rates that keep the limits.
-  ProvenSegments settle(std::size_t patch, const CellLimits& limits, const ChordBound& chord, RateRange range,
+  ProvenSegments settle(std::size_t patch, const CellLimits& limits, const ChordBound& chord, int least_rate,
                         const KeptSegments& kept, Rates rates) const;
-  /// Takes the kept segments, where there is nothing but a distance.
-  void keep_by_distance(std::size_t patch, double distance, const KeptSegments& kept, ChordBlocks::Products& products,
-                        ProvenSegments& proven) const;
+  /// The kept segments rather than the best, where there is nothing but a distance.
+  ProvenSegments keep_by_distance(std::size_t patch, double distance, const KeptSegments& kept,
+                                  ChordBlocks::Products& products, const ProvenSegments& best) const;
   /// Those, or others, with which the patches together have the fewest triangles.
   Result<std::vector<ProvenSegments>> find_fewest(double tolerance, std::vector<SegmentChoices> choices,
                                                   const Execution& execution) const;

@@ -16,6 +16,11 @@ struct EdgeNeeds {
   std::uint16_t most = 1;     ///< of their rates
   std::uint16_t is_even = 0;  ///< the edge's must be, as one of them counts on no triangle straddling the middle
 
+  /// `never`: 1 for patches that count on that.
+  void add(Segments along, std::uint16_t never) {
+    most = std::max(most, static_cast<std::uint16_t>(along.rate()));
+    is_even = static_cast<std::uint16_t>(is_even | (never & along.parts_halves()));
+  }
   Segments segments() const { return most + (most & is_even); }
 };
 

@@ -38,7 +38,7 @@ bool CertifiedPlanner::may_straddle(std::size_t patch, Side side, const std::arr
   // Where no inner points lie between them, the opposite border's segment may do it as well.
   const auto s = static_cast<std::size_t>(side);
   const Segments border = borders[s], opposite = borders[(s + 2) % 4];
-  const int rate = opposite.parts_halves() ? border.rate : std::min(border.rate, opposite.rate);
+  const int rate = opposite.parts_halves() ? border.rate() : std::min(border.rate(), opposite.rate());
   const auto [piece, rates] = ChordBound::straddling(plan.segments_[patch].rates(), edge_of(side), rate);
   const PatchSet::Slot slot = set_->slots[patch];
   const double given = roundings_[patch] + fit_error_,
@@ -69,19 +69,16 @@ void CertifiedPlanner::divide(double tolerance, CertifiedPlan& plan) const {
   // Angles and pixels are known of halves alone.
   const bool by_distance = !options_.angle && !options_.camera;
   const auto is_coarse = [&](std::size_t k) {
-    return by_distance && std::max(segments[k].u.rate, segments[k].v.rate) <= most_to_straddle;
+    return by_distance && std::max(segments[k].u.rate(), segments[k].v.rate()) <= most_to_straddle;
   };
   const auto always_straddles = [&](std::size_t k) { return !plan.straddles_.empty() && plan.straddles_[k]; };
   std::vector<EdgeNeeds> needs(edges_.count());
   for (std::size_t k = 0; k < segments.size(); ++k) {
     if (shapes[k].is_curve) continue;
-    const bool never = !is_coarse(k) && !always_straddles(k);
+    const auto never = static_cast<std::uint16_t>(!is_coarse(k) && !always_straddles(k));
     for (const Side side : all_sides) {
       const std::uint32_t edge = edges_.edge(k, side);
-      if (edge == SharedEdges::none) continue;
-      const Segments own = along(segments[k], side);
-      needs[edge].most = std::max(needs[edge].most, own.rate);
-      needs[edge].is_even |= static_cast<std::uint16_t>(never && own.parts_halves());
+      if (edge != SharedEdges::none) needs[edge].add(along(segments[k], side), never);
     }
   }
   std::vector<std::uint8_t> against;

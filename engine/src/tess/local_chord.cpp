@@ -155,7 +155,7 @@ class PartNeeds {
 class PartChords {
  public:
   PartChords(const DerivativeNets& patch, PatchSegments about, Pass pass)
-      : parts_{about.u.rate > 1 ? 2 : 1, about.v.rate > 1 ? 2 : 1} {
+      : parts_{about.u.rate() > 1 ? 2 : 1, about.v.rate() > 1 ? 2 : 1} {
     for (int i = 0; i < parts_.u; ++i)
       for (int j = 0; j < parts_.v; ++j) {
         const Rates rates = about.of_quarter(i, j);
@@ -186,7 +186,7 @@ void add_halves(const PartChords& chords, double distance, FunctionRef<bool(Rate
   const PatchSegments known = choices.fewest().segments;
   const PartCounts parts = chords.parts();
   const auto most_of = [](Segments had, int count) {
-    return count == 2 ? std::min(3 * had.rate / 4 + 1, most_rate / 2) : int{had.rate};
+    return count == 2 ? std::min(3 * had.rate() / 4 + 1, most_rate / 2) : int{had.rate()};
   };
   const Rates most{most_of(known.u, parts.u), most_of(known.v, parts.v)};
   const auto needs = [&](int i, int j) { return PartNeeds(chords.of(i, j), parts, most, distance); };
@@ -194,7 +194,7 @@ void add_halves(const PartChords& chords, double distance, FunctionRef<bool(Rate
   for (int low_u = 1; low_u <= most.u; ++low_u)
     for (int high_u = parts.u == 2 ? 1 : low_u; high_u <= (parts.u == 2 ? most.u : low_u); ++high_u) {
       const Segments u = joined(low_u, high_u, parts.u);
-      if (u.rate * parts.v > choices.most_cells()) break;
+      if (u.rate() * parts.v > choices.most_cells()) break;
       const int low_v = std::max(needs00.least_v_for(low_u), needs10.least_v_for(high_u)),
                 high_v = std::max(needs01.least_v_for(low_u), needs11.least_v_for(high_u));
       if (std::max(low_v, high_v) > most.v) continue;

@@ -42,14 +42,14 @@ std::size_t CertifiedPlan::owned_ring_count(std::size_t patch, std::uint32_t sid
   for (std::uint32_t side = 0; side < sides; ++side) {
     const std::size_t border = 4 * patch + side;
     if (owns_corner(border)) ++count;
-    if (owns_border(border)) count += static_cast<std::size_t>(divisions_[patch].border[side].rate - 1);
+    if (owns_border(border)) count += static_cast<std::size_t>(divisions_[patch].border[side].rate() - 1);
   }
   return count;
 }
 
 std::size_t CertifiedPlan::ring_vertex(std::uint32_t border, int k) const {
   const std::uint32_t patch = border / 4, side = border % 4;
-  const int rate = divisions_[patch].border[side].rate;
+  const int rate = divisions_[patch].border[side].rate();
   if (k == rate) return ring_vertex(4 * patch + (side + 1) % 4, 0);
   const auto start = [this](std::uint32_t of) {
     return first_vertex_[of / 4] + divisions_[of / 4].inner_count() + owned_ring_count(of / 4, of % 4);

@@ -49,7 +49,7 @@ class WeightsAt {
 
 /// `[tile][order][i][8]` where segments k = first .. begin, the last of which then repeats; an even number of tiles.
 AlignedVector<float> tiles_of_weights(int degree, Segments along, int first) {
-  const auto count = static_cast<std::size_t>(along.rate - first), terms = static_cast<std::size_t>(degree) + 1;
+  const auto count = static_cast<std::size_t>(along.rate() - first), terms = static_cast<std::size_t>(degree) + 1;
   const std::size_t tiles = (count + 2 * tile - 1) / (2 * tile) * 2;
   AlignedVector<float> weights(tiles * 2 * terms * tile);
   WeightsAt at(degree);
@@ -73,26 +73,31 @@ T& grown(std::vector<T>& entries, std::size_t at) {
 
 }  // namespace
 
-std::size_t MeshTables::other_place(Segments along) const { return other_places_.find(key(along))->second; }
+std::size_t MeshTables::other_place(Segments along) const { return other_places_.find(along.key())->second; }
 
 const MeshTables::Strip& MeshTables::other_strip(Segments border, Segments inner) const {
   return other_strips_.find(key(border, inner))->second;
 }
 
+void MeshTables::add_unseen(int degree, Segments inner, Segments border) {
+  add_weights(degree, inner, border);
+  if (inner.rate() > 1) add_strip(border, inner);
+}
+
 void MeshTables::add_weights(int degree, Segments inner, Segments border) {
   for (const Segments along : {inner, inner.reversed(), border, border.reversed()}) {
-    if (!along.is_uniform()) other_places_.try_emplace(key(along), other_places_.size());
+    if (!along.is_uniform()) other_places_.try_emplace(along.key(), other_places_.size());
     auto& parameters = grown(tables(along).parameters, place(along));
     if (!parameters.empty()) continue;
-    for (int k = 0; k <= along.rate; ++k) parameters.push_back(static_cast<float>(along.at(k).value()));
+    for (int k = 0; k <= along.rate(); ++k) parameters.push_back(static_cast<float>(along.at(k).value()));
   }
-  if (inner.rate > 1)
+  if (inner.rate() > 1)
     if (auto& weights = grown(tables(inner).inner[at(degree)], place(inner)); weights.empty())
       weights = tiles_of_weights(degree, inner, 1);
   if (auto& weights = grown(tables(border).border[at(degree)], place(border)); weights.empty())
     weights = tiles_of_weights(degree, border, 0);
   if (!with_cubic_ || degree != 3) return;
-  if (inner.rate > 1) add_cubic_inner(inner);
+  if (inner.rate() > 1) add_cubic_inner(inner);
   add_cubic_border(border);
 }
 
@@ -100,7 +105,7 @@ void MeshTables::add_cubic_inner(Segments along) {
   CubicInner& made = grown(tables(along).cubic_inner, place(along));
   if (!made.weights.empty()) return;
   constexpr std::size_t lanes = 16, row_weights = kernel::mesh_row_weights;
-  const auto count = static_cast<std::size_t>(along.rate - 1), rows = (count + 7) / 8 * 8,
+  const auto count = static_cast<std::size_t>(along.rate() - 1), rows = (count + 7) / 8 * 8,
              stride = (count + 2 * lanes - 1) / lanes * lanes;
   made.weights.resize(rows * row_weights + 8 * stride);
   made.places.resize(stride);
@@ -127,10 +132,10 @@ void MeshTables::add_cubic_border(Segments along) {
   CubicBorder& made = grown(tables(along).cubic_border, place(along));
   if (!made.weights.empty()) return;
   constexpr std::size_t lanes = 16;
-  const auto count = std::size_t{along.rate}, stride = lanes + (count + 2 * lanes - 1) / lanes * lanes;
+  const auto count = static_cast<std::size_t>(along.rate()), stride = lanes + (count + 2 * lanes - 1) / lanes * lanes;
   made.weights.resize(8 * stride);
   WeightsAt at(3);
-  for (int k = 0; k < along.rate; ++k) {
+  for (int k = 0; k < along.rate(); ++k) {
     at.set(along.at(k));
     for (int i = 0; i < 4; ++i) {
       float* const value =
@@ -144,7 +149,7 @@ void MeshTables::add_cubic_border(Segments along) {
 
 void MeshTables::add_strip(Segments border, Segments inner) {
   const bool are_uniform = border.is_uniform() && inner.is_uniform();
-  Strip& strip = are_uniform ? grown(grown(strips_, inner.rate), at(border.rate + most_missing - inner.rate))
+  Strip& strip = are_uniform ? grown(grown(strips_, inner.rate()), at(border.rate() + most_missing - inner.rate()))
                              : other_strips_[key(border, inner)];
   if (!strip.codes.empty()) return;
   const std::vector<std::uint32_t> codes = strip_codes(border, inner, kernel::mesh_border_code);

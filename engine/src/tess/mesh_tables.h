@@ -22,8 +22,15 @@ class MeshTables {
   /// All that a patch of these degrees needs that is divided so.
   void add(int degree_u, int degree_v, const Division& division) {
     if (division.empty) return;
-    for (const Side side : all_sides)
-      add(runs_along_u(side) ? degree_u : degree_v, division.inner_along_ring(side), division.along_ring(side));
+    for (const Side side : all_sides) {
+      const int degree = runs_along_u(side) ? degree_u : degree_v;
+      const Segments inner = division.inner_along(side), border = division.border[static_cast<std::size_t>(side)];
+      if (inner.is_uniform() && border.is_uniform()) {
+        add_uniform(degree, inner, border);
+      } else {
+        add_unseen(degree, division.inner_along_ring(side), division.along_ring(side));
+      }
+    }
   }
 
   // Once added. Layouts: see kernel::MeshVertexJob and MeshBorder. Weights are rounded once, to float.
@@ -50,7 +57,7 @@ class MeshTables {
   };
   const Strip& strip(Segments border, Segments inner) const {
     if (border.is_uniform() && inner.is_uniform())
-      return strips_[inner.rate][at(border.rate + most_missing - inner.rate)];
+      return strips_[inner.rate()][at(border.rate() + most_missing - inner.rate())];
     return other_strip(border, inner);
   }
 
@@ -58,17 +65,16 @@ class MeshTables {
   /// A border has at least one segment, the inner points at least two.
   static constexpr int most_missing = 1;
   static std::size_t at(int k) { return static_cast<std::size_t>(k); }
-  /// Below 2^26.
-  static std::uint32_t key(Segments along) { return std::uint32_t{along.lower} << 13 | along.rate; }
-  static std::uint64_t key(Segments border, Segments inner) { return std::uint64_t{key(border)} << 26 | key(inner); }
-  void add(int degree, Segments inner, Segments border) {
-    const std::uint64_t wanted = std::uint64_t{at(degree)} << 52 | key(border, inner);
-    std::uint64_t& seen = seen_[wanted * 0x9e3779b97f4a7c15u >> 53];
+  static std::uint64_t key(Segments border, Segments inner) { return std::uint64_t{border.key()} << 32 | inner.key(); }
+  void add_uniform(int degree, Segments inner, Segments border) {
+    const std::uint32_t wanted = static_cast<std::uint32_t>(degree) << 26 | inner.key() << 13 | border.key();
+    std::uint32_t& seen = seen_[wanted * 0x9e3779b1u >> 20];
     if (seen == wanted) return;
-    add_weights(degree, inner, border);
-    if (inner.rate > 1) add_strip(border, inner);
+    add_unseen(degree, inner, border);
     seen = wanted;
   }
+  /// Whatever has not been seen.
+  [[gnu::cold]] void add_unseen(int degree, Segments inner, Segments border);
   void add_weights(int degree, Segments inner, Segments border);
   void add_cubic_inner(Segments along);
   void add_cubic_border(Segments along);
@@ -92,7 +98,7 @@ class MeshTables {
   };
   Tables& tables(Segments along) { return along.is_uniform() ? uniform_ : others_; }
   const Tables& tables(Segments along) const { return along.is_uniform() ? uniform_ : others_; }
-  std::size_t place(Segments along) const { return along.is_uniform() ? along.rate : other_place(along); }
+  std::size_t place(Segments along) const { return along.is_uniform() ? along.rate() : other_place(along); }
   [[gnu::cold]] std::size_t other_place(Segments along) const;
   [[gnu::cold]] const Strip& other_strip(Segments border, Segments inner) const;
 
@@ -100,7 +106,7 @@ class MeshTables {
   Tables uniform_;  ///< by rate
   Tables others_;   ///< by other_places_
   std::unordered_map<std::uint32_t, std::size_t> other_places_;
-  std::array<std::uint64_t, 2048> seen_{};  ///< some of what has been added: degrees, inner and border segments
+  std::array<std::uint32_t, 4096> seen_{};  ///< some of what has been added: degrees, inner and border rates
   std::vector<std::vector<Strip>> strips_;  ///< of uniform segments, `[inner][border + most_missing - inner]`
   std::unordered_map<std::uint64_t, Strip> other_strips_;
 };

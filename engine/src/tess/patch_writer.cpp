@@ -95,9 +95,9 @@ void PatchWriter::prepare(std::size_t k, VertexJob& vertices) const {
   std::fill(vertices.doubt.begin(), vertices.doubt.end(), doubts[0]);
   std::fill(vertices.noise.begin(), vertices.noise.end(), doubts[PatchSet::lanes]);
   vertices.exact = {&set_.patches[k], &division};
-  job.inner_u = division.inner.u.rate;
-  job.inner_v = division.inner.v.rate;
-  for (std::size_t side = 0; side < 4; ++side) job.border[side].rate = division.border[side].rate;
+  job.inner_u = division.inner.u.rate();
+  job.inner_v = division.inner.v.rate();
+  for (std::size_t side = 0; side < 4; ++side) job.border[side].rate = division.border[side].rate();
   const bool by_points = kernels_.mesh_points && group.degree_u == 3 && group.degree_v == 3 && !group.rational &&
                          !division.collapsed.any();
   if (by_points) {
@@ -152,12 +152,12 @@ void PatchWriter::write_parameters(std::size_t k) const {
     out_.parameter.at(vertex++, 1) = v;
   };
   const float *inner_u = tables_.parameters(division.inner.u), *inner_v = tables_.parameters(division.inner.v);
-  for (int iu = 1; iu < division.inner.u.rate; ++iu)
-    for (int iv = 1; iv < division.inner.v.rate; ++iv) put(inner_u[iu], inner_v[iv]);
+  for (int iu = 1; iu < division.inner.u.rate(); ++iu)
+    for (int iv = 1; iv < division.inner.v.rate(); ++iv) put(inner_u[iu], inner_v[iv]);
   for (const Side side : all_sides) {
     const auto s = static_cast<std::size_t>(side);
     const float* along = tables_.parameters(division.border[s]);
-    const int rate = division.border[s].rate, last = plan_.owns_border(4 * k + s) ? rate : 1;
+    const int rate = division.border[s].rate(), last = plan_.owns_border(4 * k + s) ? rate : 1;
     for (int n = plan_.owns_corner(4 * k + s) ? 0 : 1; n < last; ++n) {
       const float t = along[is_backward(side) ? rate - n : n];
       const float across = side == Side::u1 || side == Side::v1 ? 1.0f : 0.0f;
@@ -179,14 +179,14 @@ void PatchWriter::write_triangles(std::size_t k, std::uint32_t* out, std::uint32
     return;
   }
   const auto number = [](auto n) { return static_cast<std::uint32_t>(n); };
-  const std::uint32_t row = number(division.inner.v.rate - 1), last_row = number(division.inner.u.rate - 2) * row;
+  const std::uint32_t row = number(division.inner.v.rate() - 1), last_row = number(division.inner.u.rate() - 2) * row;
   kernel::MeshIndexJob job;
   job.ring = first + number(division.inner_count());
   job.ring_size = number(division.ring_count());
   job.first = first;
   job.row = row;
-  job.cells_u = cells ? division.inner.u.rate - 2 : 0;
-  job.cells_v = division.inner.v.rate - 2;
+  job.cells_u = cells ? division.inner.u.rate() - 2 : 0;
+  job.cells_v = division.inner.v.rate() - 2;
   job.out = out;
   job.end = end;
   job.lines = lines;
@@ -196,7 +196,7 @@ void PatchWriter::write_triangles(std::size_t k, std::uint32_t* out, std::uint32
     const auto s = static_cast<std::size_t>(side);
     const auto& strip = tables_.strip(division.along_ring(side), division.inner_along_ring(side));
     job.strip[s] = {strip.codes.data(), strip.count, ring, first + start[s], step[s]};
-    ring += number(division.border[s].rate);
+    ring += number(division.border[s].rate());
   }
   kernels_.mesh_indices(job);
   if (plan_.shares_vertices()) share_indices(k, out);

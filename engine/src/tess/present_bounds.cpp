@@ -20,7 +20,7 @@ double distance(const ChordBound& chord, PatchSegments segments, const Division&
     const auto s = static_cast<std::size_t>(side);
     const Segments border = division.border[s], opposite = division.border[(s + 2) % 4];
     if (!(runs_along_u(side) ? segments.u : segments.v).parts_halves() || border.parts_halves()) continue;
-    const int rate = opposite.parts_halves() ? border.rate : std::min(border.rate, opposite.rate);
+    const int rate = opposite.parts_halves() ? border.rate() : std::min(border.rate(), opposite.rate());
     const auto straddling = ChordBound::straddling(segments.rates(), edge_of(side), rate);
     most = std::max(most, chord.pieces()[straddling.piece].chord(straddling.rates));
   }

@@ -9,7 +9,7 @@ namespace tessera {
 class RingVertices {
  public:
   RingVertices(const CertifiedPlan& plan, std::uint32_t border)
-      : rate_(plan.division(border / 4).border[border % 4].rate),
+      : rate_(plan.division(border / 4).border[border % 4].rate()),
         start_(plan.ring_vertex(border, 0)),
         second_(plan.ring_vertex(border, 1)),
         end_(plan.ring_vertex(border, rate_)),

@@ -66,7 +66,7 @@ class Chooser {
       const auto s = static_cast<std::size_t>(side);
       borders[s] = border_with(patch, side, choice);
       if (const std::uint32_t edge = edges_.edge(patch, side); edge != SharedEdges::none)
-        beside += (first_[edge + 1] - first_[edge] - 1) * borders[s].rate;
+        beside += (first_[edge + 1] - first_[edge] - 1) * borders[s].rate();
     }
     return beside + Division::of(shapes_[patch], choice.segments, borders).triangle_count();
   }

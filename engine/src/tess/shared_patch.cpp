@@ -16,9 +16,9 @@ constexpr std::size_t most_points = most_rate;
 /// The job is for a part of the division that it was prepared for.
 void restrict_to(const Division& part, VertexJob& vertices) {
   vertices.exact.division = &part;
-  vertices.job.inner_u = part.inner.u.rate;
-  vertices.job.inner_v = part.inner.v.rate;
-  for (std::size_t side = 0; side < 4; ++side) vertices.job.border[side].rate = part.border[side].rate;
+  vertices.job.inner_u = part.inner.u.rate();
+  vertices.job.inner_v = part.inner.v.rate();
+  for (std::size_t side = 0; side < 4; ++side) vertices.job.border[side].rate = part.border[side].rate();
 }
 
 }  // namespace
@@ -56,7 +56,7 @@ void PatchWriter::write_ring(std::size_t k, const Division& part, VertexJob& ver
   std::size_t from = 0;
   for (std::uint32_t side = 0; side < 4; ++side) {
     const std::uint32_t border = static_cast<std::uint32_t>(4 * k) + side;
-    const std::size_t count = part.border[side].rate;
+    const std::size_t count = part.border[side].rate();
     if (count == 0) continue;
     const auto put = [&](std::size_t n, std::size_t to) {
       for (int c = 0; c < 3; ++c) {
@@ -90,10 +90,10 @@ void PatchWriter::write_quads(std::size_t k) const {
   write_triangles(k, out_.indices.data() + 3 * strip, out_.indices.data() + 3 * plan_.first_strip(k + 1));
   const Division& division = plan_.division(k);
   const auto first = static_cast<std::uint32_t>(plan_.first_vertex(k)),
-             row = static_cast<std::uint32_t>(division.inner.v.rate - 1);
+             row = static_cast<std::uint32_t>(division.inner.v.rate() - 1);
   std::uint32_t* to = out_.quads.data() + 4 * plan_.first_quad(k);
-  for (int iu = 0; iu < division.inner.u.rate - 2; ++iu)
-    for (int iv = 0; iv < division.inner.v.rate - 2; ++iv) {
+  for (int iu = 0; iu < division.inner.u.rate() - 2; ++iu)
+    for (int iv = 0; iv < division.inner.v.rate() - 2; ++iv) {
       const std::uint32_t p00 = first + static_cast<std::uint32_t>(iu) * row + static_cast<std::uint32_t>(iv);
       *to++ = p00;
       *to++ = p00 + row;

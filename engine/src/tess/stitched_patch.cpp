@@ -26,12 +26,12 @@ Line(Segments, int, int, bool, Vertex) -> Line<Vertex>;
 /// A border.
 template <class Vertex>
 Line<Vertex> whole_line(Segments segments, bool is_point, Vertex vertex) {
-  return {segments, 0, segments.rate, is_point, vertex};
+  return {segments, 0, segments.rate(), is_point, vertex};
 }
 /// Of the points that lie inside a patch.
 template <class Vertex>
 Line<Vertex> inner_line(Segments segments, Vertex vertex) {
-  return {segments, 1, segments.rate - 1, false, vertex};
+  return {segments, 1, segments.rate() - 1, false, vertex};
 }
 
 bool is_not_behind(Segments::Fraction a, Segments::Fraction b) {
@@ -84,11 +84,11 @@ constexpr int most_at_ends = 3;
 bool Division::joins_borders(const PatchShape& shape, PatchSegments asked, const std::array<Segments, 4>& borders,
                              bool across_u) {
   const Side first = across_u ? Side::v0 : Side::u0, last = across_u ? Side::v1 : Side::u1;
-  if ((across_u ? asked.u : asked.v).rate != 1 || shape.collapsed.has(edge_of(first)) ||
+  if ((across_u ? asked.u : asked.v).rate() != 1 || shape.collapsed.has(edge_of(first)) ||
       shape.collapsed.has(edge_of(last)))
     return false;
   const int most =
-      std::max(borders[static_cast<std::size_t>(first)].rate, borders[static_cast<std::size_t>(last)].rate);
+      std::max(borders[static_cast<std::size_t>(first)].rate(), borders[static_cast<std::size_t>(last)].rate());
   return most == 1 || (most <= most_at_ends && !shape.collapsed.any());
 }
 
@@ -96,27 +96,27 @@ std::size_t Division::special_triangle_count() const {
   if (empty) return 0;
   std::size_t count = 0;
   for (const Side side : all_sides)
-    if (!collapsed.has(edge_of(side))) count += border[static_cast<std::size_t>(side)].rate;
+    if (!collapsed.has(edge_of(side))) count += border[static_cast<std::size_t>(side)].rate();
   if (!has_inner_points()) return count - 2;  // one of each pair of sides is joined by an edge, not by triangles
   return count + 2 * (inner_count() - 1);
 }
 
 Division::Parameters Division::parameters(std::size_t vertex) const {
   if (vertex < inner_count()) {
-    const auto row = static_cast<std::size_t>(inner.v.rate - 1);
+    const auto row = static_cast<std::size_t>(inner.v.rate() - 1);
     const auto i = static_cast<int>(vertex / row + 1), j = static_cast<int>(vertex % row + 1);
     return {inner.u.at(i).value(), inner.v.at(j).value()};
   }
-  vertex -= inner_count();
+  auto on_ring = static_cast<int>(vertex - inner_count());
   std::size_t side = 0;
-  for (; side < 3 && vertex >= border[side].rate; ++side) vertex -= border[side].rate;
-  const Segments::Fraction at = along_ring(all_sides[side]).at(static_cast<int>(vertex));
+  for (; side < 3 && on_ring >= border[side].rate(); ++side) on_ring -= border[side].rate();
+  const Segments::Fraction at = along_ring(all_sides[side]).at(on_ring);
   const Parameters places[] = {{at.value(), 0}, {1, at.value()}, {at.rest(), 1}, {0, at.rest()}};
   return places[side];
 }
 
 std::vector<std::uint32_t> strip_codes(Segments border, Segments inner, std::uint32_t border_code) {
-  std::vector<std::uint32_t> corners(static_cast<std::size_t>(3 * (border.rate + inner.rate - 2)));
+  std::vector<std::uint32_t> corners(static_cast<std::size_t>(3 * (border.rate() + inner.rate() - 2)));
   const auto number = [](int k) { return static_cast<std::uint32_t>(k); };
   write_strip(whole_line(border, false, [=](int k) { return border_code + number(k); }),
               inner_line(inner, [=](int k) { return number(k - 1); }), corners.data());
@@ -128,13 +128,13 @@ std::uint32_t* Division::write_triangles(std::uint32_t first, std::uint32_t* to,
   const std::uint32_t ring = first + static_cast<std::uint32_t>(inner_count());
   const auto ring_size = static_cast<std::uint32_t>(ring_count());
   std::array<std::uint32_t, 4> start{};  // of each side along the ring
-  for (std::size_t side = 1; side < 4; ++side) start[side] = start[side - 1] + border[side - 1].rate;
+  for (std::size_t side = 1; side < 4; ++side) start[side] = start[side - 1] + border[side - 1].rate();
   /// A side as the ring runs, the patch on its left; or the other way.
   const auto line = [&](Side side, bool backward) {
     const Segments along = along_ring(side);
     const std::uint32_t begin = start[static_cast<std::size_t>(side)];
     return whole_line(backward ? along.reversed() : along, collapsed.has(edge_of(side)), [=](int k) {
-      const std::uint32_t at = begin + static_cast<std::uint32_t>(backward ? along.rate - k : k);
+      const std::uint32_t at = begin + static_cast<std::uint32_t>(backward ? along.rate() - k : k);
       return ring + (at == ring_size ? 0 : at);
     });
   };
@@ -144,11 +144,11 @@ std::uint32_t* Division::write_triangles(std::uint32_t first, std::uint32_t* to,
                     : write_joined(line(Side::u0, false), line(Side::v0, false), line(Side::u1, false),
                                    line(Side::v1, true), to);
   }
-  const auto row = static_cast<std::uint32_t>(inner.v.rate - 1);
+  const auto row = static_cast<std::uint32_t>(inner.v.rate() - 1);
   const auto inner_vertex = [=](int iu, int iv) {
     return first + static_cast<std::uint32_t>(iu - 1) * row + static_cast<std::uint32_t>(iv - 1);
   };
-  const int m = inner.u.rate, n = inner.v.rate;
+  const int m = inner.u.rate(), n = inner.v.rate();
   const auto write_side = [&](Side side, auto vertex) {
     to = write_strip(line(side, false), inner_line(inner_along_ring(side), vertex), to);
   };

@@ -40,12 +40,12 @@ struct Division {
   }
   /// The same in place: copies of a record that was just made wait for its stores.
   void set(const PatchShape& shape, PatchSegments asked, const std::array<Segments, 4>& borders) {
-    inner = {asked.u.rate > 1 ? asked.u : 2, asked.v.rate > 1 ? asked.v : 2};
+    inner = {asked.u.rate() > 1 ? asked.u : 2, asked.v.rate() > 1 ? asked.v : 2};
     border = borders;
     collapsed = shape.collapsed;
     empty = shape.is_curve;
     across_u = false;
-    if (std::min(asked.u.rate, asked.v.rate) > 1) return;
+    if (std::min(asked.u.rate(), asked.v.rate()) > 1) return;
     for (const bool way : {true, false}) {
       if (!joins_borders(shape, asked, border, way)) continue;
       inner = {1, 1};
@@ -55,10 +55,10 @@ struct Division {
   }
 
   std::size_t inner_count() const {
-    return static_cast<std::size_t>(inner.u.rate - 1) * static_cast<std::size_t>(inner.v.rate - 1);
+    return static_cast<std::size_t>(inner.u.rate() - 1) * static_cast<std::size_t>(inner.v.rate() - 1);
   }
   std::size_t ring_count() const {
-    return std::size_t{border[0].rate} + border[1].rate + border[2].rate + border[3].rate;
+    return static_cast<std::size_t>(border[0].rate() + border[1].rate() + border[2].rate() + border[3].rate());
   }
   std::size_t vertex_count() const { return empty ? 0 : inner_count() + ring_count(); }
   std::size_t triangle_count() const {
@@ -68,19 +68,15 @@ struct Division {
   /// Cells between inner points, of two triangles each, which come last.
   std::size_t cell_count() const {
     if (empty || !has_inner_points()) return 0;
-    return static_cast<std::size_t>(inner.u.rate - 2) * static_cast<std::size_t>(inner.v.rate - 2);
+    return static_cast<std::size_t>(inner.u.rate() - 2) * static_cast<std::size_t>(inner.v.rate() - 2);
   }
 
-  bool has_inner_points() const { return inner.u.rate > 1; }
-  /// A border's segments as the ring runs, and those of the inner points beside it.
-  Segments along_ring(Side side) const {
-    const Segments along = border[static_cast<std::size_t>(side)];
-    return is_backward(side) ? along.reversed() : along;
-  }
-  Segments inner_along_ring(Side side) const {
-    const Segments along = runs_along_u(side) ? inner.u : inner.v;
-    return is_backward(side) ? along.reversed() : along;
-  }
+  bool has_inner_points() const { return inner.u.rate() > 1; }
+  /// The segments of the inner points beside a border.
+  Segments inner_along(Side side) const { return runs_along_u(side) ? inner.u : inner.v; }
+  /// As the ring runs: a border's segments, and those of the inner points beside it.
+  Segments along_ring(Side side) const { return as_ring_runs(border[static_cast<std::size_t>(side)], side); }
+  Segments inner_along_ring(Side side) const { return as_ring_runs(inner_along(side), side); }
   /// The place of a vertex.
   struct Parameters {
     double u, v;
@@ -94,6 +90,9 @@ struct Division {
   std::uint32_t* write_triangles(std::uint32_t first, std::uint32_t* indices, bool cells = true) const;
 
  private:
+  static Segments as_ring_runs(Segments along, Side side) {
+    return !along.is_uniform() && is_backward(side) ? along.reversed() : along;
+  }
   /// Whether the borders u0 and u1, or v0 and v1, are joined without inner points between them.
   static bool joins_borders(const PatchShape& shape, PatchSegments asked, const std::array<Segments, 4>& borders,
                             bool across_u);
@@ -106,12 +105,12 @@ std::vector<std::uint32_t> strip_codes(Segments border, Segments inner, std::uin
 
 template <class Visit>
 void Division::for_parameters(Visit visit) const {
-  for (int iu = 1; iu < inner.u.rate; ++iu)
-    for (int iv = 1; iv < inner.v.rate; ++iv) visit(inner.u.at(iu).value(), inner.v.at(iv).value());
-  for (int k = 0; k < border[0].rate; ++k) visit(border[0].at(k).value(), 0.0);
-  for (int k = 0; k < border[1].rate; ++k) visit(1.0, border[1].at(k).value());
-  for (int k = border[2].rate; k > 0; --k) visit(border[2].at(k).value(), 1.0);
-  for (int k = border[3].rate; k > 0; --k) visit(0.0, border[3].at(k).value());
+  for (int iu = 1; iu < inner.u.rate(); ++iu)
+    for (int iv = 1; iv < inner.v.rate(); ++iv) visit(inner.u.at(iu).value(), inner.v.at(iv).value());
+  for (int k = 0; k < border[0].rate(); ++k) visit(border[0].at(k).value(), 0.0);
+  for (int k = 0; k < border[1].rate(); ++k) visit(1.0, border[1].at(k).value());
+  for (int k = border[2].rate(); k > 0; --k) visit(border[2].at(k).value(), 1.0);
+  for (int k = border[3].rate(); k > 0; --k) visit(0.0, border[3].at(k).value());
 }
 
 }  // namespace tessera
