@@ -43,6 +43,7 @@ constexpr std::string_view cases[] = {
     "tessellate/bicubic20000/3/8x8",
     "update.mesh.one_in_20/bicubic10000/3/rate8",
     "certified.mesh/bicubic20000/3/rate8",
+    "certified.mesh/bicubic25/3/rate8",
     "ray.closest.camera/teapot/3/65536",
     "ray.occluded.random/teapot/3/65536",
     "ray.exact.closest.coherent/torus3600/3/65536",

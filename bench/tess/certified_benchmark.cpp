@@ -99,6 +99,7 @@ void add_surface(const char* surface, int rate, int threads) {
 }
 
 const bool registered = [] {
+  add_surface("bicubic25", 8, 1);  // where what is not by the patch counts
   for (const int threads : {1, 2}) {
     for (const int rate : {4, 8, 12, 17}) add_surface("bicubic20000", rate, threads);
     for (const int rate : {4, 8}) add_surface("rational10000", rate, threads);

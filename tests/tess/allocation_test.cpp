@@ -46,6 +46,19 @@ TEST(TessellationMemory, PlansTakeLessThanAKilobyteAPatch) {
   EXPECT_LE(bytes_a_patch(set, [&] { (void)plan({.pixels = PixelTolerance{1, view}}); }), 1024);
 }
 
+TEST(TessellationMemory, PlansOfOneFaceAreSmallBesideOthers) {
+  const PatchSet set = set_of({closed_body().front()});
+  const auto plan = [&] { return good(CertifiedTessellation::make(set, {.tolerance = 0.01})); };
+  (void)plan();
+  std::vector<CertifiedTessellation> many;
+  many.reserve(100);
+  EXPECT_LE(bytes_a_patch(set,
+                          [&] {
+                            while (many.size() < 100) many.push_back(plan());
+                          }),
+            100 * 1024 + 8192);  // and what making one takes meanwhile
+}
+
 TEST(TessellationMemory, MeshesAreWrittenWithNextToNothingBeside) {
   const PatchSet set = set_of(wavy_field(60, 50));
   for (const bool share : {false, true}) {

@@ -34,6 +34,7 @@ class CertifiedPlan {
  public:
   std::size_t patch_count() const { return divisions_.size(); }
   const Division& division(std::size_t patch) const { return divisions_[patch]; }
+  std::span<const Division> divisions() const { return divisions_; }
   std::span<const PatchSegments> segments() const { return segments_; }  ///< what each patch needs for itself
   std::size_t first_vertex(std::size_t patch) const { return first_vertex_[patch]; }
   std::size_t first_triangle(std::size_t patch) const { return first_triangle_[patch]; }

@@ -34,9 +34,7 @@ CertifiedTessellation::Impl::Impl(const PatchSet& set, const CertifiedOptions& o
       fit_error_(set.fit_error()),
       revision_(set.revision()),
       isa_(isa),
-      tables_(kernel::kernels(isa).mesh_points != nullptr) {
-  for (std::size_t k = 0; k < plan_.patch_count(); ++k)
-    tables_.add(shapes_[k].degree_u, shapes_[k].degree_v, plan_.division(k));
+      tables_(MeshTables::of(shapes_, plan_.divisions(), kernel::kernels(isa).mesh_points != nullptr)) {
   for (const float bound : plan_.bounds()) bound_ = std::max(bound_, bound);
   for (const float pixels : plan_.pixels()) pixels_ = std::max(pixels_, pixels);
   for (const float angle : plan_.angles()) {
@@ -53,7 +51,7 @@ Status CertifiedTessellation::Impl::join(const PatchSet& set, const CertifiedPla
   if (options_.crease_angle) {
     mesh = empty_mesh(plan_.capacity(), origin_);
     views = mesh.views();
-    const PatchWriter writer(set.impl(), plan_, tables_, kernel::kernels(isa_), views, Stores::plain);
+    const PatchWriter writer(set.impl(), plan_, *tables_, kernel::kernels(isa_), views, Stores::plain);
     const Execution quiet{.cancel = execution.cancel};
     const auto write = [&](std::size_t begin, std::size_t end) { writer.write(begin, end); };
     Status status = parallel_for(plan_.patch_count(), patches_a_piece, quiet, write);
@@ -90,7 +88,7 @@ Status CertifiedTessellation::Impl::run(const PatchSet& set, const MeshViews& ou
   if (Status status = check_views(out, wanted); !status.ok()) return status;
   if (Status status = check_normals(out); !status.ok()) return status;
   if (Status status = check_shapes(set, shapes_); !status.ok()) return status;
-  const PatchWriter writer(set.impl(), plan_, tables_, kernel::kernels(isa_), out, execution.stores);
+  const PatchWriter writer(set.impl(), plan_, *tables_, kernel::kernels(isa_), out, execution.stores);
   const auto write = [&](std::size_t begin, std::size_t end) { writer.write(begin, end); };
   if (Status status = parallel_for(plan_.patch_count(), patches_a_piece, execution, write); !status.ok()) return status;
   if (execution.report) {

@@ -1,6 +1,7 @@
 #pragma once
 // The inside of a CertifiedTessellation.
 
+#include <memory>
 #include <vector>
 
 #include "tess/certified_plan.h"
@@ -21,7 +22,7 @@ class CertifiedTessellation::Impl {
   std::span<const PatchShape> shapes() const { return shapes_; }  ///< before welding
   const Weld& weld() const { return weld_; }
   const VertexCopies& joins() const { return joins_; }  ///< vertices that share normals, or that are one
-  const MeshTables& tables() const { return tables_; }
+  const MeshTables& tables() const { return *tables_; }
   Isa isa() const { return isa_; }
   std::uint64_t revision() const { return revision_; }  ///< of the set, when the plan was made
 
@@ -56,7 +57,7 @@ class CertifiedTessellation::Impl {
   FitError fit_error_;
   std::uint64_t revision_;
   Isa isa_;
-  MeshTables tables_;
+  std::shared_ptr<const MeshTables> tables_;
   float bound_ = 0, angle_ = 0, pixels_ = 0;
   std::size_t without_angle_ = 0;
 };

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <mutex>
+#include <utility>
 
 #include "basis/bernstein.h"
 #include "kernel/kernel_table.h"
@@ -70,52 +73,87 @@ T& grown(std::vector<T>& entries, std::size_t at) {
   if (at >= entries.size()) entries.resize(at + 1);
   return entries[at];
 }
+/// The entry, or nothing.
+template <class T>
+T found(const std::vector<T>& entries, std::size_t at) {
+  return at < entries.size() ? entries[at] : T{};
+}
 
 }  // namespace
 
-std::size_t MeshTables::other_place(Segments along) const { return other_places_.find(along.key())->second; }
-
-const MeshTables::Strip& MeshTables::other_strip(Segments border, Segments inner) const {
-  return other_strips_.find(key(border, inner))->second;
+std::size_t MeshTables::other_place(Segments along) const {
+  const auto found = other_places_.find(along.key());
+  return found == other_places_.end() ? static_cast<std::size_t>(-1) : found->second;
 }
 
-void MeshTables::add_unseen(int degree, Segments inner, Segments border) {
-  add_weights(degree, inner, border);
-  if (inner.rate() > 1) add_strip(border, inner);
+MeshTables::Strip MeshTables::other_strip(Segments border, Segments inner) const {
+  const auto found = other_strips_.find(key(border, inner));
+  return found == other_strips_.end() ? Strip{} : found->second;
 }
 
-void MeshTables::add_weights(int degree, Segments inner, Segments border) {
+bool MeshTables::has(int degree, Segments inner, Segments border) const {
+  if (!found(tables(border).border[at(degree)], place(border))) return false;
+  if (inner.rate() == 1) return true;
+  if (!found(tables(inner).inner[at(degree)], place(inner))) return false;
+  if (!inner.is_uniform() || !border.is_uniform()) return other_strip(border, inner).codes != nullptr;
+  return at(inner.rate()) < strips_.size() &&
+         found(strips_[at(inner.rate())], at(border.rate() + most_missing - inner.rate())).codes != nullptr;
+}
+
+void MeshTables::add(int degree, Segments inner, Segments border) {
   for (const Segments along : {inner, inner.reversed(), border, border.reversed()}) {
     if (!along.is_uniform()) other_places_.try_emplace(along.key(), other_places_.size());
-    auto& parameters = grown(tables(along).parameters, place(along));
-    if (!parameters.empty()) continue;
-    for (int k = 0; k <= along.rate(); ++k) parameters.push_back(static_cast<float>(along.at(k).value()));
+    add_parameters(along);
   }
-  if (inner.rate() > 1)
-    if (auto& weights = grown(tables(inner).inner[at(degree)], place(inner)); weights.empty())
-      weights = tiles_of_weights(degree, inner, 1);
-  if (auto& weights = grown(tables(border).border[at(degree)], place(border)); weights.empty())
-    weights = tiles_of_weights(degree, border, 0);
-  if (!with_cubic_ || degree != 3) return;
-  if (inner.rate() > 1) add_cubic_inner(inner);
-  add_cubic_border(border);
+  add_border(degree, border);
+  if (inner.rate() == 1) return;
+  add_inner(degree, inner);
+  add_strip(border, inner);
 }
 
-void MeshTables::add_cubic_inner(Segments along) {
-  CubicInner& made = grown(tables(along).cubic_inner, place(along));
-  if (!made.weights.empty()) return;
+template <class T>
+const T* MeshTables::hold(AlignedVector<T> made) {
+  const auto kept = std::make_shared<const AlignedVector<T>>(std::move(made));
+  memory_.push_back(kept);
+  bytes_ += sizeof(T) * kept->size() + 2 * cache_line;
+  return kept->data();
+}
+
+void MeshTables::add_parameters(Segments along) {
+  const float*& made = grown(tables(along).parameters, place(along));
+  if (made) return;
+  AlignedVector<float> parameters;
+  for (int k = 0; k <= along.rate(); ++k) parameters.push_back(static_cast<float>(along.at(k).value()));
+  made = hold(std::move(parameters));
+}
+
+void MeshTables::add_inner(int degree, Segments along) {
+  const float*& made = grown(tables(along).inner[at(degree)], place(along));
+  if (made) return;
+  made = hold(tiles_of_weights(degree, along, 1));
+  if (with_cubic_ && degree == 3) grown(tables(along).cubic_inner, place(along)) = make_cubic_inner(along);
+}
+
+void MeshTables::add_border(int degree, Segments along) {
+  const float*& made = grown(tables(along).border[at(degree)], place(along));
+  if (made) return;
+  made = hold(tiles_of_weights(degree, along, 0));
+  if (with_cubic_ && degree == 3) grown(tables(along).cubic_border, place(along)) = make_cubic_border(along);
+}
+
+kernel::MeshCubicInner MeshTables::make_cubic_inner(Segments along) {
   constexpr std::size_t lanes = 16, row_weights = kernel::mesh_row_weights;
   const auto count = static_cast<std::size_t>(along.rate() - 1), rows = (count + 7) / 8 * 8,
              stride = (count + 2 * lanes - 1) / lanes * lanes;
-  made.weights.resize(rows * row_weights + 8 * stride);
-  made.places.resize(stride);
-  float* const columns = made.weights.data() + rows * row_weights;
+  AlignedVector<float> weights(rows * row_weights + 8 * stride);
+  AlignedVector<std::int32_t> places(stride);
+  float* const columns = weights.data() + rows * row_weights;
   WeightsAt at(3);
   for (std::size_t k = 0; k < rows; ++k) {
     if (k < count) at.set(along.at(static_cast<int>(k) + 1));
     for (int i = 0; i < 4; ++i) {
       const auto term = static_cast<std::size_t>(i);
-      float* const row = made.weights.data() + (k / 4 * 8 + term) * lanes + k % 4 * 4;
+      float* const row = weights.data() + (k / 4 * 8 + term) * lanes + k % 4 * 4;
       std::fill_n(row, 4, at.value(i));
       std::fill_n(row + 4 * lanes, 4, at.slope(i));
       for (std::size_t x = k; k < count && x < stride; x += count) {
@@ -124,38 +162,118 @@ void MeshTables::add_cubic_inner(Segments along) {
       }
     }
   }
-  for (std::size_t x = 0; x < stride; ++x) made.places[x] = static_cast<std::int32_t>(4 * (x / count));
-  made.table = {made.weights.data(), columns, made.places.data(), static_cast<std::ptrdiff_t>(stride)};
+  for (std::size_t x = 0; x < stride; ++x) places[x] = static_cast<std::int32_t>(4 * (x / count));
+  const float* const kept = hold(std::move(weights));
+  return {kept, kept + rows * row_weights, hold(std::move(places)), static_cast<std::ptrdiff_t>(stride)};
 }
 
-void MeshTables::add_cubic_border(Segments along) {
-  CubicBorder& made = grown(tables(along).cubic_border, place(along));
-  if (!made.weights.empty()) return;
+kernel::MeshCubicBorder MeshTables::make_cubic_border(Segments along) {
   constexpr std::size_t lanes = 16;
   const auto count = static_cast<std::size_t>(along.rate()), stride = lanes + (count + 2 * lanes - 1) / lanes * lanes;
-  made.weights.resize(8 * stride);
+  AlignedVector<float> weights(8 * stride);
   WeightsAt at(3);
   for (int k = 0; k < along.rate(); ++k) {
     at.set(along.at(k));
     for (int i = 0; i < 4; ++i) {
-      float* const value =
-          made.weights.data() + static_cast<std::size_t>(i) * stride + lanes + static_cast<std::size_t>(k);
+      float* const value = weights.data() + static_cast<std::size_t>(i) * stride + lanes + static_cast<std::size_t>(k);
       value[0] = at.value(i);
       value[4 * stride] = at.slope(i);
     }
   }
-  made.table = {made.weights.data(), static_cast<std::ptrdiff_t>(stride)};
+  return {hold(std::move(weights)), static_cast<std::ptrdiff_t>(stride)};
 }
 
 void MeshTables::add_strip(Segments border, Segments inner) {
   const bool are_uniform = border.is_uniform() && inner.is_uniform();
-  Strip& strip = are_uniform ? grown(grown(strips_, inner.rate()), at(border.rate() + most_missing - inner.rate()))
+  Strip& strip = are_uniform ? grown(grown(strips_, at(inner.rate())), at(border.rate() + most_missing - inner.rate()))
                              : other_strips_[key(border, inner)];
-  if (!strip.codes.empty()) return;
+  if (strip.codes) return;
   const std::vector<std::uint32_t> codes = strip_codes(border, inner, kernel::mesh_border_code);
-  strip.count = static_cast<int>(codes.size());
-  strip.codes.assign(codes.begin(), codes.end());
-  strip.codes.resize((strip.codes.size() + 15) / 16 * 16);
+  AlignedVector<std::uint32_t> whole((codes.size() + 15) / 16 * 16);
+  std::copy(codes.begin(), codes.end(), whole.begin());
+  strip = {hold(std::move(whole)), static_cast<int>(codes.size())};
+}
+
+/// What a process keeps for the plans to come.
+class CommonTables {
+ public:
+  static CommonTables& get() {
+    static CommonTables& all = *new CommonTables;  // for plans that outlive static objects
+    return all;
+  }
+  std::shared_ptr<const MeshTables> load(bool with_cubic) {
+    const std::lock_guard lock(mutex_);
+    return tables_[with_cubic];
+  }
+  void store(bool with_cubic, std::shared_ptr<const MeshTables> tables) {
+    const std::lock_guard lock(mutex_);
+    tables_[with_cubic].swap(tables);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::array<std::shared_ptr<const MeshTables>, 2> tables_;
+};
+
+/// Takes what is common, and a copy of it to add to where that isn't enough.
+class TableMaker {
+ public:
+  TableMaker(std::size_t patches, bool with_cubic)
+      : common_(CommonTables::get().load(with_cubic)),
+        seen_(std::bit_ceil(std::clamp<std::size_t>(16 * patches, 64, 4096))) {
+    if (!common_) common_ = own_ = std::shared_ptr<MeshTables>(new MeshTables(with_cubic));
+    common_bytes_ = common_->bytes();
+  }
+
+  void add(const PatchShape& shape, const Division& division) {
+    if (division.empty) return;
+    for (const Side side : all_sides) {
+      const int degree = runs_along_u(side) ? shape.degree_u : shape.degree_v;
+      const Segments inner = division.inner_along(side), border = division.border[static_cast<std::size_t>(side)];
+      if (inner.is_uniform() && border.is_uniform()) {
+        add_uniform(degree, inner, border);
+      } else {
+        add(degree, division.inner_along_ring(side), division.along_ring(side));
+      }
+    }
+  }
+  /// They are common from now on, if they are small. Where those of many plans have become large, others begin anew.
+  std::shared_ptr<const MeshTables> take() {
+    if (!own_) return common_;
+    CommonTables& all = CommonTables::get();
+    if (own_->bytes() <= MeshTables::most_common) {
+      all.store(own_->with_cubic_, own_);
+    } else if (common_bytes_ > MeshTables::most_common / 2) {
+      all.store(own_->with_cubic_, nullptr);
+    }
+    return own_;
+  }
+
+ private:
+  void add_uniform(int degree, Segments inner, Segments border) {
+    const std::uint32_t wanted = static_cast<std::uint32_t>(degree) << 26 | inner.key() << 13 | border.key();
+    std::uint32_t& seen = seen_[(wanted * 0x9e3779b1u >> 20) & (seen_.size() - 1)];
+    if (seen == wanted) return;
+    add(degree, inner, border);
+    seen = wanted;
+  }
+  [[gnu::cold]] void add(int degree, Segments inner, Segments border) {
+    if (common_->has(degree, inner, border)) return;
+    if (!own_) common_ = own_ = std::shared_ptr<MeshTables>(new MeshTables(*common_));
+    own_->add(degree, inner, border);
+  }
+
+  std::shared_ptr<const MeshTables> common_;
+  std::size_t common_bytes_;
+  std::shared_ptr<MeshTables> own_;  ///< a copy that takes its place, if more was needed
+  std::vector<std::uint32_t> seen_;  ///< some of what has been added: degrees, inner and border rates
+};
+
+std::shared_ptr<const MeshTables> MeshTables::of(std::span<const PatchShape> shapes,
+                                                 std::span<const Division> divisions, bool with_cubic) {
+  TableMaker maker(shapes.size(), with_cubic);
+  for (std::size_t k = 0; k < shapes.size(); ++k) maker.add(shapes[k], divisions[k]);
+  return maker.take();
 }
 
 }  // namespace tessera

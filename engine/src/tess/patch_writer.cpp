@@ -194,8 +194,8 @@ void PatchWriter::write_triangles(std::size_t k, std::uint32_t* out, std::uint32
   std::uint32_t ring = job.ring;
   for (const Side side : all_sides) {
     const auto s = static_cast<std::size_t>(side);
-    const auto& strip = tables_.strip(division.along_ring(side), division.inner_along_ring(side));
-    job.strip[s] = {strip.codes.data(), strip.count, ring, first + start[s], step[s]};
+    const MeshTables::Strip strip = tables_.strip(division.along_ring(side), division.inner_along_ring(side));
+    job.strip[s] = {strip.codes, strip.count, ring, first + start[s], step[s]};
     ring += number(division.border[s].rate());
   }
   kernels_.mesh_indices(job);
