@@ -113,6 +113,32 @@ TEST(PatchWriter, PositionsAloneAreThoseWithNormals) {
   }
 }
 
+/// On a border that is a point each vertex has the normal that the patch tends to along its parameter, corners too.
+TEST(PatchWriter, VerticesAtPolesHaveTheNormalsOfTheirLimits) {
+  std::size_t at_poles = 0, corners = 0;
+  double most = 0;
+  for (const std::uint64_t seed : {5, 6, 7}) {
+    const PatchSet set = set_of(mixed_patches(seed, 40));  // every fifth is a point at u = 0
+    const Mesh mesh = mesh_of(set, 0.02);
+    for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        const std::size_t k = mesh.indices[3 * t + corner];
+        const double u = mesh.parameters[2 * k], v = mesh.parameters[2 * k + 1];
+        if (mesh.patches[t] % 5 != 0 || u != 0) continue;
+        const SurfaceJet jet = evaluate_jet(set.impl().patches[mesh.patches[t]], 1e-7, v);
+        const Vec3 area = cross(jet.du, jet.dv);
+        if (!(length(area) > 1e-2 * length(jet.du) * length(jet.dv))) continue;
+        most = std::max(most, length(Vec3{mesh.normals[3 * k], mesh.normals[3 * k + 1], mesh.normals[3 * k + 2]} -
+                                     normalized(area)));
+        ++at_poles;
+        corners += v == 0 || v == 1;
+      }
+  }
+  EXPECT_LE(most, 1e-4);
+  EXPECT_GT(corners, 40u);
+  EXPECT_GT(at_poles, corners + 100);
+}
+
 /// Every vertex lies where its float parameters are, within the rounding that the certificate counts and theirs, and its
 /// normal is the patch's.
 TEST(PatchWriter, VerticesLieOnTheirPatchesWithTheirNormals) {

@@ -49,8 +49,11 @@ struct BorderTile {
   const float* weights;
   int at, count;
   const MeshBorder* border;
-  bool starts;  ///< with the border's first point
+  bool starts;       ///< with the border's first point
+  bool leaves_pole;  ///< this one being the last of a border that is a point
 };
+/// By whether a tile leaves a pole: 1 at the point that does.
+constexpr float pole_lanes[2][mesh_tile] = {{}, {1}};
 
 inline bool is_packed(const MeshRecords& out) {
   return out.stride == 3 && out.out[1] == out.out[0] + 1 && out.out[2] == out.out[0] + 2;
@@ -194,7 +197,8 @@ class PatchVertices {
                             staged_,
                             count,
                             &border,
-                            k == 0};
+                            k == 0,
+                            k == 0 && !border.is_point && job_.border[(side + 3) % 4].is_point};
       staged_ += count;
       k += mesh_tile;
       if (k >= border.rate) k = 0, ++side;
@@ -263,13 +267,16 @@ class PatchVertices {
     const int degree = count - 1, degree_across = (count_u() == count ? count_v() : count_u()) - 1;
     const Batch scale = in_tiles<L>(&a.border->scale, &b.border->scale);
     const float poles[2] = {a.border->is_point ? 1.0f : 0.0f, b.border->is_point ? 1.0f : 0.0f};
-    const auto at_pole = in_tiles<L>(&poles[0], &poles[1]) > L::broadcast(0);
+    const auto at_pole = in_tiles<L>(&poles[0], &poles[1]) > L::broadcast(0),
+               leaves_pole =
+                   load_tiles<L>(pole_lanes[a.leaves_pole], pole_lanes[b.leaves_pole], lane) > L::broadcast(0);
     Batch terms_of[components][capacity], p[components], along[components], inwards[components];
     for (int c = 0; c < components; ++c) along[c] = inwards[c] = L::broadcast(0);
     for (int i = 0; i < count; ++i) {
       const int k = i * mesh_tile, derivative = (count + i) * mesh_tile;
       const Batch weight = load_tiles<L>(a.weights + k, b.weights + k, lane);
       const float *at_a = a.first + i * a.step, *at_b = b.first + i * b.step;
+      // Where a derivative vanishes at a pole its own along the border does not.
       for (int c = 0; c < components; ++c) {
         Batch point = in_tiles<L>(at_a + c * block_lanes, at_b + c * block_lanes);
         if constexpr (Rational) point = point * scale;
@@ -280,7 +287,7 @@ class PatchVertices {
           across = across - point;
           const Batch slope = load_tiles<L>(a.weights + derivative, b.weights + derivative, lane);
           along[c] = L::fma(slope, xsimd::select(at_pole, across, point), along[c]);
-          inwards[c] = L::fma(weight, across, inwards[c]);
+          inwards[c] = L::fma(xsimd::select(leaves_pole, slope, weight), across, inwards[c]);
         }
       }
     }
