@@ -54,44 +54,56 @@ Place place_of(const DerivativePiece& piece) {
   return place;
 }
 
+/// NaN is larger than all else.
+double larger(double most, double one) { return one > most || std::isnan(one) ? one : most; }
+
 double largest(const DerivativePiece& piece, const DerivativePiece::Nets& nets, const Place& place) {
   double most = 0;
   for_vectors(piece, nets, [&](const Homogeneous& a) {
-    const double size = length(a.vector() - a.w * place.centre) + place.radius * std::abs(a.w);
-    most = !(size <= most) ? size : most;  // NaN wins
+    most = larger(most, length(a.vector() - a.w * place.centre) + place.radius * std::abs(a.w));
   });
   return most / place.lightest;
 }
 
-/// What largest() measures: vectors, each with a ball around it.
+/// What largest() measures: vectors, each with a ball around it; the balls of polynomial pieces are points.
 struct Vectors {
-  struct Ball {
-    Vec3 centre;
-    double radius, size;
-  };
-  std::array<Ball, std::size_t{4} * (most_product_degree + 1) * (most_product_degree + 1)> balls;
+  static constexpr std::size_t capacity = std::size_t{4} * (most_product_degree + 1) * (most_product_degree + 1);
+  using Numbers = double[capacity];
+  Numbers x, y, z, radius, size;  // the first `count`
   std::size_t count = 0;
+  double doubt = 0;  ///< NaN where one of them is not finite
 
   Vectors(const DerivativePiece& piece, const DerivativePiece::Nets& nets, const Place& place) {
     for_vectors(piece, nets, [&](const Homogeneous& a) {
       const Vec3 centre = (1 / place.lightest) * (a.vector() - a.w * place.centre);
-      balls[count++] = {centre, place.radius * std::abs(a.w) / place.lightest, length(centre)};
+      x[count] = centre.x;
+      y[count] = centre.y;
+      z[count] = centre.z;
+      radius[count] = place.radius * std::abs(a.w) / place.lightest;
+      size[count] = place.radius != 0 ? length(centre) : 0;
+      doubt += 0 * (centre.x + centre.y + centre.z + radius[count] + size[count]);
+      ++count;
     });
   }
 };
 
-/// The largest product of vectors in balls of both, or its largest size.
-double largest_product(const Vectors& a, const Vectors& b, bool size) {
+/// The largest product of vectors in balls of both, or its largest size; NaN where one of them is not finite.
+template <bool Balls, bool Size>
+double largest_product(const Vectors& a, const Vectors& b) {
   if (a.count == 0 || b.count == 0) return 0;
   double most = -std::numeric_limits<double>::infinity();
-  for (const Vectors::Ball& p : std::span(a.balls.data(), a.count))
-    for (const Vectors::Ball& q : std::span(b.balls.data(), b.count)) {
-      const double product = dot(p.centre, q.centre);
-      const double reach = p.size * q.radius + q.size * p.radius + p.radius * q.radius;
-      const double largest = (size ? std::abs(product) : product) + reach;
-      most = !(largest <= most) ? largest : most;  // NaN wins
+  for (std::size_t p = 0; p < a.count; ++p)
+    for (std::size_t q = 0; q < b.count; ++q) {
+      double product = a.x[p] * b.x[q] + a.y[p] * b.y[q] + a.z[p] * b.z[q];
+      if constexpr (Size) product = std::abs(product);
+      if constexpr (Balls) product += a.size[p] * b.radius[q] + b.size[q] * a.radius[p] + a.radius[p] * b.radius[q];
+      most = std::max(most, product);
     }
-  return most;
+  return most + (a.doubt + b.doubt);
+}
+template <bool Size>
+double largest_product(const Vectors& a, const Vectors& b, bool balls) {
+  return balls ? largest_product<true, Size>(a, b) : largest_product<false, Size>(a, b);
 }
 
 void make_infinite_where_nan(std::initializer_list<double*> bounds) {
@@ -167,10 +179,11 @@ SecondDerivatives bound_piece(const DerivativeNets& patch, const DerivativePiece
   const auto bound = [&](double product, double x, double y, double degrees) {
     return scale * scale * product + 0x1p-38 * x * y + scale * degrees * rounded * (x + y);
   };
+  const bool balls = place.radius != 0;
   const double of_uu = m * m, of_uv = m * n, of_vv = n * n;
-  d.uu_vv = bound(largest_product(a, c, false), d.uu, d.vv, std::max(of_uu, of_vv));
-  d.uu_uv = bound(largest_product(a, b, true), d.uu, d.uv, std::max(of_uu, of_uv));
-  d.uv_vv = bound(largest_product(b, c, true), d.uv, d.vv, std::max(of_uv, of_vv));
+  d.uu_vv = bound(largest_product<false>(a, c, balls), d.uu, d.vv, std::max(of_uu, of_vv));
+  d.uu_uv = bound(largest_product<true>(a, b, balls), d.uu, d.uv, std::max(of_uu, of_uv));
+  d.uv_vv = bound(largest_product<true>(b, c, balls), d.uv, d.vv, std::max(of_uv, of_vv));
   make_infinite_where_nan({&d.uu_vv, &d.uu_uv, &d.uv_vv});
   return d;
 }

@@ -32,7 +32,8 @@ class Widened {
     const Domain wide{std::max(r.u0 - margin_u_, part_.u0), std::min(r.u1 + margin_u_, part_.u1),
                       std::max(r.v0 - margin_v_, part_.v0), std::min(r.v1 + margin_v_, part_.v1)};
     const DerivativeNet uu = cut_to(nets_.uu, wide), uv = cut_to(nets_.uv, wide), vv = cut_to(nets_.vv, wide);
-    const DerivativeNet points = nets_.rational ? cut_to(nets_.points, wide) : DerivativeNet();
+    DerivativeNet points;
+    if (nets_.rational) points = cut_to(nets_.points, wide);
     // Two cuts along each parameter, of up to 15 mixings each that round by 3 units.
     return bound_piece(nets_, {{&uu}, {&uv}, {&vv}, {&points}, 1}, 0x1p-44, true);
   }
