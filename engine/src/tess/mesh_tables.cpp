@@ -86,21 +86,21 @@ std::size_t MeshTables::other_place(Segments along) const {
   return found == other_places_.end() ? static_cast<std::size_t>(-1) : found->second;
 }
 
-MeshTables::Strip MeshTables::other_strip(Segments border, Segments inner) const {
-  const auto found = other_strips_.find(key(border, inner));
+MeshTables::Strip MeshTables::other_strip(Segments border, Segments inner, bool collapsed) const {
+  const auto found = other_strips_.find(key(border, inner, collapsed));
   return found == other_strips_.end() ? Strip{} : found->second;
 }
 
-bool MeshTables::has(int degree, Segments inner, Segments border) const {
+bool MeshTables::has(int degree, Segments inner, Segments border, bool collapsed) const {
   if (!found(tables(border).border[at(degree)], place(border))) return false;
   if (inner.rate() == 1) return true;
   if (!found(tables(inner).inner[at(degree)], place(inner))) return false;
-  if (!inner.is_uniform() || !border.is_uniform()) return other_strip(border, inner).codes != nullptr;
+  if (!is_common(border, inner, collapsed)) return other_strip(border, inner, collapsed).codes != nullptr;
   return at(inner.rate()) < strips_.size() &&
          found(strips_[at(inner.rate())], at(border.rate() + most_missing - inner.rate())).codes != nullptr;
 }
 
-void MeshTables::add(int degree, Segments inner, Segments border) {
+void MeshTables::add(int degree, Segments inner, Segments border, bool collapsed) {
   for (const Segments along : {inner, inner.reversed(), border, border.reversed()}) {
     if (!along.is_uniform()) other_places_.try_emplace(along.key(), other_places_.size());
     add_parameters(along);
@@ -108,7 +108,7 @@ void MeshTables::add(int degree, Segments inner, Segments border) {
   add_border(degree, border);
   if (inner.rate() == 1) return;
   add_inner(degree, inner);
-  add_strip(border, inner);
+  add_strip(border, inner, collapsed);
 }
 
 template <class T>
@@ -183,12 +183,12 @@ kernel::MeshCubicBorder MeshTables::make_cubic_border(Segments along) {
   return {hold(std::move(weights)), static_cast<std::ptrdiff_t>(stride)};
 }
 
-void MeshTables::add_strip(Segments border, Segments inner) {
-  const bool are_uniform = border.is_uniform() && inner.is_uniform();
-  Strip& strip = are_uniform ? grown(grown(strips_, at(inner.rate())), at(border.rate() + most_missing - inner.rate()))
-                             : other_strips_[key(border, inner)];
+void MeshTables::add_strip(Segments border, Segments inner, bool collapsed) {
+  Strip& strip = is_common(border, inner, collapsed)
+                     ? grown(grown(strips_, at(inner.rate())), at(border.rate() + most_missing - inner.rate()))
+                     : other_strips_[key(border, inner, collapsed)];
   if (strip.codes) return;
-  const std::vector<std::uint32_t> codes = strip_codes(border, inner, kernel::mesh_border_code);
+  const std::vector<std::uint32_t> codes = strip_codes(border, inner, collapsed, kernel::mesh_border_code);
   AlignedVector<std::uint32_t> whole((codes.size() + 15) / 16 * 16);
   std::copy(codes.begin(), codes.end(), whole.begin());
   strip = {hold(std::move(whole)), static_cast<int>(codes.size())};
@@ -230,10 +230,11 @@ class TableMaker {
     for (const Side side : all_sides) {
       const int degree = runs_along_u(side) ? shape.degree_u : shape.degree_v;
       const Segments inner = division.inner_along(side), border = division.border[static_cast<std::size_t>(side)];
-      if (inner.is_uniform() && border.is_uniform()) {
-        add_uniform(degree, inner, border);
+      const bool collapsed = division.collapsed.has(edge_of(side));
+      if (MeshTables::is_common(border, inner, collapsed)) {
+        add_common(degree, inner, border);
       } else {
-        add(degree, division.inner_along_ring(side), division.along_ring(side));
+        add(degree, division.inner_along_ring(side), division.along_ring(side), collapsed);
       }
     }
   }
@@ -250,17 +251,17 @@ class TableMaker {
   }
 
  private:
-  void add_uniform(int degree, Segments inner, Segments border) {
+  void add_common(int degree, Segments inner, Segments border) {
     const std::uint32_t wanted = static_cast<std::uint32_t>(degree) << 26 | inner.key() << 13 | border.key();
     std::uint32_t& seen = seen_[(wanted * 0x9e3779b1u >> 20) & (seen_.size() - 1)];
     if (seen == wanted) return;
-    add(degree, inner, border);
+    add(degree, inner, border, false);
     seen = wanted;
   }
-  [[gnu::cold]] void add(int degree, Segments inner, Segments border) {
-    if (common_->has(degree, inner, border)) return;
+  [[gnu::cold]] void add(int degree, Segments inner, Segments border, bool collapsed) {
+    if (common_->has(degree, inner, border, collapsed)) return;
     if (!own_) common_ = own_ = std::shared_ptr<MeshTables>(new MeshTables(*common_));
-    own_->add(degree, inner, border);
+    own_->add(degree, inner, border, collapsed);
   }
 
   std::shared_ptr<const MeshTables> common_;

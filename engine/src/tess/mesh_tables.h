@@ -45,10 +45,10 @@ class MeshTables {
     const std::uint32_t* codes = nullptr;  ///< whole sixteens
     int count = 0;
   };
-  Strip strip(Segments border, Segments inner) const {
-    if (border.is_uniform() && inner.is_uniform())
+  Strip strip(Segments border, Segments inner, bool collapsed) const {
+    if (is_common(border, inner, collapsed))
       return strips_[at(inner.rate())][at(border.rate() + most_missing - inner.rate())];
-    return other_strip(border, inner);
+    return other_strip(border, inner, collapsed);
   }
 
  private:
@@ -58,15 +58,21 @@ class MeshTables {
   /// A border has at least one segment, the inner points at least two.
   static constexpr int most_missing = 1;
   static std::size_t at(int k) { return static_cast<std::size_t>(k); }
-  static std::uint64_t key(Segments border, Segments inner) { return std::uint64_t{border.key()} << 32 | inner.key(); }
+  static bool is_common(Segments border, Segments inner, bool collapsed) {
+    return border.is_uniform() && inner.is_uniform() && !collapsed;
+  }
+  /// Keys of segments are below 2^26.
+  static std::uint64_t key(Segments border, Segments inner, bool collapsed) {
+    return std::uint64_t{border.key()} << 32 | std::uint64_t{collapsed} << 31 | inner.key();
+  }
 
   /// All that is needed at a border of a patch, as the ring runs; the degree is that along it.
-  bool has(int degree, Segments inner, Segments border) const;
-  void add(int degree, Segments inner, Segments border);
+  bool has(int degree, Segments inner, Segments border, bool collapsed) const;
+  void add(int degree, Segments inner, Segments border, bool collapsed);
   void add_parameters(Segments along);
   void add_inner(int degree, Segments along);
   void add_border(int degree, Segments along);
-  void add_strip(Segments border, Segments inner);
+  void add_strip(Segments border, Segments inner, bool collapsed);
   kernel::MeshCubicInner make_cubic_inner(Segments along);
   kernel::MeshCubicBorder make_cubic_border(Segments along);
   /// Its memory, which copies share from then on.
@@ -83,13 +89,13 @@ class MeshTables {
   const Tables& tables(Segments along) const { return along.is_uniform() ? uniform_ : others_; }
   std::size_t place(Segments along) const { return along.is_uniform() ? at(along.rate()) : other_place(along); }
   [[gnu::cold]] std::size_t other_place(Segments along) const;
-  [[gnu::cold]] Strip other_strip(Segments border, Segments inner) const;
+  [[gnu::cold]] Strip other_strip(Segments border, Segments inner, bool collapsed) const;
 
   bool with_cubic_;
   Tables uniform_;  ///< by rate
   Tables others_;   ///< by other_places_
   std::unordered_map<std::uint32_t, std::size_t> other_places_;
-  std::vector<std::vector<Strip>> strips_;  ///< of uniform segments, `[inner][border + most_missing - inner]`
+  std::vector<std::vector<Strip>> strips_;  ///< common ones, `[inner][border + most_missing - inner]`
   std::unordered_map<std::uint64_t, Strip> other_strips_;
   std::vector<std::shared_ptr<const void>> memory_;  ///< of all that these point to
   std::size_t bytes_ = 0;

@@ -171,7 +171,7 @@ void PatchWriter::write_triangles(std::size_t k, std::uint32_t* out, std::uint32
   const Division& division = plan_.division(k);
   const auto first = static_cast<std::uint32_t>(plan_.first_vertex(k));
   const bool cells = out_.quads.empty();
-  if (!division.has_inner_points() || division.collapsed.any()) {
+  if (!division.has_inner_points()) {
     if (lines) kernels_.finish_lines(*lines);
     std::uint32_t* const last = division.write_triangles(first, out, cells);
     if (lines) *lines = lines_from(last);
@@ -194,7 +194,8 @@ void PatchWriter::write_triangles(std::size_t k, std::uint32_t* out, std::uint32
   std::uint32_t ring = job.ring;
   for (const Side side : all_sides) {
     const auto s = static_cast<std::size_t>(side);
-    const MeshTables::Strip strip = tables_.strip(division.along_ring(side), division.inner_along_ring(side));
+    const MeshTables::Strip strip = tables_.strip(division.along_ring(side), division.inner_along_ring(side),
+                                                  division.collapsed.has(edge_of(side)));
     job.strip[s] = {strip.codes, strip.count, ring, first + start[s], step[s]};
     ring += number(division.border[s].rate());
   }

@@ -115,10 +115,11 @@ Division::Parameters Division::parameters(std::size_t vertex) const {
   return places[side];
 }
 
-std::vector<std::uint32_t> strip_codes(Segments border, Segments inner, std::uint32_t border_code) {
-  std::vector<std::uint32_t> corners(static_cast<std::size_t>(3 * (border.rate() + inner.rate() - 2)));
+std::vector<std::uint32_t> strip_codes(Segments border, Segments inner, bool collapsed, std::uint32_t border_code) {
+  std::vector<std::uint32_t> corners(
+      static_cast<std::size_t>(3 * ((collapsed ? 0 : border.rate()) + inner.rate() - 2)));
   const auto number = [](int k) { return static_cast<std::uint32_t>(k); };
-  write_strip(whole_line(border, false, [=](int k) { return border_code + number(k); }),
+  write_strip(whole_line(border, collapsed, [=](int k) { return border_code + number(k); }),
               inner_line(inner, [=](int k) { return number(k - 1); }), corners.data());
   return corners;
 }

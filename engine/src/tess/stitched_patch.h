@@ -101,7 +101,8 @@ struct Division {
 
 /// The corners of the triangles between a border and at least 2 `inner` segments beside it, both as the ring runs, as
 /// Division::write_triangles writes them: border point k is border_code + k, the one where inner segment k begins k - 1.
-std::vector<std::uint32_t> strip_codes(Segments border, Segments inner, std::uint32_t border_code);
+/// `collapsed`: no triangle stands on the border.
+std::vector<std::uint32_t> strip_codes(Segments border, Segments inner, bool collapsed, std::uint32_t border_code);
 
 template <class Visit>
 void Division::for_parameters(Visit visit) const {
