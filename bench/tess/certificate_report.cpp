@@ -1,26 +1,30 @@
 // Whether certified tessellations keep what they promise, and how loose their bounds are: for each patch the bound over the
 // true largest distance, found by branch and bound that shares no code with the bounds. Exit status 1 if a bound is
 // exceeded, or the median on bicubic patches is above 3.
-// Usage: tessera_certificate_report [--fewest] [MODEL...], beside the built-in sets.
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "support/synthetic_sets.h"
 #include "support/true_distance.h"
 #include "tess/certificate_sets.h"
+#include "tess/report_arguments.h"
 #include "tessera/certified_tessellation.h"
 #include "tessera/io.h"
 
 namespace {
 
 using namespace tessera;
+
+constexpr char usage[] =
+    "tessera_certificate_report [--fewest] [MODEL...]\n\n"
+    "Bounds of certified meshes over true distances, of built-in sets and of models.\n"
+    "  --fewest  meshes of the fewest triangles\n"
+    "Exit status 1 if a bound is exceeded, or the median on bicubic patches is above 3.\n";
 
 /// So many patches of a set are looked at, evenly spread, and so many triangles of each.
 constexpr std::size_t most_patches = 300, most_triangles = 600;
@@ -79,20 +83,20 @@ bool report(const std::string& name, const PatchSet& set, double relative, bool 
 
 int main(int argc, char** argv) {
   bool good = true;
-  const bool fewest = argc > 1 && argv[1] == std::string_view("--fewest");
+  const bench::ReportArguments asked(argc, argv, usage);
   std::printf("%-28s %8s %8s %9s %9s %8s %8s %8s\n", "set", "relative", "patches", "triangles", "exceeded", "least",
               "median", "p99");
   for (const test::CertificateSet& set : test::certificate_sets())
     for (const double relative : {3e-3, 3e-4})
-      good = report(set.name, test::value_of(PatchSet::from(set.patches)), relative, set.bicubic, fewest) && good;
-  for (const char* const path : std::span(argv, static_cast<std::size_t>(argc)).subspan(fewest ? 2 : 1)) {
+      good = report(set.name, test::value_of(PatchSet::from(set.patches)), relative, set.bicubic, asked.fewest) && good;
+  for (const char* const path : asked.models) {
     const Result<Model> model = read_model(path);
     const Result<PatchSet> set = model ? make_patch_set(*model) : Result<PatchSet>(model.status());
     if (!set) {
       std::fprintf(stderr, "%s\n", set.status().message().c_str());
       return 1;
     }
-    good = report(model->name, *set, 3e-4, false, fewest) && good;
+    good = report(model->name, *set, 3e-4, false, asked.fewest) && good;
   }
   return good ? 0 : 1;
 }

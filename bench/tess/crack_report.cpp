@@ -1,16 +1,15 @@
 // Whether certified meshes of models have cracks, at five tolerances each: a row a model with, for each tolerance, the
 // triangles and what is wrong with them; then what was skipped, with reasons. Open edges that are borders of the model
 // itself are no cracks: such borders are counted. Exit status 1 if there is a crack.
-// Usage: tessera_crack_report [--fewest] [MODEL or FOLDER...]; the project's models if none is named.
 
 #include <cstdio>
 #include <filesystem>
 #include <set>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "support/crack_survey.h"
+#include "tess/report_arguments.h"
 #include "tessera/io.h"
 #ifdef TESSERA_HAS_IO_OCCT
 #include "tessera/io_occt.h"
@@ -20,6 +19,11 @@ namespace {
 
 using namespace tessera;
 
+constexpr char usage[] =
+    "tessera_crack_report [--fewest] [MODEL or FOLDER...]\n\n"
+    "Whether certified meshes have cracks, at five tolerances each; of the project's models if none is named.\n"
+    "  --fewest  meshes of the fewest triangles\n"
+    "Exit status 1 if there is a crack.\n";
 constexpr double tolerances[] = {1e-2, 3e-3, 1e-3, 3e-4, 1e-4};
 constexpr std::uint64_t most_triangles = 500000;
 
@@ -105,8 +109,8 @@ class Report {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const bool fewest = argc > 1 && argv[1] == std::string_view("--fewest");
-  std::vector<std::filesystem::path> named(argv + (fewest ? 2 : 1), argv + argc);
+  const bench::ReportArguments asked(argc, argv, usage);
+  std::vector<std::filesystem::path> named(asked.models.begin(), asked.models.end());
   if (named.empty()) named.push_back(std::filesystem::path(TESSERA_SOURCE_DIR) / "tools" / "models");
   std::set<std::filesystem::path> files;
   for (const std::filesystem::path& path : named) {
@@ -121,7 +125,7 @@ int main(int argc, char** argv) {
       "\n(of the model itself: borders that meet none, edges of more than two triangles, T-junctions, of the finest "
       "mesh; then "
       "triangles by tolerance, a share of the size, < where only so many were allowed)\n");
-  Report report(fewest);
+  Report report(asked.fewest);
   for (const std::filesystem::path& path : files) report.survey(path);
   return report.finish() ? 0 : 1;
 }

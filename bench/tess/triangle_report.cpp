@@ -1,26 +1,29 @@
 // How many more triangles certified meshes take than they would if the true error were known: against the best uniform
 // rates, each patch on its own, that search finds to keep the tolerance at 28 points of each triangle. What that would
 // take is no mesh: its patches don't meet. Beside it: what the patches' own certified rates take without strips.
-// Usage: tessera_triangle_report [--fewest] [MODEL...], beside built-in sets.
 
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "support/synthetic_sets.h"
 #include "support/triangle_distance.h"
 #include "tess/certified_tessellation_impl.h"
+#include "tess/report_arguments.h"
 #include "tessera/certified_tessellation.h"
 #include "tessera/io.h"
 
 namespace {
 
 using namespace tessera;
+
+constexpr char usage[] =
+    "tessera_triangle_report [--fewest] [MODEL...]\n\n"
+    "Triangles of certified meshes over those of the best uniform rates, of built-in sets and of models.\n"
+    "  --fewest  meshes of the fewest triangles\n";
 
 /// So many patches of a set are searched, evenly spread.
 constexpr std::size_t most_patches = 200;
@@ -82,16 +85,16 @@ void report(const std::string& name, const PatchSet& set, double relative, bool 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const bool fewest = argc > 1 && argv[1] == std::string_view("--fewest");
+  const bench::ReportArguments asked(argc, argv, usage);
   std::printf("%-28s %8s %8s %10s %10s %10s %10s\n", "set", "relative", "patches", "a patch", "best", "rates", "mesh");
   std::printf("(triangles a patch; of the best rates in all; ours over that, by our rates alone and of the mesh)\n");
-  const auto report_all = [fewest](const std::string& name, const PatchSet& set) {
+  const auto report_all = [fewest = asked.fewest](const std::string& name, const PatchSet& set) {
     for (const double relative : {3e-3, 1e-3, 3e-4, 1e-4}) report(name, set, relative, fewest);
   };
   report_all("waves", test::value_of(PatchSet::from(test::wavy_field(12, 12))));
   report_all("closed body", test::value_of(PatchSet::from(test::closed_body())));
   report_all("sphere, rational", test::value_of(PatchSet::from(test::sphere())));
-  for (const char* const path : std::span(argv, static_cast<std::size_t>(argc)).subspan(fewest ? 2 : 1)) {
+  for (const char* const path : asked.models) {
     const Result<Model> model = read_model(path);
     const Result<PatchSet> set = model ? make_patch_set(*model) : Result<PatchSet>(model.status());
     if (!set) {
