@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "support/crack_survey.h"
 #include "support/synthetic_sets.h"
+#include "support/triangle_distance.h"
 #include "support/true_distance.h"
 #include "tess/certified_tessellation_impl.h"
 #include "tess/local_chord.h"
@@ -131,6 +133,75 @@ TEST(Fewest, HalvesHaveNoMoreSegmentsThanWholesMay) {
   EXPECT_LE(along.lower_rate(), most_rate);
   const MeshReport report = good(check(mesh_of(set, plan)));
   EXPECT_EQ(report.open_edges, 2u * along.rate() + 2u * plan.impl().plan().division(0).border[1].rate());
+}
+
+/// The middles of triangles: where rates are wrong bounds are exceeded many times over.
+TEST(Fewest, BoundsHoldOfEveryKindOfPatch) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const PatchSet set = set_of(mixed_patches(seed, 12));
+    const CertifiedTessellation plan = planned(set, 1e-4, true);
+    const Mesh mesh = mesh_of(set, plan);
+    std::size_t exceeded = 0;
+    for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+      const MeshTriangle triangle = triangle_of(mesh, t);
+      const auto middle = [&](std::size_t c) {
+        return (triangle.parameters[0][c] + triangle.parameters[1][c] + triangle.parameters[2][c]) / 3;
+      };
+      const Vec3 p = de_casteljau(set.patch(mesh.patches[t]), middle(0), middle(1));
+      const auto& at = triangle.corners;
+      exceeded += !(distance_to_triangle(p, at[0], at[1], at[2]) <= plan.bounds()[mesh.patches[t]]);
+    }
+    EXPECT_EQ(exceeded, 0u) << seed;
+    for (const PatchSegments& segments : plan.impl().plan().segments())
+      EXPECT_LE(std::max(segments.u.rate(), segments.v.rate()), most_rate) << seed;
+  }
+}
+
+TEST(Fewest, RatesGoNoFurtherThanTheirRange) {
+  std::vector<Vec3> points;  // waves along v, hardly bent along u
+  for (int i = 0; i <= 2; ++i)
+    for (int j = 0; j <= 15; ++j)
+      points.push_back({i * 0.01, j * 0.001, (j % 2 ? 1.0 : -1.0) + (i == 1 ? 3.593e-3 : 0)});
+  const PatchSet set = set_of({polynomial(2, 15, points)});
+  for (const bool share : {false, true}) {
+    const CertifiedTessellation plan =
+        good(CertifiedTessellation::make(set, {.tolerance = 1.478e-5, .share_vertices = share, .fewest = true}));
+    const PatchSegments segments = plan.impl().plan().segments()[0];
+    EXPECT_GT(segments.v.rate(), 2000);
+    EXPECT_LE(segments.v.rate(), most_rate);
+    EXPECT_EQ(good(check(mesh_of(set, plan))).t_junctions, 0u);
+  }
+}
+
+/// A curve that is the border of a patch, and would be welded to others if it were one.
+TEST(Fewest, CurvesBesideWeldedBordersOpenNoCrack) {
+  const auto net = [](int degree, auto at) {
+    std::vector<Vec3> points;
+    for (int i = 0; i <= degree; ++i)
+      for (int j = 0; j <= 3; ++j) points.push_back(at(i, j));
+    return polynomial(degree, 3, points);
+  };
+  const auto border = [](int j, double beside) { return Vec3{beside * j, j / 3.0, j == 3 ? 0.8 : 0.0}; };
+  const BezierPatch curve = net(3, [&](int, int j) { return border(j, 1e-6); }),
+                    below = net(3,
+                                [&](int i, int j) {
+                                  return border(j, 1e-6) - Vec3{0, 0, i / 3.0};
+                                }),
+                    right = net(2,
+                                [&](int i, int j) {
+                                  return border(j, 0) + Vec3{i / 2.0, 0, 0.05 * i * i * (j % 2)};
+                                }),
+                    left = net(2, [&](int i, int j) {
+                      return border(3 - j, 0) - Vec3{i / 2.0, 0, 0.03 * i * i};
+                    });
+  const PatchSet set = set_of({curve, below, right, left});
+  const CertifiedTessellation plan =
+      good(CertifiedTessellation::make(set, {.tolerance = 1e-3, .weld = 1e-4, .fewest = true}));
+  EXPECT_GT(plan.welded_borders(), 0u);
+  EXPECT_FALSE(plan.impl().plan().division(2).border[3].is_uniform());
+  CrackCount cracks;
+  count_edges(mesh_of(set, plan), MeetingBorders(set, 1e-4), cracks);
+  EXPECT_EQ(cracks.cracks, 0u);
 }
 
 TEST(Fewest, KeepsAnglesAndPixelsAsWell) {

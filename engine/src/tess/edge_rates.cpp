@@ -21,11 +21,13 @@ std::vector<std::uint8_t> CertifiedPlanner::borders_against() const {
   for (std::uint32_t k = 0; k < weld_.borders.size(); ++k) welds[weld_.borders[k].to] = k;
   const auto edge = [&](std::uint32_t border) { return edges_.edge(border / 4, all_sides[border % 4]); };
   const auto packed = [&](std::uint32_t border) { return PackedBorder(*set_, border / 4, all_sides[border % 4]); };
+  // Curves are welded to nothing, and have no segments.
+  const auto counts = [&](std::uint32_t border) { return edge(border) != none && !shapes_[border / 4].is_curve; };
   for (std::uint32_t border = 0; border < borders; ++border)
-    if (edge(border) != none && welds[border] == none && heads[edge(border)] == none) heads[edge(border)] = border;
+    if (counts(border) && welds[border] == none && heads[edge(border)] == none) heads[edge(border)] = border;
   std::vector<std::uint8_t> against(borders, 0);
   for (std::uint32_t border = 0; border < borders; ++border) {
-    if (edge(border) == none) continue;
+    if (!counts(border) || heads[edge(border)] == none) continue;
     const VertexCopies::Border weld =
         welds[border] == none ? VertexCopies::Border{border, border, false} : weld_.borders[welds[border]];
     against[border] = weld.reversed == equal(packed(weld.from), packed(heads[edge(border)]), false);

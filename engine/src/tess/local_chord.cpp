@@ -118,9 +118,10 @@ void add_uniform(const DerivativeNets& patch, double distance, FunctionRef<bool(
     if (rates.u * rates.v < 2) break;
     const LocalChord local(patch, whole, shrunk(rates, pass.share), rates, pass.pieces);
     const auto keeps = [&](Rates r) { return local.keeps(r, distance) && also(r); };
-    const int most_u = rates.u + rates.u / 2 + 1;
+    const int most_u = std::min(most_rate, rates.u + rates.u / 2 + 1);
     for (int u = local.least().u; u <= most_u; ++u) {
-      const auto v = least_v(u, local.least().v, static_cast<int>(choices.most_cells()) / u, keeps);
+      const int most_v = std::min(most_rate, static_cast<int>(choices.most_cells()) / u);
+      const auto v = least_v(u, local.least().v, most_v, keeps);
       if (const Rates found{u, v.value_or(0)}; v && choices.has_room_for(found))
         choices.add({found, local.distance(found), true});
     }

@@ -2,6 +2,7 @@
 // How the parameters of a patch are divided.
 
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
 
 #include "tess/patch_triangles.h"
@@ -16,7 +17,7 @@ inline constexpr int most_rate = 4096;
 class Segments {
  public:
   constexpr Segments() = default;  ///< none
-  constexpr Segments(int all) : word_(static_cast<std::uint32_t>(all)) {}
+  constexpr Segments(int all) : word_(static_cast<std::uint32_t>(all)) { assert(all >= 0 && all <= most_rate); }
   static constexpr Segments halves(int lower, int upper) {
     Segments both(lower + upper);
     if (lower != upper) both.word_ |= static_cast<std::uint32_t>(lower) << rate_bits;
