@@ -45,6 +45,15 @@ TEST(Fewest, SavesTrianglesAndOpensNoCrack) {
   }
 }
 
+TEST(Fewest, NeverTakesMoreTriangles) {
+  for (std::uint64_t seed = 1; seed <= 150; ++seed) {
+    const PatchSet set = set_of(mixed_patches(seed, 1 + static_cast<int>(seed % 6)));
+    for (const double relative : {0.1, 0.02, 5e-3})
+      EXPECT_LE(planned(set, relative, true).capacity().triangles, planned(set, relative, false).capacity().triangles)
+          << seed << " " << relative;
+  }
+}
+
 /// The field, with patches that run the other way along u, along v or both between the others.
 std::vector<BezierPatch> turned(std::vector<BezierPatch> patches) {
   for (std::size_t k = 0; k < patches.size(); ++k) {
@@ -114,11 +123,26 @@ TEST(Fewest, PatchesChooseTogether) {
     choices.back().add({Rates{8, 8}, 0.1, true});
     EXPECT_EQ(choices.back().count(), 2u);  // eights have too many cells
   }
-  const std::vector<std::uint8_t> chosen = choose_together(shapes, edges, against, choices);
+  const std::vector<std::uint8_t> chosen = good(choose_together(shapes, edges, against, choices));
   std::size_t unlike = 0;
   for (std::size_t k = 0; k < shapes.size(); ++k)
     unlike += !(choices[k][chosen[k]].segments == choices[0][chosen[0]].segments);
   EXPECT_LE(unlike, shapes.size() / 8);  // at first half of them are
+}
+
+TEST(Fewest, ChoosingTogetherCanBeCancelled) {
+  const PatchSet set = set_of(std::vector<BezierPatch>(20, bent_in_a_corner()));  // of as many as meet at an edge
+  const std::vector<PatchShape> shapes(set.patch_count(), PatchShape{3, 3, {}, false});
+  const SharedEdges edges(set.impl());
+  const std::vector<std::uint8_t> against(4 * shapes.size(), 0);
+  SegmentChoices some(ProvenSegments{Rates{3, 4}, 1, true});
+  some.add({Rates{4, 3}, 1, true});
+  const std::vector<SegmentChoices> choices(shapes.size(), some);
+  std::atomic<bool> cancel = false;
+  const auto chosen = good(choose_together(shapes, edges, against, choices, &cancel));
+  EXPECT_EQ(std::count(chosen.begin(), chosen.end(), chosen.front()), 20);
+  cancel = true;
+  EXPECT_EQ(choose_together(shapes, edges, against, choices, &cancel).status().code(), StatusCode::cancelled);
 }
 
 TEST(Fewest, HalvesHaveNoMoreSegmentsThanWholesMay) {

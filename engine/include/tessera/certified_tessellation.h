@@ -65,9 +65,9 @@ struct CertifiedOptions {
   /// Fewer triangles for more time: rates that bounds of many small pieces of each patch prove, where those of its halves ask
   /// for more; and where a patch bends unevenly, segments of their own in the halves of its parameters, and of its borders
   /// with the neighbours'; and, of those that will do, the ones that suit the neighbours (not beside an angle or pixels). It
-  /// saves a twentieth to a third, most on rational patches and on those that bend along u in one
-  /// place and along v in another. Takes 100 to 400 us a bicubic patch, a thousand times what a plan takes without (many
-  /// seconds for a budget of triangles, which tries many): for meshes that are drawn, stored or updated often.
+  /// saves a twentieth to a third, most on rational patches and on those that bend along u in one place and along v in
+  /// another, and never adds any. Takes 15 to 200 us a bicubic patch, some hundred times what a plan takes
+  /// without (many seconds for a budget of triangles, which tries many): for meshes that are drawn, stored or updated often.
   bool fewest = false;
   std::optional<Isa> isa = {};  ///< default_isa() if empty
 };

@@ -129,8 +129,8 @@ std::optional<Rates> CertifiedPlanner::rates_for(const CellLimits& limits, int m
   return distance_alone ? limits.chord->cheapest(limits.distance, most) : cheapest(limits, most);
 }
 
-CertifiedPlanner::Choice CertifiedPlanner::choose(std::size_t patch, double tolerance, int most,
-                                                  const KeptSegments& kept) const {
+CertifiedPlanner::Choice CertifiedPlanner::choose(std::size_t patch, const Request& request, int most) const {
+  const double tolerance = request.tolerance;
   const double given = roundings_[patch] + fit_error_;
   const PatchInPicture* const picture = options_.camera ? &pictures_[patch] : nullptr;
   const TurningBound* const turning = options_.angle && !shapes_[patch].is_curve ? &turnings_[patch] : nullptr;
@@ -165,7 +165,7 @@ CertifiedPlanner::Choice CertifiedPlanner::choose(std::size_t patch, double tole
   choice.cells = double(rates->u) * rates->v;
   if (most > most_rate) return choice;
   const int least_rate = turning && !bounded ? options_.angle_rate : 1;
-  const ProvenSegments proven = settle(patch, limits, chord, least_rate, kept, *rates);
+  const ProvenSegments proven = settle(patch, limits, chord, least_rate, request, *rates);
   choice.segments = proven.segments;
   choice.bound = given + proven.distance;
   const Rates coarsest = proven.segments.coarsest();
@@ -175,12 +175,13 @@ CertifiedPlanner::Choice CertifiedPlanner::choose(std::size_t patch, double tole
 }
 
 ProvenSegments CertifiedPlanner::settle(std::size_t patch, const CellLimits& limits, const ChordBound& chord,
-                                        int least_rate, const KeptSegments& kept, Rates rates) const {
+                                        int least_rate, const Request& request, Rates rates) const {
+  const KeptSegments& kept = request.kept;
   CellLimits others = limits;
   others.chord = nullptr;
   const auto keeps_others = [&](Rates r) { return std::min(r.u, r.v) >= least_rate && others.keeps(r); };
   ProvenSegments proven{rates, chord.distance(rates)};
-  if (options_.fewest && limits.chord) {
+  if (request.fewest && limits.chord) {
     SegmentChoices choices(proven);
     find_fewer(set_->patches[patch], limits.distance, keeps_others, choices);
     proven = choices.fewest();
@@ -220,7 +221,7 @@ Status CertifiedPlanner::refusal(Failure failure, std::size_t patch, double tole
   constexpr int unlimited = 1 << 24;
   double triangles = 0;
   for (std::size_t k = 0; k < shapes_.size(); ++k) {
-    const Choice choice = choose(k, tolerance, unlimited);
+    const Choice choice = choose(k, {tolerance}, unlimited);
     if (choice.failure != Failure::none)
       return invalid(
           wanted(tolerance) + " is not known to be kept by any number of segments of patch " + std::to_string(k), k);
@@ -254,19 +255,23 @@ Result<std::vector<ProvenSegments>> CertifiedPlanner::find_fewest(double toleran
   const auto no_others = [](Rates) { return true; };
   const auto find = [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
-      find_fewer(set_->patches[k], tolerance - (roundings_[k] + fit_error_), no_others, choices[k]);
+      if (!shapes_[k].is_curve)
+        find_fewer(set_->patches[k], tolerance - (roundings_[k] + fit_error_), no_others, choices[k]);
   };
   if (Status status = parallel_for(choices.size(), 1, execution, find); !status.ok()) return status;
-  const std::vector<std::uint8_t> chosen = choose_together(divided_shapes(), edges_, borders_against(), choices);
+  const auto chosen = choose_together(divided_shapes(), edges_, borders_against(), choices, execution.cancel);
+  if (!chosen) return chosen.status();
   std::vector<ProvenSegments> proven(choices.size());
-  for (std::size_t k = 0; k < proven.size(); ++k) proven[k] = choices[k][chosen[k]];
+  for (std::size_t k = 0; k < proven.size(); ++k) proven[k] = choices[k][(*chosen)[k]];
   return proven;
 }
 
-Status CertifiedPlanner::choose_by_distance(double tolerance, const KeptSegments& kept, CertifiedPlan& plan,
+Status CertifiedPlanner::choose_by_distance(const Request& request, CertifiedPlan& plan,
                                             const Execution& execution) const {
+  const double tolerance = request.tolerance;
+  const KeptSegments& kept = request.kept;
   LeastIndex failed;
-  std::vector<SegmentChoices> choices(options_.fewest ? shapes_.size() : 0);
+  std::vector<SegmentChoices> choices(request.fewest ? shapes_.size() : 0);
   const auto take = [&](std::size_t k, const ProvenSegments& proven) {
     plan.segments_[k] = proven.segments;
     plan.bounds_[k] = rounded_up(proven.distance + (roundings_[k] + fit_error_));
@@ -299,7 +304,7 @@ Status CertifiedPlanner::choose_by_distance(double tolerance, const KeptSegments
   const Execution quiet{.cancel = execution.cancel}, &first = choices.empty() ? execution : quiet;
   if (Status status = parallel_for(set_->lane_counts.size(), blocks_a_piece, first, choose_some); !status.ok())
     return status;
-  if (failed.found()) return refusal(choose(failed.index(), tolerance, most_rate).failure, failed.index(), tolerance);
+  if (failed.found()) return refusal(choose(failed.index(), {tolerance}, most_rate).failure, failed.index(), tolerance);
   if (choices.empty()) return {};
   const auto fewest = find_fewest(tolerance, std::move(choices), execution);
   if (!fewest) return fewest.status();
@@ -314,19 +319,18 @@ Status CertifiedPlanner::choose_by_distance(double tolerance, const KeptSegments
   return {};
 }
 
-Status CertifiedPlanner::choose_rates(double tolerance, const KeptSegments& kept, CertifiedPlan& plan,
-                                      const Execution& execution) const {
+Status CertifiedPlanner::choose_rates(const Request& request, CertifiedPlan& plan, const Execution& execution) const {
   const std::size_t patches = shapes_.size();
   plan.segments_.resize(patches);
   plan.bounds_.resize(patches);
   if (options_.fewest) plan.straddles_.resize(patches);
-  if (!options_.angle && !options_.camera) return choose_by_distance(tolerance, kept, plan, execution);
+  if (!options_.angle && !options_.camera) return choose_by_distance(request, plan, execution);
   if (options_.angle) plan.angles_.resize(patches);
   if (options_.camera) plan.pixels_.resize(patches);
   LeastIndex failed;
   const auto choose_some = [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      const Choice choice = choose(k, tolerance, most_rate, kept);
+      const Choice choice = choose(k, request, most_rate);
       if (choice.failure != Failure::none) failed.add(k);
       plan.segments_[k] = choice.segments;
       plan.bounds_[k] = rounded_up(choice.bound);
@@ -336,17 +340,29 @@ Status CertifiedPlanner::choose_rates(double tolerance, const KeptSegments& kept
   };
   if (Status status = parallel_for(patches, patches_a_piece, execution, choose_some); !status.ok()) return status;
   if (!failed.found()) return {};
-  return refusal(choose(failed.index(), tolerance, most_rate).failure, failed.index(), tolerance);
+  return refusal(choose(failed.index(), request, most_rate).failure, failed.index(), request.tolerance);
+}
+
+Result<CertifiedPlan> CertifiedPlanner::plan(const Request& request, const Execution& execution) const {
+  CertifiedPlan plan;
+  if (Status status = choose_rates(request, plan, execution); !status.ok()) return status;
+  divide(request.tolerance, plan);
+  plan.lay_out();
+  return plan;
 }
 
 Result<CertifiedPlan> CertifiedPlanner::plan(double tolerance, std::uint64_t most_triangles, const Execution& execution,
                                              const KeptSegments& kept) const {
-  CertifiedPlan plan;
-  if (Status status = choose_rates(tolerance, kept, plan, execution); !status.ok()) return status;
-  divide(tolerance, plan);
-  plan.lay_out();
-  const auto [vertices, triangles, quads] = plan.capacity();
-  if (triangles <= most_triangles && vertices <= most_vertices) return plan;
+  Result<CertifiedPlan> best = plan({tolerance, options_.fewest, kept}, execution);
+  if (!best) return best;
+  if (options_.fewest && kept.segments.empty()) {
+    // What neighbours cost one another is estimated where segments are chosen: rarely, others have fewer.
+    Result<CertifiedPlan> plain = plan({tolerance}, {.cancel = execution.cancel});
+    if (!plain) return plain;
+    if (plain->capacity().triangles < best->capacity().triangles) best = std::move(plain);
+  }
+  const auto [vertices, triangles, quads] = best->capacity();
+  if (triangles <= most_triangles && vertices <= most_vertices) return best;
   return Status(StatusCode::invalid_argument, wanted(tolerance) + " takes " + std::to_string(triangles) +
                                                   " triangles and " + std::to_string(vertices) + " vertices, " +
                                                   std::to_string(most_triangles) + " and " +

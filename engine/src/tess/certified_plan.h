@@ -134,18 +134,24 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   CertifiedPlanner(const PatchSet::Impl& set, const PlannerOptions& options)
       : set_(&set), options_(options), fit_error_(set.fit_error.distance), chords_(set) {}
   ChordBound chord(std::size_t patch) const { return chords_.chord(set_->slots[patch].block, set_->slots[patch].lane); }
+  /// What is wanted of a plan.
+  struct Request {
+    double tolerance;     ///< the distance, infinite if any will do
+    bool fewest = false;  ///< segments in halves and such are looked for
+    KeptSegments kept = {};
+  };
+  /// However many triangles it takes.
+  Result<CertifiedPlan> plan(const Request& request, const Execution& execution) const;
   Status bound_turning_and_picture(const PatchSet::Impl& set, const Execution& execution);
-  Choice choose(std::size_t patch, double tolerance, int most, const KeptSegments& kept = {}) const;
+  Choice choose(std::size_t patch, const Request& request, int most) const;
   std::optional<Rates> rates_for(const CellLimits& limits, int most) const;
   /// Rates and bounds of all patches.
-  Status choose_rates(double tolerance, const KeptSegments& kept, CertifiedPlan& plan, const Execution& execution)
-      const;
+  Status choose_rates(const Request& request, CertifiedPlan& plan, const Execution& execution) const;
   /// The same where nothing but a distance is to be kept, block by block.
-  Status choose_by_distance(double tolerance, const KeptSegments& kept, CertifiedPlan& plan, const Execution& execution)
-      const;
+  Status choose_by_distance(const Request& request, CertifiedPlan& plan, const Execution& execution) const;
   /// Takes the fewest cells, if these are looked for, or the kept ones in the place of rates that keep the limits.
   ProvenSegments settle(std::size_t patch, const CellLimits& limits, const ChordBound& chord, int least_rate,
-                        const KeptSegments& kept, Rates rates) const;
+                        const Request& request, Rates rates) const;
   /// The kept segments rather than the best, where there is nothing but a distance.
   ProvenSegments keep_by_distance(std::size_t patch, double distance, const KeptSegments& kept,
                                   ChordBlocks::Products& products, const ProvenSegments& best) const;

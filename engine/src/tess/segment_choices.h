@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -10,6 +11,7 @@
 
 #include "tess/segments.h"
 #include "tess/shared_edges.h"
+#include "tessera/status.h"
 
 namespace tessera {
 
@@ -17,8 +19,7 @@ namespace tessera {
 struct ProvenSegments {
   PatchSegments segments;
   double distance = 0;
-  bool anywhere =
-      false;  ///< wherever triangles lie: else if none straddles the middle of a parameter that segments part
+  bool anywhere = false;  ///< wherever triangles lie; else if none straddles a middle that segments part
 };
 
 /// Those with the fewest cells, fewest first.
@@ -55,10 +56,11 @@ class SegmentChoices {
 };
 
 /// Which choice of each patch it takes: with these the mesh has about the fewest triangles, borders and strips counted, and
-/// no more than with the first. One patch after the other takes the best for it and its borders, the others' being as they
-/// are, four times over. `against`: of each border, whether it runs against its edge.
-std::vector<std::uint8_t> choose_together(std::span<const PatchShape> shapes, const SharedEdges& edges,
-                                          std::span<const std::uint8_t> against,
-                                          std::span<const SegmentChoices> choices);
+/// about no more than with the first. One patch after the other takes the best for it and its borders, the others' being as
+/// they are, four times over. `against`: of each border, whether it runs against its edge. Errors: cancelled.
+Result<std::vector<std::uint8_t>> choose_together(std::span<const PatchShape> shapes, const SharedEdges& edges,
+                                                  std::span<const std::uint8_t> against,
+                                                  std::span<const SegmentChoices> choices,
+                                                  const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace tessera
