@@ -106,16 +106,10 @@ struct Lanes<float> {
   }
   /// A shift by `count` lanes, below `width`.
   struct Shift {
-    __m512i lanes;  ///< from the vector before where bit 4 is set
-    __m512i backward;
+    __m512i lanes;  ///< from the vector before where bit 4 is set; higher ones mean nothing
   };
-  static Shift shift_by(int count) {
-    const __m512i each = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15),
-                  by = _mm512_set1_epi32(count);
-    return {_mm512_xor_si512(_mm512_sub_epi32(each, _mm512_sub_epi32(by, _mm512_set1_epi32(width))),
-                             _mm512_set1_epi32(width)),
-            _mm512_add_epi32(each, by)};
-  }
+  static __m512i each_lane() { return _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15); }
+  static Shift shift_by(int count) { return {_mm512_sub_epi32(each_lane(), _mm512_set1_epi32(count))}; }
   /// The last lanes of the vector before `next` and the first ones of `next`; `carry` keeps what the following call needs.
   static Batch shift_in(Batch& carry, Batch next, const Shift& shift) {
     const __m512 shifted = _mm512_permutex2var_ps(next, shift.lanes, carry);
@@ -123,7 +117,10 @@ struct Lanes<float> {
     return shifted;
   }
   /// The carry with which the next shift_in() leaves the first lanes of `a` where they are.
-  static Batch carried(Batch a, const Shift& shift) { return _mm512_permutexvar_ps(shift.backward, a); }
+  static Batch carried(Batch a, const Shift& shift) {
+    const __m512i twice = _mm512_add_epi32(each_lane(), each_lane());
+    return _mm512_permutexvar_ps(_mm512_sub_epi32(twice, shift.lanes), a);
+  }
   /// x y z x y z ..
   static Batch triples(const float* x, const float* y, const float* z) {
     const __m512 xy = _mm512_mask_broadcastss_ps(_mm512_set1_ps(*x), 0x2492, _mm_load_ss(y));
@@ -227,15 +224,10 @@ struct Lanes<double> {
   }
   /// A shift by `count` lanes, below `width`.
   struct Shift {
-    __m512i lanes;  ///< from the vector before where bit 3 is set
-    __m512i backward;
+    __m512i lanes;  ///< from the vector before where bit 3 is set; higher ones mean nothing
   };
-  static Shift shift_by(int count) {
-    const __m512i each = _mm512_setr_epi64(0, 1, 2, 3, 4, 5, 6, 7), by = _mm512_set1_epi64(count);
-    return {_mm512_xor_si512(_mm512_sub_epi64(each, _mm512_sub_epi64(by, _mm512_set1_epi64(width))),
-                             _mm512_set1_epi64(width)),
-            _mm512_add_epi64(each, by)};
-  }
+  static __m512i each_lane() { return _mm512_setr_epi64(0, 1, 2, 3, 4, 5, 6, 7); }
+  static Shift shift_by(int count) { return {_mm512_sub_epi64(each_lane(), _mm512_set1_epi64(count))}; }
   /// The last lanes of the vector before `next` and the first ones of `next`; `carry` keeps what the following call needs.
   static Batch shift_in(Batch& carry, Batch next, const Shift& shift) {
     const __m512d shifted = _mm512_permutex2var_pd(next, shift.lanes, carry);
@@ -243,7 +235,10 @@ struct Lanes<double> {
     return shifted;
   }
   /// The carry with which the next shift_in() leaves the first lanes of `a` where they are.
-  static Batch carried(Batch a, const Shift& shift) { return _mm512_permutexvar_pd(shift.backward, a); }
+  static Batch carried(Batch a, const Shift& shift) {
+    const __m512i twice = _mm512_add_epi64(each_lane(), each_lane());
+    return _mm512_permutexvar_pd(_mm512_sub_epi64(twice, shift.lanes), a);
+  }
   template <class Row>
   static void load_columns(const Row& row, Batch (&column)[4]) {
     __m512d a[4];

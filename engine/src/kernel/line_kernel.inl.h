@@ -48,6 +48,30 @@ template <class L, int Step>
   L::load_columns([&](int k) { return rows + k * step; }, column);
 }
 
+/// The values of fewer than `width` rows.
+template <class L, int Step>
+[[gnu::always_inline]] inline void put_rest(const LineJob<typename L::Scalar>& job, const typename L::Scalar* rows,
+                                            int l) {
+  constexpr int width = L::width;
+  LineState<typename L::Scalar>& state = *job.state;
+  typename L::Batch column[lane_group<L>];
+  load_group<L, Step>(job, rows, column);
+#pragma GCC unroll 8
+  for (int k = 0; k < lane_group<L>; ++k) {
+    const auto shift = L::shift_by(state.end[l + k]);
+    auto carry = L::load(state.carry[l + k]), vector = L::shift_in(carry, column[k], shift);
+    int end = state.end[l + k] + static_cast<int>(job.count % width);
+    if (end >= width) {
+      put_first<L>(job, l + k, state.next[l + k], vector);
+      vector = L::shift_in(carry, column[k], shift);
+      state.next[l + k] += width;
+      end -= width;
+    }
+    L::store(state.carry[l + k], L::carried(vector, L::shift_by(end)));
+    state.end[l + k] = end;
+  }
+}
+
 /// The lanes from l on.
 template <class L, int Step>
 [[gnu::always_inline]] inline void put_group(const LineJob<typename L::Scalar>& job, int l) {
@@ -57,7 +81,7 @@ template <class L, int Step>
 #pragma GCC unroll 8
   for (int k = 0; k < group; ++k) {
     out.shift[k] = L::shift_by(state.end[l + k]);
-    out.carry[k] = L::carried(L::load(state.part[l + k]), out.shift[k]);
+    out.carry[k] = L::load(state.carry[l + k]);
     out.next[k] = state.next[l + k];
   }
   const auto* rows = job.rows + l;
@@ -78,28 +102,12 @@ template <class L, int Step>
       for (int k = 0; k < group; ++k) L::store(out.next[k] + tile * width, column[k]);
     }
   }
-  const int rest = static_cast<int>(job.count % width);
-  typename L::Batch column[group];
-  if (rest > 0) {
-    load_group<L, Step>(job, rows, column);
-  } else {
-    for (int k = 0; k < group; ++k) column[k] = L::broadcast(0);
-  }
 #pragma GCC unroll 8
   for (int k = 0; k < group; ++k) {
-    auto* next = out.next[k] + tiles * width;
-    int end = state.end[l + k] + rest;
-    auto vector = L::shift_in(out.carry[k], column[k], out.shift[k]);
-    if (end >= width) {
-      put_first<L>(job, l + k, next, vector);
-      vector = L::shift_in(out.carry[k], column[k], out.shift[k]);
-      next += width;
-      end -= width;
-    }
-    L::store(state.part[l + k], vector);
-    state.end[l + k] = end;
-    state.next[l + k] = next;
+    L::store(state.carry[l + k], out.carry[k]);
+    state.next[l + k] = out.next[k] + tiles * width;
   }
+  if (job.count % width > 0) put_rest<L, Step>(job, rows, l);
 }
 
 template <class L, int Step>
@@ -136,9 +144,13 @@ class PartialVectors {
   }
   void finish() {
     if (memory_ == nullptr) return;
-    alignas(64) T values[L::width];
-    L::store(values, vector_);
-    for (int k = begin_; k < end_; ++k) memory_[k] = values[k];
+    if constexpr (requires { L::store_between; }) {
+      L::store_between(memory_, vector_, begin_, end_);
+    } else {
+      alignas(64) T values[L::width];
+      L::store(values, vector_);
+      for (int k = begin_; k < end_; ++k) memory_[k] = values[k];
+    }
     memory_ = nullptr;
   }
 
@@ -157,7 +169,9 @@ void end_lines(const LineState<typename L::Scalar>& state, int lane_count, bool 
     const bool shared = state.first[l] != nullptr, several = state.next[l] != state.first[l];
     const int begin = several ? 0 : state.begin[l];
     if (shared && several) partial.put(state.first[l], L::load(state.head[l]), state.begin[l], L::width);
-    if (begin < state.end[l]) partial.put(state.next[l], L::load(state.part[l]), begin, state.end[l]);
+    if (begin >= state.end[l]) continue;
+    auto carry = L::load(state.carry[l]);
+    partial.put(state.next[l], L::shift_in(carry, carry, L::shift_by(state.end[l])), begin, state.end[l]);
   }
   partial.finish();
 }

@@ -26,8 +26,8 @@ struct BorderJob {
 template <class T>
 struct LineState {
   static constexpr int values = 64 / static_cast<int>(sizeof(T));
-  alignas(64) T part[block_lanes][values];  ///< the vector at `next` as far as it is known, up to `end`
-  alignas(64) T head[block_lanes][values];  ///< once next is beyond first: that one, which another lane may share
+  alignas(64) T carry[block_lanes][values];  ///< of the vector at `next`, known up to `end`: what shift_in() joins
+  alignas(64) T head[block_lanes][values];   ///< once next is beyond first: that one, which another lane may share
   T* first[block_lanes];  ///< the vector in which the lane begins, at value `begin`; null where that is 0
   T* next[block_lanes];
   int begin[block_lanes], end[block_lanes];
