@@ -180,6 +180,7 @@ class StagedBlock {
     const int piece_v = (count_v + parts_v - 1) / parts_v, piece_u = std::max(1, layout_.piece() / count_v);
     Isa isa = Isa::sse2;
     begin(records);
+    if (is_mesh(job)) return run_mesh(job, first_u, end_u, count_v, lane_count);
     for (job.u_begin = first_u; job.u_begin < end_u; job.u_begin += piece_u) {
       job.u_end = std::min(end_u, job.u_begin + piece_u);
       for (job.v_begin = 0; job.v_begin < count_v; job.v_begin += piece_v) {
@@ -209,6 +210,30 @@ class StagedBlock {
       waiting_[k] = 0;
       lines_.begin(states_[k++], memory);
     }
+  }
+
+  /// Positions and normals of bicubic patches, which a kernel sends on while it computes them.
+  bool is_mesh(const kernel::GridJob<T>& job) const {
+    if constexpr (sizeof(T) != 4 || planted_slowdown > 0) return false;
+    return kernels_.mesh_lines_f32 && layout_.one_record() && layout_.record_width() == 6 && !out_.position.empty() &&
+           !out_.normal.empty() && job.degree_u == 3 && job.degree_v == 3 && !job.rational && !job.normal_kind &&
+           !job.curvature_kind;
+  }
+  Isa run_mesh(kernel::GridJob<T>& job, int first_u, int end_u, int count_v, int lane_count) {
+    job.u_begin = first_u;
+    job.u_end = end_u;
+    job.v_begin = 0;
+    job.v_end = count_v;
+    place_fields(job);
+    Isa isa = Isa::sse2;
+    if constexpr (sizeof(T) == 4)
+      isa = kernels_.mesh_lines_f32(job, {.state = states_.data(),
+                                          .rows = stage_.data(),
+                                          .count = 0,
+                                          .lane_count = lane_count,
+                                          .streaming = streaming_});
+    lines_.end(states_[0], lane_count, streaming_);
+    return isa;
   }
 
   /// Behind what still waits in the stage.

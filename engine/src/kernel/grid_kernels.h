@@ -79,9 +79,18 @@ struct GridJob {
   T umbilic_tolerance = 0;  ///< (k1 - k2) / (|k1| + |k2|) at or below which a point is umbilic
 };
 
+template <class T>
+struct LineJob;
+
+/// Rows of the ring through which mesh_lines_f32 sends samples: whole samples, and whole vectors of any width.
+inline constexpr int mesh_line_rows = 96;
+
 /// Each returns its own ISA, which the report hands to the caller.
 struct GridKernels {
   Isa (*grid_f32)(const GridJob<float>&);
+  /// Positions and normals of bicubic patches, nothing else, six values a record, as put_lines_f32 puts them: `lines.rows`
+  /// has mesh_line_rows rows, which hold the job's outputs in turn. Null where it would not pay.
+  Isa (*mesh_lines_f32)(const GridJob<float>&, const LineJob<float>& lines);
 };
 struct DoubleGridKernels {
   Isa (*grid_f64)(const GridJob<double>&);

@@ -4,6 +4,7 @@
 
 #include "kernel/grid_kernels.h"
 #include "kernel/lanes.h"
+#include "kernel/line_kernels.h"
 
 namespace tessera::kernel::TESSERA_ISA_NAMESPACE {
 namespace {
@@ -14,11 +15,24 @@ namespace {
 #include "kernel/curvature_kernel.inl.h"
 #include "kernel/line_stores.inl.h"
 #include "kernel/grid_kernel.inl.h"
+#include "kernel/line_kernel.inl.h"
+#include "kernel/mesh_line_kernel.inl.h"
+
+/// Vectors of half a line that are streamed one by one go to memory in halves.
+template <class L>
+constexpr auto mesh_line_kernel() -> Isa (*)(const GridJob<float>&, const LineJob<float>&) {
+  if constexpr (L::width == block_lanes) {
+    return mesh_lines<L>;
+  } else {
+    return nullptr;
+  }
+}
 
 }  // namespace
 
 extern const GridKernels grid_kernels = {
     evaluate_grid<Lanes<float>>,
+    mesh_line_kernel<Lanes<float>>(),
 };
 
 }  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE
