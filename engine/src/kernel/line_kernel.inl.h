@@ -78,8 +78,10 @@ template <class L, int Step>
   constexpr int group = lane_group<L>, width = L::width;
   LineState<typename L::Scalar>& state = *job.state;
   GroupLines<L> out;
+  int turned = 0;  // 0 if all lanes go on with a whole vector: nothing is to be joined then
 #pragma GCC unroll 8
   for (int k = 0; k < group; ++k) {
+    turned |= state.end[l + k];
     out.shift[k] = L::shift_by(state.end[l + k]);
     out.carry[k] = L::load(state.carry[l + k]);
     out.next[k] = state.next[l + k];
@@ -90,8 +92,10 @@ template <class L, int Step>
   for (std::ptrdiff_t tile = 0; tile < tiles; ++tile, rows += width * step) {
     typename L::Batch column[group];
     load_group<L, Step>(job, rows, column);
+    if (turned != 0) {
 #pragma GCC unroll 8
-    for (int k = 0; k < group; ++k) column[k] = L::shift_in(out.carry[k], column[k], out.shift[k]);
+      for (int k = 0; k < group; ++k) column[k] = L::shift_in(out.carry[k], column[k], out.shift[k]);
+    }
     if (tile == 0) {
       for (int k = 0; k < group; ++k) put_first<L>(job, l + k, out.next[k], column[k]);
     } else if (job.streaming) {
