@@ -284,7 +284,7 @@ void add_cap(CLI::App& command, Options& options) {
       ->excludes(command.get_option("--triangles"));
   command
       .add_flag("--fewest", options.certified.fewest,
-                "Take some 100 us a patch and more to find out where fewer triangles will do, unless by --grid")
+                "Take 15 to 200 us a patch to find out where fewer triangles will do, unless by --grid")
       ->excludes(command.get_option("--grid"));
 }
 
