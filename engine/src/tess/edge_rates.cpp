@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 
 #include "tess/certified_plan.h"
 #include "tess/edge_needs.h"
@@ -41,6 +42,7 @@ bool CertifiedPlanner::may_straddle(std::size_t patch, Side side, const std::arr
   const auto s = static_cast<std::size_t>(side);
   const Segments border = borders[s], opposite = borders[(s + 2) % 4];
   const int rate = opposite.parts_halves() ? border.rate() : std::min(border.rate(), opposite.rate());
+  assert(plan.segments_[patch].are_uniform());  // only coarse ones come here
   const auto [piece, rates] = ChordBound::straddling(plan.segments_[patch].rates(), edge_of(side), rate);
   const PatchSet::Slot slot = set_->slots[patch];
   const double given = roundings_[patch] + fit_error_,

@@ -1,6 +1,7 @@
 #include "tess/present_bounds.h"
 
 #include <algorithm>
+#include <cassert>
 #include <numeric>
 
 #include "parallel/parallel_for.h"
@@ -21,6 +22,7 @@ double distance(const ChordBound& chord, PatchSegments segments, const Division&
     const Segments border = division.border[s], opposite = division.border[(s + 2) % 4];
     if (!(runs_along_u(side) ? segments.u : segments.v).parts_halves() || border.parts_halves()) continue;
     const int rate = opposite.parts_halves() ? border.rate() : std::min(border.rate(), opposite.rate());
+    assert(segments.are_uniform());  // borders of others part halves
     const auto straddling = ChordBound::straddling(segments.rates(), edge_of(side), rate);
     most = std::max(most, chord.pieces()[straddling.piece].chord(straddling.rates));
   }
