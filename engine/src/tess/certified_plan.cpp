@@ -220,17 +220,17 @@ Status CertifiedPlanner::refusal(Failure failure, std::size_t patch, double tole
                    patch);
   constexpr int unlimited = 1 << 24;
   double triangles = 0;
+  const char* about = "about ";
   for (std::size_t k = 0; k < shapes_.size(); ++k) {
     const Choice choice = choose(k, {tolerance}, unlimited);
-    if (choice.failure != Failure::none)
-      return invalid(
-          wanted(tolerance) + " is not known to be kept by any number of segments of patch " + std::to_string(k), k);
-    triangles += 2 * choice.cells;
+    const bool is_known = choice.failure == Failure::none;
+    if (!is_known) about = "more than ";
+    triangles += 2 * (is_known ? choice.cells : unlimited);
   }
   std::array<char, 32> count;
   std::snprintf(count.data(), count.size(), "%.2g", triangles);
   return invalid(wanted(tolerance) + " takes more than " + std::to_string(most_rate) +
-                     " segments along a parameter of patch " + std::to_string(patch) + ", and about " + count.data() +
+                     " segments along a parameter of patch " + std::to_string(patch) + ", and " + about + count.data() +
                      " triangles in all",
                  patch);
 }
