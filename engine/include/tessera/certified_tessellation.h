@@ -89,8 +89,8 @@ struct CertifiedOptions {
 ///
 /// Layout of the vertices, patch after patch: first_vertex(k) + (iu - 1) * (rates v - 1) + iv - 1 for the inner points,
 /// then the border points counter-clockwise from (0,0), each corner once, but for shared ones that count to another patch.
-/// Immutable. Threads: any number of const calls. Memory: to make one 1 KiB a patch, to keep it 256 bytes; and 512 KiB at
-/// most that a process keeps of what small plans share.
+/// Immutable. Threads: any number of const calls. Memory: to make one 1 KiB a patch, to keep it 256 bytes; and about
+/// 512 KiB at most that a process keeps of what small plans share.
 class CertifiedTessellation {
  public:
   /// Errors: invalid_argument (no tolerance of any kind, or one that is not above 0; one that a patch's rounding, welding or

@@ -47,7 +47,7 @@ class MeshUpdate {
   Status run(PatchSet& set, const PatchEdits& edits, const MeshViews& out, const Execution& execution = {});
 
   /// Proves anew how far the mesh lies from the patches that were touched since the last call: about a quarter of what
-  /// an update of theirs costs, but for plans of the fewest triangles, 10 to 50 us a patch; what such a plan has proven,
+  /// an update of theirs costs, but for plans of the fewest triangles, up to 110 us a bicubic patch; what such a plan has proven,
   /// one patch in a hundred is not known to keep, by up to 6%. Distances alone: angles and pixels are proven by a plan, and
   /// count as not proven for patches that were touched. Allocates nothing. Errors: stale (the set was edited by other
   /// means), cancelled.
