@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <string>
 #include <type_traits>
 
 #include "ray/embree_api.h"
@@ -25,9 +26,11 @@ struct Release {
 template <class Handle>
 using Held = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
 
-/// A device and a robust scene of it.
+/// A device and a robust scene of it. `options`: more of Embree's own, such as the instruction set.
 struct World {
-  Held<RTCDevice> device{rtcNewDevice("start_threads=0")};
+  explicit World(const std::string& options = {}) : device(rtcNewDevice(("start_threads=0" + options).c_str())) {}
+
+  Held<RTCDevice> device;
   Held<RTCScene> scene = make_scene();
 
   Held<RTCScene> make_scene() const {
@@ -109,40 +112,62 @@ TEST(EmbreeGeometry, SameHitsAsTheRayScene) {
   }
 }
 
+/// 16 rays, of which each fifth is inactive.
+struct Packet {
+  RTCRayHit16 rays;
+  alignas(64) std::array<int, 16> valid;
+
+  explicit Packet(std::span<const Ray> from) {
+    for (unsigned k = 0; k < 16; ++k) {
+      const RTCRayHit one = embree_ray(from[k]);
+      RTCRay16& ray = rays.ray;
+      valid[k] = k % 5 == 4 ? 0 : -1;
+      ray.org_x[k] = one.ray.org_x, ray.org_y[k] = one.ray.org_y, ray.org_z[k] = one.ray.org_z;
+      ray.dir_x[k] = one.ray.dir_x, ray.dir_y[k] = one.ray.dir_y, ray.dir_z[k] = one.ray.dir_z;
+      ray.tnear[k] = 0, ray.tfar[k] = one.ray.tfar, ray.time[k] = 0, ray.mask[k] = ~0u;
+      ray.id[k] = k, ray.flags[k] = 0;
+      rtcCopyHitToHitN(hits(), &one.hit, 16, k);
+    }
+  }
+  RTCRay ray(unsigned k) { return rtcGetRayFromRayN(reinterpret_cast<RTCRayN*>(&rays.ray), 16, k); }
+  RTCHit hit(unsigned k) { return rtcGetHitFromHitN(hits(), 16, k); }
+
+ private:
+  RTCHitN* hits() { return reinterpret_cast<RTCHitN*>(&rays.hit); }
+};
+
+/// Embree's own instruction sets that this machine has, the narrowest first.
+std::vector<std::string> embree_isas() {
+  std::vector<std::string> isas;
+  for (const Isa isa : available_isas()) isas.emplace_back(name(isa));
+  return isas;
+}
+
 TEST(EmbreeGeometry, Packets) {
   const PatchSet set = set_of(Torus(8).patches(false));
   const RayScene scene = value_of(RayScene::make(set));
-  const World world;
-  (void)value_of(attach(scene, world.scene.get()));
-  rtcCommitScene(world.scene.get());
   const std::vector<Ray> rays = rays_at_torus(1600);
   const std::vector<Hit> expected = closest(scene, rays);
-  for (std::size_t first = 0; first < rays.size(); first += 16) {
-    RTCRayHit16 packet;
-    alignas(64) std::array<int, 16> valid;
-    auto* const packed_rays = reinterpret_cast<RTCRayN*>(&packet.ray);
-    auto* const packed_hits = reinterpret_cast<RTCHitN*>(&packet.hit);
-    for (unsigned k = 0; k < 16; ++k) {
-      const RTCRayHit one = embree_ray(rays[first + k]);
-      valid[k] = k % 5 == 4 ? 0 : -1;
-      packet.ray.org_x[k] = one.ray.org_x, packet.ray.org_y[k] = one.ray.org_y, packet.ray.org_z[k] = one.ray.org_z;
-      packet.ray.dir_x[k] = one.ray.dir_x, packet.ray.dir_y[k] = one.ray.dir_y, packet.ray.dir_z[k] = one.ray.dir_z;
-      packet.ray.tnear[k] = 0, packet.ray.tfar[k] = one.ray.tfar, packet.ray.time[k] = 0, packet.ray.mask[k] = ~0u;
-      packet.ray.id[k] = k, packet.ray.flags[k] = 0;
-      rtcCopyHitToHitN(packed_hits, &one.hit, 16, k);
-    }
-    RTCRay16 shadows = packet.ray;
-    EmbreeContext context = embree_context();
-    intersect(world.scene.get(), context, Coherence::coherent, valid.data(), packet);
-    occluded(world.scene.get(), context, Coherence::coherent, valid.data(), shadows);
-    for (unsigned k = 0; k < 16; ++k) {
-      const RTCHit hit = rtcGetHitFromHitN(packed_hits, 16, k);
-      if (valid[k] == 0) {
-        EXPECT_EQ(hit.geomID, nothing);
-        continue;
+  for (const std::string& isa : embree_isas()) {
+    SCOPED_TRACE(isa);
+    const World world(",isa=" + isa);
+    (void)value_of(attach(scene, world.scene.get()));
+    rtcCommitScene(world.scene.get());
+    for (std::size_t first = 0; first < rays.size(); first += 16) {
+      Packet packet{std::span(rays).subspan(first, 16)};
+      RTCRay16 shadows = packet.rays.ray;
+      EmbreeContext context = embree_context();
+      intersect(world.scene.get(), context, Coherence::coherent, packet.valid.data(), packet.rays);
+      occluded(world.scene.get(), context, Coherence::coherent, packet.valid.data(), shadows);
+      for (unsigned k = 0; k < 16; ++k) {
+        if (packet.valid[k] == 0) {
+          EXPECT_EQ(packet.hit(k).geomID, nothing);
+          EXPECT_EQ(shadows.tfar[k], 0) << "an inactive lane was traced";
+          continue;
+        }
+        expect_same(packet.ray(k), packet.hit(k), expected[first + k]);
+        EXPECT_EQ(shadows.tfar[k] < 0, expected[first + k].kind == HitKind::hit);
       }
-      expect_same(rtcGetRayFromRayN(packed_rays, 16, k), hit, expected[first + k]);
-      EXPECT_EQ(shadows.tfar[k] < 0, expected[first + k].kind == HitKind::hit);
     }
   }
 }

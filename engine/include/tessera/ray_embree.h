@@ -27,6 +27,8 @@ namespace tessera {
 /// Rays: single ones and packets. Each is traced in double as it stands in the object's space: what exact mode says holds
 /// for that ray, which Embree has transformed in float where the geometry is instanced, and the scene's tolerance is a
 /// length of that space. The user's scene must be robust (RTC_SCENE_FLAG_ROBUST): in others Embree's own boxes leak.
+/// Inactive lanes of a packet need tnear > tfar beside valid = 0: Embree 3.13 ignores `valid` of 16-wide packets on machines
+/// without AVX-512, whatever the geometry.
 /// Filters, the geometry's and the context's (in Embree 4 the arguments'), see each root of a patch from the nearest on
 /// until one is accepted, and a root at the border of two patches, or of two pieces of one, perhaps once for each.
 ///

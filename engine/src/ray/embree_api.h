@@ -7,6 +7,13 @@ namespace tessera {
 
 enum class Coherence { incoherent, coherent };
 
+/// Empties the interval of each inactive lane. Embree 3.13 ignores `valid` of 16-wide packets on machines without AVX-512,
+/// where it traces them as narrower ones; it skips a ray with tnear > tfar on all.
+inline void empty_inactive_lanes(const int* valid, RTCRay16& rays) {
+  for (unsigned k = 0; k < 16; ++k)
+    if (valid[k] == 0) rays.tnear[k] = 1, rays.tfar[k] = 0;
+}
+
 #if RTC_VERSION_MAJOR < 4
 
 using EmbreeContext = RTCIntersectContext;
@@ -29,6 +36,7 @@ inline void intersect(RTCScene scene, EmbreeContext& context, Coherence coherenc
 inline void intersect(RTCScene scene, EmbreeContext& context, Coherence coherence, const int* valid,
                       RTCRayHit16& rays) {
   set_coherence(context, coherence);
+  empty_inactive_lanes(valid, rays.ray);
   rtcIntersect16(valid, scene, &context, &rays);
 }
 inline void occluded(RTCScene scene, EmbreeContext& context, Coherence coherence, RTCRay& ray) {
@@ -37,6 +45,7 @@ inline void occluded(RTCScene scene, EmbreeContext& context, Coherence coherence
 }
 inline void occluded(RTCScene scene, EmbreeContext& context, Coherence coherence, const int* valid, RTCRay16& rays) {
   set_coherence(context, coherence);
+  empty_inactive_lanes(valid, rays);
   rtcOccluded16(valid, scene, &context, &rays);
 }
 
@@ -82,6 +91,7 @@ inline void intersect(RTCScene scene, EmbreeContext& context, Coherence coherenc
 inline void intersect(RTCScene scene, EmbreeContext& context, Coherence coherence, const int* valid,
                       RTCRayHit16& rays) {
   RTCIntersectArguments arguments = intersect_arguments(context, coherence);
+  empty_inactive_lanes(valid, rays.ray);
   rtcIntersect16(valid, scene, &rays, &arguments);
 }
 inline void occluded(RTCScene scene, EmbreeContext& context, Coherence coherence, RTCRay& ray) {
@@ -90,6 +100,7 @@ inline void occluded(RTCScene scene, EmbreeContext& context, Coherence coherence
 }
 inline void occluded(RTCScene scene, EmbreeContext& context, Coherence coherence, const int* valid, RTCRay16& rays) {
   RTCOccludedArguments arguments = occluded_arguments(context, coherence);
+  empty_inactive_lanes(valid, rays);
   rtcOccluded16(valid, scene, &rays, &arguments);
 }
 
