@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <queue>
+#include <span>
 #include <vector>
 
 #include "support/triangle_distance.h"
@@ -29,6 +30,18 @@ inline MeshTriangle triangle_of(const Mesh& mesh, std::size_t t) {
         mesh.origin + Vec3{mesh.positions[3 * k], mesh.positions[3 * k + 1], mesh.positions[3 * k + 2]};
   }
   return triangle;
+}
+
+/// The triangles [begin, end) of a mesh that share an edge with triangle t, and it. Their patch is one.
+inline std::vector<MeshTriangle> triangles_around(const Mesh& mesh, std::size_t t, std::size_t begin, std::size_t end) {
+  std::vector<MeshTriangle> around;
+  for (std::size_t other = begin; other < end; ++other) {
+    int shared = 0;
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t b = 0; b < 3; ++b) shared += mesh.indices[3 * t + a] == mesh.indices[3 * other + b];
+    if (shared >= 2) around.push_back(triangle_of(mesh, other));
+  }
+  return around;
 }
 
 /// An interval that holds the largest distance.
@@ -67,8 +80,8 @@ inline void cut(Piece& piece, int lines, int line_step, int count, int step, dou
 
 class Search {
  public:
-  Search(const BezierPatch& patch, const MeshTriangle& triangle)
-      : m_(patch.degree_u()), n_(patch.degree_v()), triangle_(triangle) {
+  Search(const BezierPatch& patch, const MeshTriangle& triangle, std::span<const MeshTriangle> nearby)
+      : m_(patch.degree_u()), n_(patch.degree_v()), triangle_(triangle), nearby_(nearby) {
     Piece whole{0, 1, 0, 1, {}, 0};
     for (int i = 0; i <= m_; ++i)
       for (int j = 0; j <= n_; ++j) {
@@ -112,8 +125,13 @@ class Search {
     if (v0 > piece.v0) cut(piece, m_ + 1, row, row, 1, (v0 - piece.v0) / (piece.v1 - piece.v0), false), piece.v0 = v0;
   }
 
+  static double distance(const Vec3& p, const MeshTriangle& triangle) {
+    return distance_to_triangle(p, triangle.corners[0], triangle.corners[1], triangle.corners[2]);
+  }
   double distance(const Vec3& p) const {
-    return distance_to_triangle(p, triangle_.corners[0], triangle_.corners[1], triangle_.corners[2]);
+    double least = 1e300;
+    for (const MeshTriangle& triangle : nearby_) least = std::min(least, distance(p, triangle));
+    return least;
   }
 
   /// Twice the signed area of the parameter triangle with its corner k replaced.
@@ -141,12 +159,17 @@ class Search {
     return true;
   }
 
-  /// The distance from a triangle is convex: over the hull of the control points it is largest at one of them.
+  /// The distance from a triangle is convex: over the hull of the control points it is largest at one of them. From the
+  /// nearest of some it is at most that from the best one.
   void add(Piece piece) {
     if (outside(piece)) return;
-    piece.bound = 0;
-    for (const auto& a : piece.net)
-      piece.bound = std::max(piece.bound, distance({a[0] / a[3], a[1] / a[3], a[2] / a[3]}));
+    piece.bound = 1e300;
+    for (const MeshTriangle& triangle : nearby_) {
+      double most = 0;
+      for (const auto& a : piece.net)
+        most = std::max(most, distance({a[0] / a[3], a[1] / a[3], a[2] / a[3]}, triangle));
+      piece.bound = std::min(piece.bound, most);
+    }
     const std::size_t row = static_cast<std::size_t>(n_) + 1, last = piece.net.size() - 1;
     const std::array<std::pair<std::size_t, std::array<double, 2>>, 4> ends{{{0, {piece.u0, piece.v0}},
                                                                              {row - 1, {piece.u0, piece.v1}},
@@ -160,6 +183,7 @@ class Search {
 
   int m_, n_;
   const MeshTriangle& triangle_;
+  std::span<const MeshTriangle> nearby_;
   double low_ = 0;
   std::priority_queue<Piece> pieces_;
 };
@@ -170,7 +194,15 @@ class Search {
 /// relative precision, or as near as `most_steps` subdivisions lead.
 inline DistanceRange largest_distance(const BezierPatch& patch, const MeshTriangle& triangle, double precision = 0.01,
                                       int most_steps = 2000) {
-  return true_distance::Search(patch, triangle).run(precision, most_steps);
+  return true_distance::Search(patch, triangle, {&triangle, 1}).run(precision, most_steps);
+}
+
+/// The largest distance of the same points from a mesh's triangles [begin, end) of that patch: from triangle t and those
+/// that share an edge with it. Points of the patch may lie nearest to a neighbour of the triangle over their parameters.
+inline DistanceRange largest_distance(const BezierPatch& patch, const Mesh& mesh, std::size_t t, std::size_t begin,
+                                      std::size_t end, double precision = 0.01, int most_steps = 2000) {
+  const std::vector<MeshTriangle> around = triangles_around(mesh, t, begin, end);
+  return true_distance::Search(patch, triangle_of(mesh, t), around).run(precision, most_steps);
 }
 
 }  // namespace tessera::test

@@ -36,8 +36,12 @@ void expect_certificates(const CertificateSet& chosen, const CertifiedOptions& o
   for (int sample = 0; sample < 30; ++sample) {
     const std::size_t t = random() % mesh.triangle_count();
     const double bound = plan.bounds()[mesh.patches[t]];
-    const DistanceRange found = largest_distance(set.patch(mesh.patches[t]), triangle_of(mesh, t), 0.1, 60);
-    EXPECT_LE(found.low, bound) << chosen.name;
+    const BezierPatch patch = set.patch(mesh.patches[t]);
+    const DistanceRange found = largest_distance(patch, triangle_of(mesh, t), 0.1, 60);
+    // Points of a scaled sweep may lie nearest to the triangle's neighbours.
+    if (found.low > bound) {
+      EXPECT_LE(largest_distance(patch, mesh, t, 0, mesh.triangle_count(), 0.1, 60).low, bound) << chosen.name;
+    }
     tightest = std::max(tightest, found.high / bound);
   }
   EXPECT_GE(tightest, chosen.bicubic ? 0.25 : 1e-4) << chosen.name;

@@ -9,6 +9,7 @@ namespace tessera::kernel::TESSERA_ISA_NAMESPACE {
 struct AnyChordKernels {
   void (*bound_chords)(const ChordJob&);
   void (*bound_rational_chords)(const ChordJob&);
+  void (*bound_exact_chords)(const ExactChordJob&);
   void (*bound_products)(const ChordProductJob&);
   void (*bound_rational_products)(const ChordProductJob&);
   void (*share_of_products)(const ChordProductJob&);

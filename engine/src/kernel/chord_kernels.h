@@ -22,6 +22,19 @@ struct ChordJob {
 /// the coefficients as well, and `size` is negative where rounding is too much of a bound, or weights are too uneven.
 inline constexpr int most_rational_degree = 7;
 
+/// Bounds on the second derivatives of rational patches themselves, from exact numerators, of those patches up to
+/// most_exact_degree or that are scaled sweeps: see ChordBound.
+struct ExactChordJob {
+  /// `[i][j][x, y, z, w][lane]`: w times the point relative to a place near the patch, and w, above 0 and near 1 at most.
+  const double* net = nullptr;
+  int degree_u = 0, degree_v = 0;
+  double* deviation = nullptr;  ///< `[lane]`: how far the patch may lie from a scaled sweep; infinite if it is none
+  /// `[piece of 9][uu, uv, vv][lane]` in lengths, of the sweep where there is one; infinite or NaN where there is no bound.
+  /// Null: the deviation alone.
+  double* pieces = nullptr;
+};
+inline constexpr int most_exact_degree = 3;
+
 /// Bounds on products of the second derivatives of such a block: see SecondDerivatives. Of degrees up to most_product_degree.
 struct ChordProductJob {
   const float* net = nullptr;
@@ -68,6 +81,7 @@ struct ChordKernels {
   void (*match_borders)(const BorderMatchJob&);
   void (*bound_chords)(const ChordJob&);
   void (*bound_rational_chords)(const ChordJob&);
+  void (*bound_exact_chords)(const ExactChordJob&);
   void (*bound_products)(const ChordProductJob&);           ///< the products alone
   void (*bound_rational_products)(const ChordProductJob&);  ///< the same, of rational patches
   void (*share_of_products)(const ChordProductJob&);        ///< the share alone, of polynomial ones

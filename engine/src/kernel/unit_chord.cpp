@@ -22,6 +22,7 @@ void bound_chords_of_block(const ChordJob& job) {
   is_bicubic(job) ? bound_chords<Lanes<float>, 3>(job) : any_chord_kernels.bound_chords(job);
 }
 void bound_rational_chords_of_block(const ChordJob& job) { any_chord_kernels.bound_rational_chords(job); }
+void bound_exact_chords_of_block(const ExactChordJob& job) { any_chord_kernels.bound_exact_chords(job); }
 void bound_products_of_block(const ChordProductJob& job) {
   is_bicubic(job) ? bound_products<Lanes<float>, 3>(job) : any_chord_kernels.bound_products(job);
 }
@@ -33,9 +34,9 @@ void share_of_products_of_block(const ChordProductJob& job) {
 }  // namespace
 
 extern const ChordKernels chord_kernels = {
-    hash_borders<Lanes<float>>,     match_borders<Lanes<float>>, bound_chords_of_block,
-    bound_rational_chords_of_block, bound_products_of_block,     bound_rational_products_of_block,
-    share_of_products_of_block,     find_rates<Lanes<float>>,
+    hash_borders<Lanes<float>>,       match_borders<Lanes<float>>, bound_chords_of_block,
+    bound_rational_chords_of_block,   bound_exact_chords_of_block, bound_products_of_block,
+    bound_rational_products_of_block, share_of_products_of_block,  find_rates<Lanes<float>>,
 };
 
 }  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE

@@ -12,12 +12,13 @@ namespace {
 #include "kernel/rational_nets.inl.h"
 #include "kernel/rational_chord.inl.h"
 #include "kernel/rational_product.inl.h"
+#include "kernel/exact_chord.inl.h"
 
 }  // namespace
 
 extern const AnyChordKernels any_chord_kernels = {
-    bound_chords<Lanes<float>, 0>,         bound_rational_chords<Lanes<float>>, bound_products<Lanes<float>, 0>,
-    bound_rational_products<Lanes<float>>, share_of_products<Lanes<float>, 0>,
+    bound_chords<Lanes<float>, 0>,   bound_rational_chords<Lanes<float>>,   bound_exact_chords<Lanes<double>>,
+    bound_products<Lanes<float>, 0>, bound_rational_products<Lanes<float>>, share_of_products<Lanes<float>, 0>,
 };
 
 }  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE

@@ -66,7 +66,8 @@ Result<CertifiedPlanner> CertifiedPlanner::make(const PatchSet::Impl& set, const
         const std::size_t k = set.lane_patches[block * PatchSet::lanes + lane];
         const std::optional<double> size = planner.chords_.size(block, lane);
         planner.shapes_[k] = set.collapsed[k].any() ? PatchShape::of(set.patches[k], set.collapsed[k]) : whole;
-        planner.roundings_[k] = size ? rounding * *size : vertex_rounding(set.patches[k], set.origin);
+        planner.roundings_[k] = (size ? rounding * *size : vertex_rounding(set.patches[k], set.origin)) +
+                                planner.chords_.slack(block, lane);
       }
     }
   };

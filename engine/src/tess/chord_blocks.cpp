@@ -38,7 +38,9 @@ double pairs_of_products(const BlockGroup& group) {
 ChordBlocks::ChordBlocks(const PatchSet::Impl& set)
     : pieces_(set.lane_counts.size() * block_pieces),
       unit_(set.lane_counts.size() * lanes, 1.0f),
-      size_(unit_.size(), -1.0f) {
+      size_(unit_.size(), -1.0f),
+      slack_(unit_.size(), 0.0f),
+      source_(unit_.size(), Source::packed) {
   for (const BlockGroup& group : set.groups)  // whose lanes are not all bounded
     if (!is_bounded_in_blocks(group))
       std::fill_n(pieces_.data() + group.first_block * block_pieces, group.block_count * block_pieces, 0.0f);
@@ -58,21 +60,14 @@ void ChordBlocks::bound(const PatchSet::Impl& set, std::size_t block, std::uint3
          .unit = unit_.data() + block * lanes,
          .size = size_.data() + block * lanes});
   for (std::size_t lane = 0; lane < set.lane_counts[block]; ++lane) {
-    float &size = size_[block * lanes + lane], &unit = unit_[block * lanes + lane];
-    if (in_block ? size >= 0 && size < largest_size : !(wanted >> lane & 1u)) continue;
-    size = -1;
-    const ChordBound chord(set.patches[set.lane_patches[block * lanes + lane]]);
-    // In the unit of the largest, so that float holds squares of the others.
-    double most = 0;
-    for (const SecondDerivatives& d : chord.pieces()) most = std::max({most, d.uu, d.uv, d.vv});
-    unit = std::isfinite(most) && most > 0 ? std::ldexp(1.0f, std::clamp(std::ilogb(most), -120, 120)) : 1.0f;
-    for (std::size_t k = 0; k < piece_count; ++k) {
-      const SecondDerivatives& d = chord.pieces()[k];
-      const double bounds[] = {d.uu, d.uv, d.vv};
-      for (std::size_t kind = 0; kind < 3; ++kind)
-        pieces[(k * 3 + kind) * lanes + lane] = rounded_up(bounds[kind] / double(unit));
-    }
+    if (!in_block && !(wanted >> lane & 1u)) continue;
+    float& size = size_[block * lanes + lane];
+    const bool is_packed = in_block && size >= 0 && size < largest_size;
+    source_[block * lanes + lane] = is_packed ? Source::packed : Source::alone;
+    slack_[block * lanes + lane] = 0;
+    if (!is_packed) size = -1;
   }
+  bound_exactly(set, block, in_block ? ~0u : wanted);
 }
 
 ChordBound ChordBlocks::chord(std::size_t block, std::size_t lane, const Products* products) const {
@@ -109,7 +104,16 @@ void ChordBlocks::Products::find(const ChordBlocks& chords, const PatchSet::Impl
        .unit = unit,
        .products = values_.data()});
   for (std::size_t lane = 0; lane < set.lane_counts[block]; ++lane) {
-    if (chords.size_[block * lanes + lane] >= 0) continue;
+    const Source source = chords.source_[block * lanes + lane];
+    if (source == Source::packed) continue;
+    if (source == Source::exact || source == Source::sweep) {
+      for (std::size_t k = 0; k < piece_count; ++k)
+        for (std::size_t which = 0; which < 3; ++which)
+          if (source == Source::exact || which > 0)
+            values_[(k * 3 + which) * lanes + lane] =
+                source == Source::exact ? std::numeric_limits<float>::infinity() : 0.0f;
+      continue;
+    }
     const ChordBound chord(set.patches[set.lane_patches[block * lanes + lane]], true);
     const double squared_unit = double(unit[lane]) * double(unit[lane]);
     for (std::size_t k = 0; k < piece_count; ++k) {
@@ -165,7 +169,8 @@ double ChordBlocks::saved_by_products(const PatchSet::Impl& set, std::size_t blo
          .share = share.data()});
   double saved = 0;
   for (std::size_t lane = 0; lane < count; ++lane)
-    saved += std::max(0.0, 1 - double(share[lane])) * choice.rates[lane].u * choice.rates[lane].v;
+    if (source_[block * lanes + lane] != Source::exact)
+      saved += std::max(0.0, 1 - double(share[lane])) * choice.rates[lane].u * choice.rates[lane].v;
   // These take 3.5 times as long as those of polynomial patches, and what is made of a cell up to twice as long.
   return (group.rational ? 0.5 : 1) * saved / double(count);
 }

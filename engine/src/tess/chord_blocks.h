@@ -13,13 +13,21 @@
 namespace tessera {
 
 /// ChordBound in float, rounded up, of a set with float Bernstein blocks. Bounds come from the packed coefficients, sixteen
-/// patches at a time, and include their rounding; those of rational patches of high degrees or uneven weights, or which are
-/// small beside the model, one by one, from double.
+/// patches at a time, and include their rounding. Rational patches are bounded from double as well, by exact numerators, and
+/// keep the bound with fewer cells; so do scaled sweeps and flat quadrilaterals (ChordBound) of any kind. Homogeneous bounds
+/// of rational patches of high degrees or uneven weights, or which are small beside the model, are found one by one.
 class ChordBlocks {
  public:
   template <class T>
   using Lanes = std::array<T, PatchSet::lanes>;
 
+  /// What a lane's bounds are.
+  enum class Source : std::uint8_t {
+    packed,  ///< of the block's kernel
+    alone,   ///< of the homogeneous patch, in double
+    exact,   ///< of exact numerators; without products
+    sweep,   ///< as `packed`, of a scaled sweep: uv is 0, and so are its products
+  };
   explicit ChordBlocks(const PatchSet::Impl& set);
 
   /// Finds the bounds of a block, of those lanes at least whose bits are set. Threads: any number, each a block of its own.
@@ -30,6 +38,9 @@ class ChordBlocks {
     if (size < 0) return {};
     return (1 + 0x1p-22) * double(size);  // the control points were rounded
   }
+  Source source(std::size_t block, std::size_t lane) const { return source_[block * lanes + lane]; }
+  /// What counts beside the chord: twice the distance of a patch from the sweep or the quadrilateral that it is bounded as.
+  double slack(std::size_t block, std::size_t lane) const { return double(slack_[block * lanes + lane]); }
   /// Bounds on the products of second derivatives, found where they are asked for.
   class Products {
    public:
@@ -64,6 +75,24 @@ class ChordBlocks {
                   int most, Products& products) const;
 
  private:
+  /// What is known of a block's lanes from double.
+  struct Exact;
+
+  /// Bounds the lane's patch alone.
+  void bound_alone(const BezierPatch& patch, std::size_t block, std::size_t lane);
+  /// The power of two at or below the largest bound, so that float holds squares of the others.
+  void set_unit(std::size_t block, std::size_t lane, double most);
+  /// Writes bounds(piece, which of uu, uv, vv), in lengths, in the lane's unit.
+  template <class Bound>
+  void store(std::size_t block, std::size_t lane, const Bound& bound);
+  /// Takes the bounds of sweeps and flat quadrilaterals, and of exact numerators where they are the smaller ones.
+  void bound_exactly(const PatchSet::Impl& set, std::size_t block, std::uint32_t wanted);
+  void take_exact(const BezierPatch& patch, const Exact& exact, std::size_t block, std::size_t lane);
+  /// A bit for each lane of a block of polynomial patches that may be a sweep, and takes fewer cells then.
+  std::uint32_t likely_sweeps(const float* net, const BlockGroup& group, std::size_t block) const;
+  /// A bit for each lane whose corners lie in a plane, more or less, and which has bounds.
+  std::uint32_t likely_flat(const float* net, const BlockGroup& group, std::size_t block) const;
+
   /// How many cells a patch products save, about, of those that a choice has.
   double saved_by_products(const PatchSet::Impl& set, std::size_t block, std::size_t count, const Choice& choice) const;
   /// By the kernel, and one by one where it has found none.
@@ -72,9 +101,11 @@ class ChordBlocks {
 
   static constexpr std::size_t lanes = PatchSet::lanes, piece_count = 9, block_pieces = piece_count * 3 * lanes;
 
-  UnsetVector<float> pieces_;  ///< `[block][piece][uu, uv, vv][lane]`, in units of unit_
-  AlignedVector<float> unit_;  ///< `[block][lane]`, powers of two
-  AlignedVector<float> size_;  ///< `[block][lane]`, negative where not known
+  UnsetVector<float> pieces_;   ///< `[block][piece][uu, uv, vv][lane]`, in units of unit_
+  AlignedVector<float> unit_;   ///< `[block][lane]`, powers of two
+  AlignedVector<float> size_;   ///< `[block][lane]`, negative where not known
+  std::vector<float> slack_;    ///< `[block][lane]`
+  std::vector<Source> source_;  ///< `[block][lane]`
 };
 
 }  // namespace tessera

@@ -14,7 +14,23 @@
 // through the flat triangle, since the weights are positive; and with the errors e of A's parts
 //   |A / w - A' / w'| = |e_A - (r' - c) e_w| / w <= (|e_A| + R |e_w|) / w_min
 // where r' lies within R of c. So the second derivatives of A and of w take the place of those of r. A bound between sets:
-// it does not ask that equal parameters lie near each other.
+// it does not ask that equal parameters lie near each other. It grows with the patch's length (R w'' counts in full), but
+// points may slip along the surface: where weights are uneven it is the smaller one. Beside it stands the bound by the
+// second derivatives of r = P / w themselves, by exact numerators (kernel/exact_chord.inl.h), which knows neither place nor
+// length. A patch takes the one with fewer cells.
+//
+// Scaled sweeps: r(u,v) = rho(v) E(u) + T(v) with rho >= 0, as are all surfaces of revolution, cylinders, cones, extrusions
+// and bilinear trapezoids, polynomial or rational (then with weights a_i b_j; it shows in the control points). There
+//   the mixed derivative does not count: a triangle lies within (h^2 uu + k^2 vv) / 8.
+// Proof. Let a point of a triangle with corners (u_c, v_c) have the shares t_c, let v' = sum t_c v_c, and
+// u' = sum t_c rho_c u_c / sum t_c rho_c with rho_c = rho(v_c), which lies among the u_c. With R = sum t_c rho_c
+//   sum t_c r(u_c, v_c) - r(u', v') = [sum t_c rho_c E(u_c) - R E(u')] + [sum t_c r(u', v_c) - r(u', v')].
+// The first bracket is the error of interpolating R E from corners of the shares t_c rho_c / R, whose mean is u': at most
+// h^2 R |E''| / 8, and R lies among the rho_c, so R E'' is an r_uu. The second is the error along v at one u: at most
+// k^2 vv / 8. The map from (sum t_c u_c, v') to (u', v') depends on an edge's ends alone along an edge, is the identity on
+// edges along u or v, and so on the patch's border: it is continuous and covers the patch. So every point of either set has
+// one of the other that near, wherever the triangles of grid and strips have their corners. A patch within d of a sweep lies
+// within 2 d more of its triangles.
 
 #include <algorithm>
 #include <array>

@@ -45,7 +45,11 @@ PresentBounds::PresentBounds(const PatchSet::Impl& set, const CertifiedTessellat
   std::copy(plan.weld().displacements.begin(), plan.weld().displacements.end(), displacements_.begin());
   for (std::size_t k = 0; k < displacements_.size(); ++k) roundings_[k] = vertex_rounding(set.patches[k], set.origin);
   if (displacements_.empty()) return;
-  for (std::uint32_t block = 0; block < set.lane_counts.size(); ++block) chords_.bound(set, block);
+  for (std::uint32_t block = 0; block < set.lane_counts.size(); ++block) {
+    chords_.bound(set, block);
+    for (std::size_t lane = 0; lane < set.lane_counts[block]; ++lane)
+      roundings_[set.lane_patches[block * PatchSet::lanes + lane]] += chords_.slack(block, lane);
+  }
 }
 
 void PresentBounds::touch(const PatchSet::Impl& set, std::span<const std::uint32_t> patches) {
@@ -66,8 +70,9 @@ Status PresentBounds::bound_blocks(const PatchSet::Impl& set, const Execution& e
         const std::size_t patch = set.lane_patches[block * PatchSet::lanes + lane];
         const BezierPatch& net = set.patches[patch];
         const std::optional<double> size = chords_.size(block, lane);
-        roundings_[patch] = size ? vertex_rounding(net.degree_u(), net.degree_v(), net.is_rational(), *size)
-                                 : vertex_rounding(net, set.origin);
+        roundings_[patch] = (size ? vertex_rounding(net.degree_u(), net.degree_v(), net.is_rational(), *size)
+                                  : vertex_rounding(net, set.origin)) +
+                            chords_.slack(block, lane);
       }
     }
   });

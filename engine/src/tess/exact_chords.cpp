@@ -1,0 +1,217 @@
+// Bounds of a block's patches that are found in double: by exact numerators, of scaled sweeps and of flat quadrilaterals.
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "block/pack.h"
+#include "kernel/kernel_table.h"
+#include "tess/chord_blocks.h"
+#include "tess/flat_quad.h"
+#include "tess/rounded_up.h"
+
+namespace tessera {
+
+struct ChordBlocks::Exact {
+  alignas(cache_line) Lanes<double> deviation;
+  alignas(cache_line) std::array<double, piece_count * 3 * lanes> pieces;
+
+  double bound(std::size_t piece, std::size_t kind, std::size_t lane) const {
+    return pieces[(piece * 3 + kind) * lanes + lane];
+  }
+  bool is_sweep(std::size_t lane) const { return deviation[lane] < std::numeric_limits<double>::infinity(); }
+  bool is_finite(std::size_t lane) const {
+    double sum = 0;
+    for (std::size_t kind = 0; kind < 3; ++kind) sum += bound(0, kind, lane);
+    return std::isfinite(sum);
+  }
+};
+
+namespace {
+
+using Net = std::array<double, (max_degree + 1) * (max_degree + 1) * 4 * PatchSet::lanes>;
+
+/// The patch into its lane of a net as ExactChordJob has it.
+void pack(const BezierPatch& patch, double* lane) {
+  const Vec3 centre = patch.hull_box().centre();
+  if (patch.is_rational()) {
+    RelativeNet(patch, centre).write(lane);
+    return;
+  }
+  for (const Vec3& point : patch.points()) {
+    const Vec3 p = point - centre;
+    for (const double value : {p.x, p.y, p.z, 1.0}) {
+      *lane = value;
+      lane += PatchSet::lanes;
+    }
+  }
+}
+
+/// About the cells that a patch takes at a tolerance of 2^-10 of its size, times a factor of the patch's.
+double cells(double uu, double uv, double vv, double size) {
+  const double one = std::sqrt(0x1p-7 * size);
+  return (std::sqrt(uu) + one) * (std::sqrt(vv) + one) + uv;
+}
+
+/// Corner `which` (0, 0), (1, 0), (1, 1), (0, 1) of the patches of a float block, x, y or z, over the weight.
+void load_corners(const float* net, const BlockGroup& group, std::array<ChordBlocks::Lanes<float>, 3> (&corner)[4]) {
+  constexpr std::size_t lanes = PatchSet::lanes;
+  const std::size_t m = static_cast<std::size_t>(group.degree_u), n = static_cast<std::size_t>(group.degree_v),
+                    components = static_cast<std::size_t>(coefficient_components(group.rational));
+  const std::size_t at[4] = {0, m * (n + 1), m * (n + 1) + n, n};
+  for (std::size_t k = 0; k < 4; ++k)
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
+        const float* const point = net + at[k] * components * lanes + lane;
+        corner[k][c][lane] = group.rational ? point[c * lanes] / point[3 * lanes] : point[c * lanes];
+      }
+}
+
+std::uint32_t bits(const ChordBlocks::Lanes<std::uint8_t>& flags) {
+  std::uint32_t all = 0;
+  for (std::size_t lane = 0; lane < flags.size(); ++lane) all |= std::uint32_t{flags[lane] != 0} << lane;
+  return all;
+}
+
+}  // namespace
+
+void ChordBlocks::bound_alone(const BezierPatch& patch, std::size_t block, std::size_t lane) {
+  const ChordBound chord(patch);
+  double most = 0;
+  for (const SecondDerivatives& d : chord.pieces()) most = std::max({most, d.uu, d.uv, d.vv});
+  set_unit(block, lane, most);
+  store(block, lane, [&](std::size_t k, std::size_t kind) {
+    const SecondDerivatives& d = chord.pieces()[k];
+    return kind == 0 ? d.uu : kind == 1 ? d.uv : d.vv;
+  });
+}
+
+void ChordBlocks::set_unit(std::size_t block, std::size_t lane, double most) {
+  unit_[block * lanes + lane] =
+      std::isfinite(most) && most > 0 ? std::ldexp(1.0f, std::clamp(std::ilogb(most), -120, 120)) : 1.0f;
+}
+
+template <class Bound>
+void ChordBlocks::store(std::size_t block, std::size_t lane, const Bound& bound) {
+  const double unit = unit_[block * lanes + lane];
+  for (std::size_t k = 0; k < piece_count; ++k)
+    for (std::size_t kind = 0; kind < 3; ++kind)
+      pieces_[block * block_pieces + (k * 3 + kind) * lanes + lane] = rounded_up(bound(k, kind) / unit);
+}
+
+std::uint32_t ChordBlocks::likely_sweeps(const float* net, const BlockGroup& group, std::size_t block) const {
+  std::array<Lanes<float>, 3> corner[4];
+  load_corners(net, group, corner);
+  const float* const pieces = pieces_.data() + block * block_pieces;
+  Lanes<std::uint8_t> likely;
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    // Both rows of a sweep have parallel chords, within the rounding of float.
+    const auto rows_are_parallel = [&](std::size_t a, std::size_t b, std::size_t c, std::size_t d) {
+      float first[3], second[3];
+      for (std::size_t k = 0; k < 3; ++k) {
+        first[k] = corner[b][k][lane] - corner[a][k][lane];
+        second[k] = corner[d][k][lane] - corner[c][k][lane];
+      }
+      const float x = first[1] * second[2] - first[2] * second[1], y = first[2] * second[0] - first[0] * second[2],
+                  z = first[0] * second[1] - first[1] * second[0];
+      const float squared_first = first[0] * first[0] + first[1] * first[1] + first[2] * first[2],
+                  squared_second = second[0] * second[0] + second[1] * second[1] + second[2] * second[2];
+      const float size = 0x1p-19f * size_[block * lanes + lane];
+      return x * x + y * y + z * z <= size * size * (squared_first + squared_second);
+    };
+    const float uu = pieces[lane], uv = pieces[lanes + lane], vv = pieces[2 * lanes + lane];
+    const bool matters = uv > 0x1p-6f * (uu + vv);
+    likely[lane] = static_cast<std::uint8_t>(matters & (rows_are_parallel(0, 1, 3, 2) | rows_are_parallel(0, 3, 1, 2)));
+  }
+  return bits(likely);
+}
+
+std::uint32_t ChordBlocks::likely_flat(const float* net, const BlockGroup& group, std::size_t block) const {
+  std::array<Lanes<float>, 3> corner[4];
+  load_corners(net, group, corner);
+  const float* const pieces = pieces_.data() + block * block_pieces;
+  Lanes<std::uint8_t> likely;
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    float side[3][3];
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t c = 0; c < 3; ++c) side[k][c] = corner[k + 1][c][lane] - corner[0][c][lane];
+    const float x = side[0][1] * side[2][2] - side[0][2] * side[2][1],
+                y = side[0][2] * side[2][0] - side[0][0] * side[2][2],
+                z = side[0][0] * side[2][1] - side[0][1] * side[2][0];
+    const float volume = x * side[1][0] + y * side[1][1] + z * side[1][2];
+    const float size = std::max(size_[block * lanes + lane], 0.0f);
+    const float bound = pieces[lane] + pieces[lanes + lane] + pieces[2 * lanes + lane];
+    const float longest = side[1][0] * side[1][0] + side[1][1] * side[1][1] + side[1][2] * side[1][2] +
+                          side[0][0] * side[0][0] + side[0][1] * side[0][1] + side[0][2] * side[0][2];
+    likely[lane] = static_cast<std::uint8_t>((bound > 0x1p-12f) & (std::abs(volume) <= 0x1p-18f * size * longest));
+  }
+  return bits(likely);
+}
+
+void ChordBlocks::take_exact(const BezierPatch& patch, const Exact& exact, std::size_t block, std::size_t lane) {
+  const bool is_sweep = exact.is_sweep(lane), is_finite = exact.is_finite(lane);
+  Source& source = source_[block * lanes + lane];
+  if (source == Source::alone && !(is_sweep && is_finite)) bound_alone(patch, block, lane);
+  if (!is_finite) return;
+  const SecondDerivatives other = piece(block, lane, 0);
+  const double size = patch.hull_box().diagonal();
+  const auto cells_of = [size](double uu, double uv, double vv) { return cells(uu, uv, vv, size); };
+  const bool is_known = source != Source::alone || !is_sweep;
+  if (is_known && !(cells_of(exact.bound(0, 0, lane), exact.bound(0, 1, lane), exact.bound(0, 2, lane)) <
+                    cells_of(other.uu, other.uv, other.vv)))
+    return;
+  if (source == Source::alone) {
+    double most = 0;
+    for (std::size_t kind = 0; kind < 3; ++kind) most = std::max(most, exact.bound(0, kind, lane));
+    set_unit(block, lane, most);
+  }
+  source = Source::exact;
+  if (is_sweep) slack_[block * lanes + lane] = rounded_up(2 * exact.deviation[lane]);
+  store(block, lane, [&](std::size_t k, std::size_t kind) { return exact.bound(k, kind, lane); });
+}
+
+void ChordBlocks::bound_exactly(const PatchSet::Impl& set, std::size_t block, std::uint32_t wanted) {
+  const BlockGroup& group = set.group_of_block(block);
+  const std::size_t count = set.lane_counts[block];
+  const std::uint32_t* const patches = set.lane_patches.data() + block * lanes;
+  const float* const packed =
+      set.single.bernstein.data() + group.first_value + (block - group.first_block) * group.block_values;
+  const std::uint32_t sweeps = group.rational ? ~0u : likely_sweeps(packed, group, block);
+  if (sweeps != 0) {
+    Net net;
+    for (std::size_t lane = 0; lane < lanes; ++lane)
+      pack(set.patches[patches[lane < count ? lane : 0]], net.data() + lane);
+    Exact exact;
+    kernel::default_kernels().bound_exact_chords({.net = net.data(),
+                                                  .degree_u = group.degree_u,
+                                                  .degree_v = group.degree_v,
+                                                  .deviation = exact.deviation.data(),
+                                                  .pieces = group.rational ? exact.pieces.data() : nullptr});
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      if (!(wanted >> lane & 1u)) continue;
+      const std::size_t at = block * lanes + lane;
+      if (group.rational) {
+        take_exact(set.patches[patches[lane]], exact, block, lane);
+      } else if (exact.is_sweep(lane) && source_[at] == Source::packed) {
+        source_[at] = Source::sweep;
+        slack_[at] = rounded_up(2 * exact.deviation[lane]);
+        for (std::size_t k = 0; k < piece_count; ++k) pieces_[block * block_pieces + (k * 3 + 1) * lanes + lane] = 0;
+      }
+    }
+  }
+  for (std::size_t lane = 0; lane < count; ++lane)
+    if (!group.rational && source_[block * lanes + lane] == Source::alone)
+      bound_alone(set.patches[patches[lane]], block, lane);
+  for (std::uint32_t flat = likely_flat(packed, group, block) & wanted; flat != 0; flat &= flat - 1) {
+    const auto lane = static_cast<std::size_t>(std::countr_zero(flat));
+    if (lane >= count) break;
+    const std::optional<double> deviation = flat_quad_deviation(set.patches[patches[lane]]);
+    if (!deviation) continue;
+    source_[block * lanes + lane] = Source::exact;
+    slack_[block * lanes + lane] = rounded_up(2 * *deviation);
+    store(block, lane, [](std::size_t, std::size_t) { return 0.0; });
+  }
+}
+
+}  // namespace tessera
