@@ -52,8 +52,10 @@ Looseness measure(const PatchSet& set, double tolerance, bool fewest) {
     double low = 0, high = 0;
     const std::size_t count = first[k + 1] - first[k], stride = 1 + count / most_triangles;
     for (std::size_t t = first[k]; t < first[k + 1]; t += stride) {
-      const test::DistanceRange found =
-          test::largest_distance(set.patch(k), mesh, t, first[k], first[k + 1], 0.03, 400);
+      const BezierPatch patch = set.patch(k);
+      test::DistanceRange found = test::largest_distance(patch, test::triangle_of(mesh, t), 0.03, 400);
+      // Points of a scaled sweep may lie nearest to the triangle's neighbours.
+      if (found.low > bound) found = test::largest_distance(patch, mesh, t, first[k], first[k + 1], 0.03, 400);
       low = std::max(low, found.low);
       high = std::max(high, found.high);
       ++result.triangles;

@@ -21,6 +21,7 @@ constexpr std::size_t lanes = PatchSet::lanes;
 
 struct Found {
   alignas(64) std::array<double, lanes> deviation;
+  alignas(64) std::array<double, 3 * lanes> corners;
   alignas(64) std::array<double, 27 * lanes> pieces;
   double bound(std::size_t piece, std::size_t kind, std::size_t lane) const {
     return pieces[(piece * 3 + kind) * lanes + lane];
@@ -47,8 +48,13 @@ Found found(const std::vector<BezierPatch>& patches, Isa isa) {
     return values;
   }();
   Found of;
-  kernel::kernels(isa).bound_exact_chords(
-      {.net = net.data(), .degree_u = m, .degree_v = n, .deviation = of.deviation.data(), .pieces = of.pieces.data()});
+  kernel::kernels(isa).bound_exact_chords({.net = net.data(),
+                                           .degree_u = m,
+                                           .degree_v = n,
+                                           .any_patch = true,
+                                           .deviation = of.deviation.data(),
+                                           .corners = of.corners.data(),
+                                           .pieces = of.pieces.data()});
   return of;
 }
 
@@ -109,6 +115,18 @@ TEST(ExactChords, AreTheSameBytesOnEveryInstructionSet) {
       EXPECT_EQ(std::memcmp(first.pieces.data(), other.pieces.data(), sizeof first.pieces), 0);
       EXPECT_EQ(std::memcmp(first.deviation.data(), other.deviation.data(), sizeof first.deviation), 0);
     }
+  }
+}
+
+TEST(ExactChords, KnowTheDerivativesAtTheCorners) {
+  Random random(6);
+  for (int kind = 0; kind < 60; ++kind) {
+    const int m = 1 + static_cast<int>(random() % 5), n = 1 + static_cast<int>(random() % 5);
+    const BezierPatch patch = random_rational(random, m, n, 0.2, 5);
+    const Found of = found({patch}, available_isas()[random() % available_isas().size()]);
+    const auto most = sampled(patch, 0, 1);  // the corners alone
+    for (std::size_t c = 0; c < 3; ++c)
+      EXPECT_NEAR(of.corners[c * lanes], most[c], 1e-10 * (1 + most[c])) << m << n << c;
   }
 }
 

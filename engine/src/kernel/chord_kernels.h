@@ -22,15 +22,17 @@ struct ChordJob {
 /// the coefficients as well, and `size` is negative where rounding is too much of a bound, or weights are too uneven.
 inline constexpr int most_rational_degree = 7;
 
-/// Bounds on the second derivatives of rational patches themselves, from exact numerators, of those patches up to
-/// most_exact_degree or that are scaled sweeps: see ChordBound.
+/// Bounds on the second derivatives of rational patches themselves: of scaled sweeps, and by exact numerators of patches up to
+/// most_exact_degree: see ChordBound.
 struct ExactChordJob {
   /// `[i][j][x, y, z, w][lane]`: w times the point relative to a place near the patch, and w, above 0 and near 1 at most.
   const double* net = nullptr;
   int degree_u = 0, degree_v = 0;
+  bool any_patch = false;       ///< pieces are wanted of patches that are no sweeps, too
   double* deviation = nullptr;  ///< `[lane]`: how far the patch may lie from a scaled sweep; infinite if it is none
+  double* corners = nullptr;    ///< `[uu, uv, vv][lane]`: the largest second derivatives at the corners; or null
   /// `[piece of 9][uu, uv, vv][lane]` in lengths, of the sweep where there is one; infinite or NaN where there is no bound.
-  /// Null: the deviation alone.
+  /// Or null.
   double* pieces = nullptr;
 };
 inline constexpr int most_exact_degree = 3;

@@ -7,9 +7,7 @@
 template <class L>
 struct ScaledNet {
   using Batch = typename L::Batch;
-  static constexpr int most_bivariate = 3 * most_exact_degree + 1, most_univariate = 3 * (max_order - 1) + 1;
-  static constexpr int capacity = most_bivariate * most_bivariate;
-  static_assert(capacity >= most_univariate);
+  static constexpr int most_order = 3 * most_exact_degree + 1, capacity = most_order * most_order;
 
   int rows = 0, columns = 0;
   Batch at[capacity];
@@ -169,6 +167,71 @@ class ExactDerivatives {
   Batch squared_[2][Net::capacity];
 };
 
+inline double binomial(int n, int k) {
+  double value = 1;
+  for (int i = 1; i <= k; ++i) value = value * (n - k + i) / i;
+  return value;
+}
+
+/// A rational curve in homogeneous numbers.
+template <class L>
+struct HomogeneousCurve {
+  typename L::Batch point[3][max_order], weight[max_order];
+};
+
+/// The largest second derivative of a curve, without rounding: as ExactDerivatives, in one parameter. `Degree`: 0 for any.
+template <class L, int Degree>
+typename L::Batch largest_second_derivative(const HomogeneousCurve<L>& curve, int degree) {
+  using Batch = typename L::Batch;
+  constexpr int most = Degree > 0 ? Degree : max_order - 1;
+  const int n = Degree > 0 ? Degree : degree;
+  double share[most + 1], first_share[2 * most - 1];
+  Batch low[most], high[most], slope[most], square[2 * most + 1], cube[3 * most + 1], squares[3 * most + 1];
+  for (int i = 0; i <= n; ++i) share[i] = binomial(n, i);
+  for (int i = 0; i <= 2 * n - 2; ++i) first_share[i] = 2 * n > 2 ? double(i) / (2 * n - 2) : 0;
+  const auto scaled = [&](const Batch* from, int i) { return L::broadcast(share[i]) * from[i]; };
+  const auto lower = [&](const Batch* from, int i) { return L::broadcast(double(n - i) / n) * scaled(from, i); };
+  const auto upper = [&](const Batch* from, int i) { return L::broadcast(double(i + 1) / n) * scaled(from, i + 1); };
+  for (int i = 0; i <= 2 * n; ++i) square[i] = L::broadcast(0);
+  for (int i = 0; i <= 3 * n; ++i) cube[i] = squares[i] = L::broadcast(0);
+  for (int i = 0; i < n; ++i) {
+    low[i] = lower(curve.weight, i);
+    high[i] = upper(curve.weight, i);
+    slope[i] = high[i] - low[i];
+  }
+  for (int i = 0; i <= n; ++i)
+    for (int j = 0; j <= n; ++j) square[i + j] = square[i + j] + scaled(curve.weight, i) * scaled(curve.weight, j);
+  for (int i = 0; i <= n; ++i)
+    for (int j = 0; j <= 2 * n; ++j) cube[i + j] = cube[i + j] + scaled(curve.weight, i) * square[j];
+  for (const auto& point : curve.point) {
+    Batch first[2 * most - 1], bend[3 * most + 1];
+    for (int i = 0; i <= 2 * n - 2; ++i) first[i] = L::broadcast(0);
+    for (int i = 0; i <= 3 * n; ++i) bend[i] = L::broadcast(0);
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) first[i + j] = first[i + j] + (low[i] * upper(point, j) - high[i] * lower(point, j));
+    for (int j = 0; j <= 2 * n - 2; ++j) first[j] = L::broadcast(n) * first[j];
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < 2 * n - 2; ++j)
+        bend[i + j] = bend[i + j] + (low[i] * (L::broadcast(first_share[j + 1]) * first[j + 1]) -
+                                     high[i] * (L::broadcast(1 - first_share[j]) * first[j]));
+    for (int i = 3 * n - 3; i >= 0; --i) bend[i] = L::broadcast(n - 1) * (i > 0 ? bend[i] + bend[i - 1] : bend[i]);
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j <= 2 * n - 2; ++j) bend[i + j] = bend[i + j] - slope[i] * first[j];
+    for (int times = 0; times < 3; ++times)
+      for (int i = 3 * n - 2 + times; i > 0; --i) bend[i] = bend[i] + bend[i - 1];
+    for (int i = 0; i <= 3 * n; ++i) squares[i] = squares[i] + bend[i] * bend[i];
+  }
+  Batch largest = L::broadcast(0);
+  for (int i = 0; i <= 3 * n; ++i) largest = xsimd::max(largest, squares[i] / (cube[i] * cube[i]));
+  return L::broadcast(2) * xsimd::sqrt(largest);
+}
+template <class L>
+typename L::Batch largest_second_derivative(const HomogeneousCurve<L>& curve, int degree) {
+  if (degree == 2) return largest_second_derivative<L, 2>(curve, 2);
+  if (degree == 3) return largest_second_derivative<L, 3>(curve, 3);
+  return largest_second_derivative<L, 0>(curve, degree);
+}
+
 /// One lane group of a block.
 template <class L>
 class ExactChords {
@@ -196,7 +259,6 @@ class ExactChords {
     Batch deviation = infinite;
     for (Batch(&piece)[3] : quarter_)
       for (Batch& bound : piece) bound = infinite;
-    if (job_.pieces && std::max(m_, n_) <= most_exact_degree) bound_patch();
     for (const bool along_u : {true, false}) {
       const Batch found = find_sweep(along_u);
       const auto is_sweep = (found <= L::broadcast(sweep_tolerance) * radius_) & (found < deviation);
@@ -205,7 +267,11 @@ class ExactChords {
       if (job_.pieces) bound_sweep(along_u, is_sweep);
     }
     L::store(job_.deviation + lane_, deviation);
-    if (job_.pieces) store_pieces();
+    if (job_.corners) store_corners();
+    if (!job_.pieces) return;
+    const auto is_other = !(deviation < infinite);
+    if (job_.any_patch && xsimd::any(is_other) && std::max(m_, n_) <= most_exact_degree) bound_patch(is_other);
+    store_pieces();
   }
 
  private:
@@ -277,6 +343,7 @@ class ExactChords {
     }
     halve(rho_weight_, count_j, rho_half_[1]);
     halve(rho_point_, count_j, rho_half_[0]);
+    const bool is_straight = count_j == 2 && xsimd::all(rho_weight_[0] == rho_weight_[1]);
     Batch widest[2];
     for (int b = 0; b < 2; ++b) {
       widest[b] = L::broadcast(0);
@@ -288,10 +355,9 @@ class ExactChords {
     for (int a = 0; a < 2; ++a) {
       const int first = a * (count_i - 1);
       set_curve(count_i, [&](int c, int i) { return half_[c][first + i]; });
-      derivatives_.find(net_, false);
-      const Batch along = derivatives_.uu;
+      const Batch along = largest_second_derivative<L>(line_, count_i - 1);
       Batch across[2] = {L::broadcast(0), L::broadcast(0)};
-      for (int i = 0; i < count_i && count_j > 1; ++i) {
+      for (int i = 0; i < count_i && !is_straight; ++i) {
         // The curve that this point of E runs along.
         for (int c = 0; c < 3; ++c) {
           const Batch e = half_[c][first + i] / half_[3][first + i];
@@ -304,8 +370,7 @@ class ExactChords {
             const int k = b * (count_j - 1) + j;
             return c < 3 ? across_half_[c][k] : rho_half_[1][k];
           });
-          derivatives_.find(net_, false);
-          across[b] = xsimd::max(across[b], derivatives_.uu);
+          across[b] = xsimd::max(across[b], largest_second_derivative<L>(line_, count_j - 1));
         }
       }
       for (int b = 0; b < 2; ++b) {
@@ -318,8 +383,39 @@ class ExactChords {
     }
   }
 
-  /// Bounds of any patch up to most_exact_degree, from the nets of its quarters.
-  void bound_patch() {
+  /// The second derivatives at the corners, by the quotient rule: what no bound is below.
+  void store_corners() const {
+    Batch most[3] = {L::broadcast(0), L::broadcast(0), L::broadcast(0)};
+    for (int corner = 0; corner < 4; ++corner) {
+      const bool high_u = corner / 2 != 0, high_v = corner % 2 != 0;
+      const auto at = [&](int i, int j) { return (high_u ? m_ - i : i) * (n_ + 1) + (high_v ? n_ - j : j); };
+      const Batch inverse = L::broadcast(1) / weight_[at(0, 0)];
+      const auto weight = [&](int i, int j) { return weight_[at(i, j)] * inverse; };
+      // n (n - 1) w2 (P2 - P0) - 2 n w1 (n w1 - 1) (P1 - P0), w0 being 1.
+      const auto second = [&](int degree, int i, int j, int c) {
+        const Batch from = point_[c][at(0, 0)], turn = L::broadcast(degree) * weight(i, j);
+        const Batch along = L::broadcast(2) * turn * (turn - L::broadcast(1)) * (point_[c][at(i, j)] - from);
+        if (degree < 2) return L::broadcast(0) - along;
+        return L::broadcast(degree * (degree - 1)) * weight(2 * i, 2 * j) * (point_[c][at(2 * i, 2 * j)] - from) -
+               along;
+      };
+      Batch squared[3] = {L::broadcast(0), L::broadcast(0), L::broadcast(0)};
+      for (int c = 0; c < 3; ++c) {
+        const Batch from = point_[c][at(0, 0)];
+        const Batch twist = L::broadcast(m_ * n_) * (weight(1, 1) * (point_[c][at(1, 1)] - from) -
+                                                     weight(1, 0) * weight(0, 1) *
+                                                         ((point_[c][at(1, 0)] - from) + (point_[c][at(0, 1)] - from)));
+        const Batch derivatives[3] = {second(m_, 1, 0, c), twist, second(n_, 0, 1, c)};
+        for (int kind = 0; kind < 3; ++kind) squared[kind] = squared[kind] + derivatives[kind] * derivatives[kind];
+      }
+      for (int kind = 0; kind < 3; ++kind) most[kind] = xsimd::max(most[kind], squared[kind]);
+    }
+    for (int kind = 0; kind < 3; ++kind) L::store(job_.corners + kind * block_lanes + lane_, xsimd::sqrt(most[kind]));
+  }
+
+  /// Puts bounds of any patch up to most_exact_degree, from the nets of its quarters, in the place of those of `where`.
+  template <class Where>
+  void bound_patch(const Where& where) {
     for (int quarter = 0; quarter < 4; ++quarter) {
       for (int c = 0; c < 4; ++c) cut_quarter(c, quarter / 2, quarter % 2);
       for (const bool along_u : {true, false}) {
@@ -333,8 +429,11 @@ class ExactChords {
                   L::broadcast(binomial(rows - 1, i) * binomial(columns - 1, j)) * part_[c][index(along_u, i, j)];
         }
         derivatives_.find(net_, along_u);
-        quarter_[quarter][along_u ? 0 : 2] = sure(derivatives_.uu, second(rows - 1));
-        if (along_u) quarter_[quarter][1] = sure(derivatives_.uv, 8 * m_ * n_);
+        const auto put = [&](int kind, const Batch& bound) {
+          quarter_[quarter][kind] = xsimd::select(where, bound, quarter_[quarter][kind]);
+        };
+        put(along_u ? 0 : 2, sure(derivatives_.uu, second(rows - 1)));
+        if (along_u) put(1, sure(derivatives_.uv, 8 * m_ * n_));
       }
     }
   }
@@ -357,19 +456,10 @@ class ExactChords {
   /// Cuts a curve at 1/2, as cut_curve().
   static void halve(const Batch* points, int count, Batch* cut) { cut_curve<L>(points, 1, count, cut, 1); }
 
-  /// A curve of homogeneous points as a net of degree 0 in v.
   template <class Point>
   void set_curve(int count, const Point& point) {
-    for (int c = 0; c < 4; ++c) {
-      Net& to = c < 3 ? net_.point[c] : net_.weight;
-      to.rows = count, to.columns = 1;
-      for (int i = 0; i < count; ++i) to.at[i] = L::broadcast(binomial(count - 1, i)) * point(c, i);
-    }
-  }
-  static double binomial(int n, int k) {
-    double value = 1;
-    for (int i = 1; i <= k; ++i) value = value * (n - k + i) / i;
-    return value;
+    for (int c = 0; c < 4; ++c)
+      for (int i = 0; i < count; ++i) (c < 3 ? line_.point[c] : line_.weight)[i] = point(c, i);
   }
 
   /// With rounding. A coefficient of N_uu is a mean of products, at most F s omega^2, F = m (8 m - 4), of N_uv F = 8 m n, where
@@ -403,6 +493,7 @@ class ExactChords {
   // Of the sweep: E, rho, and the homogeneous curves of both, cut.
   Batch row_[3][max_order], rho_[max_order], rho_weight_[max_order], rho_point_[max_order];
   Batch curve_[4][max_order], half_[4][2 * max_order], rho_half_[2][2 * max_order], across_half_[3][2 * max_order];
+  HomogeneousCurve<L> line_;
   HomogeneousNet<L> net_;
   ExactDerivatives<L> derivatives_;
   Batch quarter_[4][3];  ///< [quarter][uu, uv, vv]

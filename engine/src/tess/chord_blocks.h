@@ -87,6 +87,7 @@ class ChordBlocks {
   void store(std::size_t block, std::size_t lane, const Bound& bound);
   /// Takes the bounds of sweeps and flat quadrilaterals, and of exact numerators where they are the smaller ones.
   void bound_exactly(const PatchSet::Impl& set, std::size_t block, std::uint32_t wanted);
+  double homogeneous_cells(const BezierPatch& patch, std::size_t block, std::size_t lane) const;
   void take_exact(const BezierPatch& patch, const Exact& exact, std::size_t block, std::size_t lane);
   /// A bit for each lane of a block of polynomial patches that may be a sweep, and takes fewer cells then.
   std::uint32_t likely_sweeps(const float* net, const BlockGroup& group, std::size_t block) const;

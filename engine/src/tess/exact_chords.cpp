@@ -15,6 +15,7 @@ namespace tessera {
 
 struct ChordBlocks::Exact {
   alignas(cache_line) Lanes<double> deviation;
+  alignas(cache_line) std::array<double, 3 * lanes> corners;
   alignas(cache_line) std::array<double, piece_count * 3 * lanes> pieces;
 
   double bound(std::size_t piece, std::size_t kind, std::size_t lane) const {
@@ -48,10 +49,20 @@ void pack(const BezierPatch& patch, double* lane) {
   }
 }
 
-/// About the cells that a patch takes at a tolerance of 2^-10 of its size, times a factor of the patch's.
-double cells(double uu, double uv, double vv, double size) {
+/// Exact numerators replace a homogeneous bound only where they take fewer cells by this factor: products of second
+/// derivatives save as much of the other.
+constexpr double least_gain = 0.8;
+/// They are looked for, which takes a microsecond or more of a patch, where the corners alone ask for fewer by this factor.
+constexpr double likely_gain = 0.4;
+/// A patch by itself is worth it where they ask for fewer by this one.
+constexpr double absurd = 0.1;
+
+/// About the cells that a patch takes at a tolerance of 2^-10 of its size, times a factor of the patch's. `bound(kind)`: of
+/// uu, uv, vv.
+template <class Bound>
+double cells(double size, const Bound& bound) {
   const double one = std::sqrt(0x1p-7 * size);
-  return (std::sqrt(uu) + one) * (std::sqrt(vv) + one) + uv;
+  return (std::sqrt(bound(0)) + one) * (std::sqrt(bound(2)) + one) + bound(1);
 }
 
 /// Corner `which` (0, 0), (1, 0), (1, 1), (0, 1) of the patches of a float block, x, y or z, over the weight.
@@ -149,18 +160,24 @@ std::uint32_t ChordBlocks::likely_flat(const float* net, const BlockGroup& group
   return bits(likely);
 }
 
+double ChordBlocks::homogeneous_cells(const BezierPatch& patch, std::size_t block, std::size_t lane) const {
+  return cells(patch.hull_box().diagonal(), [&](std::size_t kind) {
+    double most = 0;
+    for (std::size_t quarter = 5; quarter < 9; ++quarter) {
+      const SecondDerivatives d = piece(block, lane, quarter);
+      most = std::max(most, kind == 0 ? d.uu : kind == 1 ? d.uv : d.vv);
+    }
+    return most;
+  });
+}
+
 void ChordBlocks::take_exact(const BezierPatch& patch, const Exact& exact, std::size_t block, std::size_t lane) {
-  const bool is_sweep = exact.is_sweep(lane), is_finite = exact.is_finite(lane);
+  if (!exact.is_finite(lane)) return;
   Source& source = source_[block * lanes + lane];
-  if (source == Source::alone && !(is_sweep && is_finite)) bound_alone(patch, block, lane);
-  if (!is_finite) return;
-  const SecondDerivatives other = piece(block, lane, 0);
-  const double size = patch.hull_box().diagonal();
-  const auto cells_of = [size](double uu, double uv, double vv) { return cells(uu, uv, vv, size); };
-  const bool is_known = source != Source::alone || !is_sweep;
-  if (is_known && !(cells_of(exact.bound(0, 0, lane), exact.bound(0, 1, lane), exact.bound(0, 2, lane)) <
-                    cells_of(other.uu, other.uv, other.vv)))
-    return;
+  const bool is_sweep = exact.is_sweep(lane), is_unknown = is_sweep && source == Source::alone;
+  const double wanted =
+      cells(patch.hull_box().diagonal(), [&](std::size_t kind) { return exact.bound(0, kind, lane); });
+  if (!is_unknown && !(wanted < (is_sweep ? 1 : least_gain) * homogeneous_cells(patch, block, lane))) return;
   if (source == Source::alone) {
     double most = 0;
     for (std::size_t kind = 0; kind < 3; ++kind) most = std::max(most, exact.bound(0, kind, lane));
@@ -183,21 +200,39 @@ void ChordBlocks::bound_exactly(const PatchSet::Impl& set, std::size_t block, st
     for (std::size_t lane = 0; lane < lanes; ++lane)
       pack(set.patches[patches[lane < count ? lane : 0]], net.data() + lane);
     Exact exact;
-    kernel::default_kernels().bound_exact_chords({.net = net.data(),
-                                                  .degree_u = group.degree_u,
-                                                  .degree_v = group.degree_v,
-                                                  .deviation = exact.deviation.data(),
-                                                  .pieces = group.rational ? exact.pieces.data() : nullptr});
+    kernel::ExactChordJob job{.net = net.data(),
+                              .degree_u = group.degree_u,
+                              .degree_v = group.degree_v,
+                              .deviation = exact.deviation.data(),
+                              .corners = group.rational ? exact.corners.data() : nullptr};
+    kernel::default_kernels().bound_exact_chords(job);
+    bool any_sweep = false;
+    double gain = 0;  // of all lanes, at most about 1 each
     for (std::size_t lane = 0; lane < count; ++lane) {
-      if (!(wanted >> lane & 1u)) continue;
       const std::size_t at = block * lanes + lane;
-      if (group.rational) {
-        take_exact(set.patches[patches[lane]], exact, block, lane);
-      } else if (exact.is_sweep(lane) && source_[at] == Source::packed) {
+      if (!(wanted >> lane & 1u)) continue;
+      const bool is_sweep = exact.is_sweep(lane);
+      any_sweep = any_sweep || is_sweep;
+      if (!group.rational && is_sweep && source_[at] == Source::packed) {
         source_[at] = Source::sweep;
         slack_[at] = rounded_up(2 * exact.deviation[lane]);
         for (std::size_t k = 0; k < piece_count; ++k) pieces_[block * block_pieces + (k * 3 + 1) * lanes + lane] = 0;
       }
+      if (!group.rational || is_sweep) continue;
+      const BezierPatch& patch = set.patches[patches[lane]];
+      if (source_[at] == Source::alone) bound_alone(patch, block, lane);
+      // What the derivatives are at the corners their bounds are at least.
+      const double least =
+          cells(patch.hull_box().diagonal(), [&](std::size_t kind) { return exact.corners[kind * lanes + lane]; });
+      const double share = least / homogeneous_cells(patch, block, lane);
+      gain += share < absurd ? double(count) : std::max(0.0, 1 - share / likely_gain);
+    }
+    job.any_patch = gain >= 0.2 * double(count);
+    if (group.rational && (any_sweep || job.any_patch)) {
+      job.pieces = exact.pieces.data();
+      kernel::default_kernels().bound_exact_chords(job);
+      for (std::size_t lane = 0; lane < count; ++lane)
+        if (wanted >> lane & 1u) take_exact(set.patches[patches[lane]], exact, block, lane);
     }
   }
   for (std::size_t lane = 0; lane < count; ++lane)
