@@ -7,6 +7,8 @@
 #include <cstdio>
 
 #include "eval/accuracy_cases.h"
+#include "eval/error_units.h"
+#include "eval/steep_patches.h"
 #include "support/grids.h"
 #include "support/reference.h"
 #include "support/ulp.h"
@@ -34,25 +36,15 @@ struct Units {
   double denominator = 0;       ///< the weight's own relative error, where it counts: in the power basis
 
   Units(const BezierPatch& patch, double u, double v, double epsilon, Representation representation) {
-    position = derivative = epsilon * largest_coefficient(patch);
-    double heaviest = 1;
-    Real weight = 1;
-    if (patch.is_rational()) {
-      double product = 0;
-      heaviest = 0;
-      for (std::size_t k = 0; k < patch.points().size(); ++k) {
-        product = std::max(product, patch.weights()[k] * max_abs(patch.points()[k]));
-        heaviest = std::max(heaviest, patch.weights()[k]);
-      }
-      reference_sum(patch, u, v, 0, 0, weight);
-      derivative = epsilon * product / static_cast<double>(weight);
-    }
+    const ErrorUnits units(patch, u, v, epsilon);
+    position = units.position;
+    derivative = units.first();
     if (representation == Representation::bernstein) return;
     // The power coefficients sum_k C(m,i) C(i,k) (-1)^(i-k) V_k are up to C(m,i) 2^i times as large.
     const double growth = std::pow(1 + 2 * u, patch.degree_u()) * std::pow(1 + 2 * v, patch.degree_v());
-    position *= growth * heaviest / static_cast<double>(weight);
-    derivative *= growth * heaviest / static_cast<double>(weight);
-    if (patch.is_rational()) denominator = epsilon * growth * heaviest / static_cast<double>(weight);
+    position *= growth * units.weight_ratio;
+    derivative *= growth * units.weight_ratio;
+    if (patch.is_rational()) denominator = epsilon * growth * units.weight_ratio;
   }
 };
 
@@ -144,6 +136,34 @@ TEST_P(Accuracy, FloatBernstein) { check_bounds<float>(GetParam(), Representatio
 TEST_P(Accuracy, DoubleBernstein) { check_bounds<double>(GetParam(), Representation::bernstein); }
 TEST_P(Accuracy, FloatPower) { check_bounds<float>(GetParam(), Representation::power); }
 TEST_P(Accuracy, DoublePower) { check_bounds<double>(GetParam(), Representation::power); }
+
+/// The bounds hold where weights fall off steeply.
+template <class T>
+void check_steep(Isa isa, Representation representation) {
+  Random random(15);
+  PatchSetOptions options;
+  options.origin = Vec3{};
+  options.blocks = {true, true, true, true};
+  const std::vector<double> u = {0, 1, 0.5, 1.0 / 3, 1e-3, 1e-6, 0.999999}, v = {1, 0.77, 0, 0.5, 0.999, 1e-6};
+  std::printf("%s, %s, %s, steep weights: largest errors by degree, in units (bounds: 4 + degree / 4, 16, 8)\n",
+              std::string(name(isa)).c_str(), sizeof(T) == 4 ? "float" : "double",
+              representation == Representation::bernstein ? "Bernstein" : "power, over its growth");
+  std::puts("degree  positions  derivatives  normals");
+  for (const int degree : {1, 2, 3, 4, 5, 8, max_degree}) {
+    SCOPED_TRACE("degree " + std::to_string(degree));
+    const PatchSet set = set_of(steep_patches(random, degree), options);
+    const GridPlan plan = value_of(GridPlan::make(set, u, v, {precision_of<T>, representation, isa}));
+    const Errors errors = errors_of<T>(set, plan, u, v, representation);
+    std::printf("%6d  %9.2f  %11.2f  %7.2f\n", degree, errors.rational, errors.rational_derivative, errors.normal);
+    EXPECT_LE(errors.rational, 4 + degree / 4.0);
+    EXPECT_LE(errors.rational_derivative, 16);
+    EXPECT_LE(errors.normal, 8);
+  }
+}
+TEST_P(Accuracy, FloatWithSteepWeights) { check_steep<float>(GetParam(), Representation::bernstein); }
+TEST_P(Accuracy, DoubleWithSteepWeights) { check_steep<double>(GetParam(), Representation::bernstein); }
+TEST_P(Accuracy, FloatPowerWithSteepWeights) { check_steep<float>(GetParam(), Representation::power); }
+TEST_P(Accuracy, DoublePowerWithSteepWeights) { check_steep<double>(GetParam(), Representation::power); }
 
 /// A model of size 10 a million away keeps float's precision relative to its size.
 TEST_P(Accuracy, FarFromZero) {

@@ -3,7 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 
+#include "eval/accuracy_cases.h"
+#include "eval/error_units.h"
+#include "eval/steep_patches.h"
 #include "support/points.h"
 #include "support/reference.h"
 #include "support/ulp.h"
@@ -16,25 +20,6 @@ struct Errors {
   double polynomial = 0, rational = 0, derivative = 0, second = 0, normal = 0;
 };
 
-/// Units of derivatives at one point: see evaluate.h.
-struct Units {
-  double position, first, second;
-
-  Units(const BezierPatch& patch, const Vec3& origin, double u, double v, double epsilon) {
-    position = first = second = epsilon * largest_coefficient(patch, origin);
-    if (!patch.is_rational()) return;
-    double product = 0, heaviest = 0;
-    for (std::size_t k = 0; k < patch.points().size(); ++k) {
-      product = std::max(product, patch.weights()[k] * max_abs(patch.points()[k] - origin));
-      heaviest = std::max(heaviest, patch.weights()[k]);
-    }
-    Real weight;
-    reference_sum(patch, u, v, 0, 0, weight);
-    first = epsilon * product / static_cast<double>(weight);
-    second = first * heaviest / static_cast<double>(weight);
-  }
-};
-
 template <class T>
 Errors errors_of(const PatchSet& set, const Samples<T>& samples, Isa isa) {
   AllBuffers<T> memory = all_outputs(set, samples, {.isa = isa});
@@ -45,20 +30,22 @@ Errors errors_of(const PatchSet& set, const Samples<T>& samples, Isa isa) {
   const auto grow = [](double& largest, double error) { largest = std::max(largest, error); };
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const BezierPatch& patch = set.patch(samples.patch[k]);
-    const double u = samples.u[k], v = samples.v[k], degree = std::max(patch.degree_u(), patch.degree_v());
+    const double u = samples.u[k], v = samples.v[k];
     const RealJet jet = reference_jet(patch, u, v);
-    const Units units(patch, set.origin(), u, v, epsilon);
+    const ErrorUnits units(relative_to(patch, set.origin()), u, v, epsilon);
+    const double first = units.degree * units.first(), second = units.degree * units.degree * units.second();
     const RealVec3 relative = jet.position - RealVec3{origin.x, origin.y, origin.z};
     grow(patch.is_rational() ? errors.rational : errors.polynomial,
          error_in_units(read(out.position, k), relative.rounded(), units.position));
     for (const auto& [view, expected] : {std::pair{&out.du, jet.du}, {&out.dv, jet.dv}})
-      grow(errors.derivative, error_in_units(read(*view, k), expected.rounded(), degree * units.first));
+      grow(errors.derivative, error_in_units(read(*view, k), expected.rounded(), first));
     for (const auto& [view, expected] : {std::pair{&out.duu, jet.duu}, {&out.duv, jet.duv}, {&out.dvv, jet.dvv}})
-      grow(errors.second, error_in_units(read(*view, k), expected.rounded(), degree * degree * units.second));
+      grow(errors.second, error_in_units(read(*view, k), expected.rounded(), second));
     const Vec3 du = jet.du.rounded(), dv = jet.dv.rounded();
     const double height = length(cross(du, dv)) / std::max(length(du), length(dv));
-    grow(errors.normal,
-         error_in_units(read(out.normal, k), reference_normal(patch, u, v), degree * units.first / height));
+    // To first order in errors over the height.
+    if (8 * first < 0.05 * height)
+      grow(errors.normal, error_in_units(read(out.normal, k), reference_normal(patch, u, v), first / height));
   }
   return errors;
 }
@@ -107,6 +94,47 @@ TEST_P(PointAccuracy, FarAwayUnevenAndOfAnySize) {
     EXPECT_LE(errors.derivative, 16);
   }
 }
+
+/// One parameter in four is an end, one in four lies inside, the others come close to an end.
+template <class T>
+Samples<T> samples_near_borders(Random& random, std::size_t patch_count, std::size_t count) {
+  const auto parameter = [&] {
+    const double near = std::pow(10, uniform(random, -8, 0));
+    const double choices[] = {0, 1, uniform(random, 0, 1), 0.5, near, near, 1 - near, 1 - near};
+    return static_cast<T>(choices[random() % 8]);
+  };
+  Samples<T> samples;
+  for (std::size_t k = 0; k < count; ++k) {
+    const T u = parameter(), v = parameter();
+    samples.add(random() % patch_count, u, v);
+  }
+  return samples;
+}
+
+/// The bounds hold where weights fall off steeply.
+template <class T>
+void check_steep(Isa isa) {
+  Random random(304);
+  PatchSetOptions options = with_points();
+  options.origin = Vec3{};
+  std::printf("%s, %s, steep weights: largest errors by degree, in units (bounds: 4 + degree / 4, 16, 48, 8)\n",
+              std::string(name(isa)).c_str(), sizeof(T) == 4 ? "float" : "double");
+  std::puts("degree  positions  derivatives  second  normals");
+  for (const int degree : {1, 2, 3, 4, 5, 8, max_degree}) {
+    SCOPED_TRACE("degree " + std::to_string(degree));
+    const std::vector<BezierPatch> patches = steep_patches(random, degree);
+    const auto samples = samples_near_borders<T>(random, patches.size(), 3000);
+    const Errors errors = errors_of<T>(set_of(patches, options), samples, isa);
+    std::printf("%6d  %9.2f  %11.2f  %6.2f  %7.2f\n", degree, errors.rational, errors.derivative, errors.second,
+                errors.normal);
+    EXPECT_LE(errors.rational, isa != Isa::sse2 ? 4 + degree / 4.0 : 4 + degree);
+    EXPECT_LE(errors.derivative, 16);
+    EXPECT_LE(errors.second, 48);
+    EXPECT_LE(errors.normal, 8);
+  }
+}
+TEST_P(PointAccuracy, FloatWithSteepWeights) { check_steep<float>(GetParam()); }
+TEST_P(PointAccuracy, DoubleWithSteepWeights) { check_steep<double>(GetParam()); }
 
 /// Where weights are exact, points and grids are the same bits, in every output.
 template <class T>

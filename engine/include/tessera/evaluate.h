@@ -111,20 +111,26 @@ struct GridViews {
 /// component, has a stride of 0, is not aligned to its numbers, or shares memory with another), cancelled. Nothing is
 /// written on any error but cancelled. The same bytes for any number of threads, and on
 /// AVX2, AVX-512 and NEON; each output alone is what it is together with others.
-/// Error bounds for the Bernstein representation, in units of 2^-23 (2^-52 in double) times the largest |V - origin| of
-/// the patch, d the higher degree: positions 2, rational 4; first derivatives 16 d; second ones 16 d^2. For derivatives
-/// of rational patches the largest |w (V - origin)| over the weight at the point takes the place of that size, since
-/// the derivative itself grows with that ratio, and for second ones times the largest weight over that at the point.
-/// The first form 32 d times the longer tangent. With h = |r_u x r_v| / max(|r_u|, |r_v|), the sine of the tangents'
-/// angle times the shorter tangent: normals 8 d size / h. In limit normals r_uv stands for the tangent that vanishes,
-/// in h as well, and d^2 for d. With D the largest second derivative, and for rational patches the size of second
-/// derivatives: the second form 8 (d^2 + d D / h); mean and principal curvatures that over h^2; Gaussian |k1| + |k2|
-/// times the curvatures' bound, and its square; principal directions 2 / (k1 - k2) times the curvatures' bound, and the
-/// normals'. To first order: where the errors of the tangents are small against h. Positions in double, which are
-/// absolute, round once more, to 2^-53 of their own size.
-/// In the power representation the bounds of positions and first derivatives are (1 + 2u)^m (1 + 2v)^n times as large,
-/// m and n the degrees, in rational patches the largest weight over that at the point times again: random bicubic
-/// patches lose 34 units, degrees 5 and 7 lose 1,200 and 140,000.
+/// Error bounds of each component for the Bernstein representation, in units of 2^-23 (2^-52 in double). The bounds are
+/// stated by d, the higher degree; `size`, the largest |V - origin| of the patch; `ratio`, the largest weight over the
+/// weight at the point, 1 for polynomial patches; h = |r_u x r_v| / max(|r_u|, |r_v|), the sine of the tangents' angle
+/// times the shorter tangent; D, the largest second derivative.
+/// - positions: 2 size; rational (4 + d / 4) size
+/// - first derivatives: 16 d size ratio
+/// - second derivatives: 16 d^2 size; rational 48 d^2 size ratio^2
+/// - first form: 32 d size ratio times the longer tangent
+/// - normals: 8 d size ratio / h; limit normals half the bound of second derivatives over h, where r_uv stands for the
+///   tangent that vanishes, in h as well
+/// - second form: half the bound of second derivatives, and D times that of normals
+/// - mean and principal curvatures: the bound of the second form over h^2
+/// - Gaussian curvature: |k1| + |k2| times the bound of curvatures, and the square of that bound
+/// - principal directions: 2 / (k1 - k2) times the bound of curvatures, and the bound of normals
+/// The ratio enters by the quotient rule, r_u = (A_u - w_u r) / w: errors of w_u go with the largest weight, those of r
+/// with the size, and both are divided by the weight at the point. Bounds over h hold to first order: where the errors
+/// of the tangents are small against h. Positions in double, which are absolute, round once more, to 2^-53 of their own
+/// size.
+/// In the power representation the bounds of positions and first derivatives are (1 + 2u)^m (1 + 2v)^n ratio times as
+/// large, m and n the degrees: random bicubic patches lose 34 units, degrees 5 and 7 lose 1,200 and 140,000.
 Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<float>& out,
                 const Execution& execution = {});
 Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<double>& out,

@@ -93,8 +93,9 @@ struct SurfaceSamples {
 
 /// Finds each sample's patch, the one on the right of a breakpoint, and evaluates there. Derivatives and the two forms
 /// are by the surface's parameters. Errors as above, and invalid_argument (a map of another set; index = the sample: no
-/// such surface, parameter outside of its domain). Parameters within the patch are found in double and rounded to T:
-/// positions in float are up to d / 2 units further off for each, d the degree along it; derivatives by at most 2 d.
+/// such surface, parameter outside of its domain). Parameters within the patch are found in double and rounded to T. For
+/// each, results in float are further off, in the units and terms of evaluate.h: positions by d / 2 size ratio, first
+/// derivatives by d^2 size, rational ones 2 d^2 size ratio^2.
 Status evaluate(const PatchSet& set, const SurfaceMap& map, const SurfaceSamples& samples, const PointViews<float>& out,
                 const PointOptions& options = {}, const Execution& execution = {});
 Status evaluate(const PatchSet& set, const SurfaceMap& map, const SurfaceSamples& samples,
