@@ -165,6 +165,30 @@ TEST_P(Accuracy, DoubleWithSteepWeights) { check_steep<double>(GetParam(), Repre
 TEST_P(Accuracy, FloatPowerWithSteepWeights) { check_steep<float>(GetParam(), Representation::power); }
 TEST_P(Accuracy, DoublePowerWithSteepWeights) { check_steep<double>(GetParam(), Representation::power); }
 
+/// Normals are right where steep weights leave nothing of a tangent but its errors: there they are exact.
+TEST_P(Accuracy, NormalsWhereATangentIsLost) {
+  Random random(16);
+  const double u = 0.3;
+  std::vector<BezierPatch> patches;
+  for (int k = 0; k < 64; ++k) patches.push_back(with_lost_derivative(random, 1 + k % 5, u, 1e8));
+  const PatchSet set = set_of(patches, {.blocks = {true, false, true, false, true, false}, .origin = Vec3{}});
+  for (const Representation representation : {Representation::bernstein, Representation::power}) {
+    const GridPlan plan = value_of(GridPlan::make(set, std::vector{u}, std::vector{0.0},
+                                                  {Precision::single_precision, representation, GetParam()}));
+    GridBuffers<float> out(plan);
+    ASSERT_TRUE(evaluate(set, plan, out.views()).ok());
+    double largest = 0, lost = 0;
+    for (std::size_t k = 0; k < patches.size(); ++k) {
+      const RealJet jet = reference_jet(patches[k], u, 0);
+      const Vec3 dv = jet.dv.rounded();
+      lost = std::max(lost, max_abs(vector_at(out.dv, k) - dv) / max_abs(dv));
+      largest = std::max(largest, max_abs(vector_at(out.normal, k) - reference_normal(patches[k], u, 0)));
+    }
+    EXPECT_GT(lost, 1);
+    EXPECT_LT(largest, 1e-6);
+  }
+}
+
 /// A model of size 10 a million away keeps float's precision relative to its size.
 TEST_P(Accuracy, FarFromZero) {
   Random random(12);

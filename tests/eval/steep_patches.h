@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "support/random_patches.h"
+#include "support/reference.h"
 
 namespace tessera::test {
 
@@ -40,6 +41,23 @@ inline BezierPatch with_one_row(Random& random, int m, int n, double weight) {
     weights[index(i, 1)] *= weight;
   }
   return rational(m, n, points, weights);
+}
+
+/// The border v = 0 passes the origin at u, within rounding of double. The other row has the weight, and points of the
+/// size 1 / weight: the derivative by v at (u, 0) has a size of 1 and errors of the weight's size.
+inline BezierPatch with_lost_derivative(Random& random, int m, double u, double weight) {
+  std::vector<Vec3> points = random_points(random, m, 1);
+  std::vector<double> weights = random_weights(random, m, 1, 0.5, 2);
+  RealVec3 sum;
+  for (int i = 0; i <= m; ++i) {
+    const auto border = static_cast<std::size_t>(2 * i), inner = border + 1;
+    points[inner] = (1 / weight) * points[inner];
+    weights[inner] *= weight;
+    const Real factor = reference_bernstein(m, i, u) * Real(weights[border]);
+    if (i == m) points[border] = (-1 / factor * sum).rounded();
+    sum = sum + factor * RealVec3{points[border].x, points[border].y, points[border].z};
+  }
+  return rational(m, 1, points, weights);
 }
 
 /// A plane in nearly even parameters, weights 1 within `spread`, beside the origin: second derivatives are small, and

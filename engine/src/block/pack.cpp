@@ -13,10 +13,11 @@ namespace {
 /// square.
 constexpr double least_weight_in_float = 1e-9, least_weight_in_double = 1e-70;
 
-double largest_vector(std::span<const double> net, std::size_t components) {
+/// The largest |coefficient| of components `first` to before `end`.
+double largest_of(std::span<const double> net, std::size_t components, std::size_t first, std::size_t end) {
   double largest = 0;
   for (std::size_t k = 0; k < net.size(); k += components)
-    for (std::size_t c = 0; c < 3; ++c) largest = std::max(largest, std::abs(net[k + c]));
+    for (std::size_t c = first; c < end; ++c) largest = std::max(largest, std::abs(net[k + c]));
   return largest;
 }
 
@@ -37,11 +38,11 @@ struct Place {
   bool curve;
   double diameter;
 
-  /// The patch's lane, and those that repeat it, by write_coefficients(lane). `largest`: x, y or z of the coefficients.
+  /// The patch's lane, and those that repeat it, by write_coefficients(lane). `size`: see normal_doubt().
   template <class T, class Write>
-  void write(UnsetVector<T>& coefficients, UnsetVector<T>& doubts, double largest, Write write_coefficients) const {
+  void write(UnsetVector<T>& coefficients, UnsetVector<T>& doubts, double size, Write write_coefficients) const {
     constexpr std::size_t lanes = PatchSet::lanes;
-    const std::array<T, 2> doubt = doubt_in<T>(curve ? no_normal : regular_doubt<T>(largest));
+    const std::array<T, 2> doubt = doubt_in<T>(curve ? no_normal : regular_doubt<T>(size));
     T* block = coefficients.data() + group.first_value + (slot.block - group.first_block) * group.block_values;
     T* rows = doubts.data() + 2 * lanes * slot.block;
     const auto write_to = [&](std::uint32_t lane) {
@@ -56,16 +57,16 @@ struct Place {
 
   /// The patch for scattered points.
   template <class T>
-  void write_points(Coefficients<T>& to, double largest) const {
+  void write_points(Coefficients<T>& to, double size) const {
     net.write_rows(to.points.data() + group.point_value(slot), group.point_values);
-    NormalDoubt doubt = regular_doubt<T>(largest);
+    NormalDoubt doubt = regular_doubt<T>(size);
     if (curve) doubt.noise = no_normal.noise;
     to.point_doubt[slot.block * std::size_t{PatchSet::lanes} + slot.lane] = doubt_in<T>(doubt);
   }
 
   template <class T>
-  NormalDoubt regular_doubt(double largest) const {
-    return normal_doubt<T>(std::max(group.degree_u, group.degree_v), largest, diameter, net.lightest(),
+  NormalDoubt regular_doubt(double size) const {
+    return normal_doubt<T>(std::max(group.degree_u, group.degree_v), size, diameter, net.lightest(),
                            net.weight_spread());
   }
 };
@@ -81,7 +82,7 @@ RelativeNet::RelativeNet(const BezierPatch& patch, const Vec3& origin) : patch_(
 }
 
 double RelativeNet::largest(const Box3& hull) const {
-  if (!patch_.is_rational()) return std::max(max_abs(hull.lower - origin_), max_abs(hull.upper - origin_));
+  if (!patch_.is_rational()) return farthest(hull);
   double largest = 0;
   for (std::size_t k = 0; k < patch_.points().size(); ++k)
     largest = std::max(largest, max_abs(scale_ * patch_.weights()[k] * (patch_.points()[k] - origin_)));
@@ -113,11 +114,11 @@ bool PatchSet::Impl::pack_bernstein(std::size_t index, const BlockGroup& group, 
   const Slot slot = slots[index];
   const bool curve = is_curve(patches[index], collapsed[index]);
   const Place place{group, slot, lane_counts[slot.block], net, curve, hull.diagonal()};
-  const double largest = net.largest(hull);
-  if (!fits(net, kinds.float_bernstein, largest)) return false;
+  if (!fits(net, kinds.float_bernstein, net.largest(hull))) return false;
+  const double size = net.tangent_size(hull);
   const auto coefficients = [&](auto* lane) { net.write(lane); };
-  if (kinds.float_bernstein) place.write(single.bernstein, single.bernstein_doubt, largest, coefficients);
-  if (kinds.double_bernstein) place.write(twice.bernstein, twice.bernstein_doubt, largest, coefficients);
+  if (kinds.float_bernstein) place.write(single.bernstein, single.bernstein_doubt, size, coefficients);
+  if (kinds.double_bernstein) place.write(twice.bernstein, twice.bernstein_doubt, size, coefficients);
   return true;
 }
 
@@ -127,10 +128,10 @@ bool PatchSet::Impl::pack_points(std::size_t index, const BlockGroup& group, con
   const Slot slot = slots[index];
   const bool curve = is_curve(patches[index], collapsed[index]);
   const Place place{group, slot, lane_counts[slot.block], net, curve, hull.diagonal()};
-  const double largest = net.largest(hull);
-  if (!fits(net, kinds.float_points, largest)) return false;
-  if (kinds.float_points) place.write_points(single, largest);
-  if (kinds.double_points) place.write_points(twice, largest);
+  if (!fits(net, kinds.float_points, net.largest(hull))) return false;
+  const double size = net.tangent_size(hull);
+  if (kinds.float_points) place.write_points(single, size);
+  if (kinds.double_points) place.write_points(twice, size);
   return true;
 }
 
@@ -145,12 +146,14 @@ bool PatchSet::Impl::pack_power(std::size_t index, const BlockGroup& group, cons
   const double limit = largest_coefficient(kinds.float_power, 1);
   const auto in_range = [&](double value) { return std::abs(value) <= limit; };
   if (!fits(net, kinds.float_power, net.largest(hull)) || !std::ranges::all_of(power, in_range)) return false;
-  const double largest = largest_vector(power, static_cast<std::size_t>(coefficient_components(group.rational)));
+  // As in tangent_size(); a power coefficient may exceed the Bernstein ones.
+  double size = largest_of(power, static_cast<std::size_t>(coefficient_components(group.rational)), 0, 3);
+  if (group.rational) size = std::max(size, net.tangent_size(hull) / net.heaviest() * largest_of(power, 4, 3, 4));
   const auto coefficients = [&]<class T>(T* lane) {
     for (std::size_t k = 0; k < power.size(); ++k) lane[k * lanes] = static_cast<T>(power[k]);
   };
-  if (kinds.float_power) place.write(single.power, single.power_doubt, largest, coefficients);
-  if (kinds.double_power) place.write(twice.power, twice.power_doubt, largest, coefficients);
+  if (kinds.float_power) place.write(single.power, single.power_doubt, size, coefficients);
+  if (kinds.double_power) place.write(twice.power, twice.power_doubt, size, coefficients);
   return true;
 }
 

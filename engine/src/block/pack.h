@@ -50,6 +50,9 @@ class RelativeNet {
   /// Largest x, y or z of the Bernstein coefficients. `hull`: patch.hull_box(), whose corners hold that of a polynomial
   /// patch, for rounding a difference keeps order.
   double largest(const Box3& hull) const;
+  /// What the errors of tangents go with, over the weight (sample_kernel.inl.h): largest() of a polynomial patch, the
+  /// largest |V - o| times the largest weight of a rational one.
+  double tangent_size(const Box3& hull) const { return heaviest() * farthest(hull); }
   /// Writes the Bernstein coefficients into the lane that begins here, rounding to T once.
   template <class T>
   void write(T* lane) const {
@@ -102,6 +105,11 @@ class RelativeNet {
     }
   }
 
+  /// The largest |x|, |y| or |z| of V - o.
+  double farthest(const Box3& hull) const {
+    return std::max(max_abs(hull.lower - origin_), max_abs(hull.upper - origin_));
+  }
+
   const BezierPatch& patch_;
   const Vec3 origin_;
   double low_ = 1, high_ = 1, scale_ = 1;  // of the weights
@@ -120,7 +128,7 @@ bool is_curve(const BezierPatch& patch, EdgeMask collapsed);
 /// Of a curve.
 inline constexpr NormalDoubt no_normal{.squared_length = std::numeric_limits<double>::infinity(), .noise = -1};
 
-/// The error of a tangent where the largest coefficient is 1, `degree` = max(m, n).
+/// The error of a tangent where RelativeNet::tangent_size() is 1, `degree` = max(m, n).
 template <class T>
 constexpr double tangent_noise(int degree) {
   return 6 * degree * double{std::numeric_limits<T>::epsilon()};
@@ -132,13 +140,13 @@ constexpr double longest_tangent(int degree, double weight_spread = 1) { return 
 template <class T>
 inline constexpr double least_doubt = sizeof(T) == 4 ? 0x1p-80 : 0x1p-600;
 
-/// Of a patch that is no curve, `degree` = max(m, n), in blocks of T. With 6 max(m, n) units of the largest coefficient
-/// for the error of a tangent, over the weight for rational patches: random nets of all degrees reach 4, tangents that
-/// vanish 1.6. And |r_u|, |r_v| <= max(m, n) (largest weight / smallest) diameter (Floater 1992, Derivatives of rational
-/// Bezier curves, eq. 10). `largest`: x, y or z of the coefficients; `diameter`: of the hull's box.
+/// The doubt of a patch that is no curve, in blocks of T, `degree` = max(m, n). The error of a tangent counts as
+/// 6 max(m, n) units of `size`, RelativeNet::tangent_size(), over the weight for rational patches: random nets of all
+/// degrees reach 4, tangents that vanish 1.6. And |r_u|, |r_v| <= max(m, n) (largest weight / smallest) diameter
+/// (Floater 1992, Derivatives of rational Bezier curves, eq. 10). `diameter`: of the hull's box.
 template <class T>
-NormalDoubt normal_doubt(int degree, double largest, double diameter, double lightest, double weight_spread) {
-  const double noise = tangent_noise<T>(degree) * largest;
+NormalDoubt normal_doubt(int degree, double size, double diameter, double lightest, double weight_spread) {
+  const double noise = tangent_noise<T>(degree) * size;
   const double longest = longest_tangent(degree, weight_spread) * diameter;
   const double length = 4 * (noise / lightest) * longest;  // 2 sqrt(3) noise |r_u|
   return {.squared_length = length * length, .noise = noise};
