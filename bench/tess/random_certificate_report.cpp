@@ -1,0 +1,249 @@
+// Whether certified tessellations keep what they promise for random patches that are hard on bounds: weights up to a million of
+// each other, degrees up to 15, scaled sweeps and patches that nearly are, flat quadrilaterals, poles, thin patches, patches far
+// from zero. Points of both sets are measured against the other, by code that the bounds don't share.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "support/random_patches.h"
+#include "support/synthetic_sets.h"
+#include "support/true_distance.h"
+#include "tessera/certified_tessellation.h"
+#include "tessera/tensor_patch.h"
+
+namespace {
+
+using namespace tessera;
+using test::Random;
+using test::uniform;
+using test::uniform_vector;
+
+constexpr char usage[] =
+    "tessera_random_certificate_report [PATCHES] [SEED]\n\n"
+    "Meshes random patches (10,000; in sets of 16 that have the degrees in common) to random tolerances, and measures "
+    "some of\n"
+    "their triangles in both directions. Exit status 1 if a bound is exceeded.\n";
+
+constexpr std::size_t patches_per_set = 16, triangles_per_patch = 4, points_per_triangle = 4;
+
+enum Kind { rough, sweep, near_sweep, flat, pole, kinds };
+constexpr const char* names[kinds] = {"random weights", "scaled sweeps", "nearly sweeps", "flat", "poles"};
+
+struct Net {
+  int m, n;
+  std::vector<Vec3> points;
+  std::vector<double> weights;
+  Vec3& point(int i, int j) { return points[static_cast<std::size_t>(i * (n + 1) + j)]; }
+  double& weight(int i, int j) { return weights[static_cast<std::size_t>(i * (n + 1) + j)]; }
+};
+
+double weight(Random& random, double spread) { return std::pow(10.0, uniform(random, -spread, spread) / 2); }
+
+Net random_net(Random& random, Kind kind, int m, int n) {
+  Net net{m, n, std::vector<Vec3>(static_cast<std::size_t>((m + 1) * (n + 1))), {}};
+  net.weights.resize(net.points.size());
+  const double spread = uniform(random, 0, 1) < 0.5 ? 0.6 : uniform(random, 0, 6);
+  for (Vec3& p : net.points) p = uniform_vector(random, -1, 1);
+  for (double& w : net.weights) w = weight(random, spread);
+  if (kind == sweep || kind == near_sweep) {
+    std::vector<double> rho, of_row;
+    for (int j = 0; j <= n; ++j) rho.push_back(uniform(random, 0, 1.5)), of_row.push_back(weight(random, spread / 2));
+    if (random() % 3 == 0) rho.back() = 0;
+    std::vector<Vec3> e;
+    for (int i = 0; i <= m; ++i) e.push_back(uniform_vector(random, -1, 1));
+    for (int i = m; i >= 0; --i)
+      for (int j = 0; j <= n; ++j) {
+        net.point(i, j) = rho[static_cast<std::size_t>(j)] * e[static_cast<std::size_t>(i)] + net.point(0, j);
+        net.weight(i, j) = of_row[static_cast<std::size_t>(j)] * net.weight(i, 0);
+      }
+  }
+  if (kind == near_sweep) {
+    const double noise = std::pow(10.0, uniform(random, -13, -5));
+    for (Vec3& p : net.points) p = p + noise * uniform_vector(random, -1, 1);
+    if (random() % 2)
+      for (double& w : net.weights) w *= 1 + noise * uniform(random, -1, 1);
+  }
+  if (kind == flat) {
+    const Vec3 a = uniform_vector(random, -1, 1), b = uniform_vector(random, -1, 1), c = uniform_vector(random, -1, 1);
+    const double taper = uniform(random, 0.1, 1.5), lift = random() % 2 ? 0 : std::pow(10.0, uniform(random, -12, -3));
+    for (int i = 0; i <= m; ++i)
+      for (int j = 0; j <= n; ++j) {
+        const bool inner = i > 0 && i < m && j > 0 && j < n;
+        double u = double(i) / m, v = double(j) / n;
+        if (inner) u = uniform(random, 0, 1), v = uniform(random, 0, 1);
+        net.point(i, j) = a + u * b + v * c + u * v * (taper - 1) * (b + c) + (inner ? lift : 0) * cross(b, c);
+      }
+  }
+  if (kind == pole)
+    for (int i = 1; i <= m; ++i) net.point(i, 0) = net.point(0, 0);
+  if (random() % 8 == 0)  // thin
+    for (Vec3& p : net.points) p.z *= std::pow(10.0, uniform(random, -9, 0)), p.x *= 100;
+  return net;
+}
+
+BezierPatch patch_of(Net net, const Vec3& shift, double scale, bool turned) {
+  for (Vec3& p : net.points) p = scale * p + shift;
+  const BezierPatch patch = test::rational(net.m, net.n, net.points, net.weights);
+  return turned ? test::transposed(patch) : patch;
+}
+
+/// The least distance found from a point to the patch: downhill from (u, v), and from places around it if that is not enough.
+double distance_to_patch(const BezierPatch& patch, const Vec3& p, double u, double v, double reach, double enough) {
+  const auto off = [&](double a, double b) { return length(de_casteljau(patch, a, b) - p); };
+  double best = 1e300;
+  const auto walk = [&](double a, double b) {
+    double least = off(a, b);
+    for (double step = reach / 4; step > 1e-4 * reach && least > enough;) {
+      bool moved = false;
+      for (const auto& [x, y] : {std::array{1.0, 0.0},
+                                 {-1.0, 0.0},
+                                 {0.0, 1.0},
+                                 {0.0, -1.0},
+                                 {1.0, 1.0},
+                                 {-1.0, 1.0},
+                                 {1.0, -1.0},
+                                 {-1.0, -1.0}}) {
+        const double c = std::clamp(a + step * x, 0.0, 1.0), d = std::clamp(b + step * y, 0.0, 1.0), at = off(c, d);
+        if (at < least) least = at, a = c, b = d, moved = true;
+      }
+      if (!moved) step /= 2;
+    }
+    // Gauss and Newton's steps, in the square.
+    for (int round = 0; round < 40 && least > enough; ++round) {
+      const SurfaceJet jet = evaluate_jet(patch, a, b);
+      const Vec3 away = p - jet.position;
+      const double uu = dot(jet.du, jet.du) * (1 + 1e-9), uv = dot(jet.du, jet.dv),
+                   vv = dot(jet.dv, jet.dv) * (1 + 1e-9);
+      const double x = dot(jet.du, away), y = dot(jet.dv, away), det = uu * vv - uv * uv;
+      const bool held_u = (a == 0 && x < 0) || (a == 1 && x > 0), held_v = (b == 0 && y < 0) || (b == 1 && y > 0);
+      double da = 0, db = 0;
+      if (held_u || held_v) {
+        if (!held_u && uu > 0) da = x / uu;
+        if (!held_v && vv > 0) db = y / vv;
+      } else if (det > 0) {
+        da = (vv * x - uv * y) / det, db = (uu * y - uv * x) / det;
+      }
+      bool moved = false;
+      for (double share = 1; share > 1e-3 && !moved; share /= 2) {
+        const double c = std::clamp(a + share * da, 0.0, 1.0), d = std::clamp(b + share * db, 0.0, 1.0), at = off(c, d);
+        if (at < least) least = at, a = c, b = d, moved = true;
+      }
+      if (!moved) break;
+    }
+    best = std::min(best, least);
+  };
+  walk(u, v);
+  for (int i = -3; i <= 3 && best > enough; ++i)
+    for (int j = -3; j <= 3 && best > enough; ++j)
+      walk(std::clamp(u + i * reach / 3, 0.0, 1.0), std::clamp(v + j * reach / 3, 0.0, 1.0));
+  return best;
+}
+
+struct Row {
+  std::size_t patches = 0, refused = 0, triangles = 0, points = 0, exceeded = 0;
+  double nearest = 0;  ///< the largest distance over its bound
+};
+
+/// Measures some triangles of one patch.
+void measure(const BezierPatch& patch, const Mesh& mesh, std::size_t begin, std::size_t end, double bound,
+             Random& random, Row& row) {
+  const Box3 box = patch.hull_box();
+  const double rounding = 1e-14 * (max_abs(box.lower) + max_abs(box.upper)), most = bound + rounding;
+  for (std::size_t k = 0; k < triangles_per_patch && begin < end; ++k) {
+    const test::MeshTriangle triangle = test::triangle_of(mesh, begin + random() % (end - begin));
+    ++row.triangles;
+    double reach = 0;  // about the size of its parameter box
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t along = 0; along < 2; ++along)
+        reach = std::max(reach, std::abs(triangle.parameters[c][along] - triangle.parameters[(c + 1) % 3][along]));
+    for (std::size_t sample = 0; sample < points_per_triangle; ++sample) {
+      double share[3] = {uniform(random, 0, 1), uniform(random, 0, 1), sample % 2 ? 0 : uniform(random, 0, 1)};
+      const double sum = share[0] + share[1] + share[2];
+      double u = 0, v = 0;
+      Vec3 on_mesh;
+      for (std::size_t c = 0; c < 3; ++c) {
+        share[c] /= sum;
+        u += share[c] * triangle.parameters[c][0], v += share[c] * triangle.parameters[c][1];
+        on_mesh = on_mesh + share[c] * triangle.corners[c];
+      }
+      const Vec3 on_patch = de_casteljau(patch, std::min(u, 1.0), std::min(v, 1.0));
+      const auto to = [&](const test::MeshTriangle& t) {
+        return test::distance_to_triangle(on_patch, t.corners[0], t.corners[1], t.corners[2]);
+      };
+      double there = to(triangle);
+      for (std::size_t other = begin; other < end && there > most; ++other)
+        there = std::min(there, to(test::triangle_of(mesh, other)));
+      double back = length(on_mesh - on_patch);
+      if (back > most) back = distance_to_patch(patch, on_mesh, std::min(u, 1.0), std::min(v, 1.0), reach, most);
+      row.points += 2;
+      row.exceeded += (there > most) + (back > most);
+      if (bound > 0) row.nearest = std::max(row.nearest, (std::max(there, back) - rounding) / bound);
+    }
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc > 1 && (std::string_view(argv[1]) == "--help" || std::string_view(argv[1]) == "-h")) {
+    std::fputs(usage, stdout);
+    return 0;
+  }
+  const std::size_t wanted = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 10000;
+  if (wanted == 0 || argc > 3) {
+    std::fputs(usage, stderr);
+    return 2;
+  }
+  Random random(argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1);
+  std::array<Row, kinds> rows;
+  std::size_t done = 0;
+  for (std::size_t shown = 0; done < wanted;) {
+    const int most = random() % 20 == 0 ? 15 : random() % 4 == 0 ? 7 : 3;
+    const int m = 1 + static_cast<int>(random() % static_cast<unsigned>(most)),
+              n = 1 + static_cast<int>(random() % static_cast<unsigned>(most));
+    const double scale = std::pow(10.0, random() % 4 == 0 ? uniform(random, -9, 9) : 0);
+    const Vec3 shift =
+        (random() % 4 == 0 ? std::pow(10.0, uniform(random, 0, 7)) : 1) * scale * uniform_vector(random, -1, 1);
+    std::vector<BezierPatch> patches;
+    std::vector<Kind> of;
+    for (std::size_t k = 0; k < patches_per_set; ++k) {
+      of.push_back(static_cast<Kind>(random() % kinds));
+      const bool turned = m == n && random() % 2;
+      patches.push_back(patch_of(random_net(random, of.back(), m, n), shift + 3 * scale * uniform_vector(random, -1, 1),
+                                 scale, turned));
+    }
+    const PatchSet set = test::value_of(PatchSet::from(patches));
+    const auto plan = CertifiedTessellation::make(
+        set, {.tolerance = std::pow(10.0, uniform(random, -2.5, -0.5)), .relative = true, .most_triangles = 300000});
+    done += patches_per_set;
+    for (const Kind kind : of) ++rows[kind].patches, rows[kind].refused += !plan;
+    if (!plan) continue;
+    Mesh mesh = test::value_of(plan->allocate());
+    if (!plan->run(set, mesh.views()).ok()) return 1;
+    std::size_t begin = 0;
+    for (std::size_t k = 0; k < patches_per_set; ++k) {
+      std::size_t end = begin;
+      while (end < mesh.triangle_count() && mesh.patches[end] == k) ++end;
+      measure(patches[k], mesh, begin, end, plan->bounds()[k], random, rows[of[k]]);
+      begin = end;
+    }
+    if (done * 10 / wanted != shown)
+      std::fprintf(stderr, "%zu of %zu patches\n", done, wanted), shown = done * 10 / wanted;
+  }
+  std::printf("%-16s %9s %9s %10s %10s %9s %14s\n", "kind", "patches", "refused", "triangles", "distances", "exceeded",
+              "largest share");
+  std::size_t exceeded = 0;
+  for (std::size_t k = 0; k < kinds; ++k) {
+    const Row& row = rows[k];
+    std::printf("%-16s %9zu %9zu %10zu %10zu %9zu %14.4f\n", names[k], row.patches, row.refused, row.triangles,
+                row.points, row.exceeded, row.nearest);
+    exceeded += row.exceeded;
+  }
+  return exceeded == 0 ? 0 : 1;
+}
