@@ -37,9 +37,9 @@ double wall_seconds_of(Task&& task) {
 }
 
 /// The shortest time of each of `tasks`, which say themselves how many seconds they took, over `rounds` in which all
-/// take their turns of at least 50 ms.
-inline std::vector<double> best_interleaved(int rounds, const std::vector<FunctionRef<double()>>& tasks) {
-  constexpr double turn = 0.05;
+/// take their turns of at least `turn` seconds.
+inline std::vector<double> best_interleaved(int rounds, const std::vector<FunctionRef<double()>>& tasks,
+                                            double turn = 0.05) {
   std::vector<double> best(tasks.size(), std::numeric_limits<double>::infinity());
   for (int round = 0; round < rounds; ++round)
     for (std::size_t k = 0; k < tasks.size(); ++k)

@@ -1,0 +1,44 @@
+#pragma once
+// Surfaces as faces of OpenCASCADE, and its meshes of them.
+
+#include <BRep_Builder.hxx>
+#include <GeomAdaptor_Surface.hxx>
+#include <Geom_BSplineSurface.hxx>
+#include <Geom_BezierSurface.hxx>
+#include <TopoDS_Compound.hxx>
+#include <TopoDS_Face.hxx>
+#include <limits>
+#include <vector>
+
+#include "peers/mesh_distance.h"
+#include "tessera/bspline_surface.h"
+
+namespace tessera::bench {
+
+constexpr double occt_default_angle = 0.5;  ///< OpenCASCADE's own angular deflection, radians
+
+/// The same surface with the same parameters.
+Handle(Geom_BSplineSurface) occt_surface(const BSplineSurface& surface);
+Handle(Geom_BezierSurface) occt_surface(const BezierPatch& patch);
+
+/// A compound of faces, one a surface, each over all of its surface's parameters.
+class OcctShape {
+ public:
+  /// Throws std::runtime_error where OpenCASCADE makes no face of a surface.
+  explicit OcctShape(const std::vector<Handle(Geom_Surface)>& surfaces);
+
+  /// Meshes all faces anew, in this thread, and returns the processor time that it takes in seconds; infinity if it was
+  /// stopped after about max_seconds. Angular deflection in radians.
+  double mesh(double deflection, double angle = occt_default_angle,
+              double max_seconds = std::numeric_limits<double>::infinity());
+  /// The triangles of the last mesh(). Empty before the first.
+  std::vector<SurfaceTriangle> triangles() const;
+  Vec3 point(std::size_t face, double u, double v) const;
+
+ private:
+  std::vector<TopoDS_Face> faces_;
+  std::vector<GeomAdaptor_Surface> surfaces_;
+  TopoDS_Compound shape_;
+};
+
+}  // namespace tessera::bench
