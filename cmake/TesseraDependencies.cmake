@@ -21,7 +21,7 @@
 #   clang-format      clang-format-14             tools/lint.sh, and its test; skipped without. clang-tidy: tools/lint.sh --tidy
 # What Tessera is compared with, where TESSERA_BUILD_PEERS is ON (tools/peers.sh installs it). bench/peers alone looks for
 # these, and builds what it finds:
-#   OpenCASCADE       libocct-modeling-data-dev 7.6
+#   OpenCASCADE       libocct-modeling-data-dev, libocct-modeling-algorithms-dev 7.6
 #   OpenSubdiv        libosd-dev 3.5
 #   SISL              libsisl-dev 4.6             AGPL: linked by one program of its own, which links nothing of Tessera
 

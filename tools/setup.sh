@@ -25,7 +25,8 @@ demo_packages=(g++ cmake ninja-build libtbb-dev libxsimd-dev libembree-dev libcl
   libtinygltf-dev libpng-dev libopenexr-dev)
 test_packages=(binutils libgtest-dev libgmock-dev libbenchmark-dev libocct-data-exchange-dev python3 valgrind)
 neon_packages=(g++-aarch64-linux-gnu qemu-user)
-peer_packages=(libocct-modeling-data-dev libocct-modeling-algorithms-dev libosd-dev libsisl-dev povray python3)
+peer_packages=(libocct-modeling-data-dev libocct-modeling-algorithms-dev libocct-data-exchange-dev libosd-dev
+  libsisl-dev povray python3)
 gallery_packages=(imagemagick fonts-dejavu-core)
 docs_packages=(doxygen python3)
 
