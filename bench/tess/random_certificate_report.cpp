@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <queue>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,8 +15,8 @@
 #include "support/random_patches.h"
 #include "support/synthetic_sets.h"
 #include "support/true_distance.h"
+#include "tessera/bezier_operations.h"
 #include "tessera/certified_tessellation.h"
-#include "tessera/tensor_patch.h"
 
 namespace {
 
@@ -93,60 +94,41 @@ BezierPatch patch_of(Net net, const Vec3& shift, double scale, bool turned) {
   return turned ? test::transposed(patch) : patch;
 }
 
-/// The least distance found from a point to the patch: downhill from (u, v), and from places around it if that is not enough.
-double distance_to_patch(const BezierPatch& patch, const Vec3& p, double u, double v, double reach, double enough) {
-  const auto off = [&](double a, double b) { return length(de_casteljau(patch, a, b) - p); };
-  double best = 1e300;
-  const auto walk = [&](double a, double b) {
-    double least = off(a, b);
-    for (double step = reach / 4; step > 1e-4 * reach && least > enough;) {
-      bool moved = false;
-      for (const auto& [x, y] : {std::array{1.0, 0.0},
-                                 {-1.0, 0.0},
-                                 {0.0, 1.0},
-                                 {0.0, -1.0},
-                                 {1.0, 1.0},
-                                 {-1.0, 1.0},
-                                 {1.0, -1.0},
-                                 {-1.0, -1.0}}) {
-        const double c = std::clamp(a + step * x, 0.0, 1.0), d = std::clamp(b + step * y, 0.0, 1.0), at = off(c, d);
-        if (at < least) least = at, a = c, b = d, moved = true;
-      }
-      if (!moved) step /= 2;
-    }
-    // Gauss and Newton's steps, in the square.
-    for (int round = 0; round < 40 && least > enough; ++round) {
-      const SurfaceJet jet = evaluate_jet(patch, a, b);
-      const Vec3 away = p - jet.position;
-      const double uu = dot(jet.du, jet.du) * (1 + 1e-9), uv = dot(jet.du, jet.dv),
-                   vv = dot(jet.dv, jet.dv) * (1 + 1e-9);
-      const double x = dot(jet.du, away), y = dot(jet.dv, away), det = uu * vv - uv * uv;
-      const bool held_u = (a == 0 && x < 0) || (a == 1 && x > 0), held_v = (b == 0 && y < 0) || (b == 1 && y > 0);
-      double da = 0, db = 0;
-      if (held_u || held_v) {
-        if (!held_u && uu > 0) da = x / uu;
-        if (!held_v && vv > 0) db = y / vv;
-      } else if (det > 0) {
-        da = (vv * x - uv * y) / det, db = (uu * y - uv * x) / det;
-      }
-      bool moved = false;
-      for (double share = 1; share > 1e-3 && !moved; share /= 2) {
-        const double c = std::clamp(a + share * da, 0.0, 1.0), d = std::clamp(b + share * db, 0.0, 1.0), at = off(c, d);
-        if (at < least) least = at, a = c, b = d, moved = true;
-      }
-      if (!moved) break;
-    }
-    best = std::min(best, least);
+/// A lower bound on the distance from a point to the patch, and a distance that was found; the search ends where that is
+/// `enough`. By branch and bound over boxes of control points.
+test::DistanceRange distance_to_patch(const BezierPatch& patch, const Vec3& p, double enough) {
+  struct Piece {
+    BezierPatch patch;
+    double low;
+    bool operator<(const Piece& other) const { return low > other.low; }
   };
-  walk(u, v);
-  for (int i = -3; i <= 3 && best > enough; ++i)
-    for (int j = -3; j <= 3 && best > enough; ++j)
-      walk(std::clamp(u + i * reach / 3, 0.0, 1.0), std::clamp(v + j * reach / 3, 0.0, 1.0));
-  return best;
+  double best = 1e300;
+  std::priority_queue<Piece> pieces;
+  const auto add = [&](BezierPatch part) {
+    const Box3 box = part.hull_box();
+    const Vec3 nearest{std::clamp(p.x, box.lower.x, box.upper.x), std::clamp(p.y, box.lower.y, box.upper.y),
+                       std::clamp(p.z, box.lower.z, box.upper.z)};
+    for (const int i : {0, part.degree_u()})
+      for (const int j : {0, part.degree_v()}) best = std::min(best, length(part.point(i, j) - p));
+    const double low = length(nearest - p);
+    if (low < best) pieces.push({std::move(part), low});
+  };
+  add(patch);
+  for (int step = 0; step < 200000 && !pieces.empty() && best > enough && pieces.top().low < best; ++step) {
+    const BezierPatch top = pieces.top().patch;
+    pieces.pop();
+    const auto halves = test::value_of(split_u(top, 0.5));
+    for (const BezierPatch& half : {halves.first, halves.second}) {
+      auto quarters = test::value_of(split_v(half, 0.5));
+      add(std::move(quarters.first));
+      add(std::move(quarters.second));
+    }
+  }
+  return {pieces.empty() ? best : std::min(best, pieces.top().low), best};
 }
 
 struct Row {
-  std::size_t patches = 0, refused = 0, triangles = 0, points = 0, exceeded = 0;
+  std::size_t patches = 0, refused = 0, triangles = 0, points = 0, exceeded = 0, unresolved = 0;
   double nearest = 0;  ///< the largest distance over its bound
 };
 
@@ -158,10 +140,6 @@ void measure(const BezierPatch& patch, const Mesh& mesh, std::size_t begin, std:
   for (std::size_t k = 0; k < triangles_per_patch && begin < end; ++k) {
     const test::MeshTriangle triangle = test::triangle_of(mesh, begin + random() % (end - begin));
     ++row.triangles;
-    double reach = 0;  // about the size of its parameter box
-    for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t along = 0; along < 2; ++along)
-        reach = std::max(reach, std::abs(triangle.parameters[c][along] - triangle.parameters[(c + 1) % 3][along]));
     for (std::size_t sample = 0; sample < points_per_triangle; ++sample) {
       double share[3] = {uniform(random, 0, 1), uniform(random, 0, 1), sample % 2 ? 0 : uniform(random, 0, 1)};
       const double sum = share[0] + share[1] + share[2];
@@ -179,11 +157,12 @@ void measure(const BezierPatch& patch, const Mesh& mesh, std::size_t begin, std:
       double there = to(triangle);
       for (std::size_t other = begin; other < end && there > most; ++other)
         there = std::min(there, to(test::triangle_of(mesh, other)));
-      double back = length(on_mesh - on_patch);
-      if (back > most) back = distance_to_patch(patch, on_mesh, std::min(u, 1.0), std::min(v, 1.0), reach, most);
+      test::DistanceRange back{length(on_mesh - on_patch), length(on_mesh - on_patch)};
+      if (back.low > most) back = distance_to_patch(patch, on_mesh, most);
       row.points += 2;
-      row.exceeded += (there > most) + (back > most);
-      if (bound > 0) row.nearest = std::max(row.nearest, (std::max(there, back) - rounding) / bound);
+      row.exceeded += (there > most) + (back.low > most);
+      row.unresolved += back.low <= most && back.high > most;
+      if (bound > 0) row.nearest = std::max(row.nearest, (std::max(there, back.low) - rounding) / bound);
     }
   }
 }
@@ -236,13 +215,13 @@ int main(int argc, char** argv) {
     if (done * 10 / wanted != shown)
       std::fprintf(stderr, "%zu of %zu patches\n", done, wanted), shown = done * 10 / wanted;
   }
-  std::printf("%-16s %9s %9s %10s %10s %9s %14s\n", "kind", "patches", "refused", "triangles", "distances", "exceeded",
-              "largest share");
+  std::printf("%-16s %9s %9s %10s %10s %9s %10s %14s\n", "kind", "patches", "refused", "triangles", "distances",
+              "exceeded", "unresolved", "largest share");
   std::size_t exceeded = 0;
   for (std::size_t k = 0; k < kinds; ++k) {
     const Row& row = rows[k];
-    std::printf("%-16s %9zu %9zu %10zu %10zu %9zu %14.4f\n", names[k], row.patches, row.refused, row.triangles,
-                row.points, row.exceeded, row.nearest);
+    std::printf("%-16s %9zu %9zu %10zu %10zu %9zu %10zu %14.4f\n", names[k], row.patches, row.refused, row.triangles,
+                row.points, row.exceeded, row.unresolved, row.nearest);
     exceeded += row.exceeded;
   }
   return exceeded == 0 ? 0 : 1;
