@@ -72,9 +72,11 @@ struct CertifiedOptions {
   std::optional<Isa> isa = {};  ///< default_isa() if empty
 };
 
-/// A mesh of the fewest cells of one size that keep the tolerance, patch by patch. The bound of a patch is proven: from the second
-/// differences of its control net (Filip, Magedson, Markot 1986; rational patches in homogeneous form), the rounding of
-/// float vertices and the set's fit error.
+/// A mesh of the fewest cells of one size that keep the tolerance, patch by patch. The bound of a patch is proven. It is the
+/// sum of a bound on the chords, the rounding of float vertices and the set's fit error. The chords are bounded by the second
+/// derivatives of the patch (Filip, Magedson, Markot 1986), those of a rational patch in homogeneous form or by exact
+/// numerators: a cylinder takes as many triangles at any height. Scaled sweeps rho(v) E(u) + T(v), as surfaces of revolution,
+/// extrusions and cones are, need no bound on the mixed derivative. A flat convex quadrilateral takes two triangles.
 ///
 /// Without cracks: borders of patches whose packed control points are the same bits, in either direction, run at one
 /// rate, and their vertices are the same bits in both patches. Each patch has an inner grid at rates of its own and strips of
