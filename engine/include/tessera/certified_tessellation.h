@@ -78,6 +78,12 @@ struct CertifiedOptions {
 /// numerators: a cylinder takes as many triangles at any height. Scaled sweeps rho(v) E(u) + T(v), as surfaces of revolution,
 /// extrusions and cones are, need no bound on the mixed derivative. A flat convex quadrilateral takes two triangles.
 ///
+/// Vertices are sums of floats, in SIMD, unless the rounding of these sums takes more than an eighth of the tolerance, or
+/// all that pixels leave: parts far from each other beside a small tolerance. Then all vertices are sums of doubles, from the
+/// set's double control points, rounded once to float: off by half a unit in the last place of a position relative to the
+/// set's origin. They take several times as long and never go past the caches. Borders that were one edge when the plan was made
+/// keep one border's vertices in later revisions, as welded ones do.
+///
 /// Without cracks: borders of patches whose packed control points are the same bits, in either direction, run at one
 /// rate, and their vertices are the same bits in both patches. Each patch has an inner grid at rates of its own and strips of
 /// triangles between that and its borders. A collapsed border is one point, and no triangle stands on it.

@@ -12,6 +12,7 @@
 #include "base/text.h"
 #include "parallel/least_index.h"
 #include "parallel/parallel_for.h"
+#include "tess/f64_points.h"
 #include "tess/side_curve.h"
 
 namespace tessera {
@@ -66,8 +67,10 @@ Result<CertifiedPlanner> CertifiedPlanner::make(const PatchSet::Impl& set, const
         const std::size_t k = set.lane_patches[block * PatchSet::lanes + lane];
         const std::optional<double> size = planner.chords_.size(block, lane);
         planner.shapes_[k] = set.collapsed[k].any() ? PatchShape::of(set.patches[k], set.collapsed[k]) : whole;
-        planner.roundings_[k] = (size ? rounding * *size : vertex_rounding(set.patches[k], set.origin)) +
-                                planner.chords_.slack(block, lane);
+        const double vertices = options.f64 ? f64_vertex_rounding(set.patches[k], set.origin)
+                                : size      ? rounding * *size
+                                            : vertex_rounding(set.patches[k], set.origin);
+        planner.roundings_[k] = vertices + planner.chords_.slack(block, lane);
       }
     }
   };
@@ -84,8 +87,10 @@ Result<CertifiedPlanner> CertifiedPlanner::make(const PatchSet::Impl& set, const
   };
   status = parallel_for(pieces, pieces > 2 ? 1 : 2, execution, find_or_bound);
   if (!status.ok()) return status;
-  if (options.weld > 0) {
-    planner.weld_ = weld_borders(set, planner.shapes_, planner.roundings_, options.weld, planner.edges_);
+  for (const double rounding : planner.roundings_)
+    planner.largest_rounding_ = std::max(planner.largest_rounding_, rounding);
+  if (options.weld > 0 || options.f64) {
+    planner.weld_ = weld_borders(set, planner.shapes_, planner.roundings_, options.weld, planner.edges_, options.f64);
     for (std::size_t k = 0; k < patches; ++k)
       planner.roundings_[k] = std::max(planner.roundings_[k], planner.weld_.displacements[k]);
   }
@@ -123,6 +128,17 @@ Status CertifiedPlanner::bound_turning_and_picture(const PatchSet::Impl& set, co
     }
   };
   return parallel_for(shapes_.size(), patches_a_piece, execution, bound);
+}
+
+bool CertifiedPlanner::needs_f64(double tolerance) const {
+  constexpr double most_share = 1.0 / 8;
+  if (largest_rounding_ > most_share * tolerance) return true;
+  for (std::size_t k = 0; k < pictures_.size(); ++k) {
+    const double given = roundings_[k] + fit_error_;
+    if (!(given < pictures_[k].distance())) return true;
+    if (pictures_[k].projected() && !(pictures_[k].moved_pixels() < options_.pixels)) return true;
+  }
+  return false;
 }
 
 std::optional<Rates> CertifiedPlanner::rates_for(const CellLimits& limits, int most) const {
@@ -211,7 +227,7 @@ std::string CertifiedPlanner::wanted(double tolerance) const {
 
 Status CertifiedPlanner::refusal(Failure failure, std::size_t patch, double tolerance) const {
   const std::string vertices = "float vertices of patch " + std::to_string(patch) +
-                               (weld_.shapes.empty() ? "" : ", welded,") + " keep, " + text(roundings_[patch]) +
+                               (options_.weld > 0 ? ", welded," : "") + " keep, " + text(roundings_[patch]) +
                                ", and the fit error, " + text(fit_error_);
   if (failure == Failure::rough)
     return invalid("the tolerance " + text(tolerance) + " is not above what " + vertices, patch);
@@ -346,6 +362,7 @@ Status CertifiedPlanner::choose_rates(const Request& request, CertifiedPlan& pla
 
 Result<CertifiedPlan> CertifiedPlanner::plan(const Request& request, const Execution& execution) const {
   CertifiedPlan plan;
+  plan.is_f64_ = options_.f64;
   if (Status status = choose_rates(request, plan, execution); !status.ok()) return status;
   divide(request.tolerance, plan);
   plan.lay_out();

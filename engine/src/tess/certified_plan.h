@@ -46,6 +46,9 @@ class CertifiedPlan {
   std::span<const float> bounds() const { return bounds_; }
   std::span<const float> angles() const { return angles_; }  ///< empty if none was asked for
   std::span<const float> pixels() const { return pixels_; }  ///< the same
+  /// Whether vertices come from the set's double control points: see F64Points. Borders that are one edge then have the same
+  /// positions once VertexCopies are made.
+  bool is_f64() const { return is_f64_; }
 
   /// Stores vertices that are copies once. Those of the ring that a patch owns follow its inner points.
   void share(const VertexCopies& copies);
@@ -71,6 +74,7 @@ class CertifiedPlan {
   std::vector<Division> divisions_;
   std::vector<std::size_t> first_vertex_, first_triangle_, first_quad_;  ///< of each patch, and the number of all
   std::vector<float> bounds_, angles_, pixels_;
+  bool is_f64_ = false;
   std::vector<std::uint8_t> straddles_;  ///< patches whose bound holds wherever triangles lie; empty if there are none
   std::vector<std::uint32_t>
       corner_sources_;  ///< of each corner, itself if it owns its vertex; empty if nothing is shared
@@ -82,6 +86,7 @@ constexpr bool is_backward(std::uint32_t border) { return is_backward(all_sides[
 /// What is to be kept beside a distance, and how borders are joined.
 struct PlannerOptions {
   double weld = 0;              ///< finite, at least 0
+  bool f64 = false;             ///< vertices come from double control points
   std::optional<double> angle;  ///< radians, above 0, at most pi / 2
   int angle_rate = 64;          ///< where the angle has no bound
   std::optional<Camera> camera;
@@ -107,6 +112,9 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   std::span<const PatchShape> shapes() const { return shapes_; }
   const Weld& weld() const { return weld_; }
   const SharedEdges& edges() const { return edges_; }  ///< welded
+  /// Whether the rounding of vertices that come from float control points takes more than an eighth of the tolerance, or
+  /// all that pixels leave.
+  bool needs_f64(double tolerance) const;
   /// `tolerance`: the distance, infinite if any will do. Errors: invalid_argument, as CertifiedTessellation::make says;
   /// cancelled.
   Result<CertifiedPlan> plan(double tolerance, std::uint64_t most_triangles, const Execution& execution,
@@ -177,7 +185,8 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   double fit_error_;
   std::vector<PatchShape> shapes_;
   Weld weld_;
-  std::vector<double> roundings_;  ///< vertex_rounding() of each patch, or by how much its vertices are off when welded
+  double largest_rounding_ = 0;    ///< of vertices before welding
+  std::vector<double> roundings_;  ///< of each patch's vertices, or by how much its vertices are off when welded
   ChordBlocks chords_;
   std::vector<TurningBound> turnings_;    ///< if there is an angle
   std::vector<PatchInPicture> pictures_;  ///< if there is a camera

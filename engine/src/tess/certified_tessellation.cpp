@@ -100,7 +100,8 @@ Status CertifiedTessellation::Impl::run(const PatchSet& set, const MeshViews& ou
 
 std::size_t CertifiedTessellation::Impl::divided_otherwise(const Impl& other) const {
   const std::size_t patches = plan_.patch_count();
-  if (patches != other.plan_.patch_count()) return std::max(patches, other.plan_.patch_count());
+  if (patches != other.plan_.patch_count() || plan_.is_f64() != other.plan_.is_f64())
+    return std::max(patches, other.plan_.patch_count());
   std::vector<std::uint8_t> changed(patches, 0);
   for (std::size_t k = 0; k < patches; ++k) changed[k] = !(plan_.division(k) == other.plan_.division(k));
   const auto compare = [&](const auto& ours, const auto& theirs) {
@@ -160,21 +161,30 @@ Result<std::unique_ptr<CertifiedTessellation::Impl>> plan_for(const PatchSet& se
                                                               const KeptSegments& kept, const Execution& execution) {
   if (!set.blocks().float_bernstein)
     return Status(StatusCode::unsupported, "a tessellation needs float Bernstein blocks, the set has none");
-  const Result<PlannerOptions> planned = checked(options, set);
+  Result<PlannerOptions> planned = checked(options, set);
   if (!planned) return planned.status();
   const Result<Isa> isa = options.isa ? parse_isa(name(*options.isa)) : default_isa();
   if (!isa) return isa.status();
-  Result<CertifiedPlanner> planner = CertifiedPlanner::make(set.impl(), *planned, execution);
-  if (!planner) return planner.status();
   double tolerance = std::numeric_limits<double>::infinity();
   if (options.tolerance) tolerance = *options.tolerance * (options.relative ? set.box().diagonal() : 1);
   if (!(tolerance > 0))
     return Status(StatusCode::invalid_argument, "the tolerance is " + text(tolerance) + ": the model has no size");
-  if (options.smallest) {
+  Result<CertifiedPlanner> planner = CertifiedPlanner::make(set.impl(), *planned, execution);
+  if (!planner) return planner.status();
+  const auto find_smallest = [&]() -> Status {
+    if (!options.smallest) return {};
     const Result<double> found = planner->smallest_tolerance(options.most_triangles, execution);
-    if (!found) return found.status();
-    tolerance = *found;
+    if (found) tolerance = *found;
+    return found.status();
+  };
+  Status found = find_smallest();
+  if (planner->needs_f64(tolerance)) {
+    planned->f64 = true;
+    planner = CertifiedPlanner::make(set.impl(), *planned, execution);
+    if (!planner) return planner.status();
+    found = find_smallest();
   }
+  if (!found.ok()) return found;
   Result<CertifiedPlan> plan = planner->plan(tolerance, options.most_triangles, execution, kept);
   if (!plan && plan.status().code() == StatusCode::invalid_argument && !kept.segments.empty())
     plan = planner->plan(tolerance, options.most_triangles, execution);

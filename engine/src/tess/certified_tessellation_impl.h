@@ -31,7 +31,7 @@ class CertifiedTessellation::Impl {
   std::size_t patches_without_angle() const { return without_angle_; }
   double pixels() const { return pixels_; }
   bool certified() const { return fit_error_.certified; }
-  std::size_t welded_borders() const { return weld_.borders.size() + weld_.poles.size(); }
+  std::size_t welded_borders() const { return weld_.joined_by_distance; }
 
   /// Finds what neighbours share, if anything. Once, of the set that the plan was made for. Errors: cancelled.
   Status join(const PatchSet& set, const CertifiedPlanner& planner, const Execution& execution);

@@ -5,6 +5,7 @@
 
 #include "eval/streaming_threshold.h"
 #include "kernel/kernel_table.h"
+#include "tess/f64_points.h"
 #include "tess/vertex_job.h"
 
 namespace tessera {
@@ -30,7 +31,7 @@ PatchWriter::PatchWriter(const PatchSet::Impl& set, const CertifiedPlan& plan, c
   if (!bytes)
     bytes = sizeof(float) * size.vertices * (out.normal.empty() ? 3 : 6) + 3 * sizeof(std::uint32_t) * size.triangles;
   const bool large = stores == Stores::streaming || (stores == Stores::automatic && *bytes > streaming_threshold());
-  streaming_ = large && kernels.finish_lines && !plan.shares_vertices() && out.quads.empty() &&
+  streaming_ = large && kernels.finish_lines && !plan.shares_vertices() && !plan.is_f64() && out.quads.empty() &&
                is_packed(out.position) && (out.normal.empty() || is_packed(out.normal));
 }
 
@@ -70,6 +71,25 @@ void PatchWriter::write_vertices(std::size_t k, std::size_t end, VertexJob& vert
   set_records(vertices.job.normal, out_.normal, first);
   vertices.job.writable = static_cast<int>(std::min<std::size_t>(end - first, std::numeric_limits<int>::max()));
   kernels_.mesh_vertices(vertices.job);
+  if (plan_.is_f64()) write_f64_positions(k);
+}
+
+void PatchWriter::write_f64_positions(std::size_t k) const {
+  const F64Points points(set_.patches[k], set_.origin);
+  const Division& division = plan_.division(k);
+  const auto put = [this](std::size_t at, const Vec3& p) {
+    out_.position.at(at, 0) = static_cast<float>(p.x);
+    out_.position.at(at, 1) = static_cast<float>(p.y);
+    out_.position.at(at, 2) = static_cast<float>(p.z);
+  };
+  std::size_t vertex = plan_.first_vertex(k);
+  points.for_inner(division, [&](const Vec3& p) { put(vertex++, p); });
+  for (const Side side : all_sides) {
+    const std::uint32_t border = static_cast<std::uint32_t>(4 * k) + static_cast<std::uint32_t>(side);
+    points.for_border(division, side, [&](int n, const Vec3& p) {
+      if (n == 0 ? plan_.owns_corner(border) : plan_.owns_border(border)) put(vertex++, p);
+    });
+  }
 }
 
 void PatchWriter::write_patch_numbers(std::size_t k) const {

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "parallel/parallel_for.h"
+#include "tess/f64_points.h"
 #include "tess/local_chord.h"
 
 namespace tessera {
@@ -32,7 +33,8 @@ double distance(const ChordBound& chord, PatchSegments segments, const Division&
 }  // namespace
 
 PresentBounds::PresentBounds(const PatchSet::Impl& set, const CertifiedTessellation::Impl& plan)
-    : chords_(set),
+    : is_f64_(plan.plan().is_f64()),
+      chords_(set),
       roundings_(set.patches.size()),
       displacements_(plan.plan().shares_vertices() ? set.patches.size() : plan.weld().displacements.size(), 0.0),
       bounds_(plan.plan().bounds().begin(), plan.plan().bounds().end()),
@@ -43,7 +45,9 @@ PresentBounds::PresentBounds(const PatchSet::Impl& set, const CertifiedTessellat
   touched_blocks_.reserve(set.lane_counts.size());
   // Then bounds and roundings of patches that are not touched matter as well.
   std::copy(plan.weld().displacements.begin(), plan.weld().displacements.end(), displacements_.begin());
-  for (std::size_t k = 0; k < displacements_.size(); ++k) roundings_[k] = vertex_rounding(set.patches[k], set.origin);
+  for (std::size_t k = 0; k < displacements_.size(); ++k)
+    roundings_[k] =
+        is_f64_ ? f64_vertex_rounding(set.patches[k], set.origin) : vertex_rounding(set.patches[k], set.origin);
   if (displacements_.empty()) return;
   for (std::uint32_t block = 0; block < set.lane_counts.size(); ++block) {
     chords_.bound(set, block);
@@ -70,9 +74,10 @@ Status PresentBounds::bound_blocks(const PatchSet::Impl& set, const Execution& e
         const std::size_t patch = set.lane_patches[block * PatchSet::lanes + lane];
         const BezierPatch& net = set.patches[patch];
         const std::optional<double> size = chords_.size(block, lane);
-        roundings_[patch] = (size ? vertex_rounding(net.degree_u(), net.degree_v(), net.is_rational(), *size)
-                                  : vertex_rounding(net, set.origin)) +
-                            chords_.slack(block, lane);
+        const double vertices = is_f64_ ? f64_vertex_rounding(net, set.origin)
+                                : size  ? vertex_rounding(net.degree_u(), net.degree_v(), net.is_rational(), *size)
+                                        : vertex_rounding(net, set.origin);
+        roundings_[patch] = vertices + chords_.slack(block, lane);
       }
     }
   });

@@ -33,6 +33,7 @@ class PresentBounds {
   void set_bound(const PatchSet::Impl& set, const CertifiedTessellation::Impl& plan, std::size_t patch,
                  ChordBlocks::Products& products);
 
+  bool is_f64_;
   ChordBlocks chords_;
   std::vector<double> roundings_;      ///< of each patch's vertices, before welding
   std::vector<double> displacements_;  ///< of vertices that others' take the place of; empty where there are none

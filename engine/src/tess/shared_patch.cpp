@@ -37,12 +37,16 @@ void PatchWriter::write_owned(std::size_t k, VertexJob& vertices) const {
     part.border = division.border;
   }
   part.inner = {1, 1};
-  if (division.ring_count() <= most_points) return write_ring(k, part, vertices);
-  for (std::size_t side = 0; side < 4; ++side) {
-    part.border = {};
-    part.border[side] = division.border[side];
+  if (division.ring_count() <= most_points) {
     write_ring(k, part, vertices);
+  } else {
+    for (std::size_t side = 0; side < 4; ++side) {
+      part.border = {};
+      part.border[side] = division.border[side];
+      write_ring(k, part, vertices);
+    }
   }
+  if (plan_.is_f64()) write_f64_positions(k);
 }
 
 void PatchWriter::write_ring(std::size_t k, const Division& part, VertexJob& vertices) const {

@@ -64,9 +64,11 @@ class EdgeCells {
 
 class Welder {
  public:
-  Welder(const PatchSet::Impl& set, std::span<const PatchShape> shapes, double tolerance, SharedEdges& edges)
+  Welder(const PatchSet::Impl& set, std::span<const PatchShape> shapes, double tolerance, SharedEdges& edges,
+         bool every_edge)
       : set_(set),
         tolerance_(tolerance),
+        every_edge_(every_edge),
         edges_(edges),
         joined_(edges.count()),
         heads_(edges.count(), none),
@@ -80,8 +82,10 @@ class Welder {
   }
 
   Weld run(std::span<const double> roundings) {
-    join_edges();
-    find_poles();
+    if (tolerance_ > 0) {
+      join_edges();
+      find_poles();
+    }
     UnionFind corners(4 * set_.patches.size());
     join_corners(corners);
     list_copies(corners);
@@ -176,12 +180,15 @@ class Welder {
       for (std::uint32_t side = 0; side < 4; ++side) {
         const std::uint32_t border = static_cast<std::uint32_t>(4 * patch) + side, edge = edge_of_border(border);
         const std::uint32_t corner = corners.find(border).member;
-        if (!(packed(corner) == packed(border))) weld_.corners.push_back({border, corner});
+        const bool moves = !(packed(corner) == packed(border)), takes = moves || (every_edge_ && corner != border);
+        if (takes) weld_.corners.push_back({border, corner});
         const bool was_point = edge == none;
         if (was_point || is_pole_[canonical(edge)]) {
-          if (!was_point || !(packed(corner) == packed(border))) weld_.poles.push_back({border, corner});
-        } else if (canonical(edge) != edge) {
+          if (!was_point || takes) weld_.poles.push_back({border, corner});
+          if (!was_point || moves) ++weld_.joined_by_distance;
+        } else if (canonical(edge) != edge || (every_edge_ && heads_[edge] != border)) {
           weld_.borders.push_back({border, heads_[canonical(edge)], runs_against(border, edge)});
+          if (canonical(edge) != edge) ++weld_.joined_by_distance;
         }
       }
     }
@@ -197,6 +204,7 @@ class Welder {
 
   const PatchSet::Impl& set_;
   double tolerance_;
+  bool every_edge_;
   SharedEdges& edges_;
   UnionFind joined_;                       ///< edges
   std::vector<std::uint32_t> heads_;       ///< the first border of each edge that has an area behind it
@@ -208,8 +216,8 @@ class Welder {
 }  // namespace
 
 Weld weld_borders(const PatchSet::Impl& set, std::span<const PatchShape> shapes, std::span<const double> roundings,
-                  double tolerance, SharedEdges& edges) {
-  return Welder(set, shapes, tolerance, edges).run(roundings);
+                  double tolerance, SharedEdges& edges, bool every_edge) {
+  return Welder(set, shapes, tolerance, edges, every_edge).run(roundings);
 }
 
 std::array<std::uint32_t, 2> ends_of(std::uint32_t border) {

@@ -34,6 +34,8 @@ struct VertexCopies {
 
 /// Positions that are taken from others.
 struct Weld : VertexCopies {
+  /// Borders that are joined by their distance and not by their bits, and those made points.
+  std::size_t joined_by_distance = 0;
   /// Of each patch, with what has become a point.
   std::vector<PatchShape> shapes;
   /// How far the vertices of each patch lie from its surface at most, rounding included; 0 where none is moved.
@@ -50,10 +52,13 @@ Vec3 corner_of(const BezierPatch& patch, std::uint32_t corner);
 /// of the first. Borders whose control points lie in a box no larger than the tolerance become points, with all borders
 /// joined to them, and drop out of `edges`. Corners that meet at any of these edges become one.
 ///
+/// `every_edge`: all borders of an edge take the points of its first one, and all corners that meet there those of one,
+/// though their packed control points are the same bits: where vertices are made of doubles, these may differ.
+///
 /// The set must have float Bernstein blocks; `shapes`, and `roundings` of vertices, are of its patches. The tolerance is
-/// finite and above 0.
+/// finite and at least 0, and above 0 unless `every_edge`.
 Weld weld_borders(const PatchSet::Impl& set, std::span<const PatchShape> shapes, std::span<const double> roundings,
-                  double tolerance, SharedEdges& edges);
+                  double tolerance, SharedEdges& edges, bool every_edge = false);
 
 /// How far the vertices of the patches that are `wanted` are moved at most, and rounded: raises `displacements` to it. As
 /// the set is now. `same_bits_stay`: nothing is moved by a copy from a border of the same bits. Allocates nothing.

@@ -29,7 +29,9 @@ Status write_pole(const VertexCopies::Corner& pole, const CertifiedPlan& plan, c
   for (int k = 1; k < to.rate(); ++k) copy(out.position, from(0), to(k));
   if (out.normal.empty()) return {};
   const Side side = all_sides[pole.to % 4];
-  const Result<BezierPatch> patch = with_pole(set.patches[pole.to / 4], side);
+  const bool is_point = set.collapsed[pole.to / 4].has(edge_of(side));
+  const Result<BezierPatch> patch =
+      is_point ? Result<BezierPatch>(set.patches[pole.to / 4]) : with_pole(set.patches[pole.to / 4], side);
   if (!patch) return patch.status();
   const auto owns = [&](int k) {
     if (k == 0) return plan.owns_corner(pole.to);

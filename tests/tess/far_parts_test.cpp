@@ -1,0 +1,324 @@
+// Parts far from each other, and tolerances near what positions can hold: float vertices that come from double control
+// points.
+
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "support/crack_survey.h"
+#include "support/synthetic_sets.h"
+#include "support/true_distance.h"
+#include "tess/certified_tessellation_impl.h"
+#include "tess/f64_points.h"
+#include "tess/tessellate_support.h"
+#include "tessera/bezier_operations.h"
+#include "tessera/mesh_update.h"
+
+namespace tessera::test {
+namespace {
+
+/// The bodies at both ends of a length along x.
+std::vector<BezierPatch> far_apart(const std::vector<BezierPatch>& body, double apart) {
+  std::vector<BezierPatch> patches = placed(body, 1, {-apart / 2, 0.3, 0.1});
+  const std::vector<BezierPatch> other = placed(body, 1, {apart / 2, -0.2, 0.7});
+  patches.insert(patches.end(), other.begin(), other.end());
+  return patches;
+}
+
+/// The side of a cylinder about the z axis, as four rational patches.
+std::vector<BezierPatch> cylinder(double radius, double height) {
+  constexpr double x[] = {1, 1, 0, -1, -1, -1, 0, 1, 1}, y[] = {0, 1, 1, 1, 0, -1, -1, -1, 0};
+  std::vector<BezierPatch> patches;
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    std::vector<Vec3> points;
+    std::vector<double> weights;
+    for (int i = 0; i <= 2; ++i)
+      for (const double z : {0.0, height}) {
+        points.push_back({radius * x[2 * quarter + i], radius * y[2 * quarter + i], z});
+        weights.push_back(i == 1 ? std::sqrt(0.5) : 1);
+      }
+    patches.push_back(rational(2, 1, points, weights));
+  }
+  return patches;
+}
+
+/// Every control point moved by some units in its last place, and each patch turned; poles stay points.
+std::vector<BezierPatch> shaken_bits(const std::vector<BezierPatch>& patches, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<BezierPatch> out;
+  for (const BezierPatch& patch : patches) {
+    std::vector<Vec3> points(patch.points().begin(), patch.points().end());
+    for (Vec3& p : points) {
+      const bool is_pole = std::count(patch.points().begin(), patch.points().end(), p) > 1;
+      const Vec3 by = uniform_vector(random, -1, 1);
+      if (!is_pole) p = p + 1e-15 * length(p) * by;
+    }
+    out.push_back(reoriented(good(patch.with_points(points)), static_cast<int>(random() % 8)));
+  }
+  return out;
+}
+
+/// GCC 12 leaves the rounding out where it vectorizes conversions to float and back.
+double as_float(double x) {
+  const volatile float rounded = static_cast<float>(x);
+  return double{rounded};
+}
+
+/// Every control point moved as far as its float, relative to the origin, stays what it is, and each patch turned.
+std::vector<BezierPatch> shaken_within_floats(const std::vector<BezierPatch>& patches, std::uint64_t seed) {
+  Random random(seed);
+  const auto shaken = [&](double x) {
+    const double packed = as_float(x);
+    return packed + 0x1p-25 * uniform(random, -0.99, 0.99) * std::abs(packed);
+  };
+  std::vector<BezierPatch> out;
+  for (const BezierPatch& patch : patches) {
+    std::vector<Vec3> points(patch.points().begin(), patch.points().end());
+    for (Vec3& p : points) p = {shaken(p.x), shaken(p.y), shaken(p.z)};
+    out.push_back(reoriented(good(patch.with_points(points)), static_cast<int>(random() % 8)));
+  }
+  return out;
+}
+
+/// About so many triangles of a mesh against the true distance.
+void expect_bounds(const PatchSet& set, const Mesh& mesh, std::span<const float> bounds, std::size_t count = 200) {
+  for (std::size_t t = 0; t < mesh.triangle_count(); t += 1 + mesh.triangle_count() / count) {
+    const std::uint32_t patch = mesh.patches[t];
+    EXPECT_LE(largest_distance(set.patch(patch), triangle_of(mesh, t), 0.1, 60).low, bounds[patch]) << t;
+  }
+}
+
+void expect_closed(const Mesh& mesh) {
+  const MeshReport report = good(check(mesh));
+  EXPECT_TRUE(report.closed()) << report.open_edges << " open, " << report.non_manifold_edges << " not manifold";
+  EXPECT_EQ(report.degenerate_triangles, 0u);
+}
+
+bool is_f64(const CertifiedTessellation& plan) { return plan.impl().plan().is_f64(); }
+
+TEST(FarParts, AVertexIsWithinItsRounding) {
+  Random random(3);
+  for (int k = 0; k < 60; ++k) {
+    const int m = 1 + static_cast<int>(random() % 15), n = 1 + static_cast<int>(random() % 15);
+    const Vec3 origin{1e6, -2e5, 3}, centre = origin + Vec3{300, 0, 0.001};
+    const BezierPatch made = random_polynomial(random, m, n, centre);
+    const BezierPatch patch =
+        k % 2 ? made
+              : rational(m, n, {made.points().begin(), made.points().end()}, random_weights(random, m, n, 0.1, 10));
+    const Division division = Division::of(PatchShape::of(patch, EdgeMask{}), Rates{7, 12}, {Segments(7), 13, 9, 12});
+    const double most = f64_vertex_rounding(patch, origin);
+    EXPECT_LE(most, 0x1p-23 * 310);
+    std::vector<Vec3> found;
+    const F64Points points(patch, origin);
+    points.for_inner(division, [&](const Vec3& p) { found.push_back(p); });
+    for (const Side side : all_sides)
+      points.for_border(division, side, [&](int, const Vec3& p) { found.push_back(p); });
+    ASSERT_EQ(found.size(), division.vertex_count());
+    for (std::size_t vertex = 0; vertex < found.size(); ++vertex) {
+      const auto at = division.parameters(vertex);
+      const Vec3 exact = de_casteljau(patch, at.u, at.v) - origin, p = found[vertex];
+      const Vec3 rounded{as_float(p.x), as_float(p.y), as_float(p.z)};
+      EXPECT_LE(length(rounded - exact), most + 1e-9) << m << " " << n << " " << vertex;  // the reference rounds at 1e6
+    }
+  }
+}
+
+TEST(FarParts, KeepATolerance) {
+  for (const auto& body : {sphere(), closed_body()})
+    for (const bool fewest : {false, true}) {
+      const PatchSet set = set_of(far_apart(body, 1000));
+      const CertifiedTessellation plan = good(CertifiedTessellation::make(set, {.tolerance = 0.001, .fewest = fewest}));
+      EXPECT_TRUE(is_f64(plan));
+      EXPECT_LE(plan.bound(), 0.001 * (1 + 1e-6));
+      EXPECT_EQ(plan.welded_borders(), 0u);
+      const Mesh mesh = mesh_of(set, plan);
+      expect_closed(mesh);
+      expect_bounds(set, mesh, plan.bounds());
+    }
+}
+
+TEST(FarParts, ALongCylinderKeepsATolerance) {
+  const PatchSet set = set_of(cylinder(1, 1000));
+  EXPECT_LE(good(CertifiedTessellation::make(set, {.tolerance = 0.001})).bound(), 0.001 * (1 + 1e-6));
+  const CertifiedTessellation plan = good(CertifiedTessellation::make(set, {.tolerance = 0.005}));
+  EXPECT_TRUE(is_f64(plan));
+  const Mesh mesh = mesh_of(set, plan);
+  expect_bounds(set, mesh, plan.bounds());
+  const CrackCount cracks = good(count_cracks(set, 0.005 / set.box().diagonal(), std::uint64_t{1} << 30));
+  EXPECT_TRUE(cracks.good()) << cracks.cracks;
+}
+
+TEST(FarParts, FloatVerticesServeOtherTolerances) {
+  for (const auto& body : {sphere(), closed_body()}) {
+    const PatchSet set = set_of(body);
+    EXPECT_FALSE(is_f64(good(CertifiedTessellation::make(set, {.tolerance = 1e-4}))));
+    EXPECT_TRUE(is_f64(good(CertifiedTessellation::make(set, {.tolerance = 2e-6}))));
+  }
+}
+
+/// Borders are one edge by their float bits; vertices come from doubles, which may differ.
+TEST(FarParts, MeetWithoutACrackWhereDoublesDiffer) {
+  for (const auto& body : {sphere(), closed_body()})
+    for (std::uint64_t seed = 1; seed < 4; ++seed)
+      for (const bool shares : {false, true})
+        for (const bool fewest : {false, true}) {
+          const PatchSet set = set_of(shaken_bits(far_apart(body, 1000), seed));
+          CertifiedOptions options{.tolerance = 0.004, .share_vertices = shares};
+          options.fewest = fewest;
+          const CertifiedTessellation plan = good(CertifiedTessellation::make(set, options));
+          ASSERT_TRUE(is_f64(plan) || !body[0].is_rational());
+          expect_closed(mesh_of(set, plan));
+          options.tolerance = 0.001;
+          const CertifiedTessellation finer = good(CertifiedTessellation::make(set, options));
+          ASSERT_TRUE(is_f64(finer));
+          const Mesh mesh = mesh_of(set, finer);
+          expect_closed(mesh);
+          if (!shares) expect_bounds(set, mesh, finer.bounds(), 30);
+        }
+}
+
+TEST(FarParts, MeetWithoutACrackWhereFloatsAreTheSame) {
+  for (std::uint64_t seed = 1; seed < 6; ++seed)
+    for (const bool shares : {false, true}) {
+      const PatchSet set =
+          good(PatchSet::from(shaken_within_floats(far_apart(closed_body(), 1000), seed), {.origin = Vec3{}}));
+      const CertifiedTessellation plan =
+          good(CertifiedTessellation::make(set, {.tolerance = 0.001, .share_vertices = shares}));
+      ASSERT_TRUE(is_f64(plan));
+      EXPECT_EQ(plan.welded_borders(), 0u);
+      EXPECT_EQ(SharedEdges(set.impl()).count(), 24u);
+      const Mesh mesh = mesh_of(set, plan);
+      expect_closed(mesh);
+      if (!shares) expect_bounds(set, mesh, plan.bounds(), 100);
+    }
+}
+
+TEST(FarParts, MeetByWeldingWithoutACrack) {
+  Random random(8);
+  for (const auto& body : {sphere(), closed_body()}) {
+    std::vector<BezierPatch> patches = far_apart(body, 1000);
+    for (BezierPatch& patch : patches) {
+      std::vector<Vec3> points(patch.points().begin(), patch.points().end());
+      for (Vec3& p : points) p = p + 1e-4 * uniform_vector(random, -1, 1);
+      patch = good(patch.with_points(points));
+    }
+    const PatchSet set = set_of(patches);
+    const CertifiedTessellation plan = good(CertifiedTessellation::make(set, {.tolerance = 0.002, .weld = 6e-4}));
+    EXPECT_TRUE(is_f64(plan));
+    EXPECT_GT(plan.welded_borders(), 0u);
+    const Mesh mesh = mesh_of(set, plan);
+    expect_closed(mesh);
+    expect_bounds(set, mesh, plan.bounds(), 60);
+  }
+}
+
+TEST(FarParts, SharedNormalsAndVertices) {
+  const PatchSet set = set_of(shaken_bits(far_apart(sphere(), 1000), 4));
+  for (const bool shares : {false, true}) {
+    const CertifiedTessellation plan =
+        good(CertifiedTessellation::make(set, {.tolerance = 0.001, .crease_angle = 0.1, .share_vertices = shares}));
+    const Mesh mesh = mesh_of(set, plan);
+    expect_closed(mesh);
+    for (std::size_t k = 0; k < mesh.vertex_count(); ++k) {
+      const Vec3 p = mesh.origin + Vec3{mesh.positions[3 * k], mesh.positions[3 * k + 1], mesh.positions[3 * k + 2]};
+      const Vec3 radius = p - (p.x < 0 ? Vec3{-500, 0.3, 0.1} : Vec3{500, -0.2, 0.7});
+      const Vec3 normal{mesh.normals[3 * k], mesh.normals[3 * k + 1], mesh.normals[3 * k + 2]};
+      EXPECT_GE(std::abs(dot(radius, normal)), 1 - 1e-3) << k;
+    }
+  }
+}
+
+TEST(FarParts, QuadsHaveTheSameVertices) {
+  const PatchSet set = set_of(far_apart(closed_body(), 1000));
+  const CertifiedTessellation plan = good(CertifiedTessellation::make(set, {.tolerance = 0.001}));
+  Mesh quads = good(plan.allocate_quads());
+  ASSERT_TRUE(plan.run(set, quads.views()).ok());
+  EXPECT_EQ(quads.positions, mesh_of(set, plan).positions);
+  expect_closed(quads);
+}
+
+TEST(FarParts, TheSameBytesForAllThreadsAndInstructions) {
+  const PatchSet set = set_of(shaken_bits(far_apart(sphere(), 1000), 2));
+  const auto made = [&](int threads, std::optional<Isa> isa) {
+    Mesh mesh;
+    tbb::task_arena(threads).execute(
+        [&] { mesh = mesh_of(set, good(CertifiedTessellation::make(set, {.tolerance = 0.001, .isa = isa}))); });
+    return mesh;
+  };
+  const Mesh one = made(1, {});
+  const Mesh two = made(2, {});
+  EXPECT_EQ(one.positions, two.positions);
+  EXPECT_EQ(one.normals, two.normals);
+  EXPECT_EQ(one.indices, two.indices);
+  for (const Isa isa : available_isas()) {
+    const Mesh other = made(1, isa);
+    EXPECT_EQ(one.positions, other.positions) << name(isa);
+    EXPECT_EQ(one.indices, other.indices) << name(isa);
+  }
+}
+
+/// The smallest tolerance of a budget, and pixels, that float sums would not keep.
+TEST(FarParts, BudgetsAndPixels) {
+  const PatchSet set = set_of(far_apart(sphere(), 1000));
+  CertifiedOptions budget{.most_triangles = 200000};
+  budget.smallest = true;
+  const CertifiedTessellation plan = good(CertifiedTessellation::make(set, budget));
+  EXPECT_TRUE(is_f64(plan));
+  EXPECT_LE(plan.bound(), 0.0005);
+  expect_closed(mesh_of(set, plan));
+  View view;
+  view.eye = {-500, -3, 0};
+  view.target = {-500, 0.3, 0.1};
+  const CertifiedTessellation seen = good(CertifiedTessellation::make(set, {.pixels = PixelTolerance{0.05, view}}));
+  EXPECT_TRUE(is_f64(seen));
+  EXPECT_LE(seen.pixels(), 0.05 * (1 + 1e-6));
+}
+
+TEST(FarParts, UpdatesFollow) {
+  for (const bool shares : {false, true}) {
+    PatchSet set = set_of(shaken_bits(far_apart(sphere(), 1000), 6));
+    MeshUpdate update = good(
+        MeshUpdate::make(set, good(CertifiedTessellation::make(set, {.tolerance = 0.001, .share_vertices = shares}))));
+    Mesh mesh = mesh_of(set, update.plan());
+    // Every patch gets bits of its own at its borders; then one moves as a whole, and its neighbours' borders with it.
+    for (const double by : {1e-13, 1e-4}) {
+      std::vector<std::uint32_t> patches;
+      std::vector<Vec3> points;
+      Random random(1);
+      for (std::uint32_t k = 0; k<set.patch_count(); k += by> 1e-5 ? 3 : 1) {
+        patches.push_back(k);
+        const Vec3 shift = by * uniform_vector(random, -1, 1);
+        for (const Vec3& p : set.patch(k).points()) points.push_back(p + shift);
+      }
+      ASSERT_TRUE(update.run(set, {patches, points}, mesh.views()).ok());
+      EXPECT_EQ(mesh.positions, mesh_of(set, update.plan()).positions);
+      expect_closed(mesh);
+      ASSERT_TRUE(update.restate(set).ok());
+      EXPECT_LE(update.bound(), 0.0015);
+      if (!shares) expect_bounds(set, mesh, update.bounds(), 100);
+    }
+  }
+}
+
+/// What goes from float sums to doubles changes everywhere.
+TEST(FarParts, RetessellatingTellsOfOtherVertices) {
+  PatchSet set = set_of(std::vector<BezierPatch>{closed_body()[0], placed(closed_body(), 1, {4, 0, 0})[1]});
+  MeshUpdate update = good(MeshUpdate::make(set, good(CertifiedTessellation::make(set, {.tolerance = 0.001}))));
+  EXPECT_FALSE(is_f64(update.plan()));
+  Mesh mesh = mesh_of(set, update.plan());
+  std::vector<Vec3> points;
+  for (const Vec3& p : set.patch(1).points()) points.push_back(p + Vec3{2000, 0, 0});
+  const std::uint32_t patch = 1;
+  ASSERT_TRUE(update.run(set, {std::span(&patch, 1), points}, mesh.views()).ok());
+  ASSERT_TRUE(update.restate(set).ok());
+  EXPECT_EQ(update.unproven(), 1u);
+  EXPECT_EQ(good(update.retessellate(set)), 2u);
+  EXPECT_TRUE(is_f64(update.plan()));
+  mesh = mesh_of(set, update.plan());
+  expect_bounds(set, mesh, update.plan().bounds());
+}
+
+}  // namespace
+}  // namespace tessera::test
