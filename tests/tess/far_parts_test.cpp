@@ -276,6 +276,53 @@ TEST(FarParts, BudgetsAndPixels) {
   EXPECT_LE(seen.pixels(), 0.05 * (1 + 1e-6));
 }
 
+/// The number that a message ends with, before some words.
+double number_before(const std::string& message, const std::string& words) {
+  const std::size_t end = message.find(words), begin = message.rfind(' ', end - 1);
+  EXPECT_NE(end, std::string::npos) << message;
+  return end == std::string::npos ? 0 : std::stod(message.substr(begin + 1, end - begin - 1));
+}
+
+/// Bad input: what is refused names a tolerance that is kept, and not much larger than the rounding.
+TEST(FarParts, ARefusalNamesATolerance) {
+  Random random(7);
+  std::vector<BezierPatch> thin = placed(closed_body(), 1e-7, {1, 2, 3});
+  const std::vector<BezierPatch> large = closed_body();
+  thin.insert(thin.end(), large.begin(), large.end());
+  struct Case {
+    std::string name;
+    std::vector<BezierPatch> patches;
+    double tolerance;
+  };
+  const Case cases[] = {
+      {"spheres 1e6 apart", far_apart(sphere(), 1e6), 0.001},
+      {"spheres 1e9 apart", far_apart(sphere(), 1e9), 0.001},
+      {"a cylinder of height 1e6", cylinder(1, 1e6), 0.001},
+      {"below rounding", closed_body(), 1e-12},
+      {"little above rounding", closed_body(), 1e-7},
+      {"subnormal", sphere(), 5e-324},
+      {"at 1e12", placed(closed_body(), 1, {1e12, -1e12, 1e11}), 1e-9},
+      {"thin beside a large one", thin, 1e-9},
+      {"degree 15", {random_polynomial(random, 15, 15)}, 1e-9},
+  };
+  for (const Case& bad : cases) {
+    const PatchSet set = set_of(bad.patches);
+    const auto refused = CertifiedTessellation::make(set, {.tolerance = bad.tolerance});
+    ASSERT_FALSE(refused) << bad.name;
+    EXPECT_EQ(refused.status().code(), StatusCode::invalid_argument);
+    const double named = number_before(refused.status().message(), " would do");
+    EXPECT_GT(named, bad.tolerance) << refused.status().message();
+    const double size = max_abs(set.box().upper - set.box().lower);  // of degree 15, 4096 segments keep no less
+    EXPECT_LE(named, (bad.patches.size() == 1 ? 1e-4 : 0x1p-22) * size) << refused.status().message();
+    const auto plan = CertifiedTessellation::make(set, {.tolerance = named});
+    ASSERT_TRUE(plan) << bad.name << ": " << plan.status().message();
+    EXPECT_LE(plan->bound(), named * (1 + 1e-6)) << bad.name;
+    if (plan->capacity().triangles > 3000000) continue;
+    const Mesh mesh = mesh_of(set, *plan);
+    expect_bounds(set, mesh, plan->bounds(), 40);
+  }
+}
+
 TEST(FarParts, UpdatesFollow) {
   for (const bool shares : {false, true}) {
     PatchSet set = set_of(shaken_bits(far_apart(sphere(), 1000), 6));

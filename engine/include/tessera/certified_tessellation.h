@@ -102,10 +102,10 @@ struct CertifiedOptions {
 class CertifiedTessellation {
  public:
   /// Errors: invalid_argument (no tolerance of any kind, or one that is not above 0; one that a patch's rounding, welding or
-  /// the fit error exceeds already; a view without a picture; a weld or a crease angle out of range; more triangles or
-  /// vertices than allowed, or more than 4096 segments along a parameter: the message says how many triangles it takes;
-  /// fewer triangles than one cell a patch takes), unsupported (the set has no float
-  /// Bernstein blocks), isa_unavailable, cancelled.
+  /// the fit error exceeds already, or nearly: the message names about the smallest that has a plan; a view without a
+  /// picture; a weld or a crease angle out of range; more triangles or vertices than allowed, or more than 4096 segments along
+  /// a parameter: the message says how many triangles it takes; fewer triangles than one cell a patch takes), unsupported
+  /// (the set has no float Bernstein blocks), isa_unavailable, cancelled.
   static Result<CertifiedTessellation> make(const PatchSet& set, const CertifiedOptions& options,
                                             const Execution& execution = {});
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -28,6 +29,20 @@ Status invalid(std::string message, std::size_t patch) {
 /// Whether segments that a patch has are few enough beside the best.
 bool is_spared(const KeptSegments& kept, std::size_t patch, PatchSegments best) {
   return !kept.segments.empty() && kept.segments[patch].cells() <= (1 + kept.spare) * best.cells();
+}
+
+/// x > 0 to two digits, not below.
+double rounded_up_shortly(double x) {
+  const double unit = std::pow(10.0, std::floor(std::log10(x)) - 1);
+  for (double count = std::ceil(x / unit); std::isfinite(count); ++count) {
+    std::array<char, 32> digits;
+    char* const end =
+        std::to_chars(digits.data(), digits.data() + digits.size(), count * unit, std::chars_format::general, 2).ptr;
+    double value = 0;
+    std::from_chars(digits.data(), end, value);
+    if (value >= x) return value;
+  }
+  return x;  // below what double divides
 }
 
 }  // namespace
@@ -225,12 +240,35 @@ std::string CertifiedPlanner::wanted(double tolerance) const {
   return said;
 }
 
-Status CertifiedPlanner::refusal(Failure failure, std::size_t patch, double tolerance) const {
+std::optional<double> CertifiedPlanner::nearest_tolerance(std::uint64_t most_triangles) const {
+  double given = 0;
+  for (const double rounding : roundings_) given = std::max(given, rounding + fit_error_);
+  // What chords have beside it: rates go by its root.
+  for (double room = given / 8; room < 1e6 * given; room *= 2) {
+    const double tolerance = rounded_up_shortly(given + room);
+    const auto serves = [&](std::size_t k) { return choose(k, {tolerance}, most_rate).failure == Failure::none; };
+    std::size_t served = 0;
+    while (served < shapes_.size() && serves(served)) ++served;
+    if (served < shapes_.size()) continue;
+    const Result<CertifiedPlan> found = plan({tolerance}, {});
+    if (found && found->capacity().triangles <= most_triangles && found->capacity().vertices <= most_vertices)
+      return tolerance;
+  }
+  return {};
+}
+
+Status CertifiedPlanner::refusal(Failure failure, std::size_t patch, const Request& request) const {
+  const double tolerance = request.tolerance;
   const std::string vertices = "float vertices of patch " + std::to_string(patch) +
-                               (options_.weld > 0 ? ", welded," : "") + " keep, " + text(roundings_[patch]) +
-                               ", and the fit error, " + text(fit_error_);
-  if (failure == Failure::rough)
-    return invalid("the tolerance " + text(tolerance) + " is not above what " + vertices, patch);
+                               (options_.weld > 0 ? ", welded," : "") + " keep, " +
+                               text(rounded_up_shortly(roundings_[patch])) + ", and the fit error, " + text(fit_error_);
+  const bool is_near = failure == Failure::wide && roundings_[patch] + fit_error_ > tolerance / 2;
+  if (failure == Failure::rough || is_near) {
+    const std::optional<double> nearest = nearest_tolerance(request.most_triangles);
+    return invalid("the tolerance " + text(tolerance) + (is_near ? " is little above what " : " is not above what ") +
+                       vertices + (nearest ? "; " + text(*nearest) + " would do" : ""),
+                   patch);
+  }
   if (failure == Failure::rough_pixels)
     return invalid("so near to the eye, " + text(options_.pixels) + " pixels are not above what " + vertices +
                        "; a larger near distance leaves more room",
@@ -321,7 +359,7 @@ Status CertifiedPlanner::choose_by_distance(const Request& request, CertifiedPla
   const Execution quiet{.cancel = execution.cancel}, &first = choices.empty() ? execution : quiet;
   if (Status status = parallel_for(set_->lane_counts.size(), blocks_a_piece, first, choose_some); !status.ok())
     return status;
-  if (failed.found()) return refusal(choose(failed.index(), {tolerance}, most_rate).failure, failed.index(), tolerance);
+  if (failed.found()) return refusal(choose(failed.index(), {tolerance}, most_rate).failure, failed.index(), request);
   if (choices.empty()) return {};
   const auto fewest = find_fewest(tolerance, std::move(choices), execution);
   if (!fewest) return fewest.status();
@@ -357,7 +395,7 @@ Status CertifiedPlanner::choose_rates(const Request& request, CertifiedPlan& pla
   };
   if (Status status = parallel_for(patches, patches_a_piece, execution, choose_some); !status.ok()) return status;
   if (!failed.found()) return {};
-  return refusal(choose(failed.index(), request, most_rate).failure, failed.index(), request.tolerance);
+  return refusal(choose(failed.index(), request, most_rate).failure, failed.index(), request);
 }
 
 Result<CertifiedPlan> CertifiedPlanner::plan(const Request& request, const Execution& execution) const {
@@ -371,7 +409,7 @@ Result<CertifiedPlan> CertifiedPlanner::plan(const Request& request, const Execu
 
 Result<CertifiedPlan> CertifiedPlanner::plan(double tolerance, std::uint64_t most_triangles, const Execution& execution,
                                              const KeptSegments& kept) const {
-  Result<CertifiedPlan> best = plan({tolerance, options_.fewest, kept}, execution);
+  Result<CertifiedPlan> best = plan({tolerance, options_.fewest, kept, most_triangles}, execution);
   if (!best) return best;
   if (options_.fewest && kept.segments.empty()) {
     // What neighbours cost one another is estimated where segments are chosen: rarely, others have fewer.

@@ -2,6 +2,7 @@
 // How each patch of a set is divided so that a tolerance is kept and neighbours meet.
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -147,6 +148,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
     double tolerance;     ///< the distance, infinite if any will do
     bool fewest = false;  ///< segments in halves and such are looked for
     KeptSegments kept = {};
+    std::uint64_t most_triangles = std::numeric_limits<std::uint64_t>::max();  ///< of what a refusal offers
   };
   /// However many triangles it takes.
   Result<CertifiedPlan> plan(const Request& request, const Execution& execution) const;
@@ -168,7 +170,10 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
                                                   const Execution& execution) const;
   /// What a patch keeps by bounds of small pieces; infinite where plans don't look for the fewest triangles.
   double local_distance(std::size_t patch, PatchSegments segments) const;
-  Status refusal(Failure failure, std::size_t patch, double tolerance) const;
+  Status refusal(Failure failure, std::size_t patch, const Request& request) const;
+  /// About the smallest tolerance that float vertices keep with so many triangles, to two digits; none where it is far above
+  /// their rounding.
+  std::optional<double> nearest_tolerance(std::uint64_t most_triangles) const;
   std::string wanted(double tolerance) const;
   void divide(double tolerance, CertifiedPlan& plan) const;
   /// Whether a border may have an odd rate where its patch, whose bound is that of halves, has an even one: then the
