@@ -91,7 +91,7 @@ TEST(ExactChords, HoldTheSecondDerivativesAndLittleMore) {
           double over = 0;
           for (std::size_t lane = 0; lane < lanes; ++lane)
             for (std::size_t piece = 0; piece < 9; ++piece) {
-              const auto most = sampled(patches[lane], piece, 8);
+              const auto most = sampled(patches[lane], piece, 5);
               for (std::size_t kind = 0; kind < 3; ++kind) {
                 ASSERT_GE(of.bound(piece, kind, lane), most[kind]) << m << n << spread << " piece " << piece << kind;
                 if (piece >= 5 && most[kind] > 0) over += of.bound(piece, kind, lane) / most[kind] / (4 * 3 * lanes);
@@ -153,7 +153,7 @@ BezierPatch random_sweep(Random& random, int m, int n, double spread, bool to_ze
 
 TEST(ScaledSweeps, AreFoundAlongEitherParameterAndBounded) {
   Random random(3);
-  for (int kind = 0; kind < 120; ++kind) {
+  for (int kind = 0; kind < 60; ++kind) {
     const int m = 1 + static_cast<int>(random() % 15), n = 1 + static_cast<int>(random() % 15);
     std::vector<BezierPatch> patches;
     for (std::size_t k = 0; k < lanes; ++k) {
@@ -164,10 +164,10 @@ TEST(ScaledSweeps, AreFoundAlongEitherParameterAndBounded) {
       for (BezierPatch& patch : patches) patch = transposed(patch);
     const Isa isa = available_isas()[random() % available_isas().size()];
     const Found of = found(patches, isa);
-    for (std::size_t lane = 0; lane < lanes; lane += 5) {
+    for (std::size_t lane = 0; lane < lanes; lane += 7) {
       ASSERT_LT(of.deviation[lane], 1e-11) << m << " x " << n;
       for (std::size_t piece = 0; piece < 9; ++piece) {
-        const auto most = sampled(patches[lane], piece, 6);
+        const auto most = sampled(patches[lane], piece, 4);
         EXPECT_GE(of.bound(piece, 0, lane), most[0] * (1 - 1e-9));
         EXPECT_EQ(of.bound(piece, 1, lane), 0);
         EXPECT_GE(of.bound(piece, 2, lane), most[2] * (1 - 1e-9));
@@ -297,6 +297,35 @@ TEST(FlatQuads, OthersAreNone) {
   EXPECT_FALSE(is_flat_quad(changed(3, {1, -1e-6, 0})));  // or outward
   EXPECT_FALSE(is_flat_quad(changed(0, {1.5, .8, 0})));   // a corner that looks inward
   EXPECT_FALSE(is_flat_quad(std::vector<Vec3>(9, Vec3{1, 2, 3})));
+}
+
+/// Weights that are worlds apart, patches thinner than rounding, a place far away: a plan that keeps its tolerance, or why not.
+TEST(ExactChords, HardPatchesAreBoundedOrRefused) {
+  Random random(8);
+  std::size_t planned = 0;
+  for (int kind = 0; kind < 300; ++kind) {
+    const int m = 1 + static_cast<int>(random() % 4), n = 1 + static_cast<int>(random() % 4);
+    BezierPatch patch = kind % 3 == 0 ? random_rational(random, m, n, 1e-9, 1e9)
+                                      : random_sweep(random, m, n, kind % 3 == 1 ? 3e4 : 2, true);
+    std::vector<Vec3> points(patch.points().begin(), patch.points().end());
+    for (Vec3& p : points) {
+      if (kind % 4 == 1) p.z *= 1e-18;
+      if (kind % 4 == 2) p = p + Vec3{1e12, -1e12, 1e11};
+      if (kind % 4 == 3) p = 1e12 * p;
+    }
+    patch = rational(m, n, points, {patch.weights().begin(), patch.weights().end()});
+    const Result<PatchSet> set = PatchSet::from(std::vector<BezierPatch>{patch});
+    if (!set) continue;
+    const double tolerance = 1e-2 * set->box().diagonal();
+    const auto plan = CertifiedTessellation::make(*set, {.tolerance = tolerance, .most_triangles = 1000000});
+    if (!plan) {
+      EXPECT_EQ(plan.status().code(), StatusCode::invalid_argument) << plan.status().message();
+      continue;
+    }
+    ++planned;
+    EXPECT_LE(plan->bound(), tolerance * (1 + 1e-6));
+  }
+  EXPECT_GT(planned, 100u);
 }
 
 }  // namespace
