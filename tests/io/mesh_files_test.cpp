@@ -5,7 +5,11 @@
 
 #include <cmath>
 #include <csignal>
+#include <cstring>
+#include <fstream>
+#include <iterator>
 #include <limits>
+#include <sstream>
 
 #include "io/mesh_formats.h"
 #include "io/mesh_samples.h"
@@ -43,6 +47,35 @@ TEST_P(MeshFiles, EveryBitComesBack) {
     }
   }
   EXPECT_EQ(folder_.names().size(), 1u);
+}
+
+TEST_P(MeshFiles, PositionsInDoubleAreWritten) {
+  Mesh mesh = random_mesh(50, 80, {true, true, false});
+  for (std::size_t k = 0; k < mesh.positions.size(); ++k) mesh.positions_f64.push_back(1e6 + mesh.positions[k] / 3.0);
+  ASSERT_TRUE(write_mesh(mesh, path()).ok());
+  std::ifstream file(path(), std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  std::vector<double> found;
+  if (GetParam() == ".obj") {
+    std::istringstream lines(bytes);
+    for (std::string line; std::getline(lines, line);) {
+      if (!line.starts_with("v ")) continue;
+      std::istringstream numbers(line.substr(2));
+      for (std::string number; numbers >> number;) found.push_back(std::stod(number));
+    }
+  } else {
+    EXPECT_NE(bytes.find("property double x\nproperty double y\nproperty double z\nproperty float nx\n"), bytes.npos);
+    const std::size_t body = bytes.find("end_header\n") + 11, record = 3 * 8 + 5 * 4;
+    found.resize(mesh.positions_f64.size());
+    for (std::size_t k = 0; k < mesh.vertex_count(); ++k)
+      std::memcpy(&found[3 * k], bytes.data() + body + k * record, 3 * sizeof(double));
+  }
+  EXPECT_EQ(found, mesh.positions_f64);
+  EXPECT_EQ(test::value_of(read_mesh(path())).normals, mesh.normals);
+  mesh.positions_f64[7] = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(write_mesh(mesh, path()).code(), StatusCode::non_finite);
+  mesh.positions_f64.pop_back();
+  EXPECT_EQ(write_mesh(mesh, path()).code(), StatusCode::count_mismatch);
 }
 
 /// A mesh of triangles and quads in three parts, one of triangles alone and one of nothing.

@@ -101,6 +101,20 @@ TEST_F(Tolerances, CellsAreQuads) {
     expect_failure({"tessellate", teapot, "-o", name, "--grid", "4x3", "--quads"}, 2, "holds triangles alone");
 }
 
+TEST_F(Tolerances, PositionsInDouble) {
+  const json single = made({"--relative", "0.003"}), twice = made({"--relative", "0.003", "--precision", "double"});
+  EXPECT_EQ(single["precision"], "float");
+  EXPECT_EQ(twice["precision"], "double");
+  EXPECT_LE(twice["bound"], single["bound"].get<double>() * 1.01);
+  EXPECT_EQ(checked()["t_junctions"], 0);
+  expect_refusal({"--tolerance", "1e-8"}, 1, "would do; positions in double keep ");
+  expect_refusal({"--relative", "0.003", "--precision", "half"}, 2, "expected float or double");
+  expect_refusal({"--grid", "4x4", "--precision", "double"}, 2, "--grid");
+  for (const char* const name : {"a.stl", "a.glb", "a.gltf"})
+    expect_failure({"tessellate", teapot, "-o", name, "--relative", "0.003", "--precision", "double"}, 2,
+                   "holds positions in float alone");
+}
+
 TEST_F(Tolerances, FewerTrianglesForMoreTime) {
   const json plain = made({"--relative", "0.001"}), fewest = made({"--relative", "0.001", "--fewest"});
   EXPECT_LT(fewest["triangles"], 0.9 * plain["triangles"].get<double>());

@@ -117,6 +117,7 @@ Status report(const Job& job, const Options& options, const CommonOptions& commo
     object["rate_u"] = options.grid->first;
     object["rate_v"] = options.grid->second;
   } else {
+    object["precision"] = options.certified.precision == Precision::double_precision ? "double" : "float";
     object["bound"] = made.bound;
     object["certified"] = made.proven;
     object["angle"] = options.certified.angle ? Json(made.angle) : Json();
@@ -325,15 +326,30 @@ void add_sharing(CLI::App& command, Options& options) {
       ->excludes(grid);
 }
 
-/// The formats without faces of four corners.
-constexpr const char* triangle_formats[] = {".stl", ".glb", ".gltf"};
+void add_precision(CLI::App& command, Options& options) {
+  const auto set_precision = [&options](const std::string& text) {
+    if (text != "float" && text != "double")
+      throw CLI::ValidationError("--precision", "expected float or double, found \"" + text + "\"");
+    options.certified.precision = text == "double" ? Precision::double_precision : Precision::single_precision;
+  };
+  command
+      .add_option_function<std::string>(
+          "--precision", set_precision,
+          "Positions in float, or in double (.ply and .obj), which keep a small tolerance "
+          "of parts far from each other [float]")
+      ->type_name("float|double")
+      ->excludes(command.get_option("--grid"));
+}
 
-/// Throws CLI::ValidationError where a file could hold no quads.
-void check_quads(const Plan& plan) {
+/// The formats without faces of four corners, and without positions in double.
+constexpr const char* simple_formats[] = {".stl", ".glb", ".gltf"};
+
+/// Throws CLI::ValidationError where a file could not hold what an option asks for.
+void check_formats(const Plan& plan, const char* option, const std::string& held, const std::string& wanted) {
   for (const Job& job : plan.jobs) {
     const std::string extension = lower_extension(job.output);
-    if (std::find(std::begin(triangle_formats), std::end(triangle_formats), extension) != std::end(triangle_formats))
-      throw CLI::ValidationError("--quads", extension + " holds triangles alone; .obj and .ply hold quads");
+    if (std::find(std::begin(simple_formats), std::end(simple_formats), extension) != std::end(simple_formats))
+      throw CLI::ValidationError(option, extension + " holds " + held + " alone; .obj and .ply hold " + wanted);
   }
 }
 
@@ -354,12 +370,15 @@ void add_tessellate(CLI::App& app, Session& session) {
   add_cap(*command, *options);
   add_weld(*command, *options);
   add_sharing(*command, *options);
+  add_precision(*command, *options);
   command->add_flag("--quads", options->quads, "Quads where a cell is whole, in .obj and .ply [triangles alone]");
   add_common(*command, session.common);
   command->footer(footer);
   command->callback([options, &session] {
     const Plan plan = plan_jobs(options->models.files, options->output, {"--output", extension_in_folders});
-    if (options->quads) check_quads(plan);
+    if (options->quads) check_formats(plan, "--quads", "triangles", "quads");
+    if (options->certified.precision == Precision::double_precision)
+      check_formats(plan, "--precision", "positions in float", "them in double");
     session.command = [options, plan, &session] {
       return run_jobs(plan, session.common, [&](const Job& job, Timings& timings) {
         return run_tessellate(job, *options, session.common, timings);

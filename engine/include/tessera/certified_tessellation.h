@@ -70,6 +70,12 @@ struct CertifiedOptions {
   /// without (many seconds for a budget of triangles, which tries many): for meshes that are drawn, stored or updated often.
   bool fewest = false;
   std::optional<Isa> isa = {};  ///< default_isa() if empty
+  /// Double: the mesh has positions in double as well, in the model's coordinates, and bounds are those of the mesh at these.
+  /// For parts so far apart, and tolerances so small, that float does not keep them. All vertices and normals then come from
+  /// the set's double control points, at about 1 us a vertex. Borders are one edge where their float control points are the
+  /// same bits and those in double lie within 2^-20 of the border's size of each other; others are welded within 2^-50 of the
+  /// largest coordinate, a few units in the last place.
+  Precision precision = Precision::single_precision;
 };
 
 /// A mesh of the fewest cells of one size that keep the tolerance, patch by patch. The bound of a patch is proven. It is the

@@ -22,7 +22,7 @@ struct MeshCapacity {
 
 /// Where a mesh is written. Empty views are not wanted; positions and indices are required.
 struct MeshViews {
-  View3<float> position = {};             ///< relative to the origin of the patch set
+  View3<float> position = {};             ///< relative to the origin of the patch set; required without position_f64
   View3<float> normal = {};               ///< unit, or zero where undefined
   View2<float> parameter = {};            ///< (u,v) of the patch, in [0,1]^2
   std::span<std::uint32_t> patch = {};    ///< the patch of each triangle
@@ -31,6 +31,9 @@ struct MeshViews {
   /// other triangles alone, those of strips and at poles; the plan's quad_capacity() says how many of each.
   std::span<std::uint32_t> quads = {};
   std::span<std::uint32_t> quad_patch = {};  ///< the patch of each quad
+  /// Positions in double, in the model's coordinates. For plans with positions in double, which require it, alone: see
+  /// CertifiedOptions::precision.
+  View3<double> position_f64 = {};
 };
 
 /// Triangles and quads that belong together, such as those of one surface.
@@ -51,6 +54,7 @@ struct Mesh {
   std::vector<std::uint32_t> quads;         ///< four a quad, the same way around, beside the triangles
   std::vector<std::uint32_t> quad_patches;  ///< empty, or one a quad
   std::vector<MeshPart> parts;              ///< empty, or runs one after the other that together are all faces
+  std::vector<double> positions_f64;        ///< empty, or as long as positions: these in the model's coordinates
 
   std::size_t vertex_count() const { return positions.size() / 3; }  ///< of positions
   std::size_t triangle_count() const { return indices.size() / 3; }  ///< of indices
@@ -69,8 +73,8 @@ struct Mesh {
 /// follow on the one before; index = the part).
 Result<Mesh> split_quads(const Mesh& mesh);
 
-/// What is wrong with a mesh, if anything. Vertices at bit-equal positions count as one, and a quad as the two triangles that
-/// split_quads() makes of it.
+/// What is wrong with a mesh, if anything. Vertices at bit-equal positions, those in double where there are any, count as one,
+/// and a quad as the two triangles that split_quads() makes of it.
 struct MeshReport {
   std::size_t vertices = 0;              ///< as stored
   std::size_t distinct_positions = 0;    ///< vertices of equal position counted once
@@ -87,7 +91,7 @@ struct MeshReport {
   bool closed() const { return triangles > degenerate_triangles && open_edges == 0 && non_manifold_edges == 0; }
 };
 
-/// Counts, in 40 bytes a triangle. Errors: invalid_argument (an index out of range: its place among those of triangles or
+/// Counts, in 40 bytes a triangle, or 55 with positions in double. Errors: invalid_argument (an index out of range: its place among those of triangles or
 /// quads; counts that don't fit).
 Result<MeshReport> check(const Mesh& mesh);
 

@@ -12,13 +12,15 @@
 
 namespace tessera {
 
-/// Wavefront OBJ. Writes v, vt, vn, f, and g for parts; patches of faces are not kept.
+/// Wavefront OBJ. Writes v, vt, vn, f, and g for parts; patches of faces are not kept. Positions in double, where there are
+/// any, are written so that they read back as the same doubles.
 Status write_obj(const Mesh& mesh, OutputFile& out);
 /// Polygons as fans, negative indices; groups, objects, smoothing and materials are ignored. Normals and parameters are
 /// kept where they are one a vertex, as write_obj writes them, and left out otherwise.
 Result<Mesh> parse_obj(std::string_view text, std::string_view name, const MeshReadOptions& options = {});
 
-/// PLY, binary little endian: x y z nx ny nz u v; vertex_indices, patch. Quads come after all triangles.
+/// PLY, binary little endian: x y z nx ny nz u v; vertex_indices, patch. Quads come after all triangles. Positions in double,
+/// where there are any, are properties of type double.
 Status write_ply(const Mesh& mesh, OutputFile& out);
 /// Binary little endian or ascii, properties of any number type in any order, unknown ones skipped, polygons as fans.
 Result<Mesh> parse_ply(std::string_view bytes, std::string_view name, const MeshReadOptions& options = {});

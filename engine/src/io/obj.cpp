@@ -13,9 +13,10 @@
 namespace tessera {
 namespace {
 
-void write_record(OutputFile& out, std::string_view keyword, std::span<const float> values) {
+template <class T>
+void write_record(OutputFile& out, std::string_view keyword, std::span<const T> values) {
   out.write(keyword);
-  for (const float value : values) {
+  for (const T value : values) {
     out.write(' ');
     out.write_number(value);
   }
@@ -146,12 +147,16 @@ Status write_obj(const Mesh& mesh, OutputFile& out) {
   out.write("# Tessera: " + std::to_string(mesh.vertex_count()) + " vertices, " +
             std::to_string(mesh.triangle_count()) + " triangles" + quads + "\n");
   for (std::size_t k = 0; k < mesh.vertex_count() && !out.failed(); ++k) {
-    const float* const p = mesh.positions.data() + 3 * k;
-    const std::array<float, 3> position{file_coordinate(mesh.origin.x, p[0]), file_coordinate(mesh.origin.y, p[1]),
-                                        file_coordinate(mesh.origin.z, p[2])};
-    write_record(out, "v", position);
-    if (parameters) write_record(out, "vt", std::span(mesh.parameters).subspan(2 * k, 2));
-    if (normals) write_record(out, "vn", std::span(mesh.normals).subspan(3 * k, 3));
+    if (mesh.positions_f64.empty()) {
+      const float* const p = mesh.positions.data() + 3 * k;
+      const std::array<float, 3> position{file_coordinate(mesh.origin.x, p[0]), file_coordinate(mesh.origin.y, p[1]),
+                                          file_coordinate(mesh.origin.z, p[2])};
+      write_record<float>(out, "v", position);
+    } else {
+      write_record<double>(out, "v", std::span(mesh.positions_f64).subspan(3 * k, 3));
+    }
+    if (parameters) write_record<float>(out, "vt", std::span(mesh.parameters).subspan(2 * k, 2));
+    if (normals) write_record<float>(out, "vn", std::span(mesh.normals).subspan(3 * k, 3));
   }
   const auto write_part = [&](const MeshPart& part) {
     for (std::size_t k = 0; k < part.triangle_count && !out.failed(); ++k)

@@ -264,7 +264,8 @@ void write_header(const Mesh& mesh, OutputFile& out) {
   text += std::to_string(mesh.vertex_count()) + "\n";
   for (std::size_t k = 0; k < vertex_names.size(); ++k) {
     if ((k >= 3 && k < 6 && mesh.normals.empty()) || (k >= 6 && mesh.parameters.empty())) continue;
-    text += "property float " + std::string(vertex_names[k]) + "\n";
+    text += (k < 3 && !mesh.positions_f64.empty() ? "property double " : "property float ") +
+            std::string(vertex_names[k]) + "\n";
   }
   text += "element face " + std::to_string(mesh.triangle_count() + mesh.quad_count()) +
           "\nproperty list uchar int vertex_indices\n";
@@ -290,13 +291,19 @@ Status write_faces(OutputFile& out, std::size_t corners, std::span<const std::ui
 Status write_ply(const Mesh& mesh, OutputFile& out) {
   write_header(mesh, out);
   const bool normals = !mesh.normals.empty(), parameters = !mesh.parameters.empty(), patches = mesh.has_patches();
-  const std::size_t vertex_bytes = sizeof(float) * (3 + (normals ? 3 : 0) + (parameters ? 2 : 0));
+  const bool doubles = !mesh.positions_f64.empty();
+  const std::size_t vertex_bytes =
+      3 * (doubles ? sizeof(double) : sizeof(float)) + sizeof(float) * ((normals ? 3 : 0) + (parameters ? 2 : 0));
   Status status =
       write_packed(out, mesh.vertex_count(), vertex_bytes, [&](std::size_t first, std::size_t last, char* to) {
         for (std::size_t k = first; k < last; ++k) {
-          const float* const p = mesh.positions.data() + 3 * k;
-          put_floats(mesh.origin + Vec3{p[0], p[1], p[2]}, to);
-          to += 3 * sizeof(float);
+          if (doubles) {
+            to = put(to, mesh.positions_f64.data() + 3 * k, 3);
+          } else {
+            const float* const p = mesh.positions.data() + 3 * k;
+            put_floats(mesh.origin + Vec3{p[0], p[1], p[2]}, to);
+            to += 3 * sizeof(float);
+          }
           if (normals) to = put(to, mesh.normals.data() + 3 * k, 3);
           if (parameters) to = put(to, mesh.parameters.data() + 2 * k, 2);
         }

@@ -82,9 +82,10 @@ Result<CertifiedPlanner> CertifiedPlanner::make(const PatchSet::Impl& set, const
         const std::size_t k = set.lane_patches[block * PatchSet::lanes + lane];
         const std::optional<double> size = planner.chords_.size(block, lane);
         planner.shapes_[k] = set.collapsed[k].any() ? PatchShape::of(set.patches[k], set.collapsed[k]) : whole;
-        const double vertices = options.f64 ? f64_vertex_rounding(set.patches[k], set.origin)
-                                : size      ? rounding * *size
-                                            : vertex_rounding(set.patches[k], set.origin);
+        const double vertices = options.f64_positions ? f64_position_rounding(set.patches[k], set.origin)
+                                : options.f64         ? f64_vertex_rounding(set.patches[k], set.origin)
+                                : size                ? rounding * *size
+                                                      : vertex_rounding(set.patches[k], set.origin);
         planner.roundings_[k] = vertices + planner.chords_.slack(block, lane);
       }
     }
@@ -104,8 +105,14 @@ Result<CertifiedPlanner> CertifiedPlanner::make(const PatchSet::Impl& set, const
   if (!status.ok()) return status;
   for (const double rounding : planner.roundings_)
     planner.largest_rounding_ = std::max(planner.largest_rounding_, rounding);
-  if (options.weld > 0 || options.f64) {
-    planner.weld_ = weld_borders(set, planner.shapes_, planner.roundings_, options.weld, planner.edges_, options.f64);
+  double weld = options.weld;
+  if (options.f64_positions) {
+    // Far away the last bits of doubles reach into the floats of small coordinates.
+    weld = std::max(weld, 0x1p-50 * std::max(max_abs(set.box().lower), max_abs(set.box().upper)));
+    planner.edges_ = parted_by_doubles(set, planner.edges_);
+  }
+  if (weld > 0 || options.f64) {
+    planner.weld_ = weld_borders(set, planner.shapes_, planner.roundings_, weld, planner.edges_, options.f64);
     for (std::size_t k = 0; k < patches; ++k)
       planner.roundings_[k] = std::max(planner.roundings_[k], planner.weld_.displacements[k]);
   }
@@ -154,6 +161,11 @@ bool CertifiedPlanner::needs_f64(double tolerance) const {
     if (pictures_[k].projected() && !(pictures_[k].moved_pixels() < options_.pixels)) return true;
   }
   return false;
+}
+
+bool CertifiedPlanner::is_rough(double tolerance) const {
+  return std::any_of(roundings_.begin(), roundings_.end(),
+                     [&](double rounding) { return !(2 * (rounding + fit_error_) < tolerance); });
 }
 
 std::optional<Rates> CertifiedPlanner::rates_for(const CellLimits& limits, int most) const {
@@ -244,7 +256,7 @@ std::optional<double> CertifiedPlanner::nearest_tolerance(std::uint64_t most_tri
   double given = 0;
   for (const double rounding : roundings_) given = std::max(given, rounding + fit_error_);
   // What chords have beside it: rates go by its root.
-  for (double room = given / 8; room < 1e6 * given; room *= 2) {
+  for (double room = given / 8; room < 1e12 * given; room *= 2) {
     const double tolerance = rounded_up_shortly(given + room);
     const auto serves = [&](std::size_t k) { return choose(k, {tolerance}, most_rate).failure == Failure::none; };
     std::size_t served = 0;
@@ -259,8 +271,8 @@ std::optional<double> CertifiedPlanner::nearest_tolerance(std::uint64_t most_tri
 
 Status CertifiedPlanner::refusal(Failure failure, std::size_t patch, const Request& request) const {
   const double tolerance = request.tolerance;
-  const std::string vertices = "float vertices of patch " + std::to_string(patch) +
-                               (options_.weld > 0 ? ", welded," : "") + " keep, " +
+  const std::string vertices = (options_.f64_positions ? "vertices in double of patch " : "float vertices of patch ") +
+                               std::to_string(patch) + (options_.weld > 0 ? ", welded," : "") + " keep, " +
                                text(rounded_up_shortly(roundings_[patch])) + ", and the fit error, " + text(fit_error_);
   const bool is_near = failure == Failure::wide && roundings_[patch] + fit_error_ > tolerance / 2;
   if (failure == Failure::rough || is_near) {
@@ -401,6 +413,7 @@ Status CertifiedPlanner::choose_rates(const Request& request, CertifiedPlan& pla
 Result<CertifiedPlan> CertifiedPlanner::plan(const Request& request, const Execution& execution) const {
   CertifiedPlan plan;
   plan.is_f64_ = options_.f64;
+  plan.has_f64_positions_ = options_.f64_positions;
   if (Status status = choose_rates(request, plan, execution); !status.ok()) return status;
   divide(request.tolerance, plan);
   plan.lay_out();

@@ -50,6 +50,9 @@ class CertifiedPlan {
   /// Whether vertices come from the set's double control points: see F64Points. Borders that are one edge then have the same
   /// positions once VertexCopies are made.
   bool is_f64() const { return is_f64_; }
+  bool has_f64_positions() const {
+    return has_f64_positions_;
+  }  ///< the mesh's positions are in double; is_f64() as well
 
   /// Stores vertices that are copies once. Those of the ring that a patch owns follow its inner points.
   void share(const VertexCopies& copies);
@@ -75,7 +78,7 @@ class CertifiedPlan {
   std::vector<Division> divisions_;
   std::vector<std::size_t> first_vertex_, first_triangle_, first_quad_;  ///< of each patch, and the number of all
   std::vector<float> bounds_, angles_, pixels_;
-  bool is_f64_ = false;
+  bool is_f64_ = false, has_f64_positions_ = false;
   std::vector<std::uint8_t> straddles_;  ///< patches whose bound holds wherever triangles lie; empty if there are none
   std::vector<std::uint32_t>
       corner_sources_;  ///< of each corner, itself if it owns its vertex; empty if nothing is shared
@@ -88,6 +91,7 @@ constexpr bool is_backward(std::uint32_t border) { return is_backward(all_sides[
 struct PlannerOptions {
   double weld = 0;              ///< finite, at least 0
   bool f64 = false;             ///< vertices come from double control points
+  bool f64_positions = false;   ///< and are positions in double
   std::optional<double> angle;  ///< radians, above 0, at most pi / 2
   int angle_rate = 64;          ///< where the angle has no bound
   std::optional<Camera> camera;
@@ -116,6 +120,11 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   /// Whether the rounding of vertices that come from float control points takes more than an eighth of the tolerance, or
   /// all that pixels leave.
   bool needs_f64(double tolerance) const;
+  /// Whether the rounding of vertices leaves less than half of the tolerance.
+  bool is_rough(double tolerance) const;
+  /// About the smallest tolerance that the vertices keep with so many triangles, to two digits; none where it is far above
+  /// their rounding.
+  std::optional<double> nearest_tolerance(std::uint64_t most_triangles) const;
   /// `tolerance`: the distance, infinite if any will do. Errors: invalid_argument, as CertifiedTessellation::make says;
   /// cancelled.
   Result<CertifiedPlan> plan(double tolerance, std::uint64_t most_triangles, const Execution& execution,
@@ -141,7 +150,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   };
 
   CertifiedPlanner(const PatchSet::Impl& set, const PlannerOptions& options)
-      : set_(&set), options_(options), fit_error_(set.fit_error.distance), chords_(set) {}
+      : set_(&set), options_(options), fit_error_(set.fit_error.distance), chords_(set, options.f64_positions) {}
   ChordBound chord(std::size_t patch) const { return chords_.chord(set_->slots[patch].block, set_->slots[patch].lane); }
   /// What is wanted of a plan.
   struct Request {
@@ -171,9 +180,6 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   /// What a patch keeps by bounds of small pieces; infinite where plans don't look for the fewest triangles.
   double local_distance(std::size_t patch, PatchSegments segments) const;
   Status refusal(Failure failure, std::size_t patch, const Request& request) const;
-  /// About the smallest tolerance that float vertices keep with so many triangles, to two digits; none where it is far above
-  /// their rounding.
-  std::optional<double> nearest_tolerance(std::uint64_t most_triangles) const;
   std::string wanted(double tolerance) const;
   void divide(double tolerance, CertifiedPlan& plan) const;
   /// Whether a border may have an odd rate where its patch, whose bound is that of halves, has an even one: then the

@@ -67,6 +67,7 @@ Status CertifiedTessellation::Impl::join(const PatchSet& set, const CertifiedPla
 Mesh CertifiedTessellation::Impl::allocate(const MeshCapacity& capacity) const {
   Mesh mesh = empty_mesh(capacity, origin_);
   if (!has_normals()) mesh.normals.clear();
+  if (plan_.has_f64_positions()) mesh.positions_f64.resize(mesh.positions.size());
   return mesh;
 }
 
@@ -85,7 +86,7 @@ Status CertifiedTessellation::Impl::write_copies(const PatchSet::Impl& set, cons
 
 Status CertifiedTessellation::Impl::run(const PatchSet& set, const MeshViews& out, const Execution& execution) const {
   const MeshCapacity wanted = out.quads.empty() ? plan_.capacity() : plan_.quad_capacity();
-  if (Status status = check_views(out, wanted); !status.ok()) return status;
+  if (Status status = check_views(out, wanted, plan_.has_f64_positions()); !status.ok()) return status;
   if (Status status = check_normals(out); !status.ok()) return status;
   if (Status status = check_shapes(set, shapes_); !status.ok()) return status;
   const PatchWriter writer(set.impl(), plan_, *tables_, kernel::kernels(isa_), out, execution.stores);
@@ -148,12 +149,26 @@ Result<PlannerOptions> checked(const CertifiedOptions& options, const PatchSet& 
   planner.angle = options.angle;
   planner.angle_rate = options.angle_rate;
   planner.fewest = options.fewest;
+  planner.f64 = planner.f64_positions = options.precision == Precision::double_precision;
   if (!options.pixels) return planner;
   Result<Camera> camera = Camera::make(options.pixels->view);
   if (!camera) return camera.status();
   planner.camera = *camera;
   planner.pixels = options.pixels->pixels;
   return planner;
+}
+
+/// What positions in double would keep is said as well.
+Status refused_in_float(const Status& refusal, const PatchSet& set, PlannerOptions planned, double tolerance,
+                        const CertifiedOptions& options) {
+  planned.f64_positions = true;
+  const Result<CertifiedPlanner> planner = CertifiedPlanner::make(set.impl(), planned, {});
+  if (!planner) return planner.status();
+  const bool keeps = !planner->is_rough(tolerance) && planner->plan(tolerance, options.most_triangles, {});
+  const auto nearest = keeps ? std::optional<double>() : planner->nearest_tolerance(options.most_triangles);
+  if (!keeps && !nearest) return refusal;
+  return {refusal.code(), refusal.message() + "; positions in double keep " + (keeps ? "it" : text(*nearest)),
+          refusal.index()};
 }
 
 /// `kept`: segments that patches keep where they may; they give way where triangles run out.
@@ -178,7 +193,7 @@ Result<std::unique_ptr<CertifiedTessellation::Impl>> plan_for(const PatchSet& se
     return found.status();
   };
   Status found = find_smallest();
-  if (planner->needs_f64(tolerance)) {
+  if (!planned->f64 && planner->needs_f64(tolerance)) {
     planned->f64 = true;
     planner = CertifiedPlanner::make(set.impl(), *planned, execution);
     if (!planner) return planner.status();
@@ -188,7 +203,11 @@ Result<std::unique_ptr<CertifiedTessellation::Impl>> plan_for(const PatchSet& se
   Result<CertifiedPlan> plan = planner->plan(tolerance, options.most_triangles, execution, kept);
   if (!plan && plan.status().code() == StatusCode::invalid_argument && !kept.segments.empty())
     plan = planner->plan(tolerance, options.most_triangles, execution);
-  if (!plan) return plan.status();
+  if (!plan) {
+    const bool is_rough = plan.status().code() == StatusCode::invalid_argument && planner->is_rough(tolerance);
+    return is_rough && !planned->f64_positions ? refused_in_float(plan.status(), set, *planned, tolerance, options)
+                                               : plan.status();
+  }
   auto made = std::make_unique<CertifiedTessellation::Impl>(set, options, tolerance, std::move(*plan), *planner, *isa);
   if (Status status = made->join(set, *planner, execution); !status.ok()) return status;
   return made;

@@ -35,21 +35,22 @@ double pairs_of_products(const BlockGroup& group) {
 
 }  // namespace
 
-ChordBlocks::ChordBlocks(const PatchSet::Impl& set)
-    : pieces_(set.lane_counts.size() * block_pieces),
+ChordBlocks::ChordBlocks(const PatchSet::Impl& set, bool by_doubles)
+    : by_doubles_(by_doubles),
+      pieces_(set.lane_counts.size() * block_pieces),
       unit_(set.lane_counts.size() * lanes, 1.0f),
       size_(unit_.size(), -1.0f),
       slack_(unit_.size(), 0.0f),
       source_(unit_.size(), Source::packed) {
   for (const BlockGroup& group : set.groups)  // whose lanes are not all bounded
-    if (!is_bounded_in_blocks(group))
+    if (by_doubles || !is_bounded_in_blocks(group))
       std::fill_n(pieces_.data() + group.first_block * block_pieces, group.block_count * block_pieces, 0.0f);
 }
 
 void ChordBlocks::bound(const PatchSet::Impl& set, std::size_t block, std::uint32_t wanted) {
   const BlockGroup& group = set.group_of_block(block);
   float* const pieces = pieces_.data() + block * block_pieces;
-  const bool in_block = is_bounded_in_blocks(group);
+  const bool in_block = !by_doubles_ && is_bounded_in_blocks(group);
   const kernel::KernelTable& kernels = kernel::default_kernels();
   if (in_block)
     (group.rational ? kernels.bound_rational_chords : kernels.bound_chords)(

@@ -28,7 +28,9 @@ class ChordBlocks {
     exact,   ///< of exact numerators; without products
     sweep,   ///< as `packed`, of a scaled sweep: uv is 0, and so are its products
   };
-  explicit ChordBlocks(const PatchSet::Impl& set);
+  /// `by_doubles`: all patches one by one, from double. For sets that reach so far that the rounding of packed coefficients
+  /// would be most of the bounds.
+  explicit ChordBlocks(const PatchSet::Impl& set, bool by_doubles = false);
 
   /// Finds the bounds of a block, of those lanes at least whose bits are set. Threads: any number, each a block of its own.
   void bound(const PatchSet::Impl& set, std::size_t block, std::uint32_t wanted = ~0u);
@@ -102,6 +104,7 @@ class ChordBlocks {
 
   static constexpr std::size_t lanes = PatchSet::lanes, piece_count = 9, block_pieces = piece_count * 3 * lanes;
 
+  bool by_doubles_;
   UnsetVector<float> pieces_;   ///< `[block][piece][uu, uv, vv][lane]`, in units of unit_
   AlignedVector<float> unit_;   ///< `[block][lane]`, powers of two
   AlignedVector<float> size_;   ///< `[block][lane]`, negative where not known

@@ -6,6 +6,7 @@
 
 #include "tess/certified_plan.h"
 #include "tess/edge_needs.h"
+#include "tess/side_curve.h"
 
 namespace tessera {
 namespace {
@@ -21,7 +22,6 @@ std::vector<std::uint8_t> CertifiedPlanner::borders_against() const {
   std::vector<std::uint32_t> welds(borders, none), heads(edges_.count(), none);
   for (std::uint32_t k = 0; k < weld_.borders.size(); ++k) welds[weld_.borders[k].to] = k;
   const auto edge = [&](std::uint32_t border) { return edges_.edge(border / 4, all_sides[border % 4]); };
-  const auto packed = [&](std::uint32_t border) { return PackedBorder(*set_, border / 4, all_sides[border % 4]); };
   // Curves are welded to nothing, and have no segments.
   const auto counts = [&](std::uint32_t border) { return edge(border) != none && !shapes_[border / 4].is_curve; };
   for (std::uint32_t border = 0; border < borders; ++border)
@@ -31,7 +31,7 @@ std::vector<std::uint8_t> CertifiedPlanner::borders_against() const {
     if (!counts(border) || heads[edge(border)] == none) continue;
     const VertexCopies::Border weld =
         welds[border] == none ? VertexCopies::Border{border, border, false} : weld_.borders[welds[border]];
-    against[border] = weld.reversed == equal(packed(weld.from), packed(heads[edge(border)]), false);
+    against[border] = weld.reversed != runs_against(*set_, weld.from, heads[edge(border)]);
   }
   return against;
 }

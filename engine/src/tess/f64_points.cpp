@@ -34,14 +34,26 @@ Homogeneous symmetric_sum(int degree, const Weights& weights, Point point) {
   return sum;
 }
 
+/// How far a patch goes from a point.
+double reach(const BezierPatch& patch, const Vec3& from) {
+  double most = 0;
+  for (const Vec3& p : patch.points()) most = std::max(most, length(p - from));
+  return most;
+}
+
+/// Twice g and one for the division; twice that covers what lengths and products of roundings add.
+double evaluation_rounding(const BezierPatch& patch) {
+  return 4 * (3.0 * (patch.degree_u() + patch.degree_v()) + 9) * 0x1p-53;
+}
+
 }  // namespace
 
 double f64_vertex_rounding(const BezierPatch& patch, const Vec3& origin) {
-  double reach = 0;
-  for (const Vec3& p : patch.points()) reach = std::max(reach, length(p - origin));
-  // Twice g and one for the division; twice that covers what the lengths and products of roundings add.
-  const double evaluation = 4 * (3.0 * (patch.degree_u() + patch.degree_v()) + 9) * 0x1p-53;
-  return (0x1p-24 + evaluation) * reach + 0x1p-148;
+  return (0x1p-24 + evaluation_rounding(patch)) * reach(patch, origin) + 0x1p-148;
+}
+
+double f64_position_rounding(const BezierPatch& patch, const Vec3& origin) {
+  return evaluation_rounding(patch) * reach(patch, origin) + 0x1p-52 * reach(patch, Vec3{});
 }
 
 Vec3 F64Points::Curve::at(Segments::Fraction t) const {

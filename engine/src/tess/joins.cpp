@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "tess/ring_vertices.h"
+#include "tess/side_curve.h"
 #include "tess/union_find.h"
 
 namespace tessera {
@@ -36,7 +37,6 @@ class Joiner {
     for (std::uint32_t border = 0; border < welded_.size(); ++border)
       if (!plan_.division(border / 4).empty) visit(border, edges_.edge(border / 4, all_sides[border % 4]));
   }
-  PackedBorder packed(std::uint32_t border) const { return {set_, border / 4, all_sides[border % 4]}; }
 
   void join_borders(const Weld& weld) {
     std::vector<std::uint32_t> heads(edges_.count(), none);
@@ -46,8 +46,7 @@ class Joiner {
     for_borders([&](std::uint32_t border, std::uint32_t edge) {
       if (edge == none || heads[edge] == border) return;
       const std::uint32_t weld_at = welded_[border], head = weld_at == none ? heads[edge] : weld.borders[weld_at].from;
-      const bool reversed =
-          weld_at == none ? !equal(packed(border), packed(head), false) : weld.borders[weld_at].reversed;
+      const bool reversed = weld_at == none ? runs_against(set_, border, head) : weld.borders[weld_at].reversed;
       if (!is_smooth(border, head, reversed)) return;
       joins_.borders.push_back({border, head, reversed});
       const auto ends = ends_of(border), met = ends_of(head);

@@ -52,6 +52,7 @@ MeshViews Mesh::views() {
   views.indices = indices;
   views.quads = quads;
   views.quad_patch = quad_patches;
+  if (!positions_f64.empty()) views.position_f64 = View3<double>::interleaved(positions_f64);
   return views;
 }
 
@@ -66,6 +67,7 @@ Result<Mesh> split_quads(const Mesh& mesh) {
     Mesh split;
     split.origin = mesh.origin;
     split.positions = mesh.positions;
+    split.positions_f64 = mesh.positions_f64;
     split.normals = mesh.normals;
     split.parameters = mesh.parameters;
     split.parts = mesh.parts;

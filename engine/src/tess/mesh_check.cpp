@@ -16,8 +16,25 @@ namespace {
 /// Edges keep a vertex and a direction in 32 bits.
 constexpr std::size_t most_vertices = std::size_t{1} << 31;
 
-/// The bits of a vertex' position.
-PositionBits bits_of(const Mesh& mesh, std::size_t vertex) { return position_bits(&mesh.positions[3 * vertex]); }
+/// Positions as they are checked: those in double, where there are any.
+struct FloatPlaces {
+  static constexpr double rounding = 0x1p-23;
+  const Mesh& mesh;
+  PositionBits bits(std::size_t vertex) const { return position_bits(&mesh.positions[3 * vertex]); }
+  Vec3 at(std::size_t vertex) const {
+    const float* const p = &mesh.positions[3 * vertex];
+    return {p[0], p[1], p[2]};
+  }
+};
+struct DoublePlaces {
+  static constexpr double rounding = 0x1p-52;
+  const Mesh& mesh;
+  DoublePositionBits bits(std::size_t vertex) const { return position_bits(&mesh.positions_f64[3 * vertex]); }
+  Vec3 at(std::size_t vertex) const {
+    const double* const p = &mesh.positions_f64[3 * vertex];
+    return {p[0], p[1], p[2]};
+  }
+};
 
 struct Welded {
   std::vector<std::uint32_t> place;  ///< of each vertex, 0 .. count - 1
@@ -25,16 +42,17 @@ struct Welded {
 };
 
 /// Numbers the distinct positions, by an open hash table of the first vertex at each.
-Welded weld(const Mesh& mesh) {
+template <class Places>
+Welded weld(const Mesh& mesh, const Places& places) {
   constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
   Welded welded;
   welded.place.resize(mesh.vertex_count());
   std::vector<std::uint32_t> table(std::bit_ceil(2 * mesh.vertex_count() + 1), none);
   const std::size_t mask = table.size() - 1;
   for (std::size_t k = 0; k < mesh.vertex_count(); ++k) {
-    const PositionBits bits = bits_of(mesh, k);
+    const auto bits = places.bits(k);
     std::size_t slot = hash(bits) & mask;
-    while (table[slot] != none && bits_of(mesh, table[slot]) != bits) slot = (slot + 1) & mask;
+    while (table[slot] != none && places.bits(table[slot]) != bits) slot = (slot + 1) & mask;
     if (table[slot] == none) {
       table[slot] = static_cast<std::uint32_t>(k);
       welded.place[k] = static_cast<std::uint32_t>(welded.count++);
@@ -55,6 +73,9 @@ Status check_counts(const Mesh& mesh) {
   if (mesh.quads.size() % 4 != 0) return bad(std::to_string(mesh.quads.size()) + " indices are not four a quad");
   if (mesh.vertex_count() > most_vertices)
     return bad(std::to_string(mesh.vertex_count()) + " vertices are more than " + std::to_string(most_vertices));
+  if (!fits(mesh.positions_f64, mesh.positions.size()))
+    return bad(std::to_string(mesh.positions_f64.size()) + " numbers in positions in double, " +
+               std::to_string(mesh.positions.size()) + " in positions");
   if (!fits(mesh.normals, mesh.positions.size()))
     return bad(std::to_string(mesh.normals.size()) + " numbers in normals, " + std::to_string(mesh.positions.size()) +
                " in positions");
@@ -82,11 +103,12 @@ Status check_indices(std::span<const std::uint32_t> indices, std::ptrdiff_t corn
           place};
 }
 
-std::size_t count_non_finite(const Mesh& mesh) {
+template <class Places>
+std::size_t count_non_finite(const Mesh& mesh, const Places& places) {
   const auto finite = [](const float* p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); };
   std::size_t count = 0;
   for (std::size_t k = 0; k < mesh.vertex_count(); ++k)
-    count += !finite(&mesh.positions[3 * k]) || (!mesh.normals.empty() && !finite(&mesh.normals[3 * k]));
+    count += !is_finite(places.at(k)) || (!mesh.normals.empty() && !finite(&mesh.normals[3 * k]));
   return count;
 }
 
@@ -98,8 +120,9 @@ using Triangle = std::array<std::uint32_t, 3>;
 
 /// Whether the corners of a triangle lie on one line. Products of differences of floats are exact in double unless
 /// their exponents lie far apart, so this is no matter of tolerance.
-bool has_no_area(const Mesh& mesh, const Triangle& corners) {
-  const auto point = [&](std::size_t k) { return vertex(mesh.positions, corners[k]); };
+template <class Places>
+bool has_no_area(const Places& places, const Triangle& corners) {
+  const auto point = [&](std::size_t k) { return places.at(corners[k]); };
   return cross(point(1) - point(0), point(2) - point(0)) == Vec3{};
 }
 
@@ -140,28 +163,30 @@ class EdgeTable {
 };
 
 /// Whether the triangle looks the other way than the normals at its corners do, taken together.
-bool is_flipped(const Mesh& mesh, const Triangle& corners) {
-  const auto at = [&](std::size_t k) { return vertex(mesh.positions, corners[k]); };
+template <class Places>
+bool is_flipped(const Mesh& mesh, const Places& places, const Triangle& corners) {
+  const auto at = [&](std::size_t k) { return places.at(corners[k]); };
   Vec3 normals;
   for (const std::uint32_t corner : corners) normals += vertex(mesh.normals, corner);
   return dot(cross(at(1) - at(0), at(2) - at(0)), normals) < 0;
 }
 
-MeshReport count(const Mesh& mesh) {
+template <class Places>
+MeshReport count(const Mesh& mesh, const Places& places) {
   MeshReport report;
-  const Welded welded = weld(mesh);
+  const Welded welded = weld(mesh, places);
   report.vertices = mesh.vertex_count();
   report.distinct_positions = welded.count;
   report.triangles = mesh.triangle_count() + 2 * mesh.quad_count();
   report.quads = mesh.quad_count();
-  report.non_finite_vertices = count_non_finite(mesh);
+  report.non_finite_vertices = count_non_finite(mesh, places);
   std::vector<Triangle> sound;
   sound.reserve(report.triangles);
   const auto look_at = [&](const Triangle& corners) {
     const Triangle t{welded.place[corners[0]], welded.place[corners[1]], welded.place[corners[2]]};
-    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0] || has_no_area(mesh, corners)) return;
+    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0] || has_no_area(places, corners)) return;
     sound.push_back(t);
-    report.flipped_triangles += !mesh.normals.empty() && is_flipped(mesh, corners);
+    report.flipped_triangles += !mesh.normals.empty() && is_flipped(mesh, places, corners);
   };
   for (auto corner = mesh.indices.begin(); corner != mesh.indices.end(); corner += 3)
     look_at({corner[0], corner[1], corner[2]});
@@ -172,9 +197,9 @@ MeshReport count(const Mesh& mesh) {
   report.degenerate_triangles = report.triangles - sound.size();
   std::vector<std::array<std::uint32_t, 2>> open;
   EdgeTable(sound, welded.count).count_into(report, open);
-  std::vector<Vec3> places(welded.count);
-  for (std::size_t k = 0; k < mesh.vertex_count(); ++k) places[welded.place[k]] = vertex(mesh.positions, k);
-  report.t_junctions = count_t_junctions(places, open);
+  std::vector<Vec3> distinct(welded.count);
+  for (std::size_t k = 0; k < mesh.vertex_count(); ++k) distinct[welded.place[k]] = places.at(k);
+  report.t_junctions = count_t_junctions(distinct, open, Places::rounding);
   return report;
 }
 
@@ -186,7 +211,7 @@ Result<MeshReport> check(const Mesh& mesh) {
     const std::size_t vertices = mesh.vertex_count();
     if (Status status = check_indices(mesh.indices, 3, "triangle", vertices); !status.ok()) return status;
     if (Status status = check_indices(mesh.quads, 4, "quad", vertices); !status.ok()) return status;
-    return count(mesh);
+    return mesh.positions_f64.empty() ? count(mesh, FloatPlaces{mesh}) : count(mesh, DoublePlaces{mesh});
   });
 }
 

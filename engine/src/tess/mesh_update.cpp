@@ -35,7 +35,8 @@ class MeshUpdate::Impl {
     if (plan.shapes().size() != set.patches.size() || touched_.block_count() != set.lane_counts.size())
       return {StatusCode::invalid_argument, "the update was made for another patch set"};
     if (set.revision != revision_) return edited_otherwise(set.revision, revision_);
-    if (Status status = check_vertex_views(out, plan.plan().capacity()); !status.ok()) return status;
+    if (Status status = check_vertex_views(out, plan.plan().capacity(), plan.plan().has_f64_positions()); !status.ok())
+      return status;
     if (Status status = plan.check_normals(out); !status.ok()) return status;
     if (Status status = touched_.add(set, edits); !status.ok()) return status;
     const auto keeps_shape = [&](std::uint32_t patch, std::span<const Vec3> points) {

@@ -21,8 +21,8 @@ Status check_size(const char* name, std::size_t size, std::size_t wanted, const 
                                             what + ", " + std::to_string(wanted) + " are needed"};
 }
 
-template <int N>
-Status check_view(const char* name, const VectorView<float, N>& view, std::size_t vertices) {
+template <class T, int N>
+Status check_view(const char* name, const VectorView<T, N>& view, std::size_t vertices) {
   if (view.empty()) return {};
   if (std::find(view.component.begin(), view.component.end(), nullptr) != view.component.end())
     return invalid(std::string("a component of the ") + name + " view is null");
@@ -47,11 +47,17 @@ ViewChecks vertex_checks(const MeshViews& out, const MeshCapacity& wanted) {
   ViewChecks checks(wanted.vertices);
   add_wanted(checks, "position", out.position);
   add_wanted(checks, "normal", out.normal);
+  add_wanted(checks, "position_f64", out.position_f64);
   return checks;
 }
 
-Status check_lengths(const MeshViews& out, const MeshCapacity& wanted) {
-  if (out.position.empty()) return invalid("the position view is empty, it is required");
+Status check_lengths(const MeshViews& out, const MeshCapacity& wanted, bool f64) {
+  if (f64 && out.position_f64.empty())
+    return invalid("the position_f64 view is empty, a plan with positions in double requires it");
+  if (!f64 && !out.position_f64.empty())
+    return invalid("the position_f64 view must be empty: the plan has no positions in double");
+  if (!f64 && out.position.empty()) return invalid("the position view is empty, it is required");
+  if (Status status = check_view("position_f64", out.position_f64, wanted.vertices); !status.ok()) return status;
   if (Status status = check_view("position", out.position, wanted.vertices); !status.ok()) return status;
   return check_view("normal", out.normal, wanted.vertices);
 }
@@ -72,13 +78,13 @@ Mesh empty_mesh(const MeshCapacity& capacity, const Vec3& origin) {
   return mesh;
 }
 
-Status check_vertex_views(const MeshViews& out, const MeshCapacity& wanted) {
-  if (Status status = check_lengths(out, wanted); !status.ok()) return status;
+Status check_vertex_views(const MeshViews& out, const MeshCapacity& wanted, bool f64) {
+  if (Status status = check_lengths(out, wanted, f64); !status.ok()) return status;
   return vertex_checks(out, wanted).status();
 }
 
-Status check_views(const MeshViews& out, const MeshCapacity& wanted) {
-  if (Status status = check_lengths(out, wanted); !status.ok()) return status;
+Status check_views(const MeshViews& out, const MeshCapacity& wanted, bool f64) {
+  if (Status status = check_lengths(out, wanted, f64); !status.ok()) return status;
   if (Status status = check_view("parameter", out.parameter, wanted.vertices); !status.ok()) return status;
   if (Status status = check_size("indices", out.indices.size(), 3 * wanted.triangles, "indices"); !status.ok())
     return status;

@@ -13,11 +13,11 @@ namespace tessera {
 Mesh empty_mesh(const MeshCapacity& capacity, const Vec3& origin);
 
 /// Quads are looked at if the capacity holds any. Errors: buffer_too_small; invalid_argument (no positions, a null
-/// component, a stride below 1).
-Status check_views(const MeshViews& out, const MeshCapacity& wanted);
+/// component, a stride below 1). `f64`: positions in double are required, those in float are not; else there must be none.
+Status check_views(const MeshViews& out, const MeshCapacity& wanted, bool f64 = false);
 
 /// Of positions and normals alone.
-Status check_vertex_views(const MeshViews& out, const MeshCapacity& wanted);
+Status check_vertex_views(const MeshViews& out, const MeshCapacity& wanted, bool f64 = false);
 
 /// Whether a set has as many patches as a plan. Errors: stale.
 Status check_count(const PatchSet& set, std::size_t planned);

@@ -18,6 +18,13 @@ std::array<float, 3> start_of(const BezierPatch& net, const Vec3& origin, Side s
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
 
+template <class T>
+void put_vector(const View3<T>& view, std::size_t at, const Vec3& p) {
+  view.at(at, 0) = static_cast<T>(p.x);
+  view.at(at, 1) = static_cast<T>(p.y);
+  view.at(at, 2) = static_cast<T>(p.z);
+}
+
 /// Kernels move indices as they move numbers.
 kernel::StreamState lines_from(std::uint32_t* index) { return stream_from(reinterpret_cast<float*>(index)); }
 
@@ -65,29 +72,39 @@ void PatchWriter::write(std::size_t begin, std::size_t end) const {
 }
 
 void PatchWriter::write_vertices(std::size_t k, std::size_t end, VertexJob& vertices) const {
+  if (plan_.has_f64_positions()) return write_f64(k);
   prepare(k, vertices);
   const std::size_t first = plan_.first_vertex(k);
   set_records(vertices.job.position, out_.position, first);
   set_records(vertices.job.normal, out_.normal, first);
   vertices.job.writable = static_cast<int>(std::min<std::size_t>(end - first, std::numeric_limits<int>::max()));
   kernels_.mesh_vertices(vertices.job);
-  if (plan_.is_f64()) write_f64_positions(k);
+  if (plan_.is_f64()) write_f64(k);
 }
 
-void PatchWriter::write_f64_positions(std::size_t k) const {
-  const F64Points points(set_.patches[k], set_.origin);
+void PatchWriter::write_f64(std::size_t k) const {
+  const BezierPatch& patch = set_.patches[k];
+  const F64Points points(patch, set_.origin);
   const Division& division = plan_.division(k);
-  const auto put = [this](std::size_t at, const Vec3& p) {
-    out_.position.at(at, 0) = static_cast<float>(p.x);
-    out_.position.at(at, 1) = static_cast<float>(p.y);
-    out_.position.at(at, 2) = static_cast<float>(p.z);
+  const bool normals = plan_.has_f64_positions() && !out_.normal.empty();
+  std::size_t vertex = plan_.first_vertex(k), place = 0;  // in the mesh, and among all of the division
+  const auto put = [&](const Vec3& p) {
+    if (!out_.position.empty()) put_vector(out_.position, vertex, p);
+    if (!out_.position_f64.empty()) put_vector(out_.position_f64, vertex, set_.origin + p);
+    if (normals)
+      put_vector(out_.normal, vertex,
+                 unit_normal(patch, division.parameters(place).u, division.parameters(place).v).direction);
+    ++vertex;
   };
-  std::size_t vertex = plan_.first_vertex(k);
-  points.for_inner(division, [&](const Vec3& p) { put(vertex++, p); });
+  points.for_inner(division, [&](const Vec3& p) {
+    put(p);
+    ++place;
+  });
   for (const Side side : all_sides) {
     const std::uint32_t border = static_cast<std::uint32_t>(4 * k) + static_cast<std::uint32_t>(side);
     points.for_border(division, side, [&](int n, const Vec3& p) {
-      if (n == 0 ? plan_.owns_corner(border) : plan_.owns_border(border)) put(vertex++, p);
+      if (n == 0 ? plan_.owns_corner(border) : plan_.owns_border(border)) put(p);
+      ++place;
     });
   }
 }

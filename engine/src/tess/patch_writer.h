@@ -47,8 +47,9 @@ class [[gnu::visibility("hidden")]] PatchWriter {
   /// Puts shared vertices in the place of a patch's own in the indices of its strips.
   void share_indices(std::size_t k, std::uint32_t * indices) const;
   void write_quads(std::size_t k) const;
-  /// Positions from the double control points, rounded once, in the place of those that are written.
-  void write_f64_positions(std::size_t k) const;
+  /// Positions from the double control points: in double, or rounded once in the place of those that are written. Normals as
+  /// well beside positions in double.
+  void write_f64(std::size_t k) const;
   /// The vertices that a patch owns where others are shared.
   void write_owned(std::size_t k, VertexJob & vertices) const;
   void write_ring(std::size_t k, const Division& part, VertexJob& vertices) const;

@@ -34,7 +34,8 @@ double distance(const ChordBound& chord, PatchSegments segments, const Division&
 
 PresentBounds::PresentBounds(const PatchSet::Impl& set, const CertifiedTessellation::Impl& plan)
     : is_f64_(plan.plan().is_f64()),
-      chords_(set),
+      has_f64_positions_(plan.plan().has_f64_positions()),
+      chords_(set, has_f64_positions_),
       roundings_(set.patches.size()),
       displacements_(plan.plan().shares_vertices() ? set.patches.size() : plan.weld().displacements.size(), 0.0),
       bounds_(plan.plan().bounds().begin(), plan.plan().bounds().end()),
@@ -46,14 +47,17 @@ PresentBounds::PresentBounds(const PatchSet::Impl& set, const CertifiedTessellat
   // Then bounds and roundings of patches that are not touched matter as well.
   std::copy(plan.weld().displacements.begin(), plan.weld().displacements.end(), displacements_.begin());
   for (std::size_t k = 0; k < displacements_.size(); ++k)
-    roundings_[k] =
-        is_f64_ ? f64_vertex_rounding(set.patches[k], set.origin) : vertex_rounding(set.patches[k], set.origin);
+    roundings_[k] = is_f64_ ? f64_rounding(set.patches[k], set.origin) : vertex_rounding(set.patches[k], set.origin);
   if (displacements_.empty()) return;
   for (std::uint32_t block = 0; block < set.lane_counts.size(); ++block) {
     chords_.bound(set, block);
     for (std::size_t lane = 0; lane < set.lane_counts[block]; ++lane)
       roundings_[set.lane_patches[block * PatchSet::lanes + lane]] += chords_.slack(block, lane);
   }
+}
+
+double PresentBounds::f64_rounding(const BezierPatch& patch, const Vec3& origin) const {
+  return has_f64_positions_ ? f64_position_rounding(patch, origin) : f64_vertex_rounding(patch, origin);
 }
 
 void PresentBounds::touch(const PatchSet::Impl& set, std::span<const std::uint32_t> patches) {
@@ -74,7 +78,7 @@ Status PresentBounds::bound_blocks(const PatchSet::Impl& set, const Execution& e
         const std::size_t patch = set.lane_patches[block * PatchSet::lanes + lane];
         const BezierPatch& net = set.patches[patch];
         const std::optional<double> size = chords_.size(block, lane);
-        const double vertices = is_f64_ ? f64_vertex_rounding(net, set.origin)
+        const double vertices = is_f64_ ? f64_rounding(net, set.origin)
                                 : size  ? vertex_rounding(net.degree_u(), net.degree_v(), net.is_rational(), *size)
                                         : vertex_rounding(net, set.origin);
         roundings_[patch] = vertices + chords_.slack(block, lane);

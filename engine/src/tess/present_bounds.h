@@ -33,7 +33,9 @@ class PresentBounds {
   void set_bound(const PatchSet::Impl& set, const CertifiedTessellation::Impl& plan, std::size_t patch,
                  ChordBlocks::Products& products);
 
-  bool is_f64_;
+  double f64_rounding(const BezierPatch& patch, const Vec3& origin) const;
+
+  bool is_f64_, has_f64_positions_;
   ChordBlocks chords_;
   std::vector<double> roundings_;      ///< of each patch's vertices, before welding
   std::vector<double> displacements_;  ///< of vertices that others' take the place of; empty where there are none

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "block/patch_set_impl.h"
@@ -101,6 +102,8 @@ class SharedEdges {
   /// Edges are numbered by the first border of each, in the order of the blocks, of their patches and of `all_sides`.
   SharedEdges(const PatchSet::Impl& set, const BorderHashes& hashes);
   explicit SharedEdges(const PatchSet::Impl& set);
+  /// `edges` by 4 * patch + side, below `count` or none.
+  SharedEdges(std::vector<std::uint32_t> edges, std::size_t count) : edges_(std::move(edges)), count_(count) {}
 
   std::size_t count() const { return count_; }
   std::uint32_t edge(std::size_t patch, Side side) const { return edges_[4 * patch + static_cast<std::size_t>(side)]; }

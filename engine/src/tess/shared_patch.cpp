@@ -24,6 +24,7 @@ void restrict_to(const Division& part, VertexJob& vertices) {
 }  // namespace
 
 void PatchWriter::write_owned(std::size_t k, VertexJob& vertices) const {
+  if (plan_.has_f64_positions()) return write_f64(k);
   const Division& division = plan_.division(k);
   Division part = division;
   if (division.has_inner_points()) {
@@ -46,7 +47,7 @@ void PatchWriter::write_owned(std::size_t k, VertexJob& vertices) const {
       write_ring(k, part, vertices);
     }
   }
-  if (plan_.is_f64()) write_f64_positions(k);
+  if (plan_.is_f64()) write_f64(k);
 }
 
 void PatchWriter::write_ring(std::size_t k, const Division& part, VertexJob& vertices) const {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 namespace tessera {
@@ -52,6 +54,62 @@ double distance_bound(SideCurve a, SideCurve b, bool reversed) {
   }
   const double bound = apart + (weights > 0 ? weights * b.box().diagonal() : 0);
   return std::isnan(bound) ? std::numeric_limits<double>::infinity() : bound;
+}
+
+bool runs_against(const PatchSet::Impl& set, std::uint32_t border, std::uint32_t other) {
+  if (border == other) return false;
+  const Side side = all_sides[border % 4], other_side = all_sides[other % 4];
+  const PackedBorder a(set, border / 4, side), b(set, other / 4, other_side);
+  if (!equal(a, b, false)) return true;
+  if (!equal(a, b, true)) return false;
+  const SideCurve p(set.patches[border / 4], side), q(set.patches[other / 4], other_side);
+  return distance_bound(p, q, true) < distance_bound(p, q, false);
+}
+
+SharedEdges parted_by_doubles(const PatchSet::Impl& set, const SharedEdges& edges) {
+  constexpr std::uint32_t none = SharedEdges::none;
+  const auto curve = [&](std::uint32_t border) { return SideCurve(set.patches[border / 4], all_sides[border % 4]); };
+  // Borders near each other have middles near each other along a direction in which no model lies.
+  constexpr Vec3 direction{0.7548776662466927, 0.5698402909980532, 0.3247179572447461};  // of length 1
+  struct Place {
+    std::uint32_t edge, border;
+    double middle, reach;
+    bool operator<(const Place& other) const {
+      return std::tie(edge, middle, border) < std::tie(other.edge, other.middle, other.border);
+    }
+  };
+  std::vector<std::uint32_t> numbers(4 * set.patches.size(), none);
+  std::vector<Place> places;
+  for (std::uint32_t border = 0; border < numbers.size(); ++border) {
+    const std::uint32_t edge = edges.edge(border / 4, all_sides[border % 4]);
+    if (edge == none) continue;
+    const SideCurve along = curve(border);
+    const double rounding = 0x1p-48 * std::max(max_abs(along.box().lower), max_abs(along.box().upper));
+    places.push_back({edge, border,
+                      dot(direction, 0.5 * (along.first() - set.origin) + 0.5 * (along.last() - set.origin)),
+                      0x1p-20 * along.box().diagonal() + rounding});
+  }
+  std::sort(places.begin(), places.end());
+  auto count = static_cast<std::uint32_t>(edges.count());
+  std::vector<std::size_t> leaders;  // of the parts of an edge, in the order of their middles
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const Place& place = places[k];
+    if (k == 0 || places[k - 1].edge != place.edge) leaders.clear();
+    std::uint32_t found = none;
+    for (std::size_t n = leaders.size(); n > 0 && found == none; --n) {
+      const Place& leader = places[leaders[n - 1]];
+      if (place.middle - leader.middle > 2 * place.reach) break;
+      const SideCurve a = curve(place.border), b = curve(leader.border);
+      if (std::min(distance_bound(a, b, false), distance_bound(a, b, true)) <= place.reach)
+        found = numbers[leader.border];
+    }
+    if (found == none) {
+      found = leaders.empty() ? place.edge : count++;
+      leaders.push_back(k);
+    }
+    numbers[place.border] = found;
+  }
+  return {std::move(numbers), count};
 }
 
 Result<BezierPatch> with_pole(const BezierPatch& patch, Side side) {

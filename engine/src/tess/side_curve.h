@@ -37,6 +37,15 @@ class SideCurve {
 /// Degrees that differ are elevated.
 double distance_bound(SideCurve a, SideCurve b, bool reversed);
 
+/// Whether a border runs against another of its edge, both by 4 * patch + side. Where their float bits are the same in either
+/// direction, by those in double.
+bool runs_against(const PatchSet::Impl& set, std::uint32_t border, std::uint32_t other);
+
+/// The edges of `edges`, whose borders' float control points are the same bits, parted where those in double are not about
+/// the same: within 2^-20 of the diagonal of their box, or what doubles round at that place. For sets that reach so far that
+/// borders apart from each other are the same floats. Time: that of sorting all borders.
+SharedEdges parted_by_doubles(const PatchSet::Impl& set, const SharedEdges& edges);
+
 /// The patch with a border made a point, its first. Errors: out_of_memory.
 Result<BezierPatch> with_pole(const BezierPatch& patch, Side side);
 

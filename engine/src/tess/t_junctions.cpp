@@ -61,7 +61,8 @@ bool lies_inside(const Vec3& p, const Vec3& a, const Vec3& b, double reach) {
 
 }  // namespace
 
-std::size_t count_t_junctions(std::span<const Vec3> vertices, std::span<const std::array<std::uint32_t, 2>> edges) {
+std::size_t count_t_junctions(std::span<const Vec3> vertices, std::span<const std::array<std::uint32_t, 2>> edges,
+                              double rounding) {
   std::vector<std::uint32_t> ends;
   for (const auto& edge : edges)
     for (const std::uint32_t end : edge)
@@ -73,7 +74,7 @@ std::size_t count_t_junctions(std::span<const Vec3> vertices, std::span<const st
   for (const auto& [first, second] : edges) {
     const Vec3 &a = vertices[first], &b = vertices[second];
     if (!is_finite(a) || !is_finite(b)) continue;
-    const double reach = 1e-6 * length(b - a) + 0x1p-23 * std::max(max_abs(a), max_abs(b));
+    const double reach = 1e-6 * length(b - a) + rounding * std::max(max_abs(a), max_abs(b));
     Box3 box;
     box.extend(a);
     box.extend(b);

@@ -144,8 +144,7 @@ class Welder {
   /// Whether a border runs against the canonical one of what its edge was joined to.
   bool runs_against(std::uint32_t border, std::uint32_t edge) {
     const std::uint32_t head = heads_[edge];
-    const bool turned = border != head && !equal(PackedBorder(set_, patch_of(border), side_of(border)),
-                                                 PackedBorder(set_, patch_of(head), side_of(head)), false);
+    const bool turned = tessera::runs_against(set_, border, head);
     return turned != joined_.find(edge).turned;
   }
   /// The edge whose head all that are joined take the points of.

@@ -11,8 +11,13 @@ namespace {
 
 constexpr std::size_t copies_a_piece = 64;
 
-void copy(const View3<float>& positions, std::size_t from, std::size_t to) {
-  for (int c = 0; c < 3; ++c) positions.at(to, c) = positions.at(from, c);
+template <class T>
+void copy(const View3<T>& vectors, std::size_t from, std::size_t to) {
+  for (int c = 0; c < 3; ++c) vectors.at(to, c) = vectors.at(from, c);
+}
+void copy_positions(const MeshViews& out, std::size_t from, std::size_t to) {
+  if (!out.position.empty()) copy(out.position, from, to);
+  if (!out.position_f64.empty()) copy(out.position_f64, from, to);
 }
 
 /// visit(vertex, the one that it is taken from) for the points inside a border.
@@ -26,7 +31,7 @@ void for_copies(const VertexCopies::Border& border, const CertifiedPlan& plan, V
 Status write_pole(const VertexCopies::Corner& pole, const CertifiedPlan& plan, const PatchSet::Impl& set,
                   const MeshViews& out) {
   const RingVertices to(plan, pole.to), from(plan, pole.from);
-  for (int k = 1; k < to.rate(); ++k) copy(out.position, from(0), to(k));
+  for (int k = 1; k < to.rate(); ++k) copy_positions(out, from(0), to(k));
   if (out.normal.empty()) return {};
   const Side side = all_sides[pole.to % 4];
   const bool is_point = set.collapsed[pole.to / 4].has(edge_of(side));
@@ -58,12 +63,12 @@ Status write_welded(const Weld& weld, const CertifiedPlan& plan, const PatchSet:
   const auto borders = [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
       if (is_due(weld.borders[k]))
-        for_copies(weld.borders[k], plan, [&](std::size_t to, std::size_t from) { copy(out.position, from, to); });
+        for_copies(weld.borders[k], plan, [&](std::size_t to, std::size_t from) { copy_positions(out, from, to); });
   };
   const Execution quiet{.cancel = execution.cancel};
   if (Status status = parallel_for(weld.borders.size(), copies_a_piece, quiet, borders); !status.ok()) return status;
   for (const VertexCopies::Corner& corner : weld.corners)
-    if (is_due(corner)) copy(out.position, plan.ring_vertex(corner.from, 0), plan.ring_vertex(corner.to, 0));
+    if (is_due(corner)) copy_positions(out, plan.ring_vertex(corner.from, 0), plan.ring_vertex(corner.to, 0));
   for (const VertexCopies::Corner& pole : weld.poles)
     if (is_due(pole))
       if (Status status = write_pole(pole, plan, set, out); !status.ok()) return status;
