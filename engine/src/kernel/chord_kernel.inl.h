@@ -95,6 +95,36 @@ template <class L, int Degree>
   for (int k = 0; k < 3 * points; ++k) net[k] = net[k] * scale;
 }
 
+/// Writes the hints of patches with these corners, (0, 0), (1, 0), (1, 1), (0, 1), in units of the block; after the bounds.
+template <class L>
+void store_hints(const ChordJob& job, int lane, const typename L::Batch (&corner)[4][3]) {
+  using Batch = typename L::Batch;
+  struct Vector {
+    Batch x, y, z;
+  };
+  const auto from = [&](int a, int b) {
+    return Vector{corner[b][0] - corner[a][0], corner[b][1] - corner[a][1], corner[b][2] - corner[a][2]};
+  };
+  const auto product = [](const Vector& a, const Vector& b) {
+    return Vector{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  };
+  const auto dot = [](const Vector& a, const Vector& b) { return (a.x * b.x + a.y * b.y) + a.z * b.z; };
+  const auto rounding = [](double x) { return L::broadcast(static_cast<float>(x)); };
+  const auto kind = [&](int which) { return L::load(job.pieces + which * block_lanes + lane); };
+  const Batch others = kind(0) + kind(2), mixed = kind(1), zero = L::broadcast(0);
+  const Vector bottom = from(0, 1), top = from(3, 2), left = from(0, 3), right = from(1, 2), diagonal = from(0, 2);
+  const auto are_parallel = [&](const Vector& a, const Vector& b) {
+    const Vector across = product(a, b);
+    return dot(across, across) <= rounding(0x1p-38) * (dot(a, a) + dot(b, b));
+  };
+  const auto is_sweep = (mixed > rounding(0x1p-6) * others) & (are_parallel(bottom, top) | are_parallel(left, right));
+  const auto is_flat =
+      (mixed + others > rounding(0x1p-12)) & (xsimd::abs(dot(product(bottom, left), diagonal)) <=
+                                              rounding(0x1p-18) * (dot(bottom, bottom) + dot(diagonal, diagonal)));
+  L::store(job.hints + lane, xsimd::select(is_sweep, L::broadcast(may_be_sweep), zero) +
+                                 xsimd::select(is_flat, L::broadcast(may_be_flat), zero));
+}
+
 template <class L, int Degree>
 void bound_lanes(const ChordJob& job, int lane) {
   using Batch = typename L::Batch;
@@ -132,6 +162,13 @@ void bound_lanes(const ChordJob& job, int lane) {
     largest_in_quarters<L, (Degree > 1 ? Degree + 1 : 0), (Degree > 1 ? Degree - 1 : 0)>(d, m + 1, n - 1, quarters);
   }
   store_pieces<L>(job, 2, lane, static_cast<float>(n * (n - 1)), quarters);
+  if (!job.hints) return;
+  Batch corner[4][3];
+  for (int c = 0; c < 3; ++c) {
+    corner[0][c] = at(c, 0, 0), corner[1][c] = at(c, m, 0);
+    corner[2][c] = at(c, m, n), corner[3][c] = at(c, 0, n);
+  }
+  store_hints<L>(job, lane, corner);
 }
 
 template <class L, int Degree>

@@ -16,6 +16,13 @@ struct ChordJob {
   float* pieces = nullptr;  ///< `[piece of 9][uu, uv, vv][lane]`, in units of `unit`
   float* unit = nullptr;    ///< `[lane]`: a power of two above the largest coefficient
   float* size = nullptr;    ///< `[lane]`: the largest coordinate of a control point, at least 2^-120
+  float* hints = nullptr;   ///< `[lane]`: a sum of ChordHint; or null
+};
+
+/// What a patch may be, by its corners, and where that would save cells.
+enum ChordHint {
+  may_be_sweep = 1,  ///< polynomial patches: corners at the ends of two opposite sides lie in parallel
+  may_be_flat = 2,   ///< the corners lie in a plane
 };
 
 /// Rational patches up to this degree have their bounds in blocks, in float. `net` then has four components; `unit` is above

@@ -16,6 +16,10 @@ class RationalChords {
     const auto is_sure =
         (L::broadcast(8) * unsure_ <= sum_) & (nets_.parts[0].lightest > L::broadcast(static_cast<float>(1.0 / 64)));
     L::store(job_.size + lane_, xsimd::select(is_sure, nets_.size, L::broadcast(-1)));
+    if (!job_.hints) return;
+    Batch corner[4][3];
+    nets_.corners(corner);
+    store_hints<L>(job_, lane_, corner);
   }
 
  private:

@@ -62,6 +62,13 @@ class RationalNets {
     find_parts();
   }
 
+  /// The points (0, 0), (1, 0), (1, 1), (0, 1), relative to the patch's middle.
+  void corners(Batch (&corner)[4][3]) const {
+    const int at[4] = {0, m * (n + 1), m * (n + 1) + n, n};
+    for (int k = 0; k < 4; ++k)
+      for (int c = 0; c < 3; ++c) corner[k][c] = net_[c][at[k]] / net_[3][at[k]];
+  }
+
   struct Shape {
     int rows, columns;
     int count() const { return rows * columns; }

@@ -52,6 +52,8 @@ void ChordBlocks::bound(const PatchSet::Impl& set, std::size_t block, std::uint3
   float* const pieces = pieces_.data() + block * block_pieces;
   const bool in_block = !by_doubles_ && is_bounded_in_blocks(group);
   const kernel::KernelTable& kernels = kernel::default_kernels();
+  alignas(cache_line) Lanes<float> hints;
+  hints.fill(kernel::may_be_flat);
   if (in_block)
     (group.rational ? kernels.bound_rational_chords : kernels.bound_chords)(
         {.net = set.single.bernstein.data() + group.first_value + (block - group.first_block) * group.block_values,
@@ -59,7 +61,8 @@ void ChordBlocks::bound(const PatchSet::Impl& set, std::size_t block, std::uint3
          .degree_v = group.degree_v,
          .pieces = pieces,
          .unit = unit_.data() + block * lanes,
-         .size = size_.data() + block * lanes});
+         .size = size_.data() + block * lanes,
+         .hints = hints.data()});
   for (std::size_t lane = 0; lane < set.lane_counts[block]; ++lane) {
     if (!in_block && !(wanted >> lane & 1u)) continue;
     float& size = size_[block * lanes + lane];
@@ -68,7 +71,7 @@ void ChordBlocks::bound(const PatchSet::Impl& set, std::size_t block, std::uint3
     slack_[block * lanes + lane] = 0;
     if (!is_packed) size = -1;
   }
-  bound_exactly(set, block, in_block ? ~0u : wanted);
+  bound_exactly(set, block, hints, in_block ? ~0u : wanted);
 }
 
 ChordBound ChordBlocks::chord(std::size_t block, std::size_t lane, const Products* products) const {

@@ -87,14 +87,11 @@ class ChordBlocks {
   /// Writes bounds(piece, which of uu, uv, vv), in lengths, in the lane's unit.
   template <class Bound>
   void store(std::size_t block, std::size_t lane, const Bound& bound);
-  /// Takes the bounds of sweeps and flat quadrilaterals, and of exact numerators where they are the smaller ones.
-  void bound_exactly(const PatchSet::Impl& set, std::size_t block, std::uint32_t wanted);
+  /// Takes the bounds of sweeps and flat quadrilaterals, and of exact numerators where they are the smaller ones. `hints`: see
+  /// kernel::ChordHint.
+  void bound_exactly(const PatchSet::Impl& set, std::size_t block, const Lanes<float>& hints, std::uint32_t wanted);
   double homogeneous_cells(const BezierPatch& patch, std::size_t block, std::size_t lane) const;
   void take_exact(const BezierPatch& patch, const Exact& exact, std::size_t block, std::size_t lane);
-  /// A bit for each lane of a block of polynomial patches that may be a sweep, and takes fewer cells then.
-  std::uint32_t likely_sweeps(const float* net, const BlockGroup& group, std::size_t block) const;
-  /// A bit for each lane whose corners lie in a plane, more or less, and which has bounds.
-  std::uint32_t likely_flat(const float* net, const BlockGroup& group, std::size_t block) const;
 
   /// How many cells a patch products save, about, of those that a choice has.
   double saved_by_products(const PatchSet::Impl& set, std::size_t block, std::size_t count, const Choice& choice) const;

@@ -65,24 +65,12 @@ double cells(double size, const Bound& bound) {
   return (std::sqrt(bound(0)) + one) * (std::sqrt(bound(2)) + one) + bound(1);
 }
 
-/// Corner `which` (0, 0), (1, 0), (1, 1), (0, 1) of the patches of a float block, x, y or z, over the weight.
-void load_corners(const float* net, const BlockGroup& group, std::array<ChordBlocks::Lanes<float>, 3> (&corner)[4]) {
-  constexpr std::size_t lanes = PatchSet::lanes;
-  const std::size_t m = static_cast<std::size_t>(group.degree_u), n = static_cast<std::size_t>(group.degree_v),
-                    components = static_cast<std::size_t>(coefficient_components(group.rational));
-  const std::size_t at[4] = {0, m * (n + 1), m * (n + 1) + n, n};
-  for (std::size_t k = 0; k < 4; ++k)
-    for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t lane = 0; lane < lanes; ++lane) {
-        const float* const point = net + at[k] * components * lanes + lane;
-        corner[k][c][lane] = group.rational ? point[c * lanes] / point[3 * lanes] : point[c * lanes];
-      }
-}
-
-std::uint32_t bits(const ChordBlocks::Lanes<std::uint8_t>& flags) {
-  std::uint32_t all = 0;
-  for (std::size_t lane = 0; lane < flags.size(); ++lane) all |= std::uint32_t{flags[lane] != 0} << lane;
-  return all;
+/// The lanes that have a hint, a bit each.
+std::uint32_t lanes_with(kernel::ChordHint hint, const ChordBlocks::Lanes<float>& hints) {
+  std::uint32_t bits = 0;
+  for (std::size_t lane = 0; lane < hints.size(); ++lane)
+    bits |= std::uint32_t{(static_cast<unsigned>(hints[lane]) & hint) != 0} << lane;
+  return bits;
 }
 
 }  // namespace
@@ -109,55 +97,6 @@ void ChordBlocks::store(std::size_t block, std::size_t lane, const Bound& bound)
   for (std::size_t k = 0; k < piece_count; ++k)
     for (std::size_t kind = 0; kind < 3; ++kind)
       pieces_[block * block_pieces + (k * 3 + kind) * lanes + lane] = rounded_up(bound(k, kind) / unit);
-}
-
-std::uint32_t ChordBlocks::likely_sweeps(const float* net, const BlockGroup& group, std::size_t block) const {
-  std::array<Lanes<float>, 3> corner[4];
-  load_corners(net, group, corner);
-  const float* const pieces = pieces_.data() + block * block_pieces;
-  Lanes<std::uint8_t> likely;
-  for (std::size_t lane = 0; lane < lanes; ++lane) {
-    // Both rows of a sweep have parallel chords, within the rounding of float.
-    const auto rows_are_parallel = [&](std::size_t a, std::size_t b, std::size_t c, std::size_t d) {
-      float first[3], second[3];
-      for (std::size_t k = 0; k < 3; ++k) {
-        first[k] = corner[b][k][lane] - corner[a][k][lane];
-        second[k] = corner[d][k][lane] - corner[c][k][lane];
-      }
-      const float x = first[1] * second[2] - first[2] * second[1], y = first[2] * second[0] - first[0] * second[2],
-                  z = first[0] * second[1] - first[1] * second[0];
-      const float squared_first = first[0] * first[0] + first[1] * first[1] + first[2] * first[2],
-                  squared_second = second[0] * second[0] + second[1] * second[1] + second[2] * second[2];
-      const float size = 0x1p-19f * size_[block * lanes + lane];
-      return x * x + y * y + z * z <= size * size * (squared_first + squared_second);
-    };
-    const float uu = pieces[lane], uv = pieces[lanes + lane], vv = pieces[2 * lanes + lane];
-    const bool matters = uv > 0x1p-6f * (uu + vv);
-    likely[lane] = static_cast<std::uint8_t>(matters & (rows_are_parallel(0, 1, 3, 2) | rows_are_parallel(0, 3, 1, 2)));
-  }
-  return bits(likely);
-}
-
-std::uint32_t ChordBlocks::likely_flat(const float* net, const BlockGroup& group, std::size_t block) const {
-  std::array<Lanes<float>, 3> corner[4];
-  load_corners(net, group, corner);
-  const float* const pieces = pieces_.data() + block * block_pieces;
-  Lanes<std::uint8_t> likely;
-  for (std::size_t lane = 0; lane < lanes; ++lane) {
-    float side[3][3];
-    for (std::size_t k = 0; k < 3; ++k)
-      for (std::size_t c = 0; c < 3; ++c) side[k][c] = corner[k + 1][c][lane] - corner[0][c][lane];
-    const float x = side[0][1] * side[2][2] - side[0][2] * side[2][1],
-                y = side[0][2] * side[2][0] - side[0][0] * side[2][2],
-                z = side[0][0] * side[2][1] - side[0][1] * side[2][0];
-    const float volume = x * side[1][0] + y * side[1][1] + z * side[1][2];
-    const float size = std::max(size_[block * lanes + lane], 0.0f);
-    const float bound = pieces[lane] + pieces[lanes + lane] + pieces[2 * lanes + lane];
-    const float longest = side[1][0] * side[1][0] + side[1][1] * side[1][1] + side[1][2] * side[1][2] +
-                          side[0][0] * side[0][0] + side[0][1] * side[0][1] + side[0][2] * side[0][2];
-    likely[lane] = static_cast<std::uint8_t>((bound > 0x1p-12f) & (std::abs(volume) <= 0x1p-18f * size * longest));
-  }
-  return bits(likely);
 }
 
 double ChordBlocks::homogeneous_cells(const BezierPatch& patch, std::size_t block, std::size_t lane) const {
@@ -188,13 +127,12 @@ void ChordBlocks::take_exact(const BezierPatch& patch, const Exact& exact, std::
   store(block, lane, [&](std::size_t k, std::size_t kind) { return exact.bound(k, kind, lane); });
 }
 
-void ChordBlocks::bound_exactly(const PatchSet::Impl& set, std::size_t block, std::uint32_t wanted) {
+void ChordBlocks::bound_exactly(const PatchSet::Impl& set, std::size_t block, const Lanes<float>& hints,
+                                std::uint32_t wanted) {
   const BlockGroup& group = set.group_of_block(block);
   const std::size_t count = set.lane_counts[block];
   const std::uint32_t* const patches = set.lane_patches.data() + block * lanes;
-  const float* const packed =
-      set.single.bernstein.data() + group.first_value + (block - group.first_block) * group.block_values;
-  const std::uint32_t sweeps = group.rational ? ~0u : likely_sweeps(packed, group, block);
+  const std::uint32_t sweeps = group.rational ? ~0u : lanes_with(kernel::may_be_sweep, hints) & wanted;
   if (sweeps != 0) {
     Net net;
     for (std::size_t lane = 0; lane < lanes; ++lane)
@@ -238,7 +176,7 @@ void ChordBlocks::bound_exactly(const PatchSet::Impl& set, std::size_t block, st
   for (std::size_t lane = 0; lane < count; ++lane)
     if (!group.rational && source_[block * lanes + lane] == Source::alone)
       bound_alone(set.patches[patches[lane]], block, lane);
-  for (std::uint32_t flat = likely_flat(packed, group, block) & wanted; flat != 0; flat &= flat - 1) {
+  for (std::uint32_t flat = lanes_with(kernel::may_be_flat, hints) & wanted; flat != 0; flat &= flat - 1) {
     const auto lane = static_cast<std::size_t>(std::countr_zero(flat));
     if (lane >= count) break;
     const std::optional<double> deviation = flat_quad_deviation(set.patches[patches[lane]]);
