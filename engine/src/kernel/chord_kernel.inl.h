@@ -96,7 +96,7 @@ template <class L, int Degree>
 }
 
 /// Writes the hints of patches with these corners, (0, 0), (1, 0), (1, 1), (0, 1), in units of the block; after the bounds.
-template <class L>
+template <class L, bool Rational>
 void store_hints(const ChordJob& job, int lane, const typename L::Batch (&corner)[4][3]) {
   using Batch = typename L::Batch;
   struct Vector {
@@ -117,7 +117,9 @@ void store_hints(const ChordJob& job, int lane, const typename L::Batch (&corner
     const Vector across = product(a, b);
     return dot(across, across) <= rounding(0x1p-38) * (dot(a, a) + dot(b, b));
   };
-  const auto is_sweep = (mixed > rounding(0x1p-6) * others) & (are_parallel(bottom, top) | are_parallel(left, right));
+  // Of polynomial patches a mixed derivative that is small beside the others costs nearly nothing.
+  const auto matters = mixed > rounding(Rational ? -1 : 0x1p-6) * others;
+  const auto is_sweep = matters & (are_parallel(bottom, top) | are_parallel(left, right));
   const auto is_flat =
       (mixed + others > rounding(0x1p-12)) & (xsimd::abs(dot(product(bottom, left), diagonal)) <=
                                               rounding(0x1p-18) * (dot(bottom, bottom) + dot(diagonal, diagonal)));
@@ -168,7 +170,7 @@ void bound_lanes(const ChordJob& job, int lane) {
     corner[0][c] = at(c, 0, 0), corner[1][c] = at(c, m, 0);
     corner[2][c] = at(c, m, n), corner[3][c] = at(c, 0, n);
   }
-  store_hints<L>(job, lane, corner);
+  store_hints<L, false>(job, lane, corner);
 }
 
 template <class L, int Degree>

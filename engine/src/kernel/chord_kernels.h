@@ -21,9 +21,13 @@ struct ChordJob {
 
 /// What a patch may be, by its corners, and where that would save cells.
 enum ChordHint {
-  may_be_sweep = 1,  ///< polynomial patches: corners at the ends of two opposite sides lie in parallel
+  may_be_sweep = 1,  ///< two opposite sides have parallel chords
   may_be_flat = 2,   ///< the corners lie in a plane
+  may_gain = 4,      ///< rational patches: exact numerators may take few of the cells
+  will_gain = 8,     ///< the same: so few that it pays for this patch alone
 };
+/// Of the cells, by the second derivatives at the corners.
+inline constexpr double likely_gain = 0.4, certain_gain = 0.1;
 
 /// Rational patches up to this degree have their bounds in blocks, in float. `net` then has four components; `unit` is above
 /// the coefficients as well, and `size` is negative where rounding is too much of a bound, or weights are too uneven.
@@ -37,7 +41,6 @@ struct ExactChordJob {
   int degree_u = 0, degree_v = 0;
   bool any_patch = false;       ///< pieces are wanted of patches that are no sweeps, too
   double* deviation = nullptr;  ///< `[lane]`: how far the patch may lie from a scaled sweep; infinite if it is none
-  double* corners = nullptr;    ///< `[uu, uv, vv][lane]`: the largest second derivatives at the corners; or null
   /// `[piece of 9][uu, uv, vv][lane]` in lengths, of the sweep where there is one; infinite or NaN where there is no bound.
   /// Or null.
   double* pieces = nullptr;

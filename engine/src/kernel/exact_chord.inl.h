@@ -267,7 +267,6 @@ class ExactChords {
       if (job_.pieces) bound_sweep(along_u, is_sweep);
     }
     L::store(job_.deviation + lane_, deviation);
-    if (job_.corners) store_corners();
     if (!job_.pieces) return;
     const auto is_other = !(deviation < infinite);
     if (job_.any_patch && xsimd::any(is_other) && std::max(m_, n_) <= most_exact_degree) bound_patch(is_other);
@@ -381,36 +380,6 @@ class ExactChords {
         piece[2] = xsimd::select(where, bounds[along_u ? 1 : 0], piece[2]);
       }
     }
-  }
-
-  /// The second derivatives at the corners, by the quotient rule: what no bound is below.
-  void store_corners() const {
-    Batch most[3] = {L::broadcast(0), L::broadcast(0), L::broadcast(0)};
-    for (int corner = 0; corner < 4; ++corner) {
-      const bool high_u = corner / 2 != 0, high_v = corner % 2 != 0;
-      const auto at = [&](int i, int j) { return (high_u ? m_ - i : i) * (n_ + 1) + (high_v ? n_ - j : j); };
-      const Batch inverse = L::broadcast(1) / weight_[at(0, 0)];
-      const auto weight = [&](int i, int j) { return weight_[at(i, j)] * inverse; };
-      // n (n - 1) w2 (P2 - P0) - 2 n w1 (n w1 - 1) (P1 - P0), w0 being 1.
-      const auto second = [&](int degree, int i, int j, int c) {
-        const Batch from = point_[c][at(0, 0)], turn = L::broadcast(degree) * weight(i, j);
-        const Batch along = L::broadcast(2) * turn * (turn - L::broadcast(1)) * (point_[c][at(i, j)] - from);
-        if (degree < 2) return L::broadcast(0) - along;
-        return L::broadcast(degree * (degree - 1)) * weight(2 * i, 2 * j) * (point_[c][at(2 * i, 2 * j)] - from) -
-               along;
-      };
-      Batch squared[3] = {L::broadcast(0), L::broadcast(0), L::broadcast(0)};
-      for (int c = 0; c < 3; ++c) {
-        const Batch from = point_[c][at(0, 0)];
-        const Batch twist = L::broadcast(m_ * n_) * (weight(1, 1) * (point_[c][at(1, 1)] - from) -
-                                                     weight(1, 0) * weight(0, 1) *
-                                                         ((point_[c][at(1, 0)] - from) + (point_[c][at(0, 1)] - from)));
-        const Batch derivatives[3] = {second(m_, 1, 0, c), twist, second(n_, 0, 1, c)};
-        for (int kind = 0; kind < 3; ++kind) squared[kind] = squared[kind] + derivatives[kind] * derivatives[kind];
-      }
-      for (int kind = 0; kind < 3; ++kind) most[kind] = xsimd::max(most[kind], squared[kind]);
-    }
-    for (int kind = 0; kind < 3; ++kind) L::store(job_.corners + kind * block_lanes + lane_, xsimd::sqrt(most[kind]));
   }
 
   /// Puts bounds of any patch up to most_exact_degree, from the nets of its quarters, in the place of those of `where`.

@@ -19,13 +19,34 @@ class RationalChords {
     if (!job_.hints) return;
     Batch corner[4][3];
     nets_.corners(corner);
-    store_hints<L>(job_, lane_, corner);
+    store_hints<L, true>(job_, lane_, corner);
+    add_gain();
   }
 
  private:
   using Nets = RationalNets<L>;
   using Batch = typename L::Batch;
   using Part = typename Nets::Part;
+
+  /// Adds the hints that exact numerators would save cells: where the second derivatives at the corners, what no bound is
+  /// below, ask for far fewer than the bounds of quarters.
+  void add_gain() {
+    Batch most[3], least[3];
+    for (int kind = 0; kind < 3; ++kind) {
+      most[kind] = L::broadcast(0);
+      for (int quarter = 5; quarter < 9; ++quarter)
+        most[kind] = xsimd::max(most[kind], L::load(job_.pieces + (quarter * 3 + kind) * block_lanes + lane_));
+    }
+    nets_.corner_derivatives(least);
+    const Batch one = xsimd::sqrt(L::broadcast(static_cast<float>(0x1p-6)) * nets_.parts[0].radius);
+    const auto cells = [&](const Batch(&d)[3]) { return (xsimd::sqrt(d[0]) + one) * (xsimd::sqrt(d[2]) + one) + d[1]; };
+    const Batch share = cells(least) / cells(most), zero = L::broadcast(0);
+    const auto hint = [&](double below, ChordHint which) {
+      return xsimd::select(share < L::broadcast(static_cast<float>(below)), L::broadcast(which), zero);
+    };
+    L::store(job_.hints + lane_,
+             L::load(job_.hints + lane_) + hint(likely_gain, may_gain) + hint(certain_gain, will_gain));
+  }
 
   void bound(int kind, int factor) {
     const auto shape = nets_.second_differences(kind, d_[0], Nets::capacity * Nets::capacity);

@@ -69,6 +69,37 @@ class RationalNets {
       for (int c = 0; c < 3; ++c) corner[k][c] = net_[c][at[k]] / net_[3][at[k]];
   }
 
+  /// The largest |r_uu|, |r_uv|, |r_vv| at the corners, by the quotient rule.
+  void corner_derivatives(Batch (&most)[3]) const {
+    for (Batch& of_kind : most) of_kind = L::broadcast(0);
+    for (int corner = 0; corner < 4; ++corner) {
+      const bool high_u = corner / 2 != 0, high_v = corner % 2 != 0;
+      const auto at = [&](int i, int j) { return (high_u ? m - i : i) * (n + 1) + (high_v ? n - j : j); };
+      const Batch inverse = L::broadcast(1) / net_[3][at(0, 0)];
+      const auto weight = [&](int i, int j) { return net_[3][at(i, j)] * inverse; };
+      /// The weight, over that of the corner, times the step from the corner.
+      const auto step = [&](int i, int j, int c) {
+        return net_[c][at(i, j)] * inverse - weight(i, j) * (net_[c][at(0, 0)] * inverse);
+      };
+      const auto number = [](int k) { return L::broadcast(static_cast<float>(k)); };
+      // n (n - 1) w2 (P2 - P0) - 2 n (n w1 - 1) w1 (P1 - P0), w0 being 1.
+      const auto second = [&](int degree, int i, int j, int c) {
+        const Batch along = number(2 * degree) * (number(degree) * weight(i, j) - number(1)) * step(i, j, c);
+        if (degree < 2) return number(0) - along;
+        return number(degree * (degree - 1)) * step(2 * i, 2 * j, c) - along;
+      };
+      Batch squared[3] = {number(0), number(0), number(0)};
+      for (int c = 0; c < 3; ++c) {
+        const Batch mixed =
+            number(m * n) * (step(1, 1, c) - weight(0, 1) * step(1, 0, c) - weight(1, 0) * step(0, 1, c));
+        const Batch derivatives[3] = {second(m, 1, 0, c), mixed, second(n, 0, 1, c)};
+        for (int kind = 0; kind < 3; ++kind) squared[kind] = squared[kind] + derivatives[kind] * derivatives[kind];
+      }
+      for (int kind = 0; kind < 3; ++kind) most[kind] = xsimd::max(most[kind], squared[kind]);
+    }
+    for (Batch& of_kind : most) of_kind = xsimd::sqrt(of_kind);
+  }
+
   struct Shape {
     int rows, columns;
     int count() const { return rows * columns; }

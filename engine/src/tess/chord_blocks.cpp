@@ -53,7 +53,7 @@ void ChordBlocks::bound(const PatchSet::Impl& set, std::size_t block, std::uint3
   const bool in_block = !by_doubles_ && is_bounded_in_blocks(group);
   const kernel::KernelTable& kernels = kernel::default_kernels();
   alignas(cache_line) Lanes<float> hints;
-  hints.fill(kernel::may_be_flat);
+  hints.fill(kernel::may_be_sweep | kernel::may_be_flat | kernel::may_gain);
   if (in_block)
     (group.rational ? kernels.bound_rational_chords : kernels.bound_chords)(
         {.net = set.single.bernstein.data() + group.first_value + (block - group.first_block) * group.block_values,
@@ -69,7 +69,9 @@ void ChordBlocks::bound(const PatchSet::Impl& set, std::size_t block, std::uint3
     const bool is_packed = in_block && size >= 0 && size < largest_size;
     source_[block * lanes + lane] = is_packed ? Source::packed : Source::alone;
     slack_[block * lanes + lane] = 0;
-    if (!is_packed) size = -1;
+    if (is_packed) continue;
+    size = -1;
+    hints[lane] = kernel::may_be_sweep | kernel::may_be_flat | kernel::may_gain;
   }
   bound_exactly(set, block, hints, in_block ? ~0u : wanted);
 }

@@ -15,7 +15,6 @@ namespace tessera {
 
 struct ChordBlocks::Exact {
   alignas(cache_line) Lanes<double> deviation;
-  alignas(cache_line) std::array<double, 3 * lanes> corners;
   alignas(cache_line) std::array<double, piece_count * 3 * lanes> pieces;
 
   double bound(std::size_t piece, std::size_t kind, std::size_t lane) const {
@@ -52,11 +51,6 @@ void pack(const BezierPatch& patch, double* lane) {
 /// Exact numerators replace a homogeneous bound only where they take fewer cells by this factor: products of second
 /// derivatives save as much of the other.
 constexpr double least_gain = 0.8;
-/// They are looked for, which takes a microsecond or more of a patch, where the corners alone ask for fewer by this factor.
-constexpr double likely_gain = 0.4;
-/// A patch by itself is worth it where they ask for fewer by this one.
-constexpr double absurd = 0.1;
-
 /// About the cells that a patch takes at a tolerance of 2^-10 of its size, times a factor of the patch's. `bound(kind)`: of
 /// uu, uv, vv.
 template <class Bound>
@@ -111,9 +105,11 @@ double ChordBlocks::homogeneous_cells(const BezierPatch& patch, std::size_t bloc
 }
 
 void ChordBlocks::take_exact(const BezierPatch& patch, const Exact& exact, std::size_t block, std::size_t lane) {
-  if (!exact.is_finite(lane)) return;
   Source& source = source_[block * lanes + lane];
-  const bool is_sweep = exact.is_sweep(lane), is_unknown = is_sweep && source == Source::alone;
+  const bool is_finite = exact.is_finite(lane), is_sweep = exact.is_sweep(lane) && is_finite,
+             is_unknown = is_sweep && source == Source::alone;
+  if (source == Source::alone && !is_sweep) bound_alone(patch, block, lane);
+  if (!is_finite) return;
   const double wanted =
       cells(patch.hull_box().diagonal(), [&](std::size_t kind) { return exact.bound(0, kind, lane); });
   if (!is_unknown && !(wanted < (is_sweep ? 1 : least_gain) * homogeneous_cells(patch, block, lane))) return;
@@ -132,53 +128,41 @@ void ChordBlocks::bound_exactly(const PatchSet::Impl& set, std::size_t block, co
   const BlockGroup& group = set.group_of_block(block);
   const std::size_t count = set.lane_counts[block];
   const std::uint32_t* const patches = set.lane_patches.data() + block * lanes;
-  const std::uint32_t sweeps = group.rational ? ~0u : lanes_with(kernel::may_be_sweep, hints) & wanted;
-  if (sweeps != 0) {
+  const std::uint32_t present = wanted & ((1u << count) - 1),
+                      sweeps = lanes_with(kernel::may_be_sweep, hints) & present;
+  // Numerators of a block take a microsecond or more a lane.
+  const std::uint32_t gains = group.rational ? lanes_with(kernel::may_gain, hints) & present : 0;
+  const bool any_patch = static_cast<std::size_t>(8 * std::popcount(gains)) > count ||
+                         (group.rational && (lanes_with(kernel::will_gain, hints) & present) != 0);
+  if (sweeps != 0 || any_patch) {
     Net net;
     for (std::size_t lane = 0; lane < lanes; ++lane)
       pack(set.patches[patches[lane < count ? lane : 0]], net.data() + lane);
     Exact exact;
-    kernel::ExactChordJob job{.net = net.data(),
-                              .degree_u = group.degree_u,
-                              .degree_v = group.degree_v,
-                              .deviation = exact.deviation.data(),
-                              .corners = group.rational ? exact.corners.data() : nullptr};
-    kernel::default_kernels().bound_exact_chords(job);
-    bool any_sweep = false;
-    double gain = 0;  // of all lanes, at most about 1 each
-    for (std::size_t lane = 0; lane < count; ++lane) {
+    kernel::default_kernels().bound_exact_chords({.net = net.data(),
+                                                  .degree_u = group.degree_u,
+                                                  .degree_v = group.degree_v,
+                                                  .any_patch = any_patch,
+                                                  .deviation = exact.deviation.data(),
+                                                  .pieces = group.rational ? exact.pieces.data() : nullptr});
+    for (std::uint32_t left = present; left != 0; left &= left - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(left));
       const std::size_t at = block * lanes + lane;
-      if (!(wanted >> lane & 1u)) continue;
-      const bool is_sweep = exact.is_sweep(lane);
-      any_sweep = any_sweep || is_sweep;
-      if (!group.rational && is_sweep && source_[at] == Source::packed) {
+      if (group.rational) {
+        take_exact(set.patches[patches[lane]], exact, block, lane);
+      } else if (exact.is_sweep(lane) && source_[at] == Source::packed) {
         source_[at] = Source::sweep;
         slack_[at] = rounded_up(2 * exact.deviation[lane]);
         for (std::size_t k = 0; k < piece_count; ++k) pieces_[block * block_pieces + (k * 3 + 1) * lanes + lane] = 0;
       }
-      if (!group.rational || is_sweep) continue;
-      const BezierPatch& patch = set.patches[patches[lane]];
-      if (source_[at] == Source::alone) bound_alone(patch, block, lane);
-      // What the derivatives are at the corners their bounds are at least.
-      const double least =
-          cells(patch.hull_box().diagonal(), [&](std::size_t kind) { return exact.corners[kind * lanes + lane]; });
-      const double share = least / homogeneous_cells(patch, block, lane);
-      gain += share < absurd ? double(count) : std::max(0.0, 1 - share / likely_gain);
-    }
-    job.any_patch = gain >= 0.2 * double(count);
-    if (group.rational && (any_sweep || job.any_patch)) {
-      job.pieces = exact.pieces.data();
-      kernel::default_kernels().bound_exact_chords(job);
-      for (std::size_t lane = 0; lane < count; ++lane)
-        if (wanted >> lane & 1u) take_exact(set.patches[patches[lane]], exact, block, lane);
     }
   }
-  for (std::size_t lane = 0; lane < count; ++lane)
-    if (!group.rational && source_[block * lanes + lane] == Source::alone)
+  for (std::uint32_t left = present; left != 0; left &= left - 1)
+    if (const auto lane = static_cast<std::size_t>(std::countr_zero(left));
+        !group.rational && source_[block * lanes + lane] == Source::alone)
       bound_alone(set.patches[patches[lane]], block, lane);
-  for (std::uint32_t flat = lanes_with(kernel::may_be_flat, hints) & wanted; flat != 0; flat &= flat - 1) {
+  for (std::uint32_t flat = lanes_with(kernel::may_be_flat, hints) & present; flat != 0; flat &= flat - 1) {
     const auto lane = static_cast<std::size_t>(std::countr_zero(flat));
-    if (lane >= count) break;
     const std::optional<double> deviation = flat_quad_deviation(set.patches[patches[lane]]);
     if (!deviation) continue;
     source_[block * lanes + lane] = Source::exact;
