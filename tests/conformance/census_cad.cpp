@@ -109,7 +109,8 @@ std::size_t iges_surfaces(const std::string& text) {
     const bool alone = std::atoi(directory[k].substr(66, 2).c_str()) == 0 && !trimmed.contains(static_cast<int>(k) + 1);
     const bool whole = type == 114 || type == 118 || type == 120 || type == 122 || type == 128 || type == 140;
     const bool bounded_plane = type == 108 && form == 1;
-    surfaces += type == 144 || (alone && (whole || bounded_plane));
+    const bool trimmed_face = type == 143 || type == 144;
+    surfaces += trimmed_face || (alone && (whole || bounded_plane));
   }
   return surfaces;
 }

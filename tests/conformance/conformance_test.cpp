@@ -28,6 +28,7 @@ const std::map<std::string, std::string> refused{
     {"bezierview_bv/SurfLab__tri1.bv", "no surface that can be read, but 3 triangular patches"},
     {"bezierview_bv/SurfLab__venus.bv", "no surface that can be read, but 1 polyhedron"},
     {"g2_gotools/splipy_cube-8-orient0.g2", "no surface that can be read, but 8 spline volumes"},
+    {"g2_gotools/splipy_winglet_from_step.g2", "no surface that can be read, but 19 trimmed surfaces"},
     {"g2_gotools/splipy_elementary_curves.g2", "no surface that can be read, but 1 circle, 1 ellipse, 1 line"},
     // Numbers of the page's formula before the data.
     {"obj_freeform_spec/ex1_taylor_curve.obj", ":2: expected a statement"},

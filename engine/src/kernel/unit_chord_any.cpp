@@ -12,6 +12,7 @@ namespace {
 #include "kernel/rational_nets.inl.h"
 #include "kernel/rational_chord.inl.h"
 #include "kernel/rational_product.inl.h"
+#include "kernel/exact_derivative.inl.h"
 #include "kernel/exact_chord.inl.h"
 
 }  // namespace
