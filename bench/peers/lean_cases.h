@@ -9,7 +9,7 @@
 
 namespace tessera::bench {
 
-/// The same surfaces for both programs. `surfaces` is empty where only Tessera's mesh is reported.
+/// Surfaces for both programs. `surfaces` is empty where only Tessera's mesh is reported.
 struct LeanCase {
   std::string name;
   PatchSet set;

@@ -10,7 +10,7 @@
 namespace tessera::bench {
 namespace {
 
-/// Which triangles share a vertex: corners at the same position are one vertex.
+/// Lists the triangles at each vertex: corners at the same position are one vertex.
 class Neighbours {
  public:
   explicit Neighbours(std::span<const SurfaceTriangle> mesh)

@@ -28,7 +28,7 @@ namespace {
 constexpr int rounds = 3;
 constexpr int sample_steps = 10;  // 66 points of each triangle
 
-/// What is meshed.
+/// A surface that is meshed.
 struct Subject {
   std::string name;
   PatchSet set;

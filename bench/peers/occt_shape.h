@@ -17,7 +17,7 @@ namespace tessera::bench {
 
 constexpr double occt_default_angle = 0.5;  ///< OpenCASCADE's own angular deflection, radians
 
-/// The same surface with the same parameters.
+/// Converts a surface, parameters included.
 Handle(Geom_BSplineSurface) occt_surface(const BSplineSurface& surface);
 Handle(Geom_BezierSurface) occt_surface(const BezierPatch& patch);
 

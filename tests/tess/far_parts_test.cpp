@@ -509,7 +509,7 @@ TEST(FarParts, UpdatesFollow) {
   }
 }
 
-/// What goes from float sums to doubles changes everywhere.
+/// Patches that go from float sums to doubles change everywhere.
 TEST(FarParts, RetessellatingTellsOfOtherVertices) {
   PatchSet set = set_of(std::vector<BezierPatch>{closed_body()[0], placed(closed_body(), 1, {4, 0, 0})[1]});
   MeshUpdate update = good(MeshUpdate::make(set, good(CertifiedTessellation::make(set, {.tolerance = 0.001}))));

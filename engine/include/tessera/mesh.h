@@ -73,7 +73,7 @@ struct Mesh {
 /// follow on the one before; index = the part).
 Result<Mesh> split_quads(const Mesh& mesh);
 
-/// What is wrong with a mesh, if anything. Vertices at bit-equal positions, those in double where there are any, count as one,
+/// Counts the faults of a mesh. Vertices at bit-equal positions, those in double where there are any, count as one,
 /// and a quad as the two triangles that split_quads() makes of it.
 struct MeshReport {
   std::size_t vertices = 0;              ///< as stored

@@ -146,7 +146,7 @@ bool PatchSet::Impl::pack_power(std::size_t index, const BlockGroup& group, cons
   const double limit = largest_coefficient(kinds.float_power, 1);
   const auto in_range = [&](double value) { return std::abs(value) <= limit; };
   if (!fits(net, kinds.float_power, net.largest(hull)) || !std::ranges::all_of(power, in_range)) return false;
-  // As in tangent_size(); a power coefficient may exceed the Bernstein ones.
+  // See tangent_size(); a power coefficient may exceed the Bernstein ones.
   double size = largest_of(power, static_cast<std::size_t>(coefficient_components(group.rational)), 0, 3);
   if (group.rational) size = std::max(size, net.tangent_size(hull) / net.heaviest() * largest_of(power, 4, 3, 4));
   const auto coefficients = [&]<class T>(T* lane) {

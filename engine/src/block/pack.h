@@ -50,7 +50,7 @@ class RelativeNet {
   /// Largest x, y or z of the Bernstein coefficients. `hull`: patch.hull_box(), whose corners hold that of a polynomial
   /// patch, for rounding a difference keeps order.
   double largest(const Box3& hull) const;
-  /// What the errors of tangents go with, over the weight (sample_kernel.inl.h): largest() of a polynomial patch, the
+  /// The size that errors of tangents are proportional to, over the weight (sample_kernel.inl.h): largest() of a polynomial patch, the
   /// largest |V - o| times the largest weight of a rational one.
   double tangent_size(const Box3& hull) const { return heaviest() * farthest(hull); }
   /// Writes the Bernstein coefficients into the lane that begins here, rounding to T once.

@@ -117,7 +117,7 @@ void store_hints(const ChordJob& job, int lane, const typename L::Batch (&corner
     const Vector across = product(a, b);
     return dot(across, across) <= rounding(0x1p-38) * (dot(a, a) + dot(b, b));
   };
-  // Of polynomial patches a mixed derivative that is small beside the others costs nearly nothing.
+  // A mixed derivative that is small beside the others costs a polynomial patch nearly nothing.
   const auto matters = mixed > rounding(Rational ? -1 : 0x1p-6) * others;
   const auto is_sweep = matters & (are_parallel(bottom, top) | are_parallel(left, right));
   const auto is_flat =

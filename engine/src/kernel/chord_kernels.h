@@ -19,14 +19,14 @@ struct ChordJob {
   float* hints = nullptr;   ///< `[lane]`: a sum of ChordHint; or null
 };
 
-/// What a patch may be, by its corners, and where that would save cells.
+/// Kinds that a patch may be of, by its corners, where that would save cells.
 enum ChordHint {
   may_be_sweep = 1,  ///< two opposite sides have parallel chords
   may_be_flat = 2,   ///< the corners lie in a plane
   may_gain = 4,      ///< rational patches: exact numerators may take few of the cells
   will_gain = 8,     ///< the same: so few that it pays for this patch alone
 };
-/// Of the cells, by the second derivatives at the corners.
+/// Shares of the cells that are left then, by the second derivatives at the corners.
 inline constexpr double likely_gain = 0.4, certain_gain = 0.1;
 
 /// Rational patches up to this degree have their bounds in blocks, in float. `net` then has four components; `unit` is above

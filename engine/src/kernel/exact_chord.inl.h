@@ -209,7 +209,7 @@ class ExactChords {
     const Batch ratio = heaviest_ / lightest_, spread = ratio * ratio / lightest_;
     return L::broadcast(0x1p-44 * factor) * xsimd::max(largest_, heaviest_ * radius_) * spread;
   }
-  /// Of a quarter by its own parameters, which take half of the patch's each: with rounding, by the patch's.
+  /// Turns a bound of a quarter by its own parameters into one by the patch's, twice as long each, and adds the rounding.
   Batch sure(const Batch& bound, int factor) const {
     return L::broadcast(4 * (1 + 0x1p-40)) * bound + L::broadcast(4) * rounding(factor);
   }
@@ -229,7 +229,7 @@ class ExactChords {
   const int lane_, m_, n_;
   Batch lightest_, heaviest_ = L::broadcast(0), largest_ = heaviest_, radius_ = heaviest_;
   Batch point_[3][most_points], weight_[most_points], part_[4][most_points];
-  // Of the sweep: E, rho, and the homogeneous curves of both, cut.
+  // The sweep: E, rho, and the homogeneous curves of both, cut.
   Batch row_[3][max_order], rho_[max_order], rho_weight_[max_order], rho_point_[max_order];
   Batch curve_[4][max_order], half_[4][2 * max_order], rho_half_[2][2 * max_order], across_half_[3][2 * max_order];
   HomogeneousCurve<L> line_;

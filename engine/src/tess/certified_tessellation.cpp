@@ -158,7 +158,7 @@ Result<PlannerOptions> checked(const CertifiedOptions& options, const PatchSet& 
   return planner;
 }
 
-/// What positions in double would keep is said as well.
+/// Tells the tolerance that positions in double would keep as well.
 Status refused_in_float(const Status& refusal, const PatchSet& set, PlannerOptions planned, double tolerance,
                         const CertifiedOptions& options) {
   planned.f64_positions = true;

@@ -39,7 +39,7 @@ class CertifiedTessellation::Impl {
   Mesh allocate(const MeshCapacity& capacity) const;
   /// Errors: invalid_argument.
   Status check_normals(const MeshViews& out) const;
-  /// Of views that a mesh is written to. Errors: as check_views().
+  /// Checks views that a mesh is written to. Errors: as check_views().
   Status check_vertices(const MeshViews& out) const;
   bool has_normals() const { return !options_.share_vertices || options_.crease_angle; }
   /// What is written once all patches are: vertices of patches that are written, or take from those.

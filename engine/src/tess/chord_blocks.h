@@ -21,7 +21,7 @@ class ChordBlocks {
   template <class T>
   using Lanes = std::array<T, PatchSet::lanes>;
 
-  /// What a lane's bounds are.
+  /// Kinds of a lane's bounds.
   enum class Source : std::uint8_t {
     packed,  ///< of the block's kernel
     alone,   ///< of the homogeneous patch, in double
@@ -41,7 +41,7 @@ class ChordBlocks {
     return (1 + 0x1p-22) * double(size);  // the control points were rounded
   }
   Source source(std::size_t block, std::size_t lane) const { return source_[block * lanes + lane]; }
-  /// What counts beside the chord: twice the distance of a patch from the sweep or the quadrilateral that it is bounded as.
+  /// Returns the length that counts beside the chord: twice the distance of a patch from the sweep or the quadrilateral that it is bounded as.
   double slack(std::size_t block, std::size_t lane) const { return double(slack_[block * lanes + lane]); }
   /// Bounds on the products of second derivatives, found where they are asked for.
   class Products {
@@ -77,7 +77,7 @@ class ChordBlocks {
                   int most, Products& products) const;
 
  private:
-  /// What is known of a block's lanes from double.
+  /// Bounds of a block's lanes that are found in double.
   struct Exact;
 
   /// Bounds the lane's patch alone.
@@ -91,6 +91,9 @@ class ChordBlocks {
   /// kernel::ChordHint.
   void bound_exactly(const PatchSet::Impl& set, std::size_t block, const Lanes<float>& hints, std::uint32_t wanted);
   double homogeneous_cells(const BezierPatch& patch, std::size_t block, std::size_t lane) const;
+  static void find_exact(const PatchSet::Impl& set, std::size_t block, bool any_patch, Exact& exact);
+  void take_sweep(const Exact& exact, std::size_t block, std::size_t lane);
+  void take_flat(const BezierPatch& patch, std::size_t block, std::size_t lane);
   void take_exact(const BezierPatch& patch, const Exact& exact, std::size_t block, std::size_t lane);
 
   /// How many cells a patch products save, about, of those that a choice has.

@@ -123,52 +123,64 @@ void ChordBlocks::take_exact(const BezierPatch& patch, const Exact& exact, std::
   store(block, lane, [&](std::size_t k, std::size_t kind) { return exact.bound(k, kind, lane); });
 }
 
-void ChordBlocks::bound_exactly(const PatchSet::Impl& set, std::size_t block, const Lanes<float>& hints,
-                                std::uint32_t wanted) {
+void ChordBlocks::find_exact(const PatchSet::Impl& set, std::size_t block, bool any_patch, Exact& exact) {
   const BlockGroup& group = set.group_of_block(block);
   const std::size_t count = set.lane_counts[block];
-  const std::uint32_t* const patches = set.lane_patches.data() + block * lanes;
-  const std::uint32_t present = wanted & ((1u << count) - 1),
-                      sweeps = lanes_with(kernel::may_be_sweep, hints) & present;
-  // Numerators of a block take a microsecond or more a lane.
-  const std::uint32_t gains = group.rational ? lanes_with(kernel::may_gain, hints) & present : 0;
-  const bool any_patch = static_cast<std::size_t>(8 * std::popcount(gains)) > count ||
-                         (group.rational && (lanes_with(kernel::will_gain, hints) & present) != 0);
-  if (sweeps != 0 || any_patch) {
-    Net net;
-    for (std::size_t lane = 0; lane < lanes; ++lane)
-      pack(set.patches[patches[lane < count ? lane : 0]], net.data() + lane);
-    Exact exact;
-    kernel::default_kernels().bound_exact_chords({.net = net.data(),
-                                                  .degree_u = group.degree_u,
-                                                  .degree_v = group.degree_v,
-                                                  .any_patch = any_patch,
-                                                  .deviation = exact.deviation.data(),
-                                                  .pieces = group.rational ? exact.pieces.data() : nullptr});
-    for (std::uint32_t left = present; left != 0; left &= left - 1) {
-      const auto lane = static_cast<std::size_t>(std::countr_zero(left));
-      const std::size_t at = block * lanes + lane;
-      if (group.rational) {
-        take_exact(set.patches[patches[lane]], exact, block, lane);
-      } else if (exact.is_sweep(lane) && source_[at] == Source::packed) {
-        source_[at] = Source::sweep;
-        slack_[at] = rounded_up(2 * exact.deviation[lane]);
-        for (std::size_t k = 0; k < piece_count; ++k) pieces_[block * block_pieces + (k * 3 + 1) * lanes + lane] = 0;
-      }
+  Net net;
+  for (std::size_t lane = 0; lane < lanes; ++lane)
+    pack(set.patches[set.lane_patches[block * lanes + (lane < count ? lane : 0)]], net.data() + lane);
+  kernel::default_kernels().bound_exact_chords({.net = net.data(),
+                                                .degree_u = group.degree_u,
+                                                .degree_v = group.degree_v,
+                                                .any_patch = any_patch,
+                                                .deviation = exact.deviation.data(),
+                                                .pieces = group.rational ? exact.pieces.data() : nullptr});
+}
+
+void ChordBlocks::take_sweep(const Exact& exact, std::size_t block, std::size_t lane) {
+  const std::size_t at = block * lanes + lane;
+  if (!exact.is_sweep(lane) || source_[at] != Source::packed) return;
+  source_[at] = Source::sweep;
+  slack_[at] = rounded_up(2 * exact.deviation[lane]);
+  for (std::size_t k = 0; k < piece_count; ++k) pieces_[block * block_pieces + (k * 3 + 1) * lanes + lane] = 0;
+}
+
+void ChordBlocks::take_flat(const BezierPatch& patch, std::size_t block, std::size_t lane) {
+  const std::optional<double> deviation = flat_quad_deviation(patch);
+  if (!deviation) return;
+  source_[block * lanes + lane] = Source::exact;
+  slack_[block * lanes + lane] = rounded_up(2 * *deviation);
+  store(block, lane, [](std::size_t, std::size_t) { return 0.0; });
+}
+
+void ChordBlocks::bound_exactly(const PatchSet::Impl& set, std::size_t block, const Lanes<float>& hints,
+                                std::uint32_t wanted) {
+  const bool rational = set.group_of_block(block).rational;
+  const std::size_t count = set.lane_counts[block];
+  const std::uint32_t present = wanted & ((1u << count) - 1);
+  const auto hinted = [&](kernel::ChordHint hint) { return lanes_with(hint, hints) & present; };
+  const auto for_lanes = [&](std::uint32_t bits, const auto& visit) {
+    for (; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+      visit(lane, set.patches[set.lane_patches[block * lanes + lane]]);
     }
+  };
+  // Numerators of a block take a microsecond or more a lane: for one that gains much, or an eighth that gain.
+  const auto gaining = static_cast<std::size_t>(std::popcount(hinted(kernel::may_gain)));
+  const bool any_patch = rational && (hinted(kernel::will_gain) != 0 || 8 * gaining > count);
+  // Lanes that are bounded alone have every hint: this is where rational ones are.
+  if (hinted(kernel::may_be_sweep) != 0 || any_patch) {
+    Exact exact;
+    find_exact(set, block, any_patch, exact);
+    for_lanes(present, [&](std::size_t lane, const BezierPatch& patch) {
+      rational ? take_exact(patch, exact, block, lane) : take_sweep(exact, block, lane);
+    });
   }
-  for (std::uint32_t left = present; left != 0; left &= left - 1)
-    if (const auto lane = static_cast<std::size_t>(std::countr_zero(left));
-        !group.rational && source_[block * lanes + lane] == Source::alone)
-      bound_alone(set.patches[patches[lane]], block, lane);
-  for (std::uint32_t flat = lanes_with(kernel::may_be_flat, hints) & present; flat != 0; flat &= flat - 1) {
-    const auto lane = static_cast<std::size_t>(std::countr_zero(flat));
-    const std::optional<double> deviation = flat_quad_deviation(set.patches[patches[lane]]);
-    if (!deviation) continue;
-    source_[block * lanes + lane] = Source::exact;
-    slack_[block * lanes + lane] = rounded_up(2 * *deviation);
-    store(block, lane, [](std::size_t, std::size_t) { return 0.0; });
-  }
+  for_lanes(rational ? 0 : present, [&](std::size_t lane, const BezierPatch& patch) {
+    if (source(block, lane) == Source::alone) bound_alone(patch, block, lane);
+  });
+  for_lanes(hinted(kernel::may_be_flat),
+            [&](std::size_t lane, const BezierPatch& patch) { take_flat(patch, block, lane); });
 }
 
 }  // namespace tessera

@@ -20,7 +20,7 @@ namespace tessera {
 /// is off by at most 2^-24 of each component, so the vertex by at most 2^-24 |S| <= 2^-24 R, or 2^-150 where float
 /// underflows.
 double f64_vertex_rounding(const BezierPatch& patch, const Vec3& origin);
-/// The same of a vertex in double to which the origin is added: off by at most u |P| <= u max |P_ij| where it was rounded to
+/// The rounding of a vertex in double to which the origin is added: off by at most u |P| <= u max |P_ij| where it was rounded to
 /// float, with P_ij the control points.
 double f64_position_rounding(const BezierPatch& patch, const Vec3& origin);
 

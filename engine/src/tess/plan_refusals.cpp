@@ -54,7 +54,7 @@ bool CertifiedPlanner::is_rough(double tolerance) const {
 std::optional<double> CertifiedPlanner::nearest_tolerance(std::uint64_t most_triangles) const {
   double given = 0;
   for (const double rounding : roundings_) given = std::max(given, rounding + fit_error_);
-  // What chords have beside it: rates go by its root.
+  // The rest is for chords: rates go by its root.
   for (double room = given / 8; room < 1e12 * given; room *= 2) {
     const double tolerance = rounded_up_shortly(given + room);
     const auto serves = [&](std::size_t k) { return choose(k, {tolerance}, most_rate).failure == Failure::none; };

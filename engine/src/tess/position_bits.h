@@ -17,7 +17,7 @@ inline PositionBits position_bits(const float* p) {
           std::bit_cast<std::uint32_t>(p[2] + 0.0f)};
 }
 
-/// The same of three doubles.
+/// The key of three doubles.
 inline DoublePositionBits position_bits(const double* p) {
   return {std::bit_cast<std::uint64_t>(p[0] + 0.0), std::bit_cast<std::uint64_t>(p[1] + 0.0),
           std::bit_cast<std::uint64_t>(p[2] + 0.0)};
