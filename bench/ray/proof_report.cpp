@@ -1,6 +1,7 @@
 // What exact mode promises, counted against a referee in interval arithmetic that shares no code, on rays that are hard
-// to get right; and rays from inside closed bodies, aimed at seams, which nothing may let out. Exit status 1 if a ray
-// is missed, falsely hit, hit on a wrong patch or let out.
+// to get right; rays from inside closed bodies, aimed at seams, which nothing may let out; rays beside seams, whose hits
+// are counted, and rays that leave a surface there; lines through closed bodies. Exit status 1 if a ray is missed, falsely
+// hit, hit on a wrong patch, let out, counted wrong without a flag, or meets again what it leaves.
 //
 //   tessera_proof_report --help
 
@@ -21,6 +22,7 @@
 
 #include "support/ray_classes.h"
 #include "support/ray_proof.h"
+#include "support/seam_rays.h"
 
 namespace {
 
@@ -46,6 +48,8 @@ void on_all_cores(Work work) {
 struct Wish {
   std::size_t hits = 1000;  ///< proven, in each class
   std::size_t inside = 1'000'000;
+  std::size_t seams = 20'000;  ///< rays beside seams of each body, and rays that leave it there
+  std::size_t lines = 250'000;
   unsigned seed = 1;
   std::string only;  ///< part of a class's name
 };
@@ -122,6 +126,68 @@ bool report_leaks(const char* name, const std::vector<BezierPatch>& patches, con
   return lost == 0;
 }
 
+/// Rays beside seams against their neighbours, and rays that leave the body there; where it has no creases none of these
+/// may meet it within a millionth.
+bool report_seams(const char* name, const std::vector<BezierPatch>& patches, bool smooth, const Wish& wish) {
+  const PatchSet set = test::value_of(PatchSet::from(patches));
+  const double size = set.box().diagonal();
+  const RayScene scene = exact_scene(set);
+  const std::size_t threads = std::max(1u, std::thread::hardware_concurrency());
+  std::vector<test::SeamTally> tallies(threads);
+  std::vector<std::size_t> again(threads), unproven(threads);
+  on_all_cores([&](unsigned thread) {
+    test::Random random(wish.seed * 1000 + 400 + thread);
+    for (std::size_t k = thread; k < wish.seams; k += threads) {
+      const test::SeamPlace place = test::beside_seam(patches, random, test::rays::power(random, 1e-15, 1e-6));
+      test::judge_count(scene, test::through(place, random, size), size, tallies[thread]);
+      Ray out = test::leaving(scene, place, random);
+      out.tfar = 1e-6;
+      const Hit hit = scene.closest(out);
+      again[thread] += hit.kind == HitKind::hit;
+      unproven[thread] += hit.kind == HitKind::hit && (hit.flags.uncertified || hit.residual > 1e-13 * size);
+    }
+  });
+  test::SeamTally sum;
+  for (const test::SeamTally& tally : tallies) sum.add(tally);
+  std::size_t met = 0, doubtful = 0;
+  for (std::size_t k = 0; k < threads; ++k) met += again[k], doubtful += unproven[k];
+  std::printf(
+      "%s, beside seams: of %zu rays %zu decided by their neighbours, counted wrong %zu, and %zu that say so; the\n"
+      "  closest is another than the first of all: %zu; of as many that leave the body %zu meet it again at once%s,\n"
+      "  %zu of them without proof\n",
+      name, sum.rays, sum.decided, sum.wrong, sum.flagged, sum.not_first, met, smooth ? "" : " (beyond creases)",
+      doubtful);
+  std::fflush(stdout);
+  return sum.wrong == 0 && sum.not_first == 0 && sum.flagged * 100 <= sum.rays && (smooth ? met : doubtful) == 0;
+}
+
+/// Lines that cross a closed body an odd number of times, and no hit of which is flagged.
+bool report_parity(const char* name, const std::vector<BezierPatch>& patches, const Wish& wish) {
+  const PatchSet set = test::value_of(PatchSet::from(patches));
+  const double size = set.box().diagonal();
+  const RayScene scene = exact_scene(set);
+  const std::size_t threads = std::max(1u, std::thread::hardware_concurrency());
+  std::vector<std::size_t> odd(threads), flagged(threads);
+  on_all_cores([&](unsigned thread) {
+    test::Random random(wish.seed * 1000 + 600 + thread);
+    HitLists lists;
+    for (std::size_t k = thread; k < wish.lines; k += threads) {
+      const Ray ray = test::rays::at_surface(patches, random, 2 * size);
+      if (!scene.all(std::span(&ray, 1), lists).ok()) std::abort();
+      const bool says_so =
+          std::any_of(lists.hits.begin(), lists.hits.end(), [](const Hit& hit) { return hit.flags.uncertified; });
+      odd[thread] += !says_so && lists.hits.size() % 2 != 0;
+      flagged[thread] += says_so;
+    }
+  });
+  std::size_t wrong = 0, unsure = 0;
+  for (std::size_t k = 0; k < threads; ++k) wrong += odd[k], unsure += flagged[k];
+  std::printf("%s: of %zu lines %zu cross it an odd number of times, and %zu are flagged\n", name, wish.lines, wrong,
+              unsure);
+  std::fflush(stdout);
+  return wrong == 0;
+}
+
 /// Half of them at random, half along a chord of a seam or of an inner cut.
 Ray from_inside(const std::vector<BezierPatch>& patches, test::Random& random) {
   const auto [inside, ray] = test::chord_of_seam(patches, random);
@@ -130,9 +196,11 @@ Ray from_inside(const std::vector<BezierPatch>& patches, test::Random& random) {
 }
 
 constexpr const char* usage =
-    "Usage: tessera_proof_report [--hits N] [--inside N] [--only TEXT] [--seed N]\n"
+    "Usage: tessera_proof_report [--hits N] [--inside N] [--seams N] [--lines N] [--only TEXT] [--seed N]\n"
     "  --hits N      proven hits to reach in each class of rays (1000)\n"
     "  --inside N    rays from inside each of four closed bodies (1000000)\n"
+    "  --seams N     rays 1e-6 to 1e-15 beside the seams of each of four bodies, and rays that leave it there (20000)\n"
+    "  --lines N     lines through each of four closed bodies, which must cross them an even number of times (250000)\n"
     "  --only TEXT   classes and bodies whose name holds TEXT\n"
     "  --seed N      of the random numbers (1)\n"
     "Columns: rays cast; hits that the referee has proven; of these missed; hits whose point is not on patch and ray; "
@@ -142,7 +210,8 @@ constexpr const char* usage =
     "units of\n"
     "2^-52 of the model's size and of u and v in units of 2^-52; the share of misses possible at 95% confidence if "
     "none\n"
-    "was seen. Exit status: 0 if nothing is missed, false or let out; 1 otherwise; 2 for a wrong option.\n";
+    "was seen. Exit status: 0 if nothing is missed, false, let out, counted wrong or met again; 1 otherwise; 2 for a\n"
+    "wrong option.\n";
 
 std::optional<Wish> wish_of(std::span<char*> arguments) {
   Wish wish;
@@ -155,6 +224,8 @@ std::optional<Wish> wish_of(std::span<char*> arguments) {
     };
     const bool good = name == "--hits"     ? read(wish.hits)
                       : name == "--inside" ? read(wish.inside)
+                      : name == "--seams"  ? read(wish.seams)
+                      : name == "--lines"  ? read(wish.lines)
                       : name == "--seed"   ? read(wish.seed)
                       : name == "--only"   ? !(wish.only = text).empty()
                                            : false;
@@ -190,6 +261,19 @@ int main(int argc, char** argv) {
                                       {"rational torus, along seams", test::Torus(12).patches(true)}}) {
     const auto draw = [&](test::Random& random) { return test::skimming_seam(patches, random); };
     if (wanted(name)) good = report_leaks(name, patches, *wish, draw) && good;
+  }
+  const struct {
+    const char* name;
+    std::vector<BezierPatch> patches;
+    bool smooth;
+  } bodies[] = {{"bicubic body", test::closed_body(), false},
+                {"rational sphere", test::sphere(), true},
+                {"B-spline torus", test::Torus(6).patches(false), true},
+                {"rational cubic torus", test::Torus(5).patches(true), false}};
+  for (const auto& body : bodies) {
+    if (!wanted(body.name)) continue;
+    good = report_seams(body.name, body.patches, body.smooth, *wish) && good;
+    good = report_parity(body.name, body.patches, *wish) && good;
   }
   return good ? 0 : 1;
 }

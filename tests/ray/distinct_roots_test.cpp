@@ -41,11 +41,15 @@ TEST(DistinctRoots, ThePolesOfALuneAreTwo) {
 LeafRoot random_root(Random& random, std::size_t patches) {
   const auto one_of = [&](std::initializer_list<double> values) { return values.begin()[random() % values.size()]; };
   const auto place = [&] { return one_of({0, 1, 1e-10, 0.5, 0.5 + 1e-7, uniform(random, 0, 1)}); };
-  const auto radius = [&] { return one_of({0, 1e-9, 1e-6, 0.05}); };
+  const auto gain = [&] { return one_of({0.5, 3, 1e3, 1e6}); };
+  const auto part = [&] { return one_of({0, 1e-9, 1e-6, 0.05}); };
   LeafRoot root;
   root.patch = static_cast<std::uint32_t>(random() % patches);
-  root.u = place(), root.v = place(), root.radius_u = radius(), root.radius_v = radius();
-  root.s = uniform(random, -1, 1), root.residual = uniform(random, 0, 1e-12), root.certified = random() % 2 == 0;
+  root.u = place(), root.v = place();
+  root.s = uniform(random, -1, 1), root.residual = uniform(random, 0, 1e-12), root.noise = 1e-14;
+  root.certified = random() % 2 == 0;
+  root.gain_u = gain(), root.gain_v = gain();
+  if (!root.certified) root.part_u = part(), root.part_v = part();
   return root;
 }
 
@@ -99,7 +103,7 @@ TEST(DistinctRoots, ALineOfThemEndsSoon) {
     for (std::size_t k = 0; k < count; ++k) {
       const double place = static_cast<double>(k) / count;
       roots[k].u = along_u ? place : 0.5, roots[k].v = along_u ? 0.5 : place;
-      roots[k].s = place, roots[k].radius_u = roots[k].radius_v = 0.75 / count;
+      roots[k].s = place, roots[k].part_u = roots[k].part_v = 0.75 / count;
       roots[k].residual = k == count / 3 ? 0 : 1e-13;
     }
     keep_distinct(view, adjacency, roots);

@@ -3,7 +3,9 @@
 // scales, far origins, weights.
 
 #include <cmath>
+#include <cstddef>
 #include <functional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -84,6 +86,39 @@ inline Ray at_seam(const std::vector<BezierPatch>& patches, Random& random, doub
 
 }  // namespace rays
 
+/// A point beside a border of a patch.
+struct SeamPlace {
+  std::size_t patch = 0;
+  double u = 0, v = 0;  ///< `distance` inside of one edge, or of two at a corner
+  Vec3 position, normal;
+};
+
+/// At a random border, a corner in one draw of four. `distance`: of parameters.
+inline SeamPlace beside_seam(std::span<const BezierPatch> patches, Random& random, double distance) {
+  SeamPlace place;
+  place.patch = random() % patches.size();
+  const auto at_end = [&] { return random() % 2 == 0 ? distance : 1 - distance; };
+  place.u = uniform(random, 0, 1), place.v = uniform(random, 0, 1);
+  const auto which = random() % 4;
+  if (which != 1) place.u = at_end();
+  if (which == 0 || which == 1) place.v = at_end();
+  const SurfaceJet jet = evaluate_jet(patches[place.patch], place.u, place.v);
+  place.position = jet.position;
+  const Vec3 normal = cross(jet.du, jet.dv);
+  place.normal = length(normal) > 0 ? normalized(normal) : rays::unit_vector(random);
+  return place;
+}
+
+/// Through the place, from outside, at a sine of 0.01 or more to the surface there.
+inline Ray through(const SeamPlace& place, Random& random, double size) {
+  for (;;) {
+    const Vec3 direction = rays::unit_vector(random);
+    if (std::abs(dot(direction, place.normal)) < 0.01) continue;
+    return rays::from_to(place.position - uniform(random, 1, 2) * size * direction,
+                         uniform(random, 0.5, 2) * direction);
+  }
+}
+
 /// A bicubic patch whose edge u = 0 has shrunk to `width` of its length.
 inline BezierPatch shrunk_edge(double width) {
   std::vector<Vec3> points;
@@ -136,6 +171,12 @@ inline std::vector<RayClass> ray_classes() {
   add("silhouettes, rational sphere", sphere(), grazing);
   add("seams and corners, bicubic body", closed_body(), seams);
   add("seams and corners, rational sphere", sphere(), seams);
+  const auto beside = [](const Set& set, Random& random, double size) {
+    return through(beside_seam(set, random, power(random, 1e-14, 1e-8)), random, size);
+  };
+  const auto near_borders = [](const Set& set, Random& random, double size) {
+    return through(beside_seam(set, random, power(random, 1e-10, 0.5)), random, size);
+  };
   const Set torus = Torus(6).patches(false), heavy_torus = Torus(5).patches(true);
   add("seams and corners, B-spline torus", torus, seams);
   add("silhouettes, B-spline torus", torus, grazing);
@@ -177,6 +218,13 @@ inline std::vector<RayClass> ray_classes() {
   Random random(7);
   for (int k = 0; k < 4; ++k) heavy.push_back(random_rational(random, 2 + k % 2, 2, 1e-3, 1e3, {2.5 * k, 0, 0}));
   add("weights 1e-3 to 1e3", heavy, aimed);
+  add("1e-14 to 1e-8 beside seams, bicubic body", closed_body(), beside);
+  add("1e-14 to 1e-8 beside seams, rational sphere", sphere(), beside);
+  add("1e-14 to 1e-8 beside seams, B-spline torus", torus, beside);
+  add("1e-14 to 1e-8 beside seams, rational cubic torus", heavy_torus, beside);
+  Set heavier;
+  for (int k = 0; k < 6; ++k) heavier.push_back(random_rational(random, 1 + k % 3, 1 + k / 2, 1, 1e6, {2.5 * k, 0, 0}));
+  add("weights 1 to 1e6, beside borders", heavier, near_borders);
   Set degrees;
   for (const auto& [m, n] : {std::pair{1, 1}, {1, 4}, {5, 2}, {7, 7}}) {
     const double at = 2.5 * static_cast<double>(degrees.size());

@@ -171,7 +171,8 @@ class RayScene {
   ~RayScene();
 
   /// The closest hit of each ray; hits.size() >= rays.size(). A ray that is not valid is a miss with
-  /// HitKind::invalid_ray. Allocates nothing. Errors: buffer_too_small, stale (the set was edited: refit), cancelled.
+  /// HitKind::invalid_ray. Allocates nothing, but that the first ray with a spawn_offset after a build or a refit looks for
+  /// the borders that patches share. Errors: buffer_too_small, stale (the set was edited: refit), cancelled, out_of_memory.
   Status closest(std::span<const Ray> rays, std::span<Hit> hits, const Execution& execution = {}) const;
   /// 1 where anything lies on the ray, 0 where not or where the ray is not valid; occluded.size() >= rays.size().
   /// In grid mode the facets decide, not the surface: a ray that leaves the surface must begin further off than they

@@ -9,76 +9,72 @@
 #include <optional>
 #include <span>
 #include <tuple>
+#include <utility>
+
+#include "ray/root_fan.h"
 
 namespace tessera {
 namespace {
-
-constexpr double rounding = 1e-12;
-
-bool near(double a, double b, double radius) { return std::abs(a - b) <= radius + rounding; }
-
-/// Whether a root reaches an edge of its patch (an index into all_edges), and where along it.
-bool on_edge(const LeafRoot& root, int edge, double& along) {
-  const double across = edge < 2 ? root.u : root.v;
-  along = edge < 2 ? root.v : root.u;
-  return near(across, edge % 2, edge < 2 ? root.radius_u : root.radius_v);
-}
-
-double reach(const LeafRoot& root, int edge) { return edge < 2 ? root.radius_v : root.radius_u; }
 
 class Sameness {
  public:
   Sameness(const SetView& set, const Adjacency& adjacency) : set_(set), adjacency_(adjacency) {}
 
   bool operator()(const LeafRoot& a, const LeafRoot& b) const {
-    return (a.patch == b.patch && on_one_patch(a, b)) || across_a_border(a, b);
+    return (a.patch == b.patch && on_one_patch(a, b)) || across_a_border(a, b) || at_a_vertex(a, b);
   }
-
-  /// The end of that edge, 0 or 1, that is a collapsed edge which the root is on; -1 if it is on none.
-  int pole(const LeafRoot& root, int edge) const {
-    for (int other = edge < 2 ? 2 : 0; other < (edge < 2 ? 4 : 2); ++other) {
-      if (on_collapsed(root, other)) return other % 2;
-    }
-    return -1;
-  }
-  bool on_collapsed(const LeafRoot& root, int edge) const {
-    double along = 0;
-    return set_.collapsed_edges(root.patch).has(all_edges[static_cast<std::size_t>(edge)]) &&
-           on_edge(root, edge, along);
-  }
-  const EdgeLink& across(std::uint32_t patch, int edge) const { return adjacency_.across(patch, edge); }
+  const SetView& set() const { return set_; }
+  const Adjacency& adjacency() const { return adjacency_; }
 
  private:
   bool on_one_patch(const LeafRoot& a, const LeafRoot& b) const {
     if (same_place(a, b)) return true;
+    if (on_other_sides(a, b)) return false;
     // All of a collapsed edge is one point.
+    const double between = apart(a, b);
     for (int edge = 0; edge < 4; ++edge) {
-      if (on_collapsed(a, edge) && on_collapsed(b, edge)) return true;
+      if (reaches_pole(set_, a, edge, between) && reaches_pole(set_, b, edge, between)) return true;
     }
     return false;
   }
 
   bool across_a_border(const LeafRoot& a, const LeafRoot& b) const {
+    const double between = apart(a, b);
     for (int edge = 0; edge < 4; ++edge) {
-      const EdgeLink& link = across(a.patch, edge);
-      double along_a = 0, along_b = 0;
-      if (!link.exists() || link.patch != b.patch || !on_edge(a, edge, along_a) || !on_edge(b, link.edge, along_b))
+      const EdgeLink& link = adjacency_.across(a.patch, edge);
+      if (!link.exists() || link.patch != b.patch || !reaches_edge(a, edge, between) ||
+          !reaches_edge(b, link.edge, between) || on_other_sides(carried_over(a, edge, link), b))
         continue;
-      const int end_a = pole(a, edge), end_b = pole(b, link.edge);
+      const int end_a = pole_of_edge(set_, a, edge, between), end_b = pole_of_edge(set_, b, link.edge, between);
       if (end_a >= 0 && end_b >= 0 && end_a == (link.reversed ? 1 - end_b : end_b)) return true;
-      if (near(along_a, link.reversed ? 1 - along_b : along_b, reach(a, edge) + reach(b, link.edge))) return true;
+      const double along_a = along_edge(a, edge), along_b = along_edge(b, link.edge);
+      const double reach = reach_along(a, edge, between) + reach_along(b, link.edge, between);
+      if (std::abs(along_a - (link.reversed ? 1 - along_b : along_b)) <= reach) return true;
     }
     return false;
+  }
+
+  /// Of patches around a vertex, side by side or not: one between them may have no root to tell.
+  bool at_a_vertex(const LeafRoot& a, const LeafRoot& b) const {
+    const double between = apart(a, b);
+    return reaches_vertex(a, between) && reaches_vertex(b, between) &&
+           (is_seen_at(a, b, between) || is_seen_at(b, a, between));
+  }
+  bool is_seen_at(const LeafRoot& a, const LeafRoot& b, double between) const {
+    const RootFan fan(set_, adjacency_, a, between);
+    return std::any_of(fan.beyond().begin(), fan.beyond().end(),
+                       [&](const LeafRoot& place) { return place.patch == b.patch && same_place(place, b); });
   }
 
   const SetView& set_;
   const Adjacency& adjacency_;
 };
 
-/// Roots in sets of the same ones: the leader of each is its first.
-class DisjointSets {
+/// Roots in classes of the same ones, certified and uncertified ones apart, so that a point which is not proven never joins
+/// two that are. The leader of each class is its first.
+class RootClasses {
  public:
-  DisjointSets(std::span<const LeafRoot> roots, const Sameness& same)
+  RootClasses(std::span<const LeafRoot> roots, const Sameness& same)
       : roots_(roots), same_(same), leader_(roots.size()) {
     std::iota(leader_.begin(), leader_.end(), std::size_t{0});
   }
@@ -87,15 +83,22 @@ class DisjointSets {
     while (leader_[k] != k) k = leader_[k] = leader_[leader_[k]];
     return k;
   }
-  void add(std::size_t a, std::size_t b) {
+  void compare(std::size_t a, std::size_t b) {
+    if (roots_[a].certified != roots_[b].certified) {
+      if (same_(roots_[a], roots_[b])) covered_.push_back(roots_[a].certified ? std::pair(b, a) : std::pair(a, b));
+      return;
+    }
     const std::size_t x = leader(a), y = leader(b);
     if (x != y && same_(roots_[a], roots_[b])) leader_[std::max(x, y)] = std::min(x, y);
   }
+  /// An uncertified root and a certified one that it may stand for.
+  std::span<const std::pair<std::size_t, std::size_t>> covered() const { return covered_; }
 
  private:
   std::span<const LeafRoot> roots_;
   const Sameness& same_;
   std::vector<std::size_t> leader_;
+  std::vector<std::pair<std::size_t, std::size_t>> covered_;
 };
 
 /// Where a root may be the same as others, along one parameter.
@@ -105,14 +108,14 @@ struct Interval {
 };
 
 /// Compares what overlaps.
-void sweep(std::vector<Interval>& intervals, DisjointSets& sets) {
+void sweep(std::vector<Interval>& intervals, RootClasses& classes) {
   std::sort(intervals.begin(), intervals.end(),
             [](const Interval& a, const Interval& b) { return std::tie(a.low, a.root) < std::tie(b.low, b.root); });
   std::vector<Interval> open;
   for (const Interval& next : intervals) {
     std::erase_if(open, [&](const Interval& before) { return before.high < next.low; });
-    // The latest first: mostly they are in one set then, and the others are not looked at.
-    for (std::size_t k = open.size(); k-- > 0;) sets.add(open[k].root, next.root);
+    // The latest first: mostly they are in one class then, and the others are not looked at.
+    for (std::size_t k = open.size(); k-- > 0;) classes.compare(open[k].root, next.root);
     open.push_back(next);
   }
 }
@@ -121,9 +124,12 @@ void sweep(std::vector<Interval>& intervals, DisjointSets& sets) {
 /// parameters of each patch and along each border, in time that grows with the roots and with how many overlap.
 class Sweeps {
  public:
-  Sweeps(std::span<const LeafRoot> roots, const Sameness& same, DisjointSets& sets)
-      : roots_(roots), same_(same), sets_(sets) {
-    for (std::size_t k = 0; k < roots.size(); ++k) of_patch_[roots[k].patch].push_back(k);
+  Sweeps(std::span<const LeafRoot> roots, const Sameness& same, RootClasses& classes)
+      : roots_(roots), same_(same), classes_(classes) {
+    for (std::size_t k = 0; k < roots.size(); ++k) {
+      of_patch_[roots[k].patch].push_back(k);
+      widest_ = std::max(widest_, roots[k].residual + roots[k].noise);
+    }
   }
 
   void run() {
@@ -131,83 +137,125 @@ class Sweeps {
       inside(all);
       for (int edge = 0; edge < 4; ++edge) {
         collapsed(all, edge);
-        const EdgeLink& link = same_.across(patch, edge);
+        const EdgeLink& link = same_.adjacency().across(patch, edge);
         const auto other = link.exists() ? of_patch_.find(link.patch) : of_patch_.end();
         if (other != of_patch_.end()) border(all, edge, other->second, link);
       }
     }
+    vertices();
   }
 
  private:
   using Indices = std::vector<std::size_t>;
 
+  /// At one point by themselves: one of each kind stands for the others.
+  class Pole {
+   public:
+    void add(std::size_t root, std::span<const LeafRoot> roots, RootClasses& classes) {
+      std::optional<std::size_t>& first = first_[roots[root].certified];
+      if (!first) first = root;
+      for (const std::optional<std::size_t>& other : first_) {
+        if (other && *other != root) classes.compare(*other, root);
+      }
+    }
+    void join(const Pole& beyond, RootClasses& classes) const {
+      for (const std::optional<std::size_t>& a : first_) {
+        for (const std::optional<std::size_t>& b : beyond.first_) {
+          if (a && b) classes.compare(*a, *b);
+        }
+      }
+    }
+
+   private:
+    std::array<std::optional<std::size_t>, 2> first_;
+  };
+
+  /// The distance of a root to any that it may be the same as, across the line.
+  double farthest(const LeafRoot& root) const { return root.residual + root.noise + widest_; }
+
   /// Along the parameter over which they lie more apart.
   void inside(const Indices& all) {
-    const auto apart = [&](double LeafRoot::*place, double LeafRoot::*radius) {
+    const auto spread = [&](double LeafRoot::*place, auto reach) {
       double low = roots_[all[0]].*place, high = low, covered = 0;
       for (const std::size_t k : all) {
         low = std::min(low, roots_[k].*place), high = std::max(high, roots_[k].*place);
-        covered += roots_[k].*radius + rounding;
+        covered += reach(roots_[k], farthest(roots_[k]));
       }
       return (high - low) / covered;
     };
-    const bool along_u = apart(&LeafRoot::u, &LeafRoot::radius_u) > apart(&LeafRoot::v, &LeafRoot::radius_v);
+    const bool along_u = spread(&LeafRoot::u, reach_u) > spread(&LeafRoot::v, reach_v);
     intervals_.clear();
     for (const std::size_t k : all) {
       const LeafRoot& root = roots_[k];
-      add(along_u ? root.u : root.v, along_u ? root.radius_u : root.radius_v, k);
+      add(along_u ? root.u : root.v, along_u ? reach_u(root, farthest(root)) : reach_v(root, farthest(root)), k);
     }
-    sweep(intervals_, sets_);
+    sweep(intervals_, classes_);
   }
 
   void collapsed(const Indices& all, int edge) {
-    std::optional<std::size_t> first;
+    Pole pole;
     for (const std::size_t k : all) {
-      if (!same_.on_collapsed(roots_[k], edge)) continue;
-      if (!first) first = k;
-      sets_.add(*first, k);
+      if (reaches_pole(same_.set(), roots_[k], edge, farthest(roots_[k]))) pole.add(k, roots_, classes_);
     }
   }
 
-  /// What is at a pole is the same on each side of the border by itself, so that one of each is enough.
+  /// What is at a pole is the same on each side of the border by itself, so that one of each kind is enough.
   void border(const Indices& here, int edge, const Indices& there, const EdgeLink& link) {
-    std::array<std::array<std::optional<std::size_t>, 2>, 2> poles;
+    std::array<std::array<Pole, 2>, 2> poles;
     intervals_.clear();
     for (const bool beyond : {false, true}) {
       const int own_edge = beyond ? link.edge : edge;
       const bool reversed = beyond && link.reversed;
       for (const std::size_t k : beyond ? there : here) {
-        double along = 0;
-        if (!on_edge(roots_[k], own_edge, along)) continue;
-        add(reversed ? 1 - along : along, reach(roots_[k], own_edge), k);
-        const int end = same_.pole(roots_[k], own_edge);
-        if (end >= 0) poles[beyond][static_cast<std::size_t>(reversed ? 1 - end : end)] = k;
+        const double far = farthest(roots_[k]);
+        if (!reaches_edge(roots_[k], own_edge, far)) continue;
+        const double along = along_edge(roots_[k], own_edge);
+        add(reversed ? 1 - along : along, reach_along(roots_[k], own_edge, far), k);
+        const int end = pole_of_edge(same_.set(), roots_[k], own_edge, far);
+        if (end >= 0) poles[beyond][static_cast<std::size_t>(reversed ? 1 - end : end)].add(k, roots_, classes_);
       }
     }
-    for (const std::size_t end : {0, 1}) {
-      if (poles[0][end] && poles[1][end]) sets_.add(*poles[0][end], *poles[1][end]);
-    }
-    sweep(intervals_, sets_);
+    for (const std::size_t end : {0, 1}) poles[0][end].join(poles[1][end], classes_);
+    sweep(intervals_, classes_);
   }
 
-  void add(double place, double radius, std::size_t root) {
-    intervals_.push_back({place - radius - rounding, place + radius + rounding, root});
+  /// Whose patches need not be side by side.
+  void vertices() {
+    std::map<std::uint32_t, Indices> at_vertices;
+    for (const auto& [patch, all] : of_patch_) {
+      for (const std::size_t k : all) {
+        if (reaches_vertex(roots_[k], farthest(roots_[k]))) at_vertices[patch].push_back(k);
+      }
+    }
+    for (const auto& [patch, all] : at_vertices) {
+      for (const std::size_t k : all) {
+        const RootFan fan(same_.set(), same_.adjacency(), roots_[k], farthest(roots_[k]));
+        for (const LeafRoot& place : fan.beyond()) {
+          const auto there = at_vertices.find(place.patch);
+          if (there == at_vertices.end()) continue;
+          for (const std::size_t other : there->second) classes_.compare(k, other);
+        }
+      }
+    }
   }
+
+  void add(double place, double reach, std::size_t root) { intervals_.push_back({place - reach, place + reach, root}); }
 
   std::span<const LeafRoot> roots_;
   const Sameness& same_;
-  DisjointSets& sets_;
+  RootClasses& classes_;
   std::map<std::uint32_t, Indices> of_patch_;
+  double widest_ = 0;  // distance of any root from the line
   std::vector<Interval> intervals_;
 };
 
 /// Up to so many each is compared with each.
 constexpr std::size_t few = 64;
 
-void unite(std::span<const LeafRoot> roots, const Sameness& same, DisjointSets& sets) {
-  if (roots.size() > few) return Sweeps(roots, same, sets).run();
+void compare_all(std::span<const LeafRoot> roots, const Sameness& same, RootClasses& classes) {
+  if (roots.size() > few) return Sweeps(roots, same, classes).run();
   for (std::size_t b = 1; b < roots.size(); ++b) {
-    for (std::size_t a = b; a-- > 0;) sets.add(a, b);
+    for (std::size_t a = b; a-- > 0;) classes.compare(a, b);
   }
 }
 
@@ -219,19 +267,28 @@ void keep_distinct(const SetView& set, const Adjacency& adjacency, std::vector<L
     return std::tie(a.s, a.patch, a.u, a.v) < std::tie(b.s, b.patch, b.u, b.v);
   });
   const Sameness same(set, adjacency);
-  DisjointSets sets(roots, same);
-  unite(roots, same, sets);
+  RootClasses classes(roots, same);
+  compare_all(roots, same, classes);
   for (std::size_t k = 0; k < roots.size(); ++k) {
-    LeafRoot& first = roots[sets.leader(k)];
+    LeafRoot& first = roots[classes.leader(k)];
     const LeafRoot& here = roots[k];
     const double from = std::min(first.from, here.from);
-    if (std::tuple(!here.certified, here.residual) < std::tuple(!first.certified, first.residual)) first = here;
+    if (here.residual < first.residual) first = here;
     first.from = from;
-    if (from < first.s) first.certified = false;  // the part may hold a root that comes before
+  }
+  std::vector<bool> dropped(roots.size());
+  for (const auto& [uncertified, certified] : classes.covered()) {
+    const std::size_t part = classes.leader(uncertified);
+    LeafRoot& root = roots[classes.leader(certified)];
+    root.from = std::min(root.from, roots[part].from);
+    dropped[part] = true;
   }
   std::size_t kept = 0;
   for (std::size_t k = 0; k < roots.size(); ++k) {
-    if (sets.leader(k) == k) roots[kept++] = roots[k];
+    if (classes.leader(k) != k || dropped[k]) continue;
+    roots[kept] = roots[k];
+    if (roots[kept].from < roots[kept].s) roots[kept].certified = false;  // the part may hold a root that comes before
+    ++kept;
   }
   roots.resize(kept);
   std::stable_sort(roots.begin(), roots.end(), [](const LeafRoot& a, const LeafRoot& b) { return a.s < b.s; });

@@ -104,11 +104,11 @@ Result<EmbreeLeaves> EmbreeLeaves::make(Isa isa) {
   return EmbreeLeaves(std::move(state));
 }
 
-Status EmbreeLeaves::build(const SetView& set, const LeafNets& nets, double tolerance, bool follows,
-                           const Execution& execution) {
+Status EmbreeLeaves::build(const SetView& set, const LeafNets& nets, const LazyAdjacency& borders, double tolerance,
+                           bool follows, const Execution& execution) {
   State& state = *state_;
   state.scene.reset();
-  state.tracer.set = &set, state.tracer.nets = &nets;
+  state.tracer.set = &set, state.tracer.nets = &nets, state.tracer.borders = &borders;
   state.tracer.tolerance = tolerance;
   RTCDevice device = state.device.get();
   state.geometry.reset(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER));

@@ -2,21 +2,19 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <new>
 #include <optional>
 #include <string>
 #include <utility>
 
-#include "ray/adjacency.h"
 #include "ray/distinct_roots.h"
 #include "ray/embree_leaves.h"
 #include "ray/embree_scene.h"
 #include "ray/exact_source.h"
+#include "ray/lazy_adjacency.h"
 #include "ray/leaf_nets.h"
 #include "ray/leaf_search.h"
 #include "ray/nearest_root.h"
@@ -46,31 +44,6 @@ bool coherent(std::span<RayQuery* const> queries) {
   });
 }
 
-/// Found when it is first asked for: the closest hits need none.
-class LazyAdjacency {
- public:
-  const Adjacency& of(const SetView& set) const {
-    if (const Adjacency* const made = made_.load(std::memory_order_acquire)) return *made;
-    const std::lock_guard lock(mutex_);
-    if (!owned_) owned_ = std::make_unique<Adjacency>(set);
-    made_.store(owned_.get(), std::memory_order_release);
-    return *owned_;
-  }
-  void forget() {
-    made_ = nullptr;
-    owned_.reset();
-  }
-  std::size_t memory_bytes() const {
-    const Adjacency* const made = made_.load(std::memory_order_acquire);
-    return made ? made->memory_bytes() : 0;
-  }
-
- private:
-  mutable std::mutex mutex_;
-  mutable std::unique_ptr<Adjacency> owned_;
-  mutable std::atomic<const Adjacency*> made_ = nullptr;
-};
-
 class ExactScene final : public PatchScene, private ExactSource {
  public:
   ExactScene(const PatchSet& set, EmbreeLeaves scene, const RaySceneOptions& options)
@@ -98,7 +71,7 @@ class ExactScene final : public PatchScene, private ExactSource {
   Box3 model_box() const override { return box_; }
   void closest_piece(std::span<const Ray> rays, std::span<Hit> hits) const override;
   void occluded_piece(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const override;
-  void prepare_for_all() const override { (void)adjacency_.of(set()); }
+  void prepare_borders() const override { (void)adjacency_.of(set()); }
   Status all_of(const Ray& ray, std::vector<Hit>& hits) const override;
   double size() const override { return size_; }
   Result<Hit> resolve(const Ray& ray, std::uint32_t patch, double u, double v) const override;
@@ -112,11 +85,11 @@ class ExactScene final : public PatchScene, private ExactSource {
   void trace_turns(std::span<const Ray> rays, RootsWanted wanted, SearchSpace& space, const Done& done) const;
   void trace_turn(std::span<std::optional<RayQuery>> queries, SearchSpace& space) const;
 
-  LeafNets nets_;  // borrowed by scene_
+  LeafNets nets_;  // borrowed by scene_, as are the borders
+  LazyAdjacency adjacency_;
   EmbreeLeaves scene_;
   RaySceneOptions options_;
   mutable SearchPool pool_;
-  LazyAdjacency adjacency_;
   SceneFrame frame_;
   Box3 box_, scene_box_;  // of the leaves' control points, in the model's and the scene's coordinates
   double size_ = 0;
@@ -149,7 +122,8 @@ Status ExactScene::build(const Execution& execution) {
   if (Status status = nets_.build(set(), frame_, options_.pieces, execution); !status.ok()) return status;
   if (nets_.leaves().size() > most_leaves)
     return Status(StatusCode::unsupported, "more than the 2^32 - 1 pieces of patches of one ray scene");
-  if (Status status = scene_.build(set(), nets_, measure(), follows_, execution); !status.ok()) return status;
+  if (Status status = scene_.build(set(), nets_, adjacency_, measure(), follows_, execution); !status.ok())
+    return status;
   if (!follows_) nets_.drop_boxes();
   return {};
 }
@@ -206,9 +180,13 @@ Result<Hit> ExactScene::resolve(const Ray& ray, std::uint32_t patch, double u, d
 void ExactScene::trace_turn(std::span<std::optional<RayQuery>> queries, SearchSpace& space) const {
   std::array<RayQuery*, rays_a_turn> wanted;
   std::size_t count = 0;
+  bool leaves_surface = false;
   for (std::optional<RayQuery>& query : queries) {
-    if (query) wanted[count++] = &*query;
+    if (!query) continue;
+    wanted[count++] = &*query;
+    leaves_surface |= query->line.spawn > 0;
   }
+  if (leaves_surface) prepare_borders();
   const std::span<RayQuery* const> used = std::span(wanted).first(count);
   const FlushDenormals flush;
   if (count >= least_in_packet && coherent(used)) return scene_.trace(used, space);
@@ -235,6 +213,7 @@ void ExactScene::trace_each(std::span<const Ray> rays, RootsWanted wanted, Searc
     std::optional<RayQuery> query;
     if (!along.empty) {
       query.emplace(rays[k], along, wanted);
+      if (along.spawn > 0) prepare_borders();
       const FlushDenormals flush;
       scene_.trace(*query, space);
     }

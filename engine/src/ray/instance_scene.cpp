@@ -79,8 +79,8 @@ class InstanceScene final : public RayScene::Impl {
   void occluded_piece(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const override {
     for (std::size_t k = 0; k < rays.size(); ++k) occluded[k] = is_occluded(rays[k]);
   }
-  void prepare_for_all() const override {
-    for (const RayScene::Impl* scene : scenes_) scene->prepare_for_all();
+  void prepare_borders() const override {
+    for (const RayScene::Impl* scene : scenes_) scene->prepare_borders();
   }
   Status all_of(const Ray& ray, std::vector<Hit>& hits) const override;
 
@@ -135,6 +135,7 @@ Status InstanceScene::build(const Execution& execution) {
 template <class Take>
 void InstanceScene::meet(const Ray& ray, const RayLine& line, RootsWanted wanted, Take take) const {
   Ray within = ray;
+  if (ray.spawn_offset > 0) prepare_borders();
   const FlushDenormals flush;
   boxes_.visit(line, [&](unsigned k) {
     const RayLine own = instances_[k].source->line(within, instances_[k].placement);

@@ -107,7 +107,7 @@ class LeafSearch {
       if (within.empty()) return;
       if (certificate.contraction() < sure_contraction && decide(slot, certificate, f, middle)) return;
     }
-    if (is_small(extent) && take_closest_point(slot, extent.z.low)) return;
+    if (is_small(extent) && is_flat(net, x, y) && take_closest_point(slot, extent.z.low)) return;
     if (box.depth + 4 > SearchSpace::most_depth) {
       query_.incomplete = true;
       return;
@@ -125,6 +125,15 @@ class LeafSearch {
   }
   bool is_small(const Extent& extent) const {
     return std::max({extent.x.radius(), extent.y.radius(), extent.z.radius()}) <= 0.5 * extent_;
+  }
+
+  /// Whether the part leaves its tangent plane at the middle by no more than the tolerance across the ray: by the mean
+  /// value theorem by at most half the sum of the derivatives' radii. Its roots are then one place, or lie along a line
+  /// that the ray does not leave; a part that is merely small may be folded where weights differ much.
+  bool is_flat(const double* net, const DerivativeHulls& x, const DerivativeHulls& y) const {
+    const double* const weights = net + 3 * shape_.size();
+    const double lightest = Rational ? *std::min_element(weights, weights + shape_.size()) : 1;
+    return std::max(x.u.radius() + x.v.radius(), y.u.radius() + y.v.radius()) <= 2 * tolerance_ * lightest;
   }
 
   void take_nearest_corner(int slot, double from) {
@@ -195,7 +204,7 @@ class LeafSearch {
     const SearchBox& box = space_.box(slot);
     NetPoint in_leaf{box.u0 + at.u * box.du, box.v0 + at.v * box.dv};
     NetValue f = value(space_.net(0), in_leaf);
-    for (int step = 0; step < 2 && slot > 0 && certified; ++step) {  // the leaf's own net has rounded the least
+    for (int step = 0; step < 3 && certified; ++step) {  // the leaf's own net has rounded the least
       const NetPoint next = bounded_step(f, in_leaf);
       const NetValue there = value(space_.net(0), next);
       if (!(there.residual() < f.residual())) break;
@@ -206,10 +215,12 @@ class LeafSearch {
     root.u = leaf_.u0 + in_leaf.u * leaf_.du, root.v = leaf_.v0 + in_leaf.v * leaf_.dv;
     root.s = f.s();
     root.residual = f.residual();
-    root.certified = certified;
+    root.noise = search_rounding(shape_.m(), shape_.n(), leaf_.halvings(), 0);
+    // A point that is clamped to a border and off the ray by more than rounding touches: the root is beyond.
+    root.certified = certified && root.residual <= 2 * root.noise;
     root.from = from;
-    if (!certified || !set_radius(f, rounding_, leaf_.du, leaf_.dv, root)) {  // of parts that are taken as a whole
-      root.radius_u = std::min(1.0, 2 * box.du) * leaf_.du, root.radius_v = std::min(1.0, 2 * box.dv) * leaf_.dv;
+    if (from != no_part || !set_gain(f, leaf_.du, leaf_.dv, root)) {
+      root.part_u = std::min(1.0, 2 * box.du) * leaf_.du, root.part_v = std::min(1.0, 2 * box.dv) * leaf_.dv;
     }
     return query_.take(root);
   }
@@ -285,14 +296,14 @@ double search_rounding(int degree_u, int degree_v, int halvings, int depth) {
   return unit * (32 + 4 * (degree_u + degree_v) * (1 + halvings) + 4 * std::max(degree_u, degree_v) * depth);
 }
 
-bool set_radius(const NetValue& f, double rounding, double du, double dv, LeafRoot& root) {
-  const double determinant = f.xu * f.yv - f.xv * f.yu;
-  if (determinant == 0) return false;
-  const double error = 4 * f.w * (root.residual + rounding);
-  const double u = error * (std::abs(f.xv) + std::abs(f.yv)) / std::abs(determinant);
-  const double v = error * (std::abs(f.xu) + std::abs(f.yu)) / std::abs(determinant);
-  root.radius_u = std::min(1.0, 2 * u) * du, root.radius_v = std::min(1.0, 2 * v) * dv;
-  return true;
+bool set_gain(const NetValue& f, double du, double dv, LeafRoot& root) {
+  const double inverse = f.w / std::abs(f.xu * f.yv - f.xv * f.yu);
+  root.gain_u = (std::abs(f.xv) + std::abs(f.yv)) * inverse * du;
+  root.gain_v = (std::abs(f.xu) + std::abs(f.yu)) * inverse * dv;
+  root.upwards = f.xu * f.yv > f.xv * f.yu;
+  if (std::isfinite(root.gain_u) && std::isfinite(root.gain_v)) return true;
+  root.gain_u = root.gain_v = 0;
+  return false;
 }
 
 void search_leaf(const Leaf& leaf, const double* net, double tolerance, SearchSpace& space, RayQuery& query) {

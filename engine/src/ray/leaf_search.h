@@ -57,9 +57,9 @@ class SearchSpace {
 ///   4 max(m, n) for each cut of the search.
 double search_rounding(int degree_u, int degree_v, int halvings, int depth);
 
-/// Sets how far from `root` another may be that is the same: the linear model's image of an error of the residual and of
-/// rounding, for a leaf of du x dv of its patch. Not where the model says nothing.
-bool set_radius(const NetValue& f, double rounding, double du, double dv, LeafRoot& root);
+/// Sets the gains of a root of a leaf of du x dv of its patch, from the leaf's homogeneous value there, row sums of |J^-1|,
+/// and on which side the line goes on. False where J says nothing.
+bool set_gain(const NetValue& f, double du, double dv, LeafRoot& root);
 
 /// Adds to the query every root of the leaf in [query.near, query.far]: where only the closest is wanted, those nearer
 /// than what the query has. A point of the leaf counts as root up to `tolerance` from the line, where no root can be
@@ -67,9 +67,9 @@ bool set_radius(const NetValue& f, double rounding, double du, double dv, LeafRo
 ///
 /// Branch and bound: a part whose hull lies off the ray by more than rounding holds no root and is left; a part with a
 /// certificate (root_certificate.h) is decided by Newton's method; of the others those whose whole extent is below the
-/// square root of the tolerance count as one root where they have a point within the tolerance; the rest is narrowed or
-/// halved, across its longer side as the ray sees it. So whatever the surface meets truly, borders included, is found:
-/// neighbours that share a border cannot both reject a ray through it.
+/// square root of the tolerance, and which are flat up to it, count as one root where they have a point within the
+/// tolerance; the rest is narrowed or halved, across its longer side as the ray sees it. So whatever the surface meets
+/// truly, borders included, is found: neighbours that share a border cannot both reject a ray through it.
 void search_leaf(const Leaf& leaf, const double* net, double tolerance, SearchSpace& space, RayQuery& query);
 
 }  // namespace tessera

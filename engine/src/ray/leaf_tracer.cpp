@@ -170,7 +170,7 @@ unsigned LeafTracer::take_each_root(const Leaf& leaf, QueryPacket& packet, unsig
 }
 
 OriginRoot LeafTracer::judge(const RayLine& line, const LeafRoot& root) const {
-  return judge_origin(set->patch(root.patch), nets->frame(), line, root);
+  return judge_origin(*set, borders->found(), nets->frame(), line, root);
 }
 
 /// In float, where that proves what there is; then in double what was found.
@@ -191,7 +191,7 @@ bool LeafTracer::decide(const Leaf& leaf, unsigned leaf_index, kernel::RayProbe&
   const auto polished = [&](int k, LeafRoot& root) {
     root.patch = leaf.patch;
     return polish(set->patch(leaf.patch), nets->frame(), *kernels, query.line, start_of(leaf, roots.root[k]),
-                  query.wanted == RootsWanted::all, root);
+                  query.wanted == RootsWanted::all || query.origin != nullptr, root);
   };
   LeafRoot first;
   if (!polished(0, first)) return false;

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "kernel/ray_kernels.h"
+#include "ray/lazy_adjacency.h"
 #include "ray/leaf_nets.h"
 #include "ray/leaf_search.h"
 #include "ray/ray_query.h"
@@ -32,6 +33,7 @@ struct QueryPacket {
 struct LeafTracer final : OriginTest {
   const SetView* set = nullptr;
   const LeafNets* nets = nullptr;
+  const LazyAdjacency* borders = nullptr;  ///< across which roots of rays that leave a surface are followed, once found
   const kernel::RayKernels* kernels = nullptr;
   double tolerance = 0;  ///< as of search_leaf
 

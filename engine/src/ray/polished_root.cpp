@@ -37,7 +37,7 @@ FirstOrder scene_point(const BezierPatch& patch, const SceneFrame& frame, const 
 }  // namespace
 
 bool polish(const BezierPatch& patch, const SceneFrame& frame, const kernel::RayKernels& kernels, const RayLine& line,
-            const RootStart& start, bool with_radius, LeafRoot& root) {
+            const RootStart& start, bool with_gain, LeafRoot& root) {
   double u = start.u, v = start.v;
   for (int step = 0; step < PolishJob::most_steps; ++step) {
     const FirstOrder at = scene_point(patch, frame, kernels, u, v);
@@ -57,7 +57,7 @@ bool polish(const BezierPatch& patch, const SceneFrame& frame, const kernel::Ray
     root.s = f.z + (du * dot(line.direction, at.du) + dv * dot(line.direction, at.dv));
     root.residual = search_rounding(patch.degree_u(), patch.degree_v(), 0, 0);
     root.certified = true;
-    return !with_radius || set_radius(f, root.residual, 1, 1, root);
+    return !with_gain || set_gain(f, 1, 1, root);
   }
   return false;
 }

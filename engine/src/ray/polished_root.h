@@ -25,10 +25,10 @@ inline RootStart start_of(const Leaf& leaf, const kernel::RayRoot& proven) {
           leaf.v0 + leaf.dv};
 }
 
-/// The root by Newton's method from there on, with the patch's point, and, `with_radius`, how far another may be that is the
-/// same. False where an iterate leaves what is named.
+/// The root by Newton's method from there on, with the patch's point, and, `with_gain`, its gains. False where an iterate
+/// leaves what is named.
 bool polish(const BezierPatch& patch, const SceneFrame& frame, const kernel::RayKernels& kernels, const RayLine& line,
-            const RootStart& start, bool with_radius, LeafRoot& root);
+            const RootStart& start, bool with_gain, LeafRoot& root);
 
 /// Whether polish_side_by_side() takes roots of that patch.
 bool polished_side_by_side(const BezierPatch& patch);

@@ -86,6 +86,7 @@ class LeafCall {
   bool meet_behind(unsigned k, const Ray& ray, const RayLine& line, LeafRoot before, RTCHit& hit) {
     RayQuery query(ray, line, RootsWanted::all);
     search(query);
+    before.certified = false;  // of a query for the closest root, which doesn't tell its side
     std::sort(query.roots.begin(), query.roots.end(), [](const LeafRoot& a, const LeafRoot& b) { return a.s < b.s; });
     for (const LeafRoot& root : query.roots) {
       if (same_place(root, before)) continue;

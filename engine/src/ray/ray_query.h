@@ -13,25 +13,44 @@
 namespace tessera {
 
 constexpr double no_part = std::numeric_limits<double>::infinity();
+constexpr double parameter_rounding = 1e-15;  // of a patch's parameters
 
 /// A point of a patch on a ray.
 struct LeafRoot {
   std::uint32_t patch = 0;
-  double u = 0, v = 0;                ///< in the patch
-  double s = 0;                       ///< along the line
-  double from = no_part;              ///< of a part that is taken as one root: nothing of it comes before that s
-  double residual = 0;                ///< distance from the line, in the scene's coordinates
-  double radius_u = 0, radius_v = 0;  ///< how far another root may be that is the same
-  bool certified = false;             ///< the one root of its surroundings, up to rounding
+  double u = 0, v = 0;            ///< in the patch
+  double s = 0;                   ///< along the line
+  double from = no_part;          ///< of a part that is taken as one root: nothing of it comes before that s
+  double residual = 0;            ///< distance from the line, in the scene's coordinates
+  double noise = 0;               ///< bound on the rounding of that
+  double gain_u = 0, gain_v = 0;  ///< how far a parameter moves where the point moves by 1 across the line
+  double part_u = 0, part_v = 0;  ///< extent of a part that is taken as one root, else 0
+  bool certified = false;         ///< the one root of its surroundings, up to rounding
+  bool upwards = false;           ///< where the gains are known: the side of du x dv that the line goes to
   bool has_point = false;
   Vec3 position, du, dv;  ///< where has_point: of the patch, in the scene's coordinates
 };
 
-/// Whether two roots of one patch are the same.
+/// How far in u and v the one root that `a` and another point may both stand for can be from `a`. Both points lie within
+/// `apart` of the line, so within that of each other across it, and the parameters follow by the Jacobian there: for a
+/// map with a contraction of 1/2 by 2 |J^-1| apart (root_certificate.h). Parts that are taken as a whole reach as far as
+/// they are large.
+inline double reach_u(const LeafRoot& a, double apart) { return a.part_u + 2 * a.gain_u * apart + parameter_rounding; }
+inline double reach_v(const LeafRoot& a, double apart) { return a.part_v + 2 * a.gain_v * apart + parameter_rounding; }
+/// Of two points of a line: their distance across it is at most this.
+inline double apart(const LeafRoot& a, const LeafRoot& b) { return a.residual + a.noise + b.residual + b.noise; }
+
+/// Whether a surface is left on one side at `a` and on the other at `b`, which are two roots then.
+inline bool on_other_sides(const LeafRoot& a, const LeafRoot& b) {
+  return a.certified && b.certified && a.upwards != b.upwards;
+}
+
+/// Whether two points of one patch stand for the same root.
 inline bool same_place(const LeafRoot& a, const LeafRoot& b) {
-  constexpr double rounding = 1e-12;
-  return std::abs(a.u - b.u) <= a.radius_u + b.radius_u + rounding &&
-         std::abs(a.v - b.v) <= a.radius_v + b.radius_v + rounding;
+  if (on_other_sides(a, b)) return false;
+  const double across = apart(a, b);
+  return std::abs(a.u - b.u) <= reach_u(a, across) + reach_u(b, across) &&
+         std::abs(a.v - b.v) <= reach_v(a, across) + reach_v(b, across);
 }
 
 enum class RootsWanted : std::uint8_t { closest, any, all };

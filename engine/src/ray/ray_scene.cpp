@@ -72,7 +72,7 @@ Status RayScene::Impl::all(std::span<const Ray> rays, HitLists& lists, const Exe
   lists.hits.clear();
   lists.first.assign(1, 0);
   if (!fresh()) return stale();
-  prepare_for_all();
+  prepare_borders();
   const std::size_t tasks = (rays.size() + rays_a_task - 1) / rays_a_task;
   std::vector<std::vector<Hit>> found(tasks);
   std::vector<std::size_t> ends(rays.size());

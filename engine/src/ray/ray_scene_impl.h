@@ -24,8 +24,9 @@ class RayScene::Impl {
   Status closest(std::span<const Ray> rays, std::span<Hit> hits, const Execution& execution) const;
   Status occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded, const Execution& execution) const;
   Status all(std::span<const Ray> rays, HitLists& lists, const Execution& execution) const;
-  /// Before all_of() is called, by one thread or several at once.
-  virtual void prepare_for_all() const {}
+  /// Looks for shared borders, unless that is done: before all_of(), and before rays that leave a surface are traced. By
+  /// one thread or several at once. Throws bad_alloc.
+  virtual void prepare_borders() const {}
 
   /// Of exact mode alone.
   virtual const ExactSource* exact_source() const { return nullptr; }

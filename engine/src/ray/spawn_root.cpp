@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "ray/first_order.h"
 #include "ray/nearest_root.h"
+#include "ray/root_fan.h"
 
 namespace tessera {
 namespace {
@@ -21,15 +23,17 @@ FirstOrder scene_point(const BezierPatch& patch, const SceneFrame& frame, double
   return {frame.scale * at.position, frame.scale * at.du, frame.scale * at.dv};
 }
 
-/// The point of the patch nearest to p, from (u,v) on by Gauss and Newton's method in the square.
-Nearest nearest_point(const BezierPatch& patch, const SceneFrame& frame, const Vec3& p, double u, double v) {
+/// From (u,v) on by Gauss and Newton's method in the square.
+Nearest nearest_from(const BezierPatch& patch, const SceneFrame& frame, const Vec3& p, double u, double v) {
   constexpr int most_steps = 12;
   Nearest best{u, v, 0, scene_point(patch, frame, u, v)};
   best.distance = length(best.at.position - p);
   for (int step = 0; step < most_steps && best.distance > 0; ++step) {
     const Vec3 off = best.at.position - p;
     const double uu = dot(best.at.du, best.at.du), uv = dot(best.at.du, best.at.dv), vv = dot(best.at.dv, best.at.dv);
-    const double damping = 1e-14 * (uu + vv), a = uu + damping, c = vv + damping, determinant = a * c - uv * uv;
+    // Each by itself, for beside a pole one is far the smaller; at the pole it is 0.
+    const double damped = 1 + 1e-14, least = 1e-40 * (uu + vv);
+    const double a = damped * uu + least, c = damped * vv + least, determinant = a * c - uv * uv;
     if (!(determinant > 0)) break;
     const double gu = dot(best.at.du, off), gv = dot(best.at.dv, off);
     const double to_u = std::clamp(best.u - (gu * c - gv * uv) / determinant, 0.0, 1.0);
@@ -38,6 +42,26 @@ Nearest nearest_point(const BezierPatch& patch, const SceneFrame& frame, const V
     const double distance = length(at.position - p);
     if (!(distance < best.distance)) break;
     best = {to_u, to_v, distance, at};
+  }
+  return best;
+}
+
+/// Whether one parameter moves the point much less than the other, as beside a pole.
+bool is_squeezed(const FirstOrder& at) {
+  const double u = length(at.du), v = length(at.dv);
+  return std::min(u, v) < 1e-3 * std::max(u, v);
+}
+
+/// The point of the patch nearest to p, near (u,v). Beside a pole all angles are near, and the method ends at a wrong one
+/// if it begins far from p's: it is begun from several.
+Nearest nearest_point(const BezierPatch& patch, const SceneFrame& frame, const Vec3& p, double u, double v,
+                      double enough) {
+  Nearest best = nearest_from(patch, frame, p, u, v);
+  if (best.distance <= enough || !is_squeezed(best.at)) return best;
+  const bool along_u = length(best.at.du) < length(best.at.dv);
+  for (const double start : {0.125, 0.375, 0.625, 0.875}) {
+    const Nearest to = nearest_from(patch, frame, p, along_u ? start : u, along_u ? v : start);
+    if (to.distance < best.distance) best = to;
   }
   return best;
 }
@@ -69,6 +93,11 @@ double inverse_norm(const FirstOrder& at, const RayLine& line) {
   return std::sqrt(std::max(xu * xu + yu * yu, xv * xv + yv * yv)) / std::abs(xu * yv - xv * yu);
 }
 
+double distance_from(const RayLine& line, const Vec3& p) {
+  const double x = dot(line.across[0], p - line.start), y = dot(line.across[1], p - line.start);
+  return std::sqrt(x * x + y * y);
+}
+
 /// How far along the ray a root at a degenerate point may lie that is the origin's, by the normal there.
 bool is_near_along(const BezierPatch& patch, const RayLine& line, const LeafRoot& root, double offset) {
   const UnitNormal normal = unit_normal(patch, root.u, root.v);
@@ -76,9 +105,8 @@ bool is_near_along(const BezierPatch& patch, const RayLine& line, const LeafRoot
   return std::abs(root.s - line.s_of_origin()) <= std::min(1e-6, 8 * offset / std::max(sine, 1e-12));
 }
 
-}  // namespace
-
-OriginRoot judge_origin(const BezierPatch& patch, const SceneFrame& frame, const RayLine& line, const LeafRoot& root) {
+OriginRoot judge_on_patch(const BezierPatch& patch, const SceneFrame& frame, const RayLine& line,
+                          const LeafRoot& root) {
   constexpr double clearly = 1e3, touching = 1e-5;
   const double offset = line.spawn + noise, ahead = std::abs(root.s - line.s_of_origin());
   if (root.has_point) {
@@ -88,7 +116,7 @@ OriginRoot judge_origin(const BezierPatch& patch, const SceneFrame& frame, const
     if (sine * sine * ahead * ahead > clearly * clearly * offset * offset * area) return OriginRoot::other;
   }
   const Vec3 origin = line.start + line.s_of_origin() * line.direction;
-  const Nearest to = nearest_point(patch, frame, origin, root.u, root.v);
+  const Nearest to = nearest_point(patch, frame, origin, root.u, root.v, 2 * offset);
   if (!(to.distance <= 2 * offset)) return OriginRoot::other;
 
   const double inverse = inverse_norm(to.at, line), bend = bend_bound(patch, frame, origin) / least_weight(patch);
@@ -101,6 +129,7 @@ OriginRoot judge_origin(const BezierPatch& patch, const SceneFrame& frame, const
                ? OriginRoot::indistinct
                : OriginRoot::other;
   }
+  if (is_squeezed(to.at) && is_near_along(patch, line, root, offset + root.residual)) return OriginRoot::indistinct;
   const double alone = 1 / (inverse * bend);
   const auto is_origin = [&](double u, double v, double residual) {
     return away(u, v) <= std::min(alone, 2 * eta + 4 * inverse * (residual + noise));
@@ -112,8 +141,50 @@ OriginRoot judge_origin(const BezierPatch& patch, const SceneFrame& frame, const
   if (near.residual > 4 * noise)
     return away(root.u, root.v) <= alone || ahead <= touching ? OriginRoot::indistinct : OriginRoot::other;
   if (!is_origin(near.u, near.v, near.residual)) return OriginRoot::other;
-  const double part = std::max(root.radius_u, root.radius_v);
+  const double part = std::max(root.part_u, root.part_v);
   return part <= alone / 8 || away(root.u, root.v) + part <= alone ? OriginRoot::indistinct : OriginRoot::same;
+}
+
+/// Beside a pole, where a point that is not certified may belong to any of the patches around: the pole in its stead.
+std::optional<LeafRoot> pole_beside(const SetView& set, const SceneFrame& frame, const LeafRoot& root) {
+  constexpr double close = 1e-2;  // in parameters
+  if (root.certified || !is_squeezed(scene_point(set.patch(root.patch), frame, root.u, root.v))) return std::nullopt;
+  for (int edge = 0; edge < 4; ++edge) {
+    const double across = edge < 2 ? root.u : root.v;
+    if (std::abs(across - edge % 2) > close || !is_collapsed(set, root.patch, edge)) continue;
+    LeafRoot pole = root;
+    (edge < 2 ? pole.u : pole.v) = edge % 2;
+    return pole;
+  }
+  return std::nullopt;
+}
+
+/// The root itself, but in the stead of a part its point nearest to the ray: where the patch has no root, and a
+/// neighbour's is near, that lies on their border.
+LeafRoot place_on_border(const BezierPatch& patch, const SceneFrame& frame, const RayLine& line, const LeafRoot& root) {
+  return root.from == no_part ? root : nearest_to_ray(patch, frame, line, root.patch, root.u, root.v);
+}
+
+}  // namespace
+
+OriginRoot judge_origin(const SetView& set, const Adjacency* borders, const SceneFrame& frame, const RayLine& line,
+                        const LeafRoot& root) {
+  constexpr double beside = 1e-3;  // along the ray: from further away no root is the origin's
+  const OriginRoot here = judge_on_patch(set.patch(root.patch), frame, line, root);
+  if (here != OriginRoot::other || borders == nullptr || std::abs(root.s - line.s_of_origin()) > beside) return here;
+  const std::optional<LeafRoot> pole = pole_beside(set, frame, root);
+  const LeafRoot on_border = pole ? *pole : place_on_border(set.patch(root.patch), frame, line, root);
+  const RootFan fan(set, *borders, on_border, on_border.residual + on_border.noise + 2 * (line.spawn + noise));
+  for (LeafRoot place : fan.beyond()) {
+    const BezierPatch& patch = set.patch(place.patch);
+    if (!pole) {
+      place.certified = true;
+      place.residual = distance_from(line, scene_point(patch, frame, place.u, place.v).position);
+    }
+    const OriginRoot there = judge_on_patch(patch, frame, line, place);
+    if (there != OriginRoot::other) return there;
+  }
+  return OriginRoot::other;
 }
 
 }  // namespace tessera

@@ -1,12 +1,13 @@
 #pragma once
 // Secondary rays: the root of a patch that stands for the point where the ray starts.
 
+#include "ray/adjacency.h"
 #include "ray/ray_query.h"
-#include "tessera/bezier_patch.h"
+#include "ray/set_view.h"
 
 namespace tessera {
 
-/// Of a root of the patch on a line that leaves the surfaces within line.spawn of its origin, in the frame's coordinates.
+/// Judges a root of a patch on a line that leaves the surfaces within line.spawn of its origin, in the frame's coordinates.
 ///
 /// Let x* be the point of the patch nearest to the origin, near the root, and f the patch across the ray, with Jacobian J
 /// at x*. Where the patch passes by, |f(x*)| is at most the offset. With eta = |J^-1| |f(x*)|, K a bound of the second
@@ -16,6 +17,11 @@ namespace tessera {
 /// of the origin where Newton's method leads from it to that one, and done with where it is small or lies so near. Where h
 /// is larger the ray runs along the patch, or the parameters are degenerate as at a pole: then
 /// all roots up to sqrt(8 offset / K) count as one.
-OriginRoot judge_origin(const BezierPatch& patch, const SceneFrame& frame, const RayLine& line, const LeafRoot& root);
+///
+/// A root that is not the origin's on its own patch may be that of a neighbour, met again from beyond their border: where
+/// it reaches a border (root_places.h) of `borders`, if these are given, its place there is judged on the patch beyond, and
+/// on the others around a vertex or pole, by its distance from the ray there.
+OriginRoot judge_origin(const SetView& set, const Adjacency* borders, const SceneFrame& frame, const RayLine& line,
+                        const LeafRoot& root);
 
 }  // namespace tessera
