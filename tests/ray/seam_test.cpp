@@ -84,12 +84,13 @@ TEST(Seams, EachRootIsCountedOnce) {
     for (int power = 6; power <= 15; ++power) {
       for (int k = 0; k < 300; ++k)
         judge_count(scene, through(beside_seam(body.patches, random, std::pow(10.0, -power)), random, size), size,
-                    tally);
+                    body.smooth, tally);
     }
     EXPECT_GT(tally.decided, tally.rays / 2) << body.name;
     EXPECT_EQ(tally.wrong, 0u) << body.name;
     EXPECT_LE(tally.flagged, tally.rays / 500) << body.name;
     EXPECT_EQ(tally.not_first, 0u) << body.name;
+    EXPECT_LE(tally.pairs, tally.rays / 500) << body.name;
   }
 }
 

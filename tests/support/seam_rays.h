@@ -30,16 +30,18 @@ struct SeamTally {
   std::size_t rays = 0, decided = 0;  ///< the neighbours agree
   std::size_t wrong = 0;              ///< another count, no hit of which is flagged
   std::size_t flagged = 0;            ///< another count, and a flag says so
+  std::size_t pairs = 0;              ///< two or more further hits, an even number, all of them certified
   std::size_t not_first = 0;          ///< the closest hit is another than the first of all
 
   void add(const SeamTally& other) {
     rays += other.rays, decided += other.decided, wrong += other.wrong, flagged += other.flagged;
-    not_first += other.not_first;
+    not_first += other.not_first, pairs += other.pairs;
   }
 };
 
-/// Whether a ray has as many hits as its neighbours, and the first of them is the closest.
-inline void judge_count(const RayScene& scene, const Ray& ray, double size, SeamTally& tally) {
+/// Whether a ray has as many hits as its neighbours, and the first of them is the closest. Where a body has creases a ray
+/// may cross one that its neighbours pass by: it then meets the surface twice more, to the last digits.
+inline void judge_count(const RayScene& scene, const Ray& ray, double size, bool smooth, SeamTally& tally) {
   ++tally.rays;
   HitLists lists;
   const std::array<Ray, 7> rays = with_neighbours(ray, size);
@@ -59,7 +61,14 @@ inline void judge_count(const RayScene& scene, const Ray& ray, double size, Seam
     if (hits(k).size() != hits(1).size() || is_flagged(k)) return;
   }
   ++tally.decided;
-  if (hits(0).size() == hits(1).size()) return;
+  const std::size_t here = hits(0).size(), beside = hits(1).size();
+  if (here == beside) return;
+  const bool all_exact =
+      std::all_of(hits(0).begin(), hits(0).end(), [&](const Hit& hit) { return hit.residual <= 1e-14 * size; });
+  if (!smooth && here > beside && (here - beside) % 2 == 0 && all_exact && !is_flagged(0)) {
+    ++tally.pairs;
+    return;
+  }
   ++(is_flagged(0) ? tally.flagged : tally.wrong);
 }
 

@@ -112,6 +112,15 @@ struct RaySceneOptions {
   /// size; smaller ones than twice the bound on rounding (2e-12 of the size for bicubic patches, 9e-12 at degree 15,
   /// at the most; a third more after edits) are raised to that.
   std::optional<double> tolerance = {};
+  /// Exact mode: the box that takes the place of the set's wherever the scene's size and centre count; it holds the set's,
+  /// after edits too. Parts of a model, each in a scene of its own with the model's box and the other options alike, return
+  /// the numbers that the scene of the whole returns, to the last bit: the nearest of their closest hits is its closest hit.
+  /// A flag may be missing, `uncertified` where it is a neighbour that makes a hit unsure.
+  std::optional<Box3> box = {};
+  /// Exact mode: so many patches of the set, its first ones, are the scene's; those behind are neighbours, which decide
+  /// where a point at a border belongs, and are never hit themselves. Parts that have each the patches of the others that
+  /// share borders and corners with them return among them each hit of the whole, in all() as well, once. By default all.
+  std::optional<std::size_t> patches = {};
   /// Exact mode: makes ready for edits at once; else the first refit does, which then takes as long as a rebuild. Rays in a
   /// scene that follows edits take about a fifth longer.
   bool editable = false;
@@ -132,8 +141,8 @@ struct RayInstance {
 /// other.
 class RayScene {
  public:
-  /// Errors: invalid_argument (the rate, the pieces, the tolerance, rebuild_after), isa_unavailable, cancelled,
-  /// out_of_memory, internal (Embree's own), unsupported. Grid mode: unsupported are no float Bernstein blocks, a box with
+  /// Errors: invalid_argument (the rate, the pieces, the tolerance, the box, more patches than the set has, rebuild_after),
+  /// isa_unavailable, cancelled, out_of_memory, internal (Embree's own), unsupported. Grid mode: unsupported are no float Bernstein blocks, a box with
   /// a diagonal below 1e-9 or reaching further than 1e12 from the set's origin, more than 2^32 grid points. Exact mode:
   /// unsupported are a diagonal outside of 1e-140 to 1e140, 2^32 pieces.
   static Result<RayScene> make(const PatchSet& set, const RaySceneOptions& options = {},

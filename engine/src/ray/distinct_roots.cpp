@@ -249,6 +249,15 @@ class Sweeps {
   std::vector<Interval> intervals_;
 };
 
+/// Which of two that are the same stays: the one nearer to the line, and where both are as near, which is mostly the same
+/// point of a border, that of the patch whose numbers come first. The patches' order in the set says nothing.
+bool is_better(const SetView& set, const LeafRoot& a, const LeafRoot& b) {
+  if (a.residual != b.residual || a.patch == b.patch) return a.residual < b.residual;
+  const auto before = [](const Vec3& p, const Vec3& q) { return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z); };
+  const std::span<const Vec3> p = set.patch(a.patch).points(), q = set.patch(b.patch).points();
+  return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end(), before);
+}
+
 /// Up to so many each is compared with each.
 constexpr std::size_t few = 64;
 
@@ -273,7 +282,7 @@ void keep_distinct(const SetView& set, const Adjacency& adjacency, std::vector<L
     LeafRoot& first = roots[classes.leader(k)];
     const LeafRoot& here = roots[k];
     const double from = std::min(first.from, here.from);
-    if (here.residual < first.residual) first = here;
+    if (is_better(set, here, first)) first = here;
     first.from = from;
   }
   std::vector<bool> dropped(roots.size());

@@ -104,18 +104,16 @@ Result<EmbreeLeaves> EmbreeLeaves::make(Isa isa) {
   return EmbreeLeaves(std::move(state));
 }
 
-Status EmbreeLeaves::build(const SetView& set, const LeafNets& nets, const LazyAdjacency& borders, double tolerance,
-                           bool follows, const Execution& execution) {
+Status EmbreeLeaves::build(const TracedLeaves& leaves, bool follows, const Execution& execution) {
   State& state = *state_;
   state.scene.reset();
-  state.tracer.set = &set, state.tracer.nets = &nets, state.tracer.borders = &borders;
-  state.tracer.tolerance = tolerance;
+  static_cast<TracedLeaves&>(state.tracer) = leaves;
   RTCDevice device = state.device.get();
   state.geometry.reset(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER));
   Owned<RTCScene, SceneRelease> scene(rtcNewScene(device));
   RTCGeometry geometry = state.geometry.get();
   if (!geometry || !scene) return state.monitor.take();
-  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(nets.leaves().size()));
+  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(leaves.nets->leaves().size()));
   rtcSetGeometryUserData(geometry, &state);
   rtcSetGeometryBoundsFunction(geometry, &State::bounds, nullptr);
   rtcSetGeometryIntersectFunction(geometry, &State::intersect);

@@ -5,7 +5,6 @@
 #include <memory>
 #include <span>
 
-#include "ray/lazy_adjacency.h"
 #include "ray/leaf_nets.h"
 #include "ray/leaf_search.h"
 #include "ray/leaf_tracer.h"
@@ -27,12 +26,10 @@ class EmbreeLeaves {
   EmbreeLeaves& operator=(EmbreeLeaves&&) noexcept;
   ~EmbreeLeaves();
 
-  /// Builds the BVH, in the caller's arena. `set`, `nets` and `borders` must stay in place, and unchanged while the scene
-  /// is used, but for borders that are found meanwhile: rays that leave a surface are told from their origin's hit by them;
-  /// `tolerance` as of search_leaf. `follows`: refit() will be called; otherwise the nets' boxes may be dropped
-  /// afterwards. On errors the scene is empty. Errors: cancelled, Embree's own.
-  Status build(const SetView& set, const LeafNets& nets, const LazyAdjacency& borders, double tolerance, bool follows,
-               const Execution& execution);
+  /// Builds the BVH, in the caller's arena. What `leaves` refers to must stay in place, and unchanged while the scene is
+  /// used, but for borders, which may be found meanwhile. `follows`: refit() will be called; otherwise the nets' boxes may
+  /// be dropped afterwards. On errors the scene is empty. Errors: cancelled, Embree's own.
+  Status build(const TracedLeaves& leaves, bool follows, const Execution& execution);
   /// The boxes of the BVH that was built follow those of the nets. After an error the scene is empty. Errors: as above.
   Status refit(double tolerance, const Execution& execution);
 

@@ -35,6 +35,19 @@ static_assert(rays_a_turn <= EmbreeLeaves::packet);
 /// Rays of one turn; none where a ray is not valid or passes the scene by.
 using Queries = std::array<std::optional<RayQuery>, rays_a_turn>;
 
+/// Written so that NaN fails.
+bool holds(const Box3& box, const Box3& inside) {
+  const Vec3 &a = box.lower, &b = inside.lower, &c = inside.upper, &d = box.upper;
+  return a.x <= b.x && a.y <= b.y && a.z <= b.z && c.x <= d.x && c.y <= d.y && c.z <= d.z;
+}
+
+std::string text_of(const Box3& box) {
+  const auto text = [](const Vec3& p) {
+    return "(" + std::to_string(p.x) + ", " + std::to_string(p.y) + ", " + std::to_string(p.z) + ")";
+  };
+  return text(box.lower) + " to " + text(box.upper);
+}
+
 /// Rays that pass near each other and run nearly the same way are worth a packet.
 bool coherent(std::span<RayQuery* const> queries) {
   const RayLine& first = queries.front()->line;
@@ -76,6 +89,8 @@ class ExactScene final : public PatchScene, private ExactSource {
   double size() const override { return size_; }
   Result<Hit> resolve(const Ray& ray, std::uint32_t patch, double u, double v) const override;
   using PatchScene::resolve;
+  Result<Box3> frame_box() const;
+  std::size_t own_patches() const { return options_.patches.value_or(set().patch_count()); }
   double measure();
   template <class Done>
   void trace_all(std::span<const Ray> rays, RootsWanted wanted, const Done& done) const;
@@ -91,48 +106,64 @@ class ExactScene final : public PatchScene, private ExactSource {
   RaySceneOptions options_;
   mutable SearchPool pool_;
   SceneFrame frame_;
-  Box3 box_, scene_box_;  // of the leaves' control points, in the model's and the scene's coordinates
+  Box3 box_,
+      scene_box_;  // of the leaves' control points, in the model's coordinates; of all that is met, in the scene's
   double size_ = 0;
   bool follows_;     // what stands can be updated
   int updates_ = 0;  // since the last build
 };
 
+/// What size and centre are taken from.
+Result<Box3> ExactScene::frame_box() const {
+  const Box3 box = set().box();
+  if (!options_.box) return box;
+  if (!holds(*options_.box, box))
+    return Status(StatusCode::invalid_argument, "the box of a ray scene, " + text_of(*options_.box) +
+                                                    ", must hold that of the patch set, " + text_of(box));
+  return *options_.box;
+}
+
 /// Boxes of all pieces as they stand. Returns the tolerance.
 double ExactScene::measure() {
   scene_box_ = {};
-  int degree_u = 1, degree_v = 1;
   for (const Box3& leaf_box : nets_.boxes()) scene_box_.extend(leaf_box);
-  for (const Leaf& leaf : nets_.leaves()) {
-    degree_u = std::max<int>(degree_u, leaf.degree_u), degree_v = std::max<int>(degree_v, leaf.degree_v);
-  }
   box_ = {frame_.to_model(scene_box_.lower), frame_.to_model(scene_box_.upper)};
-  const double asked = options_.tolerance.value_or(default_tolerance * size_) * frame_.scale;
-  return std::max(asked, 2 * search_rounding(degree_u, degree_v, nets_.most_halvings(), SearchSpace::most_depth));
+  const double tolerance = options_.tolerance.value_or(default_tolerance * size_) * frame_.scale;
+  const double least = 2 * search_rounding(max_degree, max_degree, nets_.most_halvings(), SearchSpace::most_depth);
+  const double reach = std::max(tolerance, least);
+  scene_box_.lower += Vec3{-reach, -reach, -reach}, scene_box_.upper += Vec3{reach, reach, reach};
+  return tolerance;
 }
 
 Status ExactScene::build(const Execution& execution) {
-  const Box3 box = set().box();
-  size_ = box.diagonal();
+  const Result<Box3> box = frame_box();
+  if (!box) return box.status();
+  if (own_patches() > set().patch_count())
+    return Status(StatusCode::invalid_argument, "a ray scene of " + std::to_string(own_patches()) +
+                                                    " patches of a set of " + std::to_string(set().patch_count()));
+  size_ = box->diagonal();
   if (!(size_ >= smallest_size && size_ <= largest_size))
     return Status(StatusCode::unsupported,
                   "an exact ray scene holds models of a size from 1e-140 to 1e140: scale the model");
-  frame_ = SceneFrame::around(box);
+  frame_ = SceneFrame::around(*box);
   updates_ = 0;
   adjacency_.forget();
   if (Status status = nets_.build(set(), frame_, options_.pieces, execution); !status.ok()) return status;
   if (nets_.leaves().size() > most_leaves)
     return Status(StatusCode::unsupported, "more than the 2^32 - 1 pieces of patches of one ray scene");
-  if (Status status = scene_.build(set(), nets_, adjacency_, measure(), follows_, execution); !status.ok())
-    return status;
+  const TracedLeaves leaves{&set(), &nets_, &adjacency_, own_patches(), measure()};
+  if (Status status = scene_.build(leaves, follows_, execution); !status.ok()) return status;
   if (!follows_) nets_.drop_boxes();
   return {};
 }
 
 Status ExactScene::update(std::uint64_t since, const Execution& execution) {
   const bool stood = std::exchange(follows_, true);
-  const Box3 box = set().box();
-  if (!stood || !frame_.holds(box) || ++updates_ == options_.rebuild_after) return build(execution);
-  size_ = box.diagonal();
+  const Result<Box3> box = frame_box();
+  if (!box) return box.status();
+  const bool has_frame = options_.box || frame_.holds(*box);
+  if (!stood || !has_frame || ++updates_ == options_.rebuild_after) return build(execution);
+  size_ = box->diagonal();
   adjacency_.forget();
   if (Status status = nets_.update(set(), set().edited_since(since), execution); !status.ok()) return status;
   return scene_.refit(measure(), execution);
@@ -172,7 +203,9 @@ Result<Hit> ExactScene::resolve(const Ray& ray, std::uint32_t patch, double u, d
   const LeafRoot root = nearest_to_ray(set().patch(patch), frame_, along, patch, u, v);
   Hit hit = hit_at(along, root);
   hit.flags.uncertified = hit.flags.tangential = hit.flags.within_tolerance = false;
-  hit.flags.unrefined = !(root.residual <= tracer().tolerance);
+  const int degree_u = set().patch(patch).degree_u(), degree_v = set().patch(patch).degree_v();
+  const double rounding = search_rounding(degree_u, degree_v, nets_.most_halvings(), SearchSpace::most_depth);
+  hit.flags.unrefined = !(root.residual <= std::max(tracer().tolerance, 2 * rounding));
   return hit;
 }
 
@@ -262,6 +295,7 @@ void ExactScene::trace(RayQuery& query) const {
 void ExactScene::hits_of(RayQuery& query, std::vector<Hit>& hits) const {
   keep_distinct(set(), adjacency_.of(set()), query.roots);
   for (const LeafRoot& root : query.roots) {
+    if (root.patch >= own_patches()) continue;
     hits.push_back(hit_at(query.line, root));
     hits.back().t = query.t_of(root);
     hits.back().flags.incomplete = query.incomplete;

@@ -118,10 +118,12 @@ class LeafSearch {
 
   NetValue value(const double* net, NetPoint at) const { return evaluate<Rational>(shape_, net, at.u, at.v); }
 
-  /// Every point within the tolerance of the ray, and either all in reach or all at one place.
+  /// Every point within the tolerance of the ray, and either all on it or all at one place. What was met before doesn't
+  /// count: the part is the same one whichever is searched first.
   bool lies_on_ray(const Extent& extent) const {
     if (std::max(extent.x.largest(), extent.y.largest()) > tolerance_) return false;
-    return (extent.z.low >= query_.near && extent.z.high <= query_.far) || extent.z.high - extent.z.low <= tolerance_;
+    const bool between = extent.z.low >= query_.near && extent.z.high <= query_.line.far + query_.line.slack;
+    return between || extent.z.high - extent.z.low <= tolerance_;
   }
   bool is_small(const Extent& extent) const {
     return std::max({extent.x.radius(), extent.y.radius(), extent.z.radius()}) <= 0.5 * extent_;

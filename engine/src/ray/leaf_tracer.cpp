@@ -69,9 +69,15 @@ void QueryPacket::set_idle(std::size_t lane) {
   rays.near[lane] = 1, rays.far[lane] = 0;
 }
 
+double TracedLeaves::tolerance_of(const Leaf& leaf) const {
+  return std::max(tolerance,
+                  2 * search_rounding(leaf.degree_u, leaf.degree_v, leaf.halvings(), SearchSpace::most_depth));
+}
+
 void LeafTracer::search(unsigned leaf_index, kernel::RayProbe& probe, RayQuery& query, SearchSpace& space) const {
   fetch(&nets->local(leaf_index), kernel::ray_leaf_bytes(false));
   const Leaf& leaf = nets->leaves()[leaf_index];
+  if (leaf.patch >= patches && query.wanted != RootsWanted::all) return;
   probe.far = probe_far(query);
   ++query.steps;
   if (query.line.spawn > 0) query.origin = this;
@@ -81,10 +87,11 @@ void LeafTracer::search(unsigned leaf_index, kernel::RayProbe& probe, RayQuery& 
     return;
   }
   nets->write_net(*set, leaf, space.leaf_net(), space.spare_net());
-  search_leaf(leaf, space.leaf_net(), tolerance, space, query);
+  search_leaf(leaf, space.leaf_net(), tolerance_of(leaf), space, query);
 }
 
 void LeafTracer::search(unsigned leaf_index, QueryPacket& packet, unsigned lanes, SearchSpace& space) const {
+  if (nets->leaves()[leaf_index].patch >= patches) return;  // packets never ask for all roots
   unsigned open = kernels->packets == nullptr ? lanes : decide(leaf_index, packet, lanes);
   for (std::size_t lane = 0; open != 0; ++lane, open >>= 1) {
     if (open & 1u) search(leaf_index, packet.probes[lane], *packet.queries[lane], space);

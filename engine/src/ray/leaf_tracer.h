@@ -29,13 +29,21 @@ struct QueryPacket {
   void set_idle(std::size_t lane);
 };
 
-/// Refers to what it is made of. Const calls from any number of threads, each with a search space of its own.
-struct LeafTracer final : OriginTest {
+/// What is traced.
+struct TracedLeaves {
   const SetView* set = nullptr;
   const LeafNets* nets = nullptr;
   const LazyAdjacency* borders = nullptr;  ///< across which roots of rays that leave a surface are followed, once found
+  std::size_t patches = 0;                 ///< those from here on are neighbours, whose roots count for all hits alone
+  double tolerance = 0;                    ///< as asked for, in the scene's coordinates
+
+  /// That of search_leaf: no less than rounding allows.
+  double tolerance_of(const Leaf& leaf) const;
+};
+
+/// Refers to what it is made of. Const calls from any number of threads, each with a search space of its own.
+struct LeafTracer final : OriginTest, TracedLeaves {
   const kernel::RayKernels* kernels = nullptr;
-  double tolerance = 0;  ///< as of search_leaf
 
   /// Adds to the query what it wants of a leaf. `probe`: of the query, used again from leaf to leaf.
   void search(unsigned leaf, kernel::RayProbe& probe, RayQuery& query, SearchSpace& space) const;

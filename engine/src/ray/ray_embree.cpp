@@ -29,7 +29,7 @@ void bounds(const RTCBoundsFunctionArguments* arguments) {
     low = box.lower, high = box.upper;
   } catch (...) {  // no memory; Embree knows no exceptions
   }
-  const double pad = tracer.tolerance + 1e-12;
+  const double pad = tracer.tolerance_of(tracer.nets->leaves()[arguments->primID]) + 1e-12;
   low = frame.to_model(low - Vec3{pad, pad, pad}), high = frame.to_model(high + Vec3{pad, pad, pad});
   const double rounding = 4 * std::numeric_limits<double>::epsilon() * std::max(max_abs(low), max_abs(high));
   const auto below = [&](double x) { return std::nextafter(static_cast<float>(x - rounding), -infinity); };

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <tuple>
 #include <vector>
 
 #include "ray/ray_line.h"
@@ -77,6 +78,11 @@ inline double least_normal(double x) {
   return std::bit_cast<std::uint64_t>(x) - 1 < std::bit_cast<std::uint64_t>(least) - 1 ? least : x;
 }
 
+/// Along the line. A point that patches or pieces share is that of the first of them, whichever was searched first.
+inline bool comes_before(const LeafRoot& a, const LeafRoot& b) {
+  return a.s < b.s || (a.s == b.s && std::tie(a.patch, a.u, a.v) < std::tie(b.patch, b.u, b.v));
+}
+
 struct RayQuery {
   RayQuery(const Ray& of, const RayLine& along, RootsWanted which)
       : ray(of),
@@ -119,7 +125,7 @@ struct RayQuery {
       } catch (...) {  // called from Embree, which knows no exceptions
         overflow = true;
       }
-    } else if (!found || root.s < best.s) {
+    } else if (!found || comes_before(root, best)) {
       best = root;
       far = std::min(far, root.s);
     }
