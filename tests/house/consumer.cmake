@@ -122,7 +122,7 @@ if(WAY STREQUAL "package")
   run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix} ${config})
   check_package(${prefix})
   if(PYTHON)
-    foreach(guide tessellation-backend ray-hits tracking-speed)
+    foreach(guide tessellation-backend ray-hits renderer tracking-speed)
       run(${PYTHON} ${SOURCE}/tests/house/guides.py ${SOURCE}/docs/${guide}.md ${WORK}/${guide} ${prefix} ${CMAKE_COMMAND}
         ${GENERATOR} ${COMPILER})
     endforeach()
