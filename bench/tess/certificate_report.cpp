@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "report_arguments.h"
 #include "support/synthetic_sets.h"
 #include "support/true_distance.h"
 #include "tess/certificate_sets.h"
-#include "tess/report_arguments.h"
 #include "tessera/certified_tessellation.h"
 #include "tessera/io.h"
 

@@ -4,16 +4,12 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <set>
 #include <string>
 #include <vector>
 
+#include "model_files.h"
+#include "report_arguments.h"
 #include "support/crack_survey.h"
-#include "tess/report_arguments.h"
-#include "tessera/io.h"
-#ifdef TESSERA_HAS_IO_OCCT
-#include "tessera/io_occt.h"
-#endif
 
 namespace {
 
@@ -26,27 +22,6 @@ constexpr char usage[] =
     "Exit status 1 if there is a crack.\n";
 constexpr double tolerances[] = {1e-2, 3e-3, 1e-3, 3e-4, 1e-4};
 constexpr std::uint64_t most_triangles = 500000;
-
-bool is_cad(const std::filesystem::path& path) {
-#ifdef TESSERA_HAS_IO_OCCT
-  return is_cad_file(path);
-#else
-  (void)path;
-  return false;
-#endif
-}
-
-bool is_model(const std::filesystem::path& path) {
-  static const std::set<std::string> known{".bpt", ".bv", ".g2", ".json", ".obj", ".rib"};
-  return known.contains(path.extension().string()) || is_cad(path);
-}
-
-Result<Model> read(const std::filesystem::path& path) {
-#ifdef TESSERA_HAS_IO_OCCT
-  if (is_cad_file(path)) return read_cad(path);
-#endif
-  return read_model(path);
-}
 
 /// A cell of the table: triangles, and what is wrong.
 std::string cell(const test::CrackCount& count) {
@@ -66,8 +41,8 @@ class Report {
   explicit Report(bool fewest) : fewest_(fewest) {}
 
   void survey(const std::filesystem::path& path) {
-    const std::string name = path.parent_path().filename().string() + "/" + path.filename().string();
-    const Result<Model> model = read(path);
+    const std::string name = bench::short_name(path);
+    const Result<Model> model = bench::read(path);
     const Result<PatchSet> set = model ? make_patch_set(*model) : Result<PatchSet>(model.status());
     if (!set) return skip(name, set.status());
     std::string row;
@@ -110,15 +85,6 @@ class Report {
 
 int main(int argc, char** argv) {
   const bench::ReportArguments asked(argc, argv, usage);
-  std::vector<std::filesystem::path> named(asked.models.begin(), asked.models.end());
-  if (named.empty()) named.push_back(std::filesystem::path(TESSERA_SOURCE_DIR) / "tools" / "models");
-  std::set<std::filesystem::path> files;
-  for (const std::filesystem::path& path : named) {
-    if (!std::filesystem::is_directory(path)) files.insert(path);
-    if (std::filesystem::is_directory(path))
-      for (const auto& entry : std::filesystem::recursive_directory_iterator(path))
-        if (is_model(entry.path())) files.insert(entry.path());
-  }
   std::printf("%-52s %7s %7s %6s %6s", "model", "patches", "borders", "multi", "T");
   for (const double tolerance : tolerances) std::printf("%12.0e", tolerance);
   std::printf(
@@ -126,6 +92,6 @@ int main(int argc, char** argv) {
       "mesh; then "
       "triangles by tolerance, a share of the size, < where only so many were allowed)\n");
   Report report(asked.fewest);
-  for (const std::filesystem::path& path : files) report.survey(path);
+  for (const std::filesystem::path& path : bench::model_files(asked.models)) report.survey(path);
   return report.finish() ? 0 : 1;
 }

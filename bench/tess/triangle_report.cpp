@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "report_arguments.h"
 #include "support/synthetic_sets.h"
 #include "support/triangle_distance.h"
 #include "tess/certified_tessellation_impl.h"
-#include "tess/report_arguments.h"
 #include "tessera/certified_tessellation.h"
 #include "tessera/io.h"
 

@@ -1,0 +1,56 @@
+#pragma once
+// The models that reports are asked for: files, or all files below a folder.
+
+#include <filesystem>
+#include <set>
+#include <span>
+
+#include "tessera/io.h"
+#ifdef TESSERA_HAS_IO_OCCT
+#include "tessera/io_occt.h"
+#endif
+
+namespace tessera::bench {
+
+inline bool is_cad(const std::filesystem::path& path) {
+#ifdef TESSERA_HAS_IO_OCCT
+  return is_cad_file(path);
+#else
+  (void)path;
+  return false;
+#endif
+}
+
+/// By the ending of its name.
+inline bool is_model(const std::filesystem::path& path) {
+  static const std::set<std::string> known{".bpt", ".bv", ".g2", ".json", ".obj", ".rib"};
+  return known.contains(path.extension().string()) || is_cad(path);
+}
+
+inline Result<Model> read(const std::filesystem::path& path) {
+#ifdef TESSERA_HAS_IO_OCCT
+  if (is_cad_file(path)) return read_cad(path);
+#endif
+  return read_model(path);
+}
+
+/// In the order of their names; of the project's own where none is named.
+inline std::set<std::filesystem::path> model_files(std::span<const char* const> named) {
+  std::set<std::filesystem::path> files;
+  const auto add = [&](const std::filesystem::path& path) {
+    if (!std::filesystem::is_directory(path)) files.insert(path);
+    if (std::filesystem::is_directory(path))
+      for (const auto& entry : std::filesystem::recursive_directory_iterator(path))
+        if (is_model(entry.path())) files.insert(entry.path());
+  };
+  for (const char* path : named) add(path);
+  if (named.empty()) add(std::filesystem::path(TESSERA_SOURCE_DIR) / "tools" / "models");
+  return files;
+}
+
+/// Folder and file.
+inline std::string short_name(const std::filesystem::path& path) {
+  return path.parent_path().filename().string() + "/" + path.filename().string();
+}
+
+}  // namespace tessera::bench
