@@ -105,8 +105,9 @@ struct RaySceneOptions {
   int rate = 8;                   ///< grid mode: grid segments a patch and direction, 1 to 4096
   bool refine = true;             ///< grid mode: false leaves hits on the facets (for comparison)
   std::optional<Isa> isa = {};    ///< the hits of exact mode are those of every one, up to rounding
-  int pieces = 1;                 ///< exact mode: pieces a patch and direction, 1, 2, 4 or 8; more for patches that are
-                                  ///< strongly bent or long and thin, up to 8 and 64
+  /// Exact mode: pieces a patch and direction at least, 1, 2, 4 or 8. Patches that are bent, twisted or much longer than wide
+  /// are cut into more, up to 64 a direction, by their own shape alone.
+  int pieces = 1;
   /// Exact mode: how far from the ray a point that is returned may lie, in the model's unit; above 0. It counts where
   /// the ray touches the surface or passes a border: there points within it may be hits. By default 2e-12 of the set's
   /// size; smaller ones than twice the bound on rounding (2e-12 of the size for bicubic patches, 9e-12 at degree 15,

@@ -35,7 +35,7 @@ class LeafTrace {
           --size;
           break;
         case RayStep::root:
-          if (ray_.any) return true;
+          if (ray_.any && is_last_inside(roots)) return true;
           --size;
           break;
         case RayStep::narrow:
@@ -56,6 +56,14 @@ class LeafTrace {
   static constexpr int most_visits = 24, stack_size = 8;
   static constexpr float epsilon = 0x1p-24f;
   static constexpr int step = Rational ? 4 : 3;
+
+  /// Makes it the first where it is.
+  static bool is_last_inside(RayRoots& roots) {
+    const RayRoot last = roots.root[roots.count - 1];
+    if (last.at_border) return false;
+    roots.root[roots.count - 1] = roots.root[0], roots.root[0] = last;
+    return true;
+  }
 
   /// The ray in the piece's coordinates and the rectangle where its roots lie, wherever the ray begins and ends: what is
   /// found of a root does not depend on that. False where it passes the box by.
@@ -195,9 +203,11 @@ class LeafTrace {
         both.v1 < -0.5f)
       return RayStep::leave;
     const bool unique = bu <= 0.45f * m.ru && bv <= 0.45f * m.rv;
-    if (unique && image.u0 >= max_of(box.u0, -0.5f) && image.u1 <= min_of(box.u1, 0.5f) &&
-        image.v0 >= max_of(box.v0, -0.5f) && image.v1 <= min_of(box.v1, 0.5f))
-      return add_root(m, at, du, dv, bu, bv, roots);
+    if (unique && image.u0 >= box.u0 && image.u1 <= box.u1 && image.v0 >= box.v0 && image.v1 <= box.v1) {
+      const bool inside = image.u0 >= -0.5f && image.u1 <= 0.5f && image.v0 >= -0.5f && image.v1 <= 0.5f;
+      const bool narrow = bu + bv < 1.0f / 128 || m.ef + m.eg < 8 * m.noise;  // a border hardly leaves a smaller one
+      if (inside || narrow) return add_root(m, at, {du, dv, bu, bv}, !inside, roots);
+    }
     if (!unique && m.ef + m.eg < 4 * m.noise) return RayStep::open;
     const bool narrower = both.u1 - both.u0 < 1.2f * m.ru || both.v1 - both.v0 < 1.2f * m.rv;
     box = both;
@@ -229,19 +239,23 @@ class LeafTrace {
     }
   }
 
-  RayStep add_root(const Model& m, const Value& at, float du, float dv, float bu, float bv, RayRoots& roots) const {
+  /// From the middle to the root, and how far it may be off.
+  struct Step {
+    float du, dv, bu, bv;
+  };
+
+  RayStep add_root(const Model& m, const Value& at, const Step& to, bool at_border, RayRoots& roots) const {
     if (roots.count == RayRoots::most) return RayStep::open;
-    float along = at.q[m_] + at.qu[m_] * du + at.qv[m_] * dv;
-    float error = m.rest_m + magnitude(at.qu[m_]) * bu + magnitude(at.qv[m_]) * bv + 2 * leaf_.noise;
+    float along = at.q[m_] + at.qu[m_] * to.du + at.qv[m_] * to.dv;
+    float error = m.rest_m + magnitude(at.qu[m_]) * to.bu + magnitude(at.qv[m_]) * to.bv + 2 * leaf_.noise;
     if constexpr (Rational) {
-      along /= at.q[3] + at.qu[3] * du + at.qv[3] * dv;
-      error += magnitude(along) * (m.rest_w + magnitude(at.qu[3]) * bu + magnitude(at.qv[3]) * bv);
+      along /= at.q[3] + at.qu[3] * to.du + at.qv[3] * to.dv;
+      error += magnitude(along) * (m.rest_w + magnitude(at.qu[3]) * to.bu + magnitude(at.qv[3]) * to.bv);
       error /= leaf_.lightest;
     }
-    RayRoot& root = roots.root[roots.count];
-    root = {m.u + du, m.v + dv, shift_ + along * inverse_, bu, bv, 1.01f * error * magnitude(inverse_) + 2e-6f};
-    if (root.s - root.s_error > ray_.far || root.s + root.s_error < ray_.near) return RayStep::leave;
-    ++roots.count;
+    const float s = shift_ + along * inverse_, s_error = 1.01f * error * magnitude(inverse_) + 2e-6f;
+    if (s - s_error > ray_.far || s + s_error < ray_.near) return RayStep::leave;
+    roots.root[roots.count++] = {m.u + to.du, m.v + to.dv, s, to.bu, to.bv, s_error, at_border};
     return RayStep::root;
   }
 

@@ -7,8 +7,8 @@ namespace tessera::kernel {
 
 /// A piece of a patch in coordinates of its own: x -> axis[.] (x - centre), in which the piece is nearly (u, v, 0), with
 /// u and v in [-1/2, 1/2]. Its coefficients follow it in memory, those of u^i v^j for i and j up to 3, `[i][j]`: three
-/// a point, or four where it is rational, homogeneous. All bounds below hold for |u|, |v| <= reach, of homogeneous
-/// values, and for the piece as it is in double.
+/// a point, or four where it is rational, homogeneous; a piece of higher degree is off from them by no more than the noise.
+/// All bounds below hold for |u|, |v| <= reach, of homogeneous values, and for the piece as it is in double.
 struct alignas(32) RayLeaf {
   static constexpr float reach = 0.5f + 1.0f / 32;
 
@@ -21,7 +21,7 @@ struct alignas(32) RayLeaf {
   float axis_z[3];
   float spread;              ///< bounds |coordinate - u| and |coordinate - v|
   float lower[4], upper[4];  ///< the box in these coordinates, padded by the noise; the last mean nothing
-  float bend_uu[4], bend_uv[4], bend_vv[4];  ///< bounds of the second derivatives, the weight's last
+  float bend_uu[4], bend_uv[4], bend_vv[4];  ///< bounds of the coefficients' second derivatives, the weight's last
 
   const float* coefficients() const { return reinterpret_cast<const float*>(this + 1); }
   float* coefficients() { return reinterpret_cast<float*>(this + 1); }
@@ -45,9 +45,11 @@ struct alignas(64) RayPacket {
   float u[size], v[size], s[size], radius_u[size], radius_v[size], s_error[size];
 };
 
-/// One root and no other in u +- radius_u, v +- radius_v, inside the piece; s to s_error.
+/// One root and no other in u +- radius_u, v +- radius_v; s to s_error. Inside the piece, but for one that is `at_border`:
+/// that may lie beyond the border, and the piece then has none thereabouts.
 struct RayRoot {
   float u, v, s, radius_u, radius_v, s_error;
+  bool at_border = false;
 };
 
 struct RayRoots {
@@ -126,8 +128,8 @@ struct RayPacketKernels {
 struct RayKernels {
   /// Null where vectors are too short to pay, or have no fused multiply-add.
   const RayPacketKernels* packets;
-  /// All roots of the piece on the ray with s in [near, far] (and perhaps others a rounding outside of that), or the first
-  /// that is met where any will do. False: undecided, whatever `roots` holds.
+  /// All roots of the piece on the ray with s in [near, far] (and perhaps others a rounding outside of that). Where any will
+  /// do and one is met inside, that is the first, and others may be left out. False: undecided, whatever `roots` holds.
   bool (*trace_polynomial_leaf)(const RayLeaf& leaf, const RayProbe& ray, RayRoots& roots);
   bool (*trace_rational_leaf)(const RayLeaf& leaf, const RayProbe& ray, RayRoots& roots);
   /// Position less `origin` and both derivatives of a bicubic patch at (u,v) in [0,1]^2, from its control points x y z

@@ -163,8 +163,10 @@ class PacketTrace {
     const Batch du = -(m.gv * m.f - m.fv * m.g) * inverse, dv = -(m.fu * m.g - m.gu * m.f) * inverse;
     const Batch u0 = m.u + du - bu, u1 = m.u + du + bu, v0 = m.v + dv - bv, v1 = m.v + dv + bv;
     const Where unique = (bu <= Batch(0.45f) * m.ru) & (bv <= Batch(0.45f) * m.rv);
-    const Where inside = unique & (u0 >= xsimd::max(low_[0], -half)) & (u1 <= xsimd::min(high_[0], half)) &
-                         (v0 >= xsimd::max(low_[1], -half)) & (v1 <= xsimd::min(high_[1], half));
+    const Where proven = unique & (u0 >= low_[0]) & (u1 <= high_[0]) & (v0 >= low_[1]) & (v1 <= high_[1]);
+    const Where inside = proven & (u0 >= -half) & (u1 <= half) & (v0 >= -half) & (v1 <= half);
+    const Where narrow = (bu + bv < Batch(1.0f / 128)) | (m.ef + m.eg < Batch(8.0f) * m.noise);
+    const Where at_border = proven & !inside & narrow;  // each ray alone decides that in double
     low_[0] = xsimd::max(low_[0], u0), high_[0] = xsimd::min(high_[0], u1);
     low_[1] = xsimd::max(low_[1], v0), high_[1] = xsimd::min(high_[1], v1);
     const Where outside = (low_[0] > high_[0]) | (low_[1] > high_[1]) | (low_[0] > half) | (high_[0] < -half) |
@@ -174,7 +176,7 @@ class PacketTrace {
     add_roots(m, ends, du, dv, bu, bv);
     const Where narrower = (high_[0] - low_[0] < Batch(1.2f) * m.ru) | (high_[1] - low_[1] < Batch(1.2f) * m.rv);
     const Where resolves = m.ef + m.eg >= Batch(4.0f) * m.noise;  // where not, smaller rectangles say no more
-    return open & regular & !leaves & !inside & (unique | (narrower & resolves));
+    return open & regular & !leaves & !inside & !at_border & (unique | (narrower & resolves));
   }
 
   void add_roots(const Model& m, Where where, Batch du, Batch dv, Batch bu, Batch bv) {

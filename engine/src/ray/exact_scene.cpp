@@ -29,6 +29,7 @@ namespace {
 constexpr double smallest_size = 1e-140, largest_size = 1e140;  // squares of lengths stay normal numbers
 constexpr double default_tolerance = 2e-12;                     // of the size
 constexpr std::size_t most_leaves = 0xffffffff;
+constexpr double most_bend = 1;  // of a piece's length
 constexpr std::size_t rays_a_turn = RayTurn::size, least_in_packet = 6, least_in_turn = 4;
 static_assert(rays_a_turn <= EmbreeLeaves::packet);
 
@@ -91,6 +92,7 @@ class ExactScene final : public PatchScene, private ExactSource {
   using PatchScene::resolve;
   Result<Box3> frame_box() const;
   std::size_t own_patches() const { return options_.patches.value_or(set().patch_count()); }
+  Flatness flatness() const { return {std::ilogb(static_cast<double>(options_.pieces)), most_bend}; }
   double measure();
   template <class Done>
   void trace_all(std::span<const Ray> rays, RootsWanted wanted, const Done& done) const;
@@ -129,7 +131,7 @@ double ExactScene::measure() {
   for (const Box3& leaf_box : nets_.boxes()) scene_box_.extend(leaf_box);
   box_ = {frame_.to_model(scene_box_.lower), frame_.to_model(scene_box_.upper)};
   const double tolerance = options_.tolerance.value_or(default_tolerance * size_) * frame_.scale;
-  const double least = 2 * search_rounding(max_degree, max_degree, nets_.most_halvings(), SearchSpace::most_depth);
+  const double least = 2 * search_rounding(max_degree, max_degree, Leaf::most_halvings, SearchSpace::most_depth);
   const double reach = std::max(tolerance, least);
   scene_box_.lower += Vec3{-reach, -reach, -reach}, scene_box_.upper += Vec3{reach, reach, reach};
   return tolerance;
@@ -148,7 +150,7 @@ Status ExactScene::build(const Execution& execution) {
   frame_ = SceneFrame::around(*box);
   updates_ = 0;
   adjacency_.forget();
-  if (Status status = nets_.build(set(), frame_, options_.pieces, execution); !status.ok()) return status;
+  if (Status status = nets_.build(set(), frame_, flatness(), execution); !status.ok()) return status;
   if (nets_.leaves().size() > most_leaves)
     return Status(StatusCode::unsupported, "more than the 2^32 - 1 pieces of patches of one ray scene");
   const TracedLeaves leaves{&set(), &nets_, &adjacency_, own_patches(), measure()};
@@ -204,7 +206,7 @@ Result<Hit> ExactScene::resolve(const Ray& ray, std::uint32_t patch, double u, d
   Hit hit = hit_at(along, root);
   hit.flags.uncertified = hit.flags.tangential = hit.flags.within_tolerance = false;
   const int degree_u = set().patch(patch).degree_u(), degree_v = set().patch(patch).degree_v();
-  const double rounding = search_rounding(degree_u, degree_v, nets_.most_halvings(), SearchSpace::most_depth);
+  const double rounding = search_rounding(degree_u, degree_v, Leaf::most_halvings, SearchSpace::most_depth);
   hit.flags.unrefined = !(root.residual <= std::max(tracer().tolerance, 2 * rounding));
   return hit;
 }

@@ -27,14 +27,23 @@ struct Leaf {
 
   int size() const { return (degree_u + 1) * (degree_v + 1); }
   int components() const { return rational ? 4 : 3; }
-  int halvings() const { return halvings_u + halvings_v; }
+  /// How much its net is rounded (LeafNets::write_net), in halvings.
+  int halvings() const;
+  static constexpr int most_halvings = 6;  ///< of that
 };
+
+/// How flat the pieces are to be.
+struct Flatness {
+  int halvings = 0;      ///< of each side, at least
+  double most_bend = 1;  ///< PatchCutter::flatten
+};
+
+class PatchCutter;
 
 class LeafNets {
  public:
-  /// Cuts every patch into at least `pieces` x `pieces` (a power of two), more along sides that are strongly bent or much
-  /// longer than the others, so that the pieces are nearly flat and roughly square. Errors: cancelled, out_of_memory.
-  Status build(const SetView& set, const SceneFrame& frame, int pieces, const Execution& execution);
+  /// Cuts every patch by itself, so that the pieces are nearly flat and roughly square. Errors: cancelled, out_of_memory.
+  Status build(const SetView& set, const SceneFrame& frame, const Flatness& flatness, const Execution& execution);
   /// The pieces of these patches anew, with their boxes, which must not have been dropped. Patches are cut as they were
   /// when they were built, however they bend now. After an error some pieces are as they were. Errors: cancelled,
   /// out_of_memory.
@@ -49,24 +58,20 @@ class LeafNets {
   void drop_boxes() { boxes_ = {}; }
   /// The box of one leaf, whether they are dropped or not. `set`: as it was built from.
   Box3 box(const SetView& set, std::size_t leaf) const;
-  /// The net of homogeneous coefficients w (x, y, z), w, `[component][i][j]`; w is left out of polynomial pieces, else the
-  /// largest weight of a patch is scaled by a power of two to [1, 2). `other`: of the same size, is written as well.
-  /// `set`: as it was built from.
+  /// The piece's part of write_patch(). `other`: of the same size, is written as well. `set`: as it was built from.
   void write_net(const SetView& set, const Leaf& leaf, double* net, double* other) const;
   const SceneFrame& frame() const { return frame_; }
   /// Values in the largest net.
   std::size_t largest() const { return largest_; }
-  int most_halvings() const { return most_halvings_; }
   std::size_t memory_bytes() const {
     return leaves_.capacity() * sizeof(Leaf) + boxes_.capacity() * sizeof(Box3) + local_.capacity();
   }
 
  private:
   struct Plan;
-  std::vector<Plan> plan(const SetView& set, int pieces);
+  Result<std::vector<Plan>> plan(const SetView& set, const Flatness& flatness, const Execution& execution);
   Plan plan_of(std::uint32_t patch) const;
-  void cut(const BezierPatch& patch, std::uint32_t index, const Plan& plan, std::vector<double>& nets,
-           std::vector<double>& halves);
+  void cut(const BezierPatch& patch, std::uint32_t index, const Plan& plan, PatchCutter& cutter);
 
   SceneFrame frame_;
   std::vector<Leaf> leaves_;
@@ -74,7 +79,6 @@ class LeafNets {
   UnsetVector<std::byte> local_;
   std::size_t local_bytes_ = 0;
   std::size_t largest_ = 0;
-  int most_halvings_ = 0;
 };
 
 }  // namespace tessera

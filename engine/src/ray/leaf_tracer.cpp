@@ -189,27 +189,36 @@ bool LeafTracer::decide(const Leaf& leaf, unsigned leaf_index, kernel::RayProbe&
   if (!probe.any) fetch_patch(*set, leaf);
   if (!trace(local, probe, roots)) return false;
   if (roots.count == 0) return true;
-  if (probe.any) {
+  if (probe.any && !roots.root[0].at_border) {
     query.found = lies_between(roots.root[0], query.line);
     if (query.found) return true;
     probe.any = false;  // that one is next to an end: all must be looked at
     if (!trace(local, probe, roots)) return false;
   }
-  const auto polished = [&](int k, LeafRoot& root) {
+  return take_roots(leaf, roots, query);
+}
+
+/// Of one ray. False where rounding leaves something to be decided.
+bool LeafTracer::take_roots(const Leaf& leaf, const kernel::RayRoots& roots, RayQuery& query) const {
+  LeafRoot taken[kernel::RayRoots::most];
+  int count = 0;
+  for (int k = 0; k < roots.count; ++k) {
+    const BezierPatch& patch = set->patch(leaf.patch);
+    const RootStart start = start_of(leaf, roots.root[k]);
+    LeafRoot& root = taken[count];
     root.patch = leaf.patch;
-    return polish(set->patch(leaf.patch), nets->frame(), *kernels, query.line, start_of(leaf, roots.root[k]),
-                  query.wanted == RootsWanted::all || query.origin != nullptr, root);
-  };
-  LeafRoot first;
-  if (!polished(0, first)) return false;
-  if (roots.count > 1) {
-    LeafRoot others[kernel::RayRoots::most - 1];
-    for (int k = 1; k < roots.count; ++k) {
-      if (!polished(k, others[k - 1])) return false;
+    if (roots.root[k].at_border) {
+      const BorderRoot what =
+          polish_at_border(patch, nets->frame(), *kernels, query.line, start, tolerance_of(leaf), root);
+      if (what == BorderRoot::open) return false;
+      if (what == BorderRoot::beyond) continue;
+    } else if (!polish(patch, nets->frame(), *kernels, query.line, start,
+                       query.wanted == RootsWanted::all || query.origin != nullptr, root)) {
+      return false;
     }
-    for (int k = 1; k < roots.count; ++k) query.take(others[k - 1]);
+    ++count;
   }
-  query.take(first);
+  for (int k = 0; k < count; ++k) query.take(taken[k]);
   return true;
 }
 

@@ -59,6 +59,7 @@ struct LeafTracer final : OriginTest, TracedLeaves {
   unsigned take_roots(const Leaf& leaf, QueryPacket& packet, unsigned lanes) const;
   unsigned take_each_root(const Leaf& leaf, QueryPacket& packet, unsigned lanes) const;
   bool decide(const Leaf& leaf, unsigned leaf_index, kernel::RayProbe& probe, RayQuery& query) const;
+  bool take_roots(const Leaf& leaf, const kernel::RayRoots& roots, RayQuery& query) const;
 };
 
 }  // namespace tessera

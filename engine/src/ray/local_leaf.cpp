@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ray/cubic_net.h"
 #include "tessera/vec.h"
 
 namespace tessera {
@@ -17,31 +18,12 @@ constexpr double reach = kernel::RayLeaf::reach;
 // 2^-25 over 3.5, the centre less the start by 2^-23, the product by 2^-23; and more.
 constexpr double ray_rounding = 5e-7;
 
-using Power = std::array<std::array<std::array<double, 4>, 4>, 4>;  // [component][i][j]
-
 /// By exponent.
 constexpr std::array<double, 7> reach_powers = [] {
   std::array<double, 7> out{1};
   for (std::size_t k = 1; k < out.size(); ++k) out[k] = reach * out[k - 1];
   return out;
 }();
-
-/// B_{i,n}(1/2 + x) as coefficients of x^k, `[i][k]`, by B_{i,n} = (1/2 - x) B_{i,n-1} + (1/2 + x) B_{i-1,n-1}.
-std::array<std::array<double, 4>, 4> centred_powers(int degree) {
-  std::array<std::array<double, 4>, 4> row{};
-  row[0][0] = 1;
-  for (int n = 1; n <= degree; ++n) {
-    std::array<std::array<double, 4>, 4> next{};
-    for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {
-      for (std::size_t k = 0; k < static_cast<std::size_t>(n); ++k) {
-        next[i][k] += 0.5 * row[i][k], next[i + 1][k] += 0.5 * row[i][k];
-        next[i][k + 1] -= row[i][k], next[i + 1][k + 1] += row[i][k];
-      }
-    }
-    row = next;
-  }
-  return row;
-}
 
 class LeafMaker {
  public:
@@ -52,7 +34,7 @@ class LeafMaker {
     set_frame();
     to_local();
     set_box();
-    if (regular_ && fits_local_leaf(shape_)) set_coefficients();
+    if (regular_) set_coefficients();
   }
 
  private:
@@ -141,7 +123,8 @@ class LeafMaker {
   void set_coefficients() {
     double spread = std::max(parameter_error(0), parameter_error(1));
     leaf_.spread = static_cast<float>(1.001 * spread / lightest_ + 2 * line_noise_ + 8 * unit);
-    Power power = powers();
+    const CubicNet cubic = cubic_net(shape_, local_);
+    const auto& power = cubic.power;
     const std::size_t step = rational_ ? 4 : 3;
     float* out = leaf_.coefficients();
     for (std::size_t i = 0; i < 4; ++i) {
@@ -160,8 +143,14 @@ class LeafMaker {
       leaf_.bend_vv[c] = static_cast<float>(1.001 * bound(power[c], 0, 2));
     }
     // Horner's scheme rounds six times, coefficients once, products and differences with the ray's point a few times.
-    leaf_.noise = static_cast<float>(2 * line_noise_ + 16 * unit * (value + largest_ * (1 + value)));
-    leaf_.slope_noise = static_cast<float>(32 * unit * slope * (1 + largest_));
+    leaf_.noise = static_cast<float>(2 * line_noise_ + 16 * unit * (value + largest_ * (1 + value)) +
+                                     1.001 * left_out(cubic.value_error));
+    leaf_.slope_noise = static_cast<float>(32 * unit * slope * (1 + largest_) + 1.001 * left_out(cubic.slope_error));
+  }
+
+  /// A coordinate less the weight times that of the ray differs by so much, where components do by `error`.
+  double left_out(const std::array<double, 4>& error) const {
+    return std::max({error[0], error[1], error[2]}) + largest_ * error[3];
   }
 
   /// Bounds |coordinate - parameter| times the weight, by the hull of their difference, a degree higher.
@@ -184,26 +173,8 @@ class LeafMaker {
     return largest;
   }
 
-  Power powers() const {
-    const auto by_u = centred_powers(shape_.m()), by_v = centred_powers(shape_.n());
-    Power out{};
-    for (std::size_t c = 0; c < 4; ++c) {
-      std::size_t k = 0;
-      for (std::size_t i = 0; i <= static_cast<std::size_t>(shape_.m()); ++i) {
-        std::array<double, 4> row{};
-        for (std::size_t j = 0; j <= static_cast<std::size_t>(shape_.n()); ++j, ++k) {
-          for (std::size_t b = 0; b < 4; ++b) row[b] += local_[c][k] * by_v[j][b];
-        }
-        for (std::size_t a = 0; a < 4; ++a) {
-          for (std::size_t b = 0; b < 4; ++b) out[c][a][b] += by_u[i][a] * row[b];
-        }
-      }
-    }
-    return out;
-  }
-
   /// Of the derivative of that order, for parameters within reach.
-  static double bound(const std::array<std::array<double, 4>, 4>& power, int order_u, int order_v) {
+  static double bound(const CubicNet::Power& power, int order_u, int order_v) {
     const auto falling = [](int k, int order) { return order == 0 ? 1 : order == 1 ? k : k * (k - 1); };
     double sum = 0;
     for (int i = order_u; i < 4; ++i) {
@@ -221,7 +192,7 @@ class LeafMaker {
   kernel::RayLeaf& leaf_;
   double scale_ = 1, lightest_ = 1, line_noise_ = 0;
   double largest_ = 0;  // coordinate of the piece or of the ray's point nearest to the centre
-  std::array<std::array<double, (max_degree + 1) * (max_degree + 1)>, 4> local_;
+  FourNets local_;
 };
 
 }  // namespace

@@ -6,10 +6,7 @@
 
 namespace tessera {
 
-/// Degrees that fit; others have boxes alone.
-inline bool fits_local_leaf(const NetShape<0, 0>& shape) { return shape.m() <= 3 && shape.n() <= 3; }
-
-/// Fills `leaf`, with the coefficients behind it where the degrees fit. `net`: of the piece, homogeneous, in the scene's
+/// Fills `leaf` and the coefficients behind it, which a degenerate piece has not. `net`: of the piece, homogeneous, in the scene's
 /// coordinates, 3 or 4 components.
 void make_local_leaf(const NetShape<0, 0>& shape, bool rational, const double* net, kernel::RayLeaf& leaf);
 

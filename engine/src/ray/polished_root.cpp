@@ -62,6 +62,30 @@ bool polish(const BezierPatch& patch, const SceneFrame& frame, const kernel::Ray
   return false;
 }
 
+/// The line passes the piece by where each of its points is off by more than the tolerance: the parameters of a point that
+/// is no further off lie within `gain * tolerance` of the root's, and twice that bounds the change of the gain.
+BorderRoot polish_at_border(const BezierPatch& patch, const SceneFrame& frame, const kernel::RayKernels& kernels,
+                            const RayLine& line, RootStart start, double tolerance, LeafRoot& root) {
+  constexpr double beyond_border = static_cast<double>(kernel::RayLeaf::reach) - 0.5;
+  const double u0 = start.u0, u1 = start.u1, v0 = start.v0, v1 = start.v1;
+  const double margin_u = beyond_border * (u1 - u0), margin_v = beyond_border * (v1 - v0);
+  start.u0 -= margin_u, start.u1 += margin_u, start.v0 -= margin_v, start.v1 += margin_v;
+  if (!polish(patch, frame, kernels, line, start, true, root)) return BorderRoot::open;
+  const double u = std::clamp(root.u, u0, u1), v = std::clamp(root.v, v0, v1);
+  const double off_u = std::abs(root.u - u), off_v = std::abs(root.v - v);
+  if (off_u == 0 && off_v == 0) return BorderRoot::root;
+  const double apart = 2 * (tolerance + root.residual);
+  if (off_u > root.gain_u * apart + parameter_rounding || off_v > root.gain_v * apart + parameter_rounding)
+    return BorderRoot::beyond;
+  const FirstOrder at = scene_point(patch, frame, kernels, u, v);
+  const NetValue f = seen(at, line);
+  if (!(f.residual() <= root.residual)) return BorderRoot::open;
+  root.u = u, root.v = v;
+  root.position = at.position, root.du = at.du, root.dv = at.dv;
+  root.s = f.z;
+  return set_gain(f, 1, 1, root) ? BorderRoot::root : BorderRoot::open;
+}
+
 bool polished_side_by_side(const BezierPatch& patch) {
   const int least = std::min(patch.degree_u(), patch.degree_v()), most = std::max(patch.degree_u(), patch.degree_v());
   return patch.is_rational() ? most <= 3 : least == 3 && most == 3;

@@ -30,6 +30,17 @@ inline RootStart start_of(const Leaf& leaf, const kernel::RayRoot& proven) {
 bool polish(const BezierPatch& patch, const SceneFrame& frame, const kernel::RayKernels& kernels, const RayLine& line,
             const RootStart& start, bool with_gain, LeafRoot& root);
 
+/// What a root next to a border is to a piece.
+enum class BorderRoot : std::uint8_t {
+  beyond,  ///< further off than the tolerance: the piece has none
+  root,
+  open,
+};
+
+/// The same for a root that is `at_border`: by Newton's method on either side of it, as far as a kernel's bounds hold.
+BorderRoot polish_at_border(const BezierPatch& patch, const SceneFrame& frame, const kernel::RayKernels& kernels,
+                            const RayLine& line, RootStart start, double tolerance, LeafRoot& root);
+
 /// Whether polish_side_by_side() takes roots of that patch.
 bool polished_side_by_side(const BezierPatch& patch);
 /// The same for the rays whose bits are set in `lanes`, with the numbers that each has alone; others are left as they are.
