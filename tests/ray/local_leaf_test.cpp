@@ -14,6 +14,8 @@
 #include "ray_support.h"
 #include "support/errors.h"
 #include "support/random_patches.h"
+#include "support/ray_classes.h"
+#include "support/ray_proof.h"
 #include "tessera/ray_scene.h"
 
 namespace tessera {
@@ -189,6 +191,25 @@ TEST(LocalLeaf, RandomRaysTakeFewStepsAtEveryDegree) {
       const double steps = mean_steps(hilly_patch(random, degree, degree, rational), random);
       EXPECT_LT(steps, 4) << "degree " << degree << (rational ? ", rational" : "");
     }
+  }
+}
+
+/// Next to a heavy corner the surface runs 1e4 times its size a unit of the parameters, and turns as quickly.
+TEST(LocalLeaf, HitsNextToHeavyCornersAreOnTheRay) {
+  const std::vector<test::RayClass> classes = test::ray_classes();
+  const auto heavy = std::find_if(classes.begin(), classes.end(),
+                                  [](const test::RayClass& of) { return of.name == "weights 1e-3 to 1e3"; });
+  ASSERT_NE(heavy, classes.end());
+  const PatchSet set = test::value_of(PatchSet::from(heavy->patches));
+  const RayScene scene = test::value_of(RayScene::make(set));
+  const double size = set.box().diagonal();
+  Random random(13);
+  for (int k = 0; k < 20000; ++k) {
+    const Ray ray = heavy->draw(random);
+    const Hit hit = scene.closest(ray);
+    if (hit.kind != HitKind::hit) continue;
+    const Vec3 point = de_casteljau(heavy->patches[hit.patch], hit.patch_u, hit.patch_v);
+    ASSERT_LE(test::distance_from_line(point, ray), 2e-12 * size) << "ray " << k;
   }
 }
 

@@ -97,11 +97,11 @@ struct alignas(64) RayLines {
 /// coordinates scale (p - centre). Roots are looked for inside [u0, u1] x [v0, v1].
 struct PolishJob {
   static constexpr int most_steps = 6;
-  static constexpr double linear = 1e-9;  ///< steps up to that leave a square of it
   const double *points, *weights;         ///< no weights of a polynomial patch
   int degree_u, degree_v;
   double centre[3], scale;
   double u0, u1, v0, v1;
+  double linear;  ///< the last step is at most that: it leaves a square of it
 };
 struct alignas(64) PolishedRays {
   static constexpr int size = RayPacket::size;

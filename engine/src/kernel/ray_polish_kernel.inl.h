@@ -29,7 +29,7 @@ class RootPolish {
       const Where inside = (xsimd::abs(u - start_u) <= reach_u) & (xsimd::abs(v - start_v) <= reach_v) &
                            (u >= Batch(job_.u0)) & (u <= Batch(job_.u1)) & (v >= Batch(job_.v0)) &
                            (v <= Batch(job_.v1));
-      const Where last = !((xsimd::abs(du) > Batch(PolishJob::linear)) | (xsimd::abs(dv) > Batch(PolishJob::linear)));
+      const Where last = !((xsimd::abs(du) > Batch(job_.linear)) | (xsimd::abs(dv) > Batch(job_.linear)));
       const Where done = open & inside & last;
       state = xsimd::select(open & !inside, Batch(PolishedRays::failed), state);
       state = xsimd::select(done, Batch(PolishedRays::found), state);

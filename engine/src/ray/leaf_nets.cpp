@@ -28,6 +28,14 @@ Box3 box_of(const Leaf& leaf, const double* net) {
   return box;
 }
 
+/// Second derivatives of a rational patch, and with them what a linear step leaves out, grow with the square of how much
+/// its weights differ.
+float linear_step_of(const BezierPatch& patch) {
+  if (!patch.is_rational()) return static_cast<float>(linear_step);
+  const auto [lightest, heaviest] = std::minmax_element(patch.weights().begin(), patch.weights().end());
+  return static_cast<float>(linear_step * (*lightest / *heaviest));
+}
+
 }  // namespace
 
 /// Where the pieces of a patch stand.
@@ -77,6 +85,7 @@ void LeafNets::cut(const BezierPatch& patch, std::uint32_t index, const Plan& pl
   const Cuts& cuts = plan.cuts;
   cutter.start(patch);
   cutter.cut(cuts);
+  const float linear = linear_step_of(patch);
   for (std::size_t piece = 0; piece < cuts.pieces(); ++piece) {
     const std::size_t place = plan.first_leaf + piece;
     const double* const net = cutter.net(piece);
@@ -86,6 +95,7 @@ void LeafNets::cut(const BezierPatch& patch, std::uint32_t index, const Plan& pl
     leaf.degree_u = static_cast<std::uint8_t>(patch.degree_u());
     leaf.degree_v = static_cast<std::uint8_t>(patch.degree_v());
     leaf.rational = patch.is_rational();
+    leaf.linear = linear;
     leaf.halvings_u = static_cast<std::uint8_t>(cuts.u);
     leaf.halvings_v = static_cast<std::uint8_t>(cuts.v);
     leaf.du = std::ldexp(1.0, -cuts.u), leaf.dv = std::ldexp(1.0, -cuts.v);

@@ -16,12 +16,17 @@
 
 namespace tessera {
 
+/// Steps of Newton's method, of a patch's parameters, up to which the surface is its tangent plane but for less than
+/// rounding.
+constexpr double linear_step = 1e-9;
+
 /// A piece [u0, u0 + du] x [v0, v0 + dv] of a patch.
 struct Leaf {
   std::uint32_t patch = 0;
   std::uint8_t degree_u = 0, degree_v = 0;
   bool rational = false;
-  std::uint8_t halvings_u = 0, halvings_v = 0;  ///< from the patch to the piece
+  std::uint8_t halvings_u = 0, halvings_v = 0;     ///< from the patch to the piece
+  float linear = static_cast<float>(linear_step);  ///< linear_step, or less where weights differ
   double u0 = 0, v0 = 0, du = 1, dv = 1;
   const Vec3* points = nullptr;  ///< of the patch when the piece was made: to be fetched, not read
 

@@ -49,7 +49,7 @@ bool polish(const BezierPatch& patch, const SceneFrame& frame, const kernel::Ray
     if (!(std::abs(u - start.u) <= start.reach_u && std::abs(v - start.v) <= start.reach_v && u >= start.u0 &&
           u <= start.u1 && v >= start.v0 && v <= start.v1))
       return false;
-    if (std::max(std::abs(du), std::abs(dv)) > PolishJob::linear) continue;
+    if (std::max(std::abs(du), std::abs(dv)) > start.linear) continue;
     root.u = u, root.v = v;
     root.position = at.position + (du * at.du + dv * at.dv);
     root.du = at.du, root.dv = at.dv;
@@ -103,7 +103,8 @@ void polish_side_by_side(const BezierPatch& patch, const SceneFrame& frame, cons
                       .u0 = bounds.u0,
                       .u1 = bounds.u1,
                       .v0 = bounds.v0,
-                      .v1 = bounds.v1};
+                      .v1 = bounds.v1,
+                      .linear = bounds.linear};
   for (std::size_t k = 0; k < kernel::PolishedRays::size; ++k)
     rays.state[k] = lanes >> k & 1u ? kernel::PolishedRays::asked : kernel::PolishedRays::idle;
   (patch.is_rational() ? kernels.packets->polish_low_rational : kernels.packets->polish_cubic)(job, rays, lanes);

@@ -11,6 +11,7 @@ namespace tessera {
 struct RootStart {
   double u, v, reach_u, reach_v;
   double u0 = 0, u1 = 1, v0 = 0, v1 = 1;
+  double linear = linear_step;  ///< the last step is at most that
 };
 /// Of what a kernel has proven of a piece of a patch; twice as far as it can be.
 inline RootStart start_of(const Leaf& leaf, const kernel::RayRoot& proven) {
@@ -22,7 +23,8 @@ inline RootStart start_of(const Leaf& leaf, const kernel::RayRoot& proven) {
           leaf.u0,
           leaf.u0 + leaf.du,
           leaf.v0,
-          leaf.v0 + leaf.dv};
+          leaf.v0 + leaf.dv,
+          leaf.linear};
 }
 
 /// The root by Newton's method from there on, with the patch's point, and, `with_gain`, its gains. False where an iterate
