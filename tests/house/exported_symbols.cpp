@@ -8,9 +8,10 @@
 namespace tessera::house {
 namespace {
 
-constexpr std::array<std::string_view, 7> for_wings{
-    "tessera::allocate_aligned", "tessera::parallel_for",        "tessera::ray_kernels", "tessera::UniformGrid::make",
-    "tessera::UniformGrid::run", "tessera::PatchSet::Impl::box", "tessera::check_parts",
+constexpr std::array<std::string_view, 9> for_wings{
+    "tessera::allocate_aligned",  "tessera::parallel_for",     "tessera::ray_kernels",
+    "tessera::UniformGrid::make", "tessera::UniformGrid::run", "tessera::PatchSet::Impl::box",
+    "tessera::check_parts",       "tessera::ViewChecks::add",  "tessera::ViewChecks::status",
 };
 
 bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }

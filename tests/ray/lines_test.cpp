@@ -83,9 +83,9 @@ TEST(Lines, OfATurnAreThoseOfEachRay) {
       for (Ray& ray : rays) ray = any_ray(random);
       turn.set(rays);
       for (std::size_t k = 0; k < rays.size(); ++k) {
-        ASSERT_EQ(turn.is_valid(k), is_valid(rays[k]));
-        bad += !turn.is_valid(k), met += !turn.line(k).empty;
-        expect_same(turn.line(k), turn.is_valid(k) ? line_of(rays[k], frame, box) : RayLine{});
+        ASSERT_EQ(turn.valid()[k], is_valid(rays[k]));
+        bad += !turn.valid()[k], met += !turn.line(k).empty;
+        expect_same(turn.line(k), turn.valid()[k] ? line_of(rays[k], frame, box) : RayLine{});
         ASSERT_FALSE(HasFailure()) << name(isa) << ", round " << round << ", ray " << k;
       }
     }

@@ -135,6 +135,8 @@ class RayScene;
 struct RayInstance {
   const RayScene* scene = nullptr;  ///< of patches, in exact mode
   Affine to_world = {};             ///< from the scene to where it stands
+  /// Rays of batches with masks (ray_batch.h) meet it where both masks have a bit in common; other rays have all bits.
+  std::uint32_t mask = ~std::uint32_t{0};
 };
 
 /// A patch set ready for rays. Keeps a reference to the set's inner state: the set must outlive the scene (it may be

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "base/for_wings.h"
 #include "tessera/status.h"
 #include "tessera/views.h"
 
@@ -31,7 +32,7 @@ class ViewChecks {
   }
 
   /// The first error of all views, or invalid_argument if one that is written shares memory with another.
-  Status status() const;
+  TESSERA_FOR_WINGS Status status() const;
 
  private:
   /// One component of a view.
@@ -45,7 +46,7 @@ class ViewChecks {
   };
   static constexpr std::size_t most_arrays = 64;
 
-  void add(const Array& array, std::size_t size, std::size_t alignment);
+  TESSERA_FOR_WINGS void add(const Array& array, std::size_t size, std::size_t alignment);
   bool collide(const Array& a, const Array& b) const;
 
   std::size_t records_;

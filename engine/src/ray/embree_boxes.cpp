@@ -13,7 +13,8 @@ namespace {
 struct Call {
   EmbreeContext context;
   EmbreeBoxes::Visit visit;
-  float enter;  ///< s where Embree's ray begins
+  std::size_t count;                             ///< of lines
+  std::array<float, EmbreeBoxes::packet> enter;  ///< s where Embree's rays begin, by their ids
 };
 
 }  // namespace
@@ -29,11 +30,25 @@ struct EmbreeBoxes::State {
     *arguments->bounds_o = padded(state.boxes[arguments->primID]);
   }
 
+  /// Embree 3 comes with lanes that it calls valid and that are none of ours: see embree_leaves.cpp.
   static void intersect(const RTCIntersectFunctionNArguments* arguments) {
-    if (arguments->valid[0] == 0) return;  // rays come one by one
     Call& call = *reinterpret_cast<Call*>(arguments->context);
-    float& far = RTCRayN_tfar(RTCRayHitN_RayN(arguments->rayhit, arguments->N), arguments->N, 0);
-    far = std::min(far, static_cast<float>(call.visit(arguments->primID)) - call.enter + box_pad);
+    const unsigned count = arguments->N;
+    RTCRayN* const rays = RTCRayHitN_RayN(arguments->rayhit, count);
+    unsigned lanes = 0;
+    for (unsigned k = 0; k < count; ++k) {
+      const unsigned ray = RTCRayN_id(rays, count, k);
+      if (arguments->valid[k] != 0 && ray < call.count) lanes |= 1u << ray;
+    }
+    if (lanes == 0) return;
+    std::array<double, packet> ends;
+    call.visit(arguments->primID, lanes, ends);
+    for (unsigned k = 0; k < count; ++k) {
+      const unsigned ray = RTCRayN_id(rays, count, k);
+      if (ray >= call.count || (lanes >> ray & 1u) == 0) continue;
+      float& far = RTCRayN_tfar(rays, count, k);
+      far = std::min(far, static_cast<float>(ends[ray]) - call.enter[ray] + box_pad);
+    }
   }
 };
 
@@ -69,13 +84,22 @@ Status EmbreeBoxes::build(std::vector<Box3> boxes, const Execution& execution) {
   return {};
 }
 
-void EmbreeBoxes::visit(const RayLine& line, Visit visit) const {
-  Call call{embree_context(), visit, static_cast<float>(line.enter)};
-  RTCRayHit ray{};
-  ray.ray = embree_ray(line);
-  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  intersect(state_->scene.get(), call.context, Coherence::incoherent, ray);
+void EmbreeBoxes::visit(std::span<const RayLine* const> lines, Visit visit) const {
+  Call call{embree_context(), visit, lines.size(), {}};
+  for (std::size_t k = 0; k < lines.size(); ++k) call.enter[k] = static_cast<float>(lines[k]->enter);
+  if (lines.size() == 1) {
+    RTCRayHit ray{};
+    ray.ray = embree_ray(*lines[0]);
+    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    intersect(state_->scene.get(), call.context, Coherence::incoherent, ray);
+    return;
+  }
+  RTCRayHit16 rays;
+  alignas(64) int valid[packet];
+  set_packet(
+      lines.size(), [&](std::size_t k) -> const RayLine& { return *lines[k]; }, rays, valid);
+  intersect(state_->scene.get(), call.context, Coherence::coherent, valid, rays);
 }
 
 std::size_t EmbreeBoxes::memory_bytes() const {

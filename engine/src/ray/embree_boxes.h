@@ -1,7 +1,10 @@
 #pragma once
 // A BVH of boxes whose insides somebody else knows. Embree's types stay in embree_boxes.cpp.
 
+#include <array>
+#include <cstddef>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "base/function_ref.h"
@@ -24,10 +27,13 @@ class EmbreeBoxes {
   /// Boxes within [-1,1]^3. On errors there are none. Errors: cancelled, Embree's own.
   Status build(std::vector<Box3> boxes, const Execution& execution);
 
-  /// Calls `visit` for each box that the line meets and perhaps others, the nearer ones rather first. It returns the s up
-  /// to which boxes are still of interest; minus infinity ends the visits. The line must not be empty.
-  using Visit = FunctionRef<double(unsigned box)>;
-  void visit(const RayLine& line, Visit visit) const;
+  static constexpr std::size_t packet = 16;
+
+  /// Calls visit(box, lanes, ends) for each box that some of the lines meet, whose bits are set in `lanes`, and perhaps
+  /// for others; the nearer ones rather first. It sets for each line the s up to which boxes are still of interest;
+  /// minus infinity ends the visits. One line to a packet of lines that are worth it; none may be empty.
+  using Visit = FunctionRef<void(unsigned box, unsigned lanes, std::array<double, packet>& ends)>;
+  void visit(std::span<const RayLine* const> lines, Visit visit) const;
 
   /// What Embree has allocated, and the boxes.
   std::size_t memory_bytes() const;

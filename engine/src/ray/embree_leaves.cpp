@@ -21,13 +21,10 @@ struct Call {
   EmbreeContext context;
   SearchSpace* space;
   std::array<float, EmbreeLeaves::packet> enter;  ///< s where Embree's ray begins
+  unsigned used;                                  ///< bits of the lanes that have a ray
   QueryPacket packet;                             ///< a single ray is in the first lane
 };
 static_assert(EmbreeLeaves::packet == QueryPacket::size);
-
-/// Embree 3 takes 16 rays by eights or fours where the machine has no wider vectors, and a part without a ray of ours comes
-/// to the callbacks with lanes that it calls valid.
-bool is_idle(const Call& call, unsigned ray) { return call.packet.queries[ray] == nullptr; }
 
 }  // namespace
 
@@ -43,23 +40,27 @@ struct EmbreeLeaves::State {
     *arguments->bounds_o = padded(state.tracer.nets->boxes()[arguments->primID]);
   }
 
-  /// Searches a leaf for the valid rays of a call, then does `then(k, ray, query)` with each.
+  /// Searches a leaf for the valid rays of a call, then does `then(k, ray, query)` with each. Embree 3 takes 16 rays by
+  /// eights or fours where the machine has no wider vectors, and a part without a ray of ours comes with lanes that it
+  /// calls valid.
   template <class IdOf, class Then>
   void search(unsigned leaf, Call& call, unsigned count, const int* valid, const IdOf& id_of, const Then& then) const {
-    unsigned lanes = 0;
+    unsigned lanes = 0, places = 0;
     for (unsigned k = 0; k < count; ++k) {
-      if (valid[k] != 0 && !is_idle(call, id_of(k))) lanes |= 1u << id_of(k);
+      const unsigned ray = id_of(k), is_ours = static_cast<unsigned>(valid[k]) & call.used >> ray & 1u;
+      lanes |= is_ours << ray, places |= is_ours << k;
     }
     if (lanes == 0) return;
-    if (std::has_single_bit(lanes)) {
+    if ((lanes & (lanes - 1)) == 0) {
       const auto ray = static_cast<std::size_t>(std::countr_zero(lanes));
       tracer.search(leaf, call.packet.probes[ray], *call.packet.queries[ray], *call.space);
     } else {
       tracer.search(leaf, call.packet, lanes, *call.space);
     }
-    for (unsigned k = 0; k < count; ++k) {
+    for (; places != 0; places &= places - 1) {
+      const auto k = static_cast<unsigned>(std::countr_zero(places));
       const unsigned ray = id_of(k);
-      if (lanes >> ray & 1u) then(k, ray, *call.packet.queries[ray]);
+      then(k, ray, *call.packet.queries[ray]);
     }
   }
 
@@ -147,6 +148,7 @@ void EmbreeLeaves::trace(RayQuery& query, SearchSpace& space) const {
   call.space = &space;
   RTCRayHit hit{};
   call.enter[0] = static_cast<float>(query.line.enter);
+  call.used = 1;
   call.packet.queries[0] = &query;
   call.packet.probes[0] = probe_of(query);
   hit.ray = embree_ray(query.line);
@@ -164,27 +166,22 @@ void EmbreeLeaves::trace(std::span<RayQuery* const> queries, SearchSpace& space)
   call.context = embree_context();
   call.space = &space;
   RTCRayHit16 hit;
-  alignas(64) std::array<int, packet> valid{};
+  alignas(64) int valid[packet];
+  set_packet(
+      queries.size(), [&](std::size_t k) -> const RayLine& { return queries[k]->line; }, hit, valid);
+  call.used = (1u << queries.size()) - 1;
   for (unsigned k = 0; k < packet; ++k) {
-    const std::size_t which = k < queries.size() ? k : 0;  // idle lanes repeat the first
-    valid[k] = k < queries.size() ? -1 : 0;
     if (k < queries.size()) {
       call.enter[k] = static_cast<float>(queries[k]->line.enter);
       call.packet.set(k, *queries[k]);
     } else {
       call.packet.set_idle(k);
     }
-    const RTCRay ray = embree_ray(queries[which]->line);
-    hit.ray.org_x[k] = ray.org_x, hit.ray.org_y[k] = ray.org_y, hit.ray.org_z[k] = ray.org_z;
-    hit.ray.dir_x[k] = ray.dir_x, hit.ray.dir_y[k] = ray.dir_y, hit.ray.dir_z[k] = ray.dir_z;
-    hit.ray.tnear[k] = 0, hit.ray.tfar[k] = ray.tfar;
-    hit.ray.time[k] = 0, hit.ray.mask[k] = ~0u, hit.ray.id[k] = k, hit.ray.flags[k] = 0;
-    hit.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID, hit.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
   }
   if (queries[0]->wanted == RootsWanted::any) {
-    occluded(state_->scene.get(), call.context, Coherence::coherent, valid.data(), hit.ray);
+    occluded(state_->scene.get(), call.context, Coherence::coherent, valid, hit.ray);
   } else {
-    intersect(state_->scene.get(), call.context, Coherence::coherent, valid.data(), hit);
+    intersect(state_->scene.get(), call.context, Coherence::coherent, valid, hit);
   }
 }
 

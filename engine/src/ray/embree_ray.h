@@ -31,4 +31,18 @@ inline RTCRay embree_ray(const RayLine& line) {
   return ray;
 }
 
+/// A packet of at most 16 rays as Embree takes it, with their numbers as ids; line(k): line k of `count`.
+template <class Line>
+void set_packet(std::size_t count, const Line& line, RTCRayHit16& hit, int (&valid)[16]) {
+  for (unsigned k = 0; k < 16; ++k) {
+    valid[k] = k < count ? -1 : 0;
+    const RTCRay ray = embree_ray(line(k < count ? k : 0));  // idle lanes repeat the first
+    hit.ray.org_x[k] = ray.org_x, hit.ray.org_y[k] = ray.org_y, hit.ray.org_z[k] = ray.org_z;
+    hit.ray.dir_x[k] = ray.dir_x, hit.ray.dir_y[k] = ray.dir_y, hit.ray.dir_z[k] = ray.dir_z;
+    hit.ray.tnear[k] = 0, hit.ray.tfar[k] = ray.tfar;
+    hit.ray.time[k] = 0, hit.ray.mask[k] = ~0u, hit.ray.id[k] = k, hit.ray.flags[k] = 0;
+    hit.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID, hit.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+  }
+}
+
 }  // namespace tessera

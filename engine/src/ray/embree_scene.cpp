@@ -49,6 +49,9 @@ FlushDenormals::FlushDenormals() : saved_(_mm_getcsr()) {
 }
 FlushDenormals::~FlushDenormals() { _mm_setcsr(saved_); }
 
+CountDenormals::CountDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ & ~flush_and_denormals_are_zero); }
+CountDenormals::~CountDenormals() { _mm_setcsr(saved_); }
+
 struct EmbreeScene::State {
   EmbreeMonitor monitor;        // outlives the device, which calls it
   std::vector<RTCGrid> grids;   // borrowed by the geometry

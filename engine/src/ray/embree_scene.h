@@ -60,6 +60,18 @@ class FlushDenormals {
   unsigned saved_;
 };
 
+/// Within a FlushDenormals: denormal numbers count, for code that is not ours.
+class CountDenormals {
+ public:
+  CountDenormals();
+  ~CountDenormals();
+  CountDenormals(const CountDenormals&) = delete;
+  CountDenormals& operator=(const CountDenormals&) = delete;
+
+ private:
+  unsigned saved_;
+};
+
 /// Owns device, scene and geometry. Const calls from any number of threads, each inside a FlushDenormals.
 class EmbreeScene {
  public:

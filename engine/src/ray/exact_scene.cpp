@@ -10,6 +10,9 @@
 #include <string>
 #include <utility>
 
+#include "ray/batch_filter.h"
+#include "ray/batch_layout.h"
+#include "ray/coherent_lines.h"
 #include "ray/distinct_roots.h"
 #include "ray/embree_leaves.h"
 #include "ray/embree_scene.h"
@@ -30,11 +33,15 @@ constexpr double smallest_size = 1e-140, largest_size = 1e140;  // squares of le
 constexpr double default_tolerance = 2e-12;                     // of the size
 constexpr std::size_t most_leaves = 0xffffffff;
 constexpr double most_bend = 1;  // of a piece's length
-constexpr std::size_t rays_a_turn = RayTurn::size, least_in_packet = 6, least_in_turn = 4;
-static_assert(rays_a_turn <= EmbreeLeaves::packet);
+constexpr std::size_t least_in_turn = 4;
+static_assert(rays_per_turn == RayTurn::size && rays_per_turn <= EmbreeLeaves::packet);
 
-/// Rays of one turn; none where a ray is not valid or passes the scene by.
-using Queries = std::array<std::optional<RayQuery>, rays_a_turn>;
+/// Rays of one turn once they are traced; no query where a ray is not valid or passes the scene by.
+struct TracedTurn {
+  std::size_t first;
+  std::span<const bool> valid;
+  std::span<const std::optional<RayQuery>> queries;
+};
 
 /// Written so that NaN fails.
 bool holds(const Box3& box, const Box3& inside) {
@@ -47,15 +54,6 @@ std::string text_of(const Box3& box) {
     return "(" + std::to_string(p.x) + ", " + std::to_string(p.y) + ", " + std::to_string(p.z) + ")";
   };
   return text(box.lower) + " to " + text(box.upper);
-}
-
-/// Rays that pass near each other and run nearly the same way are worth a packet.
-bool coherent(std::span<RayQuery* const> queries) {
-  const RayLine& first = queries.front()->line;
-  return std::all_of(queries.begin(), queries.end(), [&](const RayQuery* query) {
-    const RayLine& line = query->line;
-    return dot(first.direction, line.direction) > 0.99 && max_abs(first.start - line.start) < 0.2;
-  });
 }
 
 class ExactScene final : public PatchScene, private ExactSource {
@@ -77,14 +75,16 @@ class ExactScene final : public PatchScene, private ExactSource {
     return line_of(ray, placement, frame_, scene_box_);
   }
   void trace(RayQuery& query) const override;
-  Hit hit_at(const RayLine& line, const LeafRoot& root) const override;
+  void trace(std::span<RayQuery* const> queries) const override;
+  void set_hit(const RayLine& line, const LeafRoot& root, HitParts parts, Hit& hit) const override;
   void hits_of(RayQuery& query, std::vector<Hit>& hits) const override;
 
   Status build(const Execution& execution) override;
   Status update(std::uint64_t since, const Execution& execution) override;
   Box3 model_box() const override { return box_; }
-  void closest_piece(std::span<const Ray> rays, std::span<Hit> hits) const override;
-  void occluded_piece(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const override;
+  void closest_piece(const RayBatch& batch, const HitWriter& hits, std::size_t begin, std::size_t end) const override;
+  void occluded_piece(const RayBatch& batch, const View1<std::uint8_t>& occluded, std::size_t begin,
+                      std::size_t end) const override;
   void prepare_borders() const override { (void)adjacency_.of(set()); }
   Status all_of(const Ray& ray, std::vector<Hit>& hits) const override;
   double size() const override { return size_; }
@@ -95,11 +95,14 @@ class ExactScene final : public PatchScene, private ExactSource {
   Flatness flatness() const { return {std::ilogb(static_cast<double>(options_.pieces)), most_bend}; }
   double measure();
   template <class Done>
-  void trace_all(std::span<const Ray> rays, RootsWanted wanted, const Done& done) const;
+  void trace_all(const RayBatch& batch, std::size_t begin, std::size_t end, RootsWanted wanted, const Done& done) const;
   template <class Done>
-  void trace_each(std::span<const Ray> rays, RootsWanted wanted, SearchSpace& space, const Done& done) const;
+  void trace_each(const RayBatch& batch, std::size_t begin, std::size_t end, RootsWanted wanted, SearchSpace& space,
+                  const Done& done) const;
   template <class Done>
-  void trace_turns(std::span<const Ray> rays, RootsWanted wanted, SearchSpace& space, const Done& done) const;
+  void trace_turns(const RayBatch& batch, std::size_t begin, std::size_t end, RootsWanted wanted, SearchSpace& space,
+                   const Done& done) const;
+  void trace_queries(std::span<RayQuery* const> queries, SearchSpace& space) const;
   void trace_turn(std::span<std::optional<RayQuery>> queries, SearchSpace& space) const;
 
   LeafNets nets_;  // borrowed by scene_, as are the borders
@@ -171,8 +174,16 @@ Status ExactScene::update(std::uint64_t since, const Execution& execution) {
   return scene_.refit(measure(), execution);
 }
 
-Hit ExactScene::hit_at(const RayLine& line, const LeafRoot& root) const {
-  Hit hit;
+void ExactScene::set_hit(const RayLine& line, const LeafRoot& root, HitParts parts, Hit& hit) const {
+  hit.flags = {};
+  if (!root.certified) {
+    hit.flags.uncertified = true;
+    hit.flags.within_tolerance = root.residual > search_rounding(max_degree, max_degree, 0, 0);
+  }
+  if (!parts.any()) {
+    set_place(set(), root.patch, root.u, root.v, hit);
+    return;
+  }
   FirstOrder at{root.position, root.du, root.dv};
   if (root.has_point) {
     at.position = frame_.to_model(root.position);
@@ -180,18 +191,16 @@ Hit ExactScene::hit_at(const RayLine& line, const LeafRoot& root) const {
     at = first_order(set().patch(root.patch), root.u, root.v, frame_.centre);
     at = {frame_.centre + at.position, frame_.scale * at.du, frame_.scale * at.dv};
   }
-  set_surface_point(set(), size_ * frame_.scale, 1 / frame_.scale, root.patch, root.u, root.v, at, hit);
-  hit.t = line.t_at(root.s);
-  const Vec3 from_start = frame_.to_scene(hit.position) - line.start;
-  const double x = dot(line.across[0], from_start), y = dot(line.across[1], from_start);
-  hit.residual = std::sqrt(x * x + y * y) / frame_.scale;
-  if (!root.certified) {
-    constexpr double sine = 1e-3;
-    hit.flags.uncertified = true;
-    hit.flags.tangential = !hit.flags.degenerate_normal && std::abs(dot(hit.normal, line.direction)) <= sine;
-    hit.flags.within_tolerance = root.residual > search_rounding(max_degree, max_degree, 0, 0);
+  set_surface_point(set(), size_ * frame_.scale, 1 / frame_.scale, root.patch, root.u, root.v, at, hit, parts);
+  if (parts.point) {
+    const Vec3 from_start = frame_.to_scene(hit.position) - line.start;
+    const double x = dot(line.across[0], from_start), y = dot(line.across[1], from_start);
+    hit.residual = std::sqrt(x * x + y * y) / frame_.scale;
   }
-  return hit;
+  if (!root.certified && parts.normal) {
+    constexpr double sine = 1e-3;
+    hit.flags.tangential = !hit.flags.degenerate_normal && std::abs(dot(hit.normal, line.direction)) <= sine;
+  }
 }
 
 /// From (u,v) on to the point nearest to the ray, which is a root where there is one.
@@ -212,8 +221,14 @@ Result<Hit> ExactScene::resolve(const Ray& ray, std::uint32_t patch, double u, d
 }
 
 /// As a packet where the rays are coherent.
+void ExactScene::trace_queries(std::span<RayQuery* const> queries, SearchSpace& space) const {
+  const auto line = [&](std::size_t k) -> const RayLine& { return queries[k]->line; };
+  if (worth_a_packet(queries.size(), line)) return scene_.trace(queries, space);
+  for (RayQuery* query : queries) scene_.trace(*query, space);
+}
+
 void ExactScene::trace_turn(std::span<std::optional<RayQuery>> queries, SearchSpace& space) const {
-  std::array<RayQuery*, rays_a_turn> wanted;
+  std::array<RayQuery*, rays_per_turn> wanted;
   std::size_t count = 0;
   bool leaves_surface = false;
   for (std::optional<RayQuery>& query : queries) {
@@ -222,76 +237,106 @@ void ExactScene::trace_turn(std::span<std::optional<RayQuery>> queries, SearchSp
     leaves_surface |= query->line.spawn > 0;
   }
   if (leaves_surface) prepare_borders();
-  const std::span<RayQuery* const> used = std::span(wanted).first(count);
   const FlushDenormals flush;
-  if (count >= least_in_packet && coherent(used)) return scene_.trace(used, space);
-  for (RayQuery* query : used) scene_.trace(*query, space);
+  trace_queries(std::span(wanted).first(count), space);
 }
 
-/// Does `done(k, valid, query)` after each ray k; no query where it is not valid or passes the scene by.
+/// Does `done(turn)` after each turn.
 template <class Done>
-void ExactScene::trace_all(std::span<const Ray> rays, RootsWanted wanted, const Done& done) const {
+void ExactScene::trace_all(const RayBatch& batch, std::size_t begin, std::size_t end, RootsWanted wanted,
+                           const Done& done) const {
   SearchSpace space(nets_.largest(), &pool_);
-  const auto end = [&](std::size_t k, bool valid, const std::optional<RayQuery>& query) {
+  const auto finish = [&](const TracedTurn& turn) {
     // A search that got no memory has decided nothing; this becomes the call's Status.
-    if (query && query->overflow) throw std::bad_alloc();
-    done(k, valid, query);
+    for (const std::optional<RayQuery>& query : turn.queries)
+      if (query && query->overflow) throw std::bad_alloc();
+    done(turn);
   };
-  rays.size() < least_in_turn ? trace_each(rays, wanted, space, end) : trace_turns(rays, wanted, space, end);
+  end - begin < least_in_turn ? trace_each(batch, begin, end, wanted, space, finish)
+                              : trace_turns(batch, begin, end, wanted, space, finish);
 }
 
 template <class Done>
-void ExactScene::trace_each(std::span<const Ray> rays, RootsWanted wanted, SearchSpace& space, const Done& done) const {
-  for (std::size_t k = 0; k < rays.size(); ++k) {
-    const bool valid = is_valid(rays[k]);
-    const RayLine along = valid ? line(rays[k]) : RayLine{};
+void ExactScene::trace_each(const RayBatch& batch, std::size_t begin, std::size_t end, RootsWanted wanted,
+                            SearchSpace& space, const Done& done) const {
+  const SceneFilter filter(batch.filter, set());
+  TurnRoom<Ray> room;
+  for (std::size_t k = begin; k < end && !batch.stopped(); ++k) {
+    const Ray& ray = batch.rays.read(k, 1, room.span())[0];
+    const bool valid = is_valid(ray);
+    const RayLine along = valid ? line(ray) : RayLine{};
     std::optional<RayQuery> query;
     if (!along.empty) {
-      query.emplace(rays[k], along, wanted);
+      query.emplace(ray, along, wanted);
+      query->filter = filter.if_any(), query->index = k;
       if (along.spawn > 0) prepare_borders();
       const FlushDenormals flush;
       scene_.trace(*query, space);
     }
-    done(k, valid, query);
+    done({k, {&valid, 1}, {&query, 1}});
   }
 }
 
 /// Lines, searches and hits by turns of a few rays: denormal numbers count in the first and the last alone.
 template <class Done>
-void ExactScene::trace_turns(std::span<const Ray> rays, RootsWanted wanted, SearchSpace& space,
-                             const Done& done) const {
+void ExactScene::trace_turns(const RayBatch& batch, std::size_t begin, std::size_t end, RootsWanted wanted,
+                             SearchSpace& space, const Done& done) const {
+  const SceneFilter filter(batch.filter, set());
   RayTurn turn(frame_, scene_box_, *tracer().kernels);
-  Queries queries;
-  for (std::size_t first = 0; first < rays.size(); first += rays_a_turn) {
-    const std::span<const Ray> now = rays.subspan(first, std::min(rays_a_turn, rays.size() - first));
+  TurnRoom<Ray> room;
+  std::array<std::optional<RayQuery>, rays_per_turn> queries;
+  for_turns(batch, begin, end, [&](std::size_t first, std::size_t count) {
+    const std::span<const Ray> now = batch.rays.read(first, count, room.span());
     turn.set(now);
-    for (std::size_t k = 0; k < now.size(); ++k) {
+    for (std::size_t k = 0; k < count; ++k) {
       queries[k].reset();
-      if (!turn.line(k).empty) queries[k].emplace(now[k], turn.line(k), wanted);
+      if (turn.line(k).empty) continue;
+      queries[k].emplace(now[k], turn.line(k), wanted);
+      queries[k]->filter = filter.if_any(), queries[k]->index = first + k;
     }
-    trace_turn(std::span(queries).first(now.size()), space);
-    for (std::size_t k = 0; k < now.size(); ++k) done(first + k, turn.is_valid(k), queries[k]);
-  }
-}
-
-void ExactScene::closest_piece(std::span<const Ray> rays, std::span<Hit> hits) const {
-  trace_all(rays, RootsWanted::closest, [&](std::size_t k, bool valid, const std::optional<RayQuery>& query) {
-    Hit& hit = hits[k];
-    hit = {};
-    if (query && query->found) hit = hit_at(query->line, query->best), hit.t = query->t_of(query->best);
-    if (query) hit.flags.incomplete = query->incomplete, hit.steps = told(query->steps);
-    if (!valid) hit.kind = HitKind::invalid_ray;
+    trace_turn(std::span(queries).first(count), space);
+    done({first, turn.valid().first(count), std::span(queries).first(count)});
   });
 }
 
-void ExactScene::occluded_piece(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const {
-  trace_all(rays, RootsWanted::any,
-            [&](std::size_t k, bool, const std::optional<RayQuery>& query) { occluded[k] = query && query->found; });
+void ExactScene::closest_piece(const RayBatch& batch, const HitWriter& writer, std::size_t begin,
+                               std::size_t end) const {
+  const HitParts parts = writer.parts();
+  TurnRoom<Hit> room;
+  trace_all(batch, begin, end, RootsWanted::closest, [&](const TracedTurn& turn) {
+    const std::span<Hit> hits = writer.place(turn.first, turn.queries.size(), room.span());
+    for (std::size_t k = 0; k < turn.queries.size(); ++k) {
+      const std::optional<RayQuery>& query = turn.queries[k];
+      Hit& hit = hits[k];
+      if (query && query->found) {
+        set_hit(query->line, query->best, parts, hit);
+        hit.instance = Hit::no_instance, hit.t = query->t_of(query->best);
+      } else {
+        hit = {};
+        if (!turn.valid[k]) hit.kind = HitKind::invalid_ray;
+      }
+      if (query) hit.flags.incomplete = query->incomplete, hit.steps = told(query->steps);
+    }
+    writer.write(turn.first, hits);
+  });
+}
+
+void ExactScene::occluded_piece(const RayBatch& batch, const View1<std::uint8_t>& occluded, std::size_t begin,
+                                std::size_t end) const {
+  trace_all(batch, begin, end, RootsWanted::any, [&](const TracedTurn& turn) {
+    for (std::size_t k = 0; k < turn.queries.size(); ++k)
+      occluded.at(turn.first + k, 0) = turn.queries[k] && turn.queries[k]->found;
+  });
 }
 
 void ExactScene::trace(RayQuery& query) const {
   SearchSpace space(nets_.largest(), &pool_);
   scene_.trace(query, space);
+}
+
+void ExactScene::trace(std::span<RayQuery* const> queries) const {
+  SearchSpace space(nets_.largest(), &pool_);
+  trace_queries(queries, space);
 }
 
 void ExactScene::hits_of(RayQuery& query, std::vector<Hit>& hits) const {

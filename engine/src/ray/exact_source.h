@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "ray/batch_layout.h"
 #include "ray/leaf_tracer.h"
 #include "ray/ray_line.h"
 #include "ray/ray_query.h"
@@ -26,7 +28,16 @@ class ExactSource {
   virtual RayLine line(const Ray& ray, const Placement& placement) const = 0;
   /// Runs the query, of a line that is not empty, inside a FlushDenormals.
   virtual void trace(RayQuery& query) const = 0;
-  virtual Hit hit_at(const RayLine& line, const LeafRoot& root) const = 0;
+  /// Runs up to a packet of queries for one kind of roots, together where they are coherent.
+  virtual void trace(std::span<RayQuery* const> queries) const = 0;
+  /// Sets what `parts` names, flags, patch, surface and parameters; leaves t, steps and the instance, and all else.
+  virtual void set_hit(const RayLine& line, const LeafRoot& root, HitParts parts, Hit& hit) const = 0;
+  Hit hit_at(const RayLine& line, const LeafRoot& root) const {
+    Hit hit;
+    set_hit(line, root, {}, hit);
+    hit.t = line.t_at(root.s);
+    return hit;
+  }
   /// Appends what a query for all roots has met, in order and each once.
   virtual void hits_of(RayQuery& query, std::vector<Hit>& hits) const = 0;
 };

@@ -8,6 +8,7 @@
 
 #include "kernel/kernel_table.h"
 #include "ray/adjacency.h"
+#include "ray/batch_layout.h"
 #include "ray/embree_scene.h"
 #include "ray/facet_source.h"
 #include "ray/packet_refine.h"
@@ -29,6 +30,7 @@ constexpr double reach_cells = 3;        // a facet of a tame grid lies within o
 constexpr double float_rounding = 1e-6;  // of the size: positions, origins and directions in float
 
 using Packet = std::array<FacetRay, EmbreeScene::packet>;
+static_assert(rays_per_turn <= EmbreeScene::packet);
 
 /// Rays that start near each other and run nearly the same way are worth a packet.
 bool coherent(std::span<const RaySegment> segments, double size) {
@@ -62,8 +64,10 @@ class GridScene final : public PatchScene {
     const Box3 box = scene_.box();
     return {box.lower + set().origin(), box.upper + set().origin()};
   }
-  void closest_piece(std::span<const Ray> rays, std::span<Hit> hits) const override;
-  void occluded_piece(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const override;
+  bool can_filter() const override { return false; }
+  void closest_piece(const RayBatch& batch, const HitWriter& hits, std::size_t begin, std::size_t end) const override;
+  void occluded_piece(const RayBatch& batch, const View1<std::uint8_t>& occluded, std::size_t begin,
+                      std::size_t end) const override;
   Status all_of(const Ray&, std::vector<Hit>&) const override {
     return Status(StatusCode::unsupported, "all hits of a ray are known in exact mode only");
   }
@@ -116,11 +120,15 @@ Status GridScene::build(const Execution& execution) {
   return {};
 }
 
-void GridScene::closest_piece(std::span<const Ray> rays, std::span<Hit> hits) const {
-  for (std::size_t k = 0; k < rays.size(); k += EmbreeScene::packet) {
-    const std::size_t count = std::min(EmbreeScene::packet, rays.size() - k);
-    closest_packet(rays.subspan(k, count), hits.subspan(k, count));
-  }
+void GridScene::closest_piece(const RayBatch& batch, const HitWriter& writer, std::size_t begin,
+                              std::size_t end) const {
+  TurnRoom<Ray> room;
+  TurnRoom<Hit> hit_room;
+  for_turns(batch, begin, end, [&](std::size_t first, std::size_t count) {
+    const std::span<Hit> hits = writer.place(first, count, hit_room.span());
+    closest_packet(batch.rays.read(first, count, room.span()), hits);
+    writer.write(first, hits);
+  });
 }
 
 /// At most a packet of rays.
@@ -201,11 +209,14 @@ bool GridScene::accept(const Ray& ray, const RaySegment& segment, const SurfaceR
   return true;
 }
 
-void GridScene::occluded_piece(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const {
-  for (std::size_t k = 0; k < rays.size(); k += EmbreeScene::packet) {
-    const std::size_t count = std::min(EmbreeScene::packet, rays.size() - k);
-    occluded_packet(rays.subspan(k, count), occluded.subspan(k, count));
-  }
+void GridScene::occluded_piece(const RayBatch& batch, const View1<std::uint8_t>& occluded, std::size_t begin,
+                               std::size_t end) const {
+  TurnRoom<Ray> room;
+  std::array<std::uint8_t, rays_per_turn> found;
+  for_turns(batch, begin, end, [&](std::size_t first, std::size_t count) {
+    occluded_packet(batch.rays.read(first, count, room.span()), std::span(found).first(count));
+    for (std::size_t k = 0; k < count; ++k) occluded.at(first + k, 0) = found[k];
+  });
 }
 
 /// At most a packet of rays. Facets decide, so the rays end where they say.

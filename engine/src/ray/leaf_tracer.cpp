@@ -113,11 +113,12 @@ unsigned LeafTracer::decide(unsigned leaf_index, QueryPacket& packet, unsigned l
     if ((lanes >> lane & 1u) == 0 || packet.rays.state[lane] == kernel::RayPacket::nothing) continue;
     RayQuery& query = *packet.queries[lane];
     const bool has_root = packet.rays.state[lane] == kernel::RayPacket::root && !(query.line.spawn > 0);
-    if (has_root && query.wanted == RootsWanted::any && lies_between(root_of(packet.rays, lane), query.line)) {
+    const bool any = query.wanted == RootsWanted::any && query.filter == nullptr;
+    if (has_root && any && lies_between(root_of(packet.rays, lane), query.line)) {
       query.found = true;
       ++query.steps;
     } else {
-      (has_root && query.wanted == RootsWanted::closest ? roots : open) |= 1u << lane;
+      (has_root && !any ? roots : open) |= 1u << lane;
     }
   }
   return roots == 0 ? open : open | take_roots(leaf, packet, roots);
@@ -135,6 +136,7 @@ unsigned LeafTracer::take_roots(const Leaf& leaf, QueryPacket& packet, unsigned 
     rays.reach_u[lane] = start.reach_u, rays.reach_v[lane] = start.reach_v;
   }
   polish_side_by_side(patch, nets->frame(), *kernels, start_of(leaf, {}), rays, lanes);
+  const double rounding = search_rounding(leaf.degree_u, leaf.degree_v, 0, 0);
   unsigned open = 0;
   for (std::size_t lane = 0; lane < QueryPacket::size; ++lane) {
     if ((lanes >> lane & 1u) == 0) continue;
@@ -148,7 +150,7 @@ unsigned LeafTracer::take_roots(const Leaf& leaf, QueryPacket& packet, unsigned 
     root.position = get(rays.position, lane), root.du = get(rays.du, lane), root.dv = get(rays.dv, lane);
     root.has_point = true;
     root.s = rays.s[lane];
-    root.residual = search_rounding(leaf.degree_u, leaf.degree_v, 0, 0);
+    root.residual = rounding;
     root.certified = true;
     RayQuery& query = *packet.queries[lane];
     ++query.steps;
@@ -185,7 +187,7 @@ bool LeafTracer::decide(const Leaf& leaf, unsigned leaf_index, kernel::RayProbe&
   const auto trace = leaf.rational ? kernels->trace_rational_leaf : kernels->trace_polynomial_leaf;
   const kernel::RayLeaf& local = nets->local(leaf_index);
   kernel::RayRoots roots;
-  probe.any = query.wanted == RootsWanted::any && query.origin == nullptr;
+  probe.any = query.wanted == RootsWanted::any && !query.judges();
   if (!probe.any) fetch_patch(*set, leaf);
   if (!trace(local, probe, roots)) return false;
   if (roots.count == 0) return true;

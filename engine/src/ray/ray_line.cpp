@@ -140,9 +140,9 @@ std::optional<Placement> Placement::of(const Affine& to_world, const SceneFrame&
   const auto at = [&](std::size_t row, std::size_t column) { return static_cast<double>(rows[row][column] / volume); };
   for (std::size_t k = 0; k < 3; ++k) out.back.columns[k] = {at(0, k), at(1, k), at(2, k)};
   out.centre = to_world.point(frame.centre);
+  out.growth = out.back.norm_bound();
   // Written so that NaN fails.
-  if (!(to_world.norm_bound() * out.back.norm_bound() <= most) || !is_finite(out.back) || !is_finite(out.centre))
-    return {};
+  if (!(to_world.norm_bound() * out.growth <= most) || !is_finite(out.back) || !is_finite(out.centre)) return {};
   return out;
 }
 
@@ -155,7 +155,7 @@ RayLine line_of(const Ray& ray, const Placement& placement, const SceneFrame& fr
   line.base = -dot(from, line.direction) / line.speed;
   if (!std::isfinite(line.base) || !(line.speed > 0)) return line;
   line.start = frame.scale * placement.back.vector(near_centre(ray, line, placement.centre));
-  complete<true>(ray, frame.scale * placement.back.norm_bound(), box, line);
+  complete<true>(ray, frame.scale * placement.growth, box, line);
   return line;
 }
 

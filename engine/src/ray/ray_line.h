@@ -52,8 +52,9 @@ RayLine line_of(const Ray& ray, const SceneFrame& frame, const Box3& box);
 
 /// A model that stands elsewhere, as rays need to know it.
 struct Placement {
-  Affine back;  ///< directions into the model's coordinates; the translation counts for nothing
-  Vec3 centre;  ///< where the frame's centre stands
+  Affine back;        ///< directions into the model's coordinates; the translation counts for nothing
+  Vec3 centre;        ///< where the frame's centre stands
+  double growth = 1;  ///< an upper bound of what lengths grow by on the way back
 
   /// Of a map whose condition number, of which this is a bound, is at most 1e8. Where it is larger: nothing.
   static std::optional<Placement> of(const Affine& to_world, const SceneFrame& frame);

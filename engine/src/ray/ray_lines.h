@@ -18,7 +18,8 @@ class RayTurn {
 
   /// One to `size` rays.
   void set(std::span<const Ray> rays);
-  bool is_valid(std::size_t k) const { return valid_[k]; }
+  /// For each ray that was set; further ones mean nothing.
+  std::span<const bool> valid() const { return valid_; }
   /// That of line_of(), where the ray is valid; empty where it isn't.
   const RayLine& line(std::size_t k) const { return lines_[k]; }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "ray/ray_line.h"
+#include "tessera/ray_batch.h"
 
 namespace tessera {
 
@@ -83,6 +84,17 @@ inline bool comes_before(const LeafRoot& a, const LeafRoot& b) {
   return a.s < b.s || (a.s == b.s && std::tie(a.patch, a.u, a.v) < std::tie(b.patch, b.u, b.v));
 }
 
+struct RayQuery;
+
+/// The caller's say in which roots count: batch_filter.h.
+class RootFilter {
+ public:
+  virtual HitVerdict judge(const RayQuery& query, const LeafRoot& root) const noexcept = 0;
+
+ protected:
+  ~RootFilter() = default;
+};
+
 struct RayQuery {
   RayQuery(const Ray& of, const RayLine& along, RootsWanted which)
       : ray(of),
@@ -105,10 +117,15 @@ struct RayQuery {
   LeafRoot best;                       ///< where found
   std::vector<LeafRoot> roots;         ///< where all are wanted
   const OriginTest* origin = nullptr;  ///< where the line leaves a surface
+  const RootFilter* filter = nullptr;  ///< where not all roots count; never where all are wanted
+  std::size_t index = 0;               ///< of the ray in the batch, for the filter
+  bool stopped = false;                ///< by the filter
 
   /// Of a root that was taken, seen from where denormal numbers count.
   double t_of(const LeafRoot& root) const { return std::clamp(line.t_at(root.s), ray.tnear, ray.tfar); }
-  bool done() const { return (found && wanted == RootsWanted::any) || overflow; }
+  bool done() const { return (found && wanted == RootsWanted::any) || overflow || stopped; }
+  /// Whether each root must be known to its last digits, one by one.
+  bool judges() const { return origin != nullptr || filter != nullptr; }
 
   /// False where the root's t is outside of [tnear, tfar], or where it stands for the origin that the ray leaves: there
   /// may be others beside it.
@@ -126,6 +143,7 @@ struct RayQuery {
         overflow = true;
       }
     } else if (!found || comes_before(root, best)) {
+      if (filter != nullptr && !counts(root)) return true;
       best = root;
       far = std::min(far, root.s);
     }
@@ -133,6 +151,16 @@ struct RayQuery {
     if (unsure < best.s) best.certified = false;  // the part may hold a root that comes before
     found = true;
     return true;
+  }
+
+ private:
+  bool counts(const LeafRoot& root) {
+    const HitVerdict verdict = filter->judge(*this, root);
+    if (verdict != HitVerdict::accept && verdict != HitVerdict::reject) {
+      stopped = true;
+      far = -std::numeric_limits<double>::infinity();
+    }
+    return verdict == HitVerdict::accept;
   }
 };
 

@@ -50,24 +50,30 @@ Result<Hit> RayScene::Impl::resolve(const Ray&, std::uint32_t, double, double) c
   return Status(StatusCode::unsupported, "the root next to a point is known in exact mode only");
 }
 
-Status RayScene::Impl::closest(std::span<const Ray> rays, std::span<Hit> hits, const Execution& execution) const {
-  if (hits.size() < rays.size()) return short_output(rays.size(), hits.size());
+Status RayScene::Impl::check(const RayBatch& batch) const {
   if (!fresh()) return stale();
-  return parallel_for(rays.size(), rays_a_task, execution, [&](std::size_t begin, std::size_t end) {
-    closest_piece(rays.subspan(begin, end - begin), hits.subspan(begin, end - begin));
-  });
+  if (batch.filter != nullptr && !can_filter())
+    return Status(StatusCode::unsupported, "filters are asked in exact mode only");
+  return {};
 }
 
-Status RayScene::Impl::occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded,
+Status RayScene::Impl::closest(const RayBatch& batch, const HitWriter& hits, std::size_t count,
+                               const Execution& execution) const {
+  if (Status status = check(batch); !status.ok()) return status;
+  Status status = parallel_for(count, rays_a_task, execution,
+                               [&](std::size_t begin, std::size_t end) { closest_piece(batch, hits, begin, end); });
+  return batch.stopped() ? batch.filter->status() : status;
+}
+
+Status RayScene::Impl::occluded(const RayBatch& batch, const View1<std::uint8_t>& occluded, std::size_t count,
                                 const Execution& execution) const {
-  if (occluded.size() < rays.size()) return short_output(rays.size(), occluded.size());
-  if (!fresh()) return stale();
-  return parallel_for(rays.size(), rays_a_task, execution, [&](std::size_t begin, std::size_t end) {
-    occluded_piece(rays.subspan(begin, end - begin), occluded.subspan(begin, end - begin));
+  if (Status status = check(batch); !status.ok()) return status;
+  Status status = parallel_for(count, rays_a_task, execution, [&](std::size_t begin, std::size_t end) {
+    occluded_piece(batch, occluded, begin, end);
   });
+  return batch.stopped() ? batch.filter->status() : status;
 }
 
-/// Each task fills a list of its own; they are joined in order.
 Status RayScene::Impl::all(std::span<const Ray> rays, HitLists& lists, const Execution& execution) const {
   lists.hits.clear();
   lists.first.assign(1, 0);
@@ -135,12 +141,18 @@ Result<RayScene> RayScene::make(std::span<const RayInstance> instances, const Ex
 }
 
 Status RayScene::closest(std::span<const Ray> rays, std::span<Hit> hits, const Execution& execution) const {
-  return guarded([&] { return impl_->closest(rays, hits, execution); });
+  return guarded([&] {
+    if (hits.size() < rays.size()) return short_output(rays.size(), hits.size());
+    return impl_->closest({RaySpan(rays)}, HitSpan(hits), rays.size(), execution);
+  });
 }
 
 Status RayScene::occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded,
                           const Execution& execution) const {
-  return guarded([&] { return impl_->occluded(rays, occluded, execution); });
+  return guarded([&] {
+    if (occluded.size() < rays.size()) return short_output(rays.size(), occluded.size());
+    return impl_->occluded({RaySpan(rays)}, View1<std::uint8_t>::soa({occluded}), rays.size(), execution);
+  });
 }
 
 Status RayScene::all(std::span<const Ray> rays, HitLists& lists, const Execution& execution) const {

@@ -4,8 +4,10 @@
 #include <memory>
 #include <span>
 
+#include "ray/batch_layout.h"
 #include "ray/set_view.h"
 #include "tessera/ray_scene.h"
+#include "tessera/views.h"
 
 namespace tessera {
 
@@ -21,13 +23,16 @@ class RayScene::Impl {
   /// Makes ready for the set as it is now, from nothing or from what stands. After an error the scene stays stale.
   Status rebuild(const Execution& execution);
   Status refit(const Execution& execution);
-  Status closest(std::span<const Ray> rays, std::span<Hit> hits, const Execution& execution) const;
-  Status occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded, const Execution& execution) const;
+  /// Rays 0 to count - 1 of the batch; there is room for their results.
+  Status closest(const RayBatch& batch, const HitWriter& hits, std::size_t count, const Execution& execution) const;
+  Status occluded(const RayBatch& batch, const View1<std::uint8_t>& occluded, std::size_t count,
+                  const Execution& execution) const;
   Status all(std::span<const Ray> rays, HitLists& lists, const Execution& execution) const;
   /// Looks for shared borders, unless that is done: before all_of(), and before rays that leave a surface are traced. By
   /// one thread or several at once. Throws bad_alloc.
   virtual void prepare_borders() const {}
 
+  virtual bool can_filter() const { return true; }
   /// Of exact mode alone.
   virtual const ExactSource* exact_source() const { return nullptr; }
   bool fresh() const { return ready_ && revision_ == source_revision(); }
@@ -43,9 +48,11 @@ class RayScene::Impl {
   virtual std::size_t memory_bytes() const = 0;
 
  protected:
-  /// Any number of rays of a task. Valid or not; room is checked.
-  virtual void closest_piece(std::span<const Ray> rays, std::span<Hit> hits) const = 0;
-  virtual void occluded_piece(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const = 0;
+  /// Rays begin to end of a task, valid or not; room is checked. Once the batch is stopped, nothing need be written.
+  virtual void closest_piece(const RayBatch& batch, const HitWriter& hits, std::size_t begin,
+                             std::size_t end) const = 0;
+  virtual void occluded_piece(const RayBatch& batch, const View1<std::uint8_t>& occluded, std::size_t begin,
+                              std::size_t end) const = 0;
   /// Appends the hits of one ray, in order.
   virtual Status all_of(const Ray& ray, std::vector<Hit>& hits) const = 0;
 
@@ -59,6 +66,7 @@ class RayScene::Impl {
   virtual Status update(std::uint64_t since, const Execution& execution) = 0;
   virtual Box3 model_box() const = 0;
   Status done(Status status);
+  Status check(const RayBatch& batch) const;
 
   std::uint64_t revision_ = 0;
   bool ready_ = false;  // false after a build that failed

@@ -23,17 +23,14 @@ void set_normal(const BezierPatch& patch, double size, double u, double v, const
 }  // namespace
 
 void set_surface_point(const SetView& set, double size, double unit, std::uint32_t patch, double u, double v,
-                       const FirstOrder& at, Hit& hit) {
-  hit.kind = HitKind::hit;
-  hit.patch = patch;
-  const PatchSource& source = set.source(patch);
-  hit.surface = source.surface;
-  hit.patch_u = u, hit.patch_v = v;
-  hit.u = source.domain.u_at(u), hit.v = source.domain.v_at(v);
-  hit.position = at.position;
-  hit.du = (unit / (source.domain.u1 - source.domain.u0)) * at.du;
-  hit.dv = (unit / (source.domain.v1 - source.domain.v0)) * at.dv;
-  set_normal(set.patch(patch), size, u, v, at, hit);
+                       const FirstOrder& at, Hit& hit, HitParts parts) {
+  const Domain& domain = set_place(set, patch, u, v, hit);
+  if (parts.point) hit.position = at.position;
+  if (parts.derivatives) {
+    hit.du = (unit / (domain.u1 - domain.u0)) * at.du;
+    hit.dv = (unit / (domain.v1 - domain.v0)) * at.dv;
+  }
+  if (parts.normal) set_normal(set.patch(patch), size, u, v, at, hit);
 }
 
 }  // namespace tessera
