@@ -70,6 +70,7 @@ void fill_tessellations(Table& table);
 void fill_certified(Table& table);
 void fill_meshes(Table& table);
 void fill_rays(Table& table);
+void fill_batches(Table& table);
 void fill_readers(Table& table);
 void fill_files(Table& table);
 void fill_machine(Table& table);

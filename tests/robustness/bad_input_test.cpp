@@ -15,9 +15,10 @@ namespace tessera::test {
 namespace {
 
 #ifdef TESSERA_HAS_RAY
-constexpr auto rays = fill_rays;
+constexpr auto rays = fill_rays, batches = fill_batches;
 #else
 constexpr void (*rays)(Table&) = nullptr;
+constexpr auto batches = rays;
 #endif
 #ifdef TESSERA_HAS_IO
 constexpr auto readers = fill_readers, files = fill_files;
@@ -49,6 +50,7 @@ constexpr Section sections[] = {{"Curves", fill_curves},
                                 {"Certified tessellation", fill_certified},
                                 {"Meshes", fill_meshes},
                                 {"Rays", rays},
+                                {"Batches of rays", batches},
                                 {"Text of files", readers},
                                 {"Files", files},
                                 {"The machine", fill_machine},

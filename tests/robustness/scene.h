@@ -9,7 +9,7 @@
 #include "tessera/mesh_update.h"
 #include "tessera/tessellate.h"
 #ifdef TESSERA_HAS_RAY
-#include "tessera/ray_scene.h"
+#include "tessera/ray_batch.h"
 #ifdef TESSERA_THREAD_SANITIZER
 #include <tbb/task_arena.h>
 

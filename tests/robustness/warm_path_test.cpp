@@ -80,6 +80,31 @@ TEST_F(WarmPath, Rays) {
     expect_no_allocation("occlusion", [&] { return scene.occluded(rays, dark); });
   }
 }
+
+TEST_F(WarmPath, BatchesOfRays) {
+  std::vector<float> origin, direction;
+  for (const Ray& ray : rays_at(set_, 5000)) {
+    for (const double x : {ray.origin.x, ray.origin.y, ray.origin.z}) origin.push_back(static_cast<float>(x));
+    for (const double x : {ray.direction.x, ray.direction.y, ray.direction.z})
+      direction.push_back(static_cast<float>(x));
+  }
+  RayViews<float> rays;
+  rays.origin = View3<const float>::interleaved(origin), rays.direction = View3<const float>::interleaved(direction);
+  std::vector<float> t(5000), normal(15000);
+  std::vector<std::uint8_t> dark(5000);
+  HitViews<float> hits;
+  hits.t = View1<float>::soa({t}), hits.normal = View3<float>::interleaved(normal);
+  const BatchOptions options{
+      .filter = [](const HitCandidate& at) { return at.patch_u < 0.5 ? HitVerdict::reject : HitVerdict::accept; }};
+  const RayScene scene = value_of(RayScene::make(set_));
+  const std::vector<RayInstance> two{{&scene, Affine{}}, {&scene, Affine::translated({0, 0, 1})}};
+  const RayScene instances = value_of(RayScene::make(two));
+  for (const RayScene* of : {&scene, &instances}) {
+    expect_no_allocation("closest hits in arrays", [&] { return closest(*of, rays, hits); });
+    expect_no_allocation("closest hits with a filter", [&] { return closest(*of, rays, hits, options); });
+    expect_no_allocation("occlusion in arrays", [&] { return occluded(*of, rays, View1<std::uint8_t>::soa({dark})); });
+  }
+}
 #endif
 
 }  // namespace
