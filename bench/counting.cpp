@@ -47,6 +47,7 @@ constexpr std::string_view cases[] = {
     "ray.closest.camera/teapot/3/65536",
     "ray.occluded.random/teapot/3/65536",
     "ray.exact.closest.coherent/torus3600/3/65536",
+    "ray.exact.batch.t+uv+patch/torus3600/3/65536",
     "ray.refit/teapot/3/rate8",
     "read.bpt/bicubic/3/1MB",
     "read.bv/bicubic/3/1MB",
