@@ -165,8 +165,11 @@ void bad_outputs(Calls& calls) {
 }
 
 void filters(Table& table, Calls& calls) {
-  calls.filter("a filter that stops", cancelled, [](const HitCandidate&) { return HitVerdict::stop; });
-  calls.filter("a filter whose verdict is none", cancelled, [](const HitCandidate&) { return HitVerdict{7}; });
+  const auto at_first_ray = [](HitVerdict verdict) {  // rays come in any order
+    return [verdict](const HitCandidate& at) { return at.ray == 0 ? verdict : HitVerdict::accept; };
+  };
+  calls.filter("a filter that stops", cancelled, at_first_ray(HitVerdict::stop));
+  calls.filter("a filter whose verdict is none", cancelled, at_first_ray(HitVerdict{7}));
   calls.filter("a filter that throws std::runtime_error(\"no texture\")", internal,
                [](const HitCandidate&) -> HitVerdict { throw std::runtime_error("no texture"); });
   calls.filter("a filter that throws std::bad_alloc", out_of_memory,

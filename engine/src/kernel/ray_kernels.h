@@ -97,7 +97,7 @@ struct alignas(64) RayLines {
 /// coordinates scale (p - centre). Roots are looked for inside [u0, u1] x [v0, v1].
 struct PolishJob {
   static constexpr int most_steps = 6;
-  const double *points, *weights;         ///< no weights of a polynomial patch
+  const double *points, *weights;  ///< no weights of a polynomial patch
   int degree_u, degree_v;
   double centre[3], scale;
   double u0, u1, v0, v1;
