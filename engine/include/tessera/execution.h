@@ -31,7 +31,7 @@ struct ExecutionReport {
 /// Options of long calls. Everything is optional.
 struct Execution {
   const std::atomic<bool>* cancel = nullptr;  ///< seen between tasks; the call then returns StatusCode::cancelled
-  /// Called with the share done, 0 to 1, from any thread, one call at a time, seldom.
+  /// Called with the share done, which rises to 1 once, from any thread, one call at a time, seldom.
   std::function<void(double)> progress = {};
   Stores stores = Stores::automatic;  ///< how large outputs are written
   ExecutionReport* report = nullptr;  ///< filled if not null

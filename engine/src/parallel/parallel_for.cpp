@@ -50,6 +50,7 @@ Status parallel_for(std::size_t count, std::size_t grain, const Execution& execu
     };
     if (pieces <= 1) {
       if (pieces == 1) run_piece(0);
+      if (pieces == 0 && execution.progress) execution.progress(1);
     } else {
       tbb_loop(pieces, run_piece);
     }

@@ -9,6 +9,7 @@
 #include "base/guard.h"
 #include "base/text.h"
 #include "kernel/kernel_table.h"
+#include "parallel/call_progress.h"
 #include "parallel/parallel_for.h"
 #include "tess/certified_tessellation_impl.h"
 #include "tess/joins.h"
@@ -20,6 +21,7 @@ namespace tessera {
 namespace {
 
 constexpr std::size_t patches_a_piece = 64;
+constexpr double planning_ends[] = {0.5, 0.95};  // of bounds and of rates; angles, pixels and searches take longer
 
 }  // namespace
 
@@ -218,8 +220,9 @@ Result<std::unique_ptr<CertifiedTessellation::Impl>> plan_for(const PatchSet& se
 Result<CertifiedTessellation> CertifiedTessellation::make(const PatchSet& set, const CertifiedOptions& options,
                                                           const Execution& execution) {
   return guarded([&]() -> Result<CertifiedTessellation> {
-    Result<std::unique_ptr<Impl>> made = plan_for(set, options, {}, execution);
-    if (!made) return made.status();
+    CallProgress progress(execution, planning_ends);
+    Result<std::unique_ptr<Impl>> made = plan_for(set, options, {}, progress.loops());
+    if (Status status = progress.finish(made.status()); !status.ok()) return status;
     return CertifiedTessellation(std::move(*made));
   });
 }
@@ -230,8 +233,10 @@ Result<CertifiedTessellation> CertifiedTessellation::retessellate(const PatchSet
     if (!(spare >= 0 && std::isfinite(spare)))
       return Status(StatusCode::invalid_argument, "the spare is " + text(spare) + ", it must be finite and at least 0");
     if (Status status = check_count(set, impl_->plan().patch_count()); !status.ok()) return status;
-    Result<std::unique_ptr<Impl>> made = plan_for(set, impl_->options(), {impl_->plan().segments(), spare}, execution);
-    if (!made) return made.status();
+    CallProgress progress(execution, planning_ends);
+    Result<std::unique_ptr<Impl>> made =
+        plan_for(set, impl_->options(), {impl_->plan().segments(), spare}, progress.loops());
+    if (Status status = progress.finish(made.status()); !status.ok()) return status;
     return CertifiedTessellation(std::move(*made));
   });
 }

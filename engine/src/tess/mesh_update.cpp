@@ -5,6 +5,7 @@
 #include "base/guard.h"
 #include "eval/patch_edits.h"
 #include "kernel/kernel_table.h"
+#include "parallel/call_progress.h"
 #include "parallel/parallel_for.h"
 #include "tess/mesh_views.h"
 #include "tess/present_bounds.h"
@@ -14,6 +15,7 @@ namespace tessera {
 namespace {
 
 constexpr std::size_t blocks_a_piece = 8;
+constexpr double restating_ends[] = {0.8, 1};  // of bounds, and of what they say of the mesh
 
 Status edited_otherwise(std::uint64_t revision, std::uint64_t known) {
   return {StatusCode::stale, "the set is at revision " + std::to_string(revision) + ", the mesh at " +
@@ -57,7 +59,8 @@ class MeshUpdate::Impl {
 
   Status restate(const PatchSet::Impl& set, const Execution& execution) {
     if (set.revision != revision_) return edited_otherwise(set.revision, revision_);
-    return bounds_.restate(set, plan_.impl(), execution);
+    CallProgress progress(execution, restating_ends);
+    return progress.finish(bounds_.restate(set, plan_.impl(), progress.loops()));
   }
 
   Result<std::size_t> retessellate(const PatchSet& set, double spare, const Execution& execution) {

@@ -3,6 +3,7 @@
 
 #include "base/guard.h"
 #include "eval/uniform_grid.h"
+#include "parallel/call_progress.h"
 #include "parallel/parallel_for.h"
 #include "tess/mesh_views.h"
 #include "tess/patch_triangles.h"
@@ -14,8 +15,7 @@ namespace {
 constexpr int most_rate = 4096;
 constexpr std::uint64_t most_vertices = std::uint64_t{1} << 32;  // 32-bit indices
 constexpr std::size_t patches_a_piece = 64;
-/// Share of the time that vertices take, for progress.
-constexpr double vertex_share = 0.7;
+constexpr double progress_ends[] = {0.7, 1};  // of vertices, and of all else
 
 Status invalid(std::string message) { return {StatusCode::invalid_argument, std::move(message)}; }
 
@@ -75,8 +75,9 @@ class TessellationPlan::Impl {
   Status run(const PatchSet& set, const MeshViews& out, const Execution& execution) const {
     if (Status status = check_views(out, out.quads.empty() ? capacity() : quad_capacity()); !status.ok()) return status;
     if (Status status = check_shapes(set, shapes_); !status.ok()) return status;
-    if (Status status = write_vertices(set, out, execution); !status.ok()) return status;
-    return write_rest(out, execution);
+    CallProgress progress(execution, progress_ends);
+    if (Status status = write_vertices(set, out, progress.loops()); !status.ok()) return status;
+    return progress.finish(write_rest(out, progress.loops()));
   }
 
  private:
@@ -84,17 +85,14 @@ class TessellationPlan::Impl {
     GridViews<float> grid;
     grid.position = out.position;
     grid.normal = out.normal;
-    Execution part{.cancel = execution.cancel, .progress = {}, .stores = execution.stores, .report = execution.report};
-    if (execution.progress) part.progress = [&](double done) { execution.progress(vertex_share * done); };
-    return grid_.run(set, grid, part);
+    return grid_.run(set, grid, execution);
   }
 
   /// Parameters, indices and patch numbers.
   Status write_rest(const MeshViews& out, const Execution& execution) const {
     ExecutionReport report;
     Execution part{.cancel = execution.cancel, .progress = {}, .stores = execution.stores, .report = &report};
-    if (execution.progress)
-      part.progress = [&](double done) { execution.progress(vertex_share + (1 - vertex_share) * done); };
+    if (execution.progress) part.progress = [&](double done) { execution.progress(done); };
     Status status = parallel_for(shapes_.size(), patches_a_piece, part, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         if (!out.parameter.empty()) write_parameters(k, out.parameter);
