@@ -105,5 +105,15 @@ TEST(Lifetime, AnOutlierThatIsTakenBackIsForgotten) {
   EXPECT_EQ(after.position, before.position);
 }
 
+/// Whether a scene can be made of a set, or a set and a mesh, of these types.
+template <class... Source>
+constexpr bool can_make = requires {
+  RayScene::make(std::declval<Source>()...);
+};
+
+static_assert(can_make<PatchSet&> && can_make<const PatchSet&> && can_make<PatchSet&, Mesh&>);
+static_assert(!can_make<PatchSet> && !can_make<PatchSet&, Mesh> && !can_make<PatchSet, Mesh&>,
+              "a scene refers to what it is made of");
+
 }  // namespace
 }  // namespace tessera::test

@@ -145,11 +145,14 @@ struct RayInstance {
 class RayScene {
  public:
   /// Errors: invalid_argument (the rate, the pieces, the tolerance, the box, more patches than the set has, rebuild_after),
-  /// isa_unavailable, cancelled, out_of_memory, internal (Embree's own), unsupported. Grid mode: unsupported are no float Bernstein blocks, a box with
-  /// a diagonal below 1e-9 or reaching further than 1e12 from the set's origin, more than 2^32 grid points. Exact mode:
-  /// unsupported are a diagonal outside of 1e-140 to 1e140, 2^32 pieces.
+  /// isa_unavailable, cancelled, out_of_memory, internal (Embree's own), unsupported. Grid mode: unsupported are no float
+  /// Bernstein blocks, a box with a diagonal below 1e-9 or reaching further than 1e12 from the set's origin, more than 2^32
+  /// grid points. Exact mode: unsupported are a diagonal outside of 1e-140 to 1e140, 2^32 pieces.
   static Result<RayScene> make(const PatchSet& set, const RaySceneOptions& options = {},
                                const Execution& execution = {});
+  /// Deleted: the set must outlive the scene.
+  static Result<RayScene> make(PatchSet&& set, const RaySceneOptions& options = {},
+                               const Execution& execution = {}) = delete;
 
   /// Grid mode on facets that are there: the triangles and quads of a mesh of the set, such as one that keeps a tolerance,
   /// in the memory where they are. It must stay there, and change only between edit and refit of the set. Of its positions
@@ -159,8 +162,10 @@ class RayScene {
   /// index that is no vertex, a patch that the set does not have), and those of grid mode.
   static Result<RayScene> make(const PatchSet& set, const Mesh& mesh, const RaySceneOptions& options = {},
                                const Execution& execution = {});
-  /// Not of a mesh that would not stay.
+  /// Deleted: the set and the mesh must outlive the scene.
   static Result<RayScene> make(const PatchSet& set, Mesh&& mesh, const RaySceneOptions& options = {},
+                               const Execution& execution = {}) = delete;
+  static Result<RayScene> make(PatchSet&& set, const Mesh& mesh, const RaySceneOptions& options = {},
                                const Execution& execution = {}) = delete;
 
   /// A scene of instances, of one scene or several, which must outlive it (they may be moved). Positions, normals and

@@ -134,7 +134,7 @@ Result<PlannerOptions> checked(const CertifiedOptions& options, const PatchSet& 
   if (options.tolerance && !(*options.tolerance > 0 && std::isfinite(*options.tolerance)))
     return bad("the tolerance is " + text(*options.tolerance) + ", it must be finite and above 0");
   if (options.angle && !(*options.angle > 0 && *options.angle <= std::numbers::pi / 2))
-    return bad("the angle is " + text(*options.angle) + ", it must be above 0 and at most pi / 2");
+    return bad("the angle is " + text(*options.angle) + " radians, it must be above 0 and at most pi / 2");
   if (options.angle_rate < 1 || options.angle_rate > most_rate)
     return bad("the angle's rate is " + std::to_string(options.angle_rate) + ", it must be from 1 to " +
                std::to_string(most_rate));
@@ -145,7 +145,7 @@ Result<PlannerOptions> checked(const CertifiedOptions& options, const PatchSet& 
   if (const double size = options.weld > 0 ? set.box().diagonal() : 0; options.weld > most_weld * size)
     return bad("the weld is " + text(options.weld) + ", more than a twentieth of the model's size, " + text(size));
   if (options.crease_angle && !(*options.crease_angle >= 0 && *options.crease_angle <= std::numbers::pi))
-    return bad("the crease angle is " + text(*options.crease_angle) + ", it must be from 0 to pi");
+    return bad("the crease angle is " + text(*options.crease_angle) + " radians, it must be from 0 to pi");
   PlannerOptions planner;
   planner.weld = options.weld;
   planner.angle = options.angle;
