@@ -72,7 +72,10 @@ inline void judge_ray(std::span<const BezierPatch> patches, const RayScene& scen
   const auto on_hit_patch = [&](const Verdict::Root& root) { return root.patch == hit.patch; };
   // Like t, below, the parameters of what lies along the ray within the tolerance are its square root off.
   const double near_border = hit.flags.uncertified ? 4 * std::sqrt(tolerance / size) : 1e-9;
-  const bool on_border = std::min({hit.patch_u, 1 - hit.patch_u, hit.patch_v, 1 - hit.patch_v}) < near_border;
+  const double aside_u = std::min(hit.patch_u, 1 - hit.patch_u), aside_v = std::min(hit.patch_v, 1 - hit.patch_v);
+  // Next to a pole parameters that differ by 1e-7 are one place: there the distance from the border counts.
+  const double off_border = std::min(aside_u * length(hit.du), aside_v * length(hit.dv));
+  const bool on_border = std::min(aside_u, aside_v) < near_border || off_border < 64 * 0x1p-53 * size;
   tally.wrong_patch += met && !on_border && std::none_of(verdict.hits.begin(), verdict.hits.end(), on_hit_patch) &&
                        std::none_of(verdict.undecided.begin(), verdict.undecided.end(), on_hit_patch);
   const Verdict::Root& first = verdict.first();

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "ray/bounded_step.h"
+#include "ray/edge_on.h"
 #include "ray/projected_net.h"
 #include "ray/root_certificate.h"
 
@@ -113,6 +114,7 @@ class LeafSearch {
       return;
     }
     if (certificate.regular && narrow(slot, within)) return;
+    if (narrow_edge_on(slot, x, y, extent.heaviest)) return;
     halve(slot, x, y, extent.heaviest);
   }
 
@@ -250,6 +252,16 @@ class LeafSearch {
     }
     count_ = target + 1;
     return true;
+  }
+
+  /// The same where x and y together say nothing, as next to a silhouette. True as well where nothing of the box is left.
+  /// What is cut off is further from the ray than the tolerance.
+  bool narrow_edge_on(int slot, const DerivativeHulls& x, const DerivativeHulls& y, double heaviest) {
+    const EdgeOn seen(x, y, std::max(shape_.m(), shape_.n()), tolerance_ * heaviest, rounding_ * heaviest);
+    if (!seen.grows()) return false;
+    const double* const net = space_.net(slot);
+    const RootBox within = seen.roots(shape_, net, [&](NetPoint at) { return value(net, at); });
+    return within.empty() || narrow(slot, within);
   }
 
   /// Halves a box across its longer side as the ray sees it, along the ray where it sees none; the half that seems
