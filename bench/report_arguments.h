@@ -1,5 +1,5 @@
 #pragma once
-// What the reports of models are asked: which models, and whether meshes of the fewest triangles.
+// Arguments of the reports: which models, and whether meshes have the fewest triangles.
 
 #include <cstdio>
 #include <cstdlib>

@@ -8,44 +8,24 @@
 #include <set>
 #include <stdexcept>
 
+#include "model_files.h"
 #include "peers/lean_cases.h"
 #include "peers/occt_shape.h"
 #include "support/synthetic_sets.h"
-#include "tessera/io.h"
 #include "tessera/model.h"
-#ifdef TESSERA_HAS_IO_OCCT
-#include "tessera/io_occt.h"
-#endif
 
 namespace tessera::bench {
 namespace {
 
 namespace fs = std::filesystem;
 
-bool is_cad(const fs::path& path) {
-#ifdef TESSERA_HAS_IO_OCCT
-  return is_cad_file(path);
-#else
-  (void)path;
-  return false;
-#endif
-}
-
-Result<Model> read(const fs::path& path) {
-#ifdef TESSERA_HAS_IO_OCCT
-  if (is_cad_file(path)) return read_cad(path);
-#endif
-  return read_model(path);
-}
-
 /// The models below a folder, sorted.
 void find_models(const fs::path& folder, const std::string& only, std::vector<fs::path>& found) {
-  static const std::set<std::string> known{".bpt", ".bv", ".g2", ".json", ".obj", ".rib"};
   const std::size_t first = found.size();
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    const bool is_model = known.contains(entry.path().extension().string()) || is_cad(entry.path());
     const bool is_values = entry.path().parent_path().filename() == "peer_cases";  // another kind of .json
-    if (is_model && !is_values && entry.path().string().find(only) != std::string::npos) found.push_back(entry.path());
+    if (is_model(entry.path()) && !is_values && entry.path().string().find(only) != std::string::npos)
+      found.push_back(entry.path());
   }
   std::sort(found.begin() + static_cast<std::ptrdiff_t>(first), found.end());
 }

@@ -1,4 +1,4 @@
-// What exact mode costs beside refined grid mode at its default rate, a row a model: the times of coherent rays, as of a
+// Compares exact mode with refined grid mode at its default rate, a row per model: the times of coherent rays, as of a
 // camera, and of rays that have nothing in common; then rays aimed at borders of patches, at their poles, and along tangent planes,
 // beside those that have nothing in common. One thread, the better of some runs that take turns. Both modes must meet the
 // same but for one ray in a hundred.
@@ -113,7 +113,7 @@ double each(const RayScene& scene, const std::vector<Ray>& rays) {
   return best / static_cast<double>(std::max<std::size_t>(rays.size(), 1));
 }
 
-/// Of one column.
+/// The ratios of one column.
 struct Column {
   std::vector<double> ratios;
   std::string worst;

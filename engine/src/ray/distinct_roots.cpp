@@ -249,7 +249,7 @@ class Sweeps {
   std::vector<Interval> intervals_;
 };
 
-/// Which of two that are the same stays: the one nearer to the line, and where both are as near, which is mostly the same
+/// Whether a stays of two that are the same: the one nearer to the line, and where both are as near, mostly the same
 /// point of a border, that of the patch whose numbers come first. The patches' order in the set says nothing.
 bool is_better(const SetView& set, const LeafRoot& a, const LeafRoot& b) {
   if (a.residual != b.residual || a.patch == b.patch) return a.residual < b.residual;

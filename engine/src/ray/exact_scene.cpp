@@ -118,7 +118,7 @@ class ExactScene final : public PatchScene, private ExactSource {
   int updates_ = 0;  // since the last build
 };
 
-/// What size and centre are taken from.
+/// The box that gives size and centre.
 Result<Box3> ExactScene::frame_box() const {
   const Box3 box = set().box();
   if (!options_.box) return box;

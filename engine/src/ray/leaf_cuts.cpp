@@ -16,7 +16,7 @@ constexpr int most_halvings_a_side = 6, most_halvings_by_bend = 3, most_halvings
 constexpr int most_halvings_of_folds = 4;  // of patches that look folded everywhere, as those without an area
 constexpr double most_net_bend = 0.12;     // of a piece's length: an arc of nearly a radian
 
-/// What a net says of a patch without being cut.
+/// Measures of a control net, before it is cut.
 struct NetShapes {
   double length_u = 0, length_v = 0;  ///< of the longest lines
   double bend_u = 0,

@@ -254,8 +254,8 @@ class LeafSearch {
     return true;
   }
 
-  /// The same where x and y together say nothing, as next to a silhouette. True as well where nothing of the box is left.
-  /// What is cut off is further from the ray than the tolerance.
+  /// Narrows where x and y together say nothing, as next to a silhouette. True as well where nothing of the box is left.
+  /// All that is cut off is further from the ray than the tolerance.
   bool narrow_edge_on(int slot, const DerivativeHulls& x, const DerivativeHulls& y, double heaviest) {
     const EdgeOn seen(x, y, std::max(shape_.m(), shape_.n()), tolerance_ * heaviest, rounding_ * heaviest);
     if (!seen.grows()) return false;

@@ -200,7 +200,7 @@ bool LeafTracer::decide(const Leaf& leaf, unsigned leaf_index, kernel::RayProbe&
   return take_roots(leaf, roots, query);
 }
 
-/// Of one ray. False where rounding leaves something to be decided.
+/// Takes the roots of one ray. False where rounding leaves something to be decided.
 bool LeafTracer::take_roots(const Leaf& leaf, const kernel::RayRoots& roots, RayQuery& query) const {
   LeafRoot taken[kernel::RayRoots::most];
   int count = 0;

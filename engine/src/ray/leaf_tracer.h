@@ -29,7 +29,7 @@ struct QueryPacket {
   void set_idle(std::size_t lane);
 };
 
-/// What is traced.
+/// The pieces that are traced, and what they belong to.
 struct TracedLeaves {
   const SetView* set = nullptr;
   const LeafNets* nets = nullptr;

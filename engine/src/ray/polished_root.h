@@ -32,14 +32,14 @@ inline RootStart start_of(const Leaf& leaf, const kernel::RayRoot& proven) {
 bool polish(const BezierPatch& patch, const SceneFrame& frame, const kernel::RayKernels& kernels, const RayLine& line,
             const RootStart& start, bool with_gain, LeafRoot& root);
 
-/// What a root next to a border is to a piece.
+/// Where a root next to a border lies.
 enum class BorderRoot : std::uint8_t {
   beyond,  ///< further off than the tolerance: the piece has none
   root,
   open,
 };
 
-/// The same for a root that is `at_border`: by Newton's method on either side of it, as far as a kernel's bounds hold.
+/// Polishes a root that is `at_border`: by Newton's method on either side of it, as far as a kernel's bounds hold.
 BorderRoot polish_at_border(const BezierPatch& patch, const SceneFrame& frame, const kernel::RayKernels& kernels,
                             const RayLine& line, RootStart start, double tolerance, LeafRoot& root);
 
