@@ -6,7 +6,7 @@
 #include <gnu/libc-version.h>
 #include <tbb/version.h>
 
-#include "tessera/isa.h"
+#include "tessera/execution.h"
 
 namespace tessera::bench {
 namespace {

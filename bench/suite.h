@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-#include "tessera/isa.h"
+#include "tessera/execution.h"
 
 namespace tessera::bench {
 

@@ -13,10 +13,9 @@
 #include "support/synthetic_sets.h"
 #include "tessera/bezier_operations.h"
 #include "tessera/coons_patch.h"
-#include "tessera/hermite_network.h"
+#include "tessera/hermite_patch.h"
 #include "tessera/parametric_surface.h"
-#include "tessera/ruled_surface.h"
-#include "tessera/spline_convert.h"
+#include "tessera/convert.h"
 #include "timing.h"
 
 namespace tessera::bench {

@@ -8,7 +8,7 @@
 
 #include "convert/wavy_surface.h"
 #include "suite.h"
-#include "tessera/spline_convert.h"
+#include "tessera/convert.h"
 #include "timing.h"
 
 namespace tessera::bench {

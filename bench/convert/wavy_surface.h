@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "tessera/bspline_surface.h"
+#include "tessera/nurbs_surface.h"
 
 namespace tessera::bench {
 

@@ -20,7 +20,6 @@
 #include "parallel/parallel_for.h"
 #include "support/synthetic_sets.h"
 #include "tessera/evaluate.h"
-#include "tessera/evaluate_points.h"
 
 namespace {
 

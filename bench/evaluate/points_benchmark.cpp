@@ -15,7 +15,7 @@
 #include "block/patch_set_impl.h"
 #include "suite.h"
 #include "support/synthetic_sets.h"
-#include "tessera/evaluate_points.h"
+#include "tessera/evaluate.h"
 #include "timing.h"
 
 namespace tessera::bench {

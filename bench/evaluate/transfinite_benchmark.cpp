@@ -15,7 +15,7 @@
 #include "suite.h"
 #include "support/synthetic_sets.h"
 #include "tessera/evaluate.h"
-#include "tessera/transfinite.h"
+#include "tessera/surface_grid.h"
 #include "timing.h"
 
 namespace tessera::bench {

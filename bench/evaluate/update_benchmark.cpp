@@ -10,7 +10,7 @@
 #include "base/aligned.h"
 #include "suite.h"
 #include "support/synthetic_sets.h"
-#include "tessera/update.h"
+#include "tessera/evaluate.h"
 #include "timing.h"
 
 namespace tessera::bench {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tessera/vec.h"
+#include "tessera/geometry.h"
 
 namespace tessera::bench {
 

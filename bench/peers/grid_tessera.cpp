@@ -12,7 +12,7 @@
 #include "support/synthetic_sets.h"
 #include "tessera/evaluate.h"
 #include "tessera/model.h"
-#include "tessera/spline_convert.h"
+#include "tessera/convert.h"
 
 namespace tessera::bench {
 namespace {

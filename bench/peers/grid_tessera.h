@@ -2,7 +2,7 @@
 // The grid by Tessera, which the peers are compared with.
 
 #include "peers/grid_task.h"
-#include "tessera/bspline_surface.h"
+#include "tessera/nurbs_surface.h"
 
 namespace tessera::bench {
 

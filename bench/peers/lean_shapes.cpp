@@ -14,7 +14,7 @@
 #include "support/synthetic_sets.h"
 #include "tessera/model.h"
 #include "tessera/nurbs_surface.h"
-#include "tessera/spline_convert.h"
+#include "tessera/convert.h"
 
 namespace tessera::bench {
 namespace {

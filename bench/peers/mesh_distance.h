@@ -8,7 +8,7 @@
 
 #include "base/function_ref.h"
 #include "tessera/mesh.h"
-#include "tessera/vec.h"
+#include "tessera/geometry.h"
 
 namespace tessera::bench {
 

@@ -22,7 +22,7 @@
 #include "peers/results.h"
 #include "support/synthetic_sets.h"
 #include "tessera/model.h"
-#include "tessera/spline_convert.h"
+#include "tessera/convert.h"
 
 namespace tessera::bench {
 namespace {

@@ -18,9 +18,9 @@
 #include "peers/occt_shape.h"
 #include "peers/results.h"
 #include "support/synthetic_sets.h"
-#include "tessera/certified_tessellation.h"
+#include "tessera/tessellation.h"
 #include "tessera/model.h"
-#include "tessera/spline_convert.h"
+#include "tessera/convert.h"
 
 namespace tessera::bench {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "peers/interleaved.h"
 #include "support/synthetic_sets.h"
-#include "tessera/spline_convert.h"
+#include "tessera/convert.h"
 
 namespace tessera::bench {
 namespace {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "peers/mesh_distance.h"
-#include "tessera/bspline_surface.h"
+#include "tessera/nurbs_surface.h"
 
 namespace tessera::bench {
 

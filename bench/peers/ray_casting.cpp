@@ -13,7 +13,7 @@
 #include "support/reference_rays.h"
 #include "support/synthetic_sets.h"
 #include "tessera/model.h"
-#include "tessera/spline_convert.h"
+#include "tessera/convert.h"
 
 namespace tessera::bench {
 namespace {

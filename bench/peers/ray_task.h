@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tessera/bezier_patch.h"
-#include "tessera/bspline_surface.h"
+#include "tessera/nurbs_surface.h"
 #include "tessera/patch_set.h"
 #include "tessera/ray_scene.h"
 

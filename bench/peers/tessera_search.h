@@ -8,7 +8,7 @@
 
 #include "peers/interleaved.h"
 #include "peers/mesh_distance.h"
-#include "tessera/certified_tessellation.h"
+#include "tessera/tessellation.h"
 
 namespace tessera::bench {
 

@@ -12,7 +12,7 @@
 
 #include "stopwatch.h"
 #include "suite.h"
-#include "tessera/ray_batch.h"
+#include "tessera/ray_scene.h"
 #include "timing.h"
 #include "torus_rays.h"
 

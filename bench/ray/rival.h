@@ -11,7 +11,7 @@
 #include <type_traits>
 
 #include "support/torus.h"
-#include "tessera/isa.h"
+#include "tessera/execution.h"
 #include "tessera/patch_set.h"
 #include "tessera/ray_scene.h"
 

@@ -11,11 +11,10 @@
 #include "soak/soak.h"
 #include "support/random_patches.h"
 #include "support/synthetic_sets.h"
-#include "tessera/evaluate_points.h"
+#include "tessera/evaluate.h"
 #include "tessera/io.h"
-#include "tessera/mesh_update.h"
+#include "tessera/tessellation.h"
 #include "tessera/ray_scene.h"
-#include "tessera/tessellate.h"
 
 namespace tessera::bench {
 namespace {

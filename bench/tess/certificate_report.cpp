@@ -13,7 +13,7 @@
 #include "support/synthetic_sets.h"
 #include "support/true_distance.h"
 #include "tess/certificate_sets.h"
-#include "tessera/certified_tessellation.h"
+#include "tessera/tessellation.h"
 #include "tessera/io.h"
 
 namespace {

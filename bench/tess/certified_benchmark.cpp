@@ -10,7 +10,7 @@
 #include "support/synthetic_sets.h"
 #include "tess/shared_edges.h"
 #include "tess/tolerance_search.h"
-#include "tessera/certified_tessellation.h"
+#include "tessera/tessellation.h"
 #include "timing.h"
 
 namespace tessera::bench {

@@ -12,7 +12,7 @@
 #include "suite.h"
 #include "support/synthetic_sets.h"
 #include "tess/tolerance_search.h"
-#include "tessera/mesh_update.h"
+#include "tessera/tessellation.h"
 #include "timing.h"
 
 namespace tessera::bench {

@@ -16,7 +16,7 @@
 #include "support/synthetic_sets.h"
 #include "support/true_distance.h"
 #include "tessera/bezier_operations.h"
-#include "tessera/certified_tessellation.h"
+#include "tessera/tessellation.h"
 
 namespace {
 

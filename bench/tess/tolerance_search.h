@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "support/synthetic_sets.h"
-#include "tessera/certified_tessellation.h"
+#include "tessera/tessellation.h"
 
 namespace tessera::bench {
 

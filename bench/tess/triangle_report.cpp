@@ -13,7 +13,7 @@
 #include "support/synthetic_sets.h"
 #include "support/triangle_distance.h"
 #include "tess/certified_tessellation_impl.h"
-#include "tessera/certified_tessellation.h"
+#include "tessera/tessellation.h"
 #include "tessera/io.h"
 
 namespace {

@@ -10,8 +10,7 @@
 #include "suite.h"
 #include "support/synthetic_sets.h"
 #include "tessera/evaluate.h"
-#include "tessera/evaluate_points.h"
-#include "tessera/tessellate.h"
+#include "tessera/tessellation.h"
 #include "timing.h"
 
 namespace tessera::bench {

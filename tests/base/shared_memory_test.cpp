@@ -1,6 +1,6 @@
 // Shared memory is freed once, with its last handle, however handles come and go.
 
-#include "tessera/shared_memory.h"
+#include "tessera/detail/shared_memory.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Views of the caller's memory, of none and of too little.
 
-#include "tessera/views.h"
+#include "tessera/strided_view.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Every operation on intervals holds what it gives for numbers in them.
 
-#include "tessera/interval_number.h"
+#include "tessera/detail/interval_number.h"
 
 #include <functional>
 

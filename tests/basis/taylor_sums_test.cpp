@@ -7,7 +7,7 @@
 #include <initializer_list>
 
 #include "support/random_patches.h"
-#include "tessera/taylor.h"
+#include "tessera/detail/taylor.h"
 
 namespace tessera::test {
 namespace {

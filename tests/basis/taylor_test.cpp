@@ -1,6 +1,6 @@
 // Series of functions: against closed forms, identities and, in intervals, the series at the numbers within.
 
-#include "tessera/taylor.h"
+#include "tessera/detail/taylor.h"
 
 #include <functional>
 

@@ -1,6 +1,6 @@
 // Affine maps: composition, rotations, the bound of their norm.
 
-#include "tessera/affine.h"
+#include "tessera/geometry.h"
 
 #include <gtest/gtest.h>
 

@@ -13,7 +13,7 @@
 #include "support/ulp.h"
 #include "tessera/generic_callable.h"
 #include "tessera/nurbs_surface.h"
-#include "tessera/spline_convert.h"
+#include "tessera/convert.h"
 
 namespace tessera::test {
 namespace {

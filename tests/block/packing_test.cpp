@@ -9,7 +9,7 @@
 #include "support/grids.h"
 #include "support/random_splines.h"
 #include "tessera/model.h"
-#include "tessera/spline_convert.h"
+#include "tessera/convert.h"
 
 namespace tessera::test {
 namespace {

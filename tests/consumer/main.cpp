@@ -2,7 +2,7 @@
 
 #include <tessera/io.h>
 #include <tessera/ray_scene.h>
-#include <tessera/tessellate.h>
+#include <tessera/tessellation.h>
 
 #include "dome.h"
 

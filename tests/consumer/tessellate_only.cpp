@@ -2,7 +2,7 @@
 
 #include <tessera/evaluate.h>
 #include <tessera/mesh.h>
-#include <tessera/tessellate.h>
+#include <tessera/tessellation.h>
 
 #include <vector>
 

@@ -10,7 +10,7 @@
 #include "support/random_splines.h"
 #include "support/ulp.h"
 #include "tessera/nurbs_surface.h"
-#include "tessera/spline_convert.h"
+#include "tessera/convert.h"
 
 namespace tessera::test {
 namespace {

@@ -1,6 +1,6 @@
 // Graphs of polynomials: the patch is the polynomial, also far from zero where powers cancel.
 
-#include "tessera/explicit_polynomial.h"
+#include "tessera/tensor_patch.h"
 
 #include <limits>
 

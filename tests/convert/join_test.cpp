@@ -1,6 +1,6 @@
 // Joins: the figures of section 12, bounds against dense samples, and what is made is measured as made.
 
-#include "tessera/join.h"
+#include "tessera/bezier_operations.h"
 
 #include <limits>
 #include <numbers>

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "tessera/spline_convert.h"
+#include "tessera/convert.h"
 
 namespace tessera::test {
 namespace {

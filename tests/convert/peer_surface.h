@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tessera/bspline_surface.h"
+#include "tessera/nurbs_surface.h"
 #include "tessera/tensor_patch.h"
 
 namespace tessera::test {

@@ -5,7 +5,7 @@
 #include "support/borders.h"
 #include "support/errors.h"
 #include "support/ulp.h"
-#include "tessera/spline_convert.h"
+#include "tessera/convert.h"
 
 namespace tessera::test {
 namespace {

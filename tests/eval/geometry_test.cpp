@@ -12,7 +12,7 @@
 #include "support/grids.h"
 #include "support/ulp.h"
 #include "tessera/nurbs_surface.h"
-#include "tessera/spline_convert.h"
+#include "tessera/convert.h"
 
 namespace tessera::test {
 namespace {

@@ -1,6 +1,6 @@
 // Callables on grids: every record is the function's own value.
 
-#include "tessera/parametric_grid.h"
+#include "tessera/surface_grid.h"
 
 #include <atomic>
 #include <thread>

@@ -6,7 +6,7 @@
 #include "support/random_splines.h"
 #include "support/ulp.h"
 #include "tessera/model.h"
-#include "tessera/spline_convert.h"
+#include "tessera/convert.h"
 
 namespace tessera::test {
 namespace {

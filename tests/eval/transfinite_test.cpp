@@ -1,6 +1,6 @@
 // Ruled surfaces and Coons patches straight on grids: values, calls of the borders, layouts, determinism, refusals.
 
-#include "tessera/transfinite.h"
+#include "tessera/surface_grid.h"
 
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>

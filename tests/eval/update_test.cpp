@@ -1,6 +1,6 @@
 // Updates of touched patches: the same bytes as edits one by one and evaluation of all, and nothing beside.
 
-#include "tessera/update.h"
+#include "tessera/evaluate.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

@@ -10,13 +10,11 @@
 #include <string_view>
 #include <vector>
 
-#include "tessera/certified_tessellation.h"
+#include "tessera/tessellation.h"
 #include "tessera/evaluate.h"
-#include "tessera/evaluate_points.h"
 #include "tessera/mesh.h"
 #include "tessera/model.h"
 #include "tessera/patch_set.h"
-#include "tessera/tessellate.h"
 #ifdef TESSERA_HAS_RAY
 #include "tessera/ray_scene.h"
 #endif

@@ -15,7 +15,7 @@
 #include "support/scratch_folder.h"
 #include "support/synthetic_sets.h"
 #include "tessera/io.h"
-#include "tessera/tessellate.h"
+#include "tessera/tessellation.h"
 
 namespace tessera {
 namespace {

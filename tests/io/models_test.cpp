@@ -14,7 +14,7 @@
 #include "support/synthetic_sets.h"
 #include "support/ulp.h"
 #include "tessera/io.h"
-#include "tessera/join.h"
+#include "tessera/bezier_operations.h"
 
 namespace tessera::test {
 namespace {

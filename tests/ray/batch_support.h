@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "ray_support.h"
-#include "tessera/ray_batch.h"
+#include "tessera/ray_scene.h"
 
 namespace tessera::test {
 

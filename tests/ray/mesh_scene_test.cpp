@@ -3,8 +3,7 @@
 #include "ray_support.h"
 #include "support/reference_rays.h"
 #include "support/torus.h"
-#include "tessera/certified_tessellation.h"
-#include "tessera/tessellate.h"
+#include "tessera/tessellation.h"
 
 namespace tessera::test {
 namespace {

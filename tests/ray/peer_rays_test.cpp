@@ -8,8 +8,8 @@
 #include <string>
 
 #include "ray_support.h"
-#include "tessera/bspline_surface.h"
-#include "tessera/spline_convert.h"
+#include "tessera/nurbs_surface.h"
+#include "tessera/convert.h"
 
 namespace tessera::test {
 namespace {

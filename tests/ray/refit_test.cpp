@@ -7,7 +7,7 @@
 
 #include "ray_support.h"
 #include "support/torus.h"
-#include "tessera/update.h"
+#include "tessera/evaluate.h"
 
 namespace tessera::test {
 namespace {

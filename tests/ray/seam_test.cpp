@@ -6,7 +6,7 @@
 #include "ray_support.h"
 #include "support/torus.h"
 #include "tessera/nurbs_surface.h"
-#include "tessera/spline_convert.h"
+#include "tessera/convert.h"
 
 namespace tessera::test {
 namespace {

@@ -12,7 +12,7 @@
 #include "robustness/bad_input.h"
 #include "robustness/bad_views.h"
 #include "support/grids.h"
-#include "tessera/ray_batch.h"
+#include "tessera/ray_scene.h"
 
 namespace tessera::test {
 namespace {

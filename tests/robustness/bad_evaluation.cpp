@@ -7,7 +7,6 @@
 #include "robustness/bad_views.h"
 #include "support/points.h"
 #include "tessera/evaluate.h"
-#include "tessera/evaluate_points.h"
 
 namespace tessera::test {
 namespace {

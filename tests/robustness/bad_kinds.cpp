@@ -6,12 +6,10 @@
 #include "robustness/bad_input.h"
 #include "tessera/convert.h"
 #include "tessera/coons_patch.h"
-#include "tessera/explicit_polynomial.h"
+#include "tessera/tensor_patch.h"
 #include "tessera/generic_callable.h"
-#include "tessera/hermite_network.h"
 #include "tessera/hermite_patch.h"
 #include "tessera/quadric.h"
-#include "tessera/ruled_surface.h"
 
 namespace tessera::test {
 namespace {

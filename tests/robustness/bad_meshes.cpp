@@ -5,10 +5,9 @@
 #include "robustness/bad_input.h"
 #include "robustness/bad_views.h"
 #include "support/grids.h"
-#include "tessera/certified_tessellation.h"
+#include "tessera/tessellation.h"
 #include "tessera/limits.h"
 #include "tessera/model.h"
-#include "tessera/tessellate.h"
 
 namespace tessera::test {
 namespace {

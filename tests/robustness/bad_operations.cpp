@@ -6,11 +6,9 @@
 #include "support/random_splines.h"
 #include "tessera/bezier_operations.h"
 #include "tessera/convert.h"
-#include "tessera/join.h"
 #include "tessera/local_geometry.h"
 #include "tessera/model.h"
 #include "tessera/patch_set.h"
-#include "tessera/spline_convert.h"
 
 namespace tessera::test {
 namespace {

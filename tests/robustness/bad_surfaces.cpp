@@ -5,9 +5,8 @@
 
 #include "robustness/bad_input.h"
 #include "tessera/bezier_patch.h"
-#include "tessera/bspline_surface.h"
-#include "tessera/curve.h"
 #include "tessera/nurbs_surface.h"
+#include "tessera/curve.h"
 #include "tessera/tensor_patch.h"
 
 namespace tessera::test {

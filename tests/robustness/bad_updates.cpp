@@ -6,10 +6,9 @@
 #include "robustness/bad_views.h"
 #include "support/borders.h"
 #include "support/grids.h"
-#include "tessera/mesh_update.h"
-#include "tessera/parametric_grid.h"
-#include "tessera/transfinite.h"
-#include "tessera/update.h"
+#include "tessera/tessellation.h"
+#include "tessera/surface_grid.h"
+#include "tessera/evaluate.h"
 
 namespace tessera::test {
 namespace {

@@ -6,7 +6,7 @@
 #include <type_traits>
 
 #include "robustness/bad_input.h"
-#include "tessera/views.h"
+#include "tessera/strided_view.h"
 
 namespace tessera::test {
 

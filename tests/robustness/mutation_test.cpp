@@ -9,9 +9,8 @@
 
 #include "robustness/mutated_surfaces.h"
 #include "support/grids.h"
-#include "tessera/certified_tessellation.h"
-#include "tessera/evaluate_points.h"
-#include "tessera/tessellate.h"
+#include "tessera/tessellation.h"
+#include "tessera/evaluate.h"
 #ifdef TESSERA_HAS_RAY
 #include "tessera/ray_scene.h"
 #endif

@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "support/random_patches.h"
-#include "tessera/affine.h"
-#include "tessera/domain.h"
+#include "tessera/geometry.h"
 
 namespace tessera::test {
 

@@ -5,7 +5,7 @@
 #include "robustness/scene.h"
 #include "support/allocations.h"
 #include "support/borders.h"
-#include "tessera/spline_convert.h"
+#include "tessera/convert.h"
 
 namespace tessera::test {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "robustness/scene.h"
-#include "tessera/mesh_update.h"
+#include "tessera/tessellation.h"
 
 namespace tessera::test {
 namespace {

@@ -6,10 +6,9 @@
 
 #include "support/grids.h"
 #include "support/points.h"
-#include "tessera/mesh_update.h"
-#include "tessera/tessellate.h"
+#include "tessera/tessellation.h"
 #ifdef TESSERA_HAS_RAY
-#include "tessera/ray_batch.h"
+#include "tessera/ray_scene.h"
 #ifdef TESSERA_THREAD_SANITIZER
 #include <tbb/task_arena.h>
 

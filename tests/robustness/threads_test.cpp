@@ -9,7 +9,7 @@
 #include "robustness/scene.h"
 #include "robustness/workers.h"
 #include "support/borders.h"
-#include "tessera/parametric_grid.h"
+#include "tessera/surface_grid.h"
 
 namespace tessera::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <tessera/isa.h>
+#include <tessera/execution.h>
 
 struct Family {
   std::string name;

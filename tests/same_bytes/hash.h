@@ -12,7 +12,7 @@
 
 #include <tessera/bezier_patch.h>
 #include <tessera/status.h>
-#include <tessera/vec.h>
+#include <tessera/geometry.h>
 
 class Hash {
  public:

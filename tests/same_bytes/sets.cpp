@@ -1,11 +1,9 @@
 #include <array>
 #include <memory>
 
-#include <tessera/certified_tessellation.h>
+#include <tessera/tessellation.h>
 #include <tessera/evaluate.h>
-#include <tessera/evaluate_points.h>
 #include <tessera/model.h>
-#include <tessera/tessellate.h>
 
 #include "families.h"
 #include "hash.h"

@@ -1,6 +1,5 @@
 #include <tessera/bezier_operations.h>
 #include <tessera/convert.h>
-#include <tessera/join.h>
 #include <tessera/local_geometry.h>
 
 #include "families.h"

@@ -8,7 +8,6 @@
 #include "support/random_splines.h"
 #include "tessera/convert.h"
 #include "tessera/coons_patch.h"
-#include "tessera/ruled_surface.h"
 
 namespace tessera::test {
 

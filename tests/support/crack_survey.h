@@ -13,8 +13,7 @@
 
 #include "tess/certified_plan.h"
 #include "tess/position_bits.h"
-#include "tessera/certified_tessellation.h"
-#include "tessera/tessellate.h"
+#include "tessera/tessellation.h"
 
 namespace tessera::test {
 

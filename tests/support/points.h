@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "support/grids.h"
-#include "tessera/evaluate_points.h"
+#include "tessera/evaluate.h"
 
 namespace tessera::test {
 

@@ -3,7 +3,7 @@
 
 #include "support/random_patches.h"
 #include "support/synthetic_sets.h"
-#include "tessera/hermite_network.h"
+#include "tessera/hermite_patch.h"
 
 namespace tessera::test {
 

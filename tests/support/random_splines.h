@@ -8,7 +8,7 @@
 #include "support/random_patches.h"
 #include "support/reference.h"
 #include "support/synthetic_sets.h"
-#include "tessera/bspline_surface.h"
+#include "tessera/nurbs_surface.h"
 #include "tessera/curve.h"
 
 namespace tessera::test {

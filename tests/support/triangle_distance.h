@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "tessera/vec.h"
+#include "tessera/geometry.h"
 
 namespace tessera::test {
 

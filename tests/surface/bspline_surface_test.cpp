@@ -1,4 +1,4 @@
-#include "tessera/bspline_surface.h"
+#include "tessera/nurbs_surface.h"
 
 #include <cmath>
 #include <limits>

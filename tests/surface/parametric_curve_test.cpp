@@ -1,6 +1,6 @@
 // Curves that are functions, and what is refused.
 
-#include "tessera/parametric_curve.h"
+#include "tessera/parametric_surface.h"
 
 #include <cmath>
 #include <new>

@@ -1,6 +1,6 @@
 // Ruled surfaces: the figures of the lectures, their properties, and what is refused.
 
-#include "tessera/ruled_surface.h"
+#include "tessera/coons_patch.h"
 
 #include <cmath>
 #include <stdexcept>

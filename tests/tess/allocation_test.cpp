@@ -3,7 +3,7 @@
 #include "support/allocations.h"
 #include "support/synthetic_sets.h"
 #include "tess/tessellate_support.h"
-#include "tessera/mesh_update.h"
+#include "tessera/tessellation.h"
 
 namespace tessera::test {
 namespace {

@@ -9,7 +9,7 @@
 #include "tess/normal_net.h"
 #include "tess/tessellate_support.h"
 #include "tess/turning_bound.h"
-#include "tessera/certified_tessellation.h"
+#include "tessera/tessellation.h"
 
 namespace tessera::test {
 namespace {

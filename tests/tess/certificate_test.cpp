@@ -7,7 +7,7 @@
 #include "tess/certificate_sets.h"
 #include "tess/certified_tessellation_impl.h"
 #include "tess/tessellate_support.h"
-#include "tessera/certified_tessellation.h"
+#include "tessera/tessellation.h"
 
 namespace tessera::test {
 namespace {

@@ -1,6 +1,6 @@
 // Meshes that keep a tolerance: no crack, no point further away than the bound, the same bytes for any number of threads.
 
-#include "tessera/certified_tessellation.h"
+#include "tessera/tessellation.h"
 
 #include <algorithm>
 #include <cmath>

@@ -12,7 +12,7 @@
 #include "tess/f64_points.h"
 #include "tess/tessellate_support.h"
 #include "tessera/bezier_operations.h"
-#include "tessera/mesh_update.h"
+#include "tessera/tessellation.h"
 
 namespace tessera::test {
 

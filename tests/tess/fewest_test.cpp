@@ -9,7 +9,7 @@
 #include "tess/certified_tessellation_impl.h"
 #include "tess/local_chord.h"
 #include "tess/tessellate_support.h"
-#include "tessera/mesh_update.h"
+#include "tessera/tessellation.h"
 
 namespace tessera::test {
 namespace {

@@ -10,7 +10,6 @@
 #include "support/synthetic_sets.h"
 #include "tess/tessellate_support.h"
 #include "tessera/convert.h"
-#include "tessera/spline_convert.h"
 
 namespace tessera::test {
 namespace {

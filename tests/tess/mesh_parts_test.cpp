@@ -6,7 +6,7 @@
 
 #include "support/synthetic_sets.h"
 #include "tessera/model.h"
-#include "tessera/tessellate.h"
+#include "tessera/tessellation.h"
 
 namespace tessera {
 namespace {

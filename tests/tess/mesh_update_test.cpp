@@ -1,7 +1,7 @@
 // Updates of certified meshes: the same bytes as a mesh of the edited set by the same rates, nothing beside, and bounds that
 // hold for the patches as they are.
 
-#include "tessera/mesh_update.h"
+#include "tessera/tessellation.h"
 
 #include <algorithm>
 #include <cmath>

@@ -10,7 +10,7 @@
 #include "kernel/kernel_table.h"
 #include "support/synthetic_sets.h"
 #include "tess/tessellate_support.h"
-#include "tessera/certified_tessellation.h"
+#include "tessera/tessellation.h"
 
 namespace tessera::test {
 namespace {

@@ -9,7 +9,7 @@
 #include "tess/certificate_sets.h"
 #include "tess/picture.h"
 #include "tess/tessellate_support.h"
-#include "tessera/certified_tessellation.h"
+#include "tessera/tessellation.h"
 
 namespace tessera::test {
 namespace {

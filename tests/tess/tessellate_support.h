@@ -2,8 +2,7 @@
 // Short ways to sets and meshes that must be good.
 
 #include "support/random_patches.h"
-#include "tessera/certified_tessellation.h"
-#include "tessera/tessellate.h"
+#include "tessera/tessellation.h"
 
 namespace tessera::test {
 

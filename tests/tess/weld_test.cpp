@@ -9,7 +9,7 @@
 #include "tess/side_curve.h"
 #include "tess/tessellate_support.h"
 #include "tessera/bezier_operations.h"
-#include "tessera/certified_tessellation.h"
+#include "tessera/tessellation.h"
 
 namespace tessera::test {
 namespace {

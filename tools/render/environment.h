@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "tessera/vec.h"
+#include "tessera/geometry.h"
 
 namespace tessera::render {
 

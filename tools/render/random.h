@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "tessera/vec.h"
+#include "tessera/geometry.h"
 
 namespace tessera::render {
 

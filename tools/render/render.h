@@ -12,7 +12,7 @@
 #include "tessera/execution.h"
 #include "tessera/ray_scene.h"
 #include "tessera/status.h"
-#include "tessera/vec.h"
+#include "tessera/geometry.h"
 
 namespace tessera {
 class OutputFile;

@@ -8,7 +8,7 @@
 #include "facts.h"
 #include "joins.h"
 #include "loading.h"
-#include "tessera/isa.h"
+#include "tessera/execution.h"
 
 namespace tessera::cli {
 namespace {

@@ -12,8 +12,7 @@
 #include "io/formats.h"
 #include "loading.h"
 #include "progress.h"
-#include "tessera/certified_tessellation.h"
-#include "tessera/tessellate.h"
+#include "tessera/tessellation.h"
 
 namespace tessera::cli {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "arguments.h"
-#include "tessera/isa.h"
+#include "tessera/execution.h"
 
 namespace tessera::cli {
 namespace {

@@ -11,7 +11,7 @@
 #include "io/output_file.h"
 #include "tessera/execution.h"
 #include "tessera/status.h"
-#include "tessera/vec.h"
+#include "tessera/geometry.h"
 
 namespace tessera::cli {
 

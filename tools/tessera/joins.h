@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "console.h"
-#include "tessera/join.h"
+#include "tessera/bezier_operations.h"
 #include "tessera/patch_set.h"
 
 namespace tessera::cli {

@@ -6,7 +6,7 @@
 
 #include "commands.h"
 #include "console.h"
-#include "tessera/isa.h"
+#include "tessera/execution.h"
 #include "usage.h"
 
 namespace tessera::cli {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "arguments.h"
-#include "tessera/certified_tessellation.h"
+#include "tessera/tessellation.h"
 #include "tessera/io.h"
 
 namespace tessera::cli {

@@ -4,10 +4,9 @@
 
 #include <span>
 
-#include "tessera/domain.h"
-#include "tessera/shared_memory.h"
+#include "tessera/geometry.h"
+#include "tessera/detail/shared_memory.h"
 #include "tessera/status.h"
-#include "tessera/vec.h"
 
 #pragma GCC visibility push(default)
 namespace tessera {

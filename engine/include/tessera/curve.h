@@ -8,7 +8,7 @@
 
 #include "tessera/bezier_patch.h"
 #include "tessera/status.h"
-#include "tessera/vec.h"
+#include "tessera/geometry.h"
 
 #pragma GCC visibility push(default)
 namespace tessera {

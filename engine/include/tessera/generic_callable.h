@@ -13,10 +13,9 @@
 #include <limits>
 #include <utility>
 
-#include "tessera/interval_number.h"
-#include "tessera/parametric_curve.h"
+#include "tessera/detail/interval_number.h"
 #include "tessera/parametric_surface.h"
-#include "tessera/taylor.h"
+#include "tessera/detail/taylor.h"
 
 #pragma GCC visibility push(default)
 namespace tessera {

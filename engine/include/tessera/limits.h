@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "tessera/isa.h"
+#include "tessera/execution.h"
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)

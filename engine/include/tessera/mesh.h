@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "tessera/status.h"
-#include "tessera/vec.h"
-#include "tessera/views.h"
+#include "tessera/geometry.h"
+#include "tessera/strided_view.h"
 
 #pragma GCC visibility push(default)
 namespace tessera {

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "tessera/affine.h"
+#include "tessera/geometry.h"
 #include "tessera/convert.h"
 #include "tessera/curve.h"
 #include "tessera/patch_set.h"
-#include "tessera/shared.h"
+#include "tessera/detail/shared.h"
 #include "tessera/status.h"
 #include "tessera/surface.h"
 

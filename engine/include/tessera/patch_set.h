@@ -8,9 +8,8 @@
 
 #include "tessera/bezier_patch.h"
 #include "tessera/convert.h"
-#include "tessera/domain.h"
+#include "tessera/geometry.h"
 #include "tessera/status.h"
-#include "tessera/vec.h"
 
 #pragma GCC visibility push(default)
 namespace tessera {

@@ -9,9 +9,8 @@
 #include <string_view>
 
 #include "tessera/bezier_patch.h"
-#include "tessera/domain.h"
+#include "tessera/geometry.h"
 #include "tessera/status.h"
-#include "tessera/vec.h"
 
 #pragma GCC visibility push(default)
 namespace tessera {

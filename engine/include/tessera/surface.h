@@ -6,15 +6,12 @@
 #include <variant>
 
 #include "tessera/bezier_patch.h"
-#include "tessera/bspline_surface.h"
+#include "tessera/nurbs_surface.h"
 #include "tessera/coons_patch.h"
-#include "tessera/explicit_polynomial.h"
-#include "tessera/hermite_network.h"
+#include "tessera/tensor_patch.h"
 #include "tessera/hermite_patch.h"
 #include "tessera/parametric_surface.h"
 #include "tessera/quadric.h"
-#include "tessera/ruled_surface.h"
-#include "tessera/tensor_patch.h"
 
 #pragma GCC visibility push(default)
 namespace tessera {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "tessera/vec.h"
+#include "tessera/geometry.h"
 
 namespace tessera {
 

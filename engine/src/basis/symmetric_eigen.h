@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "tessera/vec.h"
+#include "tessera/geometry.h"
 
 namespace tessera {
 

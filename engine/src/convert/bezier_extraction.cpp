@@ -17,7 +17,7 @@
 #include "surface/homogeneous.h"
 #include "surface/patch_pieces.h"
 #include "surface/spline_lines.h"
-#include "tessera/spline_convert.h"
+#include "tessera/convert.h"
 
 namespace tessera {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "convert/polar_forms.h"
 #include "surface/homogeneous.h"
-#include "tessera/spline_convert.h"
+#include "tessera/convert.h"
 
 namespace tessera {
 namespace {

@@ -2,7 +2,7 @@
 // Proven maxima along a border of figures made of a vector and a scalar polynomial.
 
 #include "basis/bernstein_net.h"
-#include "tessera/vec.h"
+#include "tessera/geometry.h"
 
 namespace tessera {
 

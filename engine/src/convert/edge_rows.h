@@ -5,8 +5,8 @@
 #include <string>
 
 #include "tessera/bezier_patch.h"
-#include "tessera/domain.h"
-#include "tessera/join.h"
+#include "tessera/geometry.h"
+#include "tessera/bezier_operations.h"
 
 namespace tessera {
 

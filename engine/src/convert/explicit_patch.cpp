@@ -4,7 +4,7 @@
 #include "base/guard.h"
 #include "convert/polar_forms.h"
 #include "tessera/convert.h"
-#include "tessera/explicit_polynomial.h"
+#include "tessera/tensor_patch.h"
 
 namespace tessera {
 namespace {

@@ -10,7 +10,6 @@
 
 #include "basis/knots.h"
 #include "tessera/convert.h"
-#include "tessera/parametric_curve.h"
 #include "tessera/parametric_surface.h"
 
 namespace tessera {

@@ -1,6 +1,6 @@
 #include "base/guard.h"
 #include "tessera/convert.h"
-#include "tessera/hermite_network.h"
+#include "tessera/hermite_patch.h"
 
 namespace tessera {
 namespace {

@@ -6,7 +6,7 @@
 #include "base/guard.h"
 #include "convert/bezier_net.h"
 #include "convert/edge_rows.h"
-#include "tessera/join.h"
+#include "tessera/bezier_operations.h"
 
 namespace tessera {
 namespace {

@@ -5,7 +5,7 @@
 #include "convert/fit_surface.h"
 #include "convert/surface_net.h"
 #include "surface/border_curve.h"
-#include "tessera/ruled_surface.h"
+#include "tessera/coons_patch.h"
 
 namespace tessera {
 namespace {

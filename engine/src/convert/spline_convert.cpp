@@ -1,4 +1,4 @@
-#include "tessera/spline_convert.h"
+#include "tessera/convert.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "tessera/vec.h"
+#include "tessera/geometry.h"
 
 namespace tessera {
 

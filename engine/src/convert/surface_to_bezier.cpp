@@ -1,7 +1,6 @@
 #include "base/guard.h"
 #include "base/overloaded.h"
 #include "tessera/convert.h"
-#include "tessera/spline_convert.h"
 #include "tessera/surface.h"
 
 namespace tessera {

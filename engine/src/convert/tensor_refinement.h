@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/function_ref.h"
-#include "tessera/domain.h"
+#include "tessera/geometry.h"
 #include "tessera/status.h"
 
 namespace tessera {

@@ -1,7 +1,7 @@
 // Scattered samples over threads: all are checked before the first is evaluated, then chunk after chunk goes through the
 // kernels.
 
-#include "tessera/evaluate_points.h"
+#include "tessera/evaluate.h"
 
 #include <algorithm>
 #include <atomic>

@@ -8,7 +8,7 @@
 #include "eval/patch_edits.h"
 #include "eval/task_size.h"
 #include "parallel/parallel_for.h"
-#include "tessera/update.h"
+#include "tessera/evaluate.h"
 
 namespace tessera {
 class GridUpdate::Impl {

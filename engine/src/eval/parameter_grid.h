@@ -7,7 +7,7 @@
 #include "base/text.h"
 #include "eval/view_checks.h"
 #include "tessera/status.h"
-#include "tessera/views.h"
+#include "tessera/strided_view.h"
 
 namespace tessera {
 

@@ -1,4 +1,4 @@
-#include "tessera/parametric_grid.h"
+#include "tessera/surface_grid.h"
 
 #include <atomic>
 #include <cmath>

@@ -10,7 +10,7 @@
 #include "base/aligned.h"
 #include "block/patch_set_impl.h"
 #include "eval/grid_outputs.h"
-#include "tessera/evaluate_points.h"
+#include "tessera/evaluate.h"
 
 namespace tessera {
 

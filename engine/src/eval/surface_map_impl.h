@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "tessera/evaluate_points.h"
+#include "tessera/evaluate.h"
 
 namespace tessera {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "block/patch_set_impl.h"
-#include "tessera/update.h"
+#include "tessera/evaluate.h"
 
 namespace tessera {
 

@@ -1,4 +1,4 @@
-#include "tessera/transfinite.h"
+#include "tessera/surface_grid.h"
 
 #include <algorithm>
 #include <array>

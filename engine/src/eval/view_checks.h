@@ -8,7 +8,7 @@
 
 #include "base/for_wings.h"
 #include "tessera/status.h"
-#include "tessera/views.h"
+#include "tessera/strided_view.h"
 
 namespace tessera {
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "io/text_cursor.h"
-#include "tessera/affine.h"
+#include "tessera/geometry.h"
 #include "tessera/status.h"
 #include "tessera/surface.h"
 

@@ -2,9 +2,9 @@
 // The parts of a JSON model, one reader each. All throw JsonFailure. What each reads is told in tools/models/FORMAT.md.
 
 #include "io/json_reader.h"
-#include "tessera/affine.h"
+#include "tessera/geometry.h"
 #include "tessera/nurbs_surface.h"
-#include "tessera/parametric_curve.h"
+#include "tessera/parametric_surface.h"
 #include "tessera/surface.h"
 
 namespace tessera {

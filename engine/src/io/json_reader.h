@@ -10,8 +10,7 @@
 
 #include "io/json_document.h"
 #include "tessera/curve.h"
-#include "tessera/domain.h"
-#include "tessera/vec.h"
+#include "tessera/geometry.h"
 
 namespace tessera {
 

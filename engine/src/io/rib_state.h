@@ -7,9 +7,9 @@
 
 #include "io/rib_mesh.h"
 #include "io/text_cursor.h"
-#include "tessera/affine.h"
+#include "tessera/geometry.h"
 #include "tessera/model.h"
-#include "tessera/shared.h"
+#include "tessera/detail/shared.h"
 
 namespace tessera {
 

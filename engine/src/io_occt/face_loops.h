@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "io_occt/face_surface.h"
-#include "tessera/domain.h"
+#include "tessera/geometry.h"
 #include "tessera/model.h"
 #include "tessera/status.h"
 

@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "io_occt/arcs.h"
-#include "tessera/bspline_surface.h"
-#include "tessera/domain.h"
+#include "tessera/nurbs_surface.h"
+#include "tessera/geometry.h"
 #include "tessera/status.h"
 
 namespace tessera {

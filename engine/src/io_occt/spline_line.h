@@ -10,7 +10,7 @@
 #include "io_occt/arcs.h"
 #include "tessera/curve.h"
 #include "tessera/status.h"
-#include "tessera/vec.h"
+#include "tessera/geometry.h"
 
 namespace tessera {
 

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "tessera/isa.h"
+#include "tessera/execution.h"
 
 namespace tessera::kernel {
 

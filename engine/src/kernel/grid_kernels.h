@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "kernel/block_lanes.h"
-#include "tessera/isa.h"
+#include "tessera/execution.h"
 
 namespace tessera::kernel {
 

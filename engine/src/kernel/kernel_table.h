@@ -14,7 +14,7 @@
 #include "kernel/net_kernels.h"
 #include "kernel/point_kernels.h"
 #include "kernel/ray_kernels.h"
-#include "tessera/isa.h"
+#include "tessera/execution.h"
 
 namespace tessera::kernel {
 

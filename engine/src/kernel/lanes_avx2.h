@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <xsimd/xsimd.hpp>
 
-#include "tessera/isa.h"
+#include "tessera/execution.h"
 
 namespace tessera::kernel {
 namespace isa_avx2 {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <xsimd/xsimd.hpp>
 
-#include "tessera/isa.h"
+#include "tessera/execution.h"
 
 namespace tessera::kernel {
 namespace isa_avx512 {

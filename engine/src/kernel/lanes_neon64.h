@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "tessera/isa.h"
+#include "tessera/execution.h"
 
 namespace tessera::kernel {
 namespace isa_neon64 {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "kernel/kernel_table.h"
-#include "tessera/isa.h"
+#include "tessera/execution.h"
 
 namespace tessera {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "tessera/vec.h"
+#include "tessera/geometry.h"
 
 namespace tessera {
 

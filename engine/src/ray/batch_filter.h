@@ -7,7 +7,7 @@
 
 #include "ray/ray_query.h"
 #include "ray/set_view.h"
-#include "tessera/ray_batch.h"
+#include "tessera/ray_scene.h"
 #include "tessera/status.h"
 
 namespace tessera {

@@ -11,7 +11,6 @@
 
 #include "ray/embree_api.h"
 #include "tessera/execution.h"
-#include "tessera/isa.h"
 #include "tessera/status.h"
 
 namespace tessera {

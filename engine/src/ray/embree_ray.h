@@ -3,7 +3,7 @@
 
 #include "ray/embree_api.h"
 #include "ray/ray_line.h"
-#include "tessera/vec.h"
+#include "tessera/geometry.h"
 
 namespace tessera {
 

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "tessera/vec.h"
+#include "tessera/geometry.h"
 
 namespace tessera {
 

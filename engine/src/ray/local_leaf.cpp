@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "ray/cubic_net.h"
-#include "tessera/vec.h"
+#include "tessera/geometry.h"
 
 namespace tessera {
 namespace {

@@ -1,4 +1,4 @@
-#include "tessera/ray_batch.h"
+#include "tessera/ray_scene.h"
 
 #include <algorithm>
 #include <limits>

@@ -3,9 +3,8 @@
 
 #include <optional>
 
-#include "tessera/affine.h"
+#include "tessera/geometry.h"
 #include "tessera/ray_scene.h"
-#include "tessera/vec.h"
 
 namespace tessera {
 

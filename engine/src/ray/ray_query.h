@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "ray/ray_line.h"
-#include "tessera/ray_batch.h"
+#include "tessera/ray_scene.h"
 
 namespace tessera {
 

@@ -7,7 +7,7 @@
 #include "ray/batch_layout.h"
 #include "ray/set_view.h"
 #include "tessera/ray_scene.h"
-#include "tessera/views.h"
+#include "tessera/strided_view.h"
 
 namespace tessera {
 

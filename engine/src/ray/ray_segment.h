@@ -4,7 +4,7 @@
 #include "kernel/ray_kernels.h"
 #include "ray/embree_scene.h"
 #include "tessera/ray_scene.h"
-#include "tessera/vec.h"
+#include "tessera/geometry.h"
 
 namespace tessera {
 

@@ -1,7 +1,7 @@
 #pragma once
 // What ruled surfaces and Coons patches ask of their borders.
 
-#include "tessera/parametric_curve.h"
+#include "tessera/parametric_surface.h"
 
 namespace tessera {
 

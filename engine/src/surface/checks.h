@@ -6,9 +6,8 @@
 #include <string>
 
 #include "tessera/bezier_patch.h"
-#include "tessera/domain.h"
+#include "tessera/geometry.h"
 #include "tessera/status.h"
-#include "tessera/vec.h"
 
 namespace tessera {
 

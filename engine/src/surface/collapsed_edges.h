@@ -3,8 +3,7 @@
 
 #include <span>
 
-#include "tessera/domain.h"
-#include "tessera/vec.h"
+#include "tessera/geometry.h"
 
 namespace tessera {
 

@@ -1,4 +1,4 @@
-#include "tessera/explicit_polynomial.h"
+#include "tessera/tensor_patch.h"
 
 #include <array>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "tessera/hermite_network.h"
+#include "tessera/hermite_patch.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 // What networks and their patches share: the check of nodes, and evaluation that needs no patch of its own.
 
 #include "surface/checks.h"
-#include "tessera/hermite_network.h"
+#include "tessera/hermite_patch.h"
 
 namespace tessera {
 

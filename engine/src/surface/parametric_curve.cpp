@@ -1,4 +1,4 @@
-#include "tessera/parametric_curve.h"
+#include "tessera/parametric_surface.h"
 
 #include <array>
 #include <string>

@@ -1,4 +1,4 @@
-#include "tessera/ruled_surface.h"
+#include "tessera/coons_patch.h"
 
 #include "base/guard.h"
 #include "surface/border_curve.h"

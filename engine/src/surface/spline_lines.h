@@ -2,7 +2,7 @@
 // The directions of curves and surfaces as knot lines.
 
 #include "basis/knots.h"
-#include "tessera/bspline_surface.h"
+#include "tessera/nurbs_surface.h"
 #include "tessera/curve.h"
 
 namespace tessera {

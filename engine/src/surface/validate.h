@@ -6,7 +6,7 @@
 
 #include "base/function_ref.h"
 #include "tessera/status.h"
-#include "tessera/vec.h"
+#include "tessera/geometry.h"
 
 namespace tessera {
 

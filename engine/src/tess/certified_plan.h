@@ -17,7 +17,7 @@
 #include "tess/shared_edges.h"
 #include "tess/stitched_patch.h"
 #include "tess/weld.h"
-#include "tessera/certified_tessellation.h"
+#include "tessera/tessellation.h"
 
 namespace tessera {
 

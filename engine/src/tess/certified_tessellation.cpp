@@ -1,4 +1,4 @@
-#include "tessera/certified_tessellation.h"
+#include "tessera/tessellation.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 
 #include "tess/certified_plan.h"
 #include "tess/mesh_tables.h"
-#include "tessera/certified_tessellation.h"
+#include "tessera/tessellation.h"
 
 namespace tessera {
 

@@ -2,7 +2,7 @@
 // Which vertices of neighbouring patches are one.
 
 #include "tess/certified_plan.h"
-#include "tessera/views.h"
+#include "tessera/strided_view.h"
 
 namespace tessera {
 

@@ -7,7 +7,7 @@
 #include "base/function_ref.h"
 #include "tess/chord_bound.h"
 #include "tess/segment_choices.h"
-#include "tessera/domain.h"
+#include "tessera/geometry.h"
 
 namespace tessera {
 

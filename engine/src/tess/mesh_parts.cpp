@@ -3,7 +3,7 @@
 #include "base/guard.h"
 #include "tess/mesh_parts.h"
 #include "tessera/model.h"
-#include "tessera/tessellate.h"
+#include "tessera/tessellation.h"
 
 namespace tessera {
 namespace {

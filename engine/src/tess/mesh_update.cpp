@@ -1,4 +1,4 @@
-#include "tessera/mesh_update.h"
+#include "tessera/tessellation.h"
 
 #include <string>
 

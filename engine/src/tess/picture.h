@@ -17,7 +17,7 @@
 #include "block/patch_set_impl.h"
 #include "tess/chord_bound.h"
 #include "tessera/status.h"
-#include "tessera/view.h"
+#include "tessera/tessellation.h"
 
 namespace tessera {
 

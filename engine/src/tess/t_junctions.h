@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "tessera/vec.h"
+#include "tessera/geometry.h"
 
 namespace tessera {
 

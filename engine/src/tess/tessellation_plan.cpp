@@ -7,7 +7,7 @@
 #include "parallel/parallel_for.h"
 #include "tess/mesh_views.h"
 #include "tess/patch_triangles.h"
-#include "tessera/tessellate.h"
+#include "tessera/tessellation.h"
 
 namespace tessera {
 namespace {

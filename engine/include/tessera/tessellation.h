@@ -1,20 +1,88 @@
 #pragma once
+// Patches to triangles.
+// What a camera sees, for tolerances in pixels.
 // Triangles that provably keep a tolerance, without cracks.
+// Certified meshes that follow their patches: new control points in, the vertices of the touched patches out.
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <span>
+#include <vector>
 
+#include "tessera/evaluate.h"
 #include "tessera/execution.h"
-#include "tessera/isa.h"
+#include "tessera/geometry.h"
 #include "tessera/mesh.h"
 #include "tessera/patch_set.h"
 #include "tessera/status.h"
-#include "tessera/view.h"
 
 #pragma GCC visibility push(default)
 namespace tessera {
+
+struct Model;
+
+/// How finely patches are divided.
+struct TessellationOptions {
+  int rate_u = 8;               ///< segments along u of every patch, 1 to 4096
+  int rate_v = 8;               ///< segments along v
+  std::optional<Isa> isa = {};  ///< default_isa() if empty
+};
+
+/// Uniform tessellation: every patch at the same rates. Layout of the vertices: `[patch][iu][iv]`, so vertex
+/// (patch * (rate_u + 1) + iu) * (rate_v + 1) + iv. Border vertices are duplicated, one a patch; where two patches share
+/// the border's control points and run at equal rates, they are the same bits. Triangles that collapse at a pole are left out.
+class TessellationPlan {
+ public:
+  /// Errors: invalid_argument (a rate out of range, counts that overflow 32-bit indices), isa_unavailable, unsupported
+  /// (the set has no float Bernstein blocks). Memory: 24 bytes a patch.
+  static Result<TessellationPlan> make(const PatchSet& set, const TessellationOptions& options = {});
+
+  TessellationPlan(TessellationPlan&&) noexcept;
+  TessellationPlan& operator=(TessellationPlan&&) noexcept;
+  ~TessellationPlan();
+
+  MeshCapacity capacity() const;  ///< exact, of triangles alone
+  /// The same with quads: cells that are whole are quads, those at poles stay triangles.
+  MeshCapacity quad_capacity() const;
+  int rate_u() const;  ///< segments along u of every patch
+  int rate_v() const;  ///< segments along v
+  /// A mesh of the right size with all attributes, of triangles.
+  Result<Mesh> allocate() const;
+  /// The same for quads, and for triangles where there are none.
+  Result<Mesh> allocate_quads() const;
+  /// Writes the mesh, with quads if there is a view of them. `set` is the one that the plan was made for, at any revision
+  /// that collapses the same edges.
+  /// Errors: buffer_too_small, stale, invalid_argument, cancelled. Nothing is written on any but cancelled.
+  /// The same bytes for any number of threads. Allocates nothing after the first call.
+  Status run(const PatchSet& set, const MeshViews& out, const Execution& execution = {}) const;
+
+  class [[gnu::visibility("hidden")]] Impl;
+
+ private:
+  explicit TessellationPlan(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Mesh::parts by surfaces: a part for each run of triangles and quads whose patches come from one surface, with its name in
+/// the model ("surface 3" if it has none); they are gone through together, always the next one of the lower patch. `set` is
+/// the one of mesh.patches, made of `model`. Errors: count_mismatch (not one patch a triangle and a quad), invalid_argument
+/// (no such patch in the set, or surface in the model; index = the triangle or quad).
+Result<std::vector<MeshPart>> parts_by_surface(const Mesh& mesh, const PatchSet& set, const Model& model);
+
+/// A picture of width x height square pixels, its middle in the direction of the target.
+struct View {
+  Vec3 eye, target;           ///< where the camera stands, and what it looks at
+  Vec3 up{0, 0, 1};           ///< which way is up in the picture; another is taken where this is the direction of sight
+  bool orthographic = false;  ///< parallel rays; else they meet in the eye
+  double field_of_view = 40 * std::numbers::pi / 180;  ///< across the shorter side, radians, above 0 and below pi
+  double extent = 1;               ///< orthographic: how much the shorter side shows, in the model's lengths
+  int width = 1280, height = 800;  ///< of the picture, in pixels
+  /// In perspective, what is less deep than this in front of the eye is not seen. 0: a thousandth of the target's distance.
+  double near_distance = 0;
+};
 
 /// How far mesh and surfaces may lie apart in a picture: every point of either that is seen lies within so many pixels of
 /// one of the other; silhouettes too. Along the rays it says nothing: an angle makes up for that in shading. Patches of
@@ -170,6 +238,65 @@ class CertifiedTessellation {
 
  private:
   explicit CertifiedTessellation(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+/// A certified plan and the memory for updates of its mesh, so that repeated ones allocate nothing. An animated model costs
+/// what the evaluation of its touched patches costs: triangles stay as they are. Threads: one call at a time.
+///
+///   auto update = MeshUpdate::make(set, std::move(plan));   // once plan.run(set, mesh.views()) has written the mesh
+///   update->run(set, {patches, points}, mesh.views());      // each frame
+///   if (update->restate(set).ok() && update->unproven() > 0)
+///     if (auto changed = update->retessellate(set); changed && *changed > 0)
+///       mesh = ...                                          // update->plan().allocate() and run()
+class MeshUpdate {
+ public:
+  /// Takes over a plan of the set as it is. Errors: stale (another revision of the set, or number of patches);
+  /// out_of_memory. Memory: 256 bytes a patch, those of the plan among them.
+  static Result<MeshUpdate> make(const PatchSet& set, CertifiedTessellation plan);
+
+  MeshUpdate(MeshUpdate&&) noexcept;
+  MeshUpdate& operator=(MeshUpdate&&) noexcept;
+  ~MeshUpdate();
+
+  const CertifiedTessellation& plan() const;  ///< that of the mesh as it is now
+
+  /// PatchSet::set_control_points() for each edit, and then the positions and normals of these patches alone: each task
+  /// packs the patches that it evaluates while they are in its cache. `out` are the views of the mesh that the plan has
+  /// written; positions, and normals if wanted, are enough. Records of other patches are not touched, but for vertices
+  /// that welding takes from touched ones. The same bytes in the set and in the views as by those calls and by
+  /// CertifiedTessellation::run(), for any number of threads. The revision grows by one, unless there is no edit.
+  /// A patch's first update gives its points memory of their own, if it shares it with other patches; the next ones
+  /// allocate nothing, but for a patch with a border that welding made a point.
+  /// Where borders of the same bits are moved apart, so is the mesh; retessellate() finds what still meets.
+  /// Errors, with nothing written: those of the views (buffer_too_small, invalid_argument); stale (the set was edited by
+  /// other means; or index = the edit: other collapsed borders than in the plan); invalid_argument (index = the edit: no
+  /// such patch, or one that an edit before names); count_mismatch (points); non_finite (index = the edit: a point is
+  /// not finite, or does not fit the set's numbers relative to its origin). cancelled: each patch then has its new control
+  /// points and its new vertices, or neither.
+  Status run(PatchSet& set, const PatchEdits& edits, const MeshViews& out, const Execution& execution = {});
+
+  /// Proves anew how far the mesh lies from the patches that were touched since the last call: about a quarter of what
+  /// an update of theirs costs, but for plans of the fewest triangles, up to 110 us a bicubic patch; what such a plan has proven,
+  /// one patch in a hundred is not known to keep, by up to 6%. Distances alone: angles and pixels are proven by a plan, and
+  /// count as not proven for patches that were touched. Allocates nothing. Errors: stale (the set was edited by other
+  /// means), cancelled.
+  Status restate(const PatchSet& set, const Execution& execution = {});
+  /// How far mesh and patches lie apart at most, as of the last restate(); at first the plan's bounds().
+  std::span<const float> bounds() const;
+  double bound() const;  ///< the largest
+  /// How many patches their rates no longer serve: whose bound is above the plan's tolerance, or of whose angle or pixels
+  /// nothing is known any more. As of the last restate().
+  std::size_t unproven() const;
+
+  /// Takes CertifiedTessellation::retessellate() of the plan in its place. How many patches are divided otherwise: if none,
+  /// the mesh stays as it is; else it is another one, for plan().allocate() or capacity() and run(). All of them, if the
+  /// set was edited by other means: then run() is due in any case. Errors: as there; the plan stays then.
+  Result<std::size_t> retessellate(const PatchSet& set, double spare = 0.25, const Execution& execution = {});
+
+ private:
+  class [[gnu::visibility("hidden")]] Impl;
+  explicit MeshUpdate(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
 

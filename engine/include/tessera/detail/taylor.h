@@ -7,7 +7,7 @@
 #include <limits>
 #include <type_traits>
 
-#include "tessera/interval_number.h"
+#include "tessera/detail/interval_number.h"
 
 #pragma GCC visibility push(default)
 namespace tessera {

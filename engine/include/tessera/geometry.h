@@ -1,0 +1,150 @@
+#pragma once
+// Points and vectors of space, in double.
+// Affine maps of space.
+// Parameter rectangles and their edges.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#pragma GCC visibility push(default)
+namespace tessera {
+
+/// A point or a vector. Lengths are in the model's own unit.
+struct Vec3 {
+  double x = 0, y = 0, z = 0;  ///< in the model's unit
+
+  friend bool operator==(const Vec3&, const Vec3&) = default;                      ///< by components
+  Vec3& operator+=(const Vec3& b) { return *this = {x + b.x, y + b.y, z + b.z}; }  ///< by components
+};
+
+inline Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Vec3 operator-(const Vec3& a) { return {-a.x, -a.y, -a.z}; }
+inline Vec3 operator*(double s, const Vec3& a) { return {s * a.x, s * a.y, s * a.z}; }
+inline Vec3 operator*(const Vec3& a, double s) { return s * a; }
+inline double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Vec3 cross(const Vec3& a, const Vec3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+inline double length(const Vec3& a) { return std::sqrt(dot(a, a)); }
+inline bool is_finite(const Vec3& a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
+/// The largest absolute component.
+inline double max_abs(const Vec3& a) { return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
+/// a / |a|, or the zero vector where a is zero.
+inline Vec3 normalized(const Vec3& a) {
+  const double scale = max_abs(a);
+  if (!(scale > 0)) return {};
+  const Vec3 b{a.x / scale, a.y / scale, a.z / scale};  // the reciprocal of a subnormal scale is infinite
+  return (1 / length(b)) * b;
+}
+
+/// An axis-parallel box; empty (lower > upper) by default.
+struct Box3 {
+  /// Smallest and, below, largest coordinates; an empty box's are infinite.
+  Vec3 lower{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
+             std::numeric_limits<double>::infinity()};
+  /// The largest coordinates.
+  Vec3 upper{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
+             -std::numeric_limits<double>::infinity()};
+
+  /// Whether no point lies in it.
+  bool empty() const { return !(lower.x <= upper.x && lower.y <= upper.y && lower.z <= upper.z); }
+  /// So that the point lies in it.
+  void extend(const Vec3& p) {
+    lower = {std::min(lower.x, p.x), std::min(lower.y, p.y), std::min(lower.z, p.z)};
+    upper = {std::max(upper.x, p.x), std::max(upper.y, p.y), std::max(upper.z, p.z)};
+  }
+  /// So that the box lies in it.
+  void extend(const Box3& b) {
+    if (b.empty()) return;
+    extend(b.lower);
+    extend(b.upper);
+  }
+  Vec3 centre() const { return 0.5 * lower + 0.5 * upper; }  ///< of a box that is not empty
+  /// The length of the diagonal; 0 for an empty box. "The size" of a model means this.
+  double diagonal() const { return empty() ? 0 : length(upper - lower); }
+};
+
+/// p -> columns[0] p.x + columns[1] p.y + columns[2] p.z + translation.
+struct Affine {
+  std::array<Vec3, 3> columns{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};  ///< the images of the axes
+  Vec3 translation{};                                                        ///< the image of the origin
+
+  static Affine translated(const Vec3& by) { return {.translation = by}; }  ///< moves by a vector
+  /// Stretches along the axes.
+  static Affine scaled(const Vec3& by) { return {.columns = {Vec3{by.x, 0, 0}, Vec3{0, by.y, 0}, Vec3{0, 0, by.z}}}; }
+  /// By `angle` radians about an axis through the origin, counter-clockwise as seen from its tip. The identity for an
+  /// axis of no length.
+  static Affine rotated(const Vec3& axis, double angle) {
+    const Vec3 n = normalized(axis);
+    if (n == Vec3{}) return {};
+    const double s = std::sin(angle), c = std::cos(angle);
+    const auto turned = [&](const Vec3& e) { return c * e + (1 - c) * dot(n, e) * n + s * cross(n, e); };  // Rodrigues
+    return {.columns = {turned({1, 0, 0}), turned({0, 1, 0}), turned({0, 0, 1})}};
+  }
+
+  /// The image of a direction: the translation has no part in it.
+  Vec3 vector(const Vec3& d) const { return d.x * columns[0] + d.y * columns[1] + d.z * columns[2]; }
+  Vec3 point(const Vec3& p) const { return vector(p) + translation; }  ///< the image of a point
+  /// A bound of |vector(d)| / |d|, sharp where the columns are orthogonal: the root of the largest row sum of M^T M.
+  double norm_bound() const {
+    const double scale = std::max({max_abs(columns[0]), max_abs(columns[1]), max_abs(columns[2])});
+    if (!(scale > 0)) return 0;
+    const auto scaled = [scale](const Vec3& a) { return Vec3{a.x / scale, a.y / scale, a.z / scale}; };  // squares fit
+    double largest = 0;
+    for (const Vec3& a : columns) {
+      double row = 0;
+      for (const Vec3& b : columns) row += std::abs(dot(scaled(a), scaled(b)));
+      largest = std::max(largest, row);
+    }
+    return scale * std::sqrt(largest);
+  }
+  /// How volumes grow; negative where the map mirrors.
+  double determinant() const { return dot(columns[0], cross(columns[1], columns[2])); }
+
+  /// First b, then a.
+  friend Affine operator*(const Affine& a, const Affine& b) {
+    return {.columns = {a.vector(b.columns[0]), a.vector(b.columns[1]), a.vector(b.columns[2])},
+            .translation = a.point(b.translation)};
+  }
+  friend bool operator==(const Affine&, const Affine&) = default;  ///< the same numbers
+};
+
+inline bool is_finite(const Affine& map) {
+  return is_finite(map.columns[0]) && is_finite(map.columns[1]) && is_finite(map.columns[2]) &&
+         is_finite(map.translation);
+}
+
+/// The rectangle [u0, u1] x [v0, v1] of parameters, u0 < u1 and v0 < v1.
+struct Domain {
+  double u0 = 0, u1 = 1, v0 = 0, v1 = 1;  ///< u0 < u1, v0 < v1
+
+  /// From local parameters in [0,1]^2 to this rectangle; exact at 0 and 1.
+  double u_at(double s) const { return s == 1 ? u1 : u0 + s * (u1 - u0); }
+  double v_at(double t) const { return t == 1 ? v1 : v0 + t * (v1 - v0); }  ///< as u_at
+  /// From this rectangle to local parameters; exact at the ends.
+  double local_u(double u) const { return u == u1 ? 1 : (u - u0) / (u1 - u0); }
+  double local_v(double v) const { return v == v1 ? 1 : (v - v0) / (v1 - v0); }                 ///< as local_u
+  bool contains(double u, double v) const { return u >= u0 && u <= u1 && v >= v0 && v <= v1; }  ///< borders included
+
+  friend bool operator==(const Domain&, const Domain&) = default;  ///< by all four
+};
+
+/// The four edges of a patch, as bits of a mask.
+enum class Edge : std::uint8_t { u0 = 1, u1 = 2, v0 = 4, v1 = 8 };
+
+/// A set of edges.
+struct EdgeMask {
+  std::uint8_t bits = 0;  ///< one an edge, as Edge numbers them
+  /// Whether the edge is in the set.
+  bool has(Edge edge) const { return (bits & static_cast<std::uint8_t>(edge)) != 0; }
+  /// Puts the edge into the set.
+  void add(Edge edge) { bits = static_cast<std::uint8_t>(bits | static_cast<std::uint8_t>(edge)); }
+  bool any() const { return bits != 0; }  ///< whether an edge is in the set
+};
+
+}  // namespace tessera
+#pragma GCC visibility pop
