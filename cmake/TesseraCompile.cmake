@@ -26,17 +26,17 @@ if(TESSERA_SANITIZE)
   target_link_options(tessera_compile INTERFACE -fsanitize=${TESSERA_SANITIZE})
 endif()
 
-# tessera_floor(NAME SOURCES... [CALM sources...] [COLD sources...] BELOW floors...): the target tessera_NAME, compiled from
+# tessera_floor(NAME SOURCES... [BALANCED sources...] [SIZE_OPTIMIZED sources...] BELOW floors...): the target tessera_NAME, compiled from
 # engine/src/NAME. A floor sees the public headers, its own folder and those below it, all as <folder>/<file>; tests/house
-# checks every #include. In Release, what counted instructions (tools/perf count) don't grow by is not blown up: CALM
-# sources, which hand batches to kernels, are compiled at -O2, COLD ones, which work once for a surface, at -Os.
+# checks every #include. In Release, what counted instructions (tools/perf count) don't grow by is not blown up: BALANCED
+# sources, which hand batches to kernels, are compiled at -O2, SIZE_OPTIMIZED ones, which work once for a surface, at -Os.
 function(tessera_floor name)
   get_filename_component(engine ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../engine ABSOLUTE)
-  cmake_parse_arguments(FLOOR "" "" "SOURCES;CALM;COLD;BELOW" ${ARGN})
-  add_library(tessera_${name} OBJECT ${FLOOR_SOURCES} ${FLOOR_CALM} ${FLOOR_COLD})
+  cmake_parse_arguments(FLOOR "" "" "SOURCES;BALANCED;SIZE_OPTIMIZED;BELOW" ${ARGN})
+  add_library(tessera_${name} OBJECT ${FLOOR_SOURCES} ${FLOOR_BALANCED} ${FLOOR_SIZE_OPTIMIZED})
   target_compile_options(tessera_${name} PRIVATE $<$<CONFIG:Release>:-ffunction-sections>)
-  set_source_files_properties(${FLOOR_CALM} PROPERTIES COMPILE_OPTIONS $<$<CONFIG:Release>:-O2>)
-  set_source_files_properties(${FLOOR_COLD} PROPERTIES COMPILE_OPTIONS $<$<CONFIG:Release>:-Os>)
+  set_source_files_properties(${FLOOR_BALANCED} PROPERTIES COMPILE_OPTIONS $<$<CONFIG:Release>:-O2>)
+  set_source_files_properties(${FLOOR_SIZE_OPTIMIZED} PROPERTIES COMPILE_OPTIONS $<$<CONFIG:Release>:-Os>)
   target_include_directories(tessera_${name} PRIVATE ${engine}/include ${engine}/src)
   target_link_libraries(tessera_${name} PRIVATE tessera_compile)
   # What a public header declares is exported (it says so), and nothing else.

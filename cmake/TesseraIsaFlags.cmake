@@ -10,7 +10,8 @@ if(TESSERA_SANITIZE)
   list(TRANSFORM kernel_flags REPLACE "^-O3$" -O1)
 endif()
 get_filename_component(kernel_folder ${CMAKE_CURRENT_LIST_DIR}/../engine/src/kernel ABSOLUTE)
-set(kernel_units unit_grid unit_grid_double unit_flat unit_line unit_net unit_point unit_chord unit_chord_any unit_mesh unit_ray)
+set(kernel_units grid/unit_grid grid/unit_grid_double grid/unit_flat grid/unit_line net/unit_net point/unit_point
+  chord/unit_chord chord/unit_chord_any mesh/unit_mesh ray/unit_ray)
 list(TRANSFORM kernel_units PREPEND ${kernel_folder}/)
 list(TRANSFORM kernel_units APPEND .cpp)
 set(less_code)
@@ -18,7 +19,7 @@ if(TESSERA_KERNEL_LEVEL STREQUAL -O3 AND NOT TESSERA_SANITIZE)
   set(less_code -O2)
 endif()
 # Loops over a degree that is not known gain nothing by being laid out in full.
-set_source_files_properties(${kernel_folder}/unit_chord_any.cpp PROPERTIES COMPILE_OPTIONS "${less_code}")
+set_source_files_properties(${kernel_folder}/chord/unit_chord_any.cpp PROPERTIES COMPILE_OPTIONS "${less_code}")
 
 # tessera_isa(NAME "units" flags...)
 macro(tessera_isa name units)
@@ -33,10 +34,10 @@ macro(tessera_isa name units)
 endmacro()
 
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64)$")
-  set(tessera_machine ${kernel_folder}/machine_aarch64.cpp)
+  set(tessera_machine ${kernel_folder}/isa/machine_aarch64.cpp)
   tessera_isa(neon64 "${kernel_units}")
 else()
-  set(tessera_machine ${kernel_folder}/machine_x86.cpp)
+  set(tessera_machine ${kernel_folder}/isa/machine_x86.cpp)
   # Machines without AVX2 are few and old. For them plans and meshes, a quarter slower at -O2, are half as much code; grids
   # and points would take twice the time for a tenth less.
   set(mesh_units ${kernel_units})

@@ -8,7 +8,7 @@
 #include "sets.h"
 #include "suite.h"
 #include "support/synthetic_sets.h"
-#include "tess/shared_edges.h"
+#include "tess/edges/shared_edges.h"
 #include "tess/tolerance_search.h"
 #include "tessera/tessellation.h"
 #include "timing.h"

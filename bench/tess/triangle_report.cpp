@@ -12,7 +12,7 @@
 #include "report_arguments.h"
 #include "support/synthetic_sets.h"
 #include "support/triangle_distance.h"
-#include "tess/certified_tessellation_impl.h"
+#include "tess/plan/certified_tessellation_impl.h"
 #include "tessera/tessellation.h"
 #include "tessera/io.h"
 

@@ -15,7 +15,7 @@ namespace tessera::house {
 namespace {
 
 TEST(IsaSymbols, ForeignFunctionsAreFound) {
-  const auto unit = isa_unit_of("/build/tessera_kernel_avx512.dir/src/kernel/unit_grid.cpp.o");
+  const auto unit = isa_unit_of("/build/tessera_kernel_avx512.dir/src/kernel/grid/unit_grid.cpp.o");
   ASSERT_TRUE(unit);
   const std::string own =
       "0000000000000000 T tessera::kernel::isa_avx512::kernels()\n"
@@ -43,11 +43,11 @@ TEST(IsaSymbols, ForeignFunctionsAreFound) {
 }
 
 TEST(IsaSymbols, UnitsAreKnownByTheirObjects) {
-  EXPECT_EQ(isa_unit_of("engine/CMakeFiles/tessera_kernel_avx2.dir/src/kernel/unit_grid.cpp.o")->isa, "avx2");
-  EXPECT_EQ(isa_unit_of("engine/CMakeFiles/tessera_kernel_sse2.dir/src/kernel/unit_net.cpp.o")->isa, "sse2");
-  EXPECT_EQ(isa_unit_of("engine/CMakeFiles/tessera_kernel_neon64.dir/src/kernel/unit_net.cpp.o")->isa, "neon64");
-  EXPECT_EQ(isa_unit_of("engine/CMakeFiles/tessera_kernel_sse2_mesh.dir/src/kernel/unit_mesh.cpp.o")->isa, "sse2");
-  EXPECT_FALSE(isa_unit_of("engine/CMakeFiles/tessera_kernel.dir/src/kernel/select_isa.cpp.o"));
+  EXPECT_EQ(isa_unit_of("engine/CMakeFiles/tessera_kernel_avx2.dir/src/kernel/grid/unit_grid.cpp.o")->isa, "avx2");
+  EXPECT_EQ(isa_unit_of("engine/CMakeFiles/tessera_kernel_sse2.dir/src/kernel/net/unit_net.cpp.o")->isa, "sse2");
+  EXPECT_EQ(isa_unit_of("engine/CMakeFiles/tessera_kernel_neon64.dir/src/kernel/net/unit_net.cpp.o")->isa, "neon64");
+  EXPECT_EQ(isa_unit_of("engine/CMakeFiles/tessera_kernel_sse2_mesh.dir/src/kernel/mesh/unit_mesh.cpp.o")->isa, "sse2");
+  EXPECT_FALSE(isa_unit_of("engine/CMakeFiles/tessera_kernel.dir/src/kernel/isa/select_isa.cpp.o"));
 }
 
 TEST(IsaSymbols, ObjectsHoldOnlyTheirOwn) {

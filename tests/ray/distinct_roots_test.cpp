@@ -1,6 +1,6 @@
 // Roots that are the same, among few and among many.
 
-#include "ray/distinct_roots.h"
+#include "ray/seam/distinct_roots.h"
 
 #include <gtest/gtest.h>
 

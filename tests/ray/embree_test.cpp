@@ -9,7 +9,7 @@
 #include <string>
 #include <type_traits>
 
-#include "ray/embree_api.h"
+#include "ray/embree/embree_api.h"
 #include "ray_support.h"
 #include "support/torus.h"
 

@@ -1,8 +1,8 @@
 // The lines of many rays at once against those of one.
 
-#include "kernel/kernel_table.h"
-#include "ray/ray_lines.h"
-#include "ray/ray_segment.h"
+#include "kernel/isa/kernel_table.h"
+#include "ray/line/ray_lines.h"
+#include "ray/line/ray_segment.h"
 #include "ray_support.h"
 
 namespace tessera::test {

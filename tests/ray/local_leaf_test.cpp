@@ -1,6 +1,6 @@
 // Pieces of patches in float, of any degree: their bounds, and the work of a ray.
 
-#include "ray/local_leaf.h"
+#include "ray/leaf/local_leaf.h"
 
 #include <gtest/gtest.h>
 

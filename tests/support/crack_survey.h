@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "tess/certified_plan.h"
-#include "tess/position_bits.h"
+#include "tess/plan/certified_plan.h"
+#include "tess/edges/position_bits.h"
 #include "tessera/tessellation.h"
 
 namespace tessera::test {

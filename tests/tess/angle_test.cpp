@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "tess/certificate_sets.h"
-#include "tess/normal_net.h"
+#include "tess/bounds/normal_net.h"
 #include "tess/tessellate_support.h"
-#include "tess/turning_bound.h"
+#include "tess/bounds/turning_bound.h"
 #include "tessera/tessellation.h"
 
 namespace tessera::test {

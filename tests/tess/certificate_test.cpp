@@ -5,7 +5,7 @@
 
 #include "support/true_distance.h"
 #include "tess/certificate_sets.h"
-#include "tess/certified_tessellation_impl.h"
+#include "tess/plan/certified_tessellation_impl.h"
 #include "tess/tessellate_support.h"
 #include "tessera/tessellation.h"
 

@@ -1,12 +1,12 @@
 // Chord bounds in float, sixteen patches at a time, against those in double, patch by patch.
 
-#include "tess/chord_blocks.h"
+#include "tess/bounds/chord_blocks.h"
 
 #include <algorithm>
 #include <bit>
 #include <span>
 
-#include "kernel/kernel_table.h"
+#include "kernel/isa/kernel_table.h"
 #include "support/synthetic_sets.h"
 #include "tess/tessellate_support.h"
 

@@ -1,6 +1,6 @@
 // The certified distance is never exceeded, by triangles of any shape within its cells, and is not far above what is found.
 
-#include "tess/chord_bound.h"
+#include "tess/bounds/chord_bound.h"
 
 #include <gtest/gtest.h>
 

@@ -7,12 +7,12 @@
 #include <limits>
 #include <vector>
 
-#include "kernel/kernel_table.h"
+#include "kernel/isa/kernel_table.h"
 #include "support/reference.h"
 #include "support/synthetic_sets.h"
-#include "tess/certified_tessellation_impl.h"
-#include "tess/chord_blocks.h"
-#include "tess/flat_quad.h"
+#include "tess/plan/certified_tessellation_impl.h"
+#include "tess/bounds/chord_blocks.h"
+#include "tess/bounds/flat_quad.h"
 #include "tess/tessellate_support.h"
 
 namespace tessera::test {

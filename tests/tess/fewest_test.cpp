@@ -6,8 +6,8 @@
 #include "support/synthetic_sets.h"
 #include "support/triangle_distance.h"
 #include "support/true_distance.h"
-#include "tess/certified_tessellation_impl.h"
-#include "tess/local_chord.h"
+#include "tess/plan/certified_tessellation_impl.h"
+#include "tess/bounds/local_chord.h"
 #include "tess/tessellate_support.h"
 #include "tessera/tessellation.h"
 

@@ -1,9 +1,9 @@
 // Tables that plans share.
 
-#include "tess/mesh_tables.h"
+#include "tess/write/mesh_tables.h"
 
 #include "support/synthetic_sets.h"
-#include "tess/certified_tessellation_impl.h"
+#include "tess/plan/certified_tessellation_impl.h"
 #include "tess/tessellate_support.h"
 
 namespace tessera::test {

@@ -1,13 +1,13 @@
 // Certified meshes as they are written: in vectors of every instruction set, plainly or past the caches, into views of any
 // layout; against the patches themselves and against the triangles written one by one.
 
-#include "tess/patch_writer.h"
+#include "tess/write/patch_writer.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "kernel/kernel_table.h"
+#include "kernel/isa/kernel_table.h"
 #include "support/synthetic_sets.h"
 #include "tess/tessellate_support.h"
 #include "tessera/tessellation.h"

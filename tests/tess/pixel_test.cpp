@@ -7,7 +7,7 @@
 
 #include "support/triangle_distance.h"
 #include "tess/certificate_sets.h"
-#include "tess/picture.h"
+#include "tess/bounds/picture.h"
 #include "tess/tessellate_support.h"
 #include "tessera/tessellation.h"
 

@@ -1,11 +1,11 @@
 // Which borders are one edge, held against a comparison of all with all by their bits.
 
-#include "tess/shared_edges.h"
+#include "tess/edges/shared_edges.h"
 
 #include <bit>
 #include <map>
 
-#include "kernel/kernel_table.h"
+#include "kernel/isa/kernel_table.h"
 #include "support/grids.h"
 #include "support/points.h"
 #include "support/synthetic_sets.h"

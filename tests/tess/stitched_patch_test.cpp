@@ -1,7 +1,7 @@
 // Patches with rates of their own on every border: a triangulation of the parameter square whose triangles keep within
 // the cells that the rates promise.
 
-#include "tess/stitched_patch.h"
+#include "tess/write/stitched_patch.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 
 #include "support/synthetic_sets.h"
 #include "support/triangle_distance.h"
-#include "tess/side_curve.h"
+#include "tess/edges/side_curve.h"
 #include "tess/tessellate_support.h"
 #include "tessera/bezier_operations.h"
 #include "tessera/tessellation.h"

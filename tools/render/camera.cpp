@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "ray/ray_segment.h"
+#include "ray/line/ray_segment.h"
 
 namespace tessera::render {
 namespace {

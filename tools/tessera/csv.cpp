@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "io/file.h"
-#include "ray/ray_segment.h"
+#include "ray/line/ray_segment.h"
 
 namespace tessera::cli {
 namespace {

@@ -11,7 +11,7 @@
 #include "base/guard.h"
 #include "block/pack.h"
 #include "block/patch_set_impl.h"
-#include "kernel/kernel_table.h"
+#include "kernel/isa/kernel_table.h"
 #include "parallel/parallel_for.h"
 #include "surface/patch_pieces.h"
 

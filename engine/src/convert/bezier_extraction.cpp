@@ -12,7 +12,7 @@
 #include "base/guard.h"
 #include "convert/extraction.h"
 #include "convert/spline_net.h"
-#include "kernel/kernel_table.h"
+#include "kernel/isa/kernel_table.h"
 #include "parallel/parallel_for.h"
 #include "surface/homogeneous.h"
 #include "surface/patch_pieces.h"

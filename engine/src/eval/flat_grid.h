@@ -1,5 +1,5 @@
 #pragma once
-// Positions patch after patch by kernel 3, lanes = numbers of a row (kernel/flat_kernel.inl.h).
+// Positions patch after patch by kernel 3, lanes = numbers of a row (kernel/grid/flat_kernel.inl.h).
 
 #include "block/patch_set_impl.h"
 #include "eval/grid_plan_impl.h"

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "kernel/kernel_table.h"
+#include "kernel/isa/kernel_table.h"
 #include "tessera/evaluate.h"
 
 namespace tessera {

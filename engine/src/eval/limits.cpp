@@ -5,7 +5,7 @@
 
 #include "base/aligned.h"
 #include "base/guard.h"
-#include "kernel/kernel_table.h"
+#include "kernel/isa/kernel_table.h"
 
 namespace tessera {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "kernel/kernel_table.h"
+#include "kernel/isa/kernel_table.h"
 
 namespace tessera {
 

@@ -9,7 +9,7 @@
 #include "base/aligned.h"
 #include "base/guard.h"
 #include "eval/parameter_grid.h"
-#include "kernel/kernel_table.h"
+#include "kernel/isa/kernel_table.h"
 #include "parallel/parallel_for.h"
 #include "surface/border_curve.h"
 

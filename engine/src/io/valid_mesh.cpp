@@ -10,7 +10,7 @@
 
 #include "io/mesh_formats.h"
 #include "parallel/parallel_for.h"
-#include "tess/mesh_parts.h"
+#include "tess/write/mesh_parts.h"
 
 namespace tessera {
 namespace {

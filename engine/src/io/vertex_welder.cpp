@@ -1,6 +1,6 @@
 #include "io/vertex_welder.h"
 
-#include "tess/position_bits.h"
+#include "tess/edges/position_bits.h"
 
 namespace tessera {
 

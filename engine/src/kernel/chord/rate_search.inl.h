@@ -1,0 +1,215 @@
+// The rates that keep a distance, by bounds of patches of a block (tess/bounds/chord_bound.h), lanes = patches. Included by the
+// units after chord_kernel.inl.h. No multiply-add is fused, so that every instruction set finds the same rates.
+
+/// The search for rates, one patch a lane. Along one parameter, `first`, whose second derivatives are the smaller, rates are
+/// tried around that of the fewest cells if cells were no whole numbers; the other's follow.
+template <class L>
+class RateSearch {
+ public:
+  RateSearch(const RateJob& job, int lane) : job_(job), lane_(lane) {
+    const Batch whole[3] = {piece(0, 0), piece(0, 1), piece(0, 2)};
+    is_u_ = xsimd::select(whole[0] <= whole[2], L::broadcast(1), L::broadcast(0));
+    const auto u = is_u_ > L::broadcast(0);
+    // The same pieces with `first` in the place of u.
+    constexpr int other[9] = {0, 3, 4, 1, 2, 5, 7, 6, 8};
+    for (int k = 0; k < 9; ++k) {
+      first_[k] = xsimd::select(u, piece(k, 0), piece(other[k], 2));
+      mixed_[k] = xsimd::select(u, piece(k, 1), piece(other[k], 1));
+      second_[k] = xsimd::select(u, piece(k, 2), piece(other[k], 0));
+    }
+    wanted_ = L::broadcast(8) * L::load(job.distance + lane);
+    for (Batch& room : room_) room = wanted_;
+    most_ = L::broadcast(static_cast<float>(job.most_rate));
+  }
+
+  void run() {
+    search();
+    const auto found = least_ < L::broadcast(std::numeric_limits<float>::infinity());
+    Batch chord = chord_of(best_first_, best_second_);
+    const auto kept = found & (L::broadcast(8) * chord <= wanted_);
+    Batch first = best_first_, second = best_second_;
+    if (job_.products) sharpen(first, second, chord);
+    const auto u = is_u_ > L::broadcast(0);
+    const Batch zero = L::broadcast(0);
+    store(job_.rate_u, xsimd::select(kept, xsimd::select(u, first, second), zero));
+    store(job_.rate_v, xsimd::select(kept, xsimd::select(u, second, first), zero));
+    L::store(job_.chord + lane_, xsimd::select(kept, chord, L::broadcast(1)));
+  }
+
+ private:
+  using Batch = typename L::Batch;
+
+  /// Fewer cells by the products as well, where they keep the distance.
+  void sharpen(Batch& first, Batch& second, Batch& chord) {
+    const Batch eight = L::broadcast(8), more = L::broadcast(static_cast<float>(1.01));
+    Batch share[4];
+    shares_at(first, second, share);
+    chord = sharp_chord_of(first, second, chord);
+    for (int attempts = 0; attempts < 2; ++attempts) {
+      // At one ratio of the rates the plain bound is that share of what it is: as many times the distance is allowed by it.
+      for (int k = 0; k < 4; ++k) room_[k] = wanted_ / share[k];
+      search();
+      const Batch sharp = sharp_chord_of(best_first_, best_second_, chord_of(best_first_, best_second_));
+      const auto keeps = eight * sharp <= wanted_;
+      const auto better = keeps & (best_first_ * best_second_ < first * second) & (best_first_ > L::broadcast(0));
+      first = xsimd::select(better, best_first_, first);
+      second = xsimd::select(better, best_second_, second);
+      chord = xsimd::select(better, sharp, chord);
+      if (xsimd::all(keeps)) return;
+      for (Batch& of_class : share) of_class = xsimd::select(keeps, of_class, of_class * more);
+    }
+  }
+  /// The bound by the products over the plain one at some rates, by the pieces of each parity: whole, halves, quarters.
+  void shares_at(const Batch& first, const Batch& second, Batch (&share)[4]) const {
+    const Batch one = L::broadcast(1), h = step_of(xsimd::max(first, one)), k = step_of(xsimd::max(second, one));
+    for (int parity = 0; parity < 4; ++parity) {
+      Batch plain = tiny(), squared = tiny();
+      for (int p = begin_of[parity]; p < begin_of[parity + 1]; ++p) {
+        plain = xsimd::max(plain, plain_chord(p, h, k));
+        squared = xsimd::max(squared, squared_chord(p, h, k));
+      }
+      share[parity] =
+          xsimd::max(xsimd::min(xsimd::sqrt(squared) / plain * L::broadcast(static_cast<float>(1 + 0x1p-16)), one),
+                     L::broadcast(static_cast<float>(0.25)));
+    }
+  }
+  static Batch tiny() { return L::broadcast(static_cast<float>(0x1p-60)); }
+
+  /// The fewest cells by the plain bound.
+  void search() {
+    const Batch zero = L::broadcast(0), two = L::broadcast(2), half = L::broadcast(static_cast<float>(0.5));
+    // first^2 cells' h and k: h^2 uu = k^2 vv, hence room / 2 = h^2 (uu + uv sqrt(uu / vv)).
+    const Batch ratio = xsimd::sqrt(first_[0] / xsimd::max(second_[0], tiny()));
+    const Batch start = xsimd::sqrt((first_[0] + mixed_[0] * ratio) * two / xsimd::max(wanted_, tiny()));
+    const Batch middle = two * xsimd::floor(half * xsimd::min(start, most_));
+    best_first_ = best_second_ = zero;
+    least_ = L::broadcast(std::numeric_limits<float>::infinity());
+    for (int step = -2; step <= 3; ++step) {
+      const Batch rate = middle + L::broadcast(static_cast<float>(step));
+      step % 2 == 0 ? attempt<true>(rate) : attempt<false>(rate);
+    }
+    widen(middle - two, middle + L::broadcast(3));
+  }
+
+  Batch piece(int k, int kind) const { return L::load(job_.pieces + (k * 3 + kind) * block_lanes + lane_); }
+
+  /// Above the step of a rate in parameters, which are rounded to float: 1 / rate + 2^-24.
+  static Batch step_of(const Batch& rate) {
+    return L::broadcast(1) / rate * L::broadcast(static_cast<float>(1 + 0x1p-22)) +
+           L::broadcast(static_cast<float>(0x1p-24));
+  }
+
+  /// A little above the least rate t >= 1 with h^2 first + 2 h mixed / t + second / t^2 <= room over the pieces of a parity;
+  /// infinite where there is none.
+  Batch needed(int parity, const Batch& h) const {
+    Batch most = L::broadcast(1);
+    for (int k = begin_of[parity]; k < begin_of[parity + 1]; ++k) {
+      const Batch room = room_[parity] - h * h * first_[k], b = h * mixed_[k];
+      const Batch root = (b + xsimd::sqrt(b * b + xsimd::max(room, L::broadcast(0)) * second_[k])) / room;
+      const Batch above = root * L::broadcast(static_cast<float>(1 + 0x1p-18));
+      most = xsimd::max(
+          most, xsimd::select(room > L::broadcast(0), above, L::broadcast(std::numeric_limits<float>::infinity())));
+    }
+    return most;
+  }
+
+  /// All pairs with this rate along `first`.
+  template <bool Even>
+  void attempt(const Batch& rate) {
+    const Batch one = L::broadcast(1), two = L::broadcast(2), half = L::broadcast(static_cast<float>(0.5));
+    const Batch first = xsimd::max(rate, Even ? two : one);
+    const Batch h = step_of(first);
+    const Batch odd = two * xsimd::ceil(half * (needed(Even ? 1 : 0, h) - one)) + one;
+    const Batch even = two * xsimd::ceil(half * needed(Even ? 3 : 2, h));
+    const Batch second = xsimd::min(xsimd::max(odd, one), xsimd::max(even, two));
+    const Batch cells = first * second;
+    const auto better = (second <= most_) & (first <= most_) & (cells < least_);
+    least_ = xsimd::select(better, cells, least_);
+    best_first_ = xsimd::select(better, first, best_first_);
+    best_second_ = xsimd::select(better, second, best_second_);
+  }
+
+  /// Goes on beyond the even rate `low` and the odd rate `high` while a lane has its fewest cells at an end.
+  void widen(Batch low, Batch high) {
+    const Batch one = L::broadcast(1), two = L::broadcast(2);
+    for (int rounds = 0; rounds < 32; ++rounds) {
+      const auto at_end = ((best_first_ <= low) & (low > one)) | ((best_first_ >= high) & (high < most_));
+      if (!xsimd::any(at_end)) return;
+      attempt<true>(low - two);
+      attempt<false>(low - one);
+      attempt<true>(high + one);
+      attempt<false>(high + two);
+      low = low - two;
+      high = high + two;
+    }
+  }
+
+  /// The largest over the pieces that serve the rates.
+  template <class Chord>
+  Batch most_of(const Batch& first, const Batch& second, const Chord& chord) const {
+    const Batch half = L::broadcast(static_cast<float>(0.5));
+    const auto most = [&](int parity) {
+      Batch of_pieces = L::broadcast(0);
+      for (int p = begin_of[parity]; p < begin_of[parity + 1]; ++p) of_pieces = xsimd::max(of_pieces, chord(p));
+      return of_pieces;
+    };
+    const auto even_first = xsimd::floor(half * first) * L::broadcast(2) == first;
+    const auto even_second = xsimd::floor(half * second) * L::broadcast(2) == second;
+    return xsimd::select(even_first, xsimd::select(even_second, most(3), most(1)),
+                         xsimd::select(even_second, most(2), most(0)));
+  }
+
+  /// A bound on the chord error of rates.
+  Batch chord_of(Batch first, Batch second) const {
+    const Batch one = L::broadcast(1);
+    first = xsimd::max(first, one), second = xsimd::max(second, one);
+    const Batch h = step_of(first), k = step_of(second);
+    const Batch eighth = L::broadcast(static_cast<float>(0.125 * (1 + 0x1p-20)));
+    return eighth * most_of(first, second, [&](int p) { return plain_chord(p, h, k); });
+  }
+
+  /// The same by the products, and no more than `plain`, chord_of().
+  Batch sharp_chord_of(Batch first, Batch second, const Batch& plain) const {
+    const Batch one = L::broadcast(1);
+    first = xsimd::max(first, one), second = xsimd::max(second, one);
+    const Batch h = step_of(first), k = step_of(second);
+    const Batch squared = most_of(first, second, [&](int p) { return squared_chord(p, h, k); });
+    // Squares that vanish are below 2^-120 together.
+    return xsimd::min(plain, L::broadcast(static_cast<float>(0.125 * (1 + 0x1p-19))) * xsimd::sqrt(squared) + tiny());
+  }
+  Batch plain_chord(int p, const Batch& h, const Batch& k) const {
+    return h * (h * first_[p] + (k + k) * mixed_[p]) + k * k * second_[p];
+  }
+  Batch squared_chord(int p, const Batch& h, const Batch& k) const {
+    constexpr int other[9] = {0, 3, 4, 1, 2, 5, 7, 6, 8};
+    const auto u = is_u_ > L::broadcast(0);
+    const Batch a = h * h * first_[p], b = (h + h) * k * mixed_[p], c = k * k * second_[p], two = L::broadcast(2);
+    const Batch with_first = xsimd::select(u, product(p, 1), product(other[p], 2)),
+                with_second = xsimd::select(u, product(p, 2), product(other[p], 1));
+    const Batch opposite = xsimd::select(u, product(p, 0), product(other[p], 0));
+    const Batch both = a * a + c * c + two * (h * k) * (h * k) * opposite;
+    return b * b + two * two * (h * k) * (h * h * with_first + k * k * with_second) +
+           xsimd::max(both, xsimd::max(a * a, c * c));
+  }
+  Batch product(int k, int which) const { return L::load(job_.products + (k * 3 + which) * block_lanes + lane_); }
+
+  void store(std::int32_t* to, const Batch& whole) const {
+    alignas(64) float values[L::width];
+    L::store(values, whole);
+    for (int l = 0; l < L::width; ++l) to[lane_ + l] = static_cast<std::int32_t>(values[l]);
+  }
+
+  const RateJob& job_;
+  const int lane_;
+  /// Pieces where the rates along first and second are odd and odd, even and odd, odd and even, even and even.
+  static constexpr int begin_of[5] = {0, 1, 3, 5, 9};
+
+  Batch first_[9], mixed_[9], second_[9], most_, is_u_;
+  Batch wanted_, room_[4];  ///< eight times the distance; what of it is for the plain bound, by parity
+  Batch best_first_, best_second_, least_;
+};
+
+template <class L>
+void find_rates(const RateJob& job) {
+  for (int lane = 0; lane < block_lanes; lane += L::width) RateSearch<L>(job, lane).run();
+}

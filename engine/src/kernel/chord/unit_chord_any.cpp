@@ -1,0 +1,25 @@
+// Bounds of patches of any degree, and of rational ones, for certified plans: a unit beside unit_chord.cpp, compiled for less code. One unit an
+// instruction set: see cmake/TesseraIsaFlags.cmake.
+
+#include "kernel/chord/any_chord_kernels.h"
+#include "kernel/isa/lanes.h"
+
+namespace tessera::kernel::TESSERA_ISA_NAMESPACE {
+namespace {
+
+#include "kernel/chord/chord_kernel.inl.h"
+#include "kernel/chord/chord_product.inl.h"
+#include "kernel/chord/rational_nets.inl.h"
+#include "kernel/chord/rational_chord.inl.h"
+#include "kernel/chord/rational_product.inl.h"
+#include "kernel/chord/exact_derivative.inl.h"
+#include "kernel/chord/exact_chord.inl.h"
+
+}  // namespace
+
+extern const AnyChordKernels any_chord_kernels = {
+    bound_chords<Lanes<float>, 0>,   bound_rational_chords<Lanes<float>>,   bound_exact_chords<Lanes<double>>,
+    bound_products<Lanes<float>, 0>, bound_rational_products<Lanes<float>>, share_of_products<Lanes<float>, 0>,
+};
+
+}  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE

@@ -1,0 +1,30 @@
+// Positions patch after patch. One unit an instruction set: see cmake/TesseraIsaFlags.cmake.
+
+#include "kernel/isa/block_lanes.h"
+#include "kernel/grid/flat_kernels.h"
+#include "kernel/isa/lanes.h"
+#include "kernel/store/stream_state.h"
+
+namespace tessera::kernel::TESSERA_ISA_NAMESPACE {
+namespace {
+
+#include "kernel/store/store.inl.h"
+#include "kernel/store/line_sink.inl.h"
+#include "kernel/sample/sample_kernel.inl.h"
+#include "kernel/grid/flat_kernel.inl.h"
+
+/// Four rows of three components take twelve lanes; in shorter vectors permutations cost more than blocks do.
+template <class L>
+constexpr auto flat_kernel() -> Isa (*)(const FlatJob&) {
+  if constexpr (L::width == flat_lanes) {
+    return evaluate_flat<L>;
+  } else {
+    return nullptr;
+  }
+}
+
+}  // namespace
+
+extern const FlatKernels flat_kernels = {flat_kernel<Lanes<float>>()};
+
+}  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE

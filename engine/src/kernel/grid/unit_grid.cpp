@@ -1,0 +1,38 @@
+// Grids of floats. One unit an instruction set: see cmake/TesseraIsaFlags.cmake.
+
+#include <utility>
+
+#include "kernel/grid/grid_kernels.h"
+#include "kernel/isa/lanes.h"
+#include "kernel/grid/line_kernels.h"
+
+namespace tessera::kernel::TESSERA_ISA_NAMESPACE {
+namespace {
+
+#include "kernel/store/store.inl.h"
+#include "kernel/sample/sample_kernel.inl.h"
+#include "kernel/sample/normal_kernel.inl.h"
+#include "kernel/sample/curvature_kernel.inl.h"
+#include "kernel/store/line_stores.inl.h"
+#include "kernel/grid/grid_kernel.inl.h"
+#include "kernel/grid/line_kernel.inl.h"
+#include "kernel/mesh/mesh_line_kernel.inl.h"
+
+/// Vectors of half a line that are streamed one by one go to memory in halves.
+template <class L>
+constexpr auto mesh_line_kernel() -> Isa (*)(const GridJob<float>&, const LineJob<float>&) {
+  if constexpr (L::width == block_lanes) {
+    return mesh_lines<L>;
+  } else {
+    return nullptr;
+  }
+}
+
+}  // namespace
+
+extern const GridKernels grid_kernels = {
+    evaluate_grid<Lanes<float>>,
+    mesh_line_kernel<Lanes<float>>(),
+};
+
+}  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE

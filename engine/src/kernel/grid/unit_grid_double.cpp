@@ -1,0 +1,24 @@
+// Grids of doubles. One unit an instruction set: see cmake/TesseraIsaFlags.cmake.
+
+#include <utility>
+
+#include "kernel/grid/grid_kernels.h"
+#include "kernel/isa/lanes.h"
+
+namespace tessera::kernel::TESSERA_ISA_NAMESPACE {
+namespace {
+
+#include "kernel/store/store.inl.h"
+#include "kernel/sample/sample_kernel.inl.h"
+#include "kernel/sample/normal_kernel.inl.h"
+#include "kernel/sample/curvature_kernel.inl.h"
+#include "kernel/store/line_stores.inl.h"
+#include "kernel/grid/grid_kernel.inl.h"
+
+}  // namespace
+
+extern const DoubleGridKernels double_grid_kernels = {
+    evaluate_grid<Lanes<double>>,
+};
+
+}  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE

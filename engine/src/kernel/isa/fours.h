@@ -1,0 +1,12 @@
+#pragma once
+// Four and Fours of the instruction set that this unit is compiled for: four floats, for kernels that take points by their
+// coordinates. In an
+// unnamed namespace, as lanes.h.
+
+#include "kernel/isa/lanes.h"
+
+#if defined(__aarch64__)
+#include "kernel/isa/fours_neon64.h"
+#else
+#include "kernel/isa/fours_x86.h"
+#endif

@@ -1,0 +1,50 @@
+#pragma once
+// The table of the kernels of one instruction set: plain function pointers over raw memory. Callers validate; kernels
+// assume. What each is given stands with its family; a family has a unit of its own for each instruction set.
+
+#include <span>
+
+#include "base/for_wings.h"
+#include "kernel/chord/chord_kernels.h"
+#include "kernel/grid/flat_kernels.h"
+#include "kernel/grid/grid_kernels.h"
+#include "kernel/grid/line_kernels.h"
+#include "kernel/store/memory_kernels.h"
+#include "kernel/mesh/mesh_kernels.h"
+#include "kernel/net/net_kernels.h"
+#include "kernel/point/point_kernels.h"
+#include "kernel/ray/ray_kernels.h"
+#include "tessera/execution.h"
+
+namespace tessera::kernel {
+
+struct KernelTable : GridKernels,
+                     DoubleGridKernels,
+                     FlatKernels,
+                     LineKernels,
+                     NetKernels,
+                     PointKernels,
+                     ChordKernels,
+                     MeshKernels,
+                     RayKernels,
+                     MemoryKernels {
+  Isa isa;
+};
+
+/// The kernels of every ISA that processor and operating system support, slowest first; at least one.
+std::span<const KernelTable* const> machine_kernels();
+
+/// Those of default_isa(), or the baseline's where TESSERA_ISA names none: for kernels that compute the same bits on all.
+const KernelTable& default_kernels();
+
+/// The kernels of an ISA. Call it only for one that available_isas() lists.
+const KernelTable& kernels(Isa isa);
+
+}  // namespace tessera::kernel
+
+namespace tessera {
+
+/// Those of rays, for the library of rays: what is named `kernel` stays inside the core.
+TESSERA_FOR_WINGS const kernel::RayKernels& ray_kernels(Isa isa);
+
+}  // namespace tessera

@@ -1,0 +1,21 @@
+#pragma once
+// Lanes<float> and Lanes<double> of the instruction set that this unit is compiled for, in a namespace of that ISA:
+// TESSERA_ISA_NAMESPACE. In an unnamed namespace there, for no inline function may be merged with one of another unit.
+
+#if defined(__AVX512F__)
+#include "kernel/isa/lanes_avx512.h"
+#elif defined(__AVX2__)
+#include "kernel/isa/lanes_avx2.h"
+#elif defined(__aarch64__)
+#include "kernel/isa/lanes_neon64.h"
+#else
+#include "kernel/isa/lanes_sse2.h"
+#endif
+
+namespace tessera::kernel::TESSERA_ISA_NAMESPACE {
+namespace {
+
+inline constexpr int max_order = 16;  // coefficients of the highest degree
+
+}  // namespace
+}  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE

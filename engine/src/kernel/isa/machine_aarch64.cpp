@@ -1,0 +1,16 @@
+// Every AArch64 machine has NEON.
+
+#include "kernel/isa/kernel_table.h"
+
+namespace tessera::kernel {
+namespace isa_neon64 {
+constexpr Isa this_isa = Isa::neon64;
+#include "kernel/isa/isa_tables.inl.h"
+}  // namespace isa_neon64
+
+std::span<const KernelTable* const> machine_kernels() {
+  static const KernelTable* const only = &isa_neon64::table();
+  return {&only, 1};
+}
+
+}  // namespace tessera::kernel

@@ -1,0 +1,30 @@
+// Scattered points. One unit an instruction set: see cmake/TesseraIsaFlags.cmake.
+
+#include <utility>
+
+#include "kernel/isa/lanes.h"
+#include "kernel/point/point_kernels.h"
+
+namespace tessera::kernel::TESSERA_ISA_NAMESPACE {
+namespace {
+
+#include "kernel/store/store.inl.h"
+#include "kernel/sample/sample_kernel.inl.h"
+#include "kernel/sample/normal_kernel.inl.h"
+#include "kernel/sample/curvature_kernel.inl.h"
+#include "kernel/store/line_stores.inl.h"
+#include "kernel/grid/grid_kernel.inl.h"
+#include "kernel/point/lane_weights.inl.h"
+#include "kernel/point/locate_kernel.inl.h"
+#include "kernel/point/point_slots.inl.h"
+#include "kernel/point/point_kernel.inl.h"
+#include "kernel/point/point_store.inl.h"
+
+}  // namespace
+
+extern const PointKernels point_kernels = {
+    evaluate_points<Lanes<float>>, evaluate_points<Lanes<double>>, check_points<float>, check_points<double>, locate,
+    store_points<Lanes<float>>,    store_points<Lanes<double>>,
+};
+
+}  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE

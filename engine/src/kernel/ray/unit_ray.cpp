@@ -1,0 +1,30 @@
+// Exact rays. One unit an instruction set: see cmake/TesseraIsaFlags.cmake.
+
+#include <limits>
+
+#include "kernel/isa/fours.h"
+#include "kernel/ray/ray_kernels.h"
+
+namespace tessera::kernel::TESSERA_ISA_NAMESPACE {
+namespace {
+
+#include "kernel/ray/ray_kernel.inl.h"
+#include "kernel/ray/cubic_point.inl.h"
+#if !defined(__SSE2__) || defined(__FMA__)
+#include "kernel/ray/ray_line_kernel.inl.h"
+#include "kernel/ray/ray_packet_kernel.inl.h"
+#include "kernel/ray/ray_polish_kernel.inl.h"
+constexpr RayPacketKernels packet_kernels{ray_lines, trace_packet<false>, trace_packet<true>, polish_roots<false>,
+                                          polish_roots<true>};
+constexpr const RayPacketKernels* packets = &packet_kernels;
+#else
+constexpr const RayPacketKernels* packets = nullptr;
+#endif
+
+}  // namespace
+
+extern const RayKernels ray_kernels = {
+    packets, trace_polynomial_leaf, trace_rational_leaf, cubic_point, low_rational_point,
+};
+
+}  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE

@@ -1,0 +1,109 @@
+#include "ray/embree/embree_boxes.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "ray/embree/embree_device.h"
+#include "ray/embree/embree_ray.h"
+
+namespace tessera {
+namespace {
+
+/// What a call of Embree's carries to the callback: first what Embree knows, so that one points to the other.
+struct Call {
+  EmbreeContext context;
+  EmbreeBoxes::Visit visit;
+  std::size_t count;                             ///< of lines
+  std::array<float, EmbreeBoxes::packet> enter;  ///< s where Embree's rays begin, by their ids
+};
+
+}  // namespace
+
+struct EmbreeBoxes::State {
+  EmbreeMonitor monitor;  // outlives the device, which calls it
+  std::vector<Box3> boxes;
+  Owned<RTCDevice, DeviceRelease> device;
+  Owned<RTCScene, SceneRelease> scene;
+
+  static void bounds(const RTCBoundsFunctionArguments* arguments) {
+    const State& state = *static_cast<const State*>(arguments->geometryUserPtr);
+    *arguments->bounds_o = padded(state.boxes[arguments->primID]);
+  }
+
+  /// Embree 3 comes with lanes that it calls valid and that are none of ours: see embree_leaves.cpp.
+  static void intersect(const RTCIntersectFunctionNArguments* arguments) {
+    Call& call = *reinterpret_cast<Call*>(arguments->context);
+    const unsigned count = arguments->N;
+    RTCRayN* const rays = RTCRayHitN_RayN(arguments->rayhit, count);
+    unsigned lanes = 0;
+    for (unsigned k = 0; k < count; ++k) {
+      const unsigned ray = RTCRayN_id(rays, count, k);
+      if (arguments->valid[k] != 0 && ray < call.count) lanes |= 1u << ray;
+    }
+    if (lanes == 0) return;
+    std::array<double, packet> ends;
+    call.visit(arguments->primID, lanes, ends);
+    for (unsigned k = 0; k < count; ++k) {
+      const unsigned ray = RTCRayN_id(rays, count, k);
+      if (ray >= call.count || (lanes >> ray & 1u) == 0) continue;
+      float& far = RTCRayN_tfar(rays, count, k);
+      far = std::min(far, static_cast<float>(ends[ray]) - call.enter[ray] + box_pad);
+    }
+  }
+};
+
+EmbreeBoxes::EmbreeBoxes(std::unique_ptr<State> state) : state_(std::move(state)) {}
+EmbreeBoxes::EmbreeBoxes(EmbreeBoxes&&) noexcept = default;
+EmbreeBoxes& EmbreeBoxes::operator=(EmbreeBoxes&&) noexcept = default;
+EmbreeBoxes::~EmbreeBoxes() = default;
+
+Result<EmbreeBoxes> EmbreeBoxes::make() {
+  auto state = std::make_unique<State>();
+  Result<Owned<RTCDevice, DeviceRelease>> device = make_device(state->monitor);
+  if (!device) return device.status();
+  state->device = *std::move(device);
+  return EmbreeBoxes(std::move(state));
+}
+
+Status EmbreeBoxes::build(std::vector<Box3> boxes, const Execution& execution) {
+  State& state = *state_;
+  state.scene.reset();
+  state.boxes = std::move(boxes);
+  const Owned<RTCGeometry, GeometryRelease> geometry(rtcNewGeometry(state.device.get(), RTC_GEOMETRY_TYPE_USER));
+  Owned<RTCScene, SceneRelease> scene(rtcNewScene(state.device.get()));
+  if (!geometry || !scene) return state.monitor.take();
+  rtcSetGeometryUserPrimitiveCount(geometry.get(), static_cast<unsigned>(state.boxes.size()));
+  rtcSetGeometryUserData(geometry.get(), &state);
+  rtcSetGeometryBoundsFunction(geometry.get(), &State::bounds, nullptr);
+  rtcSetGeometryIntersectFunction(geometry.get(), &State::intersect);
+  rtcCommitGeometry(geometry.get());
+  rtcAttachGeometry(scene.get(), geometry.get());
+  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+  if (Status status = commit(scene.get(), state.monitor, execution); !status.ok()) return status;
+  state.scene = std::move(scene);
+  return {};
+}
+
+void EmbreeBoxes::visit(std::span<const RayLine* const> lines, Visit visit) const {
+  Call call{embree_context(), visit, lines.size(), {}};
+  for (std::size_t k = 0; k < lines.size(); ++k) call.enter[k] = static_cast<float>(lines[k]->enter);
+  if (lines.size() == 1) {
+    RTCRayHit ray{};
+    ray.ray = embree_ray(*lines[0]);
+    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    intersect(state_->scene.get(), call.context, Coherence::incoherent, ray);
+    return;
+  }
+  RTCRayHit16 rays;
+  alignas(64) int valid[packet];
+  set_packet(
+      lines.size(), [&](std::size_t k) -> const RayLine& { return *lines[k]; }, rays, valid);
+  intersect(state_->scene.get(), call.context, Coherence::coherent, valid, rays);
+}
+
+std::size_t EmbreeBoxes::memory_bytes() const {
+  return state_->monitor.bytes() + state_->boxes.capacity() * sizeof(Box3);
+}
+
+}  // namespace tessera

@@ -1,0 +1,47 @@
+#pragma once
+// A BVH of boxes whose insides somebody else knows. Embree's types stay in embree_boxes.cpp.
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "base/function_ref.h"
+#include "ray/line/ray_line.h"
+#include "tessera/execution.h"
+#include "tessera/status.h"
+
+namespace tessera {
+
+/// Owns device, scene and geometry. Const calls from any number of threads, each inside a FlushDenormals
+/// (embree_scene.h).
+class EmbreeBoxes {
+ public:
+  /// Errors: internal and out_of_memory, from Embree.
+  static Result<EmbreeBoxes> make();
+  EmbreeBoxes(EmbreeBoxes&&) noexcept;
+  EmbreeBoxes& operator=(EmbreeBoxes&&) noexcept;
+  ~EmbreeBoxes();
+
+  /// Boxes within [-1,1]^3. On errors there are none. Errors: cancelled, Embree's own.
+  Status build(std::vector<Box3> boxes, const Execution& execution);
+
+  static constexpr std::size_t packet = 16;
+
+  /// Calls visit(box, lanes, ends) for each box that some of the lines meet, whose bits are set in `lanes`, and perhaps
+  /// for others; the nearer ones rather first. It sets for each line the s up to which boxes are still of interest;
+  /// minus infinity ends the visits. One line to a packet of lines that are worth it; none may be empty.
+  using Visit = FunctionRef<void(unsigned box, unsigned lanes, std::array<double, packet>& ends)>;
+  void visit(std::span<const RayLine* const> lines, Visit visit) const;
+
+  /// What Embree has allocated, and the boxes.
+  std::size_t memory_bytes() const;
+
+ private:
+  struct State;
+  explicit EmbreeBoxes(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace tessera

@@ -1,0 +1,55 @@
+#pragma once
+// Embree's handles, and what it reports. For the files of this floor that speak to Embree.
+
+#include <atomic>
+#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <type_traits>
+
+#include "ray/embree/embree_api.h"
+#include "tessera/execution.h"
+#include "tessera/status.h"
+
+namespace tessera {
+
+struct SceneRelease {
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+struct DeviceRelease {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct GeometryRelease {
+  void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
+};
+template <class Handle, class Release>
+using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
+
+/// What Embree reports through its callbacks, from any thread.
+class EmbreeMonitor {
+ public:
+  /// The first error since the last call, as a Status.
+  Status take();
+  std::size_t bytes() const;
+
+ private:
+  friend Result<Owned<RTCDevice, DeviceRelease>> make_device(EmbreeMonitor& monitor, std::optional<Isa> isa);
+  static void on_error(void* self, RTCError code, const char* text);
+  static bool on_memory(void* self, ssize_t bytes, bool);
+
+  std::atomic<std::ptrdiff_t> bytes_{0};
+  std::mutex mutex_;
+  RTCError error_ = RTC_ERROR_NONE;  // the first since it was last taken
+  std::string message_;
+};
+
+/// A device that starts no thread and binds none. `isa`: what Embree's own kernels are held to, by default the machine's
+/// best. The monitor must outlive it. Errors: internal, out_of_memory.
+Result<Owned<RTCDevice, DeviceRelease>> make_device(EmbreeMonitor& monitor, std::optional<Isa> isa = {});
+
+/// Commits a scene in the caller's arena. Errors: cancelled, Embree's own.
+Status commit(RTCScene scene, EmbreeMonitor& monitor, const Execution& execution);
+
+}  // namespace tessera

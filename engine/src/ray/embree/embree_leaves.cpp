@@ -1,0 +1,192 @@
+#include "ray/embree/embree_leaves.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "kernel/isa/kernel_table.h"
+#include "ray/embree/embree_device.h"
+#include "ray/embree/embree_ray.h"
+#include "ray/leaf/leaf_tracer.h"
+
+namespace tessera {
+namespace {
+
+/// What a call of Embree's carries to the callbacks: first what Embree knows, so that one points to the other. Of a
+/// packet's rays, by their ids.
+struct Call {
+  EmbreeContext context;
+  SearchSpace* space;
+  std::array<float, EmbreeLeaves::packet> enter;  ///< s where Embree's ray begins
+  unsigned used;                                  ///< bits of the lanes that have a ray
+  QueryPacket packet;                             ///< a single ray is in the first lane
+};
+static_assert(EmbreeLeaves::packet == QueryPacket::size);
+
+}  // namespace
+
+struct EmbreeLeaves::State {
+  EmbreeMonitor monitor;  // outlives the device, which calls it
+  LeafTracer tracer;
+  Owned<RTCDevice, DeviceRelease> device;
+  Owned<RTCGeometry, GeometryRelease> geometry;
+  Owned<RTCScene, SceneRelease> scene;
+
+  static void bounds(const RTCBoundsFunctionArguments* arguments) {
+    const State& state = *static_cast<const State*>(arguments->geometryUserPtr);
+    *arguments->bounds_o = padded(state.tracer.nets->boxes()[arguments->primID]);
+  }
+
+  /// Searches a leaf for the valid rays of a call, then does `then(k, ray, query)` with each. Embree 3 takes 16 rays by
+  /// eights or fours where the machine has no wider vectors, and a part without a ray of ours comes with lanes that it
+  /// calls valid.
+  template <class IdOf, class Then>
+  void search(unsigned leaf, Call& call, unsigned count, const int* valid, const IdOf& id_of, const Then& then) const {
+    unsigned lanes = 0, places = 0;
+    for (unsigned k = 0; k < count; ++k) {
+      const unsigned ray = id_of(k), is_ours = static_cast<unsigned>(valid[k]) & call.used >> ray & 1u;
+      lanes |= is_ours << ray, places |= is_ours << k;
+    }
+    if (lanes == 0) return;
+    if ((lanes & (lanes - 1)) == 0) {
+      const auto ray = static_cast<std::size_t>(std::countr_zero(lanes));
+      tracer.search(leaf, call.packet.probes[ray], *call.packet.queries[ray], *call.space);
+    } else {
+      tracer.search(leaf, call.packet, lanes, *call.space);
+    }
+    for (; places != 0; places &= places - 1) {
+      const auto k = static_cast<unsigned>(std::countr_zero(places));
+      const unsigned ray = id_of(k);
+      then(k, ray, *call.packet.queries[ray]);
+    }
+  }
+
+  /// The end of Embree's ray follows the closest root, rounded up by what boxes are padded with. One ray or a packet.
+  static void intersect(const RTCIntersectFunctionNArguments* arguments) {
+    const State& state = *static_cast<const State*>(arguments->geometryUserPtr);
+    Call& call = *reinterpret_cast<Call*>(arguments->context);
+    const unsigned count = arguments->N;
+    RTCRayN* const rays = RTCRayHitN_RayN(arguments->rayhit, count);
+    state.search(
+        arguments->primID, call, count, arguments->valid, [&](unsigned k) { return RTCRayN_id(rays, count, k); },
+        [&](unsigned k, unsigned ray, const RayQuery& query) {
+          float& far = RTCRayN_tfar(rays, count, k);
+          far = std::min(far, static_cast<float>(query.far) - call.enter[ray] + box_pad);
+        });
+  }
+
+  static void occluded(const RTCOccludedFunctionNArguments* arguments) {
+    const State& state = *static_cast<const State*>(arguments->geometryUserPtr);
+    Call& call = *reinterpret_cast<Call*>(arguments->context);
+    const unsigned count = arguments->N;
+    state.search(
+        arguments->primID, call, count, arguments->valid,
+        [&](unsigned k) { return RTCRayN_id(arguments->ray, count, k); },
+        [&](unsigned k, unsigned, const RayQuery& query) {
+          if (query.done()) RTCRayN_tfar(arguments->ray, count, k) = -std::numeric_limits<float>::infinity();
+        });
+  }
+};
+
+EmbreeLeaves::EmbreeLeaves(std::unique_ptr<State> state) : state_(std::move(state)) {}
+EmbreeLeaves::EmbreeLeaves(EmbreeLeaves&&) noexcept = default;
+EmbreeLeaves& EmbreeLeaves::operator=(EmbreeLeaves&&) noexcept = default;
+EmbreeLeaves::~EmbreeLeaves() = default;
+
+Result<EmbreeLeaves> EmbreeLeaves::make(Isa isa) {
+  auto state = std::make_unique<State>();
+  Result<Owned<RTCDevice, DeviceRelease>> device = make_device(state->monitor, isa);
+  if (!device) return device.status();
+  state->device = *std::move(device);
+  state->tracer.kernels = &ray_kernels(isa);
+  return EmbreeLeaves(std::move(state));
+}
+
+Status EmbreeLeaves::build(const TracedLeaves& leaves, bool follows, const Execution& execution) {
+  State& state = *state_;
+  state.scene.reset();
+  static_cast<TracedLeaves&>(state.tracer) = leaves;
+  RTCDevice device = state.device.get();
+  state.geometry.reset(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER));
+  Owned<RTCScene, SceneRelease> scene(rtcNewScene(device));
+  RTCGeometry geometry = state.geometry.get();
+  if (!geometry || !scene) return state.monitor.take();
+  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(leaves.nets->leaves().size()));
+  rtcSetGeometryUserData(geometry, &state);
+  rtcSetGeometryBoundsFunction(geometry, &State::bounds, nullptr);
+  rtcSetGeometryIntersectFunction(geometry, &State::intersect);
+  rtcSetGeometryOccludedFunction(geometry, &State::occluded);
+  // Embree refits in dynamic scenes of low quality alone, which hold a tree for each geometry: this one's is built as
+  // well as any, and later refitted, where it says so from the start.
+  if (follows) {
+    rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_REFIT);
+    rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_LOW);
+  }
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene.get(), geometry);
+  rtcSetSceneFlags(scene.get(), follows ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC : RTC_SCENE_FLAG_ROBUST);
+  if (Status status = commit(scene.get(), state.monitor, execution); !status.ok()) return status;
+  state.scene = std::move(scene);
+  return {};
+}
+
+Status EmbreeLeaves::refit(double tolerance, const Execution& execution) {
+  State& state = *state_;
+  state.tracer.tolerance = tolerance;
+  rtcCommitGeometry(state.geometry.get());
+  Status status = commit(state.scene.get(), state.monitor, execution);
+  if (!status.ok()) state.scene.reset();
+  return status;
+}
+
+void EmbreeLeaves::trace(RayQuery& query, SearchSpace& space) const {
+  Call call;
+  call.context = embree_context();
+  call.space = &space;
+  RTCRayHit hit{};
+  call.enter[0] = static_cast<float>(query.line.enter);
+  call.used = 1;
+  call.packet.queries[0] = &query;
+  call.packet.probes[0] = probe_of(query);
+  hit.ray = embree_ray(query.line);
+  if (query.wanted == RootsWanted::any) {
+    occluded(state_->scene.get(), call.context, Coherence::incoherent, hit.ray);
+    return;
+  }
+  hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  intersect(state_->scene.get(), call.context, Coherence::incoherent, hit);
+}
+
+void EmbreeLeaves::trace(std::span<RayQuery* const> queries, SearchSpace& space) const {
+  Call call;
+  call.context = embree_context();
+  call.space = &space;
+  RTCRayHit16 hit;
+  alignas(64) int valid[packet];
+  set_packet(
+      queries.size(), [&](std::size_t k) -> const RayLine& { return queries[k]->line; }, hit, valid);
+  call.used = (1u << queries.size()) - 1;
+  for (unsigned k = 0; k < packet; ++k) {
+    if (k < queries.size()) {
+      call.enter[k] = static_cast<float>(queries[k]->line.enter);
+      call.packet.set(k, *queries[k]);
+    } else {
+      call.packet.set_idle(k);
+    }
+  }
+  if (queries[0]->wanted == RootsWanted::any) {
+    occluded(state_->scene.get(), call.context, Coherence::coherent, valid, hit.ray);
+  } else {
+    intersect(state_->scene.get(), call.context, Coherence::coherent, valid, hit);
+  }
+}
+
+const LeafTracer& EmbreeLeaves::tracer() const { return state_->tracer; }
+
+std::size_t EmbreeLeaves::memory_bytes() const { return state_->monitor.bytes(); }
+
+}  // namespace tessera

@@ -1,0 +1,43 @@
+#pragma once
+// From the facets that a packet's rays met to the true surface, rays of one patch side by side: Refiner (refine.h) decides
+// what this leaves open.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "kernel/ray/ray_kernels.h"
+#include "ray/embree/embree_scene.h"
+#include "ray/line/ray_segment.h"
+#include "ray/facet/refine.h"
+#include "ray/scene/set_view.h"
+
+namespace tessera {
+
+class PacketRefiner {
+ public:
+  static constexpr std::size_t size = kernel::PolishedRays::size;
+
+  /// `cells`: how far a root may lie from its facet, in parameters.
+  PacketRefiner(const SetView& set, const kernel::RayKernels& kernels, double cells)
+      : set_(set), kernels_(kernels), cells_(cells) {}
+
+  /// The roots next to those facets that were hit, as far as Newton's method goes straight to them inside of their patches.
+  /// The same for each ray, whatever others are with it.
+  void run(std::span<const RaySegment> segments, std::span<const FacetHit> facets);
+  bool has_root(std::size_t k) const { return (found_ >> k & 1u) != 0; }
+  /// Where there is one. `segment`, `facet`: those of the ray.
+  SurfaceRoot root(std::size_t k, const RaySegment& segment, const FacetHit& facet) const;
+
+ private:
+  void polish(std::uint32_t patch, unsigned lanes, std::span<const RaySegment> segments,
+              std::span<const FacetHit> facets);
+
+  const SetView& set_;
+  const kernel::RayKernels& kernels_;
+  double cells_;
+  unsigned found_ = 0;
+  kernel::PolishedRays rays_;
+};
+
+}  // namespace tessera

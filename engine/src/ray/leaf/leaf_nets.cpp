@@ -1,0 +1,158 @@
+#include "ray/leaf/leaf_nets.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <new>
+
+#include "parallel/parallel_for.h"
+#include "ray/leaf/leaf_cuts.h"
+#include "ray/leaf/local_leaf.h"
+#include "ray/leaf/projected_net.h"
+
+namespace tessera {
+namespace {
+
+constexpr std::size_t patches_a_task = 64;
+/// Halvings of a direction that write_net() counts at the most: so much do the two passes of restrict_net() round.
+constexpr int halvings_of_restriction = 3;
+
+/// Of the control points.
+Box3 box_of(const Leaf& leaf, const double* net) {
+  const std::size_t size = static_cast<std::size_t>(leaf.size());
+  Box3 box;
+  for (std::size_t k = 0; k < size; ++k) {
+    const double w = leaf.rational ? net[3 * size + k] : 1;
+    box.extend(Vec3{net[k] / w, net[size + k] / w, net[2 * size + k] / w});
+  }
+  return box;
+}
+
+/// Second derivatives of a rational patch, and with them what a linear step leaves out, grow with the square of how much
+/// its weights differ.
+float linear_step_of(const BezierPatch& patch) {
+  if (!patch.is_rational()) return static_cast<float>(linear_step);
+  const auto [lightest, heaviest] = std::minmax_element(patch.weights().begin(), patch.weights().end());
+  return static_cast<float>(linear_step * (*lightest / *heaviest));
+}
+
+}  // namespace
+
+/// Where the pieces of a patch stand.
+struct LeafNets::Plan {
+  Cuts cuts;
+  std::size_t first_leaf = 0;
+};
+
+/// Cuts, and room for what they make.
+Result<std::vector<LeafNets::Plan>> LeafNets::plan(const SetView& set, const Flatness& flatness,
+                                                   const Execution& execution) {
+  std::vector<Plan> plans(set.patch_count());
+  const Status status = parallel_for(plans.size(), patches_a_task, execution, [&](std::size_t begin, std::size_t end) {
+    PatchCutter cutter(frame_);
+    for (std::size_t k = begin; k < end; ++k) {
+      cutter.start(set.patch(k));
+      plans[k].cuts = cutter.flatten(flatness.halvings, flatness.most_bend);
+    }
+  });
+  if (!status.ok()) return status;
+  std::size_t leaves = 0;
+  bool rational = false;
+  largest_ = 0;
+  for (std::size_t k = 0; k < plans.size(); ++k) {
+    const BezierPatch& patch = set.patch(k);
+    plans[k].first_leaf = leaves;
+    leaves += plans[k].cuts.pieces();
+    rational |= patch.is_rational();
+    largest_ = std::max(largest_, patch.points().size() * (patch.is_rational() ? 4 : 3));
+  }
+  leaves_.resize(leaves);
+  boxes_.resize(leaves);
+  local_bytes_ = kernel::ray_leaf_bytes(rational);
+  local_.resize(leaves * local_bytes_);
+  return plans;
+}
+
+/// As it was made.
+LeafNets::Plan LeafNets::plan_of(std::uint32_t patch) const {
+  const auto first = std::lower_bound(leaves_.begin(), leaves_.end(), patch,
+                                      [](const Leaf& leaf, std::uint32_t index) { return leaf.patch < index; });
+  return {{first->halvings_u, first->halvings_v}, static_cast<std::size_t>(first - leaves_.begin())};
+}
+
+void LeafNets::cut(const BezierPatch& patch, std::uint32_t index, const Plan& plan, PatchCutter& cutter) {
+  const NetShape<0, 0> shape{patch.degree_u(), patch.degree_v()};
+  const Cuts& cuts = plan.cuts;
+  cutter.start(patch);
+  cutter.cut(cuts);
+  const float linear = linear_step_of(patch);
+  for (std::size_t piece = 0; piece < cuts.pieces(); ++piece) {
+    const std::size_t place = plan.first_leaf + piece;
+    const double* const net = cutter.net(piece);
+    Leaf& leaf = leaves_[place];
+    leaf.patch = index;
+    leaf.points = patch.points().data();
+    leaf.degree_u = static_cast<std::uint8_t>(patch.degree_u());
+    leaf.degree_v = static_cast<std::uint8_t>(patch.degree_v());
+    leaf.rational = patch.is_rational();
+    leaf.linear = linear;
+    leaf.halvings_u = static_cast<std::uint8_t>(cuts.u);
+    leaf.halvings_v = static_cast<std::uint8_t>(cuts.v);
+    leaf.du = std::ldexp(1.0, -cuts.u), leaf.dv = std::ldexp(1.0, -cuts.v);
+    leaf.u0 = static_cast<double>(piece >> cuts.v) * leaf.du;
+    leaf.v0 = static_cast<double>(piece & ((std::size_t{1} << cuts.v) - 1)) * leaf.dv;
+    boxes_[place] = box_of(leaf, net);
+    make_local_leaf(shape, leaf.rational, net, *new (local_.data() + place * local_bytes_) kernel::RayLeaf);
+  }
+}
+
+int Leaf::halvings() const {
+  return std::min<int>(halvings_u, halvings_of_restriction) + std::min<int>(halvings_v, halvings_of_restriction);
+}
+
+void LeafNets::write_net(const SetView& set, const Leaf& leaf, double* net, double* other) const {
+  const NetShape<0, 0> shape{leaf.degree_u, leaf.degree_v};
+  write_patch(set.patch(leaf.patch), frame_, net);
+  const auto take = [&](bool along_u, int halvings, double start, double width) {
+    if (halvings > halvings_of_restriction) {
+      restrict_net(shape, leaf.components(), net, along_u, start, start + width);
+      return;
+    }
+    const auto piece = static_cast<unsigned>(start / width);
+    for (int k = halvings; k-- > 0;) {
+      const bool upper = piece >> k & 1;
+      halve(shape, leaf.components(), net, along_u, upper ? other : net, upper ? net : other);
+    }
+  };
+  take(true, leaf.halvings_u, leaf.u0, leaf.du);
+  take(false, leaf.halvings_v, leaf.v0, leaf.dv);
+}
+
+Box3 LeafNets::box(const SetView& set, std::size_t leaf) const {
+  if (!boxes_.empty()) return boxes_[leaf];
+  const Leaf& of = leaves_[leaf];
+  std::vector<double> nets(2 * static_cast<std::size_t>(of.size() * of.components()));
+  write_net(set, of, nets.data(), nets.data() + nets.size() / 2);
+  return box_of(of, nets.data());
+}
+
+Status LeafNets::build(const SetView& set, const SceneFrame& frame, const Flatness& flatness,
+                       const Execution& execution) {
+  frame_ = frame;
+  const Result<std::vector<Plan>> plans = plan(set, flatness, execution);
+  if (!plans) return plans.status();
+  return parallel_for(plans->size(), patches_a_task, execution, [&](std::size_t begin, std::size_t end) {
+    PatchCutter cutter(frame_);
+    for (std::size_t k = begin; k < end; ++k) cut(set.patch(k), static_cast<std::uint32_t>(k), (*plans)[k], cutter);
+  });
+}
+
+Status LeafNets::update(const SetView& set, std::span<const std::uint32_t> patches, const Execution& execution) {
+  return parallel_for(patches.size(), patches_a_task, execution, [&](std::size_t begin, std::size_t end) {
+    PatchCutter cutter(frame_);
+    for (const std::uint32_t patch : patches.subspan(begin, end - begin))
+      cut(set.patch(patch), patch, plan_of(patch), cutter);
+  });
+}
+
+}  // namespace tessera

@@ -1,0 +1,89 @@
+#pragma once
+// The pieces of patches that exact rays are traced against: what the kernels take, and control nets in the scene's
+// coordinates where they are asked for.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/aligned.h"
+#include "kernel/ray/ray_kernels.h"
+#include "ray/line/ray_line.h"
+#include "ray/scene/set_view.h"
+#include "tessera/execution.h"
+#include "tessera/status.h"
+
+namespace tessera {
+
+/// Steps of Newton's method, of a patch's parameters, up to which the surface is its tangent plane but for less than
+/// rounding.
+constexpr double linear_step = 1e-9;
+
+/// A piece [u0, u0 + du] x [v0, v0 + dv] of a patch.
+struct Leaf {
+  std::uint32_t patch = 0;
+  std::uint8_t degree_u = 0, degree_v = 0;
+  bool rational = false;
+  std::uint8_t halvings_u = 0, halvings_v = 0;     ///< from the patch to the piece
+  float linear = static_cast<float>(linear_step);  ///< linear_step, or less where weights differ
+  double u0 = 0, v0 = 0, du = 1, dv = 1;
+  const Vec3* points = nullptr;  ///< of the patch when the piece was made: to be fetched, not read
+
+  int size() const { return (degree_u + 1) * (degree_v + 1); }
+  int components() const { return rational ? 4 : 3; }
+  /// How much its net is rounded (LeafNets::write_net), in halvings.
+  int halvings() const;
+  static constexpr int most_halvings = 6;  ///< of that
+};
+
+/// How flat the pieces are to be.
+struct Flatness {
+  int halvings = 0;      ///< of each side, at least
+  double most_bend = 1;  ///< PatchCutter::flatten
+};
+
+class PatchCutter;
+
+class LeafNets {
+ public:
+  /// Cuts every patch by itself, so that the pieces are nearly flat and roughly square. Errors: cancelled, out_of_memory.
+  Status build(const SetView& set, const SceneFrame& frame, const Flatness& flatness, const Execution& execution);
+  /// The pieces of these patches anew, with their boxes, which must not have been dropped. Patches are cut as they were
+  /// when they were built, however they bend now. After an error some pieces are as they were. Errors: cancelled,
+  /// out_of_memory.
+  Status update(const SetView& set, std::span<const std::uint32_t> patches, const Execution& execution);
+
+  std::span<const Leaf> leaves() const { return leaves_; }
+  const kernel::RayLeaf& local(std::size_t leaf) const {
+    return *reinterpret_cast<const kernel::RayLeaf*>(local_.data() + leaf * local_bytes_);
+  }
+  /// Of the control points: the piece lies in it but for rounding. One a leaf, until they are dropped.
+  std::span<const Box3> boxes() const { return boxes_; }
+  void drop_boxes() { boxes_ = {}; }
+  /// The box of one leaf, whether they are dropped or not. `set`: as it was built from.
+  Box3 box(const SetView& set, std::size_t leaf) const;
+  /// The piece's part of write_patch(). `other`: of the same size, is written as well. `set`: as it was built from.
+  void write_net(const SetView& set, const Leaf& leaf, double* net, double* other) const;
+  const SceneFrame& frame() const { return frame_; }
+  /// Values in the largest net.
+  std::size_t largest() const { return largest_; }
+  std::size_t memory_bytes() const {
+    return leaves_.capacity() * sizeof(Leaf) + boxes_.capacity() * sizeof(Box3) + local_.capacity();
+  }
+
+ private:
+  struct Plan;
+  Result<std::vector<Plan>> plan(const SetView& set, const Flatness& flatness, const Execution& execution);
+  Plan plan_of(std::uint32_t patch) const;
+  void cut(const BezierPatch& patch, std::uint32_t index, const Plan& plan, PatchCutter& cutter);
+
+  SceneFrame frame_;
+  std::vector<Leaf> leaves_;
+  std::vector<Box3> boxes_;
+  UnsetVector<std::byte> local_;
+  std::size_t local_bytes_ = 0;
+  std::size_t largest_ = 0;
+};
+
+}  // namespace tessera

@@ -1,0 +1,75 @@
+#pragma once
+// One ray against one piece of a patch: all roots, none missed.
+
+#include <cstddef>
+#include <memory>
+
+#include "ray/leaf/leaf_nets.h"
+#include "ray/leaf/projected_net.h"
+#include "ray/scene/ray_query.h"
+#include "ray/leaf/search_pool.h"
+
+namespace tessera {
+
+/// The memory of searches, of one thread at a time.
+class SearchSpace {
+ public:
+  /// A search splits no deeper, for resolution ends long before; a net is cut by halves in depth-first order.
+  static constexpr int most_depth = 160;
+
+  /// `largest`: values in a net. The pool, if there is one, outlives this and gets the memory back.
+  explicit SearchSpace(std::size_t largest, SearchPool* pool = nullptr) : stride_(largest), pool_(pool) {}
+  SearchSpace(const SearchSpace&) = delete;
+  SearchSpace& operator=(const SearchSpace&) = delete;
+  ~SearchSpace() {
+    if (memory_ && pool_) pool_->give(std::move(memory_));
+  }
+  /// Takes the memory when it is first needed: before anything else, and not where rays are decided without a search.
+  /// False where there is none. Called from Embree, which knows no exceptions.
+  bool make_ready() noexcept {
+    if (memory_) return true;
+    SearchPool none;
+    memory_ = (pool_ ? *pool_ : none).take(stride_ * (most_depth + 5), most_depth + 3);
+    if (!memory_) return false;
+    nets_ = memory_->nets.data();
+    boxes_ = memory_->boxes.data();
+    return true;
+  }
+  double* net(int slot) { return nets_ + static_cast<std::size_t>(slot) * stride_; }
+  /// Beyond those of the search.
+  double* leaf_net() { return net(most_depth + 3); }
+  double* spare_net() { return net(most_depth + 4); }
+  SearchBox& box(int slot) { return boxes_[slot]; }
+
+ private:
+  std::size_t stride_;
+  SearchPool* pool_;
+  std::unique_ptr<SearchMemory> memory_;
+  double* nets_ = nullptr;
+  SearchBox* boxes_ = nullptr;
+};
+
+/// How far, in a scene of the size of SceneFrame's, a coefficient of a projected net (per weight) may be off after
+/// `depth` cuts, and the value of the net at a point: 2^-53 times the largest distance, 4, times
+///   32: control point minus centre, times weight, the three products with an axis, the rounding of start and axes;
+///   4 (m + n) for each halving that made the leaf, and for the evaluation (Bernstein values by convex combinations:
+///   Farouki and Rajan, CAGD 4, 1987, sec. 5);
+///   4 max(m, n) for each cut of the search.
+double search_rounding(int degree_u, int degree_v, int halvings, int depth);
+
+/// Sets the gains of a root of a leaf of du x dv of its patch, from the leaf's homogeneous value there, row sums of |J^-1|,
+/// and on which side the line goes on. False where J says nothing.
+bool set_gain(const NetValue& f, double du, double dv, LeafRoot& root);
+
+/// Adds to the query every root of the leaf in [query.near, query.far]: where only the closest is wanted, those nearer
+/// than what the query has. A point of the leaf counts as root up to `tolerance` from the line, where no root can be
+/// excluded, or where the search meets such a point. `tolerance` is at least twice search_rounding at most_depth.
+///
+/// Branch and bound: a part whose hull lies off the ray by more than rounding holds no root and is left; a part with a
+/// certificate (root_certificate.h) is decided by Newton's method; of the others those whose whole extent is below the
+/// square root of the tolerance, and which are flat up to it, count as one root where they have a point within the
+/// tolerance; the rest is narrowed or halved, across its longer side as the ray sees it. So whatever the surface meets
+/// truly, borders included, is found: neighbours that share a border cannot both reject a ray through it.
+void search_leaf(const Leaf& leaf, const double* net, double tolerance, SearchSpace& space, RayQuery& query);
+
+}  // namespace tessera

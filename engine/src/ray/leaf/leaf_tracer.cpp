@@ -1,0 +1,227 @@
+#include "ray/leaf/leaf_tracer.h"
+
+#include <xmmintrin.h>
+
+#include <algorithm>
+
+#include "ray/line/lane_vectors.h"
+#include "ray/leaf/polished_root.h"
+#include "ray/seam/spawn_root.h"
+
+namespace tessera {
+namespace {
+
+// Of s in a kernel: what the ray's start and direction round by in float (embree_ray.h), and as much again.
+constexpr double probe_pad = 4e-6;
+
+float narrow(double x) { return static_cast<float>(x); }
+
+void fetch(const void* from, std::size_t bytes) {
+  for (std::size_t k = 0; k < bytes; k += 64) _mm_prefetch(static_cast<const char*>(from) + k, _MM_HINT_T0);
+}
+
+/// What a root is polished with and a hit made of, while the kernel works; the points before the patch says where they are.
+void fetch_patch(const SetView& set, const Leaf& leaf) {
+  fetch(&set.patch(leaf.patch), sizeof(BezierPatch));
+  fetch(&set.source(leaf.patch), sizeof(PatchSource));
+  fetch(leaf.points, std::min<std::size_t>(static_cast<std::size_t>(leaf.size()), 16) * sizeof(Vec3));
+}
+
+/// Whether tnear and tfar are no question.
+bool lies_between(const kernel::RayRoot& root, const RayLine& line) {
+  const double s = root.s, off = static_cast<double>(root.s_error) + line.slack;
+  return s - off > line.near && s + off < line.far;
+}
+
+kernel::RayRoot root_of(const kernel::RayPacket& rays, std::size_t lane) {
+  return {rays.u[lane], rays.v[lane], rays.s[lane], rays.radius_u[lane], rays.radius_v[lane], rays.s_error[lane]};
+}
+
+/// Of a kernel's ray.
+float probe_far(const RayQuery& query) { return narrow(std::min(query.far, 8.0) + probe_pad); }
+
+}  // namespace
+
+kernel::RayProbe probe_of(const RayQuery& query) {
+  const Vec3 &o = query.line.start, &d = query.line.direction;
+  return {{narrow(o.x), narrow(o.y), narrow(o.z), 0},
+          {narrow(d.x), narrow(d.y), narrow(d.z), 0},
+          narrow(std::max(query.near, -8.0) - probe_pad),
+          8,
+          false};
+}
+
+void QueryPacket::set(std::size_t lane, RayQuery& query) {
+  queries[lane] = &query;
+  const kernel::RayProbe& probe = probes[lane] = probe_of(query);
+  const RayLine& line = query.line;
+  for (std::size_t i = 0; i < 3; ++i)
+    rays.origin[i][lane] = probe.origin[i], rays.direction[i][lane] = probe.direction[i];
+  rays.near[lane] = probe.near, rays.far[lane] = probe_far(query);
+  put(line.start, polished.start, lane), put(line.direction, polished.direction, lane);
+  put(line.across[0], polished.across[0], lane), put(line.across[1], polished.across[1], lane);
+}
+
+/// A ray that ends before it begins: kernels look at it too, and decide it at once.
+void QueryPacket::set_idle(std::size_t lane) {
+  queries[lane] = nullptr;
+  for (std::size_t i = 0; i < 3; ++i) rays.origin[i][lane] = rays.direction[i][lane] = 0;
+  rays.near[lane] = 1, rays.far[lane] = 0;
+}
+
+double TracedLeaves::tolerance_of(const Leaf& leaf) const {
+  return std::max(tolerance,
+                  2 * search_rounding(leaf.degree_u, leaf.degree_v, leaf.halvings(), SearchSpace::most_depth));
+}
+
+void LeafTracer::search(unsigned leaf_index, kernel::RayProbe& probe, RayQuery& query, SearchSpace& space) const {
+  fetch(&nets->local(leaf_index), kernel::ray_leaf_bytes(false));
+  const Leaf& leaf = nets->leaves()[leaf_index];
+  if (leaf.patch >= patches && query.wanted != RootsWanted::all) return;
+  probe.far = probe_far(query);
+  ++query.steps;
+  if (query.line.spawn > 0) query.origin = this;
+  if (decide(leaf, leaf_index, probe, query)) return;
+  if (!space.make_ready()) {
+    query.overflow = query.incomplete = true;
+    return;
+  }
+  nets->write_net(*set, leaf, space.leaf_net(), space.spare_net());
+  search_leaf(leaf, space.leaf_net(), tolerance_of(leaf), space, query);
+}
+
+void LeafTracer::search(unsigned leaf_index, QueryPacket& packet, unsigned lanes, SearchSpace& space) const {
+  if (nets->leaves()[leaf_index].patch >= patches) return;  // packets never ask for all roots
+  unsigned open = kernels->packets == nullptr ? lanes : decide(leaf_index, packet, lanes);
+  for (std::size_t lane = 0; open != 0; ++lane, open >>= 1) {
+    if (open & 1u) search(leaf_index, packet.probes[lane], *packet.queries[lane], space);
+  }
+}
+
+/// What is decided for all at once. Returns the lanes for which it is not.
+unsigned LeafTracer::decide(unsigned leaf_index, QueryPacket& packet, unsigned lanes) const {
+  const Leaf& leaf = nets->leaves()[leaf_index];
+  fetch_patch(*set, leaf);
+  for (std::size_t lane = 0; lane < QueryPacket::size; ++lane) {
+    if (lanes >> lane & 1u) packet.rays.far[lane] = probe_far(*packet.queries[lane]);
+  }
+  const kernel::RayPacketKernels& side_by_side = *kernels->packets;
+  (leaf.rational ? side_by_side.trace_rational_leaf : side_by_side.trace_polynomial_leaf)(nets->local(leaf_index),
+                                                                                          packet.rays, lanes);
+  unsigned open = 0, roots = 0;
+  for (std::size_t lane = 0; lane < QueryPacket::size; ++lane) {
+    if ((lanes >> lane & 1u) == 0 || packet.rays.state[lane] == kernel::RayPacket::nothing) continue;
+    RayQuery& query = *packet.queries[lane];
+    const bool has_root = packet.rays.state[lane] == kernel::RayPacket::root && !(query.line.spawn > 0);
+    const bool any = query.wanted == RootsWanted::any && query.filter == nullptr;
+    if (has_root && any && lies_between(root_of(packet.rays, lane), query.line)) {
+      query.found = true;
+      ++query.steps;
+    } else {
+      (has_root && !any ? roots : open) |= 1u << lane;
+    }
+  }
+  return roots == 0 ? open : open | take_roots(leaf, packet, roots);
+}
+
+/// Takes the roots of those lanes. Returns the lanes where rounding leaves something to be decided.
+unsigned LeafTracer::take_roots(const Leaf& leaf, QueryPacket& packet, unsigned lanes) const {
+  const BezierPatch& patch = set->patch(leaf.patch);
+  if (!polished_side_by_side(patch)) return take_each_root(leaf, packet, lanes);
+  kernel::PolishedRays& rays = packet.polished;
+  for (std::size_t lane = 0; lane < QueryPacket::size; ++lane) {
+    if ((lanes >> lane & 1u) == 0) continue;
+    const RootStart start = start_of(leaf, root_of(packet.rays, lane));
+    rays.u[lane] = start.u, rays.v[lane] = start.v;
+    rays.reach_u[lane] = start.reach_u, rays.reach_v[lane] = start.reach_v;
+  }
+  polish_side_by_side(patch, nets->frame(), *kernels, start_of(leaf, {}), rays, lanes);
+  const double rounding = search_rounding(leaf.degree_u, leaf.degree_v, 0, 0);
+  unsigned open = 0;
+  for (std::size_t lane = 0; lane < QueryPacket::size; ++lane) {
+    if ((lanes >> lane & 1u) == 0) continue;
+    if (rays.state[lane] != kernel::PolishedRays::found) {
+      open |= 1u << lane;
+      continue;
+    }
+    LeafRoot root;
+    root.patch = leaf.patch;
+    root.u = rays.root_u[lane], root.v = rays.root_v[lane];
+    root.position = get(rays.position, lane), root.du = get(rays.du, lane), root.dv = get(rays.dv, lane);
+    root.has_point = true;
+    root.s = rays.s[lane];
+    root.residual = rounding;
+    root.certified = true;
+    RayQuery& query = *packet.queries[lane];
+    ++query.steps;
+    query.take(root);
+  }
+  return open;
+}
+
+/// The same one by one.
+unsigned LeafTracer::take_each_root(const Leaf& leaf, QueryPacket& packet, unsigned lanes) const {
+  unsigned open = 0;
+  for (std::size_t lane = 0; lane < QueryPacket::size; ++lane) {
+    if ((lanes >> lane & 1u) == 0) continue;
+    RayQuery& query = *packet.queries[lane];
+    LeafRoot root;
+    root.patch = leaf.patch;
+    if (polish(set->patch(leaf.patch), nets->frame(), *kernels, query.line, start_of(leaf, root_of(packet.rays, lane)),
+               false, root)) {
+      ++query.steps;
+      query.take(root);
+    } else {
+      open |= 1u << lane;
+    }
+  }
+  return open;
+}
+
+OriginRoot LeafTracer::judge(const RayLine& line, const LeafRoot& root) const {
+  return judge_origin(*set, borders->found(), nets->frame(), line, root);
+}
+
+/// In float, where that proves what there is; then in double what was found.
+bool LeafTracer::decide(const Leaf& leaf, unsigned leaf_index, kernel::RayProbe& probe, RayQuery& query) const {
+  const auto trace = leaf.rational ? kernels->trace_rational_leaf : kernels->trace_polynomial_leaf;
+  const kernel::RayLeaf& local = nets->local(leaf_index);
+  kernel::RayRoots roots;
+  probe.any = query.wanted == RootsWanted::any && !query.judges();
+  if (!probe.any) fetch_patch(*set, leaf);
+  if (!trace(local, probe, roots)) return false;
+  if (roots.count == 0) return true;
+  if (probe.any && !roots.root[0].at_border) {
+    query.found = lies_between(roots.root[0], query.line);
+    if (query.found) return true;
+    probe.any = false;  // that one is next to an end: all must be looked at
+    if (!trace(local, probe, roots)) return false;
+  }
+  return take_roots(leaf, roots, query);
+}
+
+/// Takes the roots of one ray. False where rounding leaves something to be decided.
+bool LeafTracer::take_roots(const Leaf& leaf, const kernel::RayRoots& roots, RayQuery& query) const {
+  LeafRoot taken[kernel::RayRoots::most];
+  int count = 0;
+  for (int k = 0; k < roots.count; ++k) {
+    const BezierPatch& patch = set->patch(leaf.patch);
+    const RootStart start = start_of(leaf, roots.root[k]);
+    LeafRoot& root = taken[count];
+    root.patch = leaf.patch;
+    if (roots.root[k].at_border) {
+      const BorderRoot what =
+          polish_at_border(patch, nets->frame(), *kernels, query.line, start, tolerance_of(leaf), root);
+      if (what == BorderRoot::open) return false;
+      if (what == BorderRoot::beyond) continue;
+    } else if (!polish(patch, nets->frame(), *kernels, query.line, start,
+                       query.wanted == RootsWanted::all || query.origin != nullptr, root)) {
+      return false;
+    }
+    ++count;
+  }
+  for (int k = 0; k < count; ++k) query.take(taken[k]);
+  return true;
+}
+
+}  // namespace tessera

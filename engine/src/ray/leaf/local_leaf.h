@@ -1,0 +1,13 @@
+#pragma once
+// Pieces of patches as the kernels of exact rays take them: in float, in coordinates of their own, with proven bounds.
+
+#include "kernel/ray/ray_kernels.h"
+#include "ray/leaf/projected_net.h"
+
+namespace tessera {
+
+/// Fills `leaf` and the coefficients behind it, which a degenerate piece has not. `net`: of the piece, homogeneous, in the scene's
+/// coordinates, 3 or 4 components.
+void make_local_leaf(const NetShape<0, 0>& shape, bool rational, const double* net, kernel::RayLeaf& leaf);
+
+}  // namespace tessera

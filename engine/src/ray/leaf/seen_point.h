@@ -1,0 +1,20 @@
+#pragma once
+// A point of a patch and its derivatives as a ray sees them.
+
+#include "ray/facet/first_order.h"
+#include "ray/leaf/projected_net.h"
+#include "ray/line/ray_line.h"
+
+namespace tessera {
+
+/// Both in the scene's coordinates.
+inline NetValue seen(const FirstOrder& at, const RayLine& line) {
+  const Vec3 from = at.position - line.start;
+  NetValue f;
+  f.x = dot(line.across[0], from), f.y = dot(line.across[1], from), f.z = dot(line.direction, from);
+  f.xu = dot(line.across[0], at.du), f.xv = dot(line.across[0], at.dv);
+  f.yu = dot(line.across[1], at.du), f.yv = dot(line.across[1], at.dv);
+  return f;
+}
+
+}  // namespace tessera

@@ -1,0 +1,53 @@
+#pragma once
+// The caller's filter, which may throw, on behalf of searches inside of Embree, which may not.
+
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+
+#include "ray/scene/ray_query.h"
+#include "ray/scene/set_view.h"
+#include "tessera/ray_scene.h"
+#include "tessera/status.h"
+
+namespace tessera {
+
+/// One for each call. Any number of threads.
+class BatchFilter {
+ public:
+  /// Refers to the filter, which is not empty.
+  explicit BatchFilter(const HitFilter& filter) : filter_(filter) {}
+
+  /// Asks the filter, where denormal numbers count as in the thread's own environment. What it throws is kept, and
+  /// stops the batch.
+  HitVerdict ask(const HitCandidate& candidate) noexcept;
+  bool stopped() const { return stopped_.load(std::memory_order_relaxed); }
+  /// Why. Once all threads are done.
+  Status status() const { return status_; }
+
+ private:
+  void stop(Status status) noexcept;
+
+  const HitFilter& filter_;
+  std::atomic<bool> stopped_ = false;
+  std::mutex mutex_;
+  Status status_;
+};
+
+/// The roots of one scene's patches before the filter of a batch.
+class SceneFilter final : public RootFilter {
+ public:
+  SceneFilter(BatchFilter* filter, const SetView& set, std::uint32_t instance = Hit::no_instance)
+      : filter_(filter), set_(set), instance_(instance) {}
+
+  /// For a query: null where the batch has no filter.
+  const RootFilter* if_any() const { return filter_ == nullptr ? nullptr : this; }
+  HitVerdict judge(const RayQuery& query, const LeafRoot& root) const noexcept override;
+
+ private:
+  BatchFilter* filter_;
+  const SetView& set_;
+  std::uint32_t instance_;
+};
+
+}  // namespace tessera

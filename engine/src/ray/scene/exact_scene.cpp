@@ -1,0 +1,390 @@
+// Exact mode: pieces of patches in an Embree BVH, each searched for all its roots.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <new>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "ray/scene/batch_filter.h"
+#include "ray/scene/batch_layout.h"
+#include "ray/scene/coherent_lines.h"
+#include "ray/seam/distinct_roots.h"
+#include "ray/embree/embree_leaves.h"
+#include "ray/embree/embree_scene.h"
+#include "ray/scene/exact_source.h"
+#include "ray/seam/lazy_adjacency.h"
+#include "ray/leaf/leaf_nets.h"
+#include "ray/leaf/leaf_search.h"
+#include "ray/seam/nearest_root.h"
+#include "ray/line/ray_lines.h"
+#include "ray/scene/ray_scene_impl.h"
+#include "ray/line/ray_segment.h"
+#include "ray/scene/surface_hit.h"
+
+namespace tessera {
+namespace {
+
+constexpr double smallest_size = 1e-140, largest_size = 1e140;  // squares of lengths stay normal numbers
+constexpr double default_tolerance = 2e-12;                     // of the size
+constexpr std::size_t most_leaves = 0xffffffff;
+constexpr double most_bend = 1;  // of a piece's length
+constexpr std::size_t least_in_turn = 4;
+static_assert(rays_per_turn == RayTurn::size && rays_per_turn <= EmbreeLeaves::packet);
+
+/// Rays of one turn once they are traced; no query where a ray is not valid or passes the scene by.
+struct TracedTurn {
+  std::size_t first;
+  std::span<const bool> valid;
+  std::span<const std::optional<RayQuery>> queries;
+};
+
+/// Written so that NaN fails.
+bool holds(const Box3& box, const Box3& inside) {
+  const Vec3 &a = box.lower, &b = inside.lower, &c = inside.upper, &d = box.upper;
+  return a.x <= b.x && a.y <= b.y && a.z <= b.z && c.x <= d.x && c.y <= d.y && c.z <= d.z;
+}
+
+std::string text_of(const Box3& box) {
+  const auto text = [](const Vec3& p) {
+    return "(" + std::to_string(p.x) + ", " + std::to_string(p.y) + ", " + std::to_string(p.z) + ")";
+  };
+  return text(box.lower) + " to " + text(box.upper);
+}
+
+class ExactScene final : public PatchScene, private ExactSource {
+ public:
+  ExactScene(const PatchSet& set, EmbreeLeaves scene, const RaySceneOptions& options)
+      : PatchScene(set), scene_(std::move(scene)), options_(options), follows_(options.editable) {}
+
+  std::size_t memory_bytes() const override {
+    return nets_.memory_bytes() + adjacency_.memory_bytes() + scene_.memory_bytes();
+  }
+
+  const ExactSource* exact_source() const override { return this; }
+
+ private:
+  bool fresh() const override { return Impl::fresh(); }
+  const LeafTracer& tracer() const override { return scene_.tracer(); }
+  RayLine line(const Ray& ray) const override { return line_of(ray, frame_, scene_box_); }
+  RayLine line(const Ray& ray, const Placement& placement) const override {
+    return line_of(ray, placement, frame_, scene_box_);
+  }
+  void trace(RayQuery& query) const override;
+  void trace(std::span<RayQuery* const> queries) const override;
+  void set_hit(const RayLine& line, const LeafRoot& root, HitParts parts, Hit& hit) const override;
+  void hits_of(RayQuery& query, std::vector<Hit>& hits) const override;
+
+  Status build(const Execution& execution) override;
+  Status update(std::uint64_t since, const Execution& execution) override;
+  Box3 model_box() const override { return box_; }
+  void closest_piece(const RayBatch& batch, const HitWriter& hits, std::size_t begin, std::size_t end) const override;
+  void occluded_piece(const RayBatch& batch, const View1<std::uint8_t>& occluded, std::size_t begin,
+                      std::size_t end) const override;
+  void prepare_borders() const override { (void)adjacency_.of(set()); }
+  Status all_of(const Ray& ray, std::vector<Hit>& hits) const override;
+  double size() const override { return size_; }
+  Result<Hit> resolve(const Ray& ray, std::uint32_t patch, double u, double v) const override;
+  using PatchScene::resolve;
+  Result<Box3> frame_box() const;
+  std::size_t own_patches() const { return options_.patches.value_or(set().patch_count()); }
+  Flatness flatness() const { return {std::ilogb(static_cast<double>(options_.pieces)), most_bend}; }
+  double measure();
+  template <class Done>
+  void trace_all(const RayBatch& batch, std::size_t begin, std::size_t end, RootsWanted wanted, const Done& done) const;
+  template <class Done>
+  void trace_each(const RayBatch& batch, std::size_t begin, std::size_t end, RootsWanted wanted, SearchSpace& space,
+                  const Done& done) const;
+  template <class Done>
+  void trace_turns(const RayBatch& batch, std::size_t begin, std::size_t end, RootsWanted wanted, SearchSpace& space,
+                   const Done& done) const;
+  void trace_queries(std::span<RayQuery* const> queries, SearchSpace& space) const;
+  void trace_turn(std::span<std::optional<RayQuery>> queries, SearchSpace& space) const;
+
+  LeafNets nets_;  // borrowed by scene_, as are the borders
+  LazyAdjacency adjacency_;
+  EmbreeLeaves scene_;
+  RaySceneOptions options_;
+  mutable SearchPool pool_;
+  SceneFrame frame_;
+  Box3 box_,
+      scene_box_;  // of the leaves' control points, in the model's coordinates; of all that is met, in the scene's
+  double size_ = 0;
+  bool follows_;     // what stands can be updated
+  int updates_ = 0;  // since the last build
+};
+
+/// The box that gives size and centre.
+Result<Box3> ExactScene::frame_box() const {
+  const Box3 box = set().box();
+  if (!options_.box) return box;
+  if (!holds(*options_.box, box))
+    return Status(StatusCode::invalid_argument, "the box of a ray scene, " + text_of(*options_.box) +
+                                                    ", must hold that of the patch set, " + text_of(box));
+  return *options_.box;
+}
+
+/// Boxes of all pieces as they stand. Returns the tolerance.
+double ExactScene::measure() {
+  scene_box_ = {};
+  for (const Box3& leaf_box : nets_.boxes()) scene_box_.extend(leaf_box);
+  box_ = {frame_.to_model(scene_box_.lower), frame_.to_model(scene_box_.upper)};
+  const double tolerance = options_.tolerance.value_or(default_tolerance * size_) * frame_.scale;
+  const double least = 2 * search_rounding(max_degree, max_degree, Leaf::most_halvings, SearchSpace::most_depth);
+  const double reach = std::max(tolerance, least);
+  scene_box_.lower += Vec3{-reach, -reach, -reach}, scene_box_.upper += Vec3{reach, reach, reach};
+  return tolerance;
+}
+
+Status ExactScene::build(const Execution& execution) {
+  const Result<Box3> box = frame_box();
+  if (!box) return box.status();
+  if (own_patches() > set().patch_count())
+    return Status(StatusCode::invalid_argument, "a ray scene of " + std::to_string(own_patches()) +
+                                                    " patches of a set of " + std::to_string(set().patch_count()));
+  size_ = box->diagonal();
+  if (!(size_ >= smallest_size && size_ <= largest_size))
+    return Status(StatusCode::unsupported,
+                  "an exact ray scene holds models of a size from 1e-140 to 1e140: scale the model");
+  frame_ = SceneFrame::around(*box);
+  updates_ = 0;
+  adjacency_.forget();
+  if (Status status = nets_.build(set(), frame_, flatness(), execution); !status.ok()) return status;
+  if (nets_.leaves().size() > most_leaves)
+    return Status(StatusCode::unsupported, "more than the 2^32 - 1 pieces of patches of one ray scene");
+  const TracedLeaves leaves{&set(), &nets_, &adjacency_, own_patches(), measure()};
+  if (Status status = scene_.build(leaves, follows_, execution); !status.ok()) return status;
+  if (!follows_) nets_.drop_boxes();
+  return {};
+}
+
+Status ExactScene::update(std::uint64_t since, const Execution& execution) {
+  const bool stood = std::exchange(follows_, true);
+  const Result<Box3> box = frame_box();
+  if (!box) return box.status();
+  const bool has_frame = options_.box || frame_.holds(*box);
+  if (!stood || !has_frame || ++updates_ == options_.rebuild_after) return build(execution);
+  size_ = box->diagonal();
+  adjacency_.forget();
+  if (Status status = nets_.update(set(), set().edited_since(since), execution); !status.ok()) return status;
+  return scene_.refit(measure(), execution);
+}
+
+void ExactScene::set_hit(const RayLine& line, const LeafRoot& root, HitParts parts, Hit& hit) const {
+  hit.flags = {};
+  if (!root.certified) {
+    hit.flags.uncertified = true;
+    hit.flags.within_tolerance = root.residual > search_rounding(max_degree, max_degree, 0, 0);
+  }
+  if (!parts.any()) {
+    set_place(set(), root.patch, root.u, root.v, hit);
+    return;
+  }
+  FirstOrder at{root.position, root.du, root.dv};
+  if (root.has_point) {
+    at.position = frame_.to_model(root.position);
+  } else {
+    at = first_order(set().patch(root.patch), root.u, root.v, frame_.centre);
+    at = {frame_.centre + at.position, frame_.scale * at.du, frame_.scale * at.dv};
+  }
+  set_surface_point(set(), size_ * frame_.scale, 1 / frame_.scale, root.patch, root.u, root.v, at, hit, parts);
+  if (parts.point) {
+    const Vec3 from_start = frame_.to_scene(hit.position) - line.start;
+    const double x = dot(line.across[0], from_start), y = dot(line.across[1], from_start);
+    hit.residual = std::sqrt(x * x + y * y) / frame_.scale;
+  }
+  if (!root.certified && parts.normal) {
+    constexpr double sine = 1e-3;
+    hit.flags.tangential = !hit.flags.degenerate_normal && std::abs(dot(hit.normal, line.direction)) <= sine;
+  }
+}
+
+/// From (u,v) on to the point nearest to the ray, which is a root where there is one.
+Result<Hit> ExactScene::resolve(const Ray& ray, std::uint32_t patch, double u, double v) const {
+  if (Status status = check_point(patch, u, v); !status.ok()) return status;
+  if (!is_valid(ray)) return Status(StatusCode::invalid_argument, "the ray is not valid");
+  Ray whole = ray;
+  whole.tnear = 0, whole.tfar = std::numeric_limits<double>::infinity();
+  const RayLine along = line(whole);
+  if (along.empty) return Status(StatusCode::invalid_argument, "the ray passes the scene by");
+  const LeafRoot root = nearest_to_ray(set().patch(patch), frame_, along, patch, u, v);
+  Hit hit = hit_at(along, root);
+  hit.flags.uncertified = hit.flags.tangential = hit.flags.within_tolerance = false;
+  const int degree_u = set().patch(patch).degree_u(), degree_v = set().patch(patch).degree_v();
+  const double rounding = search_rounding(degree_u, degree_v, Leaf::most_halvings, SearchSpace::most_depth);
+  hit.flags.unrefined = !(root.residual <= std::max(tracer().tolerance, 2 * rounding));
+  return hit;
+}
+
+/// As a packet where the rays are coherent.
+void ExactScene::trace_queries(std::span<RayQuery* const> queries, SearchSpace& space) const {
+  const auto line = [&](std::size_t k) -> const RayLine& { return queries[k]->line; };
+  if (worth_a_packet(queries.size(), line)) return scene_.trace(queries, space);
+  for (RayQuery* query : queries) scene_.trace(*query, space);
+}
+
+void ExactScene::trace_turn(std::span<std::optional<RayQuery>> queries, SearchSpace& space) const {
+  std::array<RayQuery*, rays_per_turn> wanted;
+  std::size_t count = 0;
+  bool leaves_surface = false;
+  for (std::optional<RayQuery>& query : queries) {
+    if (!query) continue;
+    wanted[count++] = &*query;
+    leaves_surface |= query->line.spawn > 0;
+  }
+  if (leaves_surface) prepare_borders();
+  const FlushDenormals flush;
+  trace_queries(std::span(wanted).first(count), space);
+}
+
+/// Does `done(turn)` after each turn.
+template <class Done>
+void ExactScene::trace_all(const RayBatch& batch, std::size_t begin, std::size_t end, RootsWanted wanted,
+                           const Done& done) const {
+  SearchSpace space(nets_.largest(), &pool_);
+  const auto finish = [&](const TracedTurn& turn) {
+    // A search that got no memory has decided nothing; this becomes the call's Status.
+    for (const std::optional<RayQuery>& query : turn.queries)
+      if (query && query->overflow) throw std::bad_alloc();
+    done(turn);
+  };
+  end - begin < least_in_turn ? trace_each(batch, begin, end, wanted, space, finish)
+                              : trace_turns(batch, begin, end, wanted, space, finish);
+}
+
+template <class Done>
+void ExactScene::trace_each(const RayBatch& batch, std::size_t begin, std::size_t end, RootsWanted wanted,
+                            SearchSpace& space, const Done& done) const {
+  const SceneFilter filter(batch.filter, set());
+  TurnRoom<Ray> room;
+  for (std::size_t k = begin; k < end && !batch.stopped(); ++k) {
+    const Ray& ray = batch.rays.read(k, 1, room.span())[0];
+    const bool valid = is_valid(ray);
+    const RayLine along = valid ? line(ray) : RayLine{};
+    std::optional<RayQuery> query;
+    if (!along.empty) {
+      query.emplace(ray, along, wanted);
+      query->filter = filter.if_any(), query->index = k;
+      if (along.spawn > 0) prepare_borders();
+      const FlushDenormals flush;
+      scene_.trace(*query, space);
+    }
+    done({k, {&valid, 1}, {&query, 1}});
+  }
+}
+
+/// Lines, searches and hits by turns of a few rays: denormal numbers count in the first and the last alone.
+template <class Done>
+void ExactScene::trace_turns(const RayBatch& batch, std::size_t begin, std::size_t end, RootsWanted wanted,
+                             SearchSpace& space, const Done& done) const {
+  const SceneFilter filter(batch.filter, set());
+  RayTurn turn(frame_, scene_box_, *tracer().kernels);
+  TurnRoom<Ray> room;
+  std::array<std::optional<RayQuery>, rays_per_turn> queries;
+  for_turns(batch, begin, end, [&](std::size_t first, std::size_t count) {
+    const std::span<const Ray> now = batch.rays.read(first, count, room.span());
+    turn.set(now);
+    for (std::size_t k = 0; k < count; ++k) {
+      queries[k].reset();
+      if (turn.line(k).empty) continue;
+      queries[k].emplace(now[k], turn.line(k), wanted);
+      queries[k]->filter = filter.if_any(), queries[k]->index = first + k;
+    }
+    trace_turn(std::span(queries).first(count), space);
+    done({first, turn.valid().first(count), std::span(queries).first(count)});
+  });
+}
+
+void ExactScene::closest_piece(const RayBatch& batch, const HitWriter& writer, std::size_t begin,
+                               std::size_t end) const {
+  const HitParts parts = writer.parts();
+  TurnRoom<Hit> room;
+  trace_all(batch, begin, end, RootsWanted::closest, [&](const TracedTurn& turn) {
+    const std::span<Hit> hits = writer.place(turn.first, turn.queries.size(), room.span());
+    for (std::size_t k = 0; k < turn.queries.size(); ++k) {
+      const std::optional<RayQuery>& query = turn.queries[k];
+      Hit& hit = hits[k];
+      if (query && query->found) {
+        set_hit(query->line, query->best, parts, hit);
+        hit.instance = Hit::no_instance, hit.t = query->t_of(query->best);
+      } else {
+        hit = {};
+        if (!turn.valid[k]) hit.kind = HitKind::invalid_ray;
+      }
+      if (query) hit.flags.incomplete = query->incomplete, hit.steps = told(query->steps);
+    }
+    writer.write(turn.first, hits);
+  });
+}
+
+void ExactScene::occluded_piece(const RayBatch& batch, const View1<std::uint8_t>& occluded, std::size_t begin,
+                                std::size_t end) const {
+  trace_all(batch, begin, end, RootsWanted::any, [&](const TracedTurn& turn) {
+    for (std::size_t k = 0; k < turn.queries.size(); ++k)
+      occluded.at(turn.first + k, 0) = turn.queries[k] && turn.queries[k]->found;
+  });
+}
+
+void ExactScene::trace(RayQuery& query) const {
+  SearchSpace space(nets_.largest(), &pool_);
+  scene_.trace(query, space);
+}
+
+void ExactScene::trace(std::span<RayQuery* const> queries) const {
+  SearchSpace space(nets_.largest(), &pool_);
+  trace_queries(queries, space);
+}
+
+void ExactScene::hits_of(RayQuery& query, std::vector<Hit>& hits) const {
+  keep_distinct(set(), adjacency_.of(set()), query.roots);
+  for (const LeafRoot& root : query.roots) {
+    if (root.patch >= own_patches()) continue;
+    hits.push_back(hit_at(query.line, root));
+    hits.back().t = query.t_of(root);
+    hits.back().flags.incomplete = query.incomplete;
+    hits.back().steps = told(query.steps);
+  }
+}
+
+Status ExactScene::all_of(const Ray& ray, std::vector<Hit>& hits) const {
+  if (!is_valid(ray)) return {};
+  const RayLine along = line(ray);
+  if (along.empty) return {};
+  RayQuery query(ray, along, RootsWanted::all);
+  {
+    const FlushDenormals flush;
+    trace(query);
+  }
+  if (query.overflow) return Status(StatusCode::out_of_memory, "out of memory");
+  hits_of(query, hits);
+  return {};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<RayScene::Impl>> make_exact_scene(const PatchSet& set, const RaySceneOptions& options) {
+  if (const int pieces = options.pieces; pieces != 1 && pieces != 2 && pieces != 4 && pieces != 8) {
+    return Status(
+        StatusCode::invalid_argument,
+        "a patch of an exact ray scene is cut into 1, 2, 4 or 8 pieces a side, not " + std::to_string(pieces));
+  }
+  if (options.tolerance && !(*options.tolerance > 0 && std::isfinite(*options.tolerance))) {
+    return Status(StatusCode::invalid_argument, "the tolerance of a ray scene must be a finite length above 0, not " +
+                                                    std::to_string(*options.tolerance));
+  }
+  if (options.rebuild_after < 0) {
+    return Status(StatusCode::invalid_argument, "refits until a rebuild are counted from 1, or 0 for none, not " +
+                                                    std::to_string(options.rebuild_after));
+  }
+  const Result<Isa> isa = options.isa ? parse_isa(name(*options.isa)) : default_isa();
+  if (!isa) return isa.status();
+  Result<EmbreeLeaves> scene = EmbreeLeaves::make(*isa);
+  if (!scene) return scene.status();
+  return std::unique_ptr<RayScene::Impl>(std::make_unique<ExactScene>(set, *std::move(scene), options));
+}
+
+}  // namespace tessera

@@ -1,0 +1,45 @@
+#pragma once
+// What an exact scene lends to others: to Embree's callbacks in scenes of the user's, and to scenes of instances.
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ray/scene/batch_layout.h"
+#include "ray/leaf/leaf_tracer.h"
+#include "ray/line/ray_line.h"
+#include "ray/scene/ray_query.h"
+#include "tessera/ray_scene.h"
+
+namespace tessera {
+
+/// As Hit::steps.
+inline std::uint16_t told(std::uint32_t steps) { return static_cast<std::uint16_t>(std::min(steps, 0xffffu)); }
+
+/// Stays in place while its ray scene lives. Const calls from any number of threads.
+class ExactSource {
+ public:
+  virtual ~ExactSource() = default;
+  virtual bool fresh() const = 0;
+  virtual const LeafTracer& tracer() const = 0;
+  /// Of a valid ray in the model's coordinates.
+  virtual RayLine line(const Ray& ray) const = 0;
+  virtual RayLine line(const Ray& ray, const Placement& placement) const = 0;
+  /// Runs the query, of a line that is not empty, inside a FlushDenormals.
+  virtual void trace(RayQuery& query) const = 0;
+  /// Runs up to a packet of queries for one kind of roots, together where they are coherent.
+  virtual void trace(std::span<RayQuery* const> queries) const = 0;
+  /// Sets what `parts` names, flags, patch, surface and parameters; leaves t, steps and the instance, and all else.
+  virtual void set_hit(const RayLine& line, const LeafRoot& root, HitParts parts, Hit& hit) const = 0;
+  Hit hit_at(const RayLine& line, const LeafRoot& root) const {
+    Hit hit;
+    set_hit(line, root, {}, hit);
+    hit.t = line.t_at(root.s);
+    return hit;
+  }
+  /// Appends what a query for all roots has met, in order and each once.
+  virtual void hits_of(RayQuery& query, std::vector<Hit>& hits) const = 0;
+};
+
+}  // namespace tessera

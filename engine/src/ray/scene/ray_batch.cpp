@@ -1,0 +1,223 @@
+#include "tessera/ray_scene.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "base/guard.h"
+#include "eval/view_checks.h"
+#include "ray/scene/batch_filter.h"
+#include "ray/scene/batch_layout.h"
+#include "ray/scene/ray_scene_impl.h"
+
+namespace tessera {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+template <class T>
+class RayArrays final : public RayReader {
+ public:
+  explicit RayArrays(const RayViews<T>& views) : views_(views) {}
+
+  std::span<const Ray> read(std::size_t first, std::size_t count, std::span<Ray> room) const override {
+    const std::span<Ray> rays = room.first(count);
+    for (std::size_t k = 0; k < count; ++k) {
+      const View3<const T>&o = views_.origin, &d = views_.direction;
+      const std::size_t at = first + k;
+      rays[k].origin = {o.at(at, 0), o.at(at, 1), o.at(at, 2)};
+      rays[k].direction = {d.at(at, 0), d.at(at, 1), d.at(at, 2)};
+    }
+    const auto set = [&](double Ray::*number, const View1<const T>& from, double otherwise) {
+      for (std::size_t k = 0; k < count; ++k) rays[k].*number = from.empty() ? otherwise : from.at(first + k, 0);
+    };
+    set(&Ray::tnear, views_.tnear, 0);
+    set(&Ray::tfar, views_.tfar, infinity);
+    set(&Ray::spawn_offset, views_.spawn_offset, 0);
+    return rays;
+  }
+  std::uint32_t mask(std::size_t ray) const override { return views_.mask.empty() ? ~0u : views_.mask.at(ray, 0); }
+
+ private:
+  const RayViews<T>& views_;
+};
+
+/// Calls visit(name, view) for each output.
+template <class T, class Visit>
+void for_each_output(const HitViews<T>& views, const Visit& visit) {
+  visit("kind", views.kind);
+  visit("t", views.t);
+  visit("u", views.u);
+  visit("v", views.v);
+  visit("patch_u", views.patch_u);
+  visit("patch_v", views.patch_v);
+  visit("patch", views.patch);
+  visit("surface", views.surface);
+  visit("instance", views.instance);
+  visit("position", views.position);
+  visit("normal", views.normal);
+  visit("du", views.du);
+  visit("dv", views.dv);
+  visit("residual", views.residual);
+  visit("flags", views.flags);
+}
+
+template <class T>
+class HitArrays final : public HitWriter {
+ public:
+  explicit HitArrays(const HitViews<T>& views) : views_(views) {}
+
+  HitParts parts() const override {
+    return {.point = !views_.position.empty() || !views_.residual.empty(),
+            .derivatives = !views_.du.empty() || !views_.dv.empty(),
+            .normal = !views_.normal.empty() || !views_.flags.empty()};
+  }
+  std::span<Hit> place(std::size_t, std::size_t count, std::span<Hit> room) const override { return room.first(count); }
+  void write(std::size_t first, std::span<const Hit> hits) const override {
+    const auto each = [&](const auto& view, const auto& of) {
+      if (view.empty()) return;
+      for (std::size_t k = 0; k < hits.size(); ++k) view.at(first + k, 0) = of(hits[k]);
+    };
+    const auto number = [&](const View1<T>& view, double Hit::*member) {
+      each(view, [&](const Hit& hit) { return static_cast<T>(hit.*member); });
+    };
+    const auto index = [&](const View1<std::uint32_t>& view, std::uint32_t Hit::*member) {
+      each(view, [&](const Hit& hit) { return hit.kind == HitKind::hit ? hit.*member : HitViews<T>::no_hit; });
+    };
+    const auto vector = [&](const View3<T>& view, Vec3 Hit::*member) {
+      if (view.empty()) return;
+      for (std::size_t k = 0; k < hits.size(); ++k) {
+        const Vec3& from = hits[k].*member;
+        view.at(first + k, 0) = static_cast<T>(from.x), view.at(first + k, 1) = static_cast<T>(from.y);
+        view.at(first + k, 2) = static_cast<T>(from.z);
+      }
+    };
+    each(views_.kind, [](const Hit& hit) { return hit.kind; });
+    each(views_.flags, [](const Hit& hit) { return hit.flags; });
+    number(views_.t, &Hit::t);
+    number(views_.u, &Hit::u), number(views_.v, &Hit::v);
+    number(views_.patch_u, &Hit::patch_u), number(views_.patch_v, &Hit::patch_v);
+    number(views_.residual, &Hit::residual);
+    index(views_.patch, &Hit::patch), index(views_.surface, &Hit::surface), index(views_.instance, &Hit::instance);
+    vector(views_.position, &Hit::position), vector(views_.normal, &Hit::normal);
+    vector(views_.du, &Hit::du), vector(views_.dv, &Hit::dv);
+  }
+
+ private:
+  const HitViews<T>& views_;
+};
+
+template <class View>
+bool is_wanted(const View& view) {
+  return std::ranges::any_of(view.component, [](const auto* memory) { return memory != nullptr; });
+}
+
+/// The views of a call, one after the other; the first error stands.
+class BatchChecks {
+ public:
+  explicit BatchChecks(std::size_t rays) : rays_(rays), checks_(rays) {}
+
+  /// One record of a view of stride 0 belongs to all rays.
+  template <class T, int N>
+  void input(const char* name, VectorView<T, N> view) {
+    const std::size_t records = view.stride == 0 ? std::min<std::size_t>(rays_, 1) : rays_;
+    if (view.stride == 0) view.stride = 1;
+    if (view.size < records && error_.ok())
+      error_ = Status(StatusCode::count_mismatch, std::to_string(rays_) + " rays need as many records of " + name +
+                                                      ", or one of stride 0, not " + std::to_string(view.size));
+    if (error_.ok()) checks_.add(name, view, records);
+  }
+  template <class T>
+  void add(const RayViews<T>& rays) {
+    input("origin", rays.origin), input("direction", rays.direction);
+    if (!rays.tnear.empty()) input("tnear", rays.tnear);
+    if (!rays.tfar.empty()) input("tfar", rays.tfar);
+    if (!rays.spawn_offset.empty()) input("spawn_offset", rays.spawn_offset);
+    if (!rays.mask.empty()) input("mask", rays.mask);
+  }
+  template <class T, int N>
+  void output(const char* name, const VectorView<T, N>& view) {
+    if (!is_wanted(view)) return;
+    checks_.add(name, view);
+    has_output_ = true;
+  }
+  Status status() const {
+    if (rays_ == 0) return {};
+    if (!error_.ok()) return error_;
+    if (Status status = checks_.status(); !status.ok()) return status;
+    return has_output_ ? Status() : Status(StatusCode::invalid_argument, "no output is wanted");
+  }
+
+ private:
+  std::size_t rays_;
+  ViewChecks checks_;
+  Status error_;
+  bool has_output_ = false;
+};
+
+/// Runs call(batch, rays) for rays whose views are sound.
+template <class T, class Call>
+Status run(const RayViews<T>& rays, const BatchOptions& options, const BatchChecks& checks, const Call& call) {
+  if (Status status = checks.status(); !status.ok()) return status;
+  std::optional<BatchFilter> filter;
+  if (options.filter) filter.emplace(options.filter);
+  const RayArrays<T> reader(rays);
+  return call({reader, filter ? &*filter : nullptr}, rays.direction.size);
+}
+
+template <class T, class U>
+Status closest_of(const RayScene& scene, const RayViews<T>& rays, const HitViews<U>& hits, const BatchOptions& options,
+                  const Execution& execution) {
+  return guarded([&] {
+    BatchChecks checks(rays.direction.size);
+    checks.add(rays);
+    for_each_output(hits, [&](const char* name, const auto& view) { checks.output(name, view); });
+    return run(rays, options, checks, [&](const RayBatch& batch, std::size_t count) {
+      return scene.impl().closest(batch, HitArrays<U>(hits), count, execution);
+    });
+  });
+}
+
+template <class T>
+Status occluded_of(const RayScene& scene, const RayViews<T>& rays, const View1<std::uint8_t>& occluded,
+                   const BatchOptions& options, const Execution& execution) {
+  return guarded([&] {
+    BatchChecks checks(rays.direction.size);
+    checks.add(rays);
+    checks.output("occluded", occluded);
+    return run(rays, options, checks, [&](const RayBatch& batch, std::size_t count) {
+      return scene.impl().occluded(batch, occluded, count, execution);
+    });
+  });
+}
+
+}  // namespace
+
+Status closest(const RayScene& scene, const RayViews<float>& rays, const HitViews<float>& hits,
+               const BatchOptions& options, const Execution& execution) {
+  return closest_of(scene, rays, hits, options, execution);
+}
+Status closest(const RayScene& scene, const RayViews<float>& rays, const HitViews<double>& hits,
+               const BatchOptions& options, const Execution& execution) {
+  return closest_of(scene, rays, hits, options, execution);
+}
+Status closest(const RayScene& scene, const RayViews<double>& rays, const HitViews<float>& hits,
+               const BatchOptions& options, const Execution& execution) {
+  return closest_of(scene, rays, hits, options, execution);
+}
+Status closest(const RayScene& scene, const RayViews<double>& rays, const HitViews<double>& hits,
+               const BatchOptions& options, const Execution& execution) {
+  return closest_of(scene, rays, hits, options, execution);
+}
+
+Status occluded(const RayScene& scene, const RayViews<float>& rays, const View1<std::uint8_t>& occluded,
+                const BatchOptions& options, const Execution& execution) {
+  return occluded_of(scene, rays, occluded, options, execution);
+}
+Status occluded(const RayScene& scene, const RayViews<double>& rays, const View1<std::uint8_t>& occluded,
+                const BatchOptions& options, const Execution& execution) {
+  return occluded_of(scene, rays, occluded, options, execution);
+}
+
+}  // namespace tessera

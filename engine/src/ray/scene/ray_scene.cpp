@@ -1,0 +1,219 @@
+#include "tessera/ray_scene.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/guard.h"
+#include "parallel/call_progress.h"
+#include "parallel/parallel_for.h"
+#include "ray/scene/ray_scene_impl.h"
+
+namespace tessera {
+namespace {
+
+constexpr std::size_t rays_a_task = 512;
+constexpr double progress_ends[] = {0.2, 0.4};  // of cuts and of pieces; the rest is the BVH's
+
+Status stale() {
+  return Status(StatusCode::stale, "the patch set was edited after this ray scene was made: call refit");
+}
+
+Status short_output(std::size_t rays, std::size_t room) {
+  return Status(StatusCode::buffer_too_small,
+                std::to_string(rays) + " rays, but room for " + std::to_string(room) + " results");
+}
+
+}  // namespace
+
+Status RayScene::Impl::done(Status status) {
+  ready_ = status.ok();
+  if (ready_) revision_ = source_revision();
+  return status;
+}
+
+Status RayScene::Impl::rebuild(const Execution& execution) {
+  ready_ = false;  // whatever build() throws
+  CallProgress progress(execution, progress_ends);
+  return progress.finish(done(build(progress.loops())));
+}
+
+Status RayScene::Impl::refit(const Execution& execution) {
+  CallProgress progress(execution, progress_ends);
+  if (fresh()) return progress.finish({});
+  if (!std::exchange(ready_, false)) return progress.finish(done(build(progress.loops())));
+  return progress.finish(done(update(revision_, progress.loops())));
+}
+
+Result<Hit> RayScene::Impl::resolve(std::uint32_t, double, double) const {
+  return Status(StatusCode::unsupported, "points of instances are resolved by the scene that stands there");
+}
+
+Result<Hit> RayScene::Impl::resolve(const Ray&, std::uint32_t, double, double) const {
+  return Status(StatusCode::unsupported, "the root next to a point is known in exact mode only");
+}
+
+Status RayScene::Impl::check(const RayBatch& batch) const {
+  if (!fresh()) return stale();
+  if (batch.filter != nullptr && !can_filter())
+    return Status(StatusCode::unsupported, "filters are asked in exact mode only");
+  return {};
+}
+
+Status RayScene::Impl::closest(const RayBatch& batch, const HitWriter& hits, std::size_t count,
+                               const Execution& execution) const {
+  if (Status status = check(batch); !status.ok()) return status;
+  Status status = parallel_for(count, rays_a_task, execution,
+                               [&](std::size_t begin, std::size_t end) { closest_piece(batch, hits, begin, end); });
+  return batch.stopped() ? batch.filter->status() : status;
+}
+
+Status RayScene::Impl::occluded(const RayBatch& batch, const View1<std::uint8_t>& occluded, std::size_t count,
+                                const Execution& execution) const {
+  if (Status status = check(batch); !status.ok()) return status;
+  Status status = parallel_for(count, rays_a_task, execution, [&](std::size_t begin, std::size_t end) {
+    occluded_piece(batch, occluded, begin, end);
+  });
+  return batch.stopped() ? batch.filter->status() : status;
+}
+
+Status RayScene::Impl::all(std::span<const Ray> rays, HitLists& lists, const Execution& execution) const {
+  lists.hits.clear();
+  lists.first.assign(1, 0);
+  if (!fresh()) return stale();
+  prepare_borders();
+  const std::size_t tasks = (rays.size() + rays_a_task - 1) / rays_a_task;
+  std::vector<std::vector<Hit>> found(tasks);
+  std::vector<std::size_t> ends(rays.size());
+  std::vector<Status> faults(tasks);
+  Status status = parallel_for(tasks, 1, execution, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t task = begin; task < end; ++task) {
+      const std::size_t last = std::min(rays.size(), (task + 1) * rays_a_task);
+      for (std::size_t k = task * rays_a_task; k < last && faults[task].ok(); ++k) {
+        faults[task] = all_of(rays[k], found[task]);
+        ends[k] = found[task].size();
+      }
+    }
+  });
+  if (!status.ok()) return status;
+  for (const Status& fault : faults) {
+    if (!fault.ok()) return fault;
+  }
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    const std::size_t task = k / rays_a_task, before = k % rays_a_task == 0 ? 0 : ends[k - 1];
+    lists.first.push_back(lists.first.back() + (ends[k] - before));
+    if (k % rays_a_task == 0) lists.hits.insert(lists.hits.end(), found[task].begin(), found[task].end());
+  }
+  return {};
+}
+
+RayScene::RayScene(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+RayScene::RayScene(RayScene&&) noexcept = default;
+RayScene& RayScene::operator=(RayScene&&) noexcept = default;
+RayScene::~RayScene() = default;
+
+Result<RayScene> RayScene::make(const PatchSet& set, const RaySceneOptions& options, const Execution& execution) {
+  return guarded([&]() -> Result<RayScene> {
+    if (options.mode != RayMode::grid && options.mode != RayMode::exact)
+      return Status(StatusCode::invalid_argument, "no such ray mode");
+    Result<std::unique_ptr<Impl>> impl =
+        options.mode == RayMode::exact ? make_exact_scene(set, options) : make_grid_scene(set, options);
+    if (!impl) return impl.status();
+    if (Status status = (*impl)->rebuild(execution); !status.ok()) return status;
+    return RayScene(*std::move(impl));
+  });
+}
+
+Result<RayScene> RayScene::make(const PatchSet& set, const Mesh& mesh, const RaySceneOptions& options,
+                                const Execution& execution) {
+  return guarded([&]() -> Result<RayScene> {
+    Result<std::unique_ptr<Impl>> impl = make_mesh_scene(set, mesh, options);
+    if (!impl) return impl.status();
+    if (Status status = (*impl)->rebuild(execution); !status.ok()) return status;
+    return RayScene(*std::move(impl));
+  });
+}
+
+Result<RayScene> RayScene::make(std::span<const RayInstance> instances, const Execution& execution) {
+  return guarded([&]() -> Result<RayScene> {
+    Result<std::unique_ptr<Impl>> impl = make_instance_scene(instances);
+    if (!impl) return impl.status();
+    if (Status status = (*impl)->rebuild(execution); !status.ok()) return status;
+    return RayScene(*std::move(impl));
+  });
+}
+
+Status RayScene::closest(std::span<const Ray> rays, std::span<Hit> hits, const Execution& execution) const {
+  return guarded([&] {
+    if (hits.size() < rays.size()) return short_output(rays.size(), hits.size());
+    return impl_->closest({RaySpan(rays)}, HitSpan(hits), rays.size(), execution);
+  });
+}
+
+Status RayScene::occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded,
+                          const Execution& execution) const {
+  return guarded([&] {
+    if (occluded.size() < rays.size()) return short_output(rays.size(), occluded.size());
+    return impl_->occluded({RaySpan(rays)}, View1<std::uint8_t>::soa({occluded}), rays.size(), execution);
+  });
+}
+
+Status RayScene::all(std::span<const Ray> rays, HitLists& lists, const Execution& execution) const {
+  Status status = guarded([&] { return impl_->all(rays, lists, execution); });
+  if (!status.ok()) {
+    lists.hits.clear();
+    lists.first.clear();
+  }
+  return status;
+}
+
+Hit RayScene::closest(const Ray& ray) const {
+  Hit hit;
+  if (!closest({&ray, 1}, {&hit, 1}).ok()) hit.kind = HitKind::invalid_ray;
+  return hit;
+}
+
+bool RayScene::occluded(const Ray& ray) const {
+  std::uint8_t result = 0;
+  return occluded({&ray, 1}, {&result, 1}).ok() && result != 0;
+}
+
+Status RayScene::refit(const Execution& execution) {
+  return guarded([&] { return impl_->refit(execution); });
+}
+
+Status RayScene::rebuild(const Execution& execution) {
+  return guarded([&] { return impl_->rebuild(execution); });
+}
+
+double RayScene::spawn_offset() const { return impl_->fresh() ? impl_->spawn_offset() : 0; }
+
+Result<LocalGeometry> RayScene::local_geometry(const Hit& hit) const {
+  return guarded([&]() -> Result<LocalGeometry> {
+    if (!impl_->fresh()) return stale();
+    if (hit.kind != HitKind::hit)
+      return Status(StatusCode::invalid_argument, "there is no curvature where a ray meets nothing");
+    return impl_->local_geometry(hit);
+  });
+}
+
+Result<Hit> RayScene::resolve(std::uint32_t patch, double u, double v) const {
+  return guarded([&]() -> Result<Hit> {
+    if (!impl_->fresh()) return stale();
+    return impl_->resolve(patch, u, v);
+  });
+}
+
+Result<Hit> RayScene::resolve(const Ray& ray, std::uint32_t patch, double u, double v) const {
+  return guarded([&]() -> Result<Hit> {
+    if (!impl_->fresh()) return stale();
+    return impl_->resolve(ray, patch, u, v);
+  });
+}
+
+std::uint64_t RayScene::revision() const { return impl_->revision(); }
+Box3 RayScene::box() const { return impl_->box(); }
+std::size_t RayScene::memory_bytes() const { return impl_->memory_bytes(); }
+
+}  // namespace tessera

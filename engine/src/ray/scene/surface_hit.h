@@ -1,0 +1,28 @@
+#pragma once
+// A point of a patch as a hit.
+
+#include "ray/scene/batch_layout.h"
+#include "ray/facet/first_order.h"
+#include "ray/scene/set_view.h"
+#include "tessera/ray_scene.h"
+
+namespace tessera {
+
+/// Sets kind, patch, surface and parameters. (u,v): of the patch, in [0,1]^2. Returns the patch's part of the surface's
+/// domain.
+inline const Domain& set_place(const SetView& set, std::uint32_t patch, double u, double v, Hit& hit) {
+  const PatchSource& source = set.source(patch);
+  hit.kind = HitKind::hit;
+  hit.patch = patch, hit.surface = source.surface;
+  hit.patch_u = u, hit.patch_v = v;
+  hit.u = source.domain.u_at(u), hit.v = source.domain.v_at(v);
+  return source.domain;
+}
+
+/// Sets these, and position, derivatives and normal, with its flag, as far as `parts` names them; leaves t and residual.
+/// `at`: of the patch at (u,v), derivatives in another unit of length perhaps, of which `unit` is the model's; `size`:
+/// the model's, in that unit.
+void set_surface_point(const SetView& set, double size, double unit, std::uint32_t patch, double u, double v,
+                       const FirstOrder& at, Hit& hit, HitParts parts = {});
+
+}  // namespace tessera

@@ -1,0 +1,41 @@
+#pragma once
+// Which patches share a border: a root of Newton's method that lies just over a seam is looked for on the other side.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "ray/scene/set_view.h"
+#include "tessera/bezier_patch.h"
+
+namespace tessera {
+
+/// The four edges in a fixed order, for indices.
+inline constexpr std::array<Edge, 4> all_edges{Edge::u0, Edge::u1, Edge::v0, Edge::v1};
+
+/// The other side of an edge.
+struct EdgeLink {
+  static constexpr std::uint32_t no_patch = std::numeric_limits<std::uint32_t>::max();
+  std::uint32_t patch = no_patch;
+  std::uint8_t edge = 0;  ///< index into all_edges
+  bool reversed = false;  ///< the two run along the edge in opposite directions
+  bool exists() const { return patch != no_patch; }
+};
+
+/// Two edges are linked where they, and no third one, have the same control points and weights (by ==), in either
+/// order. Collapsed edges are not linked.
+class Adjacency {
+ public:
+  Adjacency() = default;
+  explicit Adjacency(const SetView& set);
+
+  const EdgeLink& across(std::uint32_t patch, int edge) const { return links_[patch][static_cast<std::size_t>(edge)]; }
+  std::size_t memory_bytes() const { return links_.capacity() * sizeof(links_[0]); }
+
+ private:
+  std::vector<std::array<EdgeLink, 4>> links_;
+};
+
+}  // namespace tessera

@@ -1,0 +1,23 @@
+#pragma once
+// All roots of a ray, in order and each once.
+
+#include <vector>
+
+#include "ray/seam/adjacency.h"
+#include "ray/scene/ray_query.h"
+#include "ray/scene/set_view.h"
+
+namespace tessera {
+
+/// Sorts by s and drops roots that are another one again: on one patch at the same place, or on two patches at matching
+/// places of a shared border, or at a pole, in any chain of such steps (around a vertex or a pole).
+///
+/// Let a and b be within r_a and r_b of the line, rounding included. Both then lie within r_a + r_b of each other across
+/// it, and where they stand for one root, their parameters differ by at most 2 |J^-1| (r_a + r_b) as long as the map
+/// contracts by 1/2 (reach_u and reach_v in ray_query.h). A part that the search took whole reaches as far as it is large.
+/// Certified roots are the same where that alone makes them so: no uncertified one ever joins two of them. Uncertified
+/// ones join each other, and go where one of them may stand for a certified root. Of those that are the same the one with
+/// the smallest residual stays. Nearness in s proves nothing: roots that are merely near stay.
+void keep_distinct(const SetView& set, const Adjacency& adjacency, std::vector<LeafRoot>& roots);
+
+}  // namespace tessera

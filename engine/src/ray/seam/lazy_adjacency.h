@@ -1,0 +1,41 @@
+#pragma once
+// Shared borders, found when they are first asked for: closest hits of rays that leave no surface need none.
+
+#include <atomic>
+#include <cstddef>
+#include <memory>
+#include <mutex>
+
+#include "ray/seam/adjacency.h"
+
+namespace tessera {
+
+/// Const calls from any number of threads.
+class LazyAdjacency {
+ public:
+  /// Takes memory the first time. Throws bad_alloc.
+  const Adjacency& of(const SetView& set) const {
+    if (const Adjacency* const made = found()) return *made;
+    const std::lock_guard lock(mutex_);
+    if (!owned_) owned_ = std::make_unique<Adjacency>(set);
+    made_.store(owned_.get(), std::memory_order_release);
+    return *owned_;
+  }
+  /// Null before of() was called.
+  const Adjacency* found() const { return made_.load(std::memory_order_acquire); }
+  void forget() {
+    made_ = nullptr;
+    owned_.reset();
+  }
+  std::size_t memory_bytes() const {
+    const Adjacency* const made = found();
+    return made ? made->memory_bytes() : 0;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  mutable std::unique_ptr<Adjacency> owned_;
+  mutable std::atomic<const Adjacency*> made_ = nullptr;
+};
+
+}  // namespace tessera

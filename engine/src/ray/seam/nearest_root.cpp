@@ -1,0 +1,34 @@
+#include "ray/seam/nearest_root.h"
+
+#include "ray/leaf/bounded_step.h"
+#include "ray/leaf/seen_point.h"
+
+namespace tessera {
+
+LeafRoot nearest_to_ray(const BezierPatch& patch, const SceneFrame& frame, const RayLine& line, std::uint32_t index,
+                        double u, double v) {
+  constexpr int most = 20;
+  const auto at = [&](NetPoint point) {
+    const FirstOrder there = first_order(patch, point.u, point.v, frame.centre);
+    return FirstOrder{frame.scale * there.position, frame.scale * there.du, frame.scale * there.dv};
+  };
+  NetPoint best{u, v};
+  FirstOrder point = at(best);
+  NetValue f = seen(point, line);
+  for (int step = 0; step < most; ++step) {
+    const NetPoint next = bounded_step(f, best);
+    const FirstOrder there = at(next);
+    const NetValue value = seen(there, line);
+    if (!(value.residual() < f.residual())) break;
+    best = next, point = there, f = value;
+  }
+  LeafRoot root;
+  root.patch = index;
+  root.u = best.u, root.v = best.v;
+  root.s = f.s(), root.residual = f.residual();
+  root.has_point = true;
+  root.position = point.position, root.du = point.du, root.dv = point.dv;
+  return root;
+}
+
+}  // namespace tessera

@@ -1,0 +1,203 @@
+#include "tess/bounds/chord_blocks.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "kernel/isa/kernel_table.h"
+#include "tess/bounds/rounded_up.h"
+
+namespace tessera {
+namespace {
+
+static_assert(kernel::most_product_degree == most_product_degree);
+
+/// Kernels are given sizes below this: above, the unit would not fit.
+constexpr float largest_size = 0x1p126f;
+
+/// x >= 0 to a float that is not above.
+float rounded_down(double x) {
+  const auto nearest = static_cast<float>(x);
+  return double(nearest) > x ? std::bit_cast<float>(std::bit_cast<std::uint32_t>(nearest) - 1) : nearest;
+}
+
+bool is_bounded_in_blocks(const BlockGroup& group) {
+  return !group.rational || std::max(group.degree_u, group.degree_v) <= kernel::most_rational_degree;
+}
+
+/// How many pairs of control points of different second derivatives there are; 0 where products are not looked for.
+double pairs_of_products(const BlockGroup& group) {
+  if (std::max(group.degree_u, group.degree_v) > most_product_degree) return 0;
+  const double m = group.degree_u, n = group.degree_v, uu = (m - 1) * (n + 1), uv = m * n, vv = (m + 1) * (n - 1);
+  return uu * vv + uu * uv + uv * vv;
+}
+
+}  // namespace
+
+ChordBlocks::ChordBlocks(const PatchSet::Impl& set, bool by_doubles)
+    : by_doubles_(by_doubles),
+      pieces_(set.lane_counts.size() * block_pieces),
+      unit_(set.lane_counts.size() * lanes, 1.0f),
+      size_(unit_.size(), -1.0f),
+      slack_(unit_.size(), 0.0f),
+      source_(unit_.size(), Source::packed) {
+  for (const BlockGroup& group : set.groups)  // whose lanes are not all bounded
+    if (by_doubles || !is_bounded_in_blocks(group))
+      std::fill_n(pieces_.data() + group.first_block * block_pieces, group.block_count * block_pieces, 0.0f);
+}
+
+void ChordBlocks::bound(const PatchSet::Impl& set, std::size_t block, std::uint32_t wanted) {
+  const BlockGroup& group = set.group_of_block(block);
+  float* const pieces = pieces_.data() + block * block_pieces;
+  const bool in_block = !by_doubles_ && is_bounded_in_blocks(group);
+  const kernel::KernelTable& kernels = kernel::default_kernels();
+  alignas(cache_line) Lanes<float> hints;
+  hints.fill(kernel::may_be_sweep | kernel::may_be_flat | kernel::may_gain);
+  if (in_block)
+    (group.rational ? kernels.bound_rational_chords : kernels.bound_chords)(
+        {.net = set.single.bernstein.data() + group.first_value + (block - group.first_block) * group.block_values,
+         .degree_u = group.degree_u,
+         .degree_v = group.degree_v,
+         .pieces = pieces,
+         .unit = unit_.data() + block * lanes,
+         .size = size_.data() + block * lanes,
+         .hints = hints.data()});
+  for (std::size_t lane = 0; lane < set.lane_counts[block]; ++lane) {
+    if (!in_block && !(wanted >> lane & 1u)) continue;
+    float& size = size_[block * lanes + lane];
+    const bool is_packed = in_block && size >= 0 && size < largest_size;
+    source_[block * lanes + lane] = is_packed ? Source::packed : Source::alone;
+    slack_[block * lanes + lane] = 0;
+    if (is_packed) continue;
+    size = -1;
+    hints[lane] = kernel::may_be_sweep | kernel::may_be_flat | kernel::may_gain;
+  }
+  bound_exactly(set, block, hints, in_block ? ~0u : wanted);
+}
+
+ChordBound ChordBlocks::chord(std::size_t block, std::size_t lane, const Products* products) const {
+  ChordBound::Pieces pieces;
+  const double unit = unit_[block * lanes + lane];
+  const float* const of_products = products ? products->values() : nullptr;
+  for (std::size_t k = 0; k < piece_count; ++k) {
+    const float* d = pieces_.data() + block * block_pieces + k * 3 * lanes + lane;
+    pieces[k].uu = unit * double(d[0]);
+    pieces[k].uv = unit * double(d[lanes]);
+    pieces[k].vv = unit * double(d[2 * lanes]);
+    if (!of_products) continue;
+    const float* product = of_products + k * 3 * lanes + lane;
+    pieces[k].uu_vv = unit * unit * double(product[0]);
+    pieces[k].uu_uv = unit * unit * double(product[lanes]);
+    pieces[k].uv_vv = unit * unit * double(product[2 * lanes]);
+  }
+  return ChordBound(pieces);
+}
+
+void ChordBlocks::Products::find(const ChordBlocks& chords, const PatchSet::Impl& set, std::size_t block) {
+  if (is_found_) return;
+  is_found_ = true;
+  const BlockGroup& group = set.group_of_block(block);
+  const float* const unit = chords.unit_.data() + block * lanes;
+  values_.fill(std::numeric_limits<float>::infinity());
+  if (pairs_of_products(group) == 0) return;
+  const kernel::KernelTable& kernels = kernel::default_kernels();
+  (group.rational ? kernels.bound_rational_products : kernels.bound_products)(
+      {.net = set.single.bernstein.data() + group.first_value + (block - group.first_block) * group.block_values,
+       .degree_u = group.degree_u,
+       .degree_v = group.degree_v,
+       .pieces = chords.pieces_.data() + block * block_pieces,
+       .unit = unit,
+       .products = values_.data()});
+  for (std::size_t lane = 0; lane < set.lane_counts[block]; ++lane) {
+    const Source source = chords.source_[block * lanes + lane];
+    if (source == Source::packed) continue;
+    if (source == Source::exact || source == Source::sweep) {
+      for (std::size_t k = 0; k < piece_count; ++k)
+        for (std::size_t which = 0; which < 3; ++which)
+          if (source == Source::exact || which > 0)
+            values_[(k * 3 + which) * lanes + lane] =
+                source == Source::exact ? std::numeric_limits<float>::infinity() : 0.0f;
+      continue;
+    }
+    const ChordBound chord(set.patches[set.lane_patches[block * lanes + lane]], true);
+    const double squared_unit = double(unit[lane]) * double(unit[lane]);
+    for (std::size_t k = 0; k < piece_count; ++k) {
+      const SecondDerivatives& d = chord.pieces()[k];
+      const double bounds[] = {d.uu_vv, d.uu_uv, d.uv_vv};
+      for (std::size_t which = 0; which < 3; ++which) {
+        const double bound = bounds[which] / squared_unit;
+        values_[(k * 3 + which) * lanes + lane] = bound < 0 ? -rounded_down(-bound) : rounded_up(bound);
+      }
+    }
+  }
+}
+
+ChordBlocks::Choice ChordBlocks::search(std::size_t block, std::size_t count, const Lanes<double>& distance, int most,
+                                        const Products* products) const {
+  alignas(cache_line) Lanes<float> wanted, chord;
+  Lanes<std::int32_t> rate_u, rate_v;
+  for (std::size_t lane = 0; lane < lanes; ++lane)
+    wanted[lane] = rounded_down(std::clamp(distance[lane] / double(unit_[block * lanes + lane]), 0.0, 0x1p60));
+  kernel::default_kernels().find_rates({.pieces = pieces_.data() + block * block_pieces,
+                                        .distance = wanted.data(),
+                                        .most_rate = most,
+                                        .rate_u = rate_u.data(),
+                                        .rate_v = rate_v.data(),
+                                        .chord = chord.data(),
+                                        .products = products ? products->values() : nullptr});
+  Choice choice;
+  for (std::size_t lane = 0; lane < count; ++lane) {
+    choice.rates[lane] = {rate_u[lane], rate_v[lane]};
+    choice.distance[lane] = double(unit_[block * lanes + lane]) * double(chord[lane]);
+    if (rate_u[lane] > 0 || !(distance[lane] > 0)) continue;
+    const ChordBound exact = this->chord(block, lane, products);
+    const auto found = exact.cheapest(distance[lane], most);
+    choice.rates[lane] = found ? *found : Rates{0, 0};
+    if (found) choice.distance[lane] = exact.distance(*found);
+  }
+  return choice;
+}
+
+double ChordBlocks::saved_by_products(const PatchSet::Impl& set, std::size_t block, std::size_t count,
+                                      const Choice& choice) const {
+  const BlockGroup& group = set.group_of_block(block);
+  alignas(cache_line) Lanes<float> share;
+  // Of rational patches, for which it takes as long as the products themselves: about a tenth is saved.
+  share.fill(0.9f);
+  if (!group.rational)
+    kernel::default_kernels().share_of_products(
+        {.net = set.single.bernstein.data() + group.first_value + (block - group.first_block) * group.block_values,
+         .degree_u = group.degree_u,
+         .degree_v = group.degree_v,
+         .pieces = pieces_.data() + block * block_pieces,
+         .unit = unit_.data() + block * lanes,
+         .share = share.data()});
+  double saved = 0;
+  for (std::size_t lane = 0; lane < count; ++lane)
+    if (source_[block * lanes + lane] != Source::exact)
+      saved += std::max(0.0, 1 - double(share[lane])) * choice.rates[lane].u * choice.rates[lane].v;
+  // These take 3.5 times as long as those of polynomial patches, and what is made of a cell up to twice as long.
+  return (group.rational ? 0.5 : 1) * saved / double(count);
+}
+
+ChordBlocks::Choice ChordBlocks::cheapest(const PatchSet::Impl& set, std::size_t block, std::size_t count,
+                                          const Lanes<double>& distance, int most, Products& products) const {
+  Choice choice = search(block, count, distance, most, nullptr);
+  const auto cells = [&](std::size_t lane) { return double(choice.rates[lane].u) * choice.rates[lane].v; };
+  const double pairs = pairs_of_products(set.group_of_block(block));
+  double all = 0;
+  for (std::size_t lane = 0; lane < count; ++lane) all += cells(lane);
+  // Their time goes by the pairs, that of a mesh by its cells; where these are many, fewer are worth some time.
+  if (pairs == 0 || !(all >= std::min(0.5 * pairs, 150.0) * double(count))) return choice;
+  if (!(saved_by_products(set, block, count, choice) >= 0.03 * pairs)) return choice;
+  products.find(*this, set, block);
+  const Choice sharper = search(block, count, distance, most, &products);
+  for (std::size_t lane = 0; lane < count; ++lane) {
+    choice.rates[lane] = sharper.rates[lane];
+    choice.distance[lane] = sharper.distance[lane];
+  }
+  return choice;
+}
+
+}  // namespace tessera

@@ -1,0 +1,136 @@
+#include "tess/bounds/chord_bound.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "tess/bounds/derivative_nets.h"
+
+namespace tessera {
+namespace {
+
+/// What a piece takes from the quarters that it is made of: bit 2 i + j stands for quarter [i][j].
+constexpr unsigned quarters_of_piece[9] = {0b1111, 0b0011, 0b1100, 0b0101, 0b1010, 0b0001, 0b0010, 0b0100, 0b1000};
+
+/// The smallest t >= 1 with a + b / t + c / t^2 <= limit, a <= limit; infinite if there is none.
+double smallest_rate(double a, double b, double c, double limit) {
+  const double room = limit - a;
+  if (b == 0 && c == 0) return 1;
+  if (!(room > 0)) return std::numeric_limits<double>::infinity();
+  return std::max(1.0, (b + std::sqrt(b * b + 4 * room * c)) / (2 * room));
+}
+
+}  // namespace
+
+ChordBound::ChordBound(const BezierPatch& patch, bool products) {
+  const DerivativeNets nets(patch);
+  DerivativeNet uu[2][2], uv[2][2], vv[2][2], points[2][2];
+  cut(nets.uu, uu);
+  cut(nets.uv, uv);
+  cut(nets.vv, vv);
+  if (nets.rational) cut(nets.points, points);
+  for (std::size_t k = 0; k < pieces_.size(); ++k) {
+    DerivativePiece piece;
+    for (unsigned quarter = 0; quarter < 4; ++quarter) {
+      if (!(quarters_of_piece[k] >> quarter & 1u)) continue;
+      const unsigned i = quarter / 2, j = quarter % 2;
+      piece.uu[piece.count] = &uu[i][j];
+      piece.uv[piece.count] = &uv[i][j];
+      piece.vv[piece.count] = &vv[i][j];
+      piece.points[piece.count++] = &points[i][j];
+    }
+    // Each difference of four coefficients, the translation and the cuts round by less than 16 units of what enters.
+    pieces_[k] = bound_piece(nets, piece, 0x1p-46, products);
+  }
+}
+
+double ChordBound::distance(Rates rates) const {
+  const Split split = splits[rates.u % 2 == 0][rates.v % 2 == 0];
+  double most = 0;
+  for (int k = split.first; k < split.first + split.count; ++k)
+    most = std::max(most, pieces_[static_cast<std::size_t>(k)].chord(rates));
+  return most;
+}
+
+double ChordBound::distance_of(PatchSegments segments) const {
+  if (segments.are_uniform()) return distance(segments.rates());
+  const bool parts_u = segments.u.parts_halves(), parts_v = segments.v.parts_halves();
+  const Split split = splits[parts_u][parts_v];
+  double most = 0;
+  for (int k = 0; k < split.count; ++k) {
+    const int i = parts_v ? k / 2 : k, j = parts_v ? k % 2 : 0;
+    most = std::max(most, pieces_[static_cast<std::size_t>(split.first + k)].chord(segments.of_quarter(i, j)));
+  }
+  return most;
+}
+
+ChordBound::Straddling ChordBound::straddling(Rates rates, Edge border, int rate) {
+  const bool along_u = border == Edge::v0 || border == Edge::v1, begin = border == Edge::v0 || border == Edge::u0;
+  const std::size_t half = along_u ? (begin ? 3 : 4) : (begin ? 1 : 2);
+  const bool halved = (along_u ? rates.v : rates.u) % 2 == 0;
+  return {halved ? half : 0, along_u ? Rates{rate, rates.v} : Rates{rates.u, rate}};
+}
+
+double ChordBound::needed(double tolerance, int fixed, bool fixed_u, bool even) const {
+  const double h = 1.0 / fixed + 0x1p-24;
+  const bool fixed_even = fixed % 2 == 0;
+  const Split split = fixed_u ? splits[fixed_even][even] : splits[even][fixed_even];
+  double needed = 1;
+  for (int k = split.first; k < split.first + split.count; ++k) {
+    const SecondDerivatives& d = pieces_[static_cast<std::size_t>(k)];
+    needed = std::max(
+        needed, smallest_rate(h * h * (fixed_u ? d.uu : d.vv), 2 * h * d.uv, fixed_u ? d.vv : d.uu, 8 * tolerance));
+  }
+  return needed;
+}
+
+std::optional<Rates> ChordBound::with_rate(double tolerance, int fixed, bool fixed_u, int most) const {
+  std::optional<Rates> best;
+  for (const bool even : {false, true}) {
+    const double least = needed(tolerance, fixed, fixed_u, even);
+    if (!(least <= most)) continue;
+    int rate = static_cast<int>(std::ceil(least));
+    if ((rate % 2 == 0) != even) ++rate;
+    const auto rates = [&] { return fixed_u ? Rates{fixed, rate} : Rates{rate, fixed}; };
+    if (!(distance(rates()) <= tolerance)) rate += 2;  // the root was rounded, or the parameters are
+    // By the products it may be less.
+    for (int low = even ? 0 : -1; std::isfinite(pieces_[0].uu_vv) && rate - low > 2;) {
+      const int high = rate;
+      rate = low + (high - low) / 4 * 2;
+      if (!(distance(rates()) <= tolerance)) low = rate, rate = high;
+    }
+    if (rate <= most && distance(rates()) <= tolerance && (!best || rate < (fixed_u ? best->v : best->u)))
+      best = rates();
+  }
+  return best;
+}
+
+std::optional<Rates> ChordBound::cheapest(double tolerance, int most) const {
+  std::optional<Rates> best;
+  double least = std::numeric_limits<double>::infinity();
+  // Over real rates the fewest cells have h^2 uu = k^2 vv, hence 4 tolerance = h^2 (uu + uv sqrt(uu / vv)). Whole numbers
+  // and halves move the minimum a little: walk from there both ways, over the smaller rate, whose steps are the larger.
+  const SecondDerivatives& d = pieces_[0];
+  const bool fixed_u = d.uu <= d.vv;
+  const double small = fixed_u ? d.uu : d.vv, large = fixed_u ? d.vv : d.uu;
+  const double start = large > 0 ? std::sqrt((small + d.uv * std::sqrt(small / large)) / (4 * tolerance)) : 1;
+  const auto attempt = [&](int rate) {
+    const std::optional<Rates> rates = with_rate(tolerance, rate, fixed_u, most);
+    if (!rates || !(double(rates->u) * rates->v < least)) return false;
+    least = double(rates->u) * rates->v;
+    best = rates;
+    return true;
+  };
+  const int middle = start < most ? std::max(static_cast<int>(start), 1) : most;
+  constexpr int patience = 4;
+  for (const int step : {1, -1})
+    for (int rate = step > 0 ? middle : middle - 1, left = patience; left > 0 && rate >= 1 && rate <= most;
+         rate += step)
+      left = attempt(rate) ? patience : left - 1;
+  for (int rate = 1; rate <= patience; ++rate)
+    if (rate <= most) attempt(rate);
+  if (!best) attempt(most);
+  return best;
+}
+
+}  // namespace tessera

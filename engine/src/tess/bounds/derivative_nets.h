@@ -1,0 +1,52 @@
+#pragma once
+// Second derivatives of a patch as Bezier nets, cut to pieces, and how large they are.
+
+#include <array>
+#include <cstddef>
+
+#include "surface/homogeneous.h"
+#include "tess/bounds/chord_bound.h"
+
+namespace tessera {
+
+/// A net of homogeneous vectors, `[i][j]`.
+struct DerivativeNet {
+  int rows = 0, columns = 0;
+  std::array<Homogeneous, (max_degree + 1) * (max_degree + 1)> at;
+
+  DerivativeNet() = default;
+  DerivativeNet(const DerivativeNet& other) { *this = other; }
+  DerivativeNet& operator=(const DerivativeNet& other);  ///< no more than there is
+  int size() const { return rows * columns; }
+  Homogeneous& operator()(int i, int j) { return at[static_cast<std::size_t>(i * columns + j)]; }
+};
+
+/// The quarters [low or high u][low or high v] of a net, by de Casteljau at 1/2.
+void cut(const DerivativeNet& net, DerivativeNet (&quarter)[2][2]);
+/// The net of a rectangle of the parameters.
+DerivativeNet cut_to(const DerivativeNet& net, const Domain& rectangle);
+
+/// The homogeneous patch: its second derivatives, and its points where it is rational.
+struct DerivativeNets {
+  DerivativeNet uu, uv, vv, points;
+  int degree_u = 0, degree_v = 0;
+  bool rational = false;
+  double scale = 1;               ///< of the net's numbers to the patch's lengths
+  double size = 0, heaviest = 0;  ///< the largest coordinate and weight among points
+
+  explicit DerivativeNets(const BezierPatch& patch);
+};
+
+/// The nets of a piece, which may be made of up to four.
+struct DerivativePiece {
+  using Nets = std::array<const DerivativeNet*, 4>;
+  Nets uu{}, uv{}, vv{}, points{};
+  std::size_t count = 0;
+};
+
+/// Bounds over a piece. `rounding`: of differences and cuts, in units of what enters them. `products`: those as well, for
+/// degrees up to most_product_degree.
+SecondDerivatives bound_piece(const DerivativeNets& patch, const DerivativePiece& piece, double rounding,
+                              bool products);
+
+}  // namespace tessera

@@ -1,0 +1,241 @@
+#include "tess/bounds/local_chord.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "tess/bounds/derivative_nets.h"
+
+namespace tessera {
+namespace {
+
+constexpr std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+/// A float parameter i / rate lies up to 2^-25 beside it.
+double margin(int least) { return 0.5 / least + 0x1p-24; }
+
+constexpr Domain whole{0, 1, 0, 1};
+/// Of so many parts.
+Domain part(Rates parts, int i, int j) {
+  const auto begin = [](int k, int count) { return double(k) / count; };
+  return {begin(i, parts.u), begin(i + 1, parts.u), begin(j, parts.v), begin(j + 1, parts.v)};
+}
+
+/// Bounds of rectangles, each widened inside a part of the patch.
+class Widened {
+ public:
+  Widened(const DerivativeNets& patch, const Domain& part, Rates least)
+      : nets_(patch), part_(part), margin_u_(margin(least.u)), margin_v_(margin(least.v)) {}
+
+  SecondDerivatives bound(const Domain& r) const {
+    const Domain wide{std::max(r.u0 - margin_u_, part_.u0), std::min(r.u1 + margin_u_, part_.u1),
+                      std::max(r.v0 - margin_v_, part_.v0), std::min(r.v1 + margin_v_, part_.v1)};
+    const DerivativeNet uu = cut_to(nets_.uu, wide), uv = cut_to(nets_.uv, wide), vv = cut_to(nets_.vv, wide);
+    DerivativeNet points;
+    if (nets_.rational) points = cut_to(nets_.points, wide);
+    // Two cuts along each parameter, of up to 15 mixings each that round by 3 units.
+    return bound_piece(nets_, {{&uu}, {&uv}, {&vv}, {&points}, 1}, 0x1p-44, true);
+  }
+
+ private:
+  const DerivativeNets& nets_;
+  Domain part_;
+  double margin_u_, margin_v_;
+};
+
+/// The smallest rate v with this u, between `least` and `most`, if `most` will do.
+template <class Keeps>
+std::optional<int> least_v(int u, int least, int most, const Keeps& keeps) {
+  if (most < least || !keeps({u, most})) return {};
+  for (int low = least - 1; most - low > 1;) {
+    const int middle = (low + most) / 2;
+    (keeps({u, middle}) ? most : low) = middle;
+  }
+  return most;
+}
+
+/// Rates down to so many parts of those known are looked for.
+Rates shrunk(Rates rates, double share) {
+  const auto least = [share](int rate) { return std::max(1, static_cast<int>(share * rate)); };
+  return {least(rates.u), least(rates.v)};
+}
+
+}  // namespace
+
+LocalChord::LocalChord(const BezierPatch& patch, Rates least, Rates about, std::size_t pieces)
+    : LocalChord(DerivativeNets(patch), whole, least, about, pieces) {}
+
+LocalChord::LocalChord(const DerivativeNets& patch, const Domain& part, Rates least, Rates about, std::size_t pieces)
+    : least_(least) {
+  const Widened widened(patch, part, least);
+  const auto is_smaller = [](const Piece& a, const Piece& b) { return a.chord < b.chord; };
+  const auto add = [&](const Domain& rectangle) {
+    Piece piece{rectangle, widened.bound(rectangle)};
+    const double chord = piece.bound.chord(about);
+    piece.chord = std::isnan(chord) ? std::numeric_limits<double>::infinity() : chord;
+    pieces_[count_++] = piece;
+    std::push_heap(pieces_.data(), pieces_.data() + count_, is_smaller);
+  };
+  add(part);
+  while (count_ < pieces) {
+    const Domain d = pieces_.front().rectangle;
+    const double cells_u = (d.u1 - d.u0) * about.u, cells_v = (d.v1 - d.v0) * about.v;
+    if (std::max(cells_u, cells_v) <= 0.5) break;  // hardly less than its margins
+    std::pop_heap(pieces_.data(), pieces_.data() + count_--, is_smaller);
+    const double u = 0.5 * (d.u0 + d.u1), v = 0.5 * (d.v0 + d.v1);
+    const bool halves_u = cells_u >= cells_v;
+    add(halves_u ? Domain{d.u0, u, d.v0, d.v1} : Domain{d.u0, d.u1, d.v0, v});
+    add(halves_u ? Domain{u, d.u1, d.v0, d.v1} : Domain{d.u0, d.u1, v, d.v1});
+  }
+  std::sort(pieces_.data(), pieces_.data() + count_, [](const Piece& a, const Piece& b) { return a.chord > b.chord; });
+}
+
+double LocalChord::distance(Rates rates) const {
+  double most = 0;
+  for (std::size_t k = 0; k < count_; ++k) most = std::max(most, pieces_[k].bound.chord(rates));
+  return most;
+}
+
+bool LocalChord::keeps(Rates rates, double distance) const {
+  for (std::size_t k = 0; k < count_; ++k)
+    if (!(pieces_[k].bound.chord(rates) <= distance)) return false;
+  return true;
+}
+
+namespace {
+
+/// Bounds are first made roughly, then of smaller pieces about what was found.
+struct Pass {
+  double share;  ///< of rates, down to which they hold
+  std::size_t pieces;
+};
+
+/// Adds uniform segments.
+void add_uniform(const DerivativeNets& patch, double distance, FunctionRef<bool(Rates)> also, SegmentChoices& choices) {
+  for (const Pass pass : {Pass{0.65, 16}, Pass{0.85, 32}}) {
+    const Rates rates = choices.fewest().segments.rates();
+    if (rates.u * rates.v < 2) break;
+    const LocalChord local(patch, whole, shrunk(rates, pass.share), rates, pass.pieces);
+    const auto keeps = [&](Rates r) { return local.keeps(r, distance) && also(r); };
+    const int most_u = std::min(most_rate, rates.u + rates.u / 2 + 1);
+    for (int u = local.least().u; u <= most_u; ++u) {
+      const int most_v = std::min(most_rate, static_cast<int>(choices.most_cells()) / u);
+      const auto v = least_v(u, local.least().v, most_v, keeps);
+      if (const Rates found{u, v.value_or(0)}; v && choices.has_room_for(found))
+        choices.add({found, local.distance(found), true});
+    }
+  }
+}
+
+/// Into how many parts the parameters are taken.
+using PartCounts = Rates;
+
+/// The rates of segments of a part, and the segments of both.
+int rate_of(int count, int parts) { return parts * count; }
+Segments joined(int lower, int upper, int parts) { return parts == 2 ? Segments::halves(lower, upper) : lower; }
+
+/// What a part of a patch needs: for each number of segments along its u the least along its v.
+class PartNeeds {
+ public:
+  /// Of segments a part: at most `most`.
+  PartNeeds(const LocalChord& local, PartCounts parts, Rates most, double distance)
+      : least_v_(at(most.u) + 1, most.v + 1) {
+    const auto keeps = [&](Rates counts) {
+      return local.keeps({rate_of(counts.u, parts.u), rate_of(counts.v, parts.v)}, distance);
+    };
+    for (int u = local.least().u / parts.u; u <= most.u; ++u)
+      if (const auto v = least_v(u, local.least().v / parts.v, most.v, keeps)) least_v_[at(u)] = *v;
+  }
+  int least_v_for(int u) const { return least_v_[at(u)]; }  ///< above the most if none will do
+
+ private:
+  std::vector<int> least_v_;
+};
+
+/// Bounds of the parts of a patch: quarters, or halves where the other parameter is one segment that none would part.
+class PartChords {
+ public:
+  PartChords(const DerivativeNets& patch, PatchSegments about, Pass pass)
+      : parts_{about.u.rate() > 1 ? 2 : 1, about.v.rate() > 1 ? 2 : 1} {
+    for (int i = 0; i < parts_.u; ++i)
+      for (int j = 0; j < parts_.v; ++j) {
+        const Rates rates = about.of_quarter(i, j);
+        Rates least = shrunk(rates, pass.share);
+        least = {least.u + least.u % parts_.u, least.v + least.v % parts_.v};  // whole parts' segments
+        chords_[at(2 * i + j)].emplace(patch, part(parts_, i, j), least, rates, pass.pieces);
+      }
+  }
+
+  PartCounts parts() const { return parts_; }
+  const LocalChord& of(int half_u, int half_v) const {
+    return *chords_[at(2 * std::min(half_u, parts_.u - 1) + std::min(half_v, parts_.v - 1))];
+  }
+  double distance(PatchSegments segments) const {
+    double most = 0;
+    for (int i = 0; i < parts_.u; ++i)
+      for (int j = 0; j < parts_.v; ++j) most = std::max(most, of(i, j).distance(segments.of_quarter(i, j)));
+    return most;
+  }
+
+ private:
+  PartCounts parts_;
+  std::array<std::optional<LocalChord>, 4> chords_;
+};
+
+/// Adds segments of any length in the halves.
+void add_halves(const PartChords& chords, double distance, FunctionRef<bool(Rates)> also, SegmentChoices& choices) {
+  const PatchSegments known = choices.fewest().segments;
+  const PartCounts parts = chords.parts();
+  const auto most_of = [](Segments had, int count) {
+    return count == 2 ? std::min(3 * had.rate() / 4 + 1, most_rate / 2) : int{had.rate()};
+  };
+  const Rates most{most_of(known.u, parts.u), most_of(known.v, parts.v)};
+  const auto needs = [&](int i, int j) { return PartNeeds(chords.of(i, j), parts, most, distance); };
+  const PartNeeds needs00 = needs(0, 0), needs01 = needs(0, 1), needs10 = needs(1, 0), needs11 = needs(1, 1);
+  for (int low_u = 1; low_u <= most.u; ++low_u)
+    for (int high_u = parts.u == 2 ? 1 : low_u; high_u <= (parts.u == 2 ? most.u : low_u); ++high_u) {
+      const Segments u = joined(low_u, high_u, parts.u);
+      if (u.rate() * parts.v > choices.most_cells()) break;
+      const int low_v = std::max(needs00.least_v_for(low_u), needs10.least_v_for(high_u)),
+                high_v = std::max(needs01.least_v_for(low_u), needs11.least_v_for(high_u));
+      if (std::max(low_v, high_v) > most.v) continue;
+      const PatchSegments found{u, joined(low_v, high_v, parts.v)};
+      if (choices.has_room_for(found) && also(found.coarsest())) choices.add({found, chords.distance(found)});
+    }
+}
+
+void add_halves(const DerivativeNets& patch, double distance, FunctionRef<bool(Rates)> also, SegmentChoices& choices) {
+  constexpr int least_cells = 12;  // of fewer none is saved
+  for (const Pass pass : {Pass{0.5, 12}, Pass{0.8, 24}}) {
+    const PatchSegments known = choices.fewest().segments;
+    if (known.cells() < least_cells) return;
+    add_halves(PartChords(patch, known, pass), distance, also, choices);
+    if (!(choices.fewest().segments.cells() < known.cells())) return;
+  }
+}
+
+}  // namespace
+
+void find_fewer(const BezierPatch& patch, double distance, FunctionRef<bool(Rates)> also, SegmentChoices& choices) {
+  const DerivativeNets nets(patch);
+  add_uniform(nets, distance, also, choices);
+  add_halves(nets, distance, also, choices);
+}
+
+double local_distance(const BezierPatch& patch, PatchSegments segments) {
+  const DerivativeNets nets(patch);
+  const PartCounts parts = segments.are_uniform()
+                               ? PartCounts{1, 1}
+                               : PartCounts{segments.u.parts_halves() ? 2 : 1, segments.v.parts_halves() ? 2 : 1};
+  double most = 0;
+  for (int i = 0; i < parts.u; ++i)
+    for (int j = 0; j < parts.v; ++j) {
+      const Rates rates = segments.of_quarter(i, j);
+      const LocalChord local(nets, part(parts, i, j), rates, rates, LocalChord::most_pieces);
+      most = std::max(most, local.distance(rates));
+    }
+  return most;
+}
+
+}  // namespace tessera

@@ -1,0 +1,219 @@
+#include "tess/edges/shared_edges.h"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+#include "kernel/isa/kernel_table.h"
+
+namespace tessera {
+namespace {
+
+/// equal(), for borders of as many points, of three components or four.
+template <int Components>
+bool is_equal(const PackedBorder& a, const PackedBorder& b, int count, bool reversed) {
+  const auto bits = [](const PackedBorder& border, int point, int component) {
+    return std::bit_cast<std::uint32_t>(Components == 3 ? border.packed(point, component)
+                                                        : border.value(point, component));
+  };
+  const int last = count - 1;
+  const auto differ = [&](int k, int c) { return bits(a, k, c) ^ bits(b, reversed ? last - k : k, c); };
+  if (differ(0, 0)) return false;  // as most that differ do
+  std::uint32_t differing = 0;
+  for (int k = 0; k < count; ++k)
+    for (int c = 0; c < Components; ++c) differing |= differ(k, c);
+  return differing == 0;
+}
+
+bool is_equal(const PackedBorder& a, const PackedBorder& b, bool reversed) {
+  const int count = a.count(), components = a.components();
+  if (count != b.count() || components != b.components()) return false;
+  if (components != 3) return is_equal<4>(a, b, count, reversed);
+  return count == 4 ? is_equal<3>(a, b, 4, reversed) : is_equal<3>(a, b, count, reversed);
+}
+
+/// Borders by their hashes: open addressing. A probe that fails takes longest, and half of all do: so at most half full.
+class BorderTable {
+ public:
+  /// Where most borders are those of two patches there are about two edges a patch.
+  explicit BorderTable(std::size_t patches) : entries_(std::bit_ceil(5 * patches + 1)), mask_(entries_.size() - 1) {}
+
+  void fetch(std::uint32_t hash) const { __builtin_prefetch(&entries_[hash & mask_]); }
+  /// A border of that hash that `is_same`, or this one, which is there from then on.
+  template <class IsSame>
+  std::size_t find_or_add(std::uint32_t hash, std::uint32_t border, const IsSame& is_same) {
+    std::size_t at = hash & mask_;
+    for (; entries_[at].border != 0; at = (at + 1) & mask_)
+      if (entries_[at].hash == hash && is_same(entries_[at].border - 1)) return entries_[at].border - 1;
+    entries_[at] = {hash, border + 1};
+    if (2 * ++count_ > entries_.size()) grow();
+    return border;
+  }
+
+ private:
+  struct Entry {
+    std::uint32_t hash = 0, border = 0;  ///< the number of the border + 1; 0: none
+  };
+
+  void grow() {
+    const std::vector<Entry> entries(std::exchange(entries_, std::vector<Entry>(2 * entries_.size())));
+    mask_ = entries_.size() - 1;
+    for (const Entry& entry : entries) {
+      if (entry.border == 0) continue;
+      std::size_t at = entry.hash & mask_;
+      while (entries_[at].border != 0) at = (at + 1) & mask_;
+      entries_[at] = entry;
+    }
+  }
+
+  std::vector<Entry> entries_;
+  std::size_t mask_, count_ = 0;
+};
+
+constexpr std::uint32_t none = SharedEdges::none;
+constexpr std::size_t lanes = PatchSet::lanes;
+
+/// Takes block after block and gives each border its edge.
+class EdgeFinder {
+ public:
+  EdgeFinder(const PatchSet::Impl& set, const BorderHashes& hashes, std::span<std::uint32_t> edges)
+      : set_(set), hashes_(hashes), edges_(edges), table_(set.patches.size()) {}
+
+  void add(const BlockGroup& group, std::size_t block) {
+    const std::uint32_t *const hashes = hashes_.of_block(block), *const patches = patches_of(block);
+    const std::size_t count = set_.lane_counts[block];
+    for (const Side side : all_sides) {
+      const auto s = static_cast<std::size_t>(side);
+      met_[s].fill(none);
+      if (back_[s] > 0) look_back(group, block, side);
+      for (std::size_t lane = 0; lane < count; ++lane)
+        if (met_[s][lane] == none) table_.fetch(hashes[s * lanes + lane]);
+    }
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      const std::size_t patch = patches[lane];
+      const EdgeMask collapsed = set_.collapsed[patch];
+      for (const Side side : all_sides) {
+        const auto s = static_cast<std::size_t>(side);
+        if (!collapsed.has(edge_of(side))) add(4 * patch + s, side, hashes[s * lanes + lane], met_[s][lane]);
+      }
+    }
+  }
+  std::size_t count() const { return count_; }
+
+ private:
+  const std::uint32_t* patches_of(std::size_t block) const { return set_.lane_patches.data() + block * lanes; }
+
+  void add(std::size_t number, Side side, std::uint32_t hash, std::uint32_t met) {
+    if (met != none && edges_[met] != none) {
+      edges_[number] = edges_[met];
+      return;
+    }
+    const auto is_same = [&](std::size_t other) {
+      const PackedBorder border(set_, number / 4, side), found(set_, other / 4, all_sides[other % 4]);
+      return is_equal(border, found, false) || is_equal(border, found, true);
+    };
+    const std::size_t first = table_.find_or_add(hash, static_cast<std::uint32_t>(number), is_same);
+    edges_[number] = first == number ? static_cast<std::uint32_t>(count_++) : edges_[first];
+    if (first < number) back_[static_cast<std::size_t>(side)] = number - first;
+  }
+
+  /// In rows of patches the next edge of a side is met as many borders back as the last one was: a block's borders are
+  /// compared with those there at once. Fills in met_ where they are equal.
+  void look_back(const BlockGroup& group, std::size_t block, Side side) {
+    const auto s = static_cast<std::size_t>(side);
+    const std::size_t back = back_[s];
+    const std::size_t other_side = (s - back) % 4;
+    const BorderPlaces own(group, side), other(group, all_sides[other_side]);
+    if (own.count != other.count) return;
+    const auto start_of = [&](std::size_t at) {
+      return static_cast<std::ptrdiff_t>((at - group.first_block) * group.block_values);
+    };
+    const std::uint32_t *const hashes = hashes_.of_block(block) + s * lanes, *const patches = patches_of(block);
+    std::array<std::uint32_t, lanes> numbers;
+    std::array<std::int32_t, lanes> places{};
+    bool any = false;
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      const std::size_t number = 4 * std::size_t{patches[lane]} + s;
+      numbers[lane] = none;
+      if (back > number) continue;
+      const PatchSet::Slot slot = set_.slots[(number - back) / 4];
+      if (slot.block < group.first_block || slot.block > block || hashes_.of(slot, other_side) != hashes[lane])
+        continue;
+      const std::ptrdiff_t place = start_of(slot.block) - start_of(block) + slot.lane;
+      if (place < -most_away) continue;
+      numbers[lane] = static_cast<std::uint32_t>(number - back);
+      places[lane] = static_cast<std::int32_t>(place);
+      any = true;
+    }
+    if (!any) return;
+    const float* const net = set_.single.bernstein.data() + group.first_value + start_of(block);
+    for (const bool reversed : {false, true}) {
+      std::array<std::uint32_t, lanes> differing;
+      kernels_.match_borders({.first = net + own.first,
+                              .step = own.step,
+                              .count = own.count,
+                              .components = own.components,
+                              .others = net + other.first + (reversed ? (other.count - 1) * other.step : 0),
+                              .place = places.data(),
+                              .other_step = reversed ? -other.step : other.step,
+                              .differing = differing.data()});
+      any = false;
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
+        if (differing[lane] == 0 && met_[s][lane] == none) met_[s][lane] = numbers[lane];
+        any |= numbers[lane] != met_[s][lane];
+      }
+      if (!any) return;
+    }
+  }
+  static constexpr std::ptrdiff_t most_away = std::ptrdiff_t{1} << 30;  // floats
+
+  const PatchSet::Impl& set_;
+  const BorderHashes& hashes_;
+  const kernel::KernelTable& kernels_ = kernel::default_kernels();
+  std::span<std::uint32_t> edges_;
+  BorderTable table_;
+  std::array<std::size_t, 4> back_{};  ///< how far back the last edge of each side was met, in borders; 0: none was
+  std::array<std::array<std::uint32_t, lanes>, 4> met_;  ///< of the block, borders that are equal() to its own, or none
+  std::size_t count_ = 0;
+};
+
+}  // namespace
+
+bool equal(const PackedBorder& a, const PackedBorder& b, bool reversed) { return is_equal(a, b, reversed); }
+
+float PackedBorder::weight_scale() const {
+  float heaviest = 0;
+  for (int k = 0; k < count_; ++k) heaviest = std::max(heaviest, packed(k, 3));
+  // 2^-k for a weight of at least 2^(k-1) and below 2^k, all of which are far from the ends of float's range.
+  return std::bit_cast<float>((253u - (std::bit_cast<std::uint32_t>(heaviest) >> 23)) << 23);
+}
+
+void BorderHashes::find(const PatchSet::Impl& set, std::size_t block) {
+  const BlockGroup& group = set.group_of_block(block);
+  kernel::default_kernels().hash_borders(
+      {.net = set.single.bernstein.data() + group.first_value + (block - group.first_block) * group.block_values,
+       .degree_u = group.degree_u,
+       .degree_v = group.degree_v,
+       .rational = group.rational,
+       .hash = hashes_.data() + block * 4 * lanes});
+}
+
+SharedEdges::SharedEdges(const PatchSet::Impl& set, const BorderHashes& hashes) : edges_(4 * set.patches.size(), none) {
+  EdgeFinder finder(set, hashes, edges_);
+  for (const BlockGroup& group : set.groups)
+    for (std::size_t block = 0; block < group.block_count; ++block) finder.add(group, group.first_block + block);
+  count_ = finder.count();
+}
+
+SharedEdges::SharedEdges(const PatchSet::Impl& set) {
+  BorderHashes hashes(set);
+  for (std::size_t block = 0; block < set.lane_counts.size(); ++block) hashes.find(set, block);
+  *this = SharedEdges(set, hashes);
+}
+
+void SharedEdges::renumber(std::span<const std::uint32_t> numbers) {
+  for (std::uint32_t& edge : edges_)
+    if (edge != none) edge = numbers[edge];
+}
+
+}  // namespace tessera

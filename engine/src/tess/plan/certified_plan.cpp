@@ -1,0 +1,375 @@
+#include "tess/plan/certified_plan.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <new>
+#include <numbers>
+#include <string>
+
+#include "base/text.h"
+#include "parallel/least_index.h"
+#include "parallel/parallel_for.h"
+#include "tess/write/f64_points.h"
+#include "tess/edges/side_curve.h"
+
+namespace tessera {
+namespace {
+
+constexpr std::size_t patches_a_piece = 64, blocks_a_piece = 8;
+constexpr std::uint64_t most_vertices = std::uint64_t{1} << 32;  // 32-bit indices
+
+/// Whether segments that a patch has are few enough beside the best.
+bool is_spared(const KeptSegments& kept, std::size_t patch, PatchSegments best) {
+  return !kept.segments.empty() && kept.segments[patch].cells() <= (1 + kept.spare) * best.cells();
+}
+
+}  // namespace
+
+double vertex_rounding(int degree_u, int degree_v, bool rational, double size) {
+  const double roundings = (rational ? 2 : 1) * (degree_u + degree_v + 6.0);
+  return std::numbers::sqrt3 * roundings * 0x1p-24 * size;
+}
+
+double vertex_rounding(const BezierPatch& patch, const Vec3& origin) {
+  double size = 0;
+  for (const Vec3& p : patch.points()) size = std::max(size, max_abs(p - origin));
+  return vertex_rounding(patch.degree_u(), patch.degree_v(), patch.is_rational(), size);
+}
+
+Result<CertifiedPlanner> CertifiedPlanner::make(const PatchSet::Impl& set, const PlannerOptions& options,
+                                                const Execution& execution) {
+  CertifiedPlanner planner(set, options);
+  const std::size_t patches = set.patches.size();
+  planner.shapes_.resize(patches);
+  planner.roundings_.resize(patches);
+  const std::size_t blocks = set.lane_counts.size();
+  BorderHashes hashes(set);
+  const auto hash = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t block = begin; block < end; ++block) hashes.find(set, block);
+  };
+  Status status = parallel_for(blocks, 4 * blocks_a_piece, {.cancel = execution.cancel}, hash);
+  if (!status.ok()) return status;
+  const auto bound = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t block = begin; block < end; ++block) {
+      planner.chords_.bound(set, block);
+      const BlockGroup& group = set.group_of_block(block);
+      const PatchShape whole{
+          static_cast<std::uint8_t>(group.degree_u), static_cast<std::uint8_t>(group.degree_v), {}, false};
+      const double rounding = vertex_rounding(group.degree_u, group.degree_v, group.rational, 1);
+      for (std::size_t lane = 0; lane < set.lane_counts[block]; ++lane) {
+        const std::size_t k = set.lane_patches[block * PatchSet::lanes + lane];
+        const std::optional<double> size = planner.chords_.size(block, lane);
+        planner.shapes_[k] = set.collapsed[k].any() ? PatchShape::of(set.patches[k], set.collapsed[k]) : whole;
+        const double vertices = options.f64_positions ? f64_position_rounding(set.patches[k], set.origin)
+                                : options.f64         ? f64_vertex_rounding(set.patches[k], set.origin)
+                                : size                ? rounding * *size
+                                                      : vertex_rounding(set.patches[k], set.origin);
+        planner.roundings_[k] = vertices + planner.chords_.slack(block, lane);
+      }
+    }
+  };
+  // Edges are found one after the other: beside the bounds, by whichever thread comes first.
+  const std::size_t pieces = 1 + (blocks + blocks_a_piece - 1) / blocks_a_piece;
+  const auto find_or_bound = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t piece = begin; piece < end; ++piece) {
+      if (piece == 0) {
+        planner.edges_ = SharedEdges(set, hashes);
+      } else {
+        bound((piece - 1) * blocks_a_piece, std::min(blocks, piece * blocks_a_piece));
+      }
+    }
+  };
+  status = parallel_for(pieces, pieces > 2 ? 1 : 2, execution, find_or_bound);
+  if (!status.ok()) return status;
+  for (const double rounding : planner.roundings_)
+    planner.largest_rounding_ = std::max(planner.largest_rounding_, rounding);
+  double weld = options.weld;
+  if (options.f64_positions) {
+    // Far away the last bits of doubles reach into the floats of small coordinates.
+    weld = std::max(weld, 0x1p-50 * std::max(max_abs(set.box().lower), max_abs(set.box().upper)));
+    planner.edges_ = parted_by_doubles(set, planner.edges_);
+  }
+  if (weld > 0 || options.f64) {
+    planner.weld_ = weld_borders(set, planner.shapes_, planner.roundings_, weld, planner.edges_, options.f64);
+    for (std::size_t k = 0; k < patches; ++k)
+      planner.roundings_[k] = std::max(planner.roundings_[k], planner.weld_.displacements[k]);
+  }
+  if (status = planner.bound_turning_and_picture(set, execution); !status.ok()) return status;
+  return planner;
+}
+
+Status CertifiedPlanner::bound_turning_and_picture(const PatchSet::Impl& set, const Execution& execution) {
+  if (!options_.angle && !options_.camera) return {};
+  if (options_.camera) pictures_.resize(shapes_.size());
+  if (options_.angle) turnings_.resize(shapes_.size());
+  const auto see = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t block = begin; block < end; ++block) {
+      std::array<double, PatchSet::lanes> moved{};
+      for (std::size_t lane = 0; lane < set.lane_counts[block]; ++lane)
+        moved[lane] = roundings_[set.lane_patches[block * PatchSet::lanes + lane]] + fit_error_;
+      PatchInPicture::find(*options_.camera, set, block, moved, options_.pixels, pictures_.data());
+    }
+  };
+  if (options_.camera)
+    if (Status status = parallel_for(set.lane_counts.size(), blocks_a_piece, execution, see); !status.ok())
+      return status;
+  if (!options_.angle) return {};
+  const auto bound = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      if (shapes_[k].is_curve) continue;
+      BezierPatch patch = set.patches[k];
+      for (const Side side : all_sides)  // what welding makes a pole is one
+        if (divided_shapes()[k].collapsed.has(edge_of(side)) && !shapes_[k].collapsed.has(edge_of(side))) {
+          Result<BezierPatch> pole = with_pole(patch, side);
+          if (!pole) throw std::bad_alloc();  // the points are those of the patch
+          patch = *std::move(pole);
+        }
+      turnings_[k] = TurningBound(patch);
+    }
+  };
+  return parallel_for(shapes_.size(), patches_a_piece, execution, bound);
+}
+
+std::optional<Rates> CertifiedPlanner::rates_for(const CellLimits& limits, int most) const {
+  const bool distance_alone = limits.chord && !limits.turning && !limits.picture;
+  return distance_alone ? limits.chord->cheapest(limits.distance, most) : cheapest(limits, most);
+}
+
+CertifiedPlanner::Choice CertifiedPlanner::choose(std::size_t patch, const Request& request, int most) const {
+  const double tolerance = request.tolerance;
+  const double given = roundings_[patch] + fit_error_;
+  const PatchInPicture* const picture = options_.camera ? &pictures_[patch] : nullptr;
+  const TurningBound* const turning = options_.angle && !shapes_[patch].is_curve ? &turnings_[patch] : nullptr;
+  const ChordBound chord = this->chord(patch);
+  Choice choice;
+  CellLimits limits;
+  const double distance = picture ? std::min(tolerance, picture->distance()) : tolerance;
+  if (!(given < distance)) choice.failure = given < tolerance ? Failure::rough_pixels : Failure::rough;
+  if (std::isfinite(distance)) limits.chord = &chord;
+  limits.distance = distance - given;
+  const std::optional<ChordBound> projected = picture ? picture->projected() : std::nullopt;
+  if (projected) {
+    limits.picture = &*projected;
+    limits.pixels = options_.pixels - picture->moved_pixels();
+    if (!(limits.pixels > 0)) choice.failure = Failure::rough_pixels;
+  }
+  if (choice.failure != Failure::none) return choice;
+  const bool bounded = turning && turning->is_finite();
+  if (bounded) {
+    limits.turning = turning;
+    limits.angle = *options_.angle;
+  }
+  std::optional<Rates> rates = rates_for(limits, most);
+  if (rates && turning && !bounded)
+    rates = Rates{std::max(rates->u, options_.angle_rate), std::max(rates->v, options_.angle_rate)};
+  if (!rates) {
+    choice.failure = Failure::wide;
+    return choice;
+  }
+  // Rates that were raised may be odd now: what holds for a half may not hold for the whole.
+  if (!(limits.keeps(*rates))) rates = {rates->u + rates->u % 2, rates->v + rates->v % 2};
+  choice.cells = double(rates->u) * rates->v;
+  if (most > most_rate) return choice;
+  const int least_rate = turning && !bounded ? options_.angle_rate : 1;
+  const ProvenSegments proven = settle(patch, limits, chord, least_rate, request, *rates);
+  choice.segments = proven.segments;
+  choice.bound = given + proven.distance;
+  const Rates coarsest = proven.segments.coarsest();
+  if (turning) choice.angle = bounded ? turning->angle(coarsest) : std::numeric_limits<double>::infinity();
+  if (picture) choice.pixels = picture->pixels(coarsest, choice.bound);
+  return choice;
+}
+
+ProvenSegments CertifiedPlanner::settle(std::size_t patch, const CellLimits& limits, const ChordBound& chord,
+                                        int least_rate, const Request& request, Rates rates) const {
+  const KeptSegments& kept = request.kept;
+  CellLimits others = limits;
+  others.chord = nullptr;
+  const auto keeps_others = [&](Rates r) { return std::min(r.u, r.v) >= least_rate && others.keeps(r); };
+  ProvenSegments proven{rates, chord.distance(rates)};
+  if (request.fewest && limits.chord) {
+    SegmentChoices choices(proven);
+    find_fewer(set_->patches[patch], limits.distance, keeps_others, choices);
+    proven = choices.fewest();
+  }
+  if (!is_spared(kept, patch, proven.segments) || !keeps_others(kept.segments[patch].coarsest())) return proven;
+  const PatchSegments had = kept.segments[patch];
+  double keeps = chord.distance_of(had);
+  if (limits.chord && !(keeps <= limits.distance)) keeps = local_distance(patch, had);
+  if (limits.chord && !(keeps <= limits.distance)) return proven;
+  return {had, keeps};
+}
+
+double CertifiedPlanner::local_distance(std::size_t patch, PatchSegments segments) const {
+  if (!options_.fewest) return std::numeric_limits<double>::infinity();
+  return tessera::local_distance(set_->patches[patch], segments);
+}
+
+std::string CertifiedPlanner::wanted(double tolerance) const {
+  std::string said;
+  const auto add = [&said](const std::string& more) { said += (said.empty() ? "" : " with ") + more; };
+  if (std::isfinite(tolerance)) add("the tolerance " + text(tolerance));
+  if (options_.angle) add("the angle " + text(*options_.angle));
+  if (options_.camera) add("the tolerance of " + text(options_.pixels) + " pixels");
+  return said;
+}
+
+ProvenSegments CertifiedPlanner::keep_by_distance(std::size_t patch, double distance, const KeptSegments& kept,
+                                                  ChordBlocks::Products& products, const ProvenSegments& best) const {
+  if (!is_spared(kept, patch, best.segments) || kept.segments[patch] == best.segments) return best;
+  const PatchSet::Slot slot = set_->slots[patch];
+  const PatchSegments had = kept.segments[patch];
+  double keeps = chord(patch).distance_of(had);
+  if (!(keeps <= distance)) {
+    products.find(chords_, *set_, slot.block);
+    keeps = chords_.chord(slot.block, slot.lane, &products).distance_of(had);
+  }
+  const bool by_halves = keeps <= distance;
+  if (!by_halves) keeps = local_distance(patch, had);
+  return keeps <= distance ? ProvenSegments{had, keeps, !by_halves && had.are_uniform()} : best;
+}
+
+Result<std::vector<ProvenSegments>> CertifiedPlanner::find_fewest(double tolerance, std::vector<SegmentChoices> choices,
+                                                                  const Execution& execution) const {
+  const auto no_others = [](Rates) { return true; };
+  const auto find = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      if (!shapes_[k].is_curve)
+        find_fewer(set_->patches[k], tolerance - (roundings_[k] + fit_error_), no_others, choices[k]);
+  };
+  if (Status status = parallel_for(choices.size(), 1, execution, find); !status.ok()) return status;
+  const auto chosen = choose_together(divided_shapes(), edges_, borders_against(), choices, execution.cancel);
+  if (!chosen) return chosen.status();
+  std::vector<ProvenSegments> proven(choices.size());
+  for (std::size_t k = 0; k < proven.size(); ++k) proven[k] = choices[k][(*chosen)[k]];
+  return proven;
+}
+
+Status CertifiedPlanner::choose_by_distance(const Request& request, CertifiedPlan& plan,
+                                            const Execution& execution) const {
+  const double tolerance = request.tolerance;
+  const KeptSegments& kept = request.kept;
+  LeastIndex failed;
+  std::vector<SegmentChoices> choices(request.fewest ? shapes_.size() : 0);
+  const auto take = [&](std::size_t k, const ProvenSegments& proven) {
+    plan.segments_[k] = proven.segments;
+    plan.bounds_[k] = rounded_up(proven.distance + (roundings_[k] + fit_error_));
+    if (proven.anywhere) plan.straddles_[k] = 1;
+  };
+  const auto choose_some = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t block = begin; block < end; ++block) {
+      const std::uint32_t* patches = set_->lane_patches.data() + block * PatchSet::lanes;
+      const std::size_t count = set_->lane_counts[block];
+      ChordBlocks::Lanes<double> left;
+      left.fill(tolerance);
+      for (std::size_t lane = 0; lane < count; ++lane)
+        left[lane] = tolerance - (roundings_[patches[lane]] + fit_error_);
+      ChordBlocks::Products products;
+      ChordBlocks::Choice choice = chords_.cheapest(*set_, block, count, left, most_rate, products);
+      for (std::size_t lane = 0; lane < count; ++lane) {
+        const std::size_t k = patches[lane];
+        if (!(left[lane] > 0) || choice.rates[lane].u == 0) failed.add(k);
+        const ProvenSegments proven{choice.rates[lane], choice.distance[lane]};
+        if (!choices.empty()) {
+          choices[k] = SegmentChoices(proven);
+        } else if (kept.segments.empty()) {
+          take(k, proven);
+        } else {
+          take(k, keep_by_distance(k, left[lane], kept, products, proven));
+        }
+      }
+    }
+  };
+  const Execution quiet{.cancel = execution.cancel}, &first = choices.empty() ? execution : quiet;
+  if (Status status = parallel_for(set_->lane_counts.size(), blocks_a_piece, first, choose_some); !status.ok())
+    return status;
+  if (failed.found()) return refusal(choose(failed.index(), {tolerance}, most_rate).failure, failed.index(), request);
+  if (choices.empty()) return {};
+  const auto fewest = find_fewest(tolerance, std::move(choices), execution);
+  if (!fewest) return fewest.status();
+  for (std::size_t k = 0; k < fewest->size(); ++k) {
+    if (kept.segments.empty()) {
+      take(k, (*fewest)[k]);
+    } else {
+      ChordBlocks::Products products;
+      take(k, keep_by_distance(k, tolerance - (roundings_[k] + fit_error_), kept, products, (*fewest)[k]));
+    }
+  }
+  return {};
+}
+
+Status CertifiedPlanner::choose_rates(const Request& request, CertifiedPlan& plan, const Execution& execution) const {
+  const std::size_t patches = shapes_.size();
+  plan.segments_.resize(patches);
+  plan.bounds_.resize(patches);
+  if (options_.fewest) plan.straddles_.resize(patches);
+  if (!options_.angle && !options_.camera) return choose_by_distance(request, plan, execution);
+  if (options_.angle) plan.angles_.resize(patches);
+  if (options_.camera) plan.pixels_.resize(patches);
+  LeastIndex failed;
+  const auto choose_some = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const Choice choice = choose(k, request, most_rate);
+      if (choice.failure != Failure::none) failed.add(k);
+      plan.segments_[k] = choice.segments;
+      plan.bounds_[k] = rounded_up(choice.bound);
+      if (options_.angle) plan.angles_[k] = rounded_up(choice.angle);
+      if (options_.camera) plan.pixels_[k] = rounded_up(choice.pixels);
+    }
+  };
+  if (Status status = parallel_for(patches, patches_a_piece, execution, choose_some); !status.ok()) return status;
+  if (!failed.found()) return {};
+  return refusal(choose(failed.index(), request, most_rate).failure, failed.index(), request);
+}
+
+Result<CertifiedPlan> CertifiedPlanner::plan(const Request& request, const Execution& execution) const {
+  CertifiedPlan plan;
+  plan.is_f64_ = options_.f64;
+  plan.has_f64_positions_ = options_.f64_positions;
+  if (Status status = choose_rates(request, plan, execution); !status.ok()) return status;
+  divide(request.tolerance, plan);
+  plan.lay_out();
+  return plan;
+}
+
+Result<CertifiedPlan> CertifiedPlanner::plan(double tolerance, std::uint64_t most_triangles, const Execution& execution,
+                                             const KeptSegments& kept) const {
+  Result<CertifiedPlan> best = plan({tolerance, options_.fewest, kept, most_triangles}, execution);
+  if (!best) return best;
+  if (options_.fewest && kept.segments.empty()) {
+    // What neighbours cost one another is estimated where segments are chosen: rarely, others have fewer.
+    Result<CertifiedPlan> plain = plan({tolerance}, {.cancel = execution.cancel});
+    if (!plain) return plain;
+    if (plain->capacity().triangles < best->capacity().triangles) best = std::move(plain);
+  }
+  const auto [vertices, triangles, quads] = best->capacity();
+  if (triangles <= most_triangles && vertices <= most_vertices) return best;
+  return Status(StatusCode::invalid_argument, wanted(tolerance) + " takes " + std::to_string(triangles) +
+                                                  " triangles and " + std::to_string(vertices) + " vertices, " +
+                                                  std::to_string(most_triangles) + " and " +
+                                                  std::to_string(most_vertices) + " are allowed");
+}
+
+Result<double> CertifiedPlanner::smallest_tolerance(std::uint64_t most_triangles, const Execution& execution) const {
+  // One cell a patch keeps `high`; float vertices keep no more than `low`.
+  double low = 0, high = 0;
+  for (std::size_t k = 0; k < shapes_.size(); ++k) {
+    const double given = roundings_[k] + fit_error_;
+    low = std::max(low, given);
+    high = std::max(high, 1.001 * (given + chord(k).distance({1, 1})));
+  }
+  high = std::max(high, 1.001 * low);
+  if (Result<CertifiedPlan> plan = this->plan(high, most_triangles, execution); !plan) return plan.status();
+  low = std::max(low, 1e-6 * high);
+  while (high > 1.01 * low) {
+    const double middle = std::sqrt(low * high);
+    Result<CertifiedPlan> plan = this->plan(middle, most_triangles, execution);
+    if (!plan && plan.status().code() != StatusCode::invalid_argument) return plan.status();
+    (plan ? high : low) = middle;
+  }
+  return high;
+}
+
+}  // namespace tessera

@@ -1,0 +1,65 @@
+// Where the vertices and triangles of a certified plan lie.
+
+#include "tess/plan/certified_plan.h"
+
+namespace tessera {
+
+void CertifiedPlan::lay_out() {
+  const std::size_t patches = divisions_.size();
+  for (auto* first : {&first_vertex_, &first_triangle_, &first_quad_}) first->resize(patches + 1);
+  std::size_t vertices = 0, triangles = 0, quads = 0;
+  for (std::size_t patch = 0; patch < patches; ++patch) {
+    const Division& division = divisions_[patch];
+    first_vertex_[patch] = vertices;
+    first_triangle_[patch] = triangles;
+    first_quad_[patch] = quads;
+    if (!division.empty)
+      vertices += division.inner_count() + (shares_vertices() ? owned_ring_count(patch) : division.ring_count());
+    triangles += division.triangle_count();
+    quads += division.cell_count();
+  }
+  first_vertex_[patches] = vertices;
+  first_triangle_[patches] = triangles;
+  first_quad_[patches] = quads;
+}
+
+void CertifiedPlan::share(const VertexCopies& copies) {
+  const auto borders = static_cast<std::uint32_t>(4 * divisions_.size());
+  corner_sources_.resize(borders);
+  border_sources_.resize(borders);
+  for (std::uint32_t border = 0; border < borders; ++border) {
+    corner_sources_[border] = border;
+    border_sources_[border] = {border};
+  }
+  for (const VertexCopies::Corner& copy : copies.corners) corner_sources_[copy.to] = copy.from;
+  for (const VertexCopies::Border& copy : copies.borders) border_sources_[copy.to] = {copy.from, copy.reversed};
+  for (const VertexCopies::Corner& pole : copies.poles) border_sources_[pole.to] = {pole.from, false, true};
+  lay_out();
+}
+
+std::size_t CertifiedPlan::owned_ring_count(std::size_t patch, std::uint32_t sides) const {
+  std::size_t count = 0;
+  for (std::uint32_t side = 0; side < sides; ++side) {
+    const std::size_t border = 4 * patch + side;
+    if (owns_corner(border)) ++count;
+    if (owns_border(border)) count += static_cast<std::size_t>(divisions_[patch].border[side].rate() - 1);
+  }
+  return count;
+}
+
+std::size_t CertifiedPlan::ring_vertex(std::uint32_t border, int k) const {
+  const std::uint32_t patch = border / 4, side = border % 4;
+  const int rate = divisions_[patch].border[side].rate();
+  if (k == rate) return ring_vertex(4 * patch + (side + 1) % 4, 0);
+  const auto start = [this](std::uint32_t of) {
+    return first_vertex_[of / 4] + divisions_[of / 4].inner_count() + owned_ring_count(of / 4, of % 4);
+  };
+  if (k == 0) return start(shares_vertices() ? corner_sources_[border] : border);
+  const BorderSource source = shares_vertices() ? border_sources_[border] : BorderSource{border};
+  if (source.is_point) return start(source.from);
+  const bool opposite = (is_backward(border) != is_backward(source.from)) != source.reversed;
+  const std::size_t before = owns_corner(source.from) ? 1 : 0;
+  return start(source.from) + before + static_cast<std::size_t>((opposite ? rate - k : k) - 1);
+}
+
+}  // namespace tessera

@@ -1,0 +1,104 @@
+// Tolerances that the rounding of vertices does not leave room for, and what is said of them.
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "base/text.h"
+#include "tess/plan/certified_plan.h"
+
+namespace tessera {
+namespace {
+
+constexpr std::uint64_t most_vertices = std::uint64_t{1} << 32;  // 32-bit indices
+
+Status invalid(std::string message, std::size_t patch) {
+  return {StatusCode::invalid_argument, std::move(message), static_cast<std::ptrdiff_t>(patch)};
+}
+
+/// x > 0 to two digits, not below.
+double rounded_up_shortly(double x) {
+  const double unit = std::pow(10.0, std::floor(std::log10(x)) - 1);
+  for (double count = std::ceil(x / unit); std::isfinite(count); ++count) {
+    std::array<char, 32> digits;
+    char* const end =
+        std::to_chars(digits.data(), digits.data() + digits.size(), count * unit, std::chars_format::general, 2).ptr;
+    double value = 0;
+    std::from_chars(digits.data(), end, value);
+    if (value >= x) return value;
+  }
+  return x;  // below what double divides
+}
+
+}  // namespace
+
+bool CertifiedPlanner::needs_f64(double tolerance) const {
+  constexpr double most_share = 1.0 / 8;
+  if (largest_rounding_ > most_share * tolerance) return true;
+  for (std::size_t k = 0; k < pictures_.size(); ++k) {
+    const double given = roundings_[k] + fit_error_;
+    if (!(given < pictures_[k].distance())) return true;
+    if (pictures_[k].projected() && !(pictures_[k].moved_pixels() < options_.pixels)) return true;
+  }
+  return false;
+}
+
+bool CertifiedPlanner::is_rough(double tolerance) const {
+  return std::any_of(roundings_.begin(), roundings_.end(),
+                     [&](double rounding) { return !(2 * (rounding + fit_error_) < tolerance); });
+}
+
+std::optional<double> CertifiedPlanner::nearest_tolerance(std::uint64_t most_triangles) const {
+  double given = 0;
+  for (const double rounding : roundings_) given = std::max(given, rounding + fit_error_);
+  // The rest is for chords: rates go by its root.
+  for (double room = given / 8; room < 1e12 * given; room *= 2) {
+    const double tolerance = rounded_up_shortly(given + room);
+    const auto serves = [&](std::size_t k) { return choose(k, {tolerance}, most_rate).failure == Failure::none; };
+    std::size_t served = 0;
+    while (served < shapes_.size() && serves(served)) ++served;
+    if (served < shapes_.size()) continue;
+    const Result<CertifiedPlan> found = plan({tolerance}, {});
+    if (found && found->capacity().triangles <= most_triangles && found->capacity().vertices <= most_vertices)
+      return tolerance;
+  }
+  return {};
+}
+
+Status CertifiedPlanner::refusal(Failure failure, std::size_t patch, const Request& request) const {
+  const double tolerance = request.tolerance;
+  const std::string vertices = (options_.f64_positions ? "vertices in double of patch " : "float vertices of patch ") +
+                               std::to_string(patch) + (options_.weld > 0 ? ", welded," : "") + " keep, " +
+                               text(rounded_up_shortly(roundings_[patch])) + ", and the fit error, " + text(fit_error_);
+  const bool is_near = failure == Failure::wide && roundings_[patch] + fit_error_ > tolerance / 2;
+  if (failure == Failure::rough || is_near) {
+    const std::optional<double> nearest = nearest_tolerance(request.most_triangles);
+    return invalid("the tolerance " + text(tolerance) + (is_near ? " is little above what " : " is not above what ") +
+                       vertices + (nearest ? "; " + text(*nearest) + " would do" : ""),
+                   patch);
+  }
+  if (failure == Failure::rough_pixels)
+    return invalid("so near to the eye, " + text(options_.pixels) + " pixels are not above what " + vertices +
+                       "; a larger near distance leaves more room",
+                   patch);
+  constexpr int unlimited = 1 << 24;
+  double triangles = 0;
+  const char* about = "about ";
+  for (std::size_t k = 0; k < shapes_.size(); ++k) {
+    const Choice choice = choose(k, {tolerance}, unlimited);
+    const bool is_known = choice.failure == Failure::none;
+    if (!is_known) about = "more than ";
+    triangles += 2 * (is_known ? choice.cells : unlimited);
+  }
+  std::array<char, 32> count;
+  std::snprintf(count.data(), count.size(), "%.2g", triangles);
+  return invalid(wanted(tolerance) + " takes more than " + std::to_string(most_rate) +
+                     " segments along a parameter of patch " + std::to_string(patch) + ", and " + about + count.data() +
+                     " triangles in all",
+                 patch);
+}
+
+}  // namespace tessera

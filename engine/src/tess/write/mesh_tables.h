@@ -1,0 +1,104 @@
+#pragma once
+// What the meshes of many patches share: weights, parameters and strips of triangles of all segments that are in use.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "base/aligned.h"
+#include "kernel/mesh/mesh_kernels.h"
+#include "tess/write/stitched_patch.h"
+#include "tessera/bezier_patch.h"
+
+namespace tessera {
+
+/// Looked up by number while a mesh is written. Rates are at most 4096.
+class MeshTables {
+ public:
+  /// Tables of all that patches of these shapes need that are divided so. Those of a small mesh take longer to make than its
+  /// vertices: the common ones are made once a process, and plans share them. `with_cubic`: for kernels that take bicubic
+  /// patches point by point as well. Threads: any number.
+  static std::shared_ptr<const MeshTables> of(std::span<const PatchShape> shapes, std::span<const Division> divisions,
+                                              bool with_cubic);
+  /// Tables of more bytes are not shared.
+  static constexpr std::size_t most_common = std::size_t{1} << 18;
+  std::size_t bytes() const { return bytes_; }  ///< about
+
+  // Layouts: see kernel::MeshVertexJob and MeshBorder. Weights are rounded once, to float.
+  const float* inner_weights(int degree, Segments along) const { return tables(along).inner[at(degree)][place(along)]; }
+  const float* border_weights(int degree, Segments along) const {
+    return tables(along).border[at(degree)][place(along)];
+  }
+  /// See kernel::MeshVertexJob::points.
+  const kernel::MeshCubicInner* cubic_inner(Segments along) const { return &tables(along).cubic_inner[place(along)]; }
+  const kernel::MeshCubicBorder* cubic_border(Segments along) const {
+    return &tables(along).cubic_border[place(along)];
+  }
+  /// Where segments begin, and 1; rounded.
+  const float* parameters(Segments along) const { return tables(along).parameters[place(along)]; }
+
+  /// A strip between a border and inner points, as the ring runs: see kernel::MeshStrip.
+  struct Strip {
+    const std::uint32_t* codes = nullptr;  ///< whole sixteens
+    int count = 0;
+  };
+  Strip strip(Segments border, Segments inner, bool collapsed) const {
+    if (is_common(border, inner, collapsed))
+      return strips_[at(inner.rate())][at(border.rate() + most_missing - inner.rate())];
+    return other_strip(border, inner, collapsed);
+  }
+
+ private:
+  friend class TableMaker;
+  explicit MeshTables(bool with_cubic) : with_cubic_(with_cubic) {}
+
+  /// A border has at least one segment, the inner points at least two.
+  static constexpr int most_missing = 1;
+  static std::size_t at(int k) { return static_cast<std::size_t>(k); }
+  static bool is_common(Segments border, Segments inner, bool collapsed) {
+    return border.is_uniform() && inner.is_uniform() && !collapsed;
+  }
+  /// Keys of segments are below 2^26.
+  static std::uint64_t key(Segments border, Segments inner, bool collapsed) {
+    return std::uint64_t{border.key()} << 32 | std::uint64_t{collapsed} << 31 | inner.key();
+  }
+
+  /// All that is needed at a border of a patch, as the ring runs; the degree is that along it.
+  bool has(int degree, Segments inner, Segments border, bool collapsed) const;
+  void add(int degree, Segments inner, Segments border, bool collapsed);
+  void add_parameters(Segments along);
+  void add_inner(int degree, Segments along);
+  void add_border(int degree, Segments along);
+  void add_strip(Segments border, Segments inner, bool collapsed);
+  kernel::MeshCubicInner make_cubic_inner(Segments along);
+  kernel::MeshCubicBorder make_cubic_border(Segments along);
+  /// Its memory, which copies share from then on.
+  template <class T>
+  const T* hold(AlignedVector<T> made);
+
+  struct Tables {
+    std::array<std::vector<const float*>, max_degree + 1> inner, border;
+    std::vector<kernel::MeshCubicInner> cubic_inner;
+    std::vector<kernel::MeshCubicBorder> cubic_border;
+    std::vector<const float*> parameters;
+  };
+  Tables& tables(Segments along) { return along.is_uniform() ? uniform_ : others_; }
+  const Tables& tables(Segments along) const { return along.is_uniform() ? uniform_ : others_; }
+  std::size_t place(Segments along) const { return along.is_uniform() ? at(along.rate()) : other_place(along); }
+  [[gnu::cold]] std::size_t other_place(Segments along) const;
+  [[gnu::cold]] Strip other_strip(Segments border, Segments inner, bool collapsed) const;
+
+  bool with_cubic_;
+  Tables uniform_;  ///< by rate
+  Tables others_;   ///< by other_places_
+  std::unordered_map<std::uint32_t, std::size_t> other_places_;
+  std::vector<std::vector<Strip>> strips_;  ///< common ones, `[inner][border + most_missing - inner]`
+  std::unordered_map<std::uint64_t, Strip> other_strips_;
+  std::vector<std::shared_ptr<const void>> memory_;  ///< of all that these point to
+  std::size_t bytes_ = 0;
+};
+
+}  // namespace tessera

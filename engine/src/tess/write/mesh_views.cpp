@@ -1,0 +1,131 @@
+#include "tess/write/mesh_views.h"
+
+#include <algorithm>
+#include <string>
+
+#include "block/patch_set_impl.h"
+#include "eval/view_checks.h"
+#include "parallel/least_index.h"
+#include "parallel/parallel_for.h"
+
+namespace tessera {
+namespace {
+
+constexpr std::size_t patches_a_piece = 1024;
+
+Status invalid(std::string message) { return {StatusCode::invalid_argument, std::move(message)}; }
+
+Status check_size(const char* name, std::size_t size, std::size_t wanted, const char* what) {
+  if (size >= wanted) return {};
+  return {StatusCode::buffer_too_small, std::string("the ") + name + " view holds " + std::to_string(size) + " " +
+                                            what + ", " + std::to_string(wanted) + " are needed"};
+}
+
+template <class T, int N>
+Status check_view(const char* name, const VectorView<T, N>& view, std::size_t vertices) {
+  if (view.empty()) return {};
+  if (std::find(view.component.begin(), view.component.end(), nullptr) != view.component.end())
+    return invalid(std::string("a component of the ") + name + " view is null");
+  if (view.stride < 1)
+    return invalid("the " + std::string(name) + " view's stride is " + std::to_string(view.stride) +
+                   ", it must be at least 1");
+  return check_size(name, view.size, vertices, "vertices");
+}
+
+template <class View>
+void add_wanted(ViewChecks& checks, const char* name, const View& view) {
+  if (!view.empty()) checks.add(name, view);
+}
+
+void add_wanted(ViewChecks& checks, const char* name, std::span<std::uint32_t> numbers, std::size_t records) {
+  const View1<std::uint32_t> view{.component = {numbers.data()}, .stride = 1, .size = numbers.size()};
+  if (!numbers.empty()) checks.add(name, view, records);
+}
+
+/// The views of vertices: aligned, and apart from each other.
+ViewChecks vertex_checks(const MeshViews& out, const MeshCapacity& wanted) {
+  ViewChecks checks(wanted.vertices);
+  add_wanted(checks, "position", out.position);
+  add_wanted(checks, "normal", out.normal);
+  add_wanted(checks, "position_f64", out.position_f64);
+  return checks;
+}
+
+Status check_lengths(const MeshViews& out, const MeshCapacity& wanted, bool f64) {
+  if (f64 && out.position_f64.empty())
+    return invalid("the position_f64 view is empty, a plan with positions in double requires it");
+  if (!f64 && !out.position_f64.empty())
+    return invalid("the position_f64 view must be empty: the plan has no positions in double");
+  if (!f64 && out.position.empty()) return invalid("the position view is empty, it is required");
+  if (Status status = check_view("position_f64", out.position_f64, wanted.vertices); !status.ok()) return status;
+  if (Status status = check_view("position", out.position, wanted.vertices); !status.ok()) return status;
+  return check_view("normal", out.normal, wanted.vertices);
+}
+
+}  // namespace
+
+Mesh empty_mesh(const MeshCapacity& capacity, const Vec3& origin) {
+  Mesh mesh;
+  mesh.origin = origin;
+  mesh.positions.reserve(3 * capacity.vertices + 1);  // room that rays need behind the last (RayScene::make)
+  mesh.positions.resize(3 * capacity.vertices);
+  mesh.normals.resize(3 * capacity.vertices);
+  mesh.parameters.resize(2 * capacity.vertices);
+  mesh.patches.resize(capacity.triangles);
+  mesh.indices.resize(3 * capacity.triangles);
+  mesh.quads.resize(4 * capacity.quads);
+  mesh.quad_patches.resize(capacity.quads);
+  return mesh;
+}
+
+Status check_vertex_views(const MeshViews& out, const MeshCapacity& wanted, bool f64) {
+  if (Status status = check_lengths(out, wanted, f64); !status.ok()) return status;
+  return vertex_checks(out, wanted).status();
+}
+
+Status check_views(const MeshViews& out, const MeshCapacity& wanted, bool f64) {
+  if (Status status = check_lengths(out, wanted, f64); !status.ok()) return status;
+  if (Status status = check_view("parameter", out.parameter, wanted.vertices); !status.ok()) return status;
+  if (Status status = check_size("indices", out.indices.size(), 3 * wanted.triangles, "indices"); !status.ok())
+    return status;
+  if (!out.patch.empty())
+    if (Status status = check_size("patch", out.patch.size(), wanted.triangles, "triangles"); !status.ok())
+      return status;
+  if (Status status = check_size("quads", out.quads.size(), 4 * wanted.quads, "indices"); !status.ok()) return status;
+  if (!out.quad_patch.empty())
+    if (Status status = check_size("quad patch", out.quad_patch.size(), wanted.quads, "quads"); !status.ok())
+      return status;
+  ViewChecks checks = vertex_checks(out, wanted);
+  add_wanted(checks, "parameter", out.parameter);
+  add_wanted(checks, "indices", out.indices, 3 * wanted.triangles);
+  add_wanted(checks, "patch", out.patch, wanted.triangles);
+  add_wanted(checks, "quads", out.quads, 4 * wanted.quads);
+  add_wanted(checks, "quad patch", out.quad_patch, wanted.quads);
+  return checks.status();
+}
+
+Status check_count(const PatchSet& set, std::size_t planned) {
+  if (set.patch_count() == planned) return {};
+  return {StatusCode::stale,
+          "the plan is for " + std::to_string(planned) + " patches, the set has " + std::to_string(set.patch_count())};
+}
+
+Status check_shapes(const PatchSet& set, std::span<const PatchShape> planned) {
+  if (Status status = check_count(set, planned.size()); !status.ok()) return status;
+  LeastIndex changed;
+  const auto compare = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      if (PatchShape::of(set.impl().patches[k], set.impl().collapsed[k]) == planned[k]) continue;
+      changed.add(k);
+      return;
+    }
+  };
+  if (Status status = parallel_for(planned.size(), patches_a_piece, {}, compare); !status.ok()) return status;
+  if (!changed.found()) return {};
+  return {
+      StatusCode::stale,
+      "patch " + std::to_string(changed.index()) + " has other degrees or collapsed edges than when the plan was made",
+      static_cast<std::ptrdiff_t>(changed.index())};
+}
+
+}  // namespace tessera

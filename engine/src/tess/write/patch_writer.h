@@ -1,0 +1,67 @@
+#pragma once
+// One patch of a certified mesh, from its packed control points into the caller's memory.
+
+#include <optional>
+
+#include "block/patch_set_impl.h"
+#include "tess/plan/certified_plan.h"
+#include "tess/write/mesh_tables.h"
+#include "tessera/execution.h"
+#include "tessera/mesh.h"
+
+namespace tessera {
+
+namespace kernel {
+struct KernelTable;
+struct StreamState;
+}  // namespace kernel
+
+struct VertexJob;
+
+/// Writes patches [begin, end) of a plan, as triangles, or as quads if there are views of these, and nothing outside their
+/// records. The bits of a vertex do not depend on the
+/// range; borders of patches that are one edge have the same positions.
+class [[gnu::visibility("hidden")]] PatchWriter {
+ public:
+  /// `bytes`: how much will be written, if not all.
+  PatchWriter(const PatchSet::Impl& set, const CertifiedPlan& plan, const MeshTables& tables,
+              const kernel::KernelTable& kernels, const MeshViews& out, Stores stores,
+              std::optional<std::size_t> bytes = {});
+
+  bool streaming() const { return streaming_; }
+
+  void write(std::size_t begin, std::size_t end) const;
+
+ private:
+  friend class VertexPass;
+  /// Positions and normals of a patch whose vertices are its own; records before `end` may be written, whatever they hold.
+  void write_vertices(std::size_t k, std::size_t end, VertexJob & vertices) const;
+  /// What a patch's vertices and triangles are written from, but for where they go.
+  void prepare(std::size_t k, VertexJob & vertices) const;
+  void prepare_points(const PatchSet::Slot& slot, const float* net, const Division& division, VertexJob& vertices)
+      const;
+  void prepare_weights(std::size_t k, const BlockGroup& group, const Division& division, VertexJob& vertices) const;
+  /// `end`: of what may be written, whatever it then holds. `lines`: stand at `out`, and take the indices past the caches.
+  void write_triangles(std::size_t k, std::uint32_t * out, std::uint32_t * end, kernel::StreamState* lines = nullptr)
+      const;
+  /// Puts shared vertices in the place of a patch's own in the indices of its strips.
+  void share_indices(std::size_t k, std::uint32_t * indices) const;
+  void write_quads(std::size_t k) const;
+  /// Positions from the double control points: in double, or rounded once in the place of those that are written. Normals as
+  /// well beside positions in double.
+  void write_f64(std::size_t k) const;
+  /// The vertices that a patch owns where others are shared.
+  void write_owned(std::size_t k, VertexJob & vertices) const;
+  void write_ring(std::size_t k, const Division& part, VertexJob& vertices) const;
+  void write_parameters(std::size_t k) const;
+  void write_patch_numbers(std::size_t k) const;
+
+  const PatchSet::Impl& set_;
+  const CertifiedPlan& plan_;
+  const MeshTables& tables_;
+  const kernel::KernelTable& kernels_;
+  const MeshViews& out_;
+  bool streaming_;
+};
+
+}  // namespace tessera

@@ -1,0 +1,84 @@
+#pragma once
+// What the vertices of patches are written with: the kernel's job, and what that points to.
+
+#include <algorithm>
+#include <array>
+
+#include "kernel/isa/kernel_table.h"
+#include "tess/write/stitched_patch.h"
+#include "tessera/mesh.h"
+
+namespace tessera {
+
+/// What an exact normal is made from.
+struct ExactPatch {
+  const BezierPatch* patch = nullptr;
+  const Division* division = nullptr;
+};
+
+/// See kernel::ExactNormal and MeshVertexJob::grid.
+inline int exact_normal(void* context, int first, int second, int lane, float* normal) {
+  const auto& exact = *static_cast<const ExactPatch*>(context);
+  const auto vertex =
+      static_cast<std::size_t>(lane < kernel::mesh_tile ? first + lane : second + lane - kernel::mesh_tile);
+  const auto at = exact.division->parameters(std::min(vertex, exact.division->vertex_count() - 1));
+  const UnitNormal found = unit_normal(*exact.patch, at.u, at.v);
+  normal[0] = static_cast<float>(found.direction.x);
+  normal[1] = static_cast<float>(found.direction.y);
+  normal[2] = static_cast<float>(found.direction.z);
+  return static_cast<int>(found.kind);
+}
+
+inline kernel::StreamState stream_from(float* memory) { return {.first = memory, .next = memory}; }
+
+/// A job and what it points to; patches of one range take turns with it.
+struct VertexJob {
+  kernel::MeshVertexJob job;
+  std::array<kernel::StreamState, 2> lines;  ///< of positions and normals
+  alignas(cache_line) std::array<float, kernel::block_lanes> doubt, noise;
+  std::array<std::array<float, 3>, 4> starts;
+  ExactPatch exact;
+  /// The patches of a block, by themselves: see kernel::MeshKernels::mesh_points.
+  static constexpr std::size_t no_block = static_cast<std::size_t>(-1);
+  std::size_t points_block = no_block;
+  alignas(cache_line) std::array<float, std::size_t{kernel::mesh_patch_points} * kernel::block_lanes> points;
+
+  VertexJob() {
+    job.grid.doubt = doubt.data();
+    job.grid.noise = noise.data();
+    job.grid.exact_normal = exact_normal;
+    job.grid.exact_context = &exact;
+  }
+  VertexJob(const VertexJob&) = delete;
+  VertexJob& operator=(const VertexJob&) = delete;
+
+  /// Vertices go past the caches from now on, from this one of a mesh on, each patch behind the one before.
+  void start_lines(const MeshViews& out, std::size_t vertex) {
+    lines[0] = stream_from(out.position.component[0] + 3 * vertex);
+    job.position.lines = &lines[0];
+    if (out.normal.empty()) return;
+    lines[1] = stream_from(out.normal.component[0] + 3 * vertex);
+    job.normal.lines = &lines[1];
+  }
+  /// What is still on its way.
+  void finish_lines(const kernel::KernelTable& kernels) {
+    for (const kernel::MeshRecords* records : {&job.position, &job.normal})
+      if (records->lines) kernels.finish_lines(*records->lines);
+  }
+};
+
+inline bool is_packed(const View3<float>& view) {
+  return view.stride == 3 && view.component[1] == view.component[0] + 1 && view.component[2] == view.component[0] + 2;
+}
+
+/// Field by field: copies of a record that was just made wait for its stores.
+inline void set_packed(kernel::MeshRecords& out, float* first) {
+  for (int c = 0; c < 3; ++c) out.out[c] = first ? first + c : nullptr;
+  out.stride = 3;
+}
+inline void set_records(kernel::MeshRecords& out, const View3<float>& view, std::size_t first) {
+  for (int c = 0; c < 3; ++c) out.out[c] = view.empty() ? nullptr : &view.at(first, c);
+  out.stride = view.stride;
+}
+
+}  // namespace tessera
