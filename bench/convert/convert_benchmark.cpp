@@ -12,10 +12,10 @@
 #include "suite.h"
 #include "support/synthetic_sets.h"
 #include "tessera/bezier_operations.h"
+#include "tessera/convert.h"
 #include "tessera/coons_patch.h"
 #include "tessera/hermite_patch.h"
 #include "tessera/parametric_surface.h"
-#include "tessera/convert.h"
 #include "timing.h"
 
 namespace tessera::bench {

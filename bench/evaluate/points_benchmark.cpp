@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "base/impl_access.h"
 #include "block/patch_set_impl.h"
 #include "suite.h"
 #include "support/synthetic_sets.h"
@@ -71,7 +72,7 @@ struct Samples {
 
 /// The best of several passes over a value of each of the three lines of each sample's patch.
 double touch_seconds(const PatchSet& set, const Samples& samples) {
-  const float* points = set.impl().single.points.data();
+  const float* points = impl_of(set).f32.points.data();
   double best = 1e30;
   for (int pass = 0; pass < 5; ++pass) {
     const auto start = std::chrono::steady_clock::now();

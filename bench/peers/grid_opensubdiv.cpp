@@ -22,7 +22,7 @@ namespace Far = OpenSubdiv::Far;
 namespace Osd = OpenSubdiv::Osd;
 namespace Sdc = OpenSubdiv::Sdc;
 
-constexpr std::size_t most_stencils = 200'000;
+constexpr std::size_t max_stencils = 200'000;
 
 /// Face (a, b) of the inner ones is number (a + 1) * faces + b + 1, its s runs along i.
 std::unique_ptr<Far::TopologyRefiner> refiner_of(const GridTask& task) {
@@ -161,7 +161,7 @@ const bool registered = [] {
   grid_peers().push_back({"OpenSubdiv", [](const GridTask& task) {
                             std::vector<GridRun> runs{
                                 run_of(std::make_shared<ByPatches>(task), "CpuEvaluator::EvalPatches")};
-                            if (task.points() <= most_stencils)
+                            if (task.points() <= max_stencils)
                               runs.push_back(run_of(std::make_shared<ByStencils>(task), "limit stencils"));
                             return runs;
                           }});

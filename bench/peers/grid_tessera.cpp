@@ -10,9 +10,9 @@
 #include "base/aligned.h"
 #include "peers/interleaved.h"
 #include "support/synthetic_sets.h"
+#include "tessera/convert.h"
 #include "tessera/evaluate.h"
 #include "tessera/model.h"
-#include "tessera/convert.h"
 
 namespace tessera::bench {
 namespace {

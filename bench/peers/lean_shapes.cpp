@@ -12,9 +12,9 @@
 #include "peers/lean_cases.h"
 #include "peers/occt_shape.h"
 #include "support/synthetic_sets.h"
+#include "tessera/convert.h"
 #include "tessera/model.h"
 #include "tessera/nurbs_surface.h"
-#include "tessera/convert.h"
 
 namespace tessera::bench {
 namespace {

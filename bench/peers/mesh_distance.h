@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/function_ref.h"
-#include "tessera/mesh.h"
 #include "tessera/geometry.h"
+#include "tessera/mesh.h"
 
 namespace tessera::bench {
 

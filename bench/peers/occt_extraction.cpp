@@ -16,13 +16,14 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/impl_access.h"
 #include "block/patch_set_impl.h"
 #include "convert/wavy_surface.h"
 #include "peers/interleaved.h"
 #include "peers/results.h"
 #include "support/synthetic_sets.h"
-#include "tessera/model.h"
 #include "tessera/convert.h"
+#include "tessera/model.h"
 
 namespace tessera::bench {
 namespace {
@@ -76,12 +77,12 @@ double distance(const PatchGrid& grid, const TColGeom_Array2OfBezierSurface& pat
 
 /// The largest distance of a coefficient in the set's blocks from its patch's control point.
 double distance(const PatchSet& set) {
-  const PatchSet::Impl& inside = set.impl();
+  const PatchSet::Impl& inside = impl_of(set);
   const BlockGroup& group = inside.groups.front();
   double largest = 0;
   for (std::size_t k = 0; k < set.patch_count(); ++k) {
     const auto [block, lane] = set.slot(k);
-    const float* values = &inside.single.bernstein[group.first_value + block * group.block_values + lane];
+    const float* values = &inside.f32.bernstein[group.first_value + block * group.block_values + lane];
     for (const Vec3& p : set.patch(k).points()) {
       const Vec3 relative = p - set.origin();
       for (const double x : {relative.x, relative.y, relative.z}) {
@@ -105,7 +106,7 @@ int run() {
   const double apart = distance(grid, patches), rounding = distance(set);
   std::printf("control points agree to %.1e of the size; blocks hold them to %.1e of it\n", apart / size,
               rounding / size);
-  if (!(apart <= 1e-12 * size) || !(rounding <= 0x1p-24 * size) || set.impl().groups.size() != 1) {
+  if (!(apart <= 1e-12 * size) || !(rounding <= 0x1p-24 * size) || impl_of(set).groups.size() != 1) {
     std::fputs("occt_extraction: the conversions do not agree\n", stderr);
     return 1;
   }

@@ -18,9 +18,9 @@
 #include "peers/occt_shape.h"
 #include "peers/results.h"
 #include "support/synthetic_sets.h"
-#include "tessera/tessellation.h"
-#include "tessera/model.h"
 #include "tessera/convert.h"
+#include "tessera/model.h"
+#include "tessera/tessellation.h"
 
 namespace tessera::bench {
 namespace {

@@ -12,8 +12,8 @@
 #include "peers/results.h"
 #include "support/reference_rays.h"
 #include "support/synthetic_sets.h"
-#include "tessera/model.h"
 #include "tessera/convert.h"
+#include "tessera/model.h"
 
 namespace tessera::bench {
 namespace {
@@ -93,7 +93,7 @@ bool is_acceptable(const Difference& d, const RayRun& run) {
 void print(const RayTask& task, const std::vector<RayRun>& runs, const std::vector<double>& seconds,
            const std::vector<Difference>& differences, std::size_t own) {
   std::printf("\nclosest hits: %d x %d spans, %zu camera rays, facets of %d x %d a span, one thread\n", spans, spans,
-              task.camera.rays(), facets_a_side, facets_a_side);
+              task.camera.rays(), facets_per_side, facets_per_side);
   std::printf("%-20s %-20s %10s %9s %10s %10s   %s\n", "", "", "k rays/s", "wrong", "median", "largest",
               "Tessera is faster by: exact, refined, facets");
   for (std::size_t k = 0; k < runs.size(); ++k) {

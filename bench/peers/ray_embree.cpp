@@ -81,10 +81,10 @@ class Casting {
 std::vector<Vec3> facet_points(const RayTask& task) {
   std::vector<Vec3> points;
   for (std::size_t patch = 0; patch < task.set.patch_count(); ++patch)
-    for (int i = 0; i <= facets_a_side; ++i)
-      for (int j = 0; j <= facets_a_side; ++j)
+    for (int i = 0; i <= facets_per_side; ++i)
+      for (int j = 0; j <= facets_per_side; ++j)
         points.push_back(
-            evaluate_jet(task.set.patch(patch), 1.0 * i / facets_a_side, 1.0 * j / facets_a_side).position);
+            evaluate_jet(task.set.patch(patch), 1.0 * i / facets_per_side, 1.0 * j / facets_per_side).position);
   return points;
 }
 void put(const std::vector<Vec3>& points, float* out) {
@@ -97,7 +97,7 @@ class Triangles : public Casting {
   explicit Triangles(const RayTask& task) : Casting(task, RTC_GEOMETRY_TYPE_TRIANGLE) {
     const auto points = facet_points(task);
     put(points, buffer<float>(RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, points.size(), 12));
-    constexpr unsigned n = facets_a_side, row = n + 1;
+    constexpr unsigned n = facets_per_side, row = n + 1;
     const std::size_t triangles = task.set.patch_count() * 2 * n * n;
     auto* out = buffer<unsigned>(RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles, 12);
     for (unsigned patch = 0; patch < task.set.patch_count(); ++patch)
@@ -115,7 +115,7 @@ class Grids : public Casting {
   explicit Grids(const RayTask& task) : Casting(task, RTC_GEOMETRY_TYPE_GRID) {
     const auto points = facet_points(task);
     put(points, buffer<float>(RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, points.size(), 12));
-    constexpr unsigned row = facets_a_side + 1;
+    constexpr unsigned row = facets_per_side + 1;
     auto* out = buffer<RTCGrid>(RTC_BUFFER_TYPE_GRID, RTC_FORMAT_GRID, task.set.patch_count());
     for (unsigned patch = 0; patch < task.set.patch_count(); ++patch) out[patch] = {patch * row * row, row, row, row};
     build();
@@ -135,7 +135,7 @@ class Subdivision : public Casting {
         *sizes++ = 4;
         for (const unsigned corner : {i * side + j, (i + 1) * side + j, (i + 1) * side + j + 1, i * side + j + 1}) {
           *corners++ = corner;
-          *levels++ = facets_a_side;
+          *levels++ = facets_per_side;
         }
       }
     rtcSetGeometrySubdivisionMode(geometry_, 0, RTC_SUBDIVISION_MODE_NO_BOUNDARY);

@@ -93,7 +93,7 @@ class Casting {
          << vector_text(camera.eye) << " right " << vector_text(camera.right) << " up " << vector_text(camera.up)
          << " direction " << vector_text(camera.forward) << " }\nunion {\n";
     for (std::size_t patch = 0; patch < task_.set.patch_count(); ++patch) {
-      file << "bicubic_patch { type 1 flatness 0 u_steps 3 v_steps 3";  // 2^3 = facets_a_side
+      file << "bicubic_patch { type 1 flatness 0 u_steps 3 v_steps 3";  // 2^3 = facets_per_side
       for (const Vec3& p : task_.set.patch(patch).points()) file << ", " << vector_text(p);
       file << " }\n";
     }

@@ -15,7 +15,7 @@
 namespace tessera::bench {
 
 /// Segments of a patch and direction, where a program takes a surface apart into facets.
-inline constexpr int facets_a_side = 8;
+inline constexpr int facets_per_side = 8;
 
 /// Rays from one eye in rows of pixels: along forward + (x - 1/2) right + (1/2 - y) up, x and y in (0, 1).
 struct RayCamera {

@@ -45,8 +45,8 @@ RayRun run_of(const RayTask& task, const char* way, const RaySceneOptions& optio
 
 std::vector<RayRun> tessera_ray_runs(const RayTask& task) {
   return {run_of(task, "exact", {.mode = RayMode::exact}),
-          run_of(task, "grid, refined", {.mode = RayMode::grid, .rate = facets_a_side}),
-          run_of(task, "grid, facets alone", {.mode = RayMode::grid, .rate = facets_a_side, .refine = false})};
+          run_of(task, "grid, refined", {.mode = RayMode::grid, .rate = facets_per_side}),
+          run_of(task, "grid, facets alone", {.mode = RayMode::grid, .rate = facets_per_side, .refine = false})};
 }
 
 }  // namespace tessera::bench

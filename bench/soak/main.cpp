@@ -13,8 +13,8 @@
 #include "support/synthetic_sets.h"
 #include "tessera/evaluate.h"
 #include "tessera/io.h"
-#include "tessera/tessellation.h"
 #include "tessera/ray_scene.h"
+#include "tessera/tessellation.h"
 
 namespace tessera::bench {
 namespace {
@@ -32,7 +32,7 @@ memory grows by more than MIB an hour (8) over the second half.
 )";
 
 struct Options {
-  double seconds = 3600, most_growth = 8;
+  double seconds = 3600, max_growth = 8;
   std::string csv, png;
 };
 
@@ -145,7 +145,7 @@ bool parse(int count, char** words, Options& options) {
   for (int k = 1; k + 1 < count; k += 2) {
     const std::string_view name = words[k], value = words[k + 1];
     double* const number = name == "--seconds"       ? &options.seconds
-                           : name == "--most-growth" ? &options.most_growth
+                           : name == "--most-growth" ? &options.max_growth
                                                      : nullptr;
     if (number) {
       const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), *number);
@@ -185,7 +185,7 @@ int run(const Options& options) {
   const double growth = growth_an_hour(samples);
   std::printf("%zu rounds in %.0f s; second half: %.1f to %.1f MiB resident, %+.2f MiB an hour\n", rounds,
               samples.back().seconds, least.resident, most.resident, growth);
-  return growth <= options.most_growth ? 0 : 1;
+  return growth <= options.max_growth ? 0 : 1;
 }
 
 }  // namespace

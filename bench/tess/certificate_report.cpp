@@ -13,8 +13,8 @@
 #include "support/synthetic_sets.h"
 #include "support/true_distance.h"
 #include "tess/certificate_sets.h"
-#include "tessera/tessellation.h"
 #include "tessera/io.h"
+#include "tessera/tessellation.h"
 
 namespace {
 
@@ -27,7 +27,7 @@ constexpr char usage[] =
     "Exit status 1 if a bound is exceeded, or the median on bicubic patches is above 3.\n";
 
 /// So many patches of a set are looked at, evenly spread, and so many triangles of each.
-constexpr std::size_t most_patches = 300, most_triangles = 600;
+constexpr std::size_t max_patches = 300, max_triangles = 600;
 
 struct Looseness {
   std::size_t patches = 0, triangles = 0, exceeded = 0;
@@ -46,11 +46,11 @@ Looseness measure(const PatchSet& set, double tolerance, bool fewest) {
   for (std::size_t t = mesh.triangle_count(); t-- > 0;) first[mesh.patches[t]] = t;
   for (std::size_t k = set.patch_count(); k-- > 0;) first[k] = std::min(first[k], first[k + 1]);
   Looseness result;
-  const std::size_t step = 1 + (set.patch_count() - 1) / most_patches;
+  const std::size_t step = 1 + (set.patch_count() - 1) / max_patches;
   for (std::size_t k = 0; k < set.patch_count(); k += step) {
     const double bound = plan.bounds()[k];
     double low = 0, high = 0;
-    const std::size_t count = first[k + 1] - first[k], stride = 1 + count / most_triangles;
+    const std::size_t count = first[k + 1] - first[k], stride = 1 + count / max_triangles;
     for (std::size_t t = first[k]; t < first[k + 1]; t += stride) {
       const BezierPatch patch = set.patch(k);
       test::DistanceRange found = test::largest_distance(patch, test::triangle_of(mesh, t), 0.03, 400);

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "base/impl_access.h"
 #include "sets.h"
 #include "suite.h"
 #include "support/synthetic_sets.h"
@@ -68,7 +69,7 @@ void certify(benchmark::State& state, const char* surface, int rate, int threads
   const LimitsAround around({}, out.bytes());
   const auto best = time_calls(state, threads, [&]() -> Status {
     if (timed == Timed::edges) {
-      benchmark::DoNotOptimize(SharedEdges(set.impl()).count());
+      benchmark::DoNotOptimize(SharedEdges(impl_of(set)).count());
       return {};
     }
     if (timed != Timed::run) {

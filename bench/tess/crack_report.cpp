@@ -21,7 +21,7 @@ constexpr char usage[] =
     "  --fewest  meshes of the fewest triangles\n"
     "Exit status 1 if there is a crack.\n";
 constexpr double tolerances[] = {1e-2, 3e-3, 1e-3, 3e-4, 1e-4};
-constexpr std::uint64_t most_triangles = 500000;
+constexpr std::uint64_t max_triangles = 500000;
 
 /// A cell of the table: triangles, and what is wrong.
 std::string cell(const test::CrackCount& count) {
@@ -48,7 +48,7 @@ class Report {
     std::string row;
     test::CrackCount last;
     for (const double tolerance : tolerances) {
-      const Result<test::CrackCount> count = test::count_cracks(*set, tolerance, most_triangles, fewest_);
+      const Result<test::CrackCount> count = test::count_cracks(*set, tolerance, max_triangles, fewest_);
       if (!count) {
         skip(name + " at " + std::to_string(tolerance), count.status());
         row += "           -";

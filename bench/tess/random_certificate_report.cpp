@@ -199,7 +199,7 @@ int main(int argc, char** argv) {
     }
     const PatchSet set = test::value_of(PatchSet::from(patches));
     const auto plan = CertifiedTessellation::make(
-        set, {.tolerance = std::pow(10.0, uniform(random, -2.5, -0.5)), .relative = true, .most_triangles = 300000});
+        set, {.tolerance = std::pow(10.0, uniform(random, -2.5, -0.5)), .relative = true, .max_triangles = 300000});
     done += patches_per_set;
     for (const Kind kind : of) ++rows[kind].patches, rows[kind].refused += !plan;
     if (!plan) continue;

@@ -9,12 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "base/impl_access.h"
 #include "report_arguments.h"
 #include "support/synthetic_sets.h"
 #include "support/triangle_distance.h"
 #include "tess/plan/certified_tessellation_impl.h"
-#include "tessera/tessellation.h"
 #include "tessera/io.h"
+#include "tessera/tessellation.h"
 
 namespace {
 
@@ -26,7 +27,7 @@ constexpr char usage[] =
     "  --fewest  meshes of the fewest triangles\n";
 
 /// So many patches of a set are searched, evenly spread.
-constexpr std::size_t most_patches = 200;
+constexpr std::size_t max_patches = 200;
 
 /// Whether a uniform mesh keeps a distance, at 28 points of each triangle.
 bool keeps(const BezierPatch& patch, Rates rates, double tolerance) {
@@ -65,8 +66,8 @@ Rates best_rates(const BezierPatch& patch, Rates known, double tolerance) {
 void report(const std::string& name, const PatchSet& set, double relative, bool fewest) {
   const double tolerance = relative * set.box().diagonal();
   const auto plan = test::value_of(CertifiedTessellation::make(set, {.tolerance = tolerance, .fewest = fewest}));
-  const CertifiedPlan& inside = plan.impl().plan();
-  const std::size_t step = 1 + (set.patch_count() - 1) / most_patches;
+  const CertifiedPlan& inside = impl_of(plan).plan();
+  const std::size_t step = 1 + (set.patch_count() - 1) / max_patches;
   double mesh = 0, rates = 0, best = 0;
   for (std::size_t k = 0; k < set.patch_count(); k += step) {
     const Rates own = inside.segments()[k].rates();

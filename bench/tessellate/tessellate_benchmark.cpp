@@ -64,9 +64,9 @@ struct Packing {
   const char* name;  ///< of the operation
   bool rational;
   BlockKinds kinds;
-  double bytes_a_value;  ///< of the blocks
+  double bytes_per_value;  ///< of the blocks
 
-  double bytes_a_patch() const { return 16 * (rational ? 4 : 3) * bytes_a_value; }
+  double bytes_per_patch() const { return 16 * (rational ? 4 : 3) * bytes_per_value; }
 };
 
 constexpr BlockKinds only(bool BlockKinds::*kind) {
@@ -125,7 +125,7 @@ void pack(benchmark::State& state, const Packing& packing, int threads) {
     const PatchSet& weighted = set_named("rational20000");
     for (std::size_t k = 0; k < patches.size(); ++k) patches[k] = weighted.patch(k);
   }
-  const double bytes = static_cast<double>(patches.size()) * packing.bytes_a_patch();
+  const double bytes = static_cast<double>(patches.size()) * packing.bytes_per_patch();
   const LimitsAround around({}, bytes);
   const PatchSetOptions options{.blocks = packing.kinds};
   const auto best = time_calls(state, threads, [&] { return PatchSet::from(patches, options).status(); });

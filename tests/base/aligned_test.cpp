@@ -15,10 +15,10 @@ bool is_aligned(const Vector& vector, std::size_t to) {
 }
 
 TEST(Aligned, VectorsOfEverySize) {
-  constexpr std::size_t most_small = least_in_large_pages / sizeof(double);
-  for (const std::size_t size : {std::size_t{1}, std::size_t{9}, most_small - 1, most_small, most_small + 7}) {
+  constexpr std::size_t largest_small = min_bytes_in_large_pages / sizeof(double);
+  for (const std::size_t size : {std::size_t{1}, std::size_t{9}, largest_small - 1, largest_small, largest_small + 7}) {
     AlignedVector<double> vector(size, 3.0);
-    EXPECT_TRUE(is_aligned(vector, size < most_small ? cache_line : large_page)) << size;
+    EXPECT_TRUE(is_aligned(vector, size < largest_small ? cache_line : large_page)) << size;
     for (const std::size_t more : {size + 1, 3 * size}) {  // grows from small to large
       vector.resize(more, 4.0);
       EXPECT_TRUE(is_aligned(vector, cache_line));

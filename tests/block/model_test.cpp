@@ -11,9 +11,9 @@
 #include "support/random_hermite.h"
 #include "support/random_splines.h"
 #include "support/ulp.h"
+#include "tessera/convert.h"
 #include "tessera/generic_callable.h"
 #include "tessera/nurbs_surface.h"
-#include "tessera/convert.h"
 
 namespace tessera::test {
 namespace {

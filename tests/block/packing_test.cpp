@@ -5,11 +5,12 @@
 
 #include <cstring>
 
+#include "base/impl_access.h"
 #include "block/patch_set_impl.h"
 #include "support/grids.h"
 #include "support/random_splines.h"
-#include "tessera/model.h"
 #include "tessera/convert.h"
+#include "tessera/model.h"
 
 namespace tessera::test {
 namespace {
@@ -37,8 +38,8 @@ TEST(Packing, TheSameBytesForAnyNumberOfThreads) {
   tbb::task_arena alone(1), crowd(7);
   const PatchSet one = alone.execute([&] { return set_of(patches, options); });
   const PatchSet more = crowd.execute([&] { return set_of(patches, options); });
-  EXPECT_TRUE(same_bytes(one.impl().single, more.impl().single));
-  EXPECT_TRUE(same_bytes(one.impl().twice, more.impl().twice));
+  EXPECT_TRUE(same_bytes(impl_of(one).f32, impl_of(more).f32));
+  EXPECT_TRUE(same_bytes(impl_of(one).f64, impl_of(more).f64));
   EXPECT_EQ(one.origin(), more.origin());
 }
 
@@ -55,8 +56,8 @@ TEST(Packing, AnEditPacksAsTheSetDoes) {
   PatchSet edited = set_of(patches, options);
   for (std::size_t k = 0; k < moved.size(); ++k) ASSERT_TRUE(edited.set_control_points(k, moved[k].points()).ok());
   const PatchSet packed = set_of(moved, options);
-  EXPECT_TRUE(same_bytes(edited.impl().single, packed.impl().single));
-  EXPECT_TRUE(same_bytes(edited.impl().twice, packed.impl().twice));
+  EXPECT_TRUE(same_bytes(impl_of(edited).f32, impl_of(packed).f32));
+  EXPECT_TRUE(same_bytes(impl_of(edited).f64, impl_of(packed).f64));
 }
 
 TEST(Packing, RefusesTheFirstPatchThatDoesNotFit) {
@@ -78,7 +79,7 @@ TEST(Packing, AGridThatIsMovedGivesTheSameSet) {
   PatchGrid grid = value_of(PatchGrid::make({0, 1, 3}, {-1, 0, 2, 5}, patches, FitError{0.5, false}));
   const PatchSet copied = value_of(make_patch_set(std::span(&grid, 1)));
   const PatchSet moved = value_of(make_patch_set(std::move(grid)));
-  EXPECT_TRUE(same_bytes(copied.impl().single, moved.impl().single));
+  EXPECT_TRUE(same_bytes(impl_of(copied).f32, impl_of(moved).f32));
   EXPECT_EQ(moved.fit_error().distance, 0.5);
   EXPECT_FALSE(moved.fit_error().certified);
   ASSERT_EQ(moved.patch_count(), 6u);
@@ -104,10 +105,12 @@ TEST(Packing, ASplineGivesTheSetOfItsPatches) {
     const PatchGrid grid = value_of(to_bezier(s));
     std::vector<PatchSource> sources;
     for (std::size_t k = 0; k < grid.patches().size(); ++k) sources.push_back({0, grid.patch_domain(k)});
-    const PatchSet patches = value_of(PatchSet::from(grid.patches(), sources, options));
+    PatchSetOptions with_sources = options;
+    with_sources.sources = sources;
+    const PatchSet patches = value_of(PatchSet::from(grid.patches(), with_sources));
     for (const PatchSet* set : {&more, &patches}) {
-      EXPECT_TRUE(same_bytes(one.impl().single, set->impl().single));
-      EXPECT_TRUE(same_bytes(one.impl().twice, set->impl().twice));
+      EXPECT_TRUE(same_bytes(impl_of(one).f32, impl_of(*set).f32));
+      EXPECT_TRUE(same_bytes(impl_of(one).f64, impl_of(*set).f64));
       EXPECT_EQ(one.origin(), set->origin());
       ASSERT_EQ(one.patch_count(), set->patch_count());
       for (std::size_t k = 0; k < one.patch_count(); ++k) EXPECT_EQ(one.source(k).domain, set->source(k).domain);

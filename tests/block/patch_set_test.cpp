@@ -6,6 +6,7 @@
 #include <limits>
 #include <set>
 
+#include "base/impl_access.h"
 #include "block/patch_set_impl.h"
 #include "support/grids.h"
 #include "support/reference.h"
@@ -23,7 +24,7 @@ TEST(PatchSet, EveryPatchHasItsOwnPlaceAmongItsLikes) {
     const PatchSet::Slot slot = set.slot(k);
     EXPECT_LT(slot.block, set.block_count());
     EXPECT_TRUE(places.emplace(slot.block, slot.lane).second);
-    const BlockGroup& group = set.impl().group_of_block(slot.block);
+    const BlockGroup& group = impl_of(set).group_of_block(slot.block);
     EXPECT_EQ(group.degree_u, set.patch(k).degree_u());
     EXPECT_EQ(group.degree_v, set.patch(k).degree_v());
     EXPECT_EQ(group.rational, set.patch(k).is_rational());
@@ -40,7 +41,7 @@ TEST(PatchSet, BlocksHoldTheRelativeNets) {
   for (std::size_t k = 0; k < set.patch_count(); ++k) {
     const BezierPatch& patch = set.patch(k);
     const PatchSet::Slot slot = set.slot(k);
-    const BlockGroup& group = set.impl().group_of_block(slot.block);
+    const BlockGroup& group = impl_of(set).group_of_block(slot.block);
     const std::size_t first = group.first_value + (slot.block - group.first_block) * group.block_values + slot.lane;
     const double scale = patch.is_rational() ? power_of_two_near(std::ranges::max(patch.weights())) : 1;
     std::size_t value = first;
@@ -51,8 +52,8 @@ TEST(PatchSet, BlocksHoldTheRelativeNets) {
         std::vector<double> expected = {p.x, p.y, p.z};
         if (patch.is_rational()) expected.push_back(w);
         for (const double x : expected) {
-          EXPECT_EQ(set.impl().single.bernstein[value], static_cast<float>(x));
-          EXPECT_EQ(set.impl().twice.bernstein[value], x);
+          EXPECT_EQ(impl_of(set).f32.bernstein[value], static_cast<float>(x));
+          EXPECT_EQ(impl_of(set).f64.bernstein[value], x);
           value += PatchSet::lanes;
         }
       }
@@ -92,21 +93,21 @@ TEST(PatchSet, AnEditIsSeenAndCounted) {
     PatchSetOptions same = options;
     same.origin = set.origin();
     const PatchSet fresh = set_of(patches, same);
-    EXPECT_TRUE(fresh.impl().single.bernstein == set.impl().single.bernstein);
-    EXPECT_TRUE(fresh.impl().single.power == set.impl().single.power);
-    EXPECT_TRUE(fresh.impl().twice.bernstein == set.impl().twice.bernstein);
-    EXPECT_TRUE(fresh.impl().twice.power == set.impl().twice.power);
-    EXPECT_TRUE(fresh.impl().single.bernstein_doubt == set.impl().single.bernstein_doubt);
-    EXPECT_TRUE(fresh.impl().single.power_doubt == set.impl().single.power_doubt);
-    EXPECT_TRUE(fresh.impl().twice.bernstein_doubt == set.impl().twice.bernstein_doubt);
-    EXPECT_TRUE(fresh.impl().twice.power_doubt == set.impl().twice.power_doubt);
+    EXPECT_TRUE(impl_of(fresh).f32.bernstein == impl_of(set).f32.bernstein);
+    EXPECT_TRUE(impl_of(fresh).f32.power == impl_of(set).f32.power);
+    EXPECT_TRUE(impl_of(fresh).f64.bernstein == impl_of(set).f64.bernstein);
+    EXPECT_TRUE(impl_of(fresh).f64.power == impl_of(set).f64.power);
+    EXPECT_TRUE(impl_of(fresh).f32.bernstein_doubt == impl_of(set).f32.bernstein_doubt);
+    EXPECT_TRUE(impl_of(fresh).f32.power_doubt == impl_of(set).f32.power_doubt);
+    EXPECT_TRUE(impl_of(fresh).f64.bernstein_doubt == impl_of(set).f64.bernstein_doubt);
+    EXPECT_TRUE(impl_of(fresh).f64.power_doubt == impl_of(set).f64.power_doubt);
   }
 }
 
 TEST(PatchSet, ARefusedEditChangesNothing) {
   Random random(75);
   PatchSet set = set_of({random_polynomial(random, 3, 3), random_rational(random, 2, 2)});
-  const auto blocks = set.impl().single.bernstein;
+  const auto blocks = impl_of(set).f32.bernstein;
   const auto points = std::vector<Vec3>(set.patch(0).points().begin(), set.patch(0).points().end());
   auto bad = points;
   bad[7].y = std::numeric_limits<double>::quiet_NaN();
@@ -118,7 +119,7 @@ TEST(PatchSet, ARefusedEditChangesNothing) {
   EXPECT_EQ(set.set_control_points(0, bad).code(), StatusCode::count_mismatch);
   EXPECT_EQ(set.set_control_points(2, points).code(), StatusCode::invalid_argument);
   EXPECT_EQ(set.revision(), 0u);
-  EXPECT_TRUE(blocks == set.impl().single.bernstein);
+  EXPECT_TRUE(blocks == impl_of(set).f32.bernstein);
   EXPECT_TRUE(std::ranges::equal(points, set.patch(0).points()));
 }
 
@@ -152,7 +153,7 @@ TEST(PatchSet, CoefficientsFitAsFarAsPromised) {
   const std::vector<BezierPatch> patches{value_of(BezierPatch::polynomial(15, 15, points)),
                                          value_of(BezierPatch::rational(15, 15, points, weights))};
   const PatchSet set = set_of(patches, {.blocks = {true, true, true, true}});
-  for (const auto* values : {&set.impl().single.bernstein, &set.impl().single.power})
+  for (const auto* values : {&impl_of(set).f32.bernstein, &impl_of(set).f32.power})
     for (const float value : *values) ASSERT_TRUE(std::isfinite(value));
 }
 

@@ -9,8 +9,8 @@
 #include "support/lecture_points.h"
 #include "support/random_splines.h"
 #include "support/ulp.h"
-#include "tessera/nurbs_surface.h"
 #include "tessera/convert.h"
+#include "tessera/nurbs_surface.h"
 
 namespace tessera::test {
 namespace {

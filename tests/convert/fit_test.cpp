@@ -240,7 +240,7 @@ TEST(Fit, BoundsThatDoNotSufficeGiveWayToSamples) {
   for (const double bound : {infinity, 1e30}) {
     const auto waves = [](double u, double v) { return Vec3{u, v, std::sin(u + v)}; };
     const auto none = [bound](const Domain&, int) { return std::array<double, 2>{bound, bound}; };
-    const FitOptions options{.tolerance = 1e-6, .largest_patch_count = 4096};
+    const FitOptions options{.tolerance = 1e-6, .max_patches = 4096};
     const PatchGrid with =
         value_of(to_bezier(value_of(ParametricSurface::make({.position = waves, .derivative_bounds = none})), options));
     const PatchGrid without = value_of(to_bezier(value_of(ParametricSurface::make({.position = waves})), options));
@@ -261,9 +261,9 @@ TEST(Fit, RefusesBadInput) {
   refused({.tolerance = 1e-300}, "below");
   refused({.degree = 1}, "degree of the patches is 1");
   refused({.degree = 16}, "degree of the patches is 16");
-  refused({.largest_patch_count = 0}, "count of patches, 0, is below");
-  refused({.largest_patch_count = 3, .breaks_u = {1}, .breaks_v = {1}}, "count of patches, 3, is below");
-  refused({.tolerance = 1e-6, .largest_patch_count = 10}, "not kept by 10 patches, the largest count: the error is");
+  refused({.max_patches = 0}, "count of patches, 0, is below");
+  refused({.max_patches = 3, .breaks_u = {1}, .breaks_v = {1}}, "count of patches, 3, is below");
+  refused({.tolerance = 1e-6, .max_patches = 10}, "not kept by 10 patches, the largest count: the error is");
 }
 
 TEST(Fit, BreakpointsFromTheStart) {

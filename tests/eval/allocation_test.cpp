@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/impl_access.h"
 #include "eval/uniform_grid.h"
 #include "support/grids.h"
 
@@ -44,7 +45,7 @@ TEST(Allocations, NoneWhenEvaluatingAgain) {
   expect_no_allocation([&] { return evaluate(set, doubles, all_doubles.views()); });
   expect_no_allocation([&] { return evaluate(set, singles, GridBlocks<float>{.gaussian = blocks}); });
   const UniformGrid grid = value_of(UniformGrid::make(set, 8, 8, std::nullopt));
-  expect_no_allocation([&] { return grid.run(set.impl(), {.position = a.views().position}, {}); });
+  expect_no_allocation([&] { return grid.run(impl_of(set), {.position = a.views().position}, {}); });
 }
 
 }  // namespace

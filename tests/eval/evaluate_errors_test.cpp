@@ -131,8 +131,7 @@ TEST_F(EvaluateErrors, EachBlockOfLocalGeometry) {
 TEST_F(EvaluateErrors, GeometryOptions) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const double bad : {-1e-9, 1.0, nan}) {
-    EXPECT_EQ(GridPlan::make(set, t, t, {.geometry = {.smallest_sine = bad}}).status().code(),
-              StatusCode::invalid_argument);
+    EXPECT_EQ(GridPlan::make(set, t, t, {.geometry = {.min_sine = bad}}).status().code(), StatusCode::invalid_argument);
     EXPECT_EQ(GridPlan::make(set, t, t, {.geometry = {.umbilic_tolerance = bad}}).status().code(),
               StatusCode::invalid_argument);
   }

@@ -8,11 +8,12 @@
 #include <map>
 #include <string>
 
+#include "base/impl_access.h"
 #include "eval/grid_plan_impl.h"
 #include "support/grids.h"
 #include "support/ulp.h"
-#include "tessera/nurbs_surface.h"
 #include "tessera/convert.h"
+#include "tessera/nurbs_surface.h"
 
 namespace tessera::test {
 namespace {
@@ -47,7 +48,7 @@ struct Evaluated {
     return local_geometry(set.patch(record / samples), u, v);
   }
   std::pair<double, double> parameters(std::size_t record) const {
-    const auto& inner = plan.impl();
+    const auto& inner = impl_of(plan);
     return {inner.u[record / inner.v.size() % inner.u.size()], inner.v[record % inner.v.size()]};
   }
   Vec3 position(std::size_t record) const {

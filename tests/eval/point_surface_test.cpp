@@ -5,8 +5,8 @@
 #include "support/points.h"
 #include "support/random_splines.h"
 #include "support/ulp.h"
-#include "tessera/model.h"
 #include "tessera/convert.h"
+#include "tessera/model.h"
 
 namespace tessera::test {
 namespace {
@@ -176,7 +176,9 @@ TEST(PointsOfSurfaces, BadInput) {
   // Patches that are no grid.
   const std::vector<BezierPatch> patches(3, random_polynomial(random, 1, 1));
   const std::vector<PatchSource> sources{{0, {0, 1, 0, 1}}, {0, {0, 1, 1, 2}}, {0, {1, 2, 0, 1}}};
-  const PatchSet holes = value_of(PatchSet::from(patches, sources, with_points()));
+  PatchSetOptions with_sources = with_points();
+  with_sources.sources = sources;
+  const PatchSet holes = value_of(PatchSet::from(patches, with_sources));
   EXPECT_EQ(SurfaceMap::make(holes).status().code(), StatusCode::unsupported);
   EXPECT_EQ(SurfaceMap::make(holes).status().index(), 0);
 }

@@ -8,6 +8,7 @@
 
 #include <limits>
 
+#include "base/impl_access.h"
 #include "block/patch_set_impl.h"
 #include "support/allocations.h"
 #include "support/points.h"
@@ -71,11 +72,11 @@ void expect_same_coefficients(const Coefficients<T>& a, const Coefficients<T>& b
   EXPECT_EQ(a.largest_doubt, b.largest_doubt);
 }
 void expect_same_sets(const PatchSet& a, const PatchSet& b) {
-  expect_same_coefficients(a.impl().single, b.impl().single);
-  expect_same_coefficients(a.impl().twice, b.impl().twice);
+  expect_same_coefficients(impl_of(a).f32, impl_of(b).f32);
+  expect_same_coefficients(impl_of(a).f64, impl_of(b).f64);
   for (std::size_t k = 0; k < a.patch_count(); ++k) {
     EXPECT_TRUE(std::ranges::equal(a.patch(k).points(), b.patch(k).points()));
-    EXPECT_EQ(a.impl().collapsed[k].bits, b.impl().collapsed[k].bits);
+    EXPECT_EQ(impl_of(a).collapsed[k].bits, impl_of(b).collapsed[k].bits);
   }
 }
 

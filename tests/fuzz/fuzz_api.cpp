@@ -10,11 +10,11 @@
 #include <string_view>
 #include <vector>
 
-#include "tessera/tessellation.h"
 #include "tessera/evaluate.h"
 #include "tessera/mesh.h"
 #include "tessera/model.h"
 #include "tessera/patch_set.h"
+#include "tessera/tessellation.h"
 #ifdef TESSERA_HAS_RAY
 #include "tessera/ray_scene.h"
 #endif
@@ -48,8 +48,7 @@ class Program {
     if (!sound(surface)) return;
     const Result<SurfaceJet> jet = evaluate_jet(*surface, number(), number());
     (void)sound(jet);
-    const Result<PatchGrid> grid =
-        to_bezier(*surface, {.tolerance = number(), .degree = small(), .largest_patch_count = 16});
+    const Result<PatchGrid> grid = to_bezier(*surface, {.tolerance = number(), .degree = small(), .max_patches = 16});
     if (!sound(grid)) return;
     PatchSetOptions options;
     options.blocks = {data_.ConsumeBool(), data_.ConsumeBool(), data_.ConsumeBool(), false, data_.ConsumeBool(), false};
@@ -184,7 +183,7 @@ class Program {
     options.share_vertices = data_.ConsumeBool();
     options.smallest = data_.ConsumeBool();
     options.fewest = data_.ConsumeBool();
-    options.most_triangles = 2000;
+    options.max_triangles = 2000;
     const auto plan = CertifiedTessellation::make(set, options);
     if (!sound(plan)) return;
     Result<Mesh> mesh = data_.ConsumeBool() ? plan->allocate_quads() : plan->allocate();

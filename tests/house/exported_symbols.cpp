@@ -3,15 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <regex>
 #include <sstream>
 
 namespace tessera::house {
 namespace {
 
-constexpr std::array<std::string_view, 9> for_wings{
-    "tessera::allocate_aligned",  "tessera::parallel_for",     "tessera::ray_kernels",
-    "tessera::UniformGrid::make", "tessera::UniformGrid::run", "tessera::PatchSet::Impl::box",
-    "tessera::check_parts",       "tessera::ViewChecks::add",  "tessera::ViewChecks::status",
+constexpr std::array<std::string_view, 10> internal_export{
+    "tessera::allocate_aligned",   "tessera::parallel_for",        "tessera::ray_kernels", "tessera::UniformGrid::make",
+    "tessera::UniformGrid::run",   "tessera::PatchSet::Impl::box", "tessera::check_parts", "tessera::ViewChecks::add",
+    "tessera::ViewChecks::status", "tessera::usable_isa",
 };
 
 bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
@@ -101,13 +102,14 @@ bool takes_inner_types(std::string_view symbol, const std::vector<std::string>& 
   return false;
 }
 
-bool is_for_wings(std::string_view symbol) {
-  return std::find(for_wings.begin(), for_wings.end(), plain_name(symbol)) != for_wings.end();
+bool is_internal_export(std::string_view symbol) {
+  return std::find(internal_export.begin(), internal_export.end(), plain_name(symbol)) != internal_export.end();
 }
 
 std::vector<Symbol> symbols_of(std::string_view listing) {
+  static const std::regex inline_namespace(R"(\btessera::abi_\d+_\d+::)");
   std::vector<Symbol> symbols;
-  std::istringstream stream{std::string(listing)};
+  std::istringstream stream{std::regex_replace(std::string(listing), inline_namespace, "tessera::")};
   for (std::string line; std::getline(stream, line);) {
     const std::size_t type = line.find(' ');
     if (type == std::string::npos || type + 3 > line.size()) continue;

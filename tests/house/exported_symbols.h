@@ -16,8 +16,8 @@ bool is_declared(std::string_view symbol, const std::string& header);
 /// Whether an argument of a function is of a type that none of these public headers names, nor can its callers.
 bool takes_inner_types(std::string_view symbol, const std::vector<std::string>& headers);
 
-/// The functions inside the core that the libraries above it call (engine/src/base/for_wings.h).
-bool is_for_wings(std::string_view symbol);
+/// The functions inside the core that the libraries above it call (engine/src/base/internal_export.h).
+bool is_internal_export(std::string_view symbol);
 
 struct Symbol {
   char type = '?';  ///< as nm prints it: capitals are exported

@@ -13,8 +13,8 @@
 #include "support/scratch_folder.h"
 #include "support/synthetic_sets.h"
 #include "support/ulp.h"
-#include "tessera/io.h"
 #include "tessera/bezier_operations.h"
+#include "tessera/io.h"
 
 namespace tessera::test {
 namespace {

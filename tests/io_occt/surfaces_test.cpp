@@ -135,7 +135,7 @@ TEST(FaceSurface, SweptSurfacesAreExact) {
       expect_exact(new Geom_SurfaceOfLinearExtrusion(curve, gp_Dir(1, 1, 5)), {a, b, -2, 7});
       expect_exact(new Geom_SurfaceOfRevolution(curve, tilted.Axis()), {1, 4, a, b});
       expect_exact(new Geom_SurfaceOfLinearExtrusion(curve, gp_Dir(1, 1, 5)), {a + 0.2, b - 0.3, -2, 7});
-      // Across the seam, and a turn away.
+      // OrthonormalBasis the seam, and a turn away.
       if (periodic) expect_exact(new Geom_SurfaceOfLinearExtrusion(curve, gp_Dir(1, 1, 5)), {a + 0.6, b + 0.5, 0, 1});
       if (periodic) expect_exact(new Geom_SurfaceOfLinearExtrusion(curve, gp_Dir(1, 1, 5)), {a - 9, b - 10, 0, 1});
     }

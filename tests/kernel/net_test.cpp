@@ -75,7 +75,7 @@ struct Packing {
             .doubts = doubts.data(),
             .noise = 1e-4,
             .longest = 3,
-            .least_doubt = 1e-3};
+            .min_doubt = 1e-3};
   }
 
   static constexpr double origin[] = {-1e-3, 7, -0.1};

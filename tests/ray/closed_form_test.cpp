@@ -62,7 +62,7 @@ TEST(ClosedForm, HyperbolicParaboloid) {
 TEST(ClosedForm, SourceDomains) {
   const BezierPatch patch = polynomial(1, 1, {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}});
   const PatchSource source{5, {2, 4, -1, 3}};
-  const PatchSet set = value_of(PatchSet::from(std::span(&patch, 1), std::span(&source, 1)));
+  const PatchSet set = value_of(PatchSet::from(std::span(&patch, 1), {.sources = std::span(&source, 1)}));
   const Hit hit = scene_of(set).closest(ray({0.25, 0.75, 1}, {0, 0, -1}));
   ASSERT_EQ(hit.kind, HitKind::hit);
   EXPECT_EQ(hit.surface, 5u);

@@ -17,7 +17,7 @@ struct Part {
   RayScene scene;
 };
 
-bool share_a_corner(const BezierPatch& a, const BezierPatch& b) {
+bool share_per_corner(const BezierPatch& a, const BezierPatch& b) {
   const auto corners = [](const BezierPatch& patch) {
     const int m = patch.degree_u(), n = patch.degree_v();
     return std::array{patch.point(0, 0), patch.point(0, n), patch.point(m, 0), patch.point(m, n)};
@@ -43,7 +43,7 @@ std::vector<Part> parts_of(const std::vector<BezierPatch>& patches, const Box3& 
     const std::size_t own_count = own.size();
     for (std::uint32_t k = 0; k < patches.size() && with_neighbours; ++k) {
       const bool is_own = std::find(whole.begin(), whole.end(), k) != whole.end();
-      const auto touches = [&](const BezierPatch& patch) { return share_a_corner(patch, patches[k]); };
+      const auto touches = [&](const BezierPatch& patch) { return share_per_corner(patch, patches[k]); };
       if (!is_own && std::any_of(own.begin(), own.begin() + static_cast<std::ptrdiff_t>(own_count), touches))
         whole.push_back(k), own.push_back(patches[k]);
     }

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "ray_support.h"
-#include "tessera/nurbs_surface.h"
 #include "tessera/convert.h"
+#include "tessera/nurbs_surface.h"
 
 namespace tessera::test {
 namespace {

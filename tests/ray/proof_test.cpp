@@ -31,7 +31,7 @@ TEST(Referee, KnowsAPlane) {
 }
 
 TEST(ExactMode, MissesNothingThatIsProven) {
-  constexpr int rays_a_class = 25;
+  constexpr int rays_per_class = 25;
   std::size_t hits = 0, undecidable = 0;
   for (const RayClass& rays : ray_classes()) {
     SCOPED_TRACE(rays.name);
@@ -40,7 +40,8 @@ TEST(ExactMode, MissesNothingThatIsProven) {
     const RayScene scene = exact_scene(set);
     Random random(31);
     ProofTally tally;
-    for (int k = 0; k < rays_a_class; ++k) judge_ray(rays.patches, scene, rays.draw(random), 5e-12 * size, size, tally);
+    for (int k = 0; k < rays_per_class; ++k)
+      judge_ray(rays.patches, scene, rays.draw(random), 5e-12 * size, size, tally);
     EXPECT_EQ(tally.missed, 0u);
     EXPECT_EQ(tally.false_hits, 0u);
     EXPECT_EQ(tally.incomplete, 0u);

@@ -5,8 +5,8 @@
 
 #include "ray_support.h"
 #include "support/torus.h"
-#include "tessera/nurbs_surface.h"
 #include "tessera/convert.h"
+#include "tessera/nurbs_surface.h"
 
 namespace tessera::test {
 namespace {

@@ -32,8 +32,7 @@ void grid_plans(Table& table, const PatchSet& set) {
             GridPlan::make(set, t, t, {.representation = Representation::power}));
   table.row("a precision that is none", unsupported, GridPlan::make(set, t, t, {.precision = Precision{7}}));
   table.row("an instruction set that is none", isa_unavailable, GridPlan::make(set, t, t, {.isa = Isa{9}}));
-  table.row("a smallest sine of -1e-9", invalid_argument,
-            GridPlan::make(set, t, t, {.geometry = {.smallest_sine = -1e-9}}));
+  table.row("a smallest sine of -1e-9", invalid_argument, GridPlan::make(set, t, t, {.geometry = {.min_sine = -1e-9}}));
   table.row("an umbilic tolerance of NaN", invalid_argument,
             GridPlan::make(set, t, t, {.geometry = {.umbilic_tolerance = not_a_number}}));
   table.of("GridPlan::make(set, PatchParameters, options)");
@@ -165,7 +164,7 @@ void samples_by_patch(Table& table, const PatchSet& set) {
   over.u = {.component = {rows.views().position.component[0]}, .stride = 1, .size = 5};
   rows.refused("parameters in the place of an output", invalid_argument, over, rows.views());
   const auto sound = rows.sound().views();
-  rows.refused("a smallest sine of 1", invalid_argument, sound, rows.views(), {.geometry = {.smallest_sine = 1}});
+  rows.refused("a smallest sine of 1", invalid_argument, sound, rows.views(), {.geometry = {.min_sine = 1}});
   rows.refused("an instruction set that is none", isa_unavailable, sound, rows.views(), {.isa = Isa{9}});
   table.gives("no samples", "nothing written", evaluate(set, PatchSamples<float>{}, rows.views()).ok());
   const PatchSet plain = set_of(wavy_field(1, 2));
@@ -176,7 +175,9 @@ void samples_by_surface(Table& table, const PatchSet& set) {
   table.of("SurfaceMap::make(set)");
   std::vector<PatchSource> sources(2);  // both patches claim all of surface 0
   const std::vector<BezierPatch> patches = wavy_field(1, 2);
-  const PatchSet torn = value_of(PatchSet::from(patches, sources, with_points()));
+  PatchSetOptions with_sources = with_points();
+  with_sources.sources = sources;
+  const PatchSet torn = value_of(PatchSet::from(patches, with_sources));
   table.row("patches of a surface that are no grid", unsupported, SurfaceMap::make(torn));
 
   table.of("evaluate(set, map, SurfaceSamples, PointViews, options, execution)");

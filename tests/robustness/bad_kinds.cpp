@@ -6,10 +6,10 @@
 #include "robustness/bad_input.h"
 #include "tessera/convert.h"
 #include "tessera/coons_patch.h"
-#include "tessera/tensor_patch.h"
 #include "tessera/generic_callable.h"
 #include "tessera/hermite_patch.h"
 #include "tessera/quadric.h"
+#include "tessera/tensor_patch.h"
 
 namespace tessera::test {
 namespace {
@@ -67,12 +67,12 @@ void callable_fits(Table& table) {
   table.row("a tolerance below rounding", invalid_argument, to_bezier(*flat, {.tolerance = 1e-300}));
   table.row("degree 1", invalid_argument, to_bezier(*flat, {.degree = 1}));
   table.row("degree 16", invalid_argument, to_bezier(*flat, {.degree = 16}));
-  table.row("a largest count of 0 patches", invalid_argument, to_bezier(*flat, {.largest_patch_count = 0}));
+  table.row("a largest count of 0 patches", invalid_argument, to_bezier(*flat, {.max_patches = 0}));
   table.row("breaks that decrease", invalid_argument, to_bezier(*flat, {.breaks_u = {0.5, 0.25}}));
   table.row("a break outside the domain", invalid_argument, to_bezier(*flat, {.breaks_v = {2}}));
   table.row("a break of NaN", invalid_argument, to_bezier(*flat, {.breaks_v = {not_a_number}}));
   const auto jump = surface([](double u, double v) { return Vec3{u, v, u < 0.3 ? 0.0 : 1.0}; });
-  table.row("a jump inside", invalid_argument, to_bezier(*jump, {.tolerance = 1e-3, .largest_patch_count = 64}));
+  table.row("a jump inside", invalid_argument, to_bezier(*jump, {.tolerance = 1e-3, .max_patches = 64}));
 }
 
 void quadric_equations(Table& table) {

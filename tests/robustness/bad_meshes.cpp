@@ -5,9 +5,9 @@
 #include "robustness/bad_input.h"
 #include "robustness/bad_views.h"
 #include "support/grids.h"
-#include "tessera/tessellation.h"
 #include "tessera/limits.h"
 #include "tessera/model.h"
+#include "tessera/tessellation.h"
 
 namespace tessera::test {
 namespace {
@@ -63,7 +63,7 @@ void certified_options(Table& table, const PatchSet& set) {
     row(std::string("a tolerance of ") + name, invalid_argument, {.tolerance = tolerance});
   row("a tolerance below what float holds", invalid_argument, {.tolerance = 1e-12});
   row("a subnormal tolerance", invalid_argument, {.tolerance = 5e-324});
-  row("a tolerance that takes too many triangles", invalid_argument, {.tolerance = 1e-4, .most_triangles = 100});
+  row("a tolerance that takes too many triangles", invalid_argument, {.tolerance = 1e-4, .max_triangles = 100});
   row("an angle of 0", invalid_argument, {.angle = 0.0});
   row("an angle of NaN", invalid_argument, {.angle = not_a_number});
   row("an angle above pi / 2", invalid_argument, {.angle = 2.0});
@@ -74,7 +74,7 @@ void certified_options(Table& table, const PatchSet& set) {
   row("a weld of the set's size", invalid_argument, {.tolerance = 0.01, .weld = 3});
   row("a crease angle of 4", invalid_argument, {.tolerance = 0.01, .crease_angle = 4.0});
   row("a crease angle of NaN", invalid_argument, {.tolerance = 0.01, .crease_angle = not_a_number});
-  row("the smallest tolerance for no triangle", invalid_argument, {.most_triangles = 0, .smallest = true});
+  row("the smallest tolerance for no triangle", invalid_argument, {.max_triangles = 0, .smallest = true});
   row("an instruction set that is none", isa_unavailable, {.tolerance = 0.01, .isa = Isa{9}});
   const std::atomic<bool> cancel = true;
   table.row("a cancellation before the first task", cancelled,

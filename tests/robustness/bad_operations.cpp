@@ -153,8 +153,7 @@ void fill_sets(Table& table) {
   weights[5] = 1e-12;
   const BezierPatch light = *BezierPatch::rational(3, 3, patches[0].points(), weights);
   table.row("a weight of 1e-12 of the largest", non_finite, PatchSet::from(std::vector{patches[0], light}));
-  table.of("PatchSet::from(patches, sources, options)");
-  table.row("a source too few", count_mismatch, PatchSet::from(patches, std::vector<PatchSource>(1)));
+  table.row("a source too few", count_mismatch, PatchSet::from(patches, {.sources = std::vector<PatchSource>(1)}));
 
   table.of("PatchSet::set_control_points(index, points)");
   PatchSet set = value_of(PatchSet::from(patches));

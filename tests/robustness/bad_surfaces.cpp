@@ -5,8 +5,8 @@
 
 #include "robustness/bad_input.h"
 #include "tessera/bezier_patch.h"
-#include "tessera/nurbs_surface.h"
 #include "tessera/curve.h"
+#include "tessera/nurbs_surface.h"
 #include "tessera/tensor_patch.h"
 
 namespace tessera::test {

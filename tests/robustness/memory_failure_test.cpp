@@ -8,9 +8,9 @@
 #include "support/borders.h"
 #include "support/random_splines.h"
 #include "tessera/bezier_operations.h"
+#include "tessera/convert.h"
 #include "tessera/nurbs_surface.h"
 #include "tessera/surface_grid.h"
-#include "tessera/convert.h"
 #ifdef TESSERA_HAS_IO
 #include "support/scratch_folder.h"
 #include "tessera/io.h"

@@ -9,8 +9,8 @@
 
 #include "robustness/mutated_surfaces.h"
 #include "support/grids.h"
-#include "tessera/tessellation.h"
 #include "tessera/evaluate.h"
+#include "tessera/tessellation.h"
 #ifdef TESSERA_HAS_RAY
 #include "tessera/ray_scene.h"
 #endif
@@ -68,8 +68,7 @@ class Case {
     return map;
   }
   FitOptions fit() {
-    return {
-        .tolerance = m_.number(0.01), .degree = m_.integer(3), .largest_patch_count = 64, .certify = m_.chance(0.5)};
+    return {.tolerance = m_.number(0.01), .degree = m_.integer(3), .max_patches = 64, .certify = m_.chance(0.5)};
   }
   PatchSetOptions options() {
     PatchSetOptions made;
@@ -138,7 +137,7 @@ class Case {
     if (rate <= 16) write(set, TessellationPlan::make(set, {.rate_u = rate, .rate_v = m_.chance(0.5) ? 1 : rate}));
     const double size = set.box().diagonal();
     CertifiedOptions how{.tolerance = m_.number(0.05 * size), .weld = m_.number(m_.chance(0.5) ? 0.0 : 1e-6 * size)};
-    how.most_triangles = 5000;
+    how.max_triangles = 5000;
     if (m_.chance(0.2)) how.angle = m_.number(0.5);
     if (m_.chance(0.1)) how.smallest = true;
     how.fewest = m_.chance(0.1);

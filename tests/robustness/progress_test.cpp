@@ -59,7 +59,7 @@ TEST_F(Progress, Meshes) {
   plans("plan by angle", {.angle = 0.3});
   plans("plan by both", {.tolerance = 2e-3, .angle = 0.3});
   plans("fewest", {.tolerance = 2e-3, .fewest = true});
-  plans("finest for a budget", {.most_triangles = 100000, .smallest = true});
+  plans("finest for a budget", {.max_triangles = 100000, .smallest = true});
   CertifiedTessellation certified = value_of(CertifiedTessellation::make(set_, {.tolerance = 2e-3}));
   Mesh fine = value_of(certified.allocate());
   rises_once("mesh", [&](const Execution& execution) { return certified.run(set_, fine.views(), execution); });

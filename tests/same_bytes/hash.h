@@ -11,8 +11,8 @@
 #include <vector>
 
 #include <tessera/bezier_patch.h>
-#include <tessera/status.h>
 #include <tessera/geometry.h>
+#include <tessera/status.h>
 
 class Hash {
  public:

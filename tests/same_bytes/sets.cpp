@@ -1,9 +1,9 @@
 #include <array>
 #include <memory>
 
-#include <tessera/tessellation.h>
 #include <tessera/evaluate.h>
 #include <tessera/model.h>
+#include <tessera/tessellation.h>
 
 #include "families.h"
 #include "hash.h"

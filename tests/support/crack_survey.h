@@ -11,8 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "tess/plan/certified_plan.h"
+#include "base/impl_access.h"
 #include "tess/edges/position_bits.h"
+#include "tess/plan/certified_plan.h"
 #include "tessera/tessellation.h"
 
 namespace tessera::test {
@@ -39,7 +40,7 @@ class [[gnu::visibility("hidden")]] MeetingBorders {
  public:
   MeetingBorders(const PatchSet& set, double weld) : counts_(4 * set.patch_count(), 0) {
     const Result<CertifiedPlanner> planner =
-        CertifiedPlanner::make(set.impl(), {.weld = weld, .angle = {}, .camera = {}}, {});
+        CertifiedPlanner::make(impl_of(set), {.weld = weld, .angle = {}, .camera = {}}, {});
     if (!planner) return;
     const SharedEdges& edges = planner->edges();
     std::vector<std::uint32_t> borders(edges.count(), 0);
@@ -144,10 +145,10 @@ inline bool is_folded(const PatchSet& set) {
 
 /// The mesh that keeps a share of the model's size, borders welded that lie within a millionth of it. Errors: those of
 /// CertifiedTessellation::make.
-inline Result<CrackCount> count_cracks(const PatchSet& set, double relative, std::uint64_t most_triangles,
+inline Result<CrackCount> count_cracks(const PatchSet& set, double relative, std::uint64_t max_triangles,
                                        bool fewest = false) {
   const double size = set.box().diagonal();
-  CertifiedOptions options{.tolerance = relative * size, .weld = 1e-6 * size, .most_triangles = most_triangles};
+  CertifiedOptions options{.tolerance = relative * size, .weld = 1e-6 * size, .max_triangles = max_triangles};
   options.fewest = fewest;
   Result<CertifiedTessellation> plan = CertifiedTessellation::make(set, options);
   CrackCount count;

@@ -53,11 +53,11 @@ inline bool meet(Interval a, Interval b) { return a.lo <= b.hi && b.lo <= a.hi; 
 /// Interval coefficients of g_b, g_c, w t, w on a rectangle of a patch.
 class IntervalNet {
  public:
-  static constexpr int most_degree = 7;
+  static constexpr int max_net_degree = 7;
 
   IntervalNet(const BezierPatch& patch, const Ray& ray)
       : m_(patch.degree_u()), n_(patch.degree_v()), count_(static_cast<std::size_t>((m_ + 1) * (n_ + 1))) {
-    assert(m_ <= most_degree && n_ <= most_degree);
+    assert(m_ <= max_net_degree && n_ <= max_net_degree);
     const Axes axes(ray);
     for (std::size_t k = 0; k < count_; ++k) {
       const Vec3& p = patch.points()[k];
@@ -114,7 +114,7 @@ class IntervalNet {
   }
   /// g in the middle of the rectangle.
   Interval middle(std::size_t c) const {
-    std::array<Interval, most_degree + 1> column{};
+    std::array<Interval, max_net_degree + 1> column{};
     for (int i = 0; i <= m_; ++i) column[static_cast<std::size_t>(i)] = halved(&c_[c][index(i, 0)], n_);
     return halved(column.data(), m_);
   }
@@ -178,7 +178,7 @@ class IntervalNet {
     return Interval::around(0.5 * a.lo + 0.5 * b.lo, 0.5 * a.hi + 0.5 * b.hi);
   }
   static Interval halved(const Interval* row, int degree) {
-    std::array<Interval, most_degree + 1> b{};
+    std::array<Interval, max_net_degree + 1> b{};
     std::copy_n(row, degree + 1, b.begin());
     for (int level = 1; level <= degree; ++level)
       for (int k = 0; k + level <= degree; ++k) {
@@ -211,7 +211,7 @@ class IntervalNet {
 
   int m_, n_;
   std::size_t count_;
-  std::array<std::array<Interval, (most_degree + 1) * (most_degree + 1)>, 4> c_;
+  std::array<std::array<Interval, (max_net_degree + 1) * (max_net_degree + 1)>, 4> c_;
 };
 
 /// What the referee found on a ray.
@@ -258,7 +258,7 @@ class Referee {
     std::vector<IntervalNet> nets_;
   };
   enum class Test { none, one, at_most_one, open };
-  static constexpr int most_boxes = 1000;   // of one ray
+  static constexpr int max_boxes = 1000;    // of one ray
   static constexpr double smallest = 1e-7;  // of a rectangle's sides; of g its square
 
   /// Krawczyk's operator on the net's square (Neumaier, Interval Methods for Systems of Equations, sec. 5.1): K = c -
@@ -317,7 +317,7 @@ class Referee {
     };
     const double size_u = size(true), size_v = size(false);
     const bool tiny = place.u.width() < smallest && place.v.width() < smallest;
-    if (++visited_ > most_boxes || tiny || size_u + size_v < smallest * smallest * scale_) {
+    if (++visited_ > max_boxes || tiny || size_u + size_v < smallest * smallest * scale_) {
       verdict_.undecided.push_back({patch_, net.t_hull(), place.u, place.v});
       return;
     }

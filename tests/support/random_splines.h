@@ -8,8 +8,8 @@
 #include "support/random_patches.h"
 #include "support/reference.h"
 #include "support/synthetic_sets.h"
-#include "tessera/nurbs_surface.h"
 #include "tessera/curve.h"
+#include "tessera/nurbs_surface.h"
 
 namespace tessera::test {
 

@@ -95,8 +95,8 @@ class Search {
     add(std::move(whole));
   }
 
-  DistanceRange run(double precision, int most_steps) {
-    for (int step = 0; step < most_steps && !pieces_.empty(); ++step) {
+  DistanceRange run(double precision, int max_steps) {
+    for (int step = 0; step < max_steps && !pieces_.empty(); ++step) {
       if (pieces_.top().bound <= low_ * (1 + precision)) break;
       const Piece top = pieces_.top();
       pieces_.pop();
@@ -191,18 +191,18 @@ class Search {
 }  // namespace true_distance
 
 /// The largest distance from the triangle of the patch's points whose parameters lie in the parameter triangle, to a
-/// relative precision, or as near as `most_steps` subdivisions lead.
+/// relative precision, or as near as `max_steps` subdivisions lead.
 inline DistanceRange largest_distance(const BezierPatch& patch, const MeshTriangle& triangle, double precision = 0.01,
-                                      int most_steps = 2000) {
-  return true_distance::Search(patch, triangle, {&triangle, 1}).run(precision, most_steps);
+                                      int max_steps = 2000) {
+  return true_distance::Search(patch, triangle, {&triangle, 1}).run(precision, max_steps);
 }
 
 /// The largest distance of the same points from a mesh's triangles [begin, end) of that patch: from triangle t and those
 /// that share an edge with it. Points of the patch may lie nearest to a neighbour of the triangle over their parameters.
 inline DistanceRange largest_distance(const BezierPatch& patch, const Mesh& mesh, std::size_t t, std::size_t begin,
-                                      std::size_t end, double precision = 0.01, int most_steps = 2000) {
+                                      std::size_t end, double precision = 0.01, int max_steps = 2000) {
   const std::vector<MeshTriangle> around = triangles_around(mesh, t, begin, end);
-  return true_distance::Search(patch, triangle_of(mesh, t), around).run(precision, most_steps);
+  return true_distance::Search(patch, triangle_of(mesh, t), around).run(precision, max_steps);
 }
 
 }  // namespace tessera::test

@@ -26,7 +26,7 @@ TEST(TessellationAllocation, NoneAfterTheFirstRuns) {
 
 /// The most bytes a patch that `make` holds at a time, beside what there was.
 template <class Make>
-double bytes_a_patch(const PatchSet& set, Make make) {
+double bytes_per_patch(const PatchSet& set, Make make) {
   const std::size_t before = restart_peak();
   make();
   return static_cast<double>(peak_bytes() - before) / static_cast<double>(set.patch_count());
@@ -37,13 +37,13 @@ TEST(TessellationMemory, PlansTakeLessThanAKilobyteAPatch) {
   const auto plan = [&](const CertifiedOptions& options) { return good(CertifiedTessellation::make(set, options)); };
   const View view{.eye = {30, -40, 30}, .target = {30, 25, 0}};
   CertifiedOptions options{.tolerance = 0.01};
-  EXPECT_LE(bytes_a_patch(set, [&] { (void)plan(options); }), 1024);
-  EXPECT_LE(bytes_a_patch(set, [&] { (void)good(MeshUpdate::make(set, plan(options))); }), 1024);
+  EXPECT_LE(bytes_per_patch(set, [&] { (void)plan(options); }), 1024);
+  EXPECT_LE(bytes_per_patch(set, [&] { (void)good(MeshUpdate::make(set, plan(options))); }), 1024);
   options.weld = 1e-4;
   options.share_vertices = true;
-  EXPECT_LE(bytes_a_patch(set, [&] { (void)plan(options); }), 1024);
-  EXPECT_LE(bytes_a_patch(set, [&] { (void)plan({.tolerance = 0.01, .angle = 0.1}); }), 1024);
-  EXPECT_LE(bytes_a_patch(set, [&] { (void)plan({.pixels = PixelTolerance{1, view}}); }), 1024);
+  EXPECT_LE(bytes_per_patch(set, [&] { (void)plan(options); }), 1024);
+  EXPECT_LE(bytes_per_patch(set, [&] { (void)plan({.tolerance = 0.01, .angle = 0.1}); }), 1024);
+  EXPECT_LE(bytes_per_patch(set, [&] { (void)plan({.pixels = PixelTolerance{1, view}}); }), 1024);
 }
 
 TEST(TessellationMemory, PlansOfOneFaceAreSmallBesideOthers) {
@@ -52,10 +52,10 @@ TEST(TessellationMemory, PlansOfOneFaceAreSmallBesideOthers) {
   (void)plan();
   std::vector<CertifiedTessellation> many;
   many.reserve(100);
-  EXPECT_LE(bytes_a_patch(set,
-                          [&] {
-                            while (many.size() < 100) many.push_back(plan());
-                          }),
+  EXPECT_LE(bytes_per_patch(set,
+                            [&] {
+                              while (many.size() < 100) many.push_back(plan());
+                            }),
             100 * 1024 + 8192);  // and what making one takes meanwhile
 }
 
@@ -65,7 +65,7 @@ TEST(TessellationMemory, MeshesAreWrittenWithNextToNothingBeside) {
     const auto plan = good(CertifiedTessellation::make(set, {.tolerance = 0.01, .share_vertices = share}));
     Mesh mesh = good(plan.allocate());
     const MeshViews views = mesh.views();
-    EXPECT_LE(bytes_a_patch(set, [&] { ASSERT_TRUE(plan.run(set, views).ok()); }), 10);
+    EXPECT_LE(bytes_per_patch(set, [&] { ASSERT_TRUE(plan.run(set, views).ok()); }), 10);
   }
 }
 

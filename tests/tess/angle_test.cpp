@@ -5,10 +5,10 @@
 #include <limits>
 #include <numbers>
 
-#include "tess/certificate_sets.h"
 #include "tess/bounds/normal_net.h"
-#include "tess/tessellate_support.h"
 #include "tess/bounds/turning_bound.h"
+#include "tess/certificate_sets.h"
+#include "tess/tessellate_support.h"
 #include "tessera/tessellation.h"
 
 namespace tessera::test {
@@ -104,7 +104,7 @@ TEST(Angle, CombinesWithADistance) {
   EXPECT_LE(both, 2 * std::max(distance, angle));
   EXPECT_NEAR(count({.tolerance = 0.01, .angle = 90 * degree}), distance, 0.1 * distance);
   const CertifiedTessellation budget =
-      good(CertifiedTessellation::make(set, {.angle = 10 * degree, .most_triangles = 5000, .smallest = true}));
+      good(CertifiedTessellation::make(set, {.angle = 10 * degree, .max_triangles = 5000, .smallest = true}));
   EXPECT_LE(budget.angle(), 10 * degree * (1 + 1e-6));
   EXPECT_LE(budget.capacity().triangles, 5000u);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/impl_access.h"
 #include "support/true_distance.h"
 #include "tess/certificate_sets.h"
 #include "tess/plan/certified_tessellation_impl.h"
@@ -64,7 +65,7 @@ TEST(Certificate, HoldsAcrossTheMiddleOfEvenRates) {
     const Mesh mesh = mesh_of(set, plan);
     for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
       const std::uint32_t patch = mesh.patches[t];
-      const Rates rates = plan.impl().plan().segments()[patch].rates();
+      const Rates rates = impl_of(plan).plan().segments()[patch].rates();
       const MeshTriangle triangle = triangle_of(mesh, t);
       const auto straddles = [&](std::size_t along) {
         const auto at = [&](std::size_t c) { return triangle.parameters[c][along]; };

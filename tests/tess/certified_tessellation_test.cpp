@@ -129,12 +129,12 @@ TEST(CertifiedTessellation, ABudgetGivesTheSmallestTolerance) {
   const PatchSet set = set_of(wavy_field(6, 6));
   for (const std::uint64_t budget : {72u, 100u, 1000u, 50000u}) {
     const CertifiedTessellation plan =
-        good(CertifiedTessellation::make(set, {.most_triangles = budget, .smallest = true}));
+        good(CertifiedTessellation::make(set, {.max_triangles = budget, .smallest = true}));
     EXPECT_LE(plan.capacity().triangles, budget);
-    const auto finer = CertifiedTessellation::make(set, {.tolerance = plan.bound() / 1.05, .most_triangles = budget});
+    const auto finer = CertifiedTessellation::make(set, {.tolerance = plan.bound() / 1.05, .max_triangles = budget});
     EXPECT_TRUE(budget <= 100 || !finer.ok()) << budget;
   }
-  const auto few = CertifiedTessellation::make(set, {.most_triangles = 71, .smallest = true});
+  const auto few = CertifiedTessellation::make(set, {.max_triangles = 71, .smallest = true});
   ASSERT_FALSE(few.ok());
   EXPECT_NE(few.status().message().find("takes 72 triangles"), std::string::npos) << few.status().message();
 }
@@ -182,7 +182,7 @@ TEST(CertifiedTessellation, RefusesWhatItCannotKeep) {
   EXPECT_EQ(rough.status().index(), 0);
   EXPECT_NE(rough.status().message().find("is not above what float vertices of patch 0 keep"), std::string::npos)
       << rough.status().message();
-  const auto many = CertifiedTessellation::make(set, {.tolerance = 1e-4, .most_triangles = 1000});
+  const auto many = CertifiedTessellation::make(set, {.tolerance = 1e-4, .max_triangles = 1000});
   ASSERT_FALSE(many.ok());
   EXPECT_NE(many.status().message().find("1000 and 4294967296 are allowed"), std::string::npos)
       << many.status().message();

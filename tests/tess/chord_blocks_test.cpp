@@ -6,6 +6,7 @@
 #include <bit>
 #include <span>
 
+#include "base/impl_access.h"
 #include "kernel/isa/kernel_table.h"
 #include "support/synthetic_sets.h"
 #include "tess/tessellate_support.h"
@@ -33,8 +34,8 @@ std::vector<PatchSet> sets() {
 }
 
 ChordBlocks bounds_of(const PatchSet& set) {
-  ChordBlocks blocks(set.impl());
-  for (std::size_t block = 0; block < set.impl().lane_counts.size(); ++block) blocks.bound(set.impl(), block);
+  ChordBlocks blocks(impl_of(set));
+  for (std::size_t block = 0; block < impl_of(set).lane_counts.size(); ++block) blocks.bound(impl_of(set), block);
   return blocks;
 }
 
@@ -49,17 +50,17 @@ TEST(ChordBlocks, HoldTheBoundsInDoubleAndLittleMore) {
     const ChordBlocks blocks = bounds_of(set);
     for (std::size_t k = 0; k < set.patch_count(); ++k) {
       if (!is_homogeneous(blocks, set.slot(k))) continue;
-      const ChordBound exact(set.impl().patches[k]), found = blocks.chord(set.slot(k).block, set.slot(k).lane);
+      const ChordBound exact(impl_of(set).patches[k]), found = blocks.chord(set.slot(k).block, set.slot(k).lane);
       double size = 0;
-      for (const Vec3& p : set.impl().patches[k].points()) size = std::max(size, max_abs(p - set.origin()));
-      const double m = set.impl().patches[k].degree_u(), n = set.impl().patches[k].degree_v();
+      for (const Vec3& p : impl_of(set).patches[k].points()) size = std::max(size, max_abs(p - set.origin()));
+      const double m = impl_of(set).patches[k].degree_u(), n = impl_of(set).patches[k].degree_v();
       for (std::size_t piece = 0; piece < 9; ++piece) {
         const SecondDerivatives &a = exact.pieces()[piece], &b = found.pieces()[piece];
         const double most = 0x1p-24 * 2 * 1.7321 * (40 + 4 * (m + n)) * size;
         EXPECT_GE(b.uu, a.uu * (1 - 1e-9));
         EXPECT_GE(b.uv, a.uv * (1 - 1e-9));
         EXPECT_GE(b.vv, a.vv * (1 - 1e-9));
-        if (set.impl().patches[k].is_rational()) {
+        if (impl_of(set).patches[k].is_rational()) {
           // Roots are up to 0.36% too large; a piece's place is off by a rounding over its weights, of 1/2 to 2 here.
           const double rounded = 40 * (m + 1) * (n + 1) * most;
           EXPECT_LE(b.uu, 1.004 * a.uu + rounded);
@@ -79,10 +80,10 @@ TEST(ChordBlocks, HoldTheProductsOfQuartersInDoubleAndLittleMore) {
   for (const PatchSet& set : sets()) {
     const ChordBlocks blocks = bounds_of(set);
     for (std::size_t k = 0; k < set.patch_count(); ++k) {
-      const BezierPatch& patch = set.impl().patches[k];
+      const BezierPatch& patch = impl_of(set).patches[k];
       if (!is_homogeneous(blocks, set.slot(k))) continue;
       ChordBlocks::Products products;
-      products.find(blocks, set.impl(), set.slot(k).block);
+      products.find(blocks, impl_of(set), set.slot(k).block);
       const ChordBound exact(patch, true), found = blocks.chord(set.slot(k).block, set.slot(k).lane, &products);
       for (std::size_t piece = 5; piece < 9; ++piece) {
         const SecondDerivatives &a = exact.pieces()[piece], &b = found.pieces()[piece];
@@ -92,7 +93,7 @@ TEST(ChordBlocks, HoldTheProductsOfQuartersInDoubleAndLittleMore) {
         for (int which = 0; which < 3; ++which) {
           if (sizes[which] == 0) continue;  // a degree of 1
           EXPECT_GE(found_products[which], exact_products[which] - 1e-9 * sizes[which]);
-          if (std::max(patch.degree_u(), patch.degree_v()) > most_product_degree) continue;
+          if (std::max(patch.degree_u(), patch.degree_v()) > max_product_degree) continue;
           EXPECT_LE(found_products[which],
                     exact_products[which] + 1e-2 * spare[which] + (spare[which] - sizes[which]) * 40);
         }
@@ -108,10 +109,10 @@ TEST(ChordBlocks, RatesKeepTheDistanceWithAboutTheFewestCells) {
     for (const double relative : {0.1, 1e-2, 1e-3, 1e-4}) {
       ChordBlocks::Lanes<double> distance;
       distance.fill(relative * set.box().diagonal());
-      for (std::size_t block = 0; block < set.impl().lane_counts.size(); ++block) {
-        const std::size_t count = set.impl().lane_counts[block];
+      for (std::size_t block = 0; block < impl_of(set).lane_counts.size(); ++block) {
+        const std::size_t count = impl_of(set).lane_counts[block];
         ChordBlocks::Products products;
-        const ChordBlocks::Choice choice = blocks.cheapest(set.impl(), block, count, distance, 4096, products);
+        const ChordBlocks::Choice choice = blocks.cheapest(impl_of(set), block, count, distance, 4096, products);
         for (std::size_t lane = 0; lane < count; ++lane) {
           const ChordBound chord = blocks.chord(block, lane, &products);
           const auto best = chord.cheapest(distance[lane], 4096);
@@ -149,14 +150,14 @@ TEST(ChordBlocks, RationalPatchesAreBoundedInBlocksWhereRoundingIsSmall) {
 
 TEST(ChordBlocks, RationalBoundsAreTheSameBitsOnEveryInstructionSet) {
   for (const PatchSet& set : sets()) {
-    for (const BlockGroup& group : set.impl().groups) {
-      if (!group.rational || std::max(group.degree_u, group.degree_v) > kernel::most_rational_degree) continue;
+    for (const BlockGroup& group : impl_of(set).groups) {
+      if (!group.rational || std::max(group.degree_u, group.degree_v) > kernel::max_rational_degree) continue;
       std::vector<std::uint32_t> first;
       for (const Isa isa : available_isas()) {
         alignas(64) float pieces[27 * 16], products[27 * 16] = {}, unit[16], size[16];
-        const float* net = set.impl().single.bernstein.data() + group.first_value;
+        const float* net = impl_of(set).f32.bernstein.data() + group.first_value;
         kernel::kernels(isa).bound_rational_chords({net, group.degree_u, group.degree_v, pieces, unit, size});
-        if (std::max(group.degree_u, group.degree_v) <= kernel::most_product_degree)
+        if (std::max(group.degree_u, group.degree_v) <= kernel::max_product_degree)
           kernel::kernels(isa).bound_rational_products(
               {net, group.degree_u, group.degree_v, pieces, unit, products, nullptr});
         std::vector<std::uint32_t> bits;
@@ -172,20 +173,20 @@ TEST(ChordBlocks, RationalBoundsAreTheSameBitsOnEveryInstructionSet) {
 
 TEST(ChordBlocks, TheSameBitsOnEveryInstructionSet) {
   for (const PatchSet& set : sets()) {
-    const BlockGroup& group = set.impl().groups.front();
+    const BlockGroup& group = impl_of(set).groups.front();
     if (group.rational) continue;
     std::vector<std::uint32_t> first;
     for (const Isa isa : available_isas()) {
       alignas(64) float pieces[27 * 16], unit[16], size[16], chord[16], distance[16];
       alignas(64) std::int32_t rate_u[16], rate_v[16];
       std::uint32_t hash[64];
-      const float* net = set.impl().single.bernstein.data() + group.first_value;
+      const float* net = impl_of(set).f32.bernstein.data() + group.first_value;
       kernel::kernels(isa).bound_chords({net, group.degree_u, group.degree_v, pieces, unit, size});
       std::fill(std::begin(distance), std::end(distance), 1e-3f);
       kernel::kernels(isa).find_rates({pieces, distance, 4096, rate_u, rate_v, chord});
       alignas(64) float products[27 * 16] = {}, share[16] = {}, sharp_chord[16] = {};
       alignas(64) std::int32_t sharp_u[16] = {}, sharp_v[16] = {};
-      if (std::max(group.degree_u, group.degree_v) <= kernel::most_product_degree) {
+      if (std::max(group.degree_u, group.degree_v) <= kernel::max_product_degree) {
         kernel::kernels(isa).bound_products({net, group.degree_u, group.degree_v, pieces, unit, products, nullptr});
         kernel::kernels(isa).share_of_products({net, group.degree_u, group.degree_v, pieces, unit, nullptr, share});
         kernel::kernels(isa).find_rates({pieces, distance, 4096, sharp_u, sharp_v, sharp_chord, products});

@@ -7,12 +7,13 @@
 #include <limits>
 #include <vector>
 
+#include "base/impl_access.h"
 #include "kernel/isa/kernel_table.h"
 #include "support/reference.h"
 #include "support/synthetic_sets.h"
-#include "tess/plan/certified_tessellation_impl.h"
 #include "tess/bounds/chord_blocks.h"
 #include "tess/bounds/flat_quad.h"
+#include "tess/plan/certified_tessellation_impl.h"
 #include "tess/tessellate_support.h"
 
 namespace tessera::test {
@@ -127,7 +128,7 @@ TEST(ExactChords, AreLookedForWhereThereIsMuchToGain) {
   patches.push_back(rational(2, 1, {{1, 0, 0}, {1, 0, 1000}, {1, 1, 0}, {1, 1.5, 1000}, {0, 1, 0}, {0, 1.5, 1000}},
                              {1, 1, w, w, 1, 1}));
   const auto plan = good(CertifiedTessellation::make(set_of(patches), {.tolerance = 0.01}));
-  EXPECT_LT(plan.impl().plan().division(15).triangle_count(), 200u);
+  EXPECT_LT(impl_of(plan).plan().division(15).triangle_count(), 200u);
 }
 
 /// rho_j E_i + T_j with weights a_i b_j. `to_zero`: rho falls to 0.
@@ -317,7 +318,7 @@ TEST(ExactChords, HardPatchesAreBoundedOrRefused) {
     const Result<PatchSet> set = PatchSet::from(std::vector<BezierPatch>{patch});
     if (!set) continue;
     const double tolerance = 1e-2 * set->box().diagonal();
-    const auto plan = CertifiedTessellation::make(*set, {.tolerance = tolerance, .most_triangles = 1000000});
+    const auto plan = CertifiedTessellation::make(*set, {.tolerance = tolerance, .max_triangles = 1000000});
     if (!plan) {
       EXPECT_EQ(plan.status().code(), StatusCode::invalid_argument) << plan.status().message();
       continue;

@@ -1,5 +1,6 @@
 // Meshes with positions in double: parts a million apart keep a tolerance and meet without cracks.
 
+#include "base/impl_access.h"
 #include "tess/far_parts.h"
 
 namespace tessera::test {
@@ -68,7 +69,7 @@ TEST(FarPartsInDouble, PatchesWithinOneFloatMeetAsTheirDoublesDo) {
     }
   const PatchSet set = good(PatchSet::from(field, {.origin = Vec3{}}));
   const CertifiedTessellation plan = good(CertifiedTessellation::make(set, in_double(1e-7)));
-  EXPECT_EQ(plan.impl().plan().patch_count(), 36u);
+  EXPECT_EQ(impl_of(plan).plan().patch_count(), 36u);
   const MeshReport report = good(check(mesh_of(set, plan)));
   EXPECT_EQ(report.non_manifold_edges, 0u);
   EXPECT_EQ(report.t_junctions, 0u);

@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include "base/impl_access.h"
 #include "support/crack_survey.h"
 #include "support/synthetic_sets.h"
 #include "support/true_distance.h"
 #include "tess/plan/certified_tessellation_impl.h"
-#include "tess/write/f64_points.h"
 #include "tess/tessellate_support.h"
+#include "tess/write/f64_points.h"
 #include "tessera/bezier_operations.h"
 #include "tessera/tessellation.h"
 
@@ -95,6 +96,6 @@ inline void expect_closed(const Mesh& mesh) {
   EXPECT_EQ(report.degenerate_triangles, 0u);
 }
 
-inline bool is_f64(const CertifiedTessellation& plan) { return plan.impl().plan().is_f64(); }
+inline bool is_f64(const CertifiedTessellation& plan) { return impl_of(plan).plan().is_f64(); }
 
 }  // namespace tessera::test

@@ -2,6 +2,7 @@
 // points.
 
 #include "tess/far_parts.h"
+#include "base/impl_access.h"
 
 namespace tessera::test {
 namespace {
@@ -96,7 +97,7 @@ TEST(FarParts, MeetWithoutACrackWhereFloatsAreTheSame) {
           good(CertifiedTessellation::make(set, {.tolerance = 0.001, .share_vertices = shares}));
       ASSERT_TRUE(is_f64(plan));
       EXPECT_EQ(plan.welded_borders(), 0u);
-      EXPECT_EQ(SharedEdges(set.impl()).count(), 24u);
+      EXPECT_EQ(SharedEdges(impl_of(set)).count(), 24u);
       const Mesh mesh = mesh_of(set, plan);
       expect_closed(mesh);
       if (!shares) expect_bounds(set, mesh, plan.bounds(), 100);
@@ -170,7 +171,7 @@ TEST(FarParts, TheSameBytesForAllThreadsAndInstructions) {
 /// The smallest tolerance of a budget, and pixels, that float sums would not keep.
 TEST(FarParts, BudgetsAndPixels) {
   const PatchSet set = set_of(far_apart(sphere(), 1000));
-  CertifiedOptions budget{.most_triangles = 200000};
+  CertifiedOptions budget{.max_triangles = 200000};
   budget.smallest = true;
   const CertifiedTessellation plan = good(CertifiedTessellation::make(set, budget));
   EXPECT_TRUE(is_f64(plan));

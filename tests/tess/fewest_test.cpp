@@ -2,12 +2,13 @@
 
 #include <algorithm>
 
+#include "base/impl_access.h"
 #include "support/crack_survey.h"
 #include "support/synthetic_sets.h"
 #include "support/triangle_distance.h"
 #include "support/true_distance.h"
-#include "tess/plan/certified_tessellation_impl.h"
 #include "tess/bounds/local_chord.h"
+#include "tess/plan/certified_tessellation_impl.h"
 #include "tess/tessellate_support.h"
 #include "tessera/tessellation.h"
 
@@ -68,13 +69,13 @@ std::vector<BezierPatch> turned(std::vector<BezierPatch> patches) {
 
 /// Segments of borders that one patch has.
 std::size_t lone_segments(const PatchSet& set, const CertifiedTessellation& plan) {
-  const SharedEdges edges(set.impl());
+  const SharedEdges edges(impl_of(set));
   std::vector<std::size_t> patches(edges.count(), 0), segments(edges.count(), 0);
   for (std::size_t k = 0; k < set.patch_count(); ++k)
     for (const Side side : all_sides) {
       const std::uint32_t edge = edges.edge(k, side);
       ++patches[edge];
-      segments[edge] = plan.impl().plan().division(k).border[static_cast<std::size_t>(side)].rate();
+      segments[edge] = impl_of(plan).plan().division(k).border[static_cast<std::size_t>(side)].rate();
     }
   std::size_t lone = 0;
   for (std::size_t edge = 0; edge < edges.count(); ++edge) lone += patches[edge] == 1 ? segments[edge] : 0;
@@ -87,7 +88,7 @@ TEST(Fewest, HalvesOfPatchesHaveSegmentsOfTheirOwnWhereThatSaves) {
   std::size_t in_halves = 0;
   double cells = 0, if_uniform = 0;
   for (std::size_t k = 0; k < field.patch_count(); ++k) {
-    const PatchSegments segments = plan.impl().plan().segments()[k];
+    const PatchSegments segments = impl_of(plan).plan().segments()[k];
     in_halves += !segments.are_uniform();
     cells += segments.cells();
     const Rates finest{std::max(segments.u.lower_rate(), segments.u.upper_rate()),
@@ -102,7 +103,7 @@ TEST(Fewest, HalvesOfPatchesHaveSegmentsOfTheirOwnWhereThatSaves) {
   EXPECT_EQ(report.open_edges, lone_segments(field, plan));
   for (std::size_t t = 0; t < mesh.triangle_count(); t += 7) {
     const std::uint32_t patch = mesh.patches[t];
-    if (plan.impl().plan().segments()[patch].are_uniform()) continue;
+    if (impl_of(plan).plan().segments()[patch].are_uniform()) continue;
     EXPECT_LE(largest_distance(field.patch(patch), triangle_of(mesh, t), 0.1, 60).low, plan.bounds()[patch]);
   }
 }
@@ -112,7 +113,7 @@ TEST(Fewest, PatchesChooseTogether) {
   const PatchSet field = set_of(wavy_field(8, 8));
   const PatchShape shape{3, 3, {}, false};
   std::vector<PatchShape> shapes(field.patch_count(), shape);
-  const SharedEdges edges(field.impl());
+  const SharedEdges edges(impl_of(field));
   const std::vector<std::uint8_t> against(4 * shapes.size(), 0);
   std::vector<SegmentChoices> choices;
   for (std::size_t k = 0; k < shapes.size(); ++k) {
@@ -132,7 +133,7 @@ TEST(Fewest, PatchesChooseTogether) {
 TEST(Fewest, ChoosingTogetherCanBeCancelled) {
   const PatchSet set = set_of(std::vector<BezierPatch>(20, bent_in_a_corner()));  // of as many as meet at an edge
   const std::vector<PatchShape> shapes(set.patch_count(), PatchShape{3, 3, {}, false});
-  const SharedEdges edges(set.impl());
+  const SharedEdges edges(impl_of(set));
   const std::vector<std::uint8_t> against(4 * shapes.size(), 0);
   SegmentChoices some(ProvenSegments{Rates{3, 4}, 1, true});
   some.add({Rates{4, 3}, 1, true});
@@ -150,12 +151,12 @@ TEST(Fewest, HalvesHaveNoMoreSegmentsThanWholesMay) {
     for (int j = 0; j < 2; ++j) points.push_back({double(i), double(j), i == 0 ? 6.0 : 0.0});
   const PatchSet set = set_of({polynomial(6, 1, points)});
   const CertifiedTessellation plan = good(CertifiedTessellation::make(set, {.tolerance = 5.5e-6, .fewest = true}));
-  const Segments along = plan.impl().plan().division(0).border[0];
+  const Segments along = impl_of(plan).plan().division(0).border[0];
   EXPECT_FALSE(along.is_uniform());
   EXPECT_GT(along.lower_rate(), 1500);
-  EXPECT_LE(along.lower_rate(), most_rate);
+  EXPECT_LE(along.lower_rate(), max_rate);
   const MeshReport report = good(check(mesh_of(set, plan)));
-  EXPECT_EQ(report.open_edges, 2u * along.rate() + 2u * plan.impl().plan().division(0).border[1].rate());
+  EXPECT_EQ(report.open_edges, 2u * along.rate() + 2u * impl_of(plan).plan().division(0).border[1].rate());
 }
 
 /// The middles of triangles: where rates are wrong bounds are exceeded many times over.
@@ -175,8 +176,8 @@ TEST(Fewest, BoundsHoldOfEveryKindOfPatch) {
       exceeded += !(distance_to_triangle(p, at[0], at[1], at[2]) <= plan.bounds()[mesh.patches[t]]);
     }
     EXPECT_EQ(exceeded, 0u) << seed;
-    for (const PatchSegments& segments : plan.impl().plan().segments())
-      EXPECT_LE(std::max(segments.u.rate(), segments.v.rate()), most_rate) << seed;
+    for (const PatchSegments& segments : impl_of(plan).plan().segments())
+      EXPECT_LE(std::max(segments.u.rate(), segments.v.rate()), max_rate) << seed;
   }
 }
 
@@ -189,9 +190,9 @@ TEST(Fewest, RatesGoNoFurtherThanTheirRange) {
   for (const bool share : {false, true}) {
     const CertifiedTessellation plan =
         good(CertifiedTessellation::make(set, {.tolerance = 1.478e-5, .share_vertices = share, .fewest = true}));
-    const PatchSegments segments = plan.impl().plan().segments()[0];
+    const PatchSegments segments = impl_of(plan).plan().segments()[0];
     EXPECT_GT(segments.v.rate(), 2000);
-    EXPECT_LE(segments.v.rate(), most_rate);
+    EXPECT_LE(segments.v.rate(), max_rate);
     EXPECT_EQ(good(check(mesh_of(set, plan))).t_junctions, 0u);
   }
 }
@@ -221,7 +222,7 @@ TEST(Fewest, CurvesBesideWeldedBordersOpenNoCrack) {
   const CertifiedTessellation plan =
       good(CertifiedTessellation::make(set, {.tolerance = 1e-3, .weld = 1e-4, .fewest = true}));
   EXPECT_GT(plan.welded_borders(), 0u);
-  EXPECT_FALSE(plan.impl().plan().division(2).border[3].is_uniform());
+  EXPECT_FALSE(impl_of(plan).plan().division(2).border[3].is_uniform());
   CrackCount cracks;
   count_edges(mesh_of(set, plan), MeetingBorders(set, 1e-4), cracks);
   EXPECT_EQ(cracks.cracks, 0u);

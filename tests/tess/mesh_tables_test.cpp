@@ -2,6 +2,7 @@
 
 #include "tess/write/mesh_tables.h"
 
+#include "base/impl_access.h"
 #include "support/synthetic_sets.h"
 #include "tess/plan/certified_tessellation_impl.h"
 #include "tess/tessellate_support.h"
@@ -12,7 +13,7 @@ namespace {
 CertifiedTessellation plan_of(const PatchSet& set, double tolerance) {
   return good(CertifiedTessellation::make(set, {.tolerance = tolerance}));
 }
-const MeshTables& tables_of(const CertifiedTessellation& plan) { return plan.impl().tables(); }
+const MeshTables& tables_of(const CertifiedTessellation& plan) { return impl_of(plan).tables(); }
 
 TEST(MeshTables, PlansThatNeedTheSameShareThem) {
   const PatchSet body = set_of(closed_body()), ball = set_of(sphere());
@@ -25,8 +26,8 @@ TEST(MeshTables, PlansThatNeedTheSameShareThem) {
 TEST(MeshTables, LargeOnesAreOfTheirPlanAlone) {
   const PatchSet body = set_of(closed_body());
   const CertifiedTessellation large = plan_of(body, 3e-6), next = plan_of(body, 0.01);
-  EXPECT_GT(tables_of(large).bytes(), MeshTables::most_common);
-  EXPECT_LE(tables_of(next).bytes(), MeshTables::most_common);
+  EXPECT_GT(tables_of(large).bytes(), MeshTables::max_common_bytes);
+  EXPECT_LE(tables_of(next).bytes(), MeshTables::max_common_bytes);
 }
 
 TEST(MeshTables, CommonOnesStaySmall) {
@@ -36,12 +37,12 @@ TEST(MeshTables, CommonOnesStaySmall) {
     for (const double tolerance : {0.3, 0.03, 0.01}) (void)plan_of(set_of(mixed_patches(seed, 6)), tolerance);
     const CertifiedTessellation plan = plan_of(body, 0.01);
     const std::size_t bytes = tables_of(plan).bytes();
-    EXPECT_LE(bytes, MeshTables::most_common);
+    EXPECT_LE(bytes, MeshTables::max_common_bytes);
     times_anew += bytes < last;
     last = bytes;
     most = std::max(most, bytes);
   }
-  EXPECT_GT(most, MeshTables::most_common / 2);
+  EXPECT_GT(most, MeshTables::max_common_bytes / 2);
   EXPECT_GT(times_anew, 0u);
 }
 

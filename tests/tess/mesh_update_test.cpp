@@ -261,7 +261,7 @@ TEST(MeshUpdate, RatesThatCostTooMuchAreGivenUp) {
 TEST(MeshUpdate, SparedRatesGiveWayWhereTrianglesRunOut) {
   const PatchSet set = set_of(wavy_field(8, 6));
   CertifiedOptions options{.tolerance = 0.003};
-  const std::size_t budget = options.most_triangles =
+  const std::size_t budget = options.max_triangles =
       good(CertifiedTessellation::make(set, options)).capacity().triangles;
   const CertifiedTessellation plan = good(CertifiedTessellation::make(set, options));
   std::vector<BezierPatch> patches = wavy_field(8, 6);
@@ -273,7 +273,7 @@ TEST(MeshUpdate, SparedRatesGiveWayWhereTrianglesRunOut) {
   const CertifiedTessellation next = good(plan.retessellate(set_of(patches), 1e6));
   EXPECT_LE(next.capacity().triangles, budget);
   EXPECT_LE(next.bound(), 0.003 * (1 + 1e-6));
-  options.most_triangles = 1u << 30;
+  options.max_triangles = 1u << 30;
   EXPECT_GT(
       good(good(CertifiedTessellation::make(set, options)).retessellate(set_of(patches), 1e6)).capacity().triangles,
       budget);

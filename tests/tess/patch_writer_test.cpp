@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/impl_access.h"
 #include "kernel/isa/kernel_table.h"
 #include "support/synthetic_sets.h"
 #include "tess/tessellate_support.h"
@@ -125,7 +126,7 @@ TEST(PatchWriter, VerticesAtPolesHaveTheNormalsOfTheirLimits) {
         const std::size_t k = mesh.indices[3 * t + corner];
         const double u = mesh.parameters[2 * k], v = mesh.parameters[2 * k + 1];
         if (mesh.patches[t] % 5 != 0 || u != 0) continue;
-        const SurfaceJet jet = evaluate_jet(set.impl().patches[mesh.patches[t]], 1e-7, v);
+        const SurfaceJet jet = evaluate_jet(impl_of(set).patches[mesh.patches[t]], 1e-7, v);
         const Vec3 area = cross(jet.du, jet.dv);
         if (!(length(area) > 1e-2 * length(jet.du) * length(jet.dv))) continue;
         most = std::max(most, length(Vec3{mesh.normals[3 * k], mesh.normals[3 * k + 1], mesh.normals[3 * k + 2]} -
@@ -148,7 +149,7 @@ TEST(PatchWriter, VerticesLieOnTheirPatchesWithTheirNormals) {
     for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
       for (std::size_t corner = 0; corner < 3; ++corner) {
         const std::size_t k = mesh.indices[3 * t + corner];
-        const BezierPatch& patch = set.impl().patches[mesh.patches[t]];
+        const BezierPatch& patch = impl_of(set).patches[mesh.patches[t]];
         const double u = mesh.parameters[2 * k], v = mesh.parameters[2 * k + 1];
         const Vec3 p{mesh.positions[3 * k], mesh.positions[3 * k + 1], mesh.positions[3 * k + 2]};
         const Vec3 n{mesh.normals[3 * k], mesh.normals[3 * k + 1], mesh.normals[3 * k + 2]};
@@ -166,7 +167,7 @@ TEST(PatchWriter, VerticesLieOnTheirPatchesWithTheirNormals) {
 
 TEST(PatchWriter, TrianglesAreThoseOfTheDivisions) {
   for (const auto& [set, tolerance] : cases()) {
-    const CertifiedPlanner planner = good(CertifiedPlanner::make(set.impl(), PlannerOptions{}, {}));
+    const CertifiedPlanner planner = good(CertifiedPlanner::make(impl_of(set), PlannerOptions{}, {}));
     const CertifiedPlan plan = good(planner.plan(tolerance, std::uint64_t{1} << 30, {}));
     const Mesh mesh = mesh_of(set, tolerance);
     std::vector<std::uint32_t> expected(mesh.indices.size());

@@ -5,9 +5,10 @@
 #include <limits>
 #include <numbers>
 
+#include "base/impl_access.h"
 #include "support/triangle_distance.h"
-#include "tess/certificate_sets.h"
 #include "tess/bounds/picture.h"
+#include "tess/certificate_sets.h"
 #include "tess/tessellate_support.h"
 #include "tessera/tessellation.h"
 
@@ -135,7 +136,7 @@ TEST(Pixels, AreNeverExceeded) {
     double most = 0;
     for (const View& view : views_of(set)) {
       const auto plan =
-          CertifiedTessellation::make(set, {.pixels = PixelTolerance{2, view}, .most_triangles = 20'000'000});
+          CertifiedTessellation::make(set, {.pixels = PixelTolerance{2, view}, .max_triangles = 20'000'000});
       if (!plan) {  // patches that all but touch the eye
         EXPECT_NE(plan.status().message().find("ixels"), std::string::npos) << plan.status().message();
         RecordProperty(chosen.name, plan.status().message());
@@ -156,16 +157,16 @@ TEST(Pixels, PicturesInBlocksHoldThoseInDoubleAndLittleMore) {
   std::size_t sharp = 0, all = 0;
   for (const CertificateSet& chosen : certificate_sets()) {
     const PatchSet set = set_of(chosen.patches);
-    const PatchSet::Impl& inner = set.impl();
+    const PatchSet::Impl& inner = impl_of(set);
     for (const View& view : views_of(set)) {
       const Camera camera = good(Camera::make(view));
       std::array<double, PatchSet::lanes> moved;
       moved.fill(1e-6 * set.box().diagonal());
-      std::vector<PatchInPicture> pictures(set.patch_count());
+      std::vector<ScreenSpaceBound> pictures(set.patch_count());
       for (std::size_t block = 0; block < inner.lane_counts.size(); ++block)
-        PatchInPicture::find(camera, inner, block, moved, 0.5, pictures.data());
+        ScreenSpaceBound::find(camera, inner, block, moved, 0.5, pictures.data());
       for (std::size_t k = 0; k < pictures.size(); ++k) {
-        const PatchInPicture exact(camera, inner.patches[k], moved[0], 0.5);
+        const ScreenSpaceBound exact(camera, inner.patches[k], moved[0], 0.5);
         ASSERT_EQ(pictures[k].projected().has_value(), exact.projected().has_value());
         EXPECT_EQ(pictures[k].distance(), exact.distance());
         EXPECT_EQ(pictures[k].moved_pixels(), exact.moved_pixels());

@@ -5,6 +5,7 @@
 #include <bit>
 #include <map>
 
+#include "base/impl_access.h"
 #include "kernel/isa/kernel_table.h"
 #include "support/grids.h"
 #include "support/points.h"
@@ -28,19 +29,19 @@ Bits bits_of(const PatchSet::Impl& set, std::size_t patch, Side side) {
 }
 
 void expect_edges_by_bits(const PatchSet& set, const char* what) {
-  const SharedEdges edges(set.impl());
+  const SharedEdges edges(impl_of(set));
   std::map<Bits, std::uint32_t> known;
   std::vector<bool> seen(edges.count(), false);
   for (std::size_t patch = 0; patch < set.patch_count(); ++patch)
     for (const Side side : all_sides) {
       const std::uint32_t edge = edges.edge(patch, side);
-      if (set.impl().collapsed[patch].has(edge_of(side))) {
+      if (impl_of(set).collapsed[patch].has(edge_of(side))) {
         EXPECT_EQ(edge, SharedEdges::none);
         continue;
       }
       ASSERT_LT(edge, edges.count()) << what;
       seen[edge] = true;
-      const auto [found, is_new] = known.emplace(bits_of(set.impl(), patch, side), edge);
+      const auto [found, is_new] = known.emplace(bits_of(impl_of(set), patch, side), edge);
       ASSERT_EQ(found->second, edge) << what << ": patch " << patch << ", side " << static_cast<int>(side);
     }
   EXPECT_EQ(known.size(), edges.count()) << what;
@@ -63,7 +64,7 @@ TEST(SharedEdges, AreThoseWhoseBordersAreTheSameBits) {
   Random random(7);
   const std::vector<BezierPatch> field = wavy_field(9, 23);  // rows that do not end with blocks
   expect_edges_by_bits(set_of(field), "in rows");
-  EXPECT_EQ(SharedEdges(set_of(field).impl()).count(), 9u * 24 + 10 * 23);
+  EXPECT_EQ(SharedEdges(impl_of(set_of(field))).count(), 9u * 24 + 10 * 23);
   expect_edges_by_bits(set_of(with_weights(field)), "rational");
 
   std::vector<BezierPatch> turned;
@@ -85,14 +86,14 @@ TEST(SharedEdges, AreThoseWhoseBordersAreTheSameBits) {
 
 TEST(SharedEdges, ABitApartIsAnotherEdge) {
   std::vector<BezierPatch> field = wavy_field(6, 20);
-  const std::size_t whole = SharedEdges(set_of(field).impl()).count();
+  const std::size_t whole = SharedEdges(impl_of(set_of(field))).count();
   // An inner control point of the border between patches 50 and 51, of one of them.
   std::vector<Vec3> points(field[50].points().begin(), field[50].points().end());
   points[13].x = std::nextafter(static_cast<float>(points[13].x), 1e9f);
   field[50] = polynomial(3, 3, points);
   const PatchSet set = set_of(field);
   expect_edges_by_bits(set, "one moved");
-  EXPECT_GT(SharedEdges(set.impl()).count(), whole);
+  EXPECT_GT(SharedEdges(impl_of(set)).count(), whole);
 }
 
 TEST(SharedEdges, MatchedBordersDifferWhereABitDoesOnEveryInstructionSet) {

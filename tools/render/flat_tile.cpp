@@ -50,7 +50,7 @@ Vec3 curvature_colour(const RayScene& scene, double size, const Hit& hit) {
 
 /// What a ray has cost, hit or not: by the colours of errors, each for four times as much as the one before.
 Vec3 cost_colour(const Hit& hit) {
-  return error_colour(std::min(1.0, std::log(std::max<double>(hit.steps, 1)) / std::log(most_steps_shown)));
+  return error_colour(std::min(1.0, std::log(std::max<double>(hit.steps, 1)) / std::log(max_steps_shown)));
 }
 
 Vec3 surface_colour(const Hit& hit, const View& view) {

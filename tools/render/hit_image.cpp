@@ -10,7 +10,7 @@
 namespace tessera::render {
 namespace {
 
-constexpr std::size_t rays_a_band = std::size_t{1} << 16;
+constexpr std::size_t rays_per_band = std::size_t{1} << 16;
 
 HitImage empty_image(int width, int height) {
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
@@ -51,10 +51,10 @@ Result<HitImage> cast(const RayScene& scene, const Box3& box, const Model& model
   const PixelRays pixels(camera, settings.width, settings.height);
   const std::size_t count = image.depths.size(), width = static_cast<std::size_t>(settings.width);
   std::vector<Ray> rays;
-  std::vector<Hit> hits(std::min(count, rays_a_band));
+  std::vector<Hit> hits(std::min(count, rays_per_band));
   for (std::size_t first = 0; first < count; first += rays.size()) {
     rays.clear();
-    for (std::size_t k = first; k < std::min(count, first + rays_a_band); ++k)
+    for (std::size_t k = first; k < std::min(count, first + rays_per_band); ++k)
       rays.push_back(pixels.through(static_cast<double>(k % width) + 0.5, static_cast<double>(k / width) + 0.5));
     const std::span<Hit> met = std::span(hits).first(rays.size());
     Status status = scene.closest(rays, met, Execution{.cancel = execution.cancel, .progress = {}});

@@ -111,13 +111,13 @@ class Drawing {
 }  // namespace
 
 Status check(const Settings& settings, const Box3& box) {
-  constexpr int largest_side = 32768, most_samples = 16;
+  constexpr int largest_side = 32768, max_samples = 16;
   const auto bad = [](const char* why) { return Status(StatusCode::invalid_argument, why); };
   if (box.empty() || !is_finite(box.lower) || !is_finite(box.upper))
     return bad("there is nothing to draw: the box is empty");
   if (std::min(settings.width, settings.height) < 1 || std::max(settings.width, settings.height) > largest_side)
     return bad("a picture's sides run from 1 to 32768 pixels");
-  if (settings.samples < 1 || settings.samples > most_samples) return bad("samples run from 1 to 16");
+  if (settings.samples < 1 || settings.samples > max_samples) return bad("samples run from 1 to 16");
   if (settings.shade == Shade::error && !settings.error) return bad("there is no error to be shaded");
   return settings.camera ? render::check(*settings.camera) : Status();
 }

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "tessera/execution.h"
+#include "tessera/geometry.h"
 #include "tessera/ray_scene.h"
 #include "tessera/status.h"
-#include "tessera/geometry.h"
 
 namespace tessera {
 class OutputFile;
@@ -34,10 +34,10 @@ enum class Shade : std::uint8_t {
   patch,      ///< a colour a patch
   error,      ///< how far something lies from the surface, of which Settings tells: dark where near, red where furthest
   curvature,  ///< Gaussian: domes red, saddles blue, grey where it is zero
-  steps,      ///< Hit::steps, the cost of each ray, hits and misses: blue at 1, red at most_steps_shown and more
+  steps,      ///< Hit::steps, the cost of each ray, hits and misses: blue at 1, red at max_steps_shown and more
 };
 
-inline constexpr double most_steps_shown = 256;
+inline constexpr double max_steps_shown = 256;
 
 struct Settings {
   int width = 1280, height = 800;  ///< 1 to 32768

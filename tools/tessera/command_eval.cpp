@@ -145,8 +145,8 @@ class Evaluator {
   /// From the jet where tangents span a plane, else the limit: of a function at a collapsed border by r_uv, otherwise on
   /// the surface's patches.
   Result<UnitNormal> normal(const SurfacePlace& place, const SurfaceJet& jet) {
-    constexpr double least_sine = 1e-10;
-    if (length(cross(normalized(jet.du), normalized(jet.dv))) > least_sine) {
+    constexpr double min_sine = 1e-10;
+    if (length(cross(normalized(jet.du), normalized(jet.dv))) > min_sine) {
       const Vec3 across = normalized(cross(jet.du, jet.dv));
       if (is_finite(across) && across != Vec3{}) return UnitNormal{across, NormalKind::regular};
     }
@@ -170,14 +170,14 @@ class Evaluator {
   /// Near a border u = u0 where r_v vanishes, r_v is (u - u0) r_uv, so that r_u x r_uv is the normal's direction; turned
   /// at u1, for there u - u1 < 0. The same with u and v exchanged.
   static UnitNormal limit_at_border(const Domain& d, const SurfacePlace& place, const SurfaceJet& jet) {
-    constexpr double vanishing = 1e-10, least_sine = 1e-6;
+    constexpr double vanishing = 1e-10, min_sine = 1e-6;
     const auto side = [](double t, double from, double to) { return t == from ? 1.0 : t == to ? -1.0 : 0.0; };
     const bool by_u = length(jet.dv) <= vanishing * length(jet.du);
     const double sign = by_u ? side(place.u, d.u0, d.u1) : side(place.v, d.v0, d.v1);
     if (sign == 0 || (!by_u && length(jet.du) > vanishing * length(jet.dv))) return {};
     const Vec3 mixed = normalized(jet.duv);
     const Vec3 across = by_u ? cross(normalized(jet.du), mixed) : cross(mixed, normalized(jet.dv));
-    return length(across) > least_sine ? UnitNormal{normalized(sign * across), NormalKind::limit} : UnitNormal{};
+    return length(across) > min_sine ? UnitNormal{normalized(sign * across), NormalKind::limit} : UnitNormal{};
   }
 
   const Model& model_;

@@ -15,7 +15,7 @@ namespace {
 
 struct Options {
   ModelOptions models;
-  std::size_t most_joins = 20000;
+  std::size_t max_joins = 20000;
 };
 
 /// All that is known of one file.
@@ -125,9 +125,9 @@ Status run_info(const Job& job, const Options& options, const CommonOptions& com
   const Result<Isa> isa = default_isa();
   if (!isa) return isa.status();
   Findings found{job.inputs[0], *loaded, *set, count_facts(loaded->model, *set), {}, *isa};
-  if (options.most_joins > 0) {
+  if (options.max_joins > 0) {
     const auto phase = timings.phase("joins");
-    const Result<Joins> joins = find_joins(*set, options.most_joins);
+    const Result<Joins> joins = find_joins(*set, options.max_joins);
     if (!joins) return in_file(job.inputs[0], joins.status());
     found.joins = *joins;
   }
@@ -154,7 +154,7 @@ void add_info(CLI::App& app, Session& session) {
   CLI::App* const command = app.add_subcommand("info", "Say what models hold");
   const auto options = std::make_shared<Options>();
   add_models(*command, options->models);
-  command->add_option("--joins", options->most_joins, "Joins to be measured at the most; 0 leaves them out")
+  command->add_option("--joins", options->max_joins, "Joins to be measured at the most; 0 leaves them out")
       ->type_name("COUNT")
       ->check(whole_number(0, 1'000'000'000))
       ->capture_default_str();

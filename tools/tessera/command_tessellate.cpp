@@ -31,7 +31,7 @@ struct Options {
 /// Files of six or seven digits, and surfaces that programs have turned into their places, differ by about this.
 constexpr double rounding_share = 1e-6;
 constexpr double degree = std::numbers::pi / 180;
-constexpr int most_segments = 4096;
+constexpr int max_segments = 4096;
 
 struct Tessellated {
   Mesh mesh;
@@ -193,7 +193,7 @@ void add_density(CLI::App& command, Options& options) {
       group
           .add_option_function<std::string>(
               "--grid",
-              [&options](const std::string& text) { options.grid = parse_extent("--grid", text, 1, most_segments); },
+              [&options](const std::string& text) { options.grid = parse_extent("--grid", text, 1, max_segments); },
               "Segments of every patch, along u and along v, 1 to 4096 each")
           ->type_name("NxM");
   CLI::Option* const tolerance = add_number(group, "--tolerance", "LENGTH",
@@ -209,7 +209,7 @@ void add_density(CLI::App& command, Options& options) {
                                      .add_option_function<std::uint64_t>(
                                          "--triangles",
                                          [&certified](std::uint64_t count) {
-                                           certified.most_triangles = count;
+                                           certified.max_triangles = count;
                                            certified.smallest = true;
                                          },
                                          "The finest tolerance that takes at most so many triangles")
@@ -278,7 +278,7 @@ void add_view(CLI::App& command, Options& options) {
 void add_cap(CLI::App& command, Options& options) {
   command
       .add_option_function<std::uint64_t>(
-          "--most-triangles", [&options](std::uint64_t count) { options.certified.most_triangles = count; },
+          "--most-triangles", [&options](std::uint64_t count) { options.certified.max_triangles = count; },
           "Refuse to make more, and say how many it would take, unless by --grid [1073741824]")
       ->type_name("COUNT")
       ->excludes(command.get_option("--triangles"));

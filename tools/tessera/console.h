@@ -10,8 +10,8 @@
 
 #include "io/output_file.h"
 #include "tessera/execution.h"
-#include "tessera/status.h"
 #include "tessera/geometry.h"
+#include "tessera/status.h"
 
 namespace tessera::cli {
 

@@ -4,14 +4,14 @@
 #include <cmath>
 
 #include "arguments.h"
-#include "tessera/tessellation.h"
 #include "tessera/io.h"
+#include "tessera/tessellation.h"
 
 namespace tessera::cli {
 namespace {
 
 /// Points of all patches that a mesh is held against.
-constexpr std::size_t most_points = 500000;
+constexpr std::size_t max_points = 500000;
 
 Result<Mesh> made(const PatchSet& set, double relative, MeshError& error) {
   const Result<CertifiedTessellation> plan =
@@ -27,7 +27,7 @@ Result<Mesh> made(const PatchSet& set, double relative, MeshError& error) {
 
 double largest(const render::MeshDistance& mesh, const PatchSet& set) {
   int steps = 32;
-  while (steps > 2 && set.patch_count() * static_cast<std::size_t>(steps * steps) > most_points) steps /= 2;
+  while (steps > 2 && set.patch_count() * static_cast<std::size_t>(steps * steps) > max_points) steps /= 2;
   const double size = set.box().diagonal();
   double most = 0;
   for (std::size_t k = 0; k < set.patch_count(); ++k)

@@ -1,7 +1,6 @@
 #pragma once
 // Operations on Bezier patches, polynomial and rational: curves on them, derivatives, subdivision, degree elevation,
-// reorientation; and makers of the simplest ones.
-// Joins of two patches along an edge: how smooth one is, and making one smooth.
+// reorientation, makers of the simplest ones; joins of two patches along an edge, measured and made smooth.
 
 #include <array>
 #include <cstdint>
@@ -14,7 +13,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// A Bezier curve: degree + 1 points, and as many weights > 0, or none for a polynomial one.
 struct BezierPolygon {
@@ -121,5 +120,5 @@ Result<JoinReport> measure_join(const JoinSide& p, const JoinSide& q, const Join
 /// (as above, k), invalid_weight (a new weight is not positive: k is too small).
 Result<BezierPatch> make_join(const JoinSide& p, const JoinSide& q, double k = 1, bool reversed = false);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

@@ -4,12 +4,12 @@
 
 #include <span>
 
-#include "tessera/geometry.h"
 #include "tessera/detail/shared_memory.h"
+#include "tessera/geometry.h"
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Degrees run from 1 to this in each direction.
 inline constexpr int max_degree = 15;
@@ -97,5 +97,5 @@ struct UnitNormal {
 /// parameter that leads away from the collapsed edge (from r_u and r_uv, or r_v and r_uv).
 UnitNormal unit_normal(const BezierPatch& patch, double u, double v);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

@@ -1,7 +1,6 @@
 #pragma once
-// Surfaces as grids of Bezier patches, and the map between a surface's parameters and its patches'.
-// B-spline and NURBS curves and surfaces in other clothes, exactly: more knots, a higher degree, clamped ends, Bezier
-// pieces.
+// Surfaces as grids of Bezier patches, and the map between a surface's parameters and its patches'; B-splines rewritten
+// exactly with more knots, a higher degree, clamped ends, or as Bezier pieces.
 
 #include <cstddef>
 #include <optional>
@@ -16,9 +15,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera {
-
-class BSplineSurface;
+namespace tessera::inline abi_0_1 {
 
 /// A place in a grid of patches.
 struct PatchLocation {
@@ -132,5 +129,5 @@ struct PatchRange {
 /// for a point that acts outside the domain alone. Errors: invalid_argument (no such point).
 Result<PatchRange> touched_patches(const BSplineSurface& surface, std::size_t i, std::size_t j);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

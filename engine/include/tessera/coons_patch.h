@@ -1,6 +1,5 @@
 #pragma once
-// Ruled surfaces between two curves.
-// Coons patches: the transfinite interpolation of four border curves.
+// Surfaces that are spanned by their borders: ruled surfaces between two curves, Coons patches between four.
 
 #include <array>
 #include <cstdint>
@@ -12,7 +11,7 @@
 #include "tessera/parametric_surface.h"
 
 #pragma GCC visibility push(default)
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// A direction of parameters.
 enum class Direction : std::uint8_t { u, v };
@@ -139,5 +138,5 @@ Result<Vec3> position(const CoonsPatch& patch, double u, double v);
 /// invalid_weight (products of weights below 1e-100 of their patch's largest), and those of a fit.
 Result<PatchGrid> to_bezier(const CoonsPatch& patch, const FitOptions& options = {});
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

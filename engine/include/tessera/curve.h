@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "tessera/bezier_patch.h"
-#include "tessera/status.h"
 #include "tessera/geometry.h"
+#include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// An interval of a parameter, from < to.
 struct Interval {
@@ -72,5 +72,5 @@ CurveJet evaluate_jet(const Curve& curve, double t);
 /// Its position alone: the same bits.
 Vec3 position(const Curve& curve, double t);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

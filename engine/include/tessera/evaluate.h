@@ -1,7 +1,6 @@
 #pragma once
-// Evaluation of every patch of a set over one grid of parameters.
-// Evaluation at scattered points: each sample names its patch, or its surface, and its parameters.
-// Grids that follow their patches: new control points in, the grids of the touched patches out, in one pass.
+// Evaluation of patches: all patches over one grid of parameters, samples scattered over patches or surfaces, and grids
+// that follow edits of control points.
 
 #include <cstddef>
 #include <cstdint>
@@ -19,7 +18,7 @@
 #include "tessera/strided_view.h"
 
 #pragma GCC visibility push(default)
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// `count` parameters from 0 to 1: i / (count - 1). A count below 2 counts as 2.
 std::vector<double> uniform_parameters(int count);
@@ -80,9 +79,9 @@ class GridPlan {
   Work work(const GridOutputs& outputs) const;
 
   class [[gnu::visibility("hidden")]] Impl;
-  const Impl& impl() const { return *impl_; }  ///< for the library's own use
 
  private:
+  friend struct ImplAccess;
   explicit GridPlan(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
@@ -220,9 +219,9 @@ class SurfaceMap {
   std::optional<Domain> domain(std::size_t surface) const;
 
   class [[gnu::visibility("hidden")]] Impl;
-  const Impl& impl() const { return *impl_; }  ///< for the library's own use
 
  private:
+  friend struct ImplAccess;
   explicit SurfaceMap(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
@@ -291,5 +290,5 @@ class GridUpdate {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

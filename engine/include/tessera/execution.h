@@ -1,6 +1,5 @@
 #pragma once
-// Instruction sets: which ones this machine has, and which one runs.
-// How long calls run: cancellation, progress, stores. Work runs in the caller's current TBB arena.
+// How calls run: the instruction set, cancellation, progress, stores. Work runs in the caller's current TBB arena.
 
 #include <atomic>
 #include <cstddef>
@@ -12,7 +11,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 enum class Isa : std::uint8_t { sse2, avx2, avx512, neon64 };
 
@@ -54,5 +53,5 @@ struct Execution {
   ExecutionReport* report = nullptr;  ///< filled if not null
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

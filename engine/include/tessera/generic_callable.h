@@ -14,11 +14,11 @@
 #include <utility>
 
 #include "tessera/detail/interval_number.h"
-#include "tessera/parametric_surface.h"
 #include "tessera/detail/taylor.h"
+#include "tessera/parametric_surface.h"
 
 #pragma GCC visibility push(default)
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 namespace generic {
 
@@ -138,5 +138,5 @@ Result<ParametricSurface> generic_surface_over_disc(const F& f, const Disc& disc
   return ParametricSurface::make(generic::surface_functions(polar), map->domain());
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

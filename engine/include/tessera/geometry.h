@@ -1,7 +1,5 @@
 #pragma once
-// Points and vectors of space, in double.
-// Affine maps of space.
-// Parameter rectangles and their edges.
+// Points, boxes and affine maps of space; rectangles of parameters and their edges.
 
 #include <algorithm>
 #include <array>
@@ -10,7 +8,7 @@
 #include <limits>
 
 #pragma GCC visibility push(default)
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// A point or a vector. Lengths are in the model's own unit.
 struct Vec3 {
@@ -144,7 +142,9 @@ struct EdgeMask {
   /// Puts the edge into the set.
   void add(Edge edge) { bits = static_cast<std::uint8_t>(bits | static_cast<std::uint8_t>(edge)); }
   bool any() const { return bits != 0; }  ///< whether an edge is in the set
+
+  friend bool operator==(const EdgeMask&, const EdgeMask&) = default;  ///< the same edges
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

@@ -1,6 +1,6 @@
 #pragma once
-// Bicubic Hermite patches: of 16 vectors, and of 12 with the twists zero (Ferguson) or estimated (Adini).
-// Networks of bicubic Hermite patches that join smoothly along whole edges.
+// Bicubic Hermite patches of 16 vectors, or of 12 with the twists zero (Ferguson) or estimated (Adini); networks of such
+// patches that join smoothly along whole edges.
 
 #include <array>
 #include <cstddef>
@@ -14,7 +14,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 class PatchGrid;  // tessera/convert.h
 
@@ -176,5 +176,5 @@ SurfaceJet evaluate_jet(const HermiteNetwork& network, double u, double v);
 /// One bicubic Bezier patch a cell, over the knots; exact to rounding. Error: non_finite (too large).
 Result<PatchGrid> to_bezier(const HermiteNetwork& network);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

@@ -12,7 +12,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Reads surfaces: .bpt (Bezier patches; `#` begins a comment), .bv (BezierView: tensor and rational patches), .g2
 /// (GoTools: spline and elementary surfaces), .json (surfaces of every kind; tools/models/FORMAT.md tells the format), .obj
@@ -84,5 +84,5 @@ struct MeshReadOptions {
 /// where their bits are equal. Errors: io_error, parse_error, unsupported.
 Result<Mesh> read_mesh(const std::filesystem::path& path, const MeshReadOptions& options = {});
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

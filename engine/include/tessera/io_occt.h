@@ -27,7 +27,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// STEP: AP203, AP214, AP242 (ISO 10303-21).
 Result<Model> read_step(const std::filesystem::path& path);
@@ -38,5 +38,5 @@ Result<Model> read_cad(const std::filesystem::path& path);
 /// Whether read_cad knows the extension.
 bool is_cad_file(const std::filesystem::path& path);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

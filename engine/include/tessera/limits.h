@@ -8,7 +8,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Work that a call cannot avoid, whatever the kernel.
 struct Work {
@@ -41,5 +41,5 @@ Result<Limits> measure_limits(const LimitsOptions& options = {});
 /// The larger of operations over their rate and bytes over theirs.
 double seconds_at_limit(const Limits& limits, const Work& work);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

@@ -6,11 +6,11 @@
 #include <cstdint>
 
 #include "tessera/bezier_patch.h"
-#include "tessera/status.h"
 #include "tessera/geometry.h"
+#include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// A direction of principal curvature.
 struct PrincipalDirection {
@@ -40,7 +40,7 @@ enum class CurvatureKind : std::uint8_t {
 
 /// What counts as undefined or umbilic.
 struct LocalGeometryOptions {
-  double smallest_sine = 1e-10;     ///< of the angle between r_u and r_v; undefined at or below it
+  double min_sine = 1e-10;          ///< of the angle between r_u and r_v; undefined at or below it
   double umbilic_tolerance = 1e-9;  ///< (k1 - k2) / (|k1| + |k2|) at or below which a point is umbilic
 };
 
@@ -76,5 +76,5 @@ struct NetReport {
 /// Errors: invalid_argument (samples, tolerance).
 Result<NetReport> measure_net(const BezierPatch& patch, const NetOptions& options = {});
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "tessera/status.h"
 #include "tessera/geometry.h"
+#include "tessera/status.h"
 #include "tessera/strided_view.h"
 
 #pragma GCC visibility push(default)
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// What a mesh needs, in records.
 struct MeshCapacity {
@@ -95,5 +95,5 @@ struct MeshReport {
 /// quads; counts that don't fit).
 Result<MeshReport> check(const Mesh& mesh);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

@@ -5,16 +5,16 @@
 #include <string>
 #include <vector>
 
-#include "tessera/geometry.h"
 #include "tessera/convert.h"
 #include "tessera/curve.h"
-#include "tessera/patch_set.h"
 #include "tessera/detail/shared.h"
+#include "tessera/geometry.h"
+#include "tessera/patch_set.h"
 #include "tessera/status.h"
 #include "tessera/surface.h"
 
 #pragma GCC visibility push(default)
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// A closed chain of curves in the surface's parameters (x = u, y = v, z = 0), each from where the one before it ends.
 /// What lies inside a hole is cut away; what lies outside of all other loops too.
@@ -61,5 +61,5 @@ Result<PatchSet> make_patch_set(std::span<const PatchGrid> grids, const PatchSet
 /// The same of one surface; a grid that is moved here gives its patches without a copy.
 Result<PatchSet> make_patch_set(PatchGrid grid, const PatchSetOptions& options = {});
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

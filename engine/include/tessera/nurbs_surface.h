@@ -1,6 +1,6 @@
 #pragma once
-// B-spline and NURBS surfaces in double, with the scalar reference evaluator.
-// Circles and surfaces of revolution as exact NURBS.
+// B-spline and NURBS surfaces in double with the scalar reference evaluator; circles and surfaces of revolution as exact
+// NURBS.
 
 #include <cstdint>
 #include <memory>
@@ -14,7 +14,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// s(u,v) = sum_ij N_{i,p}(u) N_{j,q}(v) P_ij or, rational, sum N N w_ij P_ij / sum N N w_ij, of degrees 1 to
 /// max_degree (Piegl and Tiller, The NURBS Book, 2nd ed., ch. 3 and 4). Each direction has its knots, as many as
@@ -112,5 +112,5 @@ Result<BSplineSurface> nurbs_cylinder(const Axis& axis, double radius, double he
 Result<BSplineSurface> nurbs_cone(const Axis& axis, double bottom, double top, double height,
                                   CircleArcs arcs = CircleArcs::four);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

@@ -1,8 +1,6 @@
 #pragma once
-// Surfaces that are functions of the caller's: evaluated as they are, and fitted by Bezier patches to a stated
+// Surfaces and curves that are functions of the caller's: evaluated as they are, and fitted by Bezier patches to a stated
 // tolerance.
-// Curves that are functions of the caller's, and the two forms in which borders of ruled surfaces and Coons patches
-// come.
 
 #include <array>
 #include <cstddef>
@@ -17,7 +15,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 class PatchGrid;  // tessera/convert.h
 
@@ -107,8 +105,8 @@ struct FitOptions {
   /// How far patches may lie from the surface at equal parameters, in the model's unit; 0 for 1e-6 of the diagonal of
   /// the box of 17 x 17 points.
   double tolerance = 0;
-  int degree = 3;                              ///< of the patches, each way; 2 to max_degree
-  std::size_t largest_patch_count = 1u << 16;  ///< more are an error
+  int degree = 3;                      ///< of the patches, each way; 2 to max_degree
+  std::size_t max_patches = 1u << 16;  ///< more are an error
   /// By the surface's bounds, where it has them. Else by sampling, which takes fewer patches and more calls.
   bool certify = true;
   /// Inner parameters at which the surface is not smooth: breakpoints from the start, so that no patch goes across.
@@ -177,5 +175,5 @@ const Interval& domain(const BorderCurve& border);
 Result<Vec3> position(const BorderCurve& border, double t);
 Result<CurveJet> evaluate_jet(const BorderCurve& border, double t);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

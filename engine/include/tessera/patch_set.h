@@ -12,7 +12,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// In which numbers, and over which basis, the coefficients of the blocks are held.
 enum class Precision : std::uint8_t { single_precision, double_precision };
@@ -33,6 +33,12 @@ struct BlockKinds {
   bool double_points = false;  ///< the same in double
 };
 
+/// Where a patch came from: a surface of the model, and the rectangle of that surface's parameters that it covers.
+struct PatchSource {
+  std::uint32_t surface = 0;  ///< index into the model's surfaces
+  Domain domain = {};         ///< of the surface's own parameters
+};
+
 /// What a set holds.
 struct PatchSetOptions {
   BlockKinds blocks = {};  ///< at least one kind
@@ -40,12 +46,8 @@ struct PatchSetOptions {
   std::optional<Vec3> origin = {};
   /// How far the patches lie from the surfaces that they stand for.
   FitError fit_error = {};
-};
-
-/// Where a patch came from: a surface of the model, and the rectangle of that surface's parameters that it covers.
-struct PatchSource {
-  std::uint32_t surface = 0;  ///< index into the model's surfaces
-  Domain domain = {};         ///< of the surface's own parameters
+  /// The source of each patch, copied. Empty: each patch is a surface of its own on [0,1]^2.
+  std::span<const PatchSource> sources = {};
 };
 
 /// Owns patches and their SoA blocks: patches of equal degrees and rationality lie together, 16 to a block, coefficients
@@ -56,14 +58,11 @@ class PatchSet {
  public:
   static constexpr int lanes = 16;  ///< patches in a block
 
-  /// One surface a patch, each on [0,1]^2. Errors: invalid_argument (no patch), out_of_memory, and
+  /// Errors: invalid_argument (no patch), count_mismatch (sources, unless empty: one a patch), out_of_memory, and
   /// non_finite (index = the patch) if the smallest weight is below 1e-9 of the largest (1e-70 if there are double blocks
   /// alone), or a coordinate, after the origin is taken off, above 5e33 (2.7e303) times the square of that ratio: so
   /// derivatives are numbers.
   static Result<PatchSet> from(std::span<const BezierPatch> patches, const PatchSetOptions& options = {});
-  /// The same with the source of each patch given; sources.size() == patches.size().
-  static Result<PatchSet> from(std::span<const BezierPatch> patches, std::span<const PatchSource> sources,
-                               const PatchSetOptions& options = {});
 
   PatchSet(PatchSet&&) noexcept;
   PatchSet& operator=(PatchSet&&) noexcept;
@@ -93,13 +92,12 @@ class PatchSet {
   Status set_control_points(std::size_t index, std::span<const Vec3> points);
 
   class [[gnu::visibility("hidden")]] Impl;
-  const Impl& impl() const { return *impl_; }  ///< for the library's own use
-  Impl& impl() { return *impl_; }              ///< for the library's own use
 
  private:
+  friend struct ImplAccess;
   explicit PatchSet(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

@@ -13,7 +13,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 class PatchGrid;
 
@@ -164,5 +164,5 @@ QuadricParameters canonical_parameters(const QuadricPiece& piece, double u, doub
 /// The inverse: the parameters in the grid of the point with these canonical ones.
 QuadricParameters grid_parameters(const QuadricPiece& piece, double u, double v);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

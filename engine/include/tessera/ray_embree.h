@@ -16,7 +16,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// A user geometry of all patches of a scene in exact mode, committed, with one reference, which the caller releases
 /// (rtcReleaseGeometry). It is attached, masked, instanced and given filter functions like any other; its user data,
@@ -45,5 +45,5 @@ Status update_embree_geometry(const RayScene& scene, RTCGeometry geometry);
 /// make_embree_geometry() for the scene's device, attached; the id. The scene is to be committed. Errors: as above.
 Result<unsigned> attach(const RayScene& scene, RTCScene to);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

@@ -1,6 +1,5 @@
 #pragma once
-// Ray queries on a patch set.
-// Rays by the million as renderers hold them: arrays in float or double, and of each hit only what is asked for.
+// Ray queries on a patch set: single rays, and arrays of rays in float or double as renderers hold them.
 
 #include <cstddef>
 #include <cstdint>
@@ -20,7 +19,7 @@
 #include "tessera/strided_view.h"
 
 #pragma GCC visibility push(default)
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Points origin + t * direction, tnear <= t <= tfar, in the model's coordinates. The direction need not be a unit
 /// vector. Valid: finite origin and direction with components of at most 1.844e18, direction not zero, 0 <= tnear <=
@@ -235,9 +234,9 @@ class RayScene {
   std::size_t memory_bytes() const;
 
   class [[gnu::visibility("hidden")]] Impl;
-  const Impl& impl() const { return *impl_; }  ///< for the library's own use
 
  private:
+  friend struct ImplAccess;
   explicit RayScene(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
@@ -327,5 +326,5 @@ Status occluded(const RayScene& scene, const RayViews<float>& rays, const View1<
 Status occluded(const RayScene& scene, const RayViews<double>& rays, const View1<std::uint8_t>& occluded,
                 const BatchOptions& options = {}, const Execution& execution = {});
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

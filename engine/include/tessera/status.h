@@ -9,7 +9,7 @@
 #include <utility>
 
 #pragma GCC visibility push(default)
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// What kind of thing went wrong. The message says the rest.
 enum class StatusCode : std::uint8_t {
@@ -79,5 +79,5 @@ class [[nodiscard]] Result {
   Status status_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

@@ -6,7 +6,7 @@
 #include <span>
 
 #pragma GCC visibility push(default)
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// `size` records of N components each: component c of record k is `component[c][k * stride]`.
 /// It names both structure-of-arrays and interleaved memory. An empty view (the default) means "not wanted".
@@ -52,5 +52,5 @@ using View3 = VectorView<T, 3>;
 template <class T>
 using View2 = VectorView<T, 2>;
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

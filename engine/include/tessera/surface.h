@@ -6,15 +6,15 @@
 #include <variant>
 
 #include "tessera/bezier_patch.h"
-#include "tessera/nurbs_surface.h"
 #include "tessera/coons_patch.h"
-#include "tessera/tensor_patch.h"
 #include "tessera/hermite_patch.h"
+#include "tessera/nurbs_surface.h"
 #include "tessera/parametric_surface.h"
 #include "tessera/quadric.h"
+#include "tessera/tensor_patch.h"
 
 #pragma GCC visibility push(default)
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 using Surface = std::variant<BezierPatch, TensorPatch, BSplineSurface, HermitePatch, HermiteNetwork, RuledSurface,
                              CoonsPatch, ExplicitPolynomial, QuadricPiece, ParametricSurface>;
@@ -34,5 +34,5 @@ std::array<double, 2> grid_parameters(const Surface& surface, double u, double v
 /// By the kind's own conversion: exact, but for callables, which are fitted by `options`. Errors: those of the kind.
 Result<PatchGrid> to_bezier(const Surface& surface, const FitOptions& options = {});
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

@@ -1,6 +1,5 @@
 #pragma once
-// Functions of the caller's straight on grids, without a fit.
-// Ruled surfaces and Coons patches straight on grids: border curves are sampled once, the rest is SIMD blending.
+// Positions of callable, ruled and Coons surfaces on a grid of parameters, evaluated without Bezier patches.
 
 #include <cstdint>
 #include <span>
@@ -11,7 +10,7 @@
 #include "tessera/strided_view.h"
 
 #pragma GCC visibility push(default)
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Which threads may call a surface's functions.
 enum class Calls : std::uint8_t {
@@ -46,5 +45,5 @@ Status evaluate(const RuledSurface& surface, std::span<const double> u, std::spa
 Status evaluate(const RuledSurface& surface, std::span<const double> u, std::span<const double> v,
                 const View3<float>& out, const Execution& execution = {});
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

@@ -1,7 +1,6 @@
 #pragma once
 // Tensor-product patches over any polynomial bases, the two directions' own: Bezier, power, Hermite, uniform B-spline,
-// Catmull-Rom, or a matrix of the user's.
-// Graphs z = sum a_ij x^i y^j over a rectangle. The conversion needs tessera/convert.h as well.
+// Catmull-Rom, or a matrix of the user's; graphs z = sum a_ij x^i y^j over a rectangle.
 
 #include <memory>
 #include <span>
@@ -12,7 +11,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 class PatchGrid;  // tessera/convert.h
 
@@ -143,5 +142,5 @@ SurfaceJet evaluate_jet(const ExplicitPolynomial& surface, double u, double v);
 /// of doubles.
 Result<PatchGrid> to_bezier(const ExplicitPolynomial& surface);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

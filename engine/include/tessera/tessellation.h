@@ -1,8 +1,6 @@
 #pragma once
-// Patches to triangles.
-// What a camera sees, for tolerances in pixels.
-// Triangles that provably keep a tolerance, without cracks.
-// Certified meshes that follow their patches: new control points in, the vertices of the touched patches out.
+// Patches to triangles: at uniform rates, or so that a tolerance in length, angle or pixels provably holds without
+// cracks; and meshes that follow edits of control points.
 
 #include <cstddef>
 #include <cstdint>
@@ -20,7 +18,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 struct Model;
 
@@ -126,8 +124,8 @@ struct CertifiedOptions {
   /// comes first: its parameters are those of that patch. Without it each patch has vertices of its own, of the same bits.
   bool share_vertices = false;
   /// More triangles than this are refused.
-  std::uint64_t most_triangles = std::uint64_t{1} << 30;
-  /// The tolerance is not given but found: the smallest, within 1 percent, for which most_triangles are enough. Angle and
+  std::uint64_t max_triangles = std::uint64_t{1} << 30;
+  /// The tolerance is not given but found: the smallest, within 1 percent, for which max_triangles are enough. Angle and
   /// pixels are kept as well.
   bool smallest = false;
   /// Fewer triangles for more time: rates that bounds of many small pieces of each patch prove, where those of its halves ask
@@ -234,9 +232,9 @@ class CertifiedTessellation {
   std::size_t divided_otherwise(const CertifiedTessellation& other) const;
 
   class [[gnu::visibility("hidden")]] Impl;
-  const Impl& impl() const { return *impl_; }  ///< for the library's own use
 
  private:
+  friend struct ImplAccess;
   explicit CertifiedTessellation(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
@@ -300,5 +298,5 @@ class MeshUpdate {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

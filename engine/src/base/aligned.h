@@ -5,22 +5,22 @@
 #include <new>
 #include <vector>
 
-#include "base/for_wings.h"
+#include "base/internal_export.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 inline constexpr std::size_t cache_line = 64;
 
 /// Memory of several pages of this size is asked for in them, where the system has them: scattered reads of 4 KiB pages
 /// wait longer for the page's address than for the values. Less memory is not worth the time that getting them takes.
-inline constexpr std::size_t large_page = std::size_t{2} << 20, least_in_large_pages = 8 * large_page;
+inline constexpr std::size_t large_page = std::size_t{2} << 20, min_bytes_in_large_pages = 8 * large_page;
 
 /// Alignment of so many bytes.
 constexpr std::align_val_t alignment_of(std::size_t bytes) {
-  return std::align_val_t{bytes >= least_in_large_pages ? large_page : cache_line};
+  return std::align_val_t{bytes >= min_bytes_in_large_pages ? large_page : cache_line};
 }
 /// `bytes` at that alignment. Throws std::bad_alloc.
-TESSERA_FOR_WINGS void* allocate_aligned(std::size_t bytes);
+TESSERA_INTERNAL_EXPORT void* allocate_aligned(std::size_t bytes);
 
 template <class T>
 struct AlignedAllocator {
@@ -54,4 +54,4 @@ struct UnsetAllocator : AlignedAllocator<T> {
 template <class T>
 using UnsetVector = std::vector<T, UnsetAllocator<T>>;
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -8,7 +8,7 @@
 
 #include "tessera/status.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Of the exception that is being handled.
 [[gnu::cold]] inline Status status_of_exception() noexcept {
@@ -37,4 +37,4 @@ auto guarded(Body&& body) noexcept -> decltype(body()) {
   }
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -1,7 +1,7 @@
 #pragma once
 // One callable of several lambdas, to visit variants with.
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 template <class... F>
 struct Overloaded : F... {
@@ -10,4 +10,4 @@ struct Overloaded : F... {
 template <class... F>
 Overloaded(F...) -> Overloaded<F...>;  // clang 14 does not deduce an aggregate's arguments
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

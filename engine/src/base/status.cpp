@@ -1,6 +1,6 @@
 #include "tessera/status.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 Status::Status(StatusCode code, std::string message, std::ptrdiff_t index)
     : code_(code), index_(index), message_(std::move(message)) {}
@@ -41,4 +41,4 @@ std::string_view name(StatusCode code) {
   return "unknown";
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// The shortest text that reads back as the same double; "nan" for every NaN, whose sign means nothing. For messages of
 /// failures: what leads to a call is compiled for size.
@@ -16,4 +16,4 @@ namespace tessera {
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

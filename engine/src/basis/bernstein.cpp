@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// values[0..degree] -> factor * (v_{i-1} - v_i), one value more.
@@ -62,4 +62,4 @@ template void bernstein_derivatives(int, long double, long double*);
 template void bernstein_second_derivatives(int, double, double*);
 template void bernstein_second_derivatives(int, long double, long double*);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -6,7 +6,7 @@
 
 #include "basis/small_matrix.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// x_i = sin^2(pi i / (2 n)), i = 0..n, n >= 1: the extrema of the Chebyshev polynomial on [0,1]. Increasing, symmetric
 /// to rounding, 0 and 1 exact.
@@ -34,4 +34,4 @@ double lobatto_error_factor(int n);
 /// |If| <= constant max |f(x_i)|: 1 + (2/pi) log(n + 1) (the same, thm. 15.2).
 double lobatto_lebesgue_constant(int n);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

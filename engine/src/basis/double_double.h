@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// high + low, |low| at most half a unit in the last place of high.
 struct DoubleDouble {
@@ -40,4 +40,4 @@ inline DoubleDouble operator/(const DoubleDouble& a, double b) {
   return two_sum(quotient, (std::fma(-quotient, b, a.high) + a.low) / b);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

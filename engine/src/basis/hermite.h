@@ -5,7 +5,7 @@
 
 #include <array>
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 // Any finite t. Written as products, which don't cancel on [0,1].
 
@@ -24,4 +24,4 @@ inline std::array<double, 4> hermite_second_derivatives(double t) {
   return {12 * t - 6, 6 * t - 4, 6 * t - 2, 6 - 12 * t};
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -7,10 +7,10 @@
 
 #include "base/text.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr std::size_t most_arguments = 32;
+constexpr std::size_t max_arguments = 32;
 
 std::string knot_text(std::span<const double> knots, const std::string& name, std::size_t k) {
   return name + "[" + std::to_string(k) + "] = " + text(knots[k]);
@@ -120,10 +120,10 @@ template void blossom_weights(int, std::span<const double>, std::size_t, const d
 template void blossom_weights(int, std::span<const double>, std::size_t, const long double*, long double*);
 
 void b_spline_values(const KnotLine& line, std::size_t span, double t, double* values) {
-  std::array<double, most_arguments> arguments;
+  std::array<double, max_arguments> arguments;
   assert(line.order() <= arguments.size());
   arguments.fill(t);
   blossom_weights(line.degree, line.knots, span, arguments.data(), values);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -9,7 +9,7 @@
 
 #include "tessera/status.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// One direction of a spline: its knots u_0 .. u_{m+p+1} for degree p and points 0 .. m, and the interval of the
 /// parameter that is used, [from, to] within [u_p, u_{m+1}]. A view; the knots have passed check_knots.
@@ -49,4 +49,4 @@ void blossom_weights(int degree, std::span<const double> knots, std::size_t span
 /// N_{span-p+j,p}(t), j = 0..p: the blossom with all arguments t.
 void b_spline_values(const KnotLine& line, std::size_t span, double t, double* values);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -1,7 +1,7 @@
 #pragma once
 // Monomials t^i and their derivatives, all up to one degree at one parameter.
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 // Each writes degree + 1 values, i = 0..degree, of degree >= 0. Any finite t; 0^0 = 1. Real is double or long double.
 
@@ -15,4 +15,4 @@ void power_derivatives(int degree, Real t, Real* values);
 template <class Real>
 void power_second_derivatives(int degree, Real t, Real* values);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

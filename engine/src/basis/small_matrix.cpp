@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// Divides each column by its largest entry, which it returns; nothing if a column is zero.
@@ -91,4 +91,4 @@ std::vector<Vec3> tensor_product(const Matrix& a, std::span<const Vec3> net, con
   return result;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

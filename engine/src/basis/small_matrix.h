@@ -7,7 +7,7 @@
 
 #include "tessera/geometry.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// `rows` x `columns` entries, zero at first.
 class Matrix {
@@ -37,4 +37,4 @@ std::optional<Matrix> inverse(const Matrix& matrix);
 /// a G b^T for a net G of a.columns() x b.columns() points [i][j]; rounded once, at the end.
 std::vector<Vec3> tensor_product(const Matrix& a, std::span<const Vec3> net, const Matrix& b);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -5,7 +5,7 @@
 
 #include "tessera/geometry.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 struct SymmetricEigen {
   std::array<double, 3> values;  ///< in the order in which the axes lie nearest, no sorting
@@ -16,4 +16,4 @@ struct SymmetricEigen {
 /// untouched; errors are a few units of the largest |entry|. Entries are finite and their squares do not overflow.
 SymmetricEigen symmetric_eigen(double xx, double yy, double zz, double xy, double yz, double xz);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

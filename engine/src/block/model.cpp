@@ -8,7 +8,7 @@
 #include "base/text.h"
 #include "block/patch_set_impl.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// Patches of surface after surface, and where each came from.
@@ -129,4 +129,4 @@ Result<PatchSet> make_patch_set(PatchGrid grid, const PatchSetOptions& options) 
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

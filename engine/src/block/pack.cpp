@@ -6,12 +6,12 @@
 #include "convert/power_form.h"
 #include "surface/homogeneous.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// Weights below these shares of the largest: derivatives grow with the inverse of that share, and normals with its
 /// square.
-constexpr double least_weight_in_float = 1e-9, least_weight_in_double = 1e-70;
+constexpr double min_weight_in_float = 1e-9, min_weight_in_double = 1e-70;
 
 /// The largest |coefficient| of components `first` to before `end`.
 double largest_of(std::span<const double> net, std::size_t components, std::size_t first, std::size_t end) {
@@ -26,7 +26,7 @@ bool fits(const RelativeNet& net, bool in_float, double largest) {
   const double ratio = net.weight_ratio();
   return largest <= largest_coefficient(in_float, 1) &&
          largest / net.heaviest() <= largest_coefficient(in_float, ratio) &&
-         !(ratio < (in_float ? least_weight_in_float : least_weight_in_double));
+         !(ratio < (in_float ? min_weight_in_float : min_weight_in_double));
 }
 
 /// Where a patch goes, and what its doubts rest on.
@@ -59,13 +59,13 @@ struct Place {
   template <class T>
   void write_points(Coefficients<T>& to, double size) const {
     net.write_rows(to.points.data() + group.point_value(slot), group.point_values);
-    NormalDoubt doubt = regular_doubt<T>(size);
+    DegenerateNormalThreshold doubt = regular_doubt<T>(size);
     if (curve) doubt.noise = no_normal.noise;
     to.point_doubt[slot.block * std::size_t{PatchSet::lanes} + slot.lane] = doubt_in<T>(doubt);
   }
 
   template <class T>
-  NormalDoubt regular_doubt(double size) const {
+  DegenerateNormalThreshold regular_doubt(double size) const {
     return normal_doubt<T>(std::max(group.degree_u, group.degree_v), size, diameter, net.lightest(),
                            net.weight_spread());
   }
@@ -117,8 +117,8 @@ bool PatchSet::Impl::pack_bernstein(std::size_t index, const BlockGroup& group, 
   if (!fits(net, kinds.float_bernstein, net.largest(hull))) return false;
   const double size = net.tangent_size(hull);
   const auto coefficients = [&](auto* lane) { net.write(lane); };
-  if (kinds.float_bernstein) place.write(single.bernstein, single.bernstein_doubt, size, coefficients);
-  if (kinds.double_bernstein) place.write(twice.bernstein, twice.bernstein_doubt, size, coefficients);
+  if (kinds.float_bernstein) place.write(f32.bernstein, f32.bernstein_doubt, size, coefficients);
+  if (kinds.double_bernstein) place.write(f64.bernstein, f64.bernstein_doubt, size, coefficients);
   return true;
 }
 
@@ -130,8 +130,8 @@ bool PatchSet::Impl::pack_points(std::size_t index, const BlockGroup& group, con
   const Place place{group, slot, lane_counts[slot.block], net, curve, hull.diagonal()};
   if (!fits(net, kinds.float_points, net.largest(hull))) return false;
   const double size = net.tangent_size(hull);
-  if (kinds.float_points) place.write_points(single, size);
-  if (kinds.double_points) place.write_points(twice, size);
+  if (kinds.float_points) place.write_points(f32, size);
+  if (kinds.double_points) place.write_points(f64, size);
   return true;
 }
 
@@ -152,8 +152,8 @@ bool PatchSet::Impl::pack_power(std::size_t index, const BlockGroup& group, cons
   const auto coefficients = [&]<class T>(T* lane) {
     for (std::size_t k = 0; k < power.size(); ++k) lane[k * lanes] = static_cast<T>(power[k]);
   };
-  if (kinds.float_power) place.write(single.power, single.power_doubt, size, coefficients);
-  if (kinds.double_power) place.write(twice.power, twice.power_doubt, size, coefficients);
+  if (kinds.float_power) place.write(f32.power, f32.power_doubt, size, coefficients);
+  if (kinds.double_power) place.write(f64.power, f64.power_doubt, size, coefficients);
   return true;
 }
 
@@ -166,8 +166,8 @@ bool PatchSet::Impl::pack_lanes(std::size_t index) {
 
 void PatchSet::Impl::note_doubt(std::size_t index) {
   const std::size_t at = slots[index].block * std::size_t{lanes} + slots[index].lane;
-  if (kinds.float_points) single.largest_doubt = std::max(single.largest_doubt, single.point_doubt[at][0]);
-  if (kinds.double_points) twice.largest_doubt = std::max(twice.largest_doubt, twice.point_doubt[at][0]);
+  if (kinds.float_points) f32.largest_doubt = std::max(f32.largest_doubt, f32.point_doubt[at][0]);
+  if (kinds.double_points) f64.largest_doubt = std::max(f64.largest_doubt, f64.point_doubt[at][0]);
 }
 
 bool PatchSet::Impl::pack(std::size_t index) {
@@ -176,4 +176,4 @@ bool PatchSet::Impl::pack(std::size_t index) {
   return true;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -10,7 +10,7 @@
 #include "tessera/bezier_patch.h"
 #include "tessera/patch_set.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Components of a coefficient: x, y, z, and w for rational patches.
 constexpr int coefficient_components(bool rational) { return rational ? 4 : 3; }
@@ -116,7 +116,7 @@ class RelativeNet {
 };
 
 /// From when on r_u x r_v can't be told from zero in a block's arithmetic.
-struct NormalDoubt {
+struct DegenerateNormalThreshold {
   double squared_length = 0;  ///< at or below this |r_u x r_v|^2 the tangents' rounding errors count
   double noise = 0;  ///< largest error of a tangent's component, times the weight; negative: no normal anywhere
 };
@@ -126,7 +126,8 @@ struct NormalDoubt {
 bool is_curve(const BezierPatch& patch, EdgeMask collapsed);
 
 /// Of a curve.
-inline constexpr NormalDoubt no_normal{.squared_length = std::numeric_limits<double>::infinity(), .noise = -1};
+inline constexpr DegenerateNormalThreshold no_normal{.squared_length = std::numeric_limits<double>::infinity(),
+                                                     .noise = -1};
 
 /// The error of a tangent where RelativeNet::tangent_size() is 1, `degree` = max(m, n).
 template <class T>
@@ -138,14 +139,15 @@ constexpr double longest_tangent(int degree, double weight_spread = 1) { return 
 
 /// Squared lengths below, 2^-80 or 2^-600, are out of the range of a float's or a double's squares.
 template <class T>
-inline constexpr double least_doubt = sizeof(T) == 4 ? 0x1p-80 : 0x1p-600;
+inline constexpr double min_doubt = sizeof(T) == 4 ? 0x1p-80 : 0x1p-600;
 
 /// The doubt of a patch that is no curve, in blocks of T, `degree` = max(m, n). The error of a tangent counts as
 /// 6 max(m, n) units of `size`, RelativeNet::tangent_size(), over the weight for rational patches: random nets of all
 /// degrees reach 4, tangents that vanish 1.6. And |r_u|, |r_v| <= max(m, n) (largest weight / smallest) diameter
 /// (Floater 1992, Derivatives of rational Bezier curves, eq. 10). `diameter`: of the hull's box.
 template <class T>
-NormalDoubt normal_doubt(int degree, double size, double diameter, double lightest, double weight_spread) {
+DegenerateNormalThreshold normal_doubt(int degree, double size, double diameter, double lightest,
+                                       double weight_spread) {
   const double noise = tangent_noise<T>(degree) * size;
   const double longest = longest_tangent(degree, weight_spread) * diameter;
   const double length = 4 * (noise / lightest) * longest;  // 2 sqrt(3) noise |r_u|
@@ -154,10 +156,10 @@ NormalDoubt normal_doubt(int degree, double size, double diameter, double lighte
 
 /// The same as a kernel reads it: squared length, noise.
 template <class T>
-std::array<T, 2> doubt_in(const NormalDoubt& doubt) {
+std::array<T, 2> doubt_in(const DegenerateNormalThreshold& doubt) {
   const double largest = std::numeric_limits<T>::max();
-  return {static_cast<T>(std::clamp(doubt.squared_length, least_doubt<T>, largest)),
+  return {static_cast<T>(std::clamp(doubt.squared_length, min_doubt<T>, largest)),
           static_cast<T>(std::min(doubt.noise, largest))};
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -8,7 +8,7 @@
 #include "kernel/isa/kernel_table.h"
 #include "surface/patch_pieces.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 Box3 box_of_lane(const kernel::NetBoxes& boxes, std::size_t lane) {
@@ -33,7 +33,7 @@ kernel::PackJob<T> PatchSet::Impl::pack_job(const BlockGroup& group, std::size_t
           .doubts = to.bernstein_doubt.data() + 2 * lanes * block,
           .noise = tangent_noise<T>(degree),
           .longest = longest_tangent(degree),
-          .least_doubt = least_doubt<T>};
+          .min_doubt = min_doubt<T>};
 }
 
 std::size_t PatchSet::Impl::pack_polynomials(std::size_t block, const kernel::KernelTable& kernels,
@@ -50,10 +50,10 @@ std::size_t PatchSet::Impl::pack_polynomials(std::size_t block, const kernel::Ke
   double* const* copies = edits ? owned.data() : nullptr;
   kernel::PackedNets found;
   if (kinds.float_bernstein) {
-    kernels.pack_f32(pack_job(group, block, nets.data(), copies, single), found);
+    kernels.pack_f32(pack_job(group, block, nets.data(), copies, f32), found);
     copies = nullptr;
   }
-  if (kinds.double_bernstein) kernels.pack_f64(pack_job(group, block, nets.data(), copies, twice), found);
+  if (kinds.double_bernstein) kernels.pack_f64(pack_job(group, block, nets.data(), copies, f64), found);
   for (std::size_t lane = 0; lane < lane_counts[block]; ++lane)
     collapsed[indices[lane]] = found.edges_may_be_points ? patches[indices[lane]].collapsed_edges() : EdgeMask{};
   boxes = found.boxes;
@@ -99,4 +99,4 @@ std::size_t PatchSet::Impl::pack_block(std::size_t block, const kernel::KernelTa
   return lanes;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -15,7 +15,7 @@
 #include "parallel/parallel_for.h"
 #include "surface/patch_pieces.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// Patches of equal key share blocks, which lie in the keys' order.
@@ -86,17 +86,17 @@ void lay_out(PatchSet::Impl& set) {
     coefficients.resize(next_value);
     doubt.resize(doubts);
   };
-  if (set.kinds.float_bernstein) make_room(set.single.bernstein, set.single.bernstein_doubt);
-  if (set.kinds.float_power) make_room(set.single.power, set.single.power_doubt);
-  if (set.kinds.double_bernstein) make_room(set.twice.bernstein, set.twice.bernstein_doubt);
-  if (set.kinds.double_power) make_room(set.twice.power, set.twice.power_doubt);
+  if (set.kinds.float_bernstein) make_room(set.f32.bernstein, set.f32.bernstein_doubt);
+  if (set.kinds.float_power) make_room(set.f32.power, set.f32.power_doubt);
+  if (set.kinds.double_bernstein) make_room(set.f64.bernstein, set.f64.bernstein_doubt);
+  if (set.kinds.double_power) make_room(set.f64.power, set.f64.power_doubt);
   const auto make_points = [&](auto& of) {
     of.points.resize(next_point_value + lanes);
     std::fill_n(of.points.end() - lanes, lanes, 0);
     of.point_doubt.resize(lanes * set.lane_counts.size());
   };
-  if (set.kinds.float_points) make_points(set.single);
-  if (set.kinds.double_points) make_points(set.twice);
+  if (set.kinds.float_points) make_points(set.f32);
+  if (set.kinds.double_points) make_points(set.f64);
 }
 
 template <class T>
@@ -186,26 +186,22 @@ Result<PatchSet> PatchSet::Impl::make(std::vector<BezierPatch> patches, std::vec
   set->edited.resize(set->patches.size());
   lay_out(*set);
   if (Status status = set->pack_all(); !status.ok()) return status;
-  find_largest_doubt(set->single);
-  find_largest_doubt(set->twice);
+  find_largest_doubt(set->f32);
+  find_largest_doubt(set->f64);
   return PatchSet(std::move(set));
 }
 
 Result<PatchSet> PatchSet::from(std::span<const BezierPatch> patches, const PatchSetOptions& options) {
   return guarded([&]() -> Result<PatchSet> {
-    std::vector<PatchSource> sources(patches.size());
-    for (std::size_t k = 0; k < sources.size(); ++k) sources[k].surface = static_cast<std::uint32_t>(k);
-    return from(patches, sources, options);
-  });
-}
-
-Result<PatchSet> PatchSet::from(std::span<const BezierPatch> patches, std::span<const PatchSource> sources,
-                                const PatchSetOptions& options) {
-  return guarded([&]() -> Result<PatchSet> {
+    std::vector<PatchSource> sources(options.sources.begin(), options.sources.end());
+    if (sources.empty()) {
+      sources.resize(patches.size());
+      for (std::size_t k = 0; k < sources.size(); ++k) sources[k].surface = static_cast<std::uint32_t>(k);
+    }
     if (Status status = check_sources(patches, sources); !status.ok()) return status;
     std::size_t surface_count = 0;
     for (const PatchSource& source : sources) surface_count = std::max(surface_count, std::size_t{source.surface} + 1);
-    return Impl::make({patches.begin(), patches.end()}, {sources.begin(), sources.end()}, surface_count, {}, options);
+    return Impl::make({patches.begin(), patches.end()}, std::move(sources), surface_count, {}, options);
   });
 }
 
@@ -234,8 +230,8 @@ std::size_t PatchSet::memory_bytes() const {
   };
   std::size_t total = sizeof(Impl) + bytes(impl_->patches) + bytes(impl_->sources) + bytes(impl_->slots) +
                       bytes(impl_->collapsed) + bytes(impl_->groups) + bytes(impl_->edited) +
-                      bytes(impl_->lane_patches) + bytes(impl_->lane_counts) + all_bytes(impl_->single) +
-                      all_bytes(impl_->twice);
+                      bytes(impl_->lane_patches) + bytes(impl_->lane_counts) + all_bytes(impl_->f32) +
+                      all_bytes(impl_->f64);
   for (const BezierPatch& patch : impl_->patches) total += patch.points().size_bytes() + patch.weights().size_bytes();
   return total;
 }
@@ -260,4 +256,4 @@ Status PatchSet::set_control_points(std::size_t index, std::span<const Vec3> poi
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "base/aligned.h"
-#include "base/for_wings.h"
+#include "base/internal_export.h"
 #include "tessera/patch_set.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 namespace kernel {
 struct KernelTable;
@@ -40,12 +40,12 @@ struct BlockGroup {
 template <class T>
 struct Coefficients {
   UnsetVector<T> bernstein, power;
-  /// `[block][doubt, noise][lane]`: see NormalDoubt.
+  /// `[block][doubt, noise][lane]`: see DegenerateNormalThreshold.
   UnsetVector<T> bernstein_doubt, power_doubt;
   /// Bernstein coefficients `[patch][i][component][j]`, patches in the order of slots, zeros in between; whole vectors
   /// may be read from the last patch too.
   UnsetVector<T> points;
-  /// `[block * lanes + lane]`: doubt and noise, see NormalDoubt; that of a curve is finite, and its noise negative.
+  /// `[block * lanes + lane]`: doubt and noise, see DegenerateNormalThreshold; that of a curve is finite, and its noise negative.
   std::vector<std::array<T, 2>> point_doubt;
   T largest_doubt = 0;  ///< no patch's is larger
   const UnsetVector<T>& of(Representation representation) const {
@@ -67,8 +67,8 @@ class PatchSet::Impl {
   std::vector<BlockGroup> groups;           ///< by degree_u, degree_v, rational
   std::vector<std::uint32_t> lane_patches;  ///< `[block][lane]`: the patch there
   std::vector<std::uint8_t> lane_counts;    ///< of each block: lanes in use; the others repeat its first patch
-  Coefficients<float> single;
-  Coefficients<double> twice;
+  Coefficients<float> f32;
+  Coefficients<double> f64;
   BlockKinds kinds;
   FitError fit_error;
   Vec3 origin;
@@ -86,12 +86,12 @@ class PatchSet::Impl {
   template <class T>
   const Coefficients<T>& coefficients() const {
     if constexpr (sizeof(T) == 4) {
-      return single;
+      return f32;
     } else {
-      return twice;
+      return f64;
     }
   }
-  TESSERA_FOR_WINGS Box3 box() const;
+  TESSERA_INTERNAL_EXPORT Box3 box() const;
   bool has(Precision precision, Representation representation) const {
     const bool bernstein = representation == Representation::bernstein;
     if (precision == Precision::single_precision) return bernstein ? kinds.float_bernstein : kinds.float_power;
@@ -135,4 +135,4 @@ class PatchSet::Impl {
   Status pack_all();
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

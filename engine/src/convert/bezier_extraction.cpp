@@ -19,7 +19,7 @@
 #include "surface/spline_lines.h"
 #include "tessera/convert.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// values[0..width) = sum of `count` weights times `rows`, which lie `stride` apart. In one pass, which keeps sums in
@@ -151,20 +151,20 @@ class ExtractedRows {
 /// neighbours share it, and written while it is in the nearest cache.
 class Strip {
  public:
-  static constexpr std::size_t most_patches = 64;
+  static constexpr std::size_t max_patches = 64;
 
   explicit Strip(const ExtractedRows& rows) : from_(rows) {
-    const std::size_t most_columns = std::min(most_patches, rows.v().span_count()) * degree_v() + 1;
-    row_size_ = whole_lines(most_columns * 3);
+    const std::size_t max_columns = std::min(max_patches, rows.v().span_count()) * degree_v() + 1;
+    row_size_ = whole_lines(max_columns * 3);
     points_.resize(rows.order_u() * row_size_);
     std::ranges::fill(bounds_.lower, std::numeric_limits<double>::infinity());
     std::ranges::fill(bounds_.upper, -std::numeric_limits<double>::infinity());
     if (!rows.scales()) return;
-    weights_.resize(rows.order_u() * most_columns);
-    homogeneous_.resize(most_columns * 4);
+    weights_.resize(rows.order_u() * max_columns);
+    homogeneous_.resize(max_columns * 4);
   }
 
-  /// Goes to the spans from b_begin to b_end of v, most_patches at most.
+  /// Goes to the spans from b_begin to b_end of v, max_patches at most.
   void select(std::size_t b_begin, std::size_t b_end) {
     b_begin_ = b_begin;
     b_end_ = b_end;
@@ -266,8 +266,8 @@ Result<Box3> write_patches(const ExtractedRows& rows, PatchPieces& pieces) {
   const Status status =
       parallel_for(rows.u().span_count(), patches_in_piece / in_strip, {}, [&](std::size_t begin, std::size_t end) {
         Strip strip(rows);
-        for (std::size_t b = 0; b < in_strip; b += Strip::most_patches) {
-          strip.select(b, std::min(b + Strip::most_patches, in_strip));
+        for (std::size_t b = 0; b < in_strip; b += Strip::max_patches) {
+          strip.select(b, std::min(b + Strip::max_patches, in_strip));
           for (std::size_t a = begin; a < end; ++a) {
             strip.compute(a, a > begin);
             with_order(rows.surface().degree_v(), [&](auto order) { strip.write(a * in_strip, order, pieces); });
@@ -338,4 +338,4 @@ Result<PatchRange> touched_patches(const BSplineSurface& surface, std::size_t i,
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -4,7 +4,7 @@
 #include "base/guard.h"
 #include "convert/bezier_net.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// What a curve must have before a net is laid out for it; the rest is checked by BezierPatch.
@@ -69,4 +69,4 @@ Result<BezierPatch> make_hyperbolic_paraboloid(const Vec3& r00, const Vec3& r01,
   return BezierPatch::polynomial(1, 1, std::array{r00, r01, r10, r11});
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -5,7 +5,7 @@
 
 #include "surface/patch_pieces.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// What one row of the matrix makes of one column of the net.
@@ -105,4 +105,4 @@ BezierNet transpose(const BezierNet& net) {
   return result;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -6,7 +6,7 @@
 #include "convert/bernstein_matrices.h"
 #include "tessera/bezier_operations.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// rows * columns points [i][j], i along u; as many weights, or none. A curve is one row.
 struct BezierNet {
@@ -39,4 +39,4 @@ BezierPolygon elevated(const BezierPolygon& curve, int degree);
 /// The net with u and v exchanged.
 BezierNet transpose(const BezierNet& net);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

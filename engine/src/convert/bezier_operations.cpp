@@ -7,7 +7,7 @@
 #include "base/text.h"
 #include "convert/bezier_net.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 Status check_parameter(double t, const char* name) {
@@ -187,4 +187,4 @@ Result<BezierPatch> reverse_v(const BezierPatch& patch) {
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -7,7 +7,7 @@
 #include "surface/homogeneous.h"
 #include "tessera/convert.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// A polynomial on [0,1] by its Bernstein coefficients. Long double: the surface's points are rounded once, at the end.
@@ -208,4 +208,4 @@ Result<BlendedLine> blended_line(const Curve& first, const Curve& second, const 
   return Status(StatusCode::unsupported_degree, message);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

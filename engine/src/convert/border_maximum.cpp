@@ -9,11 +9,11 @@
 // Branch and bound: hulls of the coefficients bound a figure on a piece from above, the ends of pieces from below, and
 // pieces that may still hold the maximum are halved. Hulls close in with the square of the length (Farin, sec. 6.9).
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr int most_halvings = 40;
-constexpr int most_pieces = 20000;
+constexpr int max_halvings = 40;
+constexpr int max_pieces = 20000;
 
 struct Piece {
   VectorRatio ratio;
@@ -33,7 +33,7 @@ Maximum maximum(const VectorRatio& whole, double floor, Upper upper, Lower lower
                          lower(r.numerator.values.back(), r.denominator.values.back())});
     const double bound = upper(r);
     const bool settled = bound <= std::max(1.001 * attained, attained + floor);
-    if (settled || piece.depth == most_halvings || count >= most_pieces) {
+    if (settled || piece.depth == max_halvings || count >= max_pieces) {
       result.bound = std::max(result.bound, bound);
       result.sharp = result.sharp && settled;
       continue;
@@ -84,4 +84,4 @@ Maximum largest_angle(const VectorRatio& ratio, double floor) {
   return maximum(ratio, floor, upper, [](const Vec3& p, double x) { return std::atan2(length(p), x); });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

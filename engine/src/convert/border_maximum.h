@@ -4,7 +4,7 @@
 #include "basis/bernstein_net.h"
 #include "tessera/geometry.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// A vector curve over a scalar one, both on [0,1].
 struct VectorRatio {
@@ -23,4 +23,4 @@ Maximum largest_length(const VectorRatio& ratio, double floor);
 /// max of the angle atan2(|numerator|, denominator), for numerator = a x b and denominator = a . b.
 Maximum largest_angle(const VectorRatio& ratio, double floor);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -9,7 +9,7 @@
 #include "surface/border_curve.h"
 #include "tessera/coons_patch.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr double Vec3::*components[] = {&Vec3::x, &Vec3::y, &Vec3::z};
@@ -127,4 +127,4 @@ Result<PatchGrid> to_bezier(const CoonsPatch& patch, const FitOptions& options) 
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

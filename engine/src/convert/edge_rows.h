@@ -4,11 +4,11 @@
 #include <limits>
 #include <string>
 
+#include "tessera/bezier_operations.h"
 #include "tessera/bezier_patch.h"
 #include "tessera/geometry.h"
-#include "tessera/bezier_operations.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 inline bool crosses_u(Edge edge) { return edge == Edge::u0 || edge == Edge::u1; }
 inline bool is_edge(Edge edge) { return crosses_u(edge) || edge == Edge::v0 || edge == Edge::v1; }
@@ -51,4 +51,4 @@ inline Status check_side(const JoinSide& side, const char* which) {
   return {StatusCode::invalid_argument, std::string("the domain of patch ") + which + " is empty or not finite"};
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -6,7 +6,7 @@
 #include "tessera/convert.h"
 #include "tessera/tensor_patch.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 double height(const ExplicitPolynomial& surface, const PolarForms& x, const PolarForms& y) {
@@ -41,4 +41,4 @@ Result<PatchGrid> to_bezier(const ExplicitPolynomial& surface) {
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

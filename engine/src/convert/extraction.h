@@ -8,7 +8,7 @@
 
 #include "basis/knots.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Row r of the operator, r = span * degree + i, gives Bezier point i of that span; the last of a span is the first of
 /// the next, one row. Each weight is >= 0 and right to half a unit in the last place.
@@ -28,4 +28,4 @@ struct Extraction {
 
 Extraction make_extraction(const KnotLine& line);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

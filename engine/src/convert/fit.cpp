@@ -16,7 +16,7 @@
 #include "tessera/convert.h"
 #include "tessera/parametric_surface.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// The share of the tolerance for interpolation; the rest is for rounding, and for what lies between samples.
@@ -43,9 +43,8 @@ Status check_options(const FitOptions& options) {
   if (options.degree < 2 || options.degree > max_degree)
     return {StatusCode::invalid_argument, "the degree of the patches is " + std::to_string(options.degree) +
                                               ", it must be 2 to " + std::to_string(max_degree)};
-  if (options.largest_patch_count / (options.breaks_u.size() + 1) < options.breaks_v.size() + 1)
-    return {StatusCode::invalid_argument, "the largest count of patches, " +
-                                              std::to_string(options.largest_patch_count) +
+  if (options.max_patches / (options.breaks_u.size() + 1) < options.breaks_v.size() + 1)
+    return {StatusCode::invalid_argument, "the largest count of patches, " + std::to_string(options.max_patches) +
                                               ", is below what the breakpoints make"};
   return {};
 }
@@ -219,11 +218,11 @@ Result<PatchGrid> to_bezier(const ParametricSurface& surface, const FitOptions& 
     if (!tolerance) return tolerance.status();
     // The nodes next to an end are still eight doubles from it.
     const double shortest = 0x1p-49 / lobatto_parameters(options.degree)[1];
-    const RefinementLimits limits{*tolerance, accepted_share * *tolerance, shortest, options.largest_patch_count};
+    const RefinementLimits limits{*tolerance, accepted_share * *tolerance, shortest, options.max_patches};
     if (surface.has_bounds() && options.certify)
       if (auto fit = certified_fit(surface, options.degree, first, limits)) return *std::move(fit);
     return sampled_fit(surface, options.degree, first, limits);
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -8,7 +8,7 @@
 #include "base/safe_length.h"
 #include "basis/chebyshev_lobatto.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -102,4 +102,4 @@ Result<CellError> SampledError::operator()(const Domain& cell) {
   return error;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

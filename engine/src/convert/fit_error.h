@@ -12,7 +12,7 @@
 #include "convert/tensor_refinement.h"
 #include "tessera/parametric_surface.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Proven, by bounds of the derivatives of order n + 1. Where there are none, the cell should be halved while it is
 /// longer than a 64th of the domain; then the error is `unsupported`.
@@ -49,4 +49,4 @@ class SampledError {
   Grid values_, along_u_;           // f and Iu f, [a][b]
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

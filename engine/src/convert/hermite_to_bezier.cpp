@@ -2,7 +2,7 @@
 #include "tessera/convert.h"
 #include "tessera/hermite_patch.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 Vec3 divided(const Vec3& vector, double by) { return {vector.x / by, vector.y / by, vector.z / by}; }
@@ -58,4 +58,4 @@ Result<PatchGrid> to_bezier(const HermiteNetwork& network) {
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -8,7 +8,7 @@
 #include "convert/edge_rows.h"
 #include "tessera/bezier_operations.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// A row of control points along an edge, raised to `degree`; with weights if the patch is rational.
@@ -79,4 +79,4 @@ Result<BezierPatch> make_join(const JoinSide& p, const JoinSide& q, double k, bo
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

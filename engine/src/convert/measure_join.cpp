@@ -13,7 +13,7 @@
 // for CAGD, 5th ed., sec. 17.2). Both sides' own border tangents are used, so that gaps within tolerance spoil nothing:
 // (p_c x p_b) x (q_c x q_b) over (p_c x p_b) . (q_c x q_b) is the tangent of the angle between the normals.
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 using Scalars = BernsteinNet<double>;
@@ -196,4 +196,4 @@ Result<JoinReport> measure_join(const JoinSide& p, const JoinSide& q, const Join
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -6,7 +6,7 @@
 #include "surface/checks.h"
 #include "tessera/convert.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// The interval that holds t, from the right; the last one at the end.
@@ -106,4 +106,4 @@ Result<PatchGrid> transformed(const PatchGrid& grid, const Affine& map) {
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -12,7 +12,7 @@
 #include "basis/double_double.h"
 #include "tessera/bezier_patch.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 using PolarForms = std::array<DoubleDouble, max_degree + 1>;
 
@@ -45,4 +45,4 @@ inline std::vector<long double> bernstein_coefficients(std::span<const double> c
   return values;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

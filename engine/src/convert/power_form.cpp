@@ -5,7 +5,7 @@
 
 #include "basis/bernstein.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// One direction: `count` curves of the given degree whose point i is the `width` values at curve * next + i * step.
@@ -34,4 +34,4 @@ void power_coefficients(int degree_u, int degree_v, int components, std::span<do
   transform_curves(degree_v, net.data(), width, width, static_cast<std::size_t>(degree_u + 1), row);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

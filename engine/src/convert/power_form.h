@@ -3,7 +3,7 @@
 
 #include <span>
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Turns a Bernstein net, laid out [i][j][component], in place into the coefficients of u^i v^j: A = M_u G M_v^T with
 /// M_ik = C(n,i) C(i,k) (-1)^(i-k), which is C(n,i) times the i-th forward difference (Farin, Curves and Surfaces for
@@ -13,4 +13,4 @@ namespace tessera {
 /// relative to a near origin first.
 void power_coefficients(int degree_u, int degree_v, int components, std::span<double> net);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

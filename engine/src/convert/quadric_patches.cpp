@@ -11,7 +11,7 @@
 // ed., sec. 12.2 to 12.4): a circle's middle point is where the end tangents meet, w the cosine of half the arc;
 // likewise cosh for hyperbolas; a parabola has w = 1.
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// Control values of one Bezier segment of a profile; their points are not premultiplied by the weights.
@@ -93,4 +93,4 @@ Result<PatchGrid> to_bezier(const QuadricPiece& piece) {
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -7,7 +7,7 @@
 #include "surface/border_curve.h"
 #include "tessera/coons_patch.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// Over one denominator the points of both curves are the rows of a net of degree 1.
@@ -58,4 +58,4 @@ Result<PatchGrid> to_bezier(const RuledSurface& surface, const FitOptions& optio
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -10,7 +10,7 @@
 #include "surface/spline_lines.h"
 #include "surface/validate.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 std::vector<NetPoint> net_points(std::span<const Vec3> points, std::span<const double> weights) {
@@ -183,4 +183,4 @@ Result<std::pair<Curve, Curve>> compatible(const Curve& a, const Curve& b) {
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

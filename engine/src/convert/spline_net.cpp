@@ -6,7 +6,7 @@
 #include "basis/knots.h"
 #include "tessera/bezier_patch.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// sum_j weights[j] rows[j], of each curve; rational ones with the weights as they act, so that the ratios stay in the
@@ -129,4 +129,4 @@ std::vector<NetPoint> transposed(const std::vector<NetPoint>& points, std::size_
   return result;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -7,7 +7,7 @@
 
 #include "tessera/geometry.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// A control point and its weight, apart: so what does not move keeps its bits.
 struct NetPoint {
@@ -37,4 +37,4 @@ SplineNet degree_elevated(const SplineNet& net);
 /// Rows and curves exchanged; the knots stay with the caller.
 std::vector<NetPoint> transposed(const std::vector<NetPoint>& points, std::size_t width);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -5,7 +5,7 @@
 
 #include "tessera/convert.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// (count_u degree_u + 1) x (count_v degree_v + 1) points [i][j], i along u, over count_u x count_v patches; as many
 /// weights, or none.
@@ -28,4 +28,4 @@ struct SurfaceNet {
 /// u and v exchanged.
 SurfaceNet transposed(const SurfaceNet& net);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

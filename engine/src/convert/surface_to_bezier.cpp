@@ -3,7 +3,7 @@
 #include "tessera/convert.h"
 #include "tessera/surface.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 Result<PatchGrid> to_bezier(const Surface& surface, const FitOptions& options) {
   return std::visit(Overloaded{
@@ -18,4 +18,4 @@ Result<PatchGrid> to_bezier(const Surface& surface, const FitOptions& options) {
                     surface);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -5,7 +5,7 @@
 #include "tessera/convert.h"
 #include "tessera/tensor_patch.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 Matrix to_bernstein(const BasisMatrix& basis) {
@@ -62,4 +62,4 @@ Result<PatchGrid> to_bezier(const TensorPatch& patch) {
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

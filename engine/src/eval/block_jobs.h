@@ -4,7 +4,7 @@
 #include "eval/block_normals.h"
 #include "eval/grid_plan_impl.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// One job, of which from block to block only that is set which changes: setting up a job takes as long as a small
 /// grid. Outputs are the caller's to fill in, and stay as they are. Lives on a task's stack; allocates nothing.
@@ -69,4 +69,4 @@ class BlockJobs {
   kernel::GridJob<T> job_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -8,7 +8,7 @@
 #include "block/patch_set_impl.h"
 #include "eval/grid_plan_impl.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Serves one block after the other. Lives on a task's stack; allocates nothing.
 template <class T>
@@ -22,8 +22,8 @@ class BlockNormals {
     job.v_edges = plan_.v_edges.data();
     job.exact_normal = exact_normal;
     job.exact_context = this;
-    const double smallest_sine = sizeof(T) == 4 ? 1e-6 : 0, smallest_tolerance = sizeof(T) == 4 ? 1e-4 : 0;
-    job.smallest_sine = static_cast<T>(std::max(plan_.options.geometry.smallest_sine, smallest_sine));
+    const double min_sine = sizeof(T) == 4 ? 1e-6 : 0, smallest_tolerance = sizeof(T) == 4 ? 1e-4 : 0;
+    job.min_sine = static_cast<T>(std::max(plan_.options.geometry.min_sine, min_sine));
     job.umbilic_tolerance = static_cast<T>(std::max(plan_.options.geometry.umbilic_tolerance, smallest_tolerance));
   }
   /// Completes the job of a block, until the next call.
@@ -82,4 +82,4 @@ class BlockNormals {
   alignas(cache_line) std::array<T, 4 * lanes> collapsed_{};
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -10,7 +10,7 @@
 #include "eval/grid_outputs.h"
 #include "tessera/evaluate.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// The memory of outputs in blocks, one after the other; the first that shares some with one before is refused.
 class BlockMemory {
@@ -92,4 +92,4 @@ class BlockOutputs {
   std::size_t value_count_ = 0, kind_count_ = 0;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -14,7 +14,7 @@
 #include "eval/staged_block.h"
 #include "eval/touched_blocks.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// What all tasks of an update share.
 struct UpdateCall {
@@ -87,7 +87,7 @@ class EditedGrids {
 
  private:
   static constexpr std::size_t lanes = PatchSet::lanes;
-  static constexpr std::size_t most_coefficients = (max_degree + 1) * (max_degree + 1) * 4;
+  static constexpr std::size_t max_coefficients = (max_degree + 1) * (max_degree + 1) * 4;
 
   void add_whole(std::uint32_t block) {
     jobs_.turn_to(block);
@@ -147,7 +147,7 @@ class EditedGrids {
   std::uint32_t block_ = 0;   ///< the last one that they came from
   std::array<std::uint32_t, lanes> patches_;
   alignas(cache_line) std::array<T, 2 * lanes> doubts_;
-  alignas(cache_line) std::array<T, most_coefficients * lanes> net_;
+  alignas(cache_line) std::array<T, max_coefficients * lanes> net_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

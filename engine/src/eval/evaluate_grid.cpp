@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/guard.h"
+#include "base/impl_access.h"
 #include "block/patch_set_impl.h"
 #include "eval/block_jobs.h"
 #include "eval/block_outputs.h"
@@ -21,7 +22,7 @@
 #include "eval/view_checks.h"
 #include "parallel/parallel_for.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// A part of a block's grid: rows of parameters u.
@@ -61,15 +62,15 @@ Status check_plan(const PatchSet::Impl& set, const GridPlan& plan) {
   const bool twice = plan.precision() == Precision::double_precision;
   if (twice != (sizeof(T) == 8))
     return Status(StatusCode::invalid_argument, "the plan's precision is not that of the outputs");
-  const auto& planned = plan.impl().groups;
+  const auto& planned = impl_of(plan).groups;
   const auto& groups = set.groups;
-  const bool same = plan.impl().patch_count == set.patches.size() &&
+  const bool same = impl_of(plan).patch_count == set.patches.size() &&
                     std::equal(planned.begin(), planned.end(), groups.begin(), groups.end(),
                                [](const PlannedGroup& a, const BlockGroup& b) {
                                  return a.degree_u == b.degree_u && a.degree_v == b.degree_v &&
                                         a.rational == b.rational && a.blocks == b.block_count;
                                });
-  if (!same || !set.has(plan.precision(), plan.impl().options.representation))
+  if (!same || !set.has(plan.precision(), impl_of(plan).options.representation))
     return Status(StatusCode::invalid_argument,
                   "the plan was made for another patch set: counts, degrees or blocks differ");
   return {};
@@ -95,10 +96,10 @@ bool stores_stream(std::size_t bytes, Stores stores) {
 template <class T>
 Status evaluate_blocks(const PatchSet& set, const GridPlan& plan, const GridBlocks<T>& out,
                        const Execution& execution) {
-  const Result<int> order = check_grids(set.impl(), plan, out);
+  const Result<int> order = check_grids(impl_of(set), plan, out);
   if (!order) return order.status();
-  const PatchSet::Impl& patches = set.impl();
-  const GridPlan::Impl& inner = plan.impl();
+  const PatchSet::Impl& patches = impl_of(set);
+  const GridPlan::Impl& inner = impl_of(plan);
   const auto& kernels = kernel::kernels(inner.isa);
   const bool streaming = !inner.by_patch && blocks_stream(out, plan.block_capacity() / 3, execution.stores);
   const Pieces pieces(inner, *order > 0);
@@ -141,7 +142,7 @@ Status evaluate_views(const PatchSet::Impl& patches, const GridPlan& plan, const
                       const Execution& execution) {
   const Result<int> order = check_grids(patches, plan, out);
   if (!order) return order.status();
-  const GridPlan::Impl& inner = plan.impl();
+  const GridPlan::Impl& inner = impl_of(plan);
   const auto& kernels = kernel::kernels(inner.isa);
   const StageLayout<T> layout(out);
   const bool streaming = views_stream(layout, plan.capacity(), execution.stores);
@@ -179,10 +180,10 @@ Status evaluate(const PatchSet& set, const GridPlan& plan, const GridBlocks<doub
   return guarded([&] { return evaluate_blocks(set, plan, out, execution); });
 }
 Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<float>& out, const Execution& execution) {
-  return guarded([&] { return evaluate_views(set.impl(), plan, out, execution); });
+  return guarded([&] { return evaluate_views(impl_of(set), plan, out, execution); });
 }
 Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<double>& out, const Execution& execution) {
-  return guarded([&] { return evaluate_views(set.impl(), plan, out, execution); });
+  return guarded([&] { return evaluate_views(impl_of(set), plan, out, execution); });
 }
 
 Status evaluate(const PatchSet::Impl& set, const GridPlan& plan, const GridViews<float>& out,
@@ -229,10 +230,10 @@ bool blocks_stream(const GridBlocks<T>& out, std::size_t records, Stores stores)
 template bool blocks_stream(const GridBlocks<float>&, std::size_t, Stores);
 template bool blocks_stream(const GridBlocks<double>&, std::size_t, Stores);
 
-std::size_t blocks_a_task(const GridPlan::Impl& plan, std::size_t blocks, bool derivatives) {
+std::size_t blocks_per_task(const GridPlan::Impl& plan, std::size_t blocks, bool derivatives) {
   const std::size_t points = plan.samples() * PatchSet::lanes;
   if (points * blocks <= (derivatives ? serial_normals : serial_positions)) return blocks;
   return items_per_task(blocks, points);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

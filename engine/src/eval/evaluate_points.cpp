@@ -8,11 +8,12 @@
 #include <string>
 
 #include "base/guard.h"
+#include "base/impl_access.h"
 #include "eval/point_chunk.h"
 #include "eval/point_sources.h"
 #include "parallel/parallel_for.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// Below these many samples one thread is faster than waking another.
@@ -31,7 +32,7 @@ Status check_call(const PatchSet::Impl& set, const Source& source, const GridVie
     return Status(StatusCode::count_mismatch,
                   std::to_string(source.count()) + " samples need as many parameters and numbers each way");
   const auto fraction = [](double value) { return value >= 0 && value < 1; };
-  if (!fraction(options.geometry.smallest_sine) || !fraction(options.geometry.umbilic_tolerance))
+  if (!fraction(options.geometry.min_sine) || !fraction(options.geometry.umbilic_tolerance))
     return Status(StatusCode::invalid_argument,
                   "the smallest sine and the umbilic tolerance must lie from 0 to below 1");
   ViewChecks checks(source.count());
@@ -102,7 +103,7 @@ template <class T>
 Status run_patches(const PatchSet& set, const PatchSamples<T>& samples, const GridViews<T>& out,
                    const PointOptions& options, const Execution& execution) {
   return guarded([&] {
-    return run(set.impl(), SamplesByPatch<T>(set.impl(), samples, options.outside), out, options, execution);
+    return run(impl_of(set), SamplesByPatch<T>(impl_of(set), samples, options.outside), out, options, execution);
   });
 }
 
@@ -110,9 +111,9 @@ template <class T>
 Status run_surfaces(const PatchSet& set, const SurfaceMap& map, const SurfaceSamples& samples, const GridViews<T>& out,
                     const PointOptions& options, const Execution& execution) {
   return guarded([&]() -> Status {
-    if (map.impl().patch_count != set.patch_count() || map.surface_count() != set.surface_count())
+    if (impl_of(map).patch_count != set.patch_count() || map.surface_count() != set.surface_count())
       return Status(StatusCode::invalid_argument, "the surface map was made for another patch set");
-    return run(set.impl(), SamplesBySurface<T>(map.impl(), samples, options.outside), out, options, execution);
+    return run(impl_of(set), SamplesBySurface<T>(impl_of(map), samples, options.outside), out, options, execution);
   });
 }
 
@@ -135,4 +136,4 @@ Status evaluate(const PatchSet& set, const SurfaceMap& map, const SurfaceSamples
   return run_surfaces(set, map, samples, out, options, execution);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

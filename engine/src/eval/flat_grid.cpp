@@ -6,7 +6,7 @@
 #include "eval/task_size.h"
 #include "parallel/parallel_for.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr std::size_t lanes = kernel::flat_lanes, group_rows = kernel::flat_rows;
@@ -32,11 +32,11 @@ AlignedVector<float> weights_of_columns(std::span<const float> weights, std::siz
 
 /// Vectors begin anew with each row, so rows must fill theirs, unless blocks would be filled worse.
 bool pays(const GridPlan::Impl& plan) {
-  constexpr double most_waste = 1.15;
+  constexpr double max_waste = 1.15;
   const std::size_t values = 3 * plan.count_v, vectors = (values + lanes - 1) / lanes;
   const double waste = static_cast<double>(vectors * lanes) / static_cast<double>(values);
   const double idle = static_cast<double>(plan.block_count * PatchSet::lanes) / static_cast<double>(plan.patch_count);
-  return plan.count_v >= lanes && (waste <= most_waste || waste < idle);
+  return plan.count_v >= lanes && (waste <= max_waste || waste < idle);
 }
 
 /// A run of patches of one group, which the kernel takes together.
@@ -59,7 +59,7 @@ class FlatRun {
     }
     if (job_.patches == 0) start(patch, first_row, rows);
     nets_[static_cast<std::size_t>(job_.patches++)] =
-        set_.single.of(plan_.options.representation).data() + group_->first_value +
+        set_.f32.of(plan_.options.representation).data() + group_->first_value +
         (slot.block - group_->first_block) * group_->block_values + slot.lane;
     if (rows != plan_.count_u || static_cast<std::size_t>(job_.patches) == nets_.size()) flush();
   }
@@ -103,9 +103,9 @@ void tabulate_flat(const PatchSet::Impl& set, GridPlan::Impl& plan) {
   for (const BlockGroup& group : set.groups) {
     const auto degree_u = static_cast<std::size_t>(group.degree_u), degree_v = static_cast<std::size_t>(group.degree_v);
     if (auto& table = plan.flat.u[degree_u]; table.empty())
-      table = weights_of_rows(plan.single.u[degree_u], plan.count_u, degree_u + 1);
+      table = weights_of_rows(plan.f32.u[degree_u], plan.count_u, degree_u + 1);
     if (auto& table = plan.flat.v[degree_v]; table.empty())
-      table = weights_of_columns(plan.single.v[degree_v], plan.count_v, degree_v + 1);
+      table = weights_of_columns(plan.f32.v[degree_v], plan.count_v, degree_v + 1);
   }
   plan.is_flat = true;
 }
@@ -133,4 +133,4 @@ Status evaluate_flat(const PatchSet::Impl& set, const GridPlan::Impl& plan, floa
   return status;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

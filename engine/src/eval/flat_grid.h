@@ -4,7 +4,7 @@
 #include "block/patch_set_impl.h"
 #include "eval/grid_plan_impl.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Fills plan.flat where the plan's grids can be evaluated so and it pays: floats, polynomial patches, one parameter
 /// list for all, long rows, and an instruction set that is made for it.
@@ -14,4 +14,4 @@ void tabulate_flat(const PatchSet::Impl& set, GridPlan::Impl& plan);
 Status evaluate_flat(const PatchSet::Impl& set, const GridPlan::Impl& plan, float* out, bool streaming,
                      const Execution& execution);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

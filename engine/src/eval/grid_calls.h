@@ -4,7 +4,7 @@
 #include "eval/grid_plan_impl.h"
 #include "eval/staged_block.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Of a plan and outputs for all patches of the set. Else the highest order of the derivatives that the outputs are made
 /// of. Errors: those of evaluate().
@@ -20,6 +20,6 @@ template <class T>
 bool blocks_stream(const GridBlocks<T>& out, std::size_t records, Stores stores);
 
 /// How many blocks a task takes; all where one thread is faster than two.
-std::size_t blocks_a_task(const GridPlan::Impl& plan, std::size_t blocks, bool derivatives);
+std::size_t blocks_per_task(const GridPlan::Impl& plan, std::size_t blocks, bool derivatives);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -7,7 +7,7 @@
 #include "kernel/isa/kernel_table.h"
 #include "tessera/evaluate.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// An output of `width` values a sample. `order` is that of the derivatives which it is made of.
 template <class T, class View, class Value>
@@ -78,4 +78,4 @@ void for_each_output(F&& f) {
   for_each_kind_output<T>(f);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "base/guard.h"
+#include "base/impl_access.h"
 #include "basis/bernstein.h"
 #include "basis/power.h"
 #include "block/patch_set_impl.h"
@@ -10,7 +11,7 @@
 #include "eval/grid_outputs.h"
 #include "eval/grid_plan_impl.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// Values, first and second derivatives of one basis, computed in long double and rounded once: put(k, value) for k from
@@ -144,7 +145,7 @@ void find_edges(const PatchSet::Impl& set, GridPlan::Impl& plan) {
 }
 
 Status check_geometry(const LocalGeometryOptions& options) {
-  const std::pair<const char*, double> figures[] = {{"smallest sine", options.smallest_sine},
+  const std::pair<const char*, double> figures[] = {{"smallest sine", options.min_sine},
                                                     {"umbilic tolerance", options.umbilic_tolerance}};
   for (const auto& [what, value] : figures)
     if (!(value >= 0 && value < 1))
@@ -154,7 +155,7 @@ Status check_geometry(const LocalGeometryOptions& options) {
 }
 
 /// Lane operations a point, as GridPlan::work counts them.
-double operations_a_point(const PlannedGroup& group, const GridOutputs& outputs) {
+double operations_per_point(const PlannedGroup& group, const GridOutputs& outputs) {
   const bool second = outputs.duu || outputs.duv || outputs.dvv;
   const bool curvatures = outputs.first_form || outputs.second_form || outputs.gaussian || outputs.mean ||
                           outputs.first_curvature || outputs.second_curvature || outputs.first_direction ||
@@ -200,10 +201,10 @@ Result<std::unique_ptr<GridPlan::Impl>> make_plan(const PatchSet::Impl& set, std
     plan->groups.push_back({group.degree_u, group.degree_v, group.rational, group.block_count, count});
   }
   if (options.precision == Precision::single_precision) {
-    tabulate_set(set, *plan, plan->single);
+    tabulate_set(set, *plan, plan->f32);
     tabulate_flat(set, *plan);
   } else {
-    tabulate_set(set, *plan, plan->twice);
+    tabulate_set(set, *plan, plan->f64);
   }
   return plan;
 }
@@ -223,7 +224,7 @@ Result<GridPlan> GridPlan::make(const PatchSet& set, std::span<const double> u, 
     plan->count_u = u.size();
     plan->count_v = v.size();
     plan->options = options;
-    auto made = make_plan(set.impl(), std::move(plan));
+    auto made = make_plan(impl_of(set), std::move(plan));
     if (!made) return made.status();
     return GridPlan(*std::move(made));
   });
@@ -244,7 +245,7 @@ Result<GridPlan> GridPlan::make(const PatchSet& set, const PatchParameters& para
     plan->count_v = parameters.v.size() / patches;
     plan->by_patch = true;
     plan->options = options;
-    auto made = make_plan(set.impl(), std::move(plan));
+    auto made = make_plan(impl_of(set), std::move(plan));
     if (!made) return made.status();
     return GridPlan(*std::move(made));
   });
@@ -265,17 +266,17 @@ std::size_t GridPlan::block_capacity() const { return impl_->block_count * impl_
 /// For a cubic 12 for positions, 36 with du and dv, 50 with the unit normal as well, 72 with second derivatives; in
 /// proportion to the order; rational: 4/3 of it and 4 more; 30 for curvatures of all sorts.
 Work GridPlan::work(const GridOutputs& outputs) const {
-  const bool twice = impl_->options.precision == Precision::double_precision;
-  const double value = twice ? 8 : 4;
+  const bool is_double = impl_->options.precision == Precision::double_precision;
+  const double value = is_double ? 8 : 4;
   double bytes = 0;
   for_each_value_output<double>(
       [&](const auto& output) { bytes += outputs.*output.wanted ? output.width * value : 0; });
   for_each_kind_output<double>([&](const auto& output) { bytes += outputs.*output.wanted ? 1 : 0; });
   Work work;
-  work.double_precision = twice;
+  work.double_precision = is_double;
   for (const PlannedGroup& group : impl_->groups) {
     const double points = static_cast<double>(group.patches) * static_cast<double>(impl_->samples());
-    work.lane_operations += points * operations_a_point(group, outputs);
+    work.lane_operations += points * operations_per_point(group, outputs);
     work.bytes_written += points * bytes;
     work.bytes_read += static_cast<double>(group.patches) * (group.degree_u + 1) * (group.degree_v + 1) *
                        (group.rational ? 4 : 3) * value;
@@ -283,4 +284,4 @@ Work GridPlan::work(const GridOutputs& outputs) const {
   return work;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -9,7 +9,7 @@
 #include "kernel/isa/kernel_table.h"
 #include "tessera/evaluate.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// `[k][order][i]` for parameter k: values, first and second derivatives, degree + 1 of each; one table a degree in use.
 template <class T>
@@ -51,8 +51,8 @@ class GridPlan::Impl {
   Isa isa = Isa::sse2;
   std::vector<PlannedGroup> groups;
   std::size_t patch_count = 0, block_count = 0;
-  GridWeights<float> single;
-  GridWeights<double> twice;
+  GridWeights<float> f32;
+  GridWeights<double> f64;
   bool is_flat = false;  ///< positions alone are evaluated by kernel 3
   FlatTables flat;
   /// Whether any parameter lies on the edges u = 0, u = 1, v = 0, v = 1: only there can a collapsed edge be met.
@@ -66,9 +66,9 @@ class GridPlan::Impl {
   template <class T>
   const GridWeights<T>& weights() const {
     if constexpr (sizeof(T) == 4) {
-      return single;
+      return f32;
     } else {
-      return twice;
+      return f64;
     }
   }
 };
@@ -77,4 +77,4 @@ class GridPlan::Impl {
 Status evaluate(const PatchSet::Impl& set, const GridPlan& plan, const GridViews<float>& out,
                 const Execution& execution);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -4,13 +4,14 @@
 #include <atomic>
 
 #include "base/guard.h"
+#include "base/impl_access.h"
 #include "eval/edited_grids.h"
 #include "eval/patch_edits.h"
 #include "eval/task_size.h"
 #include "parallel/parallel_for.h"
 #include "tessera/evaluate.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 class GridUpdate::Impl {
  public:
   explicit Impl(const PatchSet::Impl& set) : touched_(set), patch_count_(set.patches.size()) {}
@@ -21,7 +22,7 @@ class GridUpdate::Impl {
     const Result<int> order = start(set, plan, edits, out, execution);
     if (!order) return order.status();
     const StageLayout<T> layout(out);
-    const bool streaming = views_stream(layout, edits.patch.size() * plan.impl().samples(), execution.stores);
+    const bool streaming = views_stream(layout, edits.patch.size() * impl_of(plan).samples(), execution.stores);
     return each_block(set, plan, edits, *order, streaming, execution,
                       [&](const UpdateCall& call) { return EditedGrids<T>(call, layout, out); });
   }
@@ -31,7 +32,7 @@ class GridUpdate::Impl {
     const Result<int> order = start(set, plan, edits, out, execution);
     if (!order) return order.status();
     const BlockOutputs<T> outputs(out);
-    const std::size_t records = touched_.blocks().size() * PatchSet::lanes * plan.impl().samples();
+    const std::size_t records = touched_.blocks().size() * PatchSet::lanes * impl_of(plan).samples();
     return each_block(set, plan, edits, *order, blocks_stream(out, records, execution.stores), execution,
                       [&](const UpdateCall& call) { return EditedBlocks<T>(call, outputs); });
   }
@@ -43,7 +44,7 @@ class GridUpdate::Impl {
                     const Execution& execution) {
     const Result<int> order = check_grids(set, plan, out);
     if (!order) return order.status();
-    if (plan.impl().by_patch)
+    if (impl_of(plan).by_patch)
       return Status(StatusCode::unsupported, "grids with parameters of each patch's own can't be updated");
     if (patch_count_ != set.patches.size() || touched_.block_count() != set.lane_counts.size())
       return Status(StatusCode::invalid_argument, "the update was made for another patch set");
@@ -56,11 +57,11 @@ class GridUpdate::Impl {
   template <class MakeTask>
   Status each_block(PatchSet::Impl& set, const GridPlan& plan, const PatchEdits& edits, int order, bool streaming,
                     const Execution& execution, MakeTask&& make_task) {
-    const GridPlan::Impl& inner = plan.impl();
+    const GridPlan::Impl& inner = impl_of(plan);
     const auto blocks = touched_.blocks();
     const UpdateCall call{set, inner, kernel::kernels(inner.isa), edits, touched_, order, streaming};
     std::atomic<Isa> isa{inner.isa};
-    Status status = parallel_for(blocks.size(), blocks_a_task(inner, blocks.size(), order > 0), execution,
+    Status status = parallel_for(blocks.size(), blocks_per_task(inner, blocks.size(), order > 0), execution,
                                  [&](std::size_t begin, std::size_t end) {
                                    auto task = make_task(call);
                                    for (std::size_t k = begin; k < end; ++k) task.add(blocks[k]);
@@ -76,7 +77,7 @@ class GridUpdate::Impl {
 };
 
 Result<GridUpdate> GridUpdate::make(const PatchSet& set) {
-  return guarded([&]() -> Result<GridUpdate> { return GridUpdate(std::make_unique<Impl>(set.impl())); });
+  return guarded([&]() -> Result<GridUpdate> { return GridUpdate(std::make_unique<Impl>(impl_of(set))); });
 }
 
 GridUpdate::GridUpdate(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -86,19 +87,19 @@ GridUpdate::~GridUpdate() = default;
 
 Status GridUpdate::run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridViews<float>& out,
                        const Execution& execution) {
-  return guarded([&] { return impl_->run(set.impl(), plan, edits, out, execution); });
+  return guarded([&] { return impl_->run(impl_of(set), plan, edits, out, execution); });
 }
 Status GridUpdate::run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridBlocks<float>& out,
                        const Execution& execution) {
-  return guarded([&] { return impl_->run(set.impl(), plan, edits, out, execution); });
+  return guarded([&] { return impl_->run(impl_of(set), plan, edits, out, execution); });
 }
 Status GridUpdate::run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridViews<double>& out,
                        const Execution& execution) {
-  return guarded([&] { return impl_->run(set.impl(), plan, edits, out, execution); });
+  return guarded([&] { return impl_->run(impl_of(set), plan, edits, out, execution); });
 }
 Status GridUpdate::run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridBlocks<double>& out,
                        const Execution& execution) {
-  return guarded([&] { return impl_->run(set.impl(), plan, edits, out, execution); });
+  return guarded([&] { return impl_->run(impl_of(set), plan, edits, out, execution); });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -7,7 +7,7 @@
 #include "base/guard.h"
 #include "kernel/isa/kernel_table.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -71,4 +71,4 @@ double seconds_at_limit(const Limits& limits, const Work& work) {
                   std::max(work.bytes_written, work.bytes_read) / limits.store_bytes_per_second);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -9,7 +9,7 @@
 #include "tessera/status.h"
 #include "tessera/strided_view.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// At least one, each within [from, to]. Errors: invalid_argument (index = the parameter).
 inline Status check_parameters(std::span<const double> parameters, const char* name, double from, double to) {
@@ -39,4 +39,4 @@ Status check_view(const View3<T>& out, std::span<const double> u, std::span<cons
   return checks.status();
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -11,7 +11,7 @@
 #include "eval/parameter_grid.h"
 #include "parallel/parallel_for.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// Row i of the grid.
@@ -97,4 +97,4 @@ Status evaluate(const ParametricSurface& surface, std::span<const double> u, std
   return guarded([&] { return evaluate_grid(surface, u, v, out, execution, calls); });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

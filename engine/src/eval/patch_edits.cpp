@@ -8,10 +8,10 @@
 #include "parallel/parallel_for.h"
 #include "surface/patch_pieces.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr std::size_t edits_a_piece = 256;
+constexpr std::size_t edits_per_task = 256;
 
 /// Coordinates up to here, and an origin as near, fit blocks with weights that did: in float, with the smallest weight 1e-9
 /// of the largest, coefficients may reach 5.2e15 (largest_coefficient). Those of powers, up to 3^30 times as large and times
@@ -51,7 +51,7 @@ Status prepare_edits(PatchSet::Impl& set, const PatchEdits& edits, const Touched
   const bool near = max_abs(set.origin) <= plain_size;
   LeastIndex refused, reshaped;
   const Execution checking{.cancel = execution.cancel};
-  Status status = parallel_for(edits.patch.size(), edits_a_piece, checking, [&](std::size_t begin, std::size_t end) {
+  Status status = parallel_for(edits.patch.size(), edits_per_task, checking, [&](std::size_t begin, std::size_t end) {
     const auto last = points_of(set, edits, touched, end - 1);
     const Vec3* first = points_of(set, edits, touched, begin).data();
     const bool plain = near && all_plain({first, last.data() + last.size()});
@@ -100,4 +100,4 @@ void finish_edits(PatchSet::Impl& set, const PatchEdits& edits) {
   if (!edits.patch.empty()) set.note_edits(edits.patch);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -8,7 +8,7 @@
 #include "eval/touched_blocks.h"
 #include "tessera/execution.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Whether a patch with these control points is still what a plan was made for.
 using KeepsShape = FunctionRef<bool(std::uint32_t patch, std::span<const Vec3> points)>;
@@ -25,4 +25,4 @@ void pack_edits(PatchSet::Impl& set, const PatchEdits& edits, const TouchedBlock
 /// Once all blocks are packed.
 void finish_edits(PatchSet::Impl& set, const PatchEdits& edits);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

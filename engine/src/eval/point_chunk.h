@@ -12,7 +12,7 @@
 #include "eval/grid_outputs.h"
 #include "tessera/evaluate.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// What all chunks of a call share.
 template <class T>
@@ -103,7 +103,7 @@ class PointChunk {
  private:
   static constexpr int lanes = kernel::block_lanes;
   static constexpr int batch = kernel::point_slots;  ///< slots in the stage
-  static constexpr std::size_t most_fields = std::size(vector_outputs<T>) + std::size(scalar_outputs<T>);
+  static constexpr std::size_t max_fields = std::size(vector_outputs<T>) + std::size(scalar_outputs<T>);
   static constexpr std::size_t stage_rows = 3 * std::size(vector_outputs<T>) + std::size(scalar_outputs<T>);
   /// Patches beyond this many bytes are fetched ahead, to the first-level cache, and further ahead, to the second.
   static constexpr std::size_t near_bytes = 32 << 10, far_bytes = 1 << 20;
@@ -143,8 +143,8 @@ class PointChunk {
     grid.lane_doubt = lane_doubt;
     grid.exact_normal = exact_normal;
     grid.exact_context = this;
-    const double smallest_sine = sizeof(T) == 4 ? 1e-6 : 0, smallest_tolerance = sizeof(T) == 4 ? 1e-4 : 0;
-    grid.smallest_sine = static_cast<T>(std::max(call_.geometry.smallest_sine, smallest_sine));
+    const double min_sine = sizeof(T) == 4 ? 1e-6 : 0, smallest_tolerance = sizeof(T) == 4 ? 1e-4 : 0;
+    grid.min_sine = static_cast<T>(std::max(call_.geometry.min_sine, min_sine));
     grid.umbilic_tolerance = static_cast<T>(std::max(call_.geometry.umbilic_tolerance, smallest_tolerance));
   }
 
@@ -280,7 +280,7 @@ class PointChunk {
   const PointCall<T>& call_;
   const Coefficients<T>& coefficients_;
   kernel::PointJob<T> job_;
-  std::array<Field, most_fields> fields_{};
+  std::array<Field, max_fields> fields_{};
   std::size_t field_count_ = 0;
   Samples samples_;
   const std::uint32_t* list_ = nullptr;  ///< the samples at work; null: all
@@ -293,4 +293,4 @@ class PointChunk {
   alignas(cache_line) std::array<std::array<std::uint8_t, static_cast<std::size_t>(lanes) * batch>, 2> kinds_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -14,7 +14,7 @@
 #include "eval/surface_map_impl.h"
 #include "eval/view_checks.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Status of one sample that can't be evaluated.
 inline Status refused_sample(StatusCode code, std::size_t sample, const std::string& why) {
@@ -211,4 +211,4 @@ class SamplesBySurface {
   OutsideDomain outside_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -5,7 +5,7 @@
 
 #include "kernel/isa/kernel_table.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 #ifdef TESSERA_PLANT_SLOWDOWN
 inline constexpr int planted_slowdown = TESSERA_PLANT_SLOWDOWN;
@@ -43,4 +43,4 @@ Isa run_grid(const kernel::KernelTable& kernels, const kernel::GridJob<T>& job) 
   return call_grid_kernel(kernels, job);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

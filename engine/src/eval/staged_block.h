@@ -12,7 +12,7 @@
 #include "eval/grid_outputs.h"
 #include "eval/run_grid.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// The two precisions of the kernels that write lines.
 template <class T>
@@ -50,8 +50,8 @@ template <class T>
 class StageLayout {
  public:
   static constexpr int lanes = kernel::block_lanes;
-  static constexpr std::size_t most_fields = std::size(vector_outputs<T>) + std::size(scalar_outputs<T>);
-  static constexpr std::size_t most_arrays = 3 * most_fields;
+  static constexpr std::size_t max_fields = std::size(vector_outputs<T>) + std::size(scalar_outputs<T>);
+  static constexpr std::size_t max_arrays = 3 * max_fields;
 
   /// A wanted view.
   struct Field {
@@ -99,15 +99,15 @@ class StageLayout {
   int record_width() const { return record_width_; }  ///< values of all wanted views
   /// Samples that are staged at once, if rows of the grid come out even: enough to make up for the calls, so few that
   /// their stores are still on their way to memory while the next ones are computed.
-  int piece() const { return std::max(least_samples, stage_rows / std::max(record_width_, 1)); }
+  int piece() const { return std::max(min_samples, stage_rows / std::max(record_width_, 1)); }
   /// At the most: a row of the grid is rather not cut, since its curves would be made twice.
   int longest_piece() const { return 2 * piece(); }
 
   /// 12 kB of floats, 18 kB of doubles: a first-level cache of 32 kB holds the net and the weights as well.
-  static constexpr int least_samples = 16, stage_rows = sizeof(T) == 4 ? 192 : 144;
+  static constexpr int min_samples = 16, stage_rows = sizeof(T) == 4 ? 192 : 144;
   /// Rows in the stage at the most, with those that a tile may reach beyond the last.
-  static constexpr std::size_t most_rows =
-      2 * std::max<std::size_t>(least_samples * most_arrays, stage_rows) + 3 * lanes * (most_fields + 1);
+  static constexpr std::size_t max_rows =
+      2 * std::max<std::size_t>(min_samples * max_arrays, stage_rows) + 3 * lanes * (max_fields + 1);
 
  private:
   /// One record holds all views if their stride is its width and they fill it without a gap.
@@ -115,7 +115,7 @@ class StageLayout {
     if (field_count_ == 0) return false;
     T* first = fields_[0].component[0];
     for (const Field& field : fields()) first = std::min(first, field.component[0]);
-    std::array<bool, most_arrays> filled{};
+    std::array<bool, max_arrays> filled{};
     for (Field& field : std::span(fields_).first(field_count_)) {
       const std::ptrdiff_t offset = field.component[0] - first;
       if (!field.packed() || field.stride != record_width_ || offset + field.width > record_width_) return false;
@@ -141,8 +141,8 @@ class StageLayout {
     field.step = field.width;
   }
 
-  std::array<Field, most_fields> fields_{};
-  std::array<Array, most_arrays> arrays_{}, columns_{};
+  std::array<Field, max_fields> fields_{};
+  std::array<Array, max_arrays> arrays_{}, columns_{};
   std::size_t field_count_ = 0, array_count_ = 0, column_count_ = 0;
   int record_width_ = 0;
   bool one_record_ = false;
@@ -291,11 +291,11 @@ class StagedBlock {
   const Layout& layout_;
   const GridViews<T>& out_;
   bool streaming_;
-  alignas(cache_line) std::array<T, Layout::most_rows * lanes> stage_;
-  std::array<kernel::LineState<T>, Layout::most_arrays> states_;
-  std::array<std::ptrdiff_t, Layout::most_arrays> waiting_;  ///< rows of each array, the first ones in the stage
-  static constexpr std::size_t most_samples = 2 * Layout::stage_rows;  // of kinds alone: as many as of one value
-  alignas(cache_line) std::array<std::array<std::uint8_t, most_samples * lanes>, 2> kinds_;
+  alignas(cache_line) std::array<T, Layout::max_rows * lanes> stage_;
+  std::array<kernel::LineState<T>, Layout::max_arrays> states_;
+  std::array<std::ptrdiff_t, Layout::max_arrays> waiting_;  ///< rows of each array, the first ones in the stage
+  static constexpr std::size_t max_samples = 2 * Layout::stage_rows;  // of kinds alone: as many as of one value
+  alignas(cache_line) std::array<std::array<std::uint8_t, max_samples * lanes>, 2> kinds_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -1,10 +1,11 @@
 #include <string>
 
 #include "base/guard.h"
+#include "base/impl_access.h"
 #include "block/patch_set_impl.h"
 #include "eval/surface_map_impl.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// Reads breakpoints from the first row and the first column of patches [begin, end), then looks at all of them.
@@ -29,7 +30,7 @@ bool read_grid(std::span<const PatchSource> patches, SurfaceMap::Impl::Surface& 
 
 Result<SurfaceMap> SurfaceMap::make(const PatchSet& set) {
   return guarded([&]() -> Result<SurfaceMap> {
-    const std::vector<PatchSource>& sources = set.impl().sources;
+    const std::vector<PatchSource>& sources = impl_of(set).sources;
     auto map = std::make_unique<Impl>();
     map->patch_count = sources.size();
     map->surfaces.resize(set.surface_count());
@@ -62,4 +63,4 @@ std::optional<Domain> SurfaceMap::domain(std::size_t surface) const {
   return of.domain();
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

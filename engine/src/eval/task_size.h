@@ -5,7 +5,7 @@
 
 #include "tessera/execution.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Points a task: enough to hide its cost, few enough to balance.
 inline constexpr std::size_t points_per_task = 16384;
@@ -27,4 +27,4 @@ inline void report_run(const Execution& execution, Isa isa, bool streaming) {
   execution.report->streaming = streaming;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

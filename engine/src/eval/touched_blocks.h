@@ -11,7 +11,7 @@
 #include "block/patch_set_impl.h"
 #include "tessera/evaluate.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Status of one edit that is refused.
 inline Status refused_edit(StatusCode code, std::size_t edit, const std::string& why) {
@@ -86,4 +86,4 @@ class TouchedBlocks {
   std::vector<std::size_t> first_points_;  ///< of each edit
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -13,7 +13,7 @@
 #include "parallel/parallel_for.h"
 #include "surface/border_curve.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// Points a task, and below how many one thread is faster than waking another.
@@ -178,4 +178,4 @@ Status evaluate(const RuledSurface& surface, std::span<const double> u, std::spa
   return guarded([&] { return evaluate_grid(surface, u, v, out, execution); });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

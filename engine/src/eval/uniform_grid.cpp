@@ -4,13 +4,14 @@
 #include <array>
 
 #include "base/aligned.h"
+#include "base/impl_access.h"
 #include "block/patch_set_impl.h"
 #include "eval/border_weights.h"
 #include "eval/grid_plan_impl.h"
 #include "kernel/isa/kernel_table.h"
 #include "parallel/parallel_for.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// Where one edge of a patch lies in its net and in its grid.
@@ -38,8 +39,7 @@ class BorderWriter {
 
   void run(std::size_t block) const {
     const BlockGroup& group = set_.group_of_block(block);
-    const float* net =
-        set_.single.bernstein.data() + group.first_value + (block - group.first_block) * group.block_values;
+    const float* net = set_.f32.bernstein.data() + group.first_value + (block - group.first_block) * group.block_values;
     const std::ptrdiff_t coefficient = (group.rational ? 4 : 3) * PatchSet::lanes;
     const std::ptrdiff_t row = coefficient * (group.degree_v + 1);
     for (const EdgePlace& place : edge_places) {
@@ -123,7 +123,7 @@ Result<UniformGrid> UniformGrid::make(const PatchSet& set, int rate_u, int rate_
   auto plan = GridPlan::make(set, u, v, {.isa = isa});
   if (!plan) return plan.status();
   UniformGrid grid(std::move(*plan), rate_u, rate_v);
-  for (const BlockGroup& group : set.impl().groups) {
+  for (const BlockGroup& group : impl_of(set).groups) {
     auto& along_u = grid.border_weights_u_[static_cast<std::size_t>(group.degree_u)];
     auto& along_v = grid.border_weights_v_[static_cast<std::size_t>(group.degree_v)];
     if (along_u.empty()) along_u = symmetric_weights(group.degree_u, rate_u);
@@ -141,9 +141,9 @@ Status UniformGrid::run(const PatchSet::Impl& set, const GridViews<float>& out, 
   const std::size_t grain = std::max<std::size_t>(1, 16384 / border_points);
   Execution quiet;  // progress and the report are evaluate()'s
   quiet.cancel = execution.cancel;
-  return parallel_for(plan_.impl().block_count, grain, quiet, [&](std::size_t begin, std::size_t end) {
+  return parallel_for(impl_of(plan_).block_count, grain, quiet, [&](std::size_t begin, std::size_t end) {
     for (std::size_t block = begin; block < end; ++block) borders.run(block);
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -6,10 +6,11 @@
 #include <utility>
 
 #include "base/aligned.h"
-#include "base/for_wings.h"
+#include "base/impl_access.h"
+#include "base/internal_export.h"
 #include "tessera/evaluate.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// The grid i / rate_u x j / rate_v over every patch of a set. Positions on a border depend on that border's control points
 /// and the rate along it alone, and not on the direction in which the border runs: two patches that share a border's
@@ -17,8 +18,8 @@ namespace tessera {
 class UniformGrid {
  public:
   /// Rates of at least 1. Errors: those of GridPlan::make.
-  TESSERA_FOR_WINGS static Result<UniformGrid> make(const PatchSet& set, int rate_u, int rate_v,
-                                                    std::optional<Isa> isa);
+  TESSERA_INTERNAL_EXPORT static Result<UniformGrid> make(const PatchSet& set, int rate_u, int rate_v,
+                                                          std::optional<Isa> isa);
 
   int rate_u() const { return rate_u_; }
   int rate_v() const { return rate_v_; }
@@ -26,11 +27,11 @@ class UniformGrid {
   std::size_t capacity() const { return plan_.capacity(); }
   /// Evaluates all patches. Errors: those of evaluate().
   Status run(const PatchSet& set, const GridViews<float>& out, const Execution& execution) const {
-    return run(set.impl(), out, execution);
+    return run(impl_of(set), out, execution);
   }
   /// The same for those who keep the set's inner state, which stays in place when the set is moved.
-  TESSERA_FOR_WINGS Status run(const PatchSet::Impl& set, const GridViews<float>& out,
-                               const Execution& execution) const;
+  TESSERA_INTERNAL_EXPORT Status run(const PatchSet::Impl& set, const GridViews<float>& out,
+                                     const Execution& execution) const;
 
  private:
   UniformGrid(GridPlan plan, int rate_u, int rate_v) : plan_(std::move(plan)), rate_u_(rate_u), rate_v_(rate_v) {}
@@ -41,4 +42,4 @@ class UniformGrid {
   std::array<AlignedVector<float>, max_degree + 1> border_weights_u_, border_weights_v_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <string>
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 void ViewChecks::add(const Array& array, std::size_t size, std::size_t alignment) {
   if (!error_.ok()) return;
@@ -48,4 +48,4 @@ Status ViewChecks::status() const {
   return {};
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

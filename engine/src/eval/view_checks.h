@@ -6,11 +6,11 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "base/for_wings.h"
+#include "base/internal_export.h"
 #include "tessera/status.h"
 #include "tessera/strided_view.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Takes note of the views of one call, one after the other; the first error stands.
 class ViewChecks {
@@ -32,7 +32,7 @@ class ViewChecks {
   }
 
   /// The first error of all views, or invalid_argument if one that is written shares memory with another.
-  TESSERA_FOR_WINGS Status status() const;
+  TESSERA_INTERNAL_EXPORT Status status() const;
 
  private:
   /// One component of a view.
@@ -44,15 +44,15 @@ class ViewChecks {
     std::size_t element;    ///< bytes
     bool written;
   };
-  static constexpr std::size_t most_arrays = 64;
+  static constexpr std::size_t max_arrays = 64;
 
-  TESSERA_FOR_WINGS void add(const Array& array, std::size_t size, std::size_t alignment);
+  TESSERA_INTERNAL_EXPORT void add(const Array& array, std::size_t size, std::size_t alignment);
   bool collide(const Array& a, const Array& b) const;
 
   std::size_t records_;
   Status error_;
-  std::array<Array, most_arrays> arrays_{};
+  std::array<Array, max_arrays> arrays_{};
   std::size_t count_ = 0;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

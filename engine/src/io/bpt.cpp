@@ -10,7 +10,7 @@
 #include "surface/patch_pool.h"
 #include "tessera/io.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 using Points = std::array<Vec3, (max_degree + 1) * (max_degree + 1)>;
@@ -91,4 +91,4 @@ Result<Model> parse_bpt(std::string_view text, std::string_view name) {
   return guarded([&] { return parse(text, name); });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -5,7 +5,7 @@
 
 #include "io/model_formats.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// Whether weights change nothing.
@@ -55,4 +55,4 @@ Status write_bpt(std::span<const WrittenSurface> surfaces, OutputFile& out, std:
   return {};
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -12,7 +12,7 @@
 #include "surface/patch_pool.h"
 #include "tessera/io.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr PartName polyhedra{"polyhedron", "polyhedra"}, triangles{"triangular patch", "triangular patches"},
@@ -207,4 +207,4 @@ Result<Model> parse_bv(std::string_view text, std::string_view name) {
   return guarded([&] { return BvReader(text, name).read(); });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -15,7 +15,7 @@
 #include "base/text.h"
 #include "io/text_cursor.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr std::size_t largest_count = 3;  // of variables
@@ -181,4 +181,4 @@ Result<double> constant_value(std::string_view text) {
   return value;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

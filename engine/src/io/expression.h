@@ -9,7 +9,7 @@
 
 #include "tessera/status.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// A real function of named variables, such as u and v.
 ///   numbers    1  .5  2.5e-3, always with a point
@@ -41,4 +41,4 @@ class Expression {
 /// The value of an expression without variables. Errors: as above, and non_finite.
 Result<double> constant_value(std::string_view text);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

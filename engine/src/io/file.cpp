@@ -9,7 +9,7 @@
 
 #include "io/descriptor.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr std::size_t pipe_limit = std::size_t{1} << 30;  // an endless device must not eat all memory
@@ -54,4 +54,4 @@ Result<std::string> read_file(const std::filesystem::path& path) {
   return bytes;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

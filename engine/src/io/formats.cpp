@@ -11,7 +11,7 @@
 #include "io/valid_mesh.h"
 #include "tessera/io.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 namespace fs = std::filesystem;
@@ -136,4 +136,4 @@ Status write_mesh(const Mesh& mesh, const fs::path& path) {
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

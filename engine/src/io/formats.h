@@ -9,7 +9,7 @@
 #include "tessera/mesh.h"
 #include "tessera/status.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// The extension of `path`, in small letters.
 std::string lower_extension(const std::filesystem::path& path);
@@ -26,4 +26,4 @@ Status check_model_format(const std::filesystem::path& path);
 Result<WrittenModel> write_model(const Model& model, const std::filesystem::path& path, const FitOptions& fit,
                                  OutputFile& out);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

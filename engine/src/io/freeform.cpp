@@ -6,7 +6,7 @@
 
 #include "io/freeform_line.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// Control points and weights as the kinds want them; no weights for what is not rational.
@@ -253,4 +253,4 @@ Result<std::vector<Curve>> freeform_curves(const FreeformState& state, const Con
   return one_curve(degree, bezier_knots(degree, state.u.parm), net);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

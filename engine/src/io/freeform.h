@@ -13,7 +13,7 @@
 #include "tessera/status.h"
 #include "tessera/surface.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 enum class FreeformType : std::uint8_t { none, bezier, bspline, cardinal, taylor, bmatrix };
 
@@ -50,4 +50,4 @@ Result<std::vector<Surface>> freeform_surfaces(const FreeformState& state, const
 /// The same for a curve, on all of its parameters.
 Result<std::vector<Curve>> freeform_curves(const FreeformState& state, const ControlPoints& points);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

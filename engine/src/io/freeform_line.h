@@ -9,7 +9,7 @@
 #include "io/freeform.h"
 #include "tessera/tensor_patch.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// How many control points the line wants. `available` is how many there are, which bounds the steps. Errors:
 /// unsupported_degree, count_mismatch, invalid_argument.
@@ -40,4 +40,4 @@ Homogeneous cardinal_bezier_point(std::size_t r, std::size_t pieces, At&& at) {
   return at(piece + 2) - 1.0 / 6 * (at(piece + 3) - at(piece + 1));
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -13,7 +13,7 @@
 #include "io/passed_over.h"
 #include "tessera/io.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr std::pair<std::int64_t, PartName> unread_classes[] = {
@@ -235,4 +235,4 @@ Result<Model> parse_g2(std::string_view text, std::string_view name) {
   return guarded([&] { return G2Reader(text, name).read(); });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

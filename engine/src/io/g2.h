@@ -11,7 +11,7 @@
 #include "tessera/status.h"
 #include "tessera/surface.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Classes that are read (GoTools, ClassType.h).
 enum G2Class : std::int64_t {
@@ -68,4 +68,4 @@ struct G2Object {
 /// cone's v, which is counted from the apex, and for a torus', which are those of its NURBS on [0,1]^2 or a part of it.
 Result<G2Object> read_g2_elementary(std::int64_t kind, G2Numbers& numbers);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -8,7 +8,7 @@
 #include "io/g2.h"
 #include "tessera/nurbs_surface.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -175,4 +175,4 @@ Result<G2Object> read_g2_elementary(std::int64_t kind, G2Numbers& numbers) {
   return object;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -17,12 +17,12 @@
 
 #include "io/mesh_formats.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "glTF is written in the machine's own byte order");
 
-constexpr std::size_t most_bytes = std::numeric_limits<std::int32_t>::max();  // tinygltf keeps offsets in int
+constexpr std::size_t max_bytes = std::numeric_limits<std::int32_t>::max();  // tinygltf keeps offsets in int
 
 /// What tinygltf writes goes into the file, which remembers failures.
 class FileBuffer : public std::streambuf {
@@ -227,9 +227,9 @@ Status write(const Mesh& mesh, OutputFile& out, bool binary) {
     return split ? write(*split, out, binary) : split.status();
   }
   if (mesh.triangle_count() == 0) return {StatusCode::invalid_argument, "the mesh has no triangles, glTF wants some"};
-  if (const std::size_t bytes = GltfMesh::byte_count(mesh); bytes > most_bytes)
+  if (const std::size_t bytes = GltfMesh::byte_count(mesh); bytes > max_bytes)
     return {StatusCode::unsupported, "the mesh takes " + std::to_string(bytes) + " bytes, glTF files of up to " +
-                                         std::to_string(most_bytes) + " are written"};
+                                         std::to_string(max_bytes) + " are written"};
   const tinygltf::Model model = GltfMesh(mesh).make();
   FileBuffer buffer(out);
   std::ostream stream(&buffer);
@@ -243,4 +243,4 @@ Status write(const Mesh& mesh, OutputFile& out, bool binary) {
 Status write_glb(const Mesh& mesh, OutputFile& out) { return write(mesh, out, true); }
 Status write_gltf(const Mesh& mesh, OutputFile& out) { return write(mesh, out, false); }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

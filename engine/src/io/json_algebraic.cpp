@@ -2,7 +2,7 @@
 
 #include "io/json_kinds.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 QuadricCoefficients read_coefficients(const JsonValue& value) {
@@ -32,4 +32,4 @@ Surface read_quadric(const JsonValue& value) {
   return made(value, QuadricPiece::make(quadric, read_domain(fields.at("range")), sheet));
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

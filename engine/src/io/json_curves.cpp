@@ -5,7 +5,7 @@
 
 #include "io/json_kinds.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 std::vector<double> weights_of(const Fields& fields, std::size_t count) {
@@ -120,4 +120,4 @@ Knots read_knots(const JsonValue& value, int degree, std::size_t count) {
   return knots;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -8,7 +8,7 @@
 #include "base/text.h"
 #include "io/text_cursor.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// Reads bytes, and tells how many have been read.
@@ -226,4 +226,4 @@ void JsonValue::fail_expected(std::string_view what) const {
   fail("expected " + std::string(what) + ", found " + found);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

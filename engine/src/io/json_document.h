@@ -11,7 +11,7 @@
 
 #include "tessera/status.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 enum class JsonKind : std::uint8_t { null, boolean, number, string, array, object };
 
@@ -111,4 +111,4 @@ class JsonValue {
 
 inline JsonValue JsonDocument::root() const { return {this, 0}; }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -9,7 +9,7 @@
 #include "io/json_kinds.h"
 #include "io/text_cursor.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 struct Coordinate {
@@ -102,4 +102,4 @@ Surface read_parametric_surface(const JsonValue& value) {
   return made(value, ParametricSurface::over_disc({.position = coordinates.function()}, disc));
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -7,7 +7,7 @@
 #include "tessera/parametric_surface.h"
 #include "tessera/surface.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// The fields of a surface: those that all have, and its own.
 class SurfaceFields : public Fields {
@@ -60,4 +60,4 @@ struct Knots {
 /// `count`: of the points.
 Knots read_knots(const JsonValue& value, int degree, std::size_t count);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -7,7 +7,7 @@
 #include "io/json_kinds.h"
 #include "tessera/io.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr int version = 1;
@@ -93,4 +93,4 @@ Result<Model> parse_json_model(std::string_view text, std::string_view name) {
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

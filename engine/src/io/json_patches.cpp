@@ -2,7 +2,7 @@
 
 #include "io/json_kinds.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// "degree", which may be left out, must be what the net says.
@@ -68,4 +68,4 @@ Surface read_tensor_patch(const JsonValue& value) {
   return made(value, TensorPatch::make(u, v, net.elements, fields.get("domain", Domain{}, read_domain)));
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

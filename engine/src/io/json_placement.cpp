@@ -2,7 +2,7 @@
 
 #include "io/json_kinds.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 Vec3 read_scale(const JsonValue& value) {
@@ -44,4 +44,4 @@ Affine read_placement(const JsonValue& value) {
   return placement;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

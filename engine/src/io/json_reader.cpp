@@ -6,7 +6,7 @@
 #include "io/expression.h"
 #include "io/text_cursor.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 std::string listed(std::initializer_list<std::string_view> words) {
@@ -114,4 +114,4 @@ Domain read_domain(const JsonValue& value) {
   return {u.from, u.to, v.from, v.to};
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

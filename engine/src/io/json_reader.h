@@ -12,7 +12,7 @@
 #include "tessera/curve.h"
 #include "tessera/geometry.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// An object whose keys are known. A key that is not is an error, so that no typo is silent.
 class Fields {
@@ -104,4 +104,4 @@ void expect_shape(const JsonValue& value, const Net<T>& net, std::size_t rows, s
              shape(net.rows, net.columns));
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -4,7 +4,7 @@
 
 #include "io/json_kinds.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// The rows and columns that periodic knots want again at the end.
@@ -112,4 +112,4 @@ Surface read_revolution(const JsonValue& value) {
   return made(value, surface_of_revolution(read_curve(fields.at("profile")), axis_of(fields), arcs_of(fields)));
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -6,7 +6,7 @@
 #include "io/expression.h"
 #include "io/json_kinds.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 std::function<double(double)> read_blend_function(const JsonValue& value) {
@@ -51,4 +51,4 @@ Surface read_coons_patch(const JsonValue& value) {
   return made(value, CoonsPatch::make(borders, options));
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

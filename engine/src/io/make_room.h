@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Room for one more element. What a text of `size` bytes has brought in the bytes that were read is expected of the
 /// rest of it too: a list that doubles would take up to three times its memory while it moves. More than what the
@@ -20,4 +20,4 @@ void make_room(std::vector<T>& list, std::size_t read, std::size_t size) {
   list.reserve(count + std::max(expected, 8 + count / 8));
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -10,7 +10,7 @@
 #include "tessera/mesh.h"
 #include "tessera/status.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Wavefront OBJ. Writes v, vt, vn, f, and g for parts; patches of faces are not kept. Positions in double, where there are
 /// any, are written so that they read back as the same doubles.
@@ -43,4 +43,4 @@ inline float file_coordinate(double origin, float relative) {
   return static_cast<float>(origin + static_cast<double>(relative));
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -11,7 +11,7 @@
 #include "io/output_file.h"
 #include "tessera/io.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// What of a surface is written. Patches as in a PatchGrid: patch (a, b) at a * (breaks_v.size() - 1) + b.
 struct WrittenSurface {
@@ -41,4 +41,4 @@ struct SurfaceWriter {
 /// By the extension of `path`. Errors: unsupported, with a list of those that are known.
 Result<SurfaceWriter> surface_writer(const std::filesystem::path& path);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

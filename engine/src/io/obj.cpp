@@ -10,7 +10,7 @@
 #include "io/polygon.h"
 #include "io/text_cursor.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 template <class T>
@@ -176,4 +176,4 @@ Result<Mesh> parse_obj(std::string_view text, std::string_view name, const MeshR
   return ObjReader(text, name, options).read();
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -19,7 +19,7 @@
 #include "io/obj_trims.h"
 #include "tessera/io.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 enum class ElementKind : std::uint8_t { none, surf, curv, curv2 };
@@ -396,4 +396,4 @@ Result<Model> parse_obj_freeform(std::string_view text, std::string_view name) {
   return guarded([&] { return ObjFreeformReader(text, name).read(); });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -8,7 +8,7 @@
 #include "io/model_formats.h"
 #include "io/obj_name.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// Patches by their place, as one net: control point (i, j) of the whole.
@@ -163,7 +163,7 @@ class ObjSurfaceWriter {
 
   void write_indices(std::size_t first, std::size_t count) {
     for (std::size_t k = 0; k < count; ++k) {
-      if (k % values_a_line == 0) out_.write(" \\\n");
+      if (k % values_per_line == 0) out_.write(" \\\n");
       write_value(first + k);
     }
     out_.write('\n');
@@ -173,7 +173,7 @@ class ObjSurfaceWriter {
     out_.write("parm ");
     out_.write(direction);
     for (std::size_t k = 0; k < values.size(); ++k) {
-      if (k > 0 && k % values_a_line == 0) out_.write(" \\\n");
+      if (k > 0 && k % values_per_line == 0) out_.write(" \\\n");
       write_value(values[k]);
     }
     out_.write('\n');
@@ -185,7 +185,7 @@ class ObjSurfaceWriter {
     out_.write_number(value);
   }
 
-  static constexpr std::size_t values_a_line = 16;
+  static constexpr std::size_t values_per_line = 16;
 
   OutputFile& out_;
   std::string group_;
@@ -204,4 +204,4 @@ Status write_obj_freeform(std::span<const WrittenSurface> surfaces, OutputFile& 
   return {};
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

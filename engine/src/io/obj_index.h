@@ -7,7 +7,7 @@
 
 #include "io/text_cursor.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// What is wrong with a number that is no index into the `count` records (`kind`: "vertices") above `before`.
 inline Status obj_index_failure(const TextCursor& before, std::string_view kind, std::size_t count) {
@@ -29,4 +29,4 @@ inline Status read_obj_index(TextCursor& cursor, std::string_view what, std::str
   return {};
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// `name` on one line, as it reads back: no control characters, no # that would begin a comment, no \ that would
 /// continue the line.
@@ -19,4 +19,4 @@ inline std::string obj_name(std::string_view name) {
   return line;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -9,7 +9,7 @@
 
 #include "io/text_cursor.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Statements by name, how often, and where the first stood.
 class ObjNotes {
@@ -20,7 +20,7 @@ class ObjNotes {
     for (auto& [name, count] : counts_) {
       if (name == statement) return void(++count);
     }
-    if (counts_.size() < most_names) counts_.emplace_back(statement, 1);
+    if (counts_.size() < max_names) counts_.emplace_back(statement, 1);
   }
   bool empty() const { return total_ == 0; }
   /// "m.obj:3: 7 statements are not kept, the first of them here: 5 f, 2 usemtl".
@@ -36,10 +36,10 @@ class ObjNotes {
   }
 
  private:
-  static constexpr std::size_t most_names = 16;
+  static constexpr std::size_t max_names = 16;
   std::optional<TextCursor> first_;
   std::vector<std::pair<std::string_view, std::size_t>> counts_;
   std::size_t total_ = 0;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

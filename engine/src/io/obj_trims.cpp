@@ -6,7 +6,7 @@
 #include "base/text.h"
 #include "io/obj_index.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// The curve on a part of its domain.
@@ -59,4 +59,4 @@ Status ObjTrimCurves::read_loop(TextCursor& cursor, std::vector<Curve>& loop) {
   return {};
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

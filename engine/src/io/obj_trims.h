@@ -8,7 +8,7 @@
 #include "tessera/curve.h"
 #include "tessera/model.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Each curve is a chain of pieces. Loops share them, but for parts of a piece, which are copies with another domain: all
 /// of these together hold no more control points than the file has bytes, which no file reaches that refers to a curve a
@@ -30,4 +30,4 @@ class ObjTrimCurves {
   std::size_t allowed_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

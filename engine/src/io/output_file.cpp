@@ -11,7 +11,7 @@
 
 #include "io/file.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 namespace fs = std::filesystem;
@@ -33,9 +33,9 @@ Result<fs::path> behind_links(const fs::path& path) {
   if (!error) return target;
   // What exists under no path, such as the pipe behind /dev/stdout, is opened by the name given.
   if (fs::exists(path, error)) return path;
-  constexpr int most_links = 40;  // the system's own limit (path_resolution(7))
+  constexpr int max_links = 40;  // the system's own limit (path_resolution(7))
   target = path;
-  for (int link = 0; link < most_links; ++link) {
+  for (int link = 0; link < max_links; ++link) {
     const fs::path next = fs::read_symlink(target, error);
     if (error) return target;  // no link
     target = target.parent_path() / next;
@@ -174,4 +174,4 @@ Status OutputFile::commit() {
   return std::move(status_);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

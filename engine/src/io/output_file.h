@@ -13,7 +13,7 @@
 #include "io/descriptor.h"
 #include "tessera/status.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Unlinks the temporaries of all open OutputFiles. For signal handlers that end the process: async-signal-safe.
 void remove_temporaries() noexcept;
@@ -96,4 +96,4 @@ class OutputFile {
   Status status_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

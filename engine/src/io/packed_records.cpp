@@ -5,7 +5,7 @@
 
 #include "parallel/parallel_for.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr std::size_t piece_bytes = std::size_t{1} << 16;  // what a thread packs at a time
@@ -34,4 +34,4 @@ Status write_packed(OutputFile& out, std::size_t count, std::size_t bytes,
   return {};
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

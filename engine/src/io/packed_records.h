@@ -8,7 +8,7 @@
 #include "io/output_file.h"
 #include "tessera/geometry.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Writes `count` records of `bytes` each: pack(first, last, to) lays down the records [first, last) from `to` on, and is
 /// called for pieces of them from any number of threads. Memory: 2 MiB. Errors: what `pack` throws, as a Status.
@@ -24,4 +24,4 @@ inline void put_floats(const Vec3& v, char* to) {
   std::memcpy(to + 8, &z, sizeof z);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

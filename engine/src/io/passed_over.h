@@ -8,7 +8,7 @@
 #include "io/text_cursor.h"
 #include "tessera/status.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Names of a kind of thing for one and for many of it: "polyhedron", "polyhedra". They must outlive the counts.
 struct PartName {
@@ -42,4 +42,4 @@ class PassedOver {
 /// A surface's name out of a file: at most 200 bytes of it, whole characters of UTF-8.
 std::string surface_name(std::string_view text);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -14,7 +14,7 @@
 #include "io/polygon.h"
 #include "io/text_cursor.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "PLY is read and written in the machine's own byte order");
@@ -47,7 +47,7 @@ class BinaryValues {
     return false;
   }
   /// The least bytes that a value takes, and the bytes left.
-  static std::size_t least_bytes(PlyType type) { return size_of(type); }
+  static std::size_t min_bytes(PlyType type) { return size_of(type); }
   std::size_t remaining() const { return static_cast<std::size_t>(end_ - at_); }
   bool at_end() { return at_ == end_; }
   Status failure(const std::string& place) const { return error("the file ends in " + place); }
@@ -81,7 +81,7 @@ class AsciiValues {
     cursor_.skip_space();
     return cursor_.take_number(value);
   }
-  static std::size_t least_bytes(PlyType) { return 2; }              // a digit and what parts it from the next
+  static std::size_t min_bytes(PlyType) { return 2; }                // a digit and what parts it from the next
   std::size_t remaining() const { return cursor_.remaining() + 1; }  // the last one may end with the file
   bool at_end() {
     cursor_.skip_space();
@@ -138,7 +138,7 @@ class BodyReader {
   Status check_size(const PlyElement& element) {
     std::uint64_t least = 0;
     for (const PlyProperty& property : element.properties) {
-      least += Values::least_bytes(property.is_list ? property.count_type : property.type);
+      least += Values::min_bytes(property.is_list ? property.count_type : property.type);
     }
     if (least != 0 && element.count > values_.remaining() / least) {
       return values_.error("the header states " + std::to_string(element.count) + " " + element.name +
@@ -323,4 +323,4 @@ Result<Mesh> parse_ply(std::string_view bytes, std::string_view name, const Mesh
   return BodyReader(AsciiValues(bytes, header->bytes, name), options).read(*header);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

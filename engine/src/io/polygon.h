@@ -3,7 +3,7 @@
 
 #include "tessera/mesh.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// The last two triangles, a fan of four corners, become a quad.
 inline void join_last_quad(Mesh& mesh) {
@@ -12,4 +12,4 @@ inline void join_last_quad(Mesh& mesh) {
   mesh.indices.erase(fan, mesh.indices.end());
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

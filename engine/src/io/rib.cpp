@@ -18,7 +18,7 @@
 #include "io/rib_trims.h"
 #include "tessera/io.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// Requests that draw what is not read; the others say how and from where it is drawn.
@@ -380,4 +380,4 @@ Result<Model> parse_rib(std::string_view text, std::string_view name) {
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

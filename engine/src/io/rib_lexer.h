@@ -9,7 +9,7 @@
 
 #include "io/text_cursor.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 class RibLexer {
  public:
@@ -57,4 +57,4 @@ class RibLexer {
   TextCursor cursor_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

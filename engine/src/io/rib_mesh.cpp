@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr double sixth = 1.0 / 6;
@@ -337,4 +337,4 @@ Result<std::vector<Surface>> mesh_surfaces(const RibDirection& u, const RibDirec
   return surfaces;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -7,11 +7,11 @@
 
 #include "io/rib_mesh.h"
 #include "io/text_cursor.h"
+#include "tessera/detail/shared.h"
 #include "tessera/geometry.h"
 #include "tessera/model.h"
-#include "tessera/detail/shared.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 struct RibState {
   /// From the current coordinates to those at WorldBegin (ObjectBegin within an object, else the begin of the file).
@@ -74,4 +74,4 @@ class RibStack {
   std::vector<Block> blocks_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 enum Part { counts, orders, knots, minima, maxima, lengths, us, vs, ws, part_count };
@@ -97,4 +97,4 @@ Result<std::vector<TrimLoop>> read_trim_loops(RibLexer& lexer) {
   return LoopMaker(begin, parts).loops();
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -15,13 +15,13 @@
 #include "io/text_cursor.h"
 #include "io/vertex_welder.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "STL is read and written in the machine's own byte order");
 
 constexpr std::size_t title_bytes = 80, header_bytes = title_bytes + 4, triangle_bytes = 50;
-constexpr std::size_t most_vertices = std::numeric_limits<std::uint32_t>::max();
+constexpr std::size_t max_vertices = std::numeric_limits<std::uint32_t>::max();
 
 /// The normal, from where the corners run counter-clockwise (zero if there is no area), the corners, and two bytes of 0.
 void put_triangle(const Mesh& mesh, std::size_t triangle, char* to) {
@@ -49,7 +49,7 @@ class StlMesh {
   explicit StlMesh(std::size_t triangles) { mesh_.indices.reserve(3 * triangles); }
 
   void add(const std::array<float, 3>& corner) { mesh_.indices.push_back(welder_.index_of(corner)); }
-  bool full() const { return mesh_.vertex_count() > most_vertices - 3; }
+  bool full() const { return mesh_.vertex_count() > max_vertices - 3; }
   std::size_t triangles() const { return mesh_.triangle_count(); }
   Mesh take() { return std::move(mesh_); }
 
@@ -92,7 +92,7 @@ Result<Mesh> parse_binary(std::string_view bytes, std::string_view name) {
 class AsciiReader {
  public:
   AsciiReader(std::string_view text, std::string_view name)
-      : cursor_(text, name, {.comment = 0}), mesh_(text.size() / least_facet) {}
+      : cursor_(text, name, {.comment = 0}), mesh_(text.size() / min_facet) {}
 
   Result<Mesh> read() {
     for (cursor_.skip_space(); !cursor_.at_end(); cursor_.skip_space())
@@ -102,7 +102,7 @@ class AsciiReader {
   }
 
  private:
-  static constexpr std::size_t least_facet = 84;  // bytes of the shortest one
+  static constexpr std::size_t min_facet = 84;  // bytes of the shortest one
 
   bool take(std::string_view word) {
     cursor_.skip_space();
@@ -161,9 +161,9 @@ Status write_stl(const Mesh& mesh, OutputFile& out) {
     return split ? write_stl(*split, out) : split.status();
   }
   const std::size_t triangles = mesh.triangle_count();
-  if (triangles == 0 || triangles > most_vertices)
+  if (triangles == 0 || triangles > max_vertices)
     return {StatusCode::invalid_argument, "the mesh has " + std::to_string(triangles) +
-                                              " triangles, STL files hold 1 to " + std::to_string(most_vertices)};
+                                              " triangles, STL files hold 1 to " + std::to_string(max_vertices)};
   std::array<char, header_bytes> header{};
   constexpr std::string_view title = "Tessera";
   std::copy(title.begin(), title.end(), header.begin());
@@ -190,4 +190,4 @@ Result<Mesh> parse_stl(std::string_view bytes, std::string_view name, const Mesh
                          std::to_string((bytes.size() - header_bytes) % triangle_bytes) + " bytes more");
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <system_error>
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// Whether a decimal number that std::from_chars found out of range is too small rather than too large.
@@ -139,4 +139,4 @@ std::string quote(std::string_view text) {
   return result + (text.size() > limit ? "...\"" : "\"");
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -8,7 +8,7 @@
 
 #include "tessera/status.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// What a text format means by its characters. 0: there is none of the kind.
 struct TextSyntax {
@@ -127,4 +127,4 @@ Status refused_element(const Text& text, const Status& status, const std::string
   return status.code() == StatusCode::out_of_memory ? status : text.failure(element + status.message());
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -12,10 +12,10 @@
 #include "parallel/parallel_for.h"
 #include "tess/write/mesh_parts.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr std::size_t values_a_piece = std::size_t{1} << 16;
+constexpr std::size_t values_per_piece = std::size_t{1} << 16;
 
 Status invalid(std::string message, std::size_t index) {
   return {StatusCode::invalid_argument, std::move(message), static_cast<std::ptrdiff_t>(index)};
@@ -26,7 +26,7 @@ Status invalid(std::string message, std::size_t index) {
 template <class Find>
 Result<std::size_t> first_of(std::size_t count, const Find& find) {
   std::atomic<std::size_t> found = count;
-  Status status = parallel_for(count, values_a_piece, {}, [&](std::size_t begin, std::size_t end) {
+  Status status = parallel_for(count, values_per_piece, {}, [&](std::size_t begin, std::size_t end) {
     const std::size_t k = find(begin, end);
     if (k == end) return;
     for (std::size_t least = found; k < least && !found.compare_exchange_weak(least, k);) {
@@ -126,4 +126,4 @@ Status validate(const Mesh& mesh) {
   return {};
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

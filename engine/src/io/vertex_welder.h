@@ -5,20 +5,20 @@
 #include <cstdint>
 #include <vector>
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Numbers distinct positions in the order in which they come. Positions are one if they are of the same bits, -0 taken
 /// as 0. Memory: 4 to 16 bytes a vertex beside the positions.
 class VertexWelder {
  public:
   /// `positions`: three floats a vertex, to which new ones are appended; at most 2^32 - 1 vertices.
-  explicit VertexWelder(std::vector<float>& positions) : positions_(positions), table_(least_size, none) {}
+  explicit VertexWelder(std::vector<float>& positions) : positions_(positions), table_(min_size, none) {}
 
   std::uint32_t index_of(const std::array<float, 3>& position);
 
  private:
   static constexpr std::uint32_t none = ~std::uint32_t{0};
-  static constexpr std::size_t least_size = 64;  // a power of two, as all sizes
+  static constexpr std::size_t min_size = 64;  // a power of two, as all sizes
 
   std::size_t slot_of(const std::array<float, 3>& position) const;
   void grow();
@@ -27,4 +27,4 @@ class VertexWelder {
   std::vector<std::uint32_t> table_;  // open hash table of vertices
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -9,7 +9,7 @@
 #include "io/formats.h"
 #include "io/model_formats.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 namespace fs = std::filesystem;
@@ -103,4 +103,4 @@ Status write_model(const PatchSet& set, const fs::path& path) {
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Arcs of equal length, at most 90 degrees each, which meet in double knots; their parameter is the angle at the knots.
 /// Within an arc about m of half-width h it is m + h tan((angle - m)/2) / tan(h/2) (the rational quadratic of weights 1,
@@ -37,4 +37,4 @@ class Arcs {
   int count_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

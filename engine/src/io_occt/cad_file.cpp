@@ -16,7 +16,7 @@
 
 #include <algorithm>
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 using opencascade::handle;
@@ -85,4 +85,4 @@ CadFile transferred(const XSControl_Reader& reader) {
   return file;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -9,7 +9,7 @@
 
 #include "tessera/status.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Shapes, and what the file calls them. The maps' keys are the shapes' own identities (TShape), whatever their places.
 struct CadFile {
@@ -36,4 +36,4 @@ CadFile transferred(const XSControl_Reader& reader);
 /// The identity under which maps keep a shape; null for a null shape.
 inline const void* identity(const TopoDS_Shape& shape) { return shape.IsNull() ? nullptr : shape.TShape().get(); }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -19,7 +19,7 @@
 
 #include "io/descriptor.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 using Size = std::uint64_t;
@@ -162,4 +162,4 @@ Result<std::string> run_in_child(FunctionRef<std::string()> work, const ChildLim
   return end_of(status, limits, worker);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

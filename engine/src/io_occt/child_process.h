@@ -8,7 +8,7 @@
 #include "base/function_ref.h"
 #include "tessera/status.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 struct ChildLimits {
   std::size_t memory_bytes = 0;  ///< beyond what this process has
@@ -20,4 +20,4 @@ struct ChildLimits {
 /// killed; or there can be no child), out_of_memory.
 Result<std::string> run_in_child(FunctionRef<std::string()> work, const ChildLimits& limits, std::string_view worker);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -17,7 +17,7 @@
 
 #include "io_occt/trim_curve.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 using opencascade::handle;
@@ -189,4 +189,4 @@ Result<std::vector<TrimLoop>> face_loops(const TopoDS_Face& given, const FaceBox
   return loops;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -9,7 +9,7 @@
 #include "tessera/model.h"
 #include "tessera/status.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// OpenCASCADE's parameters that a face uses, and what its tolerance is in them.
 struct FaceBox {
@@ -25,4 +25,4 @@ Result<FaceBox> face_box(const TopoDS_Face& face);
 Result<std::vector<TrimLoop>> face_loops(const TopoDS_Face& face, const FaceBox& box,
                                          const Reparametrization& parameters);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -20,7 +20,7 @@
 
 #include "io_occt/spline_line.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 using opencascade::handle;
@@ -224,4 +224,4 @@ Result<FaceSurface> face_surface(const handle<Geom_Surface>& given, const Domain
   }
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -7,11 +7,11 @@
 #include <string_view>
 
 #include "io_occt/arcs.h"
-#include "tessera/nurbs_surface.h"
 #include "tessera/geometry.h"
+#include "tessera/nurbs_surface.h"
 #include "tessera/status.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// From OpenCASCADE's parameters of a surface to ours.
 struct Reparametrization {
@@ -33,4 +33,4 @@ struct FaceSurface {
 /// of BSplineSurface, unsupported. May throw Standard_Failure.
 Result<FaceSurface> face_surface(const opencascade::handle<Geom_Surface>& surface, const Domain& box);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -17,7 +17,7 @@
 #include "io_occt/iges_sections.h"
 #include "io_occt/iges_weights.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 using opencascade::handle;
@@ -72,4 +72,4 @@ Result<CadFile> load_iges(const std::string& path) {
   return file;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -8,7 +8,7 @@
 
 #include "base/text.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// What parts parameters and ends records: the first two parameters of section G, as "1H,,1H;,", or empty for these.
@@ -88,4 +88,4 @@ Status check_iges_weights(const std::string& path) {
   return {};
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -5,11 +5,11 @@
 
 #include "tessera/status.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// That those of entities of type 128 are positive. OpenCASCADE silently leaves out all weights of a surface of which one
 /// is not, and reads another surface. What is no number is left to it. Errors: invalid_weight (names the entity and the
 /// weight).
 Status check_iges_weights(const std::string& path);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -10,7 +10,7 @@
 
 #include "io/file.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr std::string_view mark = "\xEF\xBB\xBF";
@@ -40,4 +40,4 @@ Result<MarklessFile> MarklessFile::make(const std::string& path) {
   return result;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

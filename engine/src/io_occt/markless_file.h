@@ -6,7 +6,7 @@
 #include "io/descriptor.h"
 #include "tessera/status.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// A file without the byte order mark that an editor has put before it: OpenCASCADE would take it for a part of the text,
 /// and in IGES it moves the columns of the first line. As long as it lives, path() can be opened.
@@ -22,4 +22,4 @@ class MarklessFile {
   Descriptor copy_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -5,7 +5,7 @@
 #include <span>
 #include <type_traits>
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 class Writer {
@@ -201,4 +201,4 @@ Result<Model> model_from_bytes(std::string_view bytes) {
   return Status(StatusCode::internal, "the result was damaged on its way");
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

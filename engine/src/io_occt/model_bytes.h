@@ -7,11 +7,11 @@
 #include "tessera/model.h"
 #include "tessera/status.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Of surfaces that are B-splines. Anything else becomes an error of kind internal.
 std::string to_bytes(const Result<Model>& model);
 /// The model again, bit for bit. Errors: the one that was written; internal (these are not bytes of to_bytes).
 Result<Model> model_from_bytes(std::string_view bytes);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

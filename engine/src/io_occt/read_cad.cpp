@@ -17,7 +17,7 @@
 #include "io_occt/shape_model.h"
 #include "tessera/io_occt.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 namespace fs = std::filesystem;
@@ -106,4 +106,4 @@ Result<Model> read_cad(const fs::path& path) {
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

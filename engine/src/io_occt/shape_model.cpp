@@ -15,7 +15,7 @@
 #include "io_occt/face_loops.h"
 #include "io_occt/face_surface.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 using opencascade::handle;
@@ -167,4 +167,4 @@ Result<Model> model_of(const CadFile& file, const std::string& path) {
   return faces.finish();
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

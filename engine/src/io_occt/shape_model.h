@@ -7,10 +7,10 @@
 #include "tessera/model.h"
 #include "tessera/status.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// What tessera/io_occt.h says, face after face in the order of the shape. Messages begin with `path`. Errors: parse_error
 /// and those of the first face, if none is left.
 Result<Model> model_of(const CadFile& file, const std::string& path);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

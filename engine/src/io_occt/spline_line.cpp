@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 using opencascade::handle;
@@ -153,4 +153,4 @@ Result<SplineLine> spline_line(const handle<Geom_Curve>& given, const Interval& 
   }
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -9,10 +9,10 @@
 
 #include "io_occt/arcs.h"
 #include "tessera/curve.h"
-#include "tessera/status.h"
 #include "tessera/geometry.h"
+#include "tessera/status.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 inline Vec3 vec3(const gp_XYZ& p) { return {p.X(), p.Y(), p.Z()}; }
 
@@ -55,4 +55,4 @@ SplineLine ellipse_arcs(const Vec3& centre, const Vec3& x, const Vec3& y, const 
 /// Standard_Failure.
 Result<SplineLine> spline_line(const opencascade::handle<Geom_Curve>& curve, const Interval& range);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

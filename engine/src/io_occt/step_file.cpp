@@ -14,7 +14,7 @@
 
 #include "io_occt/cad_file.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 using opencascade::handle;
@@ -62,4 +62,4 @@ Result<CadFile> load_step(const std::string& path) {
   return file;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

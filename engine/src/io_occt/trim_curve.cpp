@@ -9,7 +9,7 @@
 #include <cmath>
 #include <vector>
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 using opencascade::handle;
@@ -125,4 +125,4 @@ Result<Curve> trim_curve(const handle<Geom2d_Curve>& curve, const Interval& rang
   return refitted(*spline, parameters, tolerance);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

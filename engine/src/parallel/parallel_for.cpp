@@ -7,7 +7,7 @@
 #include "base/guard.h"
 #include "parallel/tbb_loop.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// Counts pieces and tells the caller, one call at a time and about a hundred times in all.
@@ -59,4 +59,4 @@ Status parallel_for(std::size_t count, std::size_t grain, const Execution& execu
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

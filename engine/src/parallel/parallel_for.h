@@ -3,17 +3,17 @@
 
 #include <cstddef>
 
-#include "base/for_wings.h"
 #include "base/function_ref.h"
+#include "base/internal_export.h"
 #include "tessera/execution.h"
 #include "tessera/status.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Calls body(begin, end) for pieces of at most `grain` that together cover [0, count) once, in the caller's arena; serially
 /// and in order where one piece holds all. Sets execution.report->tasks. Errors: cancelled; and what the body throws, as a Status.
 /// The pieces are the same for any number of threads.
-TESSERA_FOR_WINGS Status parallel_for(std::size_t count, std::size_t grain, const Execution& execution,
-                                      FunctionRef<void(std::size_t, std::size_t)> body);
+TESSERA_INTERNAL_EXPORT Status parallel_for(std::size_t count, std::size_t grain, const Execution& execution,
+                                            FunctionRef<void(std::size_t, std::size_t)> body);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -7,7 +7,7 @@
 #include <sanitizer/tsan_interface.h>
 #endif
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// What oneTBB promises, said to the thread sanitizer: the call happens before its pieces, and these before its return.
@@ -43,4 +43,4 @@ void tbb_loop(std::size_t pieces, FunctionRef<void(std::size_t)> body) {
   order.call_ends();
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -6,9 +6,9 @@
 
 #include "base/function_ref.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Calls body(piece) once for each piece in [0, pieces), in the caller's arena, in any order. What the body throws comes through.
 void tbb_loop(std::size_t pieces, FunctionRef<void(std::size_t)> body);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

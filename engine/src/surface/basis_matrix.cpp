@@ -11,7 +11,7 @@
 // A basis is held three times: M itself, C = M_B^{-1} M, and C^{-1}. Each named basis has closed forms of all three,
 // with entries that are whole numbers or right to the last bit; only matrices of the user's are inverted.
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 using Entries = std::vector<double>;
@@ -215,4 +215,4 @@ Result<BasisMatrix> BasisMatrix::custom(int degree, std::span<const double> entr
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -10,7 +10,7 @@
 #include "surface/validate.h"
 #include "tessera/coons_patch.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr double largest_coefficient = 1e6;  // larger ones hide the conditions in their own rounding
@@ -192,4 +192,4 @@ Result<std::array<double, 2>> Blend::values_at(double t) const {
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

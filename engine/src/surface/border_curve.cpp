@@ -8,7 +8,7 @@
 #include "base/text.h"
 #include "surface/spline_lines.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -110,4 +110,4 @@ Result<CurveJet> evaluate_jet(const BorderCurve& border, double t) {
   return evaluate_jet(std::get<ParametricCurve>(border), t);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -3,7 +3,7 @@
 
 #include "tessera/parametric_surface.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// What messages call borders, in the order of CoonsBorders, and curves of ruled surfaces.
 inline constexpr const char* coons_border_names[] = {"border C1", "border C2", "border D1", "border D2"};
@@ -27,4 +27,4 @@ Result<CurveJet> evaluate_jet(const BorderCurve& border, double t, const char* n
 /// Both on the same interval. Errors: invalid_argument (names both).
 Status check_same_interval(const BorderCurve& a, const char* name_a, const BorderCurve& b, const char* name_b);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

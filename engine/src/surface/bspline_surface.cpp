@@ -8,7 +8,7 @@
 #include "surface/spline_window.h"
 #include "surface/validate.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 Status check_count(std::size_t count_u, std::size_t count_v, std::size_t count, const char* what) {
@@ -116,4 +116,4 @@ SurfaceJet evaluate_jet(const BSplineSurface& surface, double u, double v) {
           frame.vector(jet.duu),        frame.vector(jet.duv), frame.vector(jet.dvv)};
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

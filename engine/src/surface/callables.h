@@ -10,7 +10,7 @@
 
 #include "tessera/status.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// What `function` returns. What it throws becomes a Status: out_of_memory, else invalid_argument, with a message that
 /// begins with place(): "the curve at t = 0.5".
@@ -38,4 +38,4 @@ double bound_of(Function&& function) {
   return std::numeric_limits<double>::infinity();
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -9,7 +9,7 @@
 #include "tessera/geometry.h"
 #include "tessera/status.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Finite vectors in rows of `columns`; `what` names one ("geometry element"). Errors: non_finite (index = the vector).
 Status check_vectors(std::span<const Vec3> vectors, std::size_t columns, const std::string& what);
@@ -30,4 +30,4 @@ std::string text_at(double u, double v);
 Status check_finite(const Vec3& position, double u, double v);
 Status check_finite(const SurfaceJet& jet, double u, double v);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -10,7 +10,7 @@
 #include "surface/border_curve.h"
 #include "surface/checks.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 std::array<const BorderCurve*, 4> all_of(const CoonsBorders& b) { return {&b.c1, &b.c2, &b.d1, &b.d2}; }
@@ -159,4 +159,4 @@ Result<Vec3> position(const CoonsPatch& patch, double u, double v) {
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -8,7 +8,7 @@
 #include "surface/spline_window.h"
 #include "surface/validate.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr auto place = [](std::size_t k) { return "[" + std::to_string(k) + "]"; };
@@ -116,4 +116,4 @@ Vec3 position(const Curve& curve, double t) {
   return acting.frame.position(curve.is_rational() ? a.project() : a.vector());
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

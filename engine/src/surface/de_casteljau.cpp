@@ -6,15 +6,15 @@
 
 // Farin, Curves and Surfaces for CAGD, 5th ed., sec. 4.2 (curves), 13.3 (rational), 14.1 (bilinear), 14.3 (curve-wise).
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr std::size_t most_points = max_degree + 1;
+constexpr std::size_t max_points = max_degree + 1;
 
 template <class Point>
-using CurveNet = std::array<Point, most_points>;
+using CurveNet = std::array<Point, max_points>;
 template <class Point>
-using SurfaceNet = std::array<Point, most_points * most_points>;
+using SurfaceNet = std::array<Point, max_points * max_points>;
 
 /// A point of the curve of the first degree + 1 points, which are used up.
 template <class Point>
@@ -100,4 +100,4 @@ Vec3 de_casteljau_rational(const BezierPatch& patch, double u, double v) {
   return rational_curve_point(patch.degree_v(), across, v).point;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -7,7 +7,7 @@
 #include "basis/bernstein.h"
 #include "surface/homogeneous.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// B_{i,n-k}(t) for k = 0, 1, 2: what the derivatives of order k are summed with.
 struct LoweredBernstein {
@@ -67,4 +67,4 @@ double derivative_magnitude(const HomogeneousNet& net, const LoweredBernstein& u
   return falling_factorial<A>(u.degree) * falling_factorial<B>(v.degree) * sum;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

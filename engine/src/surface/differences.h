@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Seven parameters around t that stay within an interval, and the weights of the values there in the first and second
 /// derivative at t: those of the sextic through them (Fornberg, Generation of finite difference formulas on arbitrarily
@@ -53,4 +53,4 @@ struct DifferenceStencil {
   }
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -7,7 +7,7 @@
 #include "base/guard.h"
 #include "basis/double_double.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 Status check_degree(const char* direction, int degree) {
@@ -76,4 +76,4 @@ SurfaceJet evaluate_jet(const ExplicitPolynomial& surface, double u, double v) {
   return {{u, v, z(0, 0)}, {1, 0, z(1, 0)}, {0, 1, z(0, 1)}, {0, 0, 2 * z(2, 0)}, {0, 0, z(1, 1)}, {0, 0, 2 * z(0, 2)}};
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

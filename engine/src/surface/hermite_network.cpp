@@ -10,7 +10,7 @@
 #include "surface/hermite_nodes.h"
 #include "surface/validate.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// One positive factor a span, the first 1.
@@ -160,4 +160,4 @@ SurfaceJet evaluate_jet(const HermiteNetwork& network, double u, double v) {
   return {jet.position, a * jet.du, b * jet.dv, (a * a) * jet.duu, (a * b) * jet.duv, (b * b) * jet.dvv};
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -4,7 +4,7 @@
 #include "surface/checks.h"
 #include "tessera/hermite_patch.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// At least two nodes each way, as many as the grid has, all four vectors of each finite.
 Status check_nodes(std::size_t count_u, std::size_t count_v, std::span<const HermiteNode> nodes);
@@ -14,4 +14,4 @@ HermitePatch::Grid geometry_of(const HermitePatch::Corners& corners);
 /// The patch with this geometry over [0,1]^2.
 SurfaceJet hermite_jet(const HermitePatch::Grid& geometry, double s, double t);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -10,7 +10,7 @@
 #include "surface/checks.h"
 #include "surface/hermite_nodes.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 using Grid = HermitePatch::Grid;
@@ -261,4 +261,4 @@ SurfaceJet evaluate_jet(const HermitePatch& patch, double u, double v) {
   return {jet.position, a * jet.du, b * jet.dv, (a * a) * jet.duu, (a * b) * jet.duv, (b * b) * jet.dvv};
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

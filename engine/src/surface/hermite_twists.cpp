@@ -4,7 +4,7 @@
 #include "base/guard.h"
 #include "surface/hermite_nodes.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// The nodes with their knots.
@@ -82,4 +82,4 @@ Result<std::vector<HermiteNode>> estimate_twists(TwistEstimate estimate, std::sp
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

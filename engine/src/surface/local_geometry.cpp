@@ -6,7 +6,7 @@
 // do Carmo, Differential Geometry of Curves and Surfaces, sec. 3.3. With r_u = a e1 and r_v = b e1 + c e2 in an
 // orthonormal basis e1, e2 of the tangent plane, the second form in it is S = J^-T II J^-1, J = [[a, b], [0, c]].
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// r_u = a e1, r_v = b e1 + c e2.
@@ -15,10 +15,10 @@ struct TangentBasis {
   double a = 0, b = 0, c = 0;
 };
 
-bool tangent_basis(const SurfaceJet& jet, double smallest_sine, TangentBasis& basis) {
+bool tangent_basis(const SurfaceJet& jet, double min_sine, TangentBasis& basis) {
   const Vec3 u = normalized(jet.du), v = normalized(jet.dv);
   const Vec3 across = cross(u, v);
-  if (!(length(across) > smallest_sine)) return false;
+  if (!(length(across) > min_sine)) return false;
   basis.normal = normalized(across);
   basis.e1 = u;
   basis.e2 = normalized(cross(basis.normal, u));
@@ -62,7 +62,7 @@ LocalGeometry local_geometry(const SurfaceJet& jet, const LocalGeometryOptions& 
   for (const Vec3& d : {jet.du, jet.dv, jet.duu, jet.duv, jet.dvv})
     if (!is_finite(d)) return {};
   TangentBasis basis;
-  if (!tangent_basis(jet, options.smallest_sine, basis)) return {};
+  if (!tangent_basis(jet, options.min_sine, basis)) return {};
   LocalGeometry result;
   result.normal = {basis.normal, NormalKind::regular};
   result.defined = true;
@@ -88,4 +88,4 @@ LocalGeometry local_geometry(const BezierPatch& patch, double u, double v, const
   return result;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -9,7 +9,7 @@
 // With r = A / w: w^2 r_u = A_u w - A w_u, and w^2 r_uv = A_uv w - A w_uv up to multiples of r_u and r_v, which don't
 // change det(r_u, r_v, r_uv). So numerators are polynomials, and hulls of their Bernstein coefficients bound them.
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 using Scalars = BernsteinNet<double>;
@@ -47,8 +47,8 @@ double largest(const Scalars& net) {
 void add_bounds(const BezierPatch& patch, double tolerance, NetReport& report) {
   const HomogeneousNet net(patch, patch.point(0, 0));
   const Numerators n = numerators(patch, net);
-  double least_weight = 1;
-  for (std::size_t k = 0; k < net.size(); ++k) least_weight = std::min(least_weight, net.points[k].w);
+  double min_weight = 1;
+  for (std::size_t k = 0; k < net.size(); ++k) min_weight = std::min(min_weight, net.points[k].w);
   const auto inner = [](const Vec3& x, const Vec3& y) { return dot(x, y); };
   const auto outer = [](const Vec3& x, const Vec3& y) { return cross(x, y); };
   const double dots = largest(product(n.u, n.v, inner));
@@ -57,8 +57,8 @@ void add_bounds(const BezierPatch& patch, double tolerance, NetReport& report) {
   report.orthogonal = dots <= tolerance * size_u * size_v;
   // A translation surface has r_uv = 0 but for rounding, which is relative to r_u and r_v.
   report.conjugate = volumes <= tolerance * size_u * size_v * std::max({size_uv, size_u, size_v});
-  report.dot_bound = dots / std::pow(least_weight, 4) * net.scale * net.scale;
-  report.volume_bound = volumes / std::pow(least_weight, 6) * net.scale * net.scale * net.scale;
+  report.dot_bound = dots / std::pow(min_weight, 4) * net.scale * net.scale;
+  report.volume_bound = volumes / std::pow(min_weight, 6) * net.scale * net.scale * net.scale;
 }
 
 void add_sample(const BezierPatch& patch, double u, double v, NetReport& report) {
@@ -89,4 +89,4 @@ Result<NetReport> measure_net(const BezierPatch& patch, const NetOptions& option
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

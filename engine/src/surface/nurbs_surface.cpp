@@ -6,7 +6,7 @@
 #include "base/guard.h"
 #include "base/text.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 struct Frame {
@@ -164,4 +164,4 @@ Result<BSplineSurface> nurbs_cone(const Axis& axis, double bottom, double top, d
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

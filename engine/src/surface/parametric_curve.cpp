@@ -9,7 +9,7 @@
 #include "surface/checks.h"
 #include "surface/differences.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 auto place_at(double t) {
@@ -80,4 +80,4 @@ Result<CurveJet> evaluate_jet(const ParametricCurve& curve, double t) {
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

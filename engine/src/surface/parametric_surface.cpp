@@ -10,7 +10,7 @@
 #include "surface/checks.h"
 #include "surface/differences.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 auto place_at(double u, double v) {
@@ -126,4 +126,4 @@ Result<SurfaceJet> evaluate_jet(const ParametricSurface& surface, double u, doub
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

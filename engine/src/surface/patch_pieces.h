@@ -8,7 +8,7 @@
 
 #include "tessera/bezier_patch.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Filled patch by patch, from any number of threads, then taken. What is written must be what BezierPatch::polynomial
 /// and rational accept; weights are kept even where those of a patch are all equal, for rationality is the surface's own.
@@ -80,4 +80,4 @@ class PatchPieces {
   double* weights_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -7,7 +7,7 @@
 
 #include "tessera/bezier_patch.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Where the patches of a file keep their points. Memory lives as long as a patch that has points in it.
 class PatchPool {
@@ -46,4 +46,4 @@ class PatchPool {
   std::size_t size_ = 0, used_ = 0;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -5,7 +5,7 @@
 #include "base/text.h"
 #include "tessera/parametric_surface.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr double full_turn = 2 * std::numbers::pi;
@@ -62,4 +62,4 @@ SurfaceJet PolarMap::chain_rule(const SurfaceJet& p, double rho, double theta) c
   return jet;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -13,7 +13,7 @@
 // Principal axes: the quadratic part by its eigenvectors, then squares completed along those whose eigenvalue is not 0
 // (any text on analytic geometry; Farin and Hansford, Practical Linear Algebra, on quadratic forms).
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// One principal axis: square lambda x^2 and linear term 2 slope x along it.
@@ -56,15 +56,15 @@ PrincipalForm principal_form(const QuadricCoefficients& q, const QuadricOptions&
                                                         : 1;
   const double unit = options.length > 0 ? options.length : own_length;
   const double total = form.largest = std::max({size * unit * unit, slope * unit, constant});
-  const double least_square = size * unit * unit > options.tolerance * total || options.length == 0
-                                  ? options.tolerance * size
-                                  : std::numeric_limits<double>::infinity();
+  const double min_square = size * unit * unit > options.tolerance * total || options.length == 0
+                                ? options.tolerance * size
+                                : std::numeric_limits<double>::infinity();
   double terms = std::max(constant, options.length > 0 ? total : 0);
   form.constant = q.k;
   for (std::size_t i = 0; i < 3; ++i) {
     PrincipalAxis& axis = form.axes[i];
     axis = {eigen.vectors[i], eigen.values[i], dot(linear, eigen.vectors[i]), false};
-    axis.null = !(std::abs(axis.lambda) > least_square);
+    axis.null = !(std::abs(axis.lambda) > min_square);
     if (axis.null) {
       form.null_slope += axis.slope * axis.direction;
       continue;
@@ -257,4 +257,4 @@ Result<Quadric> Quadric::make(const QuadricCoefficients& q, const QuadricOptions
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -7,7 +7,7 @@
 #include "surface/quadric_profile.h"
 #include "tessera/quadric.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -169,4 +169,4 @@ QuadricParameters grid_parameters(const QuadricPiece& piece, double u, double v)
   return {in_grid(profile.u, r.u0, r.u1, u), in_grid(profile.v, r.v0, r.v1, v), piece.sheet()};
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr double quarter_turn = std::numbers::pi / 2;
@@ -137,4 +137,4 @@ double profile_fraction(Profile profile, double from, double to, double t) {
   return (t - from) / (to - from);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -6,7 +6,7 @@
 
 #include "tessera/quadric.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// How a canonical parameter t runs: the two functions of it that the parametrisation is made of.
 enum class Profile : std::uint8_t {
@@ -48,4 +48,4 @@ bool is_full_turn(double from, double to);
 double profile_parameter(Profile profile, double from, double to, double s);
 double profile_fraction(Profile profile, double from, double to, double t);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -4,7 +4,7 @@
 #include "surface/border_curve.h"
 #include "surface/checks.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// A point's parameter along the curves, and the shares of the two.
@@ -79,4 +79,4 @@ Result<Vec3> position(const RuledSurface& surface, double u, double v) {
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -2,10 +2,10 @@
 // The directions of curves and surfaces as knot lines.
 
 #include "basis/knots.h"
-#include "tessera/nurbs_surface.h"
 #include "tessera/curve.h"
+#include "tessera/nurbs_surface.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 inline KnotLine line_of(const Curve& curve) {
   return {curve.degree(), curve.knots(), curve.domain().from, curve.domain().to};
@@ -17,4 +17,4 @@ inline KnotLine line_v(const BSplineSurface& surface) {
   return {surface.degree_v(), surface.knots_v(), surface.domain().v0, surface.domain().v1};
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

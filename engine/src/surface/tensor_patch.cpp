@@ -7,7 +7,7 @@
 #include "basis/bernstein.h"
 #include "surface/checks.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 using Real = long double;
@@ -71,4 +71,4 @@ SurfaceJet evaluate_jet(const TensorPatch& patch, double u, double v) {
           blended(patch, f, g, 2, 0, a * a), blended(patch, f, g, 1, 1, a * b), blended(patch, f, g, 0, 2, b * b)};
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

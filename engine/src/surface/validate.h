@@ -5,10 +5,10 @@
 #include <string>
 
 #include "base/function_ref.h"
-#include "tessera/status.h"
 #include "tessera/geometry.h"
+#include "tessera/status.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// How messages name element k of a list: "[i][j]".
 using Place = FunctionRef<std::string(std::size_t k)>;
@@ -24,4 +24,4 @@ Status check_weights(std::span<const double> weights, Place place);
 /// All equal by ==: the surface is polynomial.
 bool all_equal(std::span<const double> weights);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

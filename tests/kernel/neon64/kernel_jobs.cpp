@@ -170,7 +170,7 @@ void run_grid(const KernelTable& table, const Net& net, int order, bool streamin
   job.u_edges = by_lane ? u_lane_edges.data() : u_edges;
   job.v_edges = by_lane ? v_lane_edges.data() : v_edges;
   job.exact_normal = exact_normal<T>;
-  job.smallest_sine = T(1e-6);
+  job.min_sine = T(1e-6);
   job.umbilic_tolerance = T(1e-4);
   job.offset[0] = T(0.1), job.offset[1] = T(-7.3), job.offset[2] = T(1e5);
 

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #pragma GCC visibility push(default)
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// All real numbers from lower() to upper(), or, where an operation is not defined or not bounded for all of them (the
 /// reciprocal of an interval with 0, the root of one with negative numbers), "no bound": both ends NaN, and so is all
@@ -175,5 +175,5 @@ class IntervalNumber {
   double lower_, upper_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

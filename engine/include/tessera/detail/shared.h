@@ -6,7 +6,7 @@
 #include <utility>
 
 #pragma GCC visibility push(default)
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// A constant T that copies share. The default, which is T{}, takes no memory of its own. Stands for T where one is
 /// wanted; members by -> and *.
@@ -49,5 +49,5 @@ class Shared {
   std::shared_ptr<const T> value_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

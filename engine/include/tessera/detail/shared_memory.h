@@ -7,7 +7,7 @@
 #include <utility>
 
 #pragma GCC visibility push(default)
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// A handle on memory that is freed with the last of its handles. Unlike those of std::shared_ptr, handles can be made
 /// and given up many at once by one change of their count: the pieces of one surface are ten thousands, and an atomic
@@ -101,5 +101,5 @@ class SharedMemory {
   };
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

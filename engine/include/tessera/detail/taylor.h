@@ -10,7 +10,7 @@
 #include "tessera/detail/interval_number.h"
 
 #pragma GCC visibility push(default)
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// sum c_ij (u - u0)^i (v - v0)^j, i + j <= Order, of a function of one or two Variables, c_ij being its derivative of
 /// order (i,j) at (u0,v0) over i! j!. What is computed of series are the series of what is computed (Griewank and
@@ -290,5 +290,5 @@ class Taylor {
   std::array<Scalar, size> c_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

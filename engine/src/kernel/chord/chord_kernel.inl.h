@@ -22,17 +22,17 @@ template <class L, int Rows, int Columns>
 [[gnu::always_inline]] inline void largest_in_quarters(const typename L::Batch* net, int rows, int columns,
                                                        typename L::Batch (&quarter)[4]) {
   using Batch = typename L::Batch;
-  constexpr int most_rows = Rows > 0 ? 2 * Rows - 1 : 2 * max_order,
-                most_columns = Columns > 0 ? 2 * Columns - 1 : 2 * max_order;
+  constexpr int max_rows = Rows > 0 ? 2 * Rows - 1 : 2 * max_order,
+                max_columns = Columns > 0 ? 2 * Columns - 1 : 2 * max_order;
   if (Rows > 0) rows = Rows, columns = Columns;
-  Batch squared[most_rows][most_columns];
+  Batch squared[max_rows][max_columns];
   const int cut_rows = 2 * rows - 1, cut_columns = 2 * columns - 1;
   for (int c = 0; c < 3; ++c) {
-    Batch by_row[most_rows * (Columns > 0 ? Columns : max_order)];
+    Batch by_row[max_rows * (Columns > 0 ? Columns : max_order)];
     const Batch* component = net + c * rows * columns;
     for (int j = 0; j < columns; ++j) cut_curve<L>(component + j, columns, rows, by_row + j, columns);
     for (int i = 0; i < cut_rows; ++i) {
-      Batch cut[most_columns];
+      Batch cut[max_columns];
       cut_curve<L>(by_row + i * columns, 1, columns, cut, 1);
       for (int j = 0; j < cut_columns; ++j) squared[i][j] = c == 0 ? cut[j] * cut[j] : squared[i][j] + cut[j] * cut[j];
     }

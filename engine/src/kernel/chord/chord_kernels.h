@@ -6,7 +6,7 @@
 
 #include "kernel/isa/block_lanes.h"
 
-namespace tessera::kernel {
+namespace tessera::inline abi_0_1::kernel {
 
 /// Bounds on the second derivatives of a block of polynomial patches, over the whole patch, its halves and quarters: see
 /// ChordBound. They include the rounding of the packed coefficients.
@@ -31,10 +31,10 @@ inline constexpr double likely_gain = 0.4, certain_gain = 0.1;
 
 /// Rational patches up to this degree have their bounds in blocks, in float. `net` then has four components; `unit` is above
 /// the coefficients as well, and `size` is negative where rounding is too much of a bound, or weights are too uneven.
-inline constexpr int most_rational_degree = 7;
+inline constexpr int max_rational_degree = 7;
 
 /// Bounds on the second derivatives of rational patches themselves: of scaled sweeps, and by exact numerators of patches up to
-/// most_exact_degree: see ChordBound.
+/// max_exact_degree: see ChordBound.
 struct ExactChordJob {
   /// `[i][j][x, y, z, w][lane]`: w times the point relative to a place near the patch, and w, above 0 and near 1 at most.
   const double* net = nullptr;
@@ -45,9 +45,9 @@ struct ExactChordJob {
   /// Or null.
   double* pieces = nullptr;
 };
-inline constexpr int most_exact_degree = 3;
+inline constexpr int max_exact_degree = 3;
 
-/// Bounds on products of the second derivatives of such a block: see SecondDerivatives. Of degrees up to most_product_degree.
+/// Bounds on products of the second derivatives of such a block: see SecondDerivatives. Of degrees up to max_product_degree.
 struct ChordProductJob {
   const float* net = nullptr;
   int degree_u = 0, degree_v = 0;
@@ -56,13 +56,13 @@ struct ChordProductJob {
   float* products = nullptr;  ///< `[piece of 9][uu_vv, uu_uv, uv_vv][lane]`, in units of unit^2
   float* share = nullptr;  ///< `[lane]`: about what is left of the chord's bound by them, above 1 if nothing is saved
 };
-inline constexpr int most_product_degree = 5;
+inline constexpr int max_product_degree = 5;
 
 /// The rates with the fewest cells that keep a distance, for the patches of a block.
 struct RateJob {
   const float* pieces = nullptr;    ///< as above
   const float* distance = nullptr;  ///< `[lane]`, in the patch's unit
-  int most_rate = 0;
+  int max_rate = 0;
   std::int32_t* rate_u = nullptr;  ///< `[lane]`: 0 where the search failed, which does not prove that there are none
   std::int32_t* rate_v = nullptr;
   float* chord = nullptr;           ///< `[lane]`: the bound that the rates keep, in the patch's unit
@@ -100,4 +100,4 @@ struct ChordKernels {
   void (*find_rates)(const RateJob&);
 };
 
-}  // namespace tessera::kernel
+}  // namespace tessera::inline abi_0_1::kernel

@@ -14,7 +14,7 @@ class CutNet {
     if (count() == 0) return;
     const int height = cut_u ? 2 * rows_ - 1 : rows_;
     for (int c = 0; c < 3; ++c) {
-      Batch by_row[most_rows * (Columns > 0 ? Columns : order)];
+      Batch by_row[max_rows * (Columns > 0 ? Columns : order)];
       const Batch* component = net + c * rows_ * columns_;
       for (int j = 0; cut_u && j < columns_; ++j) cut_curve<L>(component + j, columns_, rows_, by_row + j, columns_);
       const Batch* row = cut_u ? by_row : component;
@@ -29,22 +29,22 @@ class CutNet {
     }
   }
 
-  static constexpr int order = most_product_degree + 1, most_count = Rows > 0 ? Rows *Columns : order *order;
+  static constexpr int order = max_product_degree + 1, max_count = Rows > 0 ? Rows *Columns : order *order;
 
   int count() const { return Rows > 0 ? Rows * Columns : rows_ * columns_; }
-  /// The vectors of a half or quarter, `[component][most_count]`.
+  /// The vectors of a half or quarter, `[component][max_count]`.
   void copy(int half_u, int half_v, Batch* to) const {
     for (int c = 0; c < 3; ++c)
       for (int i = 0, k = 0; i < rows_; ++i)
         for (int j = 0; j < columns_; ++j, ++k)
-          to[c * most_count + k] = at_[c][(half_u * (rows_ - 1) + i) * width_ + half_v * (columns_ - 1) + j];
+          to[c * max_count + k] = at_[c][(half_u * (rows_ - 1) + i) * width_ + half_v * (columns_ - 1) + j];
   }
 
  private:
-  static constexpr int most_rows = Rows > 0 ? 2 * Rows - 1 : 2 * order - 1,
-                       most_columns = Columns > 0 ? 2 * Columns - 1 : 2 * order - 1;
+  static constexpr int max_rows = Rows > 0 ? 2 * Rows - 1 : 2 * order - 1,
+                       max_columns = Columns > 0 ? 2 * Columns - 1 : 2 * order - 1;
   const int rows_, columns_, width_;
-  Batch at_[3][most_rows * most_columns];
+  Batch at_[3][max_rows * max_columns];
 };
 
 /// The largest product of a vector of one net and one of another, or the largest size of such a product. Strides A and B
@@ -119,7 +119,7 @@ class ChordProducts {
 
  private:
   using Batch = typename L::Batch;
-  static constexpr int order = Degree > 0 ? Degree + 1 : most_product_degree + 1;
+  static constexpr int order = Degree > 0 ? Degree + 1 : max_product_degree + 1;
   static constexpr int inner = Degree > 0 ? Degree - 1 : 0, some = Degree > 0 ? Degree : 0,
                        all = Degree > 0 ? Degree + 1 : 0;
 
@@ -133,16 +133,16 @@ class ChordProducts {
   /// Those of a half or quarter.
   struct Vectors {
     int counts[3];
-    Batch uu[3 * Uu::most_count], uv[3 * Uv::most_count], vv[3 * Vv::most_count];
+    Batch uu[3 * Uu::max_count], uv[3 * Uv::max_count], vv[3 * Vv::max_count];
 
     template <class Where>
     void take(const Vectors& other, const Where& where) {
-      for (int k = 0; k < 3 * Uu::most_count; ++k) uu[k] = xsimd::select(where, other.uu[k], uu[k]);
-      for (int k = 0; k < 3 * Uv::most_count; ++k) uv[k] = xsimd::select(where, other.uv[k], uv[k]);
-      for (int k = 0; k < 3 * Vv::most_count; ++k) vv[k] = xsimd::select(where, other.vv[k], vv[k]);
+      for (int k = 0; k < 3 * Uu::max_count; ++k) uu[k] = xsimd::select(where, other.uu[k], uu[k]);
+      for (int k = 0; k < 3 * Uv::max_count; ++k) uv[k] = xsimd::select(where, other.uv[k], uv[k]);
+      for (int k = 0; k < 3 * Vv::max_count; ++k) vv[k] = xsimd::select(where, other.vv[k], vv[k]);
     }
     Products products() const {
-      constexpr int a = Uu::most_count, b = Uv::most_count, c = Vv::most_count;
+      constexpr int a = Uu::max_count, b = Uv::max_count, c = Vv::max_count;
       const int of_a = Degree > 0 ? a : counts[0], of_b = Degree > 0 ? b : counts[1], of_c = Degree > 0 ? c : counts[2];
       return {largest_product<L, false, a, c>(uu, of_a, vv, of_c), largest_product<L, true, a, b>(uu, of_a, uv, of_b),
               largest_product<L, true, b, c>(uv, of_b, vv, of_c)};

@@ -39,14 +39,14 @@ class ExactChords {
     L::store(job_.deviation + lane_, deviation);
     if (!job_.pieces) return;
     const auto is_other = !(deviation < infinite);
-    if (job_.any_patch && xsimd::any(is_other) && std::max(m_, n_) <= most_exact_degree) bound_patch(is_other);
+    if (job_.any_patch && xsimd::any(is_other) && std::max(m_, n_) <= max_exact_degree) bound_patch(is_other);
     store_pieces();
   }
 
  private:
   using Batch = typename L::Batch;
   using Net = ScaledNet<L>;
-  static constexpr int most_points = max_order * max_order;
+  static constexpr int max_points = max_order * max_order;
   /// Deviations up to this share of the patch's radius pass for rounding.
   static constexpr double sweep_tolerance = 0x1p-30;
 
@@ -152,7 +152,7 @@ class ExactChords {
     }
   }
 
-  /// Puts bounds of any patch up to most_exact_degree, from the nets of its quarters, in the place of those of `where`.
+  /// Puts bounds of any patch up to max_exact_degree, from the nets of its quarters, in the place of those of `where`.
   template <class Where>
   void bound_patch(const Where& where) {
     for (int quarter = 0; quarter < 4; ++quarter) {
@@ -228,7 +228,7 @@ class ExactChords {
   const ExactChordJob& job_;
   const int lane_, m_, n_;
   Batch lightest_, heaviest_ = L::broadcast(0), largest_ = heaviest_, radius_ = heaviest_;
-  Batch point_[3][most_points], weight_[most_points], part_[4][most_points];
+  Batch point_[3][max_points], weight_[max_points], part_[4][max_points];
   // The sweep: E, rho, and the homogeneous curves of both, cut.
   Batch row_[3][max_order], rho_[max_order], rho_weight_[max_order], rho_point_[max_order];
   Batch curve_[4][max_order], half_[4][2 * max_order], rho_half_[2][2 * max_order], across_half_[3][2 * max_order];

@@ -7,7 +7,7 @@
 template <class L>
 struct ScaledNet {
   using Batch = typename L::Batch;
-  static constexpr int most_order = 3 * most_exact_degree + 1, capacity = most_order * most_order;
+  static constexpr int order_limit = 3 * max_exact_degree + 1, capacity = order_limit * order_limit;
 
   int rows = 0, columns = 0;
   Batch at[capacity];

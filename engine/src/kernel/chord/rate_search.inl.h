@@ -19,7 +19,7 @@ class RateSearch {
     }
     wanted_ = L::broadcast(8) * L::load(job.distance + lane);
     for (Batch& room : room_) room = wanted_;
-    most_ = L::broadcast(static_cast<float>(job.most_rate));
+    most_ = L::broadcast(static_cast<float>(job.max_rate));
   }
 
   void run() {
@@ -146,7 +146,7 @@ class RateSearch {
 
   /// The largest over the pieces that serve the rates.
   template <class Chord>
-  Batch most_of(const Batch& first, const Batch& second, const Chord& chord) const {
+  Batch max_of(const Batch& first, const Batch& second, const Chord& chord) const {
     const Batch half = L::broadcast(static_cast<float>(0.5));
     const auto most = [&](int parity) {
       Batch of_pieces = L::broadcast(0);
@@ -165,7 +165,7 @@ class RateSearch {
     first = xsimd::max(first, one), second = xsimd::max(second, one);
     const Batch h = step_of(first), k = step_of(second);
     const Batch eighth = L::broadcast(static_cast<float>(0.125 * (1 + 0x1p-20)));
-    return eighth * most_of(first, second, [&](int p) { return plain_chord(p, h, k); });
+    return eighth * max_of(first, second, [&](int p) { return plain_chord(p, h, k); });
   }
 
   /// The same by the products, and no more than `plain`, chord_of().
@@ -173,7 +173,7 @@ class RateSearch {
     const Batch one = L::broadcast(1);
     first = xsimd::max(first, one), second = xsimd::max(second, one);
     const Batch h = step_of(first), k = step_of(second);
-    const Batch squared = most_of(first, second, [&](int p) { return squared_chord(p, h, k); });
+    const Batch squared = max_of(first, second, [&](int p) { return squared_chord(p, h, k); });
     // Squares that vanish are below 2^-120 together.
     return xsimd::min(plain, L::broadcast(static_cast<float>(0.125 * (1 + 0x1p-19))) * xsimd::sqrt(squared) + tiny());
   }

@@ -64,13 +64,13 @@ class RationalChords {
     for (int c = 0; c < 4; ++c) Nets::cut(d_[c], shape, true, true, cut_[c]);
     for (int quarter = 0; quarter < 4; ++quarter) {
       const int half_u = quarter / 2, half_v = quarter % 2;
-      const int first = half_u * (shape.rows - 1) * Nets::most_cut + half_v * (shape.columns - 1);
+      const int first = half_u * (shape.rows - 1) * Nets::max_cut + half_v * (shape.columns - 1);
       for (const int k : {0, 1 + half_u, 3 + half_v, 5 + quarter}) {  // the pieces that it is part of
         const Part& part = nets_.parts[k];
         Batch most = L::broadcast(0);
         for (int i = 0; i < shape.rows; ++i)
           for (int j = 0; j < shape.columns; ++j) {
-            const int at = first + i * Nets::most_cut + j;
+            const int at = first + i * Nets::max_cut + j;
             const Batch w = cut_[3][at], x = cut_[0][at] - part.centre[0] * w, y = cut_[1][at] - part.centre[1] * w,
                         z = cut_[2][at] - part.centre[2] * w;
             most = xsimd::max(most, Nets::root(x * x + y * y + z * z) + part.radius * xsimd::abs(w));
@@ -84,7 +84,7 @@ class RationalChords {
   const int lane_;
   Nets nets_;
   Batch sum_ = L::broadcast(0), unsure_ = sum_;  // of the bounds of the whole, and how much of that is rounding
-  Batch d_[4][Nets::capacity * Nets::capacity], cut_[4][Nets::most_cut * Nets::most_cut];
+  Batch d_[4][Nets::capacity * Nets::capacity], cut_[4][Nets::max_cut * Nets::max_cut];
 };
 
 template <class L>

@@ -13,7 +13,7 @@ template <class L>
 class RationalNets {
  public:
   using Batch = typename L::Batch;
-  static constexpr int capacity = most_rational_degree + 1, most_cut = 2 * capacity - 1;
+  static constexpr int capacity = max_rational_degree + 1, max_cut = 2 * capacity - 1;
   static constexpr float half = static_cast<float>(0.5), more = static_cast<float>(1 + 0x1p-20);
 
   /// A piece: its points are within `radius` of `centre`, relative to the patch's.
@@ -120,9 +120,9 @@ class RationalNets {
   }
 
   /// Cuts one component of a net at 1/2 along u, along v, both or neither: halves share a row or column. Rows of `to` are
-  /// most_cut apart.
+  /// max_cut apart.
   [[gnu::noinline]] static void cut(const Batch* net, Shape shape, bool cut_u, bool cut_v, Batch* to) {
-    Batch by_row[most_cut * capacity];
+    Batch by_row[max_cut * capacity];
     const Batch* rows = net;
     if (cut_u) {
       rows = by_row;
@@ -131,8 +131,8 @@ class RationalNets {
     }
     for (int i = 0; i < (cut_u ? 2 * shape.rows - 1 : shape.rows); ++i) {
       const Batch* const row = rows + i * shape.columns;
-      if (cut_v) cut_curve<L>(row, 1, shape.columns, to + i * most_cut, 1);
-      for (int j = 0; !cut_v && j < shape.columns; ++j) to[i * most_cut + j] = row[j];
+      if (cut_v) cut_curve<L>(row, 1, shape.columns, to + i * max_cut, 1);
+      for (int j = 0; !cut_v && j < shape.columns; ++j) to[i * max_cut + j] = row[j];
     }
   }
 
@@ -147,22 +147,22 @@ class RationalNets {
 
  private:
   void find_parts() {
-    Batch cuts[4][most_cut * most_cut];
+    Batch cuts[4][max_cut * max_cut];
     for (int c = 0; c < 4; ++c) cut(net_[c], {m + 1, n + 1}, true, true, cuts[c]);
     for (int i = 0; i <= 2 * m; ++i)
       for (int j = 0; j <= 2 * n; ++j) {
-        const int k = i * most_cut + j;
+        const int k = i * max_cut + j;
         const Batch inverse = L::broadcast(1) / cuts[3][k];
         for (int c = 0; c < 3; ++c) cuts[c][k] = cuts[c][k] * inverse;
       }
     for (int quarter = 0; quarter < 4; ++quarter) {
-      const int first = quarter / 2 * m * most_cut + quarter % 2 * n;
+      const int first = quarter / 2 * m * max_cut + quarter % 2 * n;
       Part& part = parts[5 + quarter];
       part.lightest = cuts[3][first];
       for (int c = 0; c < 3; ++c) part.lower[c] = part.upper[c] = cuts[c][first];
       for (int i = 0; i <= m; ++i)
         for (int j = 0; j <= n; ++j) {
-          const int k = first + i * most_cut + j;
+          const int k = first + i * max_cut + j;
           part.lightest = xsimd::min(part.lightest, cuts[3][k]);
           for (int c = 0; c < 3; ++c) {
             part.lower[c] = xsimd::min(part.lower[c], cuts[c][k]);

@@ -20,7 +20,7 @@ class RationalProducts {
  private:
   using Nets = RationalNets<L>;
   using Batch = typename L::Batch;
-  static constexpr int most = (most_product_degree + 1) * (most_product_degree + 1);
+  static constexpr int most = (max_product_degree + 1) * (max_product_degree + 1);
 
   struct Balls {
     int count;
@@ -48,7 +48,7 @@ class RationalProducts {
     balls.count = 0;
     for (int i = 0; i < shape.rows; ++i)
       for (int j = 0; j < shape.columns; ++j) {
-        const int at = (half_u * (shape.rows - 1) + i) * Nets::most_cut + half_v * (shape.columns - 1) + j;
+        const int at = (half_u * (shape.rows - 1) + i) * Nets::max_cut + half_v * (shape.columns - 1) + j;
         const int k = balls.count++;
         const Batch w = cut_[kind][3][at];
         balls.x[k] = (cut_[kind][0][at] - part.centre[0] * w) * part.inverse;
@@ -87,7 +87,7 @@ class RationalProducts {
   const int lane_;
   Nets nets_;
   typename Nets::Shape shape_[3];
-  Batch d_[3][4][most], cut_[3][4][Nets::most_cut * Nets::most_cut];
+  Batch d_[3][4][most], cut_[3][4][Nets::max_cut * Nets::max_cut];
   Balls balls_[3];
 };
 

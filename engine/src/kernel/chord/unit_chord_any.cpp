@@ -4,7 +4,7 @@
 #include "kernel/chord/any_chord_kernels.h"
 #include "kernel/isa/lanes.h"
 
-namespace tessera::kernel::TESSERA_ISA_NAMESPACE {
+namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
 namespace {
 
 #include "kernel/chord/chord_kernel.inl.h"
@@ -22,4 +22,4 @@ extern const AnyChordKernels any_chord_kernels = {
     bound_products<Lanes<float>, 0>, bound_rational_products<Lanes<float>>, share_of_products<Lanes<float>, 0>,
 };
 
-}  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE
+}  // namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE

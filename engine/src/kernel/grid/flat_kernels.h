@@ -5,7 +5,7 @@
 
 #include "tessera/execution.h"
 
-namespace tessera::kernel {
+namespace tessera::inline abi_0_1::kernel {
 
 /// Numbers of a vector, and the rows of a grid whose row curves lie together in one, three components each.
 inline constexpr int flat_lanes = 16, flat_rows = 4;
@@ -30,4 +30,4 @@ struct FlatKernels {
   Isa (*flat_f32)(const FlatJob&);
 };
 
-}  // namespace tessera::kernel
+}  // namespace tessera::inline abi_0_1::kernel

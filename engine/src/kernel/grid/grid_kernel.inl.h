@@ -164,7 +164,7 @@ template <class L>
 /// Normals of grids, each finished once the next sample's is begun: the chain of operations from r_u x r_v to a unit
 /// normal is long, and so runs beside the next sample's sums.
 template <class L, Wanted Outputs>
-class NormalsBehind {
+class DeferredNormals {
  public:
   using Job = GridJob<typename L::Scalar>;
 
@@ -221,7 +221,7 @@ void evaluate_lanes(const GridJob<typename L::Scalar>& job, int lane) {
 
   const auto* next_net = job.net + std::ptrdiff_t{count_u} * count_v * components * block_lanes;
   RowCurves<L, Order, components, capacity> curves[Groups];
-  NormalsBehind<L, Outputs> normals[Groups];
+  DeferredNormals<L, Outputs> normals[Groups];
   WaitingLines<L, How> waiting;
   for (int iu = job.u_begin; iu < job.u_end; ++iu) {
     if (lane == 0) prefetch_lines(next_net, iu * job.prefetched_lines, job.prefetched_lines);

@@ -7,7 +7,7 @@
 #include "kernel/isa/block_lanes.h"
 #include "tessera/execution.h"
 
-namespace tessera::kernel {
+namespace tessera::inline abi_0_1::kernel {
 
 /// Where a parameter lies: what GridJob::u_edges and v_edges hold.
 inline constexpr std::uint8_t edge_inside = 0, edge_start = 1, edge_end = 2;
@@ -75,7 +75,7 @@ struct GridJob {
   void* exact_context = nullptr;
   /// Where lanes are samples of many patches, `doubt` holds an upper bound of all, and this says what one lane's is.
   LaneDoubt<T> lane_doubt = nullptr;
-  T smallest_sine = 0;      ///< of the tangents' angle, below which curvatures are undefined
+  T min_sine = 0;           ///< of the tangents' angle, below which curvatures are undefined
   T umbilic_tolerance = 0;  ///< (k1 - k2) / (|k1| + |k2|) at or below which a point is umbilic
 };
 
@@ -96,4 +96,4 @@ struct DoubleGridKernels {
   Isa (*grid_f64)(const GridJob<double>&);
 };
 
-}  // namespace tessera::kernel
+}  // namespace tessera::inline abi_0_1::kernel

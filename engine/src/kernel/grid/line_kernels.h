@@ -7,7 +7,7 @@
 #include "kernel/isa/block_lanes.h"
 #include "tessera/execution.h"
 
-namespace tessera::kernel {
+namespace tessera::inline abi_0_1::kernel {
 
 /// Border curves of a block, evaluated so that the direction of the parameter does not change a bit.
 template <class T>
@@ -69,4 +69,4 @@ struct LineKernels {
   Isa (*blend_f64)(const BlendJob<double>&);
 };
 
-}  // namespace tessera::kernel
+}  // namespace tessera::inline abi_0_1::kernel

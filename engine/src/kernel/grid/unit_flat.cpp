@@ -5,7 +5,7 @@
 #include "kernel/isa/lanes.h"
 #include "kernel/store/stream_state.h"
 
-namespace tessera::kernel::TESSERA_ISA_NAMESPACE {
+namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
 namespace {
 
 #include "kernel/store/store.inl.h"
@@ -27,4 +27,4 @@ constexpr auto flat_kernel() -> Isa (*)(const FlatJob&) {
 
 extern const FlatKernels flat_kernels = {flat_kernel<Lanes<float>>()};
 
-}  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE
+}  // namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE

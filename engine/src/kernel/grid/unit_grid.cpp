@@ -6,7 +6,7 @@
 #include "kernel/isa/lanes.h"
 #include "kernel/grid/line_kernels.h"
 
-namespace tessera::kernel::TESSERA_ISA_NAMESPACE {
+namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
 namespace {
 
 #include "kernel/store/store.inl.h"
@@ -35,4 +35,4 @@ extern const GridKernels grid_kernels = {
     mesh_line_kernel<Lanes<float>>(),
 };
 
-}  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE
+}  // namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE

@@ -5,7 +5,7 @@
 #include "kernel/grid/grid_kernels.h"
 #include "kernel/isa/lanes.h"
 
-namespace tessera::kernel::TESSERA_ISA_NAMESPACE {
+namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
 namespace {
 
 #include "kernel/store/store.inl.h"
@@ -21,4 +21,4 @@ extern const DoubleGridKernels double_grid_kernels = {
     evaluate_grid<Lanes<double>>,
 };
 
-}  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE
+}  // namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE

@@ -3,7 +3,7 @@
 #include "kernel/isa/lanes.h"
 #include "kernel/grid/line_kernels.h"
 
-namespace tessera::kernel::TESSERA_ISA_NAMESPACE {
+namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
 namespace {
 
 #include "kernel/store/store.inl.h"
@@ -20,4 +20,4 @@ extern const LineKernels line_kernels = {
     end_lines<Lanes<double>>,      blend<Lanes<float>>,       blend<Lanes<double>>,
 };
 
-}  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE
+}  // namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE

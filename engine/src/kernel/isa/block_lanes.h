@@ -1,8 +1,8 @@
 #pragma once
 
-namespace tessera::kernel {
+namespace tessera::inline abi_0_1::kernel {
 
 /// Patches in a block: one a lane.
 inline constexpr int block_lanes = 16;
 
-}  // namespace tessera::kernel
+}  // namespace tessera::inline abi_0_1::kernel

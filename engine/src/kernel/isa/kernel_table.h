@@ -2,21 +2,22 @@
 // The table of the kernels of one instruction set: plain function pointers over raw memory. Callers validate; kernels
 // assume. What each is given stands with its family; a family has a unit of its own for each instruction set.
 
+#include <optional>
 #include <span>
 
-#include "base/for_wings.h"
+#include "base/internal_export.h"
 #include "kernel/chord/chord_kernels.h"
 #include "kernel/grid/flat_kernels.h"
 #include "kernel/grid/grid_kernels.h"
 #include "kernel/grid/line_kernels.h"
-#include "kernel/store/memory_kernels.h"
 #include "kernel/mesh/mesh_kernels.h"
 #include "kernel/net/net_kernels.h"
 #include "kernel/point/point_kernels.h"
 #include "kernel/ray/ray_kernels.h"
+#include "kernel/store/memory_kernels.h"
 #include "tessera/execution.h"
 
-namespace tessera::kernel {
+namespace tessera::inline abi_0_1::kernel {
 
 struct KernelTable : GridKernels,
                      DoubleGridKernels,
@@ -40,11 +41,14 @@ const KernelTable& default_kernels();
 /// The kernels of an ISA. Call it only for one that available_isas() lists.
 const KernelTable& kernels(Isa isa);
 
-}  // namespace tessera::kernel
+}  // namespace tessera::inline abi_0_1::kernel
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
-/// Those of rays, for the library of rays: what is named `kernel` stays inside the core.
-TESSERA_FOR_WINGS const kernel::RayKernels& ray_kernels(Isa isa);
+/// The instruction set of a call: the wanted one, or default_isa(). Errors: isa_unavailable.
+TESSERA_INTERNAL_EXPORT Result<Isa> usable_isa(std::optional<Isa> wanted);
 
-}  // namespace tessera
+/// Kernels of rays, for the library of rays: the namespace `kernel` stays inside the core.
+TESSERA_INTERNAL_EXPORT const kernel::RayKernels& ray_kernels(Isa isa);
+
+}  // namespace tessera::inline abi_0_1

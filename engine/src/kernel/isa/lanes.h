@@ -12,10 +12,10 @@
 #include "kernel/isa/lanes_sse2.h"
 #endif
 
-namespace tessera::kernel::TESSERA_ISA_NAMESPACE {
+namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
 namespace {
 
 inline constexpr int max_order = 16;  // coefficients of the highest degree
 
 }  // namespace
-}  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE
+}  // namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE

@@ -10,7 +10,7 @@
 
 #include "tessera/execution.h"
 
-namespace tessera::kernel {
+namespace tessera::inline abi_0_1::kernel {
 namespace isa_avx512 {
 namespace {
 
@@ -275,6 +275,6 @@ struct Lanes<double> {
 
 }  // namespace
 }  // namespace isa_avx512
-}  // namespace tessera::kernel
+}  // namespace tessera::inline abi_0_1::kernel
 
 #define TESSERA_ISA_NAMESPACE isa_avx512

@@ -9,7 +9,7 @@
 
 #include "tessera/execution.h"
 
-namespace tessera::kernel {
+namespace tessera::inline abi_0_1::kernel {
 namespace isa_neon64 {
 namespace {
 
@@ -274,6 +274,6 @@ struct Lanes<double> : ThroughMemory<double> {
 
 }  // namespace
 }  // namespace isa_neon64
-}  // namespace tessera::kernel
+}  // namespace tessera::inline abi_0_1::kernel
 
 #define TESSERA_ISA_NAMESPACE isa_neon64

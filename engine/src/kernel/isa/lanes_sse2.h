@@ -11,7 +11,7 @@
 
 #include "tessera/execution.h"
 
-namespace tessera::kernel {
+namespace tessera::inline abi_0_1::kernel {
 namespace isa_sse2 {
 namespace {
 
@@ -183,6 +183,6 @@ struct Lanes<double> {
 
 }  // namespace
 }  // namespace isa_sse2
-}  // namespace tessera::kernel
+}  // namespace tessera::inline abi_0_1::kernel
 
 #define TESSERA_ISA_NAMESPACE isa_sse2

@@ -4,7 +4,7 @@
 
 #include "kernel/isa/kernel_table.h"
 
-namespace tessera::kernel {
+namespace tessera::inline abi_0_1::kernel {
 namespace isa_sse2 {
 constexpr Isa this_isa = Isa::sse2;
 #include "kernel/isa/isa_tables.inl.h"
@@ -45,4 +45,4 @@ std::span<const KernelTable* const> machine_kernels() {
   return {found.tables.data(), found.count};
 }
 
-}  // namespace tessera::kernel
+}  // namespace tessera::inline abi_0_1::kernel

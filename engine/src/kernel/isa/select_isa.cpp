@@ -1,5 +1,6 @@
 // Which instruction set a call uses, of those that this machine has.
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <string>
@@ -7,7 +8,7 @@
 #include "kernel/isa/kernel_table.h"
 #include "tessera/execution.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr std::array<Isa, 4> all_isas{Isa::sse2, Isa::avx2, Isa::avx512, Isa::neon64};
@@ -32,6 +33,16 @@ std::string available_names() {
   return names;
 }
 
+bool is_available(Isa isa) {
+  const std::span<const Isa> available = available_isas();
+  return std::find(available.begin(), available.end(), isa) != available.end();
+}
+
+Status missing(Isa isa) {
+  return Status(StatusCode::isa_unavailable, "this machine lacks the instruction set \"" + std::string(name(isa)) +
+                                                 "\"; it has " + available_names());
+}
+
 }  // namespace
 
 std::string_view name(Isa isa) {
@@ -54,13 +65,8 @@ std::span<const Isa> available_isas() {
 }
 
 Result<Isa> parse_isa(std::string_view text) {
-  for (const Isa isa : available_isas())
-    if (text == name(isa)) return isa;
-  for (const Isa isa : all_isas) {
-    if (text == name(isa))
-      return Status(StatusCode::isa_unavailable, "this machine lacks the instruction set \"" + std::string(text) +
-                                                     "\"; it has " + available_names());
-  }
+  for (const Isa isa : all_isas)
+    if (text == name(isa)) return is_available(isa) ? Result<Isa>(isa) : missing(isa);
   return Status(StatusCode::isa_unavailable,
                 "unknown instruction set \"" + std::string(text) + "\"; this machine has " + available_names());
 }
@@ -71,6 +77,11 @@ Result<Isa> default_isa() {
   Result<Isa> isa = parse_isa(forced);
   if (!isa) return Status(isa.status().code(), "TESSERA_ISA: " + isa.status().message());
   return isa;
+}
+
+Result<Isa> usable_isa(std::optional<Isa> wanted) {
+  if (!wanted) return default_isa();
+  return is_available(*wanted) ? Result<Isa>(*wanted) : missing(*wanted);
 }
 
 namespace kernel {
@@ -90,4 +101,4 @@ const KernelTable& default_kernels() {
 
 const kernel::RayKernels& ray_kernels(Isa isa) { return kernel::kernels(isa); }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

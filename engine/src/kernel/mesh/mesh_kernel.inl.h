@@ -127,7 +127,7 @@ class PatchVertices {
  private:
   using Batch = typename L::Batch;
   static constexpr int components = Rational ? 4 : 3, capacity = capacity_of<Degree>, rows_at_once = 16;
-  static constexpr int tiles_a_vector = L::width > mesh_tile ? L::width / mesh_tile : 1;
+  static constexpr int tiles_per_vector = L::width > mesh_tile ? L::width / mesh_tile : 1;
   static constexpr int staged = 1024;
   static constexpr int outputs = Order > 0 ? 6 : 3;
 
@@ -149,9 +149,9 @@ class PatchVertices {
         return tile;
       };
       while (row < last) {
-        if (staged_ + tiles_a_vector * mesh_tile > staged) flush();
+        if (staged_ + tiles_per_vector * mesh_tile > staged) flush();
         const InnerTile a = next();
-        write_tiles(a, tiles_a_vector > 1 && row < last ? next() : a);
+        write_tiles(a, tiles_per_vector > 1 && row < last ? next() : a);
       }
     }
   }
@@ -205,10 +205,10 @@ class PatchVertices {
       return tile;
     };
     while (side < 4) {
-      if (staged_ + tiles_a_vector * mesh_tile > staged) flush();
+      if (staged_ + tiles_per_vector * mesh_tile > staged) flush();
       const int terms = side % 2 == 0 ? count_u() : count_v();
       const BorderTile a = next();
-      const bool pairs = tiles_a_vector > 1 && side < 4 && (side % 2 == 0 ? count_u() : count_v()) == terms;
+      const bool pairs = tiles_per_vector > 1 && side < 4 && (side % 2 == 0 ? count_u() : count_v()) == terms;
       write_tiles(a, pairs ? next() : a, terms);
     }
   }

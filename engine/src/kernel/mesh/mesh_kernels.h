@@ -7,7 +7,7 @@
 #include "kernel/grid/grid_kernels.h"
 #include "kernel/store/stream_state.h"
 
-namespace tessera::kernel {
+namespace tessera::inline abi_0_1::kernel {
 
 /// Neighbouring samples of a row of a mesh's vertices that are evaluated together.
 inline constexpr int mesh_tile = 8;
@@ -102,4 +102,4 @@ struct MeshKernels {
   void (*finish_lines)(StreamState& lines);
 };
 
-}  // namespace tessera::kernel
+}  // namespace tessera::inline abi_0_1::kernel

@@ -86,7 +86,7 @@ Isa mesh_lines(const GridJob<typename L::Scalar>& job, const LineJob<typename L:
   constexpr int samples = mesh_line_rows / 6, count = 4;
   const LineStores<L, Way::plain, int> stores(false, nullptr, 0);
   RowCurves<L, 1, 3, count> curves;
-  NormalsBehind<L, Wanted::mesh> normals;
+  DeferredNormals<L, Wanted::mesh> normals;
   LineRing<L> ring(lines);
   std::ptrdiff_t at = 0;
   int sample = 0;

@@ -3,7 +3,7 @@
 #include "kernel/isa/lanes.h"
 #include "kernel/mesh/mesh_kernels.h"
 
-namespace tessera::kernel::TESSERA_ISA_NAMESPACE {
+namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
 namespace {
 
 #include "kernel/store/store.inl.h"
@@ -65,4 +65,4 @@ extern const MeshKernels mesh_kernels = {
     finish_lines_kernel<Lanes<float>>(),
 };
 
-}  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE
+}  // namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE

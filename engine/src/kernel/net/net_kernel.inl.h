@@ -96,7 +96,7 @@ inline void write_doubts(const PackJob<T>& job, typename L::Batch largest, typen
   const auto most = L::broadcast(double{std::numeric_limits<T>::max()});
   const auto noise = L::broadcast(job.noise) * largest, longest = L::broadcast(job.longest) * diagonal;
   const auto length = L::broadcast(4) * noise * longest;
-  const auto doubt = xsimd::max(length * length, L::broadcast(job.least_doubt));
+  const auto doubt = xsimd::max(length * length, L::broadcast(job.min_doubt));
   L::store_as(job.doubts + lane, xsimd::min(doubt, most));
   L::store_as(job.doubts + block_lanes + lane, xsimd::min(noise, most));
 }

@@ -5,7 +5,7 @@
 
 #include "kernel/isa/block_lanes.h"
 
-namespace tessera::kernel {
+namespace tessera::inline abi_0_1::kernel {
 
 /// The control points of a block's patches, into its lanes, relative to an origin.
 template <class T>
@@ -16,10 +16,10 @@ struct PackJob {
   T* out = nullptr;              ///< `[number][lane]`, 64-byte aligned
   /// One a lane, where its net goes as it is, in the same pass; null: nowhere.
   double* const* copies = nullptr;
-  /// `[doubt, noise][lane]`, 64-byte aligned: (4 n l)^2, at least least_doubt, and n, where n is `noise` times the lane's
+  /// `[doubt, noise][lane]`, 64-byte aligned: (4 n l)^2, at least min_doubt, and n, where n is `noise` times the lane's
   /// largest coefficient and l is `longest` times its box's diagonal. No more than T holds.
   T* doubts = nullptr;
-  double noise = 0, longest = 0, least_doubt = 0;
+  double noise = 0, longest = 0, min_doubt = 0;
 };
 
 /// The boxes of the control points of a block's patches, as they are.
@@ -62,4 +62,4 @@ struct NetKernels {
   void (*combine)(const CombineJob&);
 };
 
-}  // namespace tessera::kernel
+}  // namespace tessera::inline abi_0_1::kernel

@@ -6,7 +6,7 @@
 
 #include "kernel/grid/grid_kernels.h"
 
-namespace tessera::kernel {
+namespace tessera::inline abi_0_1::kernel {
 
 /// Up to block_lanes neighbouring samples, one a lane.
 struct PointSlot {
@@ -92,4 +92,4 @@ struct PointKernels {
   void (*store_points_f64)(const PointStoreJob<double>&);
 };
 
-}  // namespace tessera::kernel
+}  // namespace tessera::inline abi_0_1::kernel

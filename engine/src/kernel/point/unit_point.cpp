@@ -5,7 +5,7 @@
 #include "kernel/isa/lanes.h"
 #include "kernel/point/point_kernels.h"
 
-namespace tessera::kernel::TESSERA_ISA_NAMESPACE {
+namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
 namespace {
 
 #include "kernel/store/store.inl.h"
@@ -27,4 +27,4 @@ extern const PointKernels point_kernels = {
     store_points<Lanes<float>>,    store_points<Lanes<double>>,
 };
 
-}  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE
+}  // namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE

@@ -28,7 +28,7 @@ class LeafTrace {
     if (!(leaf_.noise < 1)) return false;
     int size = 1;
     for (int visited = 0; size > 0; ++visited) {
-      if (visited == most_visits) return false;
+      if (visited == max_visits) return false;
       RayBox& box = stack[size - 1];
       switch (visit(box, roots)) {
         case RayStep::leave:
@@ -53,7 +53,7 @@ class LeafTrace {
   }
 
  private:
-  static constexpr int most_visits = 24, stack_size = 8;
+  static constexpr int max_visits = 24, stack_size = 8;
   static constexpr float epsilon = 0x1p-24f;
   static constexpr int step = Rational ? 4 : 3;
 

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-namespace tessera::kernel {
+namespace tessera::inline abi_0_1::kernel {
 
 /// A piece of a patch in coordinates of its own: x -> axis[.] (x - centre), in which the piece is nearly (u, v, 0), with
 /// u and v in [-1/2, 1/2]. Its coefficients follow it in memory, those of u^i v^j for i and j up to 3, `[i][j]`: three
@@ -72,7 +72,7 @@ struct RayPoint {
 /// Rays side by side.
 struct alignas(64) RayBundle {
   static constexpr int size = 16;
-  static constexpr double most_component = 1.844e18;  ///< of a valid ray
+  static constexpr double max_component = 1.844e18;  ///< of a valid ray
   double origin[3][size], direction[3][size];
   double near[size], far[size];  ///< of t
 };
@@ -96,7 +96,7 @@ struct alignas(64) RayLines {
 /// Roots of a patch to be polished on rays side by side: control points x y z x y z .., `[i][j]`; lines and points in the
 /// coordinates scale (p - centre). Roots are looked for inside [u0, u1] x [v0, v1].
 struct PolishJob {
-  static constexpr int most_steps = 6;
+  static constexpr int max_steps = 6;
   const double *points, *weights;  ///< no weights of a polynomial patch
   int degree_u, degree_v;
   double centre[3], scale;
@@ -140,4 +140,4 @@ struct RayKernels {
                              double v, RayPoint& out);
 };
 
-}  // namespace tessera::kernel
+}  // namespace tessera::inline abi_0_1::kernel

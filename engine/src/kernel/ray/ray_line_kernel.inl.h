@@ -60,7 +60,7 @@ class RayLineLanes {
   /// Valid (is_valid, ray/line/ray_segment.cpp), and no number of it asks for care. Written so that NaN fails.
   Where is_plain() const {
     constexpr double smallest = 1e-100, parallel = 1e-300;
-    const Batch most(RayBundle::most_component), near = load(rays_.near);
+    const Batch most(RayBundle::max_component), near = load(rays_.near);
     Where yes = (near >= Batch(0.0)) & (near <= load(rays_.far));
     Batch largest(0.0);
     for (int i = 0; i < 3; ++i) {

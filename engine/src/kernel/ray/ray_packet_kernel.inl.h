@@ -14,13 +14,13 @@ class PacketTrace {
     Where open = start();
     state_ = xsimd::select(open, Batch(RayPacket::undecided), Batch(RayPacket::nothing));
     if (leaf_.noise < 1) {
-      for (int k = 0; k < most_rectangles && xsimd::any(open); ++k) open = visit(open);
+      for (int k = 0; k < max_rectangles && xsimd::any(open); ++k) open = visit(open);
     }
     L::store(rays_.state + first_, state_);
   }
 
  private:
-  static constexpr int most_rectangles = 4;
+  static constexpr int max_rectangles = 4;
   static constexpr float epsilon = 0x1p-24f;
   static constexpr int step = Rational ? 4 : 3;
 

@@ -16,7 +16,7 @@ class RootPolish {
     const Batch reach_u = load(rays_.reach_u), reach_v = load(rays_.reach_v);
     Where open = load(rays_.state) == Batch(PolishedRays::asked);
     Batch u = start_u, v = start_v, state = load(rays_.state);
-    for (int step = 0; step < PolishJob::most_steps && xsimd::any(open); ++step) {
+    for (int step = 0; step < PolishJob::max_steps && xsimd::any(open); ++step) {
       Batch position[3], at_du[3], at_dv[3];
       evaluate(u, v, position, at_du, at_dv);
       Batch from[3];

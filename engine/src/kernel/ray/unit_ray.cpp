@@ -2,10 +2,10 @@
 
 #include <limits>
 
-#include "kernel/isa/fours.h"
+#include "kernel/isa/four_floats.h"
 #include "kernel/ray/ray_kernels.h"
 
-namespace tessera::kernel::TESSERA_ISA_NAMESPACE {
+namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
 namespace {
 
 #include "kernel/ray/ray_kernel.inl.h"
@@ -27,4 +27,4 @@ extern const RayKernels ray_kernels = {
     packets, trace_polynomial_leaf, trace_rational_leaf, cubic_point, low_rational_point,
 };
 
-}  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE
+}  // namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE

@@ -37,7 +37,7 @@ template <class L>
   k.s12 = m_less * normal.reciprocal;
   k.s22 = L::fnma(slope, m_less + k.m, k.n) * (k.e * (normal.reciprocal * normal.reciprocal));
   // |r_u x r_v|^2 / E is the squared height of r_v over r_u.
-  const auto sine = L::broadcast(job.smallest_sine * job.smallest_sine);
+  const auto sine = L::broadcast(job.min_sine * job.min_sine);
   k.skewed = xsimd::select(normal.squared * k.inverse_e > sine * k.g, L::broadcast(1), L::broadcast(0));
 }
 

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-namespace tessera::kernel {
+namespace tessera::inline abi_0_1::kernel {
 
 struct MemoryKernels {
   /// For limits.h: `rounds` times 16 independent fused multiply-adds of whole vectors; returns the lanes of a vector.
@@ -15,4 +15,4 @@ struct MemoryKernels {
   void (*finish_streaming)();
 };
 
-}  // namespace tessera::kernel
+}  // namespace tessera::inline abi_0_1::kernel

@@ -1,7 +1,7 @@
 #pragma once
 // Output that goes past the caches in whole lines, though it is made in pieces of any length.
 
-namespace tessera::kernel {
+namespace tessera::inline abi_0_1::kernel {
 
 /// Numbers that follow each other in memory, in pieces by several calls of kernels: those of a line that isn't whole yet wait
 /// here. The first and the last line may be shared with others, and are stored plainly. It begins with both pointers where
@@ -12,4 +12,4 @@ struct StreamState {
   alignas(64) float carry[16] = {};
 };
 
-}  // namespace tessera::kernel
+}  // namespace tessera::inline abi_0_1::kernel

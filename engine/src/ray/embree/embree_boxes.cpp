@@ -6,7 +6,7 @@
 #include "ray/embree/embree_device.h"
 #include "ray/embree/embree_ray.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// What a call of Embree's carries to the callback: first what Embree knows, so that one points to the other.
@@ -106,4 +106,4 @@ std::size_t EmbreeBoxes::memory_bytes() const {
   return state_->monitor.bytes() + state_->boxes.capacity() * sizeof(Box3);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

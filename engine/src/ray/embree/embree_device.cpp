@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 StatusCode status_code(RTCError error) {
@@ -74,4 +74,4 @@ Status commit(RTCScene scene, EmbreeMonitor& monitor, const Execution& execution
   return monitor.take();
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

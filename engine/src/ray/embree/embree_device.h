@@ -13,7 +13,7 @@
 #include "tessera/execution.h"
 #include "tessera/status.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 struct SceneRelease {
   void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
@@ -52,4 +52,4 @@ Result<Owned<RTCDevice, DeviceRelease>> make_device(EmbreeMonitor& monitor, std:
 /// Commits a scene in the caller's arena. Errors: cancelled, Embree's own.
 Status commit(RTCScene scene, EmbreeMonitor& monitor, const Execution& execution);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

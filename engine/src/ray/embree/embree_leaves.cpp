@@ -12,7 +12,7 @@
 #include "ray/embree/embree_ray.h"
 #include "ray/leaf/leaf_tracer.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// What a call of Embree's carries to the callbacks: first what Embree knows, so that one points to the other. Of a
@@ -189,4 +189,4 @@ const LeafTracer& EmbreeLeaves::tracer() const { return state_->tracer; }
 
 std::size_t EmbreeLeaves::memory_bytes() const { return state_->monitor.bytes(); }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -5,7 +5,7 @@
 #include "ray/line/ray_line.h"
 #include "tessera/geometry.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 // Rays in float: start and direction round by 2^-24 of at most 3.5 and over at most 4, a component by 5e-7. Boxes are
 // larger by four times that on each side; Embree's own arithmetic is conservative in robust scenes.
@@ -45,4 +45,4 @@ void set_packet(std::size_t count, const Line& line, RTCRayHit16& hit, int (&val
   }
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

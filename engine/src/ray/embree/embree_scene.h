@@ -10,10 +10,10 @@
 #include <span>
 
 #include "tessera/execution.h"
-#include "tessera/status.h"
 #include "tessera/geometry.h"
+#include "tessera/status.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Grids of height x width vertices each, one after the other, 3 floats a vertex, rows (of equal height index)
 /// contiguous.
@@ -110,4 +110,4 @@ class EmbreeScene {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -5,13 +5,14 @@
 #include <limits>
 
 #include "base/guard.h"
+#include "base/impl_access.h"
 #include "ray/embree/embree_api.h"
 #include "ray/embree/embree_device.h"
+#include "ray/line/ray_segment.h"
 #include "ray/scene/exact_source.h"
 #include "ray/scene/ray_scene_impl.h"
-#include "ray/line/ray_segment.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr double smallest_size = 1e-15;
@@ -149,7 +150,7 @@ void occlude_leaf(const RTCOccludedFunctionNArguments* arguments) {
 
 /// The scene's, where Embree can hold it.
 Result<const ExactSource*> usable_source(const RayScene& scene) {
-  const ExactSource* const source = scene.impl().exact_source();
+  const ExactSource* const source = impl_of(scene).exact_source();
   if (source == nullptr)
     return Status(StatusCode::unsupported,
                   "a ray scene in grid mode is no geometry for Embree's scenes: make it in exact mode");
@@ -211,4 +212,4 @@ Result<unsigned> attach(const RayScene& scene, RTCScene to) {
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

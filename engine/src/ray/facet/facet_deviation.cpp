@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// A triangle with corners on a polynomial piece and a parameter box h x k lies within
@@ -47,4 +47,4 @@ double facet_deviation(const BezierPatch& patch, double h, double k) {
   return std::min((points + 0.5 * farthest * weights) / lightest, farthest);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

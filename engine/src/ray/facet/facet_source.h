@@ -11,7 +11,7 @@
 #include "tessera/patch_set.h"
 #include "tessera/status.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 class FacetSource {
  public:
@@ -36,4 +36,4 @@ Result<std::unique_ptr<FacetSource>> grid_facets(const PatchSet& set, int rate, 
 /// Errors of that: as of RayScene::make.
 std::unique_ptr<FacetSource> mesh_facets(const Mesh& mesh);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

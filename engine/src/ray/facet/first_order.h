@@ -4,7 +4,7 @@
 
 #include "tessera/bezier_patch.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 struct FirstOrder {
   Vec3 position, du, dv;
@@ -15,4 +15,4 @@ struct FirstOrder {
 /// rounding.
 FirstOrder first_order(const BezierPatch& patch, double u, double v, const Vec3& origin = {});
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

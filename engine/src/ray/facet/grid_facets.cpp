@@ -3,11 +3,12 @@
 #include <algorithm>
 
 #include "base/aligned.h"
+#include "base/impl_access.h"
 #include "eval/uniform_grid.h"
 #include "ray/facet/facet_deviation.h"
 #include "ray/facet/facet_source.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr std::size_t padding = 1;  // floats behind the last vertex, which Embree reads as 16 bytes
@@ -22,7 +23,7 @@ class GridFacets final : public FacetSource {
     positions_.resize(3 * grid_.capacity() + padding);
     const auto view = View3<float>::interleaved(std::span(positions_).first(3 * grid_.capacity()));
     Status status =
-        grid_.run(set.impl(), GridViews<float>{.position = view, .du = {}, .dv = {}, .normal = {}}, execution);
+        grid_.run(impl_of(set), GridViews<float>{.position = view, .du = {}, .dv = {}, .normal = {}}, execution);
     if (!status.ok()) return status;
     vertices.data = positions_.data();
     return scene.build(vertices, execution);
@@ -53,4 +54,4 @@ Result<std::unique_ptr<FacetSource>> grid_facets(const PatchSet& set, int rate, 
   return std::unique_ptr<FacetSource>(std::make_unique<GridFacets>(*std::move(grid), rate));
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -7,17 +7,17 @@
 #include <string>
 
 #include "kernel/isa/kernel_table.h"
-#include "ray/seam/adjacency.h"
-#include "ray/scene/batch_layout.h"
 #include "ray/embree/embree_scene.h"
 #include "ray/facet/facet_source.h"
 #include "ray/facet/packet_refine.h"
-#include "ray/scene/ray_scene_impl.h"
-#include "ray/line/ray_segment.h"
 #include "ray/facet/refine.h"
+#include "ray/line/ray_segment.h"
+#include "ray/scene/batch_layout.h"
+#include "ray/scene/ray_scene_impl.h"
 #include "ray/scene/surface_hit.h"
+#include "ray/seam/adjacency.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr int max_rate = 4096;
@@ -269,4 +269,4 @@ Result<std::unique_ptr<RayScene::Impl>> make_mesh_scene(const PatchSet& set, con
   return scene_of(set, mesh_facets(mesh), options);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -9,7 +9,7 @@
 #include "ray/facet/facet_deviation.h"
 #include "ray/facet/facet_source.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 Status invalid(std::string message, std::size_t index) {
@@ -135,4 +135,4 @@ class MeshFacets final : public FacetSource {
 
 std::unique_ptr<FacetSource> mesh_facets(const Mesh& mesh) { return std::make_unique<MeshFacets>(mesh); }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

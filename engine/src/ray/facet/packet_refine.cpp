@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <bit>
 
-#include "ray/leaf/across.h"
-#include "ray/line/lane_vectors.h"
+#include "ray/leaf/orthonormal_basis.h"
 #include "ray/leaf/polished_root.h"
+#include "ray/line/lane_vectors.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 void PacketRefiner::run(std::span<const RaySegment> segments, std::span<const FacetHit> facets) {
   found_ = 0;
@@ -33,7 +33,7 @@ void PacketRefiner::polish(std::uint32_t index, unsigned lanes, std::span<const 
   const SceneFrame frame{set_.origin(), 1};
   for (std::size_t k = 0; k < facets.size(); ++k) {
     if ((lanes >> k & 1u) == 0) continue;
-    const Across across(segments[k].direction);
+    const OrthonormalBasis across(segments[k].direction);
     const double u = std::clamp(facets[k].u, 0.0f, 1.0f), v = std::clamp(facets[k].v, 0.0f, 1.0f);
     if (std::has_single_bit(lanes)) {
       RayLine line;
@@ -70,4 +70,4 @@ SurfaceRoot PacketRefiner::root(std::size_t k, const RaySegment& segment, const 
           length(position - segment.start - s * segment.direction)};
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

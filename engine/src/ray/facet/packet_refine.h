@@ -8,11 +8,11 @@
 
 #include "kernel/ray/ray_kernels.h"
 #include "ray/embree/embree_scene.h"
-#include "ray/line/ray_segment.h"
 #include "ray/facet/refine.h"
+#include "ray/line/ray_segment.h"
 #include "ray/scene/set_view.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 class PacketRefiner {
  public:
@@ -40,4 +40,4 @@ class PacketRefiner {
   kernel::PolishedRays rays_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

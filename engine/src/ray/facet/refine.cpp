@@ -5,19 +5,19 @@
 #include <cmath>
 #include <limits>
 
-#include "ray/leaf/across.h"
 #include "ray/facet/first_order.h"
+#include "ray/leaf/orthonormal_basis.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr double overshoot = 0.25;  // how far outside [0,1] Newton may wander before it comes back or changes the patch
-constexpr int most_steps = 16;      // quadratic convergence takes 2 to 4
-constexpr int most_halvings = 6;
-constexpr std::size_t most_patches = 8;  // visited for one hit: all around a vertex of usual valence
+constexpr int max_steps = 16;       // quadratic convergence takes 2 to 4
+constexpr int max_halvings = 6;
+constexpr std::size_t max_patches = 8;  // visited for one hit: all around a vertex of usual valence
 
 /// Solves x a + y b = c as seen along the ray; false where a and b are parallel or zero.
-bool solve(const Across& e, const Vec3& a, const Vec3& b, const Vec3& c, double& x, double& y) {
+bool solve(const OrthonormalBasis& e, const Vec3& a, const Vec3& b, const Vec3& c, double& x, double& y) {
   const double a1 = dot(e.first, a), a2 = dot(e.second, a), b1 = dot(e.first, b), b2 = dot(e.second, b);
   const double c1 = dot(e.first, c), c2 = dot(e.second, c);
   const double determinant = a1 * b2 - a2 * b1;
@@ -48,7 +48,7 @@ class Refiner::Frontier {
     const auto seen = [&](const Start& other) {
       return other.patch == start.patch && std::abs(other.u - start.u) < 0.5 && std::abs(other.v - start.v) < 0.5;
     };
-    if (count_ == most_patches || std::any_of(starts_.begin(), starts_.begin() + count_, seen)) return;
+    if (count_ == max_patches || std::any_of(starts_.begin(), starts_.begin() + count_, seen)) return;
     starts_[count_++] = start;
   }
   bool pop(Start& start) {
@@ -58,7 +58,7 @@ class Refiner::Frontier {
   }
 
  private:
-  std::array<Start, most_patches> starts_;
+  std::array<Start, max_patches> starts_;
   std::size_t count_ = 0, next_ = 0;
 };
 
@@ -91,8 +91,8 @@ bool Refiner::evaluate(const RaySegment& segment, std::uint32_t patch, double u,
 bool Refiner::descend(const RaySegment& segment, const Leash& leash, SurfaceRoot& root) const {
   const Vec3 error = root.position - set_.origin() - segment.start;
   double du = 0, dv = 0;
-  if (!solve(Across(segment.direction), root.du, root.dv, error, du, dv)) return false;
-  const int halvings = root.residual > tolerance_ ? most_halvings : 0;  // below, only rounding can be in the way
+  if (!solve(OrthonormalBasis(segment.direction), root.du, root.dv, error, du, dv)) return false;
+  const int halvings = root.residual > tolerance_ ? max_halvings : 0;  // below, only rounding can be in the way
   for (int halving = 0; halving <= halvings; ++halving) {
     const double u = leash.u(root.u - du), v = leash.v(root.v - dv);
     SurfaceRoot next;
@@ -117,7 +117,7 @@ bool Refiner::inside(const RaySegment& segment, SurfaceRoot& root) const {
 
 Refiner::Outcome Refiner::newton(const RaySegment& segment, SurfaceRoot& root) const {
   const Leash leash = this->leash(root.patch, root.u, root.v);
-  for (int step = 0; step < most_steps && root.residual > rounding_; ++step) {
+  for (int step = 0; step < max_steps && root.residual > rounding_; ++step) {
     if (!descend(segment, leash, root)) break;  // as small as it gets, by rounding or by the shape of the surface
   }
   if (root.residual <= tolerance_ && inside(segment, root)) return Outcome::inside;
@@ -157,4 +157,4 @@ bool Refiner::refine(const RaySegment& segment, std::uint32_t patch, double u, d
   return false;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -1,11 +1,11 @@
 #pragma once
 // From a facet that a ray met to the true surface: Newton's method in double.
 
-#include "ray/seam/adjacency.h"
 #include "ray/line/ray_segment.h"
 #include "ray/scene/set_view.h"
+#include "ray/seam/adjacency.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// A point r(u,v) of the surface, seen from a ray; a root where the residual is rounding.
 struct SurfaceRoot {
@@ -52,4 +52,4 @@ class Refiner {
   double tolerance_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

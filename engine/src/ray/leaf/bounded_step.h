@@ -7,7 +7,7 @@
 
 #include "ray/leaf/projected_net.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 struct NetPoint {
   double u = 0, v = 0;
@@ -59,4 +59,4 @@ inline NetPoint bounded_step(const NetValue& f, NetPoint from) {
   return best;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -8,7 +8,7 @@
 #include "ray/leaf/projected_net.h"
 #include "tessera/bezier_patch.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Four components of a net, `[component][i * columns + j]`.
 using FourNets = std::array<std::array<double, (max_degree + 1) * (max_degree + 1)>, 4>;
@@ -27,4 +27,4 @@ struct CubicNet {
 /// |T_k'| <= k^2.
 CubicNet cubic_net(const NetShape<0, 0>& shape, const FourNets& net);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -10,7 +10,7 @@
 #include "ray/leaf/projected_net.h"
 #include "ray/leaf/root_certificate.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Two combinations of x and y at a right angle, g = a x + b y and h = a y - b x: g grows the fastest along p = u or v, and
 /// h does not grow along p in the mean. All of it in the box's own parameters, counted from a point where g nearly
@@ -136,4 +136,4 @@ class EdgeOn {
   double length_ = 0, least_ = 0;  ///< of g_p: in the mean, at least
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

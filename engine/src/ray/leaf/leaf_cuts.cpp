@@ -9,12 +9,12 @@
 #include "ray/leaf/local_leaf.h"
 #include "ray/leaf/projected_net.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr int most_halvings_a_side = 6, most_halvings_by_bend = 3, most_halvings_by_certificate = 5;
-constexpr int most_halvings_of_folds = 4;  // of patches that look folded everywhere, as those without an area
-constexpr double most_net_bend = 0.12;     // of a piece's length: an arc of nearly a radian
+constexpr int max_halvings_a_side = 6, max_halvings_by_bend = 3, max_halvings_by_certificate = 5;
+constexpr int max_halvings_of_folds = 4;  // of patches that look folded everywhere, as those without an area
+constexpr double max_net_bend = 0.12;     // of a piece's length: an arc of nearly a radian
 
 /// Measures of a control net, before it is cut.
 struct NetShapes {
@@ -64,8 +64,7 @@ double spread_of_weights(const BezierPatch& patch) {
 /// Each halving takes half of the bend, for its length.
 int halvings_by_bend(double bend, double length) {
   int halvings = 0;
-  for (double share = bend; share > most_net_bend * length && halvings < most_halvings_by_bend; share *= 0.5)
-    ++halvings;
+  for (double share = bend; share > max_net_bend * length && halvings < max_halvings_by_bend; share *= 0.5) ++halvings;
   return halvings;
 }
 
@@ -74,19 +73,19 @@ Cuts cuts_by_net(const NetShapes& net, int halvings) {
             by_v = std::max(halvings, halvings_by_bend(net.bend_v, net.length_v));
   const auto more = [&](double longer, double shorter, int already) {
     if (!(longer > 2 * shorter)) return 0;
-    const int extra = shorter > 0 ? std::ilogb(longer / shorter) : most_halvings_a_side;
-    return std::min(extra, most_halvings_a_side - already);
+    const int extra = shorter > 0 ? std::ilogb(longer / shorter) : max_halvings_a_side;
+    return std::min(extra, max_halvings_a_side - already);
   };
   const double piece_u = std::ldexp(net.length_u, -by_u), piece_v = std::ldexp(net.length_v, -by_v);
   return {by_u + more(piece_u, piece_v, by_u), by_v + more(piece_v, piece_u, by_v)};
 }
 
 /// Whether the whole patch is so flat that nothing else needs to be looked at. A guess that leaves room.
-bool is_surely_flat(const BezierPatch& patch, const NetShapes& net, double most_bend) {
+bool is_surely_flat(const BezierPatch& patch, const NetShapes& net, double max_bend) {
   const int m = patch.degree_u(), n = patch.degree_v();
   const Vec3 twist = patch.point(0, 0) - patch.point(0, n) - patch.point(m, 0) + patch.point(m, n);
   const double spread = spread_of_weights(patch), bend = 4 * (net.bend_u + net.bend_v) + 1.5 * length(twist);
-  return bend * spread * spread + (spread - 1) * (net.length_u + net.length_v) < 0.5 * most_bend * net.shortest;
+  return bend * spread * spread + (spread - 1) * (net.length_u + net.length_v) < 0.5 * max_bend * net.shortest;
 }
 
 /// How far kernels' linear models of a piece are off, of its length: half the second derivatives, along u and v alone too,
@@ -168,7 +167,7 @@ void PatchCutter::cut(const Cuts& cuts) {
 }
 
 /// Whether more than one piece in ten bends by more than that, and along what.
-bool PatchCutter::bends(double most_bend, bool& along_u) const {
+bool PatchCutter::bends(double max_bend, bool& along_u) const {
   alignas(kernel::RayLeaf) std::byte room[kernel::ray_leaf_bytes(true)];
   const NetShape<0, 0> shape{patch_->degree_u(), patch_->degree_v()};
   /// Pieces that count.
@@ -183,24 +182,24 @@ bool PatchCutter::bends(double most_bend, bool& along_u) const {
     Tally& tally = is_tapered(shape, patch_->is_rational(), net(piece)) ? tapered : even;
     ++tally.count;
     const Bend bend = bend_of(*leaf);
-    if (!(bend.all > most_bend)) continue;
+    if (!(bend.all > max_bend)) continue;
     ++tally.bent;
     folded += std::isinf(bend.all);
     tally.by_u += bend.along_u / bend.all, tally.by_v += bend.along_v / bend.all;
   }
   const Tally& which = even.count > 0 ? even : tapered;
   along_u = which.by_u > which.by_v || (which.by_u == which.by_v && cuts_.u <= cuts_.v);
-  if (folded == cuts_.pieces() && cuts_.u + cuts_.v >= most_halvings_of_folds) return false;
+  if (folded == cuts_.pieces() && cuts_.u + cuts_.v >= max_halvings_of_folds) return false;
   return 10 * which.bent > which.count;
 }
 
-Cuts PatchCutter::flatten(int halvings, double most_bend) {
+Cuts PatchCutter::flatten(int halvings, double max_bend) {
   const NetShapes net = measure(*patch_);
   const Cuts by_net = cuts_by_net(net, halvings);
-  if (is_surely_flat(*patch_, net, most_bend)) return by_net;
+  if (is_surely_flat(*patch_, net, max_bend)) return by_net;
   cut(by_net);
-  for (bool along_u = true; bends(most_bend, along_u);) {
-    const auto can = [&](bool u) { return (u ? cuts_.u : cuts_.v) < most_halvings_by_certificate; };
+  for (bool along_u = true; bends(max_bend, along_u);) {
+    const auto can = [&](bool u) { return (u ? cuts_.u : cuts_.v) < max_halvings_by_certificate; };
     if (!can(along_u)) along_u = !along_u;
     if (!can(along_u)) break;
     halve(along_u);
@@ -208,4 +207,4 @@ Cuts PatchCutter::flatten(int halvings, double most_bend) {
   return cuts_;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -7,7 +7,7 @@
 #include "ray/line/ray_line.h"
 #include "tessera/bezier_patch.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// How often a patch is halved along each direction.
 struct Cuts {
@@ -29,10 +29,10 @@ class PatchCutter {
   /// Halves so often, first along u.
   void cut(const Cuts& cuts);
   /// Cuts it into at least 2^halvings pieces a side: more along sides that are strongly bent or much longer than the others,
-  /// and then until nine pieces in ten keep `most_bend`, the share of its length by which a piece leaves its tangent plane.
+  /// and then until nine pieces in ten keep `max_bend`, the share of its length by which a piece leaves its tangent plane.
   /// Pieces next to poles
   /// do not count where there are others.
-  Cuts flatten(int halvings, double most_bend);
+  Cuts flatten(int halvings, double max_bend);
 
   /// By `across * 2^cuts.v + along`; the next follows after `values()`.
   const double* net(std::size_t piece) const { return nets_.data() + piece * values(); }
@@ -40,7 +40,7 @@ class PatchCutter {
 
  private:
   void halve(bool along_u);
-  bool bends(double most_bend, bool& along_u) const;
+  bool bends(double max_bend, bool& along_u) const;
 
   const SceneFrame* frame_;
   const BezierPatch* patch_ = nullptr;
@@ -48,4 +48,4 @@ class PatchCutter {
   std::vector<double> nets_, halves_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -10,10 +10,10 @@
 #include "ray/leaf/local_leaf.h"
 #include "ray/leaf/projected_net.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr std::size_t patches_a_task = 64;
+constexpr std::size_t patches_per_task = 64;
 /// Halvings of a direction that write_net() counts at the most: so much do the two passes of restrict_net() round.
 constexpr int halvings_of_restriction = 3;
 
@@ -48,13 +48,14 @@ struct LeafNets::Plan {
 Result<std::vector<LeafNets::Plan>> LeafNets::plan(const SetView& set, const Flatness& flatness,
                                                    const Execution& execution) {
   std::vector<Plan> plans(set.patch_count());
-  const Status status = parallel_for(plans.size(), patches_a_task, execution, [&](std::size_t begin, std::size_t end) {
-    PatchCutter cutter(frame_);
-    for (std::size_t k = begin; k < end; ++k) {
-      cutter.start(set.patch(k));
-      plans[k].cuts = cutter.flatten(flatness.halvings, flatness.most_bend);
-    }
-  });
+  const Status status =
+      parallel_for(plans.size(), patches_per_task, execution, [&](std::size_t begin, std::size_t end) {
+        PatchCutter cutter(frame_);
+        for (std::size_t k = begin; k < end; ++k) {
+          cutter.start(set.patch(k));
+          plans[k].cuts = cutter.flatten(flatness.halvings, flatness.max_bend);
+        }
+      });
   if (!status.ok()) return status;
   std::size_t leaves = 0;
   bool rational = false;
@@ -141,18 +142,18 @@ Status LeafNets::build(const SetView& set, const SceneFrame& frame, const Flatne
   frame_ = frame;
   const Result<std::vector<Plan>> plans = plan(set, flatness, execution);
   if (!plans) return plans.status();
-  return parallel_for(plans->size(), patches_a_task, execution, [&](std::size_t begin, std::size_t end) {
+  return parallel_for(plans->size(), patches_per_task, execution, [&](std::size_t begin, std::size_t end) {
     PatchCutter cutter(frame_);
     for (std::size_t k = begin; k < end; ++k) cut(set.patch(k), static_cast<std::uint32_t>(k), (*plans)[k], cutter);
   });
 }
 
 Status LeafNets::update(const SetView& set, std::span<const std::uint32_t> patches, const Execution& execution) {
-  return parallel_for(patches.size(), patches_a_task, execution, [&](std::size_t begin, std::size_t end) {
+  return parallel_for(patches.size(), patches_per_task, execution, [&](std::size_t begin, std::size_t end) {
     PatchCutter cutter(frame_);
     for (const std::uint32_t patch : patches.subspan(begin, end - begin))
       cut(set.patch(patch), patch, plan_of(patch), cutter);
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -14,7 +14,7 @@
 #include "tessera/execution.h"
 #include "tessera/status.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Steps of Newton's method, of a patch's parameters, up to which the surface is its tangent plane but for less than
 /// rounding.
@@ -34,13 +34,13 @@ struct Leaf {
   int components() const { return rational ? 4 : 3; }
   /// How much its net is rounded (LeafNets::write_net), in halvings.
   int halvings() const;
-  static constexpr int most_halvings = 6;  ///< of that
+  static constexpr int max_halvings = 6;  ///< of that
 };
 
 /// How flat the pieces are to be.
 struct Flatness {
-  int halvings = 0;      ///< of each side, at least
-  double most_bend = 1;  ///< PatchCutter::flatten
+  int halvings = 0;     ///< of each side, at least
+  double max_bend = 1;  ///< PatchCutter::flatten
 };
 
 class PatchCutter;
@@ -86,4 +86,4 @@ class LeafNets {
   std::size_t largest_ = 0;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -10,13 +10,13 @@
 #include "ray/leaf/projected_net.h"
 #include "ray/leaf/root_certificate.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr int most_boxes = 20000;         // for surfaces that run along the ray; others take 1 to 300
+constexpr int max_boxes = 20000;          // for surfaces that run along the ray; others take 1 to 300
 constexpr double sure_contraction = 0.5;  // below, the clamped contraction decides at its fixed point
 constexpr double worth_narrowing = 0.6;
-constexpr int most_newton_steps = 12, most_contractions = 60;
+constexpr int max_newton_steps = 12, max_contractions = 60;
 
 enum class Outcome { none, found, open };
 
@@ -37,7 +37,7 @@ class LeafSearch {
     count_ = 1;  // slot 0 holds the whole leaf and stays; the stack begins above
     visit(0);
     for (int visited = 1; count_ > 1 && !query_.done(); ++visited) {
-      if (visited == most_boxes) {
+      if (visited == max_boxes) {
         query_.incomplete = true;
         return;
       }
@@ -109,7 +109,7 @@ class LeafSearch {
       if (certificate.contraction() < sure_contraction && decide(slot, certificate, f, middle)) return;
     }
     if (is_small(extent) && is_flat(net, x, y) && take_closest_point(slot, extent.z.low)) return;
-    if (box.depth + 4 > SearchSpace::most_depth) {
+    if (box.depth + 4 > SearchSpace::max_depth) {
       query_.incomplete = true;
       return;
     }
@@ -157,7 +157,7 @@ class LeafSearch {
   bool take_closest_point(int slot, double from) {
     NetPoint at{0.5, 0.5};
     NetValue f = value(space_.net(slot), at);
-    for (int step = 0; step < most_newton_steps && f.residual() > rounding_; ++step) {
+    for (int step = 0; step < max_newton_steps && f.residual() > rounding_; ++step) {
       const NetPoint next = bounded_step(f, at);
       const NetValue there = value(space_.net(slot), next);
       if (!(there.residual() < f.residual())) break;
@@ -179,7 +179,7 @@ class LeafSearch {
     const auto excluded = [&] {
       return roots_near(certificate, f, at, std::min(1.0, root_distance(certificate, f))).empty();
     };
-    for (int step = 0; step < most_newton_steps && f.residual() > rounding_; ++step) {
+    for (int step = 0; step < max_newton_steps && f.residual() > rounding_; ++step) {
       const NetPoint next = bounded_step(f, at);
       const double moved = std::max(std::abs(next.u - at.u), std::abs(next.v - at.v));
       at = next, f = value(net, at);
@@ -193,7 +193,7 @@ class LeafSearch {
     // The clamped contraction comes to stand at the root or where it proves that there is none: then a point within the
     // tolerance is not the box's root, and touches.
     bool none = false;
-    for (int step = 0; step < most_contractions && !(none = excluded()); ++step) {
+    for (int step = 0; step < max_contractions && !(none = excluded()); ++step) {
       const std::array<double, 2> by = certificate.step(f);
       at = {std::clamp(at.u - by[0], 0.0, 1.0), std::clamp(at.v - by[1], 0.0, 1.0)};
       f = value(net, at);
@@ -330,4 +330,4 @@ void search_leaf(const Leaf& leaf, const double* net, double tolerance, SearchSp
   run<0, 0, false>(leaf, net, tolerance, space, query);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

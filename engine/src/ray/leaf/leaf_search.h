@@ -6,16 +6,16 @@
 
 #include "ray/leaf/leaf_nets.h"
 #include "ray/leaf/projected_net.h"
-#include "ray/scene/ray_query.h"
 #include "ray/leaf/search_pool.h"
+#include "ray/scene/ray_query.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// The memory of searches, of one thread at a time.
 class SearchSpace {
  public:
   /// A search splits no deeper, for resolution ends long before; a net is cut by halves in depth-first order.
-  static constexpr int most_depth = 160;
+  static constexpr int max_depth = 160;
 
   /// `largest`: values in a net. The pool, if there is one, outlives this and gets the memory back.
   explicit SearchSpace(std::size_t largest, SearchPool* pool = nullptr) : stride_(largest), pool_(pool) {}
@@ -29,7 +29,7 @@ class SearchSpace {
   bool make_ready() noexcept {
     if (memory_) return true;
     SearchPool none;
-    memory_ = (pool_ ? *pool_ : none).take(stride_ * (most_depth + 5), most_depth + 3);
+    memory_ = (pool_ ? *pool_ : none).take(stride_ * (max_depth + 5), max_depth + 3);
     if (!memory_) return false;
     nets_ = memory_->nets.data();
     boxes_ = memory_->boxes.data();
@@ -37,8 +37,8 @@ class SearchSpace {
   }
   double* net(int slot) { return nets_ + static_cast<std::size_t>(slot) * stride_; }
   /// Beyond those of the search.
-  double* leaf_net() { return net(most_depth + 3); }
-  double* spare_net() { return net(most_depth + 4); }
+  double* leaf_net() { return net(max_depth + 3); }
+  double* spare_net() { return net(max_depth + 4); }
   SearchBox& box(int slot) { return boxes_[slot]; }
 
  private:
@@ -63,7 +63,7 @@ bool set_gain(const NetValue& f, double du, double dv, LeafRoot& root);
 
 /// Adds to the query every root of the leaf in [query.near, query.far]: where only the closest is wanted, those nearer
 /// than what the query has. A point of the leaf counts as root up to `tolerance` from the line, where no root can be
-/// excluded, or where the search meets such a point. `tolerance` is at least twice search_rounding at most_depth.
+/// excluded, or where the search meets such a point. `tolerance` is at least twice search_rounding at max_depth.
 ///
 /// Branch and bound: a part whose hull lies off the ray by more than rounding holds no root and is left; a part with a
 /// certificate (root_certificate.h) is decided by Newton's method; of the others those whose whole extent is below the
@@ -72,4 +72,4 @@ bool set_gain(const NetValue& f, double du, double dv, LeafRoot& root);
 /// truly, borders included, is found: neighbours that share a border cannot both reject a ray through it.
 void search_leaf(const Leaf& leaf, const double* net, double tolerance, SearchSpace& space, RayQuery& query);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
-#include "ray/line/lane_vectors.h"
 #include "ray/leaf/polished_root.h"
+#include "ray/line/lane_vectors.h"
 #include "ray/seam/spawn_root.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 // Of s in a kernel: what the ray's start and direction round by in float (embree_ray.h), and as much again.
@@ -71,7 +71,7 @@ void QueryPacket::set_idle(std::size_t lane) {
 
 double TracedLeaves::tolerance_of(const Leaf& leaf) const {
   return std::max(tolerance,
-                  2 * search_rounding(leaf.degree_u, leaf.degree_v, leaf.halvings(), SearchSpace::most_depth));
+                  2 * search_rounding(leaf.degree_u, leaf.degree_v, leaf.halvings(), SearchSpace::max_depth));
 }
 
 void LeafTracer::search(unsigned leaf_index, kernel::RayProbe& probe, RayQuery& query, SearchSpace& space) const {
@@ -224,4 +224,4 @@ bool LeafTracer::take_roots(const Leaf& leaf, const kernel::RayRoots& roots, Ray
   return true;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -5,13 +5,13 @@
 #include <cstddef>
 
 #include "kernel/ray/ray_kernels.h"
-#include "ray/seam/lazy_adjacency.h"
 #include "ray/leaf/leaf_nets.h"
 #include "ray/leaf/leaf_search.h"
 #include "ray/scene/ray_query.h"
 #include "ray/scene/set_view.h"
+#include "ray/seam/lazy_adjacency.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// The ray of a query as kernels take it.
 kernel::RayProbe probe_of(const RayQuery& query);
@@ -62,4 +62,4 @@ struct LeafTracer final : OriginTest, TracedLeaves {
   bool take_roots(const Leaf& leaf, const kernel::RayRoots& roots, RayQuery& query) const;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

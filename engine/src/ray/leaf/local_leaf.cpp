@@ -8,7 +8,7 @@
 #include "ray/leaf/cubic_net.h"
 #include "tessera/geometry.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr double unit = 0x1p-24;  // of float's rounding
@@ -201,4 +201,4 @@ void make_local_leaf(const NetShape<0, 0>& shape, bool rational, const double* n
   LeafMaker(shape, rational, net, leaf).make();
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -4,10 +4,10 @@
 #include "kernel/ray/ray_kernels.h"
 #include "ray/leaf/projected_net.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Fills `leaf` and the coefficients behind it, which a degenerate piece has not. `net`: of the piece, homogeneous, in the scene's
 /// coordinates, 3 or 4 components.
 void make_local_leaf(const NetShape<0, 0>& shape, bool rational, const double* net, kernel::RayLeaf& leaf);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -8,7 +8,7 @@
 #include "ray/leaf/projected_net.h"
 #include "ray/leaf/seen_point.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 using kernel::PolishJob;
@@ -39,7 +39,7 @@ FirstOrder scene_point(const BezierPatch& patch, const SceneFrame& frame, const 
 bool polish(const BezierPatch& patch, const SceneFrame& frame, const kernel::RayKernels& kernels, const RayLine& line,
             const RootStart& start, bool with_gain, LeafRoot& root) {
   double u = start.u, v = start.v;
-  for (int step = 0; step < PolishJob::most_steps; ++step) {
+  for (int step = 0; step < PolishJob::max_steps; ++step) {
     const FirstOrder at = scene_point(patch, frame, kernels, u, v);
     const NetValue f = seen(at, line);
     const double inverse = 1 / (f.xu * f.yv - f.xv * f.yu);
@@ -110,4 +110,4 @@ void polish_side_by_side(const BezierPatch& patch, const SceneFrame& frame, cons
   (patch.is_rational() ? kernels.packets->polish_low_rational : kernels.packets->polish_cubic)(job, rays, lanes);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

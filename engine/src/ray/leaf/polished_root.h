@@ -5,7 +5,7 @@
 #include "ray/leaf/leaf_nets.h"
 #include "ray/scene/ray_query.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Where Newton's method begins in a patch, how far from there the root can be, and where it must lie.
 struct RootStart {
@@ -50,4 +50,4 @@ bool polished_side_by_side(const BezierPatch& patch);
 void polish_side_by_side(const BezierPatch& patch, const SceneFrame& frame, const kernel::RayKernels& kernels,
                          const RootStart& bounds, kernel::PolishedRays& rays, unsigned lanes);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

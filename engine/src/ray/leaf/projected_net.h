@@ -10,7 +10,7 @@
 #include "ray/line/ray_line.h"
 #include "tessera/bezier_patch.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// The degrees of a net. M, N: where the compiler knows them, else 0.
 template <int M, int N>
@@ -158,4 +158,4 @@ NetValue evaluate(const NetShape<M, N>& shape, const double* net, double u, doub
   return out;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -9,7 +9,7 @@
 #include "ray/leaf/bounded_step.h"
 #include "ray/leaf/projected_net.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Lowest and highest of some coefficients.
 struct Hull {
@@ -117,4 +117,4 @@ inline double root_distance(const RootCertificate& certificate, const NetValue& 
   return length / (1 - certificate.contraction()) * (1 + 1e-15);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -5,7 +5,7 @@
 #include "ray/leaf/projected_net.h"
 #include "ray/line/ray_line.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Both in the scene's coordinates.
 inline NetValue seen(const FirstOrder& at, const RayLine& line) {
@@ -17,4 +17,4 @@ inline NetValue seen(const FirstOrder& at, const RayLine& line) {
   return f;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

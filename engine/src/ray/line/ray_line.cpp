@@ -5,9 +5,9 @@
 #include <limits>
 #include <utility>
 
-#include "ray/leaf/across.h"
+#include "ray/leaf/orthonormal_basis.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -108,7 +108,7 @@ void complete(const Ray& ray, double scale, const Box3& box, RayLine& line) {
   clip(line.start.z, line.direction.z, room.lower.z, room.upper.z, line);
   line.empty = !(line.enter <= line.leave);
   if (!line.empty) {
-    const Across across(line.direction);
+    const OrthonormalBasis across(line.direction);
     line.across[0] = across.first, line.across[1] = across.second;
   }
   if (ray.spawn_offset > 0) line.spawn = scale * ray.spawn_offset + 2 * line.slack;
@@ -159,4 +159,4 @@ RayLine line_of(const Ray& ray, const Placement& placement, const SceneFrame& fr
   return line;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

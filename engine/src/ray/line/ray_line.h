@@ -6,7 +6,7 @@
 #include "tessera/geometry.h"
 #include "tessera/ray_scene.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// The coordinates of an exact scene: x = scale (p - centre), scale a power of two. The scene's box lies in [-1,1]^3,
 /// and its longer side is at least 1 long: lengths there are shares of the model's size.
@@ -63,4 +63,4 @@ struct Placement {
 /// and the model's centre, but no distance of the origin: by 2^-50 times the map's condition number, of the model's size.
 RayLine line_of(const Ray& ray, const Placement& placement, const SceneFrame& frame, const Box3& box);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

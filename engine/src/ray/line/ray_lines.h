@@ -7,7 +7,7 @@
 #include "kernel/ray/ray_kernels.h"
 #include "ray/line/ray_line.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Rays of a turn, checked and made ready by vectors where the machine has them.
 class RayTurn {
@@ -36,4 +36,4 @@ class RayTurn {
   std::array<bool, size> valid_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// Narrows [near, far] to where origin + s * direction lies in [lower, upper].
@@ -67,4 +67,4 @@ RaySegment cut(const Ray& ray, const Vec3& origin, const Box3& box, double margi
   return out;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

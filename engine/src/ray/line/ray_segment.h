@@ -3,13 +3,13 @@
 
 #include "kernel/ray/ray_kernels.h"
 #include "ray/embree/embree_scene.h"
-#include "tessera/ray_scene.h"
 #include "tessera/geometry.h"
+#include "tessera/ray_scene.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// The largest magnitude of a ray's components, Embree's own limit (the square root of float's range).
-inline constexpr double max_ray_component = kernel::RayBundle::most_component;
+inline constexpr double max_ray_component = kernel::RayBundle::max_component;
 
 /// Finite, within the limit, direction not zero, 0 <= tnear <= tfar, no offset below 0.
 bool is_valid(const Ray& ray);
@@ -32,4 +32,4 @@ struct RaySegment {
 /// [tnear, tfar] say, because facets lie before or behind the surface.
 RaySegment cut(const Ray& ray, const Vec3& origin, const Box3& box, double margin);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

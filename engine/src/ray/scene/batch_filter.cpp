@@ -6,7 +6,7 @@
 #include "base/guard.h"
 #include "ray/embree/embree_scene.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 HitVerdict BatchFilter::ask(const HitCandidate& candidate) noexcept {
   if (stopped()) return HitVerdict::stop;
@@ -42,4 +42,4 @@ HitVerdict SceneFilter::judge(const RayQuery& query, const LeafRoot& root) const
                        .patch_v = root.v});
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

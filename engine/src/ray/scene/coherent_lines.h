@@ -5,7 +5,7 @@
 
 #include "ray/line/ray_line.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Whether lines are worth a packet: enough of them, which pass near each other and run nearly the same way. line(k):
 /// line k of `count`.
@@ -21,4 +21,4 @@ bool worth_a_packet(std::size_t count, const Line& line) {
   return true;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

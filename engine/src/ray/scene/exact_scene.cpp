@@ -10,30 +10,30 @@
 #include <string>
 #include <utility>
 
+#include "ray/embree/embree_leaves.h"
+#include "ray/embree/embree_scene.h"
+#include "ray/leaf/leaf_nets.h"
+#include "ray/leaf/leaf_search.h"
+#include "ray/line/ray_lines.h"
+#include "ray/line/ray_segment.h"
 #include "ray/scene/batch_filter.h"
 #include "ray/scene/batch_layout.h"
 #include "ray/scene/coherent_lines.h"
-#include "ray/seam/distinct_roots.h"
-#include "ray/embree/embree_leaves.h"
-#include "ray/embree/embree_scene.h"
 #include "ray/scene/exact_source.h"
-#include "ray/seam/lazy_adjacency.h"
-#include "ray/leaf/leaf_nets.h"
-#include "ray/leaf/leaf_search.h"
-#include "ray/seam/nearest_root.h"
-#include "ray/line/ray_lines.h"
 #include "ray/scene/ray_scene_impl.h"
-#include "ray/line/ray_segment.h"
 #include "ray/scene/surface_hit.h"
+#include "ray/seam/distinct_roots.h"
+#include "ray/seam/lazy_adjacency.h"
+#include "ray/seam/nearest_root.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr double smallest_size = 1e-140, largest_size = 1e140;  // squares of lengths stay normal numbers
 constexpr double default_tolerance = 2e-12;                     // of the size
-constexpr std::size_t most_leaves = 0xffffffff;
-constexpr double most_bend = 1;  // of a piece's length
-constexpr std::size_t least_in_turn = 4;
+constexpr std::size_t max_leaves = 0xffffffff;
+constexpr double max_bend = 1;  // of a piece's length
+constexpr std::size_t min_in_turn = 4;
 static_assert(rays_per_turn == RayTurn::size && rays_per_turn <= EmbreeLeaves::packet);
 
 /// Rays of one turn once they are traced; no query where a ray is not valid or passes the scene by.
@@ -92,7 +92,7 @@ class ExactScene final : public PatchScene, private ExactSource {
   using PatchScene::resolve;
   Result<Box3> frame_box() const;
   std::size_t own_patches() const { return options_.patches.value_or(set().patch_count()); }
-  Flatness flatness() const { return {std::ilogb(static_cast<double>(options_.pieces)), most_bend}; }
+  Flatness flatness() const { return {std::ilogb(static_cast<double>(options_.pieces)), max_bend}; }
   double measure();
   template <class Done>
   void trace_all(const RayBatch& batch, std::size_t begin, std::size_t end, RootsWanted wanted, const Done& done) const;
@@ -134,7 +134,7 @@ double ExactScene::measure() {
   for (const Box3& leaf_box : nets_.boxes()) scene_box_.extend(leaf_box);
   box_ = {frame_.to_model(scene_box_.lower), frame_.to_model(scene_box_.upper)};
   const double tolerance = options_.tolerance.value_or(default_tolerance * size_) * frame_.scale;
-  const double least = 2 * search_rounding(max_degree, max_degree, Leaf::most_halvings, SearchSpace::most_depth);
+  const double least = 2 * search_rounding(max_degree, max_degree, Leaf::max_halvings, SearchSpace::max_depth);
   const double reach = std::max(tolerance, least);
   scene_box_.lower += Vec3{-reach, -reach, -reach}, scene_box_.upper += Vec3{reach, reach, reach};
   return tolerance;
@@ -154,7 +154,7 @@ Status ExactScene::build(const Execution& execution) {
   updates_ = 0;
   adjacency_.forget();
   if (Status status = nets_.build(set(), frame_, flatness(), execution); !status.ok()) return status;
-  if (nets_.leaves().size() > most_leaves)
+  if (nets_.leaves().size() > max_leaves)
     return Status(StatusCode::unsupported, "more than the 2^32 - 1 pieces of patches of one ray scene");
   const TracedLeaves leaves{&set(), &nets_, &adjacency_, own_patches(), measure()};
   if (Status status = scene_.build(leaves, follows_, execution); !status.ok()) return status;
@@ -215,7 +215,7 @@ Result<Hit> ExactScene::resolve(const Ray& ray, std::uint32_t patch, double u, d
   Hit hit = hit_at(along, root);
   hit.flags.uncertified = hit.flags.tangential = hit.flags.within_tolerance = false;
   const int degree_u = set().patch(patch).degree_u(), degree_v = set().patch(patch).degree_v();
-  const double rounding = search_rounding(degree_u, degree_v, Leaf::most_halvings, SearchSpace::most_depth);
+  const double rounding = search_rounding(degree_u, degree_v, Leaf::max_halvings, SearchSpace::max_depth);
   hit.flags.unrefined = !(root.residual <= std::max(tracer().tolerance, 2 * rounding));
   return hit;
 }
@@ -252,8 +252,8 @@ void ExactScene::trace_all(const RayBatch& batch, std::size_t begin, std::size_t
       if (query && query->overflow) throw std::bad_alloc();
     done(turn);
   };
-  end - begin < least_in_turn ? trace_each(batch, begin, end, wanted, space, finish)
-                              : trace_turns(batch, begin, end, wanted, space, finish);
+  end - begin < min_in_turn ? trace_each(batch, begin, end, wanted, space, finish)
+                            : trace_turns(batch, begin, end, wanted, space, finish);
 }
 
 template <class Done>
@@ -315,7 +315,7 @@ void ExactScene::closest_piece(const RayBatch& batch, const HitWriter& writer, s
         hit = {};
         if (!turn.valid[k]) hit.kind = HitKind::invalid_ray;
       }
-      if (query) hit.flags.incomplete = query->incomplete, hit.steps = told(query->steps);
+      if (query) hit.flags.incomplete = query->incomplete, hit.steps = saturated_u16(query->steps);
     }
     writer.write(turn.first, hits);
   });
@@ -346,7 +346,7 @@ void ExactScene::hits_of(RayQuery& query, std::vector<Hit>& hits) const {
     hits.push_back(hit_at(query.line, root));
     hits.back().t = query.t_of(root);
     hits.back().flags.incomplete = query.incomplete;
-    hits.back().steps = told(query.steps);
+    hits.back().steps = saturated_u16(query.steps);
   }
 }
 
@@ -387,4 +387,4 @@ Result<std::unique_ptr<RayScene::Impl>> make_exact_scene(const PatchSet& set, co
   return std::unique_ptr<RayScene::Impl>(std::make_unique<ExactScene>(set, *std::move(scene), options));
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -6,16 +6,16 @@
 #include <span>
 #include <vector>
 
-#include "ray/scene/batch_layout.h"
 #include "ray/leaf/leaf_tracer.h"
 #include "ray/line/ray_line.h"
+#include "ray/scene/batch_layout.h"
 #include "ray/scene/ray_query.h"
 #include "tessera/ray_scene.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// As Hit::steps.
-inline std::uint16_t told(std::uint32_t steps) { return static_cast<std::uint16_t>(std::min(steps, 0xffffu)); }
+inline std::uint16_t saturated_u16(std::uint32_t steps) { return static_cast<std::uint16_t>(std::min(steps, 0xffffu)); }
 
 /// Stays in place while its ray scene lives. Const calls from any number of threads.
 class ExactSource {
@@ -42,4 +42,4 @@ class ExactSource {
   virtual void hits_of(RayQuery& query, std::vector<Hit>& hits) const = 0;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

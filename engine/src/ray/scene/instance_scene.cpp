@@ -8,17 +8,18 @@
 #include <optional>
 #include <string>
 
+#include "base/impl_access.h"
+#include "ray/embree/embree_boxes.h"
+#include "ray/embree/embree_scene.h"
+#include "ray/line/ray_lines.h"
+#include "ray/line/ray_segment.h"
 #include "ray/scene/batch_filter.h"
 #include "ray/scene/batch_layout.h"
 #include "ray/scene/coherent_lines.h"
-#include "ray/embree/embree_boxes.h"
-#include "ray/embree/embree_scene.h"
 #include "ray/scene/exact_source.h"
-#include "ray/line/ray_lines.h"
 #include "ray/scene/ray_scene_impl.h"
-#include "ray/line/ray_segment.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -322,7 +323,7 @@ void InstanceScene::closest_piece(const RayBatch& batch, const HitWriter& writer
         hit = {};
         if (!lane.valid) hit.kind = HitKind::invalid_ray;
       }
-      hit.flags.incomplete = lane.incomplete, hit.steps = told(lane.steps);
+      hit.flags.incomplete = lane.incomplete, hit.steps = saturated_u16(lane.steps);
     }
     writer.write(first, hits);
   });
@@ -370,7 +371,7 @@ Status InstanceScene::all_of(const Ray& ray, std::vector<Hit>& hits) const {
   std::stable_sort(hits.begin() + first, hits.end(),
                    [](const Hit& a, const Hit& b) { return a.t != b.t ? a.t < b.t : a.instance < b.instance; });
   for (auto hit = hits.begin() + first; hit != hits.end(); ++hit)
-    hit->flags.incomplete = lane.incomplete, hit->steps = told(lane.steps);
+    hit->flags.incomplete = lane.incomplete, hit->steps = saturated_u16(lane.steps);
   return {};
 }
 
@@ -385,14 +386,14 @@ Result<std::unique_ptr<RayScene::Impl>> make_instance_scene(std::span<const RayI
     const RayScene* const scene = instances[k].scene;
     if (scene == nullptr)
       return Status(StatusCode::invalid_argument, name_of(k) + "no scene", static_cast<std::ptrdiff_t>(k));
-    if (scene->impl().exact_source() == nullptr)
+    if (impl_of(*scene).exact_source() == nullptr)
       return Status(StatusCode::unsupported, name_of(k) + "its scene is none of patches in exact mode",
                     static_cast<std::ptrdiff_t>(k));
-    out.push_back({&scene->impl(), scene->impl().exact_source(), instances[k].to_world, instances[k].mask, {}});
+    out.push_back({&impl_of(*scene), impl_of(*scene).exact_source(), instances[k].to_world, instances[k].mask, {}});
   }
   Result<EmbreeBoxes> boxes = EmbreeBoxes::make();
   if (!boxes) return boxes.status();
   return std::unique_ptr<RayScene::Impl>(std::make_unique<InstanceScene>(std::move(out), *std::move(boxes)));
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -6,12 +6,13 @@
 #include <string>
 
 #include "base/guard.h"
+#include "base/impl_access.h"
 #include "eval/view_checks.h"
 #include "ray/scene/batch_filter.h"
 #include "ray/scene/batch_layout.h"
 #include "ray/scene/ray_scene_impl.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -174,7 +175,7 @@ Status closest_of(const RayScene& scene, const RayViews<T>& rays, const HitViews
     checks.add(rays);
     for_each_output(hits, [&](const char* name, const auto& view) { checks.output(name, view); });
     return run(rays, options, checks, [&](const RayBatch& batch, std::size_t count) {
-      return scene.impl().closest(batch, HitArrays<U>(hits), count, execution);
+      return impl_of(scene).closest(batch, HitArrays<U>(hits), count, execution);
     });
   });
 }
@@ -187,7 +188,7 @@ Status occluded_of(const RayScene& scene, const RayViews<T>& rays, const View1<s
     checks.add(rays);
     checks.output("occluded", occluded);
     return run(rays, options, checks, [&](const RayBatch& batch, std::size_t count) {
-      return scene.impl().occluded(batch, occluded, count, execution);
+      return impl_of(scene).occluded(batch, occluded, count, execution);
     });
   });
 }
@@ -220,4 +221,4 @@ Status occluded(const RayScene& scene, const RayViews<double>& rays, const View1
   return occluded_of(scene, rays, occluded, options, execution);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -12,7 +12,7 @@
 #include "ray/line/ray_line.h"
 #include "tessera/ray_scene.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 constexpr double no_part = std::numeric_limits<double>::infinity();
 constexpr double parameter_rounding = 1e-15;  // of a patch's parameters
@@ -74,7 +74,7 @@ class OriginTest {
 };
 
 /// The least number from x on, x >= 0, that counts in a search, which takes denormal ones for 0: told by its bits.
-inline double least_normal(double x) {
+inline double min_normal(double x) {
   constexpr double least = std::numeric_limits<double>::min();
   return std::bit_cast<std::uint64_t>(x) - 1 < std::bit_cast<std::uint64_t>(least) - 1 ? least : x;
 }
@@ -100,7 +100,7 @@ struct RayQuery {
       : ray(of),
         line(along),
         wanted(which),
-        least(least_normal(of.tnear)),
+        least(min_normal(of.tnear)),
         near(along.near - along.slack),
         far(along.leave) {}
 
@@ -164,4 +164,4 @@ struct RayQuery {
   }
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

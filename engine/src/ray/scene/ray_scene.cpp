@@ -10,10 +10,10 @@
 #include "parallel/parallel_for.h"
 #include "ray/scene/ray_scene_impl.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr std::size_t rays_a_task = 512;
+constexpr std::size_t rays_per_task = 512;
 constexpr double progress_ends[] = {0.2, 0.4};  // of cuts and of pieces; the rest is the BVH's
 
 Status stale() {
@@ -64,7 +64,7 @@ Status RayScene::Impl::check(const RayBatch& batch) const {
 Status RayScene::Impl::closest(const RayBatch& batch, const HitWriter& hits, std::size_t count,
                                const Execution& execution) const {
   if (Status status = check(batch); !status.ok()) return status;
-  Status status = parallel_for(count, rays_a_task, execution,
+  Status status = parallel_for(count, rays_per_task, execution,
                                [&](std::size_t begin, std::size_t end) { closest_piece(batch, hits, begin, end); });
   return batch.stopped() ? batch.filter->status() : status;
 }
@@ -72,7 +72,7 @@ Status RayScene::Impl::closest(const RayBatch& batch, const HitWriter& hits, std
 Status RayScene::Impl::occluded(const RayBatch& batch, const View1<std::uint8_t>& occluded, std::size_t count,
                                 const Execution& execution) const {
   if (Status status = check(batch); !status.ok()) return status;
-  Status status = parallel_for(count, rays_a_task, execution, [&](std::size_t begin, std::size_t end) {
+  Status status = parallel_for(count, rays_per_task, execution, [&](std::size_t begin, std::size_t end) {
     occluded_piece(batch, occluded, begin, end);
   });
   return batch.stopped() ? batch.filter->status() : status;
@@ -83,14 +83,14 @@ Status RayScene::Impl::all(std::span<const Ray> rays, HitLists& lists, const Exe
   lists.first.assign(1, 0);
   if (!fresh()) return stale();
   prepare_borders();
-  const std::size_t tasks = (rays.size() + rays_a_task - 1) / rays_a_task;
+  const std::size_t tasks = (rays.size() + rays_per_task - 1) / rays_per_task;
   std::vector<std::vector<Hit>> found(tasks);
   std::vector<std::size_t> ends(rays.size());
   std::vector<Status> faults(tasks);
   Status status = parallel_for(tasks, 1, execution, [&](std::size_t begin, std::size_t end) {
     for (std::size_t task = begin; task < end; ++task) {
-      const std::size_t last = std::min(rays.size(), (task + 1) * rays_a_task);
-      for (std::size_t k = task * rays_a_task; k < last && faults[task].ok(); ++k) {
+      const std::size_t last = std::min(rays.size(), (task + 1) * rays_per_task);
+      for (std::size_t k = task * rays_per_task; k < last && faults[task].ok(); ++k) {
         faults[task] = all_of(rays[k], found[task]);
         ends[k] = found[task].size();
       }
@@ -101,9 +101,9 @@ Status RayScene::Impl::all(std::span<const Ray> rays, HitLists& lists, const Exe
     if (!fault.ok()) return fault;
   }
   for (std::size_t k = 0; k < rays.size(); ++k) {
-    const std::size_t task = k / rays_a_task, before = k % rays_a_task == 0 ? 0 : ends[k - 1];
+    const std::size_t task = k / rays_per_task, before = k % rays_per_task == 0 ? 0 : ends[k - 1];
     lists.first.push_back(lists.first.back() + (ends[k] - before));
-    if (k % rays_a_task == 0) lists.hits.insert(lists.hits.end(), found[task].begin(), found[task].end());
+    if (k % rays_per_task == 0) lists.hits.insert(lists.hits.end(), found[task].begin(), found[task].end());
   }
   return {};
 }
@@ -216,4 +216,4 @@ std::uint64_t RayScene::revision() const { return impl_->revision(); }
 Box3 RayScene::box() const { return impl_->box(); }
 std::size_t RayScene::memory_bytes() const { return impl_->memory_bytes(); }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

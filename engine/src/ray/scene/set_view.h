@@ -4,14 +4,15 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/impl_access.h"
 #include "block/patch_set_impl.h"
 #include "tessera/patch_set.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 class SetView {
  public:
-  explicit SetView(const PatchSet& set) : set_(&set.impl()) {}
+  explicit SetView(const PatchSet& set) : set_(&impl_of(set)) {}
 
   std::size_t patch_count() const { return set_->patches.size(); }
   const BezierPatch& patch(std::size_t index) const { return set_->patches[index]; }
@@ -34,4 +35,4 @@ class SetView {
   const PatchSet::Impl* set_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

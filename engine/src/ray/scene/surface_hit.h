@@ -1,12 +1,12 @@
 #pragma once
 // A point of a patch as a hit.
 
-#include "ray/scene/batch_layout.h"
 #include "ray/facet/first_order.h"
+#include "ray/scene/batch_layout.h"
 #include "ray/scene/set_view.h"
 #include "tessera/ray_scene.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Sets kind, patch, surface and parameters. (u,v): of the patch, in [0,1]^2. Returns the patch's part of the surface's
 /// domain.
@@ -25,4 +25,4 @@ inline const Domain& set_place(const SetView& set, std::uint32_t patch, double u
 void set_surface_point(const SetView& set, double size, double unit, std::uint32_t patch, double u, double v,
                        const FirstOrder& at, Hit& hit, HitParts parts = {});
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

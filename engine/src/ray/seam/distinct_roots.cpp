@@ -13,7 +13,7 @@
 
 #include "ray/seam/root_fan.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 class Sameness {
@@ -303,4 +303,4 @@ void keep_distinct(const SetView& set, const Adjacency& adjacency, std::vector<L
   std::stable_sort(roots.begin(), roots.end(), [](const LeafRoot& a, const LeafRoot& b) { return a.s < b.s; });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

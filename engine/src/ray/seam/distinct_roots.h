@@ -3,11 +3,11 @@
 
 #include <vector>
 
-#include "ray/seam/adjacency.h"
 #include "ray/scene/ray_query.h"
 #include "ray/scene/set_view.h"
+#include "ray/seam/adjacency.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Sorts by s and drops roots that are another one again: on one patch at the same place, or on two patches at matching
 /// places of a shared border, or at a pole, in any chain of such steps (around a vertex or a pole).
@@ -20,4 +20,4 @@ namespace tessera {
 /// the smallest residual stays. Nearness in s proves nothing: roots that are merely near stay.
 void keep_distinct(const SetView& set, const Adjacency& adjacency, std::vector<LeafRoot>& roots);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

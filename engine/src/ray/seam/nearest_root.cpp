@@ -3,7 +3,7 @@
 #include "ray/leaf/bounded_step.h"
 #include "ray/leaf/seen_point.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 LeafRoot nearest_to_ray(const BezierPatch& patch, const SceneFrame& frame, const RayLine& line, std::uint32_t index,
                         double u, double v) {
@@ -31,4 +31,4 @@ LeafRoot nearest_to_ray(const BezierPatch& patch, const SceneFrame& frame, const
   return root;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

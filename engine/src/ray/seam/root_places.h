@@ -3,11 +3,11 @@
 
 #include <cmath>
 
-#include "ray/seam/adjacency.h"
 #include "ray/scene/ray_query.h"
 #include "ray/scene/set_view.h"
+#include "ray/seam/adjacency.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Along an edge, an index into all_edges: the parameter that varies there.
 inline double along_edge(const LeafRoot& root, int edge) { return edge < 2 ? root.v : root.u; }
@@ -65,4 +65,4 @@ inline LeafRoot carried_over(const LeafRoot& root, int edge, const EdgeLink& lin
   return out;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

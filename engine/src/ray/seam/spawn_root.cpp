@@ -8,7 +8,7 @@
 #include "ray/seam/nearest_root.h"
 #include "ray/seam/root_fan.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr double noise = 4e-15;  // of points on the scale of the scene, and of distances between them
@@ -25,10 +25,10 @@ FirstOrder scene_point(const BezierPatch& patch, const SceneFrame& frame, double
 
 /// From (u,v) on by Gauss and Newton's method in the square.
 Nearest nearest_from(const BezierPatch& patch, const SceneFrame& frame, const Vec3& p, double u, double v) {
-  constexpr int most_steps = 12;
+  constexpr int max_steps = 12;
   Nearest best{u, v, 0, scene_point(patch, frame, u, v)};
   best.distance = length(best.at.position - p);
-  for (int step = 0; step < most_steps && best.distance > 0; ++step) {
+  for (int step = 0; step < max_steps && best.distance > 0; ++step) {
     const Vec3 off = best.at.position - p;
     const double uu = dot(best.at.du, best.at.du), uv = dot(best.at.du, best.at.dv), vv = dot(best.at.dv, best.at.dv);
     // Each by itself, for beside a pole one is far the smaller; at the pole it is 0.
@@ -82,7 +82,7 @@ double bend_bound(const BezierPatch& patch, const SceneFrame& frame, const Vec3&
   return m * (m - 1) * uu + 2 * m * n * uv + n * (n - 1) * vv;
 }
 
-double least_weight(const BezierPatch& patch) {
+double min_weight(const BezierPatch& patch) {
   return patch.is_rational() ? *std::min_element(patch.weights().begin(), patch.weights().end()) : 1;
 }
 
@@ -119,7 +119,7 @@ OriginRoot judge_on_patch(const BezierPatch& patch, const SceneFrame& frame, con
   const Nearest to = nearest_point(patch, frame, origin, root.u, root.v, 2 * offset);
   if (!(to.distance <= 2 * offset)) return OriginRoot::other;
 
-  const double inverse = inverse_norm(to.at, line), bend = bend_bound(patch, frame, origin) / least_weight(patch);
+  const double inverse = inverse_norm(to.at, line), bend = bend_bound(patch, frame, origin) / min_weight(patch);
   const double eta = inverse * (to.distance + noise);
   const auto away = [&](double u, double v) { return std::max(std::abs(u - to.u), std::abs(v - to.v)); };
   if (!(inverse * bend * eta <= 0.5)) {
@@ -187,4 +187,4 @@ OriginRoot judge_origin(const SetView& set, const Adjacency* borders, const Scen
   return OriginRoot::other;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -1,11 +1,11 @@
 #pragma once
 // Secondary rays: the root of a patch that stands for the point where the ray starts.
 
-#include "ray/seam/adjacency.h"
 #include "ray/scene/ray_query.h"
 #include "ray/scene/set_view.h"
+#include "ray/seam/adjacency.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Judges a root of a patch on a line that leaves the surfaces within line.spawn of its origin, in the frame's coordinates.
 ///
@@ -24,4 +24,4 @@ namespace tessera {
 OriginRoot judge_origin(const SetView& set, const Adjacency* borders, const SceneFrame& frame, const RayLine& line,
                         const LeafRoot& root);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// The smallest v with this u.
@@ -56,4 +56,4 @@ std::optional<Rates> cheapest(const CellLimits& limits, int most) {
   return best;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

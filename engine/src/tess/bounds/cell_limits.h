@@ -6,7 +6,7 @@
 #include "tess/bounds/chord_bound.h"
 #include "tess/bounds/turning_bound.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// What the triangles of one patch must keep; what is null is not asked for.
 struct CellLimits {
@@ -25,4 +25,4 @@ struct CellLimits {
 /// Rates that keep them with about the fewest cells; none up to `most` do: empty.
 std::optional<Rates> cheapest(const CellLimits& limits, int most);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

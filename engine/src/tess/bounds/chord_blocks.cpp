@@ -8,10 +8,10 @@
 #include "kernel/isa/kernel_table.h"
 #include "tess/bounds/rounded_up.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
-static_assert(kernel::most_product_degree == most_product_degree);
+static_assert(kernel::max_product_degree == max_product_degree);
 
 /// Kernels are given sizes below this: above, the unit would not fit.
 constexpr float largest_size = 0x1p126f;
@@ -23,12 +23,12 @@ float rounded_down(double x) {
 }
 
 bool is_bounded_in_blocks(const BlockGroup& group) {
-  return !group.rational || std::max(group.degree_u, group.degree_v) <= kernel::most_rational_degree;
+  return !group.rational || std::max(group.degree_u, group.degree_v) <= kernel::max_rational_degree;
 }
 
 /// How many pairs of control points of different second derivatives there are; 0 where products are not looked for.
 double pairs_of_products(const BlockGroup& group) {
-  if (std::max(group.degree_u, group.degree_v) > most_product_degree) return 0;
+  if (std::max(group.degree_u, group.degree_v) > max_product_degree) return 0;
   const double m = group.degree_u, n = group.degree_v, uu = (m - 1) * (n + 1), uv = m * n, vv = (m + 1) * (n - 1);
   return uu * vv + uu * uv + uv * vv;
 }
@@ -56,7 +56,7 @@ void ChordBlocks::bound(const PatchSet::Impl& set, std::size_t block, std::uint3
   hints.fill(kernel::may_be_sweep | kernel::may_be_flat | kernel::may_gain);
   if (in_block)
     (group.rational ? kernels.bound_rational_chords : kernels.bound_chords)(
-        {.net = set.single.bernstein.data() + group.first_value + (block - group.first_block) * group.block_values,
+        {.net = set.f32.bernstein.data() + group.first_value + (block - group.first_block) * group.block_values,
          .degree_u = group.degree_u,
          .degree_v = group.degree_v,
          .pieces = pieces,
@@ -103,7 +103,7 @@ void ChordBlocks::Products::find(const ChordBlocks& chords, const PatchSet::Impl
   if (pairs_of_products(group) == 0) return;
   const kernel::KernelTable& kernels = kernel::default_kernels();
   (group.rational ? kernels.bound_rational_products : kernels.bound_products)(
-      {.net = set.single.bernstein.data() + group.first_value + (block - group.first_block) * group.block_values,
+      {.net = set.f32.bernstein.data() + group.first_value + (block - group.first_block) * group.block_values,
        .degree_u = group.degree_u,
        .degree_v = group.degree_v,
        .pieces = chords.pieces_.data() + block * block_pieces,
@@ -141,7 +141,7 @@ ChordBlocks::Choice ChordBlocks::search(std::size_t block, std::size_t count, co
     wanted[lane] = rounded_down(std::clamp(distance[lane] / double(unit_[block * lanes + lane]), 0.0, 0x1p60));
   kernel::default_kernels().find_rates({.pieces = pieces_.data() + block * block_pieces,
                                         .distance = wanted.data(),
-                                        .most_rate = most,
+                                        .max_rate = most,
                                         .rate_u = rate_u.data(),
                                         .rate_v = rate_v.data(),
                                         .chord = chord.data(),
@@ -167,7 +167,7 @@ double ChordBlocks::saved_by_products(const PatchSet::Impl& set, std::size_t blo
   share.fill(0.9f);
   if (!group.rational)
     kernel::default_kernels().share_of_products(
-        {.net = set.single.bernstein.data() + group.first_value + (block - group.first_block) * group.block_values,
+        {.net = set.f32.bernstein.data() + group.first_value + (block - group.first_block) * group.block_values,
          .degree_u = group.degree_u,
          .degree_v = group.degree_v,
          .pieces = pieces_.data() + block * block_pieces,
@@ -200,4 +200,4 @@ ChordBlocks::Choice ChordBlocks::cheapest(const PatchSet::Impl& set, std::size_t
   return choice;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

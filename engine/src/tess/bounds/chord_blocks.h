@@ -10,7 +10,7 @@
 #include "block/patch_set_impl.h"
 #include "tess/bounds/chord_bound.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// ChordBound in float, rounded up, of a set with float Bernstein blocks. Bounds come from the packed coefficients, sixteen
 /// patches at a time, and include their rounding. Rational patches are bounded from double as well, by exact numerators, and
@@ -112,4 +112,4 @@ class ChordBlocks {
   std::vector<Source> source_;  ///< `[block][lane]`
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -6,7 +6,7 @@
 
 #include "tess/bounds/derivative_nets.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// What a piece takes from the quarters that it is made of: bit 2 i + j stands for quarter [i][j].
@@ -133,4 +133,4 @@ std::optional<Rates> ChordBound::cheapest(double tolerance, int most) const {
   return best;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -41,7 +41,7 @@
 #include "tess/plan/segments.h"
 #include "tessera/bezier_patch.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Bounds that hold over a rectangle of the patch, in the patch's lengths over its own parameters.
 struct SecondDerivatives {
@@ -63,14 +63,14 @@ struct SecondDerivatives {
   double chord(Rates rates) const { return chord(1.0 / rates.u + 0x1p-24, 1.0 / rates.v + 0x1p-24); }
 };
 
-inline constexpr int most_product_degree = 5;
+inline constexpr int max_product_degree = 5;
 
 /// Bounds for the whole patch, its halves and its quarters. Those of a half hold only for triangles that lie in one half:
 /// so they serve even rates, whose cells never straddle the middle, but for one triangle at a border of an odd rate.
 class ChordBound {
  public:
   /// Exact but for rounding, which is added: a proven bound. Infinite where it is beyond double.
-  /// `products`: with those of second derivatives, up to most_product_degree: time goes by the degree's fourth power.
+  /// `products`: with those of second derivatives, up to max_product_degree: time goes by the degree's fourth power.
   explicit ChordBound(const BezierPatch& patch, bool products = false);
   ChordBound() = default;                           ///< of a plane
   using Pieces = std::array<SecondDerivatives, 9>;  ///< whole; u < 1/2, u > 1/2; v < 1/2, v > 1/2; quarters
@@ -117,4 +117,4 @@ class ChordBound {
   Pieces pieces_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -5,7 +5,7 @@
 #include <limits>
 #include <span>
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// Cuts a Bezier curve of `count` points, `step` apart, at 1/2 by de Casteljau: the points become its upper half, and its
@@ -67,7 +67,7 @@ double largest(const DerivativePiece& piece, const DerivativePiece::Nets& nets, 
 
 /// What largest() measures: vectors, each with a ball around it; the balls of polynomial pieces are points.
 struct Vectors {
-  static constexpr std::size_t capacity = std::size_t{4} * (most_product_degree + 1) * (most_product_degree + 1);
+  static constexpr std::size_t capacity = std::size_t{4} * (max_product_degree + 1) * (max_product_degree + 1);
   using Numbers = double[capacity];
   Numbers x, y, z, radius, size;  // the first `count`
   std::size_t count = 0;
@@ -173,7 +173,7 @@ SecondDerivatives bound_piece(const DerivativeNets& patch, const DerivativePiece
                       scale * (largest(piece, piece.uv, place) + m * n * rounded),
                       scale * (largest(piece, piece.vv, place) + (n > 1 ? n * (n - 1) * rounded : 0))};
   make_infinite_where_nan({&d.uu, &d.uv, &d.vv});
-  if (!products || std::max(m, n) > most_product_degree) return d;
+  if (!products || std::max(m, n) > max_product_degree) return d;
   // What was added to the bounds was that for a vector's error, and a product's errors are those with the other vector.
   const Vectors a(piece, piece.uu, place), b(piece, piece.uv, place), c(piece, piece.vv, place);
   const auto bound = [&](double product, double x, double y, double degrees) {
@@ -188,4 +188,4 @@ SecondDerivatives bound_piece(const DerivativeNets& patch, const DerivativePiece
   return d;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

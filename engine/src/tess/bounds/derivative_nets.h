@@ -7,7 +7,7 @@
 #include "surface/homogeneous.h"
 #include "tess/bounds/chord_bound.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// A net of homogeneous vectors, `[i][j]`.
 struct DerivativeNet {
@@ -45,8 +45,8 @@ struct DerivativePiece {
 };
 
 /// Bounds over a piece. `rounding`: of differences and cuts, in units of what enters them. `products`: those as well, for
-/// degrees up to most_product_degree.
+/// degrees up to max_product_degree.
 SecondDerivatives bound_piece(const DerivativeNets& patch, const DerivativePiece& piece, double rounding,
                               bool products);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -11,7 +11,7 @@
 #include "tess/bounds/flat_quad.h"
 #include "tess/bounds/rounded_up.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 struct ChordBlocks::Exact {
   alignas(cache_line) Lanes<double> deviation;
@@ -50,7 +50,7 @@ void pack(const BezierPatch& patch, double* lane) {
 
 /// Exact numerators replace a homogeneous bound only where they take fewer cells by this factor: products of second
 /// derivatives save as much of the other.
-constexpr double least_gain = 0.8;
+constexpr double min_gain = 0.8;
 /// About the cells that a patch takes at a tolerance of 2^-10 of its size, times a factor of the patch's. `bound(kind)`: of
 /// uu, uv, vv.
 template <class Bound>
@@ -112,7 +112,7 @@ void ChordBlocks::take_exact(const BezierPatch& patch, const Exact& exact, std::
   if (!is_finite) return;
   const double wanted =
       cells(patch.hull_box().diagonal(), [&](std::size_t kind) { return exact.bound(0, kind, lane); });
-  if (!is_unknown && !(wanted < (is_sweep ? 1 : least_gain) * homogeneous_cells(patch, block, lane))) return;
+  if (!is_unknown && !(wanted < (is_sweep ? 1 : min_gain) * homogeneous_cells(patch, block, lane))) return;
   if (source == Source::alone) {
     double most = 0;
     for (std::size_t kind = 0; kind < 3; ++kind) most = std::max(most, exact.bound(0, kind, lane));
@@ -183,4 +183,4 @@ void ChordBlocks::bound_exactly(const PatchSet::Impl& set, std::size_t block, co
             [&](std::size_t lane, const BezierPatch& patch) { take_flat(patch, block, lane); });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -7,7 +7,7 @@
 
 #include "tess/bounds/derivative_nets.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr std::size_t at(int k) { return static_cast<std::size_t>(k); }
@@ -46,7 +46,7 @@ class Widened {
 
 /// The smallest rate v with this u, between `least` and `most`, if `most` will do.
 template <class Keeps>
-std::optional<int> least_v(int u, int least, int most, const Keeps& keeps) {
+std::optional<int> min_v(int u, int least, int most, const Keeps& keeps) {
   if (most < least || !keeps({u, most})) return {};
   for (int low = least - 1; most - low > 1;) {
     const int middle = (low + most) / 2;
@@ -118,10 +118,10 @@ void add_uniform(const DerivativeNets& patch, double distance, FunctionRef<bool(
     if (rates.u * rates.v < 2) break;
     const LocalChord local(patch, whole, shrunk(rates, pass.share), rates, pass.pieces);
     const auto keeps = [&](Rates r) { return local.keeps(r, distance) && also(r); };
-    const int most_u = std::min(most_rate, rates.u + rates.u / 2 + 1);
-    for (int u = local.least().u; u <= most_u; ++u) {
-      const int most_v = std::min(most_rate, static_cast<int>(choices.most_cells()) / u);
-      const auto v = least_v(u, local.least().v, most_v, keeps);
+    const int max_u = std::min(max_rate, rates.u + rates.u / 2 + 1);
+    for (int u = local.least().u; u <= max_u; ++u) {
+      const int max_v = std::min(max_rate, static_cast<int>(choices.max_cells()) / u);
+      const auto v = min_v(u, local.least().v, max_v, keeps);
       if (const Rates found{u, v.value_or(0)}; v && choices.has_room_for(found))
         choices.add({found, local.distance(found), true});
     }
@@ -140,17 +140,17 @@ class PartNeeds {
  public:
   /// Of segments a part: at most `most`.
   PartNeeds(const LocalChord& local, PartCounts parts, Rates most, double distance)
-      : least_v_(at(most.u) + 1, most.v + 1) {
+      : min_v_(at(most.u) + 1, most.v + 1) {
     const auto keeps = [&](Rates counts) {
       return local.keeps({rate_of(counts.u, parts.u), rate_of(counts.v, parts.v)}, distance);
     };
     for (int u = local.least().u / parts.u; u <= most.u; ++u)
-      if (const auto v = least_v(u, local.least().v / parts.v, most.v, keeps)) least_v_[at(u)] = *v;
+      if (const auto v = min_v(u, local.least().v / parts.v, most.v, keeps)) min_v_[at(u)] = *v;
   }
-  int least_v_for(int u) const { return least_v_[at(u)]; }  ///< above the most if none will do
+  int min_v_for(int u) const { return min_v_[at(u)]; }  ///< above the most if none will do
 
  private:
-  std::vector<int> least_v_;
+  std::vector<int> min_v_;
 };
 
 /// Bounds of the parts of a patch: quarters, or halves where the other parameter is one segment that none would part.
@@ -187,18 +187,18 @@ class PartChords {
 void add_halves(const PartChords& chords, double distance, FunctionRef<bool(Rates)> also, SegmentChoices& choices) {
   const PatchSegments known = choices.fewest().segments;
   const PartCounts parts = chords.parts();
-  const auto most_of = [](Segments had, int count) {
-    return count == 2 ? std::min(3 * had.rate() / 4 + 1, most_rate / 2) : int{had.rate()};
+  const auto max_of = [](Segments had, int count) {
+    return count == 2 ? std::min(3 * had.rate() / 4 + 1, max_rate / 2) : int{had.rate()};
   };
-  const Rates most{most_of(known.u, parts.u), most_of(known.v, parts.v)};
+  const Rates most{max_of(known.u, parts.u), max_of(known.v, parts.v)};
   const auto needs = [&](int i, int j) { return PartNeeds(chords.of(i, j), parts, most, distance); };
   const PartNeeds needs00 = needs(0, 0), needs01 = needs(0, 1), needs10 = needs(1, 0), needs11 = needs(1, 1);
   for (int low_u = 1; low_u <= most.u; ++low_u)
     for (int high_u = parts.u == 2 ? 1 : low_u; high_u <= (parts.u == 2 ? most.u : low_u); ++high_u) {
       const Segments u = joined(low_u, high_u, parts.u);
-      if (u.rate() * parts.v > choices.most_cells()) break;
-      const int low_v = std::max(needs00.least_v_for(low_u), needs10.least_v_for(high_u)),
-                high_v = std::max(needs01.least_v_for(low_u), needs11.least_v_for(high_u));
+      if (u.rate() * parts.v > choices.max_cells()) break;
+      const int low_v = std::max(needs00.min_v_for(low_u), needs10.min_v_for(high_u)),
+                high_v = std::max(needs01.min_v_for(low_u), needs11.min_v_for(high_u));
       if (std::max(low_v, high_v) > most.v) continue;
       const PatchSegments found{u, joined(low_v, high_v, parts.v)};
       if (choices.has_room_for(found) && also(found.coarsest())) choices.add({found, chords.distance(found)});
@@ -206,10 +206,10 @@ void add_halves(const PartChords& chords, double distance, FunctionRef<bool(Rate
 }
 
 void add_halves(const DerivativeNets& patch, double distance, FunctionRef<bool(Rates)> also, SegmentChoices& choices) {
-  constexpr int least_cells = 12;  // of fewer none is saved
+  constexpr int min_cells = 12;  // of fewer none is saved
   for (const Pass pass : {Pass{0.5, 12}, Pass{0.8, 24}}) {
     const PatchSegments known = choices.fewest().segments;
-    if (known.cells() < least_cells) return;
+    if (known.cells() < min_cells) return;
     add_halves(PartChords(patch, known, pass), distance, also, choices);
     if (!(choices.fewest().segments.cells() < known.cells())) return;
   }
@@ -232,10 +232,10 @@ double local_distance(const BezierPatch& patch, PatchSegments segments) {
   for (int i = 0; i < parts.u; ++i)
     for (int j = 0; j < parts.v; ++j) {
       const Rates rates = segments.of_quarter(i, j);
-      const LocalChord local(nets, part(parts, i, j), rates, rates, LocalChord::most_pieces);
+      const LocalChord local(nets, part(parts, i, j), rates, rates, LocalChord::max_pieces);
       most = std::max(most, local.distance(rates));
     }
   return most;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -9,7 +9,7 @@
 #include "tess/plan/segment_choices.h"
 #include "tessera/geometry.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 struct DerivativeNets;
 
@@ -19,10 +19,10 @@ struct DerivativeNets;
 /// a bicubic patch.
 class LocalChord {
  public:
-  static constexpr std::size_t most_pieces = 32;
+  static constexpr std::size_t max_pieces = 32;
 
   /// For rates of at least `least`; rectangles, at most so many, are chosen for rates of about `about`.
-  LocalChord(const BezierPatch& patch, Rates least, Rates about, std::size_t pieces = most_pieces);
+  LocalChord(const BezierPatch& patch, Rates least, Rates about, std::size_t pieces = max_pieces);
   /// For triangles inside a part of the patch alone.
   LocalChord(const DerivativeNets& patch, const Domain& part, Rates least, Rates about, std::size_t pieces);
 
@@ -39,7 +39,7 @@ class LocalChord {
   };
 
   Rates least_;
-  std::array<Piece, most_pieces> pieces_;  ///< those of the largest chord first
+  std::array<Piece, max_pieces> pieces_;  ///< those of the largest chord first
   std::size_t count_ = 0;
 };
 
@@ -49,4 +49,4 @@ void find_fewer(const BezierPatch& patch, double distance, FunctionRef<bool(Rate
 /// What they keep, so.
 double local_distance(const BezierPatch& patch, PatchSegments segments);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

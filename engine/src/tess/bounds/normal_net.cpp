@@ -7,7 +7,7 @@
 #include "basis/bernstein.h"
 #include "surface/homogeneous.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// Coefficients of a polynomial of the given degrees over B_i B_j times the binomials C(m,i) C(n,j): such nets multiply by
@@ -121,4 +121,4 @@ NormalNet normal_net(const BezierPatch& patch) {
   return out;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -5,7 +5,7 @@
 
 #include "tessera/bezier_patch.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Control points `[i][j]` of a vector field of the given degrees over [0,1]^2.
 struct VectorNet {
@@ -29,4 +29,4 @@ struct NormalNet {
 /// vanish, are divided out: there it points along the limit of the normal. Where it is zero the patch has no normal.
 NormalNet normal_net(const BezierPatch& patch);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -11,11 +11,11 @@
 #include "base/text.h"
 #include "kernel/isa/kernel_table.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr int most_pixels = 1 << 20;
+constexpr int max_pixels = 1 << 20;
 
 Status bad(const std::string& message) { return {StatusCode::invalid_argument, message}; }
 
@@ -88,12 +88,12 @@ class NearestSeen {
 
  private:
   void visit(const LocalNet& net, int cuts) {
-    constexpr int most_cuts = 12;
+    constexpr int max_cuts = 12;
     constexpr double level = 0.8;
     const double shallowest = net.shallowest();
     if (shallowest >= depth_ || net.is_unseen(camera_, margin_)) return;
     const bool enough = shallowest >= level * net.deepest();
-    if (cuts == most_cuts || enough) {
+    if (cuts == max_cuts || enough) {
       depth_ = shallowest;
       return;
     }
@@ -137,7 +137,7 @@ class PictureBlock {
   /// Takes a picture if float may hold it.
   bool add(std::size_t lane, const LocalNet& net) {
     const auto [lightest, heaviest] = std::minmax_element(net.weights.begin(), net.weights.end());
-    if (!(*lightest >= least_weight * *heaviest && *heaviest <= largest && *heaviest >= 1 / largest)) return false;
+    if (!(*lightest >= min_weight * *heaviest && *heaviest <= largest && *heaviest >= 1 / largest)) return false;
     Box3 box;
     for (const Vec3& p : net.points) box.extend(p);
     const Vec3 middle = 0.5 * (box.lower + box.upper);
@@ -173,11 +173,11 @@ class PictureBlock {
   bool is_sharp(std::size_t lane) const { return size_[lane] >= 0; }
 
  private:
-  static constexpr std::size_t lanes = PatchSet::lanes, most_terms = kernel::most_rational_degree + 1;
-  static constexpr double least_weight = 1.0 / 16, largest = 1e30;
+  static constexpr std::size_t lanes = PatchSet::lanes, max_terms = kernel::max_rational_degree + 1;
+  static constexpr double min_weight = 1.0 / 16, largest = 1e30;
 
   int degree_u_, degree_v_;
-  alignas(cache_line) std::array<float, most_terms * most_terms * 4 * lanes> net_;
+  alignas(cache_line) std::array<float, max_terms * max_terms * 4 * lanes> net_;
   alignas(cache_line) std::array<float, 9 * 3 * lanes> pieces_;
   alignas(cache_line) std::array<float, lanes> unit_, size_;
 };
@@ -196,7 +196,7 @@ Result<Camera> Camera::make(const View& view) {
     return bad("the view's field of view is " + text(view.field_of_view) + ", it must lie between 0 and pi");
   if (view.orthographic && !(view.extent > 0 && view.extent <= largest))
     return bad("the view's extent is " + text(view.extent) + ", it must be finite and above 0");
-  if (view.width < 1 || view.height < 1 || view.width > most_pixels || view.height > most_pixels)
+  if (view.width < 1 || view.height < 1 || view.width > max_pixels || view.height > max_pixels)
     return bad("the view is " + std::to_string(view.width) + " x " + std::to_string(view.height) +
                " pixels, from 1 to 1048576 are allowed");
   if (!(view.near_distance >= 0 && view.near_distance <= largest))
@@ -235,7 +235,7 @@ double Camera::outside(const Vec3& p, int plane) const {
   return orthographic_ ? side - half : (side - half * p.z) / std::sqrt(1 + half * half);
 }
 
-PatchInPicture::PatchInPicture(const Camera& camera, const BezierPatch& patch, double moved, double pixels) {
+ScreenSpaceBound::ScreenSpaceBound(const Camera& camera, const BezierPatch& patch, double moved, double pixels) {
   LocalNet net(camera, patch);
   if (net.is_unseen(camera, moved)) return;
   const double shallowest = net.shallowest();
@@ -251,7 +251,7 @@ PatchInPicture::PatchInPicture(const Camera& camera, const BezierPatch& patch, d
   allow_for(camera, moved, shallowest, size_of(net));
 }
 
-void PatchInPicture::allow_for(const Camera& camera, double moved, double shallowest, double size) {
+void ScreenSpaceBound::allow_for(const Camera& camera, double moved, double shallowest, double size) {
   const double tangent = camera.orthographic() ? 0 : size / camera.focal();
   const double slope = camera.focal() * std::sqrt(1 + tangent * tangent);
   // What arithmetic did to the points in the plane is far below 2^-40 of them.
@@ -259,19 +259,20 @@ void PatchInPicture::allow_for(const Camera& camera, double moved, double shallo
   moved_pixels_ = room > 0 ? slope * moved / room + 0x1p-40 * size : infinity;
 }
 
-void PatchInPicture::find(const Camera& camera, const PatchSet::Impl& set, std::size_t block,
-                          const std::array<double, PatchSet::lanes>& moved, double pixels, PatchInPicture* pictures) {
+void ScreenSpaceBound::find(const Camera& camera, const PatchSet::Impl& set, std::size_t block,
+                            const std::array<double, PatchSet::lanes>& moved, double pixels,
+                            ScreenSpaceBound* pictures) {
   constexpr double little = 0.1;  // of the pixels that are to be kept
   const BlockGroup& group = set.group_of_block(block);
   const std::uint32_t* const patches = set.lane_patches.data() + block * PatchSet::lanes;
   const std::size_t count = set.lane_counts[block];
-  const bool in_block = std::max(group.degree_u, group.degree_v) <= kernel::most_rational_degree;
+  const bool in_block = std::max(group.degree_u, group.degree_v) <= kernel::max_rational_degree;
   std::bitset<PatchSet::lanes> is_open, is_added;
   PictureBlock flat(in_block ? group.degree_u : 0, in_block ? group.degree_v : 0);
   LocalNet net;
   for (std::size_t lane = 0; lane < count; ++lane) {
     net.place(camera, set.patches[patches[lane]]);
-    PatchInPicture& picture = pictures[patches[lane]] = PatchInPicture();
+    ScreenSpaceBound& picture = pictures[patches[lane]] = ScreenSpaceBound();
     if (net.is_unseen(camera, moved[lane])) continue;
     is_open.set(lane);
     if (!in_block || !net.is_in_front(camera)) continue;
@@ -283,15 +284,16 @@ void PatchInPicture::find(const Camera& camera, const PatchSet::Impl& set, std::
   }
   if (is_added.any()) flat.bound();
   for (std::size_t lane = 0; lane < count; ++lane) {
-    PatchInPicture& picture = pictures[patches[lane]];
+    ScreenSpaceBound& picture = pictures[patches[lane]];
     if (is_added[lane]) picture.projected_ = flat.pieces(lane);
     const bool is_bounded =
         is_added[lane] && (flat.is_sharp(lane) || picture.projected()->distance({1, 1}) <= little * pixels);
-    if (is_open[lane] && !is_bounded) picture = PatchInPicture(camera, set.patches[patches[lane]], moved[lane], pixels);
+    if (is_open[lane] && !is_bounded)
+      picture = ScreenSpaceBound(camera, set.patches[patches[lane]], moved[lane], pixels);
   }
 }
 
-void PatchInPicture::bound_by_depth(const Camera& camera, const BezierPatch& patch, double moved, double pixels) {
+void ScreenSpaceBound::bound_by_depth(const Camera& camera, const BezierPatch& patch, double moved, double pixels) {
   distance_ = 0;
   if (camera.orthographic()) return;  // beyond double
   const LocalNet net(camera, patch);
@@ -313,9 +315,9 @@ void PatchInPicture::bound_by_depth(const Camera& camera, const BezierPatch& pat
   }
 }
 
-double PatchInPicture::pixels(Rates rates, double distance) const {
+double ScreenSpaceBound::pixels(Rates rates, double distance) const {
   if (projected_) return ChordBound(*projected_).distance(rates) + moved_pixels_;
   return depth_ > 0 ? steepest_ * distance / (depth_ - distance) : 0;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

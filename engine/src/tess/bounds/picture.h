@@ -19,7 +19,7 @@
 #include "tessera/status.h"
 #include "tessera/tessellation.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// A checked view.
 class Camera {
@@ -49,14 +49,14 @@ class Camera {
 };
 
 /// One patch in a picture. Those none of which is in the frame are not seen, and keep any tolerance.
-class PatchInPicture {
+class ScreenSpaceBound {
  public:
-  PatchInPicture() = default;  ///< of one that is not seen
+  ScreenSpaceBound() = default;  ///< of one that is not seen
   /// `moved`: how far vertices and surfaces may lie beside the patch; `pixels` > 0: what is to be kept.
-  PatchInPicture(const Camera& camera, const BezierPatch& patch, double moved, double pixels);
+  ScreenSpaceBound(const Camera& camera, const BezierPatch& patch, double moved, double pixels);
   /// Those of a block's patches, at their places in `pictures`; `moved` by lane.
   static void find(const Camera& camera, const PatchSet::Impl& set, std::size_t block,
-                   const std::array<double, PatchSet::lanes>& moved, double pixels, PatchInPicture* pictures);
+                   const std::array<double, PatchSet::lanes>& moved, double pixels, ScreenSpaceBound* pictures);
 
   /// The patch in the plane, in pixels, where that is what bounds it.
   std::optional<ChordBound> projected() const {
@@ -79,4 +79,4 @@ class PatchInPicture {
   double steepest_ = 0, depth_ = 0;  ///< of what is bounded by depth; 0 where it is not seen
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -6,17 +6,17 @@
 
 #include "tess/bounds/normal_net.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// A quarter is cut into up to 4^most_depth pieces; a bound this near to what its corners have is good enough.
-constexpr int most_depth = 5;
+/// A quarter is cut into up to 4^max_depth pieces; a bound this near to what its corners have is good enough.
+constexpr int max_depth = 5;
 constexpr double close_enough = 1.25;
 /// Turning per unit of a parameter that doesn't matter: less than float's rounding of normals.
 constexpr double negligible = 0x1p-20;
 /// Radians along a parameter: beyond them the normal has nearly no direction somewhere.
-constexpr double most_turning = 32;
+constexpr double max_turning = 32;
 
 /// Cuts each of the nets' lines at 1/2 by de Casteljau; `low` becomes the lower half.
 void cut(VectorNet& high, VectorNet& low, bool along_u) {
@@ -98,7 +98,7 @@ class Piece {
 class Search {
  public:
   Search(const VectorNet& net, double rounding) : rounding_(rounding) { visit(net, 0); }
-  Turning bound() const { return std::max(bound_.u, bound_.v) <= most_turning ? bound_ : Turning{infinity, infinity}; }
+  Turning bound() const { return std::max(bound_.u, bound_.v) <= max_turning ? bound_ : Turning{infinity, infinity}; }
 
  private:
   void visit(const VectorNet& net, int depth) {
@@ -106,11 +106,11 @@ class Search {
     const Turning bound = piece.bound(), corners = piece.at_corners();
     true_.u = std::max(true_.u, corners.u);
     true_.v = std::max(true_.v, corners.v);
-    if (std::max(true_.u, true_.v) > most_turning) bound_ = {infinity, infinity};
+    if (std::max(true_.u, true_.v) > max_turning) bound_ = {infinity, infinity};
     const auto enough = [](double of, double least, double known) {
       return of <= std::max({close_enough * least, known, negligible});
     };
-    if (depth == most_depth || (enough(bound.u, true_.u, bound_.u) && enough(bound.v, true_.v, bound_.v))) {
+    if (depth == max_depth || (enough(bound.u, true_.u, bound_.u) && enough(bound.v, true_.v, bound_.v))) {
       bound_.u = std::max(bound_.u, bound.u);
       bound_.v = std::max(bound_.v, bound.v);
       return;
@@ -180,4 +180,4 @@ double TurningBound::needed(double angle, int fixed, bool fixed_u, bool even) co
   return rate;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

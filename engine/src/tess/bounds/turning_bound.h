@@ -10,7 +10,7 @@
 #include "tess/write/patch_triangles.h"
 #include "tessera/bezier_patch.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Bounds that hold over a rectangle of the patch, in radians over its own parameters.
 struct Turning {
@@ -41,4 +41,4 @@ class TurningBound {
   std::array<Turning, 4> quarters_;  // 2 (u > 1/2) + (v > 1/2)
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

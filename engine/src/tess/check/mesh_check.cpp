@@ -6,15 +6,15 @@
 #include <string>
 
 #include "base/guard.h"
-#include "tess/edges/position_bits.h"
 #include "tess/check/t_junctions.h"
+#include "tess/edges/position_bits.h"
 #include "tessera/mesh.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// Edges keep a vertex and a direction in 32 bits.
-constexpr std::size_t most_vertices = std::size_t{1} << 31;
+constexpr std::size_t max_vertices = std::size_t{1} << 31;
 
 /// Positions as they are checked: those in double, where there are any.
 struct FloatPlaces {
@@ -71,8 +71,8 @@ Status check_counts(const Mesh& mesh) {
   if (mesh.indices.size() % 3 != 0)
     return bad(std::to_string(mesh.indices.size()) + " indices are not three a triangle");
   if (mesh.quads.size() % 4 != 0) return bad(std::to_string(mesh.quads.size()) + " indices are not four a quad");
-  if (mesh.vertex_count() > most_vertices)
-    return bad(std::to_string(mesh.vertex_count()) + " vertices are more than " + std::to_string(most_vertices));
+  if (mesh.vertex_count() > max_vertices)
+    return bad(std::to_string(mesh.vertex_count()) + " vertices are more than " + std::to_string(max_vertices));
   if (!fits(mesh.positions_f64, mesh.positions.size()))
     return bad(std::to_string(mesh.positions_f64.size()) + " numbers in positions in double, " +
                std::to_string(mesh.positions.size()) + " in positions");
@@ -215,4 +215,4 @@ Result<MeshReport> check(const Mesh& mesh) {
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "tess/plan/segments.h"
 #include "tess/edges/shared_edges.h"
+#include "tess/plan/segments.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 constexpr Segments along(PatchSegments patch, Side side) { return runs_along_u(side) ? patch.u : patch.v; }
 
@@ -40,4 +40,4 @@ struct HalfNeeds {
   }
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

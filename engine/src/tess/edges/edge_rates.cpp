@@ -4,15 +4,15 @@
 #include <array>
 #include <cassert>
 
-#include "tess/plan/certified_plan.h"
 #include "tess/edges/edge_needs.h"
 #include "tess/edges/side_curve.h"
+#include "tess/plan/certified_plan.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// Of a patch with higher rates, an odd one in the place of the next even one saves too little to look for.
-constexpr int most_to_straddle = 2;
+constexpr int max_to_straddle = 2;
 
 }  // namespace
 
@@ -73,7 +73,7 @@ void CertifiedPlanner::divide(double tolerance, CertifiedPlan& plan) const {
   // Angles and pixels are known of halves alone.
   const bool by_distance = !options_.angle && !options_.camera;
   const auto is_coarse = [&](std::size_t k) {
-    return by_distance && std::max(segments[k].u.rate(), segments[k].v.rate()) <= most_to_straddle;
+    return by_distance && std::max(segments[k].u.rate(), segments[k].v.rate()) <= max_to_straddle;
   };
   const auto always_straddles = [&](std::size_t k) { return !plan.straddles_.empty() && plan.straddles_[k]; };
   std::vector<EdgeNeeds> needs(edges_.count());
@@ -121,4 +121,4 @@ void CertifiedPlanner::divide(double tolerance, CertifiedPlan& plan) const {
     plan.divisions_.emplace_back().set(shapes[k], segments[k], borders_of(k));
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

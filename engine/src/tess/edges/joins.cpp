@@ -2,11 +2,11 @@
 
 #include <cmath>
 
-#include "tess/write/ring_vertices.h"
 #include "tess/edges/side_curve.h"
 #include "tess/edges/union_find.h"
+#include "tess/write/ring_vertices.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr std::uint32_t none = SharedEdges::none;
@@ -110,4 +110,4 @@ VertexCopies find_joins(const PatchSet::Impl& set, const CertifiedPlan& plan, co
   return Joiner(set, plan, edges, weld, normals, angle).take();
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -6,7 +6,7 @@
 
 #include "kernel/isa/kernel_table.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// equal(), for borders of as many points, of three components or four.
@@ -146,7 +146,7 @@ class EdgeFinder {
       any = true;
     }
     if (!any) return;
-    const float* const net = set_.single.bernstein.data() + group.first_value + start_of(block);
+    const float* const net = set_.f32.bernstein.data() + group.first_value + start_of(block);
     for (const bool reversed : {false, true}) {
       std::array<std::uint32_t, lanes> differing;
       kernels_.match_borders({.first = net + own.first,
@@ -165,7 +165,7 @@ class EdgeFinder {
       if (!any) return;
     }
   }
-  static constexpr std::ptrdiff_t most_away = std::ptrdiff_t{1} << 30;  // floats
+  static constexpr std::ptrdiff_t max_away = std::ptrdiff_t{1} << 30;  // floats
 
   const PatchSet::Impl& set_;
   const BorderHashes& hashes_;
@@ -191,7 +191,7 @@ float PackedBorder::weight_scale() const {
 void BorderHashes::find(const PatchSet::Impl& set, std::size_t block) {
   const BlockGroup& group = set.group_of_block(block);
   kernel::default_kernels().hash_borders(
-      {.net = set.single.bernstein.data() + group.first_value + (block - group.first_block) * group.block_values,
+      {.net = set.f32.bernstein.data() + group.first_value + (block - group.first_block) * group.block_values,
        .degree_u = group.degree_u,
        .degree_v = group.degree_v,
        .rational = group.rational,
@@ -216,4 +216,4 @@ void SharedEdges::renumber(std::span<const std::uint32_t> numbers) {
     if (edge != none) edge = numbers[edge];
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -10,7 +10,7 @@
 
 #include "block/patch_set_impl.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// The four borders of a patch, counter-clockwise around its parameters from (0,0): v = 0, u = 1, v = 1, u = 0.
 enum class Side : std::uint8_t { v0, u1, v1, u0 };
@@ -46,7 +46,7 @@ class PackedBorder {
     const BlockGroup& group = set.groups.size() == 1 ? set.groups.front() : set.group_of_block(slot.block);
     const BorderPlaces places(group, side);
     components_ = places.components;
-    first_ = set.single.bernstein.data() + group.first_value + (slot.block - group.first_block) * group.block_values +
+    first_ = set.f32.bernstein.data() + group.first_value + (slot.block - group.first_block) * group.block_values +
              slot.lane + places.first;
     step_ = places.step;
     count_ = places.count;
@@ -115,4 +115,4 @@ class SharedEdges {
   std::size_t count_ = 0;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 SideCurve::SideCurve(const BezierPatch& patch, Side side) {
   const bool along_u = runs_along_u(side);
@@ -124,4 +124,4 @@ Result<BezierPatch> with_pole(const BezierPatch& patch, Side side) {
   return patch.with_points(points);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -6,7 +6,7 @@
 #include "tess/edges/shared_edges.h"
 #include "tessera/bezier_patch.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// A border of a patch in homogeneous form relative to its patch's points, running with u or v. Weights are scaled so that
 /// those of both ends add up to 2.
@@ -49,4 +49,4 @@ SharedEdges parted_by_doubles(const PatchSet::Impl& set, const SharedEdges& edge
 /// The patch with a border made a point, its first. Errors: out_of_memory.
 Result<BezierPatch> with_pole(const BezierPatch& patch, Side side);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

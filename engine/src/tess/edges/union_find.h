@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Sets of 0 .. count - 1, each represented by its least member (Tarjan 1975, with path halving).
 class UnionFind {
@@ -44,4 +44,4 @@ class UnionFind {
   std::vector<std::uint8_t> turned_;  ///< against the parent; roots are not
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -9,7 +9,7 @@
 #include "tess/edges/side_curve.h"
 #include "tess/edges/union_find.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr std::uint32_t none = SharedEdges::none;
@@ -257,4 +257,4 @@ void measure_displacements(const PatchSet::Impl& set, const VertexCopies& copies
   }
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

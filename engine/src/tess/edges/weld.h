@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "base/function_ref.h"
-#include "tess/write/patch_triangles.h"
 #include "tess/edges/shared_edges.h"
+#include "tess/write/patch_triangles.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Vertices of the rings of borders that take what others have. Borders and corners go by 4 * patch + side; a corner is the
 /// one at which its side starts in the ring. What is copied from is never copied to.
@@ -66,4 +66,4 @@ void measure_displacements(const PatchSet::Impl& set, const VertexCopies& copies
                            FunctionRef<bool(std::size_t patch)> wanted, std::span<double> displacements,
                            bool same_bits_stay = false);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -11,14 +11,14 @@
 #include "base/text.h"
 #include "parallel/least_index.h"
 #include "parallel/parallel_for.h"
-#include "tess/write/f64_points.h"
 #include "tess/edges/side_curve.h"
+#include "tess/write/f64_points.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr std::size_t patches_a_piece = 64, blocks_a_piece = 8;
-constexpr std::uint64_t most_vertices = std::uint64_t{1} << 32;  // 32-bit indices
+constexpr std::size_t patches_per_task = 64, blocks_per_task = 8;
+constexpr std::uint64_t max_vertices = std::uint64_t{1} << 32;  // 32-bit indices
 
 /// Whether segments that a patch has are few enough beside the best.
 bool is_spared(const KeptSegments& kept, std::size_t patch, PatchSegments best) {
@@ -49,7 +49,7 @@ Result<CertifiedPlanner> CertifiedPlanner::make(const PatchSet::Impl& set, const
   const auto hash = [&](std::size_t begin, std::size_t end) {
     for (std::size_t block = begin; block < end; ++block) hashes.find(set, block);
   };
-  Status status = parallel_for(blocks, 4 * blocks_a_piece, {.cancel = execution.cancel}, hash);
+  Status status = parallel_for(blocks, 4 * blocks_per_task, {.cancel = execution.cancel}, hash);
   if (!status.ok()) return status;
   const auto bound = [&](std::size_t begin, std::size_t end) {
     for (std::size_t block = begin; block < end; ++block) {
@@ -71,13 +71,13 @@ Result<CertifiedPlanner> CertifiedPlanner::make(const PatchSet::Impl& set, const
     }
   };
   // Edges are found one after the other: beside the bounds, by whichever thread comes first.
-  const std::size_t pieces = 1 + (blocks + blocks_a_piece - 1) / blocks_a_piece;
+  const std::size_t pieces = 1 + (blocks + blocks_per_task - 1) / blocks_per_task;
   const auto find_or_bound = [&](std::size_t begin, std::size_t end) {
     for (std::size_t piece = begin; piece < end; ++piece) {
       if (piece == 0) {
         planner.edges_ = SharedEdges(set, hashes);
       } else {
-        bound((piece - 1) * blocks_a_piece, std::min(blocks, piece * blocks_a_piece));
+        bound((piece - 1) * blocks_per_task, std::min(blocks, piece * blocks_per_task));
       }
     }
   };
@@ -109,11 +109,11 @@ Status CertifiedPlanner::bound_turning_and_picture(const PatchSet::Impl& set, co
       std::array<double, PatchSet::lanes> moved{};
       for (std::size_t lane = 0; lane < set.lane_counts[block]; ++lane)
         moved[lane] = roundings_[set.lane_patches[block * PatchSet::lanes + lane]] + fit_error_;
-      PatchInPicture::find(*options_.camera, set, block, moved, options_.pixels, pictures_.data());
+      ScreenSpaceBound::find(*options_.camera, set, block, moved, options_.pixels, pictures_.data());
     }
   };
   if (options_.camera)
-    if (Status status = parallel_for(set.lane_counts.size(), blocks_a_piece, execution, see); !status.ok())
+    if (Status status = parallel_for(set.lane_counts.size(), blocks_per_task, execution, see); !status.ok())
       return status;
   if (!options_.angle) return {};
   const auto bound = [&](std::size_t begin, std::size_t end) {
@@ -129,7 +129,7 @@ Status CertifiedPlanner::bound_turning_and_picture(const PatchSet::Impl& set, co
       turnings_[k] = TurningBound(patch);
     }
   };
-  return parallel_for(shapes_.size(), patches_a_piece, execution, bound);
+  return parallel_for(shapes_.size(), patches_per_task, execution, bound);
 }
 
 std::optional<Rates> CertifiedPlanner::rates_for(const CellLimits& limits, int most) const {
@@ -140,7 +140,7 @@ std::optional<Rates> CertifiedPlanner::rates_for(const CellLimits& limits, int m
 CertifiedPlanner::Choice CertifiedPlanner::choose(std::size_t patch, const Request& request, int most) const {
   const double tolerance = request.tolerance;
   const double given = roundings_[patch] + fit_error_;
-  const PatchInPicture* const picture = options_.camera ? &pictures_[patch] : nullptr;
+  const ScreenSpaceBound* const picture = options_.camera ? &pictures_[patch] : nullptr;
   const TurningBound* const turning = options_.angle && !shapes_[patch].is_curve ? &turnings_[patch] : nullptr;
   const ChordBound chord = this->chord(patch);
   Choice choice;
@@ -171,9 +171,9 @@ CertifiedPlanner::Choice CertifiedPlanner::choose(std::size_t patch, const Reque
   // Rates that were raised may be odd now: what holds for a half may not hold for the whole.
   if (!(limits.keeps(*rates))) rates = {rates->u + rates->u % 2, rates->v + rates->v % 2};
   choice.cells = double(rates->u) * rates->v;
-  if (most > most_rate) return choice;
-  const int least_rate = turning && !bounded ? options_.angle_rate : 1;
-  const ProvenSegments proven = settle(patch, limits, chord, least_rate, request, *rates);
+  if (most > max_rate) return choice;
+  const int min_rate = turning && !bounded ? options_.angle_rate : 1;
+  const ProvenSegments proven = settle(patch, limits, chord, min_rate, request, *rates);
   choice.segments = proven.segments;
   choice.bound = given + proven.distance;
   const Rates coarsest = proven.segments.coarsest();
@@ -183,11 +183,11 @@ CertifiedPlanner::Choice CertifiedPlanner::choose(std::size_t patch, const Reque
 }
 
 ProvenSegments CertifiedPlanner::settle(std::size_t patch, const CellLimits& limits, const ChordBound& chord,
-                                        int least_rate, const Request& request, Rates rates) const {
+                                        int min_rate, const Request& request, Rates rates) const {
   const KeptSegments& kept = request.kept;
   CellLimits others = limits;
   others.chord = nullptr;
-  const auto keeps_others = [&](Rates r) { return std::min(r.u, r.v) >= least_rate && others.keeps(r); };
+  const auto keeps_others = [&](Rates r) { return std::min(r.u, r.v) >= min_rate && others.keeps(r); };
   ProvenSegments proven{rates, chord.distance(rates)};
   if (request.fewest && limits.chord) {
     SegmentChoices choices(proven);
@@ -267,7 +267,7 @@ Status CertifiedPlanner::choose_by_distance(const Request& request, CertifiedPla
       for (std::size_t lane = 0; lane < count; ++lane)
         left[lane] = tolerance - (roundings_[patches[lane]] + fit_error_);
       ChordBlocks::Products products;
-      ChordBlocks::Choice choice = chords_.cheapest(*set_, block, count, left, most_rate, products);
+      ChordBlocks::Choice choice = chords_.cheapest(*set_, block, count, left, max_rate, products);
       for (std::size_t lane = 0; lane < count; ++lane) {
         const std::size_t k = patches[lane];
         if (!(left[lane] > 0) || choice.rates[lane].u == 0) failed.add(k);
@@ -283,9 +283,9 @@ Status CertifiedPlanner::choose_by_distance(const Request& request, CertifiedPla
     }
   };
   const Execution quiet{.cancel = execution.cancel}, &first = choices.empty() ? execution : quiet;
-  if (Status status = parallel_for(set_->lane_counts.size(), blocks_a_piece, first, choose_some); !status.ok())
+  if (Status status = parallel_for(set_->lane_counts.size(), blocks_per_task, first, choose_some); !status.ok())
     return status;
-  if (failed.found()) return refusal(choose(failed.index(), {tolerance}, most_rate).failure, failed.index(), request);
+  if (failed.found()) return refusal(choose(failed.index(), {tolerance}, max_rate).failure, failed.index(), request);
   if (choices.empty()) return {};
   const auto fewest = find_fewest(tolerance, std::move(choices), execution);
   if (!fewest) return fewest.status();
@@ -311,7 +311,7 @@ Status CertifiedPlanner::choose_rates(const Request& request, CertifiedPlan& pla
   LeastIndex failed;
   const auto choose_some = [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      const Choice choice = choose(k, request, most_rate);
+      const Choice choice = choose(k, request, max_rate);
       if (choice.failure != Failure::none) failed.add(k);
       plan.segments_[k] = choice.segments;
       plan.bounds_[k] = rounded_up(choice.bound);
@@ -319,9 +319,9 @@ Status CertifiedPlanner::choose_rates(const Request& request, CertifiedPlan& pla
       if (options_.camera) plan.pixels_[k] = rounded_up(choice.pixels);
     }
   };
-  if (Status status = parallel_for(patches, patches_a_piece, execution, choose_some); !status.ok()) return status;
+  if (Status status = parallel_for(patches, patches_per_task, execution, choose_some); !status.ok()) return status;
   if (!failed.found()) return {};
-  return refusal(choose(failed.index(), request, most_rate).failure, failed.index(), request);
+  return refusal(choose(failed.index(), request, max_rate).failure, failed.index(), request);
 }
 
 Result<CertifiedPlan> CertifiedPlanner::plan(const Request& request, const Execution& execution) const {
@@ -334,9 +334,9 @@ Result<CertifiedPlan> CertifiedPlanner::plan(const Request& request, const Execu
   return plan;
 }
 
-Result<CertifiedPlan> CertifiedPlanner::plan(double tolerance, std::uint64_t most_triangles, const Execution& execution,
+Result<CertifiedPlan> CertifiedPlanner::plan(double tolerance, std::uint64_t max_triangles, const Execution& execution,
                                              const KeptSegments& kept) const {
-  Result<CertifiedPlan> best = plan({tolerance, options_.fewest, kept, most_triangles}, execution);
+  Result<CertifiedPlan> best = plan({tolerance, options_.fewest, kept, max_triangles}, execution);
   if (!best) return best;
   if (options_.fewest && kept.segments.empty()) {
     // What neighbours cost one another is estimated where segments are chosen: rarely, others have fewer.
@@ -345,14 +345,14 @@ Result<CertifiedPlan> CertifiedPlanner::plan(double tolerance, std::uint64_t mos
     if (plain->capacity().triangles < best->capacity().triangles) best = std::move(plain);
   }
   const auto [vertices, triangles, quads] = best->capacity();
-  if (triangles <= most_triangles && vertices <= most_vertices) return best;
+  if (triangles <= max_triangles && vertices <= max_vertices) return best;
   return Status(StatusCode::invalid_argument, wanted(tolerance) + " takes " + std::to_string(triangles) +
                                                   " triangles and " + std::to_string(vertices) + " vertices, " +
-                                                  std::to_string(most_triangles) + " and " +
-                                                  std::to_string(most_vertices) + " are allowed");
+                                                  std::to_string(max_triangles) + " and " +
+                                                  std::to_string(max_vertices) + " are allowed");
 }
 
-Result<double> CertifiedPlanner::smallest_tolerance(std::uint64_t most_triangles, const Execution& execution) const {
+Result<double> CertifiedPlanner::smallest_tolerance(std::uint64_t max_triangles, const Execution& execution) const {
   // One cell a patch keeps `high`; float vertices keep no more than `low`.
   double low = 0, high = 0;
   for (std::size_t k = 0; k < shapes_.size(); ++k) {
@@ -361,15 +361,15 @@ Result<double> CertifiedPlanner::smallest_tolerance(std::uint64_t most_triangles
     high = std::max(high, 1.001 * (given + chord(k).distance({1, 1})));
   }
   high = std::max(high, 1.001 * low);
-  if (Result<CertifiedPlan> plan = this->plan(high, most_triangles, execution); !plan) return plan.status();
+  if (Result<CertifiedPlan> plan = this->plan(high, max_triangles, execution); !plan) return plan.status();
   low = std::max(low, 1e-6 * high);
   while (high > 1.01 * low) {
     const double middle = std::sqrt(low * high);
-    Result<CertifiedPlan> plan = this->plan(middle, most_triangles, execution);
+    Result<CertifiedPlan> plan = this->plan(middle, max_triangles, execution);
     if (!plan && plan.status().code() != StatusCode::invalid_argument) return plan.status();
     (plan ? high : low) = middle;
   }
   return high;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -15,11 +15,11 @@
 #include "tess/bounds/picture.h"
 #include "tess/bounds/rounded_up.h"
 #include "tess/edges/shared_edges.h"
-#include "tess/write/stitched_patch.h"
 #include "tess/edges/weld.h"
+#include "tess/write/stitched_patch.h"
 #include "tessera/tessellation.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// The largest distance between a float vertex, relative to the set's origin, and the surface's point. Each term of a sum of
 /// B_i B_j V_ij, or of B_i B_j w_ij V_ij and of B_i B_j w_ij, has gone through at most m + n + 6 roundings: of the packed
@@ -124,14 +124,14 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   bool is_rough(double tolerance) const;
   /// About the smallest tolerance that the vertices keep with so many triangles, to two digits; none where it is far above
   /// their rounding.
-  std::optional<double> nearest_tolerance(std::uint64_t most_triangles) const;
+  std::optional<double> nearest_tolerance(std::uint64_t max_triangles) const;
   /// `tolerance`: the distance, infinite if any will do. Errors: invalid_argument, as CertifiedTessellation::make says;
   /// cancelled.
-  Result<CertifiedPlan> plan(double tolerance, std::uint64_t most_triangles, const Execution& execution,
+  Result<CertifiedPlan> plan(double tolerance, std::uint64_t max_triangles, const Execution& execution,
                              const KeptSegments& kept = {}) const;
   /// The smallest tolerance, within 1 percent, whose mesh has at most so many triangles. Errors: invalid_argument (not
   /// even one cell a patch keeps the budget).
-  Result<double> smallest_tolerance(std::uint64_t most_triangles, const Execution& execution) const;
+  Result<double> smallest_tolerance(std::uint64_t max_triangles, const Execution& execution) const;
 
  private:
   /// Why a patch has no rates.
@@ -145,7 +145,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   struct Choice {
     Failure failure = Failure::none;
     double cells = 0;        ///< of uniform segments
-    PatchSegments segments;  ///< these or fewer; like the rest, if the rates allowed are at most most_rate
+    PatchSegments segments;  ///< these or fewer; like the rest, if the rates allowed are at most max_rate
     double bound = 0, angle = 0, pixels = 0;
   };
 
@@ -157,7 +157,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
     double tolerance;     ///< the distance, infinite if any will do
     bool fewest = false;  ///< segments in halves and such are looked for
     KeptSegments kept = {};
-    std::uint64_t most_triangles = std::numeric_limits<std::uint64_t>::max();  ///< of what a refusal offers
+    std::uint64_t max_triangles = std::numeric_limits<std::uint64_t>::max();  ///< of what a refusal offers
   };
   /// However many triangles it takes.
   Result<CertifiedPlan> plan(const Request& request, const Execution& execution) const;
@@ -169,7 +169,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   /// The same where nothing but a distance is to be kept, block by block.
   Status choose_by_distance(const Request& request, CertifiedPlan& plan, const Execution& execution) const;
   /// Takes the fewest cells, if these are looked for, or the kept ones in the place of rates that keep the limits.
-  ProvenSegments settle(std::size_t patch, const CellLimits& limits, const ChordBound& chord, int least_rate,
+  ProvenSegments settle(std::size_t patch, const CellLimits& limits, const ChordBound& chord, int min_rate,
                         const Request& request, Rates rates) const;
   /// The kept segments rather than the best, where there is nothing but a distance.
   ProvenSegments keep_by_distance(std::size_t patch, double distance, const KeptSegments& kept,
@@ -199,8 +199,8 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   double largest_rounding_ = 0;    ///< of vertices before welding
   std::vector<double> roundings_;  ///< of each patch's vertices, or by how much its vertices are off when welded
   ChordBlocks chords_;
-  std::vector<TurningBound> turnings_;    ///< if there is an angle
-  std::vector<PatchInPicture> pictures_;  ///< if there is a camera
+  std::vector<TurningBound> turnings_;      ///< if there is an angle
+  std::vector<ScreenSpaceBound> pictures_;  ///< if there is a camera
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -7,20 +7,21 @@
 #include <string>
 
 #include "base/guard.h"
+#include "base/impl_access.h"
 #include "base/text.h"
 #include "kernel/isa/kernel_table.h"
 #include "parallel/call_progress.h"
 #include "parallel/parallel_for.h"
-#include "tess/plan/certified_tessellation_impl.h"
 #include "tess/edges/joins.h"
+#include "tess/plan/certified_tessellation_impl.h"
 #include "tess/write/mesh_views.h"
 #include "tess/write/patch_writer.h"
 #include "tess/write/welded_vertices.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr std::size_t patches_a_piece = 64;
+constexpr std::size_t patches_per_task = 64;
 constexpr double planning_ends[] = {0.5, 0.95};  // of bounds and of rates; angles, pixels and searches take longer
 
 }  // namespace
@@ -53,14 +54,14 @@ Status CertifiedTessellation::Impl::join(const PatchSet& set, const CertifiedPla
   if (options_.crease_angle) {
     mesh = empty_mesh(plan_.capacity(), origin_);
     views = mesh.views();
-    const PatchWriter writer(set.impl(), plan_, *tables_, kernel::kernels(isa_), views, Stores::plain);
+    const PatchWriter writer(impl_of(set), plan_, *tables_, kernel::kernels(isa_), views, Stores::plain);
     const Execution quiet{.cancel = execution.cancel};
     const auto write = [&](std::size_t begin, std::size_t end) { writer.write(begin, end); };
-    Status status = parallel_for(plan_.patch_count(), patches_a_piece, quiet, write);
-    if (status.ok()) status = write_welded(weld_, plan_, set.impl(), views, quiet, [](std::size_t) { return true; });
+    Status status = parallel_for(plan_.patch_count(), patches_per_task, quiet, write);
+    if (status.ok()) status = write_welded(weld_, plan_, impl_of(set), views, quiet, [](std::size_t) { return true; });
     if (!status.ok()) return status;
   }
-  joins_ = find_joins(set.impl(), plan_, planner.edges(), weld_, options_.crease_angle ? &views.normal : nullptr,
+  joins_ = find_joins(impl_of(set), plan_, planner.edges(), weld_, options_.crease_angle ? &views.normal : nullptr,
                       options_.crease_angle.value_or(0));
   if (options_.share_vertices) plan_.share(joins_);
   return {};
@@ -91,14 +92,15 @@ Status CertifiedTessellation::Impl::run(const PatchSet& set, const MeshViews& ou
   if (Status status = check_views(out, wanted, plan_.has_f64_positions()); !status.ok()) return status;
   if (Status status = check_normals(out); !status.ok()) return status;
   if (Status status = check_shapes(set, shapes_); !status.ok()) return status;
-  const PatchWriter writer(set.impl(), plan_, *tables_, kernel::kernels(isa_), out, execution.stores);
+  const PatchWriter writer(impl_of(set), plan_, *tables_, kernel::kernels(isa_), out, execution.stores);
   const auto write = [&](std::size_t begin, std::size_t end) { writer.write(begin, end); };
-  if (Status status = parallel_for(plan_.patch_count(), patches_a_piece, execution, write); !status.ok()) return status;
+  if (Status status = parallel_for(plan_.patch_count(), patches_per_task, execution, write); !status.ok())
+    return status;
   if (execution.report) {
     execution.report->isa = isa_;
     execution.report->streaming = writer.streaming();
   }
-  return write_copies(set.impl(), out, execution, [](std::size_t) { return true; });
+  return write_copies(impl_of(set), out, execution, [](std::size_t) { return true; });
 }
 
 std::size_t CertifiedTessellation::Impl::divided_otherwise(const Impl& other) const {
@@ -123,7 +125,7 @@ std::size_t CertifiedTessellation::Impl::divided_otherwise(const Impl& other) co
 
 namespace {
 
-constexpr double most_weld = 0.05;  // of the model's size
+constexpr double max_weld = 0.05;  // of the model's size
 
 /// What is asked for, where it makes sense. Errors: invalid_argument.
 Result<PlannerOptions> checked(const CertifiedOptions& options, const PatchSet& set) {
@@ -135,14 +137,14 @@ Result<PlannerOptions> checked(const CertifiedOptions& options, const PatchSet& 
     return bad("the tolerance is " + text(*options.tolerance) + ", it must be finite and above 0");
   if (options.angle && !(*options.angle > 0 && *options.angle <= std::numbers::pi / 2))
     return bad("the angle is " + text(*options.angle) + " radians, it must be above 0 and at most pi / 2");
-  if (options.angle_rate < 1 || options.angle_rate > most_rate)
+  if (options.angle_rate < 1 || options.angle_rate > max_rate)
     return bad("the angle's rate is " + std::to_string(options.angle_rate) + ", it must be from 1 to " +
-               std::to_string(most_rate));
+               std::to_string(max_rate));
   if (options.pixels && !(options.pixels->pixels > 0 && std::isfinite(options.pixels->pixels)))
     return bad("the tolerance is " + text(options.pixels->pixels) + " pixels, it must be finite and above 0");
   if (!(options.weld >= 0 && std::isfinite(options.weld)))
     return bad("the weld is " + text(options.weld) + ", it must be finite and at least 0");
-  if (const double size = options.weld > 0 ? set.box().diagonal() : 0; options.weld > most_weld * size)
+  if (const double size = options.weld > 0 ? set.box().diagonal() : 0; options.weld > max_weld * size)
     return bad("the weld is " + text(options.weld) + ", more than a twentieth of the model's size, " + text(size));
   if (options.crease_angle && !(*options.crease_angle >= 0 && *options.crease_angle <= std::numbers::pi))
     return bad("the crease angle is " + text(*options.crease_angle) + " radians, it must be from 0 to pi");
@@ -164,10 +166,10 @@ Result<PlannerOptions> checked(const CertifiedOptions& options, const PatchSet& 
 Status refused_in_float(const Status& refusal, const PatchSet& set, PlannerOptions planned, double tolerance,
                         const CertifiedOptions& options) {
   planned.f64_positions = true;
-  const Result<CertifiedPlanner> planner = CertifiedPlanner::make(set.impl(), planned, {});
+  const Result<CertifiedPlanner> planner = CertifiedPlanner::make(impl_of(set), planned, {});
   if (!planner) return planner.status();
-  const bool keeps = !planner->is_rough(tolerance) && planner->plan(tolerance, options.most_triangles, {});
-  const auto nearest = keeps ? std::optional<double>() : planner->nearest_tolerance(options.most_triangles);
+  const bool keeps = !planner->is_rough(tolerance) && planner->plan(tolerance, options.max_triangles, {});
+  const auto nearest = keeps ? std::optional<double>() : planner->nearest_tolerance(options.max_triangles);
   if (!keeps && !nearest) return refusal;
   return {refusal.code(), refusal.message() + "; positions in double keep " + (keeps ? "it" : text(*nearest)),
           refusal.index()};
@@ -186,25 +188,25 @@ Result<std::unique_ptr<CertifiedTessellation::Impl>> plan_for(const PatchSet& se
   if (options.tolerance) tolerance = *options.tolerance * (options.relative ? set.box().diagonal() : 1);
   if (!(tolerance > 0))
     return Status(StatusCode::invalid_argument, "the tolerance is " + text(tolerance) + ": the model has no size");
-  Result<CertifiedPlanner> planner = CertifiedPlanner::make(set.impl(), *planned, execution);
+  Result<CertifiedPlanner> planner = CertifiedPlanner::make(impl_of(set), *planned, execution);
   if (!planner) return planner.status();
   const auto find_smallest = [&]() -> Status {
     if (!options.smallest) return {};
-    const Result<double> found = planner->smallest_tolerance(options.most_triangles, execution);
+    const Result<double> found = planner->smallest_tolerance(options.max_triangles, execution);
     if (found) tolerance = *found;
     return found.status();
   };
   Status found = find_smallest();
   if (!planned->f64 && planner->needs_f64(tolerance)) {
     planned->f64 = true;
-    planner = CertifiedPlanner::make(set.impl(), *planned, execution);
+    planner = CertifiedPlanner::make(impl_of(set), *planned, execution);
     if (!planner) return planner.status();
     found = find_smallest();
   }
   if (!found.ok()) return found;
-  Result<CertifiedPlan> plan = planner->plan(tolerance, options.most_triangles, execution, kept);
+  Result<CertifiedPlan> plan = planner->plan(tolerance, options.max_triangles, execution, kept);
   if (!plan && plan.status().code() == StatusCode::invalid_argument && !kept.segments.empty())
-    plan = planner->plan(tolerance, options.most_triangles, execution);
+    plan = planner->plan(tolerance, options.max_triangles, execution);
   if (!plan) {
     const bool is_rough = plan.status().code() == StatusCode::invalid_argument && planner->is_rough(tolerance);
     return is_rough && !planned->f64_positions ? refused_in_float(plan.status(), set, *planned, tolerance, options)
@@ -274,4 +276,4 @@ Status CertifiedTessellation::run(const PatchSet& set, const MeshViews& out, con
   return guarded([&] { return impl_->run(set, out, execution); });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -8,7 +8,7 @@
 #include "tess/write/mesh_tables.h"
 #include "tessera/tessellation.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 class CertifiedTessellation::Impl {
  public:
@@ -64,4 +64,4 @@ class CertifiedTessellation::Impl {
   std::size_t without_angle_ = 0;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

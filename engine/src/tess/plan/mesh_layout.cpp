@@ -2,7 +2,7 @@
 
 #include "tess/plan/certified_plan.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 void CertifiedPlan::lay_out() {
   const std::size_t patches = divisions_.size();
@@ -62,4 +62,4 @@ std::size_t CertifiedPlan::ring_vertex(std::uint32_t border, int k) const {
   return start(source.from) + before + static_cast<std::size_t>((opposite ? rate - k : k) - 1);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -3,18 +3,19 @@
 #include <string>
 
 #include "base/guard.h"
+#include "base/impl_access.h"
 #include "eval/patch_edits.h"
 #include "kernel/isa/kernel_table.h"
 #include "parallel/call_progress.h"
 #include "parallel/parallel_for.h"
-#include "tess/write/mesh_views.h"
 #include "tess/plan/present_bounds.h"
+#include "tess/write/mesh_views.h"
 #include "tess/write/vertex_pass.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr std::size_t blocks_a_piece = 8;
+constexpr std::size_t blocks_per_task = 8;
 constexpr double restating_ends[] = {0.8, 1};  // of bounds, and of what they say of the mesh
 
 Status edited_otherwise(std::uint64_t revision, std::uint64_t known) {
@@ -27,13 +28,16 @@ Status edited_otherwise(std::uint64_t revision, std::uint64_t known) {
 class MeshUpdate::Impl {
  public:
   Impl(const PatchSet& set, CertifiedTessellation plan)
-      : plan_(std::move(plan)), touched_(set.impl()), bounds_(set.impl(), plan_.impl()), revision_(set.revision()) {}
+      : plan_(std::move(plan)),
+        touched_(impl_of(set)),
+        bounds_(impl_of(set), impl_of(plan_)),
+        revision_(set.revision()) {}
 
   const CertifiedTessellation& plan() const { return plan_; }
   const PresentBounds& bounds() const { return bounds_; }
 
   Status run(PatchSet::Impl& set, const PatchEdits& edits, const MeshViews& out, const Execution& execution) {
-    const CertifiedTessellation::Impl& plan = plan_.impl();
+    const CertifiedTessellation::Impl& plan = impl_of(plan_);
     if (plan.shapes().size() != set.patches.size() || touched_.block_count() != set.lane_counts.size())
       return {StatusCode::invalid_argument, "the update was made for another patch set"};
     if (set.revision != revision_) return edited_otherwise(set.revision, revision_);
@@ -60,13 +64,13 @@ class MeshUpdate::Impl {
   Status restate(const PatchSet::Impl& set, const Execution& execution) {
     if (set.revision != revision_) return edited_otherwise(set.revision, revision_);
     CallProgress progress(execution, restating_ends);
-    return progress.finish(bounds_.restate(set, plan_.impl(), progress.loops()));
+    return progress.finish(bounds_.restate(set, impl_of(plan_), progress.loops()));
   }
 
   Result<std::size_t> retessellate(const PatchSet& set, double spare, const Execution& execution) {
     Result<CertifiedTessellation> next = plan_.retessellate(set, spare, execution);
     if (!next) return next.status();
-    PresentBounds bounds(set.impl(), next->impl());
+    PresentBounds bounds(impl_of(set), impl_of(*next));
     const std::size_t changed = set.revision() == revision_ ? next->divided_otherwise(plan_) : set.patch_count();
     plan_ = std::move(*next);
     bounds_ = std::move(bounds);
@@ -77,7 +81,7 @@ class MeshUpdate::Impl {
  private:
   /// Packs and writes block after block.
   Status write(PatchSet::Impl& set, const PatchEdits& edits, const MeshViews& out, const Execution& execution) {
-    const CertifiedTessellation::Impl& plan = plan_.impl();
+    const CertifiedTessellation::Impl& plan = impl_of(plan_);
     const kernel::KernelTable& kernels = kernel::kernels(plan.isa());
     std::size_t vertices = 0;
     for (const std::uint32_t patch : edits.patch)
@@ -95,7 +99,7 @@ class MeshUpdate::Impl {
       }
       pass.finish();
     };
-    Status status = parallel_for(blocks.size(), blocks_a_piece, execution, write_blocks);
+    Status status = parallel_for(blocks.size(), blocks_per_task, execution, write_blocks);
     if (execution.report) {
       execution.report->isa = plan.isa();
       execution.report->streaming = writer.streaming();
@@ -111,8 +115,8 @@ class MeshUpdate::Impl {
 
 Result<MeshUpdate> MeshUpdate::make(const PatchSet& set, CertifiedTessellation plan) {
   return guarded([&]() -> Result<MeshUpdate> {
-    if (Status status = check_count(set, plan.impl().plan().patch_count()); !status.ok()) return status;
-    if (set.revision() != plan.impl().revision()) return edited_otherwise(set.revision(), plan.impl().revision());
+    if (Status status = check_count(set, impl_of(plan).plan().patch_count()); !status.ok()) return status;
+    if (set.revision() != impl_of(plan).revision()) return edited_otherwise(set.revision(), impl_of(plan).revision());
     return MeshUpdate(std::make_unique<Impl>(set, std::move(plan)));
   });
 }
@@ -128,15 +132,15 @@ double MeshUpdate::bound() const { return impl_->bounds().bound(); }
 std::size_t MeshUpdate::unproven() const { return impl_->bounds().unproven(); }
 
 Status MeshUpdate::run(PatchSet& set, const PatchEdits& edits, const MeshViews& out, const Execution& execution) {
-  return guarded([&] { return impl_->run(set.impl(), edits, out, execution); });
+  return guarded([&] { return impl_->run(impl_of(set), edits, out, execution); });
 }
 
 Status MeshUpdate::restate(const PatchSet& set, const Execution& execution) {
-  return guarded([&] { return impl_->restate(set.impl(), execution); });
+  return guarded([&] { return impl_->restate(impl_of(set), execution); });
 }
 
 Result<std::size_t> MeshUpdate::retessellate(const PatchSet& set, double spare, const Execution& execution) {
   return guarded([&] { return impl_->retessellate(set, spare, execution); });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -10,10 +10,10 @@
 #include "base/text.h"
 #include "tess/plan/certified_plan.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr std::uint64_t most_vertices = std::uint64_t{1} << 32;  // 32-bit indices
+constexpr std::uint64_t max_vertices = std::uint64_t{1} << 32;  // 32-bit indices
 
 Status invalid(std::string message, std::size_t patch) {
   return {StatusCode::invalid_argument, std::move(message), static_cast<std::ptrdiff_t>(patch)};
@@ -36,8 +36,8 @@ double rounded_up_shortly(double x) {
 }  // namespace
 
 bool CertifiedPlanner::needs_f64(double tolerance) const {
-  constexpr double most_share = 1.0 / 8;
-  if (largest_rounding_ > most_share * tolerance) return true;
+  constexpr double max_share = 1.0 / 8;
+  if (largest_rounding_ > max_share * tolerance) return true;
   for (std::size_t k = 0; k < pictures_.size(); ++k) {
     const double given = roundings_[k] + fit_error_;
     if (!(given < pictures_[k].distance())) return true;
@@ -51,18 +51,18 @@ bool CertifiedPlanner::is_rough(double tolerance) const {
                      [&](double rounding) { return !(2 * (rounding + fit_error_) < tolerance); });
 }
 
-std::optional<double> CertifiedPlanner::nearest_tolerance(std::uint64_t most_triangles) const {
+std::optional<double> CertifiedPlanner::nearest_tolerance(std::uint64_t max_triangles) const {
   double given = 0;
   for (const double rounding : roundings_) given = std::max(given, rounding + fit_error_);
   // The rest is for chords: rates go by its root.
   for (double room = given / 8; room < 1e12 * given; room *= 2) {
     const double tolerance = rounded_up_shortly(given + room);
-    const auto serves = [&](std::size_t k) { return choose(k, {tolerance}, most_rate).failure == Failure::none; };
+    const auto serves = [&](std::size_t k) { return choose(k, {tolerance}, max_rate).failure == Failure::none; };
     std::size_t served = 0;
     while (served < shapes_.size() && serves(served)) ++served;
     if (served < shapes_.size()) continue;
     const Result<CertifiedPlan> found = plan({tolerance}, {});
-    if (found && found->capacity().triangles <= most_triangles && found->capacity().vertices <= most_vertices)
+    if (found && found->capacity().triangles <= max_triangles && found->capacity().vertices <= max_vertices)
       return tolerance;
   }
   return {};
@@ -75,7 +75,7 @@ Status CertifiedPlanner::refusal(Failure failure, std::size_t patch, const Reque
                                text(rounded_up_shortly(roundings_[patch])) + ", and the fit error, " + text(fit_error_);
   const bool is_near = failure == Failure::wide && roundings_[patch] + fit_error_ > tolerance / 2;
   if (failure == Failure::rough || is_near) {
-    const std::optional<double> nearest = nearest_tolerance(request.most_triangles);
+    const std::optional<double> nearest = nearest_tolerance(request.max_triangles);
     return invalid("the tolerance " + text(tolerance) + (is_near ? " is little above what " : " is not above what ") +
                        vertices + (nearest ? "; " + text(*nearest) + " would do" : ""),
                    patch);
@@ -95,10 +95,10 @@ Status CertifiedPlanner::refusal(Failure failure, std::size_t patch, const Reque
   }
   std::array<char, 32> count;
   std::snprintf(count.data(), count.size(), "%.2g", triangles);
-  return invalid(wanted(tolerance) + " takes more than " + std::to_string(most_rate) +
+  return invalid(wanted(tolerance) + " takes more than " + std::to_string(max_rate) +
                      " segments along a parameter of patch " + std::to_string(patch) + ", and " + about + count.data() +
                      " triangles in all",
                  patch);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

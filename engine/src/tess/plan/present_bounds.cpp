@@ -5,13 +5,13 @@
 #include <numeric>
 
 #include "parallel/parallel_for.h"
-#include "tess/write/f64_points.h"
 #include "tess/bounds/local_chord.h"
+#include "tess/write/f64_points.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr std::size_t blocks_a_piece = 8;
+constexpr std::size_t blocks_per_task = 8;
 /// Bounds of one net by different sums differ by less; the planner has added it already.
 constexpr double float_sums = 1 + 0x1p-20;
 
@@ -69,7 +69,7 @@ void PresentBounds::touch(const PatchSet::Impl& set, std::span<const std::uint32
 }
 
 Status PresentBounds::bound_blocks(const PatchSet::Impl& set, const Execution& execution) {
-  return parallel_for(touched_blocks_.size(), blocks_a_piece, execution, [&](std::size_t begin, std::size_t end) {
+  return parallel_for(touched_blocks_.size(), blocks_per_task, execution, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const std::uint32_t block = touched_blocks_[k], wanted = touched_lanes_[block];
       chords_.bound(set, block, wanted);
@@ -140,7 +140,7 @@ Status PresentBounds::restate(const PatchSet::Impl& set, const CertifiedTessella
           set_bound(set, plan, set.lane_patches[touched_blocks_[k] * std::size_t{PatchSet::lanes} + lane], products);
     }
   };
-  if (Status status = parallel_for(touched_blocks_.size(), blocks_a_piece, execution, state); !status.ok())
+  if (Status status = parallel_for(touched_blocks_.size(), blocks_per_task, execution, state); !status.ok())
     return status;
   for (std::size_t patch = 0; patch < moved_.size(); ++patch) {
     if (!moved_[patch] || is_touched(set, patch)) continue;
@@ -159,4 +159,4 @@ double PresentBounds::bound() const {
   return most;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -7,7 +7,7 @@
 
 #include "tess/plan/certified_tessellation_impl.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Distances that the mesh keeps to each patch. Memory for all of them, so that no call allocates.
 class PresentBounds {
@@ -47,4 +47,4 @@ class PresentBounds {
   std::size_t unproven_ = 0;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -5,12 +5,12 @@
 #include "tess/edges/edge_needs.h"
 #include "tess/write/stitched_patch.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr int rounds = 4;
 /// Of edges with more borders, what these need is summed up once a round: at least that is needed.
-constexpr std::size_t most_looked_at = 8;
+constexpr std::size_t max_looked_at = 8;
 
 class Chooser {
  public:
@@ -73,7 +73,7 @@ class Chooser {
   }
   void sum_up() {
     for (std::uint32_t edge = 0; edge < needs_.size(); ++edge)
-      if (border_count(edge) > most_looked_at) needs_[edge] = needs_with(edge, choices_.size(), {});  // no patch
+      if (border_count(edge) > max_looked_at) needs_[edge] = needs_with(edge, choices_.size(), {});  // no patch
   }
 
   /// Whether a patch took another choice.
@@ -110,7 +110,7 @@ class Chooser {
     if (edge == SharedEdges::none) return along(choice.segments, side);
     const std::size_t own = 4 * patch + static_cast<std::size_t>(side);
     Needs needs = needs_[edge];
-    if (border_count(edge) > most_looked_at) {
+    if (border_count(edge) > max_looked_at) {
       needs.add(choice, side, against_[own]);
     } else {
       needs = needs_with(edge, patch, choice);
@@ -148,4 +148,4 @@ Result<std::vector<std::uint8_t>> choose_together(std::span<const PatchShape> sh
   return Chooser(shapes, edges, against, choices, cancel).choose();
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -9,11 +9,11 @@
 #include <span>
 #include <vector>
 
-#include "tess/plan/segments.h"
 #include "tess/edges/shared_edges.h"
+#include "tess/plan/segments.h"
 #include "tessera/status.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Segments, and the distance that a patch keeps with them.
 struct ProvenSegments {
@@ -32,9 +32,9 @@ class SegmentChoices {
   const ProvenSegments& operator[](std::size_t k) const { return all_[k]; }
   const ProvenSegments& fewest() const { return all_.front(); }
   /// Cells beyond which a choice saves nothing elsewhere.
-  double most_cells() const { return 1.25 * fewest().segments.cells() + 2; }
+  double max_cells() const { return 1.25 * fewest().segments.cells() + 2; }
   bool has_room_for(PatchSegments segments) const {
-    return segments.cells() <= most_cells() && (count_ < most || segments.cells() < all_[count_ - 1].segments.cells());
+    return segments.cells() <= max_cells() && (count_ < most || segments.cells() < all_[count_ - 1].segments.cells());
   }
   /// If there is room. Behind those of as many cells; the last gives way. Of the same segments those proven anywhere stay.
   void add(const ProvenSegments& choice) {
@@ -63,4 +63,4 @@ Result<std::vector<std::uint8_t>> choose_together(std::span<const PatchShape> sh
                                                   std::span<const SegmentChoices> choices,
                                                   const std::atomic<bool>* cancel = nullptr);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

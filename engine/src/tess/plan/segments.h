@@ -7,17 +7,17 @@
 
 #include "tess/write/patch_triangles.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Rates stay at most this, those of halves too: parameters i / rate are then well apart in float.
-inline constexpr int most_rate = 4096;
+inline constexpr int max_rate = 4096;
 
 /// The segments of a parameter from 0 to 1: all of one length, or those of each half. One word: where halves of it are
 /// stored, copies of the whole wait for them.
 class Segments {
  public:
   constexpr Segments() = default;  ///< none
-  constexpr Segments(int all) : word_(static_cast<std::uint32_t>(all)) { assert(all >= 0 && all <= most_rate); }
+  constexpr Segments(int all) : word_(static_cast<std::uint32_t>(all)) { assert(all >= 0 && all <= max_rate); }
   static constexpr Segments halves(int lower, int upper) {
     Segments both(lower + upper);
     if (lower != upper) both.word_ |= static_cast<std::uint32_t>(lower) << rate_bits;
@@ -52,7 +52,7 @@ class Segments {
   }
 
  private:
-  static constexpr int rate_bits = 13;  // up to most_rate
+  static constexpr int rate_bits = 13;  // up to max_rate
   // Where those of the halves differ.
   constexpr int lower() const { return static_cast<int>(word_ >> rate_bits); }
   constexpr int upper() const { return rate() - lower(); }
@@ -80,4 +80,4 @@ struct PatchSegments {
   }
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

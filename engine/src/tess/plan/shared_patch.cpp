@@ -7,11 +7,11 @@
 #include "tess/write/ring_vertices.h"
 #include "tess/write/vertex_job.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// Points of a ring that are evaluated at once. A border has no more.
-constexpr std::size_t most_points = most_rate;
+constexpr std::size_t max_points = max_rate;
 
 /// The job is for a part of the division that it was prepared for.
 void restrict_to(const Division& part, VertexJob& vertices) {
@@ -38,7 +38,7 @@ void PatchWriter::write_owned(std::size_t k, VertexJob& vertices) const {
     part.border = division.border;
   }
   part.inner = {1, 1};
-  if (division.ring_count() <= most_points) {
+  if (division.ring_count() <= max_points) {
     write_ring(k, part, vertices);
   } else {
     for (std::size_t side = 0; side < 4; ++side) {
@@ -51,12 +51,12 @@ void PatchWriter::write_owned(std::size_t k, VertexJob& vertices) const {
 }
 
 void PatchWriter::write_ring(std::size_t k, const Division& part, VertexJob& vertices) const {
-  alignas(cache_line) std::array<float, 3 * most_points> positions, normals;
+  alignas(cache_line) std::array<float, 3 * max_points> positions, normals;
   prepare(k, vertices);
   restrict_to(part, vertices);
   set_packed(vertices.job.position, positions.data());
   set_packed(vertices.job.normal, out_.normal.empty() ? nullptr : normals.data());
-  vertices.job.writable = static_cast<int>(most_points);
+  vertices.job.writable = static_cast<int>(max_points);
   kernels_.mesh_vertices(vertices.job);
   std::size_t from = 0;
   for (std::uint32_t side = 0; side < 4; ++side) {
@@ -78,7 +78,7 @@ void PatchWriter::write_ring(std::size_t k, const Division& part, VertexJob& ver
 
 void PatchWriter::share_indices(std::size_t k, std::uint32_t* indices) const {
   const Division& division = plan_.division(k);
-  std::array<std::uint32_t, 4 * most_points> ring;
+  std::array<std::uint32_t, 4 * max_points> ring;
   std::size_t count = 0;
   for (std::uint32_t side = 0; side < 4; ++side) {
     const RingVertices vertices(plan_, static_cast<std::uint32_t>(4 * k) + side);
@@ -107,4 +107,4 @@ void PatchWriter::write_quads(std::size_t k) const {
     }
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -9,27 +9,27 @@
 #include "tess/write/patch_triangles.h"
 #include "tessera/tessellation.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr int most_rate = 4096;
-constexpr std::uint64_t most_vertices = std::uint64_t{1} << 32;  // 32-bit indices
-constexpr std::size_t patches_a_piece = 64;
+constexpr int max_rate = 4096;
+constexpr std::uint64_t max_vertices = std::uint64_t{1} << 32;  // 32-bit indices
+constexpr std::size_t patches_per_task = 64;
 constexpr double progress_ends[] = {0.7, 1};  // of vertices, and of all else
 
 Status invalid(std::string message) { return {StatusCode::invalid_argument, std::move(message)}; }
 
 Status check_rate(int rate, const char* direction) {
-  if (rate >= 1 && rate <= most_rate) return {};
+  if (rate >= 1 && rate <= max_rate) return {};
   return invalid(std::string("rate ") + direction + " is " + std::to_string(rate) + ", it must be 1 to " +
-                 std::to_string(most_rate));
+                 std::to_string(max_rate));
 }
 
 Status check_vertices(std::size_t patches, Rates rates) {
-  if (patches <= most_vertices / rates.vertices()) return {};
+  if (patches <= max_vertices / rates.vertices()) return {};
   return invalid(std::to_string(patches) + " patches at rates " + std::to_string(rates.u) + " x " +
                  std::to_string(rates.v) + " have " + std::to_string(patches * rates.vertices()) +
-                 " vertices, 32-bit indices reach " + std::to_string(most_vertices));
+                 " vertices, 32-bit indices reach " + std::to_string(max_vertices));
 }
 
 std::vector<float> parameters(int rate) {
@@ -93,7 +93,7 @@ class TessellationPlan::Impl {
     ExecutionReport report;
     Execution part{.cancel = execution.cancel, .progress = {}, .stores = execution.stores, .report = &report};
     if (execution.progress) part.progress = [&](double done) { execution.progress(done); };
-    Status status = parallel_for(shapes_.size(), patches_a_piece, part, [&](std::size_t begin, std::size_t end) {
+    Status status = parallel_for(shapes_.size(), patches_per_task, part, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         if (!out.parameter.empty()) write_parameters(k, out.parameter);
         write_faces(k, out);
@@ -172,4 +172,4 @@ Status TessellationPlan::run(const PatchSet& set, const MeshViews& out, const Ex
   return guarded([&] { return impl_->run(set, out, execution); });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -4,7 +4,7 @@
 
 #include "basis/bernstein.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr std::size_t at(int k) { return static_cast<std::size_t>(k); }
@@ -81,4 +81,4 @@ Vec3 F64Points::start_of(Side side) const {
   return patch_.point(end_u ? patch_.degree_u() : 0, end_v ? patch_.degree_v() : 0) - origin_ + Vec3{};
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

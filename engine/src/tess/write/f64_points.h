@@ -4,7 +4,7 @@
 #include "surface/homogeneous.h"
 #include "tess/write/stitched_patch.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// The largest distance between a vertex that F64Points gives, rounded to float, and the surface's point at the exact
 /// parameters. Lengths are those of the model, relative to the set's origin.
@@ -74,4 +74,4 @@ class F64Points {
   HomogeneousNet net_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

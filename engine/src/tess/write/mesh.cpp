@@ -3,7 +3,7 @@
 #include "base/guard.h"
 #include "tess/write/mesh_parts.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// Three corners a triangle out of all faces, part by part.
@@ -82,4 +82,4 @@ Result<Mesh> split_quads(const Mesh& mesh) {
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -5,7 +5,7 @@
 #include "tessera/model.h"
 #include "tessera/tessellation.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 Status no_such(const char* what, std::size_t index, std::size_t count, const char* face, std::size_t place) {
@@ -96,4 +96,4 @@ Result<std::vector<MeshPart>> parts_by_surface(const Mesh& mesh, const PatchSet&
   });
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -9,7 +9,7 @@
 #include "basis/bernstein.h"
 #include "kernel/isa/kernel_table.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr std::size_t tile = kernel::mesh_tile;
@@ -97,7 +97,7 @@ bool MeshTables::has(int degree, Segments inner, Segments border, bool collapsed
   if (!found(tables(inner).inner[at(degree)], place(inner))) return false;
   if (!is_common(border, inner, collapsed)) return other_strip(border, inner, collapsed).codes != nullptr;
   return at(inner.rate()) < strips_.size() &&
-         found(strips_[at(inner.rate())], at(border.rate() + most_missing - inner.rate())).codes != nullptr;
+         found(strips_[at(inner.rate())], at(border.rate() + max_missing - inner.rate())).codes != nullptr;
 }
 
 void MeshTables::add(int degree, Segments inner, Segments border, bool collapsed) {
@@ -185,7 +185,7 @@ kernel::MeshCubicBorder MeshTables::make_cubic_border(Segments along) {
 
 void MeshTables::add_strip(Segments border, Segments inner, bool collapsed) {
   Strip& strip = is_common(border, inner, collapsed)
-                     ? grown(grown(strips_, at(inner.rate())), at(border.rate() + most_missing - inner.rate()))
+                     ? grown(grown(strips_, at(inner.rate())), at(border.rate() + max_missing - inner.rate()))
                      : other_strips_[key(border, inner, collapsed)];
   if (strip.codes) return;
   const std::vector<std::uint32_t> codes = strip_codes(border, inner, collapsed, kernel::mesh_border_code);
@@ -242,9 +242,9 @@ class TableMaker {
   std::shared_ptr<const MeshTables> take() {
     if (!own_) return common_;
     CommonTables& all = CommonTables::get();
-    if (own_->bytes() <= MeshTables::most_common) {
+    if (own_->bytes() <= MeshTables::max_common_bytes) {
       all.store(own_->with_cubic_, own_);
-    } else if (common_bytes_ > MeshTables::most_common / 2) {
+    } else if (common_bytes_ > MeshTables::max_common_bytes / 2) {
       all.store(own_->with_cubic_, nullptr);
     }
     return own_;
@@ -277,4 +277,4 @@ std::shared_ptr<const MeshTables> MeshTables::of(std::span<const PatchShape> sha
   return maker.take();
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

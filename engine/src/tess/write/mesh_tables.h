@@ -13,7 +13,7 @@
 #include "tess/write/stitched_patch.h"
 #include "tessera/bezier_patch.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Looked up by number while a mesh is written. Rates are at most 4096.
 class MeshTables {
@@ -24,7 +24,7 @@ class MeshTables {
   static std::shared_ptr<const MeshTables> of(std::span<const PatchShape> shapes, std::span<const Division> divisions,
                                               bool with_cubic);
   /// Tables of more bytes are not shared.
-  static constexpr std::size_t most_common = std::size_t{1} << 18;
+  static constexpr std::size_t max_common_bytes = std::size_t{1} << 18;
   std::size_t bytes() const { return bytes_; }  ///< about
 
   // Layouts: see kernel::MeshVertexJob and MeshBorder. Weights are rounded once, to float.
@@ -47,7 +47,7 @@ class MeshTables {
   };
   Strip strip(Segments border, Segments inner, bool collapsed) const {
     if (is_common(border, inner, collapsed))
-      return strips_[at(inner.rate())][at(border.rate() + most_missing - inner.rate())];
+      return strips_[at(inner.rate())][at(border.rate() + max_missing - inner.rate())];
     return other_strip(border, inner, collapsed);
   }
 
@@ -56,7 +56,7 @@ class MeshTables {
   explicit MeshTables(bool with_cubic) : with_cubic_(with_cubic) {}
 
   /// A border has at least one segment, the inner points at least two.
-  static constexpr int most_missing = 1;
+  static constexpr int max_missing = 1;
   static std::size_t at(int k) { return static_cast<std::size_t>(k); }
   static bool is_common(Segments border, Segments inner, bool collapsed) {
     return border.is_uniform() && inner.is_uniform() && !collapsed;
@@ -95,10 +95,10 @@ class MeshTables {
   Tables uniform_;  ///< by rate
   Tables others_;   ///< by other_places_
   std::unordered_map<std::uint32_t, std::size_t> other_places_;
-  std::vector<std::vector<Strip>> strips_;  ///< common ones, `[inner][border + most_missing - inner]`
+  std::vector<std::vector<Strip>> strips_;  ///< common ones, `[inner][border + max_missing - inner]`
   std::unordered_map<std::uint64_t, Strip> other_strips_;
   std::vector<std::shared_ptr<const void>> memory_;  ///< of all that these point to
   std::size_t bytes_ = 0;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

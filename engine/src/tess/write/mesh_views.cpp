@@ -3,15 +3,16 @@
 #include <algorithm>
 #include <string>
 
+#include "base/impl_access.h"
 #include "block/patch_set_impl.h"
 #include "eval/view_checks.h"
 #include "parallel/least_index.h"
 #include "parallel/parallel_for.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr std::size_t patches_a_piece = 1024;
+constexpr std::size_t patches_per_task = 1024;
 
 Status invalid(std::string message) { return {StatusCode::invalid_argument, std::move(message)}; }
 
@@ -115,12 +116,12 @@ Status check_shapes(const PatchSet& set, std::span<const PatchShape> planned) {
   LeastIndex changed;
   const auto compare = [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      if (PatchShape::of(set.impl().patches[k], set.impl().collapsed[k]) == planned[k]) continue;
+      if (PatchShape::of(impl_of(set).patches[k], impl_of(set).collapsed[k]) == planned[k]) continue;
       changed.add(k);
       return;
     }
   };
-  if (Status status = parallel_for(planned.size(), patches_a_piece, {}, compare); !status.ok()) return status;
+  if (Status status = parallel_for(planned.size(), patches_per_task, {}, compare); !status.ok()) return status;
   if (!changed.found()) return {};
   return {
       StatusCode::stale,
@@ -128,4 +129,4 @@ Status check_shapes(const PatchSet& set, std::span<const PatchShape> planned) {
       static_cast<std::ptrdiff_t>(changed.index())};
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -7,7 +7,7 @@
 #include "tessera/mesh.h"
 #include "tessera/patch_set.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// A mesh with all attributes, zeros, of so many vertices, triangles and quads.
 Mesh empty_mesh(const MeshCapacity& capacity, const Vec3& origin);
@@ -24,4 +24,4 @@ Status check_count(const PatchSet& set, std::size_t planned);
 /// Whether the patches of a set are still those that a plan was made for. Errors: stale, of the first that is not.
 Status check_shapes(const PatchSet& set, std::span<const PatchShape> planned);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -2,7 +2,7 @@
 
 #include "surface/collapsed_edges.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// Whether the patch is a curve or a point. Where the points do not depend on one parameter but the weights do, three
@@ -141,4 +141,4 @@ void write_quads(const PatchShape& shape, Rates rates, std::uint32_t first, std:
     }
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

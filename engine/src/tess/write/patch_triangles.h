@@ -7,7 +7,7 @@
 
 #include "tessera/bezier_patch.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// What of a patch decides which triangles it has.
 struct PatchShape {
@@ -43,4 +43,4 @@ std::uint32_t* write_triangles(const PatchShape& shape, Rates rates, std::uint32
 void write_quads(const PatchShape& shape, Rates rates, std::uint32_t first, std::uint32_t* indices,
                  std::uint32_t* quads);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

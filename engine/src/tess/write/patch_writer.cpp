@@ -8,7 +8,7 @@
 #include "tess/write/f64_points.h"
 #include "tess/write/vertex_job.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 /// A side's first control point as packed: w p / w would depend on the weight.
@@ -123,12 +123,12 @@ void PatchWriter::prepare(std::size_t k, VertexJob& vertices) const {
   const PatchSet::Slot slot = set_.slots[k];
   const BlockGroup& group = set_.group_of_block(slot.block);
   kernel::MeshVertexJob& job = vertices.job;
-  job.net = set_.single.bernstein.data() + group.first_value + (slot.block - group.first_block) * group.block_values +
-            slot.lane;
+  job.net =
+      set_.f32.bernstein.data() + group.first_value + (slot.block - group.first_block) * group.block_values + slot.lane;
   job.grid.degree_u = group.degree_u;
   job.grid.degree_v = group.degree_v;
   job.grid.rational = group.rational;
-  const float* doubts = set_.single.bernstein_doubt.data() + 2 * std::size_t{PatchSet::lanes} * slot.block + slot.lane;
+  const float* doubts = set_.f32.bernstein_doubt.data() + 2 * std::size_t{PatchSet::lanes} * slot.block + slot.lane;
   std::fill(vertices.doubt.begin(), vertices.doubt.end(), doubts[0]);
   std::fill(vertices.noise.begin(), vertices.noise.end(), doubts[PatchSet::lanes]);
   vertices.exact = {&set_.patches[k], &division};
@@ -240,4 +240,4 @@ void PatchWriter::write_triangles(std::size_t k, std::uint32_t* out, std::uint32
   if (plan_.shares_vertices()) share_indices(k, out);
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

@@ -9,7 +9,7 @@
 #include "tessera/execution.h"
 #include "tessera/mesh.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 namespace kernel {
 struct KernelTable;
@@ -64,4 +64,4 @@ class [[gnu::visibility("hidden")]] PatchWriter {
   bool streaming_;
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

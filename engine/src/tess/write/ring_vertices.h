@@ -3,7 +3,7 @@
 
 #include "tess/plan/certified_plan.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Those of point k of a border, as the ring runs, k = 0 .. rate: each corner included.
 class RingVertices {
@@ -25,4 +25,4 @@ class RingVertices {
   std::size_t start_, second_, end_, step_;  ///< the step modulo 2^64
 };
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

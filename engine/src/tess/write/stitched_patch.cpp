@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
 std::uint32_t* write(std::uint32_t* to, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
@@ -77,7 +77,7 @@ std::uint32_t* write_joined(const Line<Vertex>& first, Line<Vertex> right, const
 
 /// Borders between joined ones that have more segments than this are joined to a point in the middle of the patch: by fans
 /// from a corner their triangles would be needles.
-constexpr int most_at_ends = 3;
+constexpr int max_at_ends = 3;
 
 }  // namespace
 
@@ -89,7 +89,7 @@ bool Division::joins_borders(const PatchShape& shape, PatchSegments asked, const
     return false;
   const int most =
       std::max(borders[static_cast<std::size_t>(first)].rate(), borders[static_cast<std::size_t>(last)].rate());
-  return most == 1 || (most <= most_at_ends && !shape.collapsed.any());
+  return most == 1 || (most <= max_at_ends && !shape.collapsed.any());
 }
 
 std::size_t Division::special_triangle_count() const {
@@ -166,4 +166,4 @@ std::uint32_t* Division::write_triangles(std::uint32_t first, std::uint32_t* to,
   return to;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

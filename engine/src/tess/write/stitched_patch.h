@@ -8,10 +8,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "tess/plan/segments.h"
 #include "tess/edges/shared_edges.h"
+#include "tess/plan/segments.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// How a patch is divided. Vertices: the inner points [iu - 1][iv - 1] where the segments of `inner` begin, then the ring:
 /// border points where segments begin, counter-clockwise from (0,0), each corner once.
@@ -114,4 +114,4 @@ void Division::for_parameters(Visit visit) const {
   for (int k = border[3].rate(); k > 0; --k) visit(0.0, border[3].at(k).value());
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

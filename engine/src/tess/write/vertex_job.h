@@ -8,7 +8,7 @@
 #include "tess/write/stitched_patch.h"
 #include "tessera/mesh.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// What an exact normal is made from.
 struct ExactPatch {
@@ -81,4 +81,4 @@ inline void set_records(kernel::MeshRecords& out, const View3<float>& view, std:
   out.stride = view.stride;
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

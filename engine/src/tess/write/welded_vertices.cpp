@@ -3,13 +3,13 @@
 #include <array>
 
 #include "parallel/parallel_for.h"
-#include "tess/write/ring_vertices.h"
 #include "tess/edges/side_curve.h"
+#include "tess/write/ring_vertices.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr std::size_t copies_a_piece = 64;
+constexpr std::size_t copies_per_piece = 64;
 
 template <class T>
 void copy(const View3<T>& vectors, std::size_t from, std::size_t to) {
@@ -66,7 +66,7 @@ Status write_welded(const Weld& weld, const CertifiedPlan& plan, const PatchSet:
         for_copies(weld.borders[k], plan, [&](std::size_t to, std::size_t from) { copy_positions(out, from, to); });
   };
   const Execution quiet{.cancel = execution.cancel};
-  if (Status status = parallel_for(weld.borders.size(), copies_a_piece, quiet, borders); !status.ok()) return status;
+  if (Status status = parallel_for(weld.borders.size(), copies_per_piece, quiet, borders); !status.ok()) return status;
   for (const VertexCopies::Corner& corner : weld.corners)
     if (is_due(corner)) copy_positions(out, plan.ring_vertex(corner.from, 0), plan.ring_vertex(corner.to, 0));
   for (const VertexCopies::Corner& pole : weld.poles)
@@ -84,7 +84,7 @@ Status write_joined_normals(const VertexCopies& joins, const CertifiedPlan& plan
         for_copies(joins.borders[k], plan, [&](std::size_t to, std::size_t from) { copy(normals, from, to); });
   };
   const Execution quiet{.cancel = execution.cancel};
-  if (Status status = parallel_for(joins.borders.size(), copies_a_piece, quiet, borders); !status.ok()) return status;
+  if (Status status = parallel_for(joins.borders.size(), copies_per_piece, quiet, borders); !status.ok()) return status;
   for (const VertexCopies::Corner& corner : joins.corners)
     if (is_due(corner)) copy(normals, plan.ring_vertex(corner.from, 0), plan.ring_vertex(corner.to, 0));
   for (const VertexCopies::Corner& pole : joins.poles) {
@@ -94,4 +94,4 @@ Status write_joined_normals(const VertexCopies& joins, const CertifiedPlan& plan
   return {};
 }
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

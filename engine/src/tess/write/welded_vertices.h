@@ -6,7 +6,7 @@
 #include "tessera/execution.h"
 #include "tessera/mesh.h"
 
-namespace tessera {
+namespace tessera::inline abi_0_1 {
 
 /// Copies positions within a mesh that is written already, and gives the vertices of poles that welding made the normals
 /// that they have where the border is a point. Those alone whose patch, or the one that they are taken from, is written
@@ -18,4 +18,4 @@ Status write_welded(const Weld& weld, const CertifiedPlan& plan, const PatchSet:
 Status write_joined_normals(const VertexCopies& joins, const CertifiedPlan& plan, const View3<float>& normals,
                             const Execution& execution, FunctionRef<bool(std::size_t patch)> is_written);
 
-}  // namespace tessera
+}  // namespace tessera::inline abi_0_1

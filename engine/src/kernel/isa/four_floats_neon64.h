@@ -3,7 +3,7 @@
 
 #include <arm_neon.h>
 
-namespace tessera::kernel::TESSERA_ISA_NAMESPACE {
+namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
 namespace {
 
 using Four = float32x4_t;
@@ -49,4 +49,4 @@ struct Triple {
 };
 
 }  // namespace
-}  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE
+}  // namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE

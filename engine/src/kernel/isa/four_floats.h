@@ -6,7 +6,7 @@
 #include "kernel/isa/lanes.h"
 
 #if defined(__aarch64__)
-#include "kernel/isa/fours_neon64.h"
+#include "kernel/isa/four_floats_neon64.h"
 #else
-#include "kernel/isa/fours_x86.h"
+#include "kernel/isa/four_floats_x86.h"
 #endif

@@ -3,4 +3,4 @@
 // beside what is public, and tests/house/exported_symbols.cpp lists
 // them. They are nobody else's.
 
-#define TESSERA_FOR_WINGS [[gnu::visibility("default")]]
+#define TESSERA_INTERNAL_EXPORT [[gnu::visibility("default")]]

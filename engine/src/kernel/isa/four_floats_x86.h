@@ -3,7 +3,7 @@
 
 #include <immintrin.h>
 
-namespace tessera::kernel::TESSERA_ISA_NAMESPACE {
+namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
 namespace {
 
 using Four = __m128;
@@ -68,4 +68,4 @@ struct Triple {
 };
 
 }  // namespace
-}  // namespace tessera::kernel::TESSERA_ISA_NAMESPACE
+}  // namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE

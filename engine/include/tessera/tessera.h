@@ -1,0 +1,36 @@
+#pragma once
+// Every public header but ray_embree.h and io_occt.h, whose libraries bring Embree and OpenCASCADE into sight.
+
+#include "tessera/bezier_operations.h"
+#include "tessera/bezier_patch.h"
+#include "tessera/convert.h"
+#include "tessera/coons_patch.h"
+#include "tessera/curve.h"
+#include "tessera/evaluate.h"
+#include "tessera/execution.h"
+#include "tessera/generic_callable.h"
+#include "tessera/geometry.h"
+#include "tessera/hermite_patch.h"
+#include "tessera/limits.h"
+#include "tessera/local_geometry.h"
+#include "tessera/mesh.h"
+#include "tessera/model.h"
+#include "tessera/nurbs_surface.h"
+#include "tessera/parametric_surface.h"
+#include "tessera/patch_set.h"
+#include "tessera/quadric.h"
+#include "tessera/status.h"
+#include "tessera/strided_view.h"
+#include "tessera/surface.h"
+#include "tessera/surface_grid.h"
+#include "tessera/tensor_patch.h"
+#include "tessera/tessellation.h"
+#include "tessera/version.h"
+
+// Headers of the libraries tessera::ray and tessera::io are installed with these.
+#if __has_include("tessera/ray_scene.h")
+#include "tessera/ray_scene.h"
+#endif
+#if __has_include("tessera/io.h")
+#include "tessera/io.h"
+#endif
