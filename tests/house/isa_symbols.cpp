@@ -31,7 +31,7 @@ bool is_own(const IsaUnit& unit, const std::string& symbol) {
     if (!std::regex_match((*found)[1].str(), own)) return false;
     over_own = true;
   }
-  return over_own || symbol.find("tessera::kernel::isa_" + std::string(unit.isa) + "::") != std::string::npos;
+  return over_own || symbol.find("::kernel::isa_" + std::string(unit.isa) + "::") != std::string::npos;
 }
 
 }  // namespace

@@ -140,7 +140,7 @@ class EdgeFinder {
       if (slot.block < group.first_block || slot.block > block || hashes_.of(slot, other_side) != hashes[lane])
         continue;
       const std::ptrdiff_t place = start_of(slot.block) - start_of(block) + slot.lane;
-      if (place < -most_away) continue;
+      if (place < -max_away) continue;
       numbers[lane] = static_cast<std::uint32_t>(number - back);
       places[lane] = static_cast<std::int32_t>(place);
       any = true;
