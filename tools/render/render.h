@@ -9,14 +9,11 @@
 #include <utility>
 #include <vector>
 
+#include "io/output_file.h"
 #include "tessera/execution.h"
 #include "tessera/geometry.h"
 #include "tessera/ray_scene.h"
 #include "tessera/status.h"
-
-namespace tessera {
-class OutputFile;
-}
 
 namespace tessera::render {
 

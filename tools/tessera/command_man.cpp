@@ -5,6 +5,7 @@
 #include "arguments.h"
 #include "commands.h"
 #include "man_page.h"
+#include "tessera/version.h"
 
 namespace tessera::cli {
 

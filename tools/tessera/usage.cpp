@@ -5,6 +5,7 @@
 
 #include "loading.h"
 #include "suggestions.h"
+#include "tessera/version.h"
 
 namespace tessera::cli {
 namespace {

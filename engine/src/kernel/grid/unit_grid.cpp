@@ -16,7 +16,7 @@ namespace {
 #include "kernel/store/line_stores.inl.h"
 #include "kernel/grid/grid_kernel.inl.h"
 #include "kernel/grid/line_kernel.inl.h"
-#include "kernel/mesh/mesh_line_kernel.inl.h"
+#include "kernel/grid/mesh_line_kernel.inl.h"
 
 /// Vectors of half a line that are streamed one by one go to memory in halves.
 template <class L>
