@@ -123,7 +123,7 @@ if(WAY STREQUAL "package")
   check_package(${prefix})
   if(PYTHON)
     foreach(guide tessellation-backend ray-hits renderer tracking-speed)
-      run(${PYTHON} ${SOURCE}/tests/house/guides.py ${SOURCE}/docs/${guide}.md ${WORK}/${guide} ${prefix} ${CMAKE_COMMAND}
+      run(${PYTHON} ${SOURCE}/tests/house/guides.py ${SOURCE}/engine/docs/${guide}.md ${WORK}/${guide} ${prefix} ${CMAKE_COMMAND}
         ${GENERATOR} ${COMPILER})
     endforeach()
   else()

@@ -1,4 +1,4 @@
-// That bad input is answered as the table says, and that docs/bad-input.md is that table.
+// That bad input is answered as the table says, and that engine/docs/bad-input.md is that table.
 // TESSERA_WRITE_BAD_INPUT=1 tessera_test_robustness --gtest_filter=BadInput.TheDocument writes the document anew.
 
 #include <gtest/gtest.h>
@@ -70,7 +70,7 @@ view that names memory which its owner does not have), objects that have been mo
 thread uses it.
 )";
 
-const std::string document = TESSERA_SOURCE_DIR "/docs/bad-input.md";
+const std::string document = TESSERA_SOURCE_DIR "/engine/docs/bad-input.md";
 
 std::string heading(const Section& section) { return "\n## " + std::string(section.title) + "\n"; }
 
@@ -101,10 +101,10 @@ TEST_P(BadInputSections, AreAnsweredAsTheDocumentSays) {
     const std::size_t begin = text.rfind('\n', at == 0 ? 0 : at - 1) + 1;
     return text.substr(begin, text.find('\n', at) - begin);
   };
-  ADD_FAILURE()
-      << "docs/bad-input.md is not what the tests get (it is written anew as bad_input_test.cpp says).\nthey get: "
-      << line_at(found, static_cast<std::size_t>(a - found.begin()))
-      << "\nit says:  " << line_at(stated, static_cast<std::size_t>(b - stated.begin()));
+  ADD_FAILURE() << "engine/docs/bad-input.md differs from what the tests get (bad_input_test.cpp says how to write it "
+                   "anew).\nthey get: "
+                << line_at(found, static_cast<std::size_t>(a - found.begin()))
+                << "\nit says:  " << line_at(stated, static_cast<std::size_t>(b - stated.begin()));
 }
 
 std::string name_of_section(const ::testing::TestParamInfo<Section>& info) {
