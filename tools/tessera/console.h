@@ -56,6 +56,8 @@ class Stopwatch {
 std::string readable(double value, int digits = 6);
 /// [x, y, z].
 inline Json to_json(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
+/// "1 surface", "2 surfaces"; `plural` where it takes more than an s.
+std::string counted(std::size_t count, const std::string& noun, const std::string& plural = "");
 /// "0.0123 s".
 inline std::string readable_seconds(double seconds) { return readable(seconds, 3) + " s"; }
 
