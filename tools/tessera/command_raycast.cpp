@@ -35,19 +35,19 @@ struct Options {
   MeshErrorOptions error;
 };
 
-/// What a job works with. The scene refers to the set.
+/// The data of a job. The scene refers to the set.
 struct Scene {
   Loaded loaded;
   PatchSet set;
   RayScene rays;
-  std::optional<MeshError> error;  ///< what is shaded, if that
+  std::optional<MeshError> error;  ///< the error that is shaded, if it is
 
   render::Settings settings(const Options& options) const {
     render::Settings own = options.settings;
     if (error) own.error = [this](const Vec3& point) { return error->share(point); };
     return own;
   }
-  /// What stands at the lower border of its picture, the longest first that fits.
+  /// Captions for the lower border of the picture, the longest first. The first that fits is drawn.
   std::vector<std::string> captions() const {
     const std::string trims = trims_text(loaded.trimmed());
     std::vector<std::string> texts;

@@ -45,7 +45,7 @@ struct Tessellated {
   bool proven = false;  ///< only sampled where callables are fitted without bounds on their derivatives
 };
 
-/// By a plan of either kind.
+/// Runs a plan of either kind.
 template <class Plan>
 Result<Mesh> run_plan(const Result<Plan>& plan, const PatchSet& set, bool quads) {
   if (!plan) return plan.status();
@@ -87,7 +87,7 @@ Result<Tessellated> tessellate(const Options& options, const Model& model, const
   return made;
 }
 
-/// What the mesh keeps, in words.
+/// The tolerances that the mesh keeps, in words.
 std::string kept(const Options& options, const Tessellated& made) {
   if (options.grid) return "";
   std::string said = ", within " + readable(made.bound, 3) + " of the surfaces";
@@ -232,7 +232,7 @@ void add_density(CLI::App& command, Options& options) {
   group.require_option(1, 0);
 }
 
-/// What --pixels looks from.
+/// The camera of --pixels.
 void add_view(CLI::App& command, Options& options) {
   View& view = options.view;
   CLI::Option* const pixels = command.get_option("--pixels");
@@ -306,7 +306,7 @@ void add_weld(CLI::App& command, Options& options) {
       ->type_name("LENGTH");
 }
 
-/// What neighbours have in common.
+/// Options for the normals and vertices that neighbours share.
 void add_sharing(CLI::App& command, Options& options) {
   CLI::Option* const grid = command.get_option("--grid");
   const auto set_crease = [&options](const std::string& text) {

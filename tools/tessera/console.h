@@ -1,5 +1,5 @@
 #pragma once
-// What the commands say and hear: standard output and error, interruption, clocks.
+// Standard output and error, interruption, clocks.
 
 #include <atomic>
 #include <chrono>
@@ -30,7 +30,7 @@ Status print_json(const Json& object);
 /// "tessera: ..." and the end of the line, on standard error.
 void complain(const std::string& message);
 void warn(const std::string& message);
-/// An error of which all is said already.
+/// An error whose message is printed already.
 Status already_said(StatusCode code);
 bool is_already_said(const Status& status);
 

@@ -21,7 +21,7 @@ namespace {
 #ifdef TESSERA_HAS_IO_OCCT
 constexpr const char* cad_formats = ", .step, .stp, .iges, .igs";
 
-/// By the component that knows the format.
+/// Reads a model by the component that knows its format.
 Result<Model> read_any_model(const std::string& path) { return is_cad_file(path) ? read_cad(path) : read_model(path); }
 #else
 constexpr const char* cad_formats = "";
