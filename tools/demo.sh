@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The main job from a fresh clone: installs what is missing, builds, and turns the Utah teapot into a mesh and a picture.
+# From a fresh clone to a mesh and a picture of the Utah teapot: installs missing packages, builds, and runs.
 set -euo pipefail
 
 if (($#)); then
@@ -7,8 +7,9 @@ if (($#)); then
     cat <<'TEXT'
 tools/demo.sh
 
-Installs what is missing (tools/setup.sh --for demo), builds the command line in build/demo, prints a summary of the
-Utah teapot and writes out/teapot.ply and out/teapot.png. Says how long each step took.
+Installs missing packages (tools/setup.sh --for demo), builds the command line in build/demo, prints a summary of the
+Utah teapot and writes out/teapot.ply and out/teapot.png. Prints the time of each step. The first run compiles the
+library, which takes minutes; later runs take seconds.
 TEXT
     exit 0
   fi

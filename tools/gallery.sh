@@ -7,13 +7,13 @@ usage() {
 tools/gallery.sh [--size WxH] [--sheet PICTURE] [MODEL...]
 tools/gallery.sh --silhouette [--size WxH] [--sheet PICTURE] [MODEL]
 
-Installs what is missing (tools/setup.sh --for gallery), builds the command line in build/demo, casts a picture of each
-model (all of tools/models by default) into out/gallery/NAME.png, and puts them on one sheet, out/gallery.png by default.
+Installs missing packages (tools/setup.sh --for gallery), builds the command line in build/demo, draws a picture of each
+model (all of tools/models by default) into out/gallery/NAME.png, and puts all pictures on one sheet.
 
-  --size WxH        of each picture, 480x360 by default; on the sheet they are half as wide and high
-  --sheet PICTURE   where the sheet goes
-  --silhouette      a sheet of one model (the teapot) instead, in grid mode with 4 and 16 segments a patch and in exact
-                    mode side by side, with a part of each outline magnified; out/silhouette.png by default
+  --size WxH        the size of each picture, 480x360 by default; on the sheet they are half as wide and high
+  --sheet PICTURE   the file of the sheet, out/gallery.png by default
+  --silhouette      draw a sheet of one model (the teapot) instead, out/silhouette.png by default: grid mode with 4 and 16
+                    segments per patch and exact mode side by side, with a part of each outline magnified
 TEXT
 }
 

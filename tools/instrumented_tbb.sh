@@ -6,10 +6,10 @@ usage() {
   cat <<'TEXT'
 tools/instrumented_tbb.sh [FOLDER]
 
-Fetches the source of Debian's onetbb by apt-get and builds it with -fsanitize=thread into FOLDER (build/tbb_tsan by default),
-unless it stands there already. Its package lists and archives stay in FOLDER too: the system's own are not touched. The thread
-sanitizer then sees how oneTBB orders its tasks; without it, it takes the library's word for it. Exit status 3 where the
-source cannot be fetched (no network, or another system).
+Fetches the source of Debian's onetbb by apt-get and builds it with -fsanitize=thread into FOLDER (build/tbb_tsan by
+default), unless it is there already. Package lists and archives stay in FOLDER too, so the system's own do not change. The
+thread sanitizer then sees how oneTBB orders its tasks. Without this build the sanitizer trusts oneTBB. The exit status is 3
+if the source cannot be fetched (no network, or another system).
 TEXT
 }
 

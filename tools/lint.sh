@@ -6,12 +6,14 @@ usage() {
   cat <<'TEXT'
 tools/lint.sh [--format] [--tidy] [--fix] [--quick] [--build FOLDER] [FILES...]
 
-Holds C++ files to .clang-format (clang-format 14) and .clang-tidy; all tracked ones, or those named. Without --format or --tidy
-the format alone, which takes seconds; tidying takes about a minute for ten files. Prints what is wrong; fails if anything is.
+Checks C++ files against .clang-format (clang-format 14) and .clang-tidy: the named files, or all tracked ones. Prints each
+fault, and fails if there is one.
 
-  --fix            format the files instead of telling
+  --format         check the format only, in seconds; the default
+  --tidy           run clang-tidy only, about a minute for ten files
+  --fix            format the files instead of checking them
   --quick          tidy without the path-sensitive checks (clang-analyzer-*), which take most of the time
-  --build FOLDER   whose compile_commands.json says how files are compiled (build/dev)
+  --build FOLDER   the build whose compile_commands.json says how files are compiled (build/dev)
 TEXT
 }
 

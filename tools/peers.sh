@@ -7,9 +7,9 @@ usage() {
 tools/peers.sh [NAME...]
 
 Installs the peers' Debian packages (tools/setup.sh --for peers), builds the library and the comparisons in build/peers,
-and runs those named, or all. Each checks that both programs agree on what they made before it prints their rates. A
-comparison whose peer is not installed is not built or leaves it out, and says so. In the end one table of all ratios,
-with date, machine and versions; build/peers/peers.json holds it for tools/perf report.
+and runs the named comparisons, or all. Each comparison checks that both programs agree on the result before it prints
+their rates. If a peer is not installed, the comparison leaves it out and says so. At the end one table shows all ratios,
+with date, machine and versions. build/peers/peers.json holds the table for tools/perf report.
 The names:
 TEXT
   for row in "${comparisons[@]}"; do

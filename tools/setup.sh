@@ -1,17 +1,21 @@
 #!/usr/bin/env bash
-# Installs what is missing of the Debian 12 packages that Tessera is built with. Silent work on a machine that has all.
+# Installs the missing Debian 12 packages that Tessera is built with. Does nothing if all are installed.
 set -euo pipefail
 
 usage() {
   cat <<'TEXT'
 tools/setup.sh [--for demo|test|neon|peers|gallery|docs]
 
-Installs, from Debian's packages and by apt-get, what is missing to build Tessera: for the demo (the libraries and the
-command line), for the tests as well (the default), for the test of the NEON kernels too (the tests', and 300 MB of a
-cross compiler and an emulator: without them that test is skipped), for the comparisons with other programs (the demo's,
-and these programs), for the gallery (the demo's, and what puts pictures on a sheet), or for the reference (the demo's, and
-Doxygen). As root directly, otherwise by
-sudo. Says what it installs. Where nothing is missing it does nothing and needs neither network nor rights.
+Lists and installs the missing Debian packages that Tessera is built with, by apt-get, with sudo unless it runs as root.
+If nothing is missing, it does nothing and needs neither network nor rights.
+
+  --for demo      the libraries and the command line
+  --for test      these, and the tests (the default)
+  --for neon      these, and the test of the NEON kernels: 300 MB of a cross compiler and an emulator; without them that
+                  test is skipped
+  --for peers     the demo, and the programs that Tessera is compared with
+  --for gallery   the demo, and the programs that put pictures on a sheet
+  --for docs      the demo, and Doxygen for the reference
 TEXT
 }
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds everything, warnings being errors, and runs every test. Installs first what is missing.
+# Builds everything, with warnings as errors, and runs every test. Installs missing packages first.
 set -euo pipefail
 
 usage() {
@@ -7,14 +7,18 @@ usage() {
 tools/test.sh [--preset dev|asan|tsan|release] [--target NAME]... [-- CTEST-ARGUMENTS...]
 tools/test.sh --fuzz [SECONDS]
 
-Installs what is missing (tools/setup.sh), configures and builds a preset in build/<preset> (dev by default), and runs
-ctest on all cores. What stands after -- goes to ctest, for example: tools/test.sh -- -R PatchSet
-With targets named, those alone are built, for some of the tests:
-  tools/test.sh --preset tsan --target tessera_test_threads --target tessera_planted_race -- -L threads
-The preset tsan takes a oneTBB that is instrumented too (tools/instrumented_tbb.sh), where its source can be fetched. --fuzz
-builds the preset fuzz instead and runs each fuzz target for so many seconds (60), from its corpus on.
-Real models are tested too where TESSERA_TEST_DATA names their folder. Two of the tests, perf.counts_avx2 and _sse2, hold the
-instructions of the dev preset to bench/baselines: a minute or two each, skipped where compiler or libraries are others'.
+Installs missing packages (tools/setup.sh), configures and builds a preset in build/<preset> (dev by default), and runs
+ctest on all cores.
+
+  --preset NAME     the preset to build and test
+  --target NAME     build only the named targets, to run some of the tests:
+                      tools/test.sh --preset tsan --target tessera_test_threads --target tessera_planted_race -- -L threads
+  --fuzz SECONDS    build the preset fuzz instead, and run each fuzz target for SECONDS (60) from its corpus
+  --                pass all following arguments to ctest, for example: tools/test.sh -- -R PatchSet
+
+The preset tsan uses an instrumented oneTBB (tools/instrumented_tbb.sh), if its source can be fetched. If TESSERA_TEST_DATA
+names a folder of real models, they are tested too. The tests perf.counts_avx2 and perf.counts_sse2 compare the instructions
+of the preset dev with bench/baselines. They take minutes each, and are skipped if the compiler or the libraries differ.
 TEXT
 }
 

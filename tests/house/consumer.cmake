@@ -122,8 +122,10 @@ if(WAY STREQUAL "package")
   run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix} ${config})
   check_package(${prefix})
   if(PYTHON)
-    foreach(guide tessellation-backend ray-hits renderer tracking-speed)
-      run(${PYTHON} ${SOURCE}/tests/house/guides.py ${SOURCE}/docs/${guide}.md ${WORK}/${guide} ${prefix} ${CMAKE_COMMAND}
+    foreach(guide README engine/docs/tessellation-backend engine/docs/ray-hits engine/docs/renderer
+        engine/docs/tracking-speed)
+      get_filename_component(folder ${guide} NAME)
+      run(${PYTHON} ${SOURCE}/tests/house/guides.py ${SOURCE}/${guide}.md ${WORK}/${folder} ${prefix} ${CMAKE_COMMAND}
         ${GENERATOR} ${COMPILER})
     endforeach()
   else()

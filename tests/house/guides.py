@@ -2,8 +2,8 @@
 """Follows the guides as a newcomer would: guides.py GUIDE.md FOLDER PREFIX CMAKE GENERATOR COMPILER [--print].
 
 A block of a guide whose fence names a file, ```cpp main.cpp, goes to that file, one block after the other. The project is
-built against the package installed in PREFIX, and each ```output PROGRAM block must be what PROGRAM prints. --print shows what
-it prints instead."""
+built against the package installed in PREFIX. An ```output PROGRAM ARGUMENTS block must be what PROGRAM prints, and its exit
+status 0; with ```failure instead of ```output the status must be 1. --print shows what it prints instead."""
 
 import pathlib
 import re
@@ -12,9 +12,12 @@ import subprocess
 import sys
 
 
+STATUS = {'output': 0, 'failure': 1}
+
+
 def blocks_of(text):
-    """(language, file or program, content, line) of each fenced block that has a name."""
-    for found in re.finditer(r'^```(\w+) (\S+)\n(.*?)^```$', text, re.M | re.S):
+    """(language, file or command, content, line) of each fenced block that has a name."""
+    for found in re.finditer(r'^```(\w+) (\S[^\n]*)\n(.*?)^```$', text, re.M | re.S):
         yield (*found.groups(), text.count('\n', 0, found.start()) + 1)
 
 
@@ -25,8 +28,8 @@ def main():
     folder.mkdir(parents=True)
     outputs, places = {}, {}
     for language, name, content, line in blocks_of(guide.read_text(encoding='utf-8')):
-        if language == 'output':
-            outputs[name] = content
+        if language in STATUS:
+            outputs[name] = STATUS[language], content
             continue
         # Messages of the compiler name the guide's own lines.
         mark = f'#line {line + 1} "{guide}"\n' if language == 'cpp' else ''
@@ -40,13 +43,15 @@ def main():
                     '-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror'], check=True)
     subprocess.run([cmake, '--build', folder / 'build'], check=True)
     wrong = 0
-    for program, expected in outputs.items():
-        printed = subprocess.run([folder / 'build' / program], check=True, stdout=subprocess.PIPE, text=True, cwd=folder).stdout
+    for command, (status, expected) in outputs.items():
+        program, *arguments = command.split()
+        ran = subprocess.run([folder / 'build' / program, *arguments], stdout=subprocess.PIPE, text=True, cwd=folder)
         if '--print' in sys.argv:
-            print(printed, end='')
-        elif printed != expected:
+            print(ran.stdout, end='')
+        elif (ran.returncode, ran.stdout) != (status, expected):
             wrong += 1
-            print(f'{guide}: {program} prints\n{printed}and not, as the guide says,\n{expected}')
+            print(f'{guide}: {command} ends with {ran.returncode} and prints\n{ran.stdout}and not, as the guide says, with '
+                  f'{status} and\n{expected}')
     return 1 if wrong else 0
 
 

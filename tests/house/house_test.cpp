@@ -10,11 +10,12 @@
 namespace tessera::house {
 namespace {
 
-// "About 400 lines at the most": a file that needs more holds more than one idea.
+// "About 400 lines at the most": a source file that needs more holds more than one idea. Guides may be longer.
 constexpr std::ptrdiff_t longest_file = 420;
 
 TEST(House, NoFileOfTheEngineIsTooLong) {
   for (const std::string& path : files_under("engine")) {
+    if (path.starts_with("engine/docs/")) continue;
     const std::string text = read_text(path);
     EXPECT_LE(std::count(text.begin(), text.end(), '\n'), longest_file) << path;
   }
@@ -58,7 +59,7 @@ TEST(House, NoFunctionChoosesInstructionsForItself) {
   static const std::regex attribute(
       R"re(\btarget(_clones)?\s*\(\s*"|#\s*pragma\s+(GCC|clang)\s+(push_)?(target|attribute))re");
   for (const std::string& path : files_under("engine")) {
-    if (path == "engine/CMakeLists.txt") continue;
+    if (path == "engine/CMakeLists.txt" || path.starts_with("engine/docs/")) continue;
     EXPECT_FALSE(std::regex_search(read_text(path), attribute)) << path;
   }
   EXPECT_TRUE(std::regex_search(std::string("__attribute__((target(\"avx2\")))"), attribute));

@@ -1,6 +1,6 @@
 #pragma once
-// The table of bad input: entry point by entry point, input by input, what comes back. The tests fill it, and docs/bad-input.md
-// is what they filled it with.
+// The table of bad input: entry point by entry point, input by input, what comes back. The tests fill it, and
+// engine/docs/bad-input.md is what they filled it with.
 
 #include <cstdint>
 #include <functional>

@@ -1,5 +1,5 @@
-// That bad input is answered as the table says, and that docs/bad-input.md is that table.
-// TESSERA_WRITE_BAD_INPUT=1 tessera_test_robustness --gtest_filter=BadInput.TheDocument writes the document anew.
+// Bad input is answered as the table says, and engine/docs/bad-input.md is that table.
+// To write the document anew: TESSERA_WRITE_BAD_INPUT=1 tessera_test_robustness --gtest_filter=BadInput.TheDocument
 
 #include <gtest/gtest.h>
 
@@ -60,17 +60,17 @@ constexpr Section sections[] = {{"Curves", fill_curves},
 constexpr std::string_view introduction =
     R"(# Bad input
 
-What comes back when a call is given what it cannot use. The table is written by the tests (`tests/robustness`), which make each
-of these calls; a test holds this page to what they get. An answer of the library is a `Status`: its code, the index of
-the offending element where there is one, and its message. Wherever a call has outputs, the tests see to it that no byte of
-them has changed, and that no file is left behind.
+This page shows what comes back from a call that cannot use its input. The tests (`tests/robustness`) make each of these calls and
+write the page; they fail if an answer differs from it. The library answers with a `Status`: its code, the index of the
+offending element if there is one, and its message. The tests also check that no byte of an output has changed, and that no
+file is left behind.
 
-No call ends the program. Not in the table, because no library can answer it: memory that is not there (a `std::span` or a
-view that names memory which its owner does not have), objects that have been moved from, and edits of a set while another
-thread uses it.
+No call ends the program. Three cases are missing, because no library can answer them: memory that does not exist (a `std::span`
+or a view that names memory which its owner does not have), objects that have been moved from, and edits of a set while
+another thread uses it.
 )";
 
-const std::string document = TESSERA_SOURCE_DIR "/docs/bad-input.md";
+const std::string document = TESSERA_SOURCE_DIR "/engine/docs/bad-input.md";
 
 std::string heading(const Section& section) { return "\n## " + std::string(section.title) + "\n"; }
 
@@ -101,10 +101,10 @@ TEST_P(BadInputSections, AreAnsweredAsTheDocumentSays) {
     const std::size_t begin = text.rfind('\n', at == 0 ? 0 : at - 1) + 1;
     return text.substr(begin, text.find('\n', at) - begin);
   };
-  ADD_FAILURE()
-      << "docs/bad-input.md is not what the tests get (it is written anew as bad_input_test.cpp says).\nthey get: "
-      << line_at(found, static_cast<std::size_t>(a - found.begin()))
-      << "\nit says:  " << line_at(stated, static_cast<std::size_t>(b - stated.begin()));
+  ADD_FAILURE() << "engine/docs/bad-input.md differs from what the tests get (bad_input_test.cpp says how to write it "
+                   "anew).\nthey get: "
+                << line_at(found, static_cast<std::size_t>(a - found.begin()))
+                << "\nit says:  " << line_at(stated, static_cast<std::size_t>(b - stated.begin()));
 }
 
 std::string name_of_section(const ::testing::TestParamInfo<Section>& info) {

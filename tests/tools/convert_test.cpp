@@ -28,7 +28,7 @@ TEST_F(ConvertTool, JsonSaysWhatWasWritten) {
   EXPECT_EQ(facts["warnings"], json::array());
   EXPECT_EQ(facts["patches"], json::parse(output_of({"info", "a.obj", "--json"}))["patches"]);
   const std::string text = output_of({"convert", models + "seashell.json", "-o", "a.obj", "--fit-tolerance", "0.01"});
-  EXPECT_NE(text.find("callables fitted to within"), std::string::npos) << text;
+  EXPECT_NE(text.find("functions fitted to within"), std::string::npos) << text;
 }
 
 TEST_F(ConvertTool, WhatIsLostIsAWarning) {
@@ -84,7 +84,7 @@ TEST_F(ConvertTool, PicturesOfNumbers) {
   EXPECT_EQ(bytes.substr(0, 4), "\x76\x2f\x31\x01");  // "OpenEXR File Layout": the magic number
   for (const char* channel : {"N.X", "UV.V", "Z", "patch", "surface"})
     EXPECT_NE(bytes.find(std::string(channel) + '\0'), std::string::npos) << channel;
-  expect_failure({"raycast", teapot, "-o", "b.exr", "--shade", "uv"}, 2, "--shade: pictures of numbers (.exr) have");
+  expect_failure({"raycast", teapot, "-o", "b.exr", "--shade", "uv"}, 2, "--shade: an .exr picture holds numbers");
   expect_failure({"raycast", teapot, "-o", "b.tif"}, 2, "pictures are written as .png, .exr");
 }
 

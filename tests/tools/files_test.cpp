@@ -57,7 +57,7 @@ TEST_F(Files, APatternThatMatchesNothingIsAnError) {
   expect_failure({"info", "x*.bpt"}, 1, "tessera: x*.bpt: expected files that match, found none");
   const ToolRun run = this->run({"info", "x*.bpt", "m1.bpt"});
   EXPECT_EQ(run.status, 1);
-  EXPECT_EQ(run.output.rfind("m1.bpt: 1 surfaces", 0), 0u) << run.output;
+  EXPECT_EQ(run.output.rfind("m1.bpt: 1 surface, 1 Bezier patch", 0), 0u) << run.output;
 }
 
 TEST_F(Files, AFileThatFailsDoesNotStopTheOthers) {

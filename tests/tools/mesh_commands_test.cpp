@@ -182,7 +182,7 @@ TEST_F(MeshTools, CheckRefusesNaNAndBadIndices) {
   const ToolRun nan = run({"check", "nan.obj", "--json"});
   EXPECT_EQ(nan.status, 1);
   EXPECT_EQ(json::parse(nan.output)["non_finite_vertices"], 1);
-  EXPECT_EQ(nan.errors, "tessera: nan.obj: 1 vertices with NaN or infinity\n");
+  EXPECT_EQ(nan.errors, "tessera: nan.obj: 1 vertex with NaN or infinity\n");
   folder_.file("index.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n");
   expect_failure({"check", "index.obj"}, 1, "tessera: index.obj:4: expected an index into the 3 vertices above");
   folder_.file("empty.ply", "");

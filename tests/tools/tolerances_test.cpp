@@ -98,7 +98,7 @@ TEST_F(Tolerances, CellsAreQuads) {
   EXPECT_NE(text.find(" quads"), std::string::npos) << text;
   EXPECT_GT(json::parse(output_of({"check", "a.obj", "--json"}))["quads"], 28 * 9);
   for (const char* const name : {"b.stl", "b.glb", "b.gltf"})
-    expect_failure({"tessellate", teapot, "-o", name, "--grid", "4x3", "--quads"}, 2, "holds triangles alone");
+    expect_failure({"tessellate", teapot, "-o", name, "--grid", "4x3", "--quads"}, 2, "can hold only triangles");
 }
 
 TEST_F(Tolerances, PositionsInDouble) {
@@ -112,7 +112,7 @@ TEST_F(Tolerances, PositionsInDouble) {
   expect_refusal({"--grid", "4x4", "--precision", "double"}, 2, "--grid");
   for (const char* const name : {"a.stl", "a.glb", "a.gltf"})
     expect_failure({"tessellate", teapot, "-o", name, "--relative", "0.003", "--precision", "double"}, 2,
-                   "holds positions in float alone");
+                   "can hold only positions in float");
 }
 
 TEST_F(Tolerances, FewerTrianglesForMoreTime) {

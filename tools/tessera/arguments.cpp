@@ -47,7 +47,8 @@ std::vector<double> parse_numbers(const std::string& option, const std::string& 
   } while (cursor.take(','));
   if (values.size() != count || !cursor.at_end()) {
     throw CLI::ValidationError(
-        option, "expected " + std::to_string(count) + " finite numbers " + form + ", found " + quote(text));
+        option, (count == 1 ? "expected a finite number " : "expected " + std::to_string(count) + " finite numbers ") +
+                    form + ", found " + quote(text));
   }
   return values;
 }
@@ -76,7 +77,7 @@ CLI::Validator whole_number(int least, int most) {
 }
 
 void add_text_output(CLI::App& command, std::string& output) {
-  command.add_option("-o,--output", output, "Where to write [standard output]")
+  command.add_option("-o,--output", output, "The file to write [standard output]")
       ->check(fault_of_name)
       ->type_name("FILE");
 }

@@ -32,14 +32,13 @@ std::string as_text(const std::string& mesh, const MeshReport& report) {
   };
   return mesh + ": " + (report.closed() ? "closed" : "not closed") + "\n" +
          line("vertices              ", report.vertices) + line("distinct positions    ", report.distinct_positions) +
-         line("triangles             ", report.triangles, report.quads > 0 ? "  (two of each quad among them)" : "") +
+         line("triangles             ", report.triangles, report.quads > 0 ? "  (with two for each quad)" : "") +
          line("quads                 ", report.quads) +
          line("open edges            ", report.open_edges, "  (of one triangle)") +
          line("non-manifold edges    ", report.non_manifold_edges, "  (of three triangles or more)") +
-         line("inconsistent edges    ", report.inconsistent_edges,
-              "  (whose two triangles are turned against each other)") +
+         line("inconsistent edges    ", report.inconsistent_edges, "  (of two triangles of opposite orientation)") +
          line("T-junctions           ", report.t_junctions, "  (vertices inside open edges)") +
-         line("flipped triangles     ", report.flipped_triangles, "  (that look the other way than their normals)") +
+         line("flipped triangles     ", report.flipped_triangles, "  (that face away from their normals)") +
          line("degenerate triangles  ", report.degenerate_triangles) +
          line("NaN or infinite       ", report.non_finite_vertices, "  (vertices)");
 }
@@ -59,13 +58,13 @@ Status run_check(const std::string& file, const CommonOptions& common, Timings& 
   add_seconds(json, common, timings);
   if (Status status = common.json ? print_json(json) : print(as_text(file, *report)); !status.ok()) return status;
   if (report->non_finite_vertices == 0) return {};
-  complain(file + ": " + std::to_string(report->non_finite_vertices) + " vertices with NaN or infinity");
+  complain(file + ": " + counted(report->non_finite_vertices, "vertex", "vertices") + " with NaN or infinity");
   return already_said(StatusCode::non_finite);
 }
 
 constexpr const char* footer =
-    "Vertices at the same position, bit for bit, count as one. Open edges are no error, as a model may be open:\n"
-    "the exit status is 1 only if a mesh cannot be read, holds NaN or infinity, or has an index out of range.\n"
+    "Vertices at the same position, bit for bit, count as one. Open edges are no error, because a model may be open.\n"
+    "The exit status is 1 only if a mesh cannot be read, holds NaN or infinity, or has an index out of range.\n"
     "\nExamples:\n"
     "  tessera check teapot.ply\n"
     "  tessera check 'meshes/*.ply' --json";
@@ -73,9 +72,9 @@ constexpr const char* footer =
 }  // namespace
 
 void add_check(CLI::App& app, Session& session) {
-  CLI::App* const command = app.add_subcommand("check", "Count what is wrong with meshes");
+  CLI::App* const command = app.add_subcommand("check", "Check meshes for cracks, flipped triangles and NaN");
   const auto meshes = std::make_shared<std::vector<std::string>>();
-  command->add_option("MESH", *meshes, "Meshes (.obj, .ply, .stl), or patterns of their names")
+  command->add_option("MESH", *meshes, "Files with meshes (.obj, .ply, .stl), or patterns of their names")
       ->required()
       ->check(fault_of_name)
       ->type_name("FILE");

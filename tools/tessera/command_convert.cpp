@@ -20,8 +20,8 @@ struct Options {
 Status report(const Job& job, const CommonOptions& common, const Loaded& loaded, const WrittenModel& written,
               const Timings& timings) {
   if (!common.json) {
-    return print(job.output + ": " + std::to_string(written.surfaces) + " surfaces, " +
-                 std::to_string(written.patches) + " patches\n" + fit_line(written.fit_error));
+    return print(job.output + ": " + counted(written.surfaces, "surface") + ", " +
+                 counted(written.patches, "patch", "patches") + "\n" + fit_line(written.fit_error));
   }
   Json object = files_json(loaded);
   object["output"] = job.output;
@@ -58,10 +58,11 @@ std::string fault_of_output(const std::string& path) {
 }
 
 constexpr const char* footer =
-    ".obj keeps weights, names, trims and the ranges of parameters; .bpt holds polynomial patches alone. What the "
-    "file\n"
-    "does not hold is said as a warning. Several models become one file, or one each where the output is a folder\n"
-    "(then as .obj) or holds {name}.\n"
+    ".obj keeps weights, names, trims and the ranges of parameters. .bpt holds only polynomial patches. A warning "
+    "names\n"
+    "each part of a model that the file does not hold. Several models become one file, or one file each if the output "
+    "is\n"
+    "a folder (then as .obj) or contains {name}.\n"
     "\nExample:\n"
     "  tessera convert goblet.json -o goblet.obj";
 
@@ -72,8 +73,7 @@ void add_convert(CLI::App& app, Session& session) {
   const auto options = std::make_shared<Options>();
   add_models(*command, options->models);
   command
-      ->add_option("-o,--output", options->output,
-                   "The surfaces to be written (.bpt, .obj), or a folder, or a name with {name}")
+      ->add_option("-o,--output", options->output, "The file of surfaces (.bpt, .obj), a folder, or a name with {name}")
       ->required()
       ->type_name("FILE")
       ->check(fault_of_output);

@@ -248,29 +248,32 @@ Status run_eval(const Job& job, const Options& options, const CommonOptions& com
 }
 
 constexpr const char* footer =
-    "--params takes a table with the header line surface,u,v; surfaces are counted from 0, u and v lie in the\n"
-    "surface's own domain ([0,1] for a Bezier patch; canonical parameters of a quadric); # begins a comment.\n"
-    "Rows: surface,u,v, the position x,y,z, with --derivs 1 dux,duy,duz,dvx,dvy,dvz, with --derivs 2 also\n"
-    "duux..duuz,duvx..duvz,dvvx..dvvz, then the unit normal nx,ny,nz, along r_u x r_v. 17 significant digits.\n"
-    "At a degenerate point (a pole) the normal is the limit; where there is none, it is 0,0,0 (null in JSON).\n"
+    "--params takes a table with the header line surface,u,v. Surfaces are counted from 0. u and v lie in the "
+    "surface's\n"
+    "own domain ([0,1] for a Bezier patch; canonical parameters for a quadric). # begins a comment.\n"
+    "Rows have surface,u,v and the position x,y,z; with --derivs 1 also dux,duy,duz,dvx,dvy,dvz; with --derivs 2 also\n"
+    "duux..duuz,duvx..duvz,dvvx..dvvz; then the unit normal nx,ny,nz, along r_u x r_v. Numbers have 17 significant "
+    "digits.\n"
+    "At a degenerate point (a pole) the normal is the limit. If there is none, it is 0,0,0 (null in JSON).\n"
     "JSON: {\"rows\": [{\"surface\", \"u\", \"v\", \"position\", \"du\", \"dv\", \"duu\", \"duv\", \"dvv\", "
     "\"normal\"}, ...]}\n"
-    "Several models give one table, or one each where the output is a folder or holds {name}. With --json, rows on\n"
-    "standard output are JSON; rows in a file are as --format says, and standard output tells of them.\n"
+    "Several models give one table, or one table each if the output is a folder or contains {name}. With --json, rows "
+    "on\n"
+    "standard output are JSON; rows in a file have the --format, and standard output has a summary.\n"
     "\nExamples:\n"
     "  tessera eval teapot.bpt --grid 5x5 -o points.csv\n"
     "  tessera eval teapot.bpt --params places.csv --derivs 2 --format json";
 
 /// --grid or --params.
 void add_places(CLI::App& command, Options& options) {
-  CLI::Option_group* const where = command.add_option_group("Where", "One of");
+  CLI::Option_group* const where = command.add_option_group("Where", "One of these options");
   where->require_option(1);
   where
       ->add_option_function<std::string>(
           "--grid", [&options](const std::string& text) { options.grid = parse_extent("--grid", text, 2, 65536); },
           "N x M points on every surface, from border to border, 2 to 65536 each")
       ->type_name("NxM");
-  where->add_option("--params", options.places, "At the places of this table")
+  where->add_option("--params", options.places, "The places in this table")
       ->check(fault_of_name)
       ->type_name("FILE.csv");
 }
@@ -286,13 +289,13 @@ void add_eval(CLI::App& app, Session& session) {
       ->type_name("ORDER")
       ->check(whole_number(0, 2))
       ->capture_default_str();
-  command->add_option("--format", options->format, "Of the rows")
+  command->add_option("--format", options->format, "Format of the rows")
       ->type_name("NAME")
       ->check(one_of({"csv", "json"}))
       ->capture_default_str();
   command
       ->add_option("-o,--output", options->output,
-                   "Where to write, a file, a folder, or a name with {name} [standard output]")
+                   "The file to write, a folder, or a name with {name} [standard output]")
       ->check(fault_of_name)
       ->type_name("FILE");
   add_common(*command, session.common);

@@ -97,7 +97,8 @@ std::string as_text(const Findings& found) {
   const std::size_t surfaces = found.loaded.model.surfaces.size();
   const auto bytes = file_bytes(found.file);
   std::ostringstream text;
-  text << found.file << ": " << surfaces << " surfaces, " << found.set.patch_count() << " Bezier patches"
+  text << found.file << ": " << counted(surfaces, "surface") << ", "
+       << counted(found.set.patch_count(), "Bezier patch", "Bezier patches")
        << (bytes ? ", read from " + readable_bytes(*bytes) : "") << "\n  kinds            " << list_of_kinds(facts)
        << "\n  degrees          " << list_of_degrees(facts) << "\n  rational         " << facts.rational
        << " of the patches"
@@ -138,11 +139,11 @@ Status run_info(const Job& job, const Options& options, const CommonOptions& com
 }
 
 constexpr const char* footer =
-    "Joins: borders of two patches at the same place, and how they meet: C1 (one derivative across), G1 (one normal,\n"
-    "to 0.11 degrees), C0 (one border, to 1e-6 of the two patches' size; the largest angle between the normals is "
-    "told),\n"
-    "a gap (the ends agree within 1e-4 of the model's size, the borders do not). Open borders have no neighbour; what\n"
-    "meets in the middle of a border, or along trims, is not seen.\n"
+    "Joins: two patches have a border at the same place. They meet as C1 (one derivative across the border), as G1 "
+    "(one\n"
+    "normal, to 0.11 degrees), as C0 (one border, to 1e-6 of the two patches' size; the largest angle between the\n"
+    "normals is printed), or with a gap (the ends agree within 1e-4 of the model's size, the borders do not). Open\n"
+    "borders have no neighbour. Contacts in the middle of a border, or along trims, are not found.\n"
     "Memory: surfaces with their points, weights, knots and trims; patches; blocks packed for evaluation.\n"
     "\nExamples:\n"
     "  tessera info teapot.bpt\n"
@@ -151,10 +152,10 @@ constexpr const char* footer =
 }  // namespace
 
 void add_info(CLI::App& app, Session& session) {
-  CLI::App* const command = app.add_subcommand("info", "Say what models hold");
+  CLI::App* const command = app.add_subcommand("info", "Describe models: surfaces, joins, sizes, memory");
   const auto options = std::make_shared<Options>();
   add_models(*command, options->models);
-  command->add_option("--joins", options->max_joins, "Joins to be measured at the most; 0 leaves them out")
+  command->add_option("--joins", options->max_joins, "Measure at most this many joins; 0 leaves them out")
       ->type_name("COUNT")
       ->check(whole_number(0, 1'000'000'000))
       ->capture_default_str();

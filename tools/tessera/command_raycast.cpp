@@ -35,19 +35,19 @@ struct Options {
   MeshErrorOptions error;
 };
 
-/// What a job works with. The scene refers to the set.
+/// The data of a job. The scene refers to the set.
 struct Scene {
   Loaded loaded;
   PatchSet set;
   RayScene rays;
-  std::optional<MeshError> error;  ///< what is shaded, if that
+  std::optional<MeshError> error;  ///< the error that is shaded, if it is
 
   render::Settings settings(const Options& options) const {
     render::Settings own = options.settings;
     if (error) own.error = [this](const Vec3& point) { return error->share(point); };
     return own;
   }
-  /// What stands at the lower border of its picture, the longest first that fits.
+  /// Captions for the lower border of the picture, the longest first. The first that fits is drawn.
   std::vector<std::string> captions() const {
     const std::string trims = trims_text(loaded.trimmed());
     std::vector<std::string> texts;
@@ -123,8 +123,8 @@ Status draw_file(const Job& job, const Options& options, const CommonOptions& co
   if (!written.ok()) return written;
   if (!common.json) {
     return print(job.output + ": " + std::to_string(settings.width) + " x " + std::to_string(settings.height) + ", " +
-                 std::to_string(scene.set.patch_count()) + " patches\n" + (scene.error ? scene.error->text() : "") +
-                 fit_line(scene.set));
+                 counted(scene.set.patch_count(), "patch", "patches") + "\n" +
+                 (scene.error ? scene.error->text() : "") + fit_line(scene.set));
   }
   Json object = files_json(scene.loaded);
   object["output"] = job.output;
@@ -186,8 +186,8 @@ Status trace(const Job& job, const Options& options, const CommonOptions& common
   }
   const bool exact = options.mode == RayMode::exact;
   if (!common.json) {
-    return print(job.output + ": " + std::to_string(counts.rays) + " rays, " + std::to_string(counts.hits) + " hits" +
-                 (options.all_hits ? ", " + std::to_string(counts.points) + " points" : "") + ", " +
+    return print(job.output + ": " + counted(counts.rays, "ray") + ", " + counted(counts.hits, "hit") +
+                 (options.all_hits ? ", " + counted(counts.points, "point") : "") + ", " +
                  (exact ? std::to_string(counts.uncertified) + " of them uncertified\n"
                         : std::to_string(counts.unrefined) + " of them on facets only\n"));
   }
@@ -280,8 +280,8 @@ std::vector<CLI::Option*> add_picture_options(CLI::App& command, Options& option
                                                 "Eye, target, field of view in degrees over the picture's shorter side "
                                                 "[a view from above that fits the model]")
               ->type_name("ex,ey,ez,tx,ty,tz,fovdeg"),
-          command.add_flag("--terminal", options.terminal, "Draw on standard output, whatever that is"),
-          command.add_option("--colour,--color", options.colour, "Colours in the terminal, \"always\" in a pipe too")
+          command.add_flag("--terminal", options.terminal, "Draw on standard output, even if it is no terminal"),
+          command.add_option("--colour,--color", options.colour, "Colours in the terminal; \"always\" also in a pipe")
               ->type_name("WHEN")
               ->check(one_of({"auto", "always", "never"}))
               ->capture_default_str()};
@@ -289,13 +289,13 @@ std::vector<CLI::Option*> add_picture_options(CLI::App& command, Options& option
 
 /// --rays and --hits, which belong together and exclude pictures.
 void add_ray_options(CLI::App& command, Options& options, const std::vector<CLI::Option*>& of_pictures) {
-  CLI::Option* const rays = command.add_option("--rays", options.rays, "The table of rays");
+  CLI::Option* const rays = command.add_option("--rays", options.rays, "The table of rays to read");
   rays->check(fault_of_name)->type_name("FILE.csv");
   CLI::Option* const hits =
-      command.add_option("--hits", options.hits, "The table of hits to be written, or a folder, or a name with {name}");
+      command.add_option("--hits", options.hits, "The table of hits to write, a folder, or a name with {name}");
   hits->check(fault_of_name)->type_name("FILE.csv")->needs(rays);
   rays->needs(hits);
-  command.add_flag("--all-hits", options.all_hits, "All points that a ray meets, in exact mode, not the closest alone")
+  command.add_flag("--all-hits", options.all_hits, "Find all hits of each ray, not only the closest, in exact mode")
       ->needs(rays);
   for (CLI::Option* const picture : of_pictures) rays->excludes(picture);
 }
@@ -321,12 +321,12 @@ void add_mode(CLI::App& command, Options& options) {
   };
   command
       .add_option_function<std::string>("--mode", set_mode,
-                                        "What rays meet: surfaces (exact) or facets first (grid) [exact]")
+                                        "Rays meet the surfaces (exact), or facets first (grid) [exact]")
       ->type_name("MODE")
       ->check(one_of({"grid", "exact"}));
   command
       .add_option("--rate", options.rate,
-                  "Segments of a patch's grid each way in --mode grid, 1 to 256 [64, fewer for many patches]")
+                  "Segments of a patch's grid in each direction in --mode grid, 1 to 256 [64, fewer for many patches]")
       ->type_name("N")
       ->check(CLI::Range(1, 256));
 }
@@ -334,12 +334,11 @@ void add_mode(CLI::App& command, Options& options) {
 }  // namespace
 
 void add_raycast(CLI::App& app, Session& session) {
-  CLI::App* const command = app.add_subcommand("raycast", "Draw pictures by rays, or find the hits of given rays");
+  CLI::App* const command = app.add_subcommand("raycast", "Draw pictures with rays, or find the hits of your own rays");
   const auto options = std::make_shared<Options>();
   add_models(*command, options->models);
-  CLI::Option* const picture =
-      command->add_option("-o,--output", options->picture,
-                          "The picture to be written (.png, .exr), or a folder, or a name with {name} [the terminal]");
+  CLI::Option* const picture = command->add_option(
+      "-o,--output", options->picture, "The picture file (.png, .exr), a folder, or a name with {name} [the terminal]");
   picture->check(fault_of_name)->check(fault_of_picture)->type_name("FILE");
   std::vector<CLI::Option*> of_pictures = add_picture_options(*command, *options);
   for (CLI::Option* const option : of_pictures) {
@@ -353,14 +352,14 @@ void add_raycast(CLI::App& app, Session& session) {
   command->footer(raycast_footer);
   command->callback([options, command, shade = of_pictures[1], &session] {
     if (shade->count() > 0 && is_exr(options->picture))
-      throw CLI::ValidationError("--shade", "pictures of numbers (.exr) have no shade");
+      throw CLI::ValidationError("--shade", "an .exr picture holds numbers and takes no --shade");
     check_error_options(*command, options->settings.shade);
     if (options->all_hits && options->mode == RayMode::grid)
-      throw CLI::ValidationError("--all-hits", "all hits are known in --mode exact alone");
+      throw CLI::ValidationError("--all-hits", "needs --mode exact, found --mode grid");
     if (options->settings.shade == render::Shade::steps && options->mode == RayMode::grid)
-      throw CLI::ValidationError("--shade", "steps are counted in --mode exact alone");
+      throw CLI::ValidationError("--shade", "steps needs --mode exact, found --mode grid");
     if (options->rate > 0 && options->mode != RayMode::grid)
-      throw CLI::ValidationError("--rate", "grids are for --mode grid alone");
+      throw CLI::ValidationError("--rate", "needs --mode grid, found --mode exact");
     const Plan plan = plan_raycast(*options, session.common);
     session.command = [options, plan, &session] {
       return run_jobs(plan, session.common, [&](const Job& job, Timings& timings) {

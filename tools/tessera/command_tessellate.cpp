@@ -44,7 +44,7 @@ struct Tessellated {
   bool proven = false;  ///< only sampled where callables are fitted without bounds on their derivatives
 };
 
-/// By a plan of either kind.
+/// Runs a plan of either kind.
 template <class Plan>
 Result<Mesh> run_plan(const Result<Plan>& plan, const PatchSet& set, bool quads) {
   if (!plan) return plan.status();
@@ -86,27 +86,28 @@ Result<Tessellated> tessellate(const Options& options, const Model& model, const
   return made;
 }
 
-/// What the mesh keeps, in words.
+/// The tolerances that the mesh keeps, in words.
 std::string kept(const Options& options, const Tessellated& made) {
   if (options.grid) return "";
   std::string said = ", within " + readable(made.bound, 3) + " of the surfaces";
   if (options.certified.angle) {
     said += ", their normals within " + readable(made.angle, 3) + " degrees";
-    if (made.patches_without_angle > 0) said += " (but for " + std::to_string(made.patches_without_angle) + " patches)";
+    if (made.patches_without_angle > 0)
+      said += " (except for " + counted(made.patches_without_angle, "patch", "patches") + ")";
   }
   if (options.pixels > 0) said += ", within " + readable(made.pixels, 3) + " pixels in the picture";
-  said += made.proven ? ", proven" : ", but for fits that are sampled";
-  return said + (made.welded_borders ? ", " + std::to_string(made.welded_borders) + " borders welded" : "");
+  said += made.proven ? ", proven" : ", proven except for fits that are sampled";
+  return said + (made.welded_borders ? ", " + counted(made.welded_borders, "border") + " welded" : "");
 }
 
 Status report(const Job& job, const Options& options, const CommonOptions& common, const Loaded& loaded,
               const PatchSet& set, const Tessellated& made, const Timings& timings) {
   const Mesh& mesh = made.mesh;
   if (!common.json)
-    return print(job.output + ": " + std::to_string(mesh.vertex_count()) + " vertices, " +
-                 std::to_string(mesh.triangle_count()) + " triangles" +
-                 (options.quads ? ", " + std::to_string(mesh.quad_count()) + " quads" : "") + kept(options, made) +
-                 "\n" + fit_line(set));
+    return print(job.output + ": " + counted(mesh.vertex_count(), "vertex", "vertices") + ", " +
+                 counted(mesh.triangle_count(), "triangle") +
+                 (options.quads ? ", " + counted(mesh.quad_count(), "quad") : "") + kept(options, made) + "\n" +
+                 fit_line(set));
   Json object = files_json(loaded);
   object["output"] = job.output;
   object["vertices"] = mesh.vertex_count();
@@ -160,14 +161,15 @@ std::string fault_of_output(const std::string& path) {
 }
 
 constexpr const char* footer =
-    "Positions, normals and parameters are written (.stl: triangles alone), a part for each surface in .obj, .glb and\n"
-    ".gltf; neighbours share their borders bit for bit, and with --share-vertices by number: such a vertex has the\n"
-    "parameters of the first of its patches. Several models become\n"
-    "one mesh, or one each where the output is a folder (then as .ply) or holds {name}.\n"
-    "By --tolerance, --relative or --triangles each patch gets the rates that it needs, neighbours meet without a "
-    "crack,\n"
-    "and the bound that is printed is proven, float rounding and fits included. With --quads whole cells are faces of\n"
-    "four corners, those of strips along borders and at poles triangles.\n"
+    "The mesh has positions, normals and parameters (.stl: triangles only). .obj, .glb and .gltf have one part for "
+    "each\n"
+    "surface. Neighbours share their borders bit for bit. With --share-vertices they share vertices too; a shared\n"
+    "vertex has the parameters of the first of its patches. Several models become one mesh, or one mesh each if the\n"
+    "output is a folder (then as .ply) or contains {name}.\n"
+    "With --tolerance, --relative or --triangles each patch gets the rates that it needs, and neighbours meet without "
+    "a\n"
+    "crack. The printed bound is proven, and includes float rounding and fits. With --quads whole cells are faces of\n"
+    "four corners; strips along borders and cells at poles are triangles.\n"
     "\nExamples:\n"
     "  tessera tessellate teapot.bpt -o teapot.ply --grid 16x16\n"
     "  tessera tessellate teapot.bpt -o teapot.ply --tolerance 0.001 --angle 10\n"
@@ -197,10 +199,10 @@ void add_density(CLI::App& command, Options& options) {
               "Segments of every patch, along u and along v, 1 to 4096 each")
           ->type_name("NxM");
   CLI::Option* const tolerance = add_number(group, "--tolerance", "LENGTH",
-                                            "How far the mesh may lie from the surfaces, in the model's unit; proven",
+                                            "Largest distance between mesh and surfaces, in the model's unit; proven",
                                             [&certified](double value) { certified.tolerance = value; });
   CLI::Option* const relative =
-      add_number(group, "--relative", "SHARE", "The same as a share of the model's size, the diagonal of its box",
+      add_number(group, "--relative", "SHARE", "The tolerance as a share of the model's size, the diagonal of its box",
                  [&certified](double value) {
                    certified.tolerance = value;
                    certified.relative = true;
@@ -212,25 +214,24 @@ void add_density(CLI::App& command, Options& options) {
                                            certified.max_triangles = count;
                                            certified.smallest = true;
                                          },
-                                         "The finest tolerance that takes at most so many triangles")
+                                         "The smallest tolerance that needs at most this many triangles")
                                      ->type_name("COUNT");
-  CLI::Option* const angle = add_number(group, "--angle", "DEGREES",
-                                        "How far the surfaces' normals may turn within a triangle, up to 90; proven",
-                                        [&certified](double value) {
-                                          if (value > 90)
-                                            throw CLI::ValidationError("--angle", "expected at most 90 degrees");
-                                          certified.angle = value * degree;
-                                        });
-  CLI::Option* const pixels =
-      add_number(group, "--pixels", "P", "How far the mesh may lie from the surfaces in --camera's picture; proven",
-                 [&options](double value) { options.pixels = value; });
+  CLI::Option* const angle = add_number(
+      group, "--angle", "DEGREES", "Largest turn of the surfaces' normals within a triangle, up to 90; proven",
+      [&certified](double value) {
+        if (value > 90) throw CLI::ValidationError("--angle", "expected at most 90 degrees, found " + readable(value));
+        certified.angle = value * degree;
+      });
+  CLI::Option* const pixels = add_number(
+      group, "--pixels", "P", "Largest distance between mesh and surfaces in --camera's picture, in pixels; proven",
+      [&options](double value) { options.pixels = value; });
   for (CLI::Option* const other : {tolerance, relative, triangles, angle, pixels}) grid->excludes(other);
   tolerance->excludes(relative)->excludes(triangles);
   relative->excludes(triangles);
   group.require_option(1, 0);
 }
 
-/// What --pixels looks from.
+/// The camera of --pixels.
 void add_view(CLI::App& command, Options& options) {
   View& view = options.view;
   CLI::Option* const pixels = command.get_option("--pixels");
@@ -262,11 +263,11 @@ void add_view(CLI::App& command, Options& options) {
       ->type_name("WxH")
       ->needs(camera);
   add_number(command, "--near", "LENGTH",
-             "What is nearer to the eye isn't seen [a thousandth of the target's distance]",
+             "Points nearer to the eye are not seen [a thousandth of the target's distance]",
              [&view](double value) { view.near_distance = value; })
       ->needs(camera);
   add_number(command, "--orthographic", "LENGTH",
-             "Parallel rays: how much the picture's shorter side shows; the field of view is not used",
+             "Parallel rays, and the length that the picture's shorter side shows; the field of view is not used",
              [&view](double value) {
                view.orthographic = true;
                view.extent = value;
@@ -279,12 +280,12 @@ void add_cap(CLI::App& command, Options& options) {
   command
       .add_option_function<std::uint64_t>(
           "--most-triangles", [&options](std::uint64_t count) { options.certified.max_triangles = count; },
-          "Refuse to make more, and say how many it would take, unless by --grid [1073741824]")
+          "Limit on triangles, not for --grid; an error says how many are needed [1073741824]")
       ->type_name("COUNT")
       ->excludes(command.get_option("--triangles"));
   command
       .add_flag("--fewest", options.certified.fewest,
-                "Take 15 to 200 us a patch to find out where fewer triangles will do, unless by --grid")
+                "Search for a mesh with fewer triangles, not for --grid; takes 15 to 200 us per patch")
       ->excludes(command.get_option("--grid"));
 }
 
@@ -292,35 +293,37 @@ void add_weld(CLI::App& command, Options& options) {
   const auto set_weld = [&options](const std::string& text) {
     options.weld_rounding = text == "auto";
     if (options.weld_rounding) return;
-    options.certified.weld = parse_numbers("--weld", text, 1, "a length, or auto")[0];
+    options.certified.weld = parse_numbers("--weld", text, 1, "of at least 0, or auto")[0];
     if (!(options.certified.weld >= 0))
       throw CLI::ValidationError("--weld", "expected a length of at least 0, or auto, found \"" + text + "\"");
   };
   command
-      .add_option_function<std::string>("--weld", set_weld,
-                                        "Join borders that lie so near each other, unless by --grid; auto: 1e-6 of the "
-                                        "model's size [0: borders of the same bits]")
+      .add_option_function<std::string>(
+          "--weld", set_weld,
+          "Join borders within this distance of each other, not for --grid; auto: 1e-6 of the "
+          "model's size [0: borders with equal bits]")
       ->type_name("LENGTH");
 }
 
-/// What neighbours have in common.
+/// Options for the normals and vertices that neighbours share.
 void add_sharing(CLI::App& command, Options& options) {
   CLI::Option* const grid = command.get_option("--grid");
   const auto set_crease = [&options](const std::string& text) {
-    const double angle = parse_numbers("--crease", text, 1, "0 to 180")[0];
+    const double angle = parse_numbers("--crease", text, 1, "from 0 to 180")[0];
     if (!(angle >= 0 && angle <= 180))
       throw CLI::ValidationError("--crease", "expected an angle of 0 to 180 degrees, found \"" + text + "\"");
     options.certified.crease_angle = angle * degree;
   };
   command
-      .add_option_function<std::string>("--crease", set_crease,
-                                        "Neighbours whose normals lie within this along their border share them, the "
-                                        "others keep a crease [each patch has its own]")
+      .add_option_function<std::string>(
+          "--crease", set_crease,
+          "Share normals along a border where they differ by no more than this angle, and keep "
+          "a crease elsewhere [each patch has its own normals]")
       ->type_name("DEGREES")
       ->excludes(grid);
   command
       .add_flag("--share-vertices", options.certified.share_vertices,
-                "Store what neighbours share once: vertices with the same normal by --crease, else all of them, "
+                "Store vertices once that neighbours share: with --crease those with the same normal, otherwise all, "
                 "without normals")
       ->excludes(grid);
 }
@@ -332,10 +335,9 @@ void add_precision(CLI::App& command, Options& options) {
     options.certified.precision = text == "double" ? Precision::double_precision : Precision::single_precision;
   };
   command
-      .add_option_function<std::string>(
-          "--precision", set_precision,
-          "Positions in float, or in double (.ply and .obj), which keep a small tolerance "
-          "of parts far from each other [float]")
+      .add_option_function<std::string>("--precision", set_precision,
+                                        "Precision of positions; double (.ply and .obj) keeps a small tolerance "
+                                        "for parts far from each other [float]")
       ->type_name("float|double")
       ->excludes(command.get_option("--grid"));
 }
@@ -348,7 +350,7 @@ void check_formats(const Plan& plan, const char* option, const std::string& held
   for (const Job& job : plan.jobs) {
     const std::string extension = lower_extension(job.output);
     if (std::find(std::begin(simple_formats), std::end(simple_formats), extension) != std::end(simple_formats))
-      throw CLI::ValidationError(option, extension + " holds " + held + " alone; .obj and .ply hold " + wanted);
+      throw CLI::ValidationError(option, extension + " can hold only " + held + "; .obj and .ply can hold " + wanted);
   }
 }
 
@@ -360,7 +362,7 @@ void add_tessellate(CLI::App& app, Session& session) {
   add_models(*command, options->models);
   command
       ->add_option("-o,--output", options->output,
-                   "The mesh to be written (.obj, .ply, .stl, .glb, .gltf), or a folder, or a name with {name}")
+                   "The mesh file (.obj, .ply, .stl, .glb, .gltf), a folder, or a name with {name}")
       ->required()
       ->type_name("FILE")
       ->check(fault_of_output);
@@ -370,14 +372,14 @@ void add_tessellate(CLI::App& app, Session& session) {
   add_weld(*command, *options);
   add_sharing(*command, *options);
   add_precision(*command, *options);
-  command->add_flag("--quads", options->quads, "Quads where a cell is whole, in .obj and .ply [triangles alone]");
+  command->add_flag("--quads", options->quads, "Write whole cells as quads, in .obj and .ply [triangles only]");
   add_common(*command, session.common);
   command->footer(footer);
   command->callback([options, &session] {
     const Plan plan = plan_jobs(options->models.files, options->output, {"--output", extension_in_folders});
     if (options->quads) check_formats(plan, "--quads", "triangles", "quads");
     if (options->certified.precision == Precision::double_precision)
-      check_formats(plan, "--precision", "positions in float", "them in double");
+      check_formats(plan, "--precision", "positions in float", "positions in double");
     session.command = [options, plan, &session] {
       return run_jobs(plan, session.common, [&](const Job& job, Timings& timings) {
         return run_tessellate(job, *options, session.common, timings);

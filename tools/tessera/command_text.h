@@ -12,9 +12,9 @@ namespace tessera::cli {
 
 struct OptionText {
   std::vector<std::string> names;    ///< "-o", "--output"; "MODEL" for a word without a name
-  std::string value;                 ///< what it takes, "NxM"; empty for a flag. Files begin with "FILE".
+  std::string value;                 ///< its value, "NxM"; empty for a flag. Files begin with "FILE".
   std::vector<std::string> choices;  ///< the only values, if they are words
-  std::string text;                  ///< what it is for, with unit and default
+  std::string text;                  ///< its purpose, with unit and default
   bool positional = false, required = false, repeated = false;
 
   bool takes_file() const { return value.starts_with("FILE"); }

@@ -9,7 +9,7 @@
 
 namespace tessera::cli {
 
-/// What the command line asks for.
+/// The command that the command line names.
 struct Session {
   std::function<Status()> command;
   CommonOptions common;

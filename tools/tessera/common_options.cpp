@@ -25,13 +25,14 @@ void force_isa(const std::string& name) {
 void add_common(CLI::App& command, CommonOptions& options) {
   constexpr const char* group = "Options of every command";
   constexpr int max_threads = 1024;
-  command.add_flag("--json", options.json, "Print a JSON object a line, for machines")->group(group);
-  command.add_flag("--timings", options.timings, "Say how many seconds each phase took")->group(group);
-  command.add_option("--threads", options.threads, "Threads to work with [all of the machine]")
+  command.add_flag("--json", options.json, "Print one JSON object per line, for programs")->group(group);
+  command.add_flag("--timings", options.timings, "Print the seconds of each phase")->group(group);
+  command.add_option("--threads", options.threads, "Number of threads [all of the machine]")
       ->type_name("N")
       ->check(whole_number(1, max_threads))
       ->group(group);
-  command.add_option_function<std::string>("--isa", force_isa, "Instruction set to evaluate with [the machine's best]")
+  command
+      .add_option_function<std::string>("--isa", force_isa, "Instruction set of the evaluation [the machine's best]")
       ->type_name("NAME")
       ->check(one_of({"sse2", "avx2", "avx512"}))
       ->group(group);

@@ -23,7 +23,7 @@ std::string command_names(const CommandText& tool) {
   return joined(names, " ");
 }
 
-/// What a word after `before` may be: `words` a list, or `files`.
+/// The words that may follow `before`: a list `words`, or `files`.
 std::string value_cases(const CommandText& command) {
   std::string cases;
   for (const OptionText& option : command.options) {

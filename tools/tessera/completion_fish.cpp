@@ -11,7 +11,7 @@ std::string words_of(const OptionText& option) {
   return words;
 }
 
-/// Of a named option: its names, and what it takes (-r: something, -F: files, -f: none).
+/// A named option: its names, and its value (-r: something, -F: files, -f: none).
 std::string option_line(const std::string& condition, const OptionText& option) {
   std::string line = "complete -c tessera -n " + fish_quoted(condition);
   for (const std::string& name : option.names)

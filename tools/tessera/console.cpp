@@ -71,6 +71,10 @@ void end_by_signal() {
   std::raise(caught_signal);
 }
 
+std::string counted(std::size_t count, const std::string& noun, const std::string& plural) {
+  return std::to_string(count) + " " + (count == 1 ? noun : plural.empty() ? noun + "s" : plural);
+}
+
 std::string readable(double value, int digits) {
   char text[32];
   const int length = std::snprintf(text, sizeof text, "%.*g", digits, value);

@@ -1,5 +1,5 @@
 #pragma once
-// What the commands say and hear: standard output and error, interruption, clocks.
+// Standard output and error, interruption, clocks.
 
 #include <atomic>
 #include <chrono>
@@ -30,7 +30,7 @@ Status print_json(const Json& object);
 /// "tessera: ..." and the end of the line, on standard error.
 void complain(const std::string& message);
 void warn(const std::string& message);
-/// An error of which all is said already.
+/// An error whose message is printed already.
 Status already_said(StatusCode code);
 bool is_already_said(const Status& status);
 
@@ -56,6 +56,8 @@ class Stopwatch {
 std::string readable(double value, int digits = 6);
 /// [x, y, z].
 inline Json to_json(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
+/// "1 surface", "2 surfaces"; `plural` where it takes more than an s.
+std::string counted(std::size_t count, const std::string& noun, const std::string& plural = "");
 /// "0.0123 s".
 inline std::string readable_seconds(double seconds) { return readable(seconds, 3) + " s"; }
 

@@ -10,7 +10,7 @@
 namespace tessera::cli {
 namespace {
 
-/// Of the elements of an array.
+/// The bytes of an array's elements.
 template <class Array>
 std::size_t array_bytes(const Array& array) {
   return array.size() * sizeof(*array.data());
@@ -25,7 +25,7 @@ std::size_t bytes_of(const BorderCurve& border) {
   return curve ? bytes_of(*curve) : 0;
 }
 
-/// Of what a surface refers to, by what its kind has; what copies share is counted with each of them.
+/// The bytes of the arrays of a surface, by its kind. Memory that copies share is counted with each copy.
 template <class Kind>
 std::size_t net_bytes(const Kind& kind) {
   std::size_t bytes = 0;

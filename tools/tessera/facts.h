@@ -1,5 +1,5 @@
 #pragma once
-// What a model holds, counted.
+// Counts of a model: surfaces, patches, degrees, memory.
 
 #include <cstddef>
 #include <map>

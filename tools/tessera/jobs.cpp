@@ -69,7 +69,7 @@ void refuse_shared_outputs(const std::vector<Job>& jobs, const OutputRule& rule)
   }
 }
 
-/// What --json says of a job that failed.
+/// The output of --json for a job that failed.
 Json error_json(const Job& job, const Status& status) {
   return {{"files", job.inputs},
           {"error", {{"code", std::string(name(status.code()))}, {"message", status.message()}}}};

@@ -1,5 +1,5 @@
 #pragma once
-// From the file names on the command line to what is to be done: which files together, and where the result goes.
+// Turns the file names on the command line into jobs: which files belong together, and where the result goes.
 
 #include <functional>
 #include <string>
@@ -25,7 +25,7 @@ struct Plan {
 /// How a command takes its files.
 struct OutputRule {
   std::string option;     ///< that names the output, for messages
-  std::string extension;  ///< of a file in a folder: ".png"
+  std::string extension;  ///< the extension of a file in a folder: ".png"
   bool together = true;   ///< several files without an output make one result
 };
 

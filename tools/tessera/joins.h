@@ -1,5 +1,5 @@
 #pragma once
-// Which patches meet at which borders, and how smoothly.
+// Finds the patches that meet at a border, and measures how smoothly.
 
 #include <cstddef>
 
@@ -9,7 +9,7 @@
 
 namespace tessera::cli {
 
-/// What info takes for zero: files hold six digits often, and designers call a degree's tenth smooth.
+/// Tolerances of info: files often hold six digits, and designers call a tenth of a degree smooth.
 inline constexpr JoinTolerances join_tolerances{.position = 1e-6, .angle = 2e-3, .derivative = 1e-3};
 
 /// Joins by their continuity; maxima are of those that were measured.
@@ -22,7 +22,7 @@ struct JoinCounts {
 
 struct Joins {
   JoinCounts between_surfaces, within_surfaces;
-  std::size_t open_borders = 0;     ///< of one patch alone, those not collapsed to a point
+  std::size_t open_borders = 0;     ///< borders of one patch alone, without those that are one point
   std::size_t crowded_borders = 0;  ///< where three patches or more meet
 };
 

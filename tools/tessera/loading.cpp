@@ -21,7 +21,7 @@ namespace {
 #ifdef TESSERA_HAS_IO_OCCT
 constexpr const char* cad_formats = ", .step, .stp, .iges, .igs";
 
-/// By the component that knows the format.
+/// Reads a model by the component that knows its format.
 Result<Model> read_any_model(const std::string& path) { return is_cad_file(path) ? read_cad(path) : read_model(path); }
 #else
 constexpr const char* cad_formats = "";
@@ -34,7 +34,7 @@ std::size_t count_trimmed(std::span<const ModelSurface> surfaces) {
                                                 [](const ModelSurface& surface) { return !surface.trims->empty(); }));
 }
 
-/// What of the file the model does not hold.
+/// Warns about each part of the file that the model does not hold.
 void say_warnings(const std::string& file, const Model& model) {
   constexpr std::size_t limit = 20;  // lines; the file may be a long list of what is not read
   const std::size_t count = model.warnings.size();
@@ -44,7 +44,7 @@ void say_warnings(const std::string& file, const Model& model) {
     trims_said = trims_said || of_trims;
     if (k < limit || of_trims) warn(model.warnings[k]);
   }
-  if (count > limit) warn("and " + std::to_string(count - limit) + " more of this file");
+  if (count > limit) warn("and " + std::to_string(count - limit) + " more warnings of this file");
   const std::string trims = trims_text(count_trimmed(model.surfaces));
   if (!trims_said && !trims.empty()) warn(file + ": " + trims);
 }
@@ -103,13 +103,14 @@ Status add_file(const std::string& file, const FitOptions& fit, With with, Timin
 std::string model_formats() { return std::string(".bpt, .bv, .g2, .json, .obj, .rib") + cad_formats; }
 
 void add_models(CLI::App& command, ModelOptions& options) {
-  command.add_option("MODEL", options.files, "Files of surfaces (" + model_formats() + "), or patterns of their names")
+  command
+      .add_option("MODEL", options.files, "Files with surfaces (" + model_formats() + "), or patterns of their names")
       ->required()
       ->check(fault_of_name)
       ->type_name("FILE");
   command
       .add_option("--fit-tolerance", options.fit.tolerance,
-                  "How far patches may lie from surfaces that are given by expressions, in the model's unit "
+                  "Largest distance of patches from surfaces that are written as expressions, in the model's unit "
                   "[1e-6 of the surface's size]")
       ->type_name("LENGTH")
       ->check([](const std::string& text) {
@@ -188,7 +189,7 @@ std::string trims_text(std::size_t trimmed) {
 std::string fit_line(const PatchSet& set) { return fit_line(set.fit_error()); }
 std::string fit_line(const FitError& error) {
   if (error.distance == 0 && error.certified) return {};
-  return "  callables fitted to within " + readable(error.distance, 3) +
+  return "  functions fitted to within " + readable(error.distance, 3) +
          (error.certified ? ", proven\n" : ", sampled\n");
 }
 

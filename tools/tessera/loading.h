@@ -13,7 +13,7 @@ class App;
 
 namespace tessera::cli {
 
-/// What the command line says of the models.
+/// The options of the command line for models.
 struct ModelOptions {
   std::vector<std::string> files;  ///< names and patterns, as given
   FitOptions fit;
@@ -27,9 +27,9 @@ std::string model_formats();
 /// The files of a job as one model: surfaces are counted on from file to file.
 struct Loaded {
   Model model;
-  std::vector<std::string> files;                      ///< those that were read
-  std::vector<std::size_t> first;                      ///< of each of them, its first surface
-  std::vector<PatchGrid> grids;                        ///< of each surface, if asked for
+  std::vector<std::string> files;                      ///< the files that were read
+  std::vector<std::size_t> first;                      ///< the first surface of each file
+  std::vector<PatchGrid> grids;                        ///< the patches of each surface, on request
   std::vector<std::pair<std::string, Status>> failed;  ///< the other files, and why; complained of already
 
   std::size_t trimmed() const;  ///< surfaces with trims, which are not honoured
@@ -49,7 +49,7 @@ Result<Loaded> load(const Job& job, const FitOptions& fit, With with, Timings& t
 /// The set of all patches. Errors name file and surface.
 Result<PatchSet> pack(const Loaded& loaded, Timings& timings);
 
-/// What every report of a job begins with, in JSON: the files, and those that failed.
+/// The beginning of every job's report in JSON: the files, and the files that failed.
 Json files_json(const Loaded& loaded);
 /// And ends with: how many surfaces are trimmed, the fit error, warnings.
 void add_model_facts(Json& object, const Loaded& loaded, const PatchSet& set);

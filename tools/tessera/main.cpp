@@ -40,7 +40,7 @@ int end_of_parsing(const CLI::App& app, const CLI::ParseError& error) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App app("Tessera: parametric surfaces to points, meshes and ray hits", "tessera");
+  CLI::App app("Tessera turns parametric surfaces into points, meshes, pictures and ray hits", "tessera");
   Session session;
   describe(app);
   add_commands(app, session);

@@ -80,7 +80,7 @@ std::string command_section(const CommandText& command) {
 
 std::string man_page(const CommandText& tool, const std::string& version) {
   std::string text = ".TH TESSERA 1 \"\" \"tessera " + roff(version) + "\" \"User Commands\"\n";
-  text += ".SH NAME\ntessera \\- parametric surfaces to points, meshes, pictures and ray hits\n";
+  text += ".SH NAME\ntessera \\- turns parametric surfaces into points, meshes, pictures and ray hits\n";
   text += ".SH SYNOPSIS\n" + synopsis(tool);
   text += ".SH DESCRIPTION\n" + footer_text(tool.footer);
   text += ".SH OPTIONS\n";

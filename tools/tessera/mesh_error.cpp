@@ -52,7 +52,7 @@ Json MeshError::json() const { return {{"triangles", triangles}, {"found", found
 
 void add_error_options(CLI::App& command, MeshErrorOptions& options, CLI::Option* shade) {
   CLI::Option* const mesh = command.add_option(
-      "--mesh", options.mesh, "The mesh whose distance --shade error shows (.obj, .ply, .stl) [a certified one]");
+      "--mesh", options.mesh, "The mesh whose distance --shade error shows (.obj, .ply, .stl) [a certified mesh]");
   mesh->check(fault_of_name)->type_name("FILE")->needs(shade);
   const auto set_relative = [&options](const std::string& text) {
     options.relative = parse_numbers("--relative", text, 1, "above 0")[0];
@@ -70,7 +70,7 @@ void add_error_options(CLI::App& command, MeshErrorOptions& options, CLI::Option
 
 void check_error_options(const CLI::App& command, render::Shade shade) {
   if (command.count("--mesh") + command.count("--relative") > 0 && shade != render::Shade::error)
-    throw CLI::ValidationError("--shade", "--mesh and --relative are for --shade error");
+    throw CLI::ValidationError("--shade", "--mesh and --relative need --shade error");
 }
 
 Result<MeshError> measure_error(const MeshErrorOptions& options, const PatchSet& set) {

@@ -1,5 +1,5 @@
 #pragma once
-// What `raycast --shade error` shows: how far a mesh lies from the surfaces that it stands for.
+// `raycast --shade error`: the distance of a mesh from the surfaces that it stands for.
 
 #include <CLI/CLI.hpp>
 

@@ -8,7 +8,7 @@
 
 namespace tessera::cli {
 
-/// Which of several files the bars from now on are about: "(2/5) teapot.bpt"; empty for none.
+/// Names the file that the next bars belong to: "(2/5) teapot.bpt"; empty for none.
 void set_progress_subject(std::string subject);
 
 /// Appears once the work has taken a tenth of a second, and is removed at the end.

@@ -1,5 +1,5 @@
 #pragma once
-// What somebody may have meant who typed something else.
+// Suggests the word that was meant for one that was typed.
 
 #include <string>
 #include <string_view>

@@ -1,5 +1,5 @@
 #pragma once
-// What the streams are connected to, and what a terminal there can show.
+// Whether the streams are terminals, and which colours and sizes these have.
 
 #include <string>
 
@@ -20,7 +20,7 @@ enum class Colours {
   full,         ///< 24 bits
 };
 
-/// What standard output shows. `when`: "never", "always" (24 bits, whatever it is), or "auto": none unless it is a terminal
+/// The colours of standard output. `when`: "never", "always" (24 bits, whatever it is), or "auto": none unless it is a terminal
 /// whose TERM knows colours and NO_COLOR (no-color.org) is not set; 24 bits if COLORTERM says so.
 Colours output_colours(const std::string& when);
 

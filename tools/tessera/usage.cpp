@@ -18,7 +18,7 @@ std::vector<std::string> command_names(const CLI::App& app) {
   return names;
 }
 
-/// With those of its option groups, which are subcommands without a name.
+/// Adds the names of its option groups too, which are subcommands without a name.
 void add_option_names(const CLI::App& command, std::vector<std::string>& names) {
   for (const CLI::Option* const option : command.get_options()) {
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
@@ -29,7 +29,7 @@ void add_option_names(const CLI::App& command, std::vector<std::string>& names) 
   }
 }
 
-/// Of a word that no option took.
+/// The message for a word that no option took.
 std::string fault_of_word(const CLI::App& app, const CLI::App& command, const std::string& word) {
   const bool of_tool = &command == &app;
   if (!word.starts_with('-')) {
@@ -51,20 +51,20 @@ void describe(CLI::App& app) {
   app.get_formatter()->column_width(28);
   app.footer(
       "Files read: surfaces as " + model_formats() +
-      "\n(Bezier patches; BezierView; GoTools; surfaces of every kind, see tools/models/FORMAT.md; free-form "
-      "surfaces;\n"
-      "RenderMan; CAD parts where OpenCASCADE was there at the build); meshes as .obj, .ply, .stl. What of a file is\n"
-      "not read"
-      " is said as a warning.\n"
+      ";\n"
+      "meshes as .obj, .ply, .stl. Surfaces are Bezier patches (.bpt), BezierView (.bv), GoTools (.g2), RenderMan\n"
+      "(.rib), free-form OBJ, CAD parts (if OpenCASCADE was there at the build), and surfaces of every kind (.json;\n"
+      "tools/models/FORMAT.md describes the format). A warning names each part of a file that is skipped.\n"
       "\nFiles written: meshes as .obj, .ply, .stl, .glb and .gltf; surfaces as .obj and .bpt; pictures as .png, and "
       "as\n"
-      ".exr (numbers: depth, normals, parameters); tables as text. They appear whole or not at all.\n"
-      "\nSeveral files: commands take names and quoted patterns ('parts/*.bpt'), which stand for the files that "
-      "match,\n"
-      "sorted. With one output they are one scene; an output that is a folder, or that holds {name} (the file's name\n"
-      "without folder and extension), gets one result a file. A file that fails does not stop the others.\n"
-      "Surfaces, patches and rays are counted from 0, surfaces on from file to file.\n"
-      "\nEnvironment: TESSERA_ISA=sse2|avx2|avx512 is as --isa; NO_COLOR keeps colours away.\n"
+      ".exr (numbers: depth, normals, parameters); tables as text. A file appears whole or not at all.\n"
+      "\nSeveral files: a command takes names and quoted patterns ('parts/*.bpt'). A pattern means the files that "
+      "match\n"
+      "it, sorted. With one output, all files are one scene. If the output is a folder, or contains {name} (the "
+      "file's\n"
+      "name without folder and extension), each file gets its own result. If a file fails, the others go on.\n"
+      "Surfaces, patches and rays are counted from 0. Surfaces are counted on from file to file.\n"
+      "\nEnvironment: TESSERA_ISA=sse2|avx2|avx512 does the same as --isa; NO_COLOR turns colours off.\n"
       "\nExit status: 0 done, 1 an input is bad or an output cannot be written, 2 the command line is bad.\n"
       "\nExamples:\n"
       "  tessera info 'models/*.json'\n"

@@ -1,5 +1,5 @@
 #pragma once
-// What the tool says of itself, and of a command line that it does not understand.
+// The help of the tool, and messages for a command line that it does not understand.
 
 #include <string>
 
@@ -13,9 +13,9 @@ namespace tessera::cli {
 /// Name, version and closing words of `tessera --help`.
 void describe(CLI::App& app);
 
-/// What is wrong: words that are no option or no command first, with what may have been meant.
+/// The message for a wrong command line. It names words that are no option or command first, with a suggestion.
 std::string usage_fault(const CLI::App& app, const CLI::Error& error);
-/// The same of a command line without a command.
+/// The message for a command line without a command.
 std::string missing_command(const CLI::App& app);
 
 }  // namespace tessera::cli
