@@ -1,7 +1,12 @@
-// Hashes of the borders of a block of patches, lanes = patches: the same for both directions, and for weights that differ by
-// a power of two (tess/edges/shared_edges.h). A sum over the control points, each mixed with its distance to the nearer end, by
-// multiplications and shifts as in MurmurHash3 (Appleby 2011). And whether those with one hash are the same curve. Included by
-// the units as sample_kernel.inl.h is.
+#pragma once
+// Hashes of the borders of a block of patches, lanes = patches: the same for both directions, and for weights that
+// differ by a power of two (tess/edges/shared_edges.h). A sum over the control points, each mixed with its distance to
+// the nearer end, by multiplications and shifts as in MurmurHash3 (Appleby 2011). And whether those with one hash are
+// the same curve.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/chord/chord_kernels.h, kernel/isa/lanes.h.
+
+#include "kernel/isa/index_vector.inl.h"
 
 template <class L>
 [[gnu::always_inline]] inline Indices<L> mixed_bits(const Indices<L>& x) {

@@ -1,6 +1,9 @@
-// Bounds on the second derivatives of polynomial patches and the rates that keep a distance (tess/bounds/chord_bound.h), lanes =
-// patches of a block. Included by the units as sample_kernel.inl.h is. No multiply-add is fused, so that every
-// instruction set finds the same rates.
+#pragma once
+// Bounds on the second derivatives of polynomial patches and the rates that keep a distance
+// (tess/bounds/chord_bound.h), lanes = patches of a block. No multiply-add is fused, so that every instruction set
+// finds the same rates.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/chord/chord_kernels.h, kernel/isa/lanes.h.
 
 /// Cuts the curve of `count` points, `step` apart, at 1/2: cut[0 .. 2 count - 2] are its lower half's points, then, from
 /// the shared one on, its upper half's.

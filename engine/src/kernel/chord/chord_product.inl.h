@@ -1,5 +1,10 @@
-// Bounds on the products of second derivatives of polynomial patches (tess/bounds/chord_bound.h), lanes = patches of a block.
-// Included by the units after chord_kernel.inl.h. No multiply-add is fused, as there.
+#pragma once
+// Bounds on the products of second derivatives of polynomial patches (tess/bounds/chord_bound.h), lanes = patches of a
+// block. No multiply-add is fused, as there.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/chord/chord_kernels.h, kernel/isa/lanes.h.
+
+#include "kernel/chord/chord_kernel.inl.h"
 
 /// A net of vectors, cut at 1/2 along u, along v, both or neither: `[component][i][j]`, where the halves share points.
 template <class L, int Rows, int Columns>

@@ -1,6 +1,11 @@
+#pragma once
 // Bounds on the second derivatives of rational patches themselves, and the deviation of a patch from a scaled sweep
-// (tess/bounds/chord_bound.h), lanes = patches of a block, in double. Included by the units after exact_derivative.inl.h. No
-// multiply-add is fused, so that every instruction set finds the same bounds.
+// (tess/bounds/chord_bound.h), lanes = patches of a block, in double. No multiply-add is fused, so that every
+// instruction set finds the same bounds.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/chord/chord_kernels.h, kernel/isa/lanes.h.
+
+#include "kernel/chord/exact_derivative.inl.h"
 
 /// One lane group of a block.
 template <class L>

@@ -1,6 +1,10 @@
-// Bounds on the second derivatives of rational patches and curves themselves, by exact numerators, lanes = patches, in double.
-// Included by the units after chord_kernel.inl.h. No multiply-add is fused, so that every instruction set finds the same
-// bounds.
+#pragma once
+// Bounds on the second derivatives of rational patches and curves themselves, by exact numerators, lanes = patches, in
+// double. No multiply-add is fused, so that every instruction set finds the same bounds.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/chord/chord_kernels.h, kernel/isa/lanes.h.
+
+#include "kernel/chord/rational_nets.inl.h"
 
 /// A polynomial in two parameters: Bernstein coefficients times their binomials, C(m,i) C(n,j) c_ij, `[i][j]`. Products are
 /// then plain convolutions, degree elevation by one adds neighbours, and the factors cancel in quotients of equal degrees.

@@ -1,5 +1,10 @@
-// The rates that keep a distance, by bounds of patches of a block (tess/bounds/chord_bound.h), lanes = patches. Included by the
-// units after chord_kernel.inl.h. No multiply-add is fused, so that every instruction set finds the same rates.
+#pragma once
+// The rates that keep a distance, by bounds of patches of a block (tess/bounds/chord_bound.h), lanes = patches. No
+// multiply-add is fused, so that every instruction set finds the same rates.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/chord/chord_kernels.h, kernel/isa/lanes.h.
+
+#include "kernel/chord/chord_kernel.inl.h"
 
 /// The search for rates, one patch a lane. Along one parameter, `first`, whose second derivatives are the smaller, rates are
 /// tried around that of the fewest cells if cells were no whole numbers; the other's follow.

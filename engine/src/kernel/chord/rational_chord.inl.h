@@ -1,5 +1,10 @@
-// Bounds on the second derivatives of rational patches: the largest |A'' - c w''| + R |w''|, over w_min, at the control points
-// of a piece's quarters. Included by the units after rational_nets.inl.h.
+#pragma once
+// Bounds on the second derivatives of rational patches: the largest |A'' - c w''| + R |w''|, over w_min, at the
+// control points of a piece's quarters.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/chord/chord_kernels.h, kernel/isa/lanes.h.
+
+#include "kernel/chord/rational_nets.inl.h"
 
 template <class L>
 class RationalChords {

@@ -1,6 +1,7 @@
-// Rational patches of a block and where their pieces lie, for bounds on their second derivatives (tess/bounds/chord_bound.h), lanes =
-// patches. Included by the units after chord_kernel.inl.h. No multiply-add is fused, so that every instruction set finds the
-// same bounds.
+#pragma once
+// Rational patches of a block and where their pieces lie, for bounds on their second derivatives
+// (tess/bounds/chord_bound.h), lanes = patches. No multiply-add is fused, so that every instruction set finds the same
+// bounds.
 //
 // Over a piece whose points lie within R of c and whose weights are at least w_min, with A the points times their weights
 // relative to the patch's centre, second derivatives count as balls (A'' - c w'') / w_min of radius R |w''| / w_min.
@@ -8,6 +9,10 @@
 // Rounding, in units of u = 2^-24 and of the block's unit, in which coefficients and points are below 1, as are the weights;
 // k = m + n: A, packed and made relative, is off by at most 5 and its second differences, cut, by 36 + 8 k; those of w by
 // 8 + 2 k; A'' - c w'', c below 2, by (36 + 8 k) + 2 (8 + 2 k) + 16; cut weights by 1 + k and points by (13 + 4 k) / w_min.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/chord/chord_kernels.h, kernel/isa/lanes.h.
+
+#include "kernel/chord/chord_kernel.inl.h"
 
 template <class L>
 class RationalNets {

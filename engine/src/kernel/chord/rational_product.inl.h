@@ -1,5 +1,11 @@
-// Bounds on the products of second derivatives of rational patches: of vectors in two balls, p q + |p| s + |q| r + r s. Included
-// by the units after rational_nets.inl.h.
+#pragma once
+// Bounds on the products of second derivatives of rational patches: of vectors in two balls, p q + |p| s + |q| r + r
+// s.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/chord/chord_kernels.h, kernel/isa/lanes.h.
+
+#include "kernel/chord/rational_nets.inl.h"
+#include "kernel/chord/chord_product.inl.h"
 
 template <class L>
 class RationalProducts {

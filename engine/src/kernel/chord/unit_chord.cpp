@@ -7,8 +7,6 @@
 namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
 namespace {
 
-#include "kernel/isa/index_vector.inl.h"
-#include "kernel/chord/chord_kernel.inl.h"
 #include "kernel/chord/chord_product.inl.h"
 #include "kernel/chord/rate_search.inl.h"
 #include "kernel/chord/border_hash.inl.h"

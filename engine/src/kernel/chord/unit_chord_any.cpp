@@ -7,12 +7,8 @@
 namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
 namespace {
 
-#include "kernel/chord/chord_kernel.inl.h"
-#include "kernel/chord/chord_product.inl.h"
-#include "kernel/chord/rational_nets.inl.h"
 #include "kernel/chord/rational_chord.inl.h"
 #include "kernel/chord/rational_product.inl.h"
-#include "kernel/chord/exact_derivative.inl.h"
 #include "kernel/chord/exact_chord.inl.h"
 
 }  // namespace

@@ -1,6 +1,11 @@
+#pragma once
 // Kernel 3, transfinite blending, lanes = parameters v: what the border curves give for one u is broadcast, what they
-// give for v streams through, as many columns at a time as stay in the second-level cache (a first-level tile would cut
-// the runs of stores short, which cost more than the loads). Included by the units as grid_kernel.inl.h is.
+// give for v streams through, as many columns at a time as stay in the second-level cache (a first-level tile would
+// cut the runs of stores short, which cost more than the loads).
+//
+// Needs before it, outside of the instruction set's namespace: kernel/grid/line_kernels.h, kernel/isa/lanes.h.
+
+#include "kernel/store/store.inl.h"
 
 /// Columns begin .. end of one row: ((g1 C1 + g2 C2) + f1 K1) + f2 K2 in this order, all but the first product fused.
 template <class L, Records Layout>

@@ -1,8 +1,14 @@
-// Kernel 3, lanes = neighbouring numbers of a row of a patch's grid, x y z x y z .., for positions alone. The curves of
-// four rows lie in one vector, q_j = sum_i f_i(row) c_ij; those of one are spread over its vectors, r = sum_j
+#pragma once
+// Kernel 3, lanes = neighbouring numbers of a row of a patch's grid, x y z x y z .., for positions alone. The curves
+// of four rows lie in one vector, q_j = sum_i f_i(row) c_ij; those of one are spread over its vectors, r = sum_j
 // g_j(column) q_j: the same sums in the same order as in grid_kernel.inl.h, without a transpose, and no block of
-// sixteen patches is needed. What leaves goes to memory by whole aligned vectors. Included by the units as
-// sample_kernel.inl.h is.
+// sixteen patches is needed. What leaves goes to memory by whole aligned vectors.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/grid/flat_kernels.h, kernel/isa/block_lanes.h,
+// kernel/isa/lanes.h, kernel/store/stream_state.h.
+
+#include "kernel/store/line_sink.inl.h"
+#include "kernel/sample/sample_kernel.inl.h"
 
 template <class L, int DegreeV, bool Streaming>
 class FlatGrid {

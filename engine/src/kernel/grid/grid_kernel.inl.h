@@ -1,7 +1,12 @@
+#pragma once
 // Kernel 1, lanes = patches: each vector holds one coefficient of 4, 8 or 16 patches of a block. For each u the row
 // curves q_j = sum_i f_i(u) c_ij stay in registers while v runs: r = sum_j g_j(v) q_j. The weights f, g are tabulated,
-// so the same code evaluates Bernstein and power coefficients. Any subset of the outputs in one pass. Included by
-// the units as sample_kernel.inl.h is.
+// so the same code evaluates Bernstein and power coefficients. Any subset of the outputs in one pass.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/grid/grid_kernels.h, kernel/isa/lanes.h.
+
+#include "kernel/sample/curvature_kernel.inl.h"
+#include "kernel/store/line_stores.inl.h"
 
 /// Where the outputs of one sample go, for one vector of patches.
 struct Offsets {

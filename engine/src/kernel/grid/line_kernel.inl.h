@@ -1,7 +1,11 @@
-// Kernel 2's way out, patch-contiguous: values of a block, `[value][lane]`, are transposed for a few lanes at once, and
-// what a lane gets is joined with what was left of its last vector, so that memory sees whole aligned vectors alone,
-// plain or streamed. Vectors in which one lane ends and the next begins are put together when all are through. Included
-// by the units as sample_kernel.inl.h is.
+#pragma once
+// Kernel 2's way out, patch-contiguous: values of a block, `[value][lane]`, are transposed for a few lanes at once,
+// and what a lane gets is joined with what was left of its last vector, so that memory sees whole aligned vectors
+// alone, plain or streamed. Vectors in which one lane ends and the next begins are put together when all are through.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/grid/line_kernels.h, kernel/isa/lanes.h.
+
+#include "kernel/store/store.inl.h"
 
 /// Lanes that are transposed at once: 16 bytes of a row, or half a vector of 64. Fewer would cost more loads, more would
 /// cost more shuffles across a vector, which few ports execute.

@@ -1,7 +1,13 @@
-// Kernels 1 and 2 in one loop, for positions and normals of bicubic patches where a vector holds a block: samples go to a
-// ring of rows in the first-level cache, and after each of them a few rows of those before leave it, so that their
-// shuffles run beside the next sample's multiply-adds. Included by the units as sample_kernel.inl.h is, after
-// grid_kernel.inl.h and line_kernel.inl.h.
+#pragma once
+// Kernels 1 and 2 in one loop, for positions and normals of bicubic patches where a vector holds a block: samples go
+// to a ring of rows in the first-level cache, and after each of them a few rows of those before leave it, so that
+// their shuffles run beside the next sample's multiply-adds.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/grid/grid_kernels.h, kernel/grid/line_kernels.h,
+// kernel/isa/lanes.h.
+
+#include "kernel/grid/grid_kernel.inl.h"
+#include "kernel/grid/line_kernel.inl.h"
 
 /// The rows of a ring, `[row][lane]`, on their way to lines, by units: `width` rows of a few lanes.
 template <class L>

@@ -8,9 +8,6 @@
 namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
 namespace {
 
-#include "kernel/store/store.inl.h"
-#include "kernel/store/line_sink.inl.h"
-#include "kernel/sample/sample_kernel.inl.h"
 #include "kernel/grid/flat_kernel.inl.h"
 
 /// Four rows of three components take twelve lanes; in shorter vectors permutations cost more than blocks do.

@@ -8,11 +8,6 @@
 namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
 namespace {
 
-#include "kernel/store/store.inl.h"
-#include "kernel/sample/sample_kernel.inl.h"
-#include "kernel/sample/normal_kernel.inl.h"
-#include "kernel/sample/curvature_kernel.inl.h"
-#include "kernel/store/line_stores.inl.h"
 #include "kernel/grid/grid_kernel.inl.h"
 
 }  // namespace

@@ -6,9 +6,7 @@
 namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
 namespace {
 
-#include "kernel/store/store.inl.h"
 #include "kernel/grid/line_kernel.inl.h"
-#include "kernel/sample/symmetric_sum.inl.h"
 #include "kernel/sample/border_kernel.inl.h"
 #include "kernel/grid/blend_kernel.inl.h"
 

@@ -1,4 +1,7 @@
-// Whole numbers in vectors. Included by the units as sample_kernel.inl.h is.
+#pragma once
+// Whole numbers in vectors.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/isa/lanes.h.
 
 /// As many indices as a vector holds.
 template <class L>

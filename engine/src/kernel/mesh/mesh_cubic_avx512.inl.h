@@ -1,7 +1,11 @@
+#pragma once
 // The vertices of one polynomial bicubic patch of a mesh, on AVX-512: the same sums in the same order as in
 // mesh_kernel.inl.h, hence the same bits, with the points of the inner grid, and then those of the ring, sixteen at a
 // time wherever rows and sides end. What each point takes comes by permutations from registers that hold the patch.
-// Included by the unit as sample_kernel.inl.h is, after mesh_kernel.inl.h.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/isa/lanes.h, kernel/mesh/mesh_kernels.h.
+
+#include "kernel/mesh/mesh_kernel.inl.h"
 
 /// From a block `[i][j][component][lane]` to its patches, `[lane][component][i][j]`. Asks for the block behind it.
 template <class L>

@@ -1,5 +1,10 @@
-// The triangles of one patch of a mesh (tess/write/stitched_patch.h), written in whole vectors. Included by the units as
-// sample_kernel.inl.h is, after line_sink.inl.h.
+#pragma once
+// The triangles of one patch of a mesh (tess/write/stitched_patch.h), written in whole vectors.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/isa/lanes.h, kernel/mesh/mesh_kernels.h.
+
+#include "kernel/store/line_sink.inl.h"
+#include "kernel/isa/index_vector.inl.h"
 
 template <class L>
 [[gnu::always_inline]] inline Indices<L> load_indices(const std::uint32_t* from) {

@@ -1,13 +1,19 @@
+#pragma once
 // The vertices of one patch of a mesh: an inner grid, then the ring of its border points (tess/write/stitched_patch.h). Lanes are
 // samples of the patch, in tiles of eight neighbours; an AVX-512 vector holds two tiles, each of a row of its own.
 //
 // Inner points: first the row curves of sixteen u at once, q = sum_i f_i(u) row_i with lanes = u; then along each the
-// points, sum_j g_j(v) q_j with lanes = v. The same sums in the same order as in a grid (grid_kernel.inl.h).
-// Border points: by the sum of border_kernel.inl.h, whose bits are those of every patch that has the border. Their normals
-// come from the border's own tangent and the one across it, degree (second row - first row), which points inwards: as the
-// ring runs counter-clockwise, along x inwards is r_u x r_v on every side. Where the border is a point, its own tangent is
-// zero, but that of the row next to it, relative to the point, is what r_u tends to.
-// Included by the units as sample_kernel.inl.h is.
+// points, sum_j g_j(v) q_j with lanes = v. The same sums in the same order as in a grid (grid_kernel.inl.h). Border
+// points: by the sum of border_kernel.inl.h, whose bits are those of every patch that has the border. Their normals
+// come from the border's own tangent and the one across it, degree (second row - first row), which points inwards: as
+// the ring runs counter-clockwise, along x inwards is r_u x r_v on every side. Where the border is a point, its own
+// tangent is zero, but that of the row next to it, relative to the point, is what r_u tends to.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/isa/lanes.h, kernel/mesh/mesh_kernels.h.
+
+#include "kernel/store/line_sink.inl.h"
+#include "kernel/sample/normal_kernel.inl.h"
+#include "kernel/sample/symmetric_sum.inl.h"
 
 /// One number a tile in its lanes.
 template <class L>

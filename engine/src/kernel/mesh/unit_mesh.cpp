@@ -6,16 +6,10 @@
 namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
 namespace {
 
-#include "kernel/store/store.inl.h"
-#include "kernel/store/line_sink.inl.h"
-#include "kernel/sample/sample_kernel.inl.h"
-#include "kernel/sample/normal_kernel.inl.h"
-#include "kernel/sample/symmetric_sum.inl.h"
 #include "kernel/mesh/mesh_kernel.inl.h"
 #if defined(__AVX512F__)
 #include "kernel/mesh/mesh_cubic_avx512.inl.h"
 #endif
-#include "kernel/isa/index_vector.inl.h"
 #include "kernel/mesh/mesh_index.inl.h"
 
 template <class L, int Order>

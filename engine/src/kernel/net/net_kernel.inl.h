@@ -1,5 +1,7 @@
-// Control nets of a block's patches, `[number]` in the memory of each, taken as `[number][lane]`. Included by the units as
-// grid_kernel.inl.h is.
+#pragma once
+// Control nets of a block's patches, `[number]` in the memory of each, taken as `[number][lane]`.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/isa/lanes.h, kernel/net/net_kernels.h.
 
 /// use(number, component, values of the lanes) for each number of L::width nets; the component is known when compiled.
 /// `copies`: as in PackJob.

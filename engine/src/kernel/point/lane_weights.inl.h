@@ -1,8 +1,11 @@
+#pragma once
 // Bernstein weights of a vector of parameters, one a lane. A power t^k and the error of its rounding are carried along
 // together (Graillat 2009, Accurate floating-point product and exponentiation, alg. 3.5; the rest of 1 - t by Dekker's
-// FastTwoSum), so that a weight is right to about one rounding, as tabulated ones are: plain products lose 2.7 units at
-// degree 3 and 8.8 at degree 15, these 1.7 and 1.9, as weights that are rounded once. Without fused multiply-adds the
-// rests of products come out as zero. Derivatives take plain products. Included by the units as sample_kernel.inl.h is.
+// FastTwoSum), so that a weight is right to about one rounding, as tabulated ones are: plain products lose 2.7 units
+// at degree 3 and 8.8 at degree 15, these 1.7 and 1.9, as weights that are rounded once. Without fused multiply-adds
+// the rests of products come out as zero. Derivatives take plain products.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/isa/lanes.h, kernel/point/point_kernels.h.
 
 /// C(n, i).
 template <class T>

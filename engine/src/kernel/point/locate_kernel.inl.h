@@ -1,6 +1,8 @@
-// Span search for a batch of parameters, without a branch that depends on them: binary search in as many steps for each,
-// in loops over lanes that the compiler turns into gathers and comparisons. Included by the units as sample_kernel.inl.h
-// is.
+#pragma once
+// Span search for a batch of parameters, without a branch that depends on them: binary search in as many steps for
+// each, in loops over lanes that the compiler turns into gathers and comparisons.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/isa/lanes.h, kernel/point/point_kernels.h.
 
 inline void locate_batch(const LocateJob& job, std::size_t first) {
   constexpr std::size_t lanes = locate_lanes;

@@ -1,8 +1,16 @@
+#pragma once
 // Kernel 4, scattered samples. A patch lies together, rows [component][j] one after the other. For each sample whole
 // vectors of its patch's rows are summed, q = sum_i f_i(u) row_i; a transpose of `width` samples then gives the row
-// curves with lanes = samples, from where on everything goes as in a grid. Where all samples of a slot lie on one patch
-// its coefficients are broadcast instead: the same sums in the same order, so that the choice does not change a bit.
-// Included by the units as sample_kernel.inl.h is.
+// curves with lanes = samples, from where on everything goes as in a grid. Where all samples of a slot lie on one
+// patch its coefficients are broadcast instead: the same sums in the same order, so that the choice does not change a
+// bit.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/isa/lanes.h, kernel/point/point_kernels.h.
+
+#include "kernel/grid/grid_kernel.inl.h"
+#include "kernel/point/lane_weights.inl.h"
+#include "kernel/point/locate_kernel.inl.h"
+#include "kernel/point/point_slots.inl.h"
 
 /// The Bernstein weights of one parameter of a slot's samples: `[vector][order * (degree + 1) + i][lane]`.
 template <class L, int Degree, int Order>

@@ -1,5 +1,8 @@
+#pragma once
 // What precedes the evaluation of scattered samples: whether they can be evaluated, and which go together. Loops over
-// lanes that the compiler turns into vectors. Included by the units as sample_kernel.inl.h is.
+// lanes that the compiler turns into vectors.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/isa/lanes.h, kernel/point/point_kernels.h.
 
 template <class T>
 inline bool all_within(const T* values, std::size_t count, T low, T high) {

@@ -1,4 +1,9 @@
-// Outputs of scattered samples from the stage to the caller's records. Included by the units as sample_kernel.inl.h is.
+#pragma once
+// Outputs of scattered samples from the stage to the caller's records.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/isa/lanes.h, kernel/point/point_kernels.h.
+
+#include "kernel/store/store.inl.h"
 
 /// What the next call is to store here, towards the second-level cache, since patches need the first: stores leave in order, so
 /// that one to a far line holds up all that follow it. `width`: values of a record.

@@ -8,15 +8,8 @@
 namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
 namespace {
 
-#include "kernel/store/store.inl.h"
-#include "kernel/sample/sample_kernel.inl.h"
-#include "kernel/sample/normal_kernel.inl.h"
-#include "kernel/sample/curvature_kernel.inl.h"
-#include "kernel/store/line_stores.inl.h"
 #include "kernel/grid/grid_kernel.inl.h"
-#include "kernel/point/lane_weights.inl.h"
 #include "kernel/point/locate_kernel.inl.h"
-#include "kernel/point/point_slots.inl.h"
 #include "kernel/point/point_kernel.inl.h"
 #include "kernel/point/point_store.inl.h"
 

@@ -1,4 +1,7 @@
+#pragma once
 // A point of a patch and its derivatives in double, for the last steps of a ray's root. Needs `Triple`.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/isa/four_floats.h, kernel/ray/ray_kernels.h.
 
 /// B_{i,3}(t) and their derivatives (Farin, Curves and Surfaces for CAGD, 5th ed., eqs. 5.2 and 5.23).
 struct CubicBasis {

@@ -1,3 +1,4 @@
+#pragma once
 // A ray against a piece of a patch: interval Newton steps on rectangles of the parameters, from values, first
 // derivatives and bounds of second ones. One rectangle is nearly always enough.
 //
@@ -8,6 +9,8 @@
 // 2 |A| R / h in the norm that h weighs. So where |A| R < h / 2 there is one root at the most, and one exactly where the
 // image lies inside (Brouwer; Neumaier, Interval Methods for Systems of Equations, sec. 5.1). Everything here rounds by
 // less than RayLeaf::noise and a factor of 1.001 allow for. Needs `Four`, four floats.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/isa/four_floats.h, kernel/ray/ray_kernels.h.
 
 /// A rectangle of parameters.
 struct RayBox {

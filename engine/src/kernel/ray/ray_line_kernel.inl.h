@@ -1,5 +1,8 @@
+#pragma once
 // Lines of rays side by side, by the operations of line_of (ray/line/ray_line.cpp) in their order: the same numbers. Needs
 // Lanes<double> with a true fused multiply-add.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/isa/four_floats.h, kernel/ray/ray_kernels.h.
 
 class RayLineLanes {
   using L = Lanes<double>;

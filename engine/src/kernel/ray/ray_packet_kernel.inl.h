@@ -1,5 +1,10 @@
+#pragma once
 // The rays of a packet against a piece, side by side: LeafTrace (ray_kernel.inl.h) as long as each has one rectangle, by
 // the same operations in the same order, so that a ray meets what it meets alone. Needs Lanes<float>.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/isa/four_floats.h, kernel/ray/ray_kernels.h.
+
+#include "kernel/ray/ray_kernel.inl.h"
 
 template <bool Rational>
 class PacketTrace {

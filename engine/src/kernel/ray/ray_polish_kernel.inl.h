@@ -1,5 +1,10 @@
+#pragma once
 // Newton's method in double for rays at roots of one patch, side by side, by the operations of polish()
 // (ray/leaf/polished_root.cpp), cubic_point and low_rational_point in their order: the same numbers. Needs Lanes<double>.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/isa/four_floats.h, kernel/ray/ray_kernels.h.
+
+#include "kernel/ray/cubic_point.inl.h"
 
 /// Of bicubic patches, or of rational ones of degrees up to three.
 template <bool Rational>

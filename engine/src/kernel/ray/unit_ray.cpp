@@ -8,8 +8,8 @@
 namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
 namespace {
 
-#include "kernel/ray/ray_kernel.inl.h"
 #include "kernel/ray/cubic_point.inl.h"
+#include "kernel/ray/ray_kernel.inl.h"
 #if !defined(__SSE2__) || defined(__FMA__)
 #include "kernel/ray/ray_line_kernel.inl.h"
 #include "kernel/ray/ray_packet_kernel.inl.h"

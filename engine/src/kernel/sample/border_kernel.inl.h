@@ -1,5 +1,9 @@
-// Border curves whose bits do not depend on the direction of the parameter: by symmetric_sum. Included by the units as
-// sample_kernel.inl.h is.
+#pragma once
+// Border curves whose bits do not depend on the direction of the parameter: by symmetric_sum.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/grid/line_kernels.h, kernel/isa/lanes.h.
+
+#include "kernel/sample/symmetric_sum.inl.h"
 
 template <class L>
 void evaluate_border(const BorderJob<typename L::Scalar>& job) {

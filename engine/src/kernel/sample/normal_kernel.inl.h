@@ -1,7 +1,11 @@
+#pragma once
 // Unit normals of a vector of patches. Where r_u x r_v is safely above what rounding does to the tangents it is the
 // normal. The other lanes look closer: on a collapsed edge the limit comes from r_uv, elsewhere from tangents of their
-// own scale, and what is still within rounding errors goes to the caller's exact arithmetic. Included by the units as
-// sample_kernel.inl.h is.
+// own scale, and what is still within rounding errors goes to the caller's exact arithmetic.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/grid/grid_kernels.h, kernel/isa/lanes.h.
+
+#include "kernel/sample/sample_kernel.inl.h"
 
 /// A unit normal, how it was found, and what curvatures need of it.
 template <class L>

@@ -1,5 +1,7 @@
+#pragma once
 // One sample of a block from the row curves of its u: position and derivatives up to an order, polynomial or rational.
-// Included by the units, in the ISA's namespace, after kernel/isa/lanes.h.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/grid/line_kernels.h, kernel/isa/lanes.h.
 
 /// Coefficients of the highest degree that an evaluation is made for. Degree 0: any.
 template <int Degree>

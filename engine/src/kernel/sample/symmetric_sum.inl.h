@@ -1,6 +1,9 @@
-// Border curves whose bits do not depend on the direction of the parameter: the sum pairs the control points i and n - i,
-// (w_0 c_0 + w_n c_n) + (w_1 c_1 + w_{n-1} c_{n-1}) + ..., by separate multiplications and additions, which commute. With weights
-// that are themselves symmetric, running the other way gives the same bits. Included by the units as sample_kernel.inl.h is.
+#pragma once
+// Border curves whose bits do not depend on the direction of the parameter: the sum pairs the control points i and n -
+// i, (w_0 c_0 + w_n c_n) + (w_1 c_1 + w_{n-1} c_{n-1}) + ..., by separate multiplications and additions, which
+// commute. With weights that are themselves symmetric, running the other way gives the same bits.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/grid/line_kernels.h, kernel/isa/lanes.h.
 
 template <class L>
 inline typename L::Batch symmetric_sum(const typename L::Scalar* control, std::ptrdiff_t step, int degree,

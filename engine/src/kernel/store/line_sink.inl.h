@@ -1,5 +1,9 @@
-// Numbers that follow each other in memory, on their way there by whole aligned vectors. Included by the units as
-// sample_kernel.inl.h is, after store.inl.h.
+#pragma once
+// Numbers that follow each other in memory, on their way there by whole aligned vectors.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/isa/lanes.h, kernel/store/stream_state.h.
+
+#include "kernel/store/store.inl.h"
 
 /// Whether there is a LineSink of vectors like these.
 template <class L>

@@ -1,4 +1,9 @@
-// How the grids' values go to memory. Included by the units as sample_kernel.inl.h is.
+#pragma once
+// How the grids' values go to memory.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/grid/grid_kernels.h, kernel/isa/lanes.h.
+
+#include "kernel/store/store.inl.h"
 
 /// By plain stores, by streaming ones, or as the job says.
 enum class Way { plain, streaming, asked };

@@ -1,4 +1,7 @@
-// The end of streaming, and the probes of the machine's limits. Included by the units as grid_kernel.inl.h is.
+#pragma once
+// The end of streaming, and the probes of the machine's limits.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/isa/lanes.h, kernel/net/net_kernels.h.
 
 /// 16 independent chains hide the latency of the multiply-adds; the sum of all keeps the compiler from dropping them.
 template <class L>

@@ -1,4 +1,7 @@
-// Vectors to memory. Included by the units as sample_kernel.inl.h is.
+#pragma once
+// Vectors to memory.
+//
+// Needs before it, outside of the instruction set's namespace: kernel/isa/block_lanes.h, kernel/isa/lanes.h.
 
 template <class L, bool Streaming>
 [[gnu::always_inline]] inline void store(typename L::Scalar* memory, const typename L::Batch& vector) {
