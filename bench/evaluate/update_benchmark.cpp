@@ -101,7 +101,7 @@ void run(benchmark::State& state, const Case& c) {
   Outputs outputs(plan, c);
   if (const Status status = outputs.evaluate(set, plan); !status.ok())
     return state.SkipWithError(status.message().c_str());
-  Work work = plan.work({.normal = c.normals});
+  Work work = plan.work({.position = true, .normal = c.normals});
   for (double* amount : {&work.lane_operations, &work.bytes_written, &work.bytes_read})
     *amount /= static_cast<double>(c.step);
   const LimitsAround around(c.isa, work.bytes_written);

@@ -82,7 +82,7 @@ class Work {
     }
     const PatchSamples<float> samples{View1<const std::uint32_t>::interleaved(patch),
                                       View1<const float>::interleaved(u), View1<const float>::interleaved(v)};
-    need(evaluate(set, samples, PointViews<float>{.position = View3<float>::interleaved(points)}));
+    need(evaluate(set, samples, GridViews<float>{.position = View3<float>::interleaved(points)}));
   }
 
   void mesh(PatchSet& set) {

@@ -96,30 +96,30 @@ TEST_F(EvaluateErrors, EachViewOfLocalGeometry) {
     EXPECT_NE(status.message().find(name), std::string::npos) << status.message();
     EXPECT_TRUE(memory == clean) << name;
   };
-  for_each_output<float>([&](const auto& output) {
+  for_each_quantity([&](const auto& output) {
     GridViews<float> views = memory.views();
-    (views.*output.view).size = plan.capacity() - 1;
+    output.of(views).size = plan.capacity() - 1;
     expect_refused(views, StatusCode::buffer_too_small, output.name);
     views = memory.views();
-    (views.*output.view).stride = 0;
+    output.of(views).stride = 0;
     expect_refused(views, StatusCode::invalid_argument, output.name);
     if (output.width == 1) return;
     views = memory.views();
-    (views.*output.view).component.back() = nullptr;
+    output.of(views).component.back() = nullptr;
     expect_refused(views, StatusCode::invalid_argument, output.name);
   });
 }
 
 TEST_F(EvaluateErrors, EachBlockOfLocalGeometry) {
-  for_each_output<float>([&](const auto& output) {
+  for_each_quantity([&](const auto& output) {
     const std::size_t needed = plan.block_capacity() / 3 * static_cast<std::size_t>(output.width);
     GridBlocks<float> blocks;
-    using Value = typename std::remove_reference_t<decltype(blocks.*output.memory)>::element_type;
+    using Value = typename std::remove_reference_t<decltype(output.of(blocks))>::element_type;
     AlignedVector<Value> memory(needed + 1, Value(9));
     const std::span<Value> all = memory;
     for (const auto& [span, code] : {std::pair{all.first(needed - 1), StatusCode::buffer_too_small},
                                      {all.subspan(1), StatusCode::invalid_argument}}) {
-      blocks.*output.memory = span;
+      output.of(blocks) = span;
       const Status status = evaluate(set, plan, blocks);
       EXPECT_EQ(status.code(), code) << output.name;
       EXPECT_NE(status.message().find(output.name), std::string::npos) << status.message();

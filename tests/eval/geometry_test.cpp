@@ -281,7 +281,7 @@ void expect_in_blocks(const Evaluated<T>& all, const Output& output, const Align
     for (std::size_t c = 0; c < width; ++c) {
       const PatchSet::Slot slot = all.set.slot(record / 9);
       const T found = blocks[((slot.block * 9 + record % 9) * width + c) * PatchSet::lanes + slot.lane];
-      ASSERT_EQ(found, (all.out.*output.view).at(record, static_cast<int>(c)));
+      ASSERT_EQ(found, output.of(all.out).at(record, static_cast<int>(c)));
     }
 }
 
@@ -298,33 +298,33 @@ void check_ways_out(Isa isa) {
     execution.stores = stores;
     std::map<std::string, AlignedVector<T>> blocks;
     GridBlocks<T> together;
-    for_each_value_output<T>([&](const auto& output) {
+    for_each_value_quantity([&](const auto& output) {
       AlignedVector<T>& memory = blocks[output.name];
       memory.resize(all.plan.block_capacity() / 3 * static_cast<std::size_t>(output.width));
       GridBlocks<T> alone;
-      alone.*output.memory = memory;
+      output.of(alone) = memory;
       ASSERT_TRUE(evaluate(all.set, all.plan, alone, execution).ok());
       expect_in_blocks(all, output, memory);
       std::fill(memory.begin(), memory.end(), T{0});
-      together.*output.memory = memory;
+      output.of(together) = memory;
     });
     ASSERT_TRUE(evaluate(all.set, all.plan, together, execution).ok());
-    for_each_value_output<T>([&](const auto& output) { expect_in_blocks(all, output, blocks[output.name]); });
+    for_each_value_quantity([&](const auto& output) { expect_in_blocks(all, output, blocks[output.name]); });
   }
   std::vector<T> records(37 * all.count());
   GridViews<T> out;
   std::size_t first = 0;
-  for_each_value_output<T>([&](const auto& output) {
-    auto& view = out.*output.view;
+  for_each_value_quantity([&](const auto& output) {
+    auto& view = output.of(out);
     view = std::remove_reference_t<decltype(view)>::interleaved(records, 37, first);
     first += static_cast<std::size_t>(output.width);
   });
   ASSERT_EQ(first, 37u);
   ASSERT_TRUE(evaluate(all.set, all.plan, out).ok());
-  for_each_value_output<T>([&](const auto& output) {
+  for_each_value_quantity([&](const auto& output) {
     for (std::size_t record = 0; record < all.count(); ++record)
       for (int c = 0; c < output.width; ++c)
-        ASSERT_EQ((out.*output.view).at(record, c), (all.out.*output.view).at(record, c)) << output.name;
+        ASSERT_EQ(output.of(out).at(record, c), output.of(all.out).at(record, c)) << output.name;
   });
 }
 TEST_P(Geometry, EveryWayOutFloat) { check_ways_out<float>(GetParam()); }

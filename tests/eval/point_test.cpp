@@ -119,10 +119,11 @@ TEST(Points, EachOutputAloneIsWhatItIsAmongOthers) {
   const Samples<float> samples = random_samples<float>(random, set.patch_count(), 500);
   const AllBuffers<float> all = all_outputs(set, samples);
   std::size_t k = 0;
-  for_each_value_output<float>([&](const auto& output) {
+  for_each_value_quantity([&](const auto& output) {
     AllBuffers<float> alone(samples.size());
     GridViews<float> out;
-    out.*output.view = alone.views().*output.view;
+    const GridViews<float> views = alone.views();
+    output.of(out) = output.of(views);
     ASSERT_TRUE(evaluate(set, samples.views(), out).ok());
     EXPECT_TRUE(alone.values[k] == all.values[k]) << output.name;
     ++k;
@@ -215,7 +216,7 @@ TEST(Points, ProgressIsToldAndCancellationSeen) {
   const PatchSet set = set_of(test::wavy_field(3, 3), with_points());
   const Samples<float> samples = random_samples<float>(random, 9, 50000);
   std::vector<float> positions(3 * samples.size());
-  const PointViews<float> out{.position = View3<float>::interleaved(positions)};
+  const GridViews<float> out{.position = View3<float>::interleaved(positions)};
   double last = 0;
   Execution execution;
   execution.progress = [&](double share) { last = std::max(last, share); };

@@ -170,7 +170,7 @@ class Program {
     const PatchSamples<float> samples{View1<const std::uint32_t>::interleaved(patch),
                                       View1<const float>::interleaved(fu), View1<const float>::interleaved(fv)};
     const PointOptions options{.outside = data_.ConsumeBool() ? OutsideDomain::clamp : OutsideDomain::error};
-    if (!sound(evaluate(set, samples, PointViews<float>{.position = View3<float>::interleaved(memory)}, options)))
+    if (!sound(evaluate(set, samples, GridViews<float>{.position = View3<float>::interleaved(memory)}, options)))
       return;
     for (const float x : memory) require(!std::isnan(x));
   }

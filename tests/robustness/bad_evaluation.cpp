@@ -102,7 +102,7 @@ class PointRows {
   PointRows(Table& table, const PatchSet& set) : table_(table), set_(set) {}
 
   void refused(const std::string& input, StatusCode code, const PatchSamples<float>& samples,
-               const PointViews<float>& views, const PointOptions& options = {}) {
+               const GridViews<float>& views, const PointOptions& options = {}) {
     table_.row(input, code, evaluate(set_, samples, views, options), [&] { return memory_ == clean_; });
   }
   template <class Change>
@@ -117,7 +117,7 @@ class PointRows {
     change(views);
     refused(input, code, views, memory_.views());
   }
-  PointViews<float> views() { return memory_.views(); }
+  GridViews<float> views() { return memory_.views(); }
   const Samples<float>& sound() const { return sound_; }
 
  private:
@@ -133,7 +133,7 @@ class PointRows {
 };
 
 void samples_by_patch(Table& table, const PatchSet& set) {
-  table.of("evaluate(set, PatchSamples, PointViews, options, execution)");
+  table.of("evaluate(set, PatchSamples, GridViews, options, execution)");
   PointRows rows(table, set);
   const float nan = static_cast<float>(not_a_number), inf = static_cast<float>(infinity);
   rows.with_samples("a patch that is none", invalid_argument, [](auto& s) { s.patch[3] = 2; });
@@ -151,13 +151,13 @@ void samples_by_patch(Table& table, const PatchSet& set) {
   rows.with_sample_views("no u", count_mismatch, [](auto& views) { views.u = {}; });
   rows.with_sample_views("u with stride 0", invalid_argument, [](auto& views) { views.u.stride = 0; });
   rows.with_sample_views("u misaligned", invalid_argument, [](auto& views) { misalign(views.u); });
-  const auto refused = [&](const std::string& input, StatusCode code, const PointViews<float>& views) {
+  const auto refused = [&](const std::string& input, StatusCode code, const GridViews<float>& views) {
     rows.refused(input, code, rows.sound().views(), views);
   };
   refused("no view", invalid_argument, {});
   bad_view(
       "positions", rows.views(), 5, [](auto& views) -> auto& { return views.position; }, refused);
-  PointViews<float> same = rows.views();
+  GridViews<float> same = rows.views();
   same.du = same.dv;
   refused("two derivatives in one place", invalid_argument, same);
   PatchSamples<float> over = rows.sound().views();
@@ -180,7 +180,7 @@ void samples_by_surface(Table& table, const PatchSet& set) {
   const PatchSet torn = value_of(PatchSet::from(patches, with_sources));
   table.row("patches of a surface that are no grid", unsupported, SurfaceMap::make(torn));
 
-  table.of("evaluate(set, map, SurfaceSamples, PointViews, options, execution)");
+  table.of("evaluate(set, map, SurfaceSamples, GridViews, options, execution)");
   const SurfaceMap map = value_of(SurfaceMap::make(set));
   AllBuffers<float> memory(2), clean(2);
   const std::vector<std::uint32_t> surfaces{0, 1}, wrong{0, 2};

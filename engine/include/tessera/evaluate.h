@@ -14,6 +14,7 @@
 #include "tessera/limits.h"
 #include "tessera/local_geometry.h"
 #include "tessera/patch_set.h"
+#include "tessera/quantities.h"
 #include "tessera/status.h"
 #include "tessera/strided_view.h"
 
@@ -22,16 +23,6 @@ namespace tessera::inline abi_0_1 {
 
 /// `count` parameters from 0 to 1: i / (count - 1). A count below 2 counts as 2.
 std::vector<double> uniform_parameters(int count);
-
-/// Which outputs are meant, for capacity and work: the members of GridViews by name.
-struct GridOutputs {
-  bool position = true, du = false, dv = false, normal = false;                            ///< as in GridViews
-  bool duu = false, duv = false, dvv = false;                                              ///< as in GridViews
-  bool first_form = false, second_form = false;                                            ///< as in GridViews
-  bool gaussian = false, mean = false, first_curvature = false, second_curvature = false;  ///< as in GridViews
-  bool first_direction = false, second_direction = false;                                  ///< as in GridViews
-  bool normal_kind = false, curvature_kind = false;                                        ///< as in GridViews
-};
 
 /// How a grid is evaluated.
 struct GridPlanOptions {
@@ -76,7 +67,7 @@ class GridPlan {
   /// PatchSet::lanes; one of scalars or kinds a third of it.
   std::size_t block_capacity() const;
   /// What the evaluation must compute and write at the least; see limits.h.
-  Work work(const GridOutputs& outputs) const;
+  Work work(const QuantityFlags& outputs) const;
 
   class [[gnu::visibility("hidden")]] Impl;
 
@@ -94,17 +85,7 @@ class GridPlan {
 /// tangents are parallel within rounding errors or within GridPlanOptions::geometry, or a figure is out of range (a
 /// form beyond the numbers, a curvature beyond 2^60 in float, 2^500 in double).
 template <class T>
-struct GridViews {
-  View3<T> position = {}, du = {}, dv = {}, normal = {};  ///< r, r_u, r_v, the unit normal
-  View3<T> duu = {}, duv = {}, dvv = {};                  ///< r_uu, r_uv, r_vv
-  View3<T> first_form = {};                               ///< E, F, G: r_u.r_u, r_u.r_v, r_v.r_v
-  View3<T> second_form = {};                              ///< L, M, N: r_uu.N, r_uv.N, r_vv.N
-  View1<T> gaussian = {}, mean = {};                      ///< K = k1 k2, H = (k1 + k2) / 2
-  View1<T> first_curvature = {}, second_curvature = {};   ///< k1 >= k2
-  View3<T> first_direction = {}, second_direction = {};   ///< their unit tangents, first x second = normal
-  View1<NormalKind> normal_kind = {};                     ///< regular, a limit, or undefined
-  View1<CurvatureKind> curvature_kind = {};               ///< distinct, umbilic, or undefined
-};
+using GridViews = Quantities<View3<T>, View1<T>, View1<NormalKind>, View1<CurvatureKind>>;
 
 /// Evaluates all patches. Outputs may share memory by interleaving but must not overlap otherwise. Views that fill one
 /// record together, packed views, and structures of arrays are written by whole vectors, streaming as Execution::stores
@@ -133,30 +114,17 @@ struct GridViews {
 /// size.
 /// In the power representation the bounds of positions and first derivatives are (1 + 2u)^m (1 + 2v)^n ratio times as
 /// large, m and n the degrees: random bicubic patches lose 34 units, degrees 5 and 7 lose 1,200 and 140,000.
-Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<float>& out,
-                const Execution& execution = {});
-Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<double>& out,
-                const Execution& execution = {});
+template <class T>
+Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<T>& out, const Execution& execution = {});
 
 /// Block-interleaved outputs, `[block][iu][iv][component][lane]`, scalars and kinds `[block][iu][iv][lane]`: the
 /// kernels' own order, and the fastest. A patch's place is PatchSet::slot(); unused lanes of a last block repeat a
 /// patch. The members mean what those of GridViews mean. Empty spans are not computed. Memory must be aligned to 64
 /// bytes and apart from each other (invalid_argument otherwise). Grids of each patch's own are stored plainly.
 template <class T>
-struct GridBlocks {
-  std::span<T> position = {}, du = {}, dv = {}, normal = {};  ///< as in GridViews
-  std::span<T> duu = {}, duv = {}, dvv = {};                  ///< as in GridViews
-  std::span<T> first_form = {}, second_form = {};             ///< as in GridViews
-  std::span<T> gaussian = {}, mean = {};                      ///< as in GridViews
-  std::span<T> first_curvature = {}, second_curvature = {};   ///< as in GridViews
-  std::span<T> first_direction = {}, second_direction = {};   ///< as in GridViews
-  std::span<NormalKind> normal_kind = {};                     ///< as in GridViews
-  std::span<CurvatureKind> curvature_kind = {};               ///< as in GridViews
-};
-Status evaluate(const PatchSet& set, const GridPlan& plan, const GridBlocks<float>& out,
-                const Execution& execution = {});
-Status evaluate(const PatchSet& set, const GridPlan& plan, const GridBlocks<double>& out,
-                const Execution& execution = {});
+using GridBlocks = Quantities<std::span<T>, std::span<T>, std::span<NormalKind>, std::span<CurvatureKind>>;
+template <class T>
+Status evaluate(const PatchSet& set, const GridPlan& plan, const GridBlocks<T>& out, const Execution& execution = {});
 
 /// What becomes of parameters outside of a patch's [0,1]^2, or of a surface's domain.
 enum class OutsideDomain : std::uint8_t {
@@ -181,10 +149,6 @@ struct PatchSamples {
   View1<const T> u = {}, v = {};          ///< in the patch's [0,1]^2
 };
 
-/// Record k of each view belongs to sample k. Otherwise as GridViews says; any subset in one pass.
-template <class T>
-using PointViews = GridViews<T>;
-
 /// Evaluates all samples, in any order of patches; samples that come sorted by patch, a dozen or more of a patch in
 /// a row, run up to twice as fast as others. Arrays (views of stride 1) are read where they lie, others copied first.
 /// The set must hold BlockKinds::float_points (double_points). Allocates nothing.
@@ -197,9 +161,8 @@ using PointViews = GridViews<T>;
 /// The same bytes for any number of threads, for any order of the samples and choice of outputs, and on AVX2 and
 /// AVX-512. Bounds as for grids (evaluate.h), the parameters taken as exact; on SSE2 positions 2 + d / 2, rational ones
 /// 4 + d, for weights are made without fused multiply-adds there.
-Status evaluate(const PatchSet& set, const PatchSamples<float>& samples, const PointViews<float>& out,
-                const PointOptions& options = {}, const Execution& execution = {});
-Status evaluate(const PatchSet& set, const PatchSamples<double>& samples, const PointViews<double>& out,
+template <class T>
+Status evaluate(const PatchSet& set, const PatchSamples<T>& samples, const GridViews<T>& out,
                 const PointOptions& options = {}, const Execution& execution = {});
 
 /// From the parameters of a set's surfaces to its patches: the breakpoints of each surface, from PatchSet::source().
@@ -238,10 +201,9 @@ struct SurfaceSamples {
 /// such surface, parameter outside of its domain). Parameters within the patch are found in double and rounded to T. For
 /// each, results in float are further off, in the units and terms of evaluate.h: positions by d / 2 size ratio, first
 /// derivatives by d^2 size, rational ones 2 d^2 size ratio^2.
-Status evaluate(const PatchSet& set, const SurfaceMap& map, const SurfaceSamples& samples, const PointViews<float>& out,
+template <class T>
+Status evaluate(const PatchSet& set, const SurfaceMap& map, const SurfaceSamples& samples, const GridViews<T>& out,
                 const PointOptions& options = {}, const Execution& execution = {});
-Status evaluate(const PatchSet& set, const SurfaceMap& map, const SurfaceSamples& samples,
-                const PointViews<double>& out, const PointOptions& options = {}, const Execution& execution = {});
 
 /// New control points for some patches. Those of patch[k] follow those of patch[k - 1]: (degree_u + 1) * (degree_v + 1)
 /// points `[i][j]`, i along u, as BezierPatch::points(). Weights and degrees stay.
@@ -271,17 +233,13 @@ class GridUpdate {
   /// the edit: no such patch, or one that an edit before names); count_mismatch (points); non_finite (index = the edit: a
   /// point is not finite, or does not fit the set's numbers relative to its origin); out_of_memory. cancelled: each patch
   /// then has its new control points and its new grid, or neither.
-  Status run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridViews<float>& out,
-             const Execution& execution = {});
-  /// The same in double.
-  Status run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridViews<double>& out,
+  template <class T>
+  Status run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridViews<T>& out,
              const Execution& execution = {});
   /// The same into block-interleaved memory of all patches. A block with an edited patch is evaluated whole: its other
   /// lanes are written, with the bytes that evaluate() gives them.
-  Status run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridBlocks<float>& out,
-             const Execution& execution = {});
-  /// The same in double.
-  Status run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridBlocks<double>& out,
+  template <class T>
+  Status run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridBlocks<T>& out,
              const Execution& execution = {});
 
  private:

@@ -18,6 +18,7 @@
 #include "tessera/nurbs_surface.h"
 #include "tessera/parametric_surface.h"
 #include "tessera/patch_set.h"
+#include "tessera/quantities.h"
 #include "tessera/quadric.h"
 #include "tessera/status.h"
 #include "tessera/strided_view.h"

@@ -13,8 +13,8 @@
 #include "eval/block_outputs.h"
 #include "eval/flat_grid.h"
 #include "eval/grid_calls.h"
-#include "eval/grid_outputs.h"
 #include "eval/grid_plan_impl.h"
+#include "eval/quantity_table.h"
 #include "eval/run_grid.h"
 #include "eval/staged_block.h"
 #include "eval/streaming_threshold.h"
@@ -76,12 +76,21 @@ Status check_plan(const PatchSet::Impl& set, const GridPlan& plan) {
   return {};
 }
 
+template <class T, int N>
+bool is_wanted(const VectorView<T, N>& view) {
+  return !view.empty();
+}
+template <class T>
+bool is_wanted(const std::span<T>& memory) {
+  return memory.data() != nullptr;
+}
+
 /// The highest derivatives that the wanted outputs are made of. Errors: invalid_argument if none is wanted.
-template <class T, class Wanted>
-Result<int> order_of_outputs(Wanted&& wanted) {
+template <class All>
+Result<int> order_of_outputs(const All& out) {
   int order = -1;
-  for_each_output<T>([&](const auto& output) {
-    if (wanted(output)) order = std::max(order, output.order);
+  for_each_quantity([&](const auto& quantity) {
+    if (is_wanted(quantity.of(out))) order = std::max(order, quantity.order);
   });
   if (order < 0) return Status(StatusCode::invalid_argument, "no output is wanted");
   return order;
@@ -131,8 +140,8 @@ Status evaluate_blocks(const PatchSet& set, const GridPlan& plan, const GridBloc
 template <class T>
 Status check_views(const GridPlan& plan, const GridViews<T>& out) {
   ViewChecks checks(plan.capacity());
-  for_each_output<T>([&](const auto& output) {
-    if (!(out.*output.view).empty()) checks.add(output.name, out.*output.view);
+  for_each_quantity([&](const auto& quantity) {
+    if (!quantity.of(out).empty()) checks.add(quantity.name, quantity.of(out));
   });
   return checks.status();
 }
@@ -173,18 +182,19 @@ Status evaluate_views(const PatchSet::Impl& patches, const GridPlan& plan, const
 
 }  // namespace
 
-Status evaluate(const PatchSet& set, const GridPlan& plan, const GridBlocks<float>& out, const Execution& execution) {
+template <class T>
+Status evaluate(const PatchSet& set, const GridPlan& plan, const GridBlocks<T>& out, const Execution& execution) {
   return guarded([&] { return evaluate_blocks(set, plan, out, execution); });
 }
-Status evaluate(const PatchSet& set, const GridPlan& plan, const GridBlocks<double>& out, const Execution& execution) {
-  return guarded([&] { return evaluate_blocks(set, plan, out, execution); });
-}
-Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<float>& out, const Execution& execution) {
+template Status evaluate(const PatchSet&, const GridPlan&, const GridBlocks<float>&, const Execution&);
+template Status evaluate(const PatchSet&, const GridPlan&, const GridBlocks<double>&, const Execution&);
+
+template <class T>
+Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<T>& out, const Execution& execution) {
   return guarded([&] { return evaluate_views(impl_of(set), plan, out, execution); });
 }
-Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<double>& out, const Execution& execution) {
-  return guarded([&] { return evaluate_views(impl_of(set), plan, out, execution); });
-}
+template Status evaluate(const PatchSet&, const GridPlan&, const GridViews<float>&, const Execution&);
+template Status evaluate(const PatchSet&, const GridPlan&, const GridViews<double>&, const Execution&);
 
 Status evaluate(const PatchSet::Impl& set, const GridPlan& plan, const GridViews<float>& out,
                 const Execution& execution) {
@@ -197,7 +207,7 @@ template <class T>
 Result<int> check_grids(const PatchSet::Impl& set, const GridPlan& plan, const GridViews<T>& out) {
   if (Status status = check_plan<T>(set, plan); !status.ok()) return status;
   if (Status status = check_views(plan, out); !status.ok()) return status;
-  return order_of_outputs<T>([&](const auto& output) { return !(out.*output.view).empty(); });
+  return order_of_outputs(out);
 }
 template Result<int> check_grids(const PatchSet::Impl&, const GridPlan&, const GridViews<float>&);
 template Result<int> check_grids(const PatchSet::Impl&, const GridPlan&, const GridViews<double>&);
@@ -206,7 +216,7 @@ template <class T>
 Result<int> check_grids(const PatchSet::Impl& set, const GridPlan& plan, const GridBlocks<T>& out) {
   if (Status status = check_plan<T>(set, plan); !status.ok()) return status;
   if (Status status = check_blocks(plan, out); !status.ok()) return status;
-  return order_of_outputs<T>([&](const auto& output) { return (out.*output.memory).data() != nullptr; });
+  return order_of_outputs(out);
 }
 template Result<int> check_grids(const PatchSet::Impl&, const GridPlan&, const GridBlocks<float>&);
 template Result<int> check_grids(const PatchSet::Impl&, const GridPlan&, const GridBlocks<double>&);
@@ -222,8 +232,8 @@ template bool views_stream(const StageLayout<double>&, std::size_t, Stores);
 template <class T>
 bool blocks_stream(const GridBlocks<T>& out, std::size_t records, Stores stores) {
   std::size_t bytes = 0;
-  for_each_value_output<T>([&](const auto& output) {
-    if (!(out.*output.memory).empty()) bytes += static_cast<std::size_t>(output.width) * sizeof(T);
+  for_each_value_quantity([&](const auto& quantity) {
+    if (!quantity.of(out).empty()) bytes += static_cast<std::size_t>(quantity.width) * sizeof(T);
   });
   return stores_stream(records * bytes, stores);
 }

@@ -85,21 +85,24 @@ GridUpdate::GridUpdate(GridUpdate&&) noexcept = default;
 GridUpdate& GridUpdate::operator=(GridUpdate&&) noexcept = default;
 GridUpdate::~GridUpdate() = default;
 
-Status GridUpdate::run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridViews<float>& out,
+template <class T>
+Status GridUpdate::run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridViews<T>& out,
                        const Execution& execution) {
   return guarded([&] { return impl_->run(impl_of(set), plan, edits, out, execution); });
 }
-Status GridUpdate::run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridBlocks<float>& out,
+template Status GridUpdate::run(PatchSet&, const GridPlan&, const PatchEdits&, const GridViews<float>&,
+                                const Execution&);
+template Status GridUpdate::run(PatchSet&, const GridPlan&, const PatchEdits&, const GridViews<double>&,
+                                const Execution&);
+
+template <class T>
+Status GridUpdate::run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridBlocks<T>& out,
                        const Execution& execution) {
   return guarded([&] { return impl_->run(impl_of(set), plan, edits, out, execution); });
 }
-Status GridUpdate::run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridViews<double>& out,
-                       const Execution& execution) {
-  return guarded([&] { return impl_->run(impl_of(set), plan, edits, out, execution); });
-}
-Status GridUpdate::run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridBlocks<double>& out,
-                       const Execution& execution) {
-  return guarded([&] { return impl_->run(impl_of(set), plan, edits, out, execution); });
-}
+template Status GridUpdate::run(PatchSet&, const GridPlan&, const PatchEdits&, const GridBlocks<float>&,
+                                const Execution&);
+template Status GridUpdate::run(PatchSet&, const GridPlan&, const PatchEdits&, const GridBlocks<double>&,
+                                const Execution&);
 
 }  // namespace tessera::inline abi_0_1
