@@ -9,6 +9,7 @@
 
 #include "tessera/mesh.h"
 #include "tessera/model.h"
+#include "tessera/output_file.h"
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
@@ -83,6 +84,25 @@ struct MeshReadOptions {
 /// Reads .obj, .ply and .stl (binary or ascii), polygons split as fans; the corners of .stl's triangles become one vertex
 /// where their bits are equal. Errors: io_error, parse_error, unsupported.
 Result<Mesh> read_mesh(const std::filesystem::path& path, const MeshReadOptions& options = {});
+
+// For programs that open their output before the work is done whose result it shall hold.
+
+/// The extension of `path`, in small letters: ".obj".
+std::string lower_extension(const std::filesystem::path& path);
+/// Checks that write_mesh() writes the format of `path`'s extension. Errors: unsupported, with a list of those.
+Status check_mesh_format(const std::filesystem::path& path);
+/// Checks that write_model() writes the format of `path`'s extension. Errors: unsupported, with a list of those.
+Status check_model_format(const std::filesystem::path& path);
+/// Writes the mesh to a file that was created for `path`, and leaves commit() to the caller, which reports failed writes.
+/// Errors: unsupported, and those of a mesh that no file can hold.
+Status write_mesh(const Mesh& mesh, const std::filesystem::path& path, OutputFile& out);
+/// Writes the model to a file that was created for `path`, and leaves commit() to the caller, which reports failed
+/// writes. Errors: as write_model(), but for io_error.
+Result<WrittenModel> write_model(const Model& model, const std::filesystem::path& path, const FitOptions& fit,
+                                 OutputFile& out);
+/// Reads the bytes of a file; of a pipe or a terminal up to its end, at most 1 GiB. Errors: io_error (missing, a
+/// directory, no permission, a failed read), parse_error (no bytes). Messages begin with the path.
+Result<std::string> read_file(const std::filesystem::path& path);
 
 }  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

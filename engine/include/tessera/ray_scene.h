@@ -37,6 +37,10 @@ struct Ray {
   /// of sqrt(8 tolerance / curvature), all of that is the origin.
   double spawn_offset = 0;
 };
+/// The largest magnitude of a valid ray's components: about the square root of float's range, Embree's limit.
+inline constexpr double max_ray_component = 1.844e18;
+/// Whether a ray is valid, as Ray says.
+bool is_valid(const Ray& ray);
 
 enum class HitKind : std::uint8_t {
   miss,

@@ -18,8 +18,8 @@
 #include "tessera/nurbs_surface.h"
 #include "tessera/parametric_surface.h"
 #include "tessera/patch_set.h"
-#include "tessera/quantities.h"
 #include "tessera/quadric.h"
+#include "tessera/quantities.h"
 #include "tessera/status.h"
 #include "tessera/strided_view.h"
 #include "tessera/surface.h"
@@ -34,4 +34,5 @@
 #endif
 #if __has_include("tessera/io.h")
 #include "tessera/io.h"
+#include "tessera/text_cursor.h"
 #endif

@@ -4,9 +4,9 @@
 #include <iterator>
 #include <limits>
 
-#include "base/guard.h"
 #include "base/text.h"
 #include "block/patch_set_impl.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -8,12 +8,12 @@
 #include <numeric>
 #include <string>
 
-#include "base/guard.h"
 #include "block/pack.h"
 #include "block/patch_set_impl.h"
 #include "kernel/isa/kernel_table.h"
 #include "parallel/parallel_for.h"
 #include "surface/patch_pieces.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <string>
 
-#include "base/guard.h"
 #include "surface/checks.h"
 #include "tessera/convert.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

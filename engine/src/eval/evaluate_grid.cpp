@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <string>
 
-#include "base/guard.h"
 #include "base/impl_access.h"
 #include "block/patch_set_impl.h"
 #include "eval/block_jobs.h"
@@ -21,6 +20,7 @@
 #include "eval/task_size.h"
 #include "eval/view_checks.h"
 #include "parallel/parallel_for.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -7,11 +7,11 @@
 #include <atomic>
 #include <string>
 
-#include "base/guard.h"
 #include "base/impl_access.h"
 #include "eval/point_chunk.h"
 #include "eval/point_sources.h"
 #include "parallel/parallel_for.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <string>
 
-#include "base/guard.h"
 #include "base/impl_access.h"
 #include "basis/bernstein.h"
 #include "basis/power.h"
@@ -10,6 +9,7 @@
 #include "eval/flat_grid.h"
 #include "eval/grid_plan_impl.h"
 #include "eval/quantity_table.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -3,13 +3,13 @@
 
 #include <atomic>
 
-#include "base/guard.h"
 #include "base/impl_access.h"
 #include "eval/edited_grids.h"
 #include "eval/patch_edits.h"
 #include "eval/task_size.h"
 #include "parallel/parallel_for.h"
 #include "tessera/evaluate.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 class GridUpdate::Impl {

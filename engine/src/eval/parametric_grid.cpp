@@ -6,10 +6,10 @@
 #include <mutex>
 #include <string>
 
-#include "base/guard.h"
 #include "base/text.h"
 #include "eval/parameter_grid.h"
 #include "parallel/parallel_for.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -7,11 +7,11 @@
 #include <limits>
 
 #include "base/aligned.h"
-#include "base/guard.h"
 #include "eval/parameter_grid.h"
 #include "kernel/isa/kernel_table.h"
 #include "parallel/parallel_for.h"
 #include "surface/border_curve.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -9,7 +9,6 @@
 #include <numbers>
 #include <optional>
 
-#include "base/guard.h"
 #include "io/make_room.h"
 #include "io/passed_over.h"
 #include "io/rib_lexer.h"
@@ -17,6 +16,7 @@
 #include "io/rib_surfaces.h"
 #include "io/rib_trims.h"
 #include "tessera/io.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -4,8 +4,8 @@
 #include <atomic>
 #include <mutex>
 
-#include "base/guard.h"
 #include "parallel/tbb_loop.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <string>
 
-#include "base/guard.h"
 #include "surface/spline_lines.h"
 #include "surface/spline_window.h"
 #include "surface/validate.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
-#include "base/guard.h"
 #include "basis/double_double.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

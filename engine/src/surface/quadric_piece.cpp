@@ -3,9 +3,9 @@
 #include <numbers>
 #include <string>
 
-#include "base/guard.h"
 #include "surface/quadric_profile.h"
 #include "tessera/quadric.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -5,10 +5,10 @@
 #include <limits>
 #include <string>
 
-#include "base/guard.h"
 #include "tess/check/t_junctions.h"
 #include "tess/edges/position_bits.h"
 #include "tessera/mesh.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

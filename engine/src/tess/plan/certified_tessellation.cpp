@@ -6,7 +6,6 @@
 #include <numbers>
 #include <string>
 
-#include "base/guard.h"
 #include "base/impl_access.h"
 #include "base/text.h"
 #include "kernel/isa/kernel_table.h"
@@ -17,6 +16,7 @@
 #include "tess/write/mesh_views.h"
 #include "tess/write/patch_writer.h"
 #include "tess/write/welded_vertices.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

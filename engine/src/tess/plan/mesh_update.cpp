@@ -2,7 +2,6 @@
 
 #include <string>
 
-#include "base/guard.h"
 #include "base/impl_access.h"
 #include "eval/patch_edits.h"
 #include "kernel/isa/kernel_table.h"
@@ -11,6 +10,7 @@
 #include "tess/plan/present_bounds.h"
 #include "tess/write/mesh_views.h"
 #include "tess/write/vertex_pass.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <string>
 
-#include "base/guard.h"
 #include "eval/uniform_grid.h"
 #include "parallel/call_progress.h"
 #include "parallel/parallel_for.h"
 #include "tess/write/mesh_views.h"
 #include "tess/write/patch_triangles.h"
+#include "tessera/status.h"
 #include "tessera/tessellation.h"
 
 namespace tessera::inline abi_0_1 {

@@ -1,7 +1,7 @@
 #include "tessera/mesh.h"
 
-#include "base/guard.h"
 #include "tess/write/mesh_parts.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -1,8 +1,8 @@
 #include <string>
 
-#include "base/guard.h"
 #include "tess/write/mesh_parts.h"
 #include "tessera/model.h"
+#include "tessera/status.h"
 #include "tessera/tessellation.h"
 
 namespace tessera::inline abi_0_1 {
