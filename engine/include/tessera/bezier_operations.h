@@ -110,7 +110,7 @@ struct JoinReport {
   /// Angle between the normals as seen through the join, in radians. Floor: 1e-12. It is pi if a normal vanishes inside
   /// the border.
   double normal_angle = 0;
-  /// p_c - q_c|, where c runs across the join from p into q, by the parameters of the domains. Floor: 1e-15 of the
+  /// |p_c - q_c|, where c runs across the join from p into q, by the parameters of the domains. Floor: 1e-15 of the
   /// derivatives.
   double derivative_gap = 0;
   std::optional<double> ratio;  ///< k > 0 with p_c = k q_c along the whole border, within the tolerance of derivatives

@@ -97,12 +97,12 @@ class ParametricSurface {
 
 /// Returns position and derivatives, from the caller's function or else by differences within the domain in 64 calls.
 ///
-/// Error bounds of differences: L is the domain's length along u (or v), h = L / 256, k is v's h, F is a bound of |p|
-/// near (u,v) and F_ab a bound of |d^(a+b) p / du^a dv^b|. Then
+/// Error bounds of differences, where L is the domain's length along u (or v), h = L / 256, k is the h of v, F is a
+/// bound of |p| near (u,v) and F_ab a bound of |d^(a+b) p / du^a dv^b|:
 ///
-/// - inside p_u: h^6 F_70 / 140 + 2^-42 F / L, p_uu: h^6 F_80 / 560 + 2^-33 F / L^2, p_uv: h^6 F_71 / 140 + k^6 F_17 /
-///   63 + 2^-33 F / (L_u L_v);
-/// - within three steps of the domain's edges p_u: h^6 F_70 / 7 + 2^-39 F / L, p_uu: 0.7 h^5 F_70 + 2^-29 F / L^2,
+/// - away from the domain's edges p_u: h^6 F_70 / 140 + 2^-42 F / L; p_uu: h^6 F_80 / 560 + 2^-33 F / L^2;
+///   p_uv: h^6 F_71 / 140 + k^6 F_17 / 63 + 2^-33 F / (L_u L_v);
+/// - within three steps of them p_u: h^6 F_70 / 7 + 2^-39 F / L; p_uu: 0.7 h^5 F_70 + 2^-29 F / L^2;
 ///   p_uv: h^6 F_71 / 7 + 9 k^6 F_17 + 2^-25 F / (L_u L_v).
 ///
 /// Errors: those of position(), non_finite (a derivative: names it and (u,v)).
