@@ -15,7 +15,7 @@
 #pragma GCC visibility push(default)
 namespace tessera::inline abi_0_1 {
 
-/// A Bezier curve: degree + 1 points, and as many weights > 0 or, if polynomial, none.
+/// A Bezier curve: degree + 1 points, and as many weights > 0, or none if polynomial.
 struct BezierPolygon {
   std::vector<Vec3> points;     ///< Bernstein coefficients
   std::vector<double> weights;  ///< one per point; empty for a polynomial curve
@@ -40,8 +40,8 @@ Result<BezierPolygon> boundary_curve(const BezierPatch& patch, Edge edge);
 ///
 /// Errors: unsupported (a rational patch), invalid_argument (a negative order), non_finite (too large).
 Result<BezierPatch> derivative_patch(const BezierPatch& patch, int order_u, int order_v);
-/// Returns r_uv at r(0,0), r(0,1), r(1,0), r(1,1). For a polynomial patch the first is m n (V11 - V10 - V01 + V00), and
-/// the others are similar: a twist vanishes where the four points at its corner form a parallelogram.
+/// Returns r_uv at r(0,0), r(0,1), r(1,0), r(1,1); in a polynomial patch m n (V11 - V10 - V01 + V00) and its like. A
+/// twist vanishes where the four points at its corner form a parallelogram.
 std::array<Vec3, 4> corner_twists(const BezierPatch& patch);
 
 /// Splits a patch at the parameter t, 0 <= t <= 1, into the parts over [0, t] and [t, 1], each on [0,1]^2 again. They
@@ -55,7 +55,7 @@ Result<BezierPatch> sub_patch(const BezierPatch& patch, const Domain& rectangle)
 /// Returns the same patch with the given degrees. Errors: unsupported_degree (below the patch's, or above max_degree).
 Result<BezierPatch> elevate_degree(const BezierPatch& patch, int degree_u, int degree_v);
 
-/// Returns r(v,u), exactly. The normal changes its sign. Errors: out_of_memory.
+/// Returns r(v,u), exactly. The normal turns over. Errors: out_of_memory.
 Result<BezierPatch> transpose(const BezierPatch& patch);
 /// Returns r(1-u,v), like transpose().
 Result<BezierPatch> reverse_u(const BezierPatch& patch);
@@ -76,18 +76,17 @@ Result<BezierPatch> make_cone(const Vec3& apex, const BezierPolygon& curve);
 /// Makes the bilinear patch of four corners, a hyperbolic paraboloid unless they lie in a plane.
 Result<BezierPatch> make_hyperbolic_paraboloid(const Vec3& r00, const Vec3& r01, const Vec3& r10, const Vec3& r11);
 
-/// One side of a join: a patch, one of its edges, and the rectangle of parameters that the patch covers, by which
-/// derivatives are taken.
+/// One side of a join: a patch, one of its edges, and the rectangle of parameters that the patch covers.
 struct JoinSide {
   const BezierPatch& patch;  ///< referenced; must outlive the call
   Edge edge = Edge::u1;      ///< the joined border
-  Domain domain = {};        ///< rectangle of the parameters of the derivatives
+  Domain domain = {};        ///< derivatives are by its parameters
 };
 
 /// Largest values that count as zero.
 struct JoinTolerances {
   double position = 1e-9;    ///< times the diagonal of the box of both patches
-  double angle = 1e-6;       ///< between the normals, radians
+  double angle = 1e-6;       ///< between the normals, in radians
   double derivative = 1e-9;  ///< times the larger of the two largest cross-derivatives
 };
 
@@ -95,16 +94,15 @@ struct JoinTolerances {
 enum class Continuity : std::uint8_t {
   none,  ///< the borders differ
   c0,    ///< the borders are equal
-  g1,    ///< and so are the normals all along the border, with their direction
+  g1,    ///< and so are the normals along it, pointing the same way
   c1,    ///< and so are the derivatives across the border
 };
 
 /// Report on a join: maxima along the whole border, at equal fractions of the two edges.
 ///
 /// Each figure is an upper bound, proven by hulls of Bernstein coefficients (up to rounding: products of degree up to
-/// 8 * 15, a few hundred units of 2^-52 of the largest). It is above the true maximum by at most 0.1 % or the floor
-/// stated below. If `sharp` is false, it may be further above, because halving stopped at 2^-40 of the border or at
-/// 20,000 pieces.
+/// 8 * 15, a few hundred units of 2^-52 of the largest). It is at most 0.1 % or the stated floor above the true
+/// maximum, unless `sharp` is false: then halving stopped at 2^-40 of the border or 20,000 pieces.
 struct JoinReport {
   double position_gap = 0;  ///< floor: 1e-15 of the size
   /// Angle between the normals as seen through the join, in radians. Floor: 1e-12. It is pi if a normal vanishes inside
@@ -119,9 +117,9 @@ struct JoinReport {
   Continuity continuity = Continuity::none;  ///< the highest that holds
 };
 
-/// Measures the join of p with q along one edge of each. Patches have any degrees and are polynomial or rational. q's
-/// edge may run in the direction of p's or against it: the nearer direction is taken. A normal that vanishes at an end
-/// of the border (a pole) is divided out there: its limit along the border counts.
+/// Measures the join of p with q along one edge of each. Patches may have any degrees and be rational. q's edge may run
+/// with p's or against it: the nearer is taken. A normal that vanishes at an end of the border (a pole) is divided out
+/// there: its limit along the border counts.
 ///
 /// Errors: invalid_argument (no such edge, a domain that is empty or not finite, a tolerance that is negative or NaN).
 Result<JoinReport> measure_join(const JoinSide& p, const JoinSide& q, const JoinTolerances& tolerances = {});

@@ -34,17 +34,16 @@ class BezierPatch {
   /// - `weights`: one finite weight > 0 per point, at least 1e-100 of the largest. If all are equal by ==, they are
   ///   dropped and the patch is polynomial.
   ///
-  /// Weights must be positive even where the denominator would stay positive without that. The patch stores each point
-  /// and its weight. It has no place for a point of weight zero, which is at infinity if w V is not zero; a point
-  /// computed between two such points does not exist at all. With negative weights the patch leaves its hull, on which
-  /// boxes and bounds rest.
+  /// Weights must be positive even where the denominator would be so anyway. A patch stores each point and its weight,
+  /// with no place for a point of weight zero, which is at infinity if w V is not zero; a point computed between two of
+  /// them does not exist. With negative weights the patch leaves its hull, on which boxes and bounds rest.
   ///
   /// Errors: those of polynomial(), invalid_weight (index = the offending weight).
   static Result<BezierPatch> rational(int degree_u, int degree_v, std::span<const Vec3> points,
                                       std::span<const double> weights);
 
-  /// Returns this patch with other control points, as many as before; weights and rationality are unchanged. Errors:
-  /// count_mismatch, non_finite (index = the offending point).
+  /// Returns this patch with other control points, as many as before, and the same weights. Errors: count_mismatch,
+  /// non_finite (index = the offending point).
   Result<BezierPatch> with_points(std::span<const Vec3> points) const;
 
   int degree_u() const { return degree_u_; }                           ///< degree along u

@@ -25,7 +25,7 @@ struct PatchLocation {
 
 /// Bound of the distance between patches and the surface that they represent.
 struct FitError {
-  double distance = 0;    ///< 0 for an exact conversion, which is right to rounding
+  double distance = 0;    ///< 0 for an exact conversion, which is right up to rounding
   bool certified = true;  ///< whether it is proven, not only sampled
 };
 
@@ -86,7 +86,7 @@ class PatchGrid {
 /// Errors: non_finite (the map, or a point too large; index = the patch).
 Result<PatchGrid> transformed(const PatchGrid& grid, const Affine& map);
 
-// Operations on splines. The result is the same curve or surface on the same domain, right up to rounding. Unchanged
+// Operations on splines. Results are the same curve or surface on the same domain, right up to rounding. Unchanged
 // control points keep their bits. Rational splines remain rational. Errors of all: out_of_memory, and those stated.
 
 /// Inserts knots (Boehm 1980; The NURBS Book, sec. 5.2, 5.3).
@@ -96,20 +96,20 @@ Result<PatchGrid> transformed(const PatchGrid& grid, const Affine& map);
 ///
 /// Errors: non_finite, invalid_argument (index = the knot).
 Result<Curve> refined(const Curve& curve, std::span<const double> knots);
-/// Inserts knots in both directions, like refined() of a curve.
+/// Inserts knots in both directions.
 Result<BSplineSurface> refined(const BSplineSurface& surface, std::span<const double> knots_u,
                                std::span<const double> knots_v);
 
 /// Clamps: knots end where the domain ends, (degree + 1)-fold. An unclamped spline, or one with a smaller domain than
 /// its knots, becomes clamped, and the border points become control points of its border curves.
 Result<Curve> clamped(const Curve& curve);
-/// Clamps both directions, like clamped() of a curve.
+/// Clamps both directions.
 Result<BSplineSurface> clamped(const BSplineSurface& surface);
 
 /// Clamps, and raises the degree by `by` >= 0 (by blossoms: Farin, Curves and Surfaces for CAGD, 5th ed., sec. 8.7).
 /// Each knot's multiplicity rises by as much. Errors: invalid_argument, unsupported_degree.
 Result<Curve> degree_elevated(const Curve& curve, int by);
-/// Raises the degrees of a surface, like degree_elevated() of a curve.
+/// Raises both degrees.
 Result<BSplineSurface> degree_elevated(const BSplineSurface& surface, int by_u, int by_v);
 
 /// Returns both curves clamped, of the higher degree of the two, and on the union of their knots (by ==: knots that
@@ -120,7 +120,7 @@ Result<std::pair<Curve, Curve>> compatible(const Curve& a, const Curve& b);
 /// A curve as Bezier pieces that share their end points: piece k has the points k * degree .. (k + 1) * degree and
 /// covers [breaks[k], breaks[k+1]].
 struct BezierPieces {
-  int degree = 1;               ///< of every piece
+  int degree = 1;               ///< degree of every piece
   std::vector<double> breaks;   ///< strictly increasing
   std::vector<Vec3> points;     ///< (breaks.size() - 1) * degree + 1
   std::vector<double> weights;  ///< one per point, also if all are equal; empty if the curve is polynomial

@@ -48,17 +48,15 @@ class RuledSurface {
   std::shared_ptr<const Data> data_;
 };
 
-/// Evaluates the formula above: the reference evaluator. Errors: those of functions, non_finite (too large a point; (u,
-/// v)).
+/// The reference evaluator, by the formula above. Errors: those of functions, non_finite (too large a point; (u, v)).
 Result<SurfaceJet> evaluate_jet(const RuledSurface& surface, double u, double v);
 /// Returns the position alone, with one call of each function.
 Result<Vec3> position(const RuledSurface& surface, double u, double v);
 
 /// Converts to Bezier patches.
 ///
-/// - Exact borders give an exact result (FitError 0): the curves are made compatible. Rational ones with different
-///   weight functions are brought to a common denominator: numerators (1 - t) N1 w2 + t N2 w1 over w1 w2, of degree
-///   p1 + p2.
+/// - Exact borders give an exact result (FitError 0): curves are made compatible, rational ones with different weight
+///   functions over a common denominator, with numerators (1 - t) N1 w2 + t N2 w1 over w1 w2, of degree p1 + p2.
 /// - Other borders are fitted by `options`, with breakpoints at inner knots of a border that is a curve.
 ///
 /// Errors: unsupported_degree (above max_degree), non_finite, invalid_weight (products of weights below 1e-100 of their
@@ -115,9 +113,9 @@ struct CoonsOptions {
   double closing_tolerance = 1e-9;
 };
 
-/// A Coons patch r = [C1 C2] g(t) + f(s)^T [D1; D2] - f(s)^T [[r00, r01], [r10, r11]] g(t), where s and t run over
-/// [0,1] as u and v over the domain (Coons 1967; Farin, Curves and Surfaces for CAGD, 5th ed., ch. 22). The corners
-/// r_ab are the ends of C1, C2. Immutable except for assignment; copies share everything.
+/// The patch r = [C1 C2] g(t) + f(s)^T [D1; D2] - f(s)^T [[r00, r01], [r10, r11]] g(t), where s and t run over [0,1] as
+/// u and v over the domain (Coons 1967; Farin, Curves and Surfaces for CAGD, 5th ed., ch. 22). The corners r_ab are the
+/// ends of C1, C2. Immutable except for assignment; copies share everything.
 class CoonsPatch {
  public:
   /// Makes a patch from its borders. Errors: invalid_argument (curves on different intervals: says which; a border that
@@ -143,8 +141,7 @@ class CoonsPatch {
   std::shared_ptr<const Data> data_;
 };
 
-/// Evaluates the formula above: the reference evaluator. Errors: those of functions, non_finite (too large a point; (u,
-/// v)).
+/// The reference evaluator, by the formula above. Errors: those of functions, non_finite (too large a point; (u, v)).
 Result<SurfaceJet> evaluate_jet(const CoonsPatch& patch, double u, double v);
 /// Returns the position alone, with one call of each function.
 Result<Vec3> position(const CoonsPatch& patch, double u, double v);

@@ -43,8 +43,8 @@ class Curve {
   ///
   /// - `points`: not premultiplied.
   /// - `weights`: one finite weight > 0 per point, at least 1e-100 of the largest. They are dropped if all are equal by
-  ///   ==. They must be positive even where the denominator would stay positive without that, for the reasons at
-  ///   BezierPatch::rational(): knot insertion and extraction make such points.
+  ///   ==. They must be > 0 even if the denominator is anyway, as in BezierPatch::rational(): knot insertion and
+  ///   extraction make such points.
   ///
   /// Errors: those of b_spline(), invalid_weight (index = the weight).
   static Result<Curve> nurbs(int degree, std::span<const Vec3> points, std::span<const double> weights,

@@ -1,6 +1,5 @@
 #pragma once
-// Options and reports of calls: instruction set, cancellation, progress, stores. Work runs in the caller's current TBB
-// arena.
+// How calls run: instruction set, cancellation, progress, stores. Work runs in the caller's current TBB arena.
 
 #include <atomic>
 #include <cstddef>
@@ -19,13 +18,12 @@ enum class Isa : std::uint8_t { sse2, avx2, avx512, neon64 };
 
 std::string_view name(Isa isa);  ///< "sse2", "avx2" (with FMA), "avx512" (F, CD, DQ, BW, VL), "neon64" (AArch64)
 
-/// Returns the instruction sets that the library was built with and that the processor and the operating system
-/// support, slowest first.
+/// Returns the instruction sets that the library has and that processor and operating system support, slowest first.
 std::span<const Isa> available_isas();
 
-/// Returns the instruction set that is used where an option leaves it open: the one named by the environment variable
-/// TESSERA_ISA if that is set and not empty, otherwise the fastest available one. Errors: isa_unavailable (TESSERA_ISA
-/// names one that is unknown or missing).
+/// Returns the instruction set of options that leave it open: the one in the environment variable TESSERA_ISA if that
+/// is not empty, otherwise the fastest available one. Errors: isa_unavailable (TESSERA_ISA names one that is unknown or
+/// missing).
 Result<Isa> default_isa();
 
 /// Returns the instruction set with this name(). Errors: isa_unavailable (it is unknown or missing on this machine).

@@ -76,8 +76,8 @@ struct Affine {
   static Affine translated(const Vec3& by) { return {.translation = by}; }  ///< moves by a vector
   /// Scales along the axes.
   static Affine scaled(const Vec3& by) { return {.columns = {Vec3{by.x, 0, 0}, Vec3{0, by.y, 0}, Vec3{0, 0, by.z}}}; }
-  /// Rotates by `angle` radians about an axis through the origin, counter-clockwise as seen from the axis's tip.
-  /// Returns the identity if the axis is zero.
+  /// Rotates by `angle` radians about an axis through the origin, counter-clockwise as seen from its tip. A zero axis
+  /// gives the identity.
   static Affine rotated(const Vec3& axis, double angle) {
     const Vec3 n = normalized(axis);
     if (n == Vec3{}) return {};
@@ -86,7 +86,7 @@ struct Affine {
     return {.columns = {turned({1, 0, 0}), turned({0, 1, 0}), turned({0, 0, 1})}};
   }
 
-  /// Returns the image of a direction; the translation does not act on it.
+  /// Returns the image of a direction, without the translation.
   Vec3 vector(const Vec3& d) const { return d.x * columns[0] + d.y * columns[1] + d.z * columns[2]; }
   Vec3 point(const Vec3& p) const { return vector(p) + translation; }  ///< the image of a point
   /// Returns a bound of |vector(d)| / |d|: the root of the largest row sum of |M^T M|. It is sharp for orthogonal

@@ -60,8 +60,7 @@ class HermitePatch {
   /// borders: r_uv(i,j) = (r_u(i,1) - r_u(i,0)) / dv + (r_v(1,j) - r_v(0,j)) / du - (r00 - r10 - r01 + r11) / (du dv)
   /// (Farin, Curves and Surfaces for CAGD, 5th ed., ch. 15).
   static Result<HermitePatch> adini(const OpenCorners& corners, const Domain& domain = {});
-  /// Makes a patch from its algebraic form: 16 coefficients a_ij of s^i t^j, s and t over [0,1]. Errors:
-  /// count_mismatch.
+  /// Makes a patch from 16 coefficients a_ij of s^i t^j, s and t over [0,1]. Errors: count_mismatch.
   static Result<HermitePatch> from_algebraic(std::span<const Vec3> coefficients, const Domain& domain = {});
   /// Makes the patch through 16 points [i][j] at the parameters (u[i], v[j]) of the domain.
   ///
@@ -75,7 +74,7 @@ class HermitePatch {
   /// (rational), unsupported_degree.
   static Result<HermitePatch> from_bezier(const BezierPatch& patch, const Domain& domain = {});
 
-  const Domain& domain() const { return data_->domain; }  ///< rectangle of the parameters of the derivatives
+  const Domain& domain() const { return data_->domain; }  ///< derivatives are by its parameters
   /// Returns the geometry matrix, with derivatives by u and v of the domain.
   Grid geometry(HermiteOrder order = HermiteOrder::by_end) const;
   /// Returns the corner at u = u0 (a = 0) or u1 (a = 1), v = v0 (b = 0) or v1 (b = 1).
@@ -86,7 +85,7 @@ class HermitePatch {
   Grid points_at(const std::array<double, 4>& u, const std::array<double, 4>& v) const;
 
   /// Returns the same surface over another rectangle [s0, s1] x [t0, t1]: q_s = (u1 - u0) / (s1 - s0) p_u, q_t
-  /// likewise, and q_st with the product of both factors. Errors: as above.
+  /// likewise, and q_st with the product of both factors. Errors: as for the makers.
   Result<HermitePatch> reparametrized(const Domain& domain) const;
 
  private:
@@ -134,8 +133,8 @@ Result<std::vector<HermiteNode>> estimate_twists(TwistEstimate estimate, std::sp
                                                  std::span<const double> v, std::span<const HermiteNode> nodes);
 
 /// A grid of bicubic patches whose neighbours are G1 along whole edges. Each node (P, A, B, T) holds the values at the
-/// (1,1) corner of the patch at its lower left. Factors k_i > 0 for the columns and l_j > 0 for the rows, with k_0 =
-/// l_0 = 1, scale the tangents.
+/// (1,1) corner of the patch at its lower left. Factors k_i > 0 for the columns and l_j > 0 for the rows, k_0 = l_0 =
+/// 1, scale tangents.
 ///
 /// - Patch (i,j) takes at its corner (a,b), from node (i+a, j+b), r_u = K A, r_v = L B, r_uv = K L T on [0,1]^2, where
 ///   K = k_i if a = 0, else 1, and L = l_j if b = 0, else 1.
@@ -148,8 +147,7 @@ class HermiteNetwork {
   /// Makes a network from factors. The knots start at 0, with h_0 = g_0 = 1.
   ///
   /// - `nodes`: count_u * count_v nodes [i][j], at least two in each direction.
-  /// - `k`, `l`: count_u - 1 and count_v - 1 factors, one for each column or row of nodes with a patch on its right or
-  ///   above.
+  /// - `k`, `l`: count_u - 1 and count_v - 1 factors, one per column or row of nodes with a patch after it.
   ///
   /// Errors: invalid_argument (too few nodes; a factor that is not positive, k_0 or l_0 that is not 1, knots that a
   /// factor makes coincide; index = the factor), count_mismatch, non_finite (index = the node or factor).

@@ -1,5 +1,5 @@
 #pragma once
-// The speed limits of this machine, measured in this process, and the time that a piece of work takes at them.
+// The speed limits of this machine, measured in this process, and how long a piece of work takes at them.
 
 #include <cstddef>
 #include <optional>
@@ -22,7 +22,7 @@ struct Work {
 struct Limits {
   Isa isa = Isa::sse2;                          ///< the measured instruction set
   double float_operations_per_second = 0;       ///< fused multiply-adds, one float each (SSE2: multiply and add)
-  double double_operations_per_second = 0;      ///< fused multiply-adds, one double each (SSE2: multiply and add)
+  double double_operations_per_second = 0;      ///< likewise, one double each
   double store_bytes_per_second = 0;            ///< the better of plain and streaming fill at the requested size
   double plain_store_bytes_per_second = 0;      ///< with plain stores
   double streaming_store_bytes_per_second = 0;  ///< with streaming stores, past the caches
@@ -34,12 +34,11 @@ struct LimitsOptions {
   std::size_t store_bytes = 160u << 20;  ///< size of the filled buffer: that of the output in question
 };
 
-/// Measures the limits on the calling thread, as the best of several runs. Takes a fraction of a second with the
-/// default options. Errors: isa_unavailable, out_of_memory. Memory: `store_bytes` during the call.
+/// Measures on the calling thread, the best of several runs, in a fraction of a second by default. Errors:
+/// isa_unavailable, out_of_memory. Memory: `store_bytes` during the call.
 Result<Limits> measure_limits(const LimitsOptions& options = {});
 
-/// Returns the larger of two times: the operations over their rate, and the larger of bytes written and read over the
-/// store rate.
+/// Returns the larger of the operations over their rate and the larger byte count over the store rate.
 double seconds_at_limit(const Limits& limits, const Work& work);
 
 }  // namespace tessera::inline abi_0_1

@@ -28,13 +28,13 @@ struct LocalGeometry {
   double l = 0, m = 0, n = 0;        ///< second form: r_uu.N, r_uv.N, r_vv.N
   double gaussian = 0, mean = 0;     ///< K = k1 k2, H = (k1 + k2) / 2
   PrincipalDirection first, second;  ///< k1 >= k2; first.direction x second.direction = N
-  bool umbilic = false;  ///< k1 = k2 within tolerance: every tangent is principal, the directions are arbitrary
+  bool umbilic = false;              ///< k1 = k2 within tolerance: all tangents are principal, the directions arbitrary
 };
 
 /// Kind of a point by its principal curvatures.
 enum class CurvatureKind : std::uint8_t {
   distinct,   ///< k1 > k2
-  umbilic,    ///< k1 = k2 within tolerance: every tangent is principal, the directions are arbitrary
+  umbilic,    ///< k1 = k2 within tolerance: all tangents are principal, the directions arbitrary
   undefined,  ///< no forms and no curvatures; they are zero
 };
 
@@ -66,8 +66,8 @@ struct NetReport {
   int undefined_samples = 0;           ///< samples without a regular normal, left out of both
   double dot_bound = 0;                ///< proven: |r_u . r_v| is nowhere larger
   double volume_bound = 0;             ///< proven: |det(r_u, r_v, r_uv)| = |r_uv . N| |r_u x r_v| is nowhere larger
-  /// Orthogonal everywhere: the Bernstein coefficients of r_u . r_v are at most `tolerance` times the largest of r_u
-  /// times the largest of r_v.
+  /// Everywhere: the Bernstein coefficients of r_u . r_v are at most `tolerance` times the largest of r_u times the
+  /// largest of r_v.
   bool orthogonal = false;
   /// Conjugate everywhere: likewise for det(r_u, r_v, r_uv), where r_uv counts for no less than the larger of r_u and
   /// r_v.

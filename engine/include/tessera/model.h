@@ -23,13 +23,13 @@ struct TrimLoop {
   bool hole = false;          ///< if false, the outside is cut away
 };
 
-/// A named surface, and its placement in the model. Trims are kept for callers that need them; patches, meshes and rays
-/// ignore them so far. Copies share everything.
+/// A named surface, and its placement in the model. Trims are kept for callers; patches, meshes and rays ignore them so
+/// far. Copies share everything.
 struct ModelSurface {
   Shared<std::string> name;                  ///< may be empty
   Surface surface;                           ///< in its own space
   Shared<Affine> placement = {};             ///< from its own space to the model's
-  Shared<std::vector<TrimLoop>> trims = {};  ///< kept, but ignored by patches, meshes and rays
+  Shared<std::vector<TrimLoop>> trims = {};  ///< kept, ignored so far
 };
 
 /// The surfaces of a file, or those that a program makes.

@@ -19,11 +19,11 @@ namespace tessera::inline abi_0_1 {
 /// A NURBS surface: s(u,v) = sum_ij N_{i,p}(u) N_{j,q}(v) P_ij or, rational, sum N N w_ij P_ij / sum N N w_ij, of
 /// degrees 1 to max_degree (Piegl and Tiller, The NURBS Book, 2nd ed., ch. 3 and 4).
 ///
-/// Each direction has its own knots; their number is that of the points plus degree plus 1. Knots do not decrease. A
-/// knot strictly inside the domain [u_p, u_{m+1}] has multiplicity at most p (with p the surface is only C0 there), one
-/// at its ends or outside at most p + 1. So knots may be clamped, unclamped or uniform; surfaces that close on periodic
-/// knots repeat their first p rows at the end. Points are stored [i][j], i along u. Immutable except for assignment;
-/// copies share everything.
+/// Each direction has its knots, as many as points plus degree plus 1. They do not decrease. A knot strictly inside the
+/// domain [u_p, u_{m+1}] has multiplicity at most p (with p the surface is only C0 there), one at its ends or outside
+/// at most p + 1. So knots may be clamped, unclamped or uniform; surfaces that close on periodic knots repeat their
+/// first p rows at the end. Points are stored [i][j], i along u. Immutable except for assignment; copies share
+/// everything.
 class BSplineSurface {
  public:
   /// Makes a polynomial surface.
@@ -43,8 +43,8 @@ class BSplineSurface {
   ///
   /// - `points`: not premultiplied.
   /// - `weights`: one finite weight > 0 per point, at least 1e-100 of the largest. They are dropped if all are equal by
-  ///   ==. They must be positive even where the denominator would stay positive without that, for the reasons at
-  ///   BezierPatch::rational(): knot insertion and extraction make such points.
+  ///   ==. They must be > 0 even if the denominator is anyway, as in BezierPatch::rational(): knot insertion and
+  ///   extraction make such points.
   ///
   /// Errors: those of polynomial(), invalid_weight (index = the weight).
   static Result<BSplineSurface> rational(int degree_u, std::span<const double> knots_u, int degree_v,
@@ -66,7 +66,7 @@ class BSplineSurface {
   bool is_rational() const { return !data_->weights.empty(); }        ///< whether it has weights that differ
   std::span<const Vec3> points() const { return data_->points; }      ///< `[i][j]`, not premultiplied
   std::span<const double> weights() const { return data_->weights; }  ///< empty for a polynomial surface
-  /// i < count_u(), j < count_v().
+  /// Returns point (i, j); i < count_u(), j < count_v().
   const Vec3& point(std::size_t i, std::size_t j) const { return data_->points[i * count_v() + j]; }
   /// Returns the weight of point (i, j); 1 in a polynomial surface.
   double weight(std::size_t i, std::size_t j) const { return is_rational() ? data_->weights[i * count_v() + j] : 1.0; }
@@ -107,14 +107,14 @@ enum class CircleArcs : std::uint8_t { three = 3, four = 4 };
 // radius that is not positive, a height of 0, an axis without a direction or parallel to its `zero`), non_finite (a
 // radius, a height, the axis), those of the curve or surface.
 
-/// Makes the circle of the given radius around the axis's origin, from the direction of angle zero.
+/// Makes a circle about the axis's origin, from the direction of angle zero.
 Result<Curve> nurbs_circle(const Axis& axis, double radius, CircleArcs arcs = CircleArcs::four);
 /// Revolves `profile` about the axis: u is the turn, and v the profile's parameter with its degree and knots. Weights
 /// are products. Points of the profile on the axis make poles. (The NURBS Book, sec. 8.5, in closed form.)
 Result<BSplineSurface> surface_of_revolution(const Curve& profile, const Axis& axis,
                                              CircleArcs arcs = CircleArcs::four);
-/// Makes a sphere around the axis's origin. v in [0, 1] runs from the pole at -direction to the pole at +direction,
-/// over two arcs. The normal points outwards.
+/// Makes a sphere about the axis's origin. v in [0, 1] runs from the pole at -direction to the pole at +direction, over
+/// two arcs. The normal points outwards.
 Result<BSplineSurface> nurbs_sphere(const Axis& axis, double radius, CircleArcs arcs = CircleArcs::four);
 /// Makes a torus: the tube of radius `minor` about the circle of radius `major` > minor. v in [0, 1] runs around the
 /// tube from its outermost circle towards +direction. The normal points outwards.

@@ -69,9 +69,8 @@ class ParametricSurface {
   /// position at a corner).
   static Result<ParametricSurface> make(SurfaceFunctions functions, const Domain& domain = {});
   /// Makes a surface p(x,y) over a disc by its polar map: u is rho, v is theta. The edge u = 0 is collapsed; v0 and v1
-  /// are one curve. Derivatives given are by x and y; derivatives of the map are applied to them. Bounds are dropped:
-  /// bounds of pure derivatives do not bound the mixed ones that polar curves need (generic_surface_over_disc() finds
-  /// them).
+  /// are one curve. Given derivatives are by x and y, and the chain rule is applied. Bounds are dropped: pure
+  /// derivatives do not bound the mixed ones that polar curves need (generic_surface_over_disc() finds them).
   ///
   /// Errors: those of make() and PolarMap::make().
   static Result<ParametricSurface> over_disc(SurfaceFunctions functions, const Disc& disc = {});
@@ -80,7 +79,7 @@ class ParametricSurface {
   /// Returns p(u,v). Errors: non_finite (names u and v), invalid_argument (the function threw: its message).
   Result<Vec3> position(double u, double v) const;
   bool has_derivatives() const { return data_->functions.jet != nullptr; }  ///< if false, differences are used
-  /// Whether derivative bounds are given; if false, fits are sampled, not certified.
+  /// Whether there are bounds; if not, fits are sampled, not certified.
   bool has_bounds() const { return data_->functions.derivative_bounds != nullptr; }
   /// Returns bounds over a part of the domain, k >= 0; infinity where none is known.
   std::array<double, 2> derivative_bounds(const Domain& part, int k) const;
@@ -110,16 +109,15 @@ Result<SurfaceJet> evaluate_jet(const ParametricSurface& surface, double u, doub
 
 /// Options of a fit.
 struct FitOptions {
-  /// The largest distance of patches from the surface at equal parameters, in the model's unit. 0 stands for 1e-6 of
-  /// the diagonal of the box of 17 x 17 points.
+  /// The largest distance from the surface at equal parameters, in the model's unit; 0 for 1e-6 of the diagonal of the
+  /// box of 17 x 17 points.
   double tolerance = 0;
   int degree = 3;                      ///< degree of the patches in each direction, 2 to max_degree
   std::size_t max_patches = 1u << 16;  ///< more are an error
-  /// Whether to fit by the surface's bounds where it has them. Otherwise the fit is sampled, with fewer patches and
-  /// more calls.
+  /// Whether to use the surface's bounds, if any. Sampled fits take fewer patches and more calls.
   bool certify = true;
-  /// Inner parameters at which the surface is not smooth. They are breakpoints from the start, so that no patch crosses
-  /// them. Finite, increasing, within the open range of u (or v).
+  /// Inner parameters where the surface is not smooth: breakpoints from the start, so that no patch crosses them.
+  /// Finite, increasing, within the open range of u (or v).
   std::vector<double> breaks_u = {}, breaks_v = {};
 };
 
@@ -133,8 +131,7 @@ struct FitOptions {
 /// - a proven bound, where the surface has bounds on its derivatives that suffice, taking the function's values as
 ///   exact. The function is called once for each of (n cu + 1)(n cv + 1) points of cu x cv patches of degree n.
 /// - otherwise the largest deviation found at (3 n + 1)^2 points of every patch, with about fifteen to forty times as
-///   many calls. Features narrower than the gaps between these points can be missed: a caller who knows of them fits
-///   sub-rectangles.
+///   many calls. Features narrower than the gaps between these points can be missed; fit sub-rectangles around them.
 ///
 /// Errors: invalid_argument (options; a tolerance below what rounding leaves; one that is not reached with the largest
 /// number of patches, or at a jump: says what was reached, and where), those of position().
@@ -165,7 +162,7 @@ class ParametricCurve {
   /// Returns c(t). Errors: non_finite (names t), invalid_argument (the function threw: its message).
   Result<Vec3> position(double t) const;
   bool has_derivatives() const { return data_->functions.jet != nullptr; }  ///< if false, differences are used
-  /// Whether derivative bounds are given; if false, fits are sampled, not certified.
+  /// Whether there are bounds; if not, fits are sampled, not certified.
   bool has_bounds() const { return data_->functions.derivative_bound != nullptr; }
   /// Returns a bound of |d^k c / dt^k| over a part of the domain, k >= 0; infinity where none is known.
   double derivative_bound(const Interval& part, int k) const;

@@ -50,14 +50,14 @@ enum class QuadricKind : std::uint8_t {
 std::string_view name(QuadricKind kind);
 /// Tells whether the real points of the kind form a surface.
 bool is_surface(QuadricKind kind);
-/// Returns the number of sheets: two for two sheets, two planes and a hyperbolic cylinder, otherwise one; 0 where there
-/// is no surface.
+/// Returns the number of sheets: two for two sheets, two planes and a hyperbolic cylinder, otherwise one; 0 without a
+/// surface.
 int sheet_count(QuadricKind kind);
 
 /// Largest values that count as zero.
 struct QuadricOptions {
-  /// Relative tolerance, in (0, 0.01], independent of the unit of length and of a common factor of the coefficients. A
-  /// value counts as 0 below this share of its reference:
+  /// Share in (0, 0.01]; units of length and a common factor of the coefficients have no effect. A value counts as 0
+  /// below this share of its reference:
   ///
   /// - an eigenvalue of the quadratic part: the largest eigenvalue;
   /// - the linear part along null directions: the largest of quadratic, linear and constant part at length L;
@@ -120,7 +120,7 @@ struct QuadricHits {
   bool tangent = false;       ///< a double root: the discriminant is 0 within its own rounding
   bool contained = false;     ///< the whole line lies in the surface within rounding; count is then 0
 };
-/// Intersects a whole line, both directions of a ray, with a quadric.
+/// Intersects a whole line with a quadric.
 ///
 /// Result: every t of origin + t direction on the quadric; none for a zero or non-finite ray. Each t is a root of a
 /// quadratic that is within a few units of rounding of the true one about the line's point nearest to the centre (no
@@ -171,8 +171,8 @@ QuadricHits intersect(const QuadricPiece& piece, const Vec3& origin, const Vec3&
 
 /// Converts a piece exactly to rational patches: degree 2 along circles, hyperbolas and parabolas, degree 1 along
 /// straight lines. Angular ranges are split into arcs of at most 90 degrees, ranges of cosh into pieces of at most 2.
-/// Breakpoints are canonical parameters; between two of them, the patch covers the same strip at another pace, and
-/// grid_parameters() maps from one to the other.
+/// Breakpoints are canonical parameters; between two of them, the patch covers the same strip at another pace, which
+/// grid_parameters() undoes.
 Result<PatchGrid> to_bezier(const QuadricPiece& piece);
 /// Returns the canonical parameters of the point that to_bezier(piece) has at its own parameters (u, v) in the range:
 /// on an arc about m of half-width h, m + 2 atan(tan(h/2) s) with s from -1 to 1 (atanh and tanh for cosh); otherwise

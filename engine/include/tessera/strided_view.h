@@ -33,8 +33,8 @@ struct VectorView {
     return view;
   }
   /// Makes a view of records of `record` elements each, in which this vector's components are the N elements from
-  /// `first` on. Example: for positions and normals in one buffer of 6 floats per vertex, use interleaved(buffer, 6, 0)
-  /// and interleaved(buffer, 6, 3).
+  /// `first` on. Example, positions and normals in one buffer of 6 floats per vertex: interleaved(buffer, 6, 0) and
+  /// (buffer, 6, 3).
   ///
   /// If the memory holds no whole vector, or `record` is 0, the view has size 0 and points to the start of the memory.
   static VectorView interleaved(std::span<T> memory, std::size_t record = N, std::size_t first = 0) {

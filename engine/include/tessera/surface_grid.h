@@ -31,7 +31,7 @@ enum class Calls : std::uint8_t {
 /// for float), cancelled.
 Status evaluate(const ParametricSurface& surface, std::span<const double> u, std::span<const double> v,
                 const View3<double>& out, const Execution& execution = {}, Calls calls = Calls::one_thread);
-/// Writes positions in float, like the overload above.
+/// Writes positions in float.
 Status evaluate(const ParametricSurface& surface, std::span<const double> u, std::span<const double> v,
                 const View3<float>& out, const Execution& execution = {}, Calls calls = Calls::one_thread);
 
@@ -46,19 +46,18 @@ Status evaluate(const ParametricSurface& surface, std::span<const double> u, std
 /// by at most 5 units of 2^-23 (8 of 2^-52 in double) times the largest |g1 C1| + |g2 C2| + |f1 K1| + |f2 K2|, where
 /// K_a = D_a - r_a0 g1 - r_a1 g2; a ruled surface has no K.
 ///
-/// Errors: invalid_argument (no parameters; one outside the domain or NaN: index; a view that lacks a component or a
-/// stride, is misaligned, or shares memory with another), buffer_too_small, non_finite (that sum may be too large for
-/// the precision), cancelled, isa_unavailable, those of functions. Only cancelled leaves anything written. Memory
-/// beyond the output: O(Nu + Nv).
+/// Errors: invalid_argument and buffer_too_small (as above), non_finite (that sum may be too large for the precision),
+/// cancelled, isa_unavailable, those of functions. Only cancelled leaves anything written. Memory beyond the output:
+/// O(Nu + Nv).
 Status evaluate(const CoonsPatch& patch, std::span<const double> u, std::span<const double> v, const View3<double>& out,
                 const Execution& execution = {});
-/// Writes positions in float, like the overload above.
+/// Writes positions in float.
 Status evaluate(const CoonsPatch& patch, std::span<const double> u, std::span<const double> v, const View3<float>& out,
                 const Execution& execution = {});
-/// Writes the positions of a ruled surface, like those of a Coons patch.
+/// Writes positions of a ruled surface.
 Status evaluate(const RuledSurface& surface, std::span<const double> u, std::span<const double> v,
                 const View3<double>& out, const Execution& execution = {});
-/// Writes positions in float, like the overload above.
+/// Writes positions in float.
 Status evaluate(const RuledSurface& surface, std::span<const double> u, std::span<const double> v,
                 const View3<float>& out, const Execution& execution = {});
 

@@ -1,6 +1,6 @@
 #pragma once
 // Tensor-product patches over polynomial bases, chosen per direction: Bezier, power, Hermite, uniform B-spline,
-// Catmull-Rom, or the user's matrix. Also graphs z = sum a_ij x^i y^j over a rectangle.
+// Catmull-Rom, or the user's matrix. Graphs z = sum a_ij x^i y^j over a rectangle.
 
 #include <memory>
 #include <span>

@@ -9,9 +9,9 @@
 #pragma GCC visibility push(default)
 namespace tessera::inline abi_0_1 {
 
-/// A handle on memory that is freed with its last handle. Unlike std::shared_ptr, many handles can be made or released
-/// by one change of the count: one surface has tens of thousands of pieces, and one atomic operation for each would
-/// cost as much as computing them. Threads: as for std::shared_ptr.
+/// A handle on memory that is freed with its last handle. Unlike std::shared_ptr, one change of the count makes or
+/// releases many handles: a surface has tens of thousands of pieces, and an atomic operation for each would cost as
+/// much as computing them. Threads: as for std::shared_ptr.
 class SharedMemory {
  public:
   /// An empty handle.

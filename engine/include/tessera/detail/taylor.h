@@ -271,7 +271,7 @@ class Taylor {
     }
     return f;
   }
-  /// The coefficients of the solution of t' = 1 + sign t^2: tan, or tanh with sign -1.
+  /// Coefficients of the solution of t' = 1 + sign t^2: tan, or tanh with sign -1.
   static Coefficients tangent(const Scalar& value, double sign) {
     Coefficients f{value};
     for (int k = 0; k < Order; ++k) {
