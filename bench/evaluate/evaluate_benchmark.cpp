@@ -113,8 +113,8 @@ class Outputs {
   std::array<AlignedVector<T>, value_quantities> values_;
   AlignedVector<NormalKind> normal_kinds_;
   AlignedVector<CurvatureKind> curvature_kinds_;
-  GridBlocks<T> blocks_;
-  GridViews<T> views_;
+  QuantityBlocks<T> blocks_;
+  QuantityViews<T> views_;
 };
 
 /// What an output must be, and how far off it may be where it is well conditioned: far looser than the tests and far tighter than a

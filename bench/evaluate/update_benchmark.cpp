@@ -65,7 +65,7 @@ class Outputs {
     views_.position = View3<float>::interleaved(first_, c.normals ? 6 : 3);
     if (c.normals) views_.normal = View3<float>::interleaved(first_, 6, 3);
   }
-  GridBlocks<float> in_blocks() { return {.position = first_, .normal = second_}; }
+  QuantityBlocks<float> in_blocks() { return {.position = first_, .normal = second_}; }
   Status evaluate(const PatchSet& set, const GridPlan& plan) {
     return blocks_ ? tessera::evaluate(set, plan, in_blocks()) : tessera::evaluate(set, plan, views_);
   }
@@ -79,7 +79,7 @@ class Outputs {
  private:
   bool blocks_;
   AlignedVector<float> first_, second_;
-  GridViews<float> views_;
+  QuantityViews<float> views_;
 };
 
 /// Outputs of a set made anew of the same patches.

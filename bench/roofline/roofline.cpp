@@ -67,7 +67,7 @@ class Outputs {
     make_room(wanted.gaussian, vectors / 3, blocks.gaussian);
     make_room(wanted.mean, vectors / 3, blocks.mean);
   }
-  GridBlocks<float> blocks;
+  QuantityBlocks<float> blocks;
 
  private:
   std::vector<AlignedVector<float>> memory_;

@@ -23,7 +23,7 @@ struct Errors {
 template <class T>
 Errors errors_of(const PatchSet& set, const Samples<T>& samples, Isa isa) {
   AllBuffers<T> memory = all_outputs(set, samples, {.isa = isa});
-  const GridViews<T> out = memory.views();
+  const QuantityViews<T> out = memory.views();
   const double epsilon = sizeof(T) == 4 ? float_unit : double_unit;
   const Vec3 origin = sizeof(T) == 4 ? set.origin() : Vec3{};
   Errors errors;

@@ -43,7 +43,7 @@ struct GridBuffers {
 
   explicit GridBuffers(const GridPlan& plan, T fill = T(-7))
       : position(3 * plan.capacity(), fill), du(position), dv(position), normal(position) {}
-  GridViews<T> views() {
+  QuantityViews<T> views() {
     return {View3<T>::interleaved(position), View3<T>::interleaved(du), View3<T>::interleaved(dv),
             View3<T>::interleaved(normal)};
   }
@@ -63,8 +63,8 @@ struct AllBuffers {
     for_each_value_quantity(
         [&](const auto& output) { values.emplace_back(static_cast<std::size_t>(output.width) * records, fill); });
   }
-  GridViews<T> views() {
-    GridViews<T> out;
+  QuantityViews<T> views() {
+    QuantityViews<T> out;
     std::size_t k = 0;
     for_each_value_quantity([&](const auto& output) {
       auto& view = output.of(out);

@@ -85,7 +85,7 @@ class GridPlan {
 /// tangents are parallel within rounding errors or within GridPlanOptions::geometry, or a figure is out of range (a
 /// form beyond the numbers, a curvature beyond 2^60 in float, 2^500 in double).
 template <class T>
-using GridViews = Quantities<View3<T>, View1<T>, View1<NormalKind>, View1<CurvatureKind>>;
+using QuantityViews = Quantities<View3<T>, View1<T>, View1<NormalKind>, View1<CurvatureKind>>;
 
 /// Evaluates all patches. Outputs may share memory by interleaving but must not overlap otherwise. Views that fill one
 /// record together, packed views, and structures of arrays are written by whole vectors, streaming as Execution::stores
@@ -115,16 +115,18 @@ using GridViews = Quantities<View3<T>, View1<T>, View1<NormalKind>, View1<Curvat
 /// In the power representation the bounds of positions and first derivatives are (1 + 2u)^m (1 + 2v)^n ratio times as
 /// large, m and n the degrees: random bicubic patches lose 34 units, degrees 5 and 7 lose 1,200 and 140,000.
 template <class T>
-Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<T>& out, const Execution& execution = {});
+Status evaluate(const PatchSet& set, const GridPlan& plan, const QuantityViews<T>& out,
+                const Execution& execution = {});
 
 /// Block-interleaved outputs, `[block][iu][iv][component][lane]`, scalars and kinds `[block][iu][iv][lane]`: the
 /// kernels' own order, and the fastest. A patch's place is PatchSet::slot(); unused lanes of a last block repeat a
-/// patch. The members mean what those of GridViews mean. Empty spans are not computed. Memory must be aligned to 64
+/// patch. The members mean what those of QuantityViews mean. Empty spans are not computed. Memory must be aligned to 64
 /// bytes and apart from each other (invalid_argument otherwise). Grids of each patch's own are stored plainly.
 template <class T>
-using GridBlocks = Quantities<std::span<T>, std::span<T>, std::span<NormalKind>, std::span<CurvatureKind>>;
+using QuantityBlocks = Quantities<std::span<T>, std::span<T>, std::span<NormalKind>, std::span<CurvatureKind>>;
 template <class T>
-Status evaluate(const PatchSet& set, const GridPlan& plan, const GridBlocks<T>& out, const Execution& execution = {});
+Status evaluate(const PatchSet& set, const GridPlan& plan, const QuantityBlocks<T>& out,
+                const Execution& execution = {});
 
 /// What becomes of parameters outside of a patch's [0,1]^2, or of a surface's domain.
 enum class OutsideDomain : std::uint8_t {
@@ -153,7 +155,7 @@ struct PatchSamples {
 /// a row, run up to twice as fast as others. Arrays (views of stride 1) are read where they lie, others copied first.
 /// The set must hold BlockKinds::float_points (double_points). Allocates nothing.
 /// Positions in float are relative to the set's origin, in double absolute; derivatives are by the patch's parameters.
-/// Degenerate points as in GridViews, by unit_normal().
+/// Degenerate points as in QuantityViews, by unit_normal().
 /// Errors, with nothing written: unsupported (the set lacks the coefficients), buffer_too_small, count_mismatch (fewer
 /// u or v than patches), invalid_argument (no output; views that lack a component, that are misaligned, whose stride is
 /// below 1, that share memory with another view; index = the sample: no such patch, parameter outside [0,1]), non_finite
@@ -162,7 +164,7 @@ struct PatchSamples {
 /// AVX-512. Bounds as for grids (evaluate.h), the parameters taken as exact; on SSE2 positions 2 + d / 2, rational ones
 /// 4 + d, for weights are made without fused multiply-adds there.
 template <class T>
-Status evaluate(const PatchSet& set, const PatchSamples<T>& samples, const GridViews<T>& out,
+Status evaluate(const PatchSet& set, const PatchSamples<T>& samples, const QuantityViews<T>& out,
                 const PointOptions& options = {}, const Execution& execution = {});
 
 /// From the parameters of a set's surfaces to its patches: the breakpoints of each surface, from PatchSet::source().
@@ -202,7 +204,7 @@ struct SurfaceSamples {
 /// each, results in float are further off, in the units and terms of evaluate.h: positions by d / 2 size ratio, first
 /// derivatives by d^2 size, rational ones 2 d^2 size ratio^2.
 template <class T>
-Status evaluate(const PatchSet& set, const SurfaceMap& map, const SurfaceSamples& samples, const GridViews<T>& out,
+Status evaluate(const PatchSet& set, const SurfaceMap& map, const SurfaceSamples& samples, const QuantityViews<T>& out,
                 const PointOptions& options = {}, const Execution& execution = {});
 
 /// New control points for some patches. Those of patch[k] follow those of patch[k - 1]: (degree_u + 1) * (degree_v + 1)
@@ -234,12 +236,12 @@ class GridUpdate {
   /// point is not finite, or does not fit the set's numbers relative to its origin); out_of_memory. cancelled: each patch
   /// then has its new control points and its new grid, or neither.
   template <class T>
-  Status run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridViews<T>& out,
+  Status run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const QuantityViews<T>& out,
              const Execution& execution = {});
   /// The same into block-interleaved memory of all patches. A block with an edited patch is evaluated whole: its other
   /// lanes are written, with the bytes that evaluate() gives them.
   template <class T>
-  Status run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridBlocks<T>& out,
+  Status run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const QuantityBlocks<T>& out,
              const Execution& execution = {});
 
  private:

@@ -49,17 +49,12 @@ Status evaluate(const ParametricSurface& surface, std::span<const double> u, std
 /// Errors: invalid_argument and buffer_too_small (as above), non_finite (that sum may be too large for the precision),
 /// cancelled, isa_unavailable, those of functions. Only cancelled leaves anything written. Memory beyond the output:
 /// O(Nu + Nv).
-Status evaluate(const CoonsPatch& patch, std::span<const double> u, std::span<const double> v, const View3<double>& out,
+template <class T>
+Status evaluate(const CoonsPatch& patch, std::span<const double> u, std::span<const double> v, const View3<T>& out,
                 const Execution& execution = {});
-/// Writes positions in float.
-Status evaluate(const CoonsPatch& patch, std::span<const double> u, std::span<const double> v, const View3<float>& out,
+template <class T>
+Status evaluate(const RuledSurface& surface, std::span<const double> u, std::span<const double> v, const View3<T>& out,
                 const Execution& execution = {});
-/// Writes positions of a ruled surface.
-Status evaluate(const RuledSurface& surface, std::span<const double> u, std::span<const double> v,
-                const View3<double>& out, const Execution& execution = {});
-/// Writes positions in float.
-Status evaluate(const RuledSurface& surface, std::span<const double> u, std::span<const double> v,
-                const View3<float>& out, const Execution& execution = {});
 
 }  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

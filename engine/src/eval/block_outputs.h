@@ -38,7 +38,7 @@ class BlockMemory {
 
 /// Errors: those of evaluate().
 template <class T>
-Status check_blocks(const GridPlan& plan, const GridBlocks<T>& out) {
+Status check_blocks(const GridPlan& plan, const QuantityBlocks<T>& out) {
   Status status;
   BlockMemory all;
   for_each_quantity([&](const auto& quantity) {
@@ -62,7 +62,7 @@ class BlockOutputs {
   using Outputs = kernel::GridJobOutputs<T>;
 
  public:
-  explicit BlockOutputs(const GridBlocks<T>& out) {
+  explicit BlockOutputs(const QuantityBlocks<T>& out) {
     for_each_value_quantity([&](const auto& quantity) {
       const auto memory = quantity.of(out);
       if (!memory.empty())

@@ -103,7 +103,7 @@ bool stores_stream(std::size_t bytes, Stores stores) {
 }
 
 template <class T>
-Status evaluate_blocks(const PatchSet& set, const GridPlan& plan, const GridBlocks<T>& out,
+Status evaluate_blocks(const PatchSet& set, const GridPlan& plan, const QuantityBlocks<T>& out,
                        const Execution& execution) {
   const Result<int> order = check_grids(impl_of(set), plan, out);
   if (!order) return order.status();
@@ -138,7 +138,7 @@ Status evaluate_blocks(const PatchSet& set, const GridPlan& plan, const GridBloc
 // ---- patch-contiguous outputs
 
 template <class T>
-Status check_views(const GridPlan& plan, const GridViews<T>& out) {
+Status check_views(const GridPlan& plan, const QuantityViews<T>& out) {
   ViewChecks checks(plan.capacity());
   for_each_quantity([&](const auto& quantity) {
     if (!quantity.of(out).empty()) checks.add(quantity.name, quantity.of(out));
@@ -147,7 +147,7 @@ Status check_views(const GridPlan& plan, const GridViews<T>& out) {
 }
 
 template <class T>
-Status evaluate_views(const PatchSet::Impl& patches, const GridPlan& plan, const GridViews<T>& out,
+Status evaluate_views(const PatchSet::Impl& patches, const GridPlan& plan, const QuantityViews<T>& out,
                       const Execution& execution) {
   const Result<int> order = check_grids(patches, plan, out);
   if (!order) return order.status();
@@ -183,20 +183,20 @@ Status evaluate_views(const PatchSet::Impl& patches, const GridPlan& plan, const
 }  // namespace
 
 template <class T>
-Status evaluate(const PatchSet& set, const GridPlan& plan, const GridBlocks<T>& out, const Execution& execution) {
+Status evaluate(const PatchSet& set, const GridPlan& plan, const QuantityBlocks<T>& out, const Execution& execution) {
   return guarded([&] { return evaluate_blocks(set, plan, out, execution); });
 }
-template Status evaluate(const PatchSet&, const GridPlan&, const GridBlocks<float>&, const Execution&);
-template Status evaluate(const PatchSet&, const GridPlan&, const GridBlocks<double>&, const Execution&);
+template Status evaluate(const PatchSet&, const GridPlan&, const QuantityBlocks<float>&, const Execution&);
+template Status evaluate(const PatchSet&, const GridPlan&, const QuantityBlocks<double>&, const Execution&);
 
 template <class T>
-Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<T>& out, const Execution& execution) {
+Status evaluate(const PatchSet& set, const GridPlan& plan, const QuantityViews<T>& out, const Execution& execution) {
   return guarded([&] { return evaluate_views(impl_of(set), plan, out, execution); });
 }
-template Status evaluate(const PatchSet&, const GridPlan&, const GridViews<float>&, const Execution&);
-template Status evaluate(const PatchSet&, const GridPlan&, const GridViews<double>&, const Execution&);
+template Status evaluate(const PatchSet&, const GridPlan&, const QuantityViews<float>&, const Execution&);
+template Status evaluate(const PatchSet&, const GridPlan&, const QuantityViews<double>&, const Execution&);
 
-Status evaluate(const PatchSet::Impl& set, const GridPlan& plan, const GridViews<float>& out,
+Status evaluate(const PatchSet::Impl& set, const GridPlan& plan, const QuantityViews<float>& out,
                 const Execution& execution) {
   return guarded([&] { return evaluate_views(set, plan, out, execution); });
 }
@@ -204,22 +204,22 @@ Status evaluate(const PatchSet::Impl& set, const GridPlan& plan, const GridViews
 // ---- what other calls share
 
 template <class T>
-Result<int> check_grids(const PatchSet::Impl& set, const GridPlan& plan, const GridViews<T>& out) {
+Result<int> check_grids(const PatchSet::Impl& set, const GridPlan& plan, const QuantityViews<T>& out) {
   if (Status status = check_plan<T>(set, plan); !status.ok()) return status;
   if (Status status = check_views(plan, out); !status.ok()) return status;
   return order_of_outputs(out);
 }
-template Result<int> check_grids(const PatchSet::Impl&, const GridPlan&, const GridViews<float>&);
-template Result<int> check_grids(const PatchSet::Impl&, const GridPlan&, const GridViews<double>&);
+template Result<int> check_grids(const PatchSet::Impl&, const GridPlan&, const QuantityViews<float>&);
+template Result<int> check_grids(const PatchSet::Impl&, const GridPlan&, const QuantityViews<double>&);
 
 template <class T>
-Result<int> check_grids(const PatchSet::Impl& set, const GridPlan& plan, const GridBlocks<T>& out) {
+Result<int> check_grids(const PatchSet::Impl& set, const GridPlan& plan, const QuantityBlocks<T>& out) {
   if (Status status = check_plan<T>(set, plan); !status.ok()) return status;
   if (Status status = check_blocks(plan, out); !status.ok()) return status;
   return order_of_outputs(out);
 }
-template Result<int> check_grids(const PatchSet::Impl&, const GridPlan&, const GridBlocks<float>&);
-template Result<int> check_grids(const PatchSet::Impl&, const GridPlan&, const GridBlocks<double>&);
+template Result<int> check_grids(const PatchSet::Impl&, const GridPlan&, const QuantityBlocks<float>&);
+template Result<int> check_grids(const PatchSet::Impl&, const GridPlan&, const QuantityBlocks<double>&);
 
 template <class T>
 bool views_stream(const StageLayout<T>& layout, std::size_t records, Stores stores) {
@@ -230,15 +230,15 @@ template bool views_stream(const StageLayout<float>&, std::size_t, Stores);
 template bool views_stream(const StageLayout<double>&, std::size_t, Stores);
 
 template <class T>
-bool blocks_stream(const GridBlocks<T>& out, std::size_t records, Stores stores) {
+bool blocks_stream(const QuantityBlocks<T>& out, std::size_t records, Stores stores) {
   std::size_t bytes = 0;
   for_each_value_quantity([&](const auto& quantity) {
     if (!quantity.of(out).empty()) bytes += static_cast<std::size_t>(quantity.width) * sizeof(T);
   });
   return stores_stream(records * bytes, stores);
 }
-template bool blocks_stream(const GridBlocks<float>&, std::size_t, Stores);
-template bool blocks_stream(const GridBlocks<double>&, std::size_t, Stores);
+template bool blocks_stream(const QuantityBlocks<float>&, std::size_t, Stores);
+template bool blocks_stream(const QuantityBlocks<double>&, std::size_t, Stores);
 
 std::size_t blocks_per_task(const GridPlan::Impl& plan, std::size_t blocks, bool derivatives) {
   const std::size_t points = plan.samples() * PatchSet::lanes;

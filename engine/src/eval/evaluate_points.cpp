@@ -21,8 +21,8 @@ constexpr std::size_t serial_positions = 4096, serial_normals = 2048;
 
 /// Of the options and the views; `order`: of the derivatives that are needed.
 template <class T, class Source>
-Status check_call(const PatchSet::Impl& set, const Source& source, const GridViews<T>& out, const PointOptions& options,
-                  int& order) {
+Status check_call(const PatchSet::Impl& set, const Source& source, const QuantityViews<T>& out,
+                  const PointOptions& options, int& order) {
   const bool twice = sizeof(T) == 8;
   if (!set.has_points(twice ? Precision::double_precision : Precision::single_precision))
     return Status(StatusCode::unsupported,
@@ -68,7 +68,7 @@ Status check_samples(const Source& source, const kernel::KernelTable& kernels, s
 }
 
 template <class T, class Source>
-Status run(const PatchSet::Impl& set, const Source& source, const GridViews<T>& out, const PointOptions& options,
+Status run(const PatchSet::Impl& set, const Source& source, const QuantityViews<T>& out, const PointOptions& options,
            const Execution& execution) {
   int order = 0;
   if (Status status = check_call(set, source, out, options, order); !status.ok()) return status;
@@ -102,19 +102,19 @@ Status run(const PatchSet::Impl& set, const Source& source, const GridViews<T>& 
 }  // namespace
 
 template <class T>
-Status evaluate(const PatchSet& set, const PatchSamples<T>& samples, const GridViews<T>& out,
+Status evaluate(const PatchSet& set, const PatchSamples<T>& samples, const QuantityViews<T>& out,
                 const PointOptions& options, const Execution& execution) {
   return guarded([&] {
     return run(impl_of(set), SamplesByPatch<T>(impl_of(set), samples, options.outside), out, options, execution);
   });
 }
-template Status evaluate(const PatchSet&, const PatchSamples<float>&, const GridViews<float>&, const PointOptions&,
+template Status evaluate(const PatchSet&, const PatchSamples<float>&, const QuantityViews<float>&, const PointOptions&,
                          const Execution&);
-template Status evaluate(const PatchSet&, const PatchSamples<double>&, const GridViews<double>&, const PointOptions&,
-                         const Execution&);
+template Status evaluate(const PatchSet&, const PatchSamples<double>&, const QuantityViews<double>&,
+                         const PointOptions&, const Execution&);
 
 template <class T>
-Status evaluate(const PatchSet& set, const SurfaceMap& map, const SurfaceSamples& samples, const GridViews<T>& out,
+Status evaluate(const PatchSet& set, const SurfaceMap& map, const SurfaceSamples& samples, const QuantityViews<T>& out,
                 const PointOptions& options, const Execution& execution) {
   return guarded([&]() -> Status {
     if (impl_of(map).patch_count != set.patch_count() || map.surface_count() != set.surface_count())
@@ -122,9 +122,9 @@ Status evaluate(const PatchSet& set, const SurfaceMap& map, const SurfaceSamples
     return run(impl_of(set), SamplesBySurface<T>(impl_of(map), samples, options.outside), out, options, execution);
   });
 }
-template Status evaluate(const PatchSet&, const SurfaceMap&, const SurfaceSamples&, const GridViews<float>&,
+template Status evaluate(const PatchSet&, const SurfaceMap&, const SurfaceSamples&, const QuantityViews<float>&,
                          const PointOptions&, const Execution&);
-template Status evaluate(const PatchSet&, const SurfaceMap&, const SurfaceSamples&, const GridViews<double>&,
+template Status evaluate(const PatchSet&, const SurfaceMap&, const SurfaceSamples&, const QuantityViews<double>&,
                          const PointOptions&, const Execution&);
 
 }  // namespace tessera::inline abi_0_1

@@ -17,7 +17,7 @@ class GridUpdate::Impl {
   explicit Impl(const PatchSet::Impl& set) : touched_(set), patch_count_(set.patches.size()) {}
 
   template <class T>
-  Status run(PatchSet::Impl& set, const GridPlan& plan, const PatchEdits& edits, const GridViews<T>& out,
+  Status run(PatchSet::Impl& set, const GridPlan& plan, const PatchEdits& edits, const QuantityViews<T>& out,
              const Execution& execution) {
     const Result<int> order = start(set, plan, edits, out, execution);
     if (!order) return order.status();
@@ -27,7 +27,7 @@ class GridUpdate::Impl {
                       [&](const UpdateCall& call) { return EditedGrids<T>(call, layout, out); });
   }
   template <class T>
-  Status run(PatchSet::Impl& set, const GridPlan& plan, const PatchEdits& edits, const GridBlocks<T>& out,
+  Status run(PatchSet::Impl& set, const GridPlan& plan, const PatchEdits& edits, const QuantityBlocks<T>& out,
              const Execution& execution) {
     const Result<int> order = start(set, plan, edits, out, execution);
     if (!order) return order.status();
@@ -86,23 +86,23 @@ GridUpdate& GridUpdate::operator=(GridUpdate&&) noexcept = default;
 GridUpdate::~GridUpdate() = default;
 
 template <class T>
-Status GridUpdate::run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridViews<T>& out,
+Status GridUpdate::run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const QuantityViews<T>& out,
                        const Execution& execution) {
   return guarded([&] { return impl_->run(impl_of(set), plan, edits, out, execution); });
 }
-template Status GridUpdate::run(PatchSet&, const GridPlan&, const PatchEdits&, const GridViews<float>&,
+template Status GridUpdate::run(PatchSet&, const GridPlan&, const PatchEdits&, const QuantityViews<float>&,
                                 const Execution&);
-template Status GridUpdate::run(PatchSet&, const GridPlan&, const PatchEdits&, const GridViews<double>&,
+template Status GridUpdate::run(PatchSet&, const GridPlan&, const PatchEdits&, const QuantityViews<double>&,
                                 const Execution&);
 
 template <class T>
-Status GridUpdate::run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridBlocks<T>& out,
+Status GridUpdate::run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const QuantityBlocks<T>& out,
                        const Execution& execution) {
   return guarded([&] { return impl_->run(impl_of(set), plan, edits, out, execution); });
 }
-template Status GridUpdate::run(PatchSet&, const GridPlan&, const PatchEdits&, const GridBlocks<float>&,
+template Status GridUpdate::run(PatchSet&, const GridPlan&, const PatchEdits&, const QuantityBlocks<float>&,
                                 const Execution&);
-template Status GridUpdate::run(PatchSet&, const GridPlan&, const PatchEdits&, const GridBlocks<double>&,
+template Status GridUpdate::run(PatchSet&, const GridPlan&, const PatchEdits&, const QuantityBlocks<double>&,
                                 const Execution&);
 
 }  // namespace tessera::inline abi_0_1

@@ -20,7 +20,7 @@ template <class T>
 struct PointCall {
   const PatchSet::Impl& set;
   const kernel::KernelTable& kernels;
-  const GridViews<T>& out;
+  const QuantityViews<T>& out;
   LocalGeometryOptions geometry;
 };
 

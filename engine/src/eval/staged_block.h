@@ -74,7 +74,7 @@ class StageLayout {
     std::ptrdiff_t width = 1, stride = 1, first = 0, step = 1;
   };
 
-  explicit StageLayout(const GridViews<T>& out) {
+  explicit StageLayout(const QuantityViews<T>& out) {
     for_each_value_quantity([&](const auto& quantity) {
       const auto& view = quantity.of(out);
       if (view.empty()) return;
@@ -155,7 +155,8 @@ class StageLayout {
 template <class T>
 class StagedBlock {
  public:
-  StagedBlock(const kernel::KernelTable& kernels, const StageLayout<T>& layout, const GridViews<T>& out, bool streaming)
+  StagedBlock(const kernel::KernelTable& kernels, const StageLayout<T>& layout, const QuantityViews<T>& out,
+              bool streaming)
       : kernels_(kernels), lines_{kernels}, layout_(layout), out_(out), streaming_(streaming) {}
   StagedBlock(const StagedBlock&) = delete;
   StagedBlock& operator=(const StagedBlock&) = delete;
@@ -291,7 +292,7 @@ class StagedBlock {
   const kernel::KernelTable& kernels_;
   LineKernels<T> lines_;
   const Layout& layout_;
-  const GridViews<T>& out_;
+  const QuantityViews<T>& out_;
   bool streaming_;
   alignas(cache_line) std::array<T, Layout::max_rows * lanes> stage_;
   std::array<kernel::LineState<T>, Layout::max_arrays> states_;

@@ -82,7 +82,7 @@ class TessellationPlan::Impl {
 
  private:
   Status write_vertices(const PatchSet& set, const MeshViews& out, const Execution& execution) const {
-    GridViews<float> grid;
+    QuantityViews<float> grid;
     grid.position = out.position;
     grid.normal = out.normal;
     return grid_.run(set, grid, execution);
