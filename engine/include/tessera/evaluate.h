@@ -86,8 +86,8 @@ class GridPlan {
 /// - Positions in float are relative to the set's origin, in double absolute.
 /// - Normals are unit vectors. At a degenerate point they are the limit that unit_normal() defines, or zero if there is
 ///   none.
-/// - Forms, curvatures and directions are those of local_geometry.h. They are zero, never NaN, where they are undefined:
-///   the normal is not regular, the tangents are parallel within rounding errors or within LocalGeometryOptions, or a
+/// - Forms, curvatures and directions are those of local_geometry.h. They are zero, never NaN, where undefined: the
+///   normal is not regular, the tangents are parallel within rounding errors or within LocalGeometryOptions, or a
 ///   number is out of range (a form beyond T, a curvature beyond 2^60 in float or 2^500 in double).
 template <class T>
 using QuantityViews = Quantities<View3<T>, View1<T>, View1<NormalKind>, View1<CurvatureKind>>;
@@ -128,8 +128,8 @@ using QuantityBlocks = Quantities<std::span<T>, std::span<T>, std::span<NormalKi
 /// - Gaussian curvature: |k1| + |k2| times the bound of curvatures, and the square of that bound
 /// - principal directions: 2 / (k1 - k2) times the bound of curvatures, and the bound of normals
 ///
-/// The ratio enters by the quotient rule, r_u = (A_u - w_u r) / w: errors of w_u grow with the largest weight, those of
-/// r with the size, and both are divided by the weight at the point. Bounds over h hold to first order, where the errors
+/// The ratio enters by the quotient rule, r_u = (A_u - w_u r) / w: errors of w_u grow with the largest weight, errors
+/// of r with the size, and both are divided by the weight at the point. Bounds over h hold to first order, where the errors
 /// of the tangents are small against h. Positions in double, which are absolute, round once more, to 2^-53 of their own
 /// size. In the power representation the bounds of positions and first derivatives are (1 + 2u)^m (1 + 2v)^n ratio
 /// times as large, m and n the degrees: random bicubic patches lose 34 units, degrees 5 and 7 lose 1,200 and 140,000.
@@ -174,8 +174,8 @@ struct PatchSamples {
 /// u or v than patches), invalid_argument (no output; a view that lacks a component, is misaligned, has a stride below
 /// 1, or overlaps another; index = the sample: no such patch, a parameter outside [0,1]), non_finite (index = the
 /// sample), isa_unavailable. cancelled leaves outputs partly written.
-/// Memory: allocates nothing. Threads: the same bytes for any number of threads, any order of the samples and any choice
-/// of outputs, and on AVX2 and AVX-512.
+/// Memory: allocates nothing. Threads: the same bytes for any number of threads, any order of the samples, any choice of
+/// outputs, and on AVX2 and AVX-512.
 ///
 /// Error bounds: as for grids, with exact parameters. On SSE2, where weights are made without fused multiply-adds:
 /// positions 2 + d / 2, rational ones 4 + d.
@@ -215,11 +215,11 @@ struct SurfaceSamples {
   View1<const double> u = {}, v = {};       ///< in the surface's domain
 };
 
-/// Evaluates all samples. Finds each sample's patch, on a breakpoint the one with the larger parameters. Derivatives and
+/// Evaluates all samples. Finds each sample's patch, on a breakpoint the one with larger parameters. Derivatives and
 /// the two forms are by the surface's parameters.
 ///
-/// Errors: as for samples on patches, and invalid_argument (a map of another set; index = the sample: no such surface, a
-/// parameter outside of its domain).
+/// Errors: as for samples on patches, and invalid_argument (a map of another set; index = the sample: no such surface,
+/// a parameter outside of its domain).
 ///
 /// Error bounds: parameters within the patch are found in double and rounded to T. Results in float are further off, in
 /// the units and terms of grids: positions by d / 2 size ratio, first derivatives by d^2 size, rational ones by 2 d^2
