@@ -129,8 +129,8 @@ using QuantityBlocks = Quantities<std::span<T>, std::span<T>, std::span<NormalKi
 /// - principal directions: 2 / (k1 - k2) times the bound of curvatures, and the bound of normals
 ///
 /// The ratio enters by the quotient rule, r_u = (A_u - w_u r) / w: errors of w_u grow with the largest weight, errors
-/// of r with the size, and both are divided by the weight at the point. Bounds over h hold to first order, where the errors
-/// of the tangents are small against h. Positions in double, which are absolute, round once more, to 2^-53 of their own
+/// of r with the size, and both are divided by the weight at the point. Bounds over h hold to first order, where the
+/// errors of the tangents are small against h. Positions in double, which are absolute, round once more, to 2^-53 of their own
 /// size. In the power representation the bounds of positions and first derivatives are (1 + 2u)^m (1 + 2v)^n ratio
 /// times as large, m and n the degrees: random bicubic patches lose 34 units, degrees 5 and 7 lose 1,200 and 140,000.
 template <class T>
@@ -174,8 +174,8 @@ struct PatchSamples {
 /// u or v than patches), invalid_argument (no output; a view that lacks a component, is misaligned, has a stride below
 /// 1, or overlaps another; index = the sample: no such patch, a parameter outside [0,1]), non_finite (index = the
 /// sample), isa_unavailable. cancelled leaves outputs partly written.
-/// Memory: allocates nothing. Threads: the same bytes for any number of threads, any order of the samples, any choice of
-/// outputs, and on AVX2 and AVX-512.
+/// Memory: allocates nothing. Threads: the same bytes for any number of threads, any order of the samples, any choice
+/// of outputs, and on AVX2 and AVX-512.
 ///
 /// Error bounds: as for grids, with exact parameters. On SSE2, where weights are made without fused multiply-adds:
 /// positions 2 + d / 2, rational ones 4 + d.
