@@ -10,6 +10,7 @@
 #include <string>
 
 #include "render/hit_image.h"
+#include "tessera/guard.h"
 #include "tessera/output_file.h"
 #include "tessera/status.h"
 

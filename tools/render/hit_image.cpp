@@ -5,6 +5,7 @@
 
 #include "render/camera.h"
 #include "render/tile.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::render {

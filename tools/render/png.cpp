@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "render/render.h"
+#include "tessera/guard.h"
 #include "tessera/output_file.h"
 #include "tessera/status.h"
 

@@ -3,8 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <exception>
-#include <new>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -80,33 +78,6 @@ class [[nodiscard]] Result {
   std::optional<T> value_;
   Status status_;
 };
-
-/// The Status of the exception that is being handled: out_of_memory, or internal with its message.
-[[gnu::cold]] inline Status status_of_exception() noexcept {
-  try {
-    try {
-      throw;
-    } catch (const std::bad_alloc&) {
-      return Status(StatusCode::out_of_memory, "out of memory");
-    } catch (const std::exception& error) {
-      return Status(StatusCode::internal, error.what());
-    } catch (...) {
-      return Status(StatusCode::internal, "unknown exception");
-    }
-  } catch (...) {  // not even the message could be stored
-    return Status(StatusCode::out_of_memory, {});
-  }
-}
-
-/// Calls body() and returns its result, a Status or a Result; an exception becomes a Status.
-template <class Body>
-auto guarded(Body&& body) noexcept -> decltype(body()) {
-  try {
-    return std::forward<Body>(body)();
-  } catch (...) {
-    return status_of_exception();
-  }
-}
 
 }  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "block/patch_set_impl.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

@@ -13,6 +13,7 @@
 #include "kernel/isa/kernel_table.h"
 #include "parallel/parallel_for.h"
 #include "surface/patch_pieces.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

@@ -17,6 +17,7 @@
 #include "surface/patch_pieces.h"
 #include "surface/spline_lines.h"
 #include "tessera/convert.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

@@ -2,6 +2,7 @@
 #include <string>
 
 #include "convert/bezier_net.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

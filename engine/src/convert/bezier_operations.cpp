@@ -5,6 +5,7 @@
 
 #include "base/text.h"
 #include "convert/bezier_net.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

@@ -7,6 +7,7 @@
 #include "convert/surface_net.h"
 #include "surface/border_curve.h"
 #include "tessera/coons_patch.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

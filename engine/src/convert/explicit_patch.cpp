@@ -3,6 +3,7 @@
 
 #include "convert/polar_forms.h"
 #include "tessera/convert.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 #include "tessera/tensor_patch.h"
 

@@ -13,6 +13,7 @@
 #include "convert/tensor_refinement.h"
 #include "surface/patch_pieces.h"
 #include "tessera/convert.h"
+#include "tessera/guard.h"
 #include "tessera/parametric_surface.h"
 #include "tessera/status.h"
 

@@ -1,4 +1,5 @@
 #include "tessera/convert.h"
+#include "tessera/guard.h"
 #include "tessera/hermite_patch.h"
 #include "tessera/status.h"
 

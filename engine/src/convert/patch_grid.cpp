@@ -4,6 +4,7 @@
 
 #include "surface/checks.h"
 #include "tessera/convert.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

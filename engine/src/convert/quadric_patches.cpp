@@ -4,6 +4,7 @@
 
 #include "surface/quadric_profile.h"
 #include "tessera/convert.h"
+#include "tessera/guard.h"
 #include "tessera/quadric.h"
 #include "tessera/status.h"
 

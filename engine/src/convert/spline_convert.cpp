@@ -8,6 +8,7 @@
 #include "convert/spline_net.h"
 #include "surface/spline_lines.h"
 #include "surface/validate.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

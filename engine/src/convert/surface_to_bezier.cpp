@@ -1,5 +1,6 @@
 #include "base/overloaded.h"
 #include "tessera/convert.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 #include "tessera/surface.h"
 

@@ -2,6 +2,7 @@
 
 #include "convert/bernstein_matrices.h"
 #include "tessera/convert.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 #include "tessera/tensor_patch.h"
 

@@ -20,6 +20,7 @@
 #include "eval/task_size.h"
 #include "eval/view_checks.h"
 #include "parallel/parallel_for.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

@@ -11,6 +11,7 @@
 #include "eval/point_chunk.h"
 #include "eval/point_sources.h"
 #include "parallel/parallel_for.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

@@ -9,6 +9,7 @@
 #include "eval/flat_grid.h"
 #include "eval/grid_plan_impl.h"
 #include "eval/quantity_table.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

@@ -9,6 +9,7 @@
 #include "eval/task_size.h"
 #include "parallel/parallel_for.h"
 #include "tessera/evaluate.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

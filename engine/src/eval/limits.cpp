@@ -5,6 +5,7 @@
 
 #include "base/aligned.h"
 #include "kernel/isa/kernel_table.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "eval/parameter_grid.h"
 #include "parallel/parallel_for.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

@@ -11,6 +11,7 @@
 #include "kernel/isa/kernel_table.h"
 #include "parallel/parallel_for.h"
 #include "surface/border_curve.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "surface/patch_pool.h"
+#include "tessera/guard.h"
 #include "tessera/io.h"
 #include "tessera/status.h"
 #include "tessera/text_cursor.h"

@@ -8,6 +8,7 @@
 #include "io/mesh_formats.h"
 #include "io/model_formats.h"
 #include "io/valid_mesh.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

@@ -10,6 +10,7 @@
 
 #include "io/make_room.h"
 #include "io/passed_over.h"
+#include "tessera/guard.h"
 #include "tessera/io.h"
 #include "tessera/status.h"
 

@@ -4,6 +4,7 @@
 
 #include "base/text.h"
 #include "io/json_kinds.h"
+#include "tessera/guard.h"
 #include "tessera/io.h"
 #include "tessera/status.h"
 

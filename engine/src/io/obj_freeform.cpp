@@ -16,6 +16,7 @@
 #include "io/obj_index.h"
 #include "io/obj_notes.h"
 #include "io/obj_trims.h"
+#include "tessera/guard.h"
 #include "tessera/io.h"
 #include "tessera/status.h"
 

@@ -15,6 +15,7 @@
 #include "io/rib_state.h"
 #include "io/rib_surfaces.h"
 #include "io/rib_trims.h"
+#include "tessera/guard.h"
 #include "tessera/io.h"
 #include "tessera/status.h"
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "io/model_formats.h"
+#include "tessera/guard.h"
 #include "tessera/io.h"
 #include "tessera/status.h"
 

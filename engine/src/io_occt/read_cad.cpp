@@ -13,6 +13,7 @@
 #include "io_occt/markless_file.h"
 #include "io_occt/model_bytes.h"
 #include "io_occt/shape_model.h"
+#include "tessera/guard.h"
 #include "tessera/io.h"
 #include "tessera/io_occt.h"
 #include "tessera/status.h"

@@ -5,6 +5,7 @@
 #include <mutex>
 
 #include "parallel/tbb_loop.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

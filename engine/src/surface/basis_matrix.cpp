@@ -5,6 +5,7 @@
 #include "basis/bernstein.h"
 #include "basis/small_matrix.h"
 #include "surface/validate.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 #include "tessera/tensor_patch.h"
 

@@ -8,6 +8,7 @@
 #include "surface/differences.h"
 #include "surface/validate.h"
 #include "tessera/coons_patch.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "surface/border_curve.h"
 #include "surface/checks.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

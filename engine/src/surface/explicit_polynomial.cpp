@@ -5,6 +5,7 @@
 #include <string>
 
 #include "basis/double_double.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

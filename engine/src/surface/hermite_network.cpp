@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "surface/hermite_nodes.h"
 #include "surface/validate.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

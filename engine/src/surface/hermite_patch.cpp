@@ -8,6 +8,7 @@
 #include "basis/hermite.h"
 #include "surface/checks.h"
 #include "surface/hermite_nodes.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

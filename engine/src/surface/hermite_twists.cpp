@@ -2,6 +2,7 @@
 #include <string>
 
 #include "surface/hermite_nodes.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

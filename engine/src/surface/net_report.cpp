@@ -3,6 +3,7 @@
 
 #include "basis/bernstein_net.h"
 #include "surface/homogeneous.h"
+#include "tessera/guard.h"
 #include "tessera/local_geometry.h"
 #include "tessera/status.h"
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/text.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

@@ -8,6 +8,7 @@
 #include "surface/callables.h"
 #include "surface/checks.h"
 #include "surface/differences.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

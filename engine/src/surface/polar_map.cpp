@@ -2,6 +2,7 @@
 #include <numbers>
 
 #include "base/text.h"
+#include "tessera/guard.h"
 #include "tessera/parametric_surface.h"
 #include "tessera/status.h"
 

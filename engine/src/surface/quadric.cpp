@@ -8,6 +8,7 @@
 
 #include "basis/symmetric_eigen.h"
 #include "surface/homogeneous.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 // Principal axes: the quadratic part by its eigenvectors, then squares completed along those whose eigenvalue is not 0

@@ -2,6 +2,7 @@
 
 #include "surface/border_curve.h"
 #include "surface/checks.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

@@ -5,6 +5,7 @@
 
 #include "basis/bernstein.h"
 #include "surface/checks.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

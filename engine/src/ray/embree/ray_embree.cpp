@@ -10,6 +10,7 @@
 #include "ray/line/ray_segment.h"
 #include "ray/scene/exact_source.h"
 #include "ray/scene/ray_scene_impl.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "ray/embree/embree_scene.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

@@ -8,6 +8,7 @@
 #include "parallel/call_progress.h"
 #include "parallel/parallel_for.h"
 #include "ray/scene/ray_scene_impl.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

@@ -7,6 +7,7 @@
 
 #include "tess/check/t_junctions.h"
 #include "tess/edges/position_bits.h"
+#include "tessera/guard.h"
 #include "tessera/mesh.h"
 #include "tessera/status.h"
 

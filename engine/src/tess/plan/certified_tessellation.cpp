@@ -16,6 +16,7 @@
 #include "tess/write/mesh_views.h"
 #include "tess/write/patch_writer.h"
 #include "tess/write/welded_vertices.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

@@ -10,6 +10,7 @@
 #include "tess/plan/present_bounds.h"
 #include "tess/write/mesh_views.h"
 #include "tess/write/vertex_pass.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

@@ -6,6 +6,7 @@
 #include "parallel/parallel_for.h"
 #include "tess/write/mesh_views.h"
 #include "tess/write/patch_triangles.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 #include "tessera/tessellation.h"
 

@@ -1,6 +1,7 @@
 #include "tessera/mesh.h"
 
 #include "tess/write/mesh_parts.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

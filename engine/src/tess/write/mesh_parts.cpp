@@ -1,6 +1,7 @@
 #include <string>
 
 #include "tess/write/mesh_parts.h"
+#include "tessera/guard.h"
 #include "tessera/model.h"
 #include "tessera/status.h"
 #include "tessera/tessellation.h"
