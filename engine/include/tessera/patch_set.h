@@ -96,7 +96,7 @@ class PatchSet {
     std::uint32_t lane = 0;   ///< below lanes
   };
   Slot slot(std::size_t index) const;  ///< index < patch_count()
-  std::size_t memory_bytes() const;    ///< of patches and blocks
+  std::size_t memory_bytes() const;    ///< those of patches and blocks
 
   /// Returns a number that grows by one with each edit. What was made from another revision is stale.
   std::uint64_t revision() const;

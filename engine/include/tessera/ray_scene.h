@@ -96,7 +96,7 @@ struct HitLists {
   std::vector<std::size_t> first;  ///< one more than there are rays
 };
 
-/// What rays meet.
+/// The geometry that rays meet.
 enum class RayMode : std::uint8_t {
   /// Facets of evaluated grids in an Embree BVH, then Newton on the surface: every hit that is not flagged lies on the
   /// surface. It shows what the tessellation shows, with true t, u, v and normals.
@@ -115,7 +115,7 @@ enum class RayMode : std::uint8_t {
 
 /// How a scene is made.
 struct RaySceneOptions {
-  RayMode mode = RayMode::exact;  ///< what rays meet
+  RayMode mode = RayMode::exact;  ///< the geometry that rays meet
   int rate = 8;                   ///< grid mode: grid segments per patch and direction, 1 to 4096
   bool refine = true;             ///< grid mode: false leaves hits on the facets (for comparison)
   std::optional<Isa> isa = {};    ///< default_isa() if empty; hits of exact mode are equal on all, up to rounding

@@ -90,7 +90,7 @@ struct View {
   bool orthographic = false;  ///< true: parallel rays; false: rays that meet in the eye
   double field_of_view = 40 * std::numbers::pi / 180;  ///< across the shorter side, radians, above 0 and below pi
   double extent = 1;               ///< orthographic: the length in the model that the shorter side shows, above 0
-  int width = 1280, height = 800;  ///< of the picture, in pixels
+  int width = 1280, height = 800;  ///< the picture's size in pixels, 1 to 1048576
   /// Perspective: points less deep than this in front of the eye are not seen. 0: a thousandth of the target's
   /// distance.
   double near_distance = 0;
@@ -110,7 +110,7 @@ struct PixelTolerance {
   View view;            ///< the camera
 };
 
-/// What a certified mesh keeps. At least one of tolerance, angle, pixels and smallest must be set.
+/// The tolerances and limits of a certified mesh. At least one of tolerance, angle, pixels and smallest must be set.
 struct CertifiedOptions {
   /// The largest distance between surfaces and mesh, in the model's lengths, above 0: every point of either lies within
   /// this distance of the other.

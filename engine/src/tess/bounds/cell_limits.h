@@ -14,7 +14,7 @@ struct CellLimits {
   double distance = 0;
   const TurningBound* turning = nullptr;
   double angle = 0;
-  const ChordBound* picture = nullptr;  ///< of the patch as a camera sees it
+  const ChordBound* picture = nullptr;  ///< the patch in a camera's picture
   double pixels = 0;
 
   bool keeps(Rates rates) const;

@@ -263,7 +263,7 @@ void ScreenSpaceBound::allow_for(const Camera& camera, double moved, double shal
 void ScreenSpaceBound::find(const Camera& camera, const PatchSet::Impl& set, std::size_t block,
                             const std::array<double, PatchSet::lanes>& moved, double pixels,
                             ScreenSpaceBound* pictures) {
-  constexpr double little = 0.1;  // of the tolerance in pixels
+  constexpr double little = 0.1;  // a share of the tolerance in pixels
   const BlockGroup& group = set.group_of_block(block);
   const std::uint32_t* const patches = set.lane_patches.data() + block * PatchSet::lanes;
   const std::size_t count = set.lane_counts[block];

@@ -45,7 +45,7 @@ class Camera {
   Camera() = default;
   Vec3 eye_, right_, up_, forward_;
   double focal_ = 1, near_ = 0;
-  double half_width_ = 1, half_height_ = 1;  ///< of the frame: tangents, or lengths
+  double half_width_ = 1, half_height_ = 1;  ///< half the frame's size: tangents, or lengths
   bool orthographic_ = false;
 };
 

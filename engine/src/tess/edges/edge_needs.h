@@ -14,8 +14,8 @@ constexpr Segments along(PatchSegments patch, Side side) { return runs_along_u(s
 /// The needs of patches with uniform segments.
 struct EdgeNeeds {
   std::uint16_t most = 1;  ///< the largest rate of the patches
-  std::uint16_t is_even =
-      0;  ///< 1: the edge's rate must be even, for a patch whose triangles must not cross the middle
+  /// 1: the edge's rate must be even, for a patch whose triangles must not cross the middle.
+  std::uint16_t is_even = 0;
 
   /// `never`: 1 for a patch none of whose triangles may cross the middle.
   void add(Segments along, std::uint16_t never) {

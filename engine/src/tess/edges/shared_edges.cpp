@@ -175,8 +175,8 @@ class EdgeFinder {
   std::span<std::uint32_t> edges_;
   BorderTable table_;
   std::array<std::size_t, 4> back_{};  ///< `[side]`: how many borders back its last edge was met; 0: none was met
-  std::array<std::array<std::uint32_t, lanes>, 4>
-      met_;  ///< `[side][lane]`: a border equal() to the block's own, or none
+  /// `[side][lane]`: a border equal() to the block's own, or none.
+  std::array<std::array<std::uint32_t, lanes>, 4> met_;
   std::size_t count_ = 0;
 };
 

@@ -71,7 +71,7 @@ SharedEdges parted_by_doubles(const PatchSet::Impl& set, const SharedEdges& edge
   const auto curve = [&](std::uint32_t border) { return SideCurve(set.patches[border / 4], all_sides[border % 4]); };
   // Borders near each other have near middles along any direction; along this one, which models hardly align with, few
   // others do.
-  constexpr Vec3 direction{0.7548776662466927, 0.5698402909980532, 0.3247179572447461};  // of length 1
+  constexpr Vec3 direction{0.7548776662466927, 0.5698402909980532, 0.3247179572447461};  // a unit vector
   struct Place {
     std::uint32_t edge, border;
     double middle, reach;

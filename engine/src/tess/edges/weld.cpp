@@ -208,7 +208,7 @@ class Welder {
   UnionFind joined_;                       ///< edges
   std::vector<std::uint32_t> heads_;       ///< `[edge]`: its leading border, the first one of a patch with an area
   std::vector<std::uint32_t> borders_of_;  ///< `[edge]`: the number of its borders of patches with an area
-  std::vector<std::uint8_t> is_pole_;      ///< by canonical edge
+  std::vector<std::uint8_t> is_pole_;      ///< `[canonical edge]`
   Weld weld_;
 };
 

@@ -77,8 +77,8 @@ class CertifiedPlan {
 
   std::vector<PatchSegments> segments_;
   std::vector<Division> divisions_;
-  std::vector<std::size_t> first_vertex_, first_triangle_,
-      first_quad_;  ///< `[patch]`, and the number of all at the end
+  /// `[patch]`, and the number of all at the end.
+  std::vector<std::size_t> first_vertex_, first_triangle_, first_quad_;
   std::vector<float> bounds_, angles_, pixels_;
   bool is_f64_ = false, has_f64_positions_ = false;
   std::vector<std::uint8_t> straddles_;  ///< `[patch]`: 1 if its bound holds wherever triangles lie; empty if for none
@@ -145,7 +145,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   /// The segments that a patch needs for itself, and the limits that they keep.
   struct Choice {
     Failure failure = Failure::none;
-    double cells = 0;  ///< of uniform segments
+    double cells = 0;  ///< the cells of uniform segments
     /// At most so many cells. This and the members below are set only if rates are limited to max_rate.
     PatchSegments segments;
     double bound = 0, angle = 0, pixels = 0;
@@ -199,7 +199,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   double fit_error_;
   std::vector<PatchShape> shapes_;
   Weld weld_;
-  double largest_rounding_ = 0;    ///< of vertices before welding
+  double largest_rounding_ = 0;    ///< that of vertices before welding
   std::vector<double> roundings_;  ///< `[patch]`: the largest error of its vertices, by rounding or by welding
   ChordBlocks chords_;
   std::vector<TurningBound> turnings_;      ///< `[patch]`, if there is an angle

@@ -126,7 +126,7 @@ std::size_t CertifiedTessellation::Impl::divided_otherwise(const Impl& other) co
 
 namespace {
 
-constexpr double max_weld = 0.05;  // of the model's size
+constexpr double max_weld = 0.05;  // a share of the model's size
 
 /// Checks the options and turns them into those of a planner. Errors: invalid_argument.
 Result<PlannerOptions> checked(const CertifiedOptions& options, const PatchSet& set) {

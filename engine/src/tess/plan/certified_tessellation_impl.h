@@ -24,7 +24,7 @@ class CertifiedTessellation::Impl {
   const VertexCopies& joins() const { return joins_; }  ///< vertices with a common normal, or stored once
   const MeshTables& tables() const { return *tables_; }
   Isa isa() const { return isa_; }
-  std::uint64_t revision() const { return revision_; }  ///< of the set, when the plan was made
+  std::uint64_t revision() const { return revision_; }  ///< the set's, when the plan was made
 
   double bound() const { return bound_; }
   double angle() const { return angle_; }

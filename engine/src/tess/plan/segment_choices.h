@@ -19,8 +19,8 @@ namespace tessera::inline abi_0_1 {
 struct ProvenSegments {
   PatchSegments segments;
   double distance = 0;
-  bool anywhere =
-      false;  ///< the distance holds wherever triangles lie; else if none crosses a middle that segments part
+  /// The distance holds wherever triangles lie; if false, only if none crosses a middle that segments part.
+  bool anywhere = false;
 };
 
 /// The proven segments of a patch with the fewest cells, in the order of their cells.

@@ -44,7 +44,7 @@ PatchWriter::PatchWriter(const PatchSet::Impl& set, const CertifiedPlan& plan, c
 
 void PatchWriter::write(std::size_t begin, std::size_t end) const {
   VertexJob vertices;
-  std::optional<kernel::StreamState> lines;  // of indices
+  std::optional<kernel::StreamState> lines;  // cache lines of indices
   if (streaming_) {
     vertices.start_lines(out_, plan_.first_vertex(begin));
     lines = lines_from(out_.indices.data() + 3 * plan_.first_triangle(begin));

@@ -1,5 +1,5 @@
 #pragma once
-// Returns the vertices of a border in a mesh.
+// Finds the vertices of a border in a mesh.
 
 #include "tess/plan/certified_plan.h"
 

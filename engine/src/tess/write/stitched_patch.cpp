@@ -129,7 +129,7 @@ std::uint32_t* Division::write_triangles(std::uint32_t first, std::uint32_t* to,
   if (empty) return to;
   const std::uint32_t ring = first + static_cast<std::uint32_t>(inner_count());
   const auto ring_size = static_cast<std::uint32_t>(ring_count());
-  std::array<std::uint32_t, 4> start{};  // of each side along the ring
+  std::array<std::uint32_t, 4> start{};  // the first ring point of each side
   for (std::size_t side = 1; side < 4; ++side) start[side] = start[side - 1] + border[side - 1].rate();
   // A side in the direction of the ring, the patch on its left; or `backward`.
   const auto line = [&](Side side, bool backward) {

@@ -34,7 +34,7 @@ inline kernel::StreamState stream_from(float* memory) { return {.first = memory,
 /// A job and the memory that it points to, used for one patch after the other.
 struct VertexJob {
   kernel::MeshVertexJob job;
-  std::array<kernel::StreamState, 2> lines;  ///< of positions and normals
+  std::array<kernel::StreamState, 2> lines;  ///< cache lines of positions and of normals
   alignas(cache_line) std::array<float, kernel::block_lanes> doubt, noise;
   std::array<std::array<float, 3>, 4> starts;
   ExactPatch exact;
