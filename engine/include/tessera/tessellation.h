@@ -58,10 +58,11 @@ class TessellationPlan {
   /// Writes the mesh; with quads if `out.quads` is not empty.
   ///
   /// `set`: the set that the plan was made for, at any revision that collapses the same edges. The plan does not keep
-  /// the set itself: another set of equal shape (patch count, degrees and collapsed edges) has its own mesh written.
+  /// the set itself: a run on another set of equal shape (patch count, degrees, rationality, collapsed edges) writes
+  /// that set's mesh, relative to that set's origin.
   ///
-  /// Errors: buffer_too_small, stale (another shape), invalid_argument (views), cancelled. Nothing is written on any
-  /// error but cancelled.
+  /// Errors: buffer_too_small, stale (another number of patches, other degrees or collapsed edges), invalid_argument
+  /// (views; another set), cancelled. Nothing is written on any error but cancelled.
   ///
   /// The bytes are the same for any number of threads. Allocates nothing after the first call.
   Status run(const PatchSet& set, const MeshViews& out, const Execution& execution = {}) const;
@@ -264,8 +265,8 @@ class CertifiedTessellation {
   ///
   /// `set`: the set that the plan was made for, at any revision; the triangles are the same for all control points. The
   /// bounds hold only for the set and the revision that the plan was made for. The plan does not keep the set itself: a
-  /// run on another set of equal shape (patch count, degrees and collapsed borders) writes that set's mesh, for which
-  /// nothing is proven.
+  /// run on another set of equal shape (patch count, degrees and collapsed borders) writes that set's mesh, relative to
+  /// that set's origin, for which nothing is proven.
   ///
   /// Errors: buffer_too_small, stale (another number of patches, other degrees or collapsed borders), invalid_argument
   /// (views; a view of normals where vertices are shared everywhere), cancelled. Nothing is written on any error but

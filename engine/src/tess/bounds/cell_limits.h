@@ -18,9 +18,8 @@ struct CellLimits {
   double pixels = 0;
 
   bool keeps(Rates rates) const;
-  /// Returns the smallest real rate along the other parameter that keeps all limits, with the rate `fixed` along u or
-  /// v.
-  /// `even`: by the bounds of even rates, else of odd ones.
+  /// Returns the smallest real rate along the other parameter that keeps all limits, with `fixed` along u or v. `even`:
+  /// by the bounds of even rates, else of odd ones.
   double needed(int fixed, bool fixed_u, bool even) const;
 };
 

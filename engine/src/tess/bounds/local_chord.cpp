@@ -107,7 +107,7 @@ namespace {
 
 /// One pass of a search: the first has rough bounds, the next has smaller pieces near the rates that were found.
 struct Pass {
-  double share;  ///< of the known rates, down to which the bounds hold
+  double share;  ///< the bounds hold down to this share of the known rates
   std::size_t pieces;
 };
 

@@ -48,8 +48,8 @@ class Piece {
     sine_ = steepest / std::hypot(steepest, beside);  // bound() uses it only if all of the net lies along the axis
   }
 
-  /// Returns the bound: with N within the angle phi of the axis, |N_u x n| <= |N_u across the axis| + |N_u along it|
-  /// sin phi.
+  /// Returns the bound. With N within the angle phi of the axis,
+  ///   |N_u x n| <= |N_u across the axis| + |N_u along it| sin phi.
   Turning bound() const {
     if (!(least_ > 0)) return {infinity, infinity};
     Turning most;

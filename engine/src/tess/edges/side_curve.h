@@ -30,8 +30,8 @@ class SideCurve {
   std::array<double, max_degree + 1> weights_;
 };
 
-/// Returns a bound on the distance between points of two curves at the same parameter or, if `reversed`, at t and 1 -
-/// t. Differing degrees are elevated. With points p_k and weights w_k of one curve, q_k and v_k of the other, it is
+/// Returns a bound on the distance between points of two curves at the same parameter, or at t and 1 - t if `reversed`.
+/// Differing degrees are elevated. With points p_k and weights w_k of one curve, q_k and v_k of the other, it is
 ///   |p(t) - q(t)| = |sum B_k (w_k (p_k - q_k) + (w_k - v_k) (q_k - q(t)))| / sum B_k w_k
 ///                <= max |p_k - q_k| + max(|w_k - v_k| / w_k) D,   D the diagonal of the box of the q_k.
 double distance_bound(SideCurve a, SideCurve b, bool reversed);

@@ -31,8 +31,8 @@ double vertex_rounding(const BezierPatch& patch, const Vec3& origin);
 /// vertex_rounding() by `size`, the largest |x|, |y| or |z| of the control points relative to the origin.
 double vertex_rounding(int degree_u, int degree_v, bool rational, double size);
 
-/// How each patch is divided, and where its vertices and triangles lie. Borders and corners are numbered 4 * patch +
-/// side, as in VertexCopies.
+/// How each patch is divided, and where its vertices and triangles lie. Borders and corners are numbered, as in
+/// VertexCopies, 4 * patch + side.
 class CertifiedPlan {
  public:
   std::size_t patch_count() const { return divisions_.size(); }

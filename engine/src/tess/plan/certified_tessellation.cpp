@@ -22,8 +22,8 @@ namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr std::size_t patches_per_task = 64;
-constexpr double planning_ends[] = {0.5,
-                                    0.95};  // after bounds and after rates; angles, pixels and searches take longer
+/// Progress after bounds and after rates; angles, pixels and searches take longer.
+constexpr double planning_ends[] = {0.5, 0.95};
 
 }  // namespace
 

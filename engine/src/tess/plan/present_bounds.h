@@ -41,9 +41,10 @@ class PresentBounds {
   std::vector<double> displacements_;  ///< `[patch]`: how far copies move its vertices; empty where there are no copies
   std::vector<float> bounds_;          ///< `[patch]`
   std::vector<std::uint8_t> moved_;    ///< `[patch]`: 1 if it copies vertices, and it or their source is touched
-  std::vector<std::uint8_t> is_unproven_, is_unknown_;  ///< `[patch]`: above the tolerance; angle or pixels are unknown
-  std::vector<std::uint32_t> touched_lanes_;            ///< `[block]`: one bit per touched lane
-  std::vector<std::uint32_t> touched_blocks_;           ///< blocks with a touched lane
+  /// `[patch]`: 1 if its bound exceeds the tolerance or it is unknown; 1 if its angle or pixels are no longer known.
+  std::vector<std::uint8_t> is_unproven_, is_unknown_;
+  std::vector<std::uint32_t> touched_lanes_;   ///< `[block]`: one bit per touched lane
+  std::vector<std::uint32_t> touched_blocks_;  ///< blocks with a touched lane
   std::size_t unproven_ = 0;
 };
 

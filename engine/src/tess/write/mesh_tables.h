@@ -1,6 +1,5 @@
 #pragma once
-// Holds tables that the meshes of many patches share: weights, parameters and strips of triangles for all segments in
-// use.
+// Holds the weights, parameters and strips of triangles that meshes of many patches share, for all segments in use.
 
 #include <array>
 #include <cstdint>

@@ -1,6 +1,5 @@
 #pragma once
-// Divides one patch whose four borders have their own rates: an inner grid, a ring of border points, and strips between
-// them.
+// Divides a patch whose borders have their own rates: an inner grid, a ring of border points, and strips between them.
 
 #include <algorithm>
 #include <array>
