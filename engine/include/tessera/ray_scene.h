@@ -231,9 +231,9 @@ class RayScene {
   /// except for the first ray with a spawn_offset after a build or a refit, which looks for the borders that patches
   /// share.
   Status closest(std::span<const Ray> rays, std::span<Hit> hits, const Execution& execution = {}) const;
-  /// Writes 1 where anything lies on the ray, and 0 where nothing does or the ray is invalid. occluded.size() >=
-  /// rays.size(). In grid mode the facets decide, not the surface: a ray that leaves the surface must begin further
-  /// away than the facets lie. Errors: as closest().
+  /// Writes 1 where anything lies on the ray, and 0 where nothing does or the ray is invalid. `occluded` must hold at
+  /// least rays.size() values. In grid mode the facets decide, not the surface: a ray that leaves the surface must
+  /// begin further away than the facets lie. Errors: as closest().
   Status occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded, const Execution& execution = {}) const;
   /// Finds all hits of each ray, in exact mode. An invalid ray has none.
   ///

@@ -296,7 +296,7 @@ void ScreenSpaceBound::find(const Camera& camera, const PatchSet::Impl& set, std
 
 void ScreenSpaceBound::bound_by_depth(const Camera& camera, const BezierPatch& patch, double moved, double pixels) {
   distance_ = 0;
-  if (camera.orthographic()) return;  // beyond double
+  if (camera.orthographic()) return;  // only if the picture's numbers are beyond double
   const LocalNet net(camera, patch);
   steepest_ = camera.steepest();
   const auto kept_at = [&](double depth) { return pixels * depth / (steepest_ + pixels); };

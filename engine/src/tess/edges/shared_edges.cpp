@@ -167,7 +167,7 @@ class EdgeFinder {
       if (!any) return;
     }
   }
-  static constexpr std::ptrdiff_t max_away = std::ptrdiff_t{1} << 30;  // floats
+  static constexpr std::ptrdiff_t max_away = std::ptrdiff_t{1} << 30;  // in floats
 
   const PatchSet::Impl& set_;
   const BorderHashes& hashes_;

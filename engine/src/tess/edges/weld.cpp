@@ -205,7 +205,7 @@ class Welder {
   double tolerance_;
   bool every_edge_;
   SharedEdges& edges_;
-  UnionFind joined_;                       ///< edges
+  UnionFind joined_;                       ///< sets of joined edges
   std::vector<std::uint32_t> heads_;       ///< `[edge]`: its leading border, the first one of a patch with an area
   std::vector<std::uint32_t> borders_of_;  ///< `[edge]`: the number of its borders of patches with an area
   std::vector<std::uint8_t> is_pole_;      ///< `[canonical edge]`

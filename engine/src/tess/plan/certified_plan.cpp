@@ -18,7 +18,7 @@ namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr std::size_t patches_per_task = 64, blocks_per_task = 8;
-constexpr std::uint64_t max_vertices = std::uint64_t{1} << 32;  // 32-bit indices
+constexpr std::uint64_t max_vertices = std::uint64_t{1} << 32;  // the limit of 32-bit indices
 
 /// Whether the kept segments of a patch are few enough compared with the best.
 bool is_spared(const KeptSegments& kept, std::size_t patch, PatchSegments best) {

@@ -13,7 +13,7 @@ namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr int max_rate = 4096;
-constexpr std::uint64_t max_vertices = std::uint64_t{1} << 32;  // 32-bit indices
+constexpr std::uint64_t max_vertices = std::uint64_t{1} << 32;  // the limit of 32-bit indices
 constexpr std::size_t patches_per_task = 64;
 constexpr double progress_ends[] = {0.7, 1};  // after the vertices, and after all else
 

@@ -17,8 +17,8 @@ namespace tessera::inline abi_0_1 {
 ///    the products of B_i and B_j with the rest; and m + n of the sums. They are at most 3 (m + n) + 8.
 /// 2. So the sum is off, component by component, by a vector of at most
 ///      g sum B_i B_j w_ij |V_ij|,  g = (3 (m + n) + 8) u
-///    (Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., sec. 3.1). So is the sum of weights, relative to
-///    itself.
+///    (Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., sec. 3.1). So is the sum of weights, relative
+///    to itself.
 /// 3. The B_i B_j w_ij over their sum are shares. So the point is off by at most 2 g R and the division's rounding.
 /// 4. Rounding to the nearest float changes each component by at most 2^-24 of it. So it moves the vertex by at most
 ///    2^-24 |S| <= 2^-24 R, or 2^-150 where float underflows.

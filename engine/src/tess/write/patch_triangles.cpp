@@ -10,7 +10,7 @@ namespace {
 bool has_no_area(const BezierPatch& patch, std::span<const Vec3> points) {
   const int m = patch.degree_u(), n = patch.degree_v();
   const auto point = [&](int i, int j) { return points[static_cast<std::size_t>(i * (n + 1) + j)]; };
-  bool points_u = true, points_v = true, weights_u = true, weights_v = true;  // constant along it
+  bool points_u = true, points_v = true, weights_u = true, weights_v = true;  // constant along u, v
   for (int i = 0; i <= m; ++i)
     for (int j = 0; j <= n; ++j) {
       points_u = points_u && point(i, j) == point(0, j);
