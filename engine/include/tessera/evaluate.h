@@ -132,7 +132,8 @@ using QuantityBlocks = Quantities<std::span<T>, std::span<T>, std::span<NormalKi
 /// of r with the size, and both are divided by the weight at the point. Bounds over h hold to first order, where the
 /// errors of the tangents are small against h. Positions in double, which are absolute, round once more, to 2^-53 of
 /// their own size. In the power representation the bounds of positions and first derivatives are (1 + 2u)^m (1 + 2v)^n
-/// ratio times as large, m and n the degrees: random bicubic patches lose 34 units, degrees 5 and 7 lose 1,200 and 140,000.
+/// ratio times as large, m and n the degrees: random bicubic patches lose 34 units, degrees 5 and 7 lose 1,200 and
+/// 140,000.
 template <class T>
 Status evaluate(const PatchSet& set, const GridPlan& plan, const QuantityViews<T>& out,
                 const Execution& execution = {});
