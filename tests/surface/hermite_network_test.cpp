@@ -27,13 +27,15 @@ TEST(HermiteNetwork, NeighboursAreG1AlongWholeEdges) {
       for (int k = 0; k <= 32; ++k) {
         const double t = k / 32.0;
         if (i > 0) {
-          const SurfaceJet p = evaluate_jet(network.patch(i - 1, j), 1, t), q = evaluate_jet(network.patch(i, j), 0, t);
+          const SurfaceJet p = evaluate_jet(value_of(network.patch(i - 1, j)), 1, t),
+                           q = evaluate_jet(value_of(network.patch(i, j)), 0, t);
           EXPECT_TRUE(within_units(q.position, p.position, 4 * double_unit, 2));
           EXPECT_TRUE(within_units(q.du, network.factors_u()[i] * p.du, 4 * double_unit, 4));
           EXPECT_LT(normal_angle(p, q), 1e-14);
         }
         if (j > 0) {
-          const SurfaceJet p = evaluate_jet(network.patch(i, j - 1), t, 1), q = evaluate_jet(network.patch(i, j), t, 0);
+          const SurfaceJet p = evaluate_jet(value_of(network.patch(i, j - 1)), t, 1),
+                           q = evaluate_jet(value_of(network.patch(i, j)), t, 0);
           EXPECT_TRUE(within_units(q.position, p.position, 4 * double_unit, 2));
           EXPECT_TRUE(within_units(q.dv, network.factors_v()[j] * p.dv, 4 * double_unit, 4));
           EXPECT_LT(normal_angle(p, q), 1e-14);
@@ -110,7 +112,8 @@ TEST(HermiteNetwork, MovingANodeChangesItsFourPatches) {
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t j = 0; j < 4; ++j) {
       const bool touched = (i == 1 || i == 2) && (j == 1 || j == 2);
-      EXPECT_EQ(before.patch(i, j).geometry() != after.patch(i, j).geometry(), touched) << i << " " << j;
+      EXPECT_EQ(value_of(before.patch(i, j)).geometry() != value_of(after.patch(i, j)).geometry(), touched)
+          << i << " " << j;
     }
 }
 
@@ -119,8 +122,10 @@ TEST(HermiteNetwork, MovingANodeChangesItsFourPatches) {
 std::vector<double> numbers_of(const HermiteNetwork& network) {
   std::vector<double> numbers;
   for (std::size_t i = 0; i + 1 < network.count_u(); ++i)
-    for (std::size_t j = 0; j + 1 < network.count_v(); ++j)
-      for (const Vec3& p : network.patch(i, j).geometry()) numbers.insert(numbers.end(), {p.x, p.y, p.z});
+    for (std::size_t j = 0; j + 1 < network.count_v(); ++j) {
+      const HermitePatch patch = value_of(network.patch(i, j));
+      for (const Vec3& p : patch.geometry()) numbers.insert(numbers.end(), {p.x, p.y, p.z});
+    }
   return numbers;
 }
 
@@ -182,8 +187,8 @@ TEST(HermiteTwists, AdiniKeepsG1AndIsExactForBilinearPlusSums) {
   for (std::size_t i = 1; i < 3; ++i)
     for (std::size_t j = 0; j < 4; ++j)
       for (int k = 0; k <= 16; ++k)
-        EXPECT_LT(normal_angle(evaluate_jet(network.patch(i - 1, j), 1, k / 16.0),
-                               evaluate_jet(network.patch(i, j), 0, k / 16.0)),
+        EXPECT_LT(normal_angle(evaluate_jet(value_of(network.patch(i - 1, j)), 1, k / 16.0),
+                               evaluate_jet(value_of(network.patch(i, j)), 0, k / 16.0)),
                   1e-13);
 
   std::vector<HermiteNode> nodes;  // z = 5 u v + u^3 - v^2

@@ -169,9 +169,8 @@ class HermiteNetwork {
   std::span<const double> knots_v() const { return data_->knots_v; }  ///< parameters of the columns of nodes
   /// Returns the rectangle between the first and the last knots.
   Domain domain() const { return {knots_u().front(), knots_u().back(), knots_v().front(), knots_v().back()}; }
-  /// Returns patch (i,j) on [0,1]^2; i < count_u() - 1, j < count_v() - 1. It may throw std::bad_alloc, unlike all
-  /// other calls.
-  HermitePatch patch(std::size_t i, std::size_t j) const;
+  /// Returns patch (i,j) on [0,1]^2; i < count_u() - 1, j < count_v() - 1. Errors: out_of_memory.
+  Result<HermitePatch> patch(std::size_t i, std::size_t j) const;
 
  private:
   struct Data {

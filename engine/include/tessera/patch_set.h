@@ -19,7 +19,7 @@ enum class Precision : std::uint8_t { single_precision, double_precision };
 /// The basis over which the coefficients of a block are held.
 enum class Representation : std::uint8_t {
   bernstein,  ///< the default: backward stable on [0,1]
-  power,      ///< monomials u^i v^j; loses up to 58 / 2,950 / 135,000 ULP at degrees 3 / 5 / 7
+  power,      ///< monomials u^i v^j; rounding errors grow with the degree: see evaluate()
 };
 
 /// Which coefficients a set holds. They are packed when it is made and again with each edit. Memory: each kind takes

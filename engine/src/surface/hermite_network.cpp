@@ -146,10 +146,8 @@ HermitePatch::Corners HermiteNetwork::patch_corners(std::size_t i, std::size_t j
   return corners;
 }
 
-HermitePatch HermiteNetwork::patch(std::size_t i, std::size_t j) const {
-  Result<HermitePatch> patch = HermitePatch::from_corners(patch_corners(i, j));
-  if (!patch) throw std::bad_alloc();  // the nodes are finite
-  return *std::move(patch);
+Result<HermitePatch> HermiteNetwork::patch(std::size_t i, std::size_t j) const {
+  return HermitePatch::from_corners(patch_corners(i, j));
 }
 
 SurfaceJet evaluate_jet(const HermiteNetwork& network, double u, double v) {

@@ -181,8 +181,7 @@ Status refused_in_float(const Status& refusal, const PatchSet& set, PlannerOptio
 /// kept.
 Result<std::unique_ptr<CertifiedTessellation::Impl>> plan_for(const PatchSet& set, const CertifiedOptions& options,
                                                               const KeptSegments& kept, const Execution& execution) {
-  if (!set.blocks().float_bernstein)
-    return Status(StatusCode::unsupported, "a tessellation needs float Bernstein blocks, the set has none");
+  if (!set.blocks().float_bernstein) return no_float_blocks();
   Result<PlannerOptions> planned = checked(options, set);
   if (!planned) return planned.status();
   const Result<Isa> isa = options.isa ? parse_isa(name(*options.isa)) : default_isa();

@@ -40,7 +40,6 @@ class CertifiedTessellation::Impl {
   /// Checks that normals are only written if there are any. Errors: invalid_argument.
   Status check_normals(const MeshViews& out) const;
   /// Checks views that a mesh is written to. Errors: as check_views().
-  Status check_vertices(const MeshViews& out) const;
   bool has_normals() const { return !options_.share_vertices || options_.crease_angle; }
   /// Writes the copies of vertices after all patches are written: for patches that are written, or that copy from such.
   Status write_copies(const PatchSet::Impl& set, const MeshViews& out, const Execution& execution,

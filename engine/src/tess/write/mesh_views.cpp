@@ -111,8 +111,13 @@ Status check_count(const PatchSet& set, std::size_t planned) {
           "the plan is for " + std::to_string(planned) + " patches, the set has " + std::to_string(set.patch_count())};
 }
 
+Status no_float_blocks() {
+  return {StatusCode::unsupported, "a tessellation needs float Bernstein blocks, the set has none"};
+}
+
 Status check_shapes(const PatchSet& set, std::span<const PatchShape> planned) {
   if (Status status = check_count(set, planned.size()); !status.ok()) return status;
+  if (!set.blocks().float_bernstein) return no_float_blocks();
   LeastIndex changed;
   const auto compare = [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {

@@ -22,8 +22,10 @@ Status check_vertex_views(const MeshViews& out, const MeshCapacity& wanted, bool
 
 /// Checks that a set has as many patches as a plan. Errors: stale.
 Status check_count(const PatchSet& set, std::size_t planned);
-/// Checks that the patches of a set have the shapes that a plan was made for. Errors: stale (index = the first that has
-/// not).
+/// The error of a set without float Bernstein blocks: unsupported.
+Status no_float_blocks();
+/// Checks that a set has the blocks that meshes are made from, and patches of the shapes that a plan was made for.
+/// Errors: unsupported, stale (index = the first patch of another shape).
 Status check_shapes(const PatchSet& set, std::span<const PatchShape> planned);
 
 }  // namespace tessera::inline abi_0_1
