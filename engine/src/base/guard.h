@@ -1,5 +1,5 @@
 #pragma once
-// No exception leaves the library: public entry points run their body in here.
+// No exception leaves the library: public entry points run their body in guarded().
 
 #include <exception>
 #include <new>
@@ -10,7 +10,7 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Of the exception that is being handled.
+/// The status of the exception that is being handled.
 [[gnu::cold]] inline Status status_of_exception() noexcept {
   try {
     try {
@@ -22,7 +22,7 @@ namespace tessera::inline abi_0_1 {
     } catch (...) {
       return Status(StatusCode::internal, "unknown exception");
     }
-  } catch (...) {  // not even the message could be stored
+  } catch (...) {  // no memory even for the message
     return Status(StatusCode::out_of_memory, {});
   }
 }

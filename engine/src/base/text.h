@@ -9,7 +9,7 @@
 namespace tessera::inline abi_0_1 {
 
 /// The shortest text that reads back as the same double; "nan" for every NaN, whose sign means nothing. For messages of
-/// failures: what leads to a call is compiled for size.
+/// failures, hence cold: the compiler optimises the calls for size.
 [[gnu::cold]] inline std::string text(double value) {
   if (std::isnan(value)) return "nan";
   std::array<char, 32> digits;
