@@ -5,7 +5,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// 0 for a line that is too short.
+/// The letter of a line's section; 0 for a line that is too short.
 char section_of(const std::string& line) {
   constexpr std::size_t column = 72;
   return line.size() > column ? line[column] : '\0';
