@@ -8,7 +8,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// Whether weights change nothing.
+/// Whether all weights are equal, so that they change nothing.
 bool is_polynomial(const BezierPatch& patch) {
   const auto weights = patch.weights();
   return std::all_of(weights.begin(), weights.end(), [&](double w) { return w == weights.front(); });

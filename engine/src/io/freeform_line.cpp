@@ -13,7 +13,7 @@ std::string values(const FreeformLine& line, char direction) {
 }
 
 Status check_line_degree(FreeformType type, const FreeformLine& line, char direction) {
-  if (type == FreeformType::cardinal) return {};  // always 3, whatever deg says
+  if (type == FreeformType::cardinal) return {};  // cubic whatever deg says
   if (!line.degree) return {StatusCode::parse_error, std::string("there is no deg for ") + direction + " above"};
   if (*line.degree >= 1 && *line.degree <= max_degree) return {};
   return {StatusCode::unsupported_degree, std::string("the degree along ") + direction + " is " +
@@ -108,7 +108,8 @@ Result<BasisMatrix> piece_basis(FreeformType type, const FreeformLine& line) {
   if (type == FreeformType::taylor) return BasisMatrix::power(degree);
   const std::size_t size = static_cast<std::size_t>(degree) + 1;
   std::vector<double> entries(size *
-                              size);  // row by row the coefficients of one power, where the file has one function
+                              size);  // each row holds the coefficients of one power; a row of the file holds one
+                                      // function
   for (std::size_t i = 0; i < size; ++i)
     for (std::size_t j = 0; j < size; ++j) entries[j * size + i] = line.matrix[i * size + j];
   return BasisMatrix::custom(degree, entries);

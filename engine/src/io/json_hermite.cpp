@@ -27,7 +27,7 @@ CornerTangents read_open_corner(const JsonValue& value) {
   return {read_vector(fields.at("position")), read_vector(fields.at("du")), read_vector(fields.at("dv"))};
 }
 
-/// The corners [i][j] of the domain.
+/// Reads the corners [i][j] of the domain.
 template <class Corner, class Read>
 std::array<Corner, 4> read_corners(const JsonValue& value, Read&& read) {
   const Net<Corner> net = read_net<Corner>(value, "corners", read);
@@ -41,7 +41,7 @@ HermiteOrder read_order(const JsonValue& value) {
   return read_word(value, {"by_end", "by_kind"}) == 0 ? HermiteOrder::by_end : HermiteOrder::by_kind;
 }
 
-/// Given, or 0, 1, 2 ..
+/// The knots of the file, or 0, 1, 2 ..
 std::vector<double> network_knots(const Fields& fields, std::string_view key, std::size_t count) {
   std::vector<double> knots;
   if (const std::optional<JsonValue> given = fields.find(key)) {
@@ -53,7 +53,7 @@ std::vector<double> network_knots(const Fields& fields, std::string_view key, st
   return knots;
 }
 
-/// Given, or 1.
+/// The factors of the file, or 1.
 std::vector<double> network_factors(const Fields& fields, std::string_view key, std::size_t count) {
   const std::optional<JsonValue> given = fields.find(key);
   if (!given) return std::vector<double>(count, 1.0);
@@ -63,7 +63,7 @@ std::vector<double> network_factors(const Fields& fields, std::string_view key, 
   return factors;
 }
 
-/// Replaces the nodes' twists as the word says.
+/// Replaces the twists of the nodes by estimates of the method `word`.
 void estimate_twists(const JsonValue& word, Net<HermiteNode>& nodes, const std::vector<double>& u,
                      const std::vector<double>& v) {
   constexpr std::array estimates{TwistEstimate::zero, TwistEstimate::adini, TwistEstimate::bessel};

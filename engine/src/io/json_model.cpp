@@ -1,4 +1,4 @@
-// .json: surfaces of every kind. The format is told in tools/models/FORMAT.md.
+// .json: surfaces of every kind. tools/models/FORMAT.md describes the format.
 
 #include <array>
 

@@ -5,7 +5,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// "degree", which may be left out, must be what the net says.
+/// Checks that "degree", which is optional, agrees with the net.
 void check_degree(const Fields& fields, int degree_u, int degree_v) {
   const std::optional<JsonValue> value = fields.find("degree");
   if (!value) return;
@@ -18,7 +18,7 @@ void check_degree(const Fields& fields, int degree_u, int degree_v) {
   }
 }
 
-/// A basis by its name, or by the rows of its matrix. `count`: elements of the geometry in this direction.
+/// Reads a basis by its name, or by the rows of its matrix. `count`: elements of the geometry in this direction.
 BasisMatrix read_basis(const JsonValue& value, std::size_t count) {
   const int degree = degree_of(count);
   if (value.is(JsonKind::array)) {

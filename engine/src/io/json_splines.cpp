@@ -7,7 +7,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// The rows and columns that periodic knots want again at the end.
+/// Repeats the first rows and columns at the end, as periodic knots need.
 template <class T>
 std::vector<T> wrapped(const Net<T>& net, std::size_t rows, std::size_t columns) {
   std::vector<T> elements;
@@ -44,7 +44,7 @@ struct SplineNet {
   }
 
  private:
-  /// One for both directions, or one for each.
+  /// Reads one degree for both directions, or one for each.
   void read_degrees(const JsonValue& value) {
     if (!value.is(JsonKind::array)) {
       degree_u = degree_v = read_integer(value, 1, max_degree);

@@ -18,7 +18,7 @@ constexpr std::array<std::string_view, part_count> part_names{"the curves of eac
                                                               "w of trimming curves"};
 using Parts = std::array<std::vector<double>, part_count>;
 
-/// A whole number within what the file can hold, or 0.
+/// `value` as a whole number from 1 to `limit`, or 0 if it is none.
 std::size_t count_of(double value, std::size_t limit) {
   return value >= 1 && value <= static_cast<double>(limit) && value == std::floor(value)
              ? static_cast<std::size_t>(value)

@@ -1,4 +1,4 @@
-// Surfaces to patches to files.
+// Converts surfaces to patches and writes them.
 
 #include <algorithm>
 #include <array>
