@@ -122,7 +122,7 @@ TEST(Model, FittedSurfacesKeepTheToleranceWhereTheyArePlaced) {
   }
 }
 
-/// Far from zero the points' own rounding counts: it is in the stated error, and a tolerance below it is refused.
+/// Far from zero the points' own rounding counts: the stated error includes it, and a smaller tolerance is an error.
 TEST(Model, ErrorsOfFitsHoldFarFromZero) {
   const auto bowl = value_of(generic_surface(
       [](auto u, auto v) {
@@ -183,7 +183,7 @@ TEST(Model, PointsPlacedBeyondTheRangeOfNumbersAreRefused) {
                  "the surface's point at (1, 0.5) is (inf, 0.5, 0) where it is placed");
 }
 
-/// The pieces of a rational surface stay rational even where all weights of a piece are equal.
+/// The pieces of a rational surface stay rational even if all weights of a piece are equal.
 TEST(Model, EditsKeepWeightsThatAreAllEqual) {
   Random random(23);
   std::vector<double> weights(5 * 2, 1);

@@ -1,5 +1,5 @@
-// Every file of TESSERA_TEST_DATA: read whole, or refused for a reason that its text bears out; its patches are its
-// surfaces. Ends in a table, format by format.
+// Reads every file of TESSERA_TEST_DATA whole, or gets an error for a reason that its text confirms; compares its
+// patches with its surfaces. Prints a table, format by format.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is wrong with a file, or has no surface in it: the words that its refusal must hold.
+/// Files that are wrong or have no surface, with words that the error must contain.
 const std::map<std::string, std::string> refused{
     {"bezierview_bv/SurfLab__cube.bv", "no surface that can be read, but 1 polyhedron"},
     {"bezierview_bv/SurfLab__pawn_1.bv", "no surface that can be read, but 1 polyhedron"},
@@ -60,11 +60,11 @@ const std::map<std::string, std::vector<std::string>> warned{
     {"iges_nist_benchmarks/140-000.igs", {"1 surface fitted by splines"}},
     {"step_brlcad_edge/ap214_offset_extrusion.stp", {"1 surface fitted by splines"}},
     {"step_brlcad_edge/ap214_offset_revolution.stp", {"1 surface fitted by splines"}},
-    // D171 is a conic, no surface.
+    // D171 is a conic, not a surface.
     {"iges_nist_benchmarks/nentity.igs", {"OpenCASCADE: D171", "1 surface fitted", "2 faces are trimmed"}},
 };
 
-/// A line of the table at the end.
+/// A row of the table at the end.
 struct Row {
   std::size_t files = 0, read = 0, surfaces = 0, patches = 0, warnings = 0, refused = 0;
 };
@@ -76,7 +76,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// The row of a file: its format's name, or what else it is.
+/// The row of a file: the name of its format, or of another group.
 std::string row_of(const fs::path& file, const std::string& folder) {
   const std::string extension = lower(file.extension().string());
   if (extension == ".txt" || extension == ".md") return "words about the data";
@@ -179,7 +179,7 @@ void Conformance::expect_read(const std::string& name, const Model& model, std::
       EXPECT_NE(model.warnings[k].find(wanted->second[k]), std::string::npos) << model.warnings[k];
     return;
   }
-  // Others lose nothing but what trims would cut away.
+  // All other files lose only what trims would cut away.
   const auto trimmed = std::count_if(model.surfaces.begin(), model.surfaces.end(),
                                      [](const ModelSurface& s) { return !s.trims->empty(); });
   EXPECT_EQ(model.warnings.size(), trimmed > 0 ? 1u : 0u) << name;

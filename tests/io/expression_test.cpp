@@ -1,4 +1,4 @@
-// Expressions: what they mean, what is refused and how, and that threads do not disturb each other.
+// Expressions: values, errors, and independence of threads.
 
 #include "io/expression.h"
 
@@ -22,7 +22,7 @@ constexpr std::array<std::string_view, 2> uv{"u", "v"};
 Expression compiled(std::string_view text) { return test::value_of(Expression::compile(text, uv)); }
 double value(std::string_view text, double u = 0.5, double v = 2) { return compiled(text)(std::array{u, v}); }
 
-/// Refused at once, with the expression and these words.
+/// Expects an error at once, with the expression and these words.
 void expect_refusal(std::string_view text, const std::string& words) {
   test::expect_refused(Expression::compile(text, uv), StatusCode::parse_error, Status::no_index, words);
 }

@@ -1,4 +1,4 @@
-// The reader of .g2 files: spline and elementary surfaces, what is passed over, what is refused.
+// The reader of .g2 files: spline and elementary surfaces, what is skipped, and errors.
 
 #include <gtest/gtest.h>
 
@@ -92,7 +92,7 @@ TEST(G2, FlatAndSteepConesAreCones) {
     const Domain d = domain(model.surfaces[0].surface);
     const double slope = std::tan(angle);
     for (const double u : {0.0, 1.0, 4.0}) {
-      // Heights count from the apex, 1 / slope below: that takes so many digits.
+      // Heights count from the apex, 1 / slope below: that costs so many digits.
       const double scale = 1e-15 * (1 + slope) * (1 + 1 / slope);
       expect_near(at(model, 0, u, d.v0), {std::cos(u), std::sin(u), 0}, 4 * scale);
       expect_near(at(model, 0, u, d.v1), {(1 + slope) * std::cos(u), (1 + slope) * std::sin(u), 1}, 4 * scale);

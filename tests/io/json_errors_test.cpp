@@ -1,4 +1,4 @@
-// What the reader of .json models says of what is no model: the file, the line, the place, what it found and wanted.
+// Errors of the reader of .json models: the file, the line, the place, what it found and what it expected.
 
 #include <gtest/gtest.h>
 
@@ -70,7 +70,7 @@ TEST(JsonErrors, TextsThatAreNoModels) {
 }
 
 TEST(JsonErrors, LinesArePlacesOfTheValue) {
-  // Numbers are known to end by what stands behind them, be it the end of the line.
+  // A number ends at the byte behind it, even if that ends the line.
   const std::string head = "{\"format\": \"tessera\",\n\"version\": 1,\n\"surfaces\": [\n";
   EXPECT_EQ(error_of(head + "7\n\n\n]}"), "m.json:4: /surfaces/0: expected a surface, found 7");
   EXPECT_EQ(error_of(head + "\n7]}"), "m.json:5: /surfaces/0: expected a surface, found 7");

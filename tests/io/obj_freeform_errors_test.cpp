@@ -1,4 +1,4 @@
-// Free-form OBJ files that are wrong: what is said of them, and that nothing worse happens.
+// Free-form OBJ files that are wrong: their errors, and no other harm.
 
 #include <algorithm>
 
@@ -47,7 +47,7 @@ TEST(ObjFreeformErrors, SyntaxIsNamedWithItsLine) {
             "m.obj:7: expected 4 finite numbers after surf, the ranges of u and v, found the end of the line");
   EXPECT_EQ(error_of(spoiled("surf 0 1 0 1 1 2 3 4", "surf 0 1 0 1 1")),
             "m.obj:7: expected at least 2 control points, found the end of the line");
-  // A continuation that is none, as the specification's own example of stech prints it.
+  // A malformed continuation, as the specification's own example of stech prints it.
   EXPECT_EQ(error_of(spoiled("1 2 3 4", "1 2 \\ 3 4")), "m.obj:7: expected an index of a control point, found \"\\\"");
   EXPECT_EQ(error_of(spoiled("deg 1 1", "1 1")),
             "m.obj:6: expected a statement (is the line above to be continued, without a \\ at its end?), found \"1\"");
@@ -160,7 +160,7 @@ TEST(ObjFreeformErrors, NumbersThatAreNotFiniteAreErrorsWithTheirLine) {
         error_of(spoiled("surf 0 1 0 1", std::string("surf 0 1 0 ") + bad)).rfind("m.obj:7: expected 4 finite", 0), 0u);
     EXPECT_EQ(error_of(spoiled("parm u 0 1", std::string("parm u 0 ") + bad)).rfind("m.obj:8: expected finite", 0), 0u);
   }
-  const Model large = model_of(spoiled("v 1 1 1", "v 1e300 -1e300 1e300"));  // finite is fine
+  const Model large = model_of(spoiled("v 1 1 1", "v 1e300 -1e300 1e300"));  // any finite number will do
   EXPECT_EQ(large.surfaces.size(), 1u);
 }
 
@@ -199,7 +199,7 @@ TEST(ObjFreeformErrors, SpoiledBytesNeverCrash) {
   }
 }
 
-/// What reading asks for at most, in bytes.
+/// The most bytes that reading allocates.
 std::size_t memory_of(const std::string& text, Result<Model> (*parse)(std::string_view, std::string_view)) {
   const std::size_t before = restart_peak();
   const Result<Model> model = parse(text, "m");

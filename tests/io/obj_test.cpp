@@ -1,4 +1,4 @@
-// OBJ meshes that others wrote.
+// OBJ meshes of other programs.
 
 #include <gtest/gtest.h>
 

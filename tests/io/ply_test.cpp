@@ -1,4 +1,4 @@
-// PLY meshes that others wrote, and PLY files that state what they do not hold.
+// PLY meshes of other programs, and PLY files that state more than they hold.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// RIB files as scenes: blocks, transformations, objects, names, what is passed over and what is refused.
+// RIB files as scenes: blocks, transformations, objects, names, what is skipped, and errors.
 
 #include <gtest/gtest.h>
 

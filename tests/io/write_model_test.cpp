@@ -1,4 +1,4 @@
-// Surfaces that are written are read back: the same patches over the same parameters, under the same names.
+// Surfaces are read back as they were written: the same patches over the same parameters, under the same names.
 
 #include <cmath>
 #include <iostream>
@@ -102,7 +102,7 @@ TEST_F(WriteModel, EveryFileOfOthersComesBack) {
   std::size_t files = 0, surfaces = 0, trims = 0;
   for (const auto& file : files_below(data)) {
     const Result<Model> model = read_model(file);
-    if (!model) continue;  // no model, or refused: tests of the readers say which
+    if (!model) continue;  // not a model, or an error: the readers' tests say which
     const Result<PatchSet> set = make_patch_set(*model);
     if (!set) continue;
     WrittenModel facts;

@@ -1,4 +1,4 @@
-// Trims are written with the surfaces that they belong to, and said to be left out where they cannot be.
+// Trims are written with their surfaces; if a format cannot hold them, a warning says so.
 
 #include "io/written_models.h"
 

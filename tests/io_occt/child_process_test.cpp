@@ -33,7 +33,7 @@ TEST(ChildProcess, SharesNothing) {
   EXPECT_EQ(value, 1);
 }
 
-/// As a daemon has none: the pipe then takes their places.
+/// Like a daemon, which has no streams: the pipe then takes their places.
 TEST(ChildProcess, NeedsNoStreamsOfItsParent) {
   const auto without_streams = [] {
     for (int stream = 0; stream < 3; ++stream) ::close(stream);

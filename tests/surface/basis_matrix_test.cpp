@@ -1,4 +1,4 @@
-// Basis matrices against definitions that share nothing with them.
+// Compares basis matrices with definitions that share nothing with them.
 
 #include "support/errors.h"
 #include "support/random_bases.h"
@@ -8,7 +8,7 @@
 namespace tessera::test {
 namespace {
 
-/// f_i(t) from M itself, and what its rounding is relative to.
+/// f_i(t) from M itself, and the size to which its rounding is relative.
 Real by_powers(const BasisMatrix& basis, int i, Real t, Real& size) {
   Real sum = 0;
   size = 0;

@@ -1,4 +1,4 @@
-// What makes a Bezier patch, and what is refused.
+// Valid Bezier patches, and errors.
 
 #include "tessera/bezier_patch.h"
 

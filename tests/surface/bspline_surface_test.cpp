@@ -156,7 +156,7 @@ TEST(BSplineSurface, BadInputIsNamed) {
     EXPECT_EQ(status.code(), StatusCode::invalid_weight);
     EXPECT_NE(status.message().find("weight [2][0]"), std::string::npos) << status.message();
   }
-  // Even where the denominator, 1 - 2 u (1 - u) here, stays positive.
+  // Even if the denominator, 1 - 2 u (1 - u) here, is positive everywhere.
   expect_refused(BSplineSurface::rational(2, u, 1, v, points, std::vector<double>{1, 1, 0, 0, 1, 1}),
                  StatusCode::invalid_weight, 2, "weight [1][0] is 0, it must be finite and greater than 0");
   EXPECT_EQ(BSplineSurface::rational(2, u, 1, v, points, std::vector<double>(7, 1)).status().code(),

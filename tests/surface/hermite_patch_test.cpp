@@ -1,4 +1,4 @@
-// Bicubic Hermite patches: the figures of the lectures, their forms, and what is refused.
+// Bicubic Hermite patches: the figures of the lectures, their forms, and errors.
 
 #include "support/errors.h"
 #include "support/random_hermite.h"
@@ -139,8 +139,7 @@ TEST(HermitePatch, ThroughSixteenPointsThereAndBack) {
 }
 
 TEST(HermitePatch, AdiniTwistsReproduceBilinearlyBlendedTwists) {
-  // The bilinear Coons patch of these borders is (u, v, u^2 v + 3 u v^2 + u^3 - v^3): its twist 2u + 6v is what Adini
-  // gives.
+  // The bilinear Coons patch of these borders is (u, v, u^2 v + 3 u v^2 + u^3 - v^3): its twist 2u + 6v is Adini's.
   const auto corner = [](double u, double v) {
     return CornerTangents{{u, v, u * u * v + 3 * u * v * v + u * u * u - v * v * v},
                           {1, 0, 2 * u * v + 3 * v * v + 3 * u * u},
@@ -186,7 +185,7 @@ TEST(HermitePatch, ReparametrizedIsTheSameSurface) {
 }
 
 TEST(HermitePatch, IsAffinelyInvariant) {
-  // The linear part alone applies to tangents and twists.
+  // Only the linear part applies to tangents and twists.
   Random random(7);
   const HermitePatch patch = random_hermite(random);
   const auto linear = [](const Vec3& p) { return Vec3{2 * p.y, p.z - p.x, 3 * p.x}; };

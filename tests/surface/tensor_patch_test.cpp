@@ -1,4 +1,4 @@
-// Tensor-product patches over any bases: the reference evaluator against sums of powers, and what is refused.
+// Tensor-product patches over any bases: the reference evaluator against sums of powers, and errors.
 
 #include "support/errors.h"
 #include "support/lecture_points.h"

@@ -1,4 +1,5 @@
-// Meshes that keep a tolerance: no crack, no point further away than the bound, the same bytes for any number of threads.
+// Meshes that keep a tolerance: no crack, no point further away than the bound, the same bytes for any number of
+// threads.
 
 #include "tessera/tessellation.h"
 

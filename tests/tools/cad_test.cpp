@@ -12,7 +12,7 @@ using CadTool = ToolTest;
 
 #ifdef TESSERA_HAS_IO_OCCT
 
-/// Runs what must succeed with nothing but warnings on standard error.
+/// Runs a command that must succeed with only warnings on standard error.
 void expect_warnings(const ToolRun& result, const std::string& path) {
   EXPECT_EQ(result.status, 0) << result.errors;
   std::istringstream lines(result.errors);

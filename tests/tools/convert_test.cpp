@@ -1,4 +1,4 @@
-// tessera convert; and the formats of meshes and pictures that are not read by every command.
+// tessera convert; and the formats of meshes and pictures that not every command reads.
 
 #include "tessera/io.h"
 #include "tools/tool_test.h"

@@ -232,7 +232,7 @@ TEST_F(MeshTools, EveryTeasetModelBecomesAMesh) {
   if (!data) GTEST_SKIP() << "TESSERA_TEST_DATA is not set";
   int models = 0;
   for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(data) / "classic_teaset")) {
-    if (entry.path().extension() == ".rib") {  // a scene: what else it holds is a warning
+    if (entry.path().extension() == ".rib") {  // a scene: warns of its other contents
       const ToolRun result = run({"tessellate", entry.path().string(), "-o", "a.ply", "--grid", "8x8", "--json"});
       EXPECT_EQ(result.status, 0) << result.errors;
       EXPECT_EQ(json::parse(result.output)["warnings"].size(), 1u);

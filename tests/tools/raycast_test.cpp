@@ -50,7 +50,7 @@ TEST_F(RaycastTool, RatesOfGrids) {
   expect_failure({"raycast", teapot, "-o", "a.png", "--mode", "grid", "--shade", "steps"}, 2, "--mode exact");
 }
 
-/// A finer mesh, the same colours by another measure; a given mesh has its own.
+/// A finer mesh, the same colours by another measure; a mesh from a file has its own.
 TEST_F(RaycastTool, ErrorsOfMeshesAreShown) {
   const auto error_of = [&](const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"raycast", teapot,    "-o",    "a.png", "--size",
@@ -183,7 +183,7 @@ TEST_F(RaycastTool, EveryTeasetModelIsDrawn) {
 }
 
 TEST_F(RaycastTool, AnInterruptedPictureDoesNotAppear) {
-  // `timeout` interrupts the tool long before so large a picture is done, and says so by 124.
+  // `timeout` interrupts the tool long before so large a picture is done, and reports that by 124.
   const ToolRun result = run_program(
       folder_, {"timeout", "--signal=INT", "1", TESSERA_TOOL, "raycast", teapot, "-o", "a.png", "--size", "8192x8192"});
   EXPECT_EQ(result.status, 124);
