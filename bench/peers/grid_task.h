@@ -15,8 +15,7 @@ struct GridTask {
   int spans = 0, per_span = 0;
   bool tangents = false;
   std::vector<Vec3> net;      ///< [i][j], side() x side() control points
-  std::vector<double> local;  ///< parameters of the points within a span, inside (0, 1), the same for all spans and
-                              ///< both directions
+  std::vector<double> local;  ///< parameters of points within a span, inside (0, 1), for all spans and both directions
 
   int side() const { return spans + 3; }
   std::size_t count() const {

@@ -21,8 +21,7 @@ struct Errors {
   double polynomial = 0, rational = 0;             // positions
   double derivative = 0, rational_derivative = 0;  // over the degree
   double normal = 0;  // times the sine of the tangents' angle and the shorter tangent, over the largest coefficient
-  double plain = 0;   // of polynomial positions in another unit: the largest |coefficient| times the precision's unit
-                      // is 1
+  double plain = 0;   // of polynomial positions, the largest |coefficient| times the unit being 1
 
   void grow(const Errors& other) {
     for (double Errors::*const e : {&Errors::polynomial, &Errors::rational, &Errors::derivative,

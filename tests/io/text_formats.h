@@ -13,8 +13,7 @@ namespace tessera::test {
 /// The result of a reader.
 struct Reading {
   Status status = {};
-  std::string content = {};  ///< equal for models and meshes that are equal to the last bit; lines in warnings do not
-                             ///< count
+  std::string content = {};  ///< equal for models and meshes equal to the last bit; lines in warnings do not count
   std::size_t parts = 0;     ///< surfaces, or triangles
   std::string unsound = {};  ///< the fault of the result, if any: a position that is not finite, an index out of range
 

@@ -90,8 +90,7 @@ bool stop_failing() {
 }  // namespace tessera::test
 
 void* operator new(std::size_t bytes) { return counted(bytes, alignof(std::max_align_t), __builtin_return_address(0)); }
-void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {  // the form that std::stable_sort uses for its
-                                                                         // buffer
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {  // std::stable_sort's buffer
   try {
     return counted(bytes, alignof(std::max_align_t), __builtin_return_address(0));
   } catch (const std::bad_alloc&) {

@@ -44,8 +44,7 @@ def build(name, preset="release", options=(), jobs=None, rebuild=False):
     suffix = "".join("-" + option.replace("/", "_") for option in options)
     label = ("this tree" if tree else name) + (" with " + ", ".join(options) if options else "")
     source = ROOT if tree else WORK / "commits" / commit[:12]
-    folder = source / "build" / (("perf-" if tree else "") + preset + suffix)  # as deep as other build folders, so that
-                                                                               # ccache finds their results
+    folder = source / "build" / (("perf-" if tree else "") + preset + suffix)  # at the depth of others, for ccache
     program = folder / "bench" / TARGET
     if tree or rebuild or not is_program(program):
         if not tree:

@@ -183,8 +183,7 @@ def command(arguments):
     for isa in arguments.isa or ISAS:
         path = baselines.counts_file(isa, arguments.baselines)
         if arguments.check and baselines.read(path, ("counts", *KEYS)) and differences(facts, baselines.read(path)):
-            results.append(check(isa, {}, facts, path, arguments.threshold / 100, True))  # prints the reason for
-                                                                                          # skipping
+            results.append(check(isa, {}, facts, path, arguments.threshold / 100, True))  # prints why
             continue
         counts, spread = repeated(program, isa, arguments.filter, arguments.repeat)
         if arguments.repeat > 1:

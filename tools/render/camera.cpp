@@ -13,8 +13,7 @@ namespace {
 constexpr double degree = std::numbers::pi / 180;
 constexpr double azimuth = -62 * degree, elevation = 14 * degree;  // of the eye as seen from the model
 constexpr double fill = 0.84;                                      // share of the picture that the box takes
-constexpr double lowered = 0.07;                                   // share of half the height, to leave room for the
-                                                                   // sky
+constexpr double lowered = 0.07;                                   // share of half the height: room for the sky
 
 struct Axes {
   Vec3 right, up, back;

@@ -88,8 +88,7 @@ Candidate candidate(const BezierPatch& patch, const Border& border) {
 /// Splits groups of borders with the same ends by the middles of the borders.
 void split(const std::vector<Candidate>& all, std::vector<std::vector<Border>>& groups) {
   constexpr double near = 0.05;                                 // of the length
-  std::vector<std::pair<const Candidate*, std::size_t>> heads;  // the first border of each group made here, and the
-                                                                // group
+  std::vector<std::pair<const Candidate*, std::size_t>> heads;  // the first border of each new group, and the group
   for (const Candidate& one : all) {
     const auto head = std::find_if(heads.begin(), heads.end(), [&](const auto& of) {
       return length(of.first->middle - one.middle) <= near * std::max(of.first->length, one.length);

@@ -41,8 +41,7 @@ struct Tessellated {
   std::size_t patches_without_angle = 0;
   double pixels = 0;
   double bound = 0;     ///< largest distance of mesh and surfaces; 0: unknown
-  bool proven = false;  ///< false if callables are fitted without bounds on their derivatives: the bound is then only
-                        ///< sampled
+  bool proven = false;  ///< false if sampled: callables fitted without bounds on their derivatives
 };
 
 /// Runs a plan of either kind.

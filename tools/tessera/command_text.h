@@ -12,8 +12,7 @@ namespace tessera::cli {
 
 struct OptionText {
   std::vector<std::string> names;    ///< "-o", "--output"; "MODEL" for a word without a name
-  std::string value;                 ///< the name of its value, "NxM"; empty for a flag. Names of files begin with
-                                     ///< "FILE".
+  std::string value;                 ///< name of its value, "NxM"; empty for a flag. Files begin with "FILE".
   std::vector<std::string> choices;  ///< its only values, if they are words
   std::string text;                  ///< its purpose, with unit and default
   bool positional = false, required = false, repeated = false;

@@ -81,9 +81,8 @@ class SurfaceMaker {
     if (!count_v) return count_v.status();
     count_u_ = *count_u;
     count_v_ = *count_v;
-    if (points_.size() / count_u_ == count_v_ && points_.size() % count_u_ == 0)
-      return {};  // divides: the product
-                  // could overflow
+    // Divides: the product could overflow.
+    if (points_.size() / count_u_ == count_v_ && points_.size() % count_u_ == 0) return {};
     return {StatusCode::count_mismatch, "its parameters and degrees want " + std::to_string(count_u_) + " x " +
                                             std::to_string(count_v_) + " control points, it has " +
                                             std::to_string(points_.size())};

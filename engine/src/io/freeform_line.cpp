@@ -107,9 +107,7 @@ Result<BasisMatrix> piece_basis(FreeformType type, const FreeformLine& line) {
   const int degree = degree_of(type, line);
   if (type == FreeformType::taylor) return BasisMatrix::power(degree);
   const std::size_t size = static_cast<std::size_t>(degree) + 1;
-  std::vector<double> entries(size *
-                              size);  // each row holds the coefficients of one power; a row of the file holds one
-                                      // function
+  std::vector<double> entries(size * size);  // a row of the file is one function, here one power
   for (std::size_t i = 0; i < size; ++i)
     for (std::size_t j = 0; j < size; ++j) entries[j * size + i] = line.matrix[i * size + j];
   return BasisMatrix::custom(degree, entries);

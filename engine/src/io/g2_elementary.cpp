@@ -135,8 +135,7 @@ Result<Surface> cone(const Elementary& e, Affine& placement) {
   if (slope < 0) {
     placement = placement * Affine::scaled({-1, -1, 1});
   }
-  return quadric(QuadricKind::elliptic_cone, {.a = 1, .b = 1, .c = -1}, range);  // slope 1 here; the placement scales
-                                                                                 // it
+  return quadric(QuadricKind::elliptic_cone, {.a = 1, .b = 1, .c = -1}, range);  // slope 1, then scaled
 }
 
 Result<Surface> make_surface(std::int64_t kind, const Elementary& e, Affine& placement) {
