@@ -129,9 +129,9 @@ TEST(Expression, RefusalsSayWhatAndWhere) {
 }
 
 TEST(Expression, ThereAreNoAssignmentsStringsListsOrOtherNames) {
-  expect_refusal("u = 3", "nothing can be assigned (\"=\" at position 2)");
-  expect_refusal("u += 3", "nothing can be assigned");
-  expect_refusal("1, 2", "one value is wanted, not a list");
+  expect_refusal("u = 3", "there are no assignments (\"=\" at position 2)");
+  expect_refusal("u += 3", "there are no assignments");
+  expect_refusal("1, 2", "expected one value, found a list");
   expect_refusal("\"text\"", "unexpected character \"\"\" at position 0");
   expect_refusal("u[0]", "unexpected character \"[\" at position 1");
   expect_refusal("1;2", "unexpected character \";\" at position 1");

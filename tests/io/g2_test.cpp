@@ -106,7 +106,7 @@ TEST(G2, ToriAreNurbsFromBorderToBorder) {
                                              "290 1 0 0\n3\n5 2" + frame + "0.25 2.5\n-1 3\n1\n");
   ASSERT_EQ(model.surfaces.size(), 2u);
   EXPECT_EQ(model.warnings,
-            std::vector<std::string>{"m: u and v of 1 elementary surfaces are swapped in the file, and here are not"});
+            std::vector<std::string>{"m: 1 elementary surface has u and v swapped in the file, but not here"});
   const auto torus = [](double u, double v) {
     const double r = 5 + 2 * std::cos(v);
     return Vec3{1 + r * std::cos(u), 2 + r * std::sin(u), 3 + 2 * std::sin(v)};
@@ -166,7 +166,7 @@ TEST(G2, ErrorsSayWhereWhatAndWhatWasWanted) {
       {"270 1 0 0\n3\n1\n0 0 0\n0 0 1\n0 0 2\n0 1\n0 1\n0\n",
        "m:1: object 1 (class 270): expected a z axis and an x axis of different directions"},
       {"290 1 0 0\n3\n5 1\n0 0 0\n0 0 1\n1 0 0\n1\n0 9\n0 1\n0\n",
-       "m:1: object 1 (class 290): its ranges are not above 0 and at most a full turn"},
+       "m:1: object 1 (class 290): its ranges must be above 0 and at most a full turn"},
       {"260 1 0 0\n3\n1\n0 0 0\n0 0 1\n1 0 0\n2\n",
        "m:7: expected whether the surface is bounded of object 1 (class 260), from 0 to 1, found \"2\""},
   };

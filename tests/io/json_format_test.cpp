@@ -68,7 +68,7 @@ TEST(JsonFormat, EveryKindHasAnExample) {
 TEST(JsonFormat, EveryKeyIsTold) {
   const std::string text = document();
   for (const std::string& kind : kinds()) {
-    const auto keys = listed_in_refusal(surface_of(kind, R"("?": 0)"), "there are ", "");
+    const auto keys = listed_in_refusal(surface_of(kind, R"("?": 0)"), "known keys are ", "");
     EXPECT_GE(keys.size(), 5u);
     for (const std::string& key : keys) EXPECT_NE(text.find("`" + key + "`"), std::string::npos) << kind << ": " << key;
   }

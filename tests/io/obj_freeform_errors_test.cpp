@@ -84,28 +84,28 @@ TEST(ObjFreeformErrors, SurfacesThatDoNotFitAreNamed) {
   EXPECT_EQ(surface("cstype bezier", "#"), place + "there is no cstype above");
   EXPECT_EQ(surface("deg 1 1", "#"), place + "there is no deg for u above");
   EXPECT_EQ(surface("deg 1 1", "deg 1"), place + "there is no deg for v above");
-  EXPECT_EQ(surface("deg 1 1", "deg 1 16"), place + "the degree along v is 16, 1 to 15 are read");
-  EXPECT_EQ(surface("deg 1 1", "deg 0 1"), place + "the degree along u is 0, 1 to 15 are read");
-  EXPECT_EQ(surface("deg 1 1", "deg 2 2"), place + "its parameters and degrees want 3 x 3 control points, it has 4");
+  EXPECT_EQ(surface("deg 1 1", "deg 1 16"), place + "the degree along v is 16, it must be 1 to 15");
+  EXPECT_EQ(surface("deg 1 1", "deg 0 1"), place + "the degree along u is 0, it must be 1 to 15");
+  EXPECT_EQ(surface("deg 1 1", "deg 2 2"), place + "its parameters and degrees need 3 x 3 control points, found 4");
   EXPECT_EQ(surface("parm u 0 1", ""), "m.obj:8: surface 0 (a): parm u is missing");
   EXPECT_EQ(surface("parm v 0 1", ""), "m.obj:8: surface 0 (a): parm v is missing");
-  EXPECT_EQ(surface("parm u 0 1", "parm u 1"), place + "parm u has 1 values, at least 2 are wanted");
+  EXPECT_EQ(surface("parm u 0 1", "parm u 1"), place + "parm u has 1 value, at least 2 are needed");
   EXPECT_EQ(surface("parm u 0 1", "parm u 1 1"), place + "parm u does not increase: 1 follows 1");
   EXPECT_EQ(surface("surf 0 1 0 1", "surf 1 1 0 1"), place + "the range from 1 to 1 along u is empty");
   EXPECT_EQ(surface("surf 0 1 0 1", "surf 0 1 0 1.5"),
-            place + "the range from 0 to 1.5 along v reaches outside parm v, which runs from 0 to 1");
+            place + "the range from 0 to 1.5 along v exceeds parm v, which runs from 0 to 1");
   EXPECT_EQ(surface("cstype bezier", "cstype bspline"),
-            place + "parm u has 2 values, a B-spline of degree 1 wants at least 4 knots");
+            place + "parm u has 2 values, a B-spline of degree 1 needs at least 4 knots");
   EXPECT_EQ(surface("cstype bezier", "cstype bmatrix"), place + "there is no step for u above");
   EXPECT_EQ(surface("cstype bezier", "cstype bmatrix\nstep 0 1"),
             "m.obj:9: surface 0 (a): the step along u is 0, it must be at least 1");
   EXPECT_EQ(surface("cstype bezier", "cstype bmatrix\nstep 1 1"), "m.obj:9: surface 0 (a): there is no bmat u above");
   EXPECT_EQ(surface("cstype bezier", "cstype bmatrix\nstep 1 1\nbmat u 1 2"),
-            "m.obj:10: surface 0 (a): bmat u has 2 entries, degree 1 wants 4");
+            "m.obj:10: surface 0 (a): bmat u has 2 entries, degree 1 needs 4");
   EXPECT_EQ(surface("parm u 0 1", "parm u 0 1 2\ncstype bmatrix\nbmat u 1 0 0 1\nstep 9000000000000000000 1"),
             place +
-                "parm u has 3 values and the step is 9000000000000000000: that wants more than the 4 control points "
-                "there are");
+                "parm u has 3 values and the step is 9000000000000000000: they need more than the 4 control points "
+                "found");
 }
 
 TEST(ObjFreeformErrors, TheKindsOwnErrorsKeepTheirCode) {
@@ -149,7 +149,7 @@ TEST(ObjFreeformErrors, TrimsReferToCurvesAboveAndStayOnThem) {
   EXPECT_EQ(error_of(spoiled("curv2 1 2", "curv2 1 3", curve)),
             "m.obj:6: expected the index of a vp line with 2 coordinates, found \"3\"");
   EXPECT_EQ(error_of(spoiled("parm u 0 1", "parm u 0 1 2", curve)),
-            "m.obj:6: curv2 1: its parameters and degree want 3 control points, it has 2");
+            "m.obj:6: curv2 1: its parameters and degree need 3 control points, found 2");
   EXPECT_EQ(error_of(spoiled("parm u 0 1", "", curve)), "m.obj:6: curv2 1: parm u is missing");
 }
 

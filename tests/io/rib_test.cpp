@@ -233,7 +233,7 @@ TEST(Rib, HeightFieldsStandOverTheirParameters) {
   }
   EXPECT_EQ(error_of(parse_rib,
                      "Basis \"hermite\" 2 \"bezier\" 3\nPatch \"bicubic\" \"Pz\" [0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0]"),
-            "m:2: Patch: a height field wants a basis of points (bezier, b-spline, catmull-rom)");
+            "m:2: Patch: a height field needs a basis of points (bezier, b-spline, catmull-rom)");
 }
 
 TEST(Rib, NuPatchesHaveTheirKnotsAndRanges) {

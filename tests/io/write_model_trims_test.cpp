@@ -77,7 +77,7 @@ TEST(WriteModelTrims, AreSaidToBeLeftOutOfQuadrics) {
   const Model read = rewritten(model, folder / "a.obj", &facts);
   EXPECT_EQ(facts.warnings,
             (std::vector<std::string>{
-                "surface 0 (side): 2 trims are not written: they are by other parameters than its patches"}));
+                "surface 0 (side): 2 trims are not written: their parameters are not those of its patches"}));
   EXPECT_TRUE(read.surfaces[0].trims->empty());
 }
 

@@ -88,9 +88,9 @@ TEST_P(BadCadFile, WhatIsNoFileIsNamed) {
   expect_error(folder_.file(name("empty"), ""), StatusCode::parse_error, ": the file is empty");
   // Nobody writes to this pipe: opening it would block.
   ASSERT_EQ(::mkfifo((folder_ / name("pipe")).c_str(), 0600), 0);
-  expect_error(folder_ / name("pipe"), StatusCode::unsupported, ": STEP and IGES are read from files alone");
+  expect_error(folder_ / name("pipe"), StatusCode::unsupported, ": STEP and IGES are read from regular files only");
   std::filesystem::create_symlink("/dev/zero", folder_ / name("zero"));
-  expect_error(folder_ / name("zero"), StatusCode::unsupported, ": STEP and IGES are read from files alone");
+  expect_error(folder_ / name("zero"), StatusCode::unsupported, ": STEP and IGES are read from regular files only");
 }
 
 TEST_P(BadCadFile, NoPermissionIsSaid) {

@@ -113,8 +113,8 @@ TEST(ReadCad, OtherFilesAreRefused) {
 TEST(ReadModel, NamesTheReaderOfStepAndIges) {
   const ScratchFolder folder;
   expect_refused(read_model(folder.file("part.STP", "x")), StatusCode::unsupported, Status::no_index,
-                 "part.STP: unsupported format \".stp\": STEP is read where OpenCASCADE is installed "
-                 "(libocct-data-exchange-dev) when Tessera is built");
+                 "part.STP: unsupported format \".stp\": STEP needs a Tessera that was built with OpenCASCADE "
+                 "(libocct-data-exchange-dev), and read_cad");
   expect_refused(read_model(folder / "none.igs"), StatusCode::io_error, Status::no_index, "none.igs: cannot be opened");
 }
 

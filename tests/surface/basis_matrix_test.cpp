@@ -186,7 +186,7 @@ TEST(BasisMatrix, RefusesWhatItCannotHold) {
     expect_refused(BasisMatrix::custom(degree, {}), StatusCode::unsupported_degree, -1, words);
   }
   expect_refused(BasisMatrix::custom(2, std::vector<double>(8)), StatusCode::count_mismatch, -1,
-                 "a basis matrix of degree 2 has 3 x 3 entries, 8 were given");
+                 "a basis matrix of degree 2 has 3 x 3 entries, found 8");
   for (const double bad : {not_a_number, infinity, -infinity})
     expect_refused(BasisMatrix::custom(1, std::vector<double>{1, 0, bad, 1}), StatusCode::non_finite, 2,
                    "entry [1][0] of the basis matrix is ");

@@ -266,7 +266,7 @@ TEST(Pixels, WrongOnesAreRefused) {
   EXPECT_NE(changed([](View& v) { v.field_of_view = 0; }).find("field of view"), std::string::npos);
   EXPECT_NE(changed([](View& v) { v.field_of_view = std::nan(""); }).find("field of view"), std::string::npos);
   EXPECT_NE(changed([](View& v) { v.orthographic = true, v.extent = -1; }).find("extent"), std::string::npos);
-  EXPECT_NE(changed([](View& v) { v.height = 0; }).find("pixels, from 1 to"), std::string::npos);
+  EXPECT_NE(changed([](View& v) { v.height = 0; }).find("pixels, each must be from 1 to"), std::string::npos);
   EXPECT_NE(changed([](View& v) { v.near_distance = -1; }).find("near distance"), std::string::npos);
   // Floats far away move by more than the pixels allow: an error, not silence.
   const PatchSet far = set_of(placed(closed_body(), 1, {1e7, 0, 0}));

@@ -202,8 +202,8 @@ TEST(Quads, CheckKnowsThem) {
     return check(bad).status().message();
   };
   EXPECT_EQ(error_of([](Mesh& m) { m.quads[9] = 8; }), "corner 1 of quad 2 is vertex 8, the mesh has 8");
-  EXPECT_EQ(error_of([](Mesh& m) { m.quads.pop_back(); }), "23 indices are not four a quad");
-  EXPECT_EQ(error_of([](Mesh& m) { m.quad_patches = {1}; }), "1 patches for 6 quads");
+  EXPECT_EQ(error_of([](Mesh& m) { m.quads.pop_back(); }), "23 indices are not four per quad");
+  EXPECT_EQ(error_of([](Mesh& m) { m.quad_patches = {1}; }), "1 patch for 6 quads");
 }
 
 TEST(Quads, AreSplitPartByPart) {

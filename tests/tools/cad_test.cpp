@@ -52,7 +52,7 @@ TEST_F(CadTool, BrokenPartsAreRefused) {
 TEST_F(CadTool, SaysWhatIsMissing) {
   folder_.file("part.step", "ISO-10303-21;");
   expect_failure({"info", "part.step"}, 1,
-                 "STEP is read where OpenCASCADE is installed (libocct-data-exchange-dev) when Tessera is built");
+                 "STEP needs a Tessera that was built with OpenCASCADE (libocct-data-exchange-dev)");
 }
 
 #endif

@@ -1,10 +1,11 @@
 #pragma once
-// Numbers in messages.
+// Numbers and counts in messages.
 
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <string>
+#include <string_view>
 
 namespace tessera::inline abi_0_1 {
 
@@ -14,6 +15,14 @@ namespace tessera::inline abi_0_1 {
   if (std::isnan(value)) return "nan";
   std::array<char, 32> digits;
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
+}
+
+/// "1 vertex", "2 vertices"; `plural` if an s is not enough.
+[[gnu::cold]] inline std::string counted(std::size_t count, std::string_view noun, std::string_view plural = {}) {
+  std::string out = std::to_string(count) + ' ';
+  out += count == 1 || plural.empty() ? noun : plural;
+  if (count != 1 && plural.empty()) out += 's';
+  return out;
 }
 
 }  // namespace tessera::inline abi_0_1

@@ -105,7 +105,7 @@ std::optional<Status> foreign_character(std::string_view text) {
     const bool ends_comparison = k > 0 && std::string_view("<>!=").find(text[k - 1]) != std::string_view::npos;
     const bool begins_comparison = k + 1 < text.size() && text[k + 1] == '=';
     if (!ends_comparison && !begins_comparison)
-      return refusal(text, "nothing can be assigned (\"=\" at position " + std::to_string(k) + "); == compares");
+      return refusal(text, "there are no assignments (\"=\" at position " + std::to_string(k) + "); == compares");
   }
   return {};
 }
@@ -155,7 +155,7 @@ Result<Expression> Expression::compile(std::string_view text, std::span<const st
   pool->variables.assign(variables.begin(), variables.end());
   try {
     auto evaluator = pool->take();
-    if (evaluator->count() != 1) return refusal(text, "one value is wanted, not a list");
+    if (evaluator->count() != 1) return refusal(text, "expected one value, found a list");
     pool->put_back(std::move(evaluator));
   } catch (const mu::ParserError& error) {
     return refusal(text, reason(error));

@@ -78,8 +78,8 @@ Status or_read_elsewhere(const fs::path& path, const Status& status) {
   if (status.code() != StatusCode::unsupported || (!step && !iges)) return status;
   return Status(StatusCode::unsupported,
                 path.string() + ": unsupported format \"" + extension + "\": " + (step ? "STEP" : "IGES") +
-                    " is read where OpenCASCADE is installed (libocct-data-exchange-dev) when Tessera is built, by "
-                    "read_cad of tessera/io_occt.h");
+                    " needs a Tessera that was built with OpenCASCADE (libocct-data-exchange-dev), and read_cad of "
+                    "tessera/io_occt.h");
 }
 
 }  // namespace

@@ -83,8 +83,8 @@ class SurfaceMaker {
     count_v_ = *count_v;
     // Divides: the product could overflow.
     if (points_.size() / count_u_ == count_v_ && points_.size() % count_u_ == 0) return {};
-    return {StatusCode::count_mismatch, "its parameters and degrees want " + std::to_string(count_u_) + " x " +
-                                            std::to_string(count_v_) + " control points, it has " +
+    return {StatusCode::count_mismatch, "its parameters and degrees need " + std::to_string(count_u_) + " x " +
+                                            std::to_string(count_v_) + " control points, found " +
                                             std::to_string(points_.size())};
   }
 
@@ -242,8 +242,8 @@ Result<std::vector<Curve>> freeform_curves(const FreeformState& state, const Con
   const Result<std::size_t> count = control_count(state.type, state.u, 'u', points.size());
   if (!count) return count.status();
   if (*count != points.size())
-    return Status(StatusCode::count_mismatch, "its parameters and degree want " + std::to_string(*count) +
-                                                  " control points, it has " + std::to_string(points.size()));
+    return Status(StatusCode::count_mismatch, "its parameters and degree need " + std::to_string(*count) +
+                                                  " control points, found " + std::to_string(points.size()));
   if (state.type == FreeformType::taylor || state.type == FreeformType::bmatrix) return curve_pieces(state, points);
   const int degree = degree_of(state.type, state.u);
   if (state.type == FreeformType::cardinal)

@@ -4,6 +4,7 @@
 // header.
 
 #include "io/g2.h"
+#include "base/text.h"
 
 #include <algorithm>
 #include <vector>
@@ -80,8 +81,8 @@ class G2Reader {
     }
     model_.warnings = passed_over_.warnings();
     if (swapped_ > 0) {
-      model_.warnings.push_back(std::string(name_) + ": u and v of " + std::to_string(swapped_) +
-                                " elementary surfaces are swapped in the file, and here are not");
+      model_.warnings.push_back(std::string(name_) + ": " + counted(swapped_, "elementary surface") +
+                                (swapped_ == 1 ? " has" : " have") + " u and v swapped in the file, but not here");
     }
     return std::move(model_);
   }

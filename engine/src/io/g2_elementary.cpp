@@ -81,8 +81,9 @@ Result<Surface> quadric(QuadricKind kind, const QuadricCoefficients& coefficient
   const Result<Quadric> whole = Quadric::make(coefficients);
   if (!whole) return whole.status();
   if (whole->kind() != kind)
-    return Status(StatusCode::invalid_argument, "its sizes are too far from 1 for doubles: it comes out as the kind '" +
-                                                    std::string(name(whole->kind())) + "'");
+    return Status(StatusCode::invalid_argument,
+                  "its sizes are too far from 1 for double: it is classified as the kind '" +
+                      std::string(name(whole->kind())) + "'");
   Result<QuadricPiece> piece = QuadricPiece::make(*whole, range);
   if (!piece) return piece.status();
   return Surface(*std::move(piece));
@@ -107,7 +108,7 @@ Result<Surface> torus(const Elementary& e) {
   snap_turn(range.v0, range.v1);
   const double turn_u = range.u1 - range.u0, turn_v = range.v1 - range.v0;
   if (!(turn_u > 0 && turn_u <= 2 * pi + printed && turn_v > 0 && turn_v <= 2 * pi + printed)) {
-    return Status(StatusCode::invalid_argument, "its ranges are not above 0 and at most a full turn");
+    return Status(StatusCode::invalid_argument, "its ranges must be above 0 and at most a full turn");
   }
   const Vec3 outwards{std::cos(range.u0), std::sin(range.u0), 0}, up{0, 0, 1};
   const Result<Curve> tube = nurbs_circle({.origin = e.radius * outwards,

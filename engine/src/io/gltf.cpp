@@ -226,10 +226,11 @@ Status write(const Mesh& mesh, OutputFile& out, bool binary) {
     const Result<Mesh> split = split_quads(mesh);
     return split ? write(*split, out, binary) : split.status();
   }
-  if (mesh.triangle_count() == 0) return {StatusCode::invalid_argument, "the mesh has no triangles, glTF wants some"};
+  if (mesh.triangle_count() == 0)
+    return {StatusCode::invalid_argument, "the mesh has no triangles, glTF needs at least one"};
   if (const std::size_t bytes = GltfMesh::byte_count(mesh); bytes > max_bytes)
-    return {StatusCode::unsupported, "the mesh takes " + std::to_string(bytes) + " bytes, glTF files of up to " +
-                                         std::to_string(max_bytes) + " are written"};
+    return {StatusCode::unsupported, "the mesh takes " + std::to_string(bytes) + " bytes, a glTF file is limited to " +
+                                         std::to_string(max_bytes)};
   const tinygltf::Model model = GltfMesh(mesh).make();
   FileBuffer buffer(out);
   std::ostream stream(&buffer);

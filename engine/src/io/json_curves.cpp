@@ -13,7 +13,8 @@ std::vector<double> weights_of(const Fields& fields, std::size_t count) {
   const std::optional<JsonValue> value = fields.find("weights");
   if (value) weights = read_numbers(*value);
   if (value && weights.size() != count)
-    value->fail("expected " + std::to_string(count) + " weights, one a point, found " + std::to_string(weights.size()));
+    value->fail("expected " + std::to_string(count) + " weights, one per point, found " +
+                std::to_string(weights.size()));
   return weights;
 }
 

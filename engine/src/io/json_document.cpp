@@ -135,7 +135,7 @@ class JsonBuilder : public nlohmann::json_sax<nlohmann::json> {
     if (twice == keys.end()) return true;
     const std::size_t second = twice[1];
     status_ = {StatusCode::parse_error, document_.line_of(nodes[second].offset) + "the key " + quote(text_of(second)) +
-                                            " stands twice in one object"};
+                                            " occurs twice in one object"};
     return false;
   }
 

@@ -47,7 +47,7 @@ std::vector<double> network_knots(const Fields& fields, std::string_view key, st
   if (const std::optional<JsonValue> given = fields.find(key)) {
     knots = read_numbers(*given);
     if (knots.size() != count)
-      given->fail("expected " + std::to_string(count) + " knots, one a node, found " + std::to_string(knots.size()));
+      given->fail("expected " + std::to_string(count) + " knots, one per node, found " + std::to_string(knots.size()));
   }
   while (knots.size() < count) knots.push_back(static_cast<double>(knots.size()));
   return knots;
@@ -59,7 +59,8 @@ std::vector<double> network_factors(const Fields& fields, std::string_view key, 
   if (!given) return std::vector<double>(count, 1.0);
   std::vector<double> factors = read_numbers(*given);
   if (factors.size() != count)
-    given->fail("expected " + std::to_string(count) + " factors, one a span, found " + std::to_string(factors.size()));
+    given->fail("expected " + std::to_string(count) + " factors, one per span, found " +
+                std::to_string(factors.size()));
   return factors;
 }
 
@@ -77,7 +78,7 @@ Surface read_hermite_patch(const JsonValue& value) {
   const SurfaceFields fields(value, {"geometry", "order", "corners", "domain"});
   const std::optional<JsonValue> corners = fields.find("corners");
   if (corners && (fields.find("geometry") || fields.find("order")))
-    value.fail("\"corners\" stand alone, without \"geometry\" and \"order\"");
+    value.fail("\"corners\" cannot be combined with \"geometry\" or \"order\"");
   if (corners)
     return made(value, HermitePatch::from_corners(read_corners<HermiteNode>(*corners, read_node), domain_of(fields)));
   const Net<Vec3> geometry = read_4_by_4(fields.at("geometry"), "vectors");

@@ -26,7 +26,7 @@ Fields::Fields(const JsonValue& value, std::initializer_list<std::string_view> k
     ++member, ++member;  // past the key and its value
     const auto in = [&](const auto& list) { return std::find(list.begin(), list.end(), key.string()) != list.end(); };
     if (!in(keys) && !in(more))
-      key.fail("unknown key " + quote(key.string()) + "; there are " + listed(keys) +
+      key.fail("unknown key " + quote(key.string()) + "; known keys are " + listed(keys) +
                (more.size() == 0 ? "" : ", " + listed(more)));
   }
 }

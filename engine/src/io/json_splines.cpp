@@ -37,7 +37,7 @@ struct SplineNet {
     points = wrapped(net, rows, columns);
     if (const std::optional<JsonValue> given = fields.find("weights")) {
       const Net<double> all = read_number_net(*given, "weights");
-      expect_shape(*given, all, net.rows, net.columns, "one a point");
+      expect_shape(*given, all, net.rows, net.columns, "one per point");
       weights = wrapped(all, rows, columns);
     }
     if (const std::optional<JsonValue> part = fields.find("domain")) domain = read_domain(*part);

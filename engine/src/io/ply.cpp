@@ -121,7 +121,7 @@ class BodyReader {
       }
       if (!status.ok()) return status;
     }
-    if (!values_.at_end()) return values_.error("there is more after the last element");
+    if (!values_.at_end()) return values_.error("there is data after the last element");
     if (mesh_.positions.empty()) return values_.error("there are no vertices");
     for (const auto* indices : {&mesh_.indices, &mesh_.quads}) {
       const auto bad = std::find_if(indices->begin(), indices->end(),

@@ -317,16 +317,17 @@ class RibReader {
                         " trimmed: trims are not honoured yet");
     }
     if (!later_samples_.empty()) {
-      say(later_samples_, "of what moves, the first moment alone is read, " + number(later_samples_) + " others not");
+      say(later_samples_, "motions are read at their first moment only, " + number(later_samples_) +
+                              (later_samples_.total() == 1 ? " other is" : " others are") + " skipped");
     }
     if (worlds_.total() > 1) {
-      say(worlds_, number(worlds_) + " worlds share one space, their surfaces may lie in one another");
+      say(worlds_, number(worlds_) + " worlds share one space, their surfaces may overlap");
     }
     if (stack_.is_open()) {
       model_.warnings.push_back(std::string(name_) + ": expected the blocks to end with the file, " +
                                 stack_.open_block());
     }
-    if (!others_.empty()) say(others_, "requests that are passed over: " + others_.words());
+    if (!others_.empty()) say(others_, "requests that are skipped: " + others_.words());
   }
 
   Tally& unread() {

@@ -287,9 +287,9 @@ Result<std::int64_t> RibDirection::patches() const {
   if (periodic && points >= step && points % step == 0) return points / step;
   if (!periodic && points >= least && (points - least) % step == 0) return (points - least) / step + 1;
   const std::string wanted = periodic ? "a multiple of " + std::to_string(step)
-                                      : std::to_string(least) + " and a multiple of " + std::to_string(step) + " more";
-  return Status(StatusCode::count_mismatch, std::to_string(points) + " points a line make no " +
-                                                (periodic ? "closed " : "") + "mesh with this basis, which wants " +
+                                      : std::to_string(least) + " plus a multiple of " + std::to_string(step);
+  return Status(StatusCode::count_mismatch, std::to_string(points) + " points along one direction make no " +
+                                                (periodic ? "closed " : "") + "mesh with this basis, which needs " +
                                                 wanted);
 }
 
@@ -298,7 +298,7 @@ Result<std::vector<double>> height_field_parameters(const RibDirection& directio
   const Result<std::int64_t> patches = direction.patches();
   if (!patches) return patches.status();
   if (form == Form::hermite || form == Form::separate) {
-    return Status(StatusCode::unsupported, "a height field wants a basis of points (bezier, b-spline, catmull-rom)");
+    return Status(StatusCode::unsupported, "a height field needs a basis of points (bezier, b-spline, catmull-rom)");
   }
   // Control points at the averages of the knots (Greville) reproduce the parameter itself.
   const double n = static_cast<double>(*patches), first = form == Form::b_spline || form == Form::catmull_rom ? -1 : 0;

@@ -17,6 +17,7 @@
 #include <new>
 #include <system_error>
 
+#include "base/text.h"
 #include "io/descriptor.h"
 
 namespace tessera::inline abi_0_1 {
@@ -122,10 +123,10 @@ bool receive(int descriptor, std::string& bytes) {
 Status end_of(int status, const ChildLimits& limits, std::string_view worker) {
   const std::string who(worker);
   if (WIFEXITED(status) && WEXITSTATUS(status) == child_out_of_memory)
-    return Status(StatusCode::out_of_memory, who + " wanted more memory than it is allowed");
+    return Status(StatusCode::out_of_memory, who + " exceeded its memory limit");
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
     return Status(StatusCode::internal,
-                  who + " came to no end in " + std::to_string(limits.cpu_seconds) + " seconds of computing");
+                  who + " did not end within " + counted(limits.cpu_seconds, "second") + " of processor time");
   if (!WIFSIGNALED(status)) return Status(StatusCode::internal, who + " ended without a result");
   const char* const signal = ::sigdescr_np(WTERMSIG(status));
   return Status(StatusCode::internal, who + " crashed (" + (signal ? signal : "unknown signal") + ")");

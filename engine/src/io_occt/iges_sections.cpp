@@ -30,7 +30,7 @@ Status check_iges_sections(const std::string& path) {
   if (file.bad()) return Status(StatusCode::io_error, path + ": cannot be read");
   if (!ended)
     return Status(StatusCode::parse_error,
-                  path + ":" + std::to_string(number) + ": the file ends before its section T: it is cut short");
+                  path + ":" + std::to_string(number) + ": the file ends before its section T: it is truncated");
   return {};
 }
 

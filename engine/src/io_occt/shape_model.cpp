@@ -59,10 +59,6 @@ Status transpose(BSplineSurface& surface, std::vector<TrimLoop>& loops) {
   return {};
 }
 
-std::string counted(std::size_t count, const char* thing) {
-  return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
-}
-
 /// Gathers faces and their warnings.
 class ModelOfFaces {
  public:
