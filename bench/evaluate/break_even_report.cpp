@@ -74,7 +74,7 @@ class Part {
                                         View1<const float>::interleaved(u_), View1<const float>::interleaved(v_)};
       must(tessera::evaluate(set_, samples, views_, {}, execution));
     } else if (kind_.blocks) {
-      must(tessera::evaluate(set_, plan_, GridBlocks<float>{.position = memory_, .normal = normals_}, execution));
+      must(tessera::evaluate(set_, plan_, QuantityBlocks<float>{.position = memory_, .normal = normals_}, execution));
     } else {
       must(tessera::evaluate(set_, plan_, views_, execution));
     }
@@ -86,7 +86,7 @@ class Part {
   PatchSet set_;
   GridPlan plan_;
   AlignedVector<float> memory_, normals_;
-  GridViews<float> views_;
+  QuantityViews<float> views_;
   std::vector<std::uint32_t> patch_;
   std::vector<float> u_, v_;
 };

@@ -87,7 +87,7 @@ double touch_seconds(const PatchSet& set, const Samples& samples) {
   return best;
 }
 
-bool check_values(const PatchSet& set, const Samples& samples, const PointViews<float>& out) {
+bool check_values(const PatchSet& set, const Samples& samples, const QuantityViews<float>& out) {
   const double size = set.box().diagonal();
   for (std::size_t k = 0; k < samples.patch.size(); k += 97) {
     const SurfaceJet jet = evaluate_jet(set.patch(samples.patch[k]), samples.u[k], samples.v[k]);
@@ -103,7 +103,7 @@ void run(benchmark::State& state, const Case& c) {
   const PatchSet& set = field_of(c.patches);
   const Samples samples(c);
   std::vector<float> positions(3 * c.samples()), normals(c.normals ? positions.size() : 0);
-  PointViews<float> out{.position = View3<float>::interleaved(positions)};
+  QuantityViews<float> out{.position = View3<float>::interleaved(positions)};
   if (c.normals) out.normal = View3<float>::interleaved(normals);
   const double touch_before = touch_seconds(set, samples);
   ExecutionReport report;

@@ -65,7 +65,7 @@ class Outputs {
     views_.position = View3<float>::interleaved(first_, c.normals ? 6 : 3);
     if (c.normals) views_.normal = View3<float>::interleaved(first_, 6, 3);
   }
-  GridBlocks<float> in_blocks() { return {.position = first_, .normal = second_}; }
+  QuantityBlocks<float> in_blocks() { return {.position = first_, .normal = second_}; }
   Status evaluate(const PatchSet& set, const GridPlan& plan) {
     return blocks_ ? tessera::evaluate(set, plan, in_blocks()) : tessera::evaluate(set, plan, views_);
   }
@@ -79,7 +79,7 @@ class Outputs {
  private:
   bool blocks_;
   AlignedVector<float> first_, second_;
-  GridViews<float> views_;
+  QuantityViews<float> views_;
 };
 
 /// Compares the outputs with those of a new set of the same patches.
@@ -101,7 +101,7 @@ void run(benchmark::State& state, const Case& c) {
   Outputs outputs(plan, c);
   if (const Status status = outputs.evaluate(set, plan); !status.ok())
     return state.SkipWithError(status.message().c_str());
-  Work work = plan.work({.normal = c.normals});
+  Work work = plan.work({.position = true, .normal = c.normals});
   for (double* amount : {&work.lane_operations, &work.bytes_written, &work.bytes_read})
     *amount /= static_cast<double>(c.step);
   const LimitsAround around(c.isa, work.bytes_written);

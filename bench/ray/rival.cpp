@@ -80,7 +80,7 @@ void Rival::evaluate(const PatchSet& set, int quads, Isa isa, RTCGeometryType ty
   const UniformGrid grid = test::value_of(UniformGrid::make(set, quads, quads, isa));
   state_->positions.resize(3 * grid.capacity() + 1);
   const auto views = View3<float>::interleaved(std::span(state_->positions).first(3 * grid.capacity()));
-  if (!grid.run(impl_of(set), GridViews<float>{.position = views, .du = {}, .dv = {}, .normal = {}}, {}).ok())
+  if (!grid.run(impl_of(set), QuantityViews<float>{.position = views, .du = {}, .dv = {}, .normal = {}}, {}).ok())
     std::abort();
   state_->geometry = rtcNewGeometry(state_->device, type);
   rtcSetSharedGeometryBuffer(state_->geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, state_->positions.data(),

@@ -32,18 +32,25 @@ std::string machine_name() {
 
 struct Case {
   const char* name;
-  GridOutputs outputs;
+  QuantityFlags outputs;
 };
-constexpr Case cases[] = {
-    {"positions", {}},
-    {"+ normals", {.normal = true}},
-    {"+ du + dv", {.du = true, .dv = true}},
-    {"+ curvatures", {.du = true, .dv = true, .duu = true, .duv = true, .dvv = true, .gaussian = true, .mean = true}}};
+constexpr Case cases[] = {{"positions", {.position = true}},
+                          {"+ normals", {.position = true, .normal = true}},
+                          {"+ du + dv", {.position = true, .du = true, .dv = true}},
+                          {"+ curvatures",
+                           {.position = true,
+                            .du = true,
+                            .dv = true,
+                            .duu = true,
+                            .duv = true,
+                            .dvv = true,
+                            .gaussian = true,
+                            .mean = true}}};
 
 /// Memory for the outputs of a plan, in blocks.
 class Outputs {
  public:
-  Outputs(const GridPlan& plan, const GridOutputs& wanted) {
+  Outputs(const GridPlan& plan, const QuantityFlags& wanted) {
     const auto make_room = [&](bool is_wanted, std::size_t count, std::span<float>& span) {
       if (!is_wanted) return;
       memory_.emplace_back(count, 0.0f);
@@ -60,7 +67,7 @@ class Outputs {
     make_room(wanted.gaussian, vectors / 3, blocks.gaussian);
     make_room(wanted.mean, vectors / 3, blocks.mean);
   }
-  GridBlocks<float> blocks;
+  QuantityBlocks<float> blocks;
 
  private:
   std::vector<AlignedVector<float>> memory_;

@@ -70,8 +70,8 @@ class Work {
     const GridPlan plan = value_of(GridPlan::make(set, t, t));
     std::vector<float> grid(6 * plan.capacity());
     need(evaluate(set, plan,
-                  GridViews<float>{.position = View3<float>::interleaved(grid, 6, 0),
-                                   .normal = View3<float>::interleaved(grid, 6, 3)}));
+                  QuantityViews<float>{.position = View3<float>::interleaved(grid, 6, 0),
+                                       .normal = View3<float>::interleaved(grid, 6, 3)}));
     const std::size_t count = 1 + random_() % 5000;
     std::vector<std::uint32_t> patch(count);
     std::vector<float> u(count), v(count), points(3 * count);
@@ -82,7 +82,7 @@ class Work {
     }
     const PatchSamples<float> samples{View1<const std::uint32_t>::interleaved(patch),
                                       View1<const float>::interleaved(u), View1<const float>::interleaved(v)};
-    need(evaluate(set, samples, PointViews<float>{.position = View3<float>::interleaved(points)}));
+    need(evaluate(set, samples, QuantityViews<float>{.position = View3<float>::interleaved(points)}));
   }
 
   void mesh(PatchSet& set) {

@@ -87,7 +87,7 @@ bool grids_lie_on(const PatchSet& set, const GridPlanOptions& options) {
   const auto t = uniform_parameters(3);
   const GridPlan plan = value_of(GridPlan::make(set, t, t, options));
   std::vector<T> memory(3 * plan.capacity());
-  if (!evaluate(set, plan, GridViews<T>{.position = View3<T>::interleaved(memory)}).ok()) return false;
+  if (!evaluate(set, plan, QuantityViews<T>{.position = View3<T>::interleaved(memory)}).ok()) return false;
   const Vec3 origin = sizeof(T) == 4 ? set.origin() : Vec3{};
   for (std::size_t patch = 0; patch < set.patch_count(); patch += 50) {
     const T* p = &memory[3 * (9 * patch + 4)];
@@ -104,7 +104,7 @@ bool points_lie_on(const PatchSet& set) {
   std::vector<float> out(3 * patch.size());
   const PatchSamples<float> samples{View1<const std::uint32_t>::interleaved(patch),
                                     View1<const float>::interleaved(half), View1<const float>::interleaved(half)};
-  if (!evaluate(set, samples, PointViews<float>{.position = View3<float>::interleaved(out)}, {}).ok()) return false;
+  if (!evaluate(set, samples, QuantityViews<float>{.position = View3<float>::interleaved(out)}, {}).ok()) return false;
   for (std::size_t k = 0; k < patch.size(); ++k) {
     const Vec3 p = set.origin() + Vec3{out[3 * k], out[3 * k + 1], out[3 * k + 2]};
     if (!(max_abs(p - evaluate_jet(set.patch(patch[k]), 0.5, 0.5).position) <= 1e-5 * set.box().diagonal()))

@@ -134,10 +134,10 @@ TEST(PatchSet, RefusesWhatItCannotHold) {
   EXPECT_EQ(PatchSet::from(patches, {.origin = Vec3{0, std::numeric_limits<double>::infinity(), 0}}).status().code(),
             StatusCode::non_finite);
   const std::vector<PatchSource> one(1);
-  EXPECT_EQ(PatchSet::from(patches, one).status().code(), StatusCode::count_mismatch);
+  EXPECT_EQ(PatchSet::from(patches, {.sources = one}).status().code(), StatusCode::count_mismatch);
   std::vector<PatchSource> flat(2);
   flat[1].domain = {0, 0, 0, 1};
-  EXPECT_EQ(PatchSet::from(patches, flat).status().index(), 1);
+  EXPECT_EQ(PatchSet::from(patches, {.sources = flat}).status().index(), 1);
 }
 
 /// Alternating signs give the largest power coefficients: 3^15 in each direction.

@@ -56,7 +56,7 @@ Vec3 scalars(const View1<T>& a, const View1<T>& b, const View1<T>& c, std::size_
 }
 
 template <class T>
-void add_curvature_errors(const GridViews<T>& out, std::size_t record, const RealGeometry& g, const Sizes& sizes,
+void add_curvature_errors(const QuantityViews<T>& out, std::size_t record, const RealGeometry& g, const Sizes& sizes,
                           double unit, Errors& errors) {
   const double k1 = static_cast<double>(g.first), k2 = static_cast<double>(g.second), bound = sizes.curvature();
   const auto grow = [](double& largest, double error) {
@@ -81,7 +81,7 @@ template <class T>
 Errors errors_of(const PatchSet& set, const GridPlan& plan, const std::vector<double>& u,
                  const std::vector<double>& v) {
   AllBuffers<T> memory(plan);
-  const GridViews<T> out = memory.views();
+  const QuantityViews<T> out = memory.views();
   EXPECT_TRUE(evaluate(set, plan, out).ok());
   const double unit = sizeof(T) == 4 ? float_unit : double_unit;
   Errors errors;
@@ -193,7 +193,7 @@ TEST_P(GeometryAccuracy, PowerBasis) {
   ASSERT_TRUE(evaluate(set, bernstein, expected.views()).ok());
   ASSERT_TRUE(evaluate(set, power, found.views()).ok());
   EXPECT_EQ(found.normal_kind, expected.normal_kind);
-  const GridViews<double> a = expected.views(), b = found.views();
+  const QuantityViews<double> a = expected.views(), b = found.views();
   for (std::size_t k = 0; k < power.capacity(); ++k) {
     const Vec3 du = read(a.du, k), dv = read(a.dv, k);
     if (length(cross(du, dv)) < 0.1 * std::max(length(du), length(dv))) continue;
@@ -216,7 +216,7 @@ TEST_P(GeometryAccuracy, AtAnyScale) {
     const PatchSet set = set_of({polynomial(3, 3, scaled), unscaled}, {.origin = Vec3{}});
     const GridPlan plan = value_of(GridPlan::make(set, t, t, {.isa = GetParam()}));
     AllBuffers<float> memory(plan);
-    const GridViews<float> out = memory.views();
+    const QuantityViews<float> out = memory.views();
     ASSERT_TRUE(evaluate(set, plan, out).ok());
     for (const auto& values : memory.values)
       for (const float x : values) ASSERT_EQ(x, x);

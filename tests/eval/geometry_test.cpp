@@ -30,7 +30,7 @@ struct Evaluated {
   PatchSet set;
   GridPlan plan;
   AllBuffers<T> memory;
-  GridViews<T> out;
+  QuantityViews<T> out;
 
   Evaluated(const std::vector<BezierPatch>& patches, const std::vector<double>& t, Isa isa)
       : set(set_of(patches, both_precisions())),
@@ -123,8 +123,8 @@ TEST_P(Geometry, SphereIsUmbilicWithinTolerance) {
         {.precision = precision, .isa = GetParam(), .geometry = {.umbilic_tolerance = single ? 1e-3 : 1e-9}}));
     std::vector<CurvatureKind> kinds(plan.capacity());
     const auto view = View1<CurvatureKind>::interleaved(kinds);
-    ASSERT_TRUE((single ? evaluate(set, plan, GridViews<float>{.curvature_kind = view})
-                        : evaluate(set, plan, GridViews<double>{.curvature_kind = view}))
+    ASSERT_TRUE((single ? evaluate(set, plan, QuantityViews<float>{.curvature_kind = view})
+                        : evaluate(set, plan, QuantityViews<double>{.curvature_kind = view}))
                     .ok());
     for (const CurvatureKind kind : kinds) EXPECT_EQ(kind, CurvatureKind::umbilic);
   }
@@ -264,7 +264,7 @@ TEST_P(Geometry, EditsMoveTheLimits) {
   PatchSet set = set_of({polynomial(1, 1, open)});
   const GridPlan plan = value_of(GridPlan::make(set, t, t, {.isa = GetParam()}));
   std::vector<NormalKind> kinds(plan.capacity());
-  const GridViews<float> out{.normal_kind = View1<NormalKind>::interleaved(kinds)};
+  const QuantityViews<float> out{.normal_kind = View1<NormalKind>::interleaved(kinds)};
   for (const bool collapse : {false, true, false}) {
     ASSERT_TRUE(set.set_control_points(0, collapse ? closed : open).ok());
     ASSERT_TRUE(evaluate(set, plan, out).ok());
@@ -281,7 +281,7 @@ void expect_in_blocks(const Evaluated<T>& all, const Output& output, const Align
     for (std::size_t c = 0; c < width; ++c) {
       const PatchSet::Slot slot = all.set.slot(record / 9);
       const T found = blocks[((slot.block * 9 + record % 9) * width + c) * PatchSet::lanes + slot.lane];
-      ASSERT_EQ(found, (all.out.*output.view).at(record, static_cast<int>(c)));
+      ASSERT_EQ(found, output.of(all.out).at(record, static_cast<int>(c)));
     }
 }
 
@@ -296,34 +296,34 @@ void check_ways_out(Isa isa) {
     Execution execution;
     execution.stores = stores;
     std::map<std::string, AlignedVector<T>> blocks;
-    GridBlocks<T> together;
-    for_each_value_output<T>([&](const auto& output) {
+    QuantityBlocks<T> together;
+    for_each_value_quantity([&](const auto& output) {
       AlignedVector<T>& memory = blocks[output.name];
       memory.resize(all.plan.block_capacity() / 3 * static_cast<std::size_t>(output.width));
-      GridBlocks<T> alone;
-      alone.*output.memory = memory;
+      QuantityBlocks<T> alone;
+      output.of(alone) = memory;
       ASSERT_TRUE(evaluate(all.set, all.plan, alone, execution).ok());
       expect_in_blocks(all, output, memory);
       std::fill(memory.begin(), memory.end(), T{0});
-      together.*output.memory = memory;
+      output.of(together) = memory;
     });
     ASSERT_TRUE(evaluate(all.set, all.plan, together, execution).ok());
-    for_each_value_output<T>([&](const auto& output) { expect_in_blocks(all, output, blocks[output.name]); });
+    for_each_value_quantity([&](const auto& output) { expect_in_blocks(all, output, blocks[output.name]); });
   }
   std::vector<T> records(37 * all.count());
-  GridViews<T> out;
+  QuantityViews<T> out;
   std::size_t first = 0;
-  for_each_value_output<T>([&](const auto& output) {
-    auto& view = out.*output.view;
+  for_each_value_quantity([&](const auto& output) {
+    auto& view = output.of(out);
     view = std::remove_reference_t<decltype(view)>::interleaved(records, 37, first);
     first += static_cast<std::size_t>(output.width);
   });
   ASSERT_EQ(first, 37u);
   ASSERT_TRUE(evaluate(all.set, all.plan, out).ok());
-  for_each_value_output<T>([&](const auto& output) {
+  for_each_value_quantity([&](const auto& output) {
     for (std::size_t record = 0; record < all.count(); ++record)
       for (int c = 0; c < output.width; ++c)
-        ASSERT_EQ((out.*output.view).at(record, c), (all.out.*output.view).at(record, c)) << output.name;
+        ASSERT_EQ(output.of(out).at(record, c), output.of(all.out).at(record, c)) << output.name;
   });
 }
 TEST_P(Geometry, EveryWayOutFloat) { check_ways_out<float>(GetParam()); }
@@ -336,10 +336,11 @@ TEST_P(Geometry, KindsInEveryLayout) {
   AlignedVector<NormalKind> normals(all.plan.block_capacity() / 3);
   AlignedVector<CurvatureKind> curvatures(normals.size());
   ASSERT_TRUE(
-      evaluate(all.set, all.plan, GridBlocks<float>{.normal_kind = normals, .curvature_kind = curvatures}).ok());
+      evaluate(all.set, all.plan, QuantityBlocks<float>{.normal_kind = normals, .curvature_kind = curvatures}).ok());
   std::vector<NormalKind> strided(3 * all.count(), NormalKind{7});
   ASSERT_TRUE(
-      evaluate(all.set, all.plan, GridViews<float>{.normal_kind = View1<NormalKind>::interleaved(strided, 3, 1)}).ok());
+      evaluate(all.set, all.plan, QuantityViews<float>{.normal_kind = View1<NormalKind>::interleaved(strided, 3, 1)})
+          .ok());
   for (std::size_t record = 0; record < all.count(); ++record) {
     const PatchSet::Slot slot = all.set.slot(record / samples);
     const std::size_t at = (slot.block * samples + record % samples) * lanes + slot.lane;

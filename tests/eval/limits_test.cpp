@@ -33,24 +33,24 @@ TEST(Limits, ABufferThatNoMemoryHoldsIsRefused) {
 TEST(Limits, WorkFollowsTheStatedCounts) {
   Random random(61);
   const auto u = uniform_parameters(5), v = uniform_parameters(8);
-  const auto work = [&](const BezierPatch& patch, GridOutputs outputs) {
+  const auto work = [&](const BezierPatch& patch, QuantityFlags outputs) {
     return value_of(GridPlan::make(set_of({patch}), u, v)).work(outputs);
   };
   const BezierPatch cubic = random_polynomial(random, 3, 3);
-  EXPECT_EQ(work(cubic, {}).lane_operations, 40 * 12);
-  EXPECT_EQ(work(cubic, {}).bytes_written, 40 * 12);
-  EXPECT_EQ(work(cubic, {.du = true, .dv = true}).lane_operations, 40 * 36);
-  EXPECT_EQ(work(cubic, {.normal = true}).lane_operations, 40 * 50);
-  EXPECT_EQ(work(cubic, {.normal = true}).bytes_written, 40 * 24);
-  EXPECT_EQ(work(cubic, {.duu = true}).lane_operations, 40 * 72);
-  const GridOutputs twenty{
-      .du = true, .dv = true, .duu = true, .duv = true, .dvv = true, .gaussian = true, .mean = true};
+  EXPECT_EQ(work(cubic, {.position = true}).lane_operations, 40 * 12);
+  EXPECT_EQ(work(cubic, {.position = true}).bytes_written, 40 * 12);
+  EXPECT_EQ(work(cubic, {.position = true, .du = true, .dv = true}).lane_operations, 40 * 36);
+  EXPECT_EQ(work(cubic, {.position = true, .normal = true}).lane_operations, 40 * 50);
+  EXPECT_EQ(work(cubic, {.position = true, .normal = true}).bytes_written, 40 * 24);
+  EXPECT_EQ(work(cubic, {.position = true, .duu = true}).lane_operations, 40 * 72);
+  const QuantityFlags twenty{
+      .position = true, .du = true, .dv = true, .duu = true, .duv = true, .dvv = true, .gaussian = true, .mean = true};
   EXPECT_EQ(work(cubic, twenty).lane_operations, 40 * 102);
   EXPECT_EQ(work(cubic, twenty).bytes_written, 40 * 80);
-  EXPECT_EQ(work(cubic, {.position = false, .normal_kind = true}).bytes_written, 40);
+  EXPECT_EQ(work(cubic, {.normal_kind = true}).bytes_written, 40);
   EXPECT_EQ(work(random_rational(random, 3, 3), twenty).lane_operations, 40 * (72 * 4 / 3 + 4 + 30));
-  EXPECT_EQ(work(random_polynomial(random, 1, 1), {}).lane_operations, 40 * 6);
-  EXPECT_EQ(work(random_rational(random, 3, 3), {}).lane_operations, 40 * 20);
+  EXPECT_EQ(work(random_polynomial(random, 1, 1), {.position = true}).lane_operations, 40 * 6);
+  EXPECT_EQ(work(random_rational(random, 3, 3), {.position = true}).lane_operations, 40 * 20);
 }
 
 TEST(Limits, TheSlowerOfComputingAndStoringCounts) {

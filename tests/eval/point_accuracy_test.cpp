@@ -23,7 +23,7 @@ struct Errors {
 template <class T>
 Errors errors_of(const PatchSet& set, const Samples<T>& samples, Isa isa) {
   AllBuffers<T> memory = all_outputs(set, samples, {.isa = isa});
-  const GridViews<T> out = memory.views();
+  const QuantityViews<T> out = memory.views();
   const double epsilon = sizeof(T) == 4 ? float_unit : double_unit;
   const Vec3 origin = sizeof(T) == 4 ? set.origin() : Vec3{};
   Errors errors;
@@ -152,7 +152,7 @@ void compare_with_grid(Isa isa, int degree, const std::vector<double>& t) {
   EXPECT_EQ(points.normal_kind, grid.normal_kind);
   EXPECT_EQ(points.curvature_kind, grid.curvature_kind);
   std::size_t k = 0;
-  for_each_value_output<T>([&](const auto& output) {
+  for_each_value_quantity([&](const auto& output) {
     EXPECT_TRUE(points.values[k] == grid.values[k]) << output.name;
     ++k;
   });

@@ -16,11 +16,12 @@ class PointErrors : public ::testing::Test {
   Samples<float> samples_ = random_samples<float>(random_, 6, 5000);
   std::vector<float> positions_ = std::vector<float>(3 * 5000, -7), normals_ = positions_;
 
-  PointViews<float> views() {
+  QuantityViews<float> views() {
     return {.position = View3<float>::interleaved(positions_), .normal = View3<float>::interleaved(normals_)};
   }
   /// The status of a call that must fail and leave memory alone.
-  Status refused(const PatchSamples<float>& samples, const PointViews<float>& out, const PointOptions& options = {}) {
+  Status refused(const PatchSamples<float>& samples, const QuantityViews<float>& out,
+                 const PointOptions& options = {}) {
     const Status status = evaluate(set_, samples, out, options);
     EXPECT_FALSE(status.ok());
     for (const float x : positions_) EXPECT_EQ(x, -7);
@@ -87,7 +88,7 @@ TEST_F(PointErrors, Extrapolation) {
 
 TEST_F(PointErrors, Views) {
   const auto code_with = [&](auto change) {
-    PointViews<float> out = views();
+    QuantityViews<float> out = views();
     change(out);
     return refused(samples_.views(), out).code();
   };
@@ -106,7 +107,7 @@ TEST_F(PointErrors, Views) {
 
 TEST_F(PointErrors, SharedMemory) {
   const auto message_with = [&](auto change) {
-    PointViews<float> out = views();
+    QuantityViews<float> out = views();
     change(out);
     return refused(samples_.views(), out).message();
   };

@@ -67,7 +67,7 @@ TEST(PointsOfSurfaces, AreThoseOfTheDefinition) {
     AllBuffers<float> single(places.u.size());
     ASSERT_TRUE(evaluate(set, map, places.views(), twice.views(), {.isa = isa}).ok());
     ASSERT_TRUE(evaluate(set, map, places.views(), single.views(), {.isa = isa}).ok());
-    const GridViews<double> out = twice.views();
+    const QuantityViews<double> out = twice.views();
     for (std::size_t k = 0; k < places.u.size(); ++k) {
       const BSplineSurface& surface = all.surfaces[places.surface[k]];
       const RealJet jet = reference_jet(surface, places.u[k], places.v[k]);

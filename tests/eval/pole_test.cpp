@@ -25,7 +25,7 @@ TEST(Poles, NormalIsTheLimitInEveryLayoutAndOrientation) {
     GridBuffers<float> out(plan);
     ASSERT_TRUE(evaluate(set, plan, out.views()).ok());
     AlignedVector<float> blocks(plan.block_capacity());
-    ASSERT_TRUE(evaluate(set, plan, GridBlocks<float>{.normal = blocks}).ok());
+    ASSERT_TRUE(evaluate(set, plan, QuantityBlocks<float>{.normal = blocks}).ok());
     int poles = 0;
     for (std::size_t k = 0; k < 25; ++k) {
       const Vec3 normal = vector_at(out.normal, k);

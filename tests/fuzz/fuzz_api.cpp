@@ -154,9 +154,9 @@ class Program {
     const Result<GridPlan> plan = GridPlan::make(set, u, v, {.geometry = {number(), number()}});
     if (!sound(plan)) return;
     std::vector<float> memory(6 * plan->capacity()), curvature(plan->capacity());
-    const GridViews<float> views{.position = View3<float>::interleaved(memory, 6, 0),
-                                 .normal = View3<float>::interleaved(memory, 6, 3),
-                                 .gaussian = View1<float>::interleaved(curvature)};
+    const QuantityViews<float> views{.position = View3<float>::interleaved(memory, 6, 0),
+                                     .normal = View3<float>::interleaved(memory, 6, 3),
+                                     .gaussian = View1<float>::interleaved(curvature)};
     if (!sound(evaluate(set, *plan, views))) return;
     for (const float x : memory) require(!std::isnan(x));
     for (const float x : curvature) require(!std::isnan(x));
@@ -170,7 +170,7 @@ class Program {
     const PatchSamples<float> samples{View1<const std::uint32_t>::interleaved(patch),
                                       View1<const float>::interleaved(fu), View1<const float>::interleaved(fv)};
     const PointOptions options{.outside = data_.ConsumeBool() ? OutsideDomain::clamp : OutsideDomain::error};
-    if (!sound(evaluate(set, samples, PointViews<float>{.position = View3<float>::interleaved(memory)}, options)))
+    if (!sound(evaluate(set, samples, QuantityViews<float>{.position = View3<float>::interleaved(memory)}, options)))
       return;
     for (const float x : memory) require(!std::isnan(x));
   }

@@ -134,6 +134,13 @@ std::vector<std::string> check_includes(const SourceFile& file, const FloorTable
   return faults;
 }
 
+Names private_includes(const std::string& text, const FloorTable& table) {
+  Names names;
+  for (const Include& include : includes_of(text))
+    if (include.open == '"' && table.on.contains(split_at_slash(include.path).first)) names.insert(include.path);
+  return names;
+}
+
 std::map<std::string, Names, std::less<>> floors_of_cmake(const std::string& text) {
   static const std::regex call(R"(tessera_floor\s*\(([^)]*)\))");
   std::map<std::string, Names, std::less<>> floors;

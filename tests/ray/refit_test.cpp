@@ -132,7 +132,7 @@ TEST(Refit, EditsInOnePassAreSeen) {
   const std::vector<double> ends = uniform_parameters(2);
   const GridPlan plan = value_of(GridPlan::make(set, ends, ends));
   std::vector<float> memory(3 * plan.capacity());
-  const GridViews<float> out{.position = View3<float>::interleaved(memory), .du = {}, .dv = {}, .normal = {}};
+  const QuantityViews<float> out{.position = View3<float>::interleaved(memory), .du = {}, .dv = {}, .normal = {}};
   const std::vector<std::uint32_t> edited{11, 2};
   std::vector<Vec3> points;
   for (const std::uint32_t k : edited) {

@@ -71,7 +71,8 @@ TEST_F(Cancelled, Points) {
   const std::vector<float> before(3 * samples.size(), -7);
   std::vector<float> done = before, out = before;
   const auto run = [&](std::vector<float>& to, const Execution& execution) {
-    return evaluate(set_, samples.views(), PointViews<float>{.position = View3<float>::interleaved(to)}, {}, execution);
+    return evaluate(set_, samples.views(), QuantityViews<float>{.position = View3<float>::interleaved(to)}, {},
+                    execution);
   };
   ASSERT_TRUE(run(done, {}).ok());
   cancelled_at_many_places([&](const Execution& execution) { return run(out, execution); },
@@ -124,7 +125,7 @@ TEST_F(Cancelled, Updates) {
   }
   GridBuffers<float> out(plan), fresh(plan);
   ASSERT_TRUE(evaluate(set_, plan, out.views()).ok());
-  const GridViews<float> views{.position = out.views().position};
+  const QuantityViews<float> views{.position = out.views().position};
   cancelled_at_many_places(
       [&](const Execution& execution) {
         return update.run(set_, plan, {patches, points}, views, execution);

@@ -139,7 +139,7 @@ TEST(MemoryFails, WhereSetsAreEvaluated) {
     if (!own) return own.status();
     Result<GridUpdate> update = GridUpdate::make(*own);
     if (!update) return update.status();
-    return update->run(*own, plan, {edited, net}, GridViews<float>{.position = out.views().position});
+    return update->run(*own, plan, {edited, net}, QuantityViews<float>{.position = out.views().position});
   });
   survives("set_control_points", [&] { return set.set_control_points(2, net); });
   const Model model{.name = "m", .surfaces = {{"a", patches[0], Affine::translated({1, 0, 0})}, {"b", patches[9]}}};

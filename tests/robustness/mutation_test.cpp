@@ -96,7 +96,7 @@ class Case {
     AllBuffers<T> out(*plan);
     if (!sound(evaluate(set, *plan, out.views()))) return;
     std::size_t k = 0;
-    for_each_value_output<T>([&](const auto& output) { expect_numbers(out.values[k++], output.name); });
+    for_each_value_quantity([&](const auto& output) { expect_numbers(out.values[k++], output.name); });
   }
   void evaluate_all(const PatchSet& set) {
     evaluate_grid<float>(set);
@@ -118,7 +118,7 @@ class Case {
                                       View1<const float>::interleaved(u), View1<const float>::interleaved(v)};
     if (!sound(evaluate(set, samples, out.views(), how))) return;
     std::size_t k = 0;
-    for_each_value_output<float>([&](const auto& output) { expect_numbers(out.values[k++], output.name); });
+    for_each_value_quantity([&](const auto& output) { expect_numbers(out.values[k++], output.name); });
   }
 
   template <class Plan>

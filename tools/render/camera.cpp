@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "ray/line/ray_segment.h"
+#include "tessera/ray_scene.h"
 
 namespace tessera::render {
 namespace {

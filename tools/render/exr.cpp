@@ -9,9 +9,10 @@
 #include <cstring>
 #include <string>
 
-#include "base/guard.h"
-#include "io/output_file.h"
 #include "render/hit_image.h"
+#include "tessera/guard.h"
+#include "tessera/output_file.h"
+#include "tessera/status.h"
 
 namespace tessera::render {
 namespace {

@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "base/guard.h"
-#include "io/output_file.h"
 #include "render/render.h"
+#include "tessera/guard.h"
+#include "tessera/output_file.h"
+#include "tessera/status.h"
 
 namespace tessera::render {
 namespace {

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "io/output_file.h"
 #include "tessera/execution.h"
 #include "tessera/geometry.h"
+#include "tessera/output_file.h"
 #include "tessera/ray_scene.h"
 #include "tessera/status.h"
 

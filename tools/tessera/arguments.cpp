@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <system_error>
 
-#include "io/text_cursor.h"
 #include "suggestions.h"
+#include "tessera/text_cursor.h"
 
 namespace tessera::cli {
 namespace {

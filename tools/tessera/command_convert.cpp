@@ -6,8 +6,8 @@
 #include "arguments.h"
 #include "commands.h"
 #include "console.h"
-#include "io/formats.h"
 #include "loading.h"
+#include "tessera/io.h"
 
 namespace tessera::cli {
 namespace {

@@ -9,7 +9,6 @@
 #include "commands.h"
 #include "csv.h"
 #include "hits_table.h"
-#include "io/formats.h"
 #include "loading.h"
 #include "mesh_error.h"
 #include "progress.h"
@@ -18,6 +17,7 @@
 #include "render/caption.h"
 #include "render/hit_image.h"
 #include "terminal_picture.h"
+#include "tessera/io.h"
 #include "tessera/ray_scene.h"
 
 namespace tessera::cli {

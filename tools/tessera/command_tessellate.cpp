@@ -9,9 +9,9 @@
 
 #include "arguments.h"
 #include "commands.h"
-#include "io/formats.h"
 #include "loading.h"
 #include "progress.h"
+#include "tessera/io.h"
 #include "tessera/tessellation.h"
 
 namespace tessera::cli {

@@ -8,9 +8,9 @@
 #include <string>
 #include <string_view>
 
-#include "io/output_file.h"
 #include "tessera/execution.h"
 #include "tessera/geometry.h"
+#include "tessera/output_file.h"
 #include "tessera/status.h"
 
 namespace tessera::cli {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "io/file.h"
-#include "ray/line/ray_segment.h"
+#include "tessera/io.h"
+#include "tessera/ray_scene.h"
 
 namespace tessera::cli {
 namespace {

@@ -7,8 +7,8 @@
 #include <map>
 
 #include "arguments.h"
-#include "io/text_cursor.h"
 #include "progress.h"
+#include "tessera/text_cursor.h"
 
 namespace tessera::cli {
 namespace {

@@ -1,8 +1,9 @@
 #include <algorithm>
 #include <string>
 
-#include "base/guard.h"
 #include "convert/bezier_net.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <string>
 
-#include "base/guard.h"
 #include "base/text.h"
 #include "convert/bezier_net.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "base/guard.h"
 #include "base/safe_length.h"
 #include "base/text.h"
 #include "basis/chebyshev_lobatto.h"
@@ -14,7 +13,9 @@
 #include "convert/tensor_refinement.h"
 #include "surface/patch_pieces.h"
 #include "tessera/convert.h"
+#include "tessera/guard.h"
 #include "tessera/parametric_surface.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

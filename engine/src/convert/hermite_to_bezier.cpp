@@ -1,6 +1,7 @@
-#include "base/guard.h"
 #include "tessera/convert.h"
+#include "tessera/guard.h"
 #include "tessera/hermite_patch.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

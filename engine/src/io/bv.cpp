@@ -6,12 +6,13 @@
 #include <array>
 #include <string>
 
-#include "base/guard.h"
 #include "io/make_room.h"
 #include "io/passed_over.h"
-#include "io/text_cursor.h"
 #include "surface/patch_pool.h"
+#include "tessera/guard.h"
 #include "tessera/io.h"
+#include "tessera/status.h"
+#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -13,7 +13,7 @@
 #include <optional>
 
 #include "base/text.h"
-#include "io/text_cursor.h"
+#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "io/descriptor.h"
+#include "tessera/io.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -1,15 +1,15 @@
-#include "io/formats.h"
+#include "tessera/io.h"
 
 #include <array>
 #include <string>
 #include <system_error>
 
-#include "base/guard.h"
 #include "io/file.h"
 #include "io/mesh_formats.h"
 #include "io/model_formats.h"
 #include "io/valid_mesh.h"
-#include "tessera/io.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

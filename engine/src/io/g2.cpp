@@ -9,10 +9,11 @@
 #include <algorithm>
 #include <vector>
 
-#include "base/guard.h"
 #include "io/make_room.h"
 #include "io/passed_over.h"
+#include "tessera/guard.h"
 #include "tessera/io.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

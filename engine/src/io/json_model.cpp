@@ -2,10 +2,11 @@
 
 #include <array>
 
-#include "base/guard.h"
 #include "base/text.h"
 #include "io/json_kinds.h"
+#include "tessera/guard.h"
 #include "tessera/io.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "io/expression.h"
-#include "io/text_cursor.h"
+#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -11,13 +11,14 @@
 #include <utility>
 #include <vector>
 
-#include "base/guard.h"
 #include "io/freeform.h"
 #include "io/make_room.h"
 #include "io/obj_index.h"
 #include "io/obj_notes.h"
 #include "io/obj_trims.h"
+#include "tessera/guard.h"
 #include "tessera/io.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

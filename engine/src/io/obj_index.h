@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "io/text_cursor.h"
+#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 

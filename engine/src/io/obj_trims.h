@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "io/text_cursor.h"
 #include "tessera/curve.h"
 #include "tessera/model.h"
+#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "io/text_cursor.h"
+#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -9,14 +9,15 @@
 #include <numbers>
 #include <optional>
 
-#include "base/guard.h"
 #include "io/make_room.h"
 #include "io/passed_over.h"
 #include "io/rib_lexer.h"
 #include "io/rib_state.h"
 #include "io/rib_surfaces.h"
 #include "io/rib_trims.h"
+#include "tessera/guard.h"
 #include "tessera/io.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/text_cursor.h"
+#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 

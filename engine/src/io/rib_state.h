@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "io/rib_mesh.h"
-#include "io/text_cursor.h"
 #include "tessera/detail/shared.h"
 #include "tessera/geometry.h"
 #include "tessera/model.h"
+#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 

@@ -12,8 +12,8 @@
 
 #include "io/mesh_formats.h"
 #include "io/packed_records.h"
-#include "io/text_cursor.h"
 #include "io/vertex_welder.h"
+#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -1,4 +1,4 @@
-#include "io/text_cursor.h"
+#include "tessera/text_cursor.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,9 +5,10 @@
 #include <string>
 #include <utility>
 
-#include "base/guard.h"
-#include "io/formats.h"
 #include "io/model_formats.h"
+#include "tessera/guard.h"
+#include "tessera/io.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -7,15 +7,16 @@
 #include <string_view>
 #include <system_error>
 
-#include "base/guard.h"
 #include "io/file.h"
-#include "io/formats.h"
 #include "io_occt/cad_file.h"
 #include "io_occt/child_process.h"
 #include "io_occt/markless_file.h"
 #include "io_occt/model_bytes.h"
 #include "io_occt/shape_model.h"
+#include "tessera/guard.h"
+#include "tessera/io.h"
 #include "tessera/io_occt.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -4,8 +4,9 @@
 #include <atomic>
 #include <mutex>
 
-#include "base/guard.h"
 #include "parallel/tbb_loop.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -1,11 +1,12 @@
 #include <cmath>
 #include <string>
 
-#include "base/guard.h"
 #include "base/text.h"
 #include "basis/bernstein.h"
 #include "basis/small_matrix.h"
 #include "surface/validate.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 #include "tessera/tensor_patch.h"
 
 // A basis is held three times: M itself, C = M_B^{-1} M, and C^{-1}. Each named basis has closed forms of all three,

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <string>
 
-#include "base/guard.h"
 #include "surface/collapsed_edges.h"
 #include "surface/patch_pieces.h"
 #include "surface/validate.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -2,13 +2,14 @@
 #include <cmath>
 #include <string>
 
-#include "base/guard.h"
 #include "base/text.h"
 #include "basis/double_double.h"
 #include "surface/callables.h"
 #include "surface/differences.h"
 #include "surface/validate.h"
 #include "tessera/coons_patch.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

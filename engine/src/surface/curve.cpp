@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <string>
 
-#include "base/guard.h"
 #include "base/text.h"
 #include "surface/spline_lines.h"
 #include "surface/spline_window.h"
 #include "surface/validate.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -4,8 +4,9 @@
 #include <cmath>
 #include <string>
 
-#include "base/guard.h"
 #include "basis/double_double.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -5,10 +5,11 @@
 #include <new>
 #include <string>
 
-#include "base/guard.h"
 #include "base/text.h"
 #include "surface/hermite_nodes.h"
 #include "surface/validate.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -4,11 +4,12 @@
 #include <cmath>
 #include <string>
 
-#include "base/guard.h"
 #include "base/text.h"
 #include "basis/hermite.h"
 #include "surface/checks.h"
 #include "surface/hermite_nodes.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -1,8 +1,9 @@
 #include <algorithm>
 #include <string>
 
-#include "base/guard.h"
 #include "surface/hermite_nodes.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

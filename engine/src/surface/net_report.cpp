@@ -1,10 +1,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/guard.h"
 #include "basis/bernstein_net.h"
 #include "surface/homogeneous.h"
+#include "tessera/guard.h"
 #include "tessera/local_geometry.h"
+#include "tessera/status.h"
 
 // With r = A / w: w^2 r_u = A_u w - A w_u, and w^2 r_uv = A_uv w - A w_uv up to multiples of r_u and r_v, which don't
 // change det(r_u, r_v, r_uv). So numerators are polynomials, and hulls of their Bernstein coefficients bound them.

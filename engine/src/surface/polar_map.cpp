@@ -1,9 +1,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/guard.h"
 #include "base/text.h"
+#include "tessera/guard.h"
 #include "tessera/parametric_surface.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

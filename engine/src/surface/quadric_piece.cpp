@@ -3,10 +3,11 @@
 #include <numbers>
 #include <string>
 
-#include "base/guard.h"
 #include "base/text.h"
 #include "surface/quadric_profile.h"
+#include "tessera/guard.h"
 #include "tessera/quadric.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

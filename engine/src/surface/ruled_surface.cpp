@@ -1,8 +1,9 @@
 #include "tessera/coons_patch.h"
 
-#include "base/guard.h"
 #include "surface/border_curve.h"
 #include "surface/checks.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

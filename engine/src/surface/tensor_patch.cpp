@@ -3,9 +3,10 @@
 #include <array>
 #include <string>
 
-#include "base/guard.h"
 #include "basis/bernstein.h"
 #include "surface/checks.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

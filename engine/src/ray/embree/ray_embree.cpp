@@ -4,13 +4,14 @@
 #include <cmath>
 #include <limits>
 
-#include "base/guard.h"
 #include "base/impl_access.h"
 #include "ray/embree/embree_api.h"
 #include "ray/embree/embree_device.h"
 #include "ray/line/ray_segment.h"
 #include "ray/scene/exact_source.h"
 #include "ray/scene/ray_scene_impl.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

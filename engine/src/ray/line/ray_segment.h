@@ -8,11 +8,7 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// The largest magnitude of a ray's components, Embree's own limit (the square root of float's range).
-inline constexpr double max_ray_component = kernel::RayBundle::max_component;
-
-/// Finite, within the limit, direction not zero, 0 <= tnear <= tfar, no offset below 0.
-bool is_valid(const Ray& ray);
+static_assert(max_ray_component == kernel::RayBundle::max_component);
 
 /// The part of a ray that can meet the scene, by arc length: points start + s * direction, 0 <= s <= reach.
 struct RaySegment {

@@ -5,13 +5,14 @@
 #include <optional>
 #include <string>
 
-#include "base/guard.h"
 #include "base/impl_access.h"
 #include "base/text.h"
 #include "eval/view_checks.h"
 #include "ray/scene/batch_filter.h"
 #include "ray/scene/batch_layout.h"
 #include "ray/scene/ray_scene_impl.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

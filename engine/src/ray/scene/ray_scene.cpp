@@ -5,11 +5,12 @@
 #include <utility>
 #include <vector>
 
-#include "base/guard.h"
 #include "base/text.h"
 #include "parallel/call_progress.h"
 #include "parallel/parallel_for.h"
 #include "ray/scene/ray_scene_impl.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

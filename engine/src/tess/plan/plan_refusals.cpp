@@ -1,4 +1,4 @@
-// Tolerances that the rounding of vertices does not leave room for, and what is said of them.
+// Finds tolerances that the rounding of vertices leaves no room for, and makes the messages about them.
 
 #include <algorithm>
 #include <array>
@@ -13,13 +13,13 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr std::uint64_t max_vertices = std::uint64_t{1} << 32;  // 32-bit indices
+constexpr std::uint64_t max_vertices = std::uint64_t{1} << 32;  // the limit of 32-bit indices
 
 Status invalid(std::string message, std::size_t patch) {
   return {StatusCode::invalid_argument, std::move(message), static_cast<std::ptrdiff_t>(patch)};
 }
 
-/// x > 0 to two digits, not below.
+/// Rounds x > 0 up to two digits.
 double rounded_up_shortly(double x) {
   const double unit = std::pow(10.0, std::floor(std::log10(x)) - 1);
   for (double count = std::ceil(x / unit); std::isfinite(count); ++count) {
@@ -30,7 +30,7 @@ double rounded_up_shortly(double x) {
     std::from_chars(digits.data(), end, value);
     if (value >= x) return value;
   }
-  return x;  // below what double divides
+  return x;  // too small for two digits in double
 }
 
 }  // namespace
@@ -54,7 +54,7 @@ bool CertifiedPlanner::is_rough(double tolerance) const {
 std::optional<double> CertifiedPlanner::nearest_tolerance(std::uint64_t max_triangles) const {
   double given = 0;
   for (const double rounding : roundings_) given = std::max(given, rounding + fit_error_);
-  // The rest is for chords: rates go by its root.
+  // `room` is left for the chords; rates go by its root.
   for (double room = given / 8; room < 1e12 * given; room *= 2) {
     const double tolerance = rounded_up_shortly(given + room);
     const auto serves = [&](std::size_t k) { return choose(k, {tolerance}, max_rate).failure == Failure::none; };

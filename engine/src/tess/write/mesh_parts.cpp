@@ -1,9 +1,10 @@
 #include <string>
 
-#include "base/guard.h"
 #include "base/text.h"
 #include "tess/write/mesh_parts.h"
+#include "tessera/guard.h"
 #include "tessera/model.h"
+#include "tessera/status.h"
 #include "tessera/tessellation.h"
 
 namespace tessera::inline abi_0_1 {
@@ -26,12 +27,13 @@ std::string name_of(const Model& model, std::size_t surface) {
   return name.empty() ? "surface " + std::to_string(surface) : name;
 }
 
-/// Parts that grow by one face after the other.
+/// Builds parts face by face.
 class PartList {
  public:
   PartList(const PatchSet& set, const Model& model) : set_(set), model_(model) {}
 
-  /// The face is triangle `t`, or quad `q` that comes after so many triangles. Errors: invalid_argument.
+  /// Adds a face: triangle `t`, or quad `q`, which comes after `t` triangles. Errors: invalid_argument (no such patch
+  /// or surface).
   Status add(std::uint32_t patch, bool is_quad, std::size_t t, std::size_t q) {
     if (parts_.empty() || patch != patch_) {
       const char* const face = is_quad ? "quad" : "triangle";
@@ -53,7 +55,7 @@ class PartList {
   const PatchSet& set_;
   const Model& model_;
   std::vector<MeshPart> parts_;
-  std::uint32_t patch_ = 0;  ///< of the last face
+  std::uint32_t patch_ = 0;  ///< that of the last face
   std::size_t surface_ = 0;
 };
 

@@ -43,7 +43,7 @@ void add_wanted(ViewChecks& checks, const char* name, std::span<std::uint32_t> n
   if (!numbers.empty()) checks.add(name, view, records);
 }
 
-/// The views of vertices: aligned, and apart from each other.
+/// Returns checks that the views of vertices are aligned and do not share memory.
 ViewChecks vertex_checks(const MeshViews& out, const MeshCapacity& wanted) {
   ViewChecks checks(wanted.vertices);
   add_wanted(checks, "position", out.position);
@@ -68,7 +68,7 @@ Status check_lengths(const MeshViews& out, const MeshCapacity& wanted, bool f64)
 Mesh empty_mesh(const MeshCapacity& capacity, const Vec3& origin) {
   Mesh mesh;
   mesh.origin = origin;
-  mesh.positions.reserve(3 * capacity.vertices + 1);  // room that rays need behind the last (RayScene::make)
+  mesh.positions.reserve(3 * capacity.vertices + 1);  // RayScene::make() needs room for one more number
   mesh.positions.resize(3 * capacity.vertices);
   mesh.normals.resize(3 * capacity.vertices);
   mesh.parameters.resize(2 * capacity.vertices);

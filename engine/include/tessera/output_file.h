@@ -5,38 +5,18 @@
 #include <charconv>
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
-#include "io/descriptor.h"
 #include "tessera/status.h"
 
+#pragma GCC visibility push(default)
 namespace tessera::inline abi_0_1 {
 
 /// Unlinks the temporaries of all open OutputFiles. For signal handlers that end the process: async-signal-safe.
 void remove_temporaries() noexcept;
-
-/// The name of a file that is removed at the end, unless it is released. remove_temporaries knows it until then.
-class TemporaryName {
- public:
-  TemporaryName() = default;
-  explicit TemporaryName(std::filesystem::path path);
-  TemporaryName(TemporaryName&& other) noexcept
-      : path_(std::exchange(other.path_, std::filesystem::path())), place_(std::exchange(other.place_, no_place)) {}
-  TemporaryName& operator=(TemporaryName&&) = delete;
-  ~TemporaryName();
-
-  bool empty() const { return path_.empty(); }
-  const char* c_str() const { return path_.c_str(); }
-  void release();
-
- private:
-  static constexpr std::size_t no_place = ~std::size_t{0};
-  std::filesystem::path path_;
-  std::size_t place_ = no_place;  // its place among the names that remove_temporaries sees
-};
 
 /// Writes beside the place of a file, then renames. The file appears at `commit`; without it nothing remains. Anything
 /// but a regular file (a pipe, a terminal, /dev/stdout) is written directly. Memory: 1 MiB, whatever is written. After
@@ -49,8 +29,9 @@ class OutputFile {
   /// The process's standard output.
   static OutputFile standard_output(const std::atomic<bool>* cancel = nullptr);
 
-  OutputFile(OutputFile&& other) = default;
+  OutputFile(OutputFile&&) noexcept;
   OutputFile& operator=(OutputFile&&) = delete;
+  ~OutputFile();  ///< without commit(), removes what was written
 
   void write(std::string_view bytes);
   void write(char c) {
@@ -78,7 +59,8 @@ class OutputFile {
   Status commit();
 
  private:
-  OutputFile(Descriptor file, std::filesystem::path target, TemporaryName temporary, const std::atomic<bool>* cancel);
+  class Destination;
+  OutputFile(std::unique_ptr<Destination> destination, std::filesystem::path target, const std::atomic<bool>* cancel);
   char* room(std::size_t bytes) {
     if (buffer_.size() - used_ < bytes) flush();
     return buffer_.data() + used_;
@@ -87,9 +69,8 @@ class OutputFile {
   void send(std::string_view bytes);
   void see_cancel();
 
-  Descriptor file_;
+  std::unique_ptr<Destination> destination_;
   std::filesystem::path target_;
-  TemporaryName temporary_;  // empty if written directly
   const std::atomic<bool>* cancel_;
   std::vector<char> buffer_;
   std::size_t used_ = 0;
@@ -97,3 +78,4 @@ class OutputFile {
 };
 
 }  // namespace tessera::inline abi_0_1
+#pragma GCC visibility pop

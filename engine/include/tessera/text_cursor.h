@@ -8,6 +8,7 @@
 
 #include "tessera/status.h"
 
+#pragma GCC visibility push(default)
 namespace tessera::inline abi_0_1 {
 
 /// The meaning of characters in a text format. 0: the format has none of the kind.
@@ -128,3 +129,4 @@ Status refused_element(const Text& text, const Status& status, const std::string
 }
 
 }  // namespace tessera::inline abi_0_1
+#pragma GCC visibility pop
