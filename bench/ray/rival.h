@@ -19,7 +19,7 @@ namespace tessera::bench {
 
 class Rival {
  public:
-  /// Two triangles for each of quads x quads cells a patch.
+  /// Two triangles for each of quads x quads cells per patch.
   static Rival triangles(const PatchSet& set, int quads, Isa isa);
   /// Embree's grids with quads x quads cells per patch.
   static Rival grids(const PatchSet& set, int quads, Isa isa);

@@ -42,7 +42,7 @@ const std::map<std::string, std::string> refused{
      ":7: surface 0: its parameters and degrees need 3 x 3 control points, found 4"},
 };
 
-/// What a file holds besides the surfaces that are read: words of each warning, in their order.
+/// Contents of a file besides the surfaces that are read: words of each warning, in their order.
 const std::map<std::string, std::vector<std::string>> warned{
     {"bezierview_bv/SurfLab__tp_poly.bv", {":14: 2 polyhedra are not read"}},
     {"g2_gotools/splipy_elementary_surfaces.g2", {":22: 1 disc is not read"}},

@@ -226,7 +226,7 @@ struct Verdict {
 
   bool hit() const { return !hits.empty(); }
   bool miss() const { return hits.empty() && undecided.empty(); }
-  /// Of the proven hits, the first by the upper end of its t.
+  /// The first of the proven hits by the upper end of its t.
   const Root& first() const {
     return *std::min_element(hits.begin(), hits.end(), [](const Root& a, const Root& b) { return a.t.hi < b.t.hi; });
   }

@@ -72,7 +72,7 @@ TEST(HermiteNetwork, OnKnotsHasTheGivenDerivatives) {
       EXPECT_TRUE(within_units(jet.dv, node.dv, double_unit, 8));
       EXPECT_TRUE(within_units(jet.duv, node.duv, double_unit, 16));
     }
-  // The same network by factors, with A = h_{i-1} R_u.
+  // A network equal to it, by factors, with A = h_{i-1} R_u.
   const double h0 = u[1] - u[0];
   EXPECT_TRUE(within_units(network.node(0, 1).du, h0 * nodes[1].du, double_unit, 2));
   EXPECT_TRUE(within_units(network.node(1, 1).du, h0 * nodes[4].du, double_unit, 2));

@@ -25,7 +25,7 @@ SurfaceJet torus(double big, double small, double u, double v) {
 SurfaceJet graph(double a, double b, double c) {
   return {{}, {1, 0, 0}, {0, 1, 0}, {0, 0, 2 * a}, {0, 0, b}, {0, 0, 2 * c}};
 }
-/// The same surface by other parameters: u = a s + b t, v = c s + d t.
+/// Changes the parameters of a surface: u = a s + b t, v = c s + d t.
 SurfaceJet reparametrised(const SurfaceJet& j, double a, double b, double c, double d) {
   return {j.position,
           a * j.du + c * j.dv,

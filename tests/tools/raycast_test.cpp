@@ -178,7 +178,7 @@ TEST_F(RaycastTool, EveryTeasetModelIsDrawn) {
     output_of({"raycast", entry.path().string(), "-o", std::to_string(models++) + ".png", "--size", "64x64"});
   }
   ASSERT_GE(models, 2);
-  // The same pot from two sources is the same picture.
+  // One pot from two sources gives one picture.
   EXPECT_EQ(content_of(folder_ / "0.png"), content_of(folder_ / "1.png"));
 }
 

@@ -22,9 +22,9 @@ struct HitImage {
   std::vector<std::uint32_t> surfaces, patches;  ///< counted from 0
 };
 
-/// Casts a ray per pixel. Of the settings only size and camera are used. `model` is the one that the scene was made of.
-/// The result is the same for any number of threads, byte for byte. Memory: 40 bytes per pixel. Errors: those of
-/// render, and invalid_argument (the scene has more surfaces than the model).
+/// Casts a ray per pixel. Uses only size and camera of the settings. `model` is the one that the scene was made of. The
+/// result is the same for any number of threads, byte for byte. Memory: 40 bytes per pixel. Errors: those of render,
+/// and invalid_argument (the scene has more surfaces than the model).
 Result<HitImage> cast_hits(const RayScene& scene, const Box3& box, const Model& model, const Settings& settings,
                            const Execution& execution = {});
 

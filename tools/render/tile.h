@@ -12,7 +12,7 @@
 
 namespace tessera::render {
 
-/// What all tiles of a picture share.
+/// Data that all tiles of a picture share.
 struct View {
   const RayScene& scene;
   const Environment& environment;

@@ -57,7 +57,7 @@ std::string text_of(double value) {
   return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
-/// What is wrong with the ray; empty if it is valid.
+/// The fault of the ray; empty if it is valid.
 std::string fault_of(const Ray& ray) {
   if (!is_finite(ray.origin)) return "the origin is not finite";
   if (!is_finite(ray.direction)) return "the direction is not finite";
