@@ -125,7 +125,7 @@ TEST(Bpt, FewerPatchesThanStatedIsAnError) {
   EXPECT_EQ(error_of(text),
             "m.bpt:11: expected the degree along u of patch 3 of 3, from 1 to 15, found the end of the file");
   text[0] = '1';
-  EXPECT_EQ(error_of(text), "m.bpt:7: expected the end of the file after 1 patches, found \"1\"");
+  EXPECT_EQ(error_of(text), "m.bpt:7: expected the end of the file after 1 patch, found \"1\"");
 }
 
 TEST(Bpt, ATruncatedTeapotIsNoTeapot) {

@@ -150,7 +150,7 @@ TEST(G2, ErrorsSayWhereWhatAndWhatWasWanted) {
       {bent + "1 2 3\n", "m:13: expected " + header + ", found \"1\""},
       {"200 1 0 0\n4 0\n", "m:2: expected the dimension of object 1 (class 200), from 1 to 3, found \"4\""},
       {"200 1 0 0\n3 2\n",
-       "m:2: expected whether the surface is rational of object 1 (class 200), from 0 to 1, found \"2\""},
+       "m:2: expected the flag of a rational surface of object 1 (class 200), from 0 to 1, found \"2\""},
       {"200 1 0 0\n3 0\n0 2\n",
        "m:3: expected the number of points along a direction of object 1 (class 200), from 1 to 1073741824, found "
        "\"0\""},
@@ -168,7 +168,7 @@ TEST(G2, ErrorsSayWhereWhatAndWhatWasWanted) {
       {"290 1 0 0\n3\n5 1\n0 0 0\n0 0 1\n1 0 0\n1\n0 9\n0 1\n0\n",
        "m:1: object 1 (class 290): its ranges must be above 0 and at most a full turn"},
       {"260 1 0 0\n3\n1\n0 0 0\n0 0 1\n1 0 0\n2\n",
-       "m:7: expected whether the surface is bounded of object 1 (class 260), from 0 to 1, found \"2\""},
+       "m:7: expected the flag of a bounded surface of object 1 (class 260), from 0 to 1, found \"2\""},
   };
   for (const auto& [text, message] : cases) EXPECT_EQ(error_of(parse_g2, text).substr(0, message.size()), message);
 }

@@ -57,7 +57,7 @@ TEST(ObjFreeformErrors, SyntaxIsNamedWithItsLine) {
 }
 
 TEST(ObjFreeformErrors, ReferencesStayWithinWhatStandsAbove) {
-  const std::string vertices = "an index into the 4 vertices above, 1 to 4 or -4 to -1";
+  const std::string vertices = "an index into the vertices above, 1 to 4 or -4 to -1";
   for (const char* index : {"0", "5", "-5", "9223372036854775807", "-9223372036854775808"})
     EXPECT_EQ(error_of(spoiled("2 3 4", std::string("2 3 ") + index)),
               "m.obj:7: expected " + vertices + ", found \"" + index + "\"");
@@ -66,13 +66,13 @@ TEST(ObjFreeformErrors, ReferencesStayWithinWhatStandsAbove) {
     EXPECT_EQ(message.rfind("m.obj:7: expected an index of a control point, found", 0), 0u) << message;
   }
   EXPECT_EQ(error_of(spoiled("2 3 4", "2 3 4/1")),
-            "m.obj:7: expected no index, as there are 0 vt lines above, found \"1\"");
+            "m.obj:7: expected no index, as there are no vt lines above, found \"1\"");
   EXPECT_EQ(error_of(spoiled("2 3 4", "2 3 4//1")),
-            "m.obj:7: expected no index, as there are 0 vn lines above, found \"1\"");
+            "m.obj:7: expected no index, as there are no vn lines above, found \"1\"");
   EXPECT_EQ(error_of(spoiled("2 3 4", "2 3 4/")),
             "m.obj:7: expected an index of a texture vertex, found the end of the line");
   EXPECT_EQ(
-      error_of("cstype bezier\ndeg 1 1\n" + bilinear).rfind("m.obj:5: expected no index, as there are 0 vertices", 0),
+      error_of("cstype bezier\ndeg 1 1\n" + bilinear).rfind("m.obj:5: expected no index, as there are no vertices", 0),
       0u);
 }
 
@@ -139,13 +139,12 @@ TEST(ObjFreeformErrors, TrimsReferToCurvesAboveAndStayOnThem) {
     return error_of(four_vertices + curve + bilinear.substr(0, bilinear.size() - 4) + trim + "\nend\n");
   };
   EXPECT_EQ(trimmed("trim 0 1 2"),
-            "m.obj:18: expected an index into the 1 curv2 elements above, 1 to 1 or -1 to -1, found \"2\"");
+            "m.obj:18: expected an index into the curv2 elements above, 1 to 1 or -1 to -1, found \"2\"");
   EXPECT_EQ(trimmed("trim 0 1"), "m.obj:18: expected an index of a curv2, found the end of the line");
   EXPECT_EQ(trimmed("trim"), "m.obj:18: expected the parameter where the curve begins, found the end of the line");
   EXPECT_EQ(trimmed("trim 0 nan 1"), "m.obj:18: expected the parameter where the curve ends, found \"nan\"");
-  EXPECT_EQ(trimmed("trim 0 1 1 0 2 1"), "m.obj:18: curv2 1 runs from 0 to 1, which does not hold a part from 0 to 2");
-  EXPECT_EQ(trimmed("trim 0.5 0.5 1"),
-            "m.obj:18: curv2 1 runs from 0 to 1, which does not hold a part from 0.5 to 0.5");
+  EXPECT_EQ(trimmed("trim 0 1 1 0 2 1"), "m.obj:18: curv2 1 runs from 0 to 1, it has no part from 0 to 2");
+  EXPECT_EQ(trimmed("trim 0.5 0.5 1"), "m.obj:18: curv2 1 runs from 0 to 1, it has no part from 0.5 to 0.5");
   EXPECT_EQ(error_of(spoiled("curv2 1 2", "curv2 1 3", curve)),
             "m.obj:6: expected the index of a vp line with 2 coordinates, found \"3\"");
   EXPECT_EQ(error_of(spoiled("parm u 0 1", "parm u 0 1 2", curve)),

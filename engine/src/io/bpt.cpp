@@ -5,6 +5,7 @@
 #include <array>
 #include <string>
 
+#include "base/text.h"
 #include "surface/patch_pool.h"
 #include "tessera/guard.h"
 #include "tessera/io.h"
@@ -82,7 +83,8 @@ Result<Model> parse(std::string_view text, std::string_view name) {
     model.surfaces.push_back({{}, pool.placed(*patch)});
   }
   cursor.skip_space();
-  if (!cursor.at_end()) return cursor.expected("the end of the file after " + std::to_string(count) + " patches");
+  if (!cursor.at_end())
+    return cursor.expected("the end of the file after " + counted(static_cast<std::size_t>(count), "patch", "patches"));
   return model;
 }
 

@@ -151,7 +151,7 @@ class G2Reader {
 
   Status read_spline(G2Numbers& numbers) {
     const std::int64_t dimension = numbers.integer("the dimension", 1, 3);
-    const bool rational = numbers.integer("whether the surface is rational", 0, 1) == 1;
+    const bool rational = numbers.integer("the flag of a rational surface", 0, 1) == 1;
     Line u, v;
     read_line(numbers, u);
     read_line(numbers, v);

@@ -54,15 +54,15 @@ Elementary read_numbers(std::int64_t kind, G2Numbers& numbers, bool& swapped) {
   e.z_axis = numbers.vector("the z axis");
   e.x_axis = numbers.vector("the x axis");
   if (kind == g2_cone) e.angle = numbers.number("the cone's angle");
-  if (kind == g2_torus) numbers.integer("whether the outer part is meant", 0, 1);
+  if (kind == g2_torus) numbers.integer("the flag of the outer part", 0, 1);
   if (kind == g2_plane || kind == g2_cylinder || kind == g2_cone) {
-    e.bounded = numbers.integer("whether the surface is bounded", 0, 1) == 1;
+    e.bounded = numbers.integer("the flag of a bounded surface", 0, 1) == 1;
   }
   if (!numbers.ok() || !e.bounded) return e;
   for (double* const limit : {&e.range.u0, &e.range.u1, &e.range.v0, &e.range.v1}) {
     *limit = numbers.number("a limit of the parameters");
   }
-  swapped = numbers.integer("whether the parameters are swapped", 0, 1) == 1;
+  swapped = numbers.integer("the flag of swapped parameters", 0, 1) == 1;
   return e;
 }
 

@@ -11,8 +11,8 @@ namespace tessera::inline abi_0_1 {
 
 /// The error for a number that is not an index into the `count` records (`kind`: "vertices") before it.
 inline Status obj_index_failure(const TextCursor& before, std::string_view kind, std::size_t count) {
-  const std::string last = std::to_string(count), above = last + " " + std::string(kind) + " above";
-  if (count == 0) return before.expected("no index, as there are " + above);
+  const std::string last = std::to_string(count), above = std::string(kind) + " above";
+  if (count == 0) return before.expected("no index, as there are no " + above);
   return before.expected("an index into the " + above + ", 1 to " + last + " or -" + last + " to -1");
 }
 
