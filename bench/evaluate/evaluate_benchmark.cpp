@@ -1,6 +1,6 @@
-// Grids of many patches: evaluate.OUTPUTS.LAYOUT, with ".double" for doubles, ".streamed" where stores are non-temporal
-// whatever the size, and ".cold" where the caches hold other memory before each call. Each case checks the values that it
-// timed against the reference evaluator before it reports. Its limit is GridPlan::work().
+// Grids of many patches: evaluate.OUTPUTS.LAYOUT, with ".double" for doubles, ".streamed" if stores are non-temporal at
+// any size, and ".cold" if the caches hold other memory before each call. Each case checks the values that it timed
+// against the reference evaluator before it reports. The limit is GridPlan::work().
 
 #include <benchmark/benchmark.h>
 
@@ -25,7 +25,7 @@ enum class Layout { blocks, interleaved };
 
 struct Case {
   std::string set_name;
-  int size;  ///< parameters a side
+  int size;  ///< parameters per direction
   QuantityFlags outputs;
   Layout layout;
   Isa isa;
@@ -82,7 +82,7 @@ class Outputs {
                                      : tessera::evaluate(set, plan, views_, execution);
   }
 
-  /// One output at one sample, or nothing if it is not wanted.
+  /// One output at one sample; nothing if the output is not requested.
   template <class Output>
   bool read(const PatchSet& set, const GridPlan& plan, const Output& output, std::size_t patch, std::size_t sample,
             Vec3& value) const {
@@ -100,7 +100,7 @@ class Outputs {
   }
 
  private:
-  /// Positions and normals alone share records of six.
+  /// Lets positions and normals share records of six, if there are no other outputs.
   void join_normals(std::size_t records) {
     if (views_.normal.empty() || views_.position.empty()) return;
     values_[0].assign(6 * records, {});
@@ -117,8 +117,8 @@ class Outputs {
   QuantityViews<T> views_;
 };
 
-/// What an output must be, and how far off it may be where it is well conditioned: far looser than the tests and far tighter than a
-/// wrong answer. `size` is that of the set.
+/// The expected value of an output, and its tolerance where it is well conditioned: far looser than the tests, and far
+/// tighter than a wrong answer. `size` is that of the set.
 struct Expected {
   Vec3 value;
   double tolerance;
@@ -139,11 +139,11 @@ Expected expected_value(const std::string& name, const Vec3& origin, const Surfa
   if (name == "mean") return {{g.mean, 0, 0}, 0.01 * bend};
   if (name == "first_curvature") return {{g.first.curvature, 0, 0}, 0.01 * bend};
   if (name == "second_curvature") return {{g.second.curvature, 0, 0}, 0.01 * bend};
-  // Directions are known up to their sign: the test of what the curvatures are along them is the unit tests'.
+  // Directions are known up to their sign; unit tests check the curvatures along them.
   return {{}, 1.001};
 }
 
-/// Every sample of 50 patches against the reference evaluators.
+/// Checks every sample of 50 patches against the reference evaluators.
 template <class T>
 bool check_values(const PatchSet& set, const GridPlan& plan, const std::vector<double>& t, const Outputs<T>& out) {
   const Vec3 origin = sizeof(T) == 4 ? set.origin() : Vec3{};
@@ -200,7 +200,7 @@ void run(benchmark::State& state, const Case& c) {
   if (c.threads == 1) report_limit(state, *best, *limits, work);
 }
 
-/// Sets that take seconds to build are left to the full set.
+/// Only the full set has sets of patches that take seconds to build.
 bool is_quick(const Case& c) {
   const bool small = c.set_name == "teapot" || c.set_name == "bicubic1000";
   return c.size == 9 && (small || (c.set_name == "bicubic20000" && c.stores == Stores::automatic && !c.twice));

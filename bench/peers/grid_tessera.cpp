@@ -1,4 +1,4 @@
-// The grid by Tessera: the surface is taken apart into Bezier patches once; then every patch is evaluated over one plan.
+// The grid by Tessera: splits the surface into Bezier patches once; then evaluates every patch with one plan.
 
 #include "grid_tessera.h"
 

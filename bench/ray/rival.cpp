@@ -15,7 +15,7 @@
 namespace tessera::bench {
 namespace {
 
-/// As Embree wants it for speed.
+/// The floating-point mode that Embree recommends for speed.
 class FlushDenormals {
  public:
   FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | 0x8040); }
@@ -75,7 +75,7 @@ Rival::Rival(Isa isa) : state_(new State) {
       state_.get());
 }
 
-/// A geometry of the points of quads x quads cells a patch.
+/// Makes a geometry of the points of quads x quads cells per patch.
 void Rival::evaluate(const PatchSet& set, int quads, Isa isa, RTCGeometryType type) {
   const UniformGrid grid = test::value_of(UniformGrid::make(set, quads, quads, isa));
   state_->positions.resize(3 * grid.capacity() + 1);

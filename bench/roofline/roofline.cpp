@@ -20,7 +20,7 @@ namespace {
 
 constexpr double cache_bytes = 1 << 20, memory_bytes = 160 << 20;
 
-/// The processor's name as the system has it.
+/// The name of the processor, as the system reports it.
 std::string machine_name() {
   std::ifstream stream("/proc/cpuinfo");
   for (std::string line; std::getline(stream, line);) {
@@ -73,7 +73,7 @@ class Outputs {
   std::vector<AlignedVector<float>> memory_;
 };
 
-/// The best of several calls on one thread, over the patches of `set`, with as many parameters as make about `bytes`.
+/// The best of several calls on one thread over the patches of `set`, with as many parameters as make about `bytes`.
 Result<RooflinePoint> measure(const PatchSet& set, const Case& c, double bytes) {
   const auto two = uniform_parameters(2);
   auto smallest = GridPlan::make(set, two, two);
@@ -148,7 +148,7 @@ std::string number(double x) {
   return text;
 }
 
-/// One object: rates a second.
+/// One object of JSON; rates are per second.
 std::string json_of(const Roofline& r) {
   std::string text =
       "{\"machine\": \"" + r.machine + "\", \"cache_store\": " + number(r.cache_store) + ",\n \"isas\": [";

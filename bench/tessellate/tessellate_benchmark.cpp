@@ -1,5 +1,5 @@
-// Meshes at one rate, positions, normals, parameters and triangles, and the packing of patches into blocks. Each mesh is
-// checked against the reference evaluators and the shape of its triangles, each set of blocks by what evaluates from it.
+// Meshes at one rate (positions, normals, parameters and triangles), and the packing of patches into blocks. Each mesh
+// is checked against the reference evaluators and the shape of its triangles, each set of blocks by evaluation from it.
 
 #include <benchmark/benchmark.h>
 
@@ -20,7 +20,7 @@ using test::value_of;
 
 constexpr int rate = 8;
 
-/// Every 50th patch: the vertices of its triangles lie on it, with its normals.
+/// Checks every 50th patch: the vertices of its triangles lie on it, with its normals.
 bool lies_on(const PatchSet& set, const Mesh& mesh) {
   const double size = set.box().diagonal();
   const std::size_t of_patch = mesh.triangle_count() / set.patch_count();
@@ -59,7 +59,7 @@ void tessellate(benchmark::State& state, const char* surface, int threads) {
   if (threads == 1) report_limit(state, *best, *limits, {.bytes_written = bytes});
 }
 
-/// What is packed: blocks of one kind.
+/// A kind of packing: blocks of one kind.
 struct Packing {
   const char* name;  ///< of the operation
   bool rational;
@@ -81,7 +81,7 @@ const Packing packings[] = {{"pack", false, only(&BlockKinds::float_bernstein), 
                             {"pack.power", false, only(&BlockKinds::float_power), 4},
                             {"pack.points", false, only(&BlockKinds::float_points), 4}};
 
-/// Grids of 3 x 3 from the blocks, or the middle of patches from points, against the reference evaluator.
+/// Checks grids of 3 x 3 from the blocks, or the middles of patches from points, against the reference evaluator.
 template <class T>
 bool grids_lie_on(const PatchSet& set, const GridPlanOptions& options) {
   const auto t = uniform_parameters(3);

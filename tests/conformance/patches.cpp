@@ -10,7 +10,7 @@
 namespace tessera::test {
 namespace {
 
-constexpr std::size_t count = 5;  // parameters each way
+constexpr std::size_t count = 5;  // parameters in each direction
 
 /// The largest coordinate of the control points, seen from `origin`.
 double size_of(const BezierPatch& patch, const Vec3& origin) {

@@ -1,4 +1,4 @@
-// Uses the core alone: a patch set, a grid of points, a mesh.
+// Uses only the core: a patch set, a grid of points, a mesh.
 
 #include <tessera/evaluate.h>
 #include <tessera/mesh.h>

@@ -1,4 +1,4 @@
-// Bad input: a Status, and nothing written.
+// Bad input gives a Status, and nothing is written.
 
 #include <gtest/gtest.h>
 
@@ -87,7 +87,8 @@ TEST_F(EvaluateErrors, BlocksThatShareMemory) {
   EXPECT_TRUE(evaluate(set, plan, apart).ok());
 }
 
-/// Every output of QuantityViews, short by one record, with a stride of 0, without a component: none of them nor any other is written.
+/// Every output of QuantityViews, short by one record, with a stride of 0, or without a component: no output is
+/// written.
 TEST_F(EvaluateErrors, EachViewOfLocalGeometry) {
   AllBuffers<float> memory(plan), clean(plan);
   const auto expect_refused = [&](const QuantityViews<float>& views, StatusCode code, const std::string& name) {

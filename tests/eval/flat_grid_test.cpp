@@ -1,5 +1,5 @@
-// Positions alone, patch after patch with long rows, which have a kernel of their own: the bits of blocks, in any place
-// of memory, for one patch and for many, whole and in parts; and nothing beyond.
+// Positions alone, patch after patch with long rows, have a kernel of their own. It gives the bits of blocks, at any
+// place in memory, for one patch and for many, whole and in parts, and writes nothing beyond.
 
 #include <gtest/gtest.h>
 

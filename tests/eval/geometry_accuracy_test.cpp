@@ -37,7 +37,7 @@ struct Sizes {
   double curvature() const { return second_form / (height * height); }
 };
 
-/// Largest errors over a set, each over what evaluate.h states.
+/// Largest errors over a set, each divided by the bound of evaluate.h.
 struct Errors {
   double second = 0, first_form = 0, second_form = 0, curvature = 0, gaussian = 0, direction = 0;
   int undefined = 0;
@@ -178,7 +178,7 @@ void check_steep(Isa isa) {
 TEST_P(GeometryAccuracy, FloatWithSteepWeights) { check_steep<float>(GetParam()); }
 TEST_P(GeometryAccuracy, DoubleWithSteepWeights) { check_steep<double>(GetParam()); }
 
-/// The power basis of a cubic gives the same geometry, less exactly.
+/// The power basis of a cubic gives the same geometry, with larger errors.
 TEST_P(GeometryAccuracy, PowerBasis) {
   Random random(92);
   PatchSetOptions options;
@@ -202,7 +202,7 @@ TEST_P(GeometryAccuracy, PowerBasis) {
   }
 }
 
-/// Curvatures go with the inverse of the size, and are zero and flagged where they leave the range; never NaN.
+/// Curvatures are proportional to the inverse of the size. Out of range they are zero and flagged, never NaN.
 TEST_P(GeometryAccuracy, AtAnyScale) {
   Random random(93);
   const auto t = uniform_parameters(4);

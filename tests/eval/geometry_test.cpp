@@ -1,5 +1,5 @@
-// Local geometry in batches: surfaces whose curvatures are known in closed form, points that have none, and every way
-// out of the kernels.
+// Local geometry in batches: surfaces with curvatures in closed form, points without curvature, and every output path
+// of the kernels.
 
 #include <gtest/gtest.h>
 
@@ -83,7 +83,7 @@ class Geometry : public ::testing::TestWithParam<Isa> {
 template <class T>
 constexpr double tolerance = sizeof(T) == 4 ? 2e-4 : 1e-12;
 
-/// Umbilic and of the same curvatures everywhere but at the poles, which have a limit normal alone.
+/// Umbilic, with constant curvatures, except at the poles, which have only a limit normal.
 template <class T>
 void Geometry::check_sphere() {
   const double radius = 2.5;
@@ -111,7 +111,7 @@ void Geometry::check_sphere() {
 TEST_P(Geometry, SphereFloat) { check_sphere<float>(); }
 TEST_P(Geometry, SphereDouble) { check_sphere<double>(); }
 
-/// Umbilics are flagged within the tolerance that is asked for.
+/// Umbilics are flagged within the tolerance of the options.
 TEST_P(Geometry, SphereIsUmbilicWithinTolerance) {
   const auto patches = patches_of(nurbs_sphere({}, 1));
   const PatchSet set = set_of(patches, both_precisions());
@@ -223,7 +223,7 @@ std::vector<BezierPatch> degenerate_patches() {
   return patches;
 }
 
-/// Kinds and normals are those of unit_normal(), in either precision, layout and on every instruction set.
+/// Kinds and normals equal those of unit_normal(), in either precision, layout and on every instruction set.
 template <class T>
 void Geometry::check_poles() {
   const Evaluated<T> all(degenerate_patches(), t, GetParam());
@@ -235,7 +235,7 @@ void Geometry::check_poles() {
     SCOPED_TRACE(testing::Message() << "patch " << k / (t.size() * t.size()) << " at " << u << ", " << v);
     EXPECT_EQ(all.out.normal_kind.at(k, 0), expected.kind);
     const SurfaceJet jet = evaluate_jet(patch, u, v);
-    // The tangents that decide: where one vanishes, r_uv.
+    // The deciding tangents; if one vanishes, r_uv.
     const bool along_v = length(jet.du) < length(jet.dv);
     const Vec3 a = expected.kind == NormalKind::limit && along_v ? jet.duv : jet.du;
     const Vec3 b = expected.kind == NormalKind::limit && !along_v ? jet.duv : jet.dv;
@@ -248,7 +248,7 @@ void Geometry::check_poles() {
     EXPECT_TRUE(within_units(read(all.out.normal, k), expected.direction, 1, bound));
     limits += expected.kind == NormalKind::limit;
     undefined += expected.kind == NormalKind::undefined;
-    // Curvatures are not made of tangents that are rounding errors.
+    // Curvatures are never computed from tangents that are rounding errors.
     if (expected.kind != NormalKind::regular || !(height > noise)) all.expect_undefined(k);
   }
   EXPECT_GT(limits, 200u);
@@ -257,7 +257,7 @@ void Geometry::check_poles() {
 TEST_P(Geometry, DegeneratePointsFloat) { check_poles<float>(); }
 TEST_P(Geometry, DegeneratePointsDouble) { check_poles<double>(); }
 
-/// An edit that collapses an edge, or opens it, is seen at once.
+/// An edit that collapses an edge, or opens it, takes effect at once.
 TEST_P(Geometry, EditsMoveTheLimits) {
   const Vec3 pole{0, 0, 1};
   const std::vector<Vec3> closed{pole, pole, {1, 0, 0}, {0, 1, 0}}, open{pole, {1, 1, 1}, {1, 0, 0}, {0, 1, 0}};
@@ -272,7 +272,7 @@ TEST_P(Geometry, EditsMoveTheLimits) {
   }
 }
 
-/// A block's output is what the views of `all` hold.
+/// A block's output holds the values of the views of `all`.
 template <class T, class Output>
 void expect_in_blocks(const Evaluated<T>& all, const Output& output, const AlignedVector<T>& blocks) {
   SCOPED_TRACE(output.name);
@@ -285,8 +285,7 @@ void expect_in_blocks(const Evaluated<T>& all, const Output& output, const Align
     }
 }
 
-/// Blocks hold what views hold, each output alone is what it is with the others, and so it is in one interleaved
-/// record.
+/// Blocks hold the values of views; each output alone equals the one with all others, also in one interleaved record.
 template <class T>
 void check_ways_out(Isa isa) {
   Random random(96);

@@ -1,4 +1,4 @@
-// Every layout holds the same values in the places that evaluate.h names, whatever the grid's size.
+// Every layout holds the same values in the places that evaluate.h names, for any size of grid.
 
 #include <gtest/gtest.h>
 
@@ -108,7 +108,7 @@ TEST(Layout, BlocksPlainAndStreamed) {
     }
 }
 
-/// Each output alone is what it is together with the others.
+/// Each output alone equals the one together with the others.
 TEST(Layout, AnySubsetOfOutputs) {
   for (const Isa isa : available_isas()) {
     const Case<float> c(5, 6, isa);

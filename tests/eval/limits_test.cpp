@@ -12,7 +12,7 @@ TEST(Limits, AreMeasuredForEachIsa) {
   for (const Isa isa : available_isas()) {
     const Limits limits = value_of(measure_limits({.isa = isa, .store_bytes = 1 << 20}));
     EXPECT_EQ(limits.isa, isa);
-    // A processor with SSE2 does more than 0.1 G a second of anything here, and none does 10 T.
+    // A processor with SSE2 does more than 0.1 G operations per second of any kind, and none does 10 T.
     for (const double rate : {limits.float_operations_per_second, limits.double_operations_per_second,
                               limits.plain_store_bytes_per_second, limits.streaming_store_bytes_per_second}) {
       EXPECT_GT(rate, 1e8);
@@ -23,7 +23,8 @@ TEST(Limits, AreMeasuredForEachIsa) {
   }
 }
 
-/// 12, 36, 50 and 72 operations a point of a bicubic; in proportion to the order; 4/3 and 4 more if rational; 30 for curvatures.
+/// 12, 36, 50 and 72 operations per point of a bicubic; in proportion to the order; 4/3 of it and 4 more if rational;
+/// 30 for curvatures.
 TEST(Limits, ABufferThatNoMemoryHoldsIsRefused) {
   const auto limits = measure_limits({.store_bytes = std::size_t{1} << 63});
   EXPECT_EQ(limits.status().code(), StatusCode::out_of_memory);

@@ -1,5 +1,5 @@
-// Patch-contiguous results against the block-interleaved ones, bit for bit, in every shape of memory: any place in a
-// cache line, records with and without gaps, arrays, columns far apart, plain and streamed; and nothing beyond.
+// Compares patch-contiguous results with block-interleaved ones, bit for bit, in every layout: any place in a cache
+// line, records with and without gaps, arrays, columns far apart, plain and streamed stores. Nothing is written beyond.
 
 #include <gtest/gtest.h>
 
@@ -136,7 +136,7 @@ TEST(Lines, AnySizeOfGrid) {
     }
 }
 
-/// Large grids are cut into rows, which begin and end in the middle of lines and of other threads' lines.
+/// Large grids are cut into rows, which begin and end in the middle of cache lines and of other threads' cache lines.
 TEST(Lines, GridsInPieces) {
   for (const Isa isa : available_isas()) check_grid<float>(67, 61, isa, {3});
 }

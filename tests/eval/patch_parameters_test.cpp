@@ -1,4 +1,4 @@
-// Parameters of each patch's own: the bits of the same parameters given for all, in every layout; and bad lists.
+// Parameters of each patch's own: the bits of the same parameters for all patches, in every layout; and bad lists.
 
 #include <gtest/gtest.h>
 

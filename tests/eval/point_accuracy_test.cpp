@@ -136,7 +136,7 @@ void check_steep(Isa isa) {
 TEST_P(PointAccuracy, FloatWithSteepWeights) { check_steep<float>(GetParam()); }
 TEST_P(PointAccuracy, DoubleWithSteepWeights) { check_steep<double>(GetParam()); }
 
-/// Where weights are exact, points and grids are the same bits, in every output.
+/// If weights are exact, points and grids have the same bits in every output.
 template <class T>
 void compare_with_grid(Isa isa, int degree, const std::vector<double>& t) {
   Random random(303);

@@ -1,4 +1,4 @@
-// Bad input: a Status that names what is wrong, and not a byte written.
+// Bad input gives a Status that names the fault, and not a byte is written.
 
 #include <gtest/gtest.h>
 
@@ -120,11 +120,11 @@ TEST_F(PointErrors, SharedMemory) {
             })
                 .find("share"),
             std::string::npos);
-  // Outputs over the parameters that they are made from.
+  // Outputs that overlap the parameters that they are computed from.
   PatchSamples<float> own = samples_.views();
   own.u = View1<const float>::interleaved(positions_);
   EXPECT_NE(refused(own, views()).message().find("share"), std::string::npos);
-  // Fields of one record are not shared memory, nor are neighbours.
+  // Fields of one record are not shared memory, and neither are neighbours.
   std::vector<float> records(6 * 5000);
   EXPECT_TRUE(evaluate(set_, samples_.views(),
                        {.position = View3<float>::interleaved(records, 6, 0),

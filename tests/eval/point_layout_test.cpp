@@ -1,4 +1,4 @@
-// Scattered points into every kind of memory: any count, arrays, records, strides; and nothing beside what was asked for.
+// Scattered points into every kind of memory: any count, arrays, records, strides. Nothing else is written.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ std::vector<Samples<float>> kinds_of_samples(Random& random, std::size_t patch_c
   return kinds;
 }
 
-/// Every count around the lanes of a vector, one sample at a time as reference.
+/// Every count around the lanes of a vector; the reference takes one sample at a time.
 TEST(PointLayout, AnyCount) {
   Random random(321);
   const PatchSet field = set_of(test::wavy_field(2, 2), with_points());

@@ -1,4 +1,4 @@
-// Scattered points: the same bytes however they are asked for, degenerate points, edits.
+// Scattered points: the same bytes for every form of the call, degenerate points, edits.
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -55,7 +55,7 @@ TEST(Points, SameBytesForAnyThreadsAndOnEveryIsaOfMixedDegrees) {
   compare_bytes<double>(patches, 9000);
 }
 
-/// A sample's values depend neither on its neighbours nor on which kernel their order calls for.
+/// A sample's values depend neither on its neighbours nor on the kernel that their order selects.
 template <class T>
 void compare_orders(const PatchSet& set, const Samples<T>& samples, const std::vector<std::size_t>& order) {
   const Samples<T> ordered = samples.in_order(order);
@@ -147,7 +147,7 @@ std::vector<BezierPatch> degenerate_patches() {
   return patches;
 }
 
-/// Kinds are the grid's, and so are normals within the rounding of limits.
+/// Kinds equal the grid's; normals do so within the rounding of limits.
 template <class T>
 void compare_degenerate(Isa isa) {
   const PatchSet set = set_of(degenerate_patches(), with_points());

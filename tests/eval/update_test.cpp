@@ -1,4 +1,4 @@
-// Updates of touched patches: the same bytes as edits one by one and evaluation of all, and nothing beside.
+// Updates of touched patches: the same bytes as edits one by one and evaluation of all, and nothing else is written.
 
 #include "tessera/evaluate.h"
 
@@ -36,7 +36,7 @@ struct Edits {
   operator PatchEdits() const { return {patch, points}; }
 };
 
-/// Of `count` patches; one in four becomes degenerate: an edge or all of it one point.
+/// Edits of `count` patches; one in four becomes degenerate: an edge or all of it is one point.
 Edits random_edits(Random& random, const PatchSet& set, std::size_t count) {
   Edits edits;
   std::vector<std::size_t> order = shuffled_order(random, set.patch_count());
@@ -125,7 +125,7 @@ TEST(Update, SameBytesAsEditsOneByOneAndFullEvaluation) {
   compare_with_full<double>(field, Representation::power, available_isas().back(), 8);
 }
 
-/// Positions and normals in blocks: touched ones as of a full evaluation, the memory of others as it was.
+/// Positions and normals in blocks: touched ones equal those of a full evaluation, all other memory is unchanged.
 TEST(Update, BlocksAreThoseOfFullEvaluation) {
   Random random(905);
   const auto patches = mixed_patches(random, 3, 9);
@@ -241,7 +241,7 @@ TEST(Update, BadEditsAreRefusedBeforeAnythingIsWritten) {
   EXPECT_EQ(set.revision(), 1u);
 }
 
-/// Far points are looked at one by one: what set_control_points takes is taken.
+/// Far points are checked one by one: all that set_control_points accepts is accepted.
 TEST(Update, FarPointsThatFitAreTaken) {
   Random random(905);
   PatchSet set = set_of({random_polynomial(random, 3, 3), random_rational(random, 2, 2)}, every_kind());

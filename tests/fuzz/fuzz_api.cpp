@@ -1,6 +1,6 @@
-// libFuzzer: whatever calls a program makes of the library, with whatever numbers, they return in bounded time and memory,
-// with a Status or with results that can be used. The input is read as a sequence of choices and numbers: a surface, a set
-// of it, and what is done with that.
+// libFuzzer: all calls of the library, with any numbers, must return in bounded time and memory, with a Status or with
+// usable results. The input is read as a sequence of choices and numbers: a surface, a set of it, and calls with that
+// set.
 
 #include <fuzzer/FuzzedDataProvider.h>
 
@@ -27,7 +27,7 @@ void require(bool holds) {
   if (!holds) std::abort();
 }
 
-/// Whether there is a value; if not, whether it says why.
+/// Whether there is a value or an error with a message.
 bool sound(const Status& status) {
   if (status.ok()) return true;
   require(!status.message().empty() && status.code() != StatusCode::internal &&

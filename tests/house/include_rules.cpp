@@ -12,8 +12,8 @@ struct Include {
   std::string path;
 };
 
-// Block comments become blanks, so that what they quote is not taken for code; lines keep their numbers. "/*" begins none
-// in a line comment or a string.
+// Replaces block comments by blanks, so that quoted code does not count as code; lines keep their numbers. "/*" in a
+// line comment or a string begins no block comment.
 std::string without_block_comments(std::string text) {
   enum class State { code, line_comment, block_comment, string } state = State::code;
   for (std::size_t k = 0; k < text.size(); ++k) {
@@ -67,7 +67,7 @@ std::pair<std::string, std::string> split_at_slash(const std::string& path) {
   return {path.substr(0, slash), path.substr(slash + 1)};
 }
 
-// Where a file belongs: its floor, and its name if it is a public header.
+// The floor of a file, and its name if it is a public header.
 struct Place {
   std::string floor;
   std::string header;  // empty for a file of engine/src

@@ -1,4 +1,4 @@
-// The checker of #include lines: that it finds each kind of breach, and that engine/ has none.
+// The checker of #include lines finds each kind of breach, and none in engine/.
 
 #include "house/include_rules.h"
 
@@ -105,7 +105,7 @@ TEST(FloorTable, FaultsAreFound) {
   }
 }
 
-// The rest reads the real tree.
+// The tests below read the real tree.
 
 FloorTable real_table() {
   std::vector<std::string> faults;

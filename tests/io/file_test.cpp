@@ -1,4 +1,4 @@
-// Whole files in; files out that appear whole or not at all.
+// Reads whole files; writes files that appear whole or not at all.
 
 #include "io/file.h"
 

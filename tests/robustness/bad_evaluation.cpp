@@ -96,7 +96,7 @@ void grid_blocks(Table& table, const PatchSet& set) {
           {.position = all.first(capacity), .normal = all.subspan(capacity - 16, capacity)});
 }
 
-/// Samples that are sound but for what each row does to them.
+/// Samples that are sound except for the change of each row.
 class PointRows {
  public:
   PointRows(Table& table, const PatchSet& set) : table_(table), set_(set) {}

@@ -85,7 +85,7 @@ void transfinite(Table& table) {
             [&] { return floats == clean; });
 }
 
-/// Edits of a set of two patches that are sound but for what each row does to them.
+/// Edits of a set of two patches, sound except for the change of each row.
 struct Edited {
   std::vector<BezierPatch> patches = wavy_field(1, 2);
   PatchSet set = set_of(patches);

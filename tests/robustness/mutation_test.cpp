@@ -1,5 +1,5 @@
-// Random mutations of valid surfaces, rays and options: nothing crashes, and no result is NaN without a flag. As many as
-// TESSERA_MUTATIONS says, 100,000 for a proof; a few seconds' worth by default.
+// Random mutations of valid surfaces, rays and options: nothing crashes, and no result is NaN without a flag.
+// TESSERA_MUTATIONS sets their number, 100,000 for a proof; the default takes a few seconds.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ class Case {
  public:
   explicit Case(std::uint64_t seed) : m_(seed) {}
 
-  /// How far it came.
+  /// Returns how far the case came.
   const char* run() {
     const Result<Surface> surface = mutated_surface(m_);
     if (!sound(surface)) return "surface refused";
@@ -42,7 +42,7 @@ class Case {
   }
 
  private:
-  /// Whether it was made; if not, whether it says why.
+  /// Whether there is a value or an error with a message.
   template <class T>
   static bool sound(const Result<T>& result) {
     if (!result) sound(result.status());

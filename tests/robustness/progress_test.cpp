@@ -12,7 +12,7 @@
 namespace tessera::test {
 namespace {
 
-/// Calls call(execution), which must succeed, and looks at what it reports.
+/// Runs call(execution), which must succeed, and checks its reports.
 template <class Call>
 void rises_once(const char* name, const Call& call) {
   std::vector<double> shares;

@@ -1,5 +1,5 @@
 #pragma once
-// Sets and grids for tests of evaluation: what each test would otherwise write again.
+// Sets and grids for tests of evaluation, shared by these tests.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,8 @@ inline PatchSet set_of(const std::vector<BezierPatch>& patches, PatchSetOptions 
   return value_of(PatchSet::from(patches, options));
 }
 
-/// Patches of every mix of degrees up to `degree`, polynomial and rational, in shuffled order: several groups, partial blocks.
+/// Patches of every mix of degrees up to `degree`, polynomial and rational, in shuffled order: several groups, partial
+/// blocks.
 inline std::vector<BezierPatch> mixed_patches(Random& random, int degree, int copies = 1) {
   std::vector<BezierPatch> patches;
   for (int copy = 0; copy < copies; ++copy)
@@ -50,7 +51,8 @@ struct GridBuffers {
   bool operator==(const GridBuffers&) const = default;
 };
 
-/// Every output of a grid in an array of its own, patch-contiguous; the memory of those beyond the outputs asked for stays at `fill`.
+/// Every output of a grid in an array of its own, patch-contiguous; memory of outputs that are not requested keeps
+/// `fill`.
 template <class T>
 struct AllBuffers {
   std::vector<std::vector<T>> values;  ///< in the order of for_each_value_quantity

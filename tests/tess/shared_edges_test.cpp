@@ -1,4 +1,4 @@
-// Which borders are one edge, held against a comparison of all with all by their bits.
+// Finds which borders are one edge; compared with a comparison of all with all by their bits.
 
 #include "tess/edges/shared_edges.h"
 
@@ -18,7 +18,7 @@ using Bits = std::vector<std::uint32_t>;
 
 std::size_t edges_of(const PatchSet& set) { return SharedEdges(impl_of(set)).count(); }
 
-/// A border's numbers, in that direction whose are less.
+/// A border's numbers, in the direction that gives the smaller ones.
 Bits bits_of(const PatchSet::Impl& set, std::size_t patch, Side side) {
   const PackedBorder border(set, patch, side);
   Bits forward, backward;
@@ -89,7 +89,7 @@ TEST(SharedEdges, AreThoseWhoseBordersAreTheSameBits) {
 TEST(SharedEdges, ABitApartIsAnotherEdge) {
   std::vector<BezierPatch> field = wavy_field(6, 20);
   const std::size_t whole = edges_of(set_of(field));
-  // An inner control point of the border between patches 50 and 51, of one of them.
+  // An inner control point of the border between patches 50 and 51, in one of them.
   std::vector<Vec3> points(field[50].points().begin(), field[50].points().end());
   points[13].x = std::nextafter(static_cast<float>(points[13].x), 1e9f);
   field[50] = polynomial(3, 3, points);

@@ -11,7 +11,7 @@
 namespace tessera::cli {
 namespace {
 
-/// The integer at the front of `text`, which is taken off; false if there is none in range.
+/// Removes the integer at the front of `text`; false if there is none in range.
 bool take_integer(std::string_view& text, int least, int most, int& value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || value < least || value > most) return false;

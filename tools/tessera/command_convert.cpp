@@ -1,4 +1,4 @@
-// tessera convert: surfaces to Bezier patches in another format.
+// tessera convert: converts surfaces to Bezier patches in another format.
 
 #include <CLI/CLI.hpp>
 #include <memory>

@@ -22,7 +22,7 @@ namespace tessera::inline abi_0_1 {
     } catch (...) {
       return Status(StatusCode::internal, "unknown exception");
     }
-  } catch (...) {  // not even the message could be stored
+  } catch (...) {  // no memory even for the message
     return Status(StatusCode::out_of_memory, {});
   }
 }

@@ -18,13 +18,13 @@ namespace tessera::inline abi_0_1 {
 /// Unlinks the temporaries of all open OutputFiles. For signal handlers that end the process: async-signal-safe.
 void remove_temporaries() noexcept;
 
-/// Writes beside the place of a file, then renames: `commit` is the moment at which the file appears, and without it
-/// nothing stays behind. What is no regular file (a pipe, a terminal, /dev/stdout) is written to directly. Memory: 1
-/// MiB, whatever is written. A failed write is remembered, later ones are dropped, and commit reports the first.
+/// Writes beside the place of a file, then renames. The file appears at `commit`; without it nothing remains. Anything
+/// but a regular file (a pipe, a terminal, /dev/stdout) is written directly. Memory: 1 MiB, whatever is written. After
+/// a failed write later ones are dropped, and commit reports the first failure.
 class OutputFile {
  public:
-  /// Errors: io_error (a directory, a missing folder, no permission).
-  /// Once `cancel` is true, writes fail with cancelled, and the file does not appear.
+  /// Opens the file. Once `cancel` is true, writes fail with cancelled, and the file does not appear. Errors: io_error
+  /// (a directory, a missing folder, no permission).
   static Result<OutputFile> create(const std::filesystem::path& path, const std::atomic<bool>* cancel = nullptr);
   /// The process's standard output.
   static OutputFile standard_output(const std::atomic<bool>* cancel = nullptr);
@@ -38,24 +38,24 @@ class OutputFile {
     if (buffer_.size() - used_ < 1) flush();
     buffer_[used_++] = c;
   }
-  /// Integers, and floats in the shortest form that reads back as the same number.
+  /// Writes integers, and floats in the shortest form that reads back as the same number.
   template <class Number>
   void write_number(Number value) {
     char* const begin = room(32);
     used_ += static_cast<std::size_t>(std::to_chars(begin, begin + 32, value).ptr - begin);
   }
-  /// `digits` <= 17 significant digits.
+  /// Writes `digits` <= 17 significant digits.
   void write_number(double value, int digits) {
     char* const begin = room(32);
     used_ += static_cast<std::size_t>(std::to_chars(begin, begin + 32, value, std::chars_format::general, digits).ptr -
                                       begin);
   }
 
-  /// Where the file will lie.
+  /// The final place of the file.
   const std::filesystem::path& path() const { return target_; }
   /// Whether any write has failed: a long writer may stop early.
   bool failed() const { return !status_.ok(); }
-  /// Writes what is buffered, closes, renames. Errors: io_error, cancelled. To be called once, as the last thing.
+  /// Writes the buffer, closes, renames. Call it once, last. Errors: io_error, cancelled.
   Status commit();
 
  private:

@@ -72,7 +72,7 @@ Result<SurfaceJet> evaluate_jet(const ModelSurface& surface, double u, double v)
   if (!is_finite(position))
     return Status(StatusCode::non_finite, "the surface's point at (" + text(u) + ", " + text(v) + ") is (" +
                                               text(position.x) + ", " + text(position.y) + ", " + text(position.z) +
-                                              ") where it is placed: beyond the range of numbers");
+                                              ") after its placement, beyond the range of double");
   return SurfaceJet{position,
                     map.vector(jet->du),
                     map.vector(jet->dv),
@@ -90,9 +90,10 @@ Result<PatchGrid> to_bezier(const ModelSurface& surface, const FitOptions& optio
   Result<PatchGrid> grid = to_bezier(surface.surface, before);
   if (grid) grid = transformed(*grid, surface.placement);
   if (grid && options.tolerance > 0 && grid->fit_error().distance > options.tolerance)
-    return Status(StatusCode::invalid_argument, "the tolerance " + text(options.tolerance) +
-                                                    " is below what rounding leaves where the surface is placed: " +
-                                                    text(grid->fit_error().distance) + " was reached");
+    return Status(StatusCode::invalid_argument,
+                  "the tolerance " + text(options.tolerance) +
+                      " is below the rounding of the placed surface; the error reached is " +
+                      text(grid->fit_error().distance));
   return grid;
 }
 

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <string>
 
+#include "base/text.h"
 #include "block/pack.h"
 #include "block/patch_set_impl.h"
 #include "kernel/isa/kernel_table.h"
@@ -115,8 +116,9 @@ Status too_large(std::size_t patch) {
 
 Status check_sources(std::span<const BezierPatch> patches, std::span<const PatchSource> sources) {
   if (sources.size() != patches.size())
-    return Status(StatusCode::count_mismatch, std::to_string(patches.size()) + " patches need as many sources, not " +
-                                                  std::to_string(sources.size()));
+    return Status(StatusCode::count_mismatch, "found " + counted(sources.size(), "source") + " for " +
+                                                  counted(patches.size(), "patch", "patches") +
+                                                  ", each patch needs one");
   for (std::size_t k = 0; k < sources.size(); ++k) {
     const Domain& d = sources[k].domain;
     if (!(d.u0 < d.u1 && d.v0 < d.v1) || !std::isfinite(d.u1 - d.u0) || !std::isfinite(d.v1 - d.v0))

@@ -9,7 +9,7 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// "path: what: the system's words for error_number".
+/// The error "path: what: the system's words for error_number".
 Status io_failure(const std::filesystem::path& path, std::string_view what, int error_number);
 
 }  // namespace tessera::inline abi_0_1

@@ -20,32 +20,32 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t buffer_bytes = std::size_t{1} << 20;
 
-/// The name of a temporary where a signal handler can read it: in memory that is never freed, behind no lock.
+/// The name of a temporary, where a signal handler can read it: in memory that is never freed, without a lock.
 struct NamePlace {
   std::atomic<bool> taken = false, readable = false;
   std::array<char, PATH_MAX> name{};
 };
-std::array<NamePlace, 8> name_places;  // more files at once are removed at their end all the same
+std::array<NamePlace, 8> name_places;  // more files at once are removed only at their normal end
 
-/// Where the file will lie: behind symbolic links, so that they stay links, even those whose target does not exist yet.
+/// The file's real place. Follows symbolic links, even dangling ones, so that they stay links.
 Result<fs::path> behind_links(const fs::path& path) {
   std::error_code error;
   if (!fs::is_symlink(path, error)) return path;
   fs::path target = fs::canonical(path, error);
   if (!error) return target;
-  // What exists under no path, such as the pipe behind /dev/stdout, is opened by the name given.
+  // An object that exists under no path, such as the pipe behind /dev/stdout, is opened by the caller's path.
   if (fs::exists(path, error)) return path;
   constexpr int max_links = 40;  // the system's own limit (path_resolution(7))
   target = path;
   for (int link = 0; link < max_links; ++link) {
     const fs::path next = fs::read_symlink(target, error);
-    if (error) return target;  // no link
+    if (error) return target;  // not a link
     target = target.parent_path() / next;
   }
   return io_failure(path, "cannot be written", ELOOP);
 }
 
-/// A name beside `target` that no other writer has, in this process or another.
+/// A name beside `target` that no other writer uses, in this process or another.
 fs::path temporary_beside(const fs::path& target) {
   static std::atomic<unsigned> serial{0};
   fs::path temporary = target;
@@ -133,21 +133,21 @@ Result<OutputFile> OutputFile::create(const fs::path& path, const std::atomic<bo
     if (!file.is_open()) return io_failure(path, "cannot be written", errno);
     return OutputFile(std::make_unique<Destination>(std::move(file)), path, cancel);
   }
-  // A rename would replace a file that its owner has protected from writing.
+  // A rename would replace a file that its owner has write-protected.
   if (exists && ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0)
     return io_failure(path, "cannot be written", errno);
   TemporaryName temporary(temporary_beside(target));
   Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
   if (!file.is_open()) {
     const int error = errno;
-    temporary.release();  // whatever has this name is another's
+    temporary.release();  // a file of this name belongs to another
     const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
     if (error == ENOENT) {
       return Status(StatusCode::io_error, path.string() + ": cannot be written: there is no folder " + folder.string());
     }
     return io_failure(path, "cannot be written in " + folder.string(), error);
   }
-  if (exists) ::fchmod(file.number(), facts.st_mode & 07777);  // at worst the file gets the usual mode
+  if (exists) ::fchmod(file.number(), facts.st_mode & 07777);  // if it fails, the file has the usual mode
   return OutputFile(std::make_unique<Destination>(std::move(file), std::move(temporary)), target, cancel);
 }
 

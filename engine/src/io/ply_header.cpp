@@ -123,7 +123,7 @@ class HeaderReader {
   }
 
   Status read_property() {
-    if (header_.elements.empty()) return cursor_.failure("expected element, found a property of none");
+    if (header_.elements.empty()) return cursor_.failure("expected element before the first property");
     PlyProperty property;
     property.is_list = next_word() == "list";
     Status status;

@@ -19,8 +19,7 @@ std::string size_text(int degree_u, int degree_v) {
 
 Status check_count(int degree_u, int degree_v, std::size_t count, const char* what) {
   if (count == static_cast<std::size_t>(degree_u + 1) * static_cast<std::size_t>(degree_v + 1)) return {};
-  return {StatusCode::count_mismatch,
-          size_text(degree_u, degree_v) + " " + what + ", " + std::to_string(count) + " were given"};
+  return {StatusCode::count_mismatch, size_text(degree_u, degree_v) + " " + what + ", found " + std::to_string(count)};
 }
 
 /// What BezierPatch::polynomial asks for.

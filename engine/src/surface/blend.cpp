@@ -64,7 +64,7 @@ Result<std::array<double, 3>> jet_by_differences(const std::function<double(doub
 Status check_condition(const char* condition, double error, double tolerance) {
   if (std::abs(error) <= tolerance) return {};
   return {StatusCode::invalid_argument, std::string("the blending functions must satisfy ") + condition +
-                                            ", they miss it by " + text(std::abs(error)) + "; allowed is " +
+                                            ", they miss it by " + text(std::abs(error)) + "; the tolerance is " +
                                             text(tolerance)};
 }
 

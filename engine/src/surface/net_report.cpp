@@ -78,7 +78,7 @@ void add_sample(const BezierPatch& patch, double u, double v, NetReport& report)
 Result<NetReport> measure_net(const BezierPatch& patch, const NetOptions& options) {
   return guarded([&]() -> Result<NetReport> {
     if (options.samples < 2 || options.samples > 1000)
-      return Status(StatusCode::invalid_argument, "a net is sampled at 2 to 1000 points each way");
+      return Status(StatusCode::invalid_argument, "a net must be sampled at 2 to 1000 points in each direction");
     if (!(options.tolerance >= 0))
       return Status(StatusCode::invalid_argument, "the tolerance of a net must not be negative");
     NetReport report;

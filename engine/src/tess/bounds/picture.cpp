@@ -199,7 +199,7 @@ Result<Camera> Camera::make(const View& view) {
     return bad("the view's extent is " + text(view.extent) + ", it must be finite and above 0");
   if (view.width < 1 || view.height < 1 || view.width > max_pixels || view.height > max_pixels)
     return bad("the view is " + std::to_string(view.width) + " x " + std::to_string(view.height) +
-               " pixels, from 1 to 1048576 are allowed");
+               " pixels, each must be from 1 to 1048576");
   if (!(view.near_distance >= 0 && view.near_distance <= largest))
     return bad("the view's near distance is " + text(view.near_distance) + ", it must be finite and at least 0");
   Camera camera;

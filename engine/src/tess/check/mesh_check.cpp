@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "base/text.h"
 #include "tess/check/t_junctions.h"
 #include "tess/edges/position_bits.h"
 #include "tessera/guard.h"
@@ -68,10 +69,10 @@ Status check_counts(const Mesh& mesh) {
   const auto bad = [](std::string message) { return Status(StatusCode::invalid_argument, std::move(message)); };
   const auto fits = [](const auto& values, std::size_t wanted) { return values.empty() || values.size() == wanted; };
   if (mesh.positions.size() % 3 != 0)
-    return bad(std::to_string(mesh.positions.size()) + " numbers in positions are not three a vertex");
+    return bad(std::to_string(mesh.positions.size()) + " numbers in positions are not three per vertex");
   if (mesh.indices.size() % 3 != 0)
-    return bad(std::to_string(mesh.indices.size()) + " indices are not three a triangle");
-  if (mesh.quads.size() % 4 != 0) return bad(std::to_string(mesh.quads.size()) + " indices are not four a quad");
+    return bad(std::to_string(mesh.indices.size()) + " indices are not three per triangle");
+  if (mesh.quads.size() % 4 != 0) return bad(std::to_string(mesh.quads.size()) + " indices are not four per quad");
   if (mesh.vertex_count() > max_vertices)
     return bad(std::to_string(mesh.vertex_count()) + " vertices are more than " + std::to_string(max_vertices));
   if (!fits(mesh.positions_f64, mesh.positions.size()))
@@ -84,11 +85,9 @@ Status check_counts(const Mesh& mesh) {
     return bad(std::to_string(mesh.parameters.size()) + " numbers in parameters for " +
                std::to_string(mesh.vertex_count()) + " vertices");
   if (!fits(mesh.patches, mesh.triangle_count()))
-    return bad(std::to_string(mesh.patches.size()) + " patches for " + std::to_string(mesh.triangle_count()) +
-               " triangles");
+    return bad(counted(mesh.patches.size(), "patch", "patches") + " for " + counted(mesh.triangle_count(), "triangle"));
   if (!fits(mesh.quad_patches, mesh.quad_count()))
-    return bad(std::to_string(mesh.quad_patches.size()) + " patches for " + std::to_string(mesh.quad_count()) +
-               " quads");
+    return bad(counted(mesh.quad_patches.size(), "patch", "patches") + " for " + counted(mesh.quad_count(), "quad"));
   return {};
 }
 

@@ -347,9 +347,9 @@ Result<CertifiedPlan> CertifiedPlanner::plan(double tolerance, std::uint64_t max
   const auto [vertices, triangles, quads] = best->capacity();
   if (triangles <= max_triangles && vertices <= max_vertices) return best;
   return Status(StatusCode::invalid_argument, wanted(tolerance) + " takes " + std::to_string(triangles) +
-                                                  " triangles and " + std::to_string(vertices) + " vertices, " +
-                                                  std::to_string(max_triangles) + " and " +
-                                                  std::to_string(max_vertices) + " are allowed");
+                                                  " triangles and " + std::to_string(vertices) +
+                                                  " vertices, the limits are " + std::to_string(max_triangles) +
+                                                  " and " + std::to_string(max_vertices));
 }
 
 Result<double> CertifiedPlanner::smallest_tolerance(std::uint64_t max_triangles, const Execution& execution) const {

@@ -78,7 +78,7 @@ Mesh CertifiedTessellation::Impl::allocate(const MeshCapacity& capacity) const {
 
 Status CertifiedTessellation::Impl::check_normals(const MeshViews& out) const {
   if (out.normal.empty() || has_normals()) return {};
-  return {StatusCode::invalid_argument, "vertices that patches share have no normals without a crease angle"};
+  return {StatusCode::invalid_argument, "normals of shared vertices need a crease angle"};
 }
 
 Status CertifiedTessellation::Impl::write_copies(const PatchSet::Impl& set, const MeshViews& out,
@@ -134,7 +134,7 @@ Result<PlannerOptions> checked(const CertifiedOptions& options, const PatchSet& 
   const auto bad = [](const std::string& message) { return Status(StatusCode::invalid_argument, message); };
   // The conditions are written so that NaN fails.
   if (!options.tolerance && !options.angle && !options.pixels && !options.smallest)
-    return bad("no tolerance is given: a distance, an angle, pixels or the smallest");
+    return bad("there is no tolerance: set a distance, an angle, pixels or the smallest");
   if (options.tolerance && !(*options.tolerance > 0 && std::isfinite(*options.tolerance)))
     return bad("the tolerance is " + text(*options.tolerance) + ", it must be finite and above 0");
   if (options.angle && !(*options.angle > 0 && *options.angle <= std::numbers::pi / 2))

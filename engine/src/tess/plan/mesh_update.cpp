@@ -21,7 +21,7 @@ constexpr double restating_ends[] = {0.8, 1};  // after the patches' bounds, and
 
 Status edited_otherwise(std::uint64_t revision, std::uint64_t known) {
   return {StatusCode::stale, "the set is at revision " + std::to_string(revision) + ", the mesh at " +
-                                 std::to_string(known) + ": it was edited by other means"};
+                                 std::to_string(known) + ": the set was edited by other means"};
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ Result<Mesh> split_quads(const Mesh& mesh) {
     if (mesh.indices.size() % 3 != 0 || mesh.quads.size() % 4 != 0)
       return Status(StatusCode::count_mismatch, std::to_string(mesh.indices.size()) + " indices of triangles and " +
                                                     std::to_string(mesh.quads.size()) +
-                                                    " of quads are not three and four each");
+                                                    " of quads are not three per triangle and four per quad");
     if (Status status = check_parts(mesh); !status.ok()) return status;
     if (mesh.quads.empty()) return mesh;
     Mesh split;
