@@ -210,7 +210,7 @@ struct CertifiedOptions {
 ///   first_vertex(k) + (iu - 1) * (rates v - 1) + iv - 1.
 ///
 /// Immutable. Threads: any number of const calls. Memory: 1 KiB per patch to make, 256 bytes per patch to keep; and at
-/// most about 512 KiB per process for tables that small plans share.
+/// most about 512 KiB per set for tables that its small plans share.
 class CertifiedTessellation {
  public:
   /// Makes a plan.

@@ -9,6 +9,7 @@
 
 #include "base/aligned.h"
 #include "base/internal_export.h"
+#include "base/shared_slot.h"
 #include "tessera/patch_set.h"
 
 namespace tessera::inline abi_0_1 {
@@ -57,6 +58,8 @@ struct Coefficients {
   }
 };
 
+class MeshTables;
+
 class PatchSet::Impl {
  public:
   ~Impl();
@@ -76,6 +79,8 @@ class PatchSet::Impl {
   std::size_t surface_count = 0;
   std::uint64_t revision = 0;
   std::vector<std::uint64_t> edited;  ///< `[patch]`: the revision that its last edit made; 0 without an edit
+  /// The tables that plans of this set share (tess/write/mesh_tables.h), without and with those of bicubic points.
+  mutable std::array<SharedSlot<MeshTables>, 2> mesh_tables;
 
   /// Begins a new revision, in which these patches have been edited.
   void note_edits(std::span<const std::uint32_t> of) {

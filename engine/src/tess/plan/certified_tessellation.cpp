@@ -39,7 +39,7 @@ CertifiedTessellation::Impl::Impl(const PatchSet& set, const CertifiedOptions& o
       fit_error_(set.fit_error()),
       revision_(set.revision()),
       isa_(isa),
-      tables_(MeshTables::of(shapes_, plan_.divisions(), kernel::kernels(isa).mesh_points != nullptr)) {
+      tables_(MeshTables::of(impl_of(set), shapes_, plan_.divisions(), kernel::kernels(isa).mesh_points != nullptr)) {
   for (const float bound : plan_.bounds()) bound_ = std::max(bound_, bound);
   for (const float pixels : plan_.pixels()) pixels_ = std::max(pixels_, pixels);
   for (const float angle : plan_.angles()) {

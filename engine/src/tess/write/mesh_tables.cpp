@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <mutex>
 #include <utility>
 
 #include "basis/bernstein.h"
@@ -195,33 +194,11 @@ void MeshTables::add_strip(Segments border, Segments inner, bool collapsed) {
   strip = {hold(std::move(whole)), static_cast<int>(codes.size())};
 }
 
-/// The tables that a process keeps for later plans.
-class CommonTables {
- public:
-  static CommonTables& get() {
-    static CommonTables& all = *new CommonTables;  // never deleted: plans may outlive static objects
-    return all;
-  }
-  std::shared_ptr<const MeshTables> load(bool with_cubic) {
-    const std::lock_guard lock(mutex_);
-    return tables_[with_cubic];
-  }
-  void store(bool with_cubic, std::shared_ptr<const MeshTables> tables) {
-    const std::lock_guard lock(mutex_);
-    tables_[with_cubic].swap(tables);
-  }
-
- private:
-  std::mutex mutex_;
-  std::array<std::shared_ptr<const MeshTables>, 2> tables_;
-};
-
 /// Uses the common tables, or a copy of them to which it adds what they lack.
 class TableMaker {
  public:
-  TableMaker(std::size_t patches, bool with_cubic)
-      : common_(CommonTables::get().load(with_cubic)),
-        seen_(std::bit_ceil(std::clamp<std::size_t>(16 * patches, 64, 4096))) {
+  TableMaker(SharedSlot<MeshTables>& kept, std::size_t patches, bool with_cubic)
+      : kept_(kept), common_(kept.load()), seen_(std::bit_ceil(std::clamp<std::size_t>(16 * patches, 64, 4096))) {
     if (!common_) common_ = own_ = std::shared_ptr<MeshTables>(new MeshTables(with_cubic));
     common_bytes_ = common_->bytes();
   }
@@ -243,11 +220,10 @@ class TableMaker {
   /// more than half full, the common ones begin anew.
   std::shared_ptr<const MeshTables> take() {
     if (!own_) return common_;
-    CommonTables& all = CommonTables::get();
     if (own_->bytes() <= MeshTables::max_common_bytes) {
-      all.store(own_->with_cubic_, own_);
+      kept_.store(own_);
     } else if (common_bytes_ > MeshTables::max_common_bytes / 2) {
-      all.store(own_->with_cubic_, nullptr);
+      kept_.store(nullptr);
     }
     return own_;
   }
@@ -266,15 +242,16 @@ class TableMaker {
     own_->add(degree, inner, border, collapsed);
   }
 
+  SharedSlot<MeshTables>& kept_;
   std::shared_ptr<const MeshTables> common_;
   std::size_t common_bytes_;
   std::shared_ptr<MeshTables> own_;  ///< a copy that replaces common_, if it lacked something
   std::vector<std::uint32_t> seen_;  ///< a cache of what has been added: degrees, inner and border rates
 };
 
-std::shared_ptr<const MeshTables> MeshTables::of(std::span<const PatchShape> shapes,
+std::shared_ptr<const MeshTables> MeshTables::of(const PatchSet::Impl& set, std::span<const PatchShape> shapes,
                                                  std::span<const Division> divisions, bool with_cubic) {
-  TableMaker maker(shapes.size(), with_cubic);
+  TableMaker maker(set.mesh_tables[with_cubic ? 1 : 0], shapes.size(), with_cubic);
   for (std::size_t k = 0; k < shapes.size(); ++k) maker.add(shapes[k], divisions[k]);
   return maker.take();
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/aligned.h"
+#include "block/patch_set_impl.h"
 #include "kernel/mesh/mesh_kernels.h"
 #include "tess/write/stitched_patch.h"
 #include "tessera/bezier_patch.h"
@@ -20,11 +21,11 @@ class MeshTables {
  public:
   /// Returns tables that hold all that patches of these shapes and divisions need.
   ///
-  /// The tables of a small mesh take longer to make than its vertices, so the common ones are made once per process and
-  /// shared by plans. `with_cubic`: also those for kernels that take bicubic patches point by point. Threads: any
+  /// The tables of a small mesh take longer to make than its vertices, so the set keeps the common ones for all of its
+  /// plans. `with_cubic`: also those for kernels that take bicubic patches point by point. Threads: any
   /// number.
-  static std::shared_ptr<const MeshTables> of(std::span<const PatchShape> shapes, std::span<const Division> divisions,
-                                              bool with_cubic);
+  static std::shared_ptr<const MeshTables> of(const PatchSet::Impl& set, std::span<const PatchShape> shapes,
+                                              std::span<const Division> divisions, bool with_cubic);
   /// Tables of more bytes are not shared by plans.
   static constexpr std::size_t max_common_bytes = std::size_t{1} << 18;
   std::size_t bytes() const { return bytes_; }  ///< approximately
