@@ -29,11 +29,9 @@ enum class Calls : std::uint8_t {
 /// lacks a component or a stride, is misaligned, or shares memory with another), buffer_too_small. Errors, with the
 /// output partly written: those of the function (of the first record that has one), non_finite (a position too large
 /// for float), cancelled.
+template <class T>
 Status evaluate(const ParametricSurface& surface, std::span<const double> u, std::span<const double> v,
-                const View3<double>& out, const Execution& execution = {}, Calls calls = Calls::one_thread);
-/// Writes positions in float.
-Status evaluate(const ParametricSurface& surface, std::span<const double> u, std::span<const double> v,
-                const View3<float>& out, const Execution& execution = {}, Calls calls = Calls::one_thread);
+                const View3<T>& out, const Execution& execution = {}, Calls calls = Calls::one_thread);
 
 /// Writes the positions at (u[i], v[j]) to record i * v.size() + j. Each border curve and each blending function is
 /// called once per parameter, from the calling thread: 2 (Nu + Nv) curve calls for a Coons patch, 2 Nu or 2 Nv for a
