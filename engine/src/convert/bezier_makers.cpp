@@ -7,7 +7,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// What a curve must have before a net is laid out for it; the rest is checked by BezierPatch.
+/// Checks what a net needs before it is laid out; BezierPatch checks the rest.
 Status check_curve(const BezierPolygon& curve) {
   const std::size_t size = curve.points.size();
   if (size < 2 || size > max_degree + 1)
@@ -19,7 +19,7 @@ Status check_curve(const BezierPolygon& curve) {
   return {};
 }
 
-/// The patch whose rows are two curves with the weights of the first, polynomial if these are all equal.
+/// Returns the patch whose rows are two curves with the weights of the first; polynomial if these are all equal.
 Result<BezierPatch> patch_of_rows(const BezierPolygon& c0, std::span<const Vec3> c1) {
   const int degree = static_cast<int>(c0.points.size()) - 1;
   std::vector<Vec3> points = c0.points;
@@ -36,7 +36,8 @@ Result<BezierPatch> make_ruled(const BezierPolygon& c0, const BezierPolygon& c1)
   return guarded([&]() -> Result<BezierPatch> {
     for (const BezierPolygon* curve : {&c0, &c1}) {
       if (Status status = check_curve(*curve); !status.ok()) return status;
-      if (auto flat = patch_of_rows(*curve, curve->points); !flat) return flat;  // before it is elevated
+      if (auto flat = patch_of_rows(*curve, curve->points); !flat) return flat;  // checks the curve before it is
+                                                                                 // elevated
     }
     const int degree = static_cast<int>(std::max(c0.points.size(), c1.points.size())) - 1;
     const BezierPolygon row0 = elevated(c0, degree), row1 = elevated(c1, degree);

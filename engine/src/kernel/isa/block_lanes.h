@@ -2,7 +2,7 @@
 
 namespace tessera::inline abi_0_1::kernel {
 
-/// Patches in a block: one a lane.
+/// The number of patches in a block: one per lane.
 inline constexpr int block_lanes = 16;
 
 }  // namespace tessera::inline abi_0_1::kernel
