@@ -1,4 +1,5 @@
 #pragma once
+// The width of a block of patches, for packing and for the kernels.
 
 namespace tessera::inline abi_0_1::kernel {
 
