@@ -36,8 +36,7 @@ Result<BezierPatch> make_ruled(const BezierPolygon& c0, const BezierPolygon& c1)
   return guarded([&]() -> Result<BezierPatch> {
     for (const BezierPolygon* curve : {&c0, &c1}) {
       if (Status status = check_curve(*curve); !status.ok()) return status;
-      if (auto flat = patch_of_rows(*curve, curve->points); !flat) return flat;  // checks the curve before it is
-                                                                                 // elevated
+      if (auto flat = patch_of_rows(*curve, curve->points); !flat) return flat;  // before it is elevated
     }
     const int degree = static_cast<int>(std::max(c0.points.size(), c1.points.size())) - 1;
     const BezierPolygon row0 = elevated(c0, degree), row1 = elevated(c1, degree);

@@ -17,9 +17,9 @@ struct CellError {
 using CellErrorFunction = FunctionRef<Result<CellError>(const Domain& cell)>;
 
 struct RefinementLimits {
-  double tolerance = 0;  ///< accepted if a limit stops the refinement; named in messages
-  double accepted = 0;   ///< cells are halved until their total error is at most this
-  double shortest = 0;   ///< lower bound of a cell's length over its largest parameter
+  double tolerance = 0;           ///< accepted if a limit stops the refinement; named in messages
+  double accepted = 0;            ///< cells are halved until their total error is at most this
+  double shortest = 0;            ///< lower bound of a cell's length over its largest parameter
   std::size_t largest_count = 0;  ///< limit on the number of cells
 };
 

@@ -33,7 +33,7 @@ Bounded bounded_derivative(const HomogeneousNet& net, const LoweredBernstein& u,
 }
 
 /// Moves a rational net so that the point at the parameters is zero. Then r vanishes from the quotient rule, and the
-/// numerators alone give the direction of r_u x r_v and, where that vanishes, the directions of D_u and D_v.
+/// numerators give the direction of r_u x r_v and, where that vanishes, the directions of D_u and D_v.
 void move_to_point(HomogeneousNet& net, const LoweredBernstein& u, const LoweredBernstein& v) {
   const Vec3 r = derivative<0, 0>(net, u, v).project();
   for (std::size_t k = 0; k < net.size(); ++k) {

@@ -2,7 +2,7 @@
 // Hashes and comparison of the borders of a block of patches, lanes = patches, for finding shared edges
 // (tess/edges/shared_edges.h). A hash is the same for both directions, and for weights that differ by a power of two.
 // It is a sum over the control points, each mixed with its distance to the nearer end by multiplications and shifts as
-// in MurmurHash3 (Appleby 2011). match_borders() then tells whether borders with one hash are the same curve.
+// in MurmurHash3 (Appleby 2011). match_borders() then decides whether borders with one hash are the same curve.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/chord/chord_kernels.h, kernel/isa/lanes.h.
 

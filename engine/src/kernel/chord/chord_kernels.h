@@ -56,8 +56,8 @@ struct ChordProductJob {
   const float* pieces = nullptr;  ///< results of ChordJob
   const float* unit = nullptr;
   float* products = nullptr;  ///< `[piece of 9][uu_vv, uu_uv, uv_vv][lane]`, in units of unit^2
-  float* share = nullptr;  ///< `[lane]`: about the share of the chord's bound that they leave; above 1 if they save
-                           ///< nothing
+  float* share = nullptr;     ///< `[lane]`: about the share of the chord's bound that they leave; above 1 if they save
+                              ///< nothing
 };
 inline constexpr int max_product_degree = 5;
 

@@ -61,7 +61,7 @@ class FlushDenormals {
   unsigned saved_;
 };
 
-/// Within a FlushDenormals: lets denormal numbers count again, for code that is not ours.
+/// Within a FlushDenormals: lets denormal numbers count again, for foreign code.
 class CountDenormals {
  public:
   CountDenormals();
