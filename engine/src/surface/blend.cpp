@@ -13,7 +13,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr double largest_coefficient = 1e6;  // rounding of larger ones exceeds the tolerance of the conditions
+constexpr double largest_coefficient = 1e6;  // rounding of larger ones would hide the conditions
 constexpr double polynomial_tolerance = 1e-12, callable_tolerance = 1e-9;
 constexpr int samples = 65;
 

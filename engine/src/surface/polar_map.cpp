@@ -25,8 +25,8 @@ std::array<double, 2> direction(double theta) {
 // 4. The caller's x - x0: e again.
 // 5. The squares, sums and differences of R R - dx dx - dy dy: 3 e of R R together, which counts half for the radius.
 //
-// The distance is therefore at most R s (1 + e (1.1 + 2 + 1.4 + 1 + 1.5)) + e (|x0| + |y0|) = R s (1 + 7 e) + e (|x0| +
-// |y0|).
+// The distance is therefore at most
+//   R s (1 + e (1.1 + 2 + 1.4 + 1 + 1.5)) + e (|x0| + |y0|) = R s (1 + 7 e) + e (|x0| + |y0|).
 Result<PolarMap> PolarMap::make(const Disc& disc) {
   return guarded([&]() -> Result<PolarMap> {
     const double size = std::abs(disc.x) + std::abs(disc.y) + disc.radius;

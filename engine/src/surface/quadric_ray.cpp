@@ -38,7 +38,7 @@ LineQuadratic along(const Quadric::Diagonal& q, const Vec3& o, const Vec3& d) {
   return line;
 }
 
-/// Returns b^2 - a c; the rounding of the products does not cancel it (Kahan).
+/// Returns b^2 - a c accurately even if the rounded products cancel (Kahan).
 double discriminant(double a, double b, double c) {
   const double product = a * c;
   return std::fma(b, b, -product) + std::fma(-a, c, product);

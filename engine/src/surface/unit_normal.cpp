@@ -3,8 +3,8 @@
 #include "surface/difference_net.h"
 #include "tessera/bezier_patch.h"
 
-// Near a point, N(u + h, v + k) = r_u x r_v + h D_u + k D_v + O(h^2 + k^2) with D_u = r_uu x r_v + r_u x r_uv and D_v =
-// r_uv x r_v + r_u x r_vv. Where r_u x r_v vanishes, the directions (h, k) that lead into the patch decide.
+// Near a point, N(u + h, v + k) = r_u x r_v + h D_u + k D_v + O(h^2 + k^2) with D_u = r_uu x r_v + r_u x r_uv and
+// D_v = r_uv x r_v + r_u x r_vv. Where r_u x r_v vanishes, the directions (h, k) that lead into the patch decide.
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -32,8 +32,8 @@ Bounded bounded_derivative(const HomogeneousNet& net, const LoweredBernstein& u,
   return {derivative<A, B>(net, u, v).vector(), unit * derivative_magnitude<A, B>(net, u, v)};
 }
 
-/// Moves a rational net so that the point at the parameters is zero. Then r vanishes from the quotient rule, and the
-/// numerators give the direction of r_u x r_v and, where that vanishes, the directions of D_u and D_v.
+/// Moves a rational net so that the point at the parameters is zero. Then r vanishes from the quotient rule, and
+/// numerators are enough for the direction of r_u x r_v and, where that vanishes, the directions of D_u and D_v.
 void move_to_point(HomogeneousNet& net, const LoweredBernstein& u, const LoweredBernstein& v) {
   const Vec3 r = derivative<0, 0>(net, u, v).project();
   for (std::size_t k = 0; k < net.size(); ++k) {

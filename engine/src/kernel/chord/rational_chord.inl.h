@@ -1,6 +1,6 @@
 #pragma once
-// Bounds on the second derivatives of rational patches, lanes = patches of a block: the largest (|A'' - c w''| + R
-// |w''|) / w_min at the control points of a piece's quarters (see rational_nets.inl.h).
+// Bounds on the second derivatives of rational patches, lanes = patches of a block: the largest
+// (|A'' - c w''| + R |w''|) / w_min at the control points of a piece's quarters (see rational_nets.inl.h).
 //
 // Needs before it, outside of the instruction set's namespace: kernel/chord/chord_kernels.h, kernel/isa/lanes.h.
 

@@ -3,7 +3,7 @@
 // derivatives (tess/bounds/chord_bound.h). No multiply-add is fused, so that every instruction set finds the same
 // bounds.
 //
-// Over a piece whose points lie within R of c and whose weights are at least w_min, second derivatives lie in balls
+// Over a piece whose points lie within R of c and whose weights are at least w_min, second derivatives count as balls
 // around (A'' - c w'') / w_min of radius R |w''| / w_min. A is the points times their weights, relative to the patch's
 // centre.
 //

@@ -77,8 +77,8 @@ template <class L>
 }
 
 /// Computes n = a x b / |a x b|, with each vector first divided by its largest component. Returns 1 in the lanes where
-/// the product exceeds what errors of `noise_a` and `noise_b` in the components of a and b can make of it: 3 (noise_a /
-/// max|a| + noise_b / max|b|).
+/// the product exceeds what errors of `noise_a` and `noise_b` in the components of a and b can make of it:
+/// 3 (noise_a / max|a| + noise_b / max|b|).
 template <class L>
 inline typename L::Batch certain_direction(const typename L::Batch (&a)[3], const typename L::Batch (&b)[3],
                                            const typename L::Batch& noise_a, const typename L::Batch& noise_b,

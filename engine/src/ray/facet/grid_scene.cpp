@@ -219,7 +219,7 @@ void GridScene::occluded_piece(const RayBatch& batch, const View1<std::uint8_t>&
   });
 }
 
-/// Tests at most a packet of rays. Facets decide, so the rays end at [tnear, tfar] exactly.
+/// Tests at most a packet of rays. Facets decide, so the rays end at [tnear, tfar].
 void GridScene::occluded_packet(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const {
   std::array<RaySegment, EmbreeScene::packet> segments;
   for (std::size_t k = 0; k < rays.size(); ++k) {

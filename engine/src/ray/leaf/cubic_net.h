@@ -23,8 +23,8 @@ struct CubicNet {
 };
 
 /// Above degree three this is the Chebyshev series of the net on the square of that reach, without its terms above the
-/// third (economisation: Lanczos, Applied Analysis, 1956, sec. 7.8). The omitted terms are bounded one by one by |T_k|
-/// <= 1 and |T_k'| <= k^2.
+/// third (economisation: Lanczos, Applied Analysis, 1956, sec. 7.8). The omitted terms are bounded one by one by
+/// |T_k| <= 1 and |T_k'| <= k^2.
 CubicNet cubic_net(const NetShape<0, 0>& shape, const FourNets& net);
 
 }  // namespace tessera::inline abi_0_1
