@@ -1,4 +1,4 @@
-// CMake hands over what the compiler doesn't know of itself: TESSERA_VERSION, TESSERA_BUILD_TYPE, TESSERA_BUILD_FLAGS,
+// CMake passes the facts that the compiler does not know: TESSERA_VERSION, TESSERA_BUILD_TYPE, TESSERA_BUILD_FLAGS,
 // TESSERA_EMBREE_VERSION, TESSERA_XSIMD_VERSION, TESSERA_PLANTED_SLOWDOWN.
 
 #include "facts.h"
@@ -11,7 +11,7 @@
 namespace tessera::bench {
 namespace {
 
-/// Of plain words: nothing is escaped but quotes and backslashes.
+/// Quotes plain text: escapes only quotes and backslashes.
 std::string quoted(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {

@@ -4,8 +4,8 @@
 
 namespace tessera::bench {
 
-/// What the figures of this program depend on, as an object of JSON: version, compiler, flags, libraries, instruction
-/// sets, and the slow-down that was planted (0 but in tests of tools/perf).
+/// The facts that the figures of this program depend on, as a JSON object: version, compiler, flags, libraries,
+/// instruction sets, and the planted slow-down (0 except in tests of tools/perf).
 std::string build_facts();
 
 }  // namespace tessera::bench

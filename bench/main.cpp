@@ -36,7 +36,7 @@ under valgrind and reads the counts. TESSERA_ISA chooses the instruction set.
 
 struct Arguments {
   Part part = Part::full;
-  std::string roofline;       ///< the picture's path, if that is asked for
+  std::string roofline;       ///< path of the picture; empty if not requested
   std::vector<char*> others;  ///< Google Benchmark's
   bool to_file = false, help = false, wrong = false, count = false, facts = false;
 };
@@ -51,7 +51,7 @@ Arguments parse(int count, char** words) {
       out.help = true;
     } else if (word == "--set=quick") {
       out.part = Part::quick;
-      out.others.insert(out.others.begin() + 1, quick_time);  // a time of the caller's own comes later and wins
+      out.others.insert(out.others.begin() + 1, quick_time);  // the caller's own time comes later and has priority
     } else if (word == "--set=full") {
       out.part = Part::full;
     } else if (word == "--count") {

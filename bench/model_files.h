@@ -1,5 +1,5 @@
 #pragma once
-// The models that reports are asked for: files, or all files below a folder.
+// Finds the models of a report: files, or all files below a folder.
 
 #include <filesystem>
 #include <set>
@@ -21,7 +21,7 @@ inline bool is_cad(const std::filesystem::path& path) {
 #endif
 }
 
-/// By the ending of its name.
+/// Whether the ending of the name is that of a model.
 inline bool is_model(const std::filesystem::path& path) {
   static const std::set<std::string> known{".bpt", ".bv", ".g2", ".json", ".obj", ".rib"};
   return known.contains(path.extension().string()) || is_cad(path);
@@ -34,7 +34,7 @@ inline Result<Model> read(const std::filesystem::path& path) {
   return read_model(path);
 }
 
-/// In the order of their names; of the project's own where none is named.
+/// The files in the order of their names; the project's own models if none is named.
 inline std::set<std::filesystem::path> model_files(std::span<const char* const> named) {
   std::set<std::filesystem::path> files;
   const auto add = [&](const std::filesystem::path& path) {

@@ -12,7 +12,7 @@ struct ReportArguments {
   bool fewest = false;
   std::vector<const char*> models;
 
-  /// Ends the program where help is wanted, or an option is unknown.
+  /// Prints the usage and ends the program on --help or an unknown option.
   ReportArguments(int argc, char** argv, const char* usage) {
     for (int k = 1; k < argc; ++k) {
       const std::string_view word = argv[k];

@@ -12,7 +12,8 @@ namespace tessera::bench {
 
 namespace {
 
-/// The same control points with weights from 1 to 2, the same ones at opposite borders: neighbours still share theirs.
+/// Control points unchanged, weights from 1 to 2. Opposite borders have equal weights, so that neighbours still share
+/// their borders.
 std::vector<BezierPatch> with_weights(const std::vector<BezierPatch>& patches) {
   std::vector<BezierPatch> out;
   for (const BezierPatch& patch : patches) {

@@ -22,7 +22,7 @@ std::vector<Case>& cases() {
   return all;
 }
 
-/// Google Benchmark puts "/manual_time" behind each name. Our names are whole without it. Keeps what went wrong.
+/// Removes "/manual_time", which Google Benchmark appends to each name. Remembers whether a case failed.
 template <class Base>
 class PlainNames : public Base {
  public:
@@ -38,7 +38,7 @@ class PlainNames : public Base {
   bool failed = false;
 };
 
-/// Names each case before it runs and says what went wrong: there are no times.
+/// Names each case before it runs, and prints failures: there are no times.
 class CountReporter : public benchmark::BenchmarkReporter {
  public:
   bool ReportContext(const Context&) override { return true; }

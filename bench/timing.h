@@ -1,8 +1,8 @@
 #pragma once
-// How a case is timed and what it reports: the shortest time of a call, items and bytes a second by it, and how near it
-// comes to the machine's limits, which are measured in the same process around the run, unless the environment has
-// TESSERA_BENCH_LIMITS=0: tools/perf compare has no use for them. Where instructions are counted (counting.h) a call is
-// made twice, and the second one counts.
+// Times a case and reports the shortest time of a call, items and bytes per second by it, and the distance to the
+// machine's limits. These are measured in the same process around the run, unless the environment has
+// TESSERA_BENCH_LIMITS=0, as tools/perf compare sets it. When instructions are counted (counting.h), a call is made
+// twice, and the second one counts.
 
 #include <benchmark/benchmark.h>
 #include <tbb/global_control.h>
@@ -26,8 +26,8 @@ inline double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Calls `before` and then `call` once an iteration, which alone counts, in an arena of `threads`. The shortest time in seconds;
-/// nothing where a call failed, which skips the case with its message.
+/// Calls `before` and then `call` once per iteration, in an arena of `threads`; only `call` is timed. Returns the
+/// shortest time in seconds; empty if a call failed, which skips the case with its message.
 inline std::optional<double> time_calls(
     benchmark::State& state, int threads, FunctionRef<Status()> call, FunctionRef<void()> before = [] {}) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
@@ -59,14 +59,14 @@ inline bool limits_are_wanted() {
   return !counting() && (wish == nullptr || std::string_view(wish) != "0");
 }
 
-/// The machine's limits before and after a run: the better rates of both, since a disturbed measurement must not flatter
-/// the run. Zeros where they are not wanted.
+/// The machine's limits before and after a run: the better rates of both, since a disturbed measurement must not
+/// flatter the run. Zeros if they are not requested.
 class LimitsAround {
  public:
   LimitsAround(std::optional<Isa> isa, double bytes)
       : options_{.isa = isa, .store_bytes = static_cast<std::size_t>(bytes)}, before_(measure()) {}
 
-  /// Nothing where they can't be measured, which skips the case.
+  /// Empty if they cannot be measured, which skips the case.
   std::optional<Limits> best(benchmark::State& state) const {
     const Result<Limits> after = measure();
     if (!before_ || !after) {
@@ -93,14 +93,14 @@ class LimitsAround {
   Result<Limits> before_;
 };
 
-/// items_per_second and bytes_per_second (where bytes > 0) by the best time.
+/// Reports items_per_second and bytes_per_second (if bytes > 0) by the best time.
 inline void report_rates(benchmark::State& state, double best, double items, double bytes = 0) {
   state.counters["items_per_second"] = items / best;
   if (bytes > 0) state.counters["bytes_per_second"] = bytes / best;
 }
 
-/// limit_fraction: the time that `work` takes at the limits of one thread (limits.h) over the best time. Of one thread
-/// alone: what two threads share is no limit of one.
+/// Reports limit_fraction: the time that `work` takes at the limits of one thread (limits.h) over the best time. For
+/// one thread only: the limits of shared hardware are not those of one thread.
 inline void report_limit(benchmark::State& state, double best, const Limits& limits, const Work& work) {
   if (limits.store_bytes_per_second > 0) state.counters["limit_fraction"] = seconds_at_limit(limits, work) / best;
 }

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# What Tessera computes, by one compiler and level of optimisation after the other: the same bytes on one instruction set.
+# Compares what Tessera computes when built by several compilers and levels of optimisation: one instruction set must
+# give the same bytes.
 set -euo pipefail
 
 usage() {
@@ -59,7 +60,7 @@ fi
 
 folder=$PWD/build/compilers
 mkdir -p "$folder"
-# A compiler cache is asked for what is really wanted: of several levels the last one counts.
+# Keeps only the last of several levels of optimisation, so that a compiler cache sees the effective one.
 cat > "$folder/last_level" <<'TEXT'
 #!/usr/bin/env bash
 for word; do [[ $word == -O[0-3s] ]] && level=$word; done

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# From a fresh clone to a mesh and a picture of the Utah teapot: installs missing packages, builds, and runs.
+# Makes a mesh and a picture of the Utah teapot from a fresh clone: installs missing packages, builds, and runs.
 set -euo pipefail
 
 if (($#)); then
@@ -27,7 +27,7 @@ times=()
 
 microseconds() { printf '%s' "${EPOCHREALTIME/[.,]/}"; }
 
-# step NAME COMMAND...: runs the command and keeps how long it took.
+# step NAME COMMAND...: runs the command and records its time.
 step() {
   local name=$1 start
   shift

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A picture of every model, and one sheet of them all.
+# Makes a picture of every model, and one sheet of them all.
 set -euo pipefail
 
 usage() {
@@ -73,7 +73,7 @@ if [[ $silhouette ]]; then
     picture="out/gallery/silhouette_${mode//[ -]/_}.png"
     # shellcheck disable=SC2086  # a mode is one word or three
     build/demo/tools/tessera raycast "${models[0]}" -o "$picture" --size "$size" --shade normals --mode $mode
-    # The upper border of what is not background, magnified.
+    # The upper border of the model in the picture, magnified.
     read -r width height left top < <(convert "$picture" -fuzz 5% -trim -format '%w %h %X %Y' info:)
     magnified="${picture%.png}_near.png"
     convert "$picture" -crop "$((width / 4))x$((height / 4))$left$top" +repage -filter point -resize 400% \

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The project's C++ as its .clang-format and .clang-tidy want it.
+# Checks the project's C++ against its .clang-format and .clang-tidy.
 set -euo pipefail
 
 usage() {
@@ -45,14 +45,14 @@ while (($#)); do
   shift
 done
 [[ $tidy ]] || format=yes
-# Files are named from where the caller stands.
+# File names are relative to the caller's folder.
 for k in "${!files[@]}"; do files[k]=$(realpath "${files[k]}"); done
 cd "$(dirname -- "${BASH_SOURCE[0]}")/.."
 if ((${#files[@]} == 0)); then
   mapfile -t files < <(git ls-files '*.cpp' '*.h' 2>/dev/null || find bench engine tests tools -name '*.cpp' -o -name '*.h')
 fi
 
-# Of several versions of clang-format each has its own opinion; this one's is meant.
+# Versions of clang-format differ in their results; the project uses version 14.
 find_version_14() {
   local program
   for program in "$1-14" "$1"; do
@@ -80,16 +80,16 @@ fi
 if [[ $tidy ]]; then
   command -v clang-tidy >/dev/null || fail "there is no clang-tidy here"
   [[ -f $build/compile_commands.json ]] || fail "$build has no compile_commands.json: configure it first (cmake --preset dev)"
-  # An option of gcc's code generation is an error to clang.
+  # Clang does not know gcc's options of code generation.
   commands=$(mktemp -d)
   trap 'rm -rf "$commands"' EXIT
   sed 's/ -mmemset-strategy=[^ ]*//' "$build/compile_commands.json" > "$commands/compile_commands.json"
   checks=()
   [[ $quick ]] && checks=(--checks=-clang-analyzer-*)
   for file in "${files[@]}"; do
-    # Headers are looked at where they are included.
+    # Headers are checked where they are included.
     [[ $file == *.cpp ]] && grep -q "/${file#"$PWD/"}\"" "$build/compile_commands.json" || continue
-    # Warnings of gcc that clang does not know are no fault of the file.
+    # Options for gcc's warnings that clang does not know must not fail the file.
     clang-tidy --quiet -p "$commands" --warnings-as-errors='*' --extra-arg=-Wno-unknown-warning-option "${checks[@]}" "$file" \
       2>/dev/null || wrong=1
   done

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Compares Tessera with other programs, side by side in one run. Installs first what is missing.
+# Compares Tessera with other programs, side by side in one run. Installs missing packages first.
 set -euo pipefail
 
 usage() {
@@ -31,7 +31,7 @@ comparisons=(
   "occt_lean_mesh|triangles at equal error, mainly of rational surfaces and models: OpenCASCADE (libocct-data-exchange-dev)"
 )
 
-# is_comparison NAME: stands in the table.
+# is_comparison NAME: whether it is in the table.
 is_comparison() {
   local row
   for row in "${comparisons[@]}"; do
@@ -64,7 +64,7 @@ if [[ -z ${CMAKE_CXX_COMPILER_LAUNCHER:-} ]] && command -v ccache >/dev/null; th
   export CMAKE_CXX_COMPILER_LAUNCHER=ccache
 fi
 cmake --preset peers
-rm -f build/peers/bench/peers/tessera_peer_*  # of a peer that is gone
+rm -f build/peers/bench/peers/tessera_peer_*  # of peers that no longer exist
 cmake --build --preset peers
 
 results=build/peers/results.jsonl

@@ -24,7 +24,7 @@ fail() {
   exit 1
 }
 
-# What each package is for stands in cmake/TesseraDependencies.cmake.
+# cmake/TesseraDependencies.cmake says what each package is for.
 demo_packages=(g++ cmake ninja-build libtbb-dev libxsimd-dev libembree-dev libcli11-dev nlohmann-json3-dev libmuparser-dev
   libtinygltf-dev libpng-dev libopenexr-dev)
 test_packages=(binutils libgtest-dev libgmock-dev libbenchmark-dev libocct-data-exchange-dev python3 valgrind)
@@ -67,7 +67,7 @@ if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
   fail "this is not Debian (no apt-get). Install what these Debian packages hold, then build with CMake: ${packages[*]}"
 fi
 
-# True where the package is installed and configured.
+# Whether the package is installed and configured.
 is_installed() {
   [[ $(dpkg-query -W -f='${db:Status-Abbrev}' "$1" 2>/dev/null) == ii* ]]
 }
@@ -99,7 +99,7 @@ apt() {
 echo "setup: installs ${missing[*]}"
 apt update || echo "setup: apt-get update failed; going on with the package lists that are here" >&2
 if ! apt install --no-install-recommends "${missing[@]}"; then
-  if [[ $purpose == peers ]]; then  # each counts for itself
+  if [[ $purpose == peers ]]; then  # one by one: a missing peer must not prevent the others
     for package in "${missing[@]}"; do
       apt install --no-install-recommends "$package" || echo "setup: $package could not be installed" >&2
     done

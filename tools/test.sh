@@ -84,7 +84,7 @@ cmake --preset "$preset" "${options[@]}"
 [[ $fuzz_seconds ]] && targets=(--target tessera_fuzz)
 cmake --build --preset "$preset" "${targets[@]}"
 
-# Each target grows new inputs beside its corpus and fails on the first that it may not have.
+# Each target keeps new inputs outside its corpus, and fails on the first input that breaks a rule.
 fuzz() {
   local target name arguments
   for target in build/fuzz/tests/fuzz/tessera_fuzz_*; do

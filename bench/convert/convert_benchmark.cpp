@@ -1,6 +1,6 @@
 // The other conversions: convert.KIND, to Bezier patches of other degrees or from other kinds of surfaces. Each is
-// checked against its own surface's reference evaluator before the rate, patches a second, is reported. Most allocate a
-// little for each patch, so there is no limit of the machine to compare them with.
+// checked against its own surface's reference evaluator before the rate, patches per second, is reported. Most allocate
+// a little for each patch, so there is no limit of the machine to compare them with.
 
 #include <benchmark/benchmark.h>
 
@@ -29,7 +29,7 @@ Vec3 position_at(const Result<T>& result) {
   return position_at(value_of(result));
 }
 
-/// Whether the patches lie where `surface` does, at parameters spread over the domain.
+/// Whether the patches agree with `surface` at parameters spread over the domain.
 template <class Surface>
 bool same(const PatchGrid& grid, const Surface& surface, double tolerance) {
   const Domain domain = grid.domain();
@@ -52,7 +52,7 @@ void run(benchmark::State& state, const Surface& surface, double tolerance, cons
   if (best) report_rates(state, *best, static_cast<double>(checked->patches().size()));
 }
 
-/// Every patch of a field to degree 5 each way.
+/// Elevates every patch of a field to degree 5 in both directions.
 void elevate_patches(benchmark::State& state) {
   const std::vector<BezierPatch> patches = test::wavy_field(40, 25);
   std::vector<BezierPatch> out = patches;
@@ -74,7 +74,7 @@ void elevate_patches(benchmark::State& state) {
   report_rates(state, *best, static_cast<double>(patches.size()));
 }
 
-/// A B-spline surface to degree 4 each way, and then to patches.
+/// Elevates a B-spline surface to degree 4 in both directions, then converts it to patches.
 void elevate_spline(benchmark::State& state) {
   const BSplineSurface surface = value_of(wavy_surface(50, 3, false));
   run(state, surface, 1e-11, [&]() -> Result<PatchGrid> {
@@ -129,7 +129,7 @@ void ruled(benchmark::State& state) {
   run(state, surface, 1e-11, [&] { return to_bezier(surface); });
 }
 
-/// Sampled, not certified.
+/// Fits by samples, without certificate.
 void fit(benchmark::State& state) {
   const ParametricSurface surface =
       value_of(ParametricSurface::make({.position =

@@ -1,5 +1,5 @@
 // Bezier extraction of a surface of 200 x 200 spans. The patches are checked against the reference evaluator before the
-// rate is reported. Its limit is filling as much memory as the points of the patches take.
+// rate is reported. The limit is the time to fill as much memory as the points of the patches take.
 
 #include <benchmark/benchmark.h>
 

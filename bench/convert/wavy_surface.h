@@ -1,5 +1,5 @@
 #pragma once
-// A surface of many spans, for the conversions that are timed.
+// A surface of many spans for timing conversions.
 
 #include <cmath>
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace tessera::bench {
 
-/// spans x spans rectangles between knots 0, 1, 2 .. each way, clamped ends, gentle waves of height 1.
+/// spans x spans rectangles between knots 0, 1, 2 .. in both directions, clamped ends, gentle waves of height 1.
 inline Result<BSplineSurface> wavy_surface(int spans, int degree, bool rational) {
   std::vector<double> knots(static_cast<std::size_t>(degree), 0.0);
   for (int k = 0; k <= spans; ++k) knots.push_back(k);

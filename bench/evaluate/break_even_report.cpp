@@ -1,7 +1,8 @@
-// From how many points on a second thread pays: grids of 9 x 9 points and scattered points of more and more patches,
-// whole on one thread, in two halves on two, and as the library itself cuts them with two threads at hand. Halves hot,
-// with a worker that is still awake from the call before, and cold, once it has slept. A row a size, microseconds; then
-// the size from which on halves are faster, and the one from which on the library uses a second thread.
+// Finds how many points make a second thread worthwhile, for grids of 9 x 9 points and for scattered points, with more
+// and more patches. Compares all points on one thread, two halves on two threads, and the library's own division with
+// two threads available. Halves are timed hot, with a worker still awake from the call before, and cold, after it has
+// slept. Prints a row per size in microseconds, then the size from which on halves are faster, and the one from which
+// on the library uses a second thread.
 // Usage: tessera_break_even_report [SECONDS for each size, 0.03 by default]
 
 #include <tbb/task_arena.h>
@@ -43,7 +44,7 @@ void must(const Status& status) {
   std::exit(1);
 }
 
-/// Some patches, what is evaluated of them, and memory for that.
+/// Some patches, the points to evaluate, and memory for the results.
 class Part {
  public:
   Part(const Kind& kind, std::span<const BezierPatch> patches)
@@ -63,7 +64,7 @@ class Part {
     }
   }
   std::size_t points() const { return plan_.capacity(); }
-  /// Whether it was cut into tasks.
+  /// Evaluates; returns whether the work was cut into tasks.
   bool evaluate() {
     ExecutionReport report;
     Execution execution;
@@ -73,7 +74,7 @@ class Part {
                                         View1<const float>::interleaved(u_), View1<const float>::interleaved(v_)};
       must(tessera::evaluate(set_, samples, views_, {}, execution));
     } else if (kind_.blocks) {
-      must(tessera::evaluate(set_, plan_, GridBlocks<float>{.position = memory_, .normal = normals_}, execution));
+      must(tessera::evaluate(set_, plan_, QuantityBlocks<float>{.position = memory_, .normal = normals_}, execution));
     } else {
       must(tessera::evaluate(set_, plan_, views_, execution));
     }
@@ -85,12 +86,12 @@ class Part {
   PatchSet set_;
   GridPlan plan_;
   AlignedVector<float> memory_, normals_;
-  GridViews<float> views_;
+  QuantityViews<float> views_;
   std::vector<std::uint32_t> patch_;
   std::vector<float> u_, v_;
 };
 
-/// The shortest of many calls, in microseconds, each after a pause.
+/// The shortest of many calls in microseconds, each after a pause.
 double shortest(double seconds, std::chrono::milliseconds pause, FunctionRef<void()> call) {
   double best = std::numeric_limits<double>::infinity();
   const auto end = Clock::now() + std::chrono::duration<double>(seconds);
@@ -105,7 +106,7 @@ double shortest(double seconds, std::chrono::milliseconds pause, FunctionRef<voi
 
 struct Times {
   double serial, hot, cold, own;
-  bool cut;  ///< by the library
+  bool cut;  ///< whether the library used two threads
 };
 
 Times measure(const Kind& kind, const std::vector<BezierPatch>& patches, double seconds) {
@@ -126,7 +127,7 @@ Times measure(const Kind& kind, const std::vector<BezierPatch>& patches, double 
   return times;
 }
 
-/// The smallest size from which on `pays` holds; 0 if for none.
+/// The smallest size from which on `pays` holds; 0 if there is none.
 std::size_t crossing(const std::vector<std::pair<std::size_t, Times>>& rows, FunctionRef<bool(const Times&)> pays) {
   std::size_t from = 0;
   for (auto r = rows.rbegin(); r != rows.rend() && pays(r->second); ++r) from = r->first;

@@ -1,6 +1,6 @@
-// Grids of many patches: evaluate.OUTPUTS.LAYOUT, with ".double" for doubles, ".streamed" where stores are non-temporal
-// whatever the size, and ".cold" where the caches hold other memory before each call. Each case checks the values that it
-// timed against the reference evaluator before it reports. Its limit is GridPlan::work().
+// Grids of many patches: evaluate.OUTPUTS.LAYOUT, with ".double" for doubles, ".streamed" if stores are non-temporal at
+// any size, and ".cold" if the caches hold other memory before each call. Each case checks the values that it timed
+// against the reference evaluator before it reports. The limit is GridPlan::work().
 
 #include <benchmark/benchmark.h>
 
@@ -12,7 +12,7 @@
 #include <type_traits>
 
 #include "base/aligned.h"
-#include "eval/grid_outputs.h"
+#include "eval/quantity_table.h"
 #include "sets.h"
 #include "suite.h"
 #include "tessera/evaluate.h"
@@ -25,8 +25,8 @@ enum class Layout { blocks, interleaved };
 
 struct Case {
   std::string set_name;
-  int size;  ///< parameters a side
-  GridOutputs outputs;
+  int size;  ///< parameters per direction
+  QuantityFlags outputs;
   Layout layout;
   Isa isa;
   int threads = 1;
@@ -57,19 +57,18 @@ class Outputs {
   Outputs(const GridPlan& plan, const Case& c) : layout_(c.layout) {
     const std::size_t records = layout_ == Layout::blocks ? plan.block_capacity() / 3 : plan.capacity();
     const auto make_room = [&](const auto& output, auto& memory) {
-      if (c.outputs.*output.wanted) memory.assign(records * static_cast<std::size_t>(output.width), {});
+      if (output.of(c.outputs)) memory.assign(records * static_cast<std::size_t>(output.width), {});
     };
     std::size_t k = 0;
-    for_each_value_output<T>([&](const auto& output) {
+    for_each_value_quantity([&](const auto& output) {
       auto& memory = values_[k++];
       make_room(output, memory);
-      blocks_.*output.memory = memory;
-      if (!memory.empty())
-        views_.*output.view = std::remove_cvref_t<decltype(views_.*output.view)>::interleaved(memory);
+      output.of(blocks_) = memory;
+      if (!memory.empty()) output.of(views_) = std::remove_cvref_t<decltype(output.of(views_))>::interleaved(memory);
     });
     join_normals(records);
-    make_room(normal_kind_output<T>, normal_kinds_);
-    make_room(curvature_kind_output<T>, curvature_kinds_);
+    if (c.outputs.normal_kind) normal_kinds_.assign(records, {});
+    if (c.outputs.curvature_kind) curvature_kinds_.assign(records, {});
     blocks_.normal_kind = normal_kinds_;
     blocks_.curvature_kind = curvature_kinds_;
     if (!normal_kinds_.empty()) views_.normal_kind = View1<NormalKind>::interleaved(normal_kinds_);
@@ -83,17 +82,17 @@ class Outputs {
                                      : tessera::evaluate(set, plan, views_, execution);
   }
 
-  /// One output at one sample, or nothing if it is not wanted.
+  /// One output at one sample; nothing if the output is not requested.
   template <class Output>
   bool read(const PatchSet& set, const GridPlan& plan, const Output& output, std::size_t patch, std::size_t sample,
             Vec3& value) const {
-    const auto memory = blocks_.*output.memory;
+    const auto memory = output.of(blocks_);
     if (memory.empty()) return false;
     const std::size_t samples = plan.count_u() * plan.count_v(), width = static_cast<std::size_t>(output.width);
     const PatchSet::Slot slot = set.slot(patch);
     const std::size_t place = (slot.block * samples + sample) * width * PatchSet::lanes + slot.lane;
     const auto component = [&](int c) -> double {
-      if (layout_ == Layout::interleaved) return (views_.*output.view).at(patch * samples + sample, c);
+      if (layout_ == Layout::interleaved) return output.of(views_).at(patch * samples + sample, c);
       return memory[place + static_cast<std::size_t>(c) * PatchSet::lanes];
     };
     value = width == 1 ? Vec3{component(0), 0, 0} : Vec3{component(0), component(1), component(2)};
@@ -101,7 +100,7 @@ class Outputs {
   }
 
  private:
-  /// Positions and normals alone share records of six.
+  /// Lets positions and normals share records of six, if there are no other outputs.
   void join_normals(std::size_t records) {
     if (views_.normal.empty() || views_.position.empty()) return;
     values_[0].assign(6 * records, {});
@@ -111,15 +110,15 @@ class Outputs {
   }
 
   Layout layout_;
-  std::array<AlignedVector<T>, std::size(vector_outputs<T>) + std::size(scalar_outputs<T>)> values_;
+  std::array<AlignedVector<T>, value_quantities> values_;
   AlignedVector<NormalKind> normal_kinds_;
   AlignedVector<CurvatureKind> curvature_kinds_;
-  GridBlocks<T> blocks_;
-  GridViews<T> views_;
+  QuantityBlocks<T> blocks_;
+  QuantityViews<T> views_;
 };
 
-/// What an output must be, and how far off it may be where it is well conditioned: far looser than the tests and far tighter than a
-/// wrong answer. `size` is that of the set.
+/// The expected value of an output, and its tolerance where it is well conditioned: far looser than the tests, and far
+/// tighter than a wrong answer. `size` is that of the set.
 struct Expected {
   Vec3 value;
   double tolerance;
@@ -140,11 +139,11 @@ Expected expected_value(const std::string& name, const Vec3& origin, const Surfa
   if (name == "mean") return {{g.mean, 0, 0}, 0.01 * bend};
   if (name == "first_curvature") return {{g.first.curvature, 0, 0}, 0.01 * bend};
   if (name == "second_curvature") return {{g.second.curvature, 0, 0}, 0.01 * bend};
-  // Directions are known up to their sign: the test of what the curvatures are along them is the unit tests'.
+  // Directions are known up to their sign; unit tests check the curvatures along them.
   return {{}, 1.001};
 }
 
-/// Every sample of 50 patches against the reference evaluators.
+/// Checks every sample of 50 patches against the reference evaluators.
 template <class T>
 bool check_values(const PatchSet& set, const GridPlan& plan, const std::vector<double>& t, const Outputs<T>& out) {
   const Vec3 origin = sizeof(T) == 4 ? set.origin() : Vec3{};
@@ -159,7 +158,7 @@ bool check_values(const PatchSet& set, const GridPlan& plan, const std::vector<d
       const bool conditioned =
           geometry.defined && length(cross(jet.du, jet.dv)) > 1e-3 * std::max(geometry.e, geometry.g) &&
           std::min(geometry.e, geometry.g) > 1e-6 * size * size / static_cast<double>(set.patch_count());
-      for_each_value_output<T>([&](const auto& output) {
+      for_each_value_quantity([&](const auto& output) {
         const Expected expected = expected_value(output.name, origin, jet, geometry, size);
         Vec3 value;
         const bool needs_normal = output.order == 2 ? output.name[0] != 'd' : std::string(output.name) == "normal";
@@ -201,7 +200,7 @@ void run(benchmark::State& state, const Case& c) {
   if (c.threads == 1) report_limit(state, *best, *limits, work);
 }
 
-/// Sets that take seconds to build are left to the full set.
+/// Only the full set has sets of patches that take seconds to build.
 bool is_quick(const Case& c) {
   const bool small = c.set_name == "teapot" || c.set_name == "bicubic1000";
   return c.size == 9 && (small || (c.set_name == "bicubic20000" && c.stores == Stores::automatic && !c.twice));
@@ -213,10 +212,10 @@ void add(const Case& c) {
 }
 
 /// The smallest set whose results are far larger than the caches: 150 MB.
-std::string large_set(int size, const GridOutputs& outputs, std::size_t value = sizeof(float)) {
+std::string large_set(int size, const QuantityFlags& outputs, std::size_t value = sizeof(float)) {
   std::size_t bytes = 0;
-  for_each_value_output<float>([&](const auto& output) {
-    if (outputs.*output.wanted) bytes += static_cast<std::size_t>(output.width * size * size) * value;
+  for_each_value_quantity([&](const auto& output) {
+    if (output.of(outputs)) bytes += static_cast<std::size_t>(output.width * size * size) * value;
   });
   for (const int patches : {20000, 50000, 100000, 200000, 500000})
     if (bytes * static_cast<std::size_t>(patches) >= 150'000'000) return "bicubic" + std::to_string(patches);
@@ -224,24 +223,24 @@ std::string large_set(int size, const GridOutputs& outputs, std::size_t value = 
 }
 
 const bool registered = [] {
-  const GridOutputs positions{}, normals{.normal = true}, tangents{.du = true, .dv = true};
-  const GridOutputs curvatures{
-      .du = true, .dv = true, .duu = true, .duv = true, .dvv = true, .gaussian = true, .mean = true};
-  const GridOutputs geometry{.position = false,
-                             .normal = true,
-                             .first_form = true,
-                             .second_form = true,
-                             .gaussian = true,
-                             .mean = true,
-                             .first_curvature = true,
-                             .second_curvature = true,
-                             .first_direction = true,
-                             .second_direction = true,
-                             .normal_kind = true,
-                             .curvature_kind = true};
+  const QuantityFlags positions{.position = true}, normals{.position = true, .normal = true},
+      tangents{.position = true, .du = true, .dv = true};
+  const QuantityFlags curvatures{
+      .position = true, .du = true, .dv = true, .duu = true, .duv = true, .dvv = true, .gaussian = true, .mean = true};
+  const QuantityFlags geometry{.normal = true,
+                               .first_form = true,
+                               .second_form = true,
+                               .gaussian = true,
+                               .mean = true,
+                               .first_curvature = true,
+                               .second_curvature = true,
+                               .first_direction = true,
+                               .second_direction = true,
+                               .normal_kind = true,
+                               .curvature_kind = true};
   for (const Isa isa : available_isas()) {
     for (const Layout layout : {Layout::blocks, Layout::interleaved}) {
-      for (const GridOutputs& outputs : {positions, normals, tangents, curvatures}) {
+      for (const QuantityFlags& outputs : {positions, normals, tangents, curvatures}) {
         add({"bicubic1000", 9, outputs, layout, isa});
         for (const int size : {9, 33})
           add({large_set(size, outputs), size, outputs, layout, isa, 2, Stores::streaming});
@@ -258,7 +257,7 @@ const bool registered = [] {
         add({"bicubic" + patches, size, positions, layout, isa, 1, Stores::streaming, false, true});
       }
     }
-    for (const GridOutputs& outputs : {positions, normals, tangents})
+    for (const QuantityFlags& outputs : {positions, normals, tangents})
       for (const Layout layout : {Layout::blocks, Layout::interleaved})
         for (const int size : {9, 33}) {
           add({"teapot", size, outputs, layout, isa, 1});
@@ -266,7 +265,7 @@ const bool registered = [] {
         }
     for (const Layout layout : {Layout::blocks, Layout::interleaved}) {
       add({"bicubic20000", 33, positions, layout, isa, 2});
-      for (const GridOutputs& outputs : {curvatures, geometry}) {
+      for (const QuantityFlags& outputs : {curvatures, geometry}) {
         add({"teapot", 9, outputs, layout, isa, 1});
         add({"teapot", 33, outputs, layout, isa, 1});
         add({"bicubic20000", 9, outputs, layout, isa, 1});

@@ -1,5 +1,5 @@
 // Scattered points: points.OUTPUTS.ORDER; the size is the number of samples. Each case checks the values that it timed
-// against the reference evaluator before it reports; touch_fraction is the time of touching the three lines of each
+// against the reference evaluator before it reports. touch_fraction is the time to touch the three cache lines of each
 // sample's patch, measured in the same process around the run, over the best time of one call.
 
 #include <benchmark/benchmark.h>
@@ -24,7 +24,7 @@ namespace {
 
 struct Case {
   std::size_t patches;
-  std::size_t run;  ///< samples of a patch in a row; 1: at random
+  std::size_t run;  ///< consecutive samples of one patch; 1: random order
   bool normals;
   Isa isa;
   int threads;
@@ -50,7 +50,7 @@ const PatchSet& field_of(std::size_t patches) {
   return sets.emplace(patches, test::value_of(PatchSet::from(test::wavy_field(rows, columns), options))).first->second;
 }
 
-/// Runs in random order of patches.
+/// Runs of samples, in random order of patches.
 struct Samples {
   std::vector<std::uint32_t> patch;
   std::vector<float> u, v;
@@ -70,7 +70,7 @@ struct Samples {
   }
 };
 
-/// The best of several passes over a value of each of the three lines of each sample's patch.
+/// The best time of several passes that read a value from each of the three cache lines of each sample's patch.
 double touch_seconds(const PatchSet& set, const Samples& samples) {
   const float* points = impl_of(set).f32.points.data();
   double best = 1e30;
@@ -87,7 +87,7 @@ double touch_seconds(const PatchSet& set, const Samples& samples) {
   return best;
 }
 
-bool check_values(const PatchSet& set, const Samples& samples, const PointViews<float>& out) {
+bool check_values(const PatchSet& set, const Samples& samples, const QuantityViews<float>& out) {
   const double size = set.box().diagonal();
   for (std::size_t k = 0; k < samples.patch.size(); k += 97) {
     const SurfaceJet jet = evaluate_jet(set.patch(samples.patch[k]), samples.u[k], samples.v[k]);
@@ -103,7 +103,7 @@ void run(benchmark::State& state, const Case& c) {
   const PatchSet& set = field_of(c.patches);
   const Samples samples(c);
   std::vector<float> positions(3 * c.samples()), normals(c.normals ? positions.size() : 0);
-  PointViews<float> out{.position = View3<float>::interleaved(positions)};
+  QuantityViews<float> out{.position = View3<float>::interleaved(positions)};
   if (c.normals) out.normal = View3<float>::interleaved(normals);
   const double touch_before = touch_seconds(set, samples);
   ExecutionReport report;

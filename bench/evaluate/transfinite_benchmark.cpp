@@ -1,6 +1,6 @@
 // Transfinite grids, partially bicubic Coons patches: transfinite.PRECISION.LAYOUT. Each case checks the values that it
-// timed against the scalar evaluator. Its limit is storing the output; times_pointwise is how many times as long
-// evaluate_jet() a point takes.
+// timed against the scalar evaluator. The limit is the time to store the output; times_pointwise is the time of
+// evaluate_jet() per point over the case's.
 
 #include <benchmark/benchmark.h>
 
@@ -24,10 +24,10 @@ namespace {
 using test::value_of;
 
 struct Case {
-  bool callables;    ///< borders are functions, else NURBS and B-spline curves
+  bool callables;    ///< whether borders are functions; otherwise NURBS and B-spline curves
   bool twice;        ///< double precision
-  bool arrays;       ///< an array a component, else triples
-  std::size_t size;  ///< parameters a side
+  bool arrays;       ///< an array per component; otherwise triples
+  std::size_t size;  ///< parameters per direction
   Isa isa;
   int threads;
 
@@ -68,7 +68,7 @@ CoonsPatch patch_of(bool callables) {
       {curve(r00, r10, true), curve(r01, r11, false), curve(r00, r01, false), curve(r10, r11, true)}, options));
 }
 
-/// TESSERA_ISA while it lives, and then what it was.
+/// Sets TESSERA_ISA, and restores it at the end of its lifetime.
 class ForcedIsa {
  public:
   explicit ForcedIsa(Isa isa) {
@@ -83,7 +83,7 @@ class ForcedIsa {
   std::optional<std::string> before_;
 };
 
-/// Every 37th point against the scalar evaluator.
+/// Checks every 37th point against the scalar evaluator.
 template <class T>
 bool check_values(const CoonsPatch& patch, const std::vector<double>& t, const View3<T>& out) {
   const double tolerance = sizeof(T) == 4 ? 1e-5 : 1e-13;
@@ -96,7 +96,7 @@ bool check_values(const CoonsPatch& patch, const std::vector<double>& t, const V
   return true;
 }
 
-/// Seconds a point of evaluate_jet(), the best of several runs over 64 x 64 points.
+/// Seconds per point of evaluate_jet(), the best of several runs over 64 x 64 points.
 double pointwise_seconds(const CoonsPatch& patch) {
   double best = 1e30;
   for (int run = 0; run < 5; ++run) {

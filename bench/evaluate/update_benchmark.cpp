@@ -1,6 +1,6 @@
-// Animation: control points in, grids of the touched patches out, patch after patch, or with ".blocks" block-interleaved:
-// update.OUTPUTS.SHARE. Each case checks what it timed against evaluation of a set made anew. Its limit is the time that its stores take: its work for the
-// touched patches, GridPlan::work().
+// Animation: control points in, grids of the touched patches out, patch after patch, or with ".blocks"
+// block-interleaved: update.OUTPUTS.SHARE. Each case checks what it timed against evaluation of a new set. The limit is
+// the time that the stores take: GridPlan::work() for the touched patches.
 
 #include <benchmark/benchmark.h>
 
@@ -37,7 +37,7 @@ struct Case {
   }
 };
 
-/// Two shapes of the field, by turns, as edits.
+/// Two shapes of the field, used alternately, as edits.
 struct Animation {
   std::vector<std::uint32_t> patch;
   std::vector<Vec3> points[2];
@@ -54,7 +54,7 @@ struct Animation {
   PatchEdits edits(std::size_t turn) const { return {patch, points[turn % 2]}; }
 };
 
-/// Memory of either layout.
+/// Memory for either layout.
 class Outputs {
  public:
   Outputs(const GridPlan& plan, const Case& c)
@@ -65,7 +65,7 @@ class Outputs {
     views_.position = View3<float>::interleaved(first_, c.normals ? 6 : 3);
     if (c.normals) views_.normal = View3<float>::interleaved(first_, 6, 3);
   }
-  GridBlocks<float> in_blocks() { return {.position = first_, .normal = second_}; }
+  QuantityBlocks<float> in_blocks() { return {.position = first_, .normal = second_}; }
   Status evaluate(const PatchSet& set, const GridPlan& plan) {
     return blocks_ ? tessera::evaluate(set, plan, in_blocks()) : tessera::evaluate(set, plan, views_);
   }
@@ -79,10 +79,10 @@ class Outputs {
  private:
   bool blocks_;
   AlignedVector<float> first_, second_;
-  GridViews<float> views_;
+  QuantityViews<float> views_;
 };
 
-/// Outputs of a set made anew of the same patches.
+/// Compares the outputs with those of a new set of the same patches.
 bool check_values(const PatchSet& set, const GridPlan& plan, const Case& c, const Outputs& outputs) {
   std::vector<BezierPatch> patches;
   for (std::size_t k = 0; k < set.patch_count(); ++k) patches.push_back(set.patch(k));
@@ -101,7 +101,7 @@ void run(benchmark::State& state, const Case& c) {
   Outputs outputs(plan, c);
   if (const Status status = outputs.evaluate(set, plan); !status.ok())
     return state.SkipWithError(status.message().c_str());
-  Work work = plan.work({.normal = c.normals});
+  Work work = plan.work({.position = true, .normal = c.normals});
   for (double* amount : {&work.lane_operations, &work.bytes_written, &work.bytes_read})
     *amount /= static_cast<double>(c.step);
   const LimitsAround around(c.isa, work.bytes_written);

@@ -1,7 +1,6 @@
-// Text in memory to a model: read.bpt, bv, g2, json, obj and rib, about 20 MB each (1 MB where instructions are counted),
-// of numbers with 7 digits. Every
-// control point is compared with the number that was written before the rate is reported; memcpy_fraction is the time to
-// copy the text, measured in the same process, over the time to read it.
+// Reads text in memory into a model: read.bpt, bv, g2, json, obj and rib, about 20 MB each (1 MB where instructions are
+// counted), of numbers with 7 digits. Every control point is compared with the number that was written before the rate
+// is reported. memcpy_fraction is the time to copy the text, measured in the same process, over the time to read it.
 
 #include <benchmark/benchmark.h>
 
@@ -22,9 +21,9 @@ namespace {
 
 struct Text {
   std::string bytes;
-  std::vector<Vec3> points;  ///< as they stand in the text, in order
+  std::vector<Vec3> points;  ///< in the order of the text
 
-  /// The digits of the value; it becomes the number that they mean.
+  /// Appends the digits of the value, and rounds the value to them.
   void add(double& value) {
     char digits[32];
     const auto [end, error] = std::to_chars(digits, digits + sizeof digits, value, std::chars_format::general, 7);
@@ -71,7 +70,7 @@ Text bv_text(std::size_t text_size) {
   return text;
 }
 
-/// Bicubic patches, a row of points a line.
+/// Bicubic patches, a row of points per line of text.
 Text json_text(std::size_t text_size) {
   Text text{R"({"format": "tessera", "version": 1, "surfaces": [)", {}};
   while (text.bytes.size() < text_size) {
@@ -146,8 +145,8 @@ Text obj_text(std::size_t text_size) {
   return text;
 }
 
-/// A patch's points run along v first in its file, unless `patches_transposed`; those of splines along u first in every
-/// file, while v runs first in the surface.
+/// Compares the points. A patch's points run along v first in its file, unless `patches_transposed`; those of splines
+/// run along u first in every file, while v runs first in the surface.
 bool holds(const Model& model, const Text& text, bool patches_transposed) {
   std::size_t begin = 0;
   for (const ModelSurface& surface : model.surfaces) {

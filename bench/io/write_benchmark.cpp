@@ -1,7 +1,7 @@
-// Meshes to files: write.ply, write.stl and write.obj, of a mesh of two million triangles, into the folder that TMPDIR
-// names. Each file is read back and compared before the rate is reported. disk_fraction is the time that write(2) of the
-// same bytes, in pieces of a MiB as dd writes them, takes in the same process and folder, over the time of write_mesh;
-// synced_fraction the same with fsync(2) after both.
+// Writes meshes to files: write.ply, write.stl and write.obj, of a mesh of two million triangles, into the folder that
+// TMPDIR names. Each file is read back and compared before the rate is reported. disk_fraction is the time of write(2)
+// for the same bytes, in pieces of a MiB as dd writes them, in the same process and folder, over the time of
+// write_mesh; synced_fraction is the same with fsync(2) after both.
 
 #include <benchmark/benchmark.h>
 #include <fcntl.h>
@@ -84,7 +84,7 @@ double seconds_of(const Work& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// The best times of both, turn by turn, each into a new file.
+/// The best times of both, taken alternately, each into a new file.
 struct Times {
   double bytes = 1e9, mesh = 1e9;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// A peer in a process of its own, talked to through pipes in the machine's own numbers.
+// A peer in a process of its own, connected by pipes; numbers are in the machine's own format.
 
 #include <unistd.h>
 
@@ -11,11 +11,11 @@
 
 namespace tessera::bench {
 
-/// A started program; it ends when its input does. Throws std::runtime_error where it can't be started or has ended.
+/// A started program; it ends when its input does. Throws std::runtime_error if it cannot be started or has ended.
 class ChildProcess {
  public:
   explicit ChildProcess(const std::string& program) : program_(program) {
-    std::signal(SIGPIPE, SIG_IGN);  // a peer that ends is an error, not the end of us
+    std::signal(SIGPIPE, SIG_IGN);  // a peer that ends is an error, but must not end this process
     int in[2], out[2];
     if (pipe(in) != 0 || pipe(out) != 0) throw std::runtime_error(program_ + ": no pipes");
     const pid_t child = fork();

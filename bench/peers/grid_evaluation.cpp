@@ -1,6 +1,6 @@
-// Grids of a bicubic B-spline surface by Tessera and by every peer that was found: positions, and positions + r_u + r_v,
-// of a size that stays in the cache and of one that does not, one thread each, taking turns. Before a rate is printed
-// the answers are compared, point by point, with Tessera's in double, and those with the reference evaluator.
+// Grids of a bicubic B-spline surface by Tessera and by every peer that was found: positions, and positions + r_u +
+// r_v, of a size that fits the cache and of one that does not, one thread each, taking turns. Before a rate is printed,
+// the answers are compared point by point with Tessera's in double, and these with the reference evaluator.
 
 #include <cmath>
 #include <cstdio>
@@ -33,7 +33,7 @@ double apart(const GridValue& a, const GridValue& b) {
   return std::fmax(max_abs(a.position - b.position), std::fmax(max_abs(a.du - b.du), max_abs(a.dv - b.dv)));
 }
 
-/// Calls visit(i, j) for every point of small grids, and for about 20,000 spread over large ones.
+/// Calls visit(i, j) for every point of a small grid, and for about 20,000 points spread over a large one.
 template <class Visit>
 void for_each_sample(const GridTask& task, Visit visit) {
   const std::size_t step = std::max<std::size_t>(1, task.points() / 20'000) | 1;
@@ -50,7 +50,7 @@ double difference(const GridTask& task, const GridRun& a, const GridRun& b) {
   return largest / task.side();
 }
 
-/// Tessera's own answer against the reference evaluator.
+/// Checks Tessera's own answer against the reference evaluator.
 bool is_right(const GridTask& task, const GridRun& ours) {
   const BSplineSurface surface = surface_of(task);
   double largest = 0;
@@ -62,7 +62,7 @@ bool is_right(const GridTask& task, const GridRun& ours) {
   return largest <= 1e-13 * task.side();
 }
 
-/// For the table of all comparisons: each peer beside Tessera's ways in its own precision.
+/// Adds rows to the table of all comparisons: each peer beside Tessera's ways in the same precision.
 void report(const GridTask& task, const std::vector<GridRun>& runs, const std::vector<double>& seconds,
             std::size_t own) {
   const std::string what = std::string(task.tangents ? "positions + du + dv" : "positions") + " of grids, " +
@@ -75,7 +75,7 @@ void report(const GridTask& task, const std::vector<GridRun>& runs, const std::v
                     mine % 2 == 0});
 }
 
-/// Runs everybody once, compares, times, prints. False where an answer is wrong.
+/// Runs every program once, compares, times, prints. False if an answer is wrong.
 bool compare(const GridTask& task) {
   std::vector<GridRun> runs = tessera_runs(task);
   const std::size_t own = runs.size();

@@ -1,5 +1,5 @@
-// The grid by OpenCASCADE: a point at a time by Geom_BSplineSurface, and by BSplSLib_Cache, which keeps the polynomial
-// of one span; spans are taken one after the other, so that each is made once.
+// The grid by OpenCASCADE, point by point: by Geom_BSplineSurface, and by BSplSLib_Cache, which keeps the polynomial of
+// one span. Spans are taken one after the other, so that each polynomial is made once.
 
 #include <BSplSLib_Cache.hxx>
 #include <Geom_BSplineSurface.hxx>

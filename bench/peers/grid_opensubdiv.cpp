@@ -1,6 +1,6 @@
-// The grid by OpenSubdiv: a mesh of quadrilaterals without boundary faces has one regular bicubic B-spline patch a face.
-// EvalPatches() evaluates the basis at every point; limit stencils hold it, 16 weights a point (and 32 for r_u and r_v),
-// which is why they are tried on small grids alone.
+// The grid by OpenSubdiv: a mesh of quadrilaterals without boundary faces has one regular bicubic B-spline patch per
+// face. EvalPatches() evaluates the basis at every point. Limit stencils hold the basis, 16 weights per point (and 32
+// for r_u and r_v), so they are tried only on small grids.
 
 #include <opensubdiv/far/patchMap.h>
 #include <opensubdiv/far/patchTableFactory.h>
@@ -24,7 +24,7 @@ namespace Sdc = OpenSubdiv::Sdc;
 
 constexpr std::size_t max_stencils = 200'000;
 
-/// Face (a, b) of the inner ones is number (a + 1) * faces + b + 1, its s runs along i.
+/// The inner face (a, b) is number (a + 1) * faces + b + 1; its s runs along i.
 std::unique_ptr<Far::TopologyRefiner> refiner_of(const GridTask& task) {
   const int side = task.side(), faces = side - 1;
   std::vector<int> sizes(static_cast<std::size_t>(faces * faces), 4), corners;
@@ -45,7 +45,7 @@ std::unique_ptr<Far::TopologyRefiner> refiner_of(const GridTask& task) {
 
 int face_of(const GridTask& task, int a, int b) { return (a + 1) * (task.side() - 1) + b + 1; }
 
-/// What both ways share: the mesh, its patches, and memory.
+/// Shared by both ways: the mesh, its patches, and memory.
 class Evaluation {
  public:
   explicit Evaluation(const GridTask& task) : task_(task), refiner_(refiner_of(task)) {
@@ -65,7 +65,7 @@ class Evaluation {
     return done ? seconds : -1;
   }
 
-  /// Points are in the order of spans (a, b), then of their own parameters.
+  /// Points are ordered by spans (a, b), then by their parameters in the span.
   GridValue read(std::size_t i, std::size_t j) const {
     const auto n = static_cast<std::size_t>(task_.per_span);
     const std::size_t span = i / n * static_cast<std::size_t>(task_.spans) + j / n;
@@ -91,7 +91,7 @@ class ByPatches : public Evaluation {
     for (int a = 0; a < task.spans; ++a)
       for (int b = 0; b < task.spans; ++b) {
         const Far::PatchTable::PatchHandle* handle = map.FindPatch(face_of(task, a, b), 0.5, 0.5);
-        if (handle == nullptr) return;  // without its points the comparison fails
+        if (handle == nullptr) return;  // the comparison fails without the points
         for (const double s : task.local)
           for (const double t : task.local) points_.emplace_back(*handle, static_cast<float>(s), static_cast<float>(t));
       }

@@ -1,4 +1,4 @@
-// The grid by SISL's s1506, in a process of its own (sisl_grid.cpp), which takes its own time.
+// The grid by SISL's s1506, in a process of its own (sisl_grid.cpp), which measures its own time.
 
 #include <memory>
 

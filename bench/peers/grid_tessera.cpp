@@ -1,4 +1,4 @@
-// The grid by Tessera: the surface is taken apart into Bezier patches once; then every patch is evaluated over one plan.
+// The grid by Tessera: splits the surface into Bezier patches once; then evaluates every patch with one plan.
 
 #include "grid_tessera.h"
 
@@ -62,13 +62,13 @@ class Evaluation {
   void evaluate_all() {
     Status status;
     if (blocks_) {
-      GridBlocks<T> out;
+      QuantityBlocks<T> out;
       out.position = position_;
       out.du = du_;
       out.dv = dv_;
       status = evaluate(set_, plan_, out);
     } else {
-      GridViews<T> out;
+      QuantityViews<T> out;
       out.position = View3<T>::interleaved(position_);
       if (task_.tangents) {
         out.du = View3<T>::interleaved(du_);

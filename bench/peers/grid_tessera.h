@@ -1,5 +1,5 @@
 #pragma once
-// The grid by Tessera, which the peers are compared with.
+// The grid by Tessera, with which the peers are compared.
 
 #include "peers/grid_task.h"
 #include "tessera/nurbs_surface.h"

@@ -1,5 +1,5 @@
 #pragma once
-// Times of several programs that take turns, so that what else the machine does falls on all of them alike.
+// Times several programs in turns, so that other work of the machine affects all of them alike.
 
 #include <time.h>
 
@@ -12,15 +12,15 @@
 
 namespace tessera::bench {
 
-/// The processor time of this process so far, all its threads together, in seconds: on a machine that does other things
-/// as well it says more of one thread's work than the clock on the wall.
+/// The processor time of this process so far, over all threads, in seconds. On a machine that also does other work it
+/// measures the work of one thread better than the wall clock.
 inline double processor_seconds() {
   timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// How much of it `task` takes.
+/// The processor time of `task`.
 template <class Task>
 double seconds_of(Task&& task) {
   const double start = processor_seconds();
@@ -28,7 +28,7 @@ double seconds_of(Task&& task) {
   return processor_seconds() - start;
 }
 
-/// The time on the wall, for work on several threads.
+/// The wall-clock time of `task`, for work on several threads.
 template <class Task>
 double wall_seconds_of(Task&& task) {
   const auto start = std::chrono::steady_clock::now();
@@ -36,8 +36,8 @@ double wall_seconds_of(Task&& task) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// The shortest time of each of `tasks`, which say themselves how many seconds they took, over `rounds` in which all
-/// take their turns of at least `turn` seconds.
+/// The shortest time of each of `tasks`, which return their own times in seconds. In each of `rounds` rounds every task
+/// gets a turn of at least `turn` seconds.
 inline std::vector<double> best_interleaved(int rounds, const std::vector<FunctionRef<double()>>& tasks,
                                             double turn = 0.05) {
   std::vector<double> best(tasks.size(), std::numeric_limits<double>::infinity());

@@ -19,11 +19,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The models below a folder, sorted.
+/// Finds the models below a folder, sorted.
 void find_models(const fs::path& folder, const std::string& only, std::vector<fs::path>& found) {
   const std::size_t first = found.size();
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    const bool is_values = entry.path().parent_path().filename() == "peer_cases";  // another kind of .json
+    const bool is_values = entry.path().parent_path().filename() == "peer_cases";  // not a model
     if (is_model(entry.path()) && !is_values && entry.path().string().find(only) != std::string::npos)
       found.push_back(entry.path());
   }
@@ -59,7 +59,7 @@ struct Part {
   std::vector<PatchGrid> grids;
   std::vector<Handle(Geom_Surface)> surfaces;
 
-  /// A B-spline surface becomes one face, another surface a face for each patch.
+  /// Adds a surface: a B-spline surface becomes one face, another surface one face per patch.
   void add(const ModelSurface& surface, PatchGrid grid) {
     std::vector<Handle(Geom_Surface)> own;
     if (const auto* const spline = std::get_if<BSplineSurface>(&surface.surface))

@@ -24,7 +24,7 @@ constexpr double pi = std::numbers::pi;
 
 PatchSet set_of(const BSplineSurface& surface) { return value_of(make_patch_set(value_of(to_bezier(surface)))); }
 
-/// Tolerances that are shares of a size, as lengths.
+/// Converts tolerances from shares of a size to lengths.
 std::vector<double> times(std::vector<double> tolerances, double size) {
   for (double& tolerance : tolerances) tolerance *= size;
   return tolerances;
@@ -41,7 +41,7 @@ class Shapes {
            const std::vector<double>& tolerances) {
     if (name.find(only_) != std::string::npos) cases_.push_back({name, set_of(surface), {occt}, tolerances});
   }
-  /// By shares of the size.
+  /// Tolerances are shares of the size.
   void add_relative(const std::string& name, const BSplineSurface& surface) {
     if (name.find(only_) == std::string::npos) return;
     PatchSet set = set_of(surface);
@@ -103,7 +103,7 @@ BSplineSurface revolved() {
   return value_of(surface_of_revolution(value_of(Curve::nurbs(3, points, weights, knots)), {}));
 }
 
-/// Between an arc and a flatter conic, whose weights differ.
+/// Ruled between an arc and a flatter conic, whose weights differ.
 BSplineSurface ruled() {
   const std::vector<Vec3> points{{1, 0, 0}, {1.5, 0.3, 2}, {1, 1, 0}, {1, 1.2, 2}, {0, 1, 0}, {-0.5, 0.8, 2}};
   const std::vector<double> weights{1, 1, std::sqrt(0.5), 3, 1, 1};

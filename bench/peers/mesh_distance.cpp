@@ -28,8 +28,8 @@ class Neighbours {
     }
   }
 
-  /// The triangles around triangle t: first those that share a vertex with it, then those that share one with these.
-  /// Calls `visit` with each once; before each ring asks whether it goes on.
+  /// Visits the triangles around triangle t, each once: first those that share a vertex with it, then those that share
+  /// a vertex with these. Continues with a ring only if `goes_on` says so.
   template <class Visit, class GoesOn>
   void visit_rings(std::uint32_t t, Visit&& visit, GoesOn&& goes_on) {
     ++round_;
@@ -47,9 +47,9 @@ class Neighbours {
   }
 
  private:
-  std::vector<std::uint32_t> order_;         ///< corners, those of a vertex together
-  std::vector<std::uint32_t> first_, last_;  ///< of each corner's vertex, in order_
-  std::vector<std::uint32_t> seen_, found_;  ///< the last round that met each triangle; what this one has met
+  std::vector<std::uint32_t> order_;         ///< corners, grouped by vertex
+  std::vector<std::uint32_t> first_, last_;  ///< range in order_ of each corner's vertex
+  std::vector<std::uint32_t> seen_, found_;  ///< the last round that met each triangle; the triangles of this round
   std::uint32_t round_ = 0;
 };
 

@@ -1,7 +1,7 @@
-// Bezier extraction of a bicubic B-spline surface of 200 x 200 spans: Tessera's to_bezier, alone and with the packing
-// into blocks, in one thread and in all, against OpenCASCADE's GeomConvert_BSplineSurfaceToBezierSurface, which has one.
-// They take turns. What is timed is checked first: the control points of all patches agree with OpenCASCADE's to 1e-12 of the surface's size,
-// and the blocks hold them to float's rounding.
+// Bezier extraction of a bicubic B-spline surface of 200 x 200 spans. Compares Tessera's to_bezier, alone and with the
+// packing into blocks, on one thread and on all, with OpenCASCADE's single-threaded
+// GeomConvert_BSplineSurfaceToBezierSurface. They take turns. Checks first that the control points of all patches agree
+// with OpenCASCADE's to 1e-12 of the surface's size, and that the blocks hold them up to the rounding of float.
 
 #include <tbb/task_arena.h>
 #include <GeomConvert_BSplineSurfaceToBezierSurface.hxx>

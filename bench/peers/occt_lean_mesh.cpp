@@ -1,11 +1,11 @@
-// How many triangles certified meshes take beside those of OpenCASCADE's BRepMesh_IncrementalMesh, on rational surfaces
-// above all: classic shapes, and the surfaces of models. Both meshes are measured in one way, by samples
-// (peers/mesh_distance.h). The ratio of triangles is that at equal measured error: Tessera gets the largest tolerance,
-// nearly, at which its mesh is measured to be at least as near as OpenCASCADE's.
+// Compares the triangles of certified meshes with those of OpenCASCADE's BRepMesh_IncrementalMesh, mainly on rational
+// surfaces: classic shapes, and the surfaces of models. Both meshes are measured in one way, by samples
+// (peers/mesh_distance.h). The ratio of triangles is that at equal measured error: Tessera uses about the largest
+// tolerance at which the measured error of its mesh does not exceed OpenCASCADE's.
 //
 // OpenCASCADE also has an angular deflection, 0.5 rad by default, which may force triangles that the distance does not
 // need. OpenCASCADE meshes each case at 0.5 rad and at pi rad, which forces none. The row shows the mesh that suits
-// OpenCASCADE better: the one with the larger ratio. A mesh that takes more than 5 s is made at 0.5 rad alone.
+// OpenCASCADE better: the one with the larger ratio. A mesh that takes more than 5 s is made at 0.5 rad only.
 
 #include <tbb/global_control.h>
 #include <Standard_Failure.hxx>
@@ -37,8 +37,8 @@ constexpr char usage[] =
     "  --only NAME  shapes and files whose names contain NAME\n"
     "Exit status 1 if a mesh is not valid or a bound does not hold.\n";
 
-constexpr std::size_t max_triangles = 300000;                     // of a mesh: others are skipped
-constexpr double max_shape_seconds = 60, max_model_seconds = 10;  // of one of OpenCASCADE's meshes
+constexpr std::size_t max_triangles = 300000;                     // larger meshes are skipped
+constexpr double max_shape_seconds = 60, max_model_seconds = 10;  // for one of OpenCASCADE's meshes
 constexpr double max_seconds_for_angles = 5;
 constexpr double angles[] = {occt_default_angle, std::numbers::pi};
 
@@ -83,7 +83,7 @@ class Report {
     }
   }
 
-  /// Tessera alone.
+  /// Reports Tessera's mesh only.
   void measure(const LeanCase& one) {
     const CertifiedMesher mesher(one.set, fewest_);
     std::printf("%-46.46s %7zu |", one.name.c_str(), one.set.patch_count());
@@ -96,7 +96,7 @@ class Report {
       const std::size_t triangles = plan->capacity().triangles;
       const MeasuredMesh mesh = checked(mesher.measure(*plan, one.tolerances[k], sample_steps(triangles)), *plan);
       std::printf(" %8zu", mesh.triangles);
-      if (mesh.error > 1e-3 * mesh.tolerance) {  // not flat
+      if (mesh.error > 1e-3 * mesh.tolerance) {  // the surface is not flat
         std::printf(" %5.2f", mesh.bound / mesh.error);
         looseness_.resize(one.tolerances.size());
         looseness_[k].push_back(mesh.bound / mesh.error);

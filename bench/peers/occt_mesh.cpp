@@ -1,9 +1,9 @@
-// Meshes of the same surfaces: Tessera's certified tessellation against OpenCASCADE's BRepMesh_IncrementalMesh, each in
-// one thread. OpenCASCADE is given a deflection; how far its mesh really lies from the surface is measured, at 66 points of
-// each triangle, and Tessera is given the largest tolerance by which its own mesh, measured in the same way, is at least as
-// near. (Tessera's is proven besides: the bound stands beside what is measured.) Then the same of a plan of the fewest
-// triangles, which takes more time. Time is that of all that leads from
-// surfaces in memory, Bezier patches packed in a set or faces of a shape, to positions, normals and triangles.
+// Compares Tessera's certified tessellation with OpenCASCADE's BRepMesh_IncrementalMesh on the same surfaces, each on
+// one thread. OpenCASCADE gets a deflection, and the real distance of its mesh from the surface is measured at 66
+// points of each triangle. Tessera gets about the largest tolerance at which its own mesh, measured in the same way, is
+// at least as near. (Tessera's distance is also proven: the bound stands beside the measured one.) A plan of the fewest
+// triangles, which takes more time, is compared likewise. Times span all work from surfaces in memory (Bezier patches
+// packed in a set, or faces of a shape) to positions, normals and triangles.
 
 #include <tbb/global_control.h>
 #include <Standard_Version.hxx>
@@ -28,7 +28,7 @@ namespace {
 constexpr int rounds = 3;
 constexpr int sample_steps = 10;  // 66 points of each triangle
 
-/// A surface that is meshed.
+/// A surface to mesh.
 struct Subject {
   std::string name;
   PatchSet set;
@@ -80,7 +80,7 @@ Measured measure_mesh(const Subject& subject, const CertifiedOptions& options) {
   return measured;
 }
 
-/// Positions, normals and triangles, into memory that is there.
+/// Writes positions, normals and triangles into existing memory.
 double seconds_of_mesh(const Subject& subject, const CertifiedOptions& options) {
   double bound = 0;
   Mesh mesh = mesh_of(subject, options, bound);
@@ -96,7 +96,7 @@ double seconds_of_mesh(const Subject& subject, const CertifiedOptions& options) 
   return best_interleaved(rounds, {make})[0];
 }
 
-/// The coarsest mesh, nearly, whose measured error is at most that.
+/// About the coarsest mesh whose measured error is at most `error`.
 Measured measure_tessera(const Subject& subject, double error, bool fewest) {
   double tolerance = 2 * error;
   const auto options = [fewest](double within) { return CertifiedOptions{.tolerance = within, .fewest = fewest}; };
@@ -107,7 +107,7 @@ Measured measure_tessera(const Subject& subject, double error, bool fewest) {
     if (found.error <= error && found.error > 0.97 * error) break;
     tolerance *= 0.99 * error / found.error;
   }
-  if (!best) best = {0.9 * error, measure_mesh(subject, options(0.9 * error))};  // which is proven to be near enough
+  if (!best) best = {0.9 * error, measure_mesh(subject, options(0.9 * error))};  // proven to be near enough
   best->second.seconds = seconds_of_mesh(subject, options(best->first));
   return best->second;
 }

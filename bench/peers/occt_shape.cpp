@@ -33,7 +33,7 @@ struct Poles {
   TColStd_Array2OfReal weights;
 };
 
-/// Distinct knots, and how often each stands.
+/// Distinct knots, and their multiplicities.
 struct Knots {
   explicit Knots(std::span<const double> all) {
     for (const double knot : all) {

@@ -21,14 +21,14 @@ constexpr double occt_default_angle = 0.5;  ///< OpenCASCADE's own angular defle
 Handle(Geom_BSplineSurface) occt_surface(const BSplineSurface& surface);
 Handle(Geom_BezierSurface) occt_surface(const BezierPatch& patch);
 
-/// A compound of faces, one a surface, each over all of its surface's parameters.
+/// A compound of faces, one per surface, each over all of its surface's parameters.
 class OcctShape {
  public:
-  /// Throws std::runtime_error where OpenCASCADE makes no face of a surface.
+  /// Throws std::runtime_error if OpenCASCADE makes no face of a surface.
   explicit OcctShape(const std::vector<Handle(Geom_Surface)>& surfaces);
 
-  /// Meshes all faces anew, in this thread, and returns the processor time that it takes in seconds; infinity if it was
-  /// stopped after about max_seconds. Angular deflection in radians.
+  /// Meshes all faces anew on this thread. Returns the processor time in seconds, or infinity if it was stopped after
+  /// about max_seconds. The angular deflection is in radians.
   double mesh(double deflection, double angle = occt_default_angle,
               double max_seconds = std::numeric_limits<double>::infinity());
   /// The triangles of the last mesh(). Empty before the first.

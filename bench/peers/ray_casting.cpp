@@ -1,6 +1,6 @@
 // The closest hits of a camera's rays on a bicubic B-spline surface by Tessera and by every peer that was found, one
-// thread each, taking turns. Before a rate is printed the answers are compared, ray by ray, with Tessera's exact mode,
-// and that one with the tests' ray caster, which shares no code with it.
+// thread each, taking turns. Before a rate is printed, the answers are compared ray by ray with Tessera's exact mode,
+// and these with the tests' ray caster, which shares no code with it.
 
 #include <algorithm>
 #include <cmath>
@@ -43,13 +43,13 @@ PatchSet set_of(const std::vector<Vec3>& net) {
   return value_of(make_patch_set({&grid, 1}));
 }
 
-/// From above at a slant: waves hide waves.
+/// Looks from above at a slant, so that waves hide waves.
 RayCamera camera_of(const Box3& box) {
   const Vec3 back = normalized({0.5, -0.9, 0.45}), right = normalized({0.9, 0.5, 0}), up = cross(back, right);
   return {box.centre() + 1.3 * box.diagonal() * back, -back, 0.75 * right, 0.75 * up, pixels};
 }
 
-/// Some hundred rays of the truth against the tests' ray caster. False where one differs.
+/// Checks some hundred rays of the truth against the tests' ray caster. False if one differs.
 bool is_right(const RayTask& task, const RayRun& truth) {
   std::vector<BezierPatch> patches;
   for (std::size_t k = 0; k < task.set.patch_count(); ++k) patches.push_back(task.set.patch(k));
@@ -62,8 +62,9 @@ bool is_right(const RayTask& task, const RayRun& truth) {
   return true;
 }
 
-/// Against the truth: the share of rays that hit where it misses or miss where it hits, and, of those that hit the same
-/// sheet (within a hundredth of the size), the median and the largest distance along the ray over the size.
+/// The difference from the truth: the share of rays that hit where it misses or miss where it hits, and, over rays that
+/// hit the same sheet (within a hundredth of the size), the median and the largest distance along the ray over the
+/// size.
 struct Difference {
   double wrong = 0, median = 0, largest = 0;
 };
@@ -81,10 +82,10 @@ Difference difference(const RayTask& task, const RayRun& run, const RayRun& trut
   return {wrong / rays, apart[apart.size() / 2], apart.back()};
 }
 
-/// Whether a program meets the surface itself, in double.
+/// Whether a program intersects the surface itself, in double.
 bool is_exact(const RayRun& run) { return run.program.starts_with("SISL") || run.program.starts_with("OpenCASCADE"); }
 
-/// Exact ones at double's precision, facets as good as facets are, silhouettes apart.
+/// Exact programs must reach double's precision, facets theirs; silhouettes may differ.
 bool is_acceptable(const Difference& d, const RayRun& run) {
   if (is_exact(run)) return d.wrong <= 0.02 && d.median <= 1e-9;
   return d.wrong <= 0.01 && d.median <= 1e-3;
@@ -104,7 +105,7 @@ void print(const RayTask& task, const std::vector<RayRun>& runs, const std::vect
                 1e-3 * rate(k), 100 * differences[k].wrong, differences[k].median, differences[k].largest);
     for (std::size_t mine = 0; mine < own && k >= own; ++mine) {
       std::printf(" %8.3g", rate(mine) / rate(k));
-      // Facets alone beside those who cast at facets; the exact mode beside who finds all roots.
+      // Programs that use facets are compared with Tessera's facets, programs that find all roots with its exact mode.
       const bool main = is_exact(runs[k]) ? mine == 0 : mine == 2;
       add_result({"closest hits of camera rays", runs[k].program, runs[k].way, rate(k), runs[mine].way,
                   rate(mine) / rate(k), main});

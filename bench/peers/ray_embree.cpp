@@ -1,5 +1,6 @@
-// The rays by Embree alone, a ray a call: the surface's facets as triangles and as its grids, and the control points as
-// a Catmull-Clark mesh without boundary faces, which is the B-spline surface. Hits are those of facets, in float.
+// The rays by Embree alone, one ray per call: the surface's facets as triangles and as Embree's grids, and the control
+// points as a Catmull-Clark mesh without boundary faces, which is the B-spline surface. Hits are those of facets, in
+// float.
 
 #include <embree3/rtcore.h>
 
@@ -77,7 +78,7 @@ class Casting {
   std::vector<RTCRayHit> rays_;
 };
 
-/// Points of the surface, rate + 1 each way of every patch.
+/// Points of the surface, rate + 1 in both directions of every patch.
 std::vector<Vec3> facet_points(const RayTask& task) {
   std::vector<Vec3> points;
   for (std::size_t patch = 0; patch < task.set.patch_count(); ++patch)

@@ -1,5 +1,5 @@
-// The rays by OpenCASCADE's IntCurvesFace_Intersector, which meets a face's surface itself: all hits of a line, of which
-// the first is taken. Slow, so that one ray of many is cast.
+// The rays by OpenCASCADE's IntCurvesFace_Intersector, which intersects a face's surface itself and finds all hits of a
+// line; the first one counts. It is slow, so it casts one ray in many.
 
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <Geom_BSplineSurface.hxx>
@@ -21,7 +21,7 @@
 namespace tessera::bench {
 namespace {
 
-constexpr std::size_t step = 211;  // a prime: not one column of pixels
+constexpr std::size_t step = 211;  // a prime, to avoid single columns of pixels
 
 class Casting {
  public:
@@ -51,7 +51,7 @@ class Casting {
     return BRepBuilderAPI_MakeFace(surface, 0.0, task.spans, 0.0, task.spans, 1e-7).Face();
   }
 
-  /// Its parameters along the line are lengths.
+  /// The parameters along the line are lengths.
   double closest(std::size_t pixel) {
     const Ray ray = task_.camera.ray(pixel);
     const Vec3 &o = ray.origin, &d = ray.direction;

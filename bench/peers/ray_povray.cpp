@@ -1,6 +1,7 @@
-// The picture by POV-Ray's bicubic_patch, kept as its bounding tree in memory (type 1), in a process of its own. It is
-// coloured by height, without light, in 16 bits a channel, so that its hits can be compared: red is the height within
-// the picture's range, green is 1 where anything was hit. The time is the processor time of tracing that POV-Ray prints.
+// The picture by POV-Ray's bicubic_patch, kept as its bounding tree in memory (type 1), in a process of its own. The
+// surface is coloured by height, without light, in 16 bits per channel, so that its hits can be compared: red is the
+// height within the picture's range, green is 1 where anything was hit. The time is the processor time of tracing that
+// POV-Ray prints.
 
 #include <array>
 #include <cmath>
@@ -27,7 +28,7 @@ std::string vector_text(const Vec3& p) {
   return text;
 }
 
-/// What a program prints, on both streams. Throws where it fails.
+/// The output of a program on both streams. Throws if the program fails.
 std::string output_of(const std::string& command) {
   std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");
   if (pipe == nullptr) throw std::runtime_error("no process for " + command);
@@ -38,7 +39,7 @@ std::string output_of(const std::string& command) {
   return text;
 }
 
-/// Found when the program starts: empty where POV-Ray does not run.
+/// The version found at run time; empty if POV-Ray does not run.
 std::string version() {
   try {
     std::smatch found;
@@ -102,7 +103,7 @@ class Casting {
     file.close();
     if (!file) throw std::runtime_error("the scene for POV-Ray can't be written");
   }
-  /// The next word of a picture's head; lines that begin with # are comments.
+  /// The next word of a picture's header; lines that begin with # are comments.
   static std::string word(std::ifstream& file) {
     std::string text;
     while (file >> text && text.starts_with('#')) std::getline(file, text);

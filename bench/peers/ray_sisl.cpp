@@ -1,4 +1,5 @@
-// The rays by SISL's s1856, in a process of its own (sisl_rays.cpp), which takes its own time. It casts one of many.
+// The rays by SISL's s1856, in a process of its own (sisl_rays.cpp), which measures its own time. It casts one ray in
+// many.
 
 #include <memory>
 
@@ -9,7 +10,7 @@
 namespace tessera::bench {
 namespace {
 
-constexpr std::size_t step = 509;  // a prime: rays all over the picture
+constexpr std::size_t step = 509;  // a prime, to spread rays over the picture
 
 class Casting {
  public:

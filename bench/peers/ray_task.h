@@ -1,5 +1,5 @@
 #pragma once
-// The work that ray casters are compared by: the closest hit of a camera's rays on a bicubic B-spline surface over
+// The work by which ray casters are compared: the closest hits of a camera's rays on a bicubic B-spline surface over
 // uniform knots, one thread.
 
 #include <cstddef>
@@ -14,13 +14,13 @@
 
 namespace tessera::bench {
 
-/// Segments of a patch and direction, where a program takes a surface apart into facets.
+/// Segments per patch and direction for programs that split a surface into facets.
 inline constexpr int facets_per_side = 8;
 
 /// Rays from one eye in rows of pixels: along forward + (x - 1/2) right + (1/2 - y) up, x and y in (0, 1).
 struct RayCamera {
   Vec3 eye, forward, right, up;
-  int side = 0;  ///< pixels each way
+  int side = 0;  ///< pixels in each direction
 
   Ray ray(std::size_t pixel) const {
     const auto n = static_cast<std::size_t>(side);
@@ -31,22 +31,22 @@ struct RayCamera {
 };
 
 struct RayTask {
-  int spans = 0;          ///< each way
-  std::vector<Vec3> net;  ///< [i][j], spans + 3 each way
+  int spans = 0;          ///< in each direction
+  std::vector<Vec3> net;  ///< [i][j], spans + 3 in each direction
   RayCamera camera;
   Box3 box;             ///< of the patches' control points
   double size = 0;      ///< its diagonal
-  const PatchSet& set;  ///< the surface, a patch a span: patch (a, b) is number a * spans + b
+  const PatchSet& set;  ///< the surface, a patch per span: patch (a, b) is number a * spans + b
 
   int side() const { return spans + 3; }
 };
 
-/// One way of one program.
+/// One way in which a program does the task.
 struct RayRun {
   std::string program, way;
-  std::size_t step = 1;                      ///< casts ray 0, step, 2 step ..
-  std::function<double()> seconds;           ///< casts them once: the processor time it took
-  std::function<double(std::size_t ray)> t;  ///< of a ray that was cast; infinite where it missed
+  std::size_t step = 1;                      ///< casts rays 0, step, 2 step ..
+  std::function<double()> seconds;           ///< casts them once; returns the processor time
+  std::function<double(std::size_t ray)> t;  ///< of a ray that was cast; infinite for a miss
 };
 
 /// A program that was found. Its runs must not outlive the task.

@@ -1,6 +1,6 @@
 #pragma once
-// What a comparison found, for the one table of all: a line of JSON each in the file that the environment names as
-// TESSERA_PEERS_RESULTS (tools/peers.sh), nothing without it.
+// The results of a comparison, for one table of all: each is a line of JSON in the file that the environment names as
+// TESSERA_PEERS_RESULTS (tools/peers.sh). Without that variable nothing is written.
 
 #include <cstdio>
 #include <cstdlib>
@@ -10,12 +10,12 @@ namespace tessera::bench {
 
 struct PeerResult {
   std::string task;     ///< "positions, 9 x 9 a span"
-  std::string peer;     ///< with its version
+  std::string peer;     ///< name and version
   std::string way;      ///< the function, the precision
-  double rate = 0;      ///< the peer's, items a second
-  std::string against;  ///< Tessera's way
+  double rate = 0;      ///< the peer's, items per second
+  std::string against;  ///< the way of Tessera
   double ratio = 0;     ///< Tessera's rate over the peer's
-  bool main = true;     ///< the ratio that stands for the peer, of several
+  bool main = true;     ///< whether this ratio stands for the peer, if there are several
 };
 
 inline void add_result(const PeerResult& r) {

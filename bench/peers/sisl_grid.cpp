@@ -1,5 +1,5 @@
-// SISL's s1506 over a grid of a bicubic B-spline surface, as a program of its own: SISL is under the AGPL, so nothing of
-// Tessera is linked here, and Tessera's own programs talk to this one through pipes (sisl_protocol.h).
+// SISL's s1506 over a grid of a bicubic B-spline surface, as a program of its own: SISL is under the AGPL, so nothing
+// of Tessera is linked here, and Tessera's programs use this one through pipes (sisl_protocol.h).
 
 #include <sisl.h>
 #include <time.h>
@@ -20,14 +20,14 @@ bool write(const T* values, std::size_t count) {
   return std::fwrite(values, sizeof(T), count, stdout) == count && std::fflush(stdout) == 0;
 }
 
-/// As interleaved.h has it.
+/// See interleaved.h.
 double processor_seconds() {
   timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// SISL has the first parameter run fastest.
+/// In SISL the first parameter runs fastest.
 SISLSurf* surface_of(const SislTask& task, const std::vector<double>& net) {
   const int n = task.side;
   std::vector<double> knots, points;

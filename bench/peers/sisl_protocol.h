@@ -1,19 +1,21 @@
 #pragma once
-// How grid_sisl.cpp talks to the program sisl_grid, and ray_sisl.cpp to sisl_rays, over their standard input and output,
-// in the machine's own numbers.
+// The protocol between grid_sisl.cpp and the program sisl_grid, and between ray_sisl.cpp and sisl_rays, over standard
+// input and output. Numbers are in the machine's own format.
 
 #include <cstdint>
 
-/// To sisl_grid: this, its control points [i][j][component] and its parameters, doubles; then commands, a byte each:
+/// Sent to sisl_grid: this, its control points [i][j][component] and its parameters, doubles; then commands, a byte
+/// each:
 ///   'r'  runs s1506 once: the answer is a double, the seconds of processor time it took
 ///   'v'  and two std::uint64_t, the parameters' numbers i and j: the answer is 9 doubles, position, r_u, r_v
 struct SislTask {
-  std::int32_t side = 0;      ///< control points each way
-  std::int32_t count = 0;     ///< parameters each way
-  std::int32_t tangents = 0;  ///< 1: r_u and r_v as well
+  std::int32_t side = 0;      ///< control points in each direction
+  std::int32_t count = 0;     ///< parameters in each direction
+  std::int32_t tangents = 0;  ///< 1: r_u and r_v too
 };
 
-/// To sisl_rays: this, its control points as above and its rays, origin and direction, 6 doubles each; then commands:
+/// Sent to sisl_rays: this, its control points as above and its rays, origin and direction, 6 doubles each; then
+/// commands:
 ///   'r'  casts all rays: the answer is the seconds of processor time, and t of each ray's nearest hit
 struct SislRayTask {
   std::int32_t side = 0;

@@ -1,5 +1,5 @@
-// SISL's s1856, all points that a straight line shares with a bicubic B-spline surface, as a program of its own, as
-// sisl_grid.cpp is one. Of each ray the nearest one from its origin on is sent back.
+// SISL's s1856, which finds all points that a straight line shares with a bicubic B-spline surface, as a program of its
+// own, like sisl_grid.cpp. Sends back the nearest point of each ray from its origin on.
 
 #include <sisl.h>
 #include <time.h>
@@ -23,14 +23,14 @@ bool write(const T* values, std::size_t count) {
   return std::fwrite(values, sizeof(T), count, stdout) == count && std::fflush(stdout) == 0;
 }
 
-/// As interleaved.h has it.
+/// See interleaved.h.
 double processor_seconds() {
   timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// SISL has the first parameter run fastest.
+/// In SISL the first parameter runs fastest.
 SISLSurf* surface_of(const SislRayTask& task, const std::vector<double>& net) {
   const int n = task.side;
   std::vector<double> knots, points;
@@ -41,7 +41,7 @@ SISLSurf* surface_of(const SislRayTask& task, const std::vector<double>& net) {
   return newSurf(n, n, 4, 4, knots.data(), knots.data(), points.data(), 1, 3, 1);
 }
 
-/// t of the nearest hit of the ray x y z dx dy dz; infinite where there is none, NaN where SISL gives up.
+/// t of the nearest hit of the ray x y z dx dy dz; infinite for a miss, NaN if SISL gives up.
 double closest(SISLSurf* surface, double* ray, double tolerance) {
   int points = 0, curves = 0, status = 0, left = 0, right = 0;
   double* parameters = nullptr;

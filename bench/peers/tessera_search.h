@@ -1,5 +1,5 @@
 #pragma once
-// Certified meshes of a set whose measured error is that of another program's mesh.
+// Finds certified meshes of a set whose measured error equals that of another program's mesh.
 
 #include <algorithm>
 #include <cmath>
@@ -16,12 +16,12 @@ namespace tessera::bench {
 struct MeasuredMesh {
   std::size_t triangles = 0;
   double error = 0;      ///< the largest distance found
-  double bound = 0;      ///< the proven one
-  double tolerance = 0;  ///< what it was made for
+  double bound = 0;      ///< the proven bound
+  double tolerance = 0;  ///< the tolerance of its plan
   bool holds() const { return error <= bound; }
 };
 
-/// How meshes of a set are made and measured.
+/// Makes and measures meshes of a set.
 class CertifiedMesher {
  public:
   CertifiedMesher(const PatchSet& set, bool fewest) : set_(set), fewest_(fewest) {}
@@ -30,7 +30,7 @@ class CertifiedMesher {
     return CertifiedTessellation::make(set_, {.tolerance = tolerance, .fewest = fewest_});
   }
 
-  /// Throws std::runtime_error where the mesh is not valid.
+  /// Throws std::runtime_error if the mesh is not valid.
   MeasuredMesh measure(const CertifiedTessellation& plan, double tolerance, int steps) const {
     Result<Mesh> mesh = plan.allocate();
     if (!mesh || !plan.run(set_, mesh->views()).ok()) throw std::runtime_error("a plan makes no mesh");
@@ -41,14 +41,14 @@ class CertifiedMesher {
     return {mesh->triangle_count(), largest_distance(triangles_of(*mesh), at, steps), plan.bound(), tolerance};
   }
 
-  /// The coarsest mesh, nearly, whose measured error is at most that, within `rounding`. Nothing where there is no plan for
+  /// About the coarsest mesh whose measured error is at most `error`, within `rounding`. Empty if there is no plan for
   /// that tolerance.
   std::optional<MeasuredMesh> coarsest(double error, int steps) const {
     const Result<CertifiedTessellation> proven = plan(error);
     if (!proven) return {};
     MeasuredMesh good = measure(*proven, error, steps);
     const double limit = 1e6 * error;
-    double known = error, bad = 2 * limit;  // tolerances: up to `known` none saves more, `bad` is too large
+    double known = error, bad = 2 * limit;  // tolerances: none up to `known` saves more, `bad` is too large
     for (int step = 0; step < max_steps && bad > 1.01 * known; ++step) {
       const double scaled = known * std::clamp(error / good.error, 1.02, 20.0);
       const double next = scaled < bad ? scaled : std::sqrt(known * bad);
@@ -65,7 +65,7 @@ class CertifiedMesher {
     return good.triangles <= max_scanned ? scanned(good, error, steps) : good;
   }
 
-  /// The time of plan, positions, normals and triangles, into memory that is there.
+  /// The time of plan, positions, normals and triangles, in existing memory.
   double seconds(double tolerance) const {
     Mesh mesh = *plan(tolerance)->allocate();
     MeshViews out = mesh.views();
@@ -81,7 +81,8 @@ class CertifiedMesher {
   }
 
  private:
-  /// Coarse meshes: their error does not always grow with the tolerance. Tries larger ones, the largest first.
+  /// For coarse meshes, whose error does not always grow with the tolerance. Tries larger tolerances, the largest
+  /// first.
   MeasuredMesh scanned(const MeasuredMesh& good, double error, int steps) const {
     std::size_t tried = 0;
     for (double tolerance = 30 * good.tolerance; tolerance > 1.02 * good.tolerance; tolerance *= 0.96) {
@@ -97,7 +98,7 @@ class CertifiedMesher {
 
   static constexpr int max_steps = 14;
   static constexpr std::size_t max_scanned = 1000;
-  static constexpr double rounding = 1e-3;  // the same chords have other errors where one mesh has float vertices
+  static constexpr double rounding = 1e-3;  // equal chords have different errors if one mesh has float vertices
   const PatchSet& set_;
   bool fewest_;
 };

@@ -1,5 +1,5 @@
-// Batches of rays in arrays of float against the same rays as records in double, in one process by turns: closest hits
-// by what is asked of them, occlusion, a filter, and instances. Each is checked against the hits of the records, bit
+// Compares batches of rays in arrays of float with the same rays as records in double, in one process by turns: closest
+// hits by requested results, occlusion, a filter, and instances. Each is checked against the hits of the records, bit
 // for bit.
 
 #include <benchmark/benchmark.h>
@@ -50,7 +50,7 @@ struct FloatRays {
   }
 };
 
-/// Shared by the cases of one set and instruction set. One stands at a time.
+/// Shared by the cases of one set and instruction set. Only one exists at a time.
 struct Scene {
   explicit Scene(bool is_rational, Isa on)
       : work(60, is_rational),

@@ -1,7 +1,7 @@
-// Compares exact mode with refined grid mode at its default rate, a row per model: the times of coherent rays, as of a
-// camera, and of rays that have nothing in common; then rays aimed at borders of patches, at their poles, and along tangent planes,
-// beside those that have nothing in common. One thread, the better of some runs that take turns. Both modes must meet the
-// same but for one ray in a hundred.
+// Compares exact mode with refined grid mode at its default rate, a row per model. Times coherent rays, as of a camera,
+// and incoherent ones; then rays aimed at borders of patches, at their poles, and along tangent planes, beside
+// incoherent ones. Uses one thread, and the better of some runs that take turns. Both modes must agree on hit or miss,
+// except for one ray in a hundred.
 
 #include <tbb/task_arena.h>
 
@@ -32,7 +32,7 @@ constexpr char usage[] =
 constexpr int picture = 160, tile = 4, runs = 3;
 constexpr std::size_t ray_count = 8192, hard_ray_count = 2048;
 
-/// Tile after tile, from outside, at the middle of the box.
+/// Rays tile by tile, from outside, at the middle of the box.
 std::vector<Ray> camera_rays(const Box3& box) {
   const double size = box.diagonal();
   const Vec3 centre = 0.5 * (box.lower + box.upper), eye = centre + 1.2 * size * normalized(Vec3{0.5, -0.8, 0.6});
@@ -51,10 +51,10 @@ std::vector<Ray> camera_rays(const Box3& box) {
 
 enum class Aim { anywhere, border, pole, tangent };
 
-/// Where two borders of a patch meet, or anywhere on it; whether that is a pole or a corner of no angle.
+/// Whether the tangents at the point are zero or parallel: a pole, or a corner without an angle.
 bool is_singular(const Hit& at) { return !(length(cross(at.du, at.dv)) > 1e-6 * length(at.du) * length(at.dv)); }
 
-/// At places of the surface, from outside of its box; at poles none where the surface has none.
+/// Rays at places of the surface, from outside of its box; no rays at poles if the surface has none.
 std::vector<Ray> aimed_rays(const RayScene& scene, const PatchSet& set, Aim aim, std::size_t count) {
   const double size = set.box().diagonal();
   Random random(7);
@@ -74,7 +74,7 @@ std::vector<Ray> aimed_rays(const RayScene& scene, const PatchSet& set, Aim aim,
   return rays;
 }
 
-/// The time of the rays in seconds, if it is less than `best`.
+/// Times the rays; lowers `best`, in seconds, if they took less.
 void time(const RayScene& scene, const std::vector<Ray>& rays, std::vector<Hit>& hits, double& best) {
   tbb::task_arena one(1);
   hits.resize(rays.size());
@@ -87,8 +87,8 @@ void time(const RayScene& scene, const std::vector<Ray>& rays, std::vector<Hit>&
 
 struct Timed {
   double exact = INFINITY, grid = INFINITY;
-  double steps = 0;  ///< a ray, of exact mode
-  double other = 0;  ///< share of the rays that one mode meets something with and the other doesn't
+  double steps = 0;  ///< per ray, of exact mode
+  double other = 0;  ///< share of the rays that hit in only one of the modes
   double ratio() const { return exact / grid; }
 };
 
@@ -105,7 +105,7 @@ Timed compare(const RayScene& exact, const RayScene& grid, const std::vector<Ray
   return out;
 }
 
-/// A ray, in seconds; 0 of none.
+/// Seconds per ray; 0 if there are no rays.
 double each(const RayScene& scene, const std::vector<Ray>& rays) {
   double best = rays.empty() ? 0 : INFINITY;
   std::vector<Hit> hits;

@@ -1,7 +1,8 @@
-// Exact rays against Embree's robust triangles and its own subdivision geometry of the same patches: the same rays, one
-// by one, in one process by turns, so that the ratios of the times count; of closest hits also triangles in packets of
-// 16, which pay where rays are coherent. Closest hit and any hit; a camera's rays, rays at random, rays that graze the
-// surface; memory and the time of building. A sample of each case is checked against a ray caster that shares no code.
+// Compares exact rays with Embree's robust triangles and its own subdivision geometry of the same patches: the same
+// rays, one by one, in one process by turns, so that the ratios of the times count. Closest hits are also compared with
+// triangles in packets of 16, which pay for coherent rays. Cases: closest hit and any hit; a camera's rays, random
+// rays, rays that graze the surface; memory and build time. A sample of each case is checked against a ray caster that
+// shares no code.
 
 #include <benchmark/benchmark.h>
 
@@ -30,9 +31,9 @@ using bench::Rival;
 using bench::Stopwatch;
 using bench::TorusRays;
 
-constexpr int coarse = 12;                // cells a patch and direction
-constexpr int fine = 54;                  // on 3,600 patches: t to 1e-6 of the size
-constexpr double share_differing = 0.02;  // of rays of which facets and surface say otherwise whether they hit
+constexpr int coarse = 12;                // cells per patch and direction
+constexpr int fine = 54;                  // gives t to 1e-6 of the size on 3,600 patches
+constexpr double share_differing = 0.02;  // largest share of rays for which facets and surface disagree on a hit
 
 RayScene exact_scene(const TorusRays& work, Isa isa) {
   RaySceneOptions options;
@@ -41,7 +42,7 @@ RayScene exact_scene(const TorusRays& work, Isa isa) {
   return test::value_of(RayScene::make(work.set, options));
 }
 
-/// What the cases of one set and instruction set share. One stands at a time: triangles are large.
+/// Shared by the cases of one set and instruction set. Only one exists at a time, because triangles take much memory.
 struct Scenes {
   Scenes(const TorusRays& of, Isa on, int cells)
       : work(of), isa(on), quads(cells), exact(exact_scene(of, on)), triangles(Rival::triangles(of.set, cells, on)) {
@@ -88,7 +89,7 @@ void report(benchmark::State& state, double best, const Scenes& scenes, const Ti
   if (scenes.subdivision) state.counters["of_subdivision"] = best / times.subdivision.best();
 }
 
-/// Rays of a sample, of which the reference is asked; `differ`: of all rays, how many the triangles see otherwise.
+/// Compares a sample of rays with the reference; `differ`: how many of all rays hit or miss otherwise in the triangles.
 bool good(benchmark::State& state, const Scenes& scenes, const std::vector<Ray>& rays, std::size_t differ,
           const std::function<bool(std::size_t, const test::ReferenceHit&)>& is_right) {
   const std::size_t sample = 1'000'000 / scenes.work.patches.size();
@@ -105,7 +106,7 @@ bool good(benchmark::State& state, const Scenes& scenes, const std::vector<Ray>&
   return false;
 }
 
-/// Of t, which nine tenths of the hits stay below.
+/// The error of t that nine tenths of the hits stay below.
 double error_of(const std::vector<float>& t, const std::vector<Hit>& hits) {
   std::vector<double> errors;
   for (std::size_t k = 0; k < t.size(); ++k) {
@@ -160,7 +161,7 @@ void occluded(benchmark::State& state, const Scenes& scenes, const std::vector<R
   if (right) report(state, *best, scenes, times);
 }
 
-/// Pieces and BVH anew, against the triangles' BVH alone, whose vertices stand ready.
+/// Builds pieces and BVH anew, and for comparison only the BVH of the triangles, whose vertices exist already.
 void build(benchmark::State& state, const Scenes& shared, int threads) {
   const TorusRays& work = shared.work;
   RayScene exact = exact_scene(work, shared.isa);

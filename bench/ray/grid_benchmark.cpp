@@ -1,5 +1,5 @@
-// Grid mode, refined onto the surface, against Embree's robust grids of the same points alone: the same rays in one process
-// by turns, so that the ratios of the times count; where rays are coherent also against grids in packets of 16. A sample of
+// Compares grid mode, refined onto the surface, with Embree's robust grids of the same points: the same rays in one
+// process by turns, so that the ratios of the times count; coherent rays also with grids in packets of 16. A sample of
 // each case is checked against a ray caster that shares no code.
 
 #include <benchmark/benchmark.h>
@@ -20,7 +20,7 @@
 namespace tessera::bench {
 namespace {
 
-constexpr int cells = 12;  // a patch and direction
+constexpr int cells = 12;  // per patch and direction
 
 struct Scenes {
   TorusRays work{60, false};
@@ -55,7 +55,7 @@ void closest(benchmark::State& state, const Scenes& scenes, const std::vector<Ra
     const bool hit = hits[ray].kind == HitKind::hit;
     wrong += hit != expected.hit() || (hit && !(std::abs(hits[ray].t - expected.t) <= 1e-9));
   }
-  // Facets miss silhouettes, which is where grazing rays go.
+  // Facets lose silhouettes, where grazing rays go.
   if (wrong * 20 > sample)
     return state.SkipWithError(
         (std::to_string(wrong) + " of " + std::to_string(sample) + " answers are wrong").c_str());

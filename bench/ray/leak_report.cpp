@@ -1,6 +1,6 @@
-// What grid mode promises, counted: rays from inside closed bodies that meet nothing, and how far t is from a ray
-// caster's that shares no code, with and without refinement. Exit status 1 if a random ray leaks or the refined
-// median is above 1e-6.
+// Checks the promises of grid mode: counts rays from inside closed bodies that miss, and measures the distance of t
+// from that of a ray caster that shares no code, with and without refinement. Exit status 1 if a random ray leaks or
+// the refined median is above 1e-6.
 
 #include <algorithm>
 #include <cmath>
@@ -33,7 +33,7 @@ Vec3 in_ball(Random& random, double radius) {
   }
 }
 
-/// Rays from the ball of radius 0.3 about zero, which the bodies hold.
+/// Rays from the ball of radius 0.3 about zero, which lies inside the bodies.
 template <class MakeDirection>
 std::vector<Ray> rays_from_inside(std::size_t count, std::uint64_t seed, MakeDirection make) {
   Random random(seed);
@@ -79,12 +79,12 @@ Distribution errors(const std::vector<Hit>& hits, const std::vector<Ray>& rays, 
   return all.empty() ? Distribution{INFINITY, INFINITY} : Distribution{all[all.size() / 2], all.back()};
 }
 
-/// What the rays of a body are measured with.
+/// The rays of a body, and the expected hits.
 struct Case {
   const std::vector<BezierPatch>& patches;
   PatchSet set;
   std::vector<Ray> rays;
-  std::vector<double> expected;  ///< t of the first ones
+  std::vector<double> expected;  ///< t of the first rays
 };
 
 bool report(const Case& body, int rate) {

@@ -1,9 +1,10 @@
-// What exact mode promises, counted against a referee in interval arithmetic that shares no code, on rays that are hard
-// to get right; rays from inside closed bodies, aimed at seams, which nothing may let out; rays beside seams, whose hits
-// are counted, and rays that leave a surface there; lines through closed bodies. Exit status 1 if a ray is missed, falsely
-// hit, hit on a wrong patch, let out, counted wrong without a flag, or meets again what it leaves.
+// Checks the promises of exact mode against a reference in interval arithmetic that shares no code. The classes are
+// difficult rays; rays from inside closed bodies, aimed at seams, none of which may escape; rays beside seams, whose
+// hits are counted; rays that leave a surface there; lines through closed bodies. Exit status 1 if a ray is missed,
+// falsely hit, hit on a wrong patch, escapes, is counted wrong without a flag, or hits again the surface that it
+// leaves.
 //
-//   tessera_proof_report --help
+// tessera_proof_report --help
 
 #include <algorithm>
 #include <atomic>
@@ -44,9 +45,9 @@ void on_all_cores(Work work) {
   for (std::thread& thread : threads) thread.join();
 }
 
-/// What is asked for.
+/// The values of the options.
 struct Wish {
-  std::size_t hits = 1000;  ///< proven, in each class
+  std::size_t hits = 1000;  ///< proven hits in each class
   std::size_t inside = 1'000'000;
   std::size_t seams = 20'000;  ///< rays beside seams of each body, and rays that leave it there
   std::size_t lines = 250'000;
@@ -54,7 +55,7 @@ struct Wish {
   std::string only;  ///< part of a class's name
 };
 
-/// Rays of a class, in rounds on all cores, until enough hits are proven; no more than 40 rays a hit.
+/// Casts rays of a class, in rounds on all cores, until enough hits are proven; at most 40 rays per hit.
 ProofTally judged(const test::RayClass& rays, const RayScene& scene, const Wish& wish, double size) {
   constexpr std::size_t round = 500;
   const std::size_t threads = std::max(1u, std::thread::hardware_concurrency());
@@ -85,7 +86,7 @@ std::string in_units(std::vector<double>& errors) {
   return text;
 }
 
-/// The share of misses that 0 of n leaves possible with 95% confidence, 1 - 0.05^(1/n).
+/// The largest share of misses that is consistent with 0 of n at 95% confidence, 1 - 0.05^(1/n).
 double bound_of_none(std::size_t n) { return n == 0 ? 1 : -std::expm1(std::log(0.05) / static_cast<double>(n)); }
 
 bool report(const test::RayClass& rays, const Wish& wish) {
@@ -104,7 +105,7 @@ bool report(const test::RayClass& rays, const Wish& wish) {
   return good;
 }
 
-/// Rays from inside a closed body that meet nothing.
+/// Counts rays from inside a closed body that miss.
 bool report_leaks(const char* name, const std::vector<BezierPatch>& patches, const Wish& wish,
                   const std::function<Ray(test::Random&)>& draw) {
   const PatchSet set = test::value_of(PatchSet::from(patches));
@@ -126,15 +127,15 @@ bool report_leaks(const char* name, const std::vector<BezierPatch>& patches, con
   return lost == 0;
 }
 
-/// Rays beside seams against their neighbours, and rays that leave the body there; where it has no creases none of these
-/// may meet it within a millionth.
+/// Compares rays beside seams with their neighbours, and counts rays that leave the body there: if it has no creases,
+/// none of these may hit it within a millionth.
 bool report_seams(const char* name, const std::vector<BezierPatch>& patches, bool smooth, const Wish& wish) {
   const PatchSet set = test::value_of(PatchSet::from(patches));
   const double size = set.box().diagonal();
   const RayScene scene = exact_scene(set);
   const std::size_t threads = std::max(1u, std::thread::hardware_concurrency());
   std::vector<test::SeamTally> tallies(threads);
-  std::vector<std::size_t> again(threads), flagged(threads), wrong(threads);  // that leave the body
+  std::vector<std::size_t> again(threads), flagged(threads), wrong(threads);  // of rays that leave the body
   on_all_cores([&](unsigned thread) {
     test::Random random(wish.seed * 1000 + 400 + thread);
     for (std::size_t k = thread; k < wish.seams; k += threads) {
@@ -162,7 +163,7 @@ bool report_seams(const char* name, const std::vector<BezierPatch>& patches, boo
   return sum.wrong == 0 && sum.not_first == 0 && sum.flagged * 100 <= sum.rays && false_hits == 0;
 }
 
-/// Lines that cross a closed body an odd number of times, and no hit of which is flagged.
+/// Counts lines that cross a closed body an odd number of times without a flagged hit.
 bool report_parity(const char* name, const std::vector<BezierPatch>& patches, const Wish& wish) {
   const PatchSet set = test::value_of(PatchSet::from(patches));
   const double size = set.box().diagonal();
@@ -189,7 +190,7 @@ bool report_parity(const char* name, const std::vector<BezierPatch>& patches, co
   return wrong == 0;
 }
 
-/// Half of them at random, half along a chord of a seam or of an inner cut.
+/// Half of the rays are random, half run along a chord of a seam or of an inner cut.
 Ray from_inside(const std::vector<BezierPatch>& patches, test::Random& random) {
   const auto [inside, ray] = test::chord_of_seam(patches, random);
   if (inside && random() % 2 == 0) return ray;

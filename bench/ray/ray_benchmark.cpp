@@ -1,4 +1,4 @@
-// Rays a second in grid mode: the teapot and 20,000 patches, a camera's rays and rays at random, closest hit and any
+// Rays per second in grid mode: the teapot and 20,000 patches, a camera's rays and random rays, closest hit and any
 // hit, one thread and all. Each run is checked against a ray caster that shares no code before its speed counts.
 
 #include <benchmark/benchmark.h>
@@ -56,7 +56,7 @@ std::vector<Ray> camera_rays(const Box3& box, int side) {
   return rays;
 }
 
-/// From anywhere in the box to anywhere in it, and on.
+/// Rays from anywhere in the box through any other point of it.
 std::vector<Ray> random_rays(const Box3& box, std::size_t count) {
   std::mt19937_64 random(7);
   std::vector<Ray> rays(count);
@@ -92,8 +92,7 @@ const Workload& bicubic20000() {
   return work;
 }
 
-/// Shares of a sample of rays whose answer is not the reference's: what grid mode allows is a silhouette here and
-/// there.
+/// Counts rays of a sample whose answer differs from the reference's. Grid mode may lose a silhouette here and there.
 struct Check {
   std::size_t wrong = 0, sample = 0;
   bool good() const { return wrong * 50 <= sample; }
@@ -146,7 +145,7 @@ void occluded(benchmark::State& state, const Workload& work, const std::vector<R
   report(state, *best, work, rays, checked);
 }
 
-/// Grids and BVH anew.
+/// Builds grids and BVH anew.
 void refit(benchmark::State& state, const Workload& work, const std::vector<Ray>& rays, int threads) {
   RaySceneOptions options;
   options.mode = RayMode::grid;
@@ -163,7 +162,7 @@ void refit(benchmark::State& state, const Workload& work, const std::vector<Ray>
 
 using Run = void (*)(benchmark::State&, const Workload&, const std::vector<Ray>&, int);
 
-/// The workloads are built when first run: a filter that leaves them out doesn't pay for them.
+/// The workloads are built on first use: a filter that leaves them out avoids their cost.
 void add(const char* operation, const char* surface, const std::string& size, Run run, const Workload& (*work)(),
          std::vector<Ray> Workload::*rays) {
   const auto all = static_cast<int>(std::thread::hardware_concurrency());

@@ -1,5 +1,5 @@
-// Exact scenes that follow edits: pieces made anew and the BVH refitted after some patches of a torus have moved, against
-// a build of the same scene by turns, and rays in a scene that was refitted against those in one made anew.
+// Exact scenes that follow edits. After some patches of a torus have moved, compares new pieces and a refitted BVH with
+// a build of the same scene, by turns, and rays in a refitted scene with those in a new one.
 
 #include <benchmark/benchmark.h>
 
@@ -20,7 +20,7 @@ using namespace tessera;
 
 constexpr std::size_t side = 120;
 
-/// A torus of 14,400 patches that are moved up and down, and its scene.
+/// A torus of 14,400 patches that move up and down, and its scene.
 class Moving {
  public:
   Moving()
@@ -28,7 +28,7 @@ class Moving {
         set_(test::value_of(PatchSet::from(patches_))),
         scene_(test::value_of(RayScene::make(set_, {.editable = true}))) {}
 
-  /// Each `step`th patch, by 0 or 1/100 in turn.
+  /// Moves each `step`th patch, by 0 or 1/100 in turn.
   void edit(std::size_t step) {
     up_ = !up_;
     for (std::size_t k = 0; k < patches_.size(); k += step) {

@@ -15,7 +15,7 @@
 namespace tessera::bench {
 namespace {
 
-/// As Embree wants it for speed.
+/// The floating-point mode that Embree recommends for speed.
 class FlushDenormals {
  public:
   FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | 0x8040); }
@@ -75,12 +75,12 @@ Rival::Rival(Isa isa) : state_(new State) {
       state_.get());
 }
 
-/// A geometry of the points of quads x quads cells a patch.
+/// Makes a geometry of the points of quads x quads cells per patch.
 void Rival::evaluate(const PatchSet& set, int quads, Isa isa, RTCGeometryType type) {
   const UniformGrid grid = test::value_of(UniformGrid::make(set, quads, quads, isa));
   state_->positions.resize(3 * grid.capacity() + 1);
   const auto views = View3<float>::interleaved(std::span(state_->positions).first(3 * grid.capacity()));
-  if (!grid.run(impl_of(set), GridViews<float>{.position = views, .du = {}, .dv = {}, .normal = {}}, {}).ok())
+  if (!grid.run(impl_of(set), QuantityViews<float>{.position = views, .du = {}, .dv = {}, .normal = {}}, {}).ok())
     std::abort();
   state_->geometry = rtcNewGeometry(state_->device, type);
   rtcSetSharedGeometryBuffer(state_->geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, state_->positions.data(),

@@ -1,5 +1,5 @@
 #pragma once
-// What exact rays are compared with: Embree's own geometries of the same patches, in robust scenes.
+// The rivals of exact rays: Embree's own geometries of the same patches, in robust scenes.
 
 #include <embree3/rtcore.h>
 
@@ -19,16 +19,16 @@ namespace tessera::bench {
 
 class Rival {
  public:
-  /// Two triangles for each of quads x quads cells a patch.
+  /// Two triangles for each of quads x quads cells per patch.
   static Rival triangles(const PatchSet& set, int quads, Isa isa);
-  /// Embree's grids of as many cells.
+  /// Embree's grids with quads x quads cells per patch.
   static Rival grids(const PatchSet& set, int quads, Isa isa);
-  /// Catmull and Clark's surface of the torus' control points, which is the B-spline surface; `rate` cells a patch.
+  /// The Catmull-Clark surface of the torus' control points, which is the B-spline surface; `rate` cells per patch.
   static Rival subdivision(const test::Torus& torus, int rate, Isa isa);
 
-  /// t of the closest hits, infinity where there are none; in the caller's arena.
+  /// Finds t of the closest hits, infinity for a miss; in the caller's arena.
   void closest(std::span<const Ray> rays, std::span<float> t) const;
-  /// The same in packets of 16: for rays that are coherent.
+  /// Finds t of the closest hits in packets of 16, for coherent rays.
   void closest_packets(std::span<const Ray> rays, std::span<float> t) const;
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const;
 

@@ -1,5 +1,5 @@
 #pragma once
-// The time of what a case is compared with, by turns with the case.
+// Times the rival of a case, by turns with the case.
 
 #include <tbb/task_arena.h>
 
@@ -11,7 +11,7 @@
 
 namespace tessera::bench {
 
-/// The better of all turns, in seconds.
+/// The best of all turns, in seconds.
 class Stopwatch {
  public:
   template <class Work>

@@ -20,7 +20,7 @@ Ray from_to(const Vec3& origin, const Vec3& direction) {
   return ray;
 }
 
-/// From one eye in rows of pixels, four fifths of them at the torus.
+/// Rays from one eye in rows of pixels, four fifths of them at the torus.
 std::vector<Ray> coherent_rays() {
   const Vec3 eye{1.3, -1.6, 1.5}, back = normalized(eye), right = normalized(cross({0, 0, 1}, back)),
                                   up = cross(back, right);
@@ -44,7 +44,7 @@ std::vector<Ray> incoherent_rays() {
   return rays;
 }
 
-/// Past a point of the surface along a tangent, 3e-5 to 1e-2 of the size above or below.
+/// Rays past a point of the surface along a tangent, 3e-5 to 1e-2 of the size above or below.
 std::vector<Ray> grazing_rays(const std::vector<BezierPatch>& patches) {
   std::mt19937_64 random(8);
   std::vector<Ray> rays;
@@ -60,7 +60,7 @@ std::vector<Ray> grazing_rays(const std::vector<BezierPatch>& patches) {
 
 PatchSet make_set(const std::vector<BezierPatch>& patches) {
   PatchSetOptions options;
-  options.origin = Vec3{};  // triangles and rays in the same coordinates
+  options.origin = Vec3{};  // gives triangles and rays the same coordinates
   return test::value_of(PatchSet::from(patches, options));
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Rays that exact and grid scenes are timed with: coherent, incoherent and grazing ones at a torus of bicubic patches.
+// Rays to time exact and grid scenes: coherent, incoherent and grazing ones at a torus of bicubic patches.
 
 #include <cmath>
 #include <map>

@@ -6,7 +6,7 @@
 namespace tessera::bench {
 namespace {
 
-/// A glyph's columns from the left, the lowest bit on top; characters 32 to 126.
+/// The columns of a glyph from the left, the lowest bit on top; characters 32 to 126.
 using Glyph = std::array<std::uint8_t, 5>;
 constexpr Glyph glyphs[] = {
     {0x00, 0x00, 0x00, 0x00, 0x00}, {0x00, 0x00, 0x5f, 0x00, 0x00}, {0x00, 0x07, 0x00, 0x07, 0x00},  //   ! "

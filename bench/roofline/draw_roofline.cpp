@@ -18,7 +18,7 @@ std::string number(double x) {
   return text;
 }
 
-/// Logarithmic axes: operations a byte to the right, G operations a second upwards.
+/// Logarithmic axes: operations per byte to the right, G operations per second upwards.
 class Chart {
  public:
   Chart(Canvas& canvas, double highest) : canvas_(canvas), y_to_(2 * highest), y_from_(highest / 200) {}
@@ -49,7 +49,7 @@ class Chart {
     canvas_.text(20, top - 28, "G multiply-adds/s, one thread", ink);
   }
 
-  /// min(peak, bandwidth * operations a byte).
+  /// Draws min(peak, bandwidth * operations per byte).
   void roof(double peak, double bandwidth, Colour colour, const std::string& label, bool label_below) {
     const double edge = peak / bandwidth, from = std::max(x_from, y_from_ / bandwidth);
     canvas_.line(x(from), y(bandwidth * from), x(std::min(edge, x_to)), y(bandwidth * std::min(edge, x_to)), colour,
@@ -67,7 +67,7 @@ class Chart {
     const double px = x(std::clamp(p.per_byte, x_from, x_to)), py = y(std::clamp(p.operations * 1e-9, y_from_, y_to_));
     const Colour colour = p.in_cache ? cache_blue : memory_orange;
     canvas_.disc(px, py, 7, colour);
-    // Positions and positions + r_u + r_v have the same operations a byte.
+    // Positions and positions + r_u + r_v have the same operations per byte.
     const bool to_the_left = p.name == "+ du + dv";
     canvas_.text(to_the_left ? px - Canvas::text_width(p.name) - 12 : px + 12, py - 7, p.name, colour);
   }

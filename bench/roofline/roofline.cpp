@@ -20,7 +20,7 @@ namespace {
 
 constexpr double cache_bytes = 1 << 20, memory_bytes = 160 << 20;
 
-/// The processor's name as the system has it.
+/// The name of the processor, as the system reports it.
 std::string machine_name() {
   std::ifstream stream("/proc/cpuinfo");
   for (std::string line; std::getline(stream, line);) {
@@ -32,18 +32,25 @@ std::string machine_name() {
 
 struct Case {
   const char* name;
-  GridOutputs outputs;
+  QuantityFlags outputs;
 };
-constexpr Case cases[] = {
-    {"positions", {}},
-    {"+ normals", {.normal = true}},
-    {"+ du + dv", {.du = true, .dv = true}},
-    {"+ curvatures", {.du = true, .dv = true, .duu = true, .duv = true, .dvv = true, .gaussian = true, .mean = true}}};
+constexpr Case cases[] = {{"positions", {.position = true}},
+                          {"+ normals", {.position = true, .normal = true}},
+                          {"+ du + dv", {.position = true, .du = true, .dv = true}},
+                          {"+ curvatures",
+                           {.position = true,
+                            .du = true,
+                            .dv = true,
+                            .duu = true,
+                            .duv = true,
+                            .dvv = true,
+                            .gaussian = true,
+                            .mean = true}}};
 
 /// Memory for the outputs of a plan, in blocks.
 class Outputs {
  public:
-  Outputs(const GridPlan& plan, const GridOutputs& wanted) {
+  Outputs(const GridPlan& plan, const QuantityFlags& wanted) {
     const auto make_room = [&](bool is_wanted, std::size_t count, std::span<float>& span) {
       if (!is_wanted) return;
       memory_.emplace_back(count, 0.0f);
@@ -60,13 +67,13 @@ class Outputs {
     make_room(wanted.gaussian, vectors / 3, blocks.gaussian);
     make_room(wanted.mean, vectors / 3, blocks.mean);
   }
-  GridBlocks<float> blocks;
+  QuantityBlocks<float> blocks;
 
  private:
   std::vector<AlignedVector<float>> memory_;
 };
 
-/// The best of several calls on one thread, over the patches of `set`, with as many parameters as make about `bytes`.
+/// The best of several calls on one thread over the patches of `set`, with as many parameters as make about `bytes`.
 Result<RooflinePoint> measure(const PatchSet& set, const Case& c, double bytes) {
   const auto two = uniform_parameters(2);
   auto smallest = GridPlan::make(set, two, two);
@@ -141,7 +148,7 @@ std::string number(double x) {
   return text;
 }
 
-/// One object: rates a second.
+/// One object of JSON; rates are per second.
 std::string json_of(const Roofline& r) {
   std::string text =
       "{\"machine\": \"" + r.machine + "\", \"cache_store\": " + number(r.cache_store) + ",\n \"isas\": [";

@@ -1,5 +1,5 @@
 #pragma once
-// The limits of the user's machine and how near the kernels come to them, in a few lines and a picture.
+// Reports the limits of the user's machine, and how near the kernels come to them, as text and a picture.
 
 #include <string>
 #include <vector>
@@ -9,27 +9,27 @@
 
 namespace tessera::bench {
 
-/// Operations a second over operations a byte, one thread.
+/// Operations per second over operations per byte, one thread.
 struct RooflinePoint {
   std::string name;       ///< "positions"
   double per_byte = 0;    ///< operations of Work over the bytes it must write
-  double operations = 0;  ///< a second, reached
-  double points = 0;      ///< of surfaces, a second
+  double operations = 0;  ///< per second, measured
+  double points = 0;      ///< of surfaces, per second
   bool in_cache = false;  ///< the output stays in the second-level cache
 };
 
 struct Roofline {
   std::string machine;
-  std::vector<Limits> isas;  ///< of each instruction set, slowest first, its stores past the caches
-  double cache_store = 0;    ///< bytes a second into the second-level cache, fastest instruction set
+  std::vector<Limits> isas;  ///< per instruction set, slowest first, with stores past the caches
+  double cache_store = 0;    ///< bytes per second into the second-level cache, fastest instruction set
   std::vector<RooflinePoint> points;
 };
 
-/// Measures (some seconds), prints, and writes the picture, or the numbers where the file's name ends in .json.
-/// Errors: those of the measurements, and of writing the file.
+/// Measures (some seconds), prints, and writes the picture, or the numbers if the file's name ends in .json. Errors:
+/// those of the measurements, and of writing the file.
 Status print_roofline(const std::string& file);
 
-/// The picture alone.
+/// Draws only the picture.
 Status draw_roofline(const Roofline& roofline, const std::string& path);
 
 }  // namespace tessera::bench

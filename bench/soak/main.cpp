@@ -1,5 +1,5 @@
-// tessera_soak: works for as long as it is told, with everything that the library does, and writes down what the process holds
-// in memory. It must not grow.
+// tessera_soak: uses all functions of the library for a set time, and records the memory of the process. It must not
+// grow.
 
 #include <charconv>
 #include <chrono>
@@ -49,7 +49,7 @@ void need(const Status& status) {
   std::exit(2);
 }
 
-/// What programs do: of another size, and with other options, each time.
+/// The work of typical programs: another size, and other options, each time.
 class Work {
  public:
   void round() {
@@ -70,8 +70,8 @@ class Work {
     const GridPlan plan = value_of(GridPlan::make(set, t, t));
     std::vector<float> grid(6 * plan.capacity());
     need(evaluate(set, plan,
-                  GridViews<float>{.position = View3<float>::interleaved(grid, 6, 0),
-                                   .normal = View3<float>::interleaved(grid, 6, 3)}));
+                  QuantityViews<float>{.position = View3<float>::interleaved(grid, 6, 0),
+                                       .normal = View3<float>::interleaved(grid, 6, 3)}));
     const std::size_t count = 1 + random_() % 5000;
     std::vector<std::uint32_t> patch(count);
     std::vector<float> u(count), v(count), points(3 * count);
@@ -82,7 +82,7 @@ class Work {
     }
     const PatchSamples<float> samples{View1<const std::uint32_t>::interleaved(patch),
                                       View1<const float>::interleaved(u), View1<const float>::interleaved(v)};
-    need(evaluate(set, samples, PointViews<float>{.position = View3<float>::interleaved(points)}));
+    need(evaluate(set, samples, QuantityViews<float>{.position = View3<float>::interleaved(points)}));
   }
 
   void mesh(PatchSet& set) {
@@ -128,7 +128,7 @@ class Work {
       need({StatusCode::internal, "an edit of no patch was taken"});
   }
 
-  /// A model, and one that is cut.
+  /// Reads a model, and a truncated one.
   void read() {
     const std::string text =
         R"({"format": "tessera", "version": 1, "surfaces": [{"kind": "parametric", "name": "wave", "x": "u", "y": "v", "z": "sin(3*u)*v"}]})";

@@ -1,5 +1,5 @@
 #pragma once
-// What the process holds in memory while it works without an end.
+// The memory of the process during endless work.
 
 #include <string>
 #include <vector>
@@ -14,10 +14,10 @@ struct SoakSample {
   std::size_t rounds = 0;  ///< of work, since the start
 };
 
-/// The growth of the resident memory a MiB an hour: the slope of the line through the samples of the second half.
+/// The growth of the resident memory in MiB per hour: the slope of the line through the samples of the second half.
 double growth_an_hour(const std::vector<SoakSample>& samples);
 
-/// A chart of the resident memory over time, as PNG. Errors: those of write_png.
+/// Draws a chart of the resident memory over time, as PNG. Errors: those of write_png.
 Status draw_soak(const std::vector<SoakSample>& samples, const std::string& path);
 
 }  // namespace tessera::bench

@@ -1,6 +1,6 @@
-// Whether certified tessellations keep what they promise, and how loose their bounds are: for each patch the bound over the
-// true largest distance, found by branch and bound that shares no code with the bounds. Exit status 1 if a bound is
-// exceeded, or the median on bicubic patches is above 3.
+// Checks that certified tessellations keep their bounds, and measures how loose these are: for each patch the bound
+// over the true largest distance, found by branch and bound that shares no code with the bounds. Exit status 1 if a
+// bound is exceeded, or the median on bicubic patches is above 3.
 
 #include <algorithm>
 #include <cmath>
@@ -26,12 +26,12 @@ constexpr char usage[] =
     "  --fewest  meshes of the fewest triangles\n"
     "Exit status 1 if a bound is exceeded, or the median on bicubic patches is above 3.\n";
 
-/// So many patches of a set are looked at, evenly spread, and so many triangles of each.
+/// At most this many patches of a set are checked, evenly spread, and this many triangles of each.
 constexpr std::size_t max_patches = 300, max_triangles = 600;
 
 struct Looseness {
   std::size_t patches = 0, triangles = 0, exceeded = 0;
-  std::vector<double> ratios;  ///< bound over true distance, of each patch that is not flat within rounding
+  std::vector<double> ratios;  ///< bound over true distance, for each patch that is not flat up to rounding
 };
 
 Looseness measure(const PatchSet& set, double tolerance, bool fewest) {

@@ -19,7 +19,7 @@ namespace {
 
 using test::value_of;
 
-/// Positions, normals and indices, the rest unwanted.
+/// Positions, normals and indices; no other outputs.
 struct Output {
   std::vector<float> positions, normals;
   std::vector<std::uint32_t> indices;
@@ -39,7 +39,7 @@ struct Output {
   }
 };
 
-/// Why the mesh is wrong; null if it is a disc without a crack, whose border is the set's.
+/// The fault of the mesh; null if it is a disc without cracks, whose border is the set's.
 const char* fault_of(const PatchSet& set, const Output& out) {
   Mesh mesh;
   mesh.origin = set.origin();
@@ -57,7 +57,7 @@ const char* fault_of(const PatchSet& set, const Output& out) {
   return nullptr;
 }
 
-/// What is timed: the plan, the run, or both.
+/// The timed part: the plan, the run, or both.
 enum class Timed { plan, run, mesh, edges };
 
 void certify(benchmark::State& state, const char* surface, int rate, int threads, Timed timed) {
@@ -92,7 +92,7 @@ void add_surface(const char* surface, int rate, int threads) {
   for (const auto& [name, timed] :
        {std::pair{"mesh", Timed::mesh}, {"plan", Timed::plan}, {"run", Timed::run}, {"edges", Timed::edges}}) {
     const bool quick = threads == 1 && rate == 8 && timed == Timed::mesh;
-    if (timed == Timed::edges && (rate != 4 || threads != 1)) continue;  // of the set alone
+    if (timed == Timed::edges && (rate != 4 || threads != 1)) continue;  // depends only on the set
     add_case({std::string("certified.") + name, surface, "3", "rate" + std::to_string(rate), "-", threads},
              quick ? Part::quick : Part::full,
              [=, timed = timed](benchmark::State& state) { certify(state, surface, rate, threads, timed); });
@@ -100,7 +100,7 @@ void add_surface(const char* surface, int rate, int threads) {
 }
 
 const bool registered = [] {
-  add_surface("bicubic25", 8, 1);  // where what is not by the patch counts
+  add_surface("bicubic25", 8, 1);  // where costs other than those of the patches count
   for (const int threads : {1, 2}) {
     for (const int rate : {4, 8, 12, 17}) add_surface("bicubic20000", rate, threads);
     for (const int rate : {4, 8}) add_surface("rational10000", rate, threads);

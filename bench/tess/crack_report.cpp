@@ -1,6 +1,6 @@
-// Whether certified meshes of models have cracks, at five tolerances each: a row a model with, for each tolerance, the
-// triangles and what is wrong with them; then what was skipped, with reasons. Open edges that are borders of the model
-// itself are no cracks: such borders are counted. Exit status 1 if there is a crack.
+// Searches certified meshes of models for cracks, at five tolerances each. Prints a row per model with, for each
+// tolerance, the triangles and their faults; then what was skipped, with reasons. Open edges that are borders of the
+// model itself are not cracks: such borders are counted. Exit status 1 if there is a crack.
 
 #include <cstdio>
 #include <filesystem>
@@ -23,7 +23,7 @@ constexpr char usage[] =
 constexpr double tolerances[] = {1e-2, 3e-3, 1e-3, 3e-4, 1e-4};
 constexpr std::uint64_t max_triangles = 500000;
 
-/// A cell of the table: triangles, and what is wrong.
+/// A cell of the table: triangles and faults.
 std::string cell(const test::CrackCount& count) {
   std::string text = (count.capped ? "<" : "") + std::to_string(count.report.triangles);
   const auto add = [&](const char* what, std::size_t n) {

@@ -1,6 +1,6 @@
 // Certified meshes of animated patches: control points in, positions and normals of the touched patches out:
-// update.mesh.SHARE, and with update.mesh+bounds their bounds restated. Each case checks what it timed against a mesh that
-// is written anew. Its limit is the time that the stores of the touched vertices take.
+// update.mesh.SHARE, and with update.mesh+bounds their new bounds. Each case checks what it timed against a new mesh.
+// The limit is the time that the stores of the touched vertices take.
 
 #include <benchmark/benchmark.h>
 
@@ -47,7 +47,7 @@ struct Vertices {
   }
 };
 
-/// Two shapes of the field, by turns, as edits.
+/// Two shapes of the field, used alternately, as edits.
 struct Animation {
   std::vector<std::uint32_t> patch;
   std::vector<Vec3> points[2];

@@ -1,6 +1,6 @@
-// Whether certified tessellations keep what they promise for random patches that are hard on bounds: weights up to a million of
-// each other, degrees up to 15, scaled sweeps and patches that nearly are, flat quadrilaterals, poles, thin patches, patches far
-// from zero. Points of both sets are measured against the other, by code that the bounds don't share.
+// Checks that certified tessellations keep their bounds on random patches that are difficult: weight ratios up to a
+// million, degrees up to 15, scaled sweeps and near ones, flat quadrilaterals, poles, thin patches, patches far from
+// zero. Points of patches and meshes are measured against each other, by code that the bounds do not share.
 
 #include <algorithm>
 #include <array>
@@ -83,7 +83,7 @@ Net random_net(Random& random, Kind kind, int m, int n) {
   }
   if (kind == pole)
     for (int i = 1; i <= m; ++i) net.point(i, 0) = net.point(0, 0);
-  if (random() % 8 == 0)  // thin
+  if (random() % 8 == 0)  // thin patches
     for (Vec3& p : net.points) p.z *= std::pow(10.0, uniform(random, -9, 0)), p.x *= 100;
   return net;
 }
@@ -94,8 +94,8 @@ BezierPatch patch_of(Net net, const Vec3& shift, double scale, bool turned) {
   return turned ? test::transposed(patch) : patch;
 }
 
-/// A lower bound on the distance from a point to the patch, and a distance that was found; the search ends where that is
-/// `enough`. By branch and bound over boxes of control points.
+/// A lower bound on the distance from a point to the patch, and a distance that was found; the search ends if that is
+/// at most `enough`. Uses branch and bound over boxes of control points.
 test::DistanceRange distance_to_patch(const BezierPatch& patch, const Vec3& p, double enough) {
   struct Piece {
     BezierPatch patch;
@@ -129,7 +129,7 @@ test::DistanceRange distance_to_patch(const BezierPatch& patch, const Vec3& p, d
 
 struct Row {
   std::size_t patches = 0, refused = 0, triangles = 0, points = 0, exceeded = 0, unresolved = 0;
-  double nearest = 0;  ///< the largest distance over its bound
+  double nearest = 0;  ///< the largest ratio of distance and bound
 };
 
 /// Measures some triangles of one patch.

@@ -1,5 +1,5 @@
 #pragma once
-// Tolerances by how fine the mesh is that they lead to.
+// Finds tolerances by the fineness of the resulting mesh.
 
 #include <cmath>
 
@@ -12,18 +12,18 @@ inline CertifiedTessellation plan_for(const PatchSet& set, double tolerance) {
   return test::value_of(CertifiedTessellation::make(set, {.tolerance = tolerance}));
 }
 
-/// Patches have 2 rate^2 triangles on average.
+/// The mean rate: patches have 2 rate^2 triangles on average.
 inline double mean_rate(const CertifiedTessellation& plan) {
   return std::sqrt(static_cast<double>(plan.capacity().triangles) / (2.0 * static_cast<double>(plan.bounds().size())));
 }
 
-/// The tolerance of a mean rate.
+/// The tolerance that gives a mean rate.
 inline double tolerance_for(const PatchSet& set, double rate) {
   double low = 1e-6, high = 1;
   for (int step = 0; step < 24; ++step) {
     const double middle = std::sqrt(low * high);
     const Result<CertifiedTessellation> plan = CertifiedTessellation::make(set, {.tolerance = middle});
-    const bool too_fine = !plan || mean_rate(*plan) > rate;  // refused: below what float vertices keep
+    const bool too_fine = !plan || mean_rate(*plan) > rate;  // no plan: below the precision of float vertices
     (too_fine ? low : high) = middle;
   }
   return high;

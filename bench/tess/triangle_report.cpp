@@ -1,6 +1,6 @@
-// How many more triangles certified meshes take than they would if the true error were known: against the best uniform
-// rates, each patch on its own, that search finds to keep the tolerance at 28 points of each triangle. What that would
-// take is no mesh: its patches don't meet. Beside it: what the patches' own certified rates take without strips.
+// Compares the triangles of certified meshes with those that known true errors would allow: the best uniform rates of
+// each patch alone that, by search, keep the tolerance at 28 points of each triangle. Such patches do not meet, so they
+// are not a mesh. Also shows the triangles for the patches' own certified rates without strips.
 
 #include <array>
 #include <cmath>
@@ -26,7 +26,7 @@ constexpr char usage[] =
     "Triangles of certified meshes over those of the best uniform rates, of built-in sets and of models.\n"
     "  --fewest  meshes of the fewest triangles\n";
 
-/// So many patches of a set are searched, evenly spread.
+/// At most this many patches of a set are searched, evenly spread.
 constexpr std::size_t max_patches = 200;
 
 /// Whether a uniform mesh keeps a distance, at 28 points of each triangle.
@@ -47,11 +47,11 @@ bool keeps(const BezierPatch& patch, Rates rates, double tolerance) {
   return true;
 }
 
-/// The cheapest rates that keep the tolerance, looked for among those with no more cells than `known`, which do.
+/// The cheapest rates that keep the tolerance, among those with at most as many cells as `known`, which keeps it.
 Rates best_rates(const BezierPatch& patch, Rates known, double tolerance) {
   Rates best = known;
   for (int u = 1; u <= best.u * best.v; ++u) {
-    const int most = (best.u * best.v - 1) / u;  // fewer cells than the best
+    const int most = (best.u * best.v - 1) / u;  // fewer cells than the best so far
     if (most < 1 || !keeps(patch, {u, most}, tolerance)) continue;
     int low = 0, high = most;
     while (high - low > 1) {

@@ -1,5 +1,5 @@
-// Meshes at one rate, positions, normals, parameters and triangles, and the packing of patches into blocks. Each mesh is
-// checked against the reference evaluators and the shape of its triangles, each set of blocks by what evaluates from it.
+// Meshes at one rate (positions, normals, parameters and triangles), and the packing of patches into blocks. Each mesh
+// is checked against the reference evaluators and the shape of its triangles, each set of blocks by evaluation from it.
 
 #include <benchmark/benchmark.h>
 
@@ -20,7 +20,7 @@ using test::value_of;
 
 constexpr int rate = 8;
 
-/// Every 50th patch: the vertices of its triangles lie on it, with its normals.
+/// Checks every 50th patch: the vertices of its triangles lie on it, with its normals.
 bool lies_on(const PatchSet& set, const Mesh& mesh) {
   const double size = set.box().diagonal();
   const std::size_t of_patch = mesh.triangle_count() / set.patch_count();
@@ -59,7 +59,7 @@ void tessellate(benchmark::State& state, const char* surface, int threads) {
   if (threads == 1) report_limit(state, *best, *limits, {.bytes_written = bytes});
 }
 
-/// What is packed: blocks of one kind.
+/// A kind of packing: blocks of one kind.
 struct Packing {
   const char* name;  ///< of the operation
   bool rational;
@@ -81,13 +81,13 @@ const Packing packings[] = {{"pack", false, only(&BlockKinds::float_bernstein), 
                             {"pack.power", false, only(&BlockKinds::float_power), 4},
                             {"pack.points", false, only(&BlockKinds::float_points), 4}};
 
-/// Grids of 3 x 3 from the blocks, or the middle of patches from points, against the reference evaluator.
+/// Checks grids of 3 x 3 from the blocks, or the middles of patches from points, against the reference evaluator.
 template <class T>
 bool grids_lie_on(const PatchSet& set, const GridPlanOptions& options) {
   const auto t = uniform_parameters(3);
   const GridPlan plan = value_of(GridPlan::make(set, t, t, options));
   std::vector<T> memory(3 * plan.capacity());
-  if (!evaluate(set, plan, GridViews<T>{.position = View3<T>::interleaved(memory)}).ok()) return false;
+  if (!evaluate(set, plan, QuantityViews<T>{.position = View3<T>::interleaved(memory)}).ok()) return false;
   const Vec3 origin = sizeof(T) == 4 ? set.origin() : Vec3{};
   for (std::size_t patch = 0; patch < set.patch_count(); patch += 50) {
     const T* p = &memory[3 * (9 * patch + 4)];
@@ -104,7 +104,7 @@ bool points_lie_on(const PatchSet& set) {
   std::vector<float> out(3 * patch.size());
   const PatchSamples<float> samples{View1<const std::uint32_t>::interleaved(patch),
                                     View1<const float>::interleaved(half), View1<const float>::interleaved(half)};
-  if (!evaluate(set, samples, PointViews<float>{.position = View3<float>::interleaved(out)}, {}).ok()) return false;
+  if (!evaluate(set, samples, QuantityViews<float>{.position = View3<float>::interleaved(out)}, {}).ok()) return false;
   for (std::size_t k = 0; k < patch.size(); ++k) {
     const Vec3 p = set.origin() + Vec3{out[3 * k], out[3 * k + 1], out[3 * k + 2]};
     if (!(max_abs(p - evaluate_jet(set.patch(patch[k]), 0.5, 0.5).position) <= 1e-5 * set.box().diagonal()))

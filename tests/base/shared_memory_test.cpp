@@ -1,4 +1,4 @@
-// Shared memory is freed once, with its last handle, however handles come and go.
+// Shared memory is freed once, with its last handle, in whatever order handles come and go.
 
 #include "tessera/detail/shared_memory.h"
 
@@ -18,7 +18,7 @@ static_assert(std::is_nothrow_move_constructible_v<SharedMemory> && std::is_noth
 
 constexpr std::size_t size = 1 << 20;
 
-/// Whether blocks of `size` bytes are held, beyond those before.
+/// Whether blocks of `size` bytes are held, in addition to those before.
 class Held {
  public:
   std::size_t blocks() const { return (restart_peak() - before_) / size; }

@@ -1,4 +1,4 @@
-// Views of the caller's memory, of none and of too little.
+// Views of the caller's memory: of enough, of too little, and empty ones.
 
 #include "tessera/strided_view.h"
 
@@ -20,7 +20,7 @@ TEST(Views, RecordsThatFit) {
   EXPECT_EQ(View1<float>::interleaved(memory, 1, 13).size, 0u);
 }
 
-/// No pointer is made that may not be: an address beyond the memory, or one counted from null, is undefined by itself.
+/// No pointer is made that must not be: an address beyond the memory, or one counted from null, is undefined by itself.
 TEST(Views, OfNoMemoryOrTooLittle) {
   EXPECT_TRUE(View3<float>::interleaved({}, 6, 3).empty());
   std::vector<float> memory(5);

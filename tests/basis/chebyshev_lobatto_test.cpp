@@ -79,7 +79,7 @@ TEST(ChebyshevLobatto, BoundsAreTrueAndSharp) {
 }
 
 TEST(ChebyshevLobatto, RoundingStaysSmall) {
-  // No smaller than that of the points themselves, and near it for low degrees, in long doubles of 64 bits.
+  // At least that of the points themselves, and near it for low degrees, in long doubles of 64 bits.
   for (int n = 1; n <= 15; ++n) EXPECT_GE(lobatto_to_bernstein_rounding(n, 1, 1), 0x1p-53);
   EXPECT_LT(lobatto_to_bernstein_rounding(3, 1, 1), 1.3 * 0x1p-53);
   EXPECT_LT(lobatto_to_bernstein_rounding(5, 1, 1), 5 * 0x1p-53);

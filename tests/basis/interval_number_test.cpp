@@ -1,4 +1,4 @@
-// Every operation on intervals holds what it gives for numbers in them.
+// The result of every operation on intervals contains that of the operation on numbers in them.
 
 #include "tessera/detail/interval_number.h"
 
@@ -88,7 +88,7 @@ TEST(IntervalNumber, HoldsSumsProductsAndQuotients) {
 }
 
 TEST(IntervalNumber, IsNarrow) {
-  // A single number's functions stay within a few doubles, extrema are exact.
+  // The functions of a single number stay within a few doubles; extrema are exact.
   EXPECT_LT(sqrt(IntervalNumber(2)).upper() - sqrt(IntervalNumber(2)).lower(), 1e-15);
   EXPECT_LT(exp(IntervalNumber(1)).upper() - exp(IntervalNumber(1)).lower(), 1e-14);
   EXPECT_EQ(sin(IntervalNumber(1, 2)).upper(), 1);

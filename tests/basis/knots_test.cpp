@@ -107,7 +107,7 @@ TEST(Knots, BadOnesAreNamed) {
   EXPECT_TRUE(check(2, {-3, -2, -1, 0, 1, 2}).ok());
 
   EXPECT_EQ(check(3, {0, 0, 0, 1, 1, 1, 1}).code(), StatusCode::count_mismatch);
-  EXPECT_NE(check(3, {0, 0, 0, 1, 1, 1, 1}).message().find("at least 8 knots u, 7 were given"), std::string::npos);
+  EXPECT_NE(check(3, {0, 0, 0, 1, 1, 1, 1}).message().find("at least 8 knots u, found 7"), std::string::npos);
   const Status falls = check(2, {0, 0, 0, 2, 1, 3, 3, 3});
   EXPECT_EQ(falls.code(), StatusCode::invalid_argument);
   EXPECT_EQ(falls.index(), 4);
@@ -119,7 +119,7 @@ TEST(Knots, BadOnesAreNamed) {
   const Status thrice = check(2, {0, 0, 0, 1, 1, 1, 2, 2, 2});
   EXPECT_EQ(thrice.code(), StatusCode::invalid_argument);
   EXPECT_EQ(thrice.index(), 3);
-  EXPECT_NE(thrice.message().find("stands 3 times"), std::string::npos) << thrice.message();
+  EXPECT_NE(thrice.message().find("has multiplicity 3"), std::string::npos) << thrice.message();
   EXPECT_EQ(check(1, {0, 0, 0, 1, 1}).index(), 0);                               // degree + 2 at the end
   EXPECT_EQ(check(2, {0, 0, 1, 1, 1, 2}).code(), StatusCode::invalid_argument);  // an empty domain
   EXPECT_EQ(check(2, {1, 1, 1, 1, 1, 1}).code(), StatusCode::invalid_argument);

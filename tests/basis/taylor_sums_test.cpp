@@ -1,5 +1,5 @@
-// Sums of series are taken in the order that taylor.h states, whatever the compiler makes of its loops. This file is compiled
-// at -O3, at which gcc 12 adds in another order where it takes turns between sums.
+// Sums of series are taken in the order that taylor.h states, however the compiler transforms its loops. This file is
+// compiled at -O3, at which gcc 12 adds in another order if it alternates between sums.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ using Series = Taylor<double, 2>;
   return cos(Series::variable(u, 0) * Series::variable(v, 1));
 }
 
-/// A sum one by one, which nothing is known of.
+/// A sum term by term; the compiler knows nothing about the terms.
 double in_order(std::initializer_list<double> terms) {
   volatile double sum = 0;
   for (const double term : terms) sum = sum + term;

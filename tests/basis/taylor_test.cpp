@@ -1,4 +1,4 @@
-// Series of functions: against closed forms, identities and, in intervals, the series at the numbers within.
+// Compares series of functions with closed forms, identities and, in intervals, the series at the numbers within.
 
 #include "tessera/detail/taylor.h"
 

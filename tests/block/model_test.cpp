@@ -122,7 +122,7 @@ TEST(Model, FittedSurfacesKeepTheToleranceWhereTheyArePlaced) {
   }
 }
 
-/// Far from zero the points' own rounding counts: it is in the stated error, and a tolerance below it is refused.
+/// Far from zero the points' own rounding counts: the stated error includes it, and a smaller tolerance is an error.
 TEST(Model, ErrorsOfFitsHoldFarFromZero) {
   const auto bowl = value_of(generic_surface(
       [](auto u, auto v) {
@@ -142,7 +142,7 @@ TEST(Model, ErrorsOfFitsHoldFarFromZero) {
     }
   }
   expect_refused(to_bezier(ModelSurface{"", bowl, Affine::translated({1e9, 0, 0})}, fit), StatusCode::invalid_argument,
-                 Status::no_index, "below what rounding leaves where the surface is placed");
+                 Status::no_index, "below the rounding of the placed surface");
 }
 
 TEST(Model, PlacementsOfAnySizeAreTaken) {
@@ -180,10 +180,10 @@ TEST(Model, PointsPlacedBeyondTheRangeOfNumbersAreRefused) {
   const ModelSurface surface{"", unit_square(), Affine::translated({1.5e308, 0, 0}) * Affine::scaled({1e308, 1, 1})};
   EXPECT_EQ(value_of(evaluate_jet(surface, 0, 0.5)).position, (Vec3{1.5e308, 0.5, 0}));
   expect_refused(evaluate_jet(surface, 1, 0.5), StatusCode::non_finite, Status::no_index,
-                 "the surface's point at (1, 0.5) is (inf, 0.5, 0) where it is placed");
+                 "the surface's point at (1, 0.5) is (inf, 0.5, 0) after its placement");
 }
 
-/// The pieces of a rational surface stay rational even where all weights of a piece are equal.
+/// The pieces of a rational surface stay rational even if all weights of a piece are equal.
 TEST(Model, EditsKeepWeightsThatAreAllEqual) {
   Random random(23);
   std::vector<double> weights(5 * 2, 1);

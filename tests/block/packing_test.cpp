@@ -1,4 +1,4 @@
-// Packing over threads: the same bytes and the same refusals for any number of them, and patches that are moved in.
+// Packing over threads: the same bytes and the same errors for any number of them, and patches that are moved in.
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
@@ -92,8 +92,8 @@ TEST(Packing, AGridThatIsMovedGivesTheSameSet) {
   EXPECT_EQ(moved.source(5).domain.v1, 5);
 }
 
-/// A B-spline surface's set is the same whether its patches come with the box that they were made with or alone, and for
-/// any number of threads.
+/// The set of a B-spline surface does not depend on the number of threads, nor on whether its patches come alone or
+/// with the box that they were made with.
 TEST(Packing, ASplineGivesTheSetOfItsPatches) {
   Random random(94);
   tbb::task_arena alone(1), crowd(7);

@@ -1,4 +1,4 @@
-// Patch sets: packing, places, edits, refusals.
+// Patch sets: packing, places, edits, errors.
 
 #include <gtest/gtest.h>
 
@@ -134,13 +134,13 @@ TEST(PatchSet, RefusesWhatItCannotHold) {
   EXPECT_EQ(PatchSet::from(patches, {.origin = Vec3{0, std::numeric_limits<double>::infinity(), 0}}).status().code(),
             StatusCode::non_finite);
   const std::vector<PatchSource> one(1);
-  EXPECT_EQ(PatchSet::from(patches, one).status().code(), StatusCode::count_mismatch);
+  EXPECT_EQ(PatchSet::from(patches, {.sources = one}).status().code(), StatusCode::count_mismatch);
   std::vector<PatchSource> flat(2);
   flat[1].domain = {0, 0, 0, 1};
-  EXPECT_EQ(PatchSet::from(patches, flat).status().index(), 1);
+  EXPECT_EQ(PatchSet::from(patches, {.sources = flat}).status().index(), 1);
 }
 
-/// Alternating signs give the largest coefficients of powers: 3^15 each way.
+/// Alternating signs give the largest power coefficients: 3^15 in each direction.
 TEST(PatchSet, CoefficientsFitAsFarAsPromised) {
   std::vector<Vec3> points;
   std::vector<double> weights;
@@ -157,7 +157,8 @@ TEST(PatchSet, CoefficientsFitAsFarAsPromised) {
     for (const float value : *values) ASSERT_TRUE(std::isfinite(value));
 }
 
-/// Where derivatives would be infinite, or NaN, nothing is held: with small weights sooner, by the square of their ratio.
+/// Patches whose derivatives would be infinite or NaN are an error. Small weights make them so sooner, by the square of
+/// their ratio.
 TEST(PatchSet, DerivativesOfWhatIsHeldAreNumbers) {
   const auto patch = [](double size, double weight) {
     std::vector<Vec3> points;

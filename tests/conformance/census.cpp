@@ -46,7 +46,7 @@ Count patches_of_bv(const std::string& text) {
   return patches;
 }
 
-/// The words Patch, PatchMesh and NuPatch outside of comments and strings; of a motion the first moment alone.
+/// Counts the words Patch, PatchMesh and NuPatch outside of comments and strings; of a motion only the first moment.
 Count patches_of_rib(const std::string& text) {
   std::istringstream words(std::regex_replace(text, std::regex(R"re(#.*|"[^"]*"|\[[^\]]*\])re"), " "));
   Count patches = 0;

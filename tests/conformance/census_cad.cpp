@@ -13,7 +13,7 @@ namespace {
 
 using Count = std::size_t;
 
-/// A STEP file as statements: "#12=WORD(...)" with what it refers to.
+/// A STEP file as statements: "#12=WORD(...)" with its references.
 struct Statement {
   std::string word;  // empty for a complex one, "(A() B())"
   std::vector<int> references;
@@ -36,7 +36,7 @@ Statements statements_of(const std::string& text) {
   return statements;
 }
 
-/// All that `from` is made of.
+/// Adds all that `from` is made of.
 void reach(const Statements& statements, int from, std::set<int>& reached) {
   std::vector<int> open{from};
   while (!open.empty()) {
@@ -67,7 +67,8 @@ Count faces_of(const Statements& statements, int product) {
   return faces;
 }
 
-/// How often the whole uses a product: once at the top, else once for each use of those that it is a part of.
+/// How often the whole uses a product: once at the top, otherwise once for each use of the products that it is a part
+/// of.
 Count uses_of(const Statements& statements, int product) {
   Count uses = 0, parents = 0;
   for (const auto& [id, use] : statements) {
@@ -95,7 +96,7 @@ std::size_t step_faces(const std::string& text) {
 std::size_t iges_surfaces(const std::string& text) {
   std::istringstream stream(text);
   std::vector<std::string> directory;  // two lines an entry, fields of eight columns
-  std::set<int> trimmed;               // what trimmed surfaces (144) are made of, by the number of its first line
+  std::set<int> trimmed;               // parts of trimmed surfaces (144), by the number of the first line of the entry
   for (std::string line; std::getline(stream, line);) {
     if (line.size() <= 72) continue;
     if (line[72] == 'D') directory.push_back(line);
@@ -105,7 +106,7 @@ std::size_t iges_surfaces(const std::string& text) {
   Count surfaces = 0;
   for (Count k = 0; k + 1 < directory.size(); k += 2) {
     const int type = field(directory[k], 0), form = field(directory[k + 1], 4);
-    // Columns 67 and 68 say what the entity depends on; 0: on nothing.
+    // Columns 67 and 68 state a dependence; 0: the entity depends on nothing.
     const bool alone = std::atoi(directory[k].substr(66, 2).c_str()) == 0 && !trimmed.contains(static_cast<int>(k) + 1);
     const bool whole = type == 114 || type == 118 || type == 120 || type == 122 || type == 128 || type == 140;
     const bool bounded_plane = type == 108 && form == 1;

@@ -1,5 +1,5 @@
-// Every file of TESSERA_TEST_DATA: read whole, or refused for a reason that its text bears out; its patches are its
-// surfaces. Ends in a table, format by format.
+// Reads every file of TESSERA_TEST_DATA whole, or gets an error for a reason that its text confirms; compares its
+// patches with its surfaces. Prints a table, format by format.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is wrong with a file, or has no surface in it: the words that its refusal must hold.
+/// Files that are wrong or have no surface, with words that the error must contain.
 const std::map<std::string, std::string> refused{
     {"bezierview_bv/SurfLab__cube.bv", "no surface that can be read, but 1 polyhedron"},
     {"bezierview_bv/SurfLab__pawn_1.bv", "no surface that can be read, but 1 polyhedron"},
@@ -39,10 +39,10 @@ const std::map<std::string, std::string> refused{
     {"obj_freeform_spec/ex6_trimmed_nurb_surface.obj", ":26: surface 0: the domain is empty"},
     {"obj_freeform_tests/invalid_bmatrix_missing_step.obj", ":23: surface 0: there is no step for u"},
     {"obj_freeform_tests/invalid_wrong_control_count.obj",
-     ":7: surface 0: its parameters and degrees want 3 x 3 control points, it has 4"},
+     ":7: surface 0: its parameters and degrees need 3 x 3 control points, found 4"},
 };
 
-/// What a file holds besides the surfaces that are read: words of each warning, in their order.
+/// Contents of a file besides the surfaces that are read: words of each warning, in their order.
 const std::map<std::string, std::vector<std::string>> warned{
     {"bezierview_bv/SurfLab__tp_poly.bv", {":14: 2 polyhedra are not read"}},
     {"g2_gotools/splipy_elementary_surfaces.g2", {":22: 1 disc is not read"}},
@@ -50,21 +50,21 @@ const std::map<std::string, std::vector<std::string>> warned{
     {"obj_freeform_spec/ex5_rational_bspline_surface.obj", {":11: 9 statements are not kept, the first here: 9 vt"}},
     {"obj_freeform_spec/ex7_two_trims_with_holes.obj", {":43: 1 surface is trimmed"}},
     {"obj_freeform_tests/bezier_negative_slash_refs.obj", {":5: 4 statements are not kept, the first here: 4 vt"}},
-    {"classic_teaset/uteapot.rib", {"requests that are passed over"}},
-    {"rib_aqsis/autoshadow.rib", {"shapes that are not read: Sphere 1", "requests that are passed over"}},
-    {"rib_aqsis/mb_noise_test.rib", {"the first moment alone is read, 1 other", "requests that are passed over"}},
-    {"rib_aqsis/tenpatch.rib", {"requests that are passed over"}},
-    {"rib_aqsis/vase.rib", {":23: 3 worlds share one space", "requests that are passed over"}},
+    {"classic_teaset/uteapot.rib", {"requests that are skipped"}},
+    {"rib_aqsis/autoshadow.rib", {"shapes that are not read: Sphere 1", "requests that are skipped"}},
+    {"rib_aqsis/mb_noise_test.rib", {"first moment only, 1 other", "requests that are skipped"}},
+    {"rib_aqsis/tenpatch.rib", {"requests that are skipped"}},
+    {"rib_aqsis/vase.rib", {":23: 3 worlds share one space", "requests that are skipped"}},
     {"rib_nupatch/trimmed_nupatch_sphere.rib", {"1 surface is trimmed"}},
     // Offset surfaces.
     {"iges_nist_benchmarks/140-000.igs", {"1 surface fitted by splines"}},
     {"step_brlcad_edge/ap214_offset_extrusion.stp", {"1 surface fitted by splines"}},
     {"step_brlcad_edge/ap214_offset_revolution.stp", {"1 surface fitted by splines"}},
-    // D171 is a conic, no surface.
+    // D171 is a conic, not a surface.
     {"iges_nist_benchmarks/nentity.igs", {"OpenCASCADE: D171", "1 surface fitted", "2 faces are trimmed"}},
 };
 
-/// A line of the table at the end.
+/// A row of the table at the end.
 struct Row {
   std::size_t files = 0, read = 0, surfaces = 0, patches = 0, warnings = 0, refused = 0;
 };
@@ -76,7 +76,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// The row of a file: its format's name, or what else it is.
+/// The row of a file: the name of its format, or of another group.
 std::string row_of(const fs::path& file, const std::string& folder) {
   const std::string extension = lower(file.extension().string());
   if (extension == ".txt" || extension == ".md") return "words about the data";
@@ -179,7 +179,7 @@ void Conformance::expect_read(const std::string& name, const Model& model, std::
       EXPECT_NE(model.warnings[k].find(wanted->second[k]), std::string::npos) << model.warnings[k];
     return;
   }
-  // Others lose nothing but what trims would cut away.
+  // All other files lose only what trims would cut away.
   const auto trimmed = std::count_if(model.surfaces.begin(), model.surfaces.end(),
                                      [](const ModelSurface& s) { return !s.trims->empty(); });
   EXPECT_EQ(model.warnings.size(), trimmed > 0 ? 1u : 0u) << name;

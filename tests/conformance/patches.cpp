@@ -10,7 +10,7 @@
 namespace tessera::test {
 namespace {
 
-constexpr std::size_t count = 5;  // parameters each way
+constexpr std::size_t count = 5;  // parameters in each direction
 
 /// The largest coordinate of the control points, seen from `origin`.
 double size_of(const BezierPatch& patch, const Vec3& origin) {
@@ -55,7 +55,7 @@ PatchFigures expect_patches_follow_surfaces(const Model& model) {
   EXPECT_TRUE(plan.ok()) << plan.status().message();
   if (!plan) return figures;
   std::vector<float> grid(3 * plan->capacity());
-  EXPECT_TRUE(evaluate(*set, *plan, GridViews<float>{.position = View3<float>::interleaved(grid)}).ok());
+  EXPECT_TRUE(evaluate(*set, *plan, QuantityViews<float>{.position = View3<float>::interleaved(grid)}).ok());
   const double fit = set->fit_error().distance;
   for (std::size_t k = 0; k < set->patch_count(); ++k) {
     const double size = size_of(set->patch(k), {}) * 0x1p-52,

@@ -1,5 +1,5 @@
 #pragma once
-// A model's patches against its surfaces' own evaluators.
+// Compares a model's patches with its surfaces' own evaluators.
 
 #include <cstddef>
 
@@ -9,12 +9,12 @@ namespace tessera::test {
 
 struct PatchFigures {
   std::size_t patches = 0, points = 0;
-  /// Of positions, in units of 2^-52 and 2^-23 of the patch's size.
+  /// Errors of positions, in units of 2^-52 and 2^-23 of the patch's size.
   double double_error = 0, float_error = 0;
 };
 
-/// Converts the model, and expects that each patch has its surface's positions at 5 x 5 of its parameters: in double to
-/// rounding and the stated fit error, by the float kernels to their own rounding besides.
+/// Converts the model, and expects that each patch has its surface's positions at 5 x 5 of its parameters: in double
+/// within rounding and the stated fit error, by the float kernels also within their own rounding.
 PatchFigures expect_patches_follow_surfaces(const Model& model);
 
 }  // namespace tessera::test

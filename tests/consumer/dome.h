@@ -1,5 +1,6 @@
 #pragma once
-// The patch that both programs use: z = 1 - x^2 over the square [-1,1]^2, which a Bezier patch of degrees (2,1) holds exactly.
+// The patch that both programs use: z = 1 - x^2 over the square [-1,1]^2, which a Bezier patch of degrees (2,1) holds
+// exactly.
 
 #include <array>
 #include <cmath>
@@ -9,14 +10,14 @@
 #include <tessera/bezier_patch.h>
 #include <tessera/patch_set.h>
 
-/// Ends the program with a message where something is not as it must be.
+/// Ends the program with a message unless `holds`.
 inline void require(bool holds, const char* what) {
   if (holds) return;
   std::fprintf(stderr, "consumer: %s\n", what);
   std::exit(1);
 }
 
-/// The value, or the end of the program with the status' message.
+/// The value; without one, ends the program with the status' message.
 template <class T>
 T value_of(tessera::Result<T> result) {
   if (!result) require(false, result.status().message().c_str());

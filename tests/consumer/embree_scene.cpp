@@ -1,6 +1,6 @@
-// Patches in one's own Embree scene: two instances of a dome, one of them mirrored, beside a floor of triangles. A filter
-// leaves every other field of a chequerboard out of the dome, for shadows too. The picture, domes.pgm, is checked pixel
-// by pixel against the dome's equation.
+// Patches in the program's own Embree scene: two instances of a dome, one of them mirrored, beside a floor of
+// triangles. A filter removes every other field of a chequerboard from the dome, for shadows too. The picture,
+// domes.pgm, is checked pixel by pixel against the dome's equation.
 
 #include <tessera/ray_embree.h>
 
@@ -19,7 +19,7 @@ constexpr int width = 240, height = 160;
 constexpr double floor_height = -0.5;
 constexpr unsigned visible = 1, casts_shadow = 2;  // masks
 
-/// x, y and z each by a factor, then moved.
+/// Scales x, y and z each by a factor, then translates.
 struct Placement {
   Vec3 scale, shift;
   Vec3 back(const Vec3& p) const {
@@ -95,7 +95,7 @@ RTCRay make_ray(const Vec3& origin, const Vec3& direction, unsigned mask) {
   return ray;
 }
 
-/// What a ray meets first: 0 and 1 the domes, 2 the floor, -1 nothing.
+/// The first thing that a ray hits: 0 and 1 the domes, 2 the floor, -1 nothing.
 struct Met {
   int what = -1;
   double t = INFINITY;
@@ -133,7 +133,7 @@ bool is_in_shadow(RTCScene scene, const Vec3& from, const Vec3& to_light) {
   return ray.tfar < 0;
 }
 
-/// The same by equations: z = 1 - x^2 over the square, of each instance, and the floor.
+/// The hit by equations: z = 1 - x^2 over the square, for each instance, and the floor.
 Met expected(const Vec3& origin, const Vec3& direction) {
   Met met;
   const double floor_t = (floor_height - origin.z) / direction.z;
@@ -195,7 +195,7 @@ int main() {
   picture.write(reinterpret_cast<const char*>(pixels.data()), static_cast<std::streamsize>(pixels.size()));
   require(picture.good(), "the picture is not written");
   require(seen[0] > 1000 && seen[1] > 1000 && seen[2] > 1000, "something is not in the picture");
-  // Where a field of the chequerboard ends within a pixel's rounding, float and double may say otherwise.
+  // At borders of the chequerboard's fields, within a pixel's rounding, float and double may differ.
   require(wrong <= 8, "the picture is not that of the equations");
   rtcReleaseScene(scene);
   rtcReleaseScene(domes);

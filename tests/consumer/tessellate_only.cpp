@@ -1,4 +1,4 @@
-// Uses the core alone: a patch set, a grid of points, a mesh.
+// Uses only the core: a patch set, a grid of points, a mesh.
 
 #include <tessera/evaluate.h>
 #include <tessera/mesh.h>
@@ -14,7 +14,7 @@ void evaluate_grid(const tessera::PatchSet& set) {
   const std::vector<double> parameters = tessera::uniform_parameters(5);
   const tessera::GridPlan plan = value_of(tessera::GridPlan::make(set, parameters, parameters));
   std::vector<float> memory(3 * plan.capacity());
-  tessera::GridViews<float> views;
+  tessera::QuantityViews<float> views;
   views.position = tessera::View3<float>::interleaved(memory);
   require(tessera::evaluate(set, plan, views));
   for (std::size_t k = 0; k < plan.capacity(); ++k) {

@@ -43,7 +43,7 @@ TEST(BezierExtraction, ReproducesTheSurface) {
       }
 }
 
-/// Bezier points in long double: f(a, .., b, ..) by de Boor's algorithm with one argument a step, on the definition's
+/// Bezier points in long double: f(a, .., b, ..) by de Boor's algorithm with one argument per step, on the definition's
 /// knots.
 std::vector<Real> exact_weights(const BSplineSurface& s, std::size_t span, Real a, Real b, int i) {
   const int p = s.degree_u();
@@ -198,7 +198,7 @@ TEST(BezierExtraction, TheParameterMapGoesBothWays) {
     EXPECT_NEAR(d.u_at(at.u), u, 1e-15 * 8);
     EXPECT_NEAR(d.v_at(at.v), v, 1e-15 * 8);
   }
-  // At a knot the patch on the right, as the reference.
+  // At a knot the patch on the right, like the reference.
   const double knot = grid.breaks_u()[1];
   EXPECT_EQ(grid.locate(knot, s.domain().v0)->patch, grid.count_v());
   EXPECT_EQ(grid.locate(knot, s.domain().v0)->u, 0);
@@ -330,7 +330,7 @@ TEST(BezierExtraction, TheGridKnowsItsBox) {
   }
 }
 
-/// In whichever piece of work the point lies.
+/// The piece of work that holds the point does not matter.
 TEST(BezierExtraction, RefusesMeansThatAreNotFinite) {
   Random random(14);
   const BSplineSurface s = random_surface(random, 3, 3, {100}, {40}, false);

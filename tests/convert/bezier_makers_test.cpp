@@ -78,10 +78,10 @@ TEST(BezierMakers, RefuseBadCurves) {
   Random random(2);
   const BezierPolygon line = random_curve(random, 1), long_curve = random_curve(random, 16);
   expect_refused(make_ruled(line, long_curve), StatusCode::unsupported_degree, -1,
-                 "a curve has 2 to 16 points, 17 were given");
-  expect_refused(make_cylinder({{{}}, {}}, {1, 0, 0}), StatusCode::unsupported_degree, -1, "1 were given");
-  expect_refused(make_cone({}, {}), StatusCode::unsupported_degree, -1, "0 were given");
-  expect_refused(make_cylinder(line, {}), StatusCode::invalid_argument, -1, "not zero");
+                 "a curve has 2 to 16 points, found 17");
+  expect_refused(make_cylinder({{{}}, {}}, {1, 0, 0}), StatusCode::unsupported_degree, -1, "found 1");
+  expect_refused(make_cone({}, {}), StatusCode::unsupported_degree, -1, "found 0");
+  expect_refused(make_cylinder(line, {}), StatusCode::invalid_argument, -1, "cylinder is zero");
   expect_refused(make_cylinder(line, {0, not_a_number, 0}), StatusCode::non_finite, 2, "control point [1][0]");
   expect_refused(make_cone({infinity, 0, 0}, line), StatusCode::non_finite, 0, "control point [0][0]");
   expect_refused(make_ruled(line, quarter_circle), StatusCode::unsupported, -1, "different weights");
@@ -91,7 +91,7 @@ TEST(BezierMakers, RefuseBadCurves) {
   expect_refused(make_cone({}, bad), StatusCode::invalid_weight, 1, "weight [0][1] is 0");
   bad.weights.pop_back();
   expect_refused(make_cylinder(bad, {0, 0, 1}), StatusCode::count_mismatch, -1,
-                 "a curve of 3 points has as many weights or none, 2 were given");
+                 "a curve of 3 points has 3 weights or none, found 2");
   expect_refused(make_hyperbolic_paraboloid({}, {}, {}, {0, 0, not_a_number}), StatusCode::non_finite, 3, "[1][1]");
 }
 

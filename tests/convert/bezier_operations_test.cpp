@@ -311,8 +311,8 @@ TEST(BezierOperations, RefuseBadArguments) {
   }
   expect_refused(sub_patch(patch, {0.5, 0.5, 0, 1}), StatusCode::invalid_argument, -1, "[0.5, 0.5]");
   expect_refused(sub_patch(patch, {0, 1, 0.7, 0.5}), StatusCode::invalid_argument, -1, "[0.7, 0.5]");
-  expect_refused(boundary_curve(patch, static_cast<Edge>(3)), StatusCode::invalid_argument, -1, "one edge");
-  expect_refused(derivative_patch(patch, -1, 0), StatusCode::invalid_argument, -1, "(-1, 0) was asked for");
+  expect_refused(boundary_curve(patch, static_cast<Edge>(3)), StatusCode::invalid_argument, -1, "u0, u1, v0 or v1");
+  expect_refused(derivative_patch(patch, -1, 0), StatusCode::invalid_argument, -1, "(-1, 0), it must not be negative");
   expect_refused(derivative_patch(fraction, 1, 0), StatusCode::unsupported, -1, "rational");
   expect_refused(elevate_degree(patch, 2, 2), StatusCode::unsupported_degree, -1,
                  "degree u cannot be elevated from 3 to 2");

@@ -1,4 +1,4 @@
-// Ruled surfaces and Coons patches with borders or blends that are functions, as fitted patches.
+// Ruled surfaces and Coons patches whose borders or blends are functions, as fitted patches.
 
 #include <cmath>
 #include <stdexcept>

@@ -66,7 +66,7 @@ TEST(CoonsToBezier, MergesTheKnotsOfOppositeBorders) {
     EXPECT_TRUE(std::ranges::binary_search(grid.breaks_u(), knot));
 }
 
-// Where a border has the degree of the patch and its weights, its points are those of the border: the same bits.
+// If a border has the degree of the patch and its weights, its points are those of the border, bit for bit.
 TEST(CoonsToBezier, BordersKeepTheirBits) {
   Random random(3);
   const CoonsPatch patch = coons(random_borders(random, {{{3}, {3}, {3}, {3}}}), Blend::cubic());
@@ -138,7 +138,7 @@ TEST(CoonsToBezier, OfCubicBordersAreAdinisAndFergusonsPatches) {
   }
 }
 
-// Whatever part of the gap closing_tolerance forgives, the patches are the formula's.
+// The patches follow the formula, whatever part of the gap closing_tolerance accepts.
 TEST(CoonsToBezier, ForgivenGapsStay) {
   CoonsBorders borders = square_borders();
   borders.d1 = quadratic({0, 1e-4, 0}, {0, 1, 0}, {});

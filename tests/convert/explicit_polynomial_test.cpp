@@ -12,7 +12,7 @@
 namespace tessera::test {
 namespace {
 
-// 113 bits: what long double has on some machines, and a type of its own gives on others.
+// 113 bits: long double on some machines, a type of its own on others.
 #if __LDBL_MANT_DIG__ >= 113
 using Wide = long double;
 #else
@@ -25,7 +25,7 @@ ExplicitPolynomial graph(int m, int n, const std::vector<double>& a, const Domai
   return value_of(ExplicitPolynomial::make(m, n, a, rectangle));
 }
 
-/// By the definition, in 113 bits.
+/// The height by the definition, in 113 bits.
 double height(const ExplicitPolynomial& p, double x, double y) {
   Wide sum = 0;
   for (int i = p.degree_x(); i >= 0; --i) {

@@ -1,4 +1,4 @@
-// Fits of functions: bounds that are proofs, refinement that finds what needs it, borders and poles that stay one.
+// Fits of functions: bounds that are proofs, refinement where it is needed, borders and poles that do not split.
 
 #include <stdexcept>
 
@@ -12,7 +12,7 @@
 namespace tessera::test {
 namespace {
 
-/// The largest distance at equal parameters, on `count` x `count` points of every patch, off the places that fits
+/// The largest distance at equal parameters, on `count` x `count` points of every patch, away from the places that fits
 /// sample.
 double deviation(const ParametricSurface& surface, const PatchGrid& grid, int count) {
   double largest = 0;
@@ -28,7 +28,7 @@ double deviation(const ParametricSurface& surface, const PatchGrid& grid, int co
   return largest;
 }
 
-/// Without bounds and derivatives.
+/// The surface without bounds and derivatives.
 ParametricSurface bare(const ParametricSurface& surface) {
   return value_of(ParametricSurface::make(
       {.position = [surface](double u, double v) { return value_of(surface.position(u, v)); }}, surface.domain()));
@@ -127,7 +127,7 @@ TEST(Fit, DefaultToleranceIsAMillionthOfTheBox) {
   const PatchGrid grid = value_of(to_bezier(of(Torus{}, Torus::domain)));
   EXPECT_LE(grid.fit_error().distance, 1e-6 * std::sqrt(8 * 8 + 8 * 8 + 2 * 2.0));
   EXPECT_GE(grid.fit_error().distance, 1e-8);
-  // A surface that is one point has no size; rounding is its tolerance.
+  // A surface that is one point has no size; its tolerance is rounding.
   const auto point = [](double, double) { return Vec3{7, 8, 9}; };
   const PatchGrid one = value_of(to_bezier(value_of(ParametricSurface::make({.position = point}))));
   ASSERT_EQ(one.patches().size(), 1u);
@@ -149,7 +149,7 @@ TEST(Fit, ReproducesPolynomials) {
     const auto f = [&](double u, double v) { return de_casteljau(patch, domain.local_u(u), domain.local_v(v)); };
     SurfaceFunctions functions{.position = f};
     for (const bool bounds : {false, true}) {
-      // Derivatives of order n + 1 are 0; lower ones are asked for only to bound rounding.
+      // Derivatives of order n + 1 are 0; lower ones are needed only to bound rounding.
       if (bounds)
         functions.derivative_bounds = [n](const Domain&, int k) {
           return k > n ? std::array<double, 2>{0, 0} : std::array<double, 2>{100, 100};
@@ -236,7 +236,7 @@ TEST(Fit, CallsAreInProportionToTheLattice) {
 }
 
 TEST(Fit, BoundsThatDoNotSufficeGiveWayToSamples) {
-  // Infinite everywhere, and far too large: the fit is the one without bounds.
+  // Bounds that are infinite everywhere, or far too large: the fit equals the one without bounds.
   for (const double bound : {infinity, 1e30}) {
     const auto waves = [](double u, double v) { return Vec3{u, v, std::sin(u + v)}; };
     const auto none = [bound](const Domain&, int) { return std::array<double, 2>{bound, bound}; };
@@ -261,8 +261,8 @@ TEST(Fit, RefusesBadInput) {
   refused({.tolerance = 1e-300}, "below");
   refused({.degree = 1}, "degree of the patches is 1");
   refused({.degree = 16}, "degree of the patches is 16");
-  refused({.max_patches = 0}, "count of patches, 0, is below");
-  refused({.max_patches = 3, .breaks_u = {1}, .breaks_v = {1}}, "count of patches, 3, is below");
+  refused({.max_patches = 0}, "count of patches is 0");
+  refused({.max_patches = 3, .breaks_u = {1}, .breaks_v = {1}}, "count of patches is 3");
   refused({.tolerance = 1e-6, .max_patches = 10}, "not kept by 10 patches, the largest count: the error is");
 }
 
@@ -305,7 +305,7 @@ TEST(Fit, TinySurfacesAndDomainsAreMeasured) {
 }
 
 TEST(Fit, NamesWhatGoesWrongInTheMiddle) {
-  // Not a number on a small spot that the coarse points miss, first met where the fit samples.
+  // A function that is NaN on a small spot that the coarse points miss; the samples of the fit meet it first.
   const auto spot = [](double u, double v) {
     return Vec3{u, v, u > 0.33 && u < 0.36 && v > 0.2 && v < 0.24 ? not_a_number : std::exp(u * v)};
   };
@@ -317,7 +317,7 @@ TEST(Fit, NamesWhatGoesWrongInTheMiddle) {
   };
   expect_refused(to_bezier(value_of(ParametricSurface::make({.position = throws}))), StatusCode::invalid_argument, -1,
                  "(u, v) = (0.25, 0) threw: a quarter");
-  // A jump along u = 1/3 is cornered, and named.
+  // A jump along u = 1/3 is narrowed down, and named.
   const auto jump = [](double u, double v) { return Vec3{u, v, u < 1.0 / 3 ? 0.0 : 1.0}; };
   expect_refused(to_bezier(value_of(ParametricSurface::make({.position = jump}))), StatusCode::invalid_argument, -1,
                  "on the shortest interval of u: the error is");

@@ -1,4 +1,4 @@
-// Joins: the figures of section 12, bounds against dense samples, and what is made is measured as made.
+// Joins: the figures of section 12, bounds against dense samples, and joins that are made are measured as such.
 
 #include "tessera/bezier_operations.h"
 
@@ -120,7 +120,7 @@ TEST(Join, AKinkBetweenSamplesIsSeen) {
 }
 
 TEST(Join, FoldsAreNotSmooth) {
-  // Back over itself: the normals are opposite.
+  // A patch that folds back over itself: the normals are opposite.
   const BezierPatch p = plane(1), q = polynomial(1, 1, {{2, 0, 0}, {2, 1, 0}, {1, 0, 0}, {1, 1, 0}});
   const JoinReport report = measured({p, Edge::u1}, {q, Edge::u0});
   EXPECT_EQ(report.continuity, Continuity::c0);

@@ -51,7 +51,7 @@ PeerSurface surface_from(const Json& json) {
   return surface;
 }
 
-/// All that an evaluation may state: what is not understood must not pass unseen.
+/// All keys that an evaluation may have: an unknown one must be an error.
 void check_keys(const Json& eval) {
   for (const auto& [key, value] : eval.items())
     if (key != "params" && key != "point" && key != "derivs" && key != "tolerance" && key != "tolerance_derivs" &&

@@ -11,7 +11,7 @@
 
 namespace tessera::test {
 
-/// One expected value. Derivatives by name: "du", "duv" ... Components that are NaN are not stated by the peer.
+/// One expected value. Derivatives by name: "du", "duv" ... The peer does not state components that are NaN.
 struct PeerEval {
   double u = 0, v = 0;
   std::optional<Vec3> point;
@@ -29,13 +29,12 @@ struct PeerCase {
 struct PeerFile {
   std::string peer;
   std::vector<PeerCase> cases;
-  std::vector<PeerSurface> invalid;    ///< what the peer refuses
+  std::vector<PeerSurface> invalid;    ///< surfaces that the peer rejects
   std::size_t rays = 0;                ///< whose hits are among the evaluations, as points of the surface
-  std::vector<std::string> elsewhere;  ///< what has no value of a surface, and why
+  std::vector<std::string> elsewhere;  ///< entries without a value of a surface, and why
 };
 
-/// A file of peer_cases; `data` is the folder that holds it and the other test data. Throws on what it does not
-/// understand.
+/// Reads a file of peer_cases; `data` is the folder that holds it and the other test data. Throws on unknown content.
 PeerFile read_peer_file(const std::filesystem::path& data, const std::filesystem::path& file);
 
 }  // namespace tessera::test

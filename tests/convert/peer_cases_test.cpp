@@ -1,5 +1,5 @@
-// Values that other programs expect: every value of a surface in the peers' files, points and derivatives, each at its
-// file's own tolerance, by the reference evaluator and through the Bezier patches.
+// Compares with values of other programs: every value of a surface in the peers' files, points and derivatives, each at
+// its file's own tolerance, by the reference evaluator and through the Bezier patches.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 namespace tessera::test {
 namespace {
 
-/// Where the peer errs, or chose what we did not: checked to differ still, and counted apart.
+/// Cases where the peer errs, or chose another convention: checked to differ still, and counted apart.
 struct KnownDifference {
   const char* surface;
   double u, v;
@@ -55,7 +55,7 @@ struct Verdict {
   bool differs = false;  ///< as the table says
 };
 
-/// Compares by one route. What differs must be in the table, and what is in the table must differ.
+/// Compares by one route. Exactly the cases of the table must differ.
 void compare(const PeerCase& peer, const PeerEval& eval, const Route& route, Verdict& verdict) {
   const auto jet = route.jet(eval.u, eval.v);
   const auto expect = [&](const std::string& what, const Vec3& value, const Vec3& expected, double tolerance) {

@@ -10,10 +10,10 @@
 namespace tessera::test {
 namespace {
 
-/// What the file says of one direction.
+/// The statements of the file about one direction.
 struct Direction {
   int degree = 0;
-  int step = 0;  ///< of bases by a matrix: control points from one segment to the next
+  int step = 0;  ///< for bases by a matrix: control points from one segment to the next
   std::vector<double> matrix, parameters;
 
   std::size_t segments() const { return parameters.size() - 1; }
@@ -70,7 +70,7 @@ ObjSurface parse(const std::filesystem::path& path) {
   return surface;
 }
 
-/// The points [i][j], i along u, of `count_u` a row of v.
+/// The points [i][j], i along u; the file has rows along u of `count_u` points.
 std::vector<Vec3> ordered(const std::vector<Vec3>& points, std::size_t count_u) {
   std::vector<Vec3> result;
   for (std::size_t i = 0; i < count_u; ++i)
@@ -78,7 +78,8 @@ std::vector<Vec3> ordered(const std::vector<Vec3>& points, std::size_t count_u) 
   return result;
 }
 
-/// Of `bezier`, whose parameters are breakpoints, each a knot of full multiplicity; of `bspline` as they stand.
+/// The knots: `bezier` parameters are breakpoints, each a knot of full multiplicity; `bspline` parameters are the
+/// knots.
 std::vector<double> knots(const ObjSurface& surface, const Direction& direction) {
   const std::vector<double>& parameters = direction.parameters;
   if (surface.type == "bspline") return parameters;
@@ -112,7 +113,7 @@ int step_of(const ObjSurface& surface, const Direction& direction) {
   return direction.step;
 }
 
-/// Segment (a, b) acts on the points from (a step_u, b step_v) on.
+/// Segment (a, b) uses the points from (a step_u, b step_v) on.
 std::vector<TensorPatch> pieces_of(const ObjSurface& surface) {
   const auto& [u, v] = surface.directions;
   const BasisMatrix basis_u = basis_of(surface, u), basis_v = basis_of(surface, v);

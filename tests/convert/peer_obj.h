@@ -1,5 +1,5 @@
 #pragma once
-// The one free-form surface of a Wavefront file: enough of the format for the peers' cases, none of its freedom.
+// Reads the one free-form surface of a Wavefront file: enough of the format for the peers' cases, and no more.
 
 #include <filesystem>
 

@@ -7,7 +7,7 @@
 namespace tessera::test {
 namespace {
 
-/// The value, or nothing and its status in the surface.
+/// The value; if there is none, stores the status in the surface.
 template <class T>
 std::shared_ptr<const T> kept(const Result<T>& result, PeerSurface& surface) {
   if (result.ok()) return std::make_shared<const T>(*result);

@@ -12,7 +12,7 @@
 
 namespace tessera::test {
 
-/// One way to evaluate a surface by its own parameters; nothing outside its domain.
+/// One way to evaluate a surface by its own parameters; empty outside its domain.
 struct Route {
   const char* name;
   std::function<std::optional<SurfaceJet>(double u, double v)> jet;
@@ -21,10 +21,10 @@ struct Route {
 struct PeerSurface {
   std::string name;
   int dimension = 3;  ///< planar surfaces leave z alone
-  Status status;      ///< why the library refuses the surface, which then has no routes
+  Status status;      ///< why the library rejects the surface, which then has no routes
   std::vector<Route> routes;
 
-  // Each adds the reference evaluator and that of the Bezier patches.
+  // Each adds the routes by the reference evaluator and by the Bezier patches.
   void add(const Result<BSplineSurface>& surface);
   void add(const Result<BezierPatch>& patch);
   /// Pieces between breakpoints, those of one strip of u after the other.

@@ -1,5 +1,4 @@
-// Pieces of quadrics as rational patches: on the surface to rounding, at the parameters that are promised, without
-// cracks.
+// Pieces of quadrics as rational patches: on the surface up to rounding, at the promised parameters, without cracks.
 
 #include <numbers>
 

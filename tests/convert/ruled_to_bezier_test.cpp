@@ -75,7 +75,7 @@ TEST(RuledToBezier, EqualWeightFunctionsAreLoftedAsTheyStand) {
       const Vec3 p = grid.evaluate_jet(u, v)->position;
       EXPECT_NEAR(std::hypot(p.x, p.y), 1, 4 * double_unit);
     }
-  // The same arc by a higher degree: found to have the same weights.
+  // An arc raised to a higher degree is recognised as having the same weights.
   const Curve higher = value_of(degree_elevated(arc(2), 1));
   const RuledSurface mixed = value_of(RuledSurface::make(arc(0), higher));
   const PatchGrid cubic = value_of(to_bezier(mixed));

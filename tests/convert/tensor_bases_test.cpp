@@ -16,7 +16,7 @@ double largest_element(std::span<const Vec3> elements) {
   return largest;
 }
 
-/// How far numbers in a basis can grow on the way from Bezier points.
+/// The largest growth of numbers in a basis on the way from Bezier points.
 double condition(const BasisMatrix& basis) {
   double largest = 0;
   for (int i = 0; i <= basis.degree(); ++i) {
@@ -27,7 +27,8 @@ double condition(const BasisMatrix& basis) {
   return largest;
 }
 
-/// The most that the blends of a basis make of rounding errors in its geometry: 1 where they stay in the hull.
+/// The largest factor by which the blends of a basis multiply rounding errors of the geometry: 1 if they keep to the
+/// hull.
 double growth(const BasisMatrix& basis) {
   double largest = 1;
   for (int k = 0; k <= basis.degree(); ++k) {
@@ -160,7 +161,7 @@ TEST(ChangeOfBasis, RefusesWhatHasNoForm) {
                  "the basis matrix of u is singular");
   expect_refused(change_basis(patch, cubic, singular), StatusCode::invalid_argument, -1,
                  "the basis matrix of v is singular");
-  // A singular basis is fine to evaluate and to convert from.
+  // A singular basis can be evaluated and converted from.
   EXPECT_TRUE(change_basis(random_tensor(random, singular, singular), cubic, singular).ok());
   EXPECT_TRUE(to_bezier(random_tensor(random, singular, singular)).ok());
   const TensorPatch huge =

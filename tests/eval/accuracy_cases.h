@@ -1,5 +1,5 @@
 #pragma once
-// The patches that accuracy is tested by: random nets of a degree, in places and of sizes that strain it.
+// The patches that accuracy tests use: random nets of a degree, at difficult places and sizes.
 
 #include <vector>
 
@@ -15,7 +15,7 @@ inline constexpr Circumstance circumstances[] = {{1, 0, 0.25, 4},      {1, 0, 1e
                                                  {1e6, 0, 1e-3, 1e3},  {1, 1e7, 1e-3, 1e3}, {1e-6, 1e3, 1e-3, 1e3},
                                                  {1e-6, 1e7, 0.25, 4}, {1e6, 1e7, 0.25, 4}};
 
-/// `count` patches, one direction of `degree`, the other of any up to it; every other one rational.
+/// `count` patches, one direction of `degree`, the other of any degree up to it; every other patch is rational.
 inline std::vector<BezierPatch> patches_of_degree(Random& random, int degree, int count, const Circumstance& where) {
   const Vec3 centre = where.distance * where.size * Vec3{1, -0.6, 0.3};
   std::vector<BezierPatch> patches;
@@ -29,7 +29,7 @@ inline std::vector<BezierPatch> patches_of_degree(Random& random, int degree, in
   return patches;
 }
 
-/// The patch about `origin`: exact in double wherever its points are farther from zero than from there.
+/// The patch about `origin`: exact in double if its points are farther from zero than from `origin`.
 inline BezierPatch relative_to(const BezierPatch& patch, const Vec3& origin) {
   std::vector<Vec3> points(patch.points().begin(), patch.points().end());
   for (Vec3& p : points) p = p - origin;

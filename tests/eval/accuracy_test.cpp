@@ -1,5 +1,5 @@
-// Every ISA against the long double reference, for every degree, both bases, wide weights, sizes and places, in the units
-// of evaluate.h. Each test prints its table.
+// Every ISA against the long double reference, for every degree, both bases, wide weights, sizes and places, in the
+// units of evaluate.h. Each test prints its table.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ struct Errors {
   double polynomial = 0, rational = 0;             // positions
   double derivative = 0, rational_derivative = 0;  // over the degree
   double normal = 0;  // times the sine of the tangents' angle and the shorter tangent, over the largest coefficient
-  double plain = 0;   // of polynomial positions as they are: the largest |coefficient| times the precision's unit is 1
+  double plain = 0;   // of polynomial positions, the largest |coefficient| times the unit being 1
 
   void grow(const Errors& other) {
     for (double Errors::*const e : {&Errors::polynomial, &Errors::rational, &Errors::derivative,
@@ -30,10 +30,10 @@ struct Errors {
   }
 };
 
-/// What errors at one point are measured by, of a patch about the set's origin.
+/// The units of errors at one point of a patch about the set's origin.
 struct Units {
   double position, derivative;  ///< one unit
-  double denominator = 0;       ///< the weight's own relative error, where it counts: in the power basis
+  double denominator = 0;       ///< the weight's own relative error, which counts in the power basis
 
   Units(const BezierPatch& patch, double u, double v, double epsilon, Representation representation) {
     const ErrorUnits units(patch, u, v, epsilon);
@@ -48,7 +48,7 @@ struct Units {
   }
 };
 
-/// The error of a vector in units of `unit`, less what rounding `absolute` to double alone makes of it.
+/// The error of a vector in units of `unit`, less the error of rounding `absolute` to double.
 double error_of(const Vec3& value, const Vec3& expected, double unit, double absolute = 0) {
   return std::max(0.0, error_in_units(value, expected, unit) - 0x1p-53 * absolute / unit);
 }
@@ -72,7 +72,7 @@ void add_errors(const BezierPatch& patch, const GridBuffers<T>& out, std::size_t
         std::max(derivative, error_of(vector_at(*values, record), expected.rounded(), units.derivative) / degree);
   const Vec3 du = jet.du.rounded(), dv = jet.dv.rounded();
   const double height = length(cross(du, dv)) / std::max(length(du), length(dv));
-  // To first order in errors over the height; where they are as large, any direction may come out.
+  // First-order bound of errors over the height; if they are as large, any direction may result.
   if (8 * degree * units.derivative < 0.05 * height)
     here.normal = error_in_units(vector_at(out.normal, record), normalized(cross(jet.du, jet.dv)).rounded(),
                                  degree * units.derivative / height);
@@ -98,8 +98,8 @@ Errors errors_of(const PatchSet& set, const GridPlan& plan, const std::vector<do
 
 class Accuracy : public ::testing::TestWithParam<Isa> {};
 
-/// Every degree of a basis in every circumstance. The bounds of evaluate.h; those of the power basis are in units that
-/// have its growth in them.
+/// Every degree of a basis under every condition, against the bounds of evaluate.h. The units of the power basis
+/// include its growth.
 template <class T>
 void check_bounds(Isa isa, Representation representation) {
   Random random(11);
@@ -165,7 +165,7 @@ TEST_P(Accuracy, DoubleWithSteepWeights) { check_steep<double>(GetParam(), Repre
 TEST_P(Accuracy, FloatPowerWithSteepWeights) { check_steep<float>(GetParam(), Representation::power); }
 TEST_P(Accuracy, DoublePowerWithSteepWeights) { check_steep<double>(GetParam(), Representation::power); }
 
-/// Normals are right where steep weights leave nothing of a tangent but its errors: there they are exact.
+/// Normals are right where steep weights leave only the errors of a tangent: there they are exact.
 TEST_P(Accuracy, NormalsWhereATangentIsLost) {
   Random random(16);
   const double u = 0.3;
@@ -219,7 +219,7 @@ TEST_P(Accuracy, NormalsAtAnyScale) {
   }
 }
 
-/// A patch a billionth of the others in size has unit normals as well, and does not change its neighbours' bits.
+/// A patch a billionth of the others in size has unit normals too, and does not change its neighbours' bits.
 TEST_P(Accuracy, NormalsOfTinyPatchesAmongLargeOnes) {
   Random random(14);
   const std::vector<double> t = uniform_parameters(3);

@@ -38,12 +38,12 @@ TEST(Allocations, NoneWhenEvaluatingAgain) {
   AlignedVector<float> blocks(singles.block_capacity());
   expect_no_allocation([&] { return evaluate(set, singles, a.views()); });
   expect_no_allocation([&] { return evaluate(set, doubles, b.views()); });
-  expect_no_allocation([&] { return evaluate(set, singles, GridBlocks<float>{.position = blocks}); });
+  expect_no_allocation([&] { return evaluate(set, singles, QuantityBlocks<float>{.position = blocks}); });
   AllBuffers<float> all(singles);
   AllBuffers<double> all_doubles(doubles);
   expect_no_allocation([&] { return evaluate(set, singles, all.views()); });
   expect_no_allocation([&] { return evaluate(set, doubles, all_doubles.views()); });
-  expect_no_allocation([&] { return evaluate(set, singles, GridBlocks<float>{.gaussian = blocks}); });
+  expect_no_allocation([&] { return evaluate(set, singles, QuantityBlocks<float>{.gaussian = blocks}); });
   const UniformGrid grid = value_of(UniformGrid::make(set, 8, 8, std::nullopt));
   expect_no_allocation([&] { return grid.run(impl_of(set), {.position = a.views().position}, {}); });
 }

@@ -1,4 +1,5 @@
-// The same bytes for any number of threads, and on every ISA with fused multiply-adds; and which ISA ran.
+// Results are the same bytes for any number of threads, and on every ISA with fused multiply-adds; checks which ISA
+// ran.
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

@@ -1,5 +1,5 @@
 #pragma once
-// The sizes that evaluate.h states its error bounds by.
+// The sizes by which evaluate.h states its error bounds.
 
 #include <algorithm>
 

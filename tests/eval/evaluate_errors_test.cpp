@@ -1,4 +1,4 @@
-// Bad input: a Status, and nothing written.
+// Bad input gives a Status, and nothing is written.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ class EvaluateErrors : public ::testing::Test {
   GridBuffers<float> out{plan};
   GridBuffers<float> untouched{plan};
 
-  void expect_error(StatusCode code, const GridViews<float>& views) {
+  void expect_error(StatusCode code, const QuantityViews<float>& views) {
     const Status status = evaluate(set, plan, views);
     EXPECT_EQ(status.code(), code) << status.message();
     EXPECT_TRUE(out == untouched);
@@ -28,7 +28,7 @@ class EvaluateErrors : public ::testing::Test {
 
 TEST_F(EvaluateErrors, EachShortView) {
   for (int output = 0; output < 4; ++output) {
-    GridViews<float> views = out.views();
+    QuantityViews<float> views = out.views();
     View3<float>* view[] = {&views.position, &views.du, &views.dv, &views.normal};
     view[output]->size = plan.capacity() - 1;
     expect_error(StatusCode::buffer_too_small, views);
@@ -36,7 +36,7 @@ TEST_F(EvaluateErrors, EachShortView) {
 }
 
 TEST_F(EvaluateErrors, StridesAndMissingComponents) {
-  GridViews<float> views = out.views();
+  QuantityViews<float> views = out.views();
   views.normal.stride = 0;
   expect_error(StatusCode::invalid_argument, views);
   views = out.views();
@@ -52,7 +52,7 @@ TEST_F(EvaluateErrors, OverlapsAndMisalignment) {
   const std::size_t count = plan.capacity();
   std::vector<float> memory(8 * count, -7.0f);
   const std::span<float> all = memory;
-  const auto expect_refused = [&](const GridViews<float>& views) {
+  const auto expect_refused = [&](const QuantityViews<float>& views) {
     const Status status = evaluate(set, plan, views);
     EXPECT_EQ(status.code(), StatusCode::invalid_argument);
     EXPECT_NE(status.message().find("position"), std::string::npos) << status.message();
@@ -76,9 +76,9 @@ TEST_F(EvaluateErrors, OverlapsAndMisalignment) {
 TEST_F(EvaluateErrors, BlocksThatShareMemory) {
   AlignedVector<float> memory(2 * plan.block_capacity(), -7.0f);
   const std::span<float> all = memory;
-  const GridBlocks<float> apart{.position = all.first(plan.block_capacity()),
-                                .normal = all.subspan(plan.block_capacity())};
-  GridBlocks<float> shared = apart;
+  const QuantityBlocks<float> apart{.position = all.first(plan.block_capacity()),
+                                    .normal = all.subspan(plan.block_capacity())};
+  QuantityBlocks<float> shared = apart;
   shared.normal = all.subspan(plan.block_capacity() - 16);
   const Status status = evaluate(set, plan, shared);
   EXPECT_EQ(status.code(), StatusCode::invalid_argument);
@@ -87,39 +87,40 @@ TEST_F(EvaluateErrors, BlocksThatShareMemory) {
   EXPECT_TRUE(evaluate(set, plan, apart).ok());
 }
 
-/// Every output of GridViews, short by one record, with a stride of 0, without a component: none of them nor any other is written.
+/// Every output of QuantityViews, short by one record, with a stride of 0, or without a component: no output is
+/// written.
 TEST_F(EvaluateErrors, EachViewOfLocalGeometry) {
   AllBuffers<float> memory(plan), clean(plan);
-  const auto expect_refused = [&](const GridViews<float>& views, StatusCode code, const std::string& name) {
+  const auto expect_refused = [&](const QuantityViews<float>& views, StatusCode code, const std::string& name) {
     const Status status = evaluate(set, plan, views);
     EXPECT_EQ(status.code(), code) << name;
     EXPECT_NE(status.message().find(name), std::string::npos) << status.message();
     EXPECT_TRUE(memory == clean) << name;
   };
-  for_each_output<float>([&](const auto& output) {
-    GridViews<float> views = memory.views();
-    (views.*output.view).size = plan.capacity() - 1;
+  for_each_quantity([&](const auto& output) {
+    QuantityViews<float> views = memory.views();
+    output.of(views).size = plan.capacity() - 1;
     expect_refused(views, StatusCode::buffer_too_small, output.name);
     views = memory.views();
-    (views.*output.view).stride = 0;
+    output.of(views).stride = 0;
     expect_refused(views, StatusCode::invalid_argument, output.name);
     if (output.width == 1) return;
     views = memory.views();
-    (views.*output.view).component.back() = nullptr;
+    output.of(views).component.back() = nullptr;
     expect_refused(views, StatusCode::invalid_argument, output.name);
   });
 }
 
 TEST_F(EvaluateErrors, EachBlockOfLocalGeometry) {
-  for_each_output<float>([&](const auto& output) {
+  for_each_quantity([&](const auto& output) {
     const std::size_t needed = plan.block_capacity() / 3 * static_cast<std::size_t>(output.width);
-    GridBlocks<float> blocks;
-    using Value = typename std::remove_reference_t<decltype(blocks.*output.memory)>::element_type;
+    QuantityBlocks<float> blocks;
+    using Value = typename std::remove_reference_t<decltype(output.of(blocks))>::element_type;
     AlignedVector<Value> memory(needed + 1, Value(9));
     const std::span<Value> all = memory;
     for (const auto& [span, code] : {std::pair{all.first(needed - 1), StatusCode::buffer_too_small},
                                      {all.subspan(1), StatusCode::invalid_argument}}) {
-      blocks.*output.memory = span;
+      output.of(blocks) = span;
       const Status status = evaluate(set, plan, blocks);
       EXPECT_EQ(status.code(), code) << output.name;
       EXPECT_NE(status.message().find(output.name), std::string::npos) << status.message();
@@ -140,10 +141,11 @@ TEST_F(EvaluateErrors, GeometryOptions) {
 TEST_F(EvaluateErrors, BlockMemory) {
   AlignedVector<float> memory(plan.block_capacity() + 1, -7.0f);
   const std::span<float> all = memory;
-  EXPECT_EQ(evaluate(set, plan, GridBlocks<float>{.position = all.first(plan.block_capacity() - 1)}).code(),
+  EXPECT_EQ(evaluate(set, plan, QuantityBlocks<float>{.position = all.first(plan.block_capacity() - 1)}).code(),
             StatusCode::buffer_too_small);
-  EXPECT_EQ(evaluate(set, plan, GridBlocks<float>{.position = all.subspan(1)}).code(), StatusCode::invalid_argument);
-  EXPECT_EQ(evaluate(set, plan, GridBlocks<float>{}).code(), StatusCode::invalid_argument);
+  EXPECT_EQ(evaluate(set, plan, QuantityBlocks<float>{.position = all.subspan(1)}).code(),
+            StatusCode::invalid_argument);
+  EXPECT_EQ(evaluate(set, plan, QuantityBlocks<float>{}).code(), StatusCode::invalid_argument);
   EXPECT_TRUE(std::ranges::all_of(memory, [](float x) { return x == -7.0f; }));
 }
 

@@ -1,5 +1,5 @@
-// Positions alone, patch after patch with long rows, which have a kernel of their own: the bits of blocks, in any place
-// of memory, for one patch and for many, whole and in parts; and nothing beyond.
+// Positions alone, patch after patch with long rows, have a kernel of their own. It gives the bits of blocks, at any
+// place in memory, for one patch and for many, whole and in parts, and writes nothing beyond.
 
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ void check(int patches, int nu, int nv, std::size_t shift, Stores stores, Isa is
   const PatchSet set = polynomial_set(patches);
   const auto plan = value_of(GridPlan::make(set, parameters(nu), parameters(nv), {.isa = isa}));
   AlignedVector<float> blocks(plan.block_capacity());
-  ASSERT_TRUE(evaluate(set, plan, GridBlocks<float>{.position = blocks}).ok());
+  ASSERT_TRUE(evaluate(set, plan, QuantityBlocks<float>{.position = blocks}).ok());
   const float untouched = -7;
   const std::size_t count = 3 * plan.capacity(), samples = plan.count_u() * plan.count_v();
   AlignedVector<float> memory(count + shift + 16, untouched), expected = memory;
@@ -47,7 +47,7 @@ void check(int patches, int nu, int nv, std::size_t shift, Stores stores, Isa is
   execution.stores = stores;
   execution.report = &report;
   const auto view = View3<float>::interleaved(std::span<float>(memory).subspan(shift, count));
-  ASSERT_TRUE(evaluate(set, plan, GridViews<float>{.position = view}, execution).ok());
+  ASSERT_TRUE(evaluate(set, plan, QuantityViews<float>{.position = view}, execution).ok());
   EXPECT_EQ(report.isa, isa);
   EXPECT_EQ(std::memcmp(memory.data(), expected.data(), memory.size() * sizeof(float)), 0);
 }

@@ -37,7 +37,7 @@ struct Sizes {
   double curvature() const { return second_form / (height * height); }
 };
 
-/// Largest errors over a set, each over what evaluate.h states.
+/// Largest errors over a set, each divided by the bound of evaluate.h.
 struct Errors {
   double second = 0, first_form = 0, second_form = 0, curvature = 0, gaussian = 0, direction = 0;
   int undefined = 0;
@@ -56,7 +56,7 @@ Vec3 scalars(const View1<T>& a, const View1<T>& b, const View1<T>& c, std::size_
 }
 
 template <class T>
-void add_curvature_errors(const GridViews<T>& out, std::size_t record, const RealGeometry& g, const Sizes& sizes,
+void add_curvature_errors(const QuantityViews<T>& out, std::size_t record, const RealGeometry& g, const Sizes& sizes,
                           double unit, Errors& errors) {
   const double k1 = static_cast<double>(g.first), k2 = static_cast<double>(g.second), bound = sizes.curvature();
   const auto grow = [](double& largest, double error) {
@@ -81,7 +81,7 @@ template <class T>
 Errors errors_of(const PatchSet& set, const GridPlan& plan, const std::vector<double>& u,
                  const std::vector<double>& v) {
   AllBuffers<T> memory(plan);
-  const GridViews<T> out = memory.views();
+  const QuantityViews<T> out = memory.views();
   EXPECT_TRUE(evaluate(set, plan, out).ok());
   const double unit = sizeof(T) == 4 ? float_unit : double_unit;
   Errors errors;
@@ -178,7 +178,7 @@ void check_steep(Isa isa) {
 TEST_P(GeometryAccuracy, FloatWithSteepWeights) { check_steep<float>(GetParam()); }
 TEST_P(GeometryAccuracy, DoubleWithSteepWeights) { check_steep<double>(GetParam()); }
 
-/// The power basis of a cubic gives the same geometry, less exactly.
+/// The power basis of a cubic gives the same geometry, with larger errors.
 TEST_P(GeometryAccuracy, PowerBasis) {
   Random random(92);
   PatchSetOptions options;
@@ -193,7 +193,7 @@ TEST_P(GeometryAccuracy, PowerBasis) {
   ASSERT_TRUE(evaluate(set, bernstein, expected.views()).ok());
   ASSERT_TRUE(evaluate(set, power, found.views()).ok());
   EXPECT_EQ(found.normal_kind, expected.normal_kind);
-  const GridViews<double> a = expected.views(), b = found.views();
+  const QuantityViews<double> a = expected.views(), b = found.views();
   for (std::size_t k = 0; k < power.capacity(); ++k) {
     const Vec3 du = read(a.du, k), dv = read(a.dv, k);
     if (length(cross(du, dv)) < 0.1 * std::max(length(du), length(dv))) continue;
@@ -202,7 +202,7 @@ TEST_P(GeometryAccuracy, PowerBasis) {
   }
 }
 
-/// Curvatures go with the inverse of the size, and are zero and flagged where they leave the range; never NaN.
+/// Curvatures are proportional to the inverse of the size. Out of range they are zero and flagged, never NaN.
 TEST_P(GeometryAccuracy, AtAnyScale) {
   Random random(93);
   const auto t = uniform_parameters(4);
@@ -216,7 +216,7 @@ TEST_P(GeometryAccuracy, AtAnyScale) {
     const PatchSet set = set_of({polynomial(3, 3, scaled), unscaled}, {.origin = Vec3{}});
     const GridPlan plan = value_of(GridPlan::make(set, t, t, {.isa = GetParam()}));
     AllBuffers<float> memory(plan);
-    const GridViews<float> out = memory.views();
+    const QuantityViews<float> out = memory.views();
     ASSERT_TRUE(evaluate(set, plan, out).ok());
     for (const auto& values : memory.values)
       for (const float x : values) ASSERT_EQ(x, x);

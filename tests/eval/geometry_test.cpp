@@ -1,5 +1,5 @@
-// Local geometry in batches: surfaces whose curvatures are known in closed form, points that have none, and every way
-// out of the kernels.
+// Local geometry in batches: surfaces with curvatures in closed form, points without curvature, and every output path
+// of the kernels.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ struct Evaluated {
   PatchSet set;
   GridPlan plan;
   AllBuffers<T> memory;
-  GridViews<T> out;
+  QuantityViews<T> out;
 
   Evaluated(const std::vector<BezierPatch>& patches, const std::vector<double>& t, Isa isa)
       : set(set_of(patches, both_precisions())),
@@ -83,7 +83,7 @@ class Geometry : public ::testing::TestWithParam<Isa> {
 template <class T>
 constexpr double tolerance = sizeof(T) == 4 ? 2e-4 : 1e-12;
 
-/// Umbilic and of the same curvatures everywhere but at the poles, which have a limit normal alone.
+/// Umbilic, with constant curvatures, except at the poles, which have only a limit normal.
 template <class T>
 void Geometry::check_sphere() {
   const double radius = 2.5;
@@ -111,7 +111,7 @@ void Geometry::check_sphere() {
 TEST_P(Geometry, SphereFloat) { check_sphere<float>(); }
 TEST_P(Geometry, SphereDouble) { check_sphere<double>(); }
 
-/// Umbilics are flagged within the tolerance that is asked for.
+/// Umbilics are flagged within the tolerance of the options.
 TEST_P(Geometry, SphereIsUmbilicWithinTolerance) {
   const auto patches = patches_of(nurbs_sphere({}, 1));
   const PatchSet set = set_of(patches, both_precisions());
@@ -123,8 +123,8 @@ TEST_P(Geometry, SphereIsUmbilicWithinTolerance) {
         {.precision = precision, .isa = GetParam(), .geometry = {.umbilic_tolerance = single ? 1e-3 : 1e-9}}));
     std::vector<CurvatureKind> kinds(plan.capacity());
     const auto view = View1<CurvatureKind>::interleaved(kinds);
-    ASSERT_TRUE((single ? evaluate(set, plan, GridViews<float>{.curvature_kind = view})
-                        : evaluate(set, plan, GridViews<double>{.curvature_kind = view}))
+    ASSERT_TRUE((single ? evaluate(set, plan, QuantityViews<float>{.curvature_kind = view})
+                        : evaluate(set, plan, QuantityViews<double>{.curvature_kind = view}))
                     .ok());
     for (const CurvatureKind kind : kinds) EXPECT_EQ(kind, CurvatureKind::umbilic);
   }
@@ -223,7 +223,7 @@ std::vector<BezierPatch> degenerate_patches() {
   return patches;
 }
 
-/// Kinds and normals are those of unit_normal(), in either precision, layout and on every instruction set.
+/// Kinds and normals equal those of unit_normal(), in either precision, layout and on every instruction set.
 template <class T>
 void Geometry::check_poles() {
   const Evaluated<T> all(degenerate_patches(), t, GetParam());
@@ -235,7 +235,7 @@ void Geometry::check_poles() {
     SCOPED_TRACE(testing::Message() << "patch " << k / (t.size() * t.size()) << " at " << u << ", " << v);
     EXPECT_EQ(all.out.normal_kind.at(k, 0), expected.kind);
     const SurfaceJet jet = evaluate_jet(patch, u, v);
-    // The tangents that decide: where one vanishes, r_uv.
+    // The deciding tangents; if one vanishes, r_uv.
     const bool along_v = length(jet.du) < length(jet.dv);
     const Vec3 a = expected.kind == NormalKind::limit && along_v ? jet.duv : jet.du;
     const Vec3 b = expected.kind == NormalKind::limit && !along_v ? jet.duv : jet.dv;
@@ -248,7 +248,7 @@ void Geometry::check_poles() {
     EXPECT_TRUE(within_units(read(all.out.normal, k), expected.direction, 1, bound));
     limits += expected.kind == NormalKind::limit;
     undefined += expected.kind == NormalKind::undefined;
-    // Curvatures are not made of tangents that are rounding errors.
+    // Curvatures are never computed from tangents that are rounding errors.
     if (expected.kind != NormalKind::regular || !(height > noise)) all.expect_undefined(k);
   }
   EXPECT_GT(limits, 200u);
@@ -257,14 +257,14 @@ void Geometry::check_poles() {
 TEST_P(Geometry, DegeneratePointsFloat) { check_poles<float>(); }
 TEST_P(Geometry, DegeneratePointsDouble) { check_poles<double>(); }
 
-/// An edit that collapses an edge, or opens it, is seen at once.
+/// An edit that collapses an edge, or opens it, takes effect at once.
 TEST_P(Geometry, EditsMoveTheLimits) {
   const Vec3 pole{0, 0, 1};
   const std::vector<Vec3> closed{pole, pole, {1, 0, 0}, {0, 1, 0}}, open{pole, {1, 1, 1}, {1, 0, 0}, {0, 1, 0}};
   PatchSet set = set_of({polynomial(1, 1, open)});
   const GridPlan plan = value_of(GridPlan::make(set, t, t, {.isa = GetParam()}));
   std::vector<NormalKind> kinds(plan.capacity());
-  const GridViews<float> out{.normal_kind = View1<NormalKind>::interleaved(kinds)};
+  const QuantityViews<float> out{.normal_kind = View1<NormalKind>::interleaved(kinds)};
   for (const bool collapse : {false, true, false}) {
     ASSERT_TRUE(set.set_control_points(0, collapse ? closed : open).ok());
     ASSERT_TRUE(evaluate(set, plan, out).ok());
@@ -272,7 +272,7 @@ TEST_P(Geometry, EditsMoveTheLimits) {
   }
 }
 
-/// A block's output is what the views of `all` hold.
+/// A block's output holds the values of the views of `all`.
 template <class T, class Output>
 void expect_in_blocks(const Evaluated<T>& all, const Output& output, const AlignedVector<T>& blocks) {
   SCOPED_TRACE(output.name);
@@ -281,12 +281,11 @@ void expect_in_blocks(const Evaluated<T>& all, const Output& output, const Align
     for (std::size_t c = 0; c < width; ++c) {
       const PatchSet::Slot slot = all.set.slot(record / 9);
       const T found = blocks[((slot.block * 9 + record % 9) * width + c) * PatchSet::lanes + slot.lane];
-      ASSERT_EQ(found, (all.out.*output.view).at(record, static_cast<int>(c)));
+      ASSERT_EQ(found, output.of(all.out).at(record, static_cast<int>(c)));
     }
 }
 
-/// Blocks hold what views hold, each output alone is what it is with the others, and so it is in one interleaved
-/// record.
+/// Blocks hold the values of views; each output alone equals the one with all others, also in one interleaved record.
 template <class T>
 void check_ways_out(Isa isa) {
   Random random(96);
@@ -297,34 +296,34 @@ void check_ways_out(Isa isa) {
     Execution execution;
     execution.stores = stores;
     std::map<std::string, AlignedVector<T>> blocks;
-    GridBlocks<T> together;
-    for_each_value_output<T>([&](const auto& output) {
+    QuantityBlocks<T> together;
+    for_each_value_quantity([&](const auto& output) {
       AlignedVector<T>& memory = blocks[output.name];
       memory.resize(all.plan.block_capacity() / 3 * static_cast<std::size_t>(output.width));
-      GridBlocks<T> alone;
-      alone.*output.memory = memory;
+      QuantityBlocks<T> alone;
+      output.of(alone) = memory;
       ASSERT_TRUE(evaluate(all.set, all.plan, alone, execution).ok());
       expect_in_blocks(all, output, memory);
       std::fill(memory.begin(), memory.end(), T{0});
-      together.*output.memory = memory;
+      output.of(together) = memory;
     });
     ASSERT_TRUE(evaluate(all.set, all.plan, together, execution).ok());
-    for_each_value_output<T>([&](const auto& output) { expect_in_blocks(all, output, blocks[output.name]); });
+    for_each_value_quantity([&](const auto& output) { expect_in_blocks(all, output, blocks[output.name]); });
   }
   std::vector<T> records(37 * all.count());
-  GridViews<T> out;
+  QuantityViews<T> out;
   std::size_t first = 0;
-  for_each_value_output<T>([&](const auto& output) {
-    auto& view = out.*output.view;
+  for_each_value_quantity([&](const auto& output) {
+    auto& view = output.of(out);
     view = std::remove_reference_t<decltype(view)>::interleaved(records, 37, first);
     first += static_cast<std::size_t>(output.width);
   });
   ASSERT_EQ(first, 37u);
   ASSERT_TRUE(evaluate(all.set, all.plan, out).ok());
-  for_each_value_output<T>([&](const auto& output) {
+  for_each_value_quantity([&](const auto& output) {
     for (std::size_t record = 0; record < all.count(); ++record)
       for (int c = 0; c < output.width; ++c)
-        ASSERT_EQ((out.*output.view).at(record, c), (all.out.*output.view).at(record, c)) << output.name;
+        ASSERT_EQ(output.of(out).at(record, c), output.of(all.out).at(record, c)) << output.name;
   });
 }
 TEST_P(Geometry, EveryWayOutFloat) { check_ways_out<float>(GetParam()); }
@@ -337,10 +336,11 @@ TEST_P(Geometry, KindsInEveryLayout) {
   AlignedVector<NormalKind> normals(all.plan.block_capacity() / 3);
   AlignedVector<CurvatureKind> curvatures(normals.size());
   ASSERT_TRUE(
-      evaluate(all.set, all.plan, GridBlocks<float>{.normal_kind = normals, .curvature_kind = curvatures}).ok());
+      evaluate(all.set, all.plan, QuantityBlocks<float>{.normal_kind = normals, .curvature_kind = curvatures}).ok());
   std::vector<NormalKind> strided(3 * all.count(), NormalKind{7});
   ASSERT_TRUE(
-      evaluate(all.set, all.plan, GridViews<float>{.normal_kind = View1<NormalKind>::interleaved(strided, 3, 1)}).ok());
+      evaluate(all.set, all.plan, QuantityViews<float>{.normal_kind = View1<NormalKind>::interleaved(strided, 3, 1)})
+          .ok());
   for (std::size_t record = 0; record < all.count(); ++record) {
     const PatchSet::Slot slot = all.set.slot(record / samples);
     const std::size_t at = (slot.block * samples + record % samples) * lanes + slot.lane;

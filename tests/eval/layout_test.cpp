@@ -1,4 +1,4 @@
-// Every layout holds the same values in the places that evaluate.h names, whatever the grid's size.
+// Every layout holds the same values in the places that evaluate.h names, for any size of grid.
 
 #include <gtest/gtest.h>
 
@@ -47,15 +47,15 @@ void check_layouts(int nu, int nv, Isa isa) {
   const auto array = [&](std::size_t k) { return std::span<T>(soa).subspan(1 + k * count, count); };
   const auto positions = View3<T>::soa({array(0), array(1), array(2)}),
              normals = View3<T>::soa({array(3), array(4), array(5)});
-  ASSERT_TRUE(evaluate(c.set, c.plan, GridViews<T>{.position = positions, .normal = normals}).ok());
+  ASSERT_TRUE(evaluate(c.set, c.plan, QuantityViews<T>{.position = positions, .normal = normals}).ok());
   // One record of normal and position; and one with a gap.
   std::vector<T> tight(6 * count + 1, T(-7)), gap(8 * count, T(-7));
   const std::span<T> off_by_one = std::span<T>(tight).subspan(1);
   const auto tight_normals = View3<T>::interleaved(off_by_one, 6, 0),
              tight_positions = View3<T>::interleaved(off_by_one, 6, 3);
-  ASSERT_TRUE(evaluate(c.set, c.plan, GridViews<T>{.position = tight_positions, .normal = tight_normals}).ok());
+  ASSERT_TRUE(evaluate(c.set, c.plan, QuantityViews<T>{.position = tight_positions, .normal = tight_normals}).ok());
   const auto gap_positions = View3<T>::interleaved(gap, 8, 1), gap_normals = View3<T>::interleaved(gap, 8, 5);
-  ASSERT_TRUE(evaluate(c.set, c.plan, GridViews<T>{.position = gap_positions, .normal = gap_normals}).ok());
+  ASSERT_TRUE(evaluate(c.set, c.plan, QuantityViews<T>{.position = gap_positions, .normal = gap_normals}).ok());
   for (std::size_t k = 0; k < count; ++k) {
     c.expect_at(k, read(positions, k), read(normals, k));
     c.expect_at(k, read(tight_positions, k), read(tight_normals, k));
@@ -84,7 +84,8 @@ void check_blocks(Isa isa, Stores stores) {
   AlignedVector<T> position(c.plan.block_capacity()), normal(position.size()), du(position.size());
   Execution execution;
   execution.stores = stores;
-  ASSERT_TRUE(evaluate(c.set, c.plan, GridBlocks<T>{.position = position, .du = du, .normal = normal}, execution).ok());
+  ASSERT_TRUE(
+      evaluate(c.set, c.plan, QuantityBlocks<T>{.position = position, .du = du, .normal = normal}, execution).ok());
   const std::size_t samples = 35, lanes = PatchSet::lanes;
   for (std::size_t patch = 0; patch < c.set.patch_count(); ++patch) {
     const PatchSet::Slot slot = c.set.slot(patch);
@@ -107,13 +108,13 @@ TEST(Layout, BlocksPlainAndStreamed) {
     }
 }
 
-/// Each output alone is what it is together with the others.
+/// Each output alone equals the one together with the others.
 TEST(Layout, AnySubsetOfOutputs) {
   for (const Isa isa : available_isas()) {
     const Case<float> c(5, 6, isa);
     for (int subset = 1; subset < 16; ++subset) {
       GridBuffers<float> out(c.plan);
-      GridViews<float> views = out.views();
+      QuantityViews<float> views = out.views();
       GridBuffers<float> expected(c.plan);
       if (subset & 1)
         expected.position = c.expected.position;

@@ -12,7 +12,7 @@ TEST(Limits, AreMeasuredForEachIsa) {
   for (const Isa isa : available_isas()) {
     const Limits limits = value_of(measure_limits({.isa = isa, .store_bytes = 1 << 20}));
     EXPECT_EQ(limits.isa, isa);
-    // A processor with SSE2 does more than 0.1 G a second of anything here, and none does 10 T.
+    // A processor with SSE2 does more than 0.1 G operations per second of any kind, and none does 10 T.
     for (const double rate : {limits.float_operations_per_second, limits.double_operations_per_second,
                               limits.plain_store_bytes_per_second, limits.streaming_store_bytes_per_second}) {
       EXPECT_GT(rate, 1e8);
@@ -23,7 +23,8 @@ TEST(Limits, AreMeasuredForEachIsa) {
   }
 }
 
-/// 12, 36, 50 and 72 operations a point of a bicubic; in proportion to the order; 4/3 and 4 more if rational; 30 for curvatures.
+/// 12, 36, 50 and 72 operations per point of a bicubic; in proportion to the order; 4/3 of it and 4 more if rational;
+/// 30 for curvatures.
 TEST(Limits, ABufferThatNoMemoryHoldsIsRefused) {
   const auto limits = measure_limits({.store_bytes = std::size_t{1} << 63});
   EXPECT_EQ(limits.status().code(), StatusCode::out_of_memory);
@@ -32,24 +33,24 @@ TEST(Limits, ABufferThatNoMemoryHoldsIsRefused) {
 TEST(Limits, WorkFollowsTheStatedCounts) {
   Random random(61);
   const auto u = uniform_parameters(5), v = uniform_parameters(8);
-  const auto work = [&](const BezierPatch& patch, GridOutputs outputs) {
+  const auto work = [&](const BezierPatch& patch, QuantityFlags outputs) {
     return value_of(GridPlan::make(set_of({patch}), u, v)).work(outputs);
   };
   const BezierPatch cubic = random_polynomial(random, 3, 3);
-  EXPECT_EQ(work(cubic, {}).lane_operations, 40 * 12);
-  EXPECT_EQ(work(cubic, {}).bytes_written, 40 * 12);
-  EXPECT_EQ(work(cubic, {.du = true, .dv = true}).lane_operations, 40 * 36);
-  EXPECT_EQ(work(cubic, {.normal = true}).lane_operations, 40 * 50);
-  EXPECT_EQ(work(cubic, {.normal = true}).bytes_written, 40 * 24);
-  EXPECT_EQ(work(cubic, {.duu = true}).lane_operations, 40 * 72);
-  const GridOutputs twenty{
-      .du = true, .dv = true, .duu = true, .duv = true, .dvv = true, .gaussian = true, .mean = true};
+  EXPECT_EQ(work(cubic, {.position = true}).lane_operations, 40 * 12);
+  EXPECT_EQ(work(cubic, {.position = true}).bytes_written, 40 * 12);
+  EXPECT_EQ(work(cubic, {.position = true, .du = true, .dv = true}).lane_operations, 40 * 36);
+  EXPECT_EQ(work(cubic, {.position = true, .normal = true}).lane_operations, 40 * 50);
+  EXPECT_EQ(work(cubic, {.position = true, .normal = true}).bytes_written, 40 * 24);
+  EXPECT_EQ(work(cubic, {.position = true, .duu = true}).lane_operations, 40 * 72);
+  const QuantityFlags twenty{
+      .position = true, .du = true, .dv = true, .duu = true, .duv = true, .dvv = true, .gaussian = true, .mean = true};
   EXPECT_EQ(work(cubic, twenty).lane_operations, 40 * 102);
   EXPECT_EQ(work(cubic, twenty).bytes_written, 40 * 80);
-  EXPECT_EQ(work(cubic, {.position = false, .normal_kind = true}).bytes_written, 40);
+  EXPECT_EQ(work(cubic, {.normal_kind = true}).bytes_written, 40);
   EXPECT_EQ(work(random_rational(random, 3, 3), twenty).lane_operations, 40 * (72 * 4 / 3 + 4 + 30));
-  EXPECT_EQ(work(random_polynomial(random, 1, 1), {}).lane_operations, 40 * 6);
-  EXPECT_EQ(work(random_rational(random, 3, 3), {}).lane_operations, 40 * 20);
+  EXPECT_EQ(work(random_polynomial(random, 1, 1), {.position = true}).lane_operations, 40 * 6);
+  EXPECT_EQ(work(random_rational(random, 3, 3), {.position = true}).lane_operations, 40 * 20);
 }
 
 TEST(Limits, TheSlowerOfComputingAndStoringCounts) {

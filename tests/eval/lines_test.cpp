@@ -1,5 +1,5 @@
-// Patch-contiguous results against the block-interleaved ones, bit for bit, in every shape of memory: any place in a
-// cache line, records with and without gaps, arrays, columns far apart, plain and streamed; and nothing beyond.
+// Compares patch-contiguous results with block-interleaved ones, bit for bit, in every layout: any place in a cache
+// line, records with and without gaps, arrays, columns far apart, plain and streamed stores. Nothing is written beyond.
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,8 @@ struct Reference {
         position(plan.block_capacity()),
         normal(position.size()),
         kind(position.size() / 3) {
-    EXPECT_TRUE(evaluate(set, plan, GridBlocks<T>{.position = position, .normal = normal, .normal_kind = kind}).ok());
+    EXPECT_TRUE(
+        evaluate(set, plan, QuantityBlocks<T>{.position = position, .normal = normal, .normal_kind = kind}).ok());
   }
   static PatchSet make_set() {
     Random random(37);
@@ -61,14 +62,14 @@ void check(const Reference<T>& r, std::size_t values, Stores stores, Place&& pla
   const T untouched = T(-7);
   std::vector<T> memory(values, untouched), expected(values, untouched);
   const auto views_of = [&](std::vector<T>& all) { return place(std::span<T>(all)); };
-  GridViews<T> out = views_of(memory);
+  QuantityViews<T> out = views_of(memory);
   std::vector<NormalKind> kinds(3 * r.plan.capacity(), NormalKind{9});
   if (with_kinds) out.normal_kind = View1<NormalKind>::interleaved(kinds, 3, 1);
   Execution execution;
   execution.stores = stores;
   const Status status = evaluate(r.set, r.plan, out, execution);
   ASSERT_TRUE(status.ok()) << status.message();
-  const GridViews<T> wanted = views_of(expected);
+  const QuantityViews<T> wanted = views_of(expected);
   for (std::size_t k = 0; k < r.plan.capacity(); ++k) {
     for (int c = 0; c < 3; ++c) {
       wanted.position.at(k, c) = r.position[r.place(k, static_cast<std::size_t>(c))];
@@ -90,30 +91,30 @@ void check_grid(int nu, int nv, Isa isa, const std::vector<std::size_t>& shifts)
     for (const std::size_t shift : shifts) {  // one record of both; two packed arrays
       const auto record = [&](std::span<T> all) {
         const auto memory = all.subspan(shift);
-        return GridViews<T>{.position = View3<T>::interleaved(memory, 6, 3),
-                            .normal = View3<T>::interleaved(memory, 6, 0)};
+        return QuantityViews<T>{.position = View3<T>::interleaved(memory, 6, 3),
+                                .normal = View3<T>::interleaved(memory, 6, 0)};
       };
       check(r, 6 * count + shift, stores, record);
       check(r, 6 * count + shift, stores, record, false);
       check(r, 6 * count + 2 * shift, stores, [&](std::span<T> all) {
-        return GridViews<T>{.position = View3<T>::interleaved(all.subspan(shift, 3 * count)),
-                            .normal = View3<T>::interleaved(all.subspan(2 * shift + 3 * count))};
+        return QuantityViews<T>{.position = View3<T>::interleaved(all.subspan(shift, 3 * count)),
+                                .normal = View3<T>::interleaved(all.subspan(2 * shift + 3 * count))};
       });
     }
     check(r, 6 * count + 3, stores, [&](std::span<T> all) {  // arrays; of the normal in another order
       const auto array = [&](std::size_t k) { return all.subspan(1 + k * count, count); };
-      return GridViews<T>{.position = View3<T>::soa({array(0), array(1), array(2)}),
-                          .normal = View3<T>::soa({array(5), array(3), array(4)})};
+      return QuantityViews<T>{.position = View3<T>::soa({array(0), array(1), array(2)}),
+                              .normal = View3<T>::soa({array(5), array(3), array(4)})};
     });
     for (const std::size_t record : {7u, 8u, 15u, 40u})  // with gaps
       check(r, record * count + 1, stores, [&](std::span<T> all) {
         const auto memory = all.subspan(1);
-        return GridViews<T>{.position = View3<T>::interleaved(memory, record, record - 3),
-                            .normal = View3<T>::interleaved(memory, record, 1)};
+        return QuantityViews<T>{.position = View3<T>::interleaved(memory, record, record - 3),
+                                .normal = View3<T>::interleaved(memory, record, 1)};
       });
     check(r, 5 * count + 4 * count, stores, [&](std::span<T> all) {  // a stride of its own each
-      return GridViews<T>{.position = View3<T>::interleaved(all.first(5 * count), 5, 1),
-                          .normal = View3<T>::interleaved(all.subspan(5 * count), 4, 0)};
+      return QuantityViews<T>{.position = View3<T>::interleaved(all.first(5 * count), 5, 1),
+                              .normal = View3<T>::interleaved(all.subspan(5 * count), 4, 0)};
     });
   }
 }
@@ -135,7 +136,7 @@ TEST(Lines, AnySizeOfGrid) {
     }
 }
 
-/// Large grids are cut into rows, which begin and end in the middle of lines and of other threads' lines.
+/// Large grids are cut into rows, which begin and end in the middle of cache lines and of other threads' cache lines.
 TEST(Lines, GridsInPieces) {
   for (const Isa isa : available_isas()) check_grid<float>(67, 61, isa, {3});
 }

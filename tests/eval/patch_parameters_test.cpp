@@ -1,4 +1,4 @@
-// Parameters of each patch's own: the bits of the same parameters given for all, in every layout; and bad lists.
+// Parameters of each patch's own: the bits of the same parameters for all patches, in every layout; and bad lists.
 
 #include <gtest/gtest.h>
 
@@ -44,7 +44,7 @@ void check(const PatchSet& set, Isa isa) {
   AllBuffers<T> own(plan);
   ASSERT_TRUE(evaluate(set, plan, own.views()).ok());
   AlignedVector<T> blocks(plan.block_capacity());
-  ASSERT_TRUE(evaluate(set, plan, GridBlocks<T>{.position = blocks}, {.stores = Stores::streaming}).ok());
+  ASSERT_TRUE(evaluate(set, plan, QuantityBlocks<T>{.position = blocks}, {.stores = Stores::streaming}).ok());
   const std::size_t samples = count_u * count_v;
   for (std::size_t patch = 0; patch < set.patch_count(); patch += 3) {
     const GridPlan shared = value_of(GridPlan::make(set, std::span(u).subspan(patch * count_u, count_u),

@@ -23,7 +23,7 @@ struct Errors {
 template <class T>
 Errors errors_of(const PatchSet& set, const Samples<T>& samples, Isa isa) {
   AllBuffers<T> memory = all_outputs(set, samples, {.isa = isa});
-  const GridViews<T> out = memory.views();
+  const QuantityViews<T> out = memory.views();
   const double epsilon = sizeof(T) == 4 ? float_unit : double_unit;
   const Vec3 origin = sizeof(T) == 4 ? set.origin() : Vec3{};
   Errors errors;
@@ -136,7 +136,7 @@ void check_steep(Isa isa) {
 TEST_P(PointAccuracy, FloatWithSteepWeights) { check_steep<float>(GetParam()); }
 TEST_P(PointAccuracy, DoubleWithSteepWeights) { check_steep<double>(GetParam()); }
 
-/// Where weights are exact, points and grids are the same bits, in every output.
+/// If weights are exact, points and grids have the same bits in every output.
 template <class T>
 void compare_with_grid(Isa isa, int degree, const std::vector<double>& t) {
   Random random(303);
@@ -152,7 +152,7 @@ void compare_with_grid(Isa isa, int degree, const std::vector<double>& t) {
   EXPECT_EQ(points.normal_kind, grid.normal_kind);
   EXPECT_EQ(points.curvature_kind, grid.curvature_kind);
   std::size_t k = 0;
-  for_each_value_output<T>([&](const auto& output) {
+  for_each_value_quantity([&](const auto& output) {
     EXPECT_TRUE(points.values[k] == grid.values[k]) << output.name;
     ++k;
   });

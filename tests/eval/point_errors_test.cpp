@@ -1,4 +1,4 @@
-// Bad input: a Status that names what is wrong, and not a byte written.
+// Bad input gives a Status that names the fault, and not a byte is written.
 
 #include <gtest/gtest.h>
 
@@ -16,11 +16,12 @@ class PointErrors : public ::testing::Test {
   Samples<float> samples_ = random_samples<float>(random_, 6, 5000);
   std::vector<float> positions_ = std::vector<float>(3 * 5000, -7), normals_ = positions_;
 
-  PointViews<float> views() {
+  QuantityViews<float> views() {
     return {.position = View3<float>::interleaved(positions_), .normal = View3<float>::interleaved(normals_)};
   }
   /// The status of a call that must fail and leave memory alone.
-  Status refused(const PatchSamples<float>& samples, const PointViews<float>& out, const PointOptions& options = {}) {
+  Status refused(const PatchSamples<float>& samples, const QuantityViews<float>& out,
+                 const PointOptions& options = {}) {
     const Status status = evaluate(set_, samples, out, options);
     EXPECT_FALSE(status.ok());
     for (const float x : positions_) EXPECT_EQ(x, -7);
@@ -87,7 +88,7 @@ TEST_F(PointErrors, Extrapolation) {
 
 TEST_F(PointErrors, Views) {
   const auto code_with = [&](auto change) {
-    PointViews<float> out = views();
+    QuantityViews<float> out = views();
     change(out);
     return refused(samples_.views(), out).code();
   };
@@ -106,7 +107,7 @@ TEST_F(PointErrors, Views) {
 
 TEST_F(PointErrors, SharedMemory) {
   const auto message_with = [&](auto change) {
-    PointViews<float> out = views();
+    QuantityViews<float> out = views();
     change(out);
     return refused(samples_.views(), out).message();
   };
@@ -119,11 +120,11 @@ TEST_F(PointErrors, SharedMemory) {
             })
                 .find("share"),
             std::string::npos);
-  // Outputs over the parameters that they are made from.
+  // Outputs that overlap the parameters that they are computed from.
   PatchSamples<float> own = samples_.views();
   own.u = View1<const float>::interleaved(positions_);
   EXPECT_NE(refused(own, views()).message().find("share"), std::string::npos);
-  // Fields of one record are not shared memory, nor are neighbours.
+  // Fields of one record are not shared memory, and neither are neighbours.
   std::vector<float> records(6 * 5000);
   EXPECT_TRUE(evaluate(set_, samples_.views(),
                        {.position = View3<float>::interleaved(records, 6, 0),

@@ -1,4 +1,4 @@
-// Scattered points into every kind of memory: any count, arrays, records, strides; and nothing beside what was asked for.
+// Scattered points into every kind of memory: any count, arrays, records, strides. Nothing else is written.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ std::vector<Samples<float>> kinds_of_samples(Random& random, std::size_t patch_c
   return kinds;
 }
 
-/// Every count around the lanes of a vector, one sample at a time as reference.
+/// Every count around the lanes of a vector; the reference takes one sample at a time.
 TEST(PointLayout, AnyCount) {
   Random random(321);
   const PatchSet field = set_of(test::wavy_field(2, 2), with_points());
@@ -26,8 +26,8 @@ TEST(PointLayout, AnyCount) {
       for (const std::size_t count : {1, 2, 3, 7, 8, 9, 15, 16, 17, 31, 33, 100, 127, 129, 2047, 2048, 2049, 4500})
         for (const auto& samples : kinds_of_samples(random, set->patch_count(), count)) {
           std::vector<float> positions(3 * count + 5, canary), normals(positions);
-          const PointViews<float> out{.position = View3<float>::interleaved(positions),
-                                      .normal = View3<float>::interleaved(normals)};
+          const QuantityViews<float> out{.position = View3<float>::interleaved(positions),
+                                         .normal = View3<float>::interleaved(normals)};
           ASSERT_TRUE(evaluate(*set, samples.views(), out, {.isa = isa}).ok());
           for (std::size_t k = 3 * count; k < positions.size(); ++k) {
             ASSERT_EQ(positions[k], canary);
@@ -51,13 +51,14 @@ TEST(PointLayout, ArraysRecordsAndStrides) {
   for (const PatchSet* set : {&field, &mixed})
     for (const auto& samples : kinds_of_samples(random, set->patch_count(), count)) {
       AllBuffers<float> all = all_outputs(*set, samples);
-      const GridViews<float> expected = all.views();
+      const QuantityViews<float> expected = all.views();
       std::vector<float> x(count), y(count), z(count), mean(count), records(11 * count, canary);
-      const PointViews<float> arrays{.position = View3<float>::soa({x, y, z}), .mean = View1<float>::interleaved(mean)};
+      const QuantityViews<float> arrays{.position = View3<float>::soa({x, y, z}),
+                                        .mean = View1<float>::interleaved(mean)};
       ASSERT_TRUE(evaluate(*set, samples.views(), arrays).ok());
-      const PointViews<float> in_records{.position = View3<float>::interleaved(records, 11, 1),
-                                         .normal = View3<float>::interleaved(records, 11, 4),
-                                         .gaussian = View1<float>::interleaved(records, 11, 8)};
+      const QuantityViews<float> in_records{.position = View3<float>::interleaved(records, 11, 1),
+                                            .normal = View3<float>::interleaved(records, 11, 4),
+                                            .gaussian = View1<float>::interleaved(records, 11, 8)};
       ASSERT_TRUE(evaluate(*set, samples.views(), in_records).ok());
       for (std::size_t k = 0; k < count; ++k) {
         ASSERT_EQ((Vec3{x[k], y[k], z[k]}), read(expected.position, k));

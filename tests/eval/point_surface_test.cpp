@@ -1,4 +1,4 @@
-// Points by the parameters of B-spline surfaces, against the definition.
+// Compares points by the parameters of B-spline surfaces with the definition.
 
 #include <gtest/gtest.h>
 
@@ -67,7 +67,7 @@ TEST(PointsOfSurfaces, AreThoseOfTheDefinition) {
     AllBuffers<float> single(places.u.size());
     ASSERT_TRUE(evaluate(set, map, places.views(), twice.views(), {.isa = isa}).ok());
     ASSERT_TRUE(evaluate(set, map, places.views(), single.views(), {.isa = isa}).ok());
-    const GridViews<double> out = twice.views();
+    const QuantityViews<double> out = twice.views();
     for (std::size_t k = 0; k < places.u.size(); ++k) {
       const BSplineSurface& surface = all.surfaces[places.surface[k]];
       const RealJet jet = reference_jet(surface, places.u[k], places.v[k]);
@@ -173,7 +173,7 @@ TEST(PointsOfSurfaces, BadInput) {
   EXPECT_EQ(status.index(), 5);
   const PatchSet other = value_of(make_patch_set(all.grids[0], with_points()));
   EXPECT_EQ(evaluate(other, map, places.views(), out.views()).code(), StatusCode::invalid_argument);
-  // Patches that are no grid.
+  // Patches that do not form a grid.
   const std::vector<BezierPatch> patches(3, random_polynomial(random, 1, 1));
   const std::vector<PatchSource> sources{{0, {0, 1, 0, 1}}, {0, {0, 1, 1, 2}}, {0, {1, 2, 0, 1}}};
   PatchSetOptions with_sources = with_points();

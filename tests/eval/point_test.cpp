@@ -1,4 +1,4 @@
-// Scattered points: the same bytes however they are asked for, degenerate points, edits.
+// Scattered points: the same bytes for every form of the call, degenerate points, edits.
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -55,7 +55,7 @@ TEST(Points, SameBytesForAnyThreadsAndOnEveryIsaOfMixedDegrees) {
   compare_bytes<double>(patches, 9000);
 }
 
-/// A sample's values depend neither on its neighbours nor on which kernel their order calls for.
+/// A sample's values depend neither on its neighbours nor on the kernel that their order selects.
 template <class T>
 void compare_orders(const PatchSet& set, const Samples<T>& samples, const std::vector<std::size_t>& order) {
   const Samples<T> ordered = samples.in_order(order);
@@ -119,10 +119,11 @@ TEST(Points, EachOutputAloneIsWhatItIsAmongOthers) {
   const Samples<float> samples = random_samples<float>(random, set.patch_count(), 500);
   const AllBuffers<float> all = all_outputs(set, samples);
   std::size_t k = 0;
-  for_each_value_output<float>([&](const auto& output) {
+  for_each_value_quantity([&](const auto& output) {
     AllBuffers<float> alone(samples.size());
-    GridViews<float> out;
-    out.*output.view = alone.views().*output.view;
+    QuantityViews<float> out;
+    const QuantityViews<float> views = alone.views();
+    output.of(out) = output.of(views);
     ASSERT_TRUE(evaluate(set, samples.views(), out).ok());
     EXPECT_TRUE(alone.values[k] == all.values[k]) << output.name;
     ++k;
@@ -146,7 +147,7 @@ std::vector<BezierPatch> degenerate_patches() {
   return patches;
 }
 
-/// Kinds are the grid's, and so are normals within the rounding of limits.
+/// Kinds equal the grid's; normals do so within the rounding of limits.
 template <class T>
 void compare_degenerate(Isa isa) {
   const PatchSet set = set_of(degenerate_patches(), with_points());
@@ -163,7 +164,7 @@ void compare_degenerate(Isa isa) {
   EXPECT_EQ(points.curvature_kind, grid.curvature_kind);
   EXPECT_GT(std::ranges::count(points.normal_kind, NormalKind::limit), 0);
   EXPECT_GE(std::ranges::count(points.normal_kind, NormalKind::undefined), 32);
-  const GridViews<T> a = points.views(), b = grid.views();
+  const QuantityViews<T> a = points.views(), b = grid.views();
   for (std::size_t k = 0; k < samples.size(); ++k) {
     EXPECT_TRUE(within_units(read(a.normal, k), read(b.normal, k), sizeof(T) == 4 ? 1e-6 : 1e-13, 1)) << k;
     if (points.normal_kind[k] == NormalKind::undefined) {
@@ -203,7 +204,7 @@ TEST(Points, NothingIsAllocatedWhenEvaluatingAgain) {
   const PatchSet set = set_of(mixed_patches(random, 3, 2), with_points());
   const Samples<float> samples = random_samples<float>(random, set.patch_count(), 3000);
   AllBuffers<float> out(samples.size());
-  const GridViews<float> views = out.views();
+  const QuantityViews<float> views = out.views();
   ASSERT_TRUE(evaluate(set, samples.views(), views, {.isa = available_isas().back()}).ok());
   const std::size_t before = allocation_count();
   for (int k = 0; k < 3; ++k) ASSERT_TRUE(evaluate(set, samples.views(), views, {.isa = available_isas().back()}).ok());
@@ -215,7 +216,7 @@ TEST(Points, ProgressIsToldAndCancellationSeen) {
   const PatchSet set = set_of(test::wavy_field(3, 3), with_points());
   const Samples<float> samples = random_samples<float>(random, 9, 50000);
   std::vector<float> positions(3 * samples.size());
-  const PointViews<float> out{.position = View3<float>::interleaved(positions)};
+  const QuantityViews<float> out{.position = View3<float>::interleaved(positions)};
   double last = 0;
   Execution execution;
   execution.progress = [&](double share) { last = std::max(last, share); };

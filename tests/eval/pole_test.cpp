@@ -25,13 +25,13 @@ TEST(Poles, NormalIsTheLimitInEveryLayoutAndOrientation) {
     GridBuffers<float> out(plan);
     ASSERT_TRUE(evaluate(set, plan, out.views()).ok());
     AlignedVector<float> blocks(plan.block_capacity());
-    ASSERT_TRUE(evaluate(set, plan, GridBlocks<float>{.normal = blocks}).ok());
+    ASSERT_TRUE(evaluate(set, plan, QuantityBlocks<float>{.normal = blocks}).ok());
     int poles = 0;
     for (std::size_t k = 0; k < 25; ++k) {
       const Vec3 normal = vector_at(out.normal, k);
       const std::size_t first = k * 3 * PatchSet::lanes;
       EXPECT_EQ(normal, (Vec3{blocks[first], blocks[first + PatchSet::lanes], blocks[first + 2 * PatchSet::lanes]}));
-      // The reference: the normal a little inside.
+      // The reference: the normal a little further inside.
       const double u = std::clamp(t[k / 5], 1e-7, 1 - 1e-7), v = std::clamp(t[k % 5], 1e-7, 1 - 1e-7);
       EXPECT_TRUE(within_units(normal, reference_normal(patch, u, v), 1e-5, 1)) << way << " " << k;
       if (max_abs(de_casteljau(patch, t[k / 5], t[k % 5]) - Vec3{0, 0, 1}) == 0) {

@@ -1,7 +1,7 @@
 #pragma once
-// Rational patches that strain the bounds of derivatives: some have weights that fall off steeply, so that the derivative
-// of the weight is large against the weight; others are nearly linear, so that second derivatives are small against
-// their errors.
+// Rational patches that are difficult for the bounds of derivatives. Some have weights that fall off steeply, so that
+// the derivative of the weight is large compared with the weight; others are nearly linear, so that second derivatives
+// are small compared with their errors.
 
 #include <vector>
 
@@ -12,7 +12,7 @@ namespace tessera::test {
 
 inline constexpr double steep_weights[] = {1e-6, 1, 1e3, 1e6};
 
-/// Bilinear, the heaviest point at the origin: the largest |w V| says nothing of the errors at u = v = 0.
+/// Bilinear, with the heaviest point at the origin: the largest |w V| does not predict the errors at u = v = 0.
 inline BezierPatch steep_bilinear(double heaviest) {
   return rational(1, 1, {{-1, -0.7, 0.3}, {}, {0.3, -0.2, 0.1}, {1, 0.7, -0.3}}, {1, heaviest, 1, 1.5});
 }
@@ -60,7 +60,7 @@ inline BezierPatch with_lost_derivative(Random& random, int m, double u, double 
   return rational(m, 1, points, weights);
 }
 
-/// A plane in nearly even parameters, weights 1 within `spread`, beside the origin: second derivatives are small, and
+/// A plane with nearly even parameters, weights 1 within `spread`, beside the origin: second derivatives are small, but
 /// their errors are not.
 inline BezierPatch nearly_linear(Random& random, int m, int n, double spread) {
   const Vec3 corner = uniform_vector(random, -1, 1);
@@ -72,8 +72,8 @@ inline BezierPatch nearly_linear(Random& random, int m, int n, double spread) {
   return rational(m, n, points, random_weights(random, m, n, 1 - spread, 1 + spread));
 }
 
-/// Steep patches about the origin, and nearly linear ones, turned in every way: one direction of `degree`, the other of
-/// any up to it.
+/// Steep patches about the origin, and nearly linear ones, in all orientations: one direction of `degree`, the other of
+/// any degree up to it.
 inline std::vector<BezierPatch> steep_patches(Random& random, int degree) {
   std::vector<BezierPatch> patches;
   const auto add = [&](auto make) {

@@ -1,4 +1,5 @@
-// Ruled surfaces and Coons patches straight on grids: values, calls of the borders, layouts, determinism, refusals.
+// Ruled surfaces and Coons patches evaluated directly on grids: values, calls of the borders, layouts, determinism,
+// errors.
 
 #include "tessera/surface_grid.h"
 
@@ -17,7 +18,7 @@
 namespace tessera::test {
 namespace {
 
-/// TESSERA_ISA for the life of this.
+/// Sets TESSERA_ISA for its lifetime.
 class ForcedIsa {
  public:
   explicit ForcedIsa(Isa isa) { setenv("TESSERA_ISA", std::string(name(isa)).c_str(), 1); }

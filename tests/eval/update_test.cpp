@@ -1,4 +1,4 @@
-// Updates of touched patches: the same bytes as edits one by one and evaluation of all, and nothing beside.
+// Updates of touched patches: the same bytes as edits one by one and evaluation of all, and nothing else is written.
 
 #include "tessera/evaluate.h"
 
@@ -36,7 +36,7 @@ struct Edits {
   operator PatchEdits() const { return {patch, points}; }
 };
 
-/// Of `count` patches; one in four becomes degenerate: an edge or all of it one point.
+/// Edits of `count` patches; one in four becomes degenerate: an edge or all of it is one point.
 Edits random_edits(Random& random, const PatchSet& set, std::size_t count) {
   Edits edits;
   std::vector<std::size_t> order = shuffled_order(random, set.patch_count());
@@ -125,7 +125,7 @@ TEST(Update, SameBytesAsEditsOneByOneAndFullEvaluation) {
   compare_with_full<double>(field, Representation::power, available_isas().back(), 8);
 }
 
-/// Positions and normals in blocks: touched ones as of a full evaluation, the memory of others as it was.
+/// Positions and normals in blocks: touched ones equal those of a full evaluation, all other memory is unchanged.
 TEST(Update, BlocksAreThoseOfFullEvaluation) {
   Random random(905);
   const auto patches = mixed_patches(random, 3, 9);
@@ -136,7 +136,7 @@ TEST(Update, BlocksAreThoseOfFullEvaluation) {
     GridUpdate update = value_of(GridUpdate::make(set));
     AlignedVector<float> position(plan.block_capacity()), normal(position.size()), full(position.size()),
         full_normal(position.size());
-    ASSERT_TRUE(evaluate(set, plan, GridBlocks<float>{.position = position, .normal = normal}).ok());
+    ASSERT_TRUE(evaluate(set, plan, QuantityBlocks<float>{.position = position, .normal = normal}).ok());
     for (const std::size_t count : {std::size_t{1}, patches.size() / 4, patches.size()}) {
       const Edits edits = random_edits(random, set, count);
       std::vector<bool> touched(position.size() / (3 * PatchSet::lanes * plan.count_u() * plan.count_v()), false);
@@ -145,10 +145,11 @@ TEST(Update, BlocksAreThoseOfFullEvaluation) {
       for (std::size_t block = 0; block < touched.size(); ++block)
         if (!touched[block])
           std::fill_n(position.begin() + static_cast<std::ptrdiff_t>(block * block_values), block_values, -7.0f);
-      ASSERT_TRUE(run_in(3, update, set, plan, edits, GridBlocks<float>{.position = position, .normal = normal}).ok());
+      ASSERT_TRUE(
+          run_in(3, update, set, plan, edits, QuantityBlocks<float>{.position = position, .normal = normal}).ok());
       edit_one_by_one(expected, edits);
       expect_same_sets(set, expected);
-      ASSERT_TRUE(evaluate(expected, plan, GridBlocks<float>{.position = full, .normal = full_normal}).ok());
+      ASSERT_TRUE(evaluate(expected, plan, QuantityBlocks<float>{.position = full, .normal = full_normal}).ok());
       EXPECT_TRUE(normal == full_normal);
       for (std::size_t k = 0; k < position.size(); ++k)
         ASSERT_EQ(position[k], touched[k / block_values] ? full[k] : -7.0f) << k;
@@ -226,11 +227,11 @@ TEST(Update, BadEditsAreRefusedBeforeAnythingIsWritten) {
   refused(edits, StatusCode::count_mismatch, -1);
   edits.points.resize(good.points.size() + 1);
   refused(edits, StatusCode::count_mismatch, -1);
-  GridViews<float> views = grids.views();
+  QuantityViews<float> views = grids.views();
   views.position.size = plan.capacity() - 1;
   EXPECT_EQ(update.run(set, plan, good, views).code(), StatusCode::buffer_too_small);
-  EXPECT_EQ(update.run(set, plan, good, GridViews<float>{}).code(), StatusCode::invalid_argument);
-  EXPECT_EQ(update.run(set, plan, good, GridViews<double>{}).code(), StatusCode::invalid_argument);
+  EXPECT_EQ(update.run(set, plan, good, QuantityViews<float>{}).code(), StatusCode::invalid_argument);
+  EXPECT_EQ(update.run(set, plan, good, QuantityViews<double>{}).code(), StatusCode::invalid_argument);
   PatchSet other = set_of({patches.begin(), patches.begin() + 3});
   const GridPlan its = value_of(GridPlan::make(other, t, t));
   EXPECT_EQ(update.run(other, its, {}, grids.views()).code(), StatusCode::invalid_argument);
@@ -240,7 +241,7 @@ TEST(Update, BadEditsAreRefusedBeforeAnythingIsWritten) {
   EXPECT_EQ(set.revision(), 1u);
 }
 
-/// Far points are looked at one by one: what set_control_points takes is taken.
+/// Far points are checked one by one: all that set_control_points accepts is accepted.
 TEST(Update, FarPointsThatFitAreTaken) {
   Random random(905);
   PatchSet set = set_of({random_polynomial(random, 3, 3), random_rational(random, 2, 2)}, every_kind());
@@ -288,7 +289,7 @@ TEST(Update, NothingIsAllocatedAfterTheFirst) {
   const GridPlan plan = value_of(GridPlan::make(set, t, t));
   GridUpdate update = value_of(GridUpdate::make(set));
   AllBuffers<float> grids(plan);
-  const GridViews<float> views = grids.views();
+  const QuantityViews<float> views = grids.views();
   const Edits all = random_edits(random, set, set.patch_count()), some = random_edits(random, set, 31);
   ASSERT_TRUE(update.run(set, plan, all, views).ok());
   const std::size_t before = allocation_count();

@@ -1,6 +1,6 @@
-// libFuzzer: whatever calls a program makes of the library, with whatever numbers, they return in bounded time and memory,
-// with a Status or with results that can be used. The input is read as a sequence of choices and numbers: a surface, a set
-// of it, and what is done with that.
+// libFuzzer: all calls of the library, with any numbers, must return in bounded time and memory, with a Status or with
+// usable results. The input is read as a sequence of choices and numbers: a surface, a set of it, and calls with that
+// set.
 
 #include <fuzzer/FuzzedDataProvider.h>
 
@@ -27,7 +27,7 @@ void require(bool holds) {
   if (!holds) std::abort();
 }
 
-/// Whether there is a value; if not, whether it says why.
+/// Whether there is a value or an error with a message.
 bool sound(const Status& status) {
   if (status.ok()) return true;
   require(!status.message().empty() && status.code() != StatusCode::internal &&
@@ -154,9 +154,9 @@ class Program {
     const Result<GridPlan> plan = GridPlan::make(set, u, v, {.geometry = {number(), number()}});
     if (!sound(plan)) return;
     std::vector<float> memory(6 * plan->capacity()), curvature(plan->capacity());
-    const GridViews<float> views{.position = View3<float>::interleaved(memory, 6, 0),
-                                 .normal = View3<float>::interleaved(memory, 6, 3),
-                                 .gaussian = View1<float>::interleaved(curvature)};
+    const QuantityViews<float> views{.position = View3<float>::interleaved(memory, 6, 0),
+                                     .normal = View3<float>::interleaved(memory, 6, 3),
+                                     .gaussian = View1<float>::interleaved(curvature)};
     if (!sound(evaluate(set, *plan, views))) return;
     for (const float x : memory) require(!std::isnan(x));
     for (const float x : curvature) require(!std::isnan(x));
@@ -170,7 +170,7 @@ class Program {
     const PatchSamples<float> samples{View1<const std::uint32_t>::interleaved(patch),
                                       View1<const float>::interleaved(fu), View1<const float>::interleaved(fv)};
     const PointOptions options{.outside = data_.ConsumeBool() ? OutsideDomain::clamp : OutsideDomain::error};
-    if (!sound(evaluate(set, samples, PointViews<float>{.position = View3<float>::interleaved(memory)}, options)))
+    if (!sound(evaluate(set, samples, QuantityViews<float>{.position = View3<float>::interleaved(memory)}, options)))
       return;
     for (const float x : memory) require(!std::isnan(x));
   }

@@ -1,5 +1,5 @@
-// libFuzzer: whatever bytes a reader is given, it returns a model, a mesh or an error, in time and memory that the length
-// of the input bounds (see the limits in CMakeLists.txt). What it returns can be used.
+// libFuzzer: for any bytes, a reader must return a model, a mesh or an error, in time and memory that the length of the
+// input bounds (see the limits in CMakeLists.txt). A model or mesh must be usable.
 
 #include <cmath>
 #include <cstdlib>
@@ -15,7 +15,7 @@ void require(bool holds) {
   if (!holds) std::abort();
 }
 
-/// Of these alone an evaluation may fail where they are not placed beyond the range of numbers: the functions or their
+/// Evaluation may fail only for these kinds, unless their placement exceeds the range of numbers: functions or their
 /// differences may not be finite.
 bool may_have_functions(const Surface& surface) {
   return std::holds_alternative<ParametricSurface>(surface) || std::holds_alternative<RuledSurface>(surface) ||

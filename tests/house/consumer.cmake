@@ -1,8 +1,9 @@
 # Builds and runs tests/consumer as its users would:
 #   cmake -D WAY=package      against the package that the build in BUILD installs into a fresh prefix
-#   cmake -D WAY=subdirectory with the sources in SOURCE as a subdirectory: shared libraries, which are then installed and found
-#                             as a package too, and static ones of the same objects
-# with -D SOURCE= BUILD= WORK= READELF= GENERATOR= COMPILER= [CONFIG= PYTHON= PKG_CONFIG=] -P consumer.cmake. WORK is emptied first.
+#   cmake -D WAY=subdirectory with the sources in SOURCE as a subdirectory: shared libraries, which are then installed
+#                             and found as a package too, and static ones of the same objects
+# with -D SOURCE= BUILD= WORK= READELF= GENERATOR= COMPILER= [CONFIG= PYTHON= PKG_CONFIG=] -P consumer.cmake. WORK is
+# emptied first.
 
 cmake_minimum_required(VERSION 3.25)
 
@@ -36,8 +37,9 @@ function(run_in folder program)
   execute_process(COMMAND ${WORK}/${folder}/${program} WORKING_DIRECTORY ${WORK}/${folder} COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
 
-# run_programs(FOLDER static|shared): all of them, and what they ask the loader for. Who tessellates does not need Embree; nor
-# does who has shared libraries, of which the one of rays needs it.
+# run_programs(FOLDER static|shared): runs all of them, and checks which libraries they ask the loader for. A program
+# that only tessellates does not need Embree; neither do programs on shared libraries, of which only the one of rays
+# needs it.
 function(run_programs folder kind)
   foreach(program IN LISTS programs)
     run_in(${folder} ${program})
@@ -58,8 +60,8 @@ function(run_programs folder kind)
   needs(${place}/tessellate_only libtessera_ray no)
 endfunction()
 
-# check_package(PREFIX): what is installed there must be of use on another machine, nothing in it naming this tree or its
-# private targets; and the programs must be built with it, by CMake and without.
+# check_package(PREFIX): checks that the installed package is usable on another machine and names neither this tree nor
+# its private targets; builds the programs with it, with CMake and without.
 function(check_package prefix)
   file(GLOB_RECURSE files ${prefix}/*.cmake ${prefix}/*.h)
   foreach(file IN LISTS files)
@@ -132,14 +134,14 @@ if(WAY STREQUAL "package")
     message(STATUS "Python is not there: the guides are not followed")
   endif()
 elseif(WAY STREQUAL "subdirectory")
-  # No build type: Tessera must not choose one for a project that left it open. It also compiles fastest, with kernels that
-  # are no better optimised than they need be: most of the time is theirs.
+  # No build type: Tessera must not choose one for a project that left it open. It also compiles fastest: most of the
+  # time is that of the kernels, which it optimises no more than necessary.
   set(options -D TESSERA_SOURCE=${SOURCE} -D CMAKE_BUILD_TYPE= -D TESSERA_INSTALL=ON -D TESSERA_KERNEL_LEVEL=-O1)
   set(TARGETS ${programs})
   build_consumer(subdirectory ${options} -D BUILD_SHARED_LIBS=ON)
   run_programs(subdirectory shared)
   run(${CMAKE_COMMAND} --install ${WORK}/subdirectory --prefix ${prefix})
-  # Where the libraries were built they must not be looked for.
+  # The programs must not look for libraries where these were built.
   file(RENAME ${WORK}/subdirectory ${WORK}/away)
   check_package(${prefix})
   file(RENAME ${WORK}/away ${WORK}/subdirectory)

@@ -17,7 +17,7 @@ constexpr std::array<std::string_view, 10> internal_export{
 
 bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 
-/// Whether the text has the word, followed by one of these characters if any are given.
+/// Whether the text has the word, followed by one of these characters if any are listed.
 bool has_word(const std::string& text, const std::string& word, std::string_view followed_by = {}) {
   for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
     const std::size_t end = at + word.size();
@@ -29,7 +29,7 @@ bool has_word(const std::string& text, const std::string& word, std::string_view
   return false;
 }
 
-/// More than a forward declaration.
+/// Whether the header defines the class, rather than only declares it.
 bool defines_class(const std::string& header, const std::string& name) {
   for (const char* keyword : {"class ", "struct ", "class [[nodiscard]] "})
     if (has_word(header, keyword + name, " ")) return true;
@@ -43,7 +43,7 @@ std::string plain_name(std::string_view symbol) {
   for (std::size_t k = 0; k < symbol.size(); ++k) {
     const bool is_operator = name.ends_with("::operator");
     const char c = symbol[k];
-    if (is_operator && (c == '<' || c == '>' || c == '-' || c == '(')) {  // these are its name
+    if (is_operator && (c == '<' || c == '>' || c == '-' || c == '(')) {  // part of the operator's name
       const std::size_t end = symbol.find('(', k + 1);
       name += symbol.substr(k, end - k);
       break;

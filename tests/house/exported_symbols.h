@@ -1,6 +1,6 @@
 #pragma once
-// The shared libraries export what the public headers declare, and nothing else: what is exported by chance is used by
-// chance, and can be taken for another library's function of the same name.
+// Checks that the shared libraries export the declarations of the public headers, and nothing else: an accidental
+// export may be used by others, or be taken for another library's function of the same name.
 
 #include <optional>
 #include <string>
@@ -9,11 +9,11 @@
 
 namespace tessera::house {
 
-/// Whether a demangled symbol is one that this text of a public header declares: a function or data of the namespace, or a
-/// member of a class of it, by their names alone.
+/// Whether this text of a public header declares a demangled symbol: a function or data of the namespace, or a member
+/// of a class of it, compared only by their names.
 bool is_declared(std::string_view symbol, const std::string& header);
 
-/// Whether an argument of a function is of a type that none of these public headers names, nor can its callers.
+/// Whether an argument of a function has a type that no public header names, so that callers cannot name it either.
 bool takes_inner_types(std::string_view symbol, const std::vector<std::string>& headers);
 
 /// The functions inside the core that the libraries above it call (engine/src/base/internal_export.h).

@@ -1,4 +1,4 @@
-// What the shared libraries show to the loader.
+// The symbols that the shared libraries show to the loader.
 
 #include "house/exported_symbols.h"
 
@@ -33,7 +33,7 @@ TEST(ExportedSymbols, DeclarationsAreFoundByName) {
     EXPECT_FALSE(is_declared(other, header)) << other;
 }
 
-/// By library, what the loader sees.
+/// The symbols that the loader sees, by library.
 const std::map<std::string, std::set<std::string>>& exports() {
   static const auto all = [] {
     std::map<std::string, std::set<std::string>> found;
@@ -62,7 +62,7 @@ bool declared_in_public(const std::string& symbol) {
 
 /// Functions inside the core that have the name of a public one.
 bool is_inner_overload(const std::string& symbol) {
-  // Of border curves: with the curve's name for messages, and the bound for both kinds of curve.
+  // Functions of border curves that take the curve's name for messages, and the bound for both kinds of curve.
   const bool of_border =
       symbol.find("(std::variant<tessera::Curve, tessera::ParametricCurve> const&") != std::string::npos;
   if (of_border && (symbol.ends_with(", char const*)") || symbol.starts_with("tessera::derivative_bound(")))
@@ -84,7 +84,7 @@ TEST(ExportedSymbols, AreThoseOfThePublicHeaders) {
       EXPECT_TRUE(declared_in_public(symbol) || is_internal_export(symbol)) << file << " exports " << symbol;
 }
 
-// Inline functions (weak) are their callers' own.
+// Inline functions (weak) belong to their callers.
 TEST(ExportedSymbols, NothingPublicIsLeftOut) {
   if (exports().empty()) GTEST_SKIP() << "no shared libraries are built under sanitizers";
   std::set<std::string> exported;

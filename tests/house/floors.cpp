@@ -15,12 +15,12 @@ Words split(const std::string& line) {
   return words;
 }
 
-// One line of the table; false where it has none of the three forms.
+// Parses one line of the table; false if it has none of the three forms.
 bool parse_line(const Words& words, FloorTable& table, std::vector<std::string>& faults) {
   if (words.size() < 2) return false;
   if (words[0] == "floor" && (words.size() == 2 || (words.size() > 3 && words[2] == "on"))) {
     const Names below(words.begin() + (words.size() == 2 ? 2 : 3), words.end());
-    // Only floors that were already stated may stand below, so there is no circle.
+    // A floor may stand only on floors stated before it, so there is no circle.
     for (const std::string& name : below) {
       if (!table.on.contains(name))
         faults.push_back(words[1] + " stands on " + name + ", which is not stated above it");

@@ -16,12 +16,12 @@ struct FloorTable {
   std::map<std::string, std::string, std::less<>> floor_of;  ///< public header's file name -> its floor
   std::map<std::string, Names, std::less<>> outside;         ///< prefix of a path between <> -> floors and headers
 
-  /// The floor itself and all that it stands on, however deep.
+  /// The floor itself and all floors that it stands on, however deep.
   Names reachable(std::string_view floor) const;
 };
 
-/// Reads the table. What is wrong with it (a line of another form, an unknown or repeated name, floors that stand on each
-/// other in a circle) is appended to `faults`.
+/// Reads the table. Appends its faults (a line of another form, an unknown or repeated name, floors that stand on each
+/// other in a circle) to `faults`.
 FloorTable parse_floors(std::string_view text, std::vector<std::string>& faults);
 
 }  // namespace tessera::house

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Compiles each fragment of the kernels (engine/src/kernel/*/*.inl.h) alone: fragments.py SOURCE COMPILE_COMMANDS.
 
-A fragment is included inside the namespace of an instruction set. It includes the fragments that it needs, and names at its
-top the headers that must stand before it, outside of the namespace. Both lists are enough if it compiles with nothing else.
-The flags are those of a unit in the build's compile_commands.json: AVX2's, or AVX-512's for fragments with avx512 in their
-names."""
+A fragment is included inside the namespace of an instruction set. It includes the fragments that it needs, and names at
+its top the headers that must stand before it, outside of the namespace. Both lists are enough if it compiles with
+nothing else. The flags are those of a unit in the build's compile_commands.json: AVX2's, or AVX-512's for fragments
+with avx512 in their names.
+"""
 
 import concurrent.futures
 import json

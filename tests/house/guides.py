@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Follows the guides as a newcomer would: guides.py GUIDE.md FOLDER PREFIX CMAKE GENERATOR COMPILER [--print].
 
-A block of a guide whose fence names a file, ```cpp main.cpp, goes to that file, one block after the other. The project is
-built against the package installed in PREFIX. An ```output PROGRAM ARGUMENTS block must be what PROGRAM prints, and its exit
-status 0; with ```failure instead of ```output the status must be 1. --print shows what it prints instead."""
+A block of a guide whose fence names a file, ```cpp main.cpp, goes to that file, one block after the other. The project
+is built against the package installed in PREFIX. An ```output PROGRAM ARGUMENTS block must be what PROGRAM prints, and
+its exit status 0; with ```failure instead of ```output the status must be 1. --print shows what it prints instead.
+"""
 
 import pathlib
 import re

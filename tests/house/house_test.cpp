@@ -1,4 +1,4 @@
-// Rules of the house that a text search can hold: the length of files, and where instruction sets may be named.
+// Rules of the house that a text search can check: the length of files, and where instruction sets may be named.
 
 #include <gtest/gtest.h>
 

@@ -12,8 +12,8 @@ struct Include {
   std::string path;
 };
 
-// Block comments become blanks, so that what they quote is not taken for code; lines keep their numbers. "/*" begins none
-// in a line comment or a string.
+// Replaces block comments by blanks, so that quoted code does not count as code; lines keep their numbers. "/*" in a
+// line comment or a string begins no block comment.
 std::string without_block_comments(std::string text) {
   enum class State { code, line_comment, block_comment, string } state = State::code;
   for (std::size_t k = 0; k < text.size(); ++k) {
@@ -67,7 +67,7 @@ std::pair<std::string, std::string> split_at_slash(const std::string& path) {
   return {path.substr(0, slash), path.substr(slash + 1)};
 }
 
-// Where a file belongs: its floor, and its name if it is a public header.
+// The floor of a file, and its name if it is a public header.
 struct Place {
   std::string floor;
   std::string header;  // empty for a file of engine/src
@@ -132,6 +132,13 @@ std::vector<std::string> check_includes(const SourceFile& file, const FloorTable
     if (!fault.empty()) faults.push_back(file.path + ":" + std::to_string(include.line) + ": " + fault);
   }
   return faults;
+}
+
+Names private_includes(const std::string& text, const FloorTable& table) {
+  Names names;
+  for (const Include& include : includes_of(text))
+    if (include.open == '"' && table.on.contains(split_at_slash(include.path).first)) names.insert(include.path);
+  return names;
 }
 
 std::map<std::string, Names, std::less<>> floors_of_cmake(const std::string& text) {

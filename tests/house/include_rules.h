@@ -15,12 +15,15 @@ struct SourceFile {
   std::string text;
 };
 
-/// What breaks the rules, a sentence each: "src/io/ply.cpp:7: <tbb/...> is not for io". `known` holds the paths of all files,
-/// against which "floor/file.h" and "tessera/file.h" are resolved.
+/// The breaches of the rules, a sentence each: "src/io/ply.cpp:7: <tbb/...> is not for io". `known` holds the paths of
+/// all files, against which "floor/file.h" and "tessera/file.h" are resolved.
 std::vector<std::string> check_includes(const SourceFile& file, const FloorTable& table, const Names& known);
 
 /// Floors that the call tessera_floor(NAME SOURCES ... BELOW ...) in a CMake file states, by floor. They only order the
-/// build, but must not tell another story than the table.
+/// build, but must agree with the table.
 std::map<std::string, Names, std::less<>> floors_of_cmake(const std::string& text);
+
+/// Headers of engine/src that a text includes.
+Names private_includes(const std::string& text, const FloorTable& table);
 
 }  // namespace tessera::house

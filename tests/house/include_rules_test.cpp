@@ -1,4 +1,4 @@
-// The checker of #include lines: that it finds each kind of breach, and that engine/ has none.
+// The checker of #include lines finds each kind of breach, and none in engine/.
 
 #include "house/include_rules.h"
 
@@ -105,7 +105,7 @@ TEST(FloorTable, FaultsAreFound) {
   }
 }
 
-// The rest reads the real tree.
+// The tests below read the real tree.
 
 FloorTable real_table() {
   std::vector<std::string> faults;
@@ -127,6 +127,20 @@ TEST(Engine, EveryIncludeStaysOnOrBelowItsFloor) {
     }
   }
   EXPECT_GT(checked, 30u) << "the tree was not found";
+}
+
+/// The command line and the renderer are written as a user would write them.
+TEST(Tools, IncludePublicHeadersAlone) {
+  const FloorTable table = real_table();
+  std::size_t checked = 0;
+  for (const std::string& path : files_under("tools")) {
+    if (!path.ends_with(".h") && !path.ends_with(".cpp")) continue;
+    ++checked;
+    for (const std::string& name : private_includes(read_text(path), table))
+      ADD_FAILURE() << path << " includes " << name << ", which is private to the engine";
+  }
+  EXPECT_GT(checked, 30u) << "the tree was not found";
+  EXPECT_EQ(private_includes("#include \"io/file.h\"\n#include \"tessera/io.h\"\n", table), Names{"io/file.h"});
 }
 
 TEST(Engine, TheBuildTellsTheSameStoryAsTheTable) {

@@ -17,7 +17,7 @@ constexpr std::array<IsaUnit, 4> units{{
 // Functions that the linker sees: global and weak ones, and indirect ones. Data holds no instructions.
 bool is_visible_function(char type) { return type == 'T' || type == 'W' || type == 'i'; }
 
-// All that xsimd calls an architecture on x86.
+// All names of x86 architectures in xsimd.
 const std::regex& any_architecture() {
   static const std::regex pattern(R"(\bxsimd::(sse[0-9_]*|ssse3|avx[0-9a-z]*|fma[0-9]|generic_for_dispatch)\b)");
   return pattern;

@@ -1,4 +1,4 @@
-// The units of one instruction set each leave no function behind that the rest of the program could get by mistake.
+// The units of one instruction set contain no function that the rest of the program could use by mistake.
 
 #include "house/isa_symbols.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-// What a command prints.
+// The output of a command.
 
 #include <array>
 #include <cstdio>

@@ -76,7 +76,7 @@ grep -qx -- ".* install --no-install-recommends libocct-modeling-data-dev" "$pla
 
 printf 'libosd-dev\nlibsisl-dev\n' >"$place/missing"
 echo libosd-dev >"$place/unknown"
-attempt "$place/bin" --for peers  # a peer that there is not keeps no other out
+attempt "$place/bin" --for peers  # one unavailable peer does not prevent the others
 expect 1 "could not install libosd-dev:"
 grep -qx libsisl-dev "$place/missing" && { echo "libsisl-dev was not installed" >&2; exit 1; }
 rm "$place/unknown"

@@ -1,4 +1,4 @@
-// What every reader must stand of the file system, in each format.
+// Faults of the file system that every reader must report, in each format.
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

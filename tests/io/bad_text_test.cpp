@@ -1,5 +1,5 @@
-// What every reader must stand, in each format: texts that are cut, laid out otherwise, in another locale, with numbers
-// that are none, and with counts that they do not hold.
+// Texts that every reader must accept or report, in each format: truncated, with another layout, in another locale,
+// with malformed numbers, and with counts that exceed their contents.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace {
 
 class BadText : public testing::TestWithParam<TextFormat> {
  protected:
-  /// From memory of its own, so that a sanitizer sees a read beyond the end.
+  /// In memory of its own, so that a sanitizer sees a read beyond the end.
   static Reading parse(const std::string& text) {
     const std::vector<char> bytes(text.begin(), text.end());
     return GetParam().parse(std::string_view(bytes.data(), bytes.size()), "m");
@@ -37,7 +37,7 @@ std::size_t line_in(const std::string& message) {
   return line;
 }
 
-/// A refusal is one: it names the file, and if a line, then one of the text; what is read is sound.
+/// Checks that an error names the file and, if a line, one of the text; and that a model or mesh is sound.
 void expect_sound(const Reading& reading, std::string_view text, const std::string& what) {
   if (reading.ok()) {
     EXPECT_EQ(reading.unsound, "") << what << '\n' << text;
@@ -143,7 +143,7 @@ TEST_P(BadText, TheLocaleDoesNotMatter) {
   }
 }
 
-/// Where numbers stand in a text, outside of strings and comments.
+/// Places of numbers in a text, outside of strings and comments.
 std::vector<std::pair<std::size_t, std::size_t>> numbers_in(const std::string& text) {
   std::vector<std::pair<std::size_t, std::size_t>> places;
   const auto part_of_number = [](char c) {
@@ -162,7 +162,7 @@ std::vector<std::pair<std::size_t, std::size_t>> numbers_in(const std::string& t
   return places;
 }
 
-/// The texts in which one number of a sample is another.
+/// The texts in which one number of a sample is replaced.
 template <class Use>
 void for_each_with(const std::string& sample, const std::vector<std::string>& numbers, const Use& use) {
   for (const auto& [at, size] : numbers_in(sample))
@@ -190,7 +190,7 @@ TEST_P(BadText, NumbersThatAreNoneAreRefusedWithTheirLine) {
     });
   }
   std::printf("%zu texts, %zu refused, %zu of them with the number and its line\n", texts, refused, named);
-  // Some numbers stand in what is not read, and meshes may have vertices that are not finite.
+  // Some numbers belong to parts that are not read, and meshes may have vertices that are not finite.
   EXPECT_GT(refused, texts * (mesh ? 1 : 4) / 5);
 }
 

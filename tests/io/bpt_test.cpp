@@ -1,4 +1,4 @@
-// The reader of .bpt files: what it accepts, what it says of what it does not.
+// The reader of .bpt files: what it accepts, and its errors.
 
 #include <gtest/gtest.h>
 
@@ -125,14 +125,14 @@ TEST(Bpt, FewerPatchesThanStatedIsAnError) {
   EXPECT_EQ(error_of(text),
             "m.bpt:11: expected the degree along u of patch 3 of 3, from 1 to 15, found the end of the file");
   text[0] = '1';
-  EXPECT_EQ(error_of(text), "m.bpt:7: expected the end of the file after 1 patches, found \"1\"");
+  EXPECT_EQ(error_of(text), "m.bpt:7: expected the end of the file after 1 patch, found \"1\"");
 }
 
 TEST(Bpt, ATruncatedTeapotIsNoTeapot) {
   const std::string text = test::content_of(teapot_path);
   const Result<Model> whole = parse_bpt(text, "teapot.bpt");
   ASSERT_TRUE(whole.ok()) << whole.status().message();
-  // Only a cut inside the last number, or behind it, leaves a text that nobody can tell from a whole one.
+  // Only a text that is cut inside the last number, or behind it, cannot be told from a whole one.
   const std::size_t last_number = text.find_last_of(" \n", text.find_last_not_of(" \n")) + 1;
   for (std::size_t bytes = 0; bytes < text.size(); ++bytes) {
     const Result<Model> cut = parse_bpt(std::string_view(text).substr(0, bytes), "teapot.bpt");

@@ -1,4 +1,4 @@
-// The reader of .bv files: which segments become surfaces, what is passed over, what is refused.
+// The reader of .bv files: which segments become surfaces, what is skipped, and errors.
 
 #include <gtest/gtest.h>
 
@@ -46,7 +46,7 @@ TEST(Bv, GroupLinesNameWhatFollows) {
   EXPECT_EQ(model.surfaces[2].name, "\xC3\xA9lytre");
   EXPECT_EQ(model_of(parse_bv, "group 1 \tthe left part \r\n" + bilinear).surfaces[0].name, "the left part");
   EXPECT_EQ(model_of(parse_bv, "GROUP 7\n" + bilinear).surfaces[0].name, "");
-  // A name that is a large part of the file is not stored once a surface: 200 bytes at most, no half characters.
+  // A name that is a large part of the file is not stored for each surface: at most 200 bytes, in whole characters.
   const Model long_name = model_of(parse_bv, "group 0 x" + std::string(1000, 'a') + "\n" + bilinear);
   EXPECT_EQ(long_name.surfaces[0].name->size(), 200u);
   std::string accents = "group 0 x";

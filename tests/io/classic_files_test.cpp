@@ -1,5 +1,5 @@
-// Real files of the classic formats: the teapot is the same pot in all of them, spheres are round; other programs'
-// values of what is read. That every file is read stands in tests/conformance.
+// Real files of the classic formats: the teapot is the same in all of them, spheres are round; values of other
+// programs. tests/conformance checks that every file is read.
 
 #include <gtest/gtest.h>
 
@@ -64,7 +64,8 @@ TEST_F(ClassicFiles, TheTeapotIsTheSameInEveryFormat) {
   ASSERT_EQ(pot.size(), 32u);
   EXPECT_TRUE(pot == point_sets(read("bezierview_bv/SurfLab__teapot.bv"), as_it_is));
   EXPECT_TRUE(pot == point_sets(read("g2_gotools/splipy_teapot.g2"), as_it_is));
-  // This one is smaller, stands on its bottom, and has that where the others have a rim: Newell's 28 patches agree.
+  // This teapot is smaller, stands on its bottom, and has a bottom instead of the others' rim: Newell's 28 patches
+  // agree.
   const auto lowered = [](const Vec3& p) { return 40 * p - Vec3{0, 0, 6}; };
   const auto small = point_sets(read("classic_teaset/mkeeter_teapot.bpt"), lowered);
   std::vector<PointSet> shared;
@@ -88,7 +89,7 @@ double off_sphere(const Model& model, const Vec3& centre, double radius) {
 }
 
 TEST_F(ClassicFiles, SpheresAreRound) {
-  // As round as their digits: ten decimals, six, six significant.
+  // Round up to their digits: ten decimals, six, six significant.
   EXPECT_LE(off_sphere(read("bezierview_bv/SurfLab__sphere.bv"), {}, 1), 2e-10);
   EXPECT_LE(off_sphere(read("g2_gotools/splipy_sphere.g2"), {}, 1), 2e-6);
   EXPECT_LE(off_sphere(read("rib_nupatch/trimmed_nupatch_sphere.rib"), {0.0730667, 0.146111, 0}, 10.1086), 1e-4);
@@ -99,7 +100,7 @@ TEST_F(ClassicFiles, TheTrimmedSphereKeepsItsLoop) {
   const ModelSurface& surface = model.surfaces.at(0);
   ASSERT_EQ(surface.trims->size(), 1u);
   ASSERT_EQ(surface.trims->at(0).curves.size(), 4u);
-  // Around the whole of the parameters, each curve from where the one before it ends.
+  // Runs around the whole of the parameters; each curve begins where the one before it ends.
   Vec3 end;
   for (const Curve& curve : surface.trims->at(0).curves) {
     EXPECT_LE(length(evaluate_jet(curve, curve.domain().from).position - end), 1e-12);

@@ -1,4 +1,4 @@
-// Certified meshes of models, the project's and those of TESSERA_TEST_DATA, are without a crack. More files, tolerances and
+// Certified meshes of models, the project's and those of TESSERA_TEST_DATA, have no cracks. More files, tolerances and
 // STEP and IGES: bench/tess/crack_report.cpp.
 
 #include <gtest/gtest.h>
@@ -58,7 +58,7 @@ TEST(Cracks, NoneInRealModels) {
   EXPECT_GE(expect_no_cracks(data), 20u);
 }
 
-/// The survey itself: a slit is found.
+/// The survey itself finds a slit.
 TEST(Cracks, AreFoundWhereVerticesPart) {
   const Result<Model> model = read_model(std::filesystem::path(TESSERA_SOURCE_DIR) / "tools" / "models" / "teapot.bpt");
   ASSERT_TRUE(model.ok());

@@ -1,4 +1,4 @@
-// Expressions: what they mean, what is refused and how, and that threads do not disturb each other.
+// Expressions: values, errors, and independence of threads.
 
 #include "io/expression.h"
 
@@ -22,7 +22,7 @@ constexpr std::array<std::string_view, 2> uv{"u", "v"};
 Expression compiled(std::string_view text) { return test::value_of(Expression::compile(text, uv)); }
 double value(std::string_view text, double u = 0.5, double v = 2) { return compiled(text)(std::array{u, v}); }
 
-/// Refused at once, with the expression and these words.
+/// Expects an error at once, with the expression and these words.
 void expect_refusal(std::string_view text, const std::string& words) {
   test::expect_refused(Expression::compile(text, uv), StatusCode::parse_error, Status::no_index, words);
 }
@@ -129,9 +129,9 @@ TEST(Expression, RefusalsSayWhatAndWhere) {
 }
 
 TEST(Expression, ThereAreNoAssignmentsStringsListsOrOtherNames) {
-  expect_refusal("u = 3", "nothing can be assigned (\"=\" at position 2)");
-  expect_refusal("u += 3", "nothing can be assigned");
-  expect_refusal("1, 2", "one value is wanted, not a list");
+  expect_refusal("u = 3", "there are no assignments (\"=\" at position 2)");
+  expect_refusal("u += 3", "there are no assignments");
+  expect_refusal("1, 2", "expected one value, found a list");
   expect_refusal("\"text\"", "unexpected character \"\"\" at position 0");
   expect_refusal("u[0]", "unexpected character \"[\" at position 1");
   expect_refusal("1;2", "unexpected character \";\" at position 1");

@@ -1,4 +1,4 @@
-// Whole files in; files out that appear whole or not at all.
+// Reads whole files; writes files that appear whole or not at all.
 
 #include "io/file.h"
 
@@ -8,9 +8,10 @@
 
 #include <csignal>
 
-#include "io/output_file.h"
 #include "support/privileges.h"
 #include "support/scratch_folder.h"
+#include "tessera/io.h"
+#include "tessera/output_file.h"
 
 namespace tessera {
 namespace {

@@ -1,4 +1,4 @@
-// The reader of .g2 files: spline and elementary surfaces, what is passed over, what is refused.
+// The reader of .g2 files: spline and elementary surfaces, what is skipped, and errors.
 
 #include <gtest/gtest.h>
 
@@ -92,7 +92,7 @@ TEST(G2, FlatAndSteepConesAreCones) {
     const Domain d = domain(model.surfaces[0].surface);
     const double slope = std::tan(angle);
     for (const double u : {0.0, 1.0, 4.0}) {
-      // Heights count from the apex, 1 / slope below: that takes so many digits.
+      // Heights count from the apex, 1 / slope below: that costs so many digits.
       const double scale = 1e-15 * (1 + slope) * (1 + 1 / slope);
       expect_near(at(model, 0, u, d.v0), {std::cos(u), std::sin(u), 0}, 4 * scale);
       expect_near(at(model, 0, u, d.v1), {(1 + slope) * std::cos(u), (1 + slope) * std::sin(u), 1}, 4 * scale);
@@ -106,7 +106,7 @@ TEST(G2, ToriAreNurbsFromBorderToBorder) {
                                              "290 1 0 0\n3\n5 2" + frame + "0.25 2.5\n-1 3\n1\n");
   ASSERT_EQ(model.surfaces.size(), 2u);
   EXPECT_EQ(model.warnings,
-            std::vector<std::string>{"m: u and v of 1 elementary surfaces are swapped in the file, and here are not"});
+            std::vector<std::string>{"m: 1 elementary surface has u and v swapped in the file, but not here"});
   const auto torus = [](double u, double v) {
     const double r = 5 + 2 * std::cos(v);
     return Vec3{1 + r * std::cos(u), 2 + r * std::sin(u), 3 + 2 * std::sin(v)};
@@ -150,7 +150,7 @@ TEST(G2, ErrorsSayWhereWhatAndWhatWasWanted) {
       {bent + "1 2 3\n", "m:13: expected " + header + ", found \"1\""},
       {"200 1 0 0\n4 0\n", "m:2: expected the dimension of object 1 (class 200), from 1 to 3, found \"4\""},
       {"200 1 0 0\n3 2\n",
-       "m:2: expected whether the surface is rational of object 1 (class 200), from 0 to 1, found \"2\""},
+       "m:2: expected the flag of a rational surface of object 1 (class 200), from 0 to 1, found \"2\""},
       {"200 1 0 0\n3 0\n0 2\n",
        "m:3: expected the number of points along a direction of object 1 (class 200), from 1 to 1073741824, found "
        "\"0\""},
@@ -166,9 +166,9 @@ TEST(G2, ErrorsSayWhereWhatAndWhatWasWanted) {
       {"270 1 0 0\n3\n1\n0 0 0\n0 0 1\n0 0 2\n0 1\n0 1\n0\n",
        "m:1: object 1 (class 270): expected a z axis and an x axis of different directions"},
       {"290 1 0 0\n3\n5 1\n0 0 0\n0 0 1\n1 0 0\n1\n0 9\n0 1\n0\n",
-       "m:1: object 1 (class 290): its ranges are not above 0 and at most a full turn"},
+       "m:1: object 1 (class 290): its ranges must be above 0 and at most a full turn"},
       {"260 1 0 0\n3\n1\n0 0 0\n0 0 1\n1 0 0\n2\n",
-       "m:7: expected whether the surface is bounded of object 1 (class 260), from 0 to 1, found \"2\""},
+       "m:7: expected the flag of a bounded surface of object 1 (class 260), from 0 to 1, found \"2\""},
   };
   for (const auto& [text, message] : cases) EXPECT_EQ(error_of(parse_g2, text).substr(0, message.size()), message);
 }

@@ -1,4 +1,4 @@
-// glTF meshes, read back by another reader: what it finds is the mesh, and keeps the rules of the specification
+// glTF meshes, read back by another reader: the result equals the mesh, and keeps the rules of the specification
 // (sections 3.6 and 3.7: alignment, ranges, boxes of positions, unit normals).
 
 #include <gtest/gtest.h>
@@ -162,7 +162,7 @@ TEST_P(Gltf, PartsMayShareVerticesAndBeEmpty) {
   const std::vector<Part> parts = parts_of(written(mesh));
   ASSERT_EQ(parts.size(), 3u);
   EXPECT_EQ(parts[0].name, "first");
-  EXPECT_EQ(parts[1].name, "\"quoted\" and \xc3\xa4\nsecond \xef\xbf\xbd");  // U+FFFD for what is no UTF-8
+  EXPECT_EQ(parts[1].name, "\"quoted\" and \xc3\xa4\nsecond \xef\xbf\xbd");  // U+FFFD for invalid UTF-8
   EXPECT_EQ(parts[2].name, "");
   std::size_t triangle = 0;
   for (const Part& part : parts) {

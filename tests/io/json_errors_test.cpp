@@ -1,4 +1,4 @@
-// What the reader of .json models says of what is no model: the file, the line, the place, what it found and wanted.
+// Errors of the reader of .json models: the file, the line, the place, what it found and what it expected.
 
 #include <gtest/gtest.h>
 
@@ -56,13 +56,13 @@ TEST(JsonErrors, TextsThatAreNoModels) {
             "m.json:2: /format: expected \"tessera\", found \"other\"");
   EXPECT_EQ(error_of(R"({"format": "tessera", "surfaces": []})"), "m.json:1: \"version\" is missing");
   EXPECT_EQ(error_of(R"({"format": "tessera", "version": 2, "surfaces": []})", StatusCode::unsupported),
-            "m.json:1: /version: version 2, and this reader knows version 1");
+            "m.json:1: /version: found version 2, this reader knows version 1");
   EXPECT_EQ(error_of(R"({"format": "tessera", "version": "1", "surfaces": []})"),
             "m.json:1: /version: expected an integer from 1 to 1048576, found \"1\"");
   EXPECT_EQ(error_of(R"({"format": "tessera", "version": 1, "surfaces": []})"),
             "m.json:1: /surfaces: expected an array of surfaces, found an empty array");
   EXPECT_EQ(error_of(R"({"format": "tessera", "version": 1, "surface": []})"),
-            "m.json:1: unknown key \"surface\"; there are format, version, description, surfaces");
+            "m.json:1: unknown key \"surface\"; known keys are format, version, description, surfaces");
   EXPECT_EQ(error_in("3"), "m.json:2: /surfaces/0: expected a surface, found 3");
   EXPECT_EQ(error_in("{}"), "m.json:2: /surfaces/0: \"kind\" is missing");
   expect_begin(error_in(R"({"kind": "bezir"})"), "m.json:2: /surfaces/0/kind: expected one of bezier, tensor, ");
@@ -70,7 +70,7 @@ TEST(JsonErrors, TextsThatAreNoModels) {
 }
 
 TEST(JsonErrors, LinesArePlacesOfTheValue) {
-  // Numbers are known to end by what stands behind them, be it the end of the line.
+  // A number ends at the byte behind it, even if that ends the line.
   const std::string head = "{\"format\": \"tessera\",\n\"version\": 1,\n\"surfaces\": [\n";
   EXPECT_EQ(error_of(head + "7\n\n\n]}"), "m.json:4: /surfaces/0: expected a surface, found 7");
   EXPECT_EQ(error_of(head + "\n7]}"), "m.json:5: /surfaces/0: expected a surface, found 7");
@@ -82,14 +82,15 @@ TEST(JsonErrors, LinesArePlacesOfTheValue) {
 }
 
 TEST(JsonErrors, KeysAreKnownAndStandOnce) {
-  EXPECT_EQ(error_in(surface_of("bezier", square + R"(, "wieghts": [])")),
-            "m.json:2: /surfaces/0: unknown key \"wieghts\"; there are kind, name, description, placement, degree, "
-            "points, weights");
+  EXPECT_EQ(
+      error_in(surface_of("bezier", square + R"(, "wieghts": [])")),
+      "m.json:2: /surfaces/0: unknown key \"wieghts\"; known keys are kind, name, description, placement, degree, "
+      "points, weights");
   EXPECT_EQ(error_of("{\"version\": 1,\n\"format\": 2,\n\"version\": 3}"),
-            "m.json:3: the key \"version\" stands twice in one object");
-  expect_words(error_in(surface_of("bezier", square + ",\n" + square)), "m.json:3: the key \"points\" stands twice");
+            "m.json:3: the key \"version\" occurs twice in one object");
+  expect_words(error_in(surface_of("bezier", square + ",\n" + square)), "m.json:3: the key \"points\" occurs twice");
   expect_words(error_in(surface_of("sphere", R"("radius": 1, "axis": {"dir": [0,0,1]})")),
-               "/surfaces/0/axis: unknown key \"dir\"; there are origin, direction, zero");
+               "/surfaces/0/axis: unknown key \"dir\"; known keys are origin, direction, zero");
 }
 
 TEST(JsonErrors, ShapesOfNets) {
@@ -103,7 +104,7 @@ TEST(JsonErrors, ShapesOfNets) {
   EXPECT_EQ(error_in(surface_of("bezier", R"("points": {"a": 1})")),
             "m.json:2: /surfaces/0/points: expected rows of points, found an object");
   EXPECT_EQ(error_in(surface_of("bezier", square + R"(, "weights": [[1,1]])")),
-            "m.json:2: /surfaces/0/weights: expected 2 x 2, one a point, found 1 x 2");
+            "m.json:2: /surfaces/0/weights: expected 2 x 2, one per point, found 1 x 2");
   EXPECT_EQ(error_in(surface_of("bezier", square + R"(, "degree": [1, 2])")),
             "m.json:2: /surfaces/0/degree/1: the net is one of degree [1, 1]");
   expect_begin(error_in(surface_of("bezier", R"("points": [[[0,0,0],[0,1,0]]])"), StatusCode::unsupported_degree),
@@ -221,7 +222,7 @@ TEST(JsonErrors, NestingIsLimited) {
 TEST(JsonErrors, HugeListsAreRefusedInTime) {
   std::string keys = "{";
   for (int k = 0; k < 200000; ++k) keys += "\"k" + std::to_string(k) + "\":0,";
-  expect_words(error_of(keys + "\"k7\":0}"), "the key \"k7\" stands twice");
+  expect_words(error_of(keys + "\"k7\":0}"), "the key \"k7\" occurs twice");
   std::string zeros = "[0";
   for (int k = 0; k < 500000; ++k) zeros += ",0";
   expect_words(error_in(surface_of("bezier", "\"points\": [" + zeros + "]]")),

@@ -1,5 +1,5 @@
-// The document of the format, tools/models/FORMAT.md, says what holds: its examples are read, and it leaves out no kind
-// and no key.
+// The document of the format, tools/models/FORMAT.md, is right: its examples can be read, and it omits no kind and no
+// key.
 
 #include <gtest/gtest.h>
 
@@ -35,7 +35,7 @@ std::string as_model(const std::string& example) {
   return example.find("\"format\"") != std::string::npos ? example : model_of(example);
 }
 
-/// What stands between `begin` and `end` in the message of a refusal, split at commas.
+/// The words between `begin` and `end` in an error message, split at commas.
 std::vector<std::string> listed_in_refusal(const std::string& surface, const std::string& begin,
                                            const std::string& end) {
   const std::string message = parse_json_model(model_of(surface), "m.json").status().message();
@@ -68,7 +68,7 @@ TEST(JsonFormat, EveryKindHasAnExample) {
 TEST(JsonFormat, EveryKeyIsTold) {
   const std::string text = document();
   for (const std::string& kind : kinds()) {
-    const auto keys = listed_in_refusal(surface_of(kind, R"("?": 0)"), "there are ", "");
+    const auto keys = listed_in_refusal(surface_of(kind, R"("?": 0)"), "known keys are ", "");
     EXPECT_GE(keys.size(), 5u);
     for (const std::string& key : keys) EXPECT_NE(text.find("`" + key + "`"), std::string::npos) << kind << ": " << key;
   }

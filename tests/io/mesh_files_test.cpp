@@ -1,4 +1,4 @@
-// What is written is read back, in each format; what cannot be written is refused.
+// Meshes are read back as they were written, in each format; meshes that no file can hold are errors.
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -209,7 +209,7 @@ TEST_P(MeshWriters, BadMeshesAreRefusedAndNothingAppears) {
   EXPECT_TRUE(folder_.names().empty());
 }
 
-/// As the first bad value is found among pieces of many threads.
+/// The first bad value is found among pieces of many threads.
 TEST_P(MeshWriters, TheFirstOfSeveralBadVerticesIsNamed) {
   Mesh mesh = random_mesh(200000, 3);
   for (const std::size_t vertex : {199999u, 150001u, 70000u})
@@ -243,7 +243,7 @@ TEST_P(MeshWriters, OutputsThatCannotBeWrittenAreErrors) {
   EXPECT_EQ(folder_.names().size(), 2u);
 }
 
-/// As on a disk that fills up.
+/// Behaves like a disk that fills up.
 TEST_P(MeshWriters, AFileThatMayNotGrowLeavesTheOldOne) {
   folder_.file("mesh" + GetParam(), "before");
   struct rlimit limit {};

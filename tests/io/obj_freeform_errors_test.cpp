@@ -1,4 +1,4 @@
-// Free-form OBJ files that are wrong: what is said of them, and that nothing worse happens.
+// Free-form OBJ files that are wrong: their errors, and no other harm.
 
 #include <algorithm>
 
@@ -47,7 +47,7 @@ TEST(ObjFreeformErrors, SyntaxIsNamedWithItsLine) {
             "m.obj:7: expected 4 finite numbers after surf, the ranges of u and v, found the end of the line");
   EXPECT_EQ(error_of(spoiled("surf 0 1 0 1 1 2 3 4", "surf 0 1 0 1 1")),
             "m.obj:7: expected at least 2 control points, found the end of the line");
-  // A continuation that is none, as the specification's own example of stech prints it.
+  // A malformed continuation, as the specification's own example of stech prints it.
   EXPECT_EQ(error_of(spoiled("1 2 3 4", "1 2 \\ 3 4")), "m.obj:7: expected an index of a control point, found \"\\\"");
   EXPECT_EQ(error_of(spoiled("deg 1 1", "1 1")),
             "m.obj:6: expected a statement (is the line above to be continued, without a \\ at its end?), found \"1\"");
@@ -57,7 +57,7 @@ TEST(ObjFreeformErrors, SyntaxIsNamedWithItsLine) {
 }
 
 TEST(ObjFreeformErrors, ReferencesStayWithinWhatStandsAbove) {
-  const std::string vertices = "an index into the 4 vertices above, 1 to 4 or -4 to -1";
+  const std::string vertices = "an index into the vertices above, 1 to 4 or -4 to -1";
   for (const char* index : {"0", "5", "-5", "9223372036854775807", "-9223372036854775808"})
     EXPECT_EQ(error_of(spoiled("2 3 4", std::string("2 3 ") + index)),
               "m.obj:7: expected " + vertices + ", found \"" + index + "\"");
@@ -66,13 +66,13 @@ TEST(ObjFreeformErrors, ReferencesStayWithinWhatStandsAbove) {
     EXPECT_EQ(message.rfind("m.obj:7: expected an index of a control point, found", 0), 0u) << message;
   }
   EXPECT_EQ(error_of(spoiled("2 3 4", "2 3 4/1")),
-            "m.obj:7: expected no index, as there are 0 vt lines above, found \"1\"");
+            "m.obj:7: expected no index, as there are no vt lines above, found \"1\"");
   EXPECT_EQ(error_of(spoiled("2 3 4", "2 3 4//1")),
-            "m.obj:7: expected no index, as there are 0 vn lines above, found \"1\"");
+            "m.obj:7: expected no index, as there are no vn lines above, found \"1\"");
   EXPECT_EQ(error_of(spoiled("2 3 4", "2 3 4/")),
             "m.obj:7: expected an index of a texture vertex, found the end of the line");
   EXPECT_EQ(
-      error_of("cstype bezier\ndeg 1 1\n" + bilinear).rfind("m.obj:5: expected no index, as there are 0 vertices", 0),
+      error_of("cstype bezier\ndeg 1 1\n" + bilinear).rfind("m.obj:5: expected no index, as there are no vertices", 0),
       0u);
 }
 
@@ -84,28 +84,28 @@ TEST(ObjFreeformErrors, SurfacesThatDoNotFitAreNamed) {
   EXPECT_EQ(surface("cstype bezier", "#"), place + "there is no cstype above");
   EXPECT_EQ(surface("deg 1 1", "#"), place + "there is no deg for u above");
   EXPECT_EQ(surface("deg 1 1", "deg 1"), place + "there is no deg for v above");
-  EXPECT_EQ(surface("deg 1 1", "deg 1 16"), place + "the degree along v is 16, 1 to 15 are read");
-  EXPECT_EQ(surface("deg 1 1", "deg 0 1"), place + "the degree along u is 0, 1 to 15 are read");
-  EXPECT_EQ(surface("deg 1 1", "deg 2 2"), place + "its parameters and degrees want 3 x 3 control points, it has 4");
+  EXPECT_EQ(surface("deg 1 1", "deg 1 16"), place + "the degree along v is 16, it must be 1 to 15");
+  EXPECT_EQ(surface("deg 1 1", "deg 0 1"), place + "the degree along u is 0, it must be 1 to 15");
+  EXPECT_EQ(surface("deg 1 1", "deg 2 2"), place + "its parameters and degrees need 3 x 3 control points, found 4");
   EXPECT_EQ(surface("parm u 0 1", ""), "m.obj:8: surface 0 (a): parm u is missing");
   EXPECT_EQ(surface("parm v 0 1", ""), "m.obj:8: surface 0 (a): parm v is missing");
-  EXPECT_EQ(surface("parm u 0 1", "parm u 1"), place + "parm u has 1 values, at least 2 are wanted");
+  EXPECT_EQ(surface("parm u 0 1", "parm u 1"), place + "parm u has 1 value, at least 2 are needed");
   EXPECT_EQ(surface("parm u 0 1", "parm u 1 1"), place + "parm u does not increase: 1 follows 1");
   EXPECT_EQ(surface("surf 0 1 0 1", "surf 1 1 0 1"), place + "the range from 1 to 1 along u is empty");
   EXPECT_EQ(surface("surf 0 1 0 1", "surf 0 1 0 1.5"),
-            place + "the range from 0 to 1.5 along v reaches outside parm v, which runs from 0 to 1");
+            place + "the range from 0 to 1.5 along v exceeds parm v, which runs from 0 to 1");
   EXPECT_EQ(surface("cstype bezier", "cstype bspline"),
-            place + "parm u has 2 values, a B-spline of degree 1 wants at least 4 knots");
+            place + "parm u has 2 values, a B-spline of degree 1 needs at least 4 knots");
   EXPECT_EQ(surface("cstype bezier", "cstype bmatrix"), place + "there is no step for u above");
   EXPECT_EQ(surface("cstype bezier", "cstype bmatrix\nstep 0 1"),
             "m.obj:9: surface 0 (a): the step along u is 0, it must be at least 1");
   EXPECT_EQ(surface("cstype bezier", "cstype bmatrix\nstep 1 1"), "m.obj:9: surface 0 (a): there is no bmat u above");
   EXPECT_EQ(surface("cstype bezier", "cstype bmatrix\nstep 1 1\nbmat u 1 2"),
-            "m.obj:10: surface 0 (a): bmat u has 2 entries, degree 1 wants 4");
+            "m.obj:10: surface 0 (a): bmat u has 2 entries, degree 1 needs 4");
   EXPECT_EQ(surface("parm u 0 1", "parm u 0 1 2\ncstype bmatrix\nbmat u 1 0 0 1\nstep 9000000000000000000 1"),
             place +
-                "parm u has 3 values and the step is 9000000000000000000: that wants more than the 4 control points "
-                "there are");
+                "parm u has 3 values and the step is 9000000000000000000: they need more than the 4 control points "
+                "found");
 }
 
 TEST(ObjFreeformErrors, TheKindsOwnErrorsKeepTheirCode) {
@@ -139,17 +139,16 @@ TEST(ObjFreeformErrors, TrimsReferToCurvesAboveAndStayOnThem) {
     return error_of(four_vertices + curve + bilinear.substr(0, bilinear.size() - 4) + trim + "\nend\n");
   };
   EXPECT_EQ(trimmed("trim 0 1 2"),
-            "m.obj:18: expected an index into the 1 curv2 elements above, 1 to 1 or -1 to -1, found \"2\"");
+            "m.obj:18: expected an index into the curv2 elements above, 1 to 1 or -1 to -1, found \"2\"");
   EXPECT_EQ(trimmed("trim 0 1"), "m.obj:18: expected an index of a curv2, found the end of the line");
   EXPECT_EQ(trimmed("trim"), "m.obj:18: expected the parameter where the curve begins, found the end of the line");
   EXPECT_EQ(trimmed("trim 0 nan 1"), "m.obj:18: expected the parameter where the curve ends, found \"nan\"");
-  EXPECT_EQ(trimmed("trim 0 1 1 0 2 1"), "m.obj:18: curv2 1 runs from 0 to 1, which does not hold a part from 0 to 2");
-  EXPECT_EQ(trimmed("trim 0.5 0.5 1"),
-            "m.obj:18: curv2 1 runs from 0 to 1, which does not hold a part from 0.5 to 0.5");
+  EXPECT_EQ(trimmed("trim 0 1 1 0 2 1"), "m.obj:18: curv2 1 runs from 0 to 1, it has no part from 0 to 2");
+  EXPECT_EQ(trimmed("trim 0.5 0.5 1"), "m.obj:18: curv2 1 runs from 0 to 1, it has no part from 0.5 to 0.5");
   EXPECT_EQ(error_of(spoiled("curv2 1 2", "curv2 1 3", curve)),
             "m.obj:6: expected the index of a vp line with 2 coordinates, found \"3\"");
   EXPECT_EQ(error_of(spoiled("parm u 0 1", "parm u 0 1 2", curve)),
-            "m.obj:6: curv2 1: its parameters and degree want 3 control points, it has 2");
+            "m.obj:6: curv2 1: its parameters and degree need 3 control points, found 2");
   EXPECT_EQ(error_of(spoiled("parm u 0 1", "", curve)), "m.obj:6: curv2 1: parm u is missing");
 }
 
@@ -160,7 +159,7 @@ TEST(ObjFreeformErrors, NumbersThatAreNotFiniteAreErrorsWithTheirLine) {
         error_of(spoiled("surf 0 1 0 1", std::string("surf 0 1 0 ") + bad)).rfind("m.obj:7: expected 4 finite", 0), 0u);
     EXPECT_EQ(error_of(spoiled("parm u 0 1", std::string("parm u 0 ") + bad)).rfind("m.obj:8: expected finite", 0), 0u);
   }
-  const Model large = model_of(spoiled("v 1 1 1", "v 1e300 -1e300 1e300"));  // finite is fine
+  const Model large = model_of(spoiled("v 1 1 1", "v 1e300 -1e300 1e300"));  // any finite number will do
   EXPECT_EQ(large.surfaces.size(), 1u);
 }
 
@@ -199,7 +198,7 @@ TEST(ObjFreeformErrors, SpoiledBytesNeverCrash) {
   }
 }
 
-/// What reading asks for at most, in bytes.
+/// The most bytes that reading allocates.
 std::size_t memory_of(const std::string& text, Result<Model> (*parse)(std::string_view, std::string_view)) {
   const std::size_t before = restart_peak();
   const Result<Model> model = parse(text, "m");

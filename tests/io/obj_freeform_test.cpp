@@ -1,4 +1,4 @@
-// Free-form surfaces of OBJ files: what was written comes back, in every type, and every way to write it.
+// Free-form surfaces of OBJ files are read back as they were written, in every type, and every way to write it.
 
 #include <clocale>
 #include <cmath>
@@ -46,7 +46,7 @@ TEST(ObjFreeform, ABezierPatchComesBackNumberByNumber) {
           vertices + surface_text((rational ? "cstype rat " : "cstype ") + degrees, {}, points.size(), unit, unit));
       const auto& read = std::get<BezierPatch>(surface);
       EXPECT_TRUE(std::ranges::equal(read.points(), points));
-      EXPECT_EQ(read.is_rational(), rational);  // the weights of what is not rational do not count
+      EXPECT_EQ(read.is_rational(), rational);  // weights of a surface that is not rational are ignored
       if (rational) {
         EXPECT_TRUE(std::ranges::equal(read.weights(), weights));
       }
@@ -54,7 +54,7 @@ TEST(ObjFreeform, ABezierPatchComesBackNumberByNumber) {
   }
 }
 
-/// A net of pieces: its text's surface against `piece(i, j, s, t)`, the point of piece i, j at local parameters.
+/// Compares a net of pieces: its text's surface, and `piece(i, j, s, t)`, the point of piece i, j at local parameters.
 template <class Piece>
 void expect_pieces(const Surface& surface, std::span<const double> parm_u, std::span<const double> parm_v,
                    Piece&& piece) {
@@ -262,7 +262,7 @@ TEST(ObjFreeform, LayoutDoesNotMatter) {
     std::string windows = "\xEF\xBB\xBF# C:\\made\\elsewhere\\\r\n", tabs, continued, without_end = text;
     char last = 0;
     for (const char c : text) {
-      // Behind a continuation nothing but the end of the line may stand.
+      // Only the end of the line may follow a continuation.
       windows += c != '\n' ? std::string(1, c) : last == '\\' ? "\r\n" : " # x \\\r\n\r\n";
       tabs += c == ' ' ? std::string("\t \t") : std::string(1, c);
       continued += c == ' ' ? std::string(" \\ \r\n") : std::string(1, c);

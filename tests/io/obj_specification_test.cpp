@@ -1,5 +1,6 @@
-// The examples that the OBJ specification prints, against the formulas that it prints before them: points of surfaces,
-// trimming loops. One example lost a line in print, one has a slip: their neighbours and texts say what was meant.
+// Compares the examples that the OBJ specification prints with the formulas that it prints before them: points of
+// surfaces, trimming loops. One example lost a line in print, one has a slip: their neighbours and texts show the
+// intended values.
 
 #include <gtest/gtest.h>
 
@@ -51,7 +52,7 @@ const std::vector<Example> examples{
 
 using Point4 = std::array<double, 4>;
 
-/// What the text says, read line by line: the range, and homogeneous control points with u first.
+/// The text read line by line: the range, and homogeneous control points with u first.
 struct Printed {
   std::array<double, 4> range{};
   std::vector<Point4> points;

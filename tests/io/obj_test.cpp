@@ -1,4 +1,4 @@
-// OBJ meshes that others wrote.
+// OBJ meshes of other programs.
 
 #include <gtest/gtest.h>
 
@@ -75,14 +75,14 @@ TEST(Obj, ErrorsNameTheLine) {
   EXPECT_EQ(error_of("v 0 0 0 1 1 1 1\n"), "m.obj:1: expected the end of the line, found \"1\"");
   EXPECT_EQ(error_of(square + "f 1 2\n"), "m.obj:5: expected at least 3 corners after f, found the end of the line");
   EXPECT_EQ(error_of(square + "f 1 2 5\n"),
-            "m.obj:5: expected an index into the 4 vertices above, 1 to 4 or -4 to -1, found \"5\"");
+            "m.obj:5: expected an index into the vertices above, 1 to 4 or -4 to -1, found \"5\"");
   EXPECT_EQ(error_of(square + "f 1 2 0\n"),
-            "m.obj:5: expected an index into the 4 vertices above, 1 to 4 or -4 to -1, found \"0\"");
+            "m.obj:5: expected an index into the vertices above, 1 to 4 or -4 to -1, found \"0\"");
   EXPECT_EQ(error_of(square + "f 1 2 -5\n"),
-            "m.obj:5: expected an index into the 4 vertices above, 1 to 4 or -4 to -1, found \"-5\"");
+            "m.obj:5: expected an index into the vertices above, 1 to 4 or -4 to -1, found \"-5\"");
   EXPECT_EQ(error_of(square + "f 1 2 3.5\n"), "m.obj:5: expected an index of a corner, found \"3.5\"");
   EXPECT_EQ(error_of(square + "f 1/1 2/2 3/3\n"),
-            "m.obj:5: expected no index, as there are 0 vt lines above, found \"1\"");
+            "m.obj:5: expected no index, as there are no vt lines above, found \"1\"");
   EXPECT_EQ(error_of("curv2 1 2\n"),
             "m.obj:1: expected a line of a mesh (v, vt, vn, f, g, o, s, usemtl, mtllib), found \"curv2\"");
   EXPECT_EQ(error_of("# nothing\n"), "m.obj:1: expected vertices (v x y z), found the end of the file");

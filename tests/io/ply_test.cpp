@@ -1,4 +1,4 @@
-// PLY meshes that others wrote, and PLY files that state what they do not hold.
+// PLY meshes of other programs, and PLY files that state more than they hold.
 
 #include <gtest/gtest.h>
 
@@ -116,7 +116,7 @@ TEST(Ply, ErrorsNameThePlace) {
   EXPECT_EQ(error_of("ply\nformat ascii 2.0\n"), "m.ply:2: expected the format's version 1.0, found \"2.0\"");
   EXPECT_EQ(error_of(ascii + "element vertex -1\n"),
             "m.ply:3: expected how many vertex records there are, found \"-1\"");
-  EXPECT_EQ(error_of(ascii + "property float x\n"), "m.ply:3: expected element, found a property of none");
+  EXPECT_EQ(error_of(ascii + "property float x\n"), "m.ply:3: expected element before the first property");
   EXPECT_EQ(error_of(ascii + "element vertex 1\nproperty half x\n"),
             "m.ply:4: expected a type (char, uchar, short, ushort, int, uint, float, double), found \"half\"");
   EXPECT_EQ(error_of(ascii + vertex3),
@@ -130,7 +130,7 @@ TEST(Ply, ErrorsNameThePlace) {
   EXPECT_EQ(error_of(ascii + vertex3 + face1 + "end_header\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n"),
             "m.ply:13: face 1 of 1 has fewer than 3 corners");
   EXPECT_EQ(error_of(ascii + vertex3 + "end_header\n0 0 0\n1 0 0\n0 1 0\n7\n"),
-            "m.ply:11: there is more after the last element");
+            "m.ply:11: there is data after the last element");
   EXPECT_EQ(error_of(ascii + "element vertex 1\nproperty float x\nend_header\n0\n"),
             "m.ply:6: vertices have no x, y, z");
 }

@@ -1,5 +1,5 @@
 #pragma once
-// What every reader of a text format must stand: other layouts of the same text, cuts at every byte, spoiled bytes.
+// Checks for every reader of a text format: other layouts of the same text, cuts at every byte, spoiled bytes.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace tessera::test {
 
 using Parser = Result<Model> (*)(std::string_view text, std::string_view name);
 
-/// The message of a text that must be refused as `code`.
+/// The message of a text that must fail with `code`.
 inline std::string error_of(Parser parse, std::string_view text, StatusCode code = StatusCode::parse_error) {
   const Result<Model> model = parse(text, "m");
   EXPECT_FALSE(model.ok()) << text;
@@ -28,7 +28,7 @@ inline Model model_of(Parser parse, std::string_view text) {
   return model ? *std::move(model) : Model{};
 }
 
-/// The same surfaces at the same places: equal to the last bit wherever they are evaluated.
+/// Checks that both have the same surfaces at the same places: equal to the last bit wherever they are evaluated.
 inline void expect_same(const Model& a, const Model& b, const std::string& what) {
   ASSERT_EQ(a.surfaces.size(), b.surfaces.size()) << what;
   EXPECT_EQ(a.warnings.size(), b.warnings.size()) << what;
@@ -65,7 +65,7 @@ inline void expect_layout_does_not_matter(Parser parse, const std::string& text)
   expect_same(plain, model_of(parse, open), "no end of the last line");
 }
 
-/// A text that is cut anywhere is read or refused by line, and never has more surfaces than the whole.
+/// A truncated text must be read, or fail with a line, and never has more surfaces than the whole.
 inline void expect_cuts_are_harmless(Parser parse, const std::string& text) {
   const std::size_t surfaces = model_of(parse, text).surfaces.size();
   for (std::size_t bytes = 0; bytes < text.size(); ++bytes) {
@@ -80,7 +80,7 @@ inline void expect_cuts_are_harmless(Parser parse, const std::string& text) {
   }
 }
 
-/// Texts with a few wrong bytes are read or refused, as what they are.
+/// Texts with a few wrong bytes must be read or fail, with their name in the message.
 inline void expect_spoiled_bytes_are_harmless(Parser parse, const std::string& text, int tries = 3000) {
   std::mt19937 random(5);
   const std::string likely = "0123456789.-+eE \n\"[]#nai";

@@ -1,6 +1,6 @@
-// What reading a file costs at most, in memory: the peak of operator new, the file's own bytes among it, over the
-// file's size. The files of TESSERA_TEST_DATA, and large ones of each format: as programs write them, with seven
-// digits, and as terse as the format allows, a digit a number.
+// The most memory that reading a file takes: the peak of operator new, the file's own bytes included, over the file's
+// size. Reads the files of TESSERA_TEST_DATA, and large ones of each format: as programs write them, with seven digits,
+// and as terse as the format permits, with one digit per number.
 
 #include <array>
 #include <cstdlib>
@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using Parser = Result<Model> (*)(std::string_view, std::string_view);
 
-/// What does not grow with the file: tables of names, the first array of points, the messages.
+/// Memory that does not grow with the file: tables of names, the first array of points, the messages.
 constexpr std::size_t constant = std::size_t{64} << 10;
 
 /// The text's own bytes count too: read_model() holds them.
@@ -66,7 +66,7 @@ TEST(ReadingMemory, RealFilesTakeAtMostEightTimesTheirSize) {
 
 // Large files.
 
-/// `points` numbered points, a line each. Those with 7 digits look like what programs write.
+/// `points` numbered points, one per line of text. Seven digits are what programs write.
 std::string points_text(std::size_t points, bool terse, std::string_view begin = "", std::string_view weight = "") {
   Random random(12);
   const std::vector<Vec3> cloud = random_cloud(random, points);
@@ -192,7 +192,7 @@ TEST(ReadingMemory, LargeFilesAsProgramsWriteThem) {
   }
 }
 
-// A digit and a blank become 8 bytes: what tessera/io.h says of such files.
+// A digit and a blank become 8 bytes, as tessera/io.h says.
 TEST(ReadingMemory, TheTersestFiles) {
   const std::vector<Large> files{
       {"bpt, bilinear", bpt_text(1, 40000, true), parse_bpt},

@@ -1,4 +1,4 @@
-// RIB files as scenes: blocks, transformations, objects, names, what is passed over and what is refused.
+// RIB files as scenes: blocks, transformations, objects, names, what is skipped, and errors.
 
 #include <gtest/gtest.h>
 
@@ -46,7 +46,7 @@ TEST(RibScene, TheWorldIsTheModelsSpace) {
   EXPECT_EQ(placed(model, 1, {0, 0, 0}), (Vec3{1, 2, 3}));
   EXPECT_TRUE(model.warnings.empty());
   EXPECT_EQ(model_of(parse_rib, "WorldBegin " + quad + "WorldEnd WorldBegin " + quad + "WorldEnd").warnings,
-            std::vector<std::string>{"m:1: 2 worlds share one space, their surfaces may lie in one another"});
+            std::vector<std::string>{"m:1: 2 worlds share one space, their surfaces may overlap"});
 }
 
 TEST(RibScene, BlocksBringBackWhatTheySaved) {
@@ -70,7 +70,7 @@ TEST(RibScene, AttributesOfOtherFormsAreNoErrors) {
                                "Attribute [\"x\" 1] Attribute \"visibility\" \"int camera\" [1]\n" +
                                    quad);
   EXPECT_EQ(model.surfaces.at(0).name, "");
-  EXPECT_EQ(model.warnings, std::vector<std::string>{"m:1: requests that are passed over: Attribute 4"});
+  EXPECT_EQ(model.warnings, std::vector<std::string>{"m:1: requests that are skipped: Attribute 4"});
 }
 
 TEST(RibScene, ObjectsStandWhereTheirInstancesAre) {
@@ -107,7 +107,7 @@ TEST(RibScene, OfWhatMovesTheFirstMomentIsRead) {
   ASSERT_EQ(model.surfaces.size(), 1u);
   EXPECT_EQ(placed(model, 0, {}), (Vec3{1, 0, 0}));
   EXPECT_EQ(model.warnings,
-            std::vector<std::string>{"m:1: of what moves, the first moment alone is read, 3 others not"});
+            std::vector<std::string>{"m:1: motions are read at their first moment only, 3 others are skipped"});
 }
 
 TEST(RibScene, OtherRequestsArePassedOverAndCounted) {
@@ -121,7 +121,7 @@ TEST(RibScene, OtherRequestsArePassedOverAndCounted) {
   EXPECT_EQ(model.warnings, (std::vector<std::string>{
                                 "m:6: shapes that are not read: Polygon 1, Sphere 2",
                                 "m:6: transformations that are not read, surfaces after them are misplaced: Skew 1",
-                                "m:5: requests that are passed over: Color 2, Display 1"}));
+                                "m:5: requests that are skipped: Color 2, Display 1"}));
   EXPECT_EQ(error_of(parse_rib, "Sphere 1 -1 1 360\n", StatusCode::unsupported),
             "m: no surface that can be read, but Sphere 1");
   EXPECT_EQ(error_of(parse_rib, "Color 1 1 1\n"),
@@ -158,7 +158,7 @@ TEST(RibScene, ErrorsSayWhereWhatAndWhatWasWanted) {
              return zeros;
            }() +
            "]",
-       "m:1: PatchMesh: 5 points a line make no mesh with this basis, which wants 4 and a multiple of 3 more"},
+       "m:1: PatchMesh: 5 points along one direction make no mesh with this basis, which needs 4 plus a multiple of 3"},
       {"PatchMesh \"bicubic\" 4 \"open\"", "m:1: PatchMesh: expected \"periodic\" or \"nonperiodic\", found \"open\""},
       {"PatchMesh \"bicubic\" -4", "m:1: expected the number of points along u, from 1 to 1073741824, found \"-4\""},
       {"PatchMesh \"bicubic\" 4.5", "m:1: expected the number of points along u, from 1 to 1073741824, found \"4.5\""},
@@ -188,9 +188,9 @@ TEST(RibScene, ErrorsSayWhereWhatAndWhatWasWanted) {
       {"TrimCurve [1] [2] [0 0 1 1] [0] [1] [2] [0 1] [0 1] [1]",
        "m:1: TrimCurve: its arrays have lengths that do not fit each other"},
       {"TrimCurve [2] [2] [0 0 1 1] [0] [1] [2] [0 1] [0 1] [1 1]",
-       "m:1: TrimCurve: the loops want other numbers of curves than there are orders"},
+       "m:1: TrimCurve: the numbers of curves per loop do not fit the number of orders"},
       {"TrimCurve [1] [2] [0 0 1 1] [0] [1] [1e9] [0 1] [0 1] [1 1]",
-       "m:1: TrimCurve: curve 0 has an order, a number of points and knots that do not fit"},
+       "m:1: TrimCurve: curve 0 has an order, a number of points and knots that do not fit each other"},
       {"TrimCurve [1] [2] [0 0 1 1] [0] [1] [2] [0 1] [0 1] [1 0]", "m:1: TrimCurve: weight 1 is not above 0"},
       {"TrimCurve [1] [2] [0 0 1 1 2] [0] [1] [2] [0 1] [0 1] [1 1]",
        "m:1: TrimCurve: numbers are left over after the last curve"},

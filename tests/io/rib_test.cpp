@@ -34,7 +34,7 @@ std::vector<NamedBasis> bases() {
       catmull{-h, 3 * h, -3 * h, h, 1, -5 * h, 2, -h, -h, 0, h, 0, 0, 1, 0, 0},
       hermite{2, 1, -2, 1, -3, -2, 3, -1, 0, 1, 0, 0, 1, 0, 0, 0},
       power{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-  // A cardinal spline of tension 0.3, and a matrix of no meaning with a step of its own.
+  // A cardinal spline of tension 0.3, and an arbitrary matrix with a step of its own.
   const Matrix cardinal{-0.3, 1.7, -1.7, 0.3, 0.6, -2.7, 2.4, -0.3, -0.3, 0, 0.3, 0, 0, 1, 0, 0},
       strange{1, 2, -3, 0.5, 0, 1, 1, -1, 2, 0, -1, 1, 0.5, 0.25, 0.125, 1};
   return {{"\"bezier\" 3", bezier, 3},
@@ -113,7 +113,7 @@ void expect_defined(const Model& model, const Mesh4& mesh, const NamedBasis& u, 
       for (const auto& [s, t] : {std::pair(0.1, 0.9), {0.5, 0.25}, {0.75, 0.6}}) {
         const Vec3 p = point_of(model, (static_cast<double>(a) + s) / static_cast<double>(nu),
                                 (static_cast<double>(b) + t) / static_cast<double>(nv));
-        // Matrices printed with five digits are taken for what they mean.
+        // Matrices printed with five digits are recognised.
         EXPECT_LE(length(p - defined(mesh, u, v, a, b, s, t)), 2e-13)
             << what.substr(0, 300) << ", patch " << a << ' ' << b;
       }
@@ -155,7 +155,7 @@ TEST(Rib, MeshesFollowTheirBasesStepsAndWraps) {
 TEST(Rib, MeshesWrapAlongVAndMayBeRational) {
   std::mt19937 random(3);
   const auto all = bases();
-  for (const std::size_t k : {0, 1, 2, 6}) {  // bases that blend points alone
+  for (const std::size_t k : {0, 1, 2, 6}) {  // bases that blend only points
     const NamedBasis &u = all[k], &v = all[1];
     const Mesh4 mesh = random_mesh(random, 4 + static_cast<std::size_t>(u.step), 5, true);
     const std::string text = "Basis " + u.text + " " + v.text + " PatchMesh \"bicubic\" " + std::to_string(mesh.nu) +
@@ -233,7 +233,7 @@ TEST(Rib, HeightFieldsStandOverTheirParameters) {
   }
   EXPECT_EQ(error_of(parse_rib,
                      "Basis \"hermite\" 2 \"bezier\" 3\nPatch \"bicubic\" \"Pz\" [0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0]"),
-            "m:2: Patch: a height field wants a basis of points (bezier, b-spline, catmull-rom)");
+            "m:2: Patch: a height field needs a basis of points (bezier, b-spline, catmull-rom)");
 }
 
 TEST(Rib, NuPatchesHaveTheirKnotsAndRanges) {

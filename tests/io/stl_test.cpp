@@ -1,4 +1,4 @@
-// STL meshes, binary and ascii: those of others, and those that are not what they say.
+// STL meshes, binary and ascii: of other programs, and malformed ones.
 
 #include <gtest/gtest.h>
 
@@ -93,7 +93,7 @@ TEST(Stl, EveryCornerComesBackAndEqualOnesAreOneVertex) {
     const Mesh mesh = random_mesh(vertices, 2 * vertices, {false, false, false});
     const Mesh read = parsed(written(mesh));
     EXPECT_EQ(corners(read), corners(mesh));
-    EXPECT_LE(read.vertex_count(), vertices);  // those that no triangle has do not come back
+    EXPECT_LE(read.vertex_count(), vertices);  // vertices without a triangle do not come back
     EXPECT_GE(read.vertex_count(), vertices * 8 / 10);
   }
 }

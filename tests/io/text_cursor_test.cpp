@@ -1,6 +1,6 @@
 // Tokens, numbers and the lines of errors.
 
-#include "io/text_cursor.h"
+#include "tessera/text_cursor.h"
 
 #include <gtest/gtest.h>
 

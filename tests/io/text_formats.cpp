@@ -46,7 +46,7 @@ void add_trims(const ModelSurface& surface, Content& content, std::string& unsou
   }
 }
 
-/// Of these alone an evaluation may fail: what the functions return is not finite there, or their differences are not.
+/// Evaluation may fail only for these kinds: the values of the functions, or their differences, are not finite there.
 bool may_have_functions(const Surface& surface) {
   return std::holds_alternative<ParametricSurface>(surface) || std::holds_alternative<RuledSurface>(surface) ||
          std::holds_alternative<CoonsPatch>(surface);

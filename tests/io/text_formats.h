@@ -1,5 +1,5 @@
 #pragma once
-// The formats that are read, as one: what a reader makes of a text, in a form that can be compared and must be sound.
+// The formats that are read, behind one interface: the result of a reader in a form that can be compared and checked.
 
 #include <filesystem>
 #include <string>
@@ -10,12 +10,12 @@
 
 namespace tessera::test {
 
-/// What a reader made of a text.
+/// The result of a reader.
 struct Reading {
   Status status = {};
-  std::string content = {};  ///< equal for equal models and meshes, to the last bit; lines of warnings do not count
+  std::string content = {};  ///< equal for models and meshes equal to the last bit; lines in warnings do not count
   std::size_t parts = 0;     ///< surfaces, or triangles
-  std::string unsound = {};  ///< what is wrong with what was read: a position that is not finite, an index out of range
+  std::string unsound = {};  ///< the fault of the result, if any: a position that is not finite, an index out of range
 
   bool ok() const { return status.ok(); }
 };
@@ -33,7 +33,7 @@ struct TextFormat {
 /// Every reader of surfaces and of meshes.
 const std::vector<TextFormat>& text_formats();
 
-/// Peculiar to some formats: whether a text is no text; characters between which blanks are a part of a string.
+/// Special to some formats: whether the text is binary; characters between which blanks belong to a string.
 bool is_binary(const std::string& sample);
 /// The text with each blank outside of strings replaced by `blank`.
 std::string with_blanks(const TextFormat& format, const std::string& text, std::string_view blank);

@@ -1,4 +1,4 @@
-// Surfaces that are written are read back: the same patches over the same parameters, under the same names.
+// Surfaces are read back as they were written: the same patches over the same parameters, under the same names.
 
 #include <cmath>
 #include <iostream>
@@ -102,7 +102,7 @@ TEST_F(WriteModel, EveryFileOfOthersComesBack) {
   std::size_t files = 0, surfaces = 0, trims = 0;
   for (const auto& file : files_below(data)) {
     const Result<Model> model = read_model(file);
-    if (!model) continue;  // no model, or refused: tests of the readers say which
+    if (!model) continue;  // not a model, or an error: the readers' tests say which
     const Result<PatchSet> set = make_patch_set(*model);
     if (!set) continue;
     WrittenModel facts;
@@ -145,11 +145,11 @@ TEST_F(WriteModel, RationalPatchesAreNamedWhereTheFormatHasNoWeights) {
   Model model = model_of({random_polynomial(random, 2, 2), random_rational(random, 2, 1)});
   model.surfaces[1].name = "rim";
   expect_refused(model, "a.bpt", StatusCode::unsupported,
-                 "surface 1 (rim): it is rational, and .bpt has no weights: .obj has");
+                 "surface 1 (rim): it is rational, but .bpt has no weights: write .obj");
   EXPECT_EQ(write_model(model, folder_ / "a.bpt").status().index(), 1);
   const PatchSet set = value_of(make_patch_set(model));
   const Status status = write_model(set, folder_ / "b.bpt");
-  EXPECT_EQ(status.message(), (folder_ / "b.bpt") + ": patch 1: it is rational, and .bpt has no weights: .obj has");
+  EXPECT_EQ(status.message(), (folder_ / "b.bpt") + ": patch 1: it is rational, but .bpt has no weights: write .obj");
   EXPECT_TRUE(folder_.names().empty());
 }
 
@@ -185,7 +185,7 @@ TEST_F(WriteModel, WhatCannotBeWrittenIsAnErrorAndLeavesWhatWasThere) {
   expect_refused(model, "full.obj", StatusCode::io_error, "cannot be written: No space left on device");
   folder_.file("old.bpt", "before");
   expect_refused(model_of({random_rational(random, 1, 1)}), "old.bpt", StatusCode::unsupported,
-                 "surface 0: it is rational, and .bpt has no weights: .obj has");
+                 "surface 0: it is rational, but .bpt has no weights: write .obj");
   EXPECT_EQ(content_of(folder_ / "old.bpt"), "before");
   Model fitted = value_of(read_model(models / "seashell.json"));
   const Result<WrittenModel> unreachable = write_model(fitted, folder_ / "old.bpt", {.tolerance = 1e-30});

@@ -1,4 +1,4 @@
-// Trims are written with the surfaces that they belong to, and said to be left out where they cannot be.
+// Trims are written with their surfaces; if a format cannot hold them, a warning says so.
 
 #include "io/written_models.h"
 
@@ -77,7 +77,7 @@ TEST(WriteModelTrims, AreSaidToBeLeftOutOfQuadrics) {
   const Model read = rewritten(model, folder / "a.obj", &facts);
   EXPECT_EQ(facts.warnings,
             (std::vector<std::string>{
-                "surface 0 (side): 2 trims are not written: they are by other parameters than its patches"}));
+                "surface 0 (side): 2 trims are not written: their parameters are not those of its patches"}));
   EXPECT_TRUE(read.surfaces[0].trims->empty());
 }
 

@@ -23,7 +23,7 @@ inline Model model_of(std::vector<BezierPatch> patches) {
   return model;
 }
 
-/// The model as it comes back.
+/// The model after writing and reading.
 inline Model rewritten(const Model& model, const std::string& path, WrittenModel* facts = nullptr) {
   const Result<WrittenModel> written = write_model(model, path);
   EXPECT_TRUE(written.ok()) << written.status().message();
@@ -31,8 +31,8 @@ inline Model rewritten(const Model& model, const std::string& path, WrittenModel
   return value_of(read_model(path));
 }
 
-/// The same patch: control points by their bits. Rational ones may pass through w * p / w; their weights are compared by
-/// ratios, for equal ones are dropped.
+/// Expects the same patch: control points by their bits. Rational ones may pass through w * p / w; their weights are
+/// compared by ratios, because equal ones are dropped.
 inline void expect_same_patches(const BezierPatch& a, const BezierPatch& b, const std::string& where) {
   ASSERT_EQ(a.degree_u(), b.degree_u()) << where;
   ASSERT_EQ(a.degree_v(), b.degree_v()) << where;
@@ -47,7 +47,7 @@ inline void expect_same_patches(const BezierPatch& a, const BezierPatch& b, cons
     }
 }
 
-/// The same surface: name, ranges of parameters, patches.
+/// Expects the same surface: name, ranges of parameters, patches.
 inline void expect_same_patches(const ModelSurface& a, const ModelSurface& b, const std::string& where) {
   EXPECT_EQ(a.name, b.name) << where;
   const PatchGrid p = value_of(to_bezier(a)), q = value_of(to_bezier(b));

@@ -1,4 +1,4 @@
-// What the readers of STEP and IGES must stand of the file system, of editors and of locales.
+// Faults of the file system, of editors and of locales that the readers of STEP and IGES must bear or report.
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -86,11 +86,11 @@ TEST_P(BadCadFile, WhatIsNoFileIsNamed) {
   expect_error(folder_ / name("folder"), StatusCode::io_error, ": is a directory, not a file");
   expect_error(folder_ / name("missing"), StatusCode::io_error, ": cannot be opened: No such file or directory");
   expect_error(folder_.file(name("empty"), ""), StatusCode::parse_error, ": the file is empty");
-  // Nobody writes to this pipe: to open it would be to wait.
+  // Nobody writes to this pipe: opening it would block.
   ASSERT_EQ(::mkfifo((folder_ / name("pipe")).c_str(), 0600), 0);
-  expect_error(folder_ / name("pipe"), StatusCode::unsupported, ": STEP and IGES are read from files alone");
+  expect_error(folder_ / name("pipe"), StatusCode::unsupported, ": STEP and IGES are read from regular files only");
   std::filesystem::create_symlink("/dev/zero", folder_ / name("zero"));
-  expect_error(folder_ / name("zero"), StatusCode::unsupported, ": STEP and IGES are read from files alone");
+  expect_error(folder_ / name("zero"), StatusCode::unsupported, ": STEP and IGES are read from regular files only");
 }
 
 TEST_P(BadCadFile, NoPermissionIsSaid) {

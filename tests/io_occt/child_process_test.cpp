@@ -33,7 +33,7 @@ TEST(ChildProcess, SharesNothing) {
   EXPECT_EQ(value, 1);
 }
 
-/// As a daemon has none: the pipe then takes their places.
+/// Like a daemon, which has no streams: the pipe then takes their places.
 TEST(ChildProcess, NeedsNoStreamsOfItsParent) {
   const auto without_streams = [] {
     for (int stream = 0; stream < 3; ++stream) ::close(stream);
@@ -62,7 +62,7 @@ TEST(ChildProcess, HasItsLimits) {
     return std::string();
   };
   expect_refused(run_in_child(endless, {plenty.memory_bytes, 1}, "it"), StatusCode::internal, none,
-                 "it came to no end in 1 seconds of computing");
+                 "it did not end within 1 second of processor time");
   const auto hungry = [] {
     std::vector<std::string> all;
     for (int k = 0; k < 400; ++k) all.emplace_back(std::size_t{1} << 20, 'x');
@@ -71,7 +71,7 @@ TEST(ChildProcess, HasItsLimits) {
   EXPECT_TRUE(run_in_child(hungry, plenty, "it").ok());
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   expect_refused(run_in_child(hungry, {std::size_t{100} << 20, 60}, "it"), StatusCode::out_of_memory, none,
-                 "it wanted more memory than it is allowed");
+                 "it exceeded its memory limit");
 #endif
 }
 

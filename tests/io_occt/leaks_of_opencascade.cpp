@@ -1,4 +1,4 @@
-// Where the tests make shapes themselves, OpenCASCADE leaks some of its own: the leak sanitizer is told so.
+// OpenCASCADE leaks memory when the tests make shapes: this list suppresses these leaks in the leak sanitizer.
 
 extern "C" const char* __lsan_default_suppressions();
 extern "C" const char* __lsan_default_suppressions() { return "leak:libTK\n"; }

@@ -1,4 +1,4 @@
-// Models as bytes: the same again, and no harm from other bytes.
+// Models survive the way to bytes and back; other bytes do no harm.
 
 #include "io_occt/model_bytes.h"
 
@@ -60,7 +60,7 @@ TEST(ModelBytes, OtherBytesAreRefused) {
   for (int k = 0; k < 2000; ++k) {
     std::string damaged = bytes;
     damaged[random() % damaged.size()] = static_cast<char>(random());
-    static_cast<void>(model_from_bytes(damaged));  // whatever it is: no crash, no endless memory
+    static_cast<void>(model_from_bytes(damaged));  // any result will do, except a crash or endless memory
   }
 }
 

@@ -1,4 +1,4 @@
-// What some STEP and IGES files of TESSERA_TEST_DATA are known for. That each is read stands in tests/conformance.
+// Known facts of some STEP and IGES files of TESSERA_TEST_DATA. tests/conformance checks that each is read.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Files that are not what they say: errors with their reason, and no harm.
+// Malformed files: errors with their reason, and no harm.
 
 #include <gtest/gtest.h>
 #include <opencascade/BRepAlgoAPI_Cut.hxx>
@@ -53,7 +53,7 @@ TEST(ReadCad, CutFilesAreRefused) {
   for (const char* const name : {"part.step", "part.igs"}) {
     const std::string whole = part_text(folder, name);
     for (std::size_t k = 0; k < 200; ++k) {
-      // The last line's end is no loss.
+      // The end of the last line may be missing.
       const std::size_t size = k * (whole.size() - 90) / 199;
       const Result<Model> model = read_cad(folder.file(name, whole.substr(0, size)));
       ASSERT_FALSE(model.ok()) << name << " cut after " << size << " of " << whole.size() << " bytes";
@@ -113,8 +113,8 @@ TEST(ReadCad, OtherFilesAreRefused) {
 TEST(ReadModel, NamesTheReaderOfStepAndIges) {
   const ScratchFolder folder;
   expect_refused(read_model(folder.file("part.STP", "x")), StatusCode::unsupported, Status::no_index,
-                 "part.STP: unsupported format \".stp\": STEP is read where OpenCASCADE is installed "
-                 "(libocct-data-exchange-dev) when Tessera is built");
+                 "part.STP: unsupported format \".stp\": STEP needs a Tessera that was built with OpenCASCADE "
+                 "(libocct-data-exchange-dev), and read_cad");
   expect_refused(read_model(folder / "none.igs"), StatusCode::io_error, Status::no_index, "none.igs: cannot be opened");
 }
 

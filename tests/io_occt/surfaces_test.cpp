@@ -62,7 +62,7 @@ void expect_exact(const handle<Geom_Surface>& surface, const Domain& box) {
   ASSERT_TRUE(ours.ok()) << ours.status().message();
   EXPECT_EQ(ours->fit_error, 0);
   EXPECT_LT(distance(surface, *ours, box, 200), 1e-14) << surface->DynamicType()->Name();
-  // Of periods, knots may differ from the ends by rounding, and are taken for these.
+  // Knots at periods may differ from the ends by rounding, and are taken for the ends.
   EXPECT_NEAR(ours->surface.domain().u0, box.u0, 1e-12 * (box.u1 - box.u0));
   EXPECT_NEAR(ours->surface.domain().v1, box.v1, 1e-12 * (box.v1 - box.v0));
 }

@@ -1,4 +1,4 @@
-// Trimming loops: they are there where a face is less than its rectangle, closed, and run along the edges.
+// Trimming loops exist if a face is less than its rectangle, are closed, and run along the edges.
 
 #include <gtest/gtest.h>
 #include <opencascade/BRepAlgoAPI_Cut.hxx>
@@ -85,7 +85,7 @@ TEST(Trims, AreWhereAFaceIsLessThanItsRectangle) {
 }
 
 TEST(Trims, LoopsFollowCurvesThroughRationalParameters) {
-  // Holes through a torus: their edges are no lines of its parameters.
+  // Holes through a torus: their edges are not isocurves of its parameters.
   const TopoDS_Shape torus = BRepPrimAPI_MakeTorus(5, 2).Shape();
   const TopoDS_Shape drill = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(0, 5, -9), gp_Dir(0, 0, 1)), 0.7, 18).Shape();
   const ScratchFolder folder;
@@ -111,7 +111,7 @@ TEST(Trims, LoopsFollowCurvesThroughRationalParameters) {
   EXPECT_GE(checked, 102u);
 }
 
-/// How far apart two points of the parameters are in space.
+/// The distance in space of two points of the parameters.
 double gap(const ModelSurface& surface, const Vec3& a, const Vec3& b) {
   const BSplineSurface& s = std::get<BSplineSurface>(surface.surface);
   return length(evaluate_jet(s, a.x, a.y).position - evaluate_jet(s, b.x, b.y).position);

@@ -1,5 +1,5 @@
-// The patch-contiguous way out of each ISA: pieces of every length, any place in a vector, any number of lanes, and
-// nothing beyond their ends.
+// The patch-contiguous output path of each ISA: pieces of every length, any place in a vector, any number of lanes, and
+// nothing written beyond their ends.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ struct Kernels {
   void (*end)(const kernel::LineState<T>&, int, bool);
 };
 
-/// The way of `pieces` values each into lanes that begin `first` values into memory and lie `gap` values apart.
+/// Writes `pieces` values each into lanes that begin `first` values into memory and lie `gap` values apart.
 struct Way {
   std::vector<std::size_t> pieces;
   int lanes = 16;

@@ -1,4 +1,4 @@
-// Control nets in the kernels of each ISA, against plain loops: the same bits, at every size.
+// Compares control nets in the kernels of each ISA with plain loops: the same bits, at every size.
 
 #include <gtest/gtest.h>
 
@@ -130,7 +130,7 @@ TEST(NetKernels, PackEveryLane) {
     }
 }
 
-/// Makes an edge of one lane a point, or, if `nearly`, all but its last component.
+/// Collapses an edge of one lane to a point, or, if `nearly`, all but its last component.
 void collapse_edge(Nets& nets, std::size_t lane, int edge, bool nearly) {
   const int m = nets.degree[0], n = nets.degree[1];
   const bool along_u = edge >= 2;

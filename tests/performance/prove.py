@@ -11,7 +11,7 @@ import support  # noqa: F401  (the path to the parts)
 from performance import builds, compare, count, suite
 from performance.console import Failure, say
 
-# Grids, in which slow-downs are planted, and two cases that know nothing of them.
+# Grids, in which slow-downs are planted, and two cases that are unaffected.
 PLANTED = r"^evaluate\.(positions|positions\+normals|curvatures)\.blocks/bicubic1000/3/9x9/"
 ELSEWHERE = r"^(points\.positions\.random/bicubic5000/|extract/bspline/3/)"
 OPTION = "TESSERA_PLANT_SLOWDOWN={}"

@@ -1,4 +1,4 @@
-"""What the tests share: tools/perf from outside, and its parts from inside."""
+"""Shared by the tests: tools/perf from outside, and its parts from inside."""
 
 import os
 import subprocess

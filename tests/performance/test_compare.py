@@ -1,4 +1,4 @@
-"""compare from outside, between programs that stand in for tessera_bench."""
+"""Tests compare from outside, with programs that stand in for tessera_bench."""
 
 import json
 import os

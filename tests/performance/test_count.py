@@ -1,4 +1,4 @@
-"""count: what it reads, compares, skips and says."""
+"""Tests count: what it reads, compares, skips and prints."""
 
 import json
 import os
@@ -62,7 +62,7 @@ class Reading(unittest.TestCase):
 
 
 def checked(content, counts, facts=None):
-    """What check() says of a baseline with this content: (status, output)."""
+    """The result of check() for a baseline with this content: (status, output)."""
     program = ("import sys; sys.path.insert(0, sys.argv[1]); import json; from performance import count\n"
                "path, counts, facts = sys.argv[2], json.loads(sys.argv[3]), json.loads(sys.argv[4])\n"
                "sys.exit(count.check('avx2', counts, facts, path, 0.01, False))")

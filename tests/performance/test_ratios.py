@@ -1,4 +1,4 @@
-"""The statistics on data whose truth is known."""
+"""Tests the statistics on data with known results."""
 
 import math
 import random

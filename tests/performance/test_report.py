@@ -1,4 +1,4 @@
-"""record and report: what is kept, and the page that is made of it."""
+"""Tests record and report: the records that are kept, and the page made of them."""
 
 import html.parser
 import json

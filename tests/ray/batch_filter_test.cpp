@@ -18,7 +18,7 @@
 namespace tessera::test {
 namespace {
 
-/// Eight by eight fields a patch.
+/// Eight by eight fields per patch.
 bool is_cut_out(double patch_u, double patch_v) {
   return (static_cast<int>(8 * patch_u) + static_cast<int>(8 * patch_v)) % 2 != 0;
 }
@@ -201,7 +201,7 @@ TEST(HitFilters, MayTraceRaysAndComputeWithDenormals) {
   EXPECT_EQ(wrong, 0u);
 }
 
-/// In several places: mirrored, stretched, small, and two at one place.
+/// Rings in several places: mirrored, stretched, small, and two at one place.
 std::vector<RayInstance> placed_rings(const RayScene& ring) {
   const Affine flat = Affine::scaled({1, -1, 0.5}),
                small = Affine::translated({0, 0, 0.2}) * Affine::scaled({0.3, 0.3, 0.3});

@@ -82,7 +82,7 @@ inline bool same_flags(HitFlags a, HitFlags b) {
          a.incomplete == b.incomplete && a.tangential == b.tangential && a.within_tolerance == b.within_tolerance;
 }
 
-/// Bit for bit, of every output.
+/// Compares every output bit for bit.
 template <class T>
 void expect_hit(const Outputs<T>& out, std::size_t k, const Hit& hit) {
   SCOPED_TRACE("ray " + std::to_string(k));

@@ -1,4 +1,4 @@
-// Batches of rays in arrays: the hits of the same rays one by one, whatever the layout and whatever is asked for.
+// Batches of rays in arrays: the hits of the same rays one by one, for every layout and every choice of outputs.
 
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
@@ -65,7 +65,7 @@ TEST_F(Batches, OfAnyNumber) {
   }
 }
 
-/// Records of hits have no number left of what was in their memory.
+/// Records of hits keep no number of what was in their memory.
 TEST_F(Batches, LeaveNothingOfWhatWasThere) {
   const std::vector<RayInstance> two{{&scene_, Affine{}}, {&scene_, Affine::scaled({0.5, 0.5, 0.5})}};
   const RayScene instances = value_of(RayScene::make(two)), grid = scene_of(set_);
@@ -135,7 +135,7 @@ TEST_F(Batches, InRecords) {
   }
 }
 
-/// No other output decides what an output holds.
+/// The values of an output do not depend on the other outputs.
 TEST_F(Batches, EachOutputAlone) {
   const Arrays<float> arrays(mixed_rays(set_.box()));
   const std::size_t count = arrays.tnear.size();
@@ -172,7 +172,7 @@ TEST_F(Batches, EachOutputAlone) {
   for (std::size_t ray = 0; ray < count; ++ray) EXPECT_TRUE(same_flags(flags.flags[ray], all.flags[ray])) << ray;
 }
 
-/// Record 0 of a view of stride 0 belongs to all rays, and views that are not given have their defaults.
+/// Record 0 of a view of stride 0 belongs to all rays, and absent views have their defaults.
 TEST_F(Batches, OneRecordForAllRays) {
   const Arrays<float> arrays(picture(24));
   RayViews<float> all = arrays.views(), one = all;

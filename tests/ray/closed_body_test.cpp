@@ -30,7 +30,7 @@ std::size_t leaks(const RayScene& scene, std::size_t count, std::uint64_t seed, 
 }
 
 TEST(ClosedBody, BordersAreShared) {
-  // What the other tests rest on: every edge of the body belongs to two patches.
+  // A precondition of the other tests: every edge of the body belongs to two patches.
   for (const auto& patches : {closed_body(), sphere()}) {
     std::size_t matched = 0, edges = 0;
     const auto border = [](const BezierPatch& p, int edge, int k) {
@@ -73,7 +73,8 @@ TEST(ClosedBody, RandomRaysDoNotLeak) {
 }
 
 TEST(ClosedBody, RaysAtGridVertices) {
-  // Embree promises nothing there; the count is told, and bounded by what was measured for robust scenes (under 1%).
+  // Embree promises nothing there; the count is reported, and bounded by what was measured for robust scenes (under
+  // 1%).
   const std::vector<BezierPatch> patches = closed_body();
   const PatchSet set = set_of(patches);
   const RayScene scene = scene_of(set);
@@ -124,7 +125,7 @@ TEST(ClosedBody, RefinedHitsAgreeWithTheReference) {
     EXPECT_LE(refined.median, 1e-12);
     EXPECT_LE(refined.largest, 1e-9);
     EXPECT_EQ(refined.unrefined, 0u);
-    EXPECT_GT(facets.median, 1e-6);  // else the comparison would say nothing
+    EXPECT_GT(facets.median, 1e-6);  // otherwise the comparison would prove nothing
   }
 }
 

@@ -116,7 +116,8 @@ TEST(ClosedForm, SphereAtItsPoles) {
   }
 }
 
-/// One light weight makes a crater that the facets follow coarsely: rays at known points of the surface must still be answered there.
+/// One light weight makes a crater that the facets follow coarsely: rays at known points of the surface must still be
+/// answered there.
 TEST(ClosedForm, LightWeightsDoNotMoveTheRaysAway) {
   for (const double weight : {1.0, 1e-2, 1e-4, 1e-6, 1e-7, 1e-8}) {
     std::vector<Vec3> points;

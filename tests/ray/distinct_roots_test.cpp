@@ -1,4 +1,4 @@
-// Roots that are the same, among few and among many.
+// Equal roots, among few and among many.
 
 #include "ray/seam/distinct_roots.h"
 
@@ -53,8 +53,8 @@ LeafRoot random_root(Random& random, std::size_t patches) {
   return root;
 }
 
-/// Many bodies that don't touch: what is kept of each doesn't depend on the others, which are so few by themselves that
-/// each root is compared with each.
+/// Many bodies that don't touch: the roots kept of each do not depend on the others. A single body has so few roots
+/// that each is compared with each.
 TEST(DistinctRoots, OfManyAreThoseOfFew) {
   constexpr std::size_t bodies = 40;
   std::vector<BezierPatch> body = sphere();
@@ -92,7 +92,7 @@ TEST(DistinctRoots, OfManyAreThoseOfFew) {
   }
 }
 
-/// A surface that runs along the ray. Compared each with each they would take until the time limit of the test.
+/// A surface that runs along the ray. Comparing each root with each would take until the time limit of the test.
 TEST(DistinctRoots, ALineOfThemEndsSoon) {
   const PatchSet set = set_of(sphere());
   const SetView view(set);

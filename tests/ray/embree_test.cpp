@@ -1,4 +1,4 @@
-// Patches in a scene of Embree's that is the user's own: the same hits, masks, instances and filters honoured, edits.
+// Patches in the user's own Embree scene: the same hits; masks, instances and filters have their effect; edits.
 
 #include "tessera/ray_embree.h"
 
@@ -26,7 +26,7 @@ struct Release {
 template <class Handle>
 using Held = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
 
-/// A device and a robust scene of it. `options`: more of Embree's own, such as the instruction set.
+/// A device and a robust scene of it. `options`: further options of Embree, such as the instruction set.
 struct World {
   explicit World(const std::string& options = {}) : device(rtcNewDevice(("start_threads=0" + options).c_str())) {}
 
@@ -226,7 +226,7 @@ TEST(EmbreeGeometry, Masks) {
   }
 }
 
-/// What a filter sees of its context, which the user has made larger.
+/// The values that a filter sees of its context, which the user has extended.
 struct Log {
   EmbreeContext context;  // first: one points to the other
   std::vector<float> t;

@@ -1,4 +1,4 @@
-// What exact mode says beside what it meets: ends of rays, bad rays and options, edits, several hits, degenerate sets.
+// Exact mode besides its hits: ends of rays, bad rays and options, edits, several hits, degenerate sets.
 
 #include <limits>
 

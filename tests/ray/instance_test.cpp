@@ -1,4 +1,4 @@
-// Instances: the same hits as of patches whose control points were taken through the map, whatever the map.
+// Instances: the same hits as for patches whose control points are mapped, for any map.
 
 #include <algorithm>
 #include <cmath>
@@ -173,7 +173,7 @@ TEST(Instances, EditsMakeStaleUntilBothAreRefitted) {
   PatchSet set = set_of(sphere());
   RayScene ball = value_of(RayScene::make(set));
   RayScene scene = instances_of(ball, {Affine{}, Affine::translated({5, 0, 0})});
-  RayScene moved = std::move(ball);  // the scene stays where it is
+  RayScene moved = std::move(ball);  // the scene is unchanged
   const Ray down = ray({5.125, 0.25, 5}, {0, 0, -1});
   const double before = scene.closest(down).t;
   for (std::size_t k = 0; k < set.patch_count(); ++k) {

@@ -70,7 +70,7 @@ TEST_F(Interval, OriginOnTheSurface) {
 }
 
 TEST(IntervalBegin, FacetsAtTheBeginningOfAPieceAreLeftBehind) {
-  // Rays that leave the set from just outside are traced from so far back as facets may be off. Some then begin, in
+  // Rays that leave the set from just outside are traced from as far back as facets may be wrong. Some then begin, in
   // float, on the flat facet itself, whose hit lies before their tnear.
   std::vector<Vec3> dome;
   for (int i = 0; i < 3; ++i)

@@ -1,4 +1,4 @@
-// The lines of many rays at once against those of one.
+// Compares lines through many rays at once with those of one ray.
 
 #include "kernel/isa/kernel_table.h"
 #include "ray/line/ray_lines.h"
@@ -32,7 +32,8 @@ void expect_same(const RayLine& a, const RayLine& b) {
   EXPECT_EQ(a.speed, b.speed);
 }
 
-/// From anywhere, near and very far, of any length, mostly at the box; some along an axis, some with ends, some bad.
+/// Rays from anywhere, near and very far, of any length, mostly at the box; some along an axis, some with ends, some
+/// bad.
 Ray any_ray(Random& random) {
   const double infinity = std::numeric_limits<double>::infinity();
   const double far = std::pow(10.0, uniform(random, -2, random() % 8 == 0 ? 17 : 3));

@@ -94,7 +94,7 @@ Point told_by(const kernel::RayLeaf& leaf, std::size_t step, std::size_t compone
   return out;
 }
 
-/// The piece in the leaf's coordinates, homogeneous: what the kernels' coefficients stand for.
+/// The piece in the leaf's coordinates, homogeneous: the exact values of the kernels' coefficients.
 std::vector<long double> local_net(const kernel::RayLeaf& leaf, const std::vector<double>& net, std::size_t size,
                                    bool rational, std::size_t component) {
   const double heaviest =
@@ -194,7 +194,7 @@ TEST(LocalLeaf, RandomRaysTakeFewStepsAtEveryDegree) {
   }
 }
 
-/// Next to a heavy corner the surface runs 1e4 times its size a unit of the parameters, and turns as quickly.
+/// Next to a heavy corner the surface moves 1e4 times its size per unit of the parameters, and turns as quickly.
 TEST(LocalLeaf, HitsNextToHeavyCornersAreOnTheRay) {
   const std::vector<test::RayClass> classes = test::ray_classes();
   const auto heavy = std::find_if(classes.begin(), classes.end(),

@@ -1,4 +1,4 @@
-// Grid mode over meshes that were made for other ends.
+// Grid mode over meshes that were made for other purposes.
 
 #include "ray_support.h"
 #include "support/reference_rays.h"

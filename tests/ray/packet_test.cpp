@@ -1,4 +1,4 @@
-// Coherent rays are traced as packets: whatever their number, each meets what it meets alone.
+// Coherent rays are traced as packets: for any number of rays, each hits what it hits alone.
 
 #include "ray_support.h"
 #include "support/torus.h"
@@ -15,7 +15,7 @@ PatchSet torus_set() {
   return value_of(make_patch_set(model));
 }
 
-/// Side by side, towards the torus from aslant; the wider they lie, the more pass it by.
+/// Rays side by side, towards the torus at a slant; the wider they lie, the more miss it.
 std::vector<Ray> side_by_side(std::size_t count, double width) {
   std::vector<Ray> rays;
   for (std::size_t k = 0; k < count; ++k) {
@@ -53,7 +53,7 @@ void expect_same(const Hit& a, const Hit& b) {
   EXPECT_EQ(a.flags.uncertified, b.flags.uncertified);
 }
 
-/// Bicubic pieces, rational ones, and such as no kernel takes: each ray has the bits that it has alone.
+/// Bicubic pieces, rational ones, and pieces that no kernel takes: each ray gives the bits that it gives alone.
 TEST(Packets, HaveTheBitsOfEachRay) {
   const std::vector<Ray> rays = picture();
   std::vector<BezierPatch> quartic;

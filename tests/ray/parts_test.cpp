@@ -1,4 +1,4 @@
-// Parts of a model, each in a scene of its own with the model's box: together they return what the scene of the whole does.
+// Parts of a model, each in a scene of its own with the model's box: together they return the hits of the whole scene.
 
 #include <algorithm>
 #include <limits>
@@ -30,7 +30,7 @@ bool share_per_corner(const BezierPatch& a, const BezierPatch& b) {
   return false;
 }
 
-/// `count` parts, patch by patch in turn; with neighbours behind or without.
+/// Makes `count` parts, patch by patch in turn; with neighbours at the end or without.
 std::vector<Part> parts_of(const std::vector<BezierPatch>& patches, const Box3& box, std::size_t count,
                            bool with_neighbours) {
   std::vector<Part> out;
@@ -102,7 +102,7 @@ TEST(Parts, TheNearestHitIsThatOfTheWhole) {
   }
 }
 
-/// With neighbours a root at a border is one part's alone.
+/// With neighbours, a root at a border belongs to only one part.
 TEST(Parts, AllHitsAreThoseOfTheWhole) {
   for (const std::vector<BezierPatch>& patches : models()) {
     const PatchSet set = set_of(patches);
@@ -130,7 +130,7 @@ TEST(Parts, AllHitsAreThoseOfTheWhole) {
   }
 }
 
-/// Neighbours are seen through, and know a ray's origin.
+/// Rays pass through neighbours, but these know a ray's origin.
 TEST(Parts, NeighboursAreNotHit) {
   const std::vector<BezierPatch> patches = Torus(8).patches(false);
   const PatchSet set = set_of(patches);

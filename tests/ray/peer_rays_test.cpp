@@ -1,5 +1,5 @@
-// Rays that other programs have answered: axom's tests and SISL's line intersections of real surfaces. Their data is
-// not part of this project: TESSERA_TEST_DATA names its folder, else this skips.
+// Compares with rays that other programs have answered: axom's tests and SISL's line intersections of real surfaces.
+// Their data is not part of this project: TESSERA_TEST_DATA names its folder; without it the test is skipped.
 
 #include <cstdlib>
 #include <fstream>
@@ -78,7 +78,7 @@ TEST(PeerRays, Axom) {
       const std::string note = json.value("note", "");
       const std::vector<double> ours = scene.all_t(one);
       if (note.find("infinitely many") != std::string::npos || note.find("coplanar") == 0) {
-        // The ray runs in the surface: its first point is asked for, not one that the peer chose.
+        // The ray runs in the surface: the first point counts, rather than the peer's choice.
         EXPECT_EQ(scene.scene.closest(one).kind, HitKind::hit);
         EXPECT_TRUE(scene.scene.closest(one).flags.uncertified);
         ++rulings;

@@ -1,4 +1,4 @@
-// Exact mode against a referee in interval arithmetic, and closed bodies that nothing may leave. The same at length:
+// Compares exact mode with a reference in interval arithmetic; no ray may leave closed bodies. A longer run:
 // tessera_proof_report.
 
 #include <iostream>
@@ -53,8 +53,8 @@ TEST(ExactMode, MissesNothingThatIsProven) {
   EXPECT_LT(undecidable, hits / 3);
 }
 
-/// At seams of a torus, almost along it: the ray enters 1e-6 before the seam, over which the surface rises by 1e-13, and
-/// meets the neighbour on the seam itself, a root by all proofs.
+/// At seams of a torus, almost along it: the ray enters 1e-6 before the seam, over which the surface rises by 1e-13,
+/// and hits the neighbour on the seam itself, a root by all proofs.
 TEST(ExactMode, NoProvenRootHidesWhatBeginsBeforeIt) {
   const std::vector<BezierPatch> torus = Torus(5).patches(true);
   const PatchSet set = value_of(PatchSet::from(torus));
@@ -127,8 +127,8 @@ TEST(ExactMode, NothingLeavesAlongSeams) {
 }
 
 TEST(ExactMode, LinesCrossClosedBodiesEvenly) {
-  // A tangential point counts once: rays that touch are left out. So does one of a crease that the ray passes outside
-  // of, which is why only the smooth body is aimed at where patches meet.
+  // A tangential point counts once, so rays that touch are left out. So is a point of a crease that the ray passes
+  // outside of: therefore rays aim at places where patches meet only on the smooth body.
   for (const auto& [patches, smooth] : {std::pair{closed_body(), false}, {sphere(), true}}) {
     const PatchSet set = set_of(patches);
     const RayScene scene = exact_scene(set);

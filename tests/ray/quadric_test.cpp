@@ -1,4 +1,4 @@
-// Patches of quadrics against the closed form: the same first hit, at the same parameters.
+// Compares patches of quadrics with the closed form: the same first hit, at the same parameters.
 
 #include <cmath>
 
@@ -10,8 +10,8 @@
 namespace tessera::test {
 namespace {
 
-/// The nearest hit of the piece in front of the ray, and whether facets must find it: every hit is away from the piece's
-/// borders and from grazing, and no two are close together.
+/// The nearest hit of the piece in front of the ray, and whether facets must find it, which they must if every hit is
+/// away from the piece's borders and from grazing, and no two are close together.
 struct FirstHit {
   double t = 0;
   QuadricParameters at;

@@ -1,4 +1,5 @@
-// Exact scenes that follow edits: a refit answers as a scene made anew, and queries from many threads stand between edits.
+// Exact scenes that follow edits: a refitted scene answers like a new one, and queries from many threads run between
+// edits.
 
 #include <algorithm>
 #include <atomic>
@@ -23,7 +24,7 @@ bool contains(const Box3& box, const Box3& other, double by) {
   return std::min({low.x, low.y, low.z, high.x, high.y, high.z}) >= -by;
 }
 
-/// The same answers as those of a scene made anew; how many hits.
+/// Expects the answers of a new scene; returns the number of hits.
 std::size_t expect_as_made_anew(const RayScene& scene, const PatchSet& set, std::uint64_t seed) {
   const RayScene fresh = value_of(RayScene::make(set));
   EXPECT_EQ(scene.revision(), set.revision());
@@ -67,7 +68,7 @@ TEST(Refit, AnswersAsASceneMadeAnew) {
   }
 }
 
-/// Each patch to where another one was, then all of them far off and of another size, and back.
+/// Moves each patch to where another one was, then all of them far away and to another size, and back.
 TEST(Refit, EveryPatchMovedFar) {
   const std::vector<BezierPatch> patches = Torus(8).patches(false);
   PatchSet set = set_of(patches);
@@ -93,7 +94,7 @@ TEST(Refit, EveryPatchMovedFar) {
   move([](std::size_t k) { return k; });
 }
 
-/// Patches that are straight when they are cut and curl up afterwards, at every rhythm of rebuilds.
+/// Patches that are straight when they are cut and bend afterwards, for every interval of rebuilds.
 TEST(Refit, StrongBendsAfterwards) {
   for (const int rebuild_after : {0, 1, 2}) {
     std::vector<Vec3> flat(16);
@@ -131,7 +132,7 @@ TEST(Refit, EditsInOnePassAreSeen) {
   const std::vector<double> ends = uniform_parameters(2);
   const GridPlan plan = value_of(GridPlan::make(set, ends, ends));
   std::vector<float> memory(3 * plan.capacity());
-  const GridViews<float> out{.position = View3<float>::interleaved(memory), .du = {}, .dv = {}, .normal = {}};
+  const QuantityViews<float> out{.position = View3<float>::interleaved(memory), .du = {}, .dv = {}, .normal = {}};
   const std::vector<std::uint32_t> edited{11, 2};
   std::vector<Vec3> points;
   for (const std::uint32_t k : edited) {

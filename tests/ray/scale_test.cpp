@@ -19,7 +19,7 @@ TEST_P(Places, SphereFromOutside) {
   const auto [name, scale, shift] = GetParam();
   const PatchSet set = set_of(placed(sphere(), scale, shift));
   const RayScene scene = scene_of(set);
-  // What double resolves of the model at its place, and a share of the size.
+  // The resolution of double at the model's place, and a share of the size.
   const double tolerance = 1e-9 * scale + 1e-14 * max_abs(shift);
   Random random(31);
   for (const double distance : {1.5, 30.0, 1e4, 1e6}) {

@@ -1,5 +1,5 @@
-// Rays beside seams, creases, corners and poles: each root is met once, and rays that leave a surface there don't meet it
-// again. The same at length: tessera_proof_report.
+// Rays beside seams, creases, corners and poles: each root is hit once, and rays that leave a surface there don't hit
+// it again. A longer run: tessera_proof_report.
 
 #include "support/seam_rays.h"
 
@@ -19,7 +19,7 @@ std::vector<Hit> all_hits(const RayScene& scene, const Ray& ray) {
 
 PatchSet unit_sphere() { return set_of(value_of(to_bezier(value_of(nurbs_sphere({}, 1)))).take_patches()); }
 
-/// The second root is 3e-11 from a seam, from beyond which its neighbour sees it as well.
+/// The second root is 3e-11 from a seam; the neighbour sees it too, from beyond the seam.
 TEST(Seams, ARootBesideAnotherIsKept) {
   const PatchSet set = unit_sphere();
   const RayScene scene = value_of(RayScene::make(set));
@@ -94,7 +94,7 @@ TEST(Seams, EachRootIsCountedOnce) {
   }
 }
 
-/// Of smooth bodies no ray meets the surface again within a millionth.
+/// On smooth bodies no ray hits the surface again within a millionth.
 TEST(Seams, NothingIsMetByLeavingIt) {
   for (const Body& body : bodies()) {
     if (!body.smooth) continue;
@@ -115,7 +115,7 @@ TEST(Seams, NothingIsMetByLeavingIt) {
   }
 }
 
-/// What is met beyond a crease is truly there: the ray passes the hit's patch inside, to the last digits.
+/// A hit beyond a crease is truly there: the ray passes through the hit's patch, to the last digits.
 TEST(Seams, BeyondACreaseIsMetWhatIsThere) {
   for (const Body& body : bodies()) {
     if (body.smooth) continue;

@@ -1,5 +1,5 @@
-// Rays that leave a surface: the point that they leave is never met again, its neighbours always are. What else a hit
-// tells: derivatives, curvature, cost.
+// Rays that leave a surface: the point that they leave is never hit again, its neighbours always are. Also checks the
+// other values of a hit: derivatives, curvature, cost.
 
 #include <algorithm>
 #include <cmath>
@@ -25,8 +25,8 @@ std::pair<double, double> place(Random& random, int kind) {
   return {u, v};
 }
 
-/// Outwards nothing is met, however flat the angle; inwards the sphere's other side, where the chord ends. Corners,
-/// borders and poles included.
+/// Outwards nothing is hit, however flat the angle; inwards the sphere's other side, where the chord ends. Includes
+/// corners, borders and poles.
 TEST(Spawn, LeavingASphere) {
   for (const Vec3& centre : {Vec3{}, Vec3{100, -30, 7}}) {
     const PatchSet set = set_of(placed(sphere(), 1, centre));
@@ -51,7 +51,7 @@ TEST(Spawn, LeavingASphere) {
   }
 }
 
-/// From one point of a hollow to another one near by, both on the surface: the second is met, at t = 1.
+/// From one point of a hollow to another one near by, both on the surface: the second is hit, at t = 1.
 TEST(Spawn, NeighboursInAHollowAreMet) {
   for (const bool is_rational : {false, true}) {
     const PatchSet set = set_of(Torus(12).patches(is_rational));
@@ -78,7 +78,7 @@ TEST(Spawn, NeighboursInAHollowAreMet) {
   }
 }
 
-/// Through a scene with many folds: what is met is what all hits say, less the one at the start.
+/// Through a scene with many folds: the closest hits equal all hits, less the one at the start.
 TEST(Spawn, LeavesOneRootOut) {
   const PatchSet set = set_of(wavy_field(6, 6));
   const RayScene scene = value_of(RayScene::make(set));

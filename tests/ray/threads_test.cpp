@@ -1,4 +1,4 @@
-// The same bytes for any number of threads.
+// Results are the same bytes for any number of threads.
 
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>

@@ -1,4 +1,4 @@
-// Pictures of numbers: each pixel is what its ray meets, and comes back from OpenEXR's reader bit for bit.
+// Pictures of numbers: each pixel holds the hit of its ray, and comes back from OpenEXR's reader bit for bit.
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>

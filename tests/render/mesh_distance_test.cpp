@@ -1,4 +1,4 @@
-// Distances to meshes: those to each triangle, looked at one by one.
+// Compares distances to meshes with those to each triangle, one by one.
 
 #include "render/mesh_distance.h"
 

@@ -1,4 +1,4 @@
-// PNG files: what is written can be read back, and nothing half-written stays.
+// PNG files can be read back, and no partial file remains.
 
 #include <gtest/gtest.h>
 #include <png.h>

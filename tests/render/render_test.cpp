@@ -1,4 +1,4 @@
-// Small pictures: the model is in the middle, casts a shadow, and is the same whatever the threads, scale and place.
+// Small pictures: the model is in the middle, casts a shadow, and is the same for any threads, scale and place.
 
 #include "render/render.h"
 
@@ -115,7 +115,8 @@ TEST(Render, CurvatureAndCostAreShown) {
   EXPECT_GT(saddle.b, saddle.r + 30);
   EXPECT_NEAR(trough.r, trough.b, 12);
 
-  // Rays that touch the ball cost more than those that meet it squarely; those that pass it far off cost nothing.
+  // Rays that touch the ball cost more than those that hit it at a right angle; those that pass it at a distance cost
+  // nothing.
   const Image cost = Drawn(test::sphere()).image(small(Shade::steps));
   EXPECT_GT(pixel(cost, 30, 20).b, pixel(cost, 30, 20).r);
   const Rgb nothing = pixel(cost, 0, 0);

@@ -83,7 +83,7 @@ class Calls {
     change(hits, batch);
     table_.row(input, code, closest(scene_, batch.rays(), hits), [&] { return batch.untouched(); });
   }
-  /// Ray 7 is spoiled; the others are answered.
+  /// Spoils ray 7; the others are answered.
   template <class Spoil>
   void lane(const std::string& input, const Spoil& spoil) {
     Batch batch;
@@ -122,7 +122,7 @@ void bad_rays(Calls& calls, const std::string& name, View RayViews<float>::*view
   with("with the largest stride", invalid_argument,
        [](View& of) { of.stride = std::numeric_limits<std::ptrdiff_t>::max(); });
   with("misaligned", invalid_argument, [](View& of) { misalign(of); });
-  if (name == "direction") return;  // it says how many rays there are
+  if (name == "direction") return;  // its length is the number of rays
   with("short by one record", count_mismatch, [](View& of) { of.size = count - 1; });
   with("with stride 0 and no record", count_mismatch, [](View& of) { of.stride = 0, of.size = 0; });
 }

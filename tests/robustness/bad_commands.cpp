@@ -1,4 +1,4 @@
-// The command line: the built program is run, and what it says on standard error stands in the table.
+// The command line: runs the built program; the table holds what it prints on standard error.
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 namespace tessera::test {
 namespace {
 
-/// Commands in a folder with a model, of which none may print, or leave anything there.
+/// Runs commands in a folder with a model; none may print, or leave anything there.
 class Commands {
  public:
   explicit Commands(Table& table) : table_(table) {

@@ -47,17 +47,17 @@ void grid_views(Table& table, const PatchSet& set) {
   const Numbers t = uniform_parameters(3);
   const GridPlan plan = value_of(GridPlan::make(set, t, t));
   AllBuffers<float> memory(plan), clean(plan);
-  const auto refused = [&](const std::string& input, StatusCode code, const GridViews<float>& views) {
+  const auto refused = [&](const std::string& input, StatusCode code, const QuantityViews<float>& views) {
     table.row(input, code, evaluate(set, plan, views), [&] { return memory == clean; });
   };
-  table.of("evaluate(set, plan, GridViews, execution)");
+  table.of("evaluate(set, plan, QuantityViews, execution)");
   refused("no view", invalid_argument, {});
   bad_view(
       "positions", memory.views(), plan.capacity(), [](auto& views) -> auto& { return views.position; }, refused);
   bad_view(
       "directions", memory.views(), plan.capacity(), [](auto& views) -> auto& { return views.second_direction; },
       refused);
-  GridViews<float> views = memory.views();
+  QuantityViews<float> views = memory.views();
   views.gaussian.size = 0;
   refused("curvatures in a view of no records", buffer_too_small, views);
   views = memory.views();
@@ -83,12 +83,12 @@ void grid_blocks(Table& table, const PatchSet& set) {
   const GridPlan plan = value_of(GridPlan::make(set, t, t));
   AlignedVector<float> memory(2 * plan.block_capacity() + 1, -7.0f);
   const std::span<float> all = memory;
-  const auto refused = [&](const std::string& input, StatusCode code, const GridBlocks<float>& blocks) {
+  const auto refused = [&](const std::string& input, StatusCode code, const QuantityBlocks<float>& blocks) {
     table.row(input, code, evaluate(set, plan, blocks),
               [&] { return std::ranges::all_of(memory, [](float x) { return x == -7.0f; }); });
   };
   const std::size_t capacity = plan.block_capacity();
-  table.of("evaluate(set, plan, GridBlocks, execution)");
+  table.of("evaluate(set, plan, QuantityBlocks, execution)");
   refused("no memory", invalid_argument, {});
   refused("positions short by one number", buffer_too_small, {.position = all.first(capacity - 1)});
   refused("positions not aligned to 64 bytes", invalid_argument, {.position = all.subspan(1, capacity)});
@@ -96,13 +96,13 @@ void grid_blocks(Table& table, const PatchSet& set) {
           {.position = all.first(capacity), .normal = all.subspan(capacity - 16, capacity)});
 }
 
-/// Samples that are sound but for what each row does to them.
+/// Samples that are sound except for the change of each row.
 class PointRows {
  public:
   PointRows(Table& table, const PatchSet& set) : table_(table), set_(set) {}
 
   void refused(const std::string& input, StatusCode code, const PatchSamples<float>& samples,
-               const PointViews<float>& views, const PointOptions& options = {}) {
+               const QuantityViews<float>& views, const PointOptions& options = {}) {
     table_.row(input, code, evaluate(set_, samples, views, options), [&] { return memory_ == clean_; });
   }
   template <class Change>
@@ -117,7 +117,7 @@ class PointRows {
     change(views);
     refused(input, code, views, memory_.views());
   }
-  PointViews<float> views() { return memory_.views(); }
+  QuantityViews<float> views() { return memory_.views(); }
   const Samples<float>& sound() const { return sound_; }
 
  private:
@@ -133,7 +133,7 @@ class PointRows {
 };
 
 void samples_by_patch(Table& table, const PatchSet& set) {
-  table.of("evaluate(set, PatchSamples, PointViews, options, execution)");
+  table.of("evaluate(set, PatchSamples, QuantityViews, options, execution)");
   PointRows rows(table, set);
   const float nan = static_cast<float>(not_a_number), inf = static_cast<float>(infinity);
   rows.with_samples("a patch that is none", invalid_argument, [](auto& s) { s.patch[3] = 2; });
@@ -151,13 +151,13 @@ void samples_by_patch(Table& table, const PatchSet& set) {
   rows.with_sample_views("no u", count_mismatch, [](auto& views) { views.u = {}; });
   rows.with_sample_views("u with stride 0", invalid_argument, [](auto& views) { views.u.stride = 0; });
   rows.with_sample_views("u misaligned", invalid_argument, [](auto& views) { misalign(views.u); });
-  const auto refused = [&](const std::string& input, StatusCode code, const PointViews<float>& views) {
+  const auto refused = [&](const std::string& input, StatusCode code, const QuantityViews<float>& views) {
     rows.refused(input, code, rows.sound().views(), views);
   };
   refused("no view", invalid_argument, {});
   bad_view(
       "positions", rows.views(), 5, [](auto& views) -> auto& { return views.position; }, refused);
-  PointViews<float> same = rows.views();
+  QuantityViews<float> same = rows.views();
   same.du = same.dv;
   refused("two derivatives in one place", invalid_argument, same);
   PatchSamples<float> over = rows.sound().views();
@@ -180,7 +180,7 @@ void samples_by_surface(Table& table, const PatchSet& set) {
   const PatchSet torn = value_of(PatchSet::from(patches, with_sources));
   table.row("patches of a surface that are no grid", unsupported, SurfaceMap::make(torn));
 
-  table.of("evaluate(set, map, SurfaceSamples, PointViews, options, execution)");
+  table.of("evaluate(set, map, SurfaceSamples, QuantityViews, options, execution)");
   const SurfaceMap map = value_of(SurfaceMap::make(set));
   AllBuffers<float> memory(2), clean(2);
   const std::vector<std::uint32_t> surfaces{0, 1}, wrong{0, 2};

@@ -27,10 +27,10 @@ Status parse(std::string_view text) {
   return result.ok() ? Status() : result.status();
 }
 
-/// The rows of one reader: each text is "m" in its messages.
+/// The rows of one reader: in its messages each text is called "m".
 class Texts {
  public:
-  /// `nothing`: the code where there is nothing that the reader reads.
+  /// `nothing`: the code for a text without anything that the reader reads.
   Texts(Table& table, Status (*parse)(std::string_view), const std::string& call, StatusCode nothing = parse_error)
       : table_(table), parse_(parse) {
     table_.of(call);
@@ -117,7 +117,7 @@ void mesh_texts(Table& table) {
   stl.row("a facet that is cut", "solid m\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n", parse_error);
 }
 
-/// In a folder of its own, so that messages name files as they are given.
+/// In a folder of its own, so that messages name files by relative paths.
 class WorkingFolder {
  public:
   WorkingFolder() : before_(std::filesystem::current_path()) { std::filesystem::current_path(folder.path()); }

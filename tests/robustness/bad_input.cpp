@@ -5,7 +5,7 @@
 namespace tessera::test {
 namespace {
 
-/// In a cell of a Markdown table. What is another on another machine is left out.
+/// Formats a text for a cell of a Markdown table. Leaves out words that differ between machines.
 std::string cell(std::string text) {
   const std::string_view machine = "this machine has ";
   if (const std::size_t at = text.find(machine); at != std::string::npos)

@@ -1,6 +1,6 @@
 #pragma once
-// The table of bad input: entry point by entry point, input by input, what comes back. The tests fill it, and
-// engine/docs/bad-input.md is what they filled it with.
+// The table of bad input: for each entry point and each input, the answer. The tests fill it, and
+// engine/docs/bad-input.md is the result.
 
 #include <cstdint>
 #include <functional>
@@ -20,7 +20,7 @@ inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 /// The rows of one header, or of one command.
 class Table {
  public:
-  /// The rows that follow are of this call.
+  /// Begins the rows of this call.
   void of(const std::string& call);
 
   /// The call must have failed with this code.
@@ -29,14 +29,15 @@ class Table {
   void row(const std::string& input, StatusCode code, const Result<T>& result) {
     row(input, code, result.ok() ? Status() : result.status());
   }
-  /// The same, and no byte of its outputs may have changed, as `untouched` says, which is asked after the call.
+  /// The call must have failed with this code, and no byte of its outputs may have changed: `untouched` is asked after
+  /// the call.
   void row(const std::string& input, StatusCode code, const Status& status, const std::function<bool()>& untouched);
-  /// Unusual input that is no error: what it gives, and whether it did.
+  /// Unusual input that is not an error: the result, and whether it is right.
   void gives(const std::string& input, const std::string& what, bool holds);
-  /// What a program answered.
+  /// The answer of a program.
   void says(const std::string& input, const std::string& answer);
 
-  /// As Markdown.
+  /// The table as Markdown.
   const std::string& text() const { return text_; }
 
  private:
@@ -47,7 +48,7 @@ class Table {
 /// A part of the table.
 struct Section {
   std::string_view title;
-  void (*fill)(Table& table) = nullptr;  ///< null where this build lacks what it is about
+  void (*fill)(Table& table) = nullptr;  ///< null if this build lacks the part
 };
 
 /// For googletest.

@@ -1,5 +1,5 @@
-// Bad input is answered as the table says, and engine/docs/bad-input.md is that table.
-// To write the document anew: TESSERA_WRITE_BAD_INPUT=1 tessera_test_robustness --gtest_filter=BadInput.TheDocument
+// Bad input is answered as the table says, and engine/docs/bad-input.md is that table. To write the document anew:
+// TESSERA_WRITE_BAD_INPUT=1 tessera_test_robustness --gtest_filter=BadInput.TheDocument
 
 #include <gtest/gtest.h>
 
@@ -74,7 +74,7 @@ const std::string document = TESSERA_SOURCE_DIR "/engine/docs/bad-input.md";
 
 std::string heading(const Section& section) { return "\n## " + std::string(section.title) + "\n"; }
 
-/// The part of the document that stands below the section's heading.
+/// The part of the document below the section's heading.
 std::string committed(const std::string& text, const Section& section) {
   const std::size_t begin = text.find(heading(section));
   if (begin == std::string::npos) return {};

@@ -120,6 +120,9 @@ void other_sets(Table& table, Make plan_for) {
                  steeper = set_of({patches[0], *BezierPatch::polynomial(1, 1, std::vector<Vec3>(4))});
   table.row("a set of more patches", stale, plan.run(longer, mesh.views()), [&] { return same(mesh, clean); });
   table.row("a set of other degrees", stale, plan.run(steeper, mesh.views()), [&] { return same(mesh, clean); });
+  const PatchSet doubles = set_of(patches, {.blocks = {.float_bernstein = false, .double_bernstein = true}});
+  table.row("a set without float blocks", unsupported, plan.run(doubles, mesh.views()),
+            [&] { return same(mesh, clean); });
   (void)set.set_control_points(1, std::vector<Vec3>(16, Vec3{1, 2, 3}));
   table.row("an edit by which a border collapses", stale, plan.run(set, mesh.views()),
             [&] { return same(mesh, clean); });

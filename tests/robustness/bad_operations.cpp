@@ -97,7 +97,7 @@ void grids_of_patches(Table& table, const BezierPatch& patch) {
             transformed(*grid, Affine{{Vec3{1.7e308, 0, 0}, {1.7e308, 0, 0}, {1.7e308, 0, 0}}, {}}));
 }
 
-/// Two sound surfaces with one that is not between them.
+/// Two sound surfaces and a wrong one between them.
 Model model_with(const Surface& surface, const Affine& placement = {}) {
   const BezierPatch sound = wavy_field(1, 1).front();
   return {.name = "model", .surfaces = {{"first", sound}, {"rim", surface, placement}, {"last", sound}}};

@@ -33,7 +33,7 @@ Numbers with(Numbers list, std::size_t k, double number) {
   return list;
 }
 
-/// What may be wrong with a list of points, all of which a maker must refuse or take.
+/// Faults of a list of points; a maker must report or accept each.
 template <class Make>
 void bad_points(Table& table, std::size_t count, Make make) {
   table.row("no points", count_mismatch, make(Points{}));

@@ -85,7 +85,7 @@ void transfinite(Table& table) {
             [&] { return floats == clean; });
 }
 
-/// Edits of a set of two patches that are sound but for what each row does to them.
+/// Edits of a set of two patches, sound except for the change of each row.
 struct Edited {
   std::vector<BezierPatch> patches = wavy_field(1, 2);
   PatchSet set = set_of(patches);
@@ -121,19 +121,19 @@ void bad_edits(Table& table, Edited& edited, Run run, Clean clean) {
 }
 
 void grid_updates(Table& table) {
-  table.of("GridUpdate::run(set, plan, edits, GridViews, execution)");
+  table.of("GridUpdate::run(set, plan, edits, QuantityViews, execution)");
   Edited edited;
   const Numbers t = uniform_parameters(3);
   const GridPlan plan = value_of(GridPlan::make(edited.set, t, t));
   AllBuffers<float> memory(plan), clean(plan);
   GridUpdate update = value_of(GridUpdate::make(edited.set));
-  const auto run = [&](Edited& e, const GridViews<float>& out) {
+  const auto run = [&](Edited& e, const QuantityViews<float>& out) {
     return update.run(e.set, plan, {e.patch, e.points}, out);
   };
   const auto untouched = [&] { return memory == clean; };
   bad_edits(
       table, edited, [&](Edited& e) { return run(e, memory.views()); }, untouched);
-  const auto refused = [&](const std::string& input, StatusCode code, const GridViews<float>& views) {
+  const auto refused = [&](const std::string& input, StatusCode code, const QuantityViews<float>& views) {
     table.row(input, code, run(edited, views), untouched);
   };
   bad_view(

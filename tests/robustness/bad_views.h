@@ -1,5 +1,5 @@
 #pragma once
-// What may be wrong with a view that a call is given to write to.
+// Faults of a view that a call writes to.
 
 #include <limits>
 #include <string>

@@ -1,4 +1,4 @@
-// What a cancelled call leaves behind: every record is what it was, or what the whole call writes there; nothing between.
+// The results of a cancelled call: every record is unchanged, or as the whole call writes it, and nothing between.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 namespace tessera::test {
 namespace {
 
-/// call(execution) again and again, cancelled at one share of its work after the other; after each, look(status).
+/// Runs call(execution) repeatedly, cancelled at one share of its work after the other; runs look(status) after each.
 template <class Call, class Look>
 void cancelled_at_many_places(Call call, Look look) {
   int cancelled = 0;
@@ -27,7 +27,7 @@ void cancelled_at_many_places(Call call, Look look) {
   EXPECT_GE(cancelled, 4);
 }
 
-/// Counts records of `width` numbers that are neither as before nor as when all is done.
+/// Counts records of `width` numbers that are neither unchanged nor complete.
 template <class T>
 std::size_t torn(const std::vector<T>& now, const std::vector<T>& before, const std::vector<T>& done,
                  std::size_t width) {
@@ -71,7 +71,8 @@ TEST_F(Cancelled, Points) {
   const std::vector<float> before(3 * samples.size(), -7);
   std::vector<float> done = before, out = before;
   const auto run = [&](std::vector<float>& to, const Execution& execution) {
-    return evaluate(set_, samples.views(), PointViews<float>{.position = View3<float>::interleaved(to)}, {}, execution);
+    return evaluate(set_, samples.views(), QuantityViews<float>{.position = View3<float>::interleaved(to)}, {},
+                    execution);
   };
   ASSERT_TRUE(run(done, {}).ok());
   cancelled_at_many_places([&](const Execution& execution) { return run(out, execution); },
@@ -124,7 +125,7 @@ TEST_F(Cancelled, Updates) {
   }
   GridBuffers<float> out(plan), fresh(plan);
   ASSERT_TRUE(evaluate(set_, plan, out.views()).ok());
-  const GridViews<float> views{.position = out.views().position};
+  const QuantityViews<float> views{.position = out.views().position};
   cancelled_at_many_places(
       [&](const Execution& execution) {
         return update.run(set_, plan, {patches, points}, views, execution);

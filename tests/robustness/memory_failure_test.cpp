@@ -1,5 +1,5 @@
-// Memory that runs out: for each operation, every allocation of it fails once, one run after the other. Each time a Status comes
-// back, nothing leaks, and what was there can still be used.
+// Memory that runs out: every allocation of each operation fails once, one run after the other. Each time the call
+// returns a Status, nothing leaks, and all existing objects remain usable.
 
 #include <gtest/gtest.h>
 
@@ -34,7 +34,8 @@ void survives(const std::string& name, Call call) {
   std::size_t n = 0;
   for (bool failed = true; failed; ++n) {
     ASSERT_LT(n, 100000u) << name;
-    // Twice: what stays of the first time may be an object in another state, or made once; what the second adds is lost.
+    // Runs twice: the first run may leave an object in another state, or made once; memory that the second run adds is
+    // a leak.
     std::size_t before = 0, after = 0;
     for (int time = 0; time < 2; ++time) {
       status = {};  // its message is memory, too
@@ -138,7 +139,7 @@ TEST(MemoryFails, WhereSetsAreEvaluated) {
     if (!own) return own.status();
     Result<GridUpdate> update = GridUpdate::make(*own);
     if (!update) return update.status();
-    return update->run(*own, plan, {edited, net}, GridViews<float>{.position = out.views().position});
+    return update->run(*own, plan, {edited, net}, QuantityViews<float>{.position = out.views().position});
   });
   survives("set_control_points", [&] { return set.set_control_points(2, net); });
   const Model model{.name = "m", .surfaces = {{"a", patches[0], Affine::translated({1, 0, 0})}, {"b", patches[9]}}};
@@ -199,7 +200,7 @@ TEST(MemoryFails, WhereRaysAreCast) {
     RayScene scene = value_of(RayScene::make(set, {.mode = mode, .rate = 3}));
     survives("closest, " + name, [&] { return scene.closest(rays, hits); });
     survives("occluded, " + name, [&] { return scene.occluded(rays, dark); });
-    // A refit that fails leaves the scene in another state, so each has a scene of its own.
+    // A failed refit leaves the scene in another state, so each has a scene of its own.
     survives("make and refit, " + name, [&]() -> Status {
       Result<RayScene> own = RayScene::make(set, {.mode = mode, .rate = 3});
       if (!own) return own.status();

@@ -96,7 +96,7 @@ Result<Surface> explicit_polynomial(Mutator& m) {
       m.integer(2), m.integer(1), m.list(std::vector<double>{1, 0, -0.5, 0.3, 0, 2}), m.domain({-1, 1, 0, 1})));
 }
 
-/// A function that is not what it should be at some places.
+/// A function that is wrong at some places.
 Result<Surface> function(Mutator& m) {
   const double threshold = uniform(m.random(), 0, 4), answer = m.number(0.25);
   const bool throws = m.chance(0.05);

@@ -1,5 +1,5 @@
-// Random mutations of valid surfaces, rays and options: nothing crashes, and no result is NaN without a flag. As many as
-// TESSERA_MUTATIONS says, 100,000 for a proof; a few seconds' worth by default.
+// Random mutations of valid surfaces, rays and options: nothing crashes, and no result is NaN without a flag.
+// TESSERA_MUTATIONS sets their number, 100,000 for a proof; the default takes a few seconds.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ class Case {
  public:
   explicit Case(std::uint64_t seed) : m_(seed) {}
 
-  /// How far it came.
+  /// Returns how far the case came.
   const char* run() {
     const Result<Surface> surface = mutated_surface(m_);
     if (!sound(surface)) return "surface refused";
@@ -42,7 +42,7 @@ class Case {
   }
 
  private:
-  /// Whether it was made; if not, whether it says why.
+  /// Whether there is a value or an error with a message.
   template <class T>
   static bool sound(const Result<T>& result) {
     if (!result) sound(result.status());
@@ -96,7 +96,7 @@ class Case {
     AllBuffers<T> out(*plan);
     if (!sound(evaluate(set, *plan, out.views()))) return;
     std::size_t k = 0;
-    for_each_value_output<T>([&](const auto& output) { expect_numbers(out.values[k++], output.name); });
+    for_each_value_quantity([&](const auto& output) { expect_numbers(out.values[k++], output.name); });
   }
   void evaluate_all(const PatchSet& set) {
     evaluate_grid<float>(set);
@@ -118,7 +118,7 @@ class Case {
                                       View1<const float>::interleaved(u), View1<const float>::interleaved(v)};
     if (!sound(evaluate(set, samples, out.views(), how))) return;
     std::size_t k = 0;
-    for_each_value_output<float>([&](const auto& output) { expect_numbers(out.values[k++], output.name); });
+    for_each_value_quantity([&](const auto& output) { expect_numbers(out.values[k++], output.name); });
   }
 
   template <class Plan>

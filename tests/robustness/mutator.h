@@ -11,7 +11,7 @@
 
 namespace tessera::test {
 
-/// Every number of a valid description goes through it, and a few come back changed.
+/// Passes every number of a valid description through, and changes a few.
 class Mutator {
  public:
   explicit Mutator(std::uint64_t seed) : random_(seed) {

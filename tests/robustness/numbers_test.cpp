@@ -45,7 +45,7 @@ TEST(Scales, FloatKeepsItsRelativePrecision) {
   }
 }
 
-/// By a power of two positions round no otherwise: the same bits, but for the exponent.
+/// Scaling by a power of two changes no rounding of positions: the same bits, except for the exponent.
 TEST(Scales, PowersOfTwoGiveTheSameBits) {
   const std::vector<BezierPatch> model = various_patches(4);
   const AllBuffers<float> one = grid_of(set_of(model));
@@ -56,7 +56,7 @@ TEST(Scales, PowersOfTwoGiveTheSameBits) {
     ASSERT_EQ(one.values[0].size(), other.values[0].size());
     for (std::size_t k = 0; k < one.values[0].size(); ++k)
       ASSERT_EQ(std::ldexp(one.values[0][k], power), other.values[0][k]) << power;
-    // Normals whose squares leave the range of float are found another way.
+    // If the squares of normals leave the range of float, another method finds them.
     for (std::size_t k = 0; k < one.values[3].size(); ++k)
       ASSERT_NEAR(one.values[3][k], other.values[3][k], 1e-5) << power;
     const auto triangles = [&](const PatchSet& of, double tolerance) {
@@ -85,7 +85,7 @@ TEST(Scales, RaysMeetTheSamePoints) {
         const Hit &a = expected[k], &b = hits[k];
         others += a.kind != b.kind || a.patch != b.patch || !(a.kind == HitKind::miss || std::abs(a.t - b.t) < 1e-6);
       }
-      // Far away both the rays and the surface are rounded to 2e-9: silhouettes and borders may be met otherwise.
+      // Far away both the rays and the surface are rounded to 2e-9: hits at silhouettes and borders may differ.
       EXPECT_LE(others, far == 0 ? 0u : 2u) << scale << ' ' << far;
     }
 }
@@ -110,18 +110,18 @@ TEST(Subnormals, AreNumbers) {
   }
 }
 
-/// What the caller's thread is set to.
+/// The floating-point settings of the caller's thread.
 struct Modes {
   int rounding = std::fegetround();
 #if defined(__x86_64__)
-  unsigned control = _mm_getcsr() & ~0x3fu;  // without the flags of what has happened
+  unsigned control = _mm_getcsr() & ~0x3fu;  // without the status flags
 #else
   unsigned control = 0;
 #endif
   bool operator==(const Modes&) const = default;
 };
 
-/// While it lives, the thread rounds in this way, and has these bits set in its control register.
+/// During its lifetime the thread rounds in this way, and has these bits set in its control register.
 class WithModes {
  public:
   explicit WithModes(int rounding, [[maybe_unused]] unsigned bits = 0) {

@@ -10,8 +10,8 @@
 namespace tessera::test {
 namespace {
 
-/// What call() holds at a time, at the most, beside what it returns, over `count`: at most `bytes`; and what it returns: at
-/// most `kept_bytes`. The first call may take memory that stays: threads' own, or tables.
+/// Checks the most memory that call() holds at a time besides its result, divided by `count`: at most `bytes`; and the
+/// memory of the result: at most `kept_bytes`. The first call may take memory that remains: threads' own, or tables.
 template <class Call>
 void expect_at_most(const char* name, double bytes, std::size_t count, Call&& call, double kept_bytes = 1e9) {
   (void)call();

@@ -1,5 +1,5 @@
-// Two pieces of one loop write one number without a lock. The thread sanitizer must say so: a test of the harness that the
-// other tests rely on.
+// Two pieces of one loop write one number without a lock. The thread sanitizer must report it: a test of the setup that
+// the other tests rely on.
 
 #include <cstdio>
 #include <thread>

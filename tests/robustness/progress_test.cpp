@@ -12,7 +12,7 @@
 namespace tessera::test {
 namespace {
 
-/// Calls call(execution), which must succeed, and looks at what it reports.
+/// Runs call(execution), which must succeed, and checks its reports.
 template <class Call>
 void rises_once(const char* name, const Call& call) {
   std::vector<double> shares;
@@ -41,7 +41,7 @@ TEST_F(Progress, Evaluation) {
   const Samples<float> samples = random_samples<float>(random, set_.patch_count(), 20000);
   std::vector<float> out(3 * samples.size());
   rises_once("points", [&](const Execution& execution) {
-    return evaluate(set_, samples.views(), PointViews<float>{.position = View3<float>::interleaved(out)}, {},
+    return evaluate(set_, samples.views(), QuantityViews<float>{.position = View3<float>::interleaved(out)}, {},
                     execution);
   });
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Everything that the library does with a set, once, with its results in memory to be compared.
+// All work of the library with a set, once, with the results in memory for comparison.
 
 #include <cstring>
 #include <vector>
@@ -119,8 +119,9 @@ inline std::vector<Ray> rays_at(const PatchSet& set, std::size_t count, std::uin
   return rays;
 }
 
-/// Makes or refits a scene. Embree is not instrumented: the thread sanitizer sees neither its locks nor that the tasks which
-/// build its trees are done when it says so. Under it one thread at a time does that work, alone; what rays do then is seen.
+/// Makes or refits a scene. Embree is not instrumented: the thread sanitizer sees neither its locks nor the end of the
+/// tasks that build its trees. Under that sanitizer, therefore, only one thread at a time does this work; the work of
+/// rays is then checked.
 template <class Build>
 auto built(Build&& build) {
 #ifdef TESSERA_THREAD_SANITIZER
@@ -154,7 +155,7 @@ inline void cast_into(Bits& bits, const PatchSet& set) {
 inline void cast_into(Bits&, const PatchSet&) {}
 #endif
 
-/// Everything above on a set of its own.
+/// Runs everything above on a set of its own.
 inline Bits everything(int size = 8) {
   Bits bits;
   PatchSet set = set_of(various_patches(size), with_points());

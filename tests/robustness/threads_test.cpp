@@ -1,5 +1,5 @@
-// Other people's threads: the same bytes for any number of workers, calls from tasks, arenas and threads of the caller's, and
-// what a cancelled call leaves behind.
+// Other people's threads: the same bytes for any number of workers, calls from tasks, arenas and threads of the
+// caller's, and the results of cancelled calls.
 
 #include <gtest/gtest.h>
 #include <tbb/task_group.h>
@@ -25,7 +25,8 @@ TEST(Workers, AnyNumberOfThemGivesTheSameBytes) {
   }
 }
 
-/// The library's own loop is met by so many threads at a time: a function of the caller's waits for them.
+/// Checks that `threads` threads run the library's own loop at the same time: a function of the caller's waits for
+/// them.
 TEST(Workers, AreAllAtWorkInOneCall) {
   for (const int workers : {2, 3, 8, 64}) {
     Meeting meeting(static_cast<std::size_t>(workers));
@@ -42,7 +43,7 @@ TEST(Workers, AreAllAtWorkInOneCall) {
   }
 }
 
-/// Each of these would hang if a call waited for what only its own thread can do; ctest's time limit would tell.
+/// Each call would block if it waited for work that only its own thread can do; ctest's time limit would show that.
 TEST(CallersThreads, TasksOfTheCallersMayCall) {
   const Bits expected = everything(3);
   std::atomic<int> same = 0;
@@ -85,7 +86,7 @@ TEST(CallersThreads, PoolsOfThreadsMayCall) {
   for (auto& result : pool) EXPECT_TRUE(result.get());
 }
 
-/// One set, one plan, one scene, used by all at once; and an edit between, that excludes them.
+/// One set, one plan, one scene, used by all at once; and an edit between, with exclusive access.
 TEST(CallersThreads, MayShareConstObjects) {
   PatchSet set = set_of(various_patches(4), with_points());
   const std::vector<Vec3> before(set.patch(5).points().begin(), set.patch(5).points().end());

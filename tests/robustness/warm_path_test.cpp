@@ -1,4 +1,5 @@
-// After the first calls a repeated call allocates nothing, and every operation keeps to the memory that its header states.
+// After the first calls a repeated call allocates nothing, and every operation keeps to the memory that its header
+// states.
 
 #include <gtest/gtest.h>
 
@@ -8,7 +9,7 @@
 namespace tessera::test {
 namespace {
 
-/// The first calls may allocate, and one in which a thread takes part for the first time.
+/// The first calls may allocate, and so may a call in which a thread takes part for the first time.
 template <class Call>
 void expect_no_allocation(const char* name, Call&& call) {
   for (int warm_up = 0; warm_up < 10; ++warm_up) ASSERT_TRUE(call().ok()) << name;

@@ -1,5 +1,5 @@
 #pragma once
-// Work that runs in an arena of so many threads, and proof that they were so many.
+// Runs work in an arena of a number of threads, and proves that all of them took part.
 
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
@@ -13,7 +13,7 @@
 
 namespace tessera::test {
 
-/// Lets threads go on once so many different ones have come, or after ten seconds.
+/// Blocks threads until enough different ones have come, or for ten seconds.
 class Meeting {
  public:
   explicit Meeting(std::size_t threads) : threads_(threads) {}
@@ -36,7 +36,8 @@ class Meeting {
   std::set<std::thread::id> ids_;
 };
 
-/// body() in an arena of `threads` threads, all of which have been at work there before. Says how many different ones.
+/// Runs body() in an arena of `threads` threads, all of which have worked there before. Returns how many different
+/// ones.
 template <class Body>
 std::size_t with_workers(int threads, Body&& body) {
   // The arena may be larger than the machine; without this limit oneTBB would make no more workers than it has cores.

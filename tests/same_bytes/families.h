@@ -1,5 +1,5 @@
 #pragma once
-// One hash a family of results.
+// One hash per family of results.
 
 #include <cstdint>
 #include <string>

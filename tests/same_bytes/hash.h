@@ -1,6 +1,6 @@
 #pragma once
-// FNV-1a over the bytes of numbers, so that two programs' results can be compared by a word. Zeros of either sign and all
-// NaN are what they are: the same bytes are meant.
+// FNV-1a over the bytes of numbers, to compare the results of two programs by a word. Zeros of either sign and all
+// kinds of NaN hash by their own bits, because the same bytes are required.
 
 #include <cstddef>
 #include <cstdint>
@@ -48,7 +48,7 @@ class Seeded {
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
     return z ^ (z >> 31);
   }
-  /// In [0, 1).
+  /// Uniform in [0, 1).
   double unit() { return static_cast<double>(word() >> 11) * 0x1p-53; }
   double between(double low, double high) { return low + (high - low) * unit(); }
 

@@ -1,5 +1,5 @@
-// Prints a line for each family of results and each instruction set of the machine: family, instruction set, hash. What the
-// instruction set does not matter for is printed once.
+// Prints a line for each family of results and each instruction set of the machine: family, instruction set, hash.
+// Results that do not depend on the instruction set are printed once.
 
 #include <cinttypes>
 #include <cstdio>

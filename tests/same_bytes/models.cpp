@@ -14,7 +14,7 @@ using tessera::Vec3;
 
 namespace {
 
-/// A sheet over a unit square beside the others', with bumps.
+/// A bumpy sheet over a unit square beside those of the others.
 std::vector<Vec3> net(Seeded& seeded, int rows, int columns, double x, double y) {
   std::vector<Vec3> points;
   for (int i = 0; i < rows; ++i)

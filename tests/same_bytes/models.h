@@ -1,5 +1,5 @@
 #pragma once
-// The surfaces whose results are hashed: of every kind, by one seed.
+// The surfaces whose results are hashed: every kind, from one seed.
 
 #include <vector>
 
@@ -8,7 +8,7 @@
 
 /// Bezier patches of degrees 1 to 6, a third of them rational, one with a collapsed edge.
 std::vector<tessera::BezierPatch> some_patches();
-/// One of nearly every kind; those with circles, fits and eigenvectors among them.
+/// One surface of nearly every kind, including circles, fits and eigenvectors.
 std::vector<tessera::Surface> some_surfaces();
 /// some_patches() with every kind of block.
 tessera::PatchSet some_set();

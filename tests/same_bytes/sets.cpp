@@ -22,10 +22,10 @@ struct Outputs {
     normal_kind.resize(records);
     curvature_kind.resize(records);
   }
-  tessera::GridViews<T> views() {
+  tessera::QuantityViews<T> views() {
     using Three = tessera::View3<T>;
     using One = tessera::View1<T>;
-    tessera::GridViews<T> all;
+    tessera::QuantityViews<T> all;
     const std::array<Three*, 11> three{&all.position,
                                        &all.du,
                                        &all.dv,
@@ -83,7 +83,7 @@ std::uint64_t positions(Isa isa) {
   const tessera::GridPlan plan = value_of(tessera::GridPlan::make(set, u, v, options));
   Hash hash;
   std::vector<T> records(3 * plan.capacity());
-  tessera::GridViews<T> views;
+  tessera::QuantityViews<T> views;
   views.position = tessera::View3<T>::interleaved(records);
   require(evaluate(set, plan, views));
   hash.add(records);
@@ -91,7 +91,7 @@ std::uint64_t positions(Isa isa) {
   void* aligned = memory.data();
   std::size_t space = memory.size() * sizeof(T);
   std::align(64, plan.block_capacity() * sizeof(T), aligned, space);
-  tessera::GridBlocks<T> blocks;
+  tessera::QuantityBlocks<T> blocks;
   blocks.position = {static_cast<T*>(aligned), plan.block_capacity()};
   require(evaluate(set, plan, blocks));
   for (const T x : blocks.position) hash.add(x);

@@ -14,11 +14,11 @@ namespace {
 
 std::atomic<std::size_t> count{0}, bytes_in_all{0}, held{0}, peak{0};
 
-/// How many calls are left until one fails; below 0 none does.
+/// The number of calls before one fails; negative if none does.
 std::atomic<long> left{-1};
 std::atomic<bool> failed{false};
 
-/// Where the code of Embree, oneTBB and tinygltf lies.
+/// The code of Embree, oneTBB or tinygltf.
 struct Range {
   std::uintptr_t begin, end;
 };
@@ -90,7 +90,7 @@ bool stop_failing() {
 }  // namespace tessera::test
 
 void* operator new(std::size_t bytes) { return counted(bytes, alignof(std::max_align_t), __builtin_return_address(0)); }
-void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {  // std::stable_sort asks for its buffer so
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {  // std::stable_sort's buffer
   try {
     return counted(bytes, alignof(std::max_align_t), __builtin_return_address(0));
   } catch (const std::bad_alloc&) {

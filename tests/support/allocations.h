@@ -1,5 +1,5 @@
 #pragma once
-// How often the program has asked for memory by operator new, and for how much; and memory that runs out on request. Link
+// Counts the program's calls of operator new and their bytes; lets memory run out on request. Link
 // support/allocations.cpp into the executable.
 
 #include <cstddef>
@@ -8,18 +8,18 @@ namespace tessera::test {
 
 /// Calls of operator new so far, of all threads.
 std::size_t allocation_count();
-/// What they asked for in all; what was given back is not taken off.
+/// The bytes of these calls in all; deallocation does not reduce them.
 std::size_t allocated_bytes();
 
 /// The most bytes that were held at a time since restart_peak(), of all threads.
 std::size_t peak_bytes();
-/// The bytes that are held now; the peak begins with them.
+/// Returns the bytes that are held now; the peak restarts at them.
 std::size_t restart_peak();
 
-/// From now on the n-th call of operator new, counted from 0 over all threads, throws std::bad_alloc, and that one alone.
-/// Calls by Embree, oneTBB and tinygltf don't count: what they do about it is theirs.
+/// Makes the n-th call of operator new from now on, counted from 0 over all threads, throw std::bad_alloc, and only
+/// that one. Calls by Embree, oneTBB and tinygltf do not count: their error handling is their own.
 void fail_allocation(std::size_t n);
-/// Ends that. Whether one has failed.
+/// Ends that. Returns whether a call has failed.
 bool stop_failing();
 
 }  // namespace tessera::test

@@ -36,7 +36,7 @@ inline Curve curve_between(Random& random, int degree, int inner, bool rational,
   return value_of(Curve::nurbs(degree, points, random_positive(random, points.size(), 0.5, 2), knots));
 }
 
-/// What a border of random_borders() looks like.
+/// The properties of a border of random_borders().
 struct BorderStyle {
   int degree = 3, inner = 0;
   bool rational = false;
@@ -131,7 +131,7 @@ double conversion_error(const Surface& surface, const PatchGrid& grid) {
   return largest / (0x1p-52 * largest_coefficient(grid));
 }
 
-/// Neighbours share their border's points and weights by ==.
+/// Whether the points and weights on common borders are equal (by ==).
 inline bool shares_borders(const PatchGrid& grid) {
   bool shared = true;
   for (std::size_t a = 0; a < grid.count_u(); ++a)

@@ -1,5 +1,5 @@
 #pragma once
-// A world in which decimals have commas, and thousands points.
+// A locale with decimal commas and points between thousands.
 
 #include <clocale>
 #include <locale>
@@ -8,7 +8,7 @@
 
 namespace tessera::test {
 
-/// While it lives, the process has the locale of C and of C++ that writes 1.234,5 - where the system has one.
+/// During its lifetime, the process has a locale of C and of C++ that writes 1.234,5 - if the system has one.
 class CommaLocale {
  public:
   CommaLocale() : c_(std::setlocale(LC_ALL, nullptr)) {

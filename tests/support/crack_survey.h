@@ -1,6 +1,6 @@
 #pragma once
-// Whether the certified mesh of a model has cracks: open edges that are not borders of the model itself. Found from the
-// mesh as tessera::check() finds them, and held against which borders of its patches meet another.
+// Finds cracks in the certified mesh of a model: open edges that are not borders of the model itself. Takes them from
+// tessera::check(), and compares them with the borders of patches that meet another.
 
 #include <algorithm>
 #include <array>
@@ -21,21 +21,22 @@ namespace tessera::test {
 struct CrackCount {
   MeshReport report;
   double bound = 0;
-  bool capped = false;          ///< the tolerance takes too many triangles: the smallest that does not was taken
-  std::size_t own_borders = 0;  ///< borders of the model itself: of patches, that meet no other
+  bool capped = false;          ///< the tolerance takes too many triangles; used the smallest one that does not
+  std::size_t own_borders = 0;  ///< borders of the model itself: of patches, which meet no other border
   std::size_t own_edges = 0;    ///< open edges on those
   std::size_t cracks = 0;       ///< the other open edges
-  /// Edges of more than two triangles where patches meet, lie upon each other or are folded: each patch has two there.
+  /// Edges of more than two triangles where patches meet, lie upon each other or are folded: each patch has two of
+  /// them.
   std::size_t own_non_manifold = 0;
   std::size_t non_manifold = 0;  ///< the others
-  bool folded = false;           ///< a patch lies upon itself: where it turns back triangles have no area
+  bool folded = false;           ///< a patch lies upon itself: triangles where it turns back have no area
   bool good() const {
     return cracks == 0 && non_manifold == 0 && (folded || report.degenerate_triangles == 0) &&
            report.non_finite_vertices == 0;
   }
 };
 
-/// How many borders meet on each border of a patch, by 4 * patch + side; 0 where it is a point.
+/// The number of borders that meet on each border of a patch, by 4 * patch + side; 0 for a border that is a point.
 class [[gnu::visibility("hidden")]] MeetingBorders {
  public:
   MeetingBorders(const PatchSet& set, double weld) : counts_(4 * set.patch_count(), 0) {
@@ -61,8 +62,8 @@ class [[gnu::visibility("hidden")]] MeetingBorders {
   std::vector<std::uint32_t> counts_;
 };
 
-/// The side of its patch that an edge of a mesh lies on, 0 to 3; 4 if inside. A vertex of a border that is a point lies on
-/// the sides next to it as well.
+/// The side of its patch that an edge of a mesh lies on, 0 to 3; 4 if inside. A vertex of a border that is a point also
+/// lies on the neighbouring sides.
 inline std::size_t side_of_edge(const Mesh& mesh, const MeetingBorders& borders, std::size_t patch, std::uint32_t a,
                                 std::uint32_t b) {
   const auto is_at = [&](std::uint32_t vertex, std::size_t side) {
@@ -80,7 +81,7 @@ inline std::size_t side_of_edge(const Mesh& mesh, const MeetingBorders& borders,
   return 4;
 }
 
-/// Whether more than two of these triangles of one patch, by their edges' vertices, have the same edge.
+/// Whether more than two of these triangles of one patch share an edge, by vertices.
 inline bool is_branched(std::span<const std::array<std::uint32_t, 3>> uses) {
   std::map<std::array<std::uint32_t, 3>, int> counts;  // patch and both vertices
   return std::any_of(uses.begin(), uses.end(), [&](auto use) {
@@ -130,7 +131,7 @@ inline void count_edges(const Mesh& mesh, const MeetingBorders& borders, CrackCo
   }
 }
 
-/// Whether a patch lies upon itself, seen by a uniform mesh of it alone.
+/// Whether a patch lies upon itself, according to a uniform mesh of it alone.
 inline bool is_folded(const PatchSet& set) {
   for (std::size_t k = 0; k < set.patch_count(); ++k) {
     const Result<PatchSet> alone = PatchSet::from(std::span(&set.patch(k), 1));
@@ -143,8 +144,8 @@ inline bool is_folded(const PatchSet& set) {
   return false;
 }
 
-/// The mesh that keeps a share of the model's size, borders welded that lie within a millionth of it. Errors: those of
-/// CertifiedTessellation::make.
+/// The mesh that keeps a share of the model's size; welds borders that lie within a millionth of the size. Errors:
+/// those of CertifiedTessellation::make.
 inline Result<CrackCount> count_cracks(const PatchSet& set, double relative, std::uint64_t max_triangles,
                                        bool fewest = false) {
   const double size = set.box().diagonal();

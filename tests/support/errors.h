@@ -1,5 +1,5 @@
 #pragma once
-// What a refusal must say.
+// Expectations on errors.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace tessera::test {
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-/// The call failed with this code and index, and its message holds these words.
+/// Expects that the call failed with this code and index, and that its message holds these words.
 template <class T>
 void expect_refused(const Result<T>& result, StatusCode code, std::ptrdiff_t index, const std::string& words) {
   ASSERT_FALSE(result.ok()) << words;

@@ -1,5 +1,5 @@
 #pragma once
-// Sets and grids for tests of evaluation: what each test would otherwise write again.
+// Sets and grids for tests of evaluation, shared by these tests.
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/aligned.h"
-#include "eval/grid_outputs.h"
+#include "eval/quantity_table.h"
 #include "support/random_patches.h"
 #include "support/synthetic_sets.h"
 #include "tessera/evaluate.h"
@@ -23,7 +23,8 @@ inline PatchSet set_of(const std::vector<BezierPatch>& patches, PatchSetOptions 
   return value_of(PatchSet::from(patches, options));
 }
 
-/// Patches of every mix of degrees up to `degree`, polynomial and rational, in shuffled order: several groups, partial blocks.
+/// Patches of every mix of degrees up to `degree`, polynomial and rational, in shuffled order: several groups, partial
+/// blocks.
 inline std::vector<BezierPatch> mixed_patches(Random& random, int degree, int copies = 1) {
   std::vector<BezierPatch> patches;
   for (int copy = 0; copy < copies; ++copy)
@@ -43,31 +44,32 @@ struct GridBuffers {
 
   explicit GridBuffers(const GridPlan& plan, T fill = T(-7))
       : position(3 * plan.capacity(), fill), du(position), dv(position), normal(position) {}
-  GridViews<T> views() {
+  QuantityViews<T> views() {
     return {View3<T>::interleaved(position), View3<T>::interleaved(du), View3<T>::interleaved(dv),
             View3<T>::interleaved(normal)};
   }
   bool operator==(const GridBuffers&) const = default;
 };
 
-/// Every output of a grid in an array of its own, patch-contiguous; the memory of those beyond the outputs asked for stays at `fill`.
+/// Every output of a grid in an array of its own, patch-contiguous; memory of outputs that are not requested keeps
+/// `fill`.
 template <class T>
 struct AllBuffers {
-  std::vector<std::vector<T>> values;  ///< in the order of for_each_value_output
+  std::vector<std::vector<T>> values;  ///< in the order of for_each_value_quantity
   std::vector<NormalKind> normal_kind;
   std::vector<CurvatureKind> curvature_kind;
 
   explicit AllBuffers(const GridPlan& plan, T fill = T(-7)) : AllBuffers(plan.capacity(), fill) {}
   explicit AllBuffers(std::size_t records, T fill = T(-7))
       : normal_kind(records, NormalKind{9}), curvature_kind(records, CurvatureKind{9}) {
-    for_each_value_output<T>(
+    for_each_value_quantity(
         [&](const auto& output) { values.emplace_back(static_cast<std::size_t>(output.width) * records, fill); });
   }
-  GridViews<T> views() {
-    GridViews<T> out;
+  QuantityViews<T> views() {
+    QuantityViews<T> out;
     std::size_t k = 0;
-    for_each_value_output<T>([&](const auto& output) {
-      auto& view = out.*output.view;
+    for_each_value_quantity([&](const auto& output) {
+      auto& view = output.of(out);
       view = std::remove_reference_t<decltype(view)>::interleaved(values[k++]);
     });
     out.normal_kind = View1<NormalKind>::interleaved(normal_kind);

@@ -1,11 +1,12 @@
 #pragma once
-// A referee for rays: interval arithmetic in double with outward rounding over every patch, no bounding volumes. It
-// knows hits and misses that are proven, and says which it could not decide. Shares nothing with the library but the
-// patches.
+// A reference for rays: interval arithmetic in double with outward rounding over every patch, without bounding volumes.
+// It finds hits and misses that are proven, and lists those that it could not decide. Shares only the patches with the
+// library.
 //
-// The conditions are exact ones of the given doubles: with a the largest component of the direction D,
+// The conditions are exact for the doubles of the input. With a the largest component of the direction D, they are
 //   g_b = w ((P_b - o_b) D_a - (P_a - o_a) D_b) = 0 for both other components b, and t = (P_a - o_a) / D_a,
-// on each control point in quadruple precision, enclosed in a double interval, and from there on in intervals alone.
+// evaluated at each control point in quadruple precision, enclosed in a double interval, and from there on only in
+// intervals.
 
 #include <algorithm>
 #include <array>
@@ -25,7 +26,7 @@ namespace tessera::test {
 struct Interval {
   double lo = 0, hi = 0;
 
-  /// What an operation rounded to nearest may be off by, and more.
+  /// More than the error of an operation rounded to nearest.
   static double slip(double x) { return std::abs(x) * 0x1p-52 + 0x1p-1060; }
   static Interval around(double lo, double hi) { return {lo - slip(lo), hi + slip(hi)}; }
   static Interval at(double x) { return {x, x}; }
@@ -42,7 +43,7 @@ inline Interval operator*(Interval a, Interval b) {
 inline Interval operator*(double a, Interval b) {
   return a < 0 ? Interval::around(a * b.hi, a * b.lo) : Interval::around(a * b.lo, a * b.hi);
 }
-/// b does not hold 0.
+/// Requires that b does not contain 0.
 inline Interval operator/(Interval a, Interval b) {
   const double p = a.lo / b.lo, q = a.lo / b.hi, r = a.hi / b.lo, s = a.hi / b.hi;
   return Interval::around(std::min({p, q, r, s}), std::max({p, q, r, s}));
@@ -69,7 +70,7 @@ class IntervalNet {
     }
   }
   /// Whether it is certain, without quadruple precision, that no point of the patch lies on the ray's line: all g of
-  /// one kind have one sign, beyond what the rounding of differences, products and their difference may be.
+  /// one kind have one sign, by more than the rounding of differences, products and their difference.
   static bool is_off(const BezierPatch& patch, const Ray& ray) {
     const Axes axes(ray);
     for (std::size_t c = 0; c < 2; ++c) {
@@ -102,7 +103,7 @@ class IntervalNet {
     for (std::size_t k = 1; k < count_; ++k) out = join(out, c_[2][k] / c_[3][k]);
     return out;
   }
-  /// Of the derivative of g over the rectangle's own [0,1]^2.
+  /// The derivative of g over the rectangle's own [0,1]^2.
   Interval slope(std::size_t c, bool by_u) const {
     Interval out{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
     for (int i = 0; i + (by_u ? 1 : 0) <= m_; ++i) {
@@ -133,7 +134,7 @@ class IntervalNet {
  private:
   __extension__ typedef __float128 Quad;
 
-  /// The ray's largest direction a, and what g and t are of a point.
+  /// The ray's largest direction a; computes g and t of a point.
   class Axes {
    public:
     explicit Axes(const Ray& ray)
@@ -152,14 +153,14 @@ class IntervalNet {
     Interval along(const std::array<double, 3>& x) const {
       return enclosed((static_cast<Quad>(x[a_]) - static_cast<Quad>(o_[a_])) / static_cast<Quad>(d_[a_]), 0);
     }
-    /// across() in double, and more than its rounding.
+    /// across() in double, and a bound above its rounding.
     std::pair<double, double> rounded_across(const std::array<double, 3>& x, std::size_t c) const {
       const std::size_t b = (a_ + 1 + c) % 3;
       return {(x[b] - o_[b]) * scaled_[a_] - (x[a_] - o_[a_]) * scaled_[b], 0x1p-49 * magnitude(x, b) + 0x1p-1000};
     }
 
    private:
-    /// Of the terms that are summed up.
+    /// The largest term of the sum.
     double magnitude(const std::array<double, 3>& x, std::size_t b) const {
       return (std::abs(x[b]) + std::abs(o_[b])) * std::abs(scaled_[a_]) +
              (std::abs(x[a_]) + std::abs(o_[a_])) * std::abs(scaled_[b]);
@@ -214,18 +215,18 @@ class IntervalNet {
   std::array<std::array<Interval, (max_net_degree + 1) * (max_net_degree + 1)>, 4> c_;
 };
 
-/// What the referee found on a ray.
+/// The findings of the reference on a ray.
 struct Verdict {
   struct Root {
     std::uint32_t patch = 0;
     Interval t, u, v;
   };
-  std::vector<Root> hits;       ///< proven, t inside [tnear, tfar]; one may stand twice
+  std::vector<Root> hits;       ///< proven, t inside [tnear, tfar]; a hit may occur twice
   std::vector<Root> undecided;  ///< there may be a hit
 
   bool hit() const { return !hits.empty(); }
   bool miss() const { return hits.empty() && undecided.empty(); }
-  /// Of the proven hits, the first by the upper end of its t.
+  /// The first of the proven hits by the upper end of its t.
   const Root& first() const {
     return *std::min_element(hits.begin(), hits.end(), [](const Root& a, const Root& b) { return a.t.hi < b.t.hi; });
   }
@@ -259,7 +260,7 @@ class Referee {
   };
   enum class Test { none, one, at_most_one, open };
   static constexpr int max_boxes = 1000;    // of one ray
-  static constexpr double smallest = 1e-7;  // of a rectangle's sides; of g its square
+  static constexpr double smallest = 1e-7;  // of a rectangle's sides; for g its square
 
   /// Krawczyk's operator on the net's square (Neumaier, Interval Methods for Systems of Equations, sec. 5.1): K = c -
   /// A f(c) + (I - A J)(X - c). K inside of X: one root; K off X: none.
@@ -331,8 +332,8 @@ class Referee {
     }
   }
 
-  /// A box with one root at the most, which lies in u x v of it: a box about that, inside the patch, that proves one
-  /// root or none. False where neither comes out.
+  /// A box that holds at most one root, which lies in u x v of it: encloses it in a box inside the patch that proves
+  /// one root or none. False if neither is proven.
   bool settle(const Place& place, Interval u, Interval v) {
     Place around{{point(place.u, u.lo), point(place.u, u.hi)}, {point(place.v, v.lo), point(place.v, v.hi)}};
     double last_width = 1;
@@ -374,7 +375,7 @@ class Referee {
   Verdict verdict_;
 };
 
-/// What is proven about the points of the patches on the ray.
+/// The proofs about points of the patches on the ray.
 inline Verdict referee(std::span<const BezierPatch> patches, const Ray& ray) { return Referee(patches, ray).verdict(); }
 
 }  // namespace tessera::test

@@ -1,5 +1,5 @@
 #pragma once
-// The bicubic net of the lectures that the surfaces come from; their figures are demanded to the last printed digit.
+// The bicubic net of the lectures that the surfaces come from; tests require their figures to the last printed digit.
 
 #include <vector>
 

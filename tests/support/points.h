@@ -1,5 +1,5 @@
 #pragma once
-// Scattered samples for tests, and what becomes of them.
+// Scattered samples for tests, and their results.
 
 #include <algorithm>
 #include <array>

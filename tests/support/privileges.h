@@ -7,7 +7,7 @@
 
 namespace tessera::test {
 
-/// While it lives, the superuser is an ordinary user, whom permissions bind.
+/// During its lifetime, the superuser is an ordinary user, whom permissions bind.
 class WithoutPrivileges {
  public:
   WithoutPrivileges() : root_(::geteuid() == 0) { done_ = !root_ || ::seteuid(65534) == 0; }

@@ -1,5 +1,5 @@
 #pragma once
-// Quadrics of every kind, moved anywhere.
+// Quadrics of every kind, at any place.
 
 #include <array>
 
@@ -49,7 +49,7 @@ inline QuadricFrame random_frame(Random& random, double distance) {
   return frame;
 }
 
-/// One of each kind in its canonical frame, with the sizes that it should be found to have.
+/// One of each kind in its canonical frame, with the sizes that the classification should find.
 struct QuadricSample {
   QuadricKind kind;
   QuadricCoefficients coefficients;

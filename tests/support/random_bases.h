@@ -15,7 +15,7 @@ struct NamedBasis {
   BasisMatrix basis;
 };
 
-/// A matrix of the user's: well-conditioned, with entries that are not nice.
+/// A matrix of the user's: well-conditioned, with irregular entries.
 inline BasisMatrix random_basis(Random& random, int degree) {
   const std::size_t size = static_cast<std::size_t>(degree) + 1;
   std::vector<double> entries(size * size);
@@ -43,8 +43,8 @@ inline TensorPatch random_tensor(Random& random, const BasisMatrix& basis_u, con
       TensorPatch::make(basis_u, basis_v, random_points(random, basis_u.degree(), basis_v.degree()), domain));
 }
 
-/// check(patch, its bases in words) for a random patch over every pair of bases, of equal, mixed and the highest degrees,
-/// on a domain that is not [0,1]^2.
+/// Calls check(patch, its bases in words) for a random patch over every pair of bases, of equal, mixed and the highest
+/// degrees, on a domain that is not [0,1]^2.
 template <class Check>
 void for_all_pairs_of_bases(Random& random, Check check) {
   for (const auto& [m, n] : {std::pair{1, 1}, {3, 3}, {5, 3}, {2, 7}, {15, 1}, {11, 15}})

@@ -22,7 +22,7 @@ inline Vec3 uniform_vector(Random& random, double from, double to) {
   return {x, y, z};
 }
 
-/// The patch of a result that must be good: says why and ends the program otherwise.
+/// The patch of a result that must be good; otherwise prints the message and ends the program.
 inline BezierPatch patch_of(Result<BezierPatch> result) {
   if (!result) {
     ADD_FAILURE() << result.status().message();

@@ -13,11 +13,11 @@
 
 namespace tessera::test {
 
-/// What a random knot vector looks like.
+/// The properties of a random knot vector.
 struct KnotStyle {
   int inner = 3;          ///< distinct inner knots
-  bool clamped = true;    ///< ends of degree + 1, else simple knots beyond the domain
-  bool multiple = false;  ///< inner knots stand 1 to degree times
+  bool clamped = true;    ///< multiplicity degree + 1 at the ends, otherwise simple knots beyond the domain
+  bool multiple = false;  ///< inner knots have multiplicity 1 to degree
 };
 
 /// Steps between distinct knots in [0.3, 1.5).
@@ -73,7 +73,7 @@ inline std::size_t reference_span(std::span<const double> knots, double t, doubl
     if (knots[k] < knots[k + 1] && knots[k] <= t && knots[k] < to) span = k;
   return span;
 }
-/// The derivative of the given order of N_{i,p} at t, of the polynomial that it is on the span.
+/// The derivative of the given order of N_{i,p} at t, taken of the polynomial that it is on the span.
 inline Real reference_basis(std::span<const double> knots, std::size_t span, std::size_t i, int p, Real t,
                             int order = 0) {
   if (p == 0) return order == 0 && i == span ? 1 : 0;
@@ -145,7 +145,7 @@ inline RealJet reference_jet(const Curve& curve, double t) {
   return quotient(a, w);
 }
 
-/// The largest |component| of control points: what errors are relative to.
+/// The largest |component| of control points, to which errors are relative.
 inline double largest_coefficient(std::span<const Vec3> points) {
   double largest = 0;
   for (const Vec3& p : points) largest = std::max(largest, max_abs(p));

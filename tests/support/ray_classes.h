@@ -1,6 +1,6 @@
 #pragma once
-// Rays that are hard on a ray caster, by classes: silhouettes, seams, corners, poles, cusps, planes that hold the ray,
-// scales, far origins, weights.
+// Rays that are difficult for a ray caster, by classes: silhouettes, seams, corners, poles, cusps, planes that contain
+// the ray, scales, far origins, weights.
 
 #include <cmath>
 #include <cstddef>
@@ -54,7 +54,7 @@ inline double size_of(const std::vector<BezierPatch>& patches) {
   return box.diagonal();
 }
 
-/// From outside at a random point of a patch.
+/// A ray from outside to a random point of a patch.
 inline Ray at_surface(const std::vector<BezierPatch>& patches, Random& random, double distance) {
   const BezierPatch& patch = any_of(patches, random);
   const Vec3 target = de_casteljau(patch, uniform(random, 0, 1), uniform(random, 0, 1));
@@ -62,7 +62,7 @@ inline Ray at_surface(const std::vector<BezierPatch>& patches, Random& random, d
   return from_to(origin, uniform(random, 0.3, 3) * (target - origin));
 }
 
-/// Along a tangent, pushed off the surface by 1e-2 to 1e-9 of the size, or not at all.
+/// A ray along a tangent, moved off the surface by 1e-2 to 1e-9 of the size, or not at all.
 inline Ray at_silhouette(const std::vector<BezierPatch>& patches, Random& random, double size) {
   const SurfaceJet jet =
       evaluate_jet(any_of(patches, random), uniform(random, 0.02, 0.98), uniform(random, 0.02, 0.98));
@@ -71,8 +71,8 @@ inline Ray at_silhouette(const std::vector<BezierPatch>& patches, Random& random
   return from_to(jet.position + off * size * normal - uniform(random, 0.5, 2) * size * tangent, tangent);
 }
 
-/// At borders, corners and lines where patches are cut inside the engine, at angles from steep to grazing, near or
-/// exactly.
+/// A ray at borders, corners and isocurves where patches are cut inside the engine, at angles from steep to grazing,
+/// near or exactly.
 inline Ray at_seam(const std::vector<BezierPatch>& patches, Random& random, double size) {
   const auto line = [&] { return static_cast<double>(random() % 5) / 4; };
   const double u = random() % 2 == 0 ? line() : uniform(random, 0, 1),
@@ -93,7 +93,7 @@ struct SeamPlace {
   Vec3 position, normal;
 };
 
-/// At a random border, a corner in one draw of four. `distance`: of parameters.
+/// A place at a random border, or in one draw of four at a corner. `distance` is in parameters.
 inline SeamPlace beside_seam(std::span<const BezierPatch> patches, Random& random, double distance) {
   SeamPlace place;
   place.patch = random() % patches.size();
@@ -109,7 +109,7 @@ inline SeamPlace beside_seam(std::span<const BezierPatch> patches, Random& rando
   return place;
 }
 
-/// Through the place, from outside, at a sine of 0.01 or more to the surface there.
+/// A ray through the place, from outside, at a sine of 0.01 or more to the surface there.
 inline Ray through(const SeamPlace& place, Random& random, double size) {
   for (;;) {
     const Vec3 direction = rays::unit_vector(random);
@@ -235,8 +235,8 @@ inline std::vector<RayClass> ray_classes() {
   return out;
 }
 
-/// From inside of the tube of a torus of B-spline patches, a little below where patches or pieces of them meet and
-/// nearly along the surface there: nothing may let it out.
+/// A ray from inside of the tube of a torus of B-spline patches, a little below where patches or pieces of them meet
+/// and nearly along the surface there: it must not escape.
 inline Ray skimming_seam(const std::vector<BezierPatch>& torus, Random& random) {
   const auto line = [&] { return static_cast<double>(random() % 5) / 4; };
   const double along = uniform(random, 0, 1), across = random() % 3 == 0 ? line() : static_cast<double>(random() % 2);
@@ -252,8 +252,8 @@ inline Ray skimming_seam(const std::vector<BezierPatch>& torus, Random& random) 
   return rays::from_to(jet.position - depth * normal, random() % 2 == 0 ? direction : -direction);
 }
 
-/// Inside a closed convex-like body about zero, at a seam and grazing: the chord between two near points of a border,
-/// from its middle.
+/// A ray inside a closed, nearly convex body about zero, at a seam and grazing: the chord between two near points of a
+/// border, from its middle.
 inline std::pair<bool, Ray> chord_of_seam(const std::vector<BezierPatch>& patches, Random& random) {
   const BezierPatch& patch = rays::any_of(patches, random);
   const auto cut = static_cast<double>(random() % 5) / 4;

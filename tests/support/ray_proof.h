@@ -1,5 +1,5 @@
 #pragma once
-// What an exact ray scene says against what the referee has proven.
+// Compares an exact ray scene with the proofs of the reference.
 
 #include <algorithm>
 #include <cmath>
@@ -45,7 +45,7 @@ inline double distance_from_line(const Vec3& p, const Ray& ray) {
   return static_cast<double>(std::sqrt(a * a + b * b + c * c) / std::sqrt(dx * dx + dy * dy + dz * dz));
 }
 
-/// Judges one ray. `tolerance`: the scene's; `size`: the model's. The point is that of the patch by another evaluator.
+/// Checks one ray. `tolerance`: the scene's; `size`: the model's. The point is that of the patch by another evaluator.
 inline void judge_ray(std::span<const BezierPatch> patches, const RayScene& scene, const Ray& ray, double tolerance,
                       double size, ProofTally& tally) {
   const Verdict verdict = referee(patches, ray);
@@ -70,7 +70,7 @@ inline void judge_ray(std::span<const BezierPatch> patches, const RayScene& scen
   if (!verdict.hit()) return;
   ++tally.hits;
   const auto on_hit_patch = [&](const Verdict::Root& root) { return root.patch == hit.patch; };
-  // Like t, below, the parameters of what lies along the ray within the tolerance are its square root off.
+  // Like t below, parameters along the ray within the tolerance differ by up to its square root.
   const double near_border = hit.flags.uncertified ? 4 * std::sqrt(tolerance / size) : 1e-9;
   const double aside_u = std::min(hit.patch_u, 1 - hit.patch_u), aside_v = std::min(hit.patch_v, 1 - hit.patch_v);
   // Next to a pole parameters that differ by 1e-7 are one place: there the distance from the border counts.
@@ -79,11 +79,12 @@ inline void judge_ray(std::span<const BezierPatch> patches, const RayScene& scen
   tally.wrong_patch += met && !on_border && std::none_of(verdict.hits.begin(), verdict.hits.end(), on_hit_patch) &&
                        std::none_of(verdict.undecided.begin(), verdict.undecided.end(), on_hit_patch);
   const Verdict::Root& first = verdict.first();
-  // Within the tolerance of a tangent the surface is met a square root of it earlier or later. Elsewhere t is known as
-  // well as the surface's height over the ray, to a rounding of the coordinates, and the slope give it.
+  // Within the tolerance of a tangent the surface is hit earlier or later by up to its square root. Elsewhere t is
+  // known as precisely as the surface's height over the ray, to a rounding of the coordinates, and the slope determine
+  // it.
   const SurfaceJet jet = evaluate_jet(patches[first.patch], first.u.middle(), first.v.middle());
   const double sine = std::abs(dot(normalized(cross(jet.du, jet.dv)), ray.direction)) / speed;
-  const double strict = std::max(1e-9, 16 * 0x1p-53 / sine) * size / speed;  // NaN of no normal: 1e-9
+  const double strict = std::max(1e-9, 16 * 0x1p-53 / sine) * size / speed;  // NaN without a normal: 1e-9
   const double loose = 4 * std::sqrt(tolerance * size) / speed;
   if (!met || hit.t > first.t.hi + (hit.flags.uncertified ? loose : strict)) {
     ++tally.missed;

@@ -28,7 +28,7 @@ struct RealJet {
   RealVec3 position, du, dv, duu, duv, dvv;
 };
 
-/// t^k, 1 for k = 0; 0 for k < 0, which only terms with a factor 0 ask for.
+/// t^k, 1 for k = 0; 0 for k < 0, where terms have a factor 0.
 inline Real reference_power(Real t, int k) {
   Real value = k < 0 ? 0 : 1;
   for (; k > 0; --k) value *= t;
@@ -97,8 +97,8 @@ inline RealJet reference_jet(const BezierPatch& patch, Real u, Real v) {
   return jet;
 }
 
-/// What section 3.3 of do Carmo's Differential Geometry of Curves and Surfaces gives for a jet with independent tangents: S is the
-/// second form in the orthonormal basis e1 = r_u / |r_u|, e2 = N x e1.
+/// The formulas of section 3.3 of do Carmo's Differential Geometry of Curves and Surfaces for a jet with independent
+/// tangents: S is the second form in the orthonormal basis e1 = r_u / |r_u|, e2 = N x e1.
 struct RealGeometry {
   RealVec3 normal, first_form, second_form, first_direction, second_direction;
   Real gaussian = 0, mean = 0, first = 0, second = 0;  ///< first >= second
@@ -132,7 +132,7 @@ inline Vec3 reference_position(const BezierPatch& patch, Real u, Real v) {
   const RealVec3 sum = reference_sum(patch, u, v, 0, 0, weight);
   return patch.is_rational() ? ((1 / weight) * sum).rounded() : sum.rounded();
 }
-/// r_u x r_v / |r_u x r_v|, where that is not zero.
+/// r_u x r_v / |r_u x r_v|; requires that this is not zero.
 inline Vec3 reference_normal(const BezierPatch& patch, double u, double v) {
   const RealJet jet = reference_jet(patch, u, v);
   return normalized(cross(jet.du, jet.dv)).rounded();

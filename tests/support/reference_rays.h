@@ -1,6 +1,6 @@
 #pragma once
 // A ray caster in plain double that shares nothing with the library: every patch, subdivision of the projected net,
-// Newton's method on what is left. Slow.
+// then Newton's method. Slow.
 
 #include <algorithm>
 #include <array>
@@ -38,7 +38,7 @@ class ProjectedNet {
     }
   }
 
-  /// Whether the hull allows a root.
+  /// Whether the hull may contain a root.
   bool may_meet() const {
     for (std::size_t c = 0; c < 2; ++c) {
       const auto [low, high] = std::minmax_element(points_.begin(), points_.end(),
@@ -71,7 +71,7 @@ class ProjectedNet {
     return halves;
   }
 
-  /// By the definition: sum of Bernstein polynomials, s and t local.
+  /// The point by the definition: sum of Bernstein polynomials, s and t local.
   Point at(double s, double t) const {
     Point sum{};
     for (int i = 0; i <= m_; ++i) {

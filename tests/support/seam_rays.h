@@ -1,5 +1,5 @@
 #pragma once
-// How many hits a ray beside borders, corners, creases and poles must have.
+// Checks the number of hits of a ray beside borders, corners, creases and poles.
 
 #include <algorithm>
 #include <array>
@@ -28,10 +28,10 @@ inline std::array<Ray, 7> with_neighbours(const Ray& ray, double size) {
 
 struct SeamTally {
   std::size_t rays = 0, decided = 0;  ///< the neighbours agree
-  std::size_t wrong = 0;              ///< another count, no hit of which is flagged
+  std::size_t wrong = 0;              ///< another count, without a flagged hit
   std::size_t flagged = 0;            ///< another count, and a flag says so
   std::size_t pairs = 0;              ///< two or more further hits, an even number, all of them certified
-  std::size_t not_first = 0;          ///< the closest hit is another than the first of all
+  std::size_t not_first = 0;          ///< the closest hit is not the first of all
 
   void add(const SeamTally& other) {
     rays += other.rays, decided += other.decided, wrong += other.wrong, flagged += other.flagged;
@@ -39,8 +39,8 @@ struct SeamTally {
   }
 };
 
-/// Whether a ray has as many hits as its neighbours, and the first of them is the closest. Where a body has creases a ray
-/// may cross one that its neighbours pass by: it then meets the surface twice more, to the last digits.
+/// Checks that a ray has as many hits as its neighbours, and that the first of them is the closest. On a body with
+/// creases a ray may cross one that its neighbours miss: it then hits the surface twice more, to the last digits.
 inline void judge_count(const RayScene& scene, const Ray& ray, double size, bool smooth, SeamTally& tally) {
   ++tally.rays;
   HitLists lists;
@@ -72,8 +72,8 @@ inline void judge_count(const RayScene& scene, const Ray& ray, double size, bool
   ++(is_flagged(0) ? tally.flagged : tally.wrong);
 }
 
-/// A ray that leaves a place, at a sine of 1e-3 or more to the surface there. It begins where the scene says that the
-/// surface is.
+/// A ray that leaves a place, at a sine of 1e-3 or more to the surface there. It begins at the scene's own point of the
+/// surface.
 inline Ray leaving(const RayScene& scene, const SeamPlace& place, Random& random) {
   Ray out;
   out.origin = value_of(scene.resolve(static_cast<std::uint32_t>(place.patch), place.u, place.v)).position;

@@ -12,7 +12,7 @@
 
 namespace tessera::test {
 
-/// The value of a result that must be good: says why and ends the program otherwise.
+/// The value of a result that must be good; otherwise prints the message and ends the program.
 template <class T>
 T value_of(Result<T> result) {
   if (!result) {
@@ -58,7 +58,7 @@ inline std::vector<BezierPatch> wavy_field(int nu, int nv) {
   return patches;
 }
 
-/// Six bicubic patches over the faces of a cube, blown up and dented: a closed body of size about 3 that holds the
+/// Six bicubic patches over the faces of a cube, blown up and dented: a closed body of size about 3 that contains the
 /// ball of radius 0.5 about zero. Faces share border points; their parameters run in various directions.
 inline std::vector<BezierPatch> closed_body() {
   const auto place = [](int ix, int iy, int iz) -> Vec3 {

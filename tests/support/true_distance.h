@@ -1,6 +1,6 @@
 #pragma once
-// The true distance between a patch and a triangle of its mesh, by branch and bound. Shares no code with the bounds that
-// tessellations are made with.
+// The true distance between a patch and a triangle of its mesh, by branch and bound. Shares no code with the bounds
+// that tessellations are made with.
 
 #include <algorithm>
 #include <array>
@@ -14,13 +14,13 @@
 
 namespace tessera::test {
 
-/// Corners of a triangle: where they lie in the patch's parameters, and in space (they may be rounded, or off the patch).
+/// Corners of a triangle: their places in the patch's parameters, and in space (they may be rounded, or off the patch).
 struct MeshTriangle {
   std::array<std::array<double, 2>, 3> parameters;
   std::array<Vec3, 3> corners;
 };
 
-/// One of a mesh, by the parameters of its vertices.
+/// A triangle of a mesh, by the parameters of its vertices.
 inline MeshTriangle triangle_of(const Mesh& mesh, std::size_t t) {
   MeshTriangle triangle;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -32,7 +32,8 @@ inline MeshTriangle triangle_of(const Mesh& mesh, std::size_t t) {
   return triangle;
 }
 
-/// The triangles [begin, end) of a mesh that share an edge with triangle t, and it. Their patch is one.
+/// The triangles among [begin, end) of a mesh that share an edge with triangle t, and t itself. They belong to one
+/// patch.
 inline std::vector<MeshTriangle> triangles_around(const Mesh& mesh, std::size_t t, std::size_t begin, std::size_t end) {
   std::vector<MeshTriangle> around;
   for (std::size_t other = begin; other < end; ++other) {
@@ -44,7 +45,7 @@ inline std::vector<MeshTriangle> triangles_around(const Mesh& mesh, std::size_t 
   return around;
 }
 
-/// An interval that holds the largest distance.
+/// An interval that contains the largest distance.
 struct DistanceRange {
   double low = 0, high = 0;
 };
@@ -159,8 +160,8 @@ class Search {
     return true;
   }
 
-  /// The distance from a triangle is convex: over the hull of the control points it is largest at one of them. From the
-  /// nearest of some it is at most that from the best one.
+  /// The distance from a triangle is convex: over the hull of the control points it is largest at one of them. The
+  /// distance from the nearest of several triangles is at most that from the best one.
   void add(Piece piece) {
     if (outside(piece)) return;
     piece.bound = 1e300;
@@ -190,15 +191,15 @@ class Search {
 
 }  // namespace true_distance
 
-/// The largest distance from the triangle of the patch's points whose parameters lie in the parameter triangle, to a
-/// relative precision, or as near as `max_steps` subdivisions lead.
+/// The largest distance from the triangle, over points of the patch whose parameters lie in the parameter triangle, to
+/// a relative precision, or as precise as `max_steps` subdivisions make it.
 inline DistanceRange largest_distance(const BezierPatch& patch, const MeshTriangle& triangle, double precision = 0.01,
                                       int max_steps = 2000) {
   return true_distance::Search(patch, triangle, {&triangle, 1}).run(precision, max_steps);
 }
 
-/// The largest distance of the same points from a mesh's triangles [begin, end) of that patch: from triangle t and those
-/// that share an edge with it. Points of the patch may lie nearest to a neighbour of the triangle over their parameters.
+/// The largest distance from triangle t and those of the patch's triangles [begin, end) that share an edge with it,
+/// over the same points. Points of the patch may lie nearest to a neighbour of the triangle over their parameters.
 inline DistanceRange largest_distance(const BezierPatch& patch, const Mesh& mesh, std::size_t t, std::size_t begin,
                                       std::size_t end, double precision = 0.01, int max_steps = 2000) {
   const std::vector<MeshTriangle> around = triangles_around(mesh, t, begin, end);

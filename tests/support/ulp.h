@@ -25,7 +25,7 @@ inline double error_in_units(const Vec3& value, const Vec3& expected, double uni
 
 /// For EXPECT_TRUE: each component of `value` lies within `limit` units of `expected`.
 inline ::testing::AssertionResult within_units(const Vec3& value, const Vec3& expected, double unit, double limit) {
-  // NaN compares false, so each component is asked for being near, not for being far.
+  // NaN compares false, so the test is for nearness rather than for distance.
   const auto near = [&](double a, double b) { return std::abs(a - b) <= limit * unit; };
   if (near(value.x, expected.x) && near(value.y, expected.y) && near(value.z, expected.z))
     return ::testing::AssertionSuccess();

@@ -1,4 +1,4 @@
-// Basis matrices against definitions that share nothing with them.
+// Compares basis matrices with definitions that share nothing with them.
 
 #include "support/errors.h"
 #include "support/random_bases.h"
@@ -8,7 +8,7 @@
 namespace tessera::test {
 namespace {
 
-/// f_i(t) from M itself, and what its rounding is relative to.
+/// f_i(t) from M itself, and the size to which its rounding is relative.
 Real by_powers(const BasisMatrix& basis, int i, Real t, Real& size) {
   Real sum = 0;
   size = 0;
@@ -186,7 +186,7 @@ TEST(BasisMatrix, RefusesWhatItCannotHold) {
     expect_refused(BasisMatrix::custom(degree, {}), StatusCode::unsupported_degree, -1, words);
   }
   expect_refused(BasisMatrix::custom(2, std::vector<double>(8)), StatusCode::count_mismatch, -1,
-                 "a basis matrix of degree 2 has 3 x 3 entries, 8 were given");
+                 "a basis matrix of degree 2 has 3 x 3 entries, found 8");
   for (const double bad : {not_a_number, infinity, -infinity})
     expect_refused(BasisMatrix::custom(1, std::vector<double>{1, 0, bad, 1}), StatusCode::non_finite, 2,
                    "entry [1][0] of the basis matrix is ");

@@ -1,4 +1,4 @@
-// What makes a Bezier patch, and what is refused.
+// Valid Bezier patches, and errors.
 
 #include "tessera/bezier_patch.h"
 
@@ -46,11 +46,11 @@ TEST(BezierPatch, RefusesDegrees) {
 
 TEST(BezierPatch, RefusesCounts) {
   expect_error(BezierPatch::polynomial(2, 3, std::vector<Vec3>(11)), StatusCode::count_mismatch, -1,
-               "a patch of degree (2, 3) has 3 x 4 control points, 11 were given");
+               "a patch of degree (2, 3) has 3 x 4 control points, found 11");
   expect_error(BezierPatch::polynomial(2, 3, {}), StatusCode::count_mismatch, -1,
-               "a patch of degree (2, 3) has 3 x 4 control points, 0 were given");
+               "a patch of degree (2, 3) has 3 x 4 control points, found 0");
   expect_error(BezierPatch::rational(1, 1, std::vector<Vec3>(4), std::vector<double>(5, 1)), StatusCode::count_mismatch,
-               -1, "a patch of degree (1, 1) has 2 x 2 weights, 5 were given");
+               -1, "a patch of degree (1, 1) has 2 x 2 weights, found 5");
 }
 
 TEST(BezierPatch, RefusesPointsThatAreNotFinite) {

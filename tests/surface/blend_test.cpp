@@ -57,7 +57,7 @@ TEST(Blend, LeadingZerosAreNoDegree) {
   EXPECT_EQ(blend.second().size(), 2u);
 }
 
-/// What the tolerance forgives is mended: the polynomials themselves then meet the conditions.
+/// The maker fixes deviations within the tolerance: the polynomials themselves then meet the conditions.
 TEST(Blend, ForgivenMissesArePutRight) {
   const Blend blend =
       value_of(Blend::polynomial(std::vector{1 + 9e-12, -11 - 9e-12, 10.0}, std::vector{0.0, 11.0, -10.0}));

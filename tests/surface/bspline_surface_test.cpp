@@ -143,8 +143,7 @@ TEST(BSplineSurface, BadInputIsNamed) {
   EXPECT_NE(make(2, u, 1, {0, 2, 1, 3}, points).message().find("knots v[2]"), std::string::npos);
   EXPECT_EQ(make(2, {0, 0, 0, 0, 1, 1, 1}, 1, v, std::vector<Vec3>(8)).code(), StatusCode::invalid_argument);
   EXPECT_EQ(make(2, u, 1, v, std::vector<Vec3>(5)).code(), StatusCode::count_mismatch);
-  EXPECT_NE(make(2, u, 1, v, std::vector<Vec3>(5)).message().find("3 x 2 control points, 5 were given"),
-            std::string::npos);
+  EXPECT_NE(make(2, u, 1, v, std::vector<Vec3>(5)).message().find("3 x 2 control points, found 5"), std::string::npos);
   std::vector<Vec3> hole = points;
   hole[3].z = nan;
   EXPECT_EQ(make(2, u, 1, v, hole).code(), StatusCode::non_finite);
@@ -156,7 +155,7 @@ TEST(BSplineSurface, BadInputIsNamed) {
     EXPECT_EQ(status.code(), StatusCode::invalid_weight);
     EXPECT_NE(status.message().find("weight [2][0]"), std::string::npos) << status.message();
   }
-  // Even where the denominator, 1 - 2 u (1 - u) here, stays positive.
+  // Even if the denominator, 1 - 2 u (1 - u) here, is positive everywhere.
   expect_refused(BSplineSurface::rational(2, u, 1, v, points, std::vector<double>{1, 1, 0, 0, 1, 1}),
                  StatusCode::invalid_weight, 2, "weight [1][0] is 0, it must be finite and greater than 0");
   EXPECT_EQ(BSplineSurface::rational(2, u, 1, v, points, std::vector<double>(7, 1)).status().code(),

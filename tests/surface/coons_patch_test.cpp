@@ -1,4 +1,4 @@
-// Coons patches: the figures of the lectures, their properties, and what is refused.
+// Coons patches: the figures of the lectures, their properties, and errors.
 
 #include "tessera/coons_patch.h"
 
@@ -270,7 +270,7 @@ TEST(CoonsPatch, Refuses) {
                  "(u, v) = (0.5, 0.5)");
   expect_refused(evaluate_jet(coons({wide, wide, wide, wide}), not_a_number, 0.5), StatusCode::non_finite, -1,
                  "border C1: the parameter is nan");
-  // Squares of such lengths overflow: the gap is still seen.
+  // Squares of such lengths overflow: the gap is still found.
   const Curve huge = quadratic({0, 0, 0}, {1e300, 0, 0}, {}), other = quadratic({0, 0, 0}, {1e300, 1e300, 0}, {});
   expect_refused(CoonsPatch::make({huge, huge, huge, other}), invalid, 1, "r(u0, v1)");
 }

@@ -87,7 +87,7 @@ TEST(Curve, BadInputIsNamed) {
     const Result<Curve> result = Curve::nurbs(2, points, std::vector<double>{1, bad, 1}, knots);
     expect_refused(result, StatusCode::invalid_weight, 1, "weight [1]");
   }
-  // Even where the denominator stays positive.
+  // Even if the denominator is positive everywhere.
   expect_refused(Curve::bezier(points, std::vector<double>{1, 0, 1}), StatusCode::invalid_weight, 1,
                  "weight [1] is 0, it must be finite and greater than 0");
   const std::vector<Vec3> holes{{0, 0, 0}, {1, 0, 0}, {1, nan, 0}};

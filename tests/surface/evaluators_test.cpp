@@ -1,4 +1,4 @@
-// The reference evaluators: against an independent one in long double, and by the properties of Bezier patches.
+// Checks the reference evaluators against an independent one in long double, and by the properties of Bezier patches.
 
 #include <limits>
 

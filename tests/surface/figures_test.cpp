@@ -1,4 +1,4 @@
-// Figures of the lectures that the surfaces come from: each is exact, and demanded to the last printed digit.
+// Figures of the lectures that the surfaces come from: each is exact, and required to the last printed digit.
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-// Networks of Hermite patches: joins along whole edges, twists, degrees of freedom, and what is refused.
+// Networks of Hermite patches: joins along whole edges, twists, degrees of freedom, and errors.
 
 #include "support/errors.h"
 #include "support/random_hermite.h"
@@ -27,13 +27,15 @@ TEST(HermiteNetwork, NeighboursAreG1AlongWholeEdges) {
       for (int k = 0; k <= 32; ++k) {
         const double t = k / 32.0;
         if (i > 0) {
-          const SurfaceJet p = evaluate_jet(network.patch(i - 1, j), 1, t), q = evaluate_jet(network.patch(i, j), 0, t);
+          const SurfaceJet p = evaluate_jet(value_of(network.patch(i - 1, j)), 1, t),
+                           q = evaluate_jet(value_of(network.patch(i, j)), 0, t);
           EXPECT_TRUE(within_units(q.position, p.position, 4 * double_unit, 2));
           EXPECT_TRUE(within_units(q.du, network.factors_u()[i] * p.du, 4 * double_unit, 4));
           EXPECT_LT(normal_angle(p, q), 1e-14);
         }
         if (j > 0) {
-          const SurfaceJet p = evaluate_jet(network.patch(i, j - 1), t, 1), q = evaluate_jet(network.patch(i, j), t, 0);
+          const SurfaceJet p = evaluate_jet(value_of(network.patch(i, j - 1)), t, 1),
+                           q = evaluate_jet(value_of(network.patch(i, j)), t, 0);
           EXPECT_TRUE(within_units(q.position, p.position, 4 * double_unit, 2));
           EXPECT_TRUE(within_units(q.dv, network.factors_v()[j] * p.dv, 4 * double_unit, 4));
           EXPECT_LT(normal_angle(p, q), 1e-14);
@@ -72,7 +74,7 @@ TEST(HermiteNetwork, OnKnotsHasTheGivenDerivatives) {
       EXPECT_TRUE(within_units(jet.dv, node.dv, double_unit, 8));
       EXPECT_TRUE(within_units(jet.duv, node.duv, double_unit, 16));
     }
-  // The same by factors, with A = h_{i-1} R_u.
+  // A network equal to it, by factors, with A = h_{i-1} R_u.
   const double h0 = u[1] - u[0];
   EXPECT_TRUE(within_units(network.node(0, 1).du, h0 * nodes[1].du, double_unit, 2));
   EXPECT_TRUE(within_units(network.node(1, 1).du, h0 * nodes[4].du, double_unit, 2));
@@ -110,7 +112,8 @@ TEST(HermiteNetwork, MovingANodeChangesItsFourPatches) {
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t j = 0; j < 4; ++j) {
       const bool touched = (i == 1 || i == 2) && (j == 1 || j == 2);
-      EXPECT_EQ(before.patch(i, j).geometry() != after.patch(i, j).geometry(), touched) << i << " " << j;
+      EXPECT_EQ(value_of(before.patch(i, j)).geometry() != value_of(after.patch(i, j)).geometry(), touched)
+          << i << " " << j;
     }
 }
 
@@ -119,8 +122,10 @@ TEST(HermiteNetwork, MovingANodeChangesItsFourPatches) {
 std::vector<double> numbers_of(const HermiteNetwork& network) {
   std::vector<double> numbers;
   for (std::size_t i = 0; i + 1 < network.count_u(); ++i)
-    for (std::size_t j = 0; j + 1 < network.count_v(); ++j)
-      for (const Vec3& p : network.patch(i, j).geometry()) numbers.insert(numbers.end(), {p.x, p.y, p.z});
+    for (std::size_t j = 0; j + 1 < network.count_v(); ++j) {
+      const HermitePatch patch = value_of(network.patch(i, j));
+      for (const Vec3& p : patch.geometry()) numbers.insert(numbers.end(), {p.x, p.y, p.z});
+    }
   return numbers;
 }
 
@@ -182,8 +187,8 @@ TEST(HermiteTwists, AdiniKeepsG1AndIsExactForBilinearPlusSums) {
   for (std::size_t i = 1; i < 3; ++i)
     for (std::size_t j = 0; j < 4; ++j)
       for (int k = 0; k <= 16; ++k)
-        EXPECT_LT(normal_angle(evaluate_jet(network.patch(i - 1, j), 1, k / 16.0),
-                               evaluate_jet(network.patch(i, j), 0, k / 16.0)),
+        EXPECT_LT(normal_angle(evaluate_jet(value_of(network.patch(i - 1, j)), 1, k / 16.0),
+                               evaluate_jet(value_of(network.patch(i, j)), 0, k / 16.0)),
                   1e-13);
 
   std::vector<HermiteNode> nodes;  // z = 5 u v + u^3 - v^2
@@ -246,16 +251,16 @@ TEST(HermiteNetwork, RefusesWrongShapes) {
   const std::vector<double> k{1, 2}, l{1};
   EXPECT_TRUE(HermiteNetwork::from_factors(3, 2, nodes, k, l).ok());
   expect_refused(HermiteNetwork::from_factors(2, 2, nodes, k, l), StatusCode::count_mismatch, -1,
-                 "the network has 2 x 2 nodes, 6 were given");
+                 "the network has 2 x 2 nodes, found 6");
   expect_refused(HermiteNetwork::from_factors(6, 1, nodes, k, l), StatusCode::invalid_argument, -1,
                  "a network has at least 2 x 2 nodes, not 6 x 1 nodes");
   expect_refused(HermiteNetwork::from_factors(0, 0, {}, {}, {}), StatusCode::invalid_argument, -1, "0 x 0");
   const std::size_t most = std::numeric_limits<std::size_t>::max();
-  expect_refused(HermiteNetwork::from_factors(most, most, nodes, k, l), StatusCode::count_mismatch, -1, "6 were given");
+  expect_refused(HermiteNetwork::from_factors(most, most, nodes, k, l), StatusCode::count_mismatch, -1, "found 6");
   expect_refused(HermiteNetwork::from_factors(3, 2, nodes, l, l), StatusCode::count_mismatch, -1,
-                 "a network with 3 lines of nodes has 2 factors k, 1 were given");
+                 "a network with 3 nodes along a direction has 2 factors k, found 1");
   expect_refused(HermiteNetwork::from_factors(3, 2, nodes, k, k), StatusCode::count_mismatch, -1,
-                 "1 factors l, 2 were given");
+                 "1 factor l, found 2");
 }
 
 TEST(HermiteNetwork, RefusesBadFactorsAndNodes) {
@@ -287,10 +292,10 @@ TEST(HermiteNetwork, RefusesBadKnots) {
   };
   expect_bad({0, 1, 1}, v, StatusCode::invalid_argument, 2, "knot u[2] = 1 is not above the one before it");
   expect_bad(u, {0, not_a_number}, StatusCode::non_finite, 1, "knot v[1] = nan is not finite");
-  expect_bad(u, {3}, StatusCode::invalid_argument, -1, "at least two knots are wanted along v, 1 were given");
-  expect_bad(u, u, StatusCode::count_mismatch, -1, "the network has 3 x 3 nodes, 6 were given");
+  expect_bad(u, {3}, StatusCode::invalid_argument, -1, "at least two knots are needed along v, found 1");
+  expect_bad(u, u, StatusCode::count_mismatch, -1, "the network has 3 x 3 nodes, found 6");
   expect_refused(estimate_twists(TwistEstimate::bessel, u, v, nodes), StatusCode::invalid_argument, -1,
-                 "Bessel twists want at least three nodes along v, 2 were given");
+                 "Bessel twists need at least three nodes along v, found 2");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Bicubic Hermite patches: the figures of the lectures, their forms, and what is refused.
+// Bicubic Hermite patches: the figures of the lectures, their forms, and errors.
 
 #include "support/errors.h"
 #include "support/random_hermite.h"
@@ -139,8 +139,7 @@ TEST(HermitePatch, ThroughSixteenPointsThereAndBack) {
 }
 
 TEST(HermitePatch, AdiniTwistsReproduceBilinearlyBlendedTwists) {
-  // The bilinear Coons patch of these borders is (u, v, u^2 v + 3 u v^2 + u^3 - v^3): its twist 2u + 6v is what Adini
-  // gives.
+  // The bilinear Coons patch of these borders is (u, v, u^2 v + 3 u v^2 + u^3 - v^3): its twist 2u + 6v is Adini's.
   const auto corner = [](double u, double v) {
     return CornerTangents{{u, v, u * u * v + 3 * u * v * v + u * u * u - v * v * v},
                           {1, 0, 2 * u * v + 3 * v * v + 3 * u * u},
@@ -186,7 +185,7 @@ TEST(HermitePatch, ReparametrizedIsTheSameSurface) {
 }
 
 TEST(HermitePatch, IsAffinelyInvariant) {
-  // The linear part alone applies to tangents and twists.
+  // Only the linear part applies to tangents and twists.
   Random random(7);
   const HermitePatch patch = random_hermite(random);
   const auto linear = [](const Vec3& p) { return Vec3{2 * p.y, p.z - p.x, 3 * p.x}; };
@@ -205,7 +204,7 @@ TEST(HermitePatch, RefusesWhatIsNotAPatch) {
   Random random(8);
   HermitePatch::Grid grid = random_grid(random);
   expect_refused(HermitePatch::make(std::vector<Vec3>(12)), StatusCode::count_mismatch, -1,
-                 "a bicubic patch has 4 x 4 vectors, 12 were given");
+                 "a bicubic patch has 4 x 4 vectors, found 12");
   expect_refused(HermitePatch::from_algebraic(std::vector<Vec3>(17)), StatusCode::count_mismatch, -1,
                  "4 x 4 coefficients");
   expect_refused(HermitePatch::make(grid, {0, 0, 0, 1}), StatusCode::invalid_argument, -1,
@@ -227,11 +226,11 @@ TEST(HermitePatch, RefusesSingularSystemsOfPoints) {
   const HermitePatch::Grid points = random_grid(random);
   const std::vector<double> good{0, 0.25, 0.75, 1}, twice{0, 0.5, 1, 0.5};
   expect_refused(HermitePatch::through_points(points, twice, good), StatusCode::invalid_argument, 3,
-                 "the system of 16 points is singular: parameters u[1] = 0.5 and u[3] = 0.5 are the same");
+                 "the system of 16 points is singular: parameters u[1] = 0.5 and u[3] = 0.5 are equal");
   expect_refused(HermitePatch::through_points(points, good, twice), StatusCode::invalid_argument, 3,
                  "parameters v[1] = 0.5");
   expect_refused(HermitePatch::through_points(points, std::vector<double>{0, 1, 2}, good), StatusCode::count_mismatch,
-                 -1, "four parameters u, 3 were given");
+                 -1, "four parameters u, found 3");
   expect_refused(HermitePatch::through_points(std::vector<Vec3>(15), good, good), StatusCode::count_mismatch, -1,
                  "4 x 4 points");
   expect_refused(HermitePatch::through_points(points, good, std::vector<double>{0, 1, not_a_number, 2}),

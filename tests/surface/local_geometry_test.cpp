@@ -1,4 +1,4 @@
-// Local geometry against closed forms, under changes of parameters and of scale, and at points that have none.
+// Compares local geometry with closed forms, under changes of parameters and of scale, and at points that have none.
 
 #include "tessera/local_geometry.h"
 
@@ -25,7 +25,7 @@ SurfaceJet torus(double big, double small, double u, double v) {
 SurfaceJet graph(double a, double b, double c) {
   return {{}, {1, 0, 0}, {0, 1, 0}, {0, 0, 2 * a}, {0, 0, b}, {0, 0, 2 * c}};
 }
-/// The same surface by other parameters: u = a s + b t, v = c s + d t.
+/// Changes the parameters of a surface: u = a s + b t, v = c s + d t.
 SurfaceJet reparametrised(const SurfaceJet& j, double a, double b, double c, double d) {
   return {j.position,
           a * j.du + c * j.dv,
@@ -155,7 +155,7 @@ TEST(LocalGeometry, UndefinedIsFlaggedAndZero) {
       EXPECT_EQ(value, 0);
     EXPECT_EQ(g.first.direction, Vec3{});
   }
-  // Out of range: the normal alone is known.
+  // Out of range: only the normal is known.
   const LocalGeometry far = local_geometry(SurfaceJet{{}, 1e200 * x, 1e200 * y, z, z, z});
   EXPECT_FALSE(far.defined);
   EXPECT_EQ(far.normal.direction, z);
@@ -184,7 +184,7 @@ TEST(Net, OrthogonalAndConjugateOnes) {
     EXPECT_TRUE(result.ok());
     return *result;
   };
-  // The octant of a sphere by longitude and latitude is a net of lines of curvature.
+  // The octant of a sphere by longitude and latitude is a net whose isocurves are lines of curvature.
   const double h = std::sqrt(0.5);
   const BezierPatch octant = rational(
       2, 2, {{1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}},

@@ -1,4 +1,4 @@
-// Curves that are functions, and what is refused.
+// Curves that are functions, and errors.
 
 #include "tessera/parametric_surface.h"
 

@@ -1,5 +1,4 @@
-// Functions of the caller's: what they return, what is refused, and derivatives by series, by differences and over
-// discs.
+// Functions of the caller's: values, errors, and derivatives by series, by differences and over discs.
 
 #include "tessera/parametric_surface.h"
 
@@ -14,7 +13,7 @@
 namespace tessera::test {
 namespace {
 
-/// Only positions are told of.
+/// A function that provides only positions.
 template <class F>
 ParametricSurface bare(const F& f, const Domain& domain = F::domain) {
   SurfaceFunctions functions;
@@ -150,7 +149,7 @@ TEST(ParametricSurface, PolarMapClosesAndCollapses) {
 }
 
 TEST(ParametricSurface, DerivativesOverADiscGoThroughTheMap) {
-  // Given by x and y, against series through the map, and against differences.
+  // The surface by x and y, against series through the map, and against differences.
   const Disc disc{.x = 0.3, .y = -0.2, .radius = 0.5};
   SurfaceFunctions functions = generic::surface_functions(RootHemisphere{});
   const ParametricSurface given = value_of(ParametricSurface::over_disc(functions, disc));
@@ -230,7 +229,7 @@ TEST(ParametricSurface, FunctionsThatFailBecomeErrors) {
   expect_refused(surface.position(0.25, 0), StatusCode::out_of_memory, -1, "");
   expect_refused(surface.position(0.75, 1), StatusCode::non_finite, -1, "(0.75, 1) is (0.75, 1, nan)");
   expect_refused(evaluate_jet(surface, 0.5, 0.1), StatusCode::invalid_argument, -1, "half");
-  // A root's derivative at its zero: refused by name, not handed out.
+  // A root's derivative at its zero is an error that names it, not a value.
   const ParametricSurface root = value_of(generic_surface([](auto u, auto v) {
     using std::sqrt;
     using T = decltype(u);

@@ -1,4 +1,4 @@
-// Quadrics: what they are classified as wherever they lie, their frames, their parametrisations, and what is refused.
+// Quadrics: their classification at any place, their frames, their parametrisations, and errors.
 
 #include "tessera/quadric.h"
 
@@ -88,11 +88,11 @@ TEST(Quadric, ToleranceDecides) {
   const QuadricCoefficients cone{.a = 1, .b = 1, .c = -1, .g = 1e3, .k = 1e6 - 1e-4};
   EXPECT_EQ(quadric(cone).kind(), QuadricKind::hyperboloid_one_sheet);
   EXPECT_EQ(quadric(cone, {.tolerance = 1e-9}).kind(), QuadricKind::elliptic_cone);
-  // A linear term that matters at 1e20 alone is none at the size of the cylinder.
+  // A linear term that matters only at 1e20 is ignored at the size of the cylinder.
   const QuadricCoefficients cylinder{.a = 1, .b = 1, .j = 1e-20, .k = -1};
   EXPECT_EQ(quadric(cylinder).kind(), QuadricKind::elliptic_cylinder);
   EXPECT_EQ(quadric(cylinder, {.length = 1e3}).kind(), QuadricKind::elliptic_cylinder);
-  // A square that matters at 1e20 alone: the length of interest has to be told.
+  // A square that matters only at 1e20: the caller must set the length of interest.
   const QuadricCoefficients plane{.a = 1e-20, .h = 1};
   EXPECT_EQ(quadric(plane).kind(), QuadricKind::parabolic_cylinder);
   EXPECT_EQ(quadric(plane, {.length = 1}).kind(), QuadricKind::plane);

@@ -1,4 +1,4 @@
-// Ruled surfaces: the figures of the lectures, their properties, and what is refused.
+// Ruled surfaces: the figures of the lectures, their properties, and errors.
 
 #include "tessera/coons_patch.h"
 

@@ -1,4 +1,4 @@
-// Tensor-product patches over any bases: the reference evaluator against sums of powers, and what is refused.
+// Tensor-product patches over any bases: the reference evaluator against sums of powers, and errors.
 
 #include "support/errors.h"
 #include "support/lecture_points.h"
@@ -100,7 +100,7 @@ TEST(TensorPatch, RefusesWhatDoesNotFit) {
   const BasisMatrix cubic = value_of(BasisMatrix::hermite()), line = value_of(BasisMatrix::bezier(1));
   std::vector<Vec3> geometry(8);
   expect_refused(TensorPatch::make(cubic, cubic, geometry), StatusCode::count_mismatch, -1,
-                 "bases of degree 3 and 3 want a geometry of 4 x 4, 8 elements were given");
+                 "bases of degree 3 and 3 need a geometry of 4 x 4 elements, found 8");
   EXPECT_TRUE(TensorPatch::make(cubic, line, geometry).ok());
   expect_refused(TensorPatch::make(cubic, line, geometry, {1, 1, 0, 1}), StatusCode::invalid_argument, -1,
                  "the domain along u, [1, 1], must have its start below its end");

@@ -17,7 +17,7 @@ BezierPatch random_pole_patch(Random& random, int m, int n, bool with_weights) {
                   with_weights ? random_weights(random, m, n, 0.5, 2) : std::vector<double>(points.size(), 1));
 }
 
-/// From (u,v), the parameter a little further inside the patch along one direction.
+/// Moves the parameter from (u,v) a little further inside the patch along one direction.
 double inside(double t, double step) { return t < 0.5 ? t + step : t - step; }
 
 TEST(UnitNormal, RegularPointsAgreeWithTheDefinition) {

@@ -24,7 +24,7 @@ TEST(TessellationAllocation, NoneAfterTheFirstRuns) {
   EXPECT_EQ(done, 1);
 }
 
-/// The most bytes a patch that `make` holds at a time, beside what there was.
+/// The most bytes per patch that `make` holds at a time, besides the memory before.
 template <class Make>
 double bytes_per_patch(const PatchSet& set, Make make) {
   const std::size_t before = restart_peak();
@@ -56,7 +56,7 @@ TEST(TessellationMemory, PlansOfOneFaceAreSmallBesideOthers) {
                             [&] {
                               while (many.size() < 100) many.push_back(plan());
                             }),
-            100 * 1024 + 8192);  // and what making one takes meanwhile
+            100 * 1024 + 8192);  // and the temporary memory of making one
 }
 
 TEST(TessellationMemory, MeshesAreWrittenWithNextToNothingBeside) {

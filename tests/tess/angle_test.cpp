@@ -1,4 +1,4 @@
-// The normals of a surface within a triangle, and the mesh's shading there, are never further apart than is proven.
+// The angle between the normals of a surface within a triangle and the mesh's shading there never exceeds the bound.
 
 #include <algorithm>
 #include <cmath>
@@ -142,12 +142,12 @@ TEST(Angle, WrongOnesAreRefused) {
   };
   EXPECT_NEAR(triangles(2e-4) / triangles(3e-4), 2.25, 0.1);
   EXPECT_NE(refusal(1e-5).find("of patch 0, and more than "), std::string::npos) << refusal(1e-5);
-  // A flat patch has nothing to turn.
+  // A flat patch does not turn.
   const PatchSet flat = set_of({polynomial(1, 1, {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}})});
   EXPECT_EQ(good(CertifiedTessellation::make(flat, {.angle = 0.01})).capacity().triangles, 2u);
 }
 
-/// The net against the cross product of the derivatives, and its division at poles against limits.
+/// Compares the net with the cross product of the derivatives, and its division at poles with limits.
 TEST(NormalNet, PointsAlongTheNormal) {
   Random random(5);
   const auto value = [](const VectorNet& net, double u, double v) {

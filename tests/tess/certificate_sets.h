@@ -1,5 +1,5 @@
 #pragma once
-// Patches that are hard on bounds: all kinds, and shapes that fool sampling.
+// Patches that are difficult for bounds: all kinds, and shapes that mislead sampling.
 
 #include <cmath>
 #include <string>

@@ -1,4 +1,4 @@
-// The promise of certified tessellations against the true largest distance, found by branch and bound.
+// Checks the promise of certified tessellations against the true largest distance, found by branch and bound.
 
 #include <algorithm>
 #include <cmath>

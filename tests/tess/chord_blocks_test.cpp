@@ -1,4 +1,4 @@
-// Chord bounds in float, sixteen patches at a time, against those in double, patch by patch.
+// Compares chord bounds in float, sixteen patches at a time, with those in double, patch by patch.
 
 #include "tess/bounds/chord_blocks.h"
 
@@ -39,7 +39,7 @@ ChordBlocks bounds_of(const PatchSet& set) {
   return blocks;
 }
 
-/// Whether a patch keeps the bounds of its homogeneous net; those of other sources have tests of their own.
+/// Whether a patch keeps the bounds of its homogeneous net; bounds from other sources have tests of their own.
 bool is_homogeneous(const ChordBlocks& blocks, PatchSet::Slot slot) {
   const ChordBlocks::Source source = blocks.source(slot.block, slot.lane);
   return source == ChordBlocks::Source::packed || source == ChordBlocks::Source::alone;
@@ -129,7 +129,7 @@ TEST(ChordBlocks, RatesKeepTheDistanceWithAboutTheFewestCells) {
   }
 }
 
-/// How many of a set's rational patches have their bounds in blocks.
+/// The number of a set's rational patches whose bounds are in blocks.
 std::size_t bounded_in_blocks(const PatchSet& set) {
   const ChordBlocks blocks = bounds_of(set);
   std::size_t count = 0;

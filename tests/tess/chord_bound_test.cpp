@@ -1,4 +1,4 @@
-// The certified distance is never exceeded, by triangles of any shape within its cells, and is not far above what is found.
+// Triangles of any shape within the cells never exceed the certified distance, and it is not far above the true one.
 
 #include "tess/bounds/chord_bound.h"
 
@@ -47,7 +47,7 @@ double found_distance(const BezierPatch& patch, const Box& box, Random& random, 
   return most;
 }
 
-/// The same over the cells of rates, a few of them.
+/// The largest distance found over some of the cells of `rates`.
 double found_distance(const BezierPatch& patch, Rates rates, Random& random) {
   double most = 0;
   for (int cell = 0; cell < 6; ++cell) {
@@ -89,7 +89,7 @@ BezierPatch quadric(double a, double b, double c) {
 }
 
 TEST(ChordBound, KnowsWhichWayPatchesBend) {
-  // Where they bend to one side the errors add up, where they bend to both the larger one counts.
+  // If the patch bends to one side the errors add up; if to both sides, the larger one counts.
   EXPECT_NEAR(ChordBound(quadric(1, 0, 1), true).distance({1, 1}), 0.5, 1e-6);
   EXPECT_NEAR(ChordBound(quadric(1, 0, -1), true).distance({1, 1}), 0.25, 1e-6);
   EXPECT_NEAR(ChordBound(quadric(1, 0, -1)).distance({1, 1}), 0.5, 1e-6);

@@ -118,7 +118,7 @@ TEST(ExactChords, AreTheSameBytesOnEveryInstructionSet) {
   }
 }
 
-/// A patch 1000 long beside 15 round ones of its block: bounds of the homogeneous patch would take thousands of cells.
+/// A patch 1000 long in a block with 15 round ones: bounds of the homogeneous patch would take thousands of cells.
 TEST(ExactChords, AreLookedForWhereThereIsMuchToGain) {
   Random random(6);
   const double w = std::sqrt(0.5);
@@ -195,8 +195,8 @@ TEST(ScaledSweeps, OthersAreNone) {
   }
 }
 
-/// The proof's map, step by step: each point of any triangle, whatever its corners, lies within the bound of the patch's
-/// point at (u', v').
+/// The proof's map, step by step: each point of any triangle, whatever its corners, lies within the bound of the
+/// patch's point at (u', v').
 TEST(ScaledSweeps, TheMixedDerivativeDoesNotCount) {
   Random random(5);
   double largest = 0;
@@ -300,7 +300,8 @@ TEST(FlatQuads, OthersAreNone) {
   EXPECT_FALSE(is_flat_quad(std::vector<Vec3>(9, Vec3{1, 2, 3})));
 }
 
-/// Weights that are worlds apart, patches thinner than rounding, a place far away: a plan that keeps its tolerance, or why not.
+/// Weights of extreme ratios, patches thinner than rounding, a place far away: a plan that keeps its tolerance, or an
+/// error that says why not.
 TEST(ExactChords, HardPatchesAreBoundedOrRefused) {
   Random random(8);
   std::size_t planned = 0;

@@ -50,7 +50,7 @@ TEST(FarPartsInDouble, ALongCylinderKeepsATolerance) {
   expect_f64_bounds(set, mesh, plan.bounds());
 }
 
-/// Small patches a million away: all control points of each are one float, and nothing is joined but what meets in double.
+/// Small patches a million away: all control points of each are one float, and only what meets in double is joined.
 TEST(FarPartsInDouble, PatchesWithinOneFloatMeetAsTheirDoublesDo) {
   const Vec3 far{5e5, 3e5, -4e5};
   std::vector<BezierPatch> patches = placed(closed_body(), 1e-4, far);

@@ -1,5 +1,5 @@
 #pragma once
-// Parts far from each other, and what is expected of their meshes.
+// Parts far from each other, and the expectations on their meshes.
 
 #include <tbb/task_arena.h>
 #include <algorithm>
@@ -59,13 +59,13 @@ inline std::vector<BezierPatch> shaken_bits(const std::vector<BezierPatch>& patc
   return out;
 }
 
-/// GCC 12 leaves the rounding out where it vectorizes conversions to float and back.
+/// GCC 12 omits the rounding when it vectorizes conversions to float and back.
 inline double as_float(double x) {
   const volatile float rounded = static_cast<float>(x);
   return double{rounded};
 }
 
-/// Every control point moved as far as its float, relative to the origin, stays what it is, and each patch turned.
+/// Moves every control point as far as its float, relative to the origin, does not change, and turns each patch.
 inline std::vector<BezierPatch> shaken_within_floats(const std::vector<BezierPatch>& patches, std::uint64_t seed) {
   Random random(seed);
   const auto shaken = [&](double x) {
@@ -81,7 +81,7 @@ inline std::vector<BezierPatch> shaken_within_floats(const std::vector<BezierPat
   return out;
 }
 
-/// About so many triangles of a mesh against the true distance.
+/// Compares about `count` triangles of a mesh with the true distance.
 inline void expect_bounds(const PatchSet& set, const Mesh& mesh, std::span<const float> bounds,
                           std::size_t count = 200) {
   for (std::size_t t = 0; t < mesh.triangle_count(); t += 1 + mesh.triangle_count() / count) {

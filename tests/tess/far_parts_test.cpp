@@ -1,5 +1,5 @@
-// Parts far from each other, and tolerances near what positions can hold: float vertices that come from double control
-// points.
+// Parts far from each other, and tolerances near the precision of positions: float vertices that come from double
+// control points.
 
 #include "tess/far_parts.h"
 #include "base/impl_access.h"
@@ -192,7 +192,7 @@ double number_before(const std::string& message, const std::string& words) {
   return end == std::string::npos ? 0 : std::stod(message.substr(begin + 1, end - begin - 1));
 }
 
-/// Bad input: what is refused names a tolerance that is kept, and not much larger than the rounding.
+/// Bad input: the error names a tolerance that can be kept, and that is not much larger than the rounding.
 TEST(FarParts, ARefusalNamesATolerance) {
   Random random(7);
   std::vector<BezierPatch> thin = placed(closed_body(), 1e-7, {1, 2, 3});

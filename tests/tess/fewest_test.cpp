@@ -19,7 +19,7 @@ CertifiedTessellation planned(const PatchSet& set, double relative, bool fewest)
   return good(CertifiedTessellation::make(set, {.tolerance = relative, .relative = true, .fewest = fewest}));
 }
 
-/// A bicubic patch that bends near (1, 1) alone.
+/// A bicubic patch that bends only near (1, 1).
 BezierPatch bent_in_a_corner() {
   std::vector<Vec3> points;
   for (int i = 0; i < 4; ++i)
@@ -39,7 +39,7 @@ TEST(Fewest, SavesTrianglesAndOpensNoCrack) {
       EXPECT_EQ(report.closed(), before.closed());
       EXPECT_EQ(report.degenerate_triangles, before.degenerate_triangles);
     }
-  // A sphere's patches are scaled sweeps, which have half as many without.
+  // Not a sphere, whose patches are scaled sweeps: these have half as many triangles without the option.
   const PatchSet body = set_of(closed_body());
   const auto triangles = [&](bool fewest) { return double(planned(body, 1e-4, fewest).capacity().triangles); };
   EXPECT_LE(triangles(true), 0.85 * triangles(false));
@@ -108,7 +108,7 @@ TEST(Fewest, HalvesOfPatchesHaveSegmentsOfTheirOwnWhereThatSaves) {
   }
 }
 
-/// Of segments that do as well for themselves patches have those that suit their neighbours.
+/// Patches use the segments that suit their neighbours if these are as good for themselves.
 TEST(Fewest, PatchesChooseTogether) {
   const PatchSet field = set_of(wavy_field(8, 8));
   const PatchShape shape{3, 3, {}, false};
@@ -146,7 +146,7 @@ TEST(Fewest, ChoosingTogetherCanBeCancelled) {
 }
 
 TEST(Fewest, HalvesHaveNoMoreSegmentsThanWholesMay) {
-  std::vector<Vec3> points;  // bends where u is small alone
+  std::vector<Vec3> points;  // bends only where u is small
   for (int i = 0; i <= 6; ++i)
     for (int j = 0; j < 2; ++j) points.push_back({double(i), double(j), i == 0 ? 6.0 : 0.0});
   const PatchSet set = set_of({polynomial(6, 1, points)});
@@ -197,7 +197,7 @@ TEST(Fewest, RatesGoNoFurtherThanTheirRange) {
   }
 }
 
-/// A curve that is the border of a patch, and would be welded to others if it were one.
+/// A curve that is the border of a patch, and would be welded to other borders if it were a border.
 TEST(Fewest, CurvesBesideWeldedBordersOpenNoCrack) {
   const auto net = [](int degree, auto at) {
     std::vector<Vec3> points;

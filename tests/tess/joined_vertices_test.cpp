@@ -1,4 +1,4 @@
-// Vertices and normals that neighbours have in common, and quads: the same triangles as without, in other numbers.
+// Vertices and normals that neighbours share, and quads: the same triangles as without, with other numbers.
 
 #include <algorithm>
 #include <cmath>
@@ -64,7 +64,7 @@ std::vector<BezierPatch> roof() {
   return {polynomial(2, 2, left), polynomial(2, 2, mirrored)};
 }
 
-/// All of whose octants look outwards.
+/// A sphere all of whose octants look outwards.
 std::vector<BezierPatch> round_sphere() {
   std::vector<BezierPatch> patches = sphere();
   for (BezierPatch& patch : patches)
@@ -77,7 +77,7 @@ Place place_of(const std::vector<float>& of, std::size_t vertex) {
   return {of[3 * vertex], of[3 * vertex + 1], of[3 * vertex + 2]};
 }
 
-/// What the corners of the triangles are, in order.
+/// The values at the corners of the triangles, in order.
 std::vector<Place> corners(const Mesh& mesh, const std::vector<float>& of) {
   std::vector<Place> places;
   for (const std::uint32_t k : mesh.indices) places.push_back(place_of(of, k));
@@ -136,7 +136,7 @@ TEST(SharedVertices, NormalsNeedACreaseAngle) {
   mesh.normals.resize(mesh.positions.size());
   const Status status = plan.run(set, mesh.views());
   EXPECT_EQ(status.code(), StatusCode::invalid_argument);
-  EXPECT_NE(status.message().find("without a crease angle"), std::string::npos);
+  EXPECT_NE(status.message().find("need a crease angle"), std::string::npos);
   for (const double angle : {-0.1, 4.0, std::nan("")})
     EXPECT_EQ(CertifiedTessellation::make(set, {.tolerance = 0.01, .crease_angle = angle}).status().code(),
               StatusCode::invalid_argument);
@@ -271,7 +271,7 @@ TEST(Quads, CellsAreQuadsAndTheRestIsStrips) {
       ASSERT_TRUE(status.ok()) << status.message();
       EXPECT_EQ(strips.positions, mesh.positions);
       EXPECT_EQ(strips.normals, mesh.normals);
-      // Patch by patch, a patch's strips and then its cells make its triangles.
+      // A patch's triangles come patch by patch: first its strips, then its cells.
       std::vector<std::uint32_t> indices, patches;
       std::size_t t = 0, q = 0;
       for (std::uint32_t k = 0; k < set.patch_count(); ++k) {

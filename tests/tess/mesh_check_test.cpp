@@ -165,10 +165,10 @@ TEST(MeshCheck, RefusesIndicesOutOfRange) {
 TEST(MeshCheck, RefusesCountsThatDontFit) {
   Mesh mesh = tetrahedron();
   mesh.positions.pop_back();
-  expect_error(mesh, "11 numbers in positions are not three a vertex");
+  expect_error(mesh, "11 numbers in positions are not three per vertex");
   mesh = tetrahedron();
   mesh.indices.push_back(0);
-  expect_error(mesh, "13 indices are not three a triangle");
+  expect_error(mesh, "13 indices are not three per triangle");
   mesh = tetrahedron();
   mesh.normals.resize(9);
   expect_error(mesh, "9 numbers in normals, 12 in positions");

@@ -60,7 +60,7 @@ TEST(MeshParts, PatchesOfOneSurfaceAreOnePart) {
 
 TEST(MeshParts, QuadsGoWithTheTrianglesOfTheirPatch) {
   const Model surfaces = model();
-  // Patches 0 to 3 are of surface 0, 4 to 7 of surface 3.
+  // Patches 0 to 3 belong to surface 0, 4 to 7 to surface 3.
   std::vector<PatchSource> sources(8);
   for (std::size_t k = 4; k < 8; ++k) sources[k].surface = 3;
   const PatchSet two = value_of(PatchSet::from(test::sphere(), {.sources = sources}));

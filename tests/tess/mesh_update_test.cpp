@@ -1,5 +1,5 @@
-// Updates of certified meshes: the same bytes as a mesh of the edited set by the same rates, nothing beside, and bounds that
-// hold for the patches as they are.
+// Updates of certified meshes: the same bytes as a mesh of the edited set with the same rates, nothing else written,
+// and bounds that hold for the edited patches.
 
 #include "tessera/tessellation.h"
 
@@ -25,7 +25,7 @@ struct Edits {
   operator PatchEdits() const { return {patch, points}; }
 };
 
-/// Of every step-th patch, each point moved by `move`.
+/// Edits of every step-th patch: `move` moves each point.
 template <class Move>
 Edits moved(const PatchSet& set, std::size_t step, Move move) {
   Edits edits;
@@ -122,7 +122,7 @@ TEST(MeshUpdate, OtherRecordsAreNotTouched) {
   const std::vector<float> before = body.mesh.positions;
   const Edits edits = swollen(body.set, 5, 0.1);
   const std::vector<std::uint32_t> patches = body.mesh.patches, indices = body.mesh.indices;
-  // What an update must not write is not even there.
+  // Arrays that an update must not write do not exist.
   MeshViews views;
   views.position = View3<float>::interleaved(body.mesh.positions);
   ASSERT_TRUE(body.update.run(body.set, edits, views).ok());
@@ -145,7 +145,7 @@ TEST(MeshUpdate, WeldedNeighboursFollow) {
   EXPECT_EQ(2 * report.distinct_positions, report.triangles + report.open_edges + 2);  // a disc still
 }
 
-/// The largest distance from any patch of what is meshed from it, over its bound. `apart`: a mesh of the same triangles
+/// The largest distance from any patch to its part of the mesh, over its bound. `apart`: a mesh of the same triangles
 /// whose vertices have the parameters of their own patch.
 double found_over_bound(const Animated& body, const Mesh& apart) {
   double most = 0;
@@ -186,7 +186,7 @@ TEST(MeshUpdate, RestatedBoundsHold) {
 }
 
 TEST(MeshUpdate, BoundsHoldWhereSharedBordersPart) {
-  // One patch leaves its neighbours; vertices that it shares stay with them.
+  // One patch leaves its neighbours; vertices that it shares remain with them.
   Animated body(wavy_field(3, 3), {.tolerance = 0.02, .share_vertices = true});
   const Mesh apart = mesh_of(body.set, good(CertifiedTessellation::make(body.set, {.tolerance = 0.02})));
   const auto lifted = [&](double by) {
@@ -226,13 +226,13 @@ TEST(MeshUpdate, AnglesAndPixelsAreNotKnownUntilRetessellated) {
 TEST(MeshUpdate, RetessellatingChangesOnlyWhatItMust) {
   Animated body(wavy_field(12, 12), {.tolerance = 0.003});
   const std::vector<std::uint32_t> indices = body.mesh.indices;
-  // A little movement changes no rates, though the best ones are others for some.
+  // A little movement changes no rates, although others would now be the best for some.
   body.run(moved(body.set, 1, [](const Vec3& p) { return Vec3{p.x, p.y, p.z * 0.97}; }));
   EXPECT_EQ(good(body.update.retessellate(body.set)), 0u);
   EXPECT_EQ(mesh_of(body.set, body.update.plan()).indices, indices);
   EXPECT_GT(good(CertifiedTessellation::make(body.set, {.tolerance = 0.003})).divided_otherwise(body.update.plan()),
             0u);
-  // One patch that bulges takes others, and its neighbours' borders with it.
+  // One patch that bulges needs other rates, and so do its neighbours' borders with it.
   Edits one = moved(body.set, 1000, [](const Vec3& p) { return p; });
   for (const std::size_t k : {5u, 6u, 9u, 10u}) one.points[k].z += 0.5;
   body.run(one);

@@ -1,5 +1,5 @@
-// Certified meshes as they are written: in vectors of every instruction set, plainly or past the caches, into views of any
-// layout; against the patches themselves and against the triangles written one by one.
+// Checks certified meshes as they are written: in vectors of every instruction set, plainly or past the caches, into
+// views of any layout; against the patches themselves and against the triangles written one by one.
 
 #include "tess/write/patch_writer.h"
 
@@ -114,7 +114,7 @@ TEST(PatchWriter, PositionsAloneAreThoseWithNormals) {
   }
 }
 
-/// On a border that is a point each vertex has the normal that the patch tends to along its parameter, corners too.
+/// On a border that is a point, each vertex has the limit of the patch's normal along its parameter, corners too.
 TEST(PatchWriter, VerticesAtPolesHaveTheNormalsOfTheirLimits) {
   std::size_t at_poles = 0, corners = 0;
   double most = 0;
@@ -140,7 +140,7 @@ TEST(PatchWriter, VerticesAtPolesHaveTheNormalsOfTheirLimits) {
   EXPECT_GT(at_poles, corners + 100);
 }
 
-/// Every vertex lies where its float parameters are, within the rounding that the certificate counts and theirs, and its
+/// Every vertex lies at its float parameters, within the rounding that the certificate counts and theirs, and its
 /// normal is the patch's.
 TEST(PatchWriter, VerticesLieOnTheirPatchesWithTheirNormals) {
   for (const auto& [set, tolerance] : cases()) {

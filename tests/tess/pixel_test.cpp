@@ -1,4 +1,4 @@
-// In a camera's picture no point of the surface is further from its triangle than the pixels that are proven.
+// In a camera's picture no point of the surface is further from its triangle than the proven number of pixels.
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +26,7 @@ class Pinhole {
     pixel_ = view.orthographic ? view.extent / shorter : 2 * std::tan(view.field_of_view / 2) / shorter;
   }
   double depth(const Vec3& p) const { return dot(p - view_.eye, axis_); }
-  /// In pixels from the middle.
+  /// A point in pixels from the middle.
   Vec3 seen(const Vec3& p) const {
     const double scale = 1 / (pixel_ * (view_.orthographic ? 1 : depth(p)));
     return {scale * dot(p - view_.eye, right_), scale * dot(p - view_.eye, down_), 0};
@@ -46,7 +46,7 @@ class Pinhole {
   double pixel_;
 };
 
-/// The point of a triangle nearest to p: of a fine lattice, refined around the best.
+/// The point of a triangle nearest to p, from a fine lattice that is refined around the best.
 Vec3 nearest_of_triangle(const Vec3& p, const Vec3 (&corner)[3]) {
   double a0 = 0, b0 = 0, step = 0.25;
   for (int round = 0; round < 24; ++round) {
@@ -94,7 +94,7 @@ Found found_over_bound(const PatchSet& set, const CertifiedTessellation& plan, c
       const Vec3 p = de_casteljau(set.patch(mesh.patches[t]), mixed(0), mixed(1));
       if (!camera.shows(p)) continue;
       ++found.seen;
-      // Either the nearest point in the picture, or where the nearest in space is seen: both are of the triangle.
+      // Either the nearest point in the picture, or the image of the nearest in space: both belong to the triangle.
       double distance = 1e300;
       if (in_front)
         distance = distance_to_triangle(camera.seen(p), camera.seen(corner[0]), camera.seen(corner[1]),
@@ -131,7 +131,7 @@ std::vector<View> views_of(const PatchSet& set) {
 TEST(Pixels, AreNeverExceeded) {
   Random random(1);
   for (const CertificateSet& chosen : certificate_sets()) {
-    if (chosen.name == "size 1e6, at 1e7") continue;  // floats there move by pixels: refused, below
+    if (chosen.name == "size 1e6, at 1e7") continue;  // an error, tested below: floats there move by pixels
     const PatchSet set = set_of(chosen.patches);
     double most = 0;
     for (const View& view : views_of(set)) {
@@ -152,7 +152,7 @@ TEST(Pixels, AreNeverExceeded) {
   }
 }
 
-/// What a picture says of a patch by itself, and of it in its block.
+/// Bounds in a picture for a patch alone, and for it in its block.
 TEST(Pixels, PicturesInBlocksHoldThoseInDoubleAndLittleMore) {
   std::size_t sharp = 0, all = 0;
   for (const CertificateSet& chosen : certificate_sets()) {
@@ -213,14 +213,14 @@ TEST(Pixels, FarPatchesTakeFewerTriangles) {
   EXPECT_GT(of_column(0), 4 * of_column(15));
   const MeshReport report = good(check(mesh));
   EXPECT_EQ(2 * report.distinct_positions, report.triangles + report.open_edges + 2);  // a disc: no crack
-  // Turned away, none of it is seen.
+  // The camera is turned away and sees nothing of it.
   const View away{.eye = {-3, 2, 2}, .target = {-8, 2, 2}};
   const CertifiedTessellation unseen = good(CertifiedTessellation::make(set, {.pixels = PixelTolerance{0.5, away}}));
   EXPECT_EQ(unseen.capacity().triangles, 2u * 64);
   EXPECT_EQ(unseen.pixels(), 0);
 }
 
-/// A floor that passes under the camera: its hull lies around the eye's plane, what is seen of it does not.
+/// A floor that passes under the camera: its hull contains the eye's plane, its visible part does not.
 TEST(Pixels, AFloorBelowTheEye) {
   std::vector<BezierPatch> floor;
   for (const BezierPatch& patch : wavy_field(1, 1)) floor.push_back(placed({patch}, 20, {-10, -10, -10})[0]);
@@ -266,15 +266,16 @@ TEST(Pixels, WrongOnesAreRefused) {
   EXPECT_NE(changed([](View& v) { v.field_of_view = 0; }).find("field of view"), std::string::npos);
   EXPECT_NE(changed([](View& v) { v.field_of_view = std::nan(""); }).find("field of view"), std::string::npos);
   EXPECT_NE(changed([](View& v) { v.orthographic = true, v.extent = -1; }).find("extent"), std::string::npos);
-  EXPECT_NE(changed([](View& v) { v.height = 0; }).find("pixels, from 1 to"), std::string::npos);
+  EXPECT_NE(changed([](View& v) { v.height = 0; }).find("pixels, each must be from 1 to"), std::string::npos);
   EXPECT_NE(changed([](View& v) { v.near_distance = -1; }).find("near distance"), std::string::npos);
-  // Floats far away move by more than the pixels allow: said, not hidden.
+  // Floats far away move by more than the pixels allow: an error, not silence.
   const PatchSet far = set_of(placed(closed_body(), 1, {1e7, 0, 0}));
   const auto rough = CertifiedTessellation::make(
       *PatchSet::from(placed(closed_body(), 1, {1e7, 0, 0}), PatchSetOptions{.origin = Vec3{}}),
       {.pixels = PixelTolerance{0.5, views_of(far)[0]}});
   ASSERT_FALSE(rough.ok());
-  EXPECT_NE(rough.status().message().find("0.5 pixels are not above what float vertices of patch 0 keep"),
+  EXPECT_NE(rough.status().message().find(
+                "0.5 pixels so near to the eye are not above the rounding of float vertices of patch 0"),
             std::string::npos)
       << rough.status().message();
 }

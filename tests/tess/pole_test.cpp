@@ -77,7 +77,7 @@ TEST(Poles, PointsAndCurvesHaveNoTriangles) {
   const BezierPatch line = polynomial(3, 3, swept);
   for (const BezierPatch& patch : {polynomial(3, 3, point), rational(3, 3, point, weights), line, transposed(line)})
     for (const int rate : {1, 2, 5}) EXPECT_EQ(tessellate({patch}, rate, rate).triangle_count(), 0u);
-  // With weights that differ, the same points are mixed to an area.
+  // With different weights, the same points span an area.
   EXPECT_GT(tessellate({rational(3, 3, swept, weights)}, 4, 4).triangle_count(), 0u);
   // Between others, such a patch takes vertices and no triangles.
   const BezierPatch regular = random_polynomial(random, 2, 2);

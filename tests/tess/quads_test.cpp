@@ -1,4 +1,4 @@
-// Quads: whole cells are faces of four corners, and the mesh is the same as of triangles in all else.
+// Quads: whole cells are faces of four corners, and the mesh otherwise equals one of triangles.
 
 #include <oneapi/tbb/global_control.h>
 
@@ -20,7 +20,7 @@ Mesh quads_of(const PatchSet& set, const Plan& plan, const Execution& execution 
   return mesh;
 }
 
-/// Patch and corners of each triangle, in order of these.
+/// Patch and corners of each triangle, in their order.
 std::vector<std::array<std::uint32_t, 4>> triangles_of(const Mesh& mesh) {
   std::vector<std::array<std::uint32_t, 4>> triangles;
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
@@ -29,7 +29,7 @@ std::vector<std::array<std::uint32_t, 4>> triangles_of(const Mesh& mesh) {
   return triangles;
 }
 
-/// That the faces of `plan` are those of its triangles.
+/// Expects that the faces of `plan` are those of its triangles.
 template <class Plan>
 void expect_the_same(const PatchSet& set, const Plan& plan, const Mesh& triangles) {
   const Mesh mesh = quads_of(set, plan);
@@ -202,8 +202,8 @@ TEST(Quads, CheckKnowsThem) {
     return check(bad).status().message();
   };
   EXPECT_EQ(error_of([](Mesh& m) { m.quads[9] = 8; }), "corner 1 of quad 2 is vertex 8, the mesh has 8");
-  EXPECT_EQ(error_of([](Mesh& m) { m.quads.pop_back(); }), "23 indices are not four a quad");
-  EXPECT_EQ(error_of([](Mesh& m) { m.quad_patches = {1}; }), "1 patches for 6 quads");
+  EXPECT_EQ(error_of([](Mesh& m) { m.quads.pop_back(); }), "23 indices are not four per quad");
+  EXPECT_EQ(error_of([](Mesh& m) { m.quad_patches = {1}; }), "1 patch for 6 quads");
 }
 
 TEST(Quads, AreSplitPartByPart) {

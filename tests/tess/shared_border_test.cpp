@@ -1,4 +1,4 @@
-// Patches that share a border's control points share the bits of its vertices, whichever way each runs.
+// Patches that share a border's control points share the bits of its vertices, in either direction.
 
 #include "tess/tessellate_support.h"
 

@@ -1,4 +1,4 @@
-// Which borders are one edge, held against a comparison of all with all by their bits.
+// Finds which borders are one edge; compared with a comparison of all with all by their bits.
 
 #include "tess/edges/shared_edges.h"
 
@@ -16,7 +16,9 @@ namespace {
 
 using Bits = std::vector<std::uint32_t>;
 
-/// A border's numbers, in that direction whose are less.
+std::size_t edges_of(const PatchSet& set) { return SharedEdges(impl_of(set)).count(); }
+
+/// A border's numbers, in the direction that gives the smaller ones.
 Bits bits_of(const PatchSet::Impl& set, std::size_t patch, Side side) {
   const PackedBorder border(set, patch, side);
   Bits forward, backward;
@@ -64,7 +66,7 @@ TEST(SharedEdges, AreThoseWhoseBordersAreTheSameBits) {
   Random random(7);
   const std::vector<BezierPatch> field = wavy_field(9, 23);  // rows that do not end with blocks
   expect_edges_by_bits(set_of(field), "in rows");
-  EXPECT_EQ(SharedEdges(impl_of(set_of(field))).count(), 9u * 24 + 10 * 23);
+  EXPECT_EQ(edges_of(set_of(field)), 9u * 24 + 10 * 23);
   expect_edges_by_bits(set_of(with_weights(field)), "rational");
 
   std::vector<BezierPatch> turned;
@@ -86,14 +88,14 @@ TEST(SharedEdges, AreThoseWhoseBordersAreTheSameBits) {
 
 TEST(SharedEdges, ABitApartIsAnotherEdge) {
   std::vector<BezierPatch> field = wavy_field(6, 20);
-  const std::size_t whole = SharedEdges(impl_of(set_of(field))).count();
-  // An inner control point of the border between patches 50 and 51, of one of them.
+  const std::size_t whole = edges_of(set_of(field));
+  // An inner control point of the border between patches 50 and 51, in one of them.
   std::vector<Vec3> points(field[50].points().begin(), field[50].points().end());
   points[13].x = std::nextafter(static_cast<float>(points[13].x), 1e9f);
   field[50] = polynomial(3, 3, points);
   const PatchSet set = set_of(field);
   expect_edges_by_bits(set, "one moved");
-  EXPECT_GT(SharedEdges(impl_of(set)).count(), whole);
+  EXPECT_GT(edges_of(set), whole);
 }
 
 TEST(SharedEdges, MatchedBordersDifferWhereABitDoesOnEveryInstructionSet) {

@@ -32,8 +32,8 @@ struct Corners {
   double high_v() const { return std::max({a.v, b.v, c.v}); }
 };
 
-/// A triangle straddles the middle of an even rate only at a border of an odd one, within that one's segment, and across
-/// it keeps to a half where that rate is even.
+/// A triangle crosses the middle of an even rate only at a border of an odd one, within that one's segment; in the
+/// other direction it keeps to a half if that rate is even.
 void expect_border_triangle(const Division& division, PatchSegments asked, Side side, std::array<double, 2> along,
                             std::array<double, 2> across) {
   const auto s = static_cast<std::size_t>(side);
@@ -50,7 +50,7 @@ void expect_border_triangle(const Division& division, PatchSegments asked, Side 
   EXPECT_FALSE(border.parts_halves());
 }
 
-/// The longest segment asked for from `low` to `high`.
+/// The longest requested segment from `low` to `high`.
 double longest(Segments asked, double low, double high) {
   double length = 0;
   for (int k = 0; k < asked.rate(); ++k)
@@ -59,7 +59,7 @@ double longest(Segments asked, double low, double high) {
   return length;
 }
 
-/// Checks everything that the header promises for a patch without collapsed borders.
+/// Checks all promises of the header for a patch without collapsed borders.
 void expect_triangulation(const Division& division, PatchSegments asked) {
   const std::vector<Place> at = places(division);
   ASSERT_EQ(at.size(), division.vertex_count());
@@ -134,7 +134,7 @@ TEST(StitchedPatch, HalvesMayHaveSegmentsOfTheirOwn) {
                                     << asked.v.lower_rate() << " + " << asked.v.upper_rate());
     expect_triangulation(Division::of(plain, asked, borders), asked);
   }
-  // Beside such a border of a neighbour's a patch may have odd rates.
+  // Beside a neighbour's border of this kind a patch may have odd rates.
   for (const Rates asked : {Rates{1, 1}, Rates{1, 3}, Rates{3, 1}, Rates{5, 3}, Rates{1, 2}}) {
     const Segments u = Segments::halves((asked.u + 1) / 2 + 1, (asked.u + 1) / 2);
     const Segments v = Segments::halves((asked.v + 1) / 2, (asked.v + 1) / 2 + 2);

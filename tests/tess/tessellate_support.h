@@ -6,7 +6,7 @@
 
 namespace tessera::test {
 
-/// The value of a result that must be good: says why and ends the program otherwise.
+/// The value of a result that must be good; otherwise prints the message and ends the program.
 template <class T>
 T good(Result<T> result) {
   if (!result) {

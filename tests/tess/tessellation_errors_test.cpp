@@ -1,4 +1,4 @@
-// What a tessellation refuses, and that it then writes nothing.
+// Errors of a tessellation, after which nothing is written.
 
 #include <gmock/gmock.h>
 

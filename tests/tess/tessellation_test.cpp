@@ -1,4 +1,4 @@
-// What a tessellation holds, for patches without poles.
+// The contents of a tessellation, for patches without poles.
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>

@@ -1,4 +1,4 @@
-// Welding: borders that differ by rounding, or by a known length, meet without a crack, and the bounds know of it.
+// Welding: borders that differ by rounding, or by a known length, meet without a crack, and the bounds include it.
 
 #include <algorithm>
 #include <cmath>
@@ -190,7 +190,7 @@ TEST(Weld, WrongLengthsAreRefused) {
     ASSERT_FALSE(plan.ok());
     EXPECT_NE(plan.status().message().find("it must be finite and at least 0"), std::string::npos);
   }
-  // Moved further than the tolerance allows.
+  // Moved further than the tolerance permits.
   const PatchSet apart = set_of(shaken(closed_body(), 0.01, 1));
   const auto plan = CertifiedTessellation::make(apart, {.tolerance = 0.005, .weld = 0.04});
   ASSERT_FALSE(plan.ok());

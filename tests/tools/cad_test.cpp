@@ -12,7 +12,7 @@ using CadTool = ToolTest;
 
 #ifdef TESSERA_HAS_IO_OCCT
 
-/// Runs what must succeed with nothing but warnings on standard error.
+/// Runs a command that must succeed with only warnings on standard error.
 void expect_warnings(const ToolRun& result, const std::string& path) {
   EXPECT_EQ(result.status, 0) << result.errors;
   std::istringstream lines(result.errors);
@@ -52,7 +52,7 @@ TEST_F(CadTool, BrokenPartsAreRefused) {
 TEST_F(CadTool, SaysWhatIsMissing) {
   folder_.file("part.step", "ISO-10303-21;");
   expect_failure({"info", "part.step"}, 1,
-                 "STEP is read where OpenCASCADE is installed (libocct-data-exchange-dev) when Tessera is built");
+                 "STEP needs a Tessera that was built with OpenCASCADE (libocct-data-exchange-dev)");
 }
 
 #endif

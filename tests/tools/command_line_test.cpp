@@ -1,4 +1,4 @@
-// The command line as such: help, version, what it refuses.
+// The command line itself: help, version, errors.
 
 #include "tools/tool_test.h"
 

@@ -1,4 +1,4 @@
-// tessera convert; and the formats of meshes and pictures that are not read by every command.
+// tessera convert; and the formats of meshes and pictures that not every command reads.
 
 #include "tessera/io.h"
 #include "tools/tool_test.h"
@@ -53,7 +53,7 @@ TEST_F(ConvertTool, WhatCannotBeConverted) {
   expect_failure({"convert", teapot}, 2, "--output is required");
   expect_failure({"convert", teapot, "-o", "a.ply"}, 2, "surfaces are written as .bpt, .obj");
   expect_failure({"convert", models + "goblet.json", "-o", "a.bpt"}, 1,
-                 "tessera: a.bpt: surface 0 (goblet): its patch 0 is rational, and .bpt has no weights: .obj has");
+                 "tessera: a.bpt: surface 0 (goblet): its patch 0 is rational, but .bpt has no weights: write .obj");
   expect_failure({"convert", "missing.bpt", "-o", "a.obj"}, 1, "missing.bpt: cannot be opened");
   folder_.file("m.bpt", content_of(teapot));
   expect_failure({"convert", "m.bpt", "-o", "m.bpt"}, 2, "which would be overwritten");

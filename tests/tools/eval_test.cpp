@@ -1,4 +1,4 @@
-// tessera eval: its tables against the reference evaluators, and the tables that it refuses.
+// tessera eval: its tables against the reference evaluators, and errors of tables.
 
 #include <charconv>
 #include <cmath>
@@ -87,7 +87,7 @@ TEST_F(EvalTool, JsonAndCsvSayTheSame) {
   }
 }
 
-/// Not that of the fitted patches, which is off by the square root of their error.
+/// The normal of the function, not of the fitted patches, which is wrong by the square root of their error.
 TEST_F(EvalTool, TheNormalAtTheTopOfAHemisphereIsUpright) {
   const std::string hemisphere = TESSERA_SOURCE_DIR "/tools/models/hemisphere.json";
   folder_.file("p.csv", "surface,u,v\n0,0,0\n0,0,1.25\n0,0,4\n");

@@ -35,7 +35,7 @@ class Files : public ToolTest {
 };
 
 TEST_F(Files, PatternsStandForTheFilesThatMatchInOrder) {
-  std::filesystem::create_directory(folder_ / "m9.bpt");  // folders are not meant
+  std::filesystem::create_directory(folder_ / "m9.bpt");  // folders are skipped
   const std::vector<json> facts = lines_of(output_of({"info", "m*.bpt", "--json"}));
   ASSERT_EQ(facts.size(), 3u);
   for (std::size_t k = 0; k < 3; ++k) {
@@ -82,7 +82,7 @@ TEST_F(Files, OneOutputTakesThemTogether) {
   const Result<Mesh> mesh = read_mesh(folder_ / "a.ply");
   ASSERT_TRUE(mesh.ok());
   EXPECT_EQ(mesh->vertex_count(), 3u * 9);
-  // Surfaces are counted on, from file to file.
+  // The numbers of surfaces continue from file to file.
   const auto rows = cells_of(output_of({"eval", "m1.bpt", "m2.bpt", "--grid", "2x2"}));
   ASSERT_EQ(rows.size(), 1u + 3 * 4);
   EXPECT_EQ(rows[4][0], "0");

@@ -1,4 +1,4 @@
-// What the tool says of itself: help, man page and completions agree, as they come from one definition.
+// Texts of the tool about itself: help, man page and completions agree, as they come from one definition.
 
 #include <regex>
 #include <set>
@@ -14,12 +14,12 @@ class Help : public ToolTest {
     static const Names names{"info", "eval", "tessellate", "raycast", "convert", "check", "completion", "man"};
     return names;
   }
-  /// The long options that a text names.
+  /// The long options in a text.
   static std::set<std::string> options_in(const std::string& text) {
     static const std::regex option("--[a-z][a-z-]*");
     return {std::sregex_token_iterator(text.begin(), text.end(), option), {}};
   }
-  /// Those that a command's help lists: lines "  -o,--output FILE ...".
+  /// The long options in a command's help: lines "  -o,--output FILE ...".
   std::set<std::string> options_of(const std::string& command) const {
     static const std::regex line("\n  (-[a-z],)?(--[a-z-]+)(,--[a-z-]+)?");
     const std::string help = output_of({command, "--help"});
@@ -84,7 +84,7 @@ TEST_F(Help, TheManPageIsFormattedWithoutAWarning) {
   EXPECT_NE(page.output.find("--grid NxM"), std::string::npos);
 }
 
-/// What bash offers after these words, the last of which is being typed.
+/// Bash's completions for these words, the last of which is being typed.
 class BashCompletion : public Help {
  protected:
   Names offers(const std::vector<std::string>& words) const {

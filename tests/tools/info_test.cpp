@@ -1,4 +1,4 @@
-// tessera info: joins, parameters, memory, and the page that documents what --json says.
+// tessera info: joins, parameters, memory, and the page that documents the output of --json.
 
 #include <array>
 #include <cmath>
@@ -110,7 +110,7 @@ TEST_F(Info, ParametersAndMemory) {
   EXPECT_EQ(pot["parameters"]["u"], json({0.0, 1.0}));
 }
 
-/// Every key that an object holds, as a.b.c; elements of arrays as a[].b.
+/// Every key of an object, as a.b.c; elements of arrays as a[].b.
 void collect(const json& value, const std::string& path, std::set<std::string>& keys) {
   if (value.is_array() && !value.empty()) return collect(value[0], path + "[]", keys);
   if (!value.is_object()) return;

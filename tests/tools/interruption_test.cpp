@@ -1,4 +1,4 @@
-// Signals and limits while the tool writes: nothing half-written stays, and the exit status says what happened.
+// Signals and limits while the tool writes: no partial file remains, and the exit status says what happened.
 
 #include <sys/stat.h>
 
@@ -12,7 +12,7 @@ namespace {
 
 class Interruption : public ToolTest {
  protected:
-  /// Waits until the folder holds a temporary of at least so many bytes.
+  /// Waits until the folder holds a temporary of at least `bytes` bytes.
   bool temporary_appears(std::uintmax_t bytes) const {
     for (int k = 0; k < 20000; ++k) {
       for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
@@ -39,7 +39,7 @@ TEST_F(Interruption, WhileWritingKeepsTheFileFromAppearing) {
 }
 
 TEST_F(Interruption, WhileNothingListensASecondOneEndsTheToolAndItsTemporary) {
-  // A pipe that stays open and says nothing: the tool waits for its model.
+  // A pipe that stays open and silent: the tool waits for its model.
   const std::string model = folder_ / "silent.bpt";
   ASSERT_EQ(::mkfifo(model.c_str(), 0600), 0);
   const int pipe = ::open(model.c_str(), O_RDWR | O_CLOEXEC);

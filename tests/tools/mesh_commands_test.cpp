@@ -223,8 +223,9 @@ TEST_F(MeshTools, TolerancesAndBudgets) {
     expect_failure({"tessellate", teapot, "-o", "d.ply", "--tolerance", wrong}, 2, "--tolerance");
   expect_failure({"tessellate", teapot, "-o", "d.ply"}, 2, "--grid");
   expect_failure({"tessellate", teapot, "-o", "d.ply", "--grid", "2x2", "--tolerance", "1"}, 2, "");
-  expect_failure({"tessellate", teapot, "-o", "d.ply", "--tolerance", "1e-30"}, 1, "what float vertices of patch");
-  expect_failure({"tessellate", teapot, "-o", "d.ply", "--triangles", "3"}, 1, "are allowed");
+  expect_failure({"tessellate", teapot, "-o", "d.ply", "--tolerance", "1e-30"}, 1,
+                 "the rounding of float vertices of patch");
+  expect_failure({"tessellate", teapot, "-o", "d.ply", "--triangles", "3"}, 1, "the limits are");
 }
 
 TEST_F(MeshTools, EveryTeasetModelBecomesAMesh) {
@@ -232,7 +233,7 @@ TEST_F(MeshTools, EveryTeasetModelBecomesAMesh) {
   if (!data) GTEST_SKIP() << "TESSERA_TEST_DATA is not set";
   int models = 0;
   for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(data) / "classic_teaset")) {
-    if (entry.path().extension() == ".rib") {  // a scene: what else it holds is a warning
+    if (entry.path().extension() == ".rib") {  // a scene: warns of its other contents
       const ToolRun result = run({"tessellate", entry.path().string(), "-o", "a.ply", "--grid", "8x8", "--json"});
       EXPECT_EQ(result.status, 0) << result.errors;
       EXPECT_EQ(json::parse(result.output)["warnings"].size(), 1u);

@@ -74,7 +74,7 @@ TEST_P(Models, KeepsATolerance) {
   }
 }
 
-/// What octants turned into their places, seams and poles are apart by rounding.
+/// The distance, by rounding, of octants turned into their places, seams and poles.
 TEST_P(Models, HasNoCrackOnceWelded) {
   output_of({"tessellate", GetParam(), "-o", "a.ply", "--grid", "6x6"});
   const json uniform = json::parse(output_of({"check", "a.ply", "--json"}));
@@ -104,8 +104,8 @@ TEST_P(Models, IsDrawn) {
   EXPECT_GT(content_of(folder_ / "a.png").size(), 200u);
 }
 
-/// Rays go down onto points of the surfaces along their normals: each must hit there or before, and where it says that
-/// it hit, evaluation must find the very point, but for the error of fitted callables.
+/// Casts rays onto points of the surfaces along their normals. Each must hit there or before, and evaluation at the hit
+/// must give the same point, except for the error of fitted callables.
 TEST_P(Models, HitsLieWhereEvaluationSaysThatTheyDo) {
   const json facts = json::parse(output_of({"info", GetParam(), "--json"}));
   const double size = facts["size"], fit = facts["fit_error"]["distance"];

@@ -1,4 +1,4 @@
-// Options that every command has, and what the tool says to a command line that it does not understand.
+// Options that every command has, and the messages for a wrong command line.
 
 #include <chrono>
 #include <filesystem>

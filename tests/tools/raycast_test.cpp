@@ -50,7 +50,7 @@ TEST_F(RaycastTool, RatesOfGrids) {
   expect_failure({"raycast", teapot, "-o", "a.png", "--mode", "grid", "--shade", "steps"}, 2, "--mode exact");
 }
 
-/// A finer mesh, the same colours by another measure; a given mesh has its own.
+/// A finer mesh, the same colours by another measure; a mesh from a file has its own.
 TEST_F(RaycastTool, ErrorsOfMeshesAreShown) {
   const auto error_of = [&](const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"raycast", teapot,    "-o",    "a.png", "--size",
@@ -178,12 +178,12 @@ TEST_F(RaycastTool, EveryTeasetModelIsDrawn) {
     output_of({"raycast", entry.path().string(), "-o", std::to_string(models++) + ".png", "--size", "64x64"});
   }
   ASSERT_GE(models, 2);
-  // The same pot from two sources is the same picture.
+  // One pot from two sources gives one picture.
   EXPECT_EQ(content_of(folder_ / "0.png"), content_of(folder_ / "1.png"));
 }
 
 TEST_F(RaycastTool, AnInterruptedPictureDoesNotAppear) {
-  // `timeout` interrupts the tool long before so large a picture is done, and says so by 124.
+  // `timeout` interrupts the tool long before so large a picture is done, and reports that by 124.
   const ToolRun result = run_program(
       folder_, {"timeout", "--signal=INT", "1", TESSERA_TOOL, "raycast", teapot, "-o", "a.png", "--size", "8192x8192"});
   EXPECT_EQ(result.status, 124);

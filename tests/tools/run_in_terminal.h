@@ -21,7 +21,7 @@ namespace tessera::test {
 struct TerminalRun {
   int status = -1;
   std::string screen;  ///< all bytes that the terminal got
-  std::string output;  ///< what went past it: standard output if `errors_only`
+  std::string output;  ///< other output: standard output if `errors_only`
 };
 
 struct TerminalKind {

@@ -1,5 +1,5 @@
 #pragma once
-// Runs the command line tool as its users do, and catches what it says.
+// Runs the command line tool as its users do, and captures its output.
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -20,7 +20,7 @@ struct ToolRun {
   std::string output, errors;
 };
 
-/// A program that runs: found as the shell would find it, with its arguments, in the folder `where`. `variables`
+/// A running program: found as the shell would find it, with its arguments, in the folder `where`. `variables`
 /// ("NAME=value") come before the environment. Neither stream is a terminal, and no signal is ignored.
 class RunningProgram {
  public:

@@ -1,4 +1,4 @@
-// What the tool shows on a terminal, and keeps from pipes: pictures in characters, and the progress bar.
+// Output of the tool that only terminals see: pictures in characters, and the progress bar.
 
 #include <algorithm>
 #include <cmath>

@@ -46,7 +46,8 @@ TEST_F(Tolerances, PixelsOfACamera) {
   EXPECT_LE(four["pixels"], 4.00001);
   EXPECT_GT(half["triangles"], four["triangles"]);
   EXPECT_EQ(checked()["t_junctions"], 0);
-  // A picture of twice the size asks for what half the pixels do, but for what is out of the frame: the same.
+  // A picture of twice the size needs the tolerance of half the pixels. Parts outside the frame could differ, but do
+  // not here.
   EXPECT_EQ(made({"--pixels", "1", camera, "--size", "2560x1600"})["triangles"], half["triangles"]);
   const json parallel = made({"--pixels", "0.5", camera, "--orthographic", "7"});
   EXPECT_LE(parallel["pixels"], 0.500001);

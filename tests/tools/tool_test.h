@@ -1,5 +1,5 @@
 #pragma once
-// What the tests of the commands share: a folder to work in, and the teapot.
+// Shared by the tests of the commands: a folder to work in, and the teapot.
 
 #include <gtest/gtest.h>
 
@@ -17,14 +17,14 @@ class ToolTest : public testing::Test {
   ToolRun run(const std::vector<std::string>& arguments, const std::vector<std::string>& variables = {}) const {
     return run_tool(folder_, arguments, variables);
   }
-  /// Runs what must succeed silently on standard error; its output.
+  /// Runs a command that must succeed without errors on standard error; returns its output.
   std::string output_of(const std::vector<std::string>& arguments) const {
     const ToolRun result = run(arguments);
     EXPECT_EQ(result.status, 0) << result.errors;
     EXPECT_EQ(result.errors, "");
     return result.output;
   }
-  /// Runs what must fail with this status, say this, and print and leave nothing.
+  /// Runs a command that must fail with this status and message, and print and leave nothing.
   void expect_failure(const std::vector<std::string>& arguments, int status, const std::string& message) const {
     const Names before = folder_.names();
     const ToolRun result = run(arguments);

@@ -1,4 +1,4 @@
-// Trims are not honoured yet: whoever draws a trimmed model is told, and so is who sees the picture.
+// Trims are not honoured yet: the tool warns whoever draws a trimmed model, and the picture itself warns too.
 
 #include <png.h>
 

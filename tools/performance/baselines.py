@@ -1,5 +1,5 @@
-"""What is committed under bench/baselines: counts of instructions, by the instruction set that valgrind lends its
-machine (valgrind_avx2, valgrind_sse2), and times, by the machine that they were taken on (intel-6-167_avx512).
+"""The baselines under bench/baselines: counts of instructions, by the instruction set of valgrind's machine
+(valgrind_avx2, valgrind_sse2), and times, by the machine that they were taken on (intel-6-167_avx512).
 """
 
 import json
@@ -21,7 +21,7 @@ def times_file(machine, isa, folder=FOLDER):
 
 
 def read(path, keys=()):
-    """An object of JSON that holds what it must."""
+    """An object of JSON with all required keys."""
     try:
         text = Path(path).read_text(encoding="utf-8")
     except FileNotFoundError:
@@ -36,7 +36,7 @@ def read(path, keys=()):
 
 
 def write(path, content):
-    """Whole or not at all, a case a line, so that a change is a line of a diff."""
+    """Writes the file whole or not at all. Each case is a line of text, so that a change is a line of a diff."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_suffix(".new")

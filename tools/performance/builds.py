@@ -11,7 +11,7 @@ TARGET = "tessera_bench"
 
 
 class Build:
-    """A program that is there: `program`, what it was built from (`commit`, None of a user's own), and its name."""
+    """A built program: `program`, its source (`commit`, None for a user's own program), and its name."""
 
     def __init__(self, program, label, commit=None, dirty=False):
         self.program, self.label, self.commit, self.dirty = program, label, commit, dirty
@@ -22,7 +22,7 @@ def is_program(name):
 
 
 def default_program(preset="dev"):
-    """What `cmake --build --preset ...` made of this tree."""
+    """The program that `cmake --build --preset ...` made of this tree."""
     program = ROOT / "build" / preset / "bench" / TARGET
     if not is_program(program):
         raise Failure(f"there is no {program}: build it by 'cmake --preset {preset} && cmake --build --preset {preset} "
@@ -31,8 +31,8 @@ def default_program(preset="dev"):
 
 
 def build(name, preset="release", options=(), jobs=None, rebuild=False):
-    """The build of a commit's name, of this tree ('.'), or of a program's path, with CMake's `options` NAME=VALUE. That
-    of a commit is kept under build/perf and used again.
+    """The build for a commit's name, this tree ('.'), or a program's path, with CMake's `options` NAME=VALUE. Builds of
+    commits are kept under build/perf and used again.
     """
     if is_program(name):
         if options:
@@ -44,7 +44,7 @@ def build(name, preset="release", options=(), jobs=None, rebuild=False):
     suffix = "".join("-" + option.replace("/", "_") for option in options)
     label = ("this tree" if tree else name) + (" with " + ", ".join(options) if options else "")
     source = ROOT if tree else WORK / "commits" / commit[:12]
-    folder = source / "build" / (("perf-" if tree else "") + preset + suffix)  # as deep as others: ccache knows them
+    folder = source / "build" / (("perf-" if tree else "") + preset + suffix)  # at the depth of others, for ccache
     program = folder / "bench" / TARGET
     if tree or rebuild or not is_program(program):
         if not tree:
@@ -71,7 +71,7 @@ def compile_in(source, folder, preset, options, jobs, label):
         environment["CMAKE_CXX_COMPILER_LAUNCHER"] = "ccache"
     environment["CCACHE_BASEDIR"], environment["CCACHE_NOHASHDIR"] = str(source), "1"
     if any(option.startswith("TESSERA_PLANT_SLOWDOWN=") for option in options):
-        options = [*options, "TESSERA_INSTALL=OFF"]  # nothing that was slowed down is installed
+        options = [*options, "TESSERA_INSTALL=OFF"]  # a slowed-down build must not be installed
     folder.parent.mkdir(parents=True, exist_ok=True)
     log = folder.parent / (folder.name + ".log")
     commands = (["cmake", "--preset", preset, "-S", str(source), "-B", str(folder), *("-D" + o for o in options)],

@@ -143,7 +143,7 @@ def main(words):
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
     for add in (add_compare, add_count, add_record, add_report, add_peers):
         add(commands)
-    arguments = parser.parse_args(words)  # ends with status 2 where they are wrong
+    arguments = parser.parse_args(words)  # exits with status 2 if they are wrong
     try:
         return arguments.run(arguments)
     except Failure as failure:

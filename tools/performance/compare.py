@@ -1,8 +1,8 @@
 """compare: whether one build is slower than another, on a machine whose speed changes all the time.
 
-The two take turns in processes of their own, A B B A and then B A A B, a few cases at a time, so that what else the
-machine does falls on both. Each time is the shortest of many calls. Cases that look slower are run again, for longer;
-only what those runs say counts, so that chance has to strike twice.
+The two take turns in processes of their own, A B B A and then B A A B, a few cases at a time, so that other work of the
+machine affects both. Each time is the shortest of many calls. Cases that look slower are run again, for longer; only
+these runs count, so that a false alarm needs two coincidences.
 """
 
 import json
@@ -14,7 +14,7 @@ CASES_A_TURN = 6
 
 
 def turns(cases, most=CASES_A_TURN):
-    """The cases in groups that a process runs one after the other: neighbours on one surface, which it builds once."""
+    """The cases in groups that share a process: neighbours on one surface, which the process builds once."""
     groups = []
     for case in cases:
         surface = case.split("/")[1]
@@ -26,7 +26,7 @@ def turns(cases, most=CASES_A_TURN):
 
 
 def quads_of(base, head, cases, quads, seconds, progress, what):
-    """For each case a list of quads of times an item."""
+    """For each case a list of quads of times per item."""
     found = {case: [] for case in cases}
     for group in turns(cases):
         for quad in range(quads):
@@ -45,7 +45,7 @@ def quads_of(base, head, cases, quads, seconds, progress, what):
 
 
 def cases_of(base, head, part, filter):
-    """What both have."""
+    """The cases that both programs have."""
     mine, others = suite.names(base.program, part, filter), set(suite.names(head.program, part, filter))
     both = [name for name in mine if name in others]
     if len(both) < len(mine) or len(both) < len(others):

@@ -7,7 +7,7 @@ GOOD, REGRESSION, USAGE, FAILED, SKIPPED = 0, 1, 2, 3, 77
 
 
 class Failure(Exception):
-    """Something could not be done: what, and where possible what helps."""
+    """Something could not be done. The message says what, and what helps if that is known."""
 
     def __init__(self, message, status=FAILED):
         super().__init__(message)
@@ -19,7 +19,7 @@ def say(text):
 
 
 class Progress:
-    """How far a long piece of work is: one line that is written over on a terminal, a line a step elsewhere."""
+    """Shows the progress of long work: in one line on a terminal, in a line per step elsewhere."""
 
     def __init__(self, steps):
         self.steps, self.done, self.begun = max(1, steps), 0, time.monotonic()
@@ -49,7 +49,7 @@ class Progress:
 
 
 def table(rows, right=()):
-    """Lines of cells as one text, columns padded; those whose number stands in `right` are set to the right."""
+    """Rows of cells as one text with padded columns; the columns in `right` are aligned right."""
     widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
     lines = []
     for row in rows:
@@ -59,7 +59,7 @@ def table(rows, right=()):
 
 
 def scaled(rate):
-    """1.23 G, for a number of things a second."""
+    """"1.23 G", for a number of things per second."""
     for factor, letter in ((1e9, " G"), (1e6, " M"), (1e3, " k")):
         if rate >= factor:
             return f"{rate / factor:.3g}{letter}"

@@ -1,7 +1,7 @@
 """count: instructions of fixed work, which are the same on a busy machine as on an idle one.
 
-tessera_bench --count does each case once to warm up and once under callgrind's eye, on one thread. valgrind knows no
-AVX-512, so what runs there is watched through its twin, the same source compiled for AVX2.
+tessera_bench --count runs each case once to warm up and once under callgrind, on one thread. valgrind does not know
+AVX-512, so AVX2 code from the same source stands in for it.
 """
 
 import os
@@ -27,7 +27,7 @@ def valgrind_version():
 
 
 def read_dumps(folder):
-    """Name to instructions, from the files that callgrind wrote, one a case."""
+    """Maps names to instructions, from the files that callgrind wrote, one per case."""
     counts = {}
     for file in sorted(Path(folder).glob("counts.*")):
         text = file.read_text(encoding="utf-8", errors="replace")
@@ -70,7 +70,7 @@ def count(program, isa, filter=None):
 
 
 def facts_of(program):
-    """What counts depend on. Of the planted slow-down too, which a baseline must not have."""
+    """The facts that counts depend on, the planted slow-down included, which a baseline must not have."""
     found = suite.facts(program)
     if "compiler" not in found:
         raise Failure(f"{program} has no --facts: it is older than the counts")
@@ -78,7 +78,7 @@ def facts_of(program):
 
 
 def differences(facts, others):
-    """In words, what two builds' counts can't be compared for."""
+    """The differences, in words, that prevent a comparison of two builds' counts."""
     out = []
     for key in KEYS:
         mine, theirs = facts.get(key), others.get(key)
@@ -91,7 +91,7 @@ def differences(facts, others):
 
 
 class Comparison:
-    """Counts beside a baseline's. `threshold`: the share that a count may grow by."""
+    """Counts and a baseline's. `threshold`: the share by which a count may grow."""
 
     def __init__(self, counts, baseline, threshold, filtered=False):
         self.rows = []  # (name, before, now, ratio)
@@ -121,8 +121,8 @@ class Comparison:
 
 
 def raised_without_reason(path, threshold, root=ROOT):
-    """The cases whose baseline the last commit raised by more than `threshold`, though its message has no body. Nothing
-    where there is no history to look at.
+    """The cases whose baseline the last commit raised by more than `threshold`, though its message has no body. Empty
+    if there is no history.
     """
     try:
         name = str(Path(path).resolve().relative_to(Path(root).resolve()))
@@ -138,7 +138,7 @@ def raised_without_reason(path, threshold, root=ROOT):
 
 
 def check(isa, counts, facts, path, threshold, filtered):
-    """Prints how counts compare with the baseline: how the program ends."""
+    """Compares counts with the baseline and prints the result; returns the exit status."""
     baseline = baselines.read(path, ("counts", *KEYS))
     if baseline is None:
         print(f"{isa}: skipped: there is no baseline {path}")
@@ -162,7 +162,7 @@ def check(isa, counts, facts, path, threshold, filtered):
 
 
 def repeated(program, isa, filter, times):
-    """Counts, and the largest share by which one differs between `times` processes."""
+    """Counts, and the largest share by which a count differs between `times` processes."""
     runs = [count(program, isa, filter) for _ in range(times)]
     spread = max(max(run[name] for run in runs) / min(run[name] for run in runs) - 1 for name in runs[0])
     return runs[0], spread
@@ -183,7 +183,7 @@ def command(arguments):
     for isa in arguments.isa or ISAS:
         path = baselines.counts_file(isa, arguments.baselines)
         if arguments.check and baselines.read(path, ("counts", *KEYS)) and differences(facts, baselines.read(path)):
-            results.append(check(isa, {}, facts, path, arguments.threshold / 100, True))  # says why it is skipped
+            results.append(check(isa, {}, facts, path, arguments.threshold / 100, True))  # prints why
             continue
         counts, spread = repeated(program, isa, arguments.filter, arguments.repeat)
         if arguments.repeat > 1:

@@ -26,7 +26,7 @@ def describe():
 
 
 def title():
-    """In a few words. Processors in clouds often have no better name than their family and model."""
+    """The machine in a few words. Processors in clouds often have no better name than their family and model."""
     found = describe()
     numbers = f" (family {found['family']}, model {found['model']})" if found["family"] else ""
     return f"{found['processor']}{numbers}, {found['cores']} cores"
@@ -41,7 +41,7 @@ def slug():
 
 
 def busy():
-    """A sentence where other work is under way; else nothing."""
+    """A sentence if other work is under way, otherwise nothing."""
     try:
         load = os.getloadavg()[0]
     except OSError:

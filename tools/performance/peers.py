@@ -1,4 +1,4 @@
-"""peers: the one table of what tools/peers.sh found, with date, machine and versions."""
+"""peers: one table of the results of tools/peers.sh, with date, machine and versions."""
 
 import datetime
 
@@ -29,12 +29,12 @@ def read_lines(path):
 
 
 def ratio_text(ratio):
-    """Three digits."""
+    """A ratio with three digits."""
     return f"{ratio:.0f}" if ratio >= 100 else f"{ratio:.3g}"
 
 
 def markdown(content):
-    """A line for each peer's way: Tessera's ways beside each other."""
+    """The table as Markdown: one row for each way of a peer, with Tessera's ways side by side."""
     lines = [f"{content['date']}, {content['machine']}, one thread each, in turns:", "",
              "| task | program | its rate a second | how many times as fast Tessera is |", "| --- | --- | --- | --- |"]
     groups = {}

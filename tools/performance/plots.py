@@ -4,7 +4,8 @@ import math
 from html import escape
 
 PAPER, INK, QUIET, FAINT = "#fcfcf9", "#23272e", "#6b7078", "#e3e3dc"
-# Told apart also by the colour-blind (Okabe and Ito, Color Universal Design, 2008, darkened for text on paper).
+# Colour-blind readers can tell these apart too (Okabe and Ito, Color Universal Design, 2008, darkened for text on
+# paper).
 COLOURS = ("#0072b2", "#c2500a", "#00805c", "#b0508a", "#7a6a00", "#3f7fbf", "#8a3b12", "#555b66", "#4b2e83", "#a8324a")
 FONT = "font-family='DejaVu Sans, Verdana, sans-serif'"
 
@@ -46,7 +47,7 @@ class Canvas:
 
 
 def apart(places, gap):
-    """The places of labels, in order, moved as little as keeps them `gap` apart."""
+    """The places of labels, in order, moved as little as possible to keep them `gap` apart."""
     order = sorted(range(len(places)), key=lambda k: places[k])
     out = list(places)
     for before, k in zip(order, order[1:]):
@@ -67,7 +68,7 @@ def nice_ticks(low, high, most=8):
 
 
 def history(title, labels, lines, unit):
-    """`lines`: name to values, one a label, None where there is none; relative to the first one."""
+    """`lines` maps names to values, one per label, None if there is none; draws them relative to the first one."""
     canvas = Canvas(1100, 440)
     left, right, top, bottom = 70, 850, 60, 370
     values = [v for line in lines.values() for v in line if v is not None] + [1.0]
@@ -105,7 +106,7 @@ def history(title, labels, lines, unit):
 
 
 def spark(values):
-    """A case's history in a line of a table; None where a record lacks it."""
+    """A case's history in a row of a table; None if a record lacks it."""
     width, height = 120, 22
     known = [v for v in values if v is not None]
     low, high = min(known), max(known)
@@ -138,7 +139,7 @@ class LogAxis:
 
 
 def roofline(content):
-    """Operations a second over operations a byte written, as tessera_bench --roofline=FILE.json measures them."""
+    """Operations per second over operations per byte written, as tessera_bench --roofline=FILE.json measures them."""
     canvas = Canvas(1100, 560)
     left, right, top, bottom = 70, 1060, 70, 500
     fastest = content["isas"][-1]

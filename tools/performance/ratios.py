@@ -1,4 +1,4 @@
-"""What interleaved times say of two programs, on a machine that does other things as well."""
+"""Ratios of the interleaved times of two programs, on a machine that also does other work."""
 
 import math
 import random
@@ -8,7 +8,7 @@ RESAMPLES = 2000
 
 
 def of_quads(quads):
-    """Ratios of B's time to A's, one a quad (a1, b1, b2, a2) of times taken in the order A B B A.
+    """Ratios of B's time to A's, one per quad (a1, b1, b2, a2) of times taken in the order A B B A.
 
     The geometric mean of both pairs: a speed that drifts evenly over the quad drops out.
     """
@@ -17,7 +17,7 @@ def of_quads(quads):
 
 def median_interval(values, confidence=0.95, seed=1):
     """The median, and its percentile bootstrap interval (Efron and Tibshirani, An Introduction to the Bootstrap, 1993,
-    ch. 13). The same numbers for the same values.
+    ch. 13). Deterministic: equal values give equal numbers.
     """
     middle = statistics.median(values)
     if len(values) < 2:
@@ -29,18 +29,18 @@ def median_interval(values, confidence=0.95, seed=1):
 
 
 class Verdict:
-    """What a case's ratios say: `ratio` of times with its interval from `low` to `high`."""
+    """The result of a case: `ratio` of times with its interval from `low` to `high`."""
 
     def __init__(self, quads):
         self.quads = len(quads)
         self.ratio, self.low, self.high = median_interval(of_quads(quads))
 
     def is_suspect(self, threshold):
-        """Worth a second look: beyond half of the threshold."""
+        """Whether the case is run again: the ratio is beyond half of the threshold."""
         return self.ratio > 1 + threshold / 2
 
     def is_slower(self, threshold):
-        """Beyond the threshold, and 1 is beyond the interval."""
+        """Whether the ratio is beyond the threshold, and the interval is above 1."""
         return self.ratio > 1 + threshold and self.low > 1
 
     def is_faster(self, threshold):

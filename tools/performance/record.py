@@ -1,4 +1,4 @@
-"""record: the suite's figures of one build as JSON, with what they depend on."""
+"""record: the suite's figures of one build as JSON, with the facts that they depend on."""
 
 import datetime
 
@@ -21,7 +21,7 @@ def entry_of(case):
 
 
 def origin_of(build, said):
-    """(commit, whether the tree had more than that, its date, its first line). Of a user's own program, what is `said`."""
+    """(commit, whether the tree had changes, its date, its first line). For a user's own program: the commit `said`."""
     if build.commit is None:
         commit, dirty = commit_of(said or "HEAD"), said is None
     else:
@@ -31,13 +31,13 @@ def origin_of(build, said):
 
 
 def fastest_isa(cases):
-    """Of programs that say nothing of themselves, by the names of their cases."""
+    """The fastest instruction set in the names of the cases, for programs that do not print facts."""
     named = {name.split("/")[-2] for name in cases}
     return next((isa for isa in ("avx512", "avx2", "sse2", "neon64") if isa in named), "unknown")
 
 
 def measure(build, cases, seconds, limits, passes):
-    """The best of several passes over all cases: a busy spell hurts one of them."""
+    """The best of several passes over all cases: a busy moment affects only one of them."""
     groups = [cases[k:k + 6] for k in range(0, len(cases), 6)]
     progress = Progress(len(groups) * passes)
     best = {}

@@ -1,4 +1,4 @@
-"""report: a page of what was recorded, counted and compared, that needs no other file."""
+"""report: one page, in a single file, of the records, counts and comparisons."""
 
 import datetime
 import math
@@ -31,13 +31,13 @@ def read_records(names, folder):
         content = baselines.read(file, KEYS)
         if content is None:
             raise Failure(f"there is no record {file}")
-        if content not in records:  # a baseline may be a record that is still there
+        if content not in records:  # a baseline may repeat a record that is still there
             records.append(content)
     return sorted(records, key=lambda r: (r.get("commit_time", 0), r["date"]))
 
 
 def comparable(records):
-    """Those of the newest one's machine and instruction set; and what they are of."""
+    """The records with the machine and instruction set of the newest one; and these two."""
     kind = lambda r: (r["machine"].get("processor"), r["facts"].get("isa"))
     newest = kind(records[-1])
     return [r for r in records if kind(r) == newest], newest
@@ -48,7 +48,7 @@ def family(case):
 
 
 def mean_ratio(now, first):
-    """The geometric mean over the cases that both have, by families."""
+    """The geometric mean over the cases that both have, by family."""
     logs = {}
     for case, value in now.items():
         if case in first and value > 0 and first[case] > 0:
@@ -57,7 +57,7 @@ def mean_ratio(now, first):
 
 
 def lines_of(rows):
-    """Family to its ratios to the first row; each row is case to value."""
+    """Maps each family to its ratios to the first row; a row maps cases to values."""
     means = [mean_ratio(row, rows[0]) for row in rows]
     families = sorted({name for mean in means for name in mean})
     return {name: [mean.get(name) for mean in means] for name in families}
@@ -98,7 +98,7 @@ def counts_history(isa, folder):
         try:
             content = read_json(git("show", f"{commit}:{name}"), name)
         except Failure:
-            continue  # the commit took it away
+            continue  # the commit deleted it
         short, seconds, _ = describe(commit)
         labels.append((short, datetime.datetime.fromtimestamp(seconds, datetime.timezone.utc).strftime("%Y-%m-%d")))
         rows.append(content.get("counts", {}))
@@ -197,7 +197,7 @@ def page(records, folder, peers):
 
 
 def write_pictures(pictures, folder):
-    """The plots as PNG, where rsvg-convert is installed."""
+    """Writes the plots as PNG if rsvg-convert is installed."""
     if not shutil.which("rsvg-convert"):
         say("perf: no PNG of the plots: rsvg-convert is not installed (Debian's package librsvg2-bin)")
         return []

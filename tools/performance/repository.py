@@ -1,4 +1,4 @@
-"""Git, and where things lie in this repository."""
+"""Git, and the places of files in this repository."""
 
 import subprocess
 from pathlib import Path
@@ -10,7 +10,7 @@ WORK = ROOT / "build" / "perf"  # ignored by git: builds, records, reports
 
 
 def git(*words, cwd=ROOT):
-    """What a git command prints."""
+    """The output of a git command."""
     try:
         done = subprocess.run(["git", *words], cwd=cwd, capture_output=True, text=True, check=False)
     except FileNotFoundError:

@@ -1,4 +1,4 @@
-"""tessera_bench, run and read."""
+"""Runs tessera_bench and reads its results."""
 
 import json
 import os
@@ -13,7 +13,7 @@ SUFFIX = "/manual_time"  # Google Benchmark's, in lists of names
 
 
 class Case:
-    """One case of one run: `rate`, items a second by the shortest time of a call, and the other counters."""
+    """One case of one run: `rate`, items per second by the shortest time of a call, and the other counters."""
 
     def __init__(self, entry):
         self.name = entry["name"].removesuffix(SUFFIX) if hasattr(str, "removesuffix") else entry["name"].split(SUFFIX)[0]
@@ -34,7 +34,7 @@ def start(program, *words, environment=None):
 
 
 def names(program, part="full", filter=None):
-    """The cases of a set, in their order, that the regular expression finds."""
+    """The cases of a set that match the regular expression, in their order."""
     done = start(program, f"--set={part}", "--benchmark_list_tests=true")
     if done.returncode != 0:
         raise Failure(f"{program} --benchmark_list_tests failed: {done.stderr.strip()[-500:]}")
@@ -50,7 +50,7 @@ def names(program, part="full", filter=None):
 
 
 def exactly(cases):
-    """The filter of Google Benchmark that finds these names alone."""
+    """The filter of Google Benchmark that matches only these names."""
     return "^(" + "|".join(re.sub(r"([.+])", r"\\\1", name) for name in cases) + f")({SUFFIX})?$"
 
 
@@ -62,7 +62,7 @@ def read_json(text, origin):
 
 
 def run(program, cases, seconds, limits=False):
-    """Runs cases for about so many seconds each: a dictionary of name to Case."""
+    """Runs cases for about `seconds` each; returns a dictionary of names to Case."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "out.json"
         done = start(program, "--set=full", f"--benchmark_min_time={seconds}", f"--benchmark_filter={exactly(cases)}",
@@ -88,7 +88,7 @@ def run(program, cases, seconds, limits=False):
 
 
 def facts(program):
-    """What the figures depend on; nothing of programs that are older than the question."""
+    """The facts that the figures depend on; empty for programs that are too old to print them."""
     done = start(program, "--facts")
     if done.returncode != 0:
         return {}

@@ -5,15 +5,15 @@
 #include <cmath>
 #include <numbers>
 
-#include "ray/line/ray_segment.h"
+#include "tessera/ray_scene.h"
 
 namespace tessera::render {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
-constexpr double azimuth = -62 * degree, elevation = 14 * degree;  // of the eye, seen from the model
-constexpr double fill = 0.84;                                      // of the picture, by the box
-constexpr double lowered = 0.07;                                   // by this share of half the height: room for the sky
+constexpr double azimuth = -62 * degree, elevation = 14 * degree;  // of the eye as seen from the model
+constexpr double fill = 0.84;                                      // share of the picture that the box takes
+constexpr double lowered = 0.07;                                   // share of half the height: room for the sky
 
 struct Axes {
   Vec3 right, up, back;
@@ -43,8 +43,8 @@ Camera fit_camera(const Box3& box, int width, int height) {
   const Axes axes(back, {}, camera.up);
   const double tangent = fill * std::tan(camera.fov_degrees / 2 * degree), shorter = std::min(width, height);
   const double tangent_x = tangent * width / shorter, tangent_y = tangent * height / shorter;
-  // A corner at (x, y, z) of the camera's axes is seen if |x - cx| <= tangent_x (d - z), and so for y: the narrowest
-  // pair of such planes gives the centre and the distance d.
+  // A corner (x, y, z) in the camera's axes is visible if |x - cx| <= tangent_x (d - z), and likewise for y. The
+  // narrowest pair of such planes gives the centre and the distance d.
   double right = -INFINITY, left = -INFINITY, top = -INFINITY, bottom = -INFINITY, nearest = -INFINITY;
   for (const Vec3& corner : corners(box)) {
     const Vec3 p = corner - box.centre();
@@ -63,7 +63,7 @@ Camera fit_camera(const Box3& box, int width, int height) {
 
 Status check(const Camera& camera) {
   const auto bad = [](const char* why) { return Status(StatusCode::invalid_argument, why); };
-  // Written so that NaN fails.
+  // The comparisons fail for NaN.
   const auto in_range = [](const Vec3& v) { return is_finite(v) && max_abs(v) <= max_ray_component; };
   if (!in_range(camera.eye) || !in_range(camera.target) || !is_finite(camera.up)) {
     return bad("the eye and the target need coordinates of at most 1.844e18, as rays do, and up must be finite");

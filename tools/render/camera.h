@@ -1,5 +1,5 @@
 #pragma once
-// From pixels to rays.
+// Makes rays of pixels.
 
 #include "render/render.h"
 
@@ -8,18 +8,18 @@ namespace tessera::render {
 /// A three-quarter view from above that frames the whole box; z is up.
 Camera fit_camera(const Box3& box, int width, int height);
 
-/// Whether rays can be made from it.
+/// Checks that the camera can make rays.
 Status check(const Camera& camera);
 
-/// A checked camera and a picture.
+/// The rays of a checked camera for a picture.
 class PixelRays {
  public:
   PixelRays(const Camera& camera, int width, int height);
-  /// Through (x, y) in pixels from the picture's top left; the direction is a unit vector.
+  /// The ray through (x, y) in pixels from the picture's top left; its direction is a unit vector.
   Ray through(double x, double y) const;
 
  private:
-  Vec3 eye_, corner_, right_, down_;  // directions to the top left corner, and to one pixel further
+  Vec3 eye_, corner_, right_, down_;  // to the top left corner, and steps to the next pixel
 };
 
 }  // namespace tessera::render

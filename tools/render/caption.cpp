@@ -11,7 +11,7 @@ namespace {
 constexpr int glyph_width = 5, glyph_height = 7, advance = glyph_width + 1, margin = 1;  // dots
 constexpr int strip_height = glyph_height + 2 * margin;
 
-/// A row of dots a number, the leftmost dot in the bit 16.
+/// One number per row of dots; the leftmost dot is the bit of value 16.
 struct Glyph {
   char letter;
   std::array<unsigned char, glyph_height> rows;
@@ -49,7 +49,8 @@ bool dot(char letter, int x, int y) {
 
 int width_of(const std::string& text) { return static_cast<int>(text.size()) * advance - 1 + 2 * margin; }
 
-/// Pixels a dot: one at least, and else no more than a strip of a fortieth of the picture's height, as wide as the picture.
+/// Pixels per dot: at least one, and otherwise at most what fits a strip of a fortieth of the picture's height and the
+/// picture's width.
 int scale_of(const Image& image, int width) {
   return std::max(1, std::min(image.height / (40 * strip_height), image.width / width));
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Words in a picture.
+// Writes text into a picture.
 
 #include <string>
 #include <vector>
@@ -8,9 +8,9 @@
 
 namespace tessera::render {
 
-/// Writes the first of `texts` that fits, or else as much of the last one as does, onto a dark strip at the picture's
+/// Writes the first of `texts` that fits, or else the beginning of the last one, onto a dark strip at the picture's
 /// lower border: letters (all as capitals), digits and .,:!-()/ in a font of 5 x 7 dots, scaled with the picture.
-/// Pictures less than 9 pixels high stay as they are.
+/// Pictures less than 9 pixels high are unchanged.
 void add_caption(Image& image, const std::vector<std::string>& texts);
 
 }  // namespace tessera::render

@@ -10,7 +10,7 @@ const Vec3 glow{1.0, 0.78, 0.52};
 const Vec3 floor_albedo{0.34, 0.265, 0.21};
 const Vec3 sun{1.9, 1.58, 1.2};
 const Vec3 to_sun = normalized({-0.86, -0.52, 0.80});
-constexpr double haze_begins = 1.5, haze_length = 9;  // in sizes of the model
+constexpr double haze_begins = 1.5, haze_length = 9;  // in units of the model's size
 
 }  // namespace
 
@@ -32,7 +32,7 @@ Vec3 Environment::sky(const Vec3& direction) const {
 std::optional<double> Environment::floor(const Vec3& origin, const Vec3& direction, double farthest) const {
   if (!has_floor_ || !(direction.z < 0)) return {};
   const double t = (height_ - origin.z) / direction.z;
-  // What lies in the floor is seen before it.
+  // An object that lies in the floor hides it.
   if (!(t > 0 && t < farthest * (1 - 1e-6))) return {};
   return t;
 }

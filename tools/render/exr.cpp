@@ -1,4 +1,4 @@
-// By OpenEXR, the reference implementation (openexr.com, "Technical Introduction to OpenEXR").
+// Writes OpenEXR by the reference implementation (openexr.com, "Technical Introduction to OpenEXR").
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -9,14 +9,15 @@
 #include <cstring>
 #include <string>
 
-#include "base/guard.h"
-#include "io/output_file.h"
 #include "render/hit_image.h"
+#include "tessera/guard.h"
+#include "tessera/output_file.h"
+#include "tessera/status.h"
 
 namespace tessera::render {
 namespace {
 
-/// The file in memory: OpenEXR comes back to its begin to tell where the rows lie.
+/// The file in memory: OpenEXR returns to its begin to write where the rows are.
 class Bytes : public Imf::OStream {
  public:
   explicit Bytes(const std::string& name) : Imf::OStream(name.c_str()) {}
@@ -57,7 +58,7 @@ class Channels {
   const Imf::FrameBuffer& buffer() const { return buffer_; }
 
  private:
-  /// OpenEXR reads alone, but asks for memory that could be written.
+  /// OpenEXR only reads the memory, but takes pointers to non-const.
   template <class T>
   void add(const char* name, Imf::PixelType type, const T* first, std::size_t stride) {
     header_.channels().insert(name, Imf::Channel(type));

@@ -27,7 +27,8 @@ Vec3 uv_colour(const Hit& hit) {
   return check * Vec3{0.12 + 0.85 * hit.patch_u, 0.12 + 0.85 * hit.patch_v, 0.42};
 }
 
-/// From deep blue over green and yellow to red: each is lighter or warmer than the one before, so that it reads as an order.
+/// From deep blue over green and yellow to red: each is lighter or warmer than the one before, so that the order is
+/// visible.
 Vec3 error_colour(double share) {
   constexpr std::array<Vec3, 5> stops{
       Vec3{0.10, 0.14, 0.38}, {0.13, 0.45, 0.60}, {0.36, 0.72, 0.42}, {0.96, 0.83, 0.28}, {0.80, 0.16, 0.12}};
@@ -38,8 +39,8 @@ Vec3 error_colour(double share) {
   return (1 - t) * stops[before] + t * stops[before + 1];
 }
 
-/// Gaussian curvature: domes red, saddles blue, the grey between where the surface can be unrolled; half of the way to full
-/// colour at a bend of a sixteenth of the model's size.
+/// Gaussian curvature: domes red, saddles blue, developable surfaces grey. Half of full colour at a bend of a sixteenth
+/// of the model's size.
 Vec3 curvature_colour(const RayScene& scene, double size, const Hit& hit) {
   const Vec3 flat{0.86, 0.86, 0.84}, dome{0.78, 0.13, 0.10}, saddle{0.09, 0.25, 0.66};
   const Result<LocalGeometry> geometry = scene.local_geometry(hit);
@@ -48,7 +49,7 @@ Vec3 curvature_colour(const RayScene& scene, double size, const Hit& hit) {
   return (1 - share) * flat + share * (geometry->gaussian > 0 ? dome : saddle);
 }
 
-/// What a ray has cost, hit or not: by the colours of errors, each for four times as much as the one before.
+/// The cost of a ray, hit or not, in the colours of errors; each colour stands for four times the one before.
 Vec3 cost_colour(const Hit& hit) {
   return error_colour(std::min(1.0, std::log(std::max<double>(hit.steps, 1)) / std::log(max_steps_shown)));
 }
@@ -64,7 +65,7 @@ Vec3 colour(const Hit& hit, const Vec3& direction, const View& view) {
   if (view.settings.shade == Shade::steps && hit.steps > 0) return cost_colour(hit);
   if (hit.kind != HitKind::hit) return background;
   if (view.settings.shade == Shade::normals) return 0.5 * (hit.normal + Vec3{1, 1, 1});
-  // Darker where the surface turns away: the shape stays readable.
+  // Darker where the surface turns away, so that its shape is visible.
   const double facing = 0.62 + 0.38 * std::abs(dot(hit.normal, direction));
   return facing * surface_colour(hit, view);
 }

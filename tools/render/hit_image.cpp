@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <string>
 
-#include "base/guard.h"
 #include "render/camera.h"
 #include "render/tile.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::render {
 namespace {

@@ -1,5 +1,5 @@
 #pragma once
-// Pictures of numbers: what the ray through the middle of each pixel meets.
+// Pictures of numbers: what the ray through the middle of each pixel hits.
 
 #include <array>
 #include <cstdint>
@@ -11,27 +11,28 @@
 
 namespace tessera::render {
 
-/// One value a pixel, rows from the top. Where the ray meets nothing: an infinite depth, zeros, and `nothing`.
+/// One value per pixel, rows from the top. For a miss: an infinite depth, zeros, and `nothing`.
 struct HitImage {
   static constexpr std::uint32_t nothing = ~std::uint32_t{0};
 
   int width = 0, height = 0;
   std::vector<float> depths;                     ///< distance from the eye
   std::vector<std::array<float, 3>> normals;     ///< unit, along r_u x r_v; zero where undefined
-  std::vector<std::array<float, 2>> parameters;  ///< (u,v) of the surface, its own
+  std::vector<std::array<float, 2>> parameters;  ///< (u,v) in the surface's own parameters
   std::vector<std::uint32_t> surfaces, patches;  ///< counted from 0
 };
 
-/// Of the settings, size and camera count. `model`: what the scene was made of. The same bytes for any number of threads.
-/// Memory: 40 bytes a pixel. Errors: those of render, and invalid_argument (the scene has more surfaces than the model).
+/// Casts a ray per pixel. Uses only size and camera of the settings. `model` is the one that the scene was made of. The
+/// result is the same for any number of threads, byte for byte. Memory: 40 bytes per pixel. Errors: those of render,
+/// and invalid_argument (the scene has more surfaces than the model).
 Result<HitImage> cast_hits(const RayScene& scene, const Box3& box, const Model& model, const Settings& settings,
                            const Execution& execution = {});
 
-/// OpenEXR, lossless (ZIP): 32-bit floats Z (depth), N.X N.Y N.Z, UV.U UV.V, and 32-bit integers surface and patch.
-/// Into an open file; what is left to do is to commit it. Memory: the compressed file. Errors: invalid_argument (lengths
-/// that don't fit the size), out_of_memory, internal (OpenEXR).
+/// Writes OpenEXR, lossless (ZIP): 32-bit floats Z (depth), N.X N.Y N.Z, UV.U UV.V, and 32-bit integers surface and
+/// patch. The file is open; the caller commits it. Memory: the compressed file. Errors: invalid_argument (lengths that
+/// don't fit the size), out_of_memory, internal (OpenEXR).
 Status write_exr(const HitImage& image, OutputFile& out);
-/// The file appears whole or not at all. Errors: as above, io_error.
+/// Writes a file, which appears whole or not at all. Errors: as above, io_error.
 Status write_exr(const HitImage& image, const std::filesystem::path& path);
 
 }  // namespace tessera::render

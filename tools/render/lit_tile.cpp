@@ -12,8 +12,8 @@ namespace tessera::render {
 namespace {
 
 const Vec3 porcelain{0.76, 0.78, 0.78};
-const Vec3 shaded_neighbour{0.34, 0.31, 0.28};  // stands for light that comes from the model itself
-constexpr double facet_distance = 1.5e-3;       // of the size: how far above the surface secondary rays begin
+const Vec3 shaded_neighbour{0.34, 0.31, 0.28};  // stands for light from the model itself
+constexpr double facet_distance = 1.5e-3;       // of the size: the height above the surface where secondary rays begin
 constexpr double glaze_at_right_angle = 0.05;   // reflectance of a glaze of refractive index 1.6
 constexpr double highlight_roughness = 0.12;
 
@@ -23,7 +23,7 @@ class LitTile {
   Status shade();
 
  private:
-  /// What a ray meets: a point of model or floor, or nothing.
+  /// Finds what a ray meets, a point of model or floor; false if nothing.
   bool meet(std::size_t sample, const Ray& ray, const Hit& hit, Point& point) const;
   Ray leave(const Point& point, const Vec3& direction) const;
   Point2 random(const Point& point, Purpose purpose) const;
@@ -88,7 +88,7 @@ Status LitTile::occluded() {
   return view_.scene.occluded(work_.secondary_rays, work_.occluded, Execution{.cancel = view_.cancel, .progress = {}});
 }
 
-/// Adds diffuse light and highlight of the sun, each with a ray to one place on its disc.
+/// Adds diffuse light and highlight of the sun, each by a ray to one place on its disc.
 Status LitTile::sunlight(const std::vector<Point>& points, Purpose purpose, std::vector<Vec3>& light) {
   work_.secondary_rays.clear();
   for (const Point& point : points) {
@@ -108,7 +108,7 @@ Status LitTile::sunlight(const std::vector<Point>& points, Purpose purpose, std:
   return {};
 }
 
-/// Adds diffuse light of everything else, from one direction a sample.
+/// Adds diffuse light from all else, by one direction per sample.
 Status LitTile::ambient(const std::vector<Point>& points, std::vector<Vec3>& light) {
   work_.secondary_rays.clear();
   for (const Point& point : points) {
@@ -122,7 +122,7 @@ Status LitTile::ambient(const std::vector<Point>& points, std::vector<Vec3>& lig
   return {};
 }
 
-/// The mirrored rays of the points on the model, and what they meet.
+/// Traces the mirrored rays of the points on the model.
 Status LitTile::trace_mirrors(const std::vector<Point>& points) {
   work_.secondary_rays.clear();
   work_.mirrors.clear();
@@ -151,7 +151,8 @@ Status LitTile::trace_mirrors(const std::vector<Point>& points) {
   return status;
 }
 
-/// Mirrors the surroundings in the glaze; what is mirrored is lit by the sun and by half of what lies around it.
+/// Adds the reflection of the surroundings in the glaze. Reflected points are lit by the sun and by half of their
+/// surroundings.
 Status LitTile::reflections(const std::vector<Point>& points, std::vector<Vec3>& light) {
   if (Status status = trace_mirrors(points); !status.ok()) return status;
   const std::vector<Point>& met = work_.mirrored_points;

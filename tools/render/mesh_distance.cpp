@@ -30,7 +30,7 @@ double squared_distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) 
   return dot(away, away);
 }
 
-/// From the plane where the foot lies inside, else from the edges.
+/// The distance from the plane if the foot lies inside the triangle, otherwise from the edges.
 double squared_distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = cross(b - a, c - a);
   const double size2 = dot(normal, normal);
@@ -96,7 +96,7 @@ void MeshDistance::build(std::size_t begin, std::size_t end) {
 }
 
 double MeshDistance::distance(const Vec3& point, double within) const {
-  std::array<std::uint32_t, 64> waiting;  // halves of 2^32 triangles are no deeper than 32
+  std::array<std::uint32_t, 64> waiting;  // enough: repeated halving of 2^32 triangles is at most 32 deep
   std::size_t count = 0;
   waiting[count++] = 0;
   double least = within * within;

@@ -1,5 +1,5 @@
 #pragma once
-// How far points lie from a mesh.
+// The distance of points from a mesh.
 
 #include <cstdint>
 #include <vector>
@@ -11,17 +11,20 @@ namespace tessera::render {
 /// A tree of boxes over the triangles of a mesh. Immutable. Threads: any number of const calls.
 class MeshDistance {
  public:
-  /// Copies what it needs. Errors: invalid_argument (no triangle, an index out of range), non_finite (a vertex).
+  /// Copies the parts of the mesh that it needs. Errors: invalid_argument (no triangle, an index out of range),
+  /// non_finite (a vertex).
   static Result<MeshDistance> make(const Mesh& mesh);
 
-  /// From a point in the model's coordinates to the nearest point of the mesh; `within` where none is that near.
+  /// The distance from a point in the model's coordinates to the nearest point of the mesh, or `within` if none is that
+  /// near.
   double distance(const Vec3& point, double within) const;
 
  private:
   struct Triangle {
     Vec3 a, b, c;
   };
-  /// A leaf holds triangles [first, first + count); an inner node has count 0, one child behind it and the other at `first`.
+  /// A leaf holds triangles [first, first + count). An inner node has count 0; one child is next to it, the other at
+  /// `first`.
   struct Node {
     Box3 box;
     std::uint32_t first = 0, count = 0;

@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "base/guard.h"
-#include "io/output_file.h"
 #include "render/render.h"
+#include "tessera/guard.h"
+#include "tessera/output_file.h"
+#include "tessera/status.h"
 
 namespace tessera::render {
 namespace {
@@ -29,7 +30,7 @@ extern "C" void keep_error(png_structp png, png_const_charp sentence) {
 
 extern "C" void drop_warning(png_structp, png_const_charp) {}
 
-/// libpng's state of a picture that is being written.
+/// libpng's state while it writes a picture.
 struct Encoder {
   explicit Encoder(OutputFile& out)
       : png(png_create_write_struct(PNG_LIBPNG_VER_STRING, &message, keep_error, drop_warning)) {
@@ -46,7 +47,7 @@ struct Encoder {
   png_infop info = nullptr;
 };
 
-/// libpng reads keyword and text only, but takes them as pointers to what it may change.
+/// libpng only reads keyword and text, but takes pointers to non-const.
 std::vector<png_text> as_png(const PngTexts& texts) {
   std::vector<png_text> chunks(texts.size());
   for (std::size_t k = 0; k < texts.size(); ++k) {
@@ -58,7 +59,7 @@ std::vector<png_text> as_png(const PngTexts& texts) {
   return chunks;
 }
 
-/// False if libpng has failed. It comes back here by longjmp: nothing in this function may need a destructor.
+/// Returns false if libpng fails: it returns here by longjmp, so nothing in this function may need a destructor.
 bool encode(Encoder& encoder, const Image& image, const std::vector<png_text>& texts, const OutputFile& out) {
   const png_structp png = encoder.png;
   if (setjmp(png_jmpbuf(png)) != 0) return false;

@@ -1,6 +1,6 @@
 #pragma once
-// Random numbers without state: functions of the pixel, the sample and what they are for, so that a picture
-// doesn't depend on the order in which it is made.
+// Random numbers without state: functions of the pixel, the sample and the purpose, so that a picture does not depend
+// on the order in which it is made.
 
 #include <cmath>
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace tessera::render {
 
-/// What a random number is for.
+/// The use of a random number.
 enum class Purpose : std::uint32_t { pixel, sun, ambient, bounce_sun };
 
 struct Point2 {
@@ -30,7 +30,7 @@ inline std::uint64_t scramble(std::uint64_t x) {
 inline Point2 stratified(std::uint32_t pixel, int index, int side, Purpose purpose) {
   const std::uint64_t key = scramble((std::uint64_t{pixel} << 8) | static_cast<std::uint64_t>(purpose));
   const auto count = static_cast<std::uint64_t>(side * side);
-  // The order is a rotation: enough to tear the pairing of pixel, sun and ambient samples.
+  // A rotated order is enough to break the correlation of pixel, sun and ambient samples.
   const std::uint64_t cell = purpose == Purpose::pixel ? static_cast<std::uint64_t>(index)
                                                        : (static_cast<std::uint64_t>(index) + key % count) % count;
   const std::uint64_t bits = scramble(key ^ (static_cast<std::uint64_t>(index) * 0x2545f4914f6cdd1du));

@@ -28,8 +28,8 @@ double tone(double x) {
 /// IEC 61966-2-1.
 double to_srgb(double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055; }
 
-/// The mean of a pixel's samples. Bright samples are mapped before they are averaged, or edges in front of the
-/// sky would keep their steps.
+/// The mean of a pixel's samples. Maps bright samples before averaging: otherwise edges in front of the sky would show
+/// steps.
 Vec3 average(const Vec3* colours, int count, bool lit) {
   Vec3 sum;
   for (int k = 0; k < count; ++k) {
@@ -63,7 +63,7 @@ Status draw(const View& view, const Tile& tile, Workspace& work, Image& image) {
   return {};
 }
 
-/// Draws all tiles, on all threads of the caller's arena; the first failure ends it.
+/// Draws all tiles on all threads of the caller's arena; stops at the first failure.
 class Drawing {
  public:
   Drawing(const View& view, const Execution& execution, Image& image)
@@ -85,7 +85,7 @@ class Drawing {
     Tile tile{index % columns_ * tile_side, index / columns_ * tile_side, 0, 0};
     tile.width = std::min(tile_side, image_.width - tile.x);
     tile.height = std::min(tile_side, image_.height - tile.y);
-    // Isolated: while this thread waits for rays, it must not begin another tile in the same workspace.
+    // Isolated: a thread that waits for rays must not begin another tile in the same workspace.
     Status status = tbb::this_task_arena::isolate([&] { return draw(view_, tile, workspaces_.local(), image_); });
     const std::lock_guard lock(mutex_);
     if (!status.ok()) {

@@ -1,5 +1,5 @@
 #pragma once
-// A rectangle of pixels: what it is traced with, and the two ways to colour it.
+// A rectangle of pixels: the memory to trace it with, and two ways to colour it.
 
 #include <atomic>
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace tessera::render {
 
-/// The whole picture's.
+/// Data that all tiles of a picture share.
 struct View {
   const RayScene& scene;
   const Environment& environment;
@@ -26,7 +26,7 @@ struct Tile {
   int x = 0, y = 0, width = 0, height = 0;
 };
 
-/// One camera ray; several make a pixel.
+/// One camera ray; a pixel has several.
 struct Sample {
   std::uint32_t pixel = 0;  ///< y * picture width + x
   int index = 0;            ///< 0 .. samples * samples - 1
@@ -37,16 +37,16 @@ struct Point {
   std::size_t sample = 0;  ///< in the tile
   Vec3 position;
   Vec3 normal;     ///< towards the viewer
-  Vec3 direction;  ///< of the ray that came here
+  Vec3 direction;  ///< of the ray that arrived here
   bool on_model = false;
 };
 
-/// What one tile needs, kept from tile to tile. Nothing in it carries over but memory.
+/// The memory of one tile, used again for the next. No values carry over.
 struct Workspace {
   std::vector<Sample> samples;  ///< pixel by pixel, row by row
-  std::vector<Ray> rays;        ///< one a sample
-  std::vector<Hit> hits;        ///< and what it meets
-  std::vector<Vec3> colours;    ///< of each sample: linear radiances for lit tiles, as on the screen for flat ones
+  std::vector<Ray> rays;        ///< one per sample
+  std::vector<Hit> hits;        ///< and their hits
+  std::vector<Vec3> colours;    ///< one per sample: linear radiances for lit tiles, screen values for flat ones
 
   std::vector<Point> points, mirrored_points;
   std::vector<Vec3> light, mirrored, mirrored_light;
@@ -56,13 +56,13 @@ struct Workspace {
   std::vector<std::uint8_t> occluded;
 };
 
-/// Whether a picture of the box can be drawn.
+/// Checks that a picture of the box can be drawn.
 Status check(const Settings& settings, const Box3& box);
 
 /// Fills samples, rays and hits.
 Status trace(const View& view, const Tile& tile, Workspace& work);
 
-/// Fill colours from them.
+/// Fill colours from samples, rays and hits.
 Status shade_lit(const View& view, Workspace& work);
 void shade_flat(const View& view, Workspace& work);
 

@@ -5,13 +5,13 @@
 #include <filesystem>
 #include <system_error>
 
-#include "io/text_cursor.h"
 #include "suggestions.h"
+#include "tessera/text_cursor.h"
 
 namespace tessera::cli {
 namespace {
 
-/// The integer at the front of `text`, which is taken off; false if there is none in range.
+/// Removes the integer at the front of `text`; false if there is none in range.
 bool take_integer(std::string_view& text, int least, int most, int& value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || value < least || value > most) return false;

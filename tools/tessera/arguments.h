@@ -1,6 +1,5 @@
 #pragma once
-// Values of options that consist of several numbers. What is wrong throws CLI::ValidationError: the command line is
-// bad.
+// Values of options that consist of several numbers. Faults throw CLI::ValidationError: the command line is wrong.
 
 #include <CLI/CLI.hpp>
 #include <string>
@@ -12,26 +11,26 @@ struct Extent {
   int first = 0, second = 0;
 };
 
-/// "NxM", both from `least` to `most`. `option` is named in the message.
+/// Parses "NxM", both from `least` to `most`. The message names `option`.
 Extent parse_extent(const std::string& option, const std::string& text, int least, int most);
 
-/// `count` finite numbers parted by commas; `form` is shown in the message.
+/// Parses `count` finite numbers separated by commas. The message shows `form`.
 std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count,
                                   const std::string& form);
 
-/// A check of CLI11: file names are not empty.
+/// A check for CLI11: a file name must not be empty.
 std::string fault_of_name(const std::string& name);
 
-/// A check of CLI11: one of these words; its name "{a,b}" stands in help and completions.
+/// A check for CLI11: one of these words. Its name "{a,b}" appears in help and completions.
 CLI::Validator one_of(const std::vector<std::string>& words);
-/// A check of CLI11: a whole number from `least` to `most`.
+/// A check for CLI11: a whole number from `least` to `most`.
 CLI::Validator whole_number(int least, int most);
 
-/// -o of a command that writes text, standard output if it is not given.
+/// Adds -o for a command that writes text; the default is standard output.
 void add_text_output(CLI::App& command, std::string& output);
 
-/// Throws if `output` is one of `inputs`, under whatever name: it would be overwritten. Empty names stand for no file;
-/// pipes and terminals may be both.
+/// Throws if `output` is one of `inputs`, under any name: it would be overwritten. Empty names stand for no file; a
+/// pipe or a terminal may be both.
 void refuse_overwriting(const std::string& option, const std::string& output, const std::vector<std::string>& inputs);
 
 }  // namespace tessera::cli

@@ -8,7 +8,8 @@
 namespace tessera::cli {
 namespace {
 
-/// Gives points within the tolerance of each other the same number, the first one's: a hash of cells of that size.
+/// Numbers points; points within the tolerance of each other share the number of the first one. A hash of cells of that
+/// size.
 class Places {
  public:
   Places(const Vec3& origin, double tolerance) : origin_(origin), tolerance_(tolerance) {}
@@ -84,10 +85,10 @@ Candidate candidate(const BezierPatch& patch, const Border& border) {
   return out;
 }
 
-/// Splits borders with the same ends by their middles.
+/// Splits groups of borders with the same ends by the middles of the borders.
 void split(const std::vector<Candidate>& all, std::vector<std::vector<Border>>& groups) {
   constexpr double near = 0.05;                                 // of the length
-  std::vector<std::pair<const Candidate*, std::size_t>> heads;  // of the groups made here
+  std::vector<std::pair<const Candidate*, std::size_t>> heads;  // the first border of each new group, and the group
   for (const Candidate& one : all) {
     const auto head = std::find_if(heads.begin(), heads.end(), [&](const auto& of) {
       return length(of.first->middle - one.middle) <= near * std::max(of.first->length, one.length);

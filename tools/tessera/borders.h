@@ -14,10 +14,9 @@ struct Border {
   Edge edge = Edge::u0;
 };
 
-/// All borders that are not collapsed, in groups of those with the same ends (within `tolerance`, a length of 1e-9 of the
-/// model's size at the least) and about
-/// the same middle (within a twentieth of their length), in the order of their first members. O(borders) where few share
-/// their ends.
+/// Groups all borders that are not collapsed, in the order of the groups' first members. Borders of a group have the
+/// same ends (within `tolerance`, at least 1e-9 of the model's size) and about the same middle (within a twentieth of
+/// their length). O(borders) if few share their ends.
 std::vector<std::vector<Border>> group_borders(const PatchSet& set, double tolerance);
 
 }  // namespace tessera::cli

@@ -1,4 +1,4 @@
-// tessera convert: surfaces to Bezier patches in another format.
+// tessera convert: converts surfaces to Bezier patches in another format.
 
 #include <CLI/CLI.hpp>
 #include <memory>
@@ -6,8 +6,8 @@
 #include "arguments.h"
 #include "commands.h"
 #include "console.h"
-#include "io/formats.h"
 #include "loading.h"
+#include "tessera/io.h"
 
 namespace tessera::cli {
 namespace {

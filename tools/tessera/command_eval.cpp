@@ -22,8 +22,8 @@ struct Options {
   int derivatives = 0;
 };
 
-/// A vector of a row: its name in JSON, the begin of its columns' names in CSV, and the derivatives at which it is
-/// asked for.
+/// A vector of a row: its name in JSON, the begin of its columns' names in CSV, and the number of derivatives from
+/// which on it is written.
 struct Column {
   std::string_view name, prefix;
   Vec3 SurfaceJet::*vector;
@@ -70,7 +70,7 @@ class RowWriter {
     out_.write(json_ ? "}" : "\n");
   }
 
-  /// `more`: what the JSON object says beside the rows.
+  /// `more`: members of the JSON object besides the rows.
   void end(const Json& more) {
     if (!json_) return;
     out_.write("\n]");
@@ -110,7 +110,7 @@ class RowWriter {
   int derivatives_;
 };
 
-/// The places in question, by number, so that a large grid takes no memory.
+/// The places to evaluate, computed by number, so that a large grid takes no memory.
 struct Places {
   std::size_t count = 0;
   std::function<SurfacePlace(std::size_t)> at;
@@ -142,8 +142,8 @@ class Evaluator {
     return jet;
   }
 
-  /// From the jet where tangents span a plane, else the limit: of a function at a collapsed border by r_uv, otherwise on
-  /// the surface's patches.
+  /// The normal of the jet where tangents span a plane. Otherwise the limit: by r_uv for a function at a collapsed
+  /// border, and on the surface's patches for all else.
   Result<UnitNormal> normal(const SurfacePlace& place, const SurfaceJet& jet) {
     constexpr double min_sine = 1e-10;
     if (length(cross(normalized(jet.du), normalized(jet.dv))) > min_sine) {
@@ -167,8 +167,8 @@ class Evaluator {
   }
 
  private:
-  /// Near a border u = u0 where r_v vanishes, r_v is (u - u0) r_uv, so that r_u x r_uv is the normal's direction; turned
-  /// at u1, for there u - u1 < 0. The same with u and v exchanged.
+  /// Near a border u = u0 where r_v vanishes, r_v is (u - u0) r_uv, so that r_u x r_uv is the normal's direction; it is
+  /// negated at u1, where u - u1 < 0. The same holds with u and v exchanged.
   static UnitNormal limit_at_border(const Domain& d, const SurfacePlace& place, const SurfaceJet& jet) {
     constexpr double vanishing = 1e-10, min_sine = 1e-6;
     const auto side = [](double t, double from, double to) { return t == from ? 1.0 : t == to ? -1.0 : 0.0; };
@@ -186,7 +186,7 @@ class Evaluator {
   std::uint32_t converted_ = 0;
 };
 
-/// A row for each place.
+/// Writes a row for each place.
 Status write_rows(const Loaded& loaded, const Places& places, const Options& options, RowWriter& rows,
                   const OutputFile& out) {
   Evaluator evaluator(loaded.model, options.models.fit);
@@ -264,7 +264,7 @@ constexpr const char* footer =
     "  tessera eval teapot.bpt --grid 5x5 -o points.csv\n"
     "  tessera eval teapot.bpt --params places.csv --derivs 2 --format json";
 
-/// --grid or --params.
+/// Adds --grid and --params.
 void add_places(CLI::App& command, Options& options) {
   CLI::Option_group* const where = command.add_option_group("Where", "One of these options");
   where->require_option(1);

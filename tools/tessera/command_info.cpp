@@ -1,4 +1,4 @@
-// tessera info: what models hold.
+// tessera info: reports what models hold.
 
 #include <memory>
 #include <sstream>
@@ -24,7 +24,7 @@ struct Findings {
   const Loaded& loaded;
   const PatchSet& set;
   Facts facts;
-  std::optional<Joins> joins;  ///< nothing where they are left out
+  std::optional<Joins> joins;  ///< empty if they are left out
   Isa isa;
 };
 

@@ -1,4 +1,4 @@
-// tessera raycast: pictures of surfaces, or the hits of given rays.
+// tessera raycast: pictures of surfaces, or the hits of rays from a file.
 
 #include <map>
 #include <memory>
@@ -9,7 +9,6 @@
 #include "commands.h"
 #include "csv.h"
 #include "hits_table.h"
-#include "io/formats.h"
 #include "loading.h"
 #include "mesh_error.h"
 #include "progress.h"
@@ -18,6 +17,7 @@
 #include "render/caption.h"
 #include "render/hit_image.h"
 #include "terminal_picture.h"
+#include "tessera/io.h"
 #include "tessera/ray_scene.h"
 
 namespace tessera::cli {
@@ -27,10 +27,10 @@ struct Options {
   ModelOptions models;
   std::string picture, rays, hits, colour = "auto";
   bool terminal = false;
-  bool sized = false;  // --size was given
+  bool sized = false;  // whether --size is on the command line
   bool all_hits = false;
   RayMode mode = RayMode::exact;
-  int rate = 0;  // of grid mode; 0: by the number of patches
+  int rate = 0;  // of grid mode; 0: chosen by the number of patches
   render::Settings settings;
   MeshErrorOptions error;
 };
@@ -40,7 +40,7 @@ struct Scene {
   Loaded loaded;
   PatchSet set;
   RayScene rays;
-  std::optional<MeshError> error;  ///< the error that is shaded, if it is
+  std::optional<MeshError> error;  ///< the error to shade, if any
 
   render::Settings settings(const Options& options) const {
     render::Settings own = options.settings;
@@ -57,7 +57,8 @@ struct Scene {
   }
 };
 
-/// Finer grids for smaller models: facets then are near the pixels' size, and a large model's scene still fits memory.
+/// Smaller models get finer grids: their facets then have about the size of pixels, and the scene of a large model
+/// still fits into memory.
 int scene_rate(std::size_t patches) {
   constexpr std::size_t segments = std::size_t{1} << 20;
   int rate = 64;
@@ -88,7 +89,7 @@ Result<render::Image> draw(const Scene& scene, const render::Settings& settings,
 
 bool is_exr(const std::string& path) { return lower_extension(path) == ".exr"; }
 
-/// The picture, with a caption where the model is trimmed or an error is shown.
+/// Writes the picture, with a caption if the model is trimmed or an error is shown.
 Status write_colours(const Job& job, const render::Settings& settings, const Scene& scene, OutputFile& out,
                      Timings& timings) {
   Result<render::Image> image = draw(scene, settings, timings);
@@ -155,7 +156,7 @@ Status draw_characters(const Options& options, const Scene& scene, OutputFile& o
   return out.commit();
 }
 
-/// The hits of given rays: the closest ones, a list of one or none a ray, or all.
+/// Casts rays. The result is lists of hits: one or none per ray for closest hits, or all.
 Result<HitLists> cast(const Scene& scene, std::span<const Ray> rays, bool all, Timings& timings) {
   const auto phase = timings.phase("evaluate");
   Progress progress("casting rays");
@@ -255,7 +256,7 @@ const std::map<std::string, render::Shade> shades{
     {"patch", render::Shade::patch},     {"error", render::Shade::error},     {"curvature", render::Shade::curvature},
     {"steps", render::Shade::steps}};
 
-/// The options that make sense with a picture alone.
+/// The options that make sense only with a picture.
 std::vector<CLI::Option*> add_picture_options(CLI::App& command, Options& options) {
   const auto set_size = [&options](const std::string& text) {
     const Extent size = parse_extent("--size", text, 1, 16384);
@@ -265,7 +266,7 @@ std::vector<CLI::Option*> add_picture_options(CLI::App& command, Options& option
   };
   const auto set_shade = [&options](const std::string& text) {
     options.settings.shade = shades.at(text);
-    if (options.settings.shade == render::Shade::error) options.settings.samples = 2;  // distances take their time
+    if (options.settings.shade == render::Shade::error) options.settings.samples = 2;  // distances are slow
   };
   const auto set_camera = [&options](const std::string& text) { options.settings.camera = parse_camera(text); };
   return {command
@@ -287,7 +288,7 @@ std::vector<CLI::Option*> add_picture_options(CLI::App& command, Options& option
               ->capture_default_str()};
 }
 
-/// --rays and --hits, which belong together and exclude pictures.
+/// Adds --rays and --hits, which belong together and exclude pictures.
 void add_ray_options(CLI::App& command, Options& options, const std::vector<CLI::Option*>& of_pictures) {
   CLI::Option* const rays = command.add_option("--rays", options.rays, "The table of rays to read");
   rays->check(fault_of_name)->type_name("FILE.csv");

@@ -1,4 +1,4 @@
-// tessera tessellate: surfaces to a mesh.
+// tessera tessellate: makes a mesh of surfaces.
 
 #include <algorithm>
 #include <functional>
@@ -9,9 +9,9 @@
 
 #include "arguments.h"
 #include "commands.h"
-#include "io/formats.h"
 #include "loading.h"
 #include "progress.h"
+#include "tessera/io.h"
 #include "tessera/tessellation.h"
 
 namespace tessera::cli {
@@ -21,14 +21,14 @@ struct Options {
   ModelOptions models;
   std::string output;
   std::optional<Extent> grid;
-  CertifiedOptions certified;  ///< if there is no grid
+  CertifiedOptions certified;  ///< used if there is no grid
   bool quads = false;
-  bool weld_rounding = false;  ///< a weld that is a share of the size
-  double pixels = 0;           ///< above 0 if they are asked for
+  bool weld_rounding = false;  ///< whether the weld is a share of the size
+  double pixels = 0;           ///< above 0 if requested
   View view;
 };
 
-/// Files of six or seven digits, and surfaces that programs have turned into their places, differ by about this.
+/// Numbers of six or seven digits in files, and surfaces that programs have rotated into place, differ by about this.
 constexpr double rounding_share = 1e-6;
 constexpr double degree = std::numbers::pi / 180;
 constexpr int max_segments = 4096;
@@ -40,8 +40,8 @@ struct Tessellated {
   double angle = 0;  ///< degrees
   std::size_t patches_without_angle = 0;
   double pixels = 0;
-  double bound = 0;     ///< how far mesh and surfaces lie apart at most; 0: not known
-  bool proven = false;  ///< only sampled where callables are fitted without bounds on their derivatives
+  double bound = 0;     ///< largest distance of mesh and surfaces; 0: unknown
+  bool proven = false;  ///< false if sampled: callables fitted without bounds on their derivatives
 };
 
 /// Runs a plan of either kind.
@@ -176,7 +176,7 @@ constexpr const char* footer =
     "  tessera tessellate teapot.bpt -o teapot.ply --pixels 0.5 --camera=4,-8,5,0,0,1.5,40\n"
     "  tessera tessellate 'parts/*.json' -o 'meshes/{name}.obj' --grid 8x8";
 
-/// An option whose value is one number above 0.
+/// Adds an option whose value is one number above 0.
 CLI::Option* add_number(CLI::App& command, const char* name, const char* type, const char* help,
                         const std::function<void(double)>& set) {
   const auto parse = [name, set](const std::string& text) {
@@ -187,7 +187,7 @@ CLI::Option* add_number(CLI::App& command, const char* name, const char* type, c
   return command.add_option_function<std::string>(name, parse, help)->type_name(type);
 }
 
-/// How fine the mesh is: one of these options must be given.
+/// Adds the options for how fine the mesh is; the user must choose one.
 void add_density(CLI::App& command, Options& options) {
   CLI::App& group = *command.add_option_group("Density");
   CertifiedOptions& certified = options.certified;
@@ -231,7 +231,7 @@ void add_density(CLI::App& command, Options& options) {
   group.require_option(1, 0);
 }
 
-/// The camera of --pixels.
+/// Adds the camera of --pixels.
 void add_view(CLI::App& command, Options& options) {
   View& view = options.view;
   CLI::Option* const pixels = command.get_option("--pixels");
@@ -275,7 +275,7 @@ void add_view(CLI::App& command, Options& options) {
       ->needs(camera);
 }
 
-/// A budget that is not aimed at, only not exceeded.
+/// Adds a budget: a limit of the triangles, not a target.
 void add_cap(CLI::App& command, Options& options) {
   command
       .add_option_function<std::uint64_t>(
@@ -305,7 +305,7 @@ void add_weld(CLI::App& command, Options& options) {
       ->type_name("LENGTH");
 }
 
-/// Options for the normals and vertices that neighbours share.
+/// Adds options for the normals and vertices that neighbours share.
 void add_sharing(CLI::App& command, Options& options) {
   CLI::Option* const grid = command.get_option("--grid");
   const auto set_crease = [&options](const std::string& text) {
@@ -342,10 +342,10 @@ void add_precision(CLI::App& command, Options& options) {
       ->excludes(command.get_option("--grid"));
 }
 
-/// The formats without faces of four corners, and without positions in double.
+/// The formats without quads and without positions in double.
 constexpr const char* simple_formats[] = {".stl", ".glb", ".gltf"};
 
-/// Throws CLI::ValidationError where a file could not hold what an option asks for.
+/// Throws CLI::ValidationError if a file cannot hold what an option requests.
 void check_formats(const Plan& plan, const char* option, const std::string& held, const std::string& wanted) {
   for (const Job& job : plan.jobs) {
     const std::string extension = lower_extension(job.output);

@@ -6,7 +6,7 @@
 namespace tessera::cli {
 namespace {
 
-/// "NAME:{csv,json}" is a value and its choices.
+/// Takes "NAME:{csv,json}", a value and its choices, apart.
 void set_value(const std::string& type, OptionText& option) {
   const std::size_t brace = type.find(":{");
   option.value = type.substr(0, brace);

@@ -1,5 +1,5 @@
 #pragma once
-// The command line as data, taken from its definition: what the man page and the completions are made of.
+// The command line as data, taken from its definition, for the manual page and the completions.
 
 #include <string>
 #include <vector>
@@ -12,8 +12,8 @@ namespace tessera::cli {
 
 struct OptionText {
   std::vector<std::string> names;    ///< "-o", "--output"; "MODEL" for a word without a name
-  std::string value;                 ///< its value, "NxM"; empty for a flag. Files begin with "FILE".
-  std::vector<std::string> choices;  ///< the only values, if they are words
+  std::string value;                 ///< name of its value, "NxM"; empty for a flag. Files begin with "FILE".
+  std::vector<std::string> choices;  ///< its only values, if they are words
   std::string text;                  ///< its purpose, with unit and default
   bool positional = false, required = false, repeated = false;
 
@@ -26,15 +26,15 @@ struct CommandText {
   std::vector<CommandText> commands;
 };
 
-/// `app` and its commands; options of a group are the command's.
+/// The text of `app` and its commands; options of a group count as the command's.
 CommandText command_text(const CLI::App& app);
 
-/// The help of an option as completions show it: the first sentence, without default.
+/// The help of an option in completions: the first sentence, without the default.
 std::string short_text(const OptionText& option);
 
-/// `text` with each of `characters` after a backslash.
+/// `text` with a backslash before each of `characters`.
 std::string escaped(const std::string& text, const std::string& characters);
-/// In single quotes, as all shells take it.
+/// `text` in single quotes, as all shells accept it.
 std::string shell_quoted(const std::string& text);
 
 }  // namespace tessera::cli

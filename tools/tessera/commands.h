@@ -1,5 +1,5 @@
 #pragma once
-// The commands of the tool: each adds its options to the command line, and itself to the session if it is chosen.
+// The commands of the tool. Each adds its options to the command line, and itself to the session if it is chosen.
 
 #include <CLI/CLI.hpp>
 #include <functional>
@@ -9,7 +9,7 @@
 
 namespace tessera::cli {
 
-/// The command that the command line names.
+/// The command that the user has chosen.
 struct Session {
   std::function<Status()> command;
   CommonOptions common;

@@ -13,7 +13,7 @@
 namespace tessera::cli {
 namespace {
 
-/// Forces an instruction set for all that this process evaluates, as the variable would.
+/// Selects an instruction set for all evaluation of this process, as the environment variable does.
 void force_isa(const std::string& name) {
   const Result<Isa> isa = parse_isa(name);
   if (!isa) throw CLI::ValidationError("--isa", isa.status().message());

@@ -17,13 +17,13 @@ struct CommonOptions {
   int threads = 0;  ///< 0: as many as the machine has
 };
 
-/// --json, --timings, --threads and --isa.
+/// Adds --json, --timings, --threads and --isa.
 void add_common(CLI::App& command, CommonOptions& options);
 
-/// Runs `work` in an arena of so many threads.
+/// Runs `work` in an arena of `threads` threads.
 Status with_threads(int threads, const std::function<Status()>& work);
 
-/// Adds {"seconds": ...} where --timings asks for it.
+/// Adds {"seconds": ...} if --timings is set.
 void add_seconds(Json& object, const CommonOptions& options, const Timings& timings);
 
 }  // namespace tessera::cli

@@ -11,7 +11,7 @@ std::string value_action(const OptionText& option) {
   return "(" + words + ")";
 }
 
-/// The specifications of an option for _arguments, one a name, each excluding the others.
+/// The specifications of an option for _arguments: one per name, each excluding the others.
 std::string option_specs(const OptionText& option) {
   const std::string value = option.value.empty() ? "" : ":" + escaped(option.value, ":\\") + ":" + value_action(option);
   if (option.positional) return "        " + shell_quoted((option.repeated ? "*" : "1") + value) + " \\\n";

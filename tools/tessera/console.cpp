@@ -13,7 +13,7 @@ extern "C" void remember_signal(int signal) {
   if (caught_signal != 0) {
     remove_temporaries();
     std::signal(signal, SIG_DFL);
-    std::raise(signal);  // delivered on return from here
+    std::raise(signal);  // delivered when the handler returns
     return;
   }
   caught_signal = signal;
@@ -37,7 +37,7 @@ Status write_text(std::string_view text, const std::string& path) {
 }
 
 Status print_json(const Json& object) {
-  // File names need not be UTF-8, JSON must.
+  // File names need not be UTF-8, but JSON must be.
   return print(object.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
@@ -58,7 +58,7 @@ void catch_signals() {
   sigemptyset(&action.sa_mask);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction before {};
-    // A process that was started with the signal ignored (nohup, a script's background) shall go on ignoring it.
+    // A process that was started with the signal ignored (nohup, a script's background) must continue to ignore it.
     if (sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
   }
 }

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "io/file.h"
-#include "ray/line/ray_segment.h"
+#include "tessera/io.h"
+#include "tessera/ray_scene.h"
 
 namespace tessera::cli {
 namespace {
@@ -14,7 +14,7 @@ std::string joined(const ColumnNames& names) {
   return text;
 }
 
-/// Takes `name` and what parts it from the next one.
+/// Takes `name` and the separator before the next name.
 bool take_name(TextCursor& cursor, std::string_view name, bool first) {
   cursor.skip_blanks();
   if (!first && !cursor.take(',')) return false;
@@ -24,7 +24,7 @@ bool take_name(TextCursor& cursor, std::string_view name, bool first) {
   return true;
 }
 
-/// The columns that the header line names, or none.
+/// The columns that the header names, or none.
 ColumnNames take_header(TextCursor& cursor, const ColumnNames& required, const ColumnNames& optional) {
   ColumnNames all = required;
   all.insert(all.end(), optional.begin(), optional.end());
@@ -57,7 +57,7 @@ std::string text_of(double value) {
   return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
-/// Empty if the ray is valid, otherwise what is wrong.
+/// The fault of the ray; empty if it is valid.
 std::string fault_of(const Ray& ray) {
   if (!is_finite(ray.origin)) return "the origin is not finite";
   if (!is_finite(ray.direction)) return "the direction is not finite";

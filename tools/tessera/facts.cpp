@@ -25,7 +25,7 @@ std::size_t bytes_of(const BorderCurve& border) {
   return curve ? bytes_of(*curve) : 0;
 }
 
-/// The bytes of the arrays of a surface, by its kind. Memory that copies share is counted with each copy.
+/// The bytes of a surface's arrays, by its kind. Memory that copies share counts with each copy.
 template <class Kind>
 std::size_t net_bytes(const Kind& kind) {
   std::size_t bytes = 0;

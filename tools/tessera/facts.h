@@ -19,24 +19,24 @@ struct Range {
 };
 
 struct Facts {
-  std::map<std::string_view, std::size_t> kinds;       ///< -> surfaces
+  std::map<std::string_view, std::size_t> kinds;       ///< kind -> surfaces
   std::map<std::pair<int, int>, std::size_t> degrees;  ///< (along u, along v) -> patches
   std::size_t rational = 0, control_points = 0;        ///< of patches
   std::size_t collapsed_edges = 0, patches_with_collapsed_edges = 0;
-  std::size_t trimmed = 0;  ///< surfaces
+  std::size_t trimmed = 0;  ///< surfaces with trims
   Range u, v;               ///< the surfaces' own parameters
   std::size_t on_unit_square = 0;
   std::size_t model_bytes = 0, patch_bytes = 0, block_bytes = 0;
 };
 
-/// Sizes in memory: of the surfaces with their points, weights, knots and trims, without what a callable holds; of the
-/// patches; of their packed blocks with the tables that belong to them.
+/// Counts. Sizes in memory are those of the surfaces with their points, weights, knots and trims, without the contents
+/// of callables; of the patches; of their packed blocks with the tables that belong to them.
 Facts count_facts(const Model& model, const PatchSet& set);
 
-/// Nothing for what is no regular file.
+/// The size of a file; empty if it is not a regular file.
 std::optional<std::uintmax_t> file_bytes(const std::string& path);
 
-/// "12.3 MB", with the units of powers of 1000.
+/// "12.3 MB", with units of powers of 1000.
 std::string readable_bytes(std::uintmax_t bytes);
 
 }  // namespace tessera::cli

@@ -7,8 +7,8 @@
 #include <map>
 
 #include "arguments.h"
-#include "io/text_cursor.h"
 #include "progress.h"
+#include "tessera/text_cursor.h"
 
 namespace tessera::cli {
 namespace {
@@ -27,7 +27,7 @@ std::vector<std::string> matches_of(const std::string& pattern) {
   if (::glob(pattern.c_str(), GLOB_NOSORT | GLOB_MARK, nullptr, &found) == 0) {
     for (std::size_t k = 0; k < found.gl_pathc; ++k) {
       const std::string_view name = found.gl_pathv[k];
-      if (!name.ends_with('/')) names.emplace_back(name);  // folders are not meant
+      if (!name.ends_with('/')) names.emplace_back(name);  // skips folders
     }
   }
   ::globfree(&found);
@@ -106,7 +106,7 @@ Status run_jobs(const Plan& plan, const CommonOptions& options,
     if (!is_already_said(status)) {
       complain(status.message());
       if (options.json)
-        (void)print_json(error_json(job, status));  // the failure counts, whether it can be printed or not
+        (void)print_json(error_json(job, status));  // the failure counts whether or not it can be printed
     }
     failure = already_said(status.code());
   };

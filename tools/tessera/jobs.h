@@ -1,5 +1,5 @@
 #pragma once
-// Turns the file names on the command line into jobs: which files belong together, and where the result goes.
+// Turns the file names on the command line into jobs: groups of files, each with the place of its result.
 
 #include <functional>
 #include <string>
@@ -13,7 +13,7 @@ namespace tessera::cli {
 
 /// Files that make one result.
 struct Job {
-  std::vector<std::string> inputs;  ///< one at least
+  std::vector<std::string> inputs;  ///< at least one
   std::string output;               ///< empty: standard output
 };
 
@@ -22,26 +22,24 @@ struct Plan {
   std::vector<std::string> unmatched;  ///< patterns that match no file
 };
 
-/// How a command takes its files.
+/// How a command treats its files.
 struct OutputRule {
   std::string option;     ///< that names the output, for messages
   std::string extension;  ///< the extension of a file in a folder: ".png"
-  bool together = true;   ///< several files without an output make one result
+  bool together = true;   ///< whether several files without an output make one result
 };
 
-/// The files that `words` name: a name with *, ? or [ that is no file stands for those that it matches, in the order of
-/// their bytes; one that matches nothing is an
-/// error when the jobs are run. An output that is a folder, or that holds {name},
-/// gives each file a result of its own ({name}: the file's name without folder and extension); any other one takes them
-/// all together. Throws CLI::ValidationError where two files would be written to one place.
+/// The files that `words` name. A name with *, ? or [ that is not a file stands for the files that it matches, in the
+/// order of their bytes; if there are none, running the jobs reports an error. If the output is a folder, or holds
+/// {name} (the file's name without folder and extension), each file has its own result; otherwise all files make one.
+/// Throws CLI::ValidationError if two files would be written to one place.
 Plan plan_jobs(const std::vector<std::string>& words, const std::string& output, const OutputRule& rule);
 
-/// Whether an output is a folder, in which each file gets its result.
+/// Whether an output is a folder, which gets a result per file.
 bool is_folder(const std::string& output);
 
-/// Does `work` for each job and complains of those that fail, which do not stop the others: then the status is not ok,
-/// and already said. With --json a failure is an object {"files", "error"} too; with --timings a line on standard error
-/// tells them.
+/// Does `work` for each job. Reports jobs that fail and continues; the status is then not ok, and already printed. With
+/// --json a failure is also an object {"files", "error"}; with --timings standard error shows the timings.
 Status run_jobs(const Plan& plan, const CommonOptions& options,
                 const std::function<Status(const Job&, Timings&)>& work);
 

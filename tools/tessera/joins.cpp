@@ -22,7 +22,7 @@ JoinSide side(const PatchSet& set, const Border& border) {
   return {set.patch(border.patch), border.edge, set.source(border.patch).domain};
 }
 
-/// Measures them on all threads; a join that cannot be measured (none is known) is left unmeasured.
+/// Measures joins on all threads; an element without a value is a join that cannot be measured (none is known).
 std::vector<Result<JoinReport>> measure(const PatchSet& set, std::span<const Join> joins) {
   std::vector<Result<JoinReport>> reports(joins.size(), Status(StatusCode::cancelled, "interrupted"));
   Progress progress("measuring joins");

@@ -34,9 +34,9 @@ std::size_t count_trimmed(std::span<const ModelSurface> surfaces) {
                                                 [](const ModelSurface& surface) { return !surface.trims->empty(); }));
 }
 
-/// Warns about each part of the file that the model does not hold.
+/// Prints a warning about each part of the file that the model does not hold.
 void say_warnings(const std::string& file, const Model& model) {
-  constexpr std::size_t limit = 20;  // lines; the file may be a long list of what is not read
+  constexpr std::size_t limit = 20;  // lines; a file may hold a long list of unread parts
   const std::size_t count = model.warnings.size();
   bool trims_said = false;
   for (std::size_t k = 0; k < count; ++k) {
@@ -49,7 +49,7 @@ void say_warnings(const std::string& file, const Model& model) {
   if (!trims_said && !trims.empty()) warn(file + ": " + trims);
 }
 
-/// Surfaces are converted on all threads; of several that fail, the first one is told.
+/// Converts surfaces on all threads; if several fail, reports the first one.
 Result<std::vector<PatchGrid>> convert(const Model& model, const FitOptions& fit) {
   const std::size_t count = model.surfaces.size();
   std::vector<std::optional<Result<PatchGrid>>> results(count);
@@ -72,7 +72,7 @@ Result<std::vector<PatchGrid>> convert(const Model& model, const FitOptions& fit
   return grids;
 }
 
-/// Reads one file and adds it to what is there.
+/// Reads one file and adds it to `loaded`.
 Status add_file(const std::string& file, const FitOptions& fit, With with, Timings& timings, Loaded& loaded) {
   Result<Model> model = [&] {
     const auto phase = timings.phase("read");

@@ -25,7 +25,7 @@ void add_commands(CLI::App& app, Session& session) {
   add_man(app, session);
 }
 
-/// Help and version go to standard output, faults to standard error.
+/// Prints help and version on standard output, faults on standard error.
 int end_of_parsing(const CLI::App& app, const CLI::ParseError& error) {
   if (error.get_exit_code() != 0) {
     complain(usage_fault(app, error));

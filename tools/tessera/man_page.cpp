@@ -5,7 +5,7 @@
 namespace tessera::cli {
 namespace {
 
-/// Text as roff takes it: no control line, no escape, hyphens that can be copied as minus signs.
+/// Text for roff: no control lines, no escapes, hyphens that can be copied as minus signs.
 std::string roff(const std::string& text) {
   std::string out = text.starts_with('.') || text.starts_with('\'') ? "\\&" : "";
   for (const char c : text) {
@@ -40,7 +40,7 @@ std::string option_entry(const OptionText& option) {
   return text + "\n";
 }
 
-/// Paragraphs are filled; what follows "Examples:" keeps its lines.
+/// Paragraphs are filled; text after "Examples:" keeps its lines.
 std::string footer_text(const std::string& footer) {
   std::istringstream lines(footer);
   std::string text = ".PP\n";

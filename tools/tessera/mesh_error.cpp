@@ -10,7 +10,7 @@
 namespace tessera::cli {
 namespace {
 
-/// Points of all patches that a mesh is held against.
+/// Points of all patches that are compared with a mesh.
 constexpr std::size_t max_points = 500000;
 
 Result<Mesh> made(const PatchSet& set, double relative, MeshError& error) {
@@ -82,7 +82,7 @@ Result<MeshError> measure_error(const MeshErrorOptions& options, const PatchSet&
   error.triangles = mesh->triangle_count();
   error.found = largest(*distance, set);
   if (!options.mesh.empty()) error.red = error.found;
-  error.red = std::max(error.red, 1e-12 * set.box().diagonal());  // of a mesh that is exact
+  error.red = std::max(error.red, 1e-12 * set.box().diagonal());  // above 0 also for an exact mesh
   error.mesh = std::make_shared<const render::MeshDistance>(std::move(*distance));
   return error;
 }

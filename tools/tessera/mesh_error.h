@@ -1,5 +1,5 @@
 #pragma once
-// `raycast --shade error`: the distance of a mesh from the surfaces that it stands for.
+// `raycast --shade error`: the distance of a mesh from its surfaces.
 
 #include <CLI/CLI.hpp>
 
@@ -14,7 +14,7 @@
 namespace tessera::cli {
 
 struct MeshErrorOptions {
-  std::string mesh;        ///< a file; empty: the certified tessellation is made
+  std::string mesh;        ///< a file; empty: makes the certified tessellation
   double relative = 1e-3;  ///< its tolerance, a share of the model's size
 };
 
@@ -22,22 +22,22 @@ struct MeshError {
   std::shared_ptr<const render::MeshDistance> mesh;
   std::size_t triangles = 0;
   double found = 0;  ///< the largest distance at points of a grid over each patch
-  double red = 0;    ///< the distance that the last colour stands for: the proven bound, or what was found
+  double red = 0;    ///< the distance of the last colour: the proven bound, or `found`
   bool proven = false;
 
   /// For render::Settings::error.
   double share(const Vec3& point) const { return mesh->distance(point, 4 * red) / red; }
-  /// For people: a line, and what stands in the picture.
+  /// Text for people: a sentence, and the caption of the picture.
   std::string text() const;
   std::string caption() const;
   Json json() const;
 };
 
-/// --mesh and --relative, which need --shade error; the latter is found out by the check, which throws CLI::ValidationError.
+/// Adds --mesh and --relative, which need --shade error. The check throws CLI::ValidationError if that is missing.
 void add_error_options(CLI::App& command, MeshErrorOptions& options, CLI::Option* shade);
 void check_error_options(const CLI::App& command, render::Shade shade);
 
-/// Errors: those of reading, of the tessellation, and of render::MeshDistance.
+/// Measures the distance. Errors: those of reading, of the tessellation, and of render::MeshDistance.
 Result<MeshError> measure_error(const MeshErrorOptions& options, const PatchSet& set);
 
 }  // namespace tessera::cli

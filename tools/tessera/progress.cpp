@@ -21,7 +21,7 @@ std::string padded_percent(double share) {
   return std::string(number.size() < 3 ? 3 - number.size() : 0, ' ') + number + "%";
 }
 
-/// "12 s left" or "1:05 left", once there is something to judge by.
+/// "12 s left" or "1:05 left", once enough is known.
 std::string time_left(double share, double seconds) {
   constexpr double enough = 0.5;  // seconds
   if (seconds < enough || share <= 0) return {};

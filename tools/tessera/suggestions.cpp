@@ -21,7 +21,7 @@ std::size_t edit_distance(std::string_view from, std::string_view to) {
 }
 
 std::string nearest(const std::string& word, const std::vector<std::string>& words) {
-  constexpr std::size_t longest = 64;  // what is longer is no slip of the fingers
+  constexpr std::size_t longest = 64;  // a longer word is not a typing error
   if (word.size() > longest) return {};
   std::string found;
   std::size_t least = ~std::size_t{0};

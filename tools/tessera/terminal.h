@@ -1,5 +1,5 @@
 #pragma once
-// Whether the streams are terminals, and which colours and sizes these have.
+// Whether the streams are terminals, and their colours and sizes.
 
 #include <string>
 
@@ -8,7 +8,7 @@ namespace tessera::cli {
 bool output_is_terminal();
 bool errors_are_terminal();
 
-/// Characters of the terminal that a stream goes to; COLUMNS and LINES, or else 80 x 24, where it goes to none.
+/// The size of a stream's terminal in characters. For other streams: COLUMNS and LINES, or else 80 x 24.
 struct TerminalSize {
   int columns = 80, rows = 24;
 };
@@ -20,8 +20,8 @@ enum class Colours {
   full,         ///< 24 bits
 };
 
-/// The colours of standard output. `when`: "never", "always" (24 bits, whatever it is), or "auto": none unless it is a terminal
-/// whose TERM knows colours and NO_COLOR (no-color.org) is not set; 24 bits if COLORTERM says so.
+/// The colours of standard output. `when`: "never", "always" (24 bits for any output), or "auto": none unless it is a
+/// terminal whose TERM has colours and NO_COLOR (no-color.org) is not set; 24 bits if COLORTERM says so.
 Colours output_colours(const std::string& when);
 
 /// Whether standard error is a terminal that understands escape sequences.

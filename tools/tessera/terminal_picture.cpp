@@ -23,8 +23,8 @@ int squared_distance(const Colour& a, const Colour& b) {
   return sum;
 }
 
-/// The nearest colour of xterm's palette: 16 to 231 is a cube of the levels 0, 95, 135 ... 255; 232 to 255 are the greys
-/// 8, 18 ... 238.
+/// The nearest colour of xterm's palette: 16 to 231 is a cube of the levels 0, 95, 135 ... 255; 232 to 255 are the
+/// greys 8, 18 ... 238.
 int palette_index(const Colour& colour) {
   constexpr std::array<int, 6> levels{0, 95, 135, 175, 215, 255};
   Colour cube{}, step{};

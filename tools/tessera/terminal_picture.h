@@ -8,11 +8,13 @@
 
 namespace tessera::cli {
 
-/// Two rows of pixels a line of characters. With colours: upper half blocks, the upper pixel in the foreground's colour, the
-/// lower one in the background's, colours reset at the end of each line. Without: a character for how bright the two are.
+/// Makes text of a picture, two rows of pixels per row of characters. With colours: upper half blocks, the upper pixel
+/// in the foreground's colour, the lower one in the background's, colours reset at the end of each row. Without: a
+/// character for the brightness of the two.
 std::string as_characters(const render::Image& image, Colours colours);
 
-/// The size in pixels, two a character's height, of a picture of the usual shape that leaves two lines of the terminal free.
+/// The size, in pixels of half a character's height, of a picture of the usual shape that leaves two rows of the
+/// terminal free.
 struct PixelSize {
   int width = 0, height = 0;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// How long each phase of a command's work took: read, convert, pack, and what the command itself does.
+// The time of each phase of a command: read, convert, pack, and the command's own.
 
 #include <chrono>
 #include <string>
@@ -13,7 +13,7 @@ namespace tessera::cli {
 
 class Timings {
  public:
-  /// Measures until it goes out of scope.
+  /// Measures until its destruction.
   class Phase {
    public:
     Phase(Timings& timings, std::string_view name) : timings_(timings), name_(name) {}
@@ -27,7 +27,7 @@ class Timings {
     Stopwatch clock_;
   };
 
-  /// `name`: of static storage. What is measured twice is summed.
+  /// Measures the phase `name`, which must have static storage. Times of the same name are summed.
   Phase phase(std::string_view name) { return {*this, name}; }
   void add(std::string_view name, double seconds);
 

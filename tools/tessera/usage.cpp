@@ -18,7 +18,7 @@ std::vector<std::string> command_names(const CLI::App& app) {
   return names;
 }
 
-/// Adds the names of its option groups too, which are subcommands without a name.
+/// Adds the option names of a command and of its option groups, which are subcommands without a name.
 void add_option_names(const CLI::App& command, std::vector<std::string>& names) {
   for (const CLI::Option* const option : command.get_options()) {
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
@@ -29,7 +29,7 @@ void add_option_names(const CLI::App& command, std::vector<std::string>& names) 
   }
 }
 
-/// The message for a word that no option took.
+/// The message for a word that no option takes.
 std::string fault_of_word(const CLI::App& app, const CLI::App& command, const std::string& word) {
   const bool of_tool = &command == &app;
   if (!word.starts_with('-')) {
@@ -47,7 +47,7 @@ std::string fault_of_word(const CLI::App& app, const CLI::App& command, const st
 
 void describe(CLI::App& app) {
   app.set_version_flag("--version", "tessera " TESSERA_VERSION);
-  app.require_subcommand(0, 1);  // none is seen after parsing, so that a wrong word is named first
+  app.require_subcommand(0, 1);  // checked after parsing instead, so that a wrong word is named first
   app.get_formatter()->column_width(28);
   app.footer(
       "Files read: surfaces as " + model_formats() +

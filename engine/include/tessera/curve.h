@@ -19,35 +19,45 @@ struct Interval {
   friend bool operator==(const Interval&, const Interval&) = default;  ///< by both ends
 };
 
-/// c(t) = sum_i N_{i,p}(t) P_i or, rational, sum N w_i P_i / sum N w_i, of degree 1 to max_degree (Piegl and Tiller,
-/// The NURBS Book, 2nd ed., ch. 3 and 4). The knots t_0 .. t_{m+p+1} of points 0 .. m do not decrease; a knot within
-/// [t_p, t_{m+1}] stands at most p times (p-fold it breaks to C0), one at its ends or outside at most p + 1 times.
-/// Clamped or not; closed curves on periodic knots repeat their first p points at the end. Immutable but for
-/// assignment; copies share everything.
+/// A NURBS curve: c(t) = sum_i N_{i,p}(t) P_i or, rational, sum N w_i P_i / sum N w_i, of degree 1 to max_degree (Piegl
+/// and Tiller, The NURBS Book, 2nd ed., ch. 3 and 4).
+///
+/// The knots t_0 .. t_{m+p+1} of points 0 .. m do not decrease. A knot strictly inside [t_p, t_{m+1}] has multiplicity
+/// at most p (with p the curve is only C0 there), one at the ends or outside at most p + 1. Curves may be clamped or
+/// not; closed curves on periodic knots repeat their first p points at the end. Immutable except for assignment; copies
+/// share everything.
 class Curve {
  public:
-  /// Of degree points.size() - 1, weights as below or none. Errors: as below.
+  /// Makes a Bezier curve of degree points.size() - 1, with weights as for nurbs() or none. Errors: as for nurbs().
   static Result<Curve> bezier(std::span<const Vec3> points, std::span<const double> weights = {},
                               const Interval& domain = {});
-  /// `knots`: points.size() + degree + 1. `domain`: [t_p, t_{m+1}] if empty, else within it.
+  /// Makes a polynomial B-spline curve.
+  ///
+  /// - `knots`: points.size() + degree + 1 of them, as above.
+  /// - `domain`: within [t_p, t_{m+1}]; all of it if empty.
+  ///
   /// Errors: unsupported_degree, count_mismatch, non_finite, invalid_argument (index = the point or knot).
   static Result<Curve> b_spline(int degree, std::span<const Vec3> points, std::span<const double> knots,
                                 std::optional<Interval> domain = {});
-  /// `weights`: one finite weight > 0 a point, at least 1e-100 of the largest; zero and negative ones are refused even
-  /// where the denominator stays positive, for the reasons that BezierPatch gives: knot insertion and extraction make
-  /// such points. If all are equal by == they are dropped. `points` are not premultiplied.
-  /// Errors: as above, and invalid_weight (index = the weight).
+  /// Makes a NURBS curve.
+  ///
+  /// - `points`: not premultiplied.
+  /// - `weights`: one finite weight > 0 per point, at least 1e-100 of the largest. They are dropped if all are equal by
+  ///   ==. They must be > 0 even if the denominator is anyway, as in BezierPatch::rational(): knot insertion and
+  ///   extraction make such points.
+  ///
+  /// Errors: those of b_spline(), invalid_weight (index = the weight).
   static Result<Curve> nurbs(int degree, std::span<const Vec3> points, std::span<const double> weights,
                              std::span<const double> knots, std::optional<Interval> domain = {});
 
-  int degree() const { return data_->degree; }                        ///< of every piece
+  int degree() const { return data_->degree; }                        ///< degree of every piece
   bool is_rational() const { return !data_->weights.empty(); }        ///< whether it has weights that differ
   std::span<const Vec3> points() const { return data_->points; }      ///< not premultiplied
   std::span<const double> weights() const { return data_->weights; }  ///< empty for a polynomial curve
-  /// Of point i; 1 in a polynomial curve.
+  /// Returns the weight of point i; 1 in a polynomial curve.
   double weight(std::size_t i) const { return is_rational() ? data_->weights[i] : 1.0; }
-  std::span<const double> knots() const { return data_->knots; }  ///< points + degree + 1
-  const Interval& domain() const { return data_->domain; }        ///< where it is evaluated
+  std::span<const double> knots() const { return data_->knots; }  ///< points().size() + degree() + 1
+  const Interval& domain() const { return data_->domain; }        ///< interval on which it is evaluated
 
  private:
   struct Data {
@@ -65,11 +75,11 @@ struct CurveJet {
   Vec3 position, first, second;  ///< c(t) and its derivatives by t
 };
 
-/// The reference evaluator: de Boor's algorithm, rational curves in homogeneous form. At a knot the span on its right
-/// counts, at the end of the domain the one on its left: so derivatives that jump there are those of that side. Outside
-/// the domain the first and the last piece go on. Any finite t.
+/// Evaluates by de Boor's algorithm, rational curves in homogeneous form: the reference evaluator, for any finite t. At
+/// a knot it takes the span on the right, and at the end of the domain the span on the left; derivatives that jump
+/// there are those of that span. Outside the domain, the first and the last piece continue.
 CurveJet evaluate_jet(const Curve& curve, double t);
-/// Its position alone: the same bits.
+/// Returns the position alone, with the same bits.
 Vec3 position(const Curve& curve, double t);
 
 }  // namespace tessera::inline abi_0_1

@@ -14,51 +14,45 @@
 #include "tessera/limits.h"
 #include "tessera/local_geometry.h"
 #include "tessera/patch_set.h"
+#include "tessera/quantities.h"
 #include "tessera/status.h"
 #include "tessera/strided_view.h"
 
 #pragma GCC visibility push(default)
 namespace tessera::inline abi_0_1 {
 
-/// `count` parameters from 0 to 1: i / (count - 1). A count below 2 counts as 2.
+/// Returns `count` equidistant parameters from 0 to 1: i / (count - 1). A count below 2 counts as 2.
 std::vector<double> uniform_parameters(int count);
-
-/// Which outputs are meant, for capacity and work: the members of GridViews by name.
-struct GridOutputs {
-  bool position = true, du = false, dv = false, normal = false;                            ///< as in GridViews
-  bool duu = false, duv = false, dvv = false;                                              ///< as in GridViews
-  bool first_form = false, second_form = false;                                            ///< as in GridViews
-  bool gaussian = false, mean = false, first_curvature = false, second_curvature = false;  ///< as in GridViews
-  bool first_direction = false, second_direction = false;                                  ///< as in GridViews
-  bool normal_kind = false, curvature_kind = false;                                        ///< as in GridViews
-};
 
 /// How a grid is evaluated.
 struct GridPlanOptions {
   Precision precision = Precision::single_precision;          ///< of coefficients, arithmetic and outputs
   Representation representation = Representation::bernstein;  ///< of the blocks that are read
   std::optional<Isa> isa = {};                                ///< default_isa() if empty
-  /// In single precision a smallest sine below 1e-6 counts as 1e-6, and an umbilic tolerance below 1e-4 as 1e-4.
+  /// In single precision, a smallest sine below 1e-6 counts as 1e-6, an umbilic tolerance below 1e-4 as 1e-4.
   LocalGeometryOptions geometry = {};
 };
 
-/// Parameters that differ from patch to patch, as many for each: `[patch][iu]` and `[patch][iv]`.
+/// Parameters that differ from patch to patch, equally many for each: `[patch][iu]` and `[patch][iv]`.
 struct PatchParameters {
-  std::span<const double> u = {}, v = {};  ///< in [0,1], as many for every patch
+  std::span<const double> u = {}, v = {};  ///< in [0,1]
 };
 
-/// The grid u_0..u_{N-1} x v_0..v_{M-1} of local parameters, with basis weights tabulated for every degree of a set.
-/// Immutable; reusable for as long as the set's degrees stay (edits of control points keep them).
+/// A grid of local parameters, u_0..u_{N-1} x v_0..v_{M-1}, with basis weights tabulated for every degree of a set.
+/// Immutable. It stays valid while the degrees of the set do: edits of control points keep them.
 class GridPlan {
  public:
-  /// Parameters in [0,1], in any order, 1 to 2^24 each way. Errors: invalid_argument or non_finite (index = the
-  /// parameter), invalid_argument (more points than memory can address), unsupported (the set lacks the blocks),
-  /// isa_unavailable; invalid_argument (options.geometry: not from 0 to below 1).
+  /// Makes one grid for all patches. Parameters lie in [0,1], in any order, 1 to 2^24 each way.
+  ///
+  /// Errors: invalid_argument (a parameter: index; more points than memory can address; options.geometry outside
+  /// [0,1)), non_finite (a parameter: index), unsupported (the set lacks the blocks), isa_unavailable, out_of_memory.
   static Result<GridPlan> make(const PatchSet& set, std::span<const double> u, std::span<const double> v,
                                const GridPlanOptions& options = {});
-  /// A grid of its own for each patch. Its weights take 3 (degree + 1) values a parameter of a patch. A patch's results
-  /// are, bit for bit, those of its parameters given for all patches. Errors: the same, and invalid_argument (parameters
-  /// that are not as many for each patch).
+  /// Makes a grid of its own for each patch. The results of a patch have the bits that they have when its parameters
+  /// are those of all patches.
+  ///
+  /// Errors: as above, and invalid_argument (the number of parameters is no multiple of the number of patches).
+  /// Memory: 3 (degree + 1) values per parameter and patch.
   static Result<GridPlan> make(const PatchSet& set, const PatchParameters& parameters,
                                const GridPlanOptions& options = {});
 
@@ -66,17 +60,17 @@ class GridPlan {
   GridPlan& operator=(GridPlan&&) noexcept;
   ~GridPlan();
 
-  std::size_t count_u() const;  ///< parameters along u, of a patch
-  std::size_t count_v() const;  ///< parameters along v, of a patch
+  std::size_t count_u() const;  ///< parameters along u, per patch
+  std::size_t count_v() const;  ///< parameters along v, per patch
   Isa isa() const;              ///< the one that runs
   Precision precision() const;  ///< of outputs
-  /// Records that a patch-contiguous view must hold: patch_count * count_u * count_v.
+  /// Records that each view of QuantityViews must hold: patch_count * count_u * count_v.
   std::size_t capacity() const;
-  /// Values that one block-interleaved output of vectors must hold: block_count * count_u * count_v * 3 *
-  /// PatchSet::lanes; one of scalars or kinds a third of it.
+  /// Values that each vector of QuantityBlocks must hold: block_count * count_u * count_v * 3 * PatchSet::lanes.
+  /// Scalars and kinds need a third of it.
   std::size_t block_capacity() const;
-  /// What the evaluation must compute and write at the least; see limits.h.
-  Work work(const GridOutputs& outputs) const;
+  /// Returns the work that no evaluation of these quantities can avoid; see limits.h.
+  Work work(const QuantityFlags& outputs) const;
 
   class [[gnu::visibility("hidden")]] Impl;
 
@@ -86,37 +80,43 @@ class GridPlan {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Patch-contiguous outputs, `[patch][iu][iv]`: record (patch * count_u + iu) * count_v + iv. Any subset in one pass;
-/// empty views are not computed. Positions in float are relative to the set's origin, in double absolute. Derivatives
-/// are by local parameters. Normals are unit vectors; at a degenerate point the limit, or zero where there is none: as
-/// unit_normal() defines it, and computed by it where the lanes' rounding errors leave it open. Forms, curvatures and
-/// directions are those of local_geometry.h, zero wherever undefined and never NaN: the normal is not regular, or the
-/// tangents are parallel within rounding errors or within GridPlanOptions::geometry, or a figure is out of range (a
-/// form beyond the numbers, a curvature beyond 2^60 in float, 2^500 in double).
+/// Views of the caller's memory, one per quantity; empty ones are not computed. T is float or double.
+///
+/// - Record of a grid: (patch * count_u + iu) * count_v + iv. Record of samples: the number of the sample.
+/// - Positions in float are relative to the set's origin, in double absolute.
+/// - Normals are unit vectors. At a degenerate point they are the limit that unit_normal() defines, or zero if there is
+///   none.
+/// - Forms, curvatures and directions are those of local_geometry.h. They are zero, never NaN, where undefined: the
+///   normal is not regular, the tangents are parallel within rounding errors or within LocalGeometryOptions, or a
+///   number is out of range (a form beyond T, a curvature beyond 2^60 in float or 2^500 in double).
 template <class T>
-struct GridViews {
-  View3<T> position = {}, du = {}, dv = {}, normal = {};  ///< r, r_u, r_v, the unit normal
-  View3<T> duu = {}, duv = {}, dvv = {};                  ///< r_uu, r_uv, r_vv
-  View3<T> first_form = {};                               ///< E, F, G: r_u.r_u, r_u.r_v, r_v.r_v
-  View3<T> second_form = {};                              ///< L, M, N: r_uu.N, r_uv.N, r_vv.N
-  View1<T> gaussian = {}, mean = {};                      ///< K = k1 k2, H = (k1 + k2) / 2
-  View1<T> first_curvature = {}, second_curvature = {};   ///< k1 >= k2
-  View3<T> first_direction = {}, second_direction = {};   ///< their unit tangents, first x second = normal
-  View1<NormalKind> normal_kind = {};                     ///< regular, a limit, or undefined
-  View1<CurvatureKind> curvature_kind = {};               ///< distinct, umbilic, or undefined
-};
+using QuantityViews = Quantities<View3<T>, View1<T>, View1<NormalKind>, View1<CurvatureKind>>;
 
-/// Evaluates all patches. Outputs may share memory by interleaving but must not overlap otherwise. Views that fill one
-/// record together, packed views, and structures of arrays are written by whole vectors, streaming as Execution::stores
-/// says; others value by value, at a small part of the speed. Allocates nothing.
-/// Errors: buffer_too_small, invalid_argument (a plan of other precision, or for other patches; a view that lacks a
-/// component, has a stride of 0, is not aligned to its numbers, or shares memory with another), cancelled. Nothing is
-/// written on any error but cancelled. The same bytes for any number of threads, and on
-/// AVX2, AVX-512 and NEON; each output alone is what it is together with others.
-/// Error bounds of each component for the Bernstein representation, in units of 2^-23 (2^-52 in double). The bounds are
-/// stated by d, the higher degree; `size`, the largest |V - origin| of the patch; `ratio`, the largest weight over the
-/// weight at the point, 1 for polynomial patches; h = |r_u x r_v| / max(|r_u|, |r_v|), the sine of the tangents' angle
-/// times the shorter tangent; D, the largest second derivative.
+/// Block-interleaved memory, one span per quantity; empty ones are not computed. T is float or double.
+///
+/// - Shapes: `[block][iu][iv][component][lane]`; scalars and kinds `[block][iu][iv][lane]`. This is the kernels' own
+///   order, and the fastest.
+/// - PatchSet::slot() is the place of a patch. Unused lanes of a last block repeat a patch.
+/// - Spans must be aligned to 64 bytes and must not overlap. Values are those of QuantityViews.
+template <class T>
+using QuantityBlocks = Quantities<std::span<T>, std::span<T>, std::span<NormalKind>, std::span<CurvatureKind>>;
+
+/// Evaluates all patches on the grid, into views. Derivatives are by local parameters.
+///
+/// Outputs may share memory by interleaving but must not overlap otherwise. Whole vectors are written, streaming as
+/// Execution::stores says, to packed views, to structures of arrays, and to views that fill one record together; other
+/// views are written value by value, at a small part of the speed.
+///
+/// Errors, with nothing written: buffer_too_small; invalid_argument (no output; a plan of other precision, or for other
+/// patches; a view that lacks a component, has a stride below 1, is misaligned, or overlaps another). cancelled leaves
+/// outputs partly written.
+/// Memory: allocates nothing. Threads: the same bytes for any number of threads, and on AVX2, AVX-512 and NEON; a
+/// quantity has the same bytes alone and together with others.
+///
+/// Error bounds of each component for the Bernstein representation, in units of 2^-23 (2^-52 in double), with
+/// d, the higher degree; `size`, the largest |V - origin| of the patch; `ratio`, the largest weight over the weight at
+/// the point (1 for polynomial patches); h = |r_u x r_v| / max(|r_u|, |r_v|), the sine of the tangents' angle times the
+/// shorter tangent; D, the largest second derivative:
 /// - positions: 2 size; rational (4 + d / 4) size
 /// - first derivatives: 16 d size ratio
 /// - second derivatives: 16 d^2 size; rational 48 d^2 size ratio^2
@@ -127,87 +127,69 @@ struct GridViews {
 /// - mean and principal curvatures: the bound of the second form over h^2
 /// - Gaussian curvature: |k1| + |k2| times the bound of curvatures, and the square of that bound
 /// - principal directions: 2 / (k1 - k2) times the bound of curvatures, and the bound of normals
-/// The ratio enters by the quotient rule, r_u = (A_u - w_u r) / w: errors of w_u go with the largest weight, those of r
-/// with the size, and both are divided by the weight at the point. Bounds over h hold to first order: where the errors
-/// of the tangents are small against h. Positions in double, which are absolute, round once more, to 2^-53 of their own
-/// size.
-/// In the power representation the bounds of positions and first derivatives are (1 + 2u)^m (1 + 2v)^n ratio times as
-/// large, m and n the degrees: random bicubic patches lose 34 units, degrees 5 and 7 lose 1,200 and 140,000.
-Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<float>& out,
-                const Execution& execution = {});
-Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<double>& out,
-                const Execution& execution = {});
-
-/// Block-interleaved outputs, `[block][iu][iv][component][lane]`, scalars and kinds `[block][iu][iv][lane]`: the
-/// kernels' own order, and the fastest. A patch's place is PatchSet::slot(); unused lanes of a last block repeat a
-/// patch. The members mean what those of GridViews mean. Empty spans are not computed. Memory must be aligned to 64
-/// bytes and apart from each other (invalid_argument otherwise). Grids of each patch's own are stored plainly.
+///
+/// The ratio enters by the quotient rule, r_u = (A_u - w_u r) / w: errors of w_u grow with the largest weight, errors
+/// of r with the size, and both are divided by the weight at the point. Bounds over h hold to first order, where the
+/// errors of the tangents are small against h. Positions in double, which are absolute, round once more, to 2^-53 of
+/// their own size. In the power representation the bounds of positions and first derivatives are (1 + 2u)^m (1 + 2v)^n
+/// ratio times as large, m and n the degrees: random bicubic patches lose 34 units, degrees 5 and 7 lose 1,200 and
+/// 140,000.
 template <class T>
-struct GridBlocks {
-  std::span<T> position = {}, du = {}, dv = {}, normal = {};  ///< as in GridViews
-  std::span<T> duu = {}, duv = {}, dvv = {};                  ///< as in GridViews
-  std::span<T> first_form = {}, second_form = {};             ///< as in GridViews
-  std::span<T> gaussian = {}, mean = {};                      ///< as in GridViews
-  std::span<T> first_curvature = {}, second_curvature = {};   ///< as in GridViews
-  std::span<T> first_direction = {}, second_direction = {};   ///< as in GridViews
-  std::span<NormalKind> normal_kind = {};                     ///< as in GridViews
-  std::span<CurvatureKind> curvature_kind = {};               ///< as in GridViews
-};
-Status evaluate(const PatchSet& set, const GridPlan& plan, const GridBlocks<float>& out,
+Status evaluate(const PatchSet& set, const GridPlan& plan, const QuantityViews<T>& out,
                 const Execution& execution = {});
-Status evaluate(const PatchSet& set, const GridPlan& plan, const GridBlocks<double>& out,
+/// Evaluates all patches on the grid, into blocks: errors, threads and bounds as for views. Plans with parameters of
+/// each patch's own write plain stores.
+template <class T>
+Status evaluate(const PatchSet& set, const GridPlan& plan, const QuantityBlocks<T>& out,
                 const Execution& execution = {});
 
-/// What becomes of parameters outside of a patch's [0,1]^2, or of a surface's domain.
+/// How parameters outside of a patch's [0,1]^2, or of a surface's domain, are treated.
 enum class OutsideDomain : std::uint8_t {
   error,        ///< invalid_argument, index = the first such sample
   clamp,        ///< the nearest parameter inside counts
-  extrapolate,  ///< the polynomials go on. No error bounds; far out, or where a rational patch has its poles, results may
-                ///< be infinite or NaN
+  extrapolate,  ///< polynomials continue; results have no error bounds and may be infinite or NaN
 };
 
 /// How samples are evaluated.
 struct PointOptions {
-  OutsideDomain outside = OutsideDomain::error;  ///< what is done with samples that lie outside
+  OutsideDomain outside = OutsideDomain::error;  ///< for samples that lie outside
   std::optional<Isa> isa = {};                   ///< default_isa() if empty
   LocalGeometryOptions geometry = {};            ///< as in GridPlanOptions
 };
 
-/// Sample k lies at (u[k], v[k]) of patch[k]. There are as many samples as `patch` has records; u and v hold at least as
-/// many.
+/// Samples on patches: sample k lies at (u[k], v[k]) of patch[k]. `patch` has one record per sample; u and v hold at
+/// least as many.
 template <class T>
 struct PatchSamples {
   View1<const std::uint32_t> patch = {};  ///< below patch_count()
   View1<const T> u = {}, v = {};          ///< in the patch's [0,1]^2
 };
 
-/// Record k of each view belongs to sample k. Otherwise as GridViews says; any subset in one pass.
-template <class T>
-using PointViews = GridViews<T>;
-
-/// Evaluates all samples, in any order of patches; samples that come sorted by patch, a dozen or more of a patch in
-/// a row, run up to twice as fast as others. Arrays (views of stride 1) are read where they lie, others copied first.
-/// The set must hold BlockKinds::float_points (double_points). Allocates nothing.
-/// Positions in float are relative to the set's origin, in double absolute; derivatives are by the patch's parameters.
-/// Degenerate points as in GridViews, by unit_normal().
+/// Evaluates all samples. Derivatives are by the patch's parameters.
+///
+/// The set must hold BlockKinds::float_points (double_points). Samples may come in any order; those sorted by patch, a
+/// dozen or more per patch, run up to twice as fast. Arrays (views of stride 1) are read in place, other views are
+/// copied first.
+///
 /// Errors, with nothing written: unsupported (the set lacks the coefficients), buffer_too_small, count_mismatch (fewer
-/// u or v than patches), invalid_argument (no output; views that lack a component, that are misaligned, whose stride is
-/// below 1, that share memory with another view; index = the sample: no such patch, parameter outside [0,1]), non_finite
-/// (index = the sample), isa_unavailable; cancelled, which may leave outputs partly written.
-/// The same bytes for any number of threads, for any order of the samples and choice of outputs, and on AVX2 and
-/// AVX-512. Bounds as for grids (evaluate.h), the parameters taken as exact; on SSE2 positions 2 + d / 2, rational ones
-/// 4 + d, for weights are made without fused multiply-adds there.
-Status evaluate(const PatchSet& set, const PatchSamples<float>& samples, const PointViews<float>& out,
-                const PointOptions& options = {}, const Execution& execution = {});
-Status evaluate(const PatchSet& set, const PatchSamples<double>& samples, const PointViews<double>& out,
+/// u or v than patches), invalid_argument (no output; a view that lacks a component, is misaligned, has a stride below
+/// 1, or overlaps another; index = the sample: no such patch, a parameter outside [0,1]), non_finite (index = the
+/// sample), isa_unavailable. cancelled leaves outputs partly written.
+/// Memory: allocates nothing. Threads: the same bytes for any number of threads, any order of the samples, any choice
+/// of outputs, and on AVX2 and AVX-512.
+///
+/// Error bounds: as for grids, with exact parameters. On SSE2, where weights are made without fused multiply-adds:
+/// positions 2 + d / 2, rational ones 4 + d.
+template <class T>
+Status evaluate(const PatchSet& set, const PatchSamples<T>& samples, const QuantityViews<T>& out,
                 const PointOptions& options = {}, const Execution& execution = {});
 
-/// From the parameters of a set's surfaces to its patches: the breakpoints of each surface, from PatchSet::source().
-/// Immutable; edits of control points keep it valid. Memory: 128 bytes a patch.
+/// The map from the parameters of a set's surfaces to its patches: the breakpoints of each surface, from
+/// PatchSet::source(). Immutable; edits of control points keep it valid. Memory: 128 bytes per patch.
 class SurfaceMap {
  public:
-  /// The patches of each surface must be those of a PatchGrid, one after the other in its order, as make_patch_set()
-  /// leaves them. Errors: unsupported (index = a surface of which that is not true), out_of_memory.
+  /// The patches of each surface must be those of a PatchGrid, in its order and without a gap, as make_patch_set()
+  /// leaves them. Errors: unsupported (a surface whose patches are not; index = the surface), out_of_memory.
   static Result<SurfaceMap> make(const PatchSet& set);
 
   SurfaceMap(SurfaceMap&&) noexcept;
@@ -215,7 +197,8 @@ class SurfaceMap {
   ~SurfaceMap();
 
   std::size_t surface_count() const;  ///< one more than the largest number of a source
-  /// Nothing for a number that no patch's source bears. surface < surface_count().
+  /// Returns a surface's rectangle of parameters; nothing if no patch's source has this number. Needs surface <
+  /// surface_count().
   std::optional<Domain> domain(std::size_t surface) const;
 
   class [[gnu::visibility("hidden")]] Impl;
@@ -226,31 +209,35 @@ class SurfaceMap {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Sample k lies at (u[k], v[k]) of surface[k], in that surface's own parameters. There are as many samples as u has
-/// records; v and `surface` hold at least as many.
+/// Samples on surfaces: sample k lies at (u[k], v[k]) of surface[k], in that surface's own parameters. `u` has one
+/// record per sample; v and `surface` hold at least as many.
 struct SurfaceSamples {
   View1<const std::uint32_t> surface = {};  ///< empty: all lie on surface 0
   View1<const double> u = {}, v = {};       ///< in the surface's domain
 };
 
-/// Finds each sample's patch, the one on the right of a breakpoint, and evaluates there. Derivatives and the two forms
-/// are by the surface's parameters. Errors as above, and invalid_argument (a map of another set; index = the sample: no
-/// such surface, parameter outside of its domain). Parameters within the patch are found in double and rounded to T. For
-/// each, results in float are further off, in the units and terms of evaluate.h: positions by d / 2 size ratio, first
-/// derivatives by d^2 size, rational ones 2 d^2 size ratio^2.
-Status evaluate(const PatchSet& set, const SurfaceMap& map, const SurfaceSamples& samples, const PointViews<float>& out,
+/// Evaluates all samples. Finds each sample's patch, on a breakpoint the one with larger parameters. Derivatives and
+/// the two forms are by the surface's parameters.
+///
+/// Errors: as for samples on patches, and invalid_argument (a map of another set; index = the sample: no such surface,
+/// a parameter outside of its domain).
+///
+/// Error bounds: parameters within the patch are found in double and rounded to T. Results in float are further off, in
+/// the units and terms of grids: positions by d / 2 size ratio, first derivatives by d^2 size, rational ones by 2 d^2
+/// size ratio^2.
+template <class T>
+Status evaluate(const PatchSet& set, const SurfaceMap& map, const SurfaceSamples& samples, const QuantityViews<T>& out,
                 const PointOptions& options = {}, const Execution& execution = {});
-Status evaluate(const PatchSet& set, const SurfaceMap& map, const SurfaceSamples& samples,
-                const PointViews<double>& out, const PointOptions& options = {}, const Execution& execution = {});
 
-/// New control points for some patches. Those of patch[k] follow those of patch[k - 1]: (degree_u + 1) * (degree_v + 1)
-/// points `[i][j]`, i along u, as BezierPatch::points(). Weights and degrees stay.
+/// New control points for some patches. The points of patch[k] follow those of patch[k - 1]: (degree_u + 1) *
+/// (degree_v + 1) points `[i][j]`, i along u, as BezierPatch::points(). Weights and degrees stay.
 struct PatchEdits {
-  std::span<const std::uint32_t> patch = {};  ///< in any order, each at most once; in the set's order is fastest
+  std::span<const std::uint32_t> patch = {};  ///< each at most once; the set's own order is fastest
   std::span<const Vec3> points = {};          ///< patch after patch
 };
 
-/// Memory for updates of one set, 16 bytes a patch; repeated ones allocate nothing. Threads: one call at a time.
+/// Grids that follow edits. Holds the memory for updates of one set, so that repeated ones allocate nothing. Memory: 16
+/// bytes per patch. Threads: one call at a time.
 class GridUpdate {
  public:
   /// Errors: out_of_memory.
@@ -260,28 +247,25 @@ class GridUpdate {
   GridUpdate& operator=(GridUpdate&&) noexcept;
   ~GridUpdate();
 
-  /// PatchSet::set_control_points() for each edit, and then evaluate() of these patches alone: each task packs the
-  /// patches that it evaluates while they are in its cache. `out` are views of all patches, as evaluate() takes them; the
-  /// records of other patches are not touched, nor read. The same bytes in the set and in the views as by those calls,
-  /// for any number of threads. The revision grows by one, unless there is no edit.
-  /// A patch's first update gives its points memory of their own, if it shares it with other patches; the next ones
-  /// allocate nothing.
+  /// Sets the control points of each edit, as PatchSet::set_control_points(), and evaluates these patches alone. `out`
+  /// are views of all patches, as evaluate() takes them; records of other patches are neither written nor read.
+  ///
+  /// The set and the views get the bytes of those calls, for any number of threads. The revision grows by one, unless
+  /// there is no edit. A patch's first update gives its points memory of their own, if other patches share it; later
+  /// ones allocate nothing.
+  ///
   /// Errors, with nothing written: those of evaluate(); unsupported (a plan with parameters of each patch's own);
-  /// invalid_argument (another set than the one of make(); index =
-  /// the edit: no such patch, or one that an edit before names); count_mismatch (points); non_finite (index = the edit: a
-  /// point is not finite, or does not fit the set's numbers relative to its origin); out_of_memory. cancelled: each patch
-  /// then has its new control points and its new grid, or neither.
-  Status run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridViews<float>& out,
-             const Execution& execution = {});
-  /// The same in double.
-  Status run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridViews<double>& out,
+  /// invalid_argument (a set other than that of make(); index = the edit: no such patch, or one that an earlier edit
+  /// names); count_mismatch (points); non_finite (index = the edit: a point is not finite, or does not fit the set's
+  /// numbers relative to its origin); out_of_memory. cancelled: each patch has its new control points and its new grid,
+  /// or neither.
+  template <class T>
+  Status run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const QuantityViews<T>& out,
              const Execution& execution = {});
   /// The same into block-interleaved memory of all patches. A block with an edited patch is evaluated whole: its other
-  /// lanes are written, with the bytes that evaluate() gives them.
-  Status run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridBlocks<float>& out,
-             const Execution& execution = {});
-  /// The same in double.
-  Status run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridBlocks<double>& out,
+  /// lanes are written again, with the same bytes.
+  template <class T>
+  Status run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const QuantityBlocks<T>& out,
              const Execution& execution = {});
 
  private:

@@ -3,7 +3,7 @@
 // of them by the same expression over Taylor series.
 //
 //   const auto torus = tessera::generic_surface([](auto u, auto v) {
-//     using std::cos, std::sin;                       // those of series are found by their argument
+//     using std::cos, std::sin;                       // overloads for series are found by their argument
 //     const auto r = 3 + cos(v);
 //     return std::array{r * cos(u), r * sin(u), sin(v)};
 //   }, {0, 6, 0, 6});
@@ -38,7 +38,7 @@ SurfaceJet surface_jet(const std::array<T, 3>& p) {
           vector_of(p, 2, 0), vector_of(p, 1, 1), vector_of(p, 0, 2)};
 }
 
-/// A bound of the length of the k-th derivative.
+/// Returns a bound of the length of the k-th derivative.
 template <class T>
 double length_bound(const std::array<T, 3>& p, int k) {
   IntervalNumber sum = 0;
@@ -46,7 +46,8 @@ double length_bound(const std::array<T, 3>& p, int k) {
   return sqrt(sum).magnitude();
 }
 
-/// body(order) with an order of series, 4, 8 or 16, that holds derivative k; infinity above.
+/// Calls body(order) with the smallest order of series, 4, 8 or 16, that contains derivative k; returns infinity if k
+/// > 16.
 template <class Body>
 double with_order(int k, Body&& body) {
   if (k <= 4) return body(std::integral_constant<int, 4>{});
@@ -102,23 +103,29 @@ SurfaceFunctions surface_functions(const F& f) {
 
 }  // namespace generic
 
-/// c(t) = f(t). f takes T and returns std::array<T, 3>, for double, Taylor<double, 2, 1> and Taylor<IntervalNumber, N,
-/// 1>. It uses + - * / and the functions of taylor.h, and no branches; constants are doubles. Errors: those of
-/// ParametricCurve::make.
+/// Makes the curve c(t) = f(t).
+///
+/// - `f`: takes T and returns std::array<T, 3>, for double, Taylor<double, 2, 1> and Taylor<IntervalNumber, N, 1>. It
+///   uses + - * / and the functions of taylor.h, and no branches. Constants are doubles.
+///
+/// Errors: those of ParametricCurve::make().
 template <class F>
 Result<ParametricCurve> generic_curve(const F& f, const Interval& domain = {}) {
   return ParametricCurve::make(generic::curve_functions(f), domain);
 }
 
-/// p(u,v) = f(u,v), f as above with two arguments, for double, Taylor<double, 2> and Taylor<IntervalNumber, N, 1>.
-/// Errors: those of ParametricSurface::make.
+/// Makes the surface p(u,v) = f(u,v).
+///
+/// - `f`: as for generic_curve() with two arguments, for double, Taylor<double, 2> and Taylor<IntervalNumber, N, 1>.
+///
+/// Errors: those of ParametricSurface::make().
 template <class F>
 Result<ParametricSurface> generic_surface(const F& f, const Domain& domain = {}) {
   return ParametricSurface::make(generic::surface_functions(f), domain);
 }
 
-/// p(x,y) = f(x,y) over a disc by its polar map, which the series go through too. Positions are those of
-/// ParametricSurface::over_disc. Errors: its own.
+/// Makes the surface p(x,y) = f(x,y) over a disc by its polar map, to which the series apply too. Positions are those
+/// of ParametricSurface::over_disc(). Errors: those of over_disc().
 template <class F>
 Result<ParametricSurface> generic_surface_over_disc(const F& f, const Disc& disc = {}) {
   const Result<PolarMap> map = PolarMap::make(disc);

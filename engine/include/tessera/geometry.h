@@ -14,8 +14,8 @@ namespace tessera::inline abi_0_1 {
 struct Vec3 {
   double x = 0, y = 0, z = 0;  ///< in the model's unit
 
-  friend bool operator==(const Vec3&, const Vec3&) = default;                      ///< by components
-  Vec3& operator+=(const Vec3& b) { return *this = {x + b.x, y + b.y, z + b.z}; }  ///< by components
+  friend bool operator==(const Vec3&, const Vec3&) = default;                      ///< compares the components
+  Vec3& operator+=(const Vec3& b) { return *this = {x + b.x, y + b.y, z + b.z}; }  ///< adds the components
 };
 
 inline Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
@@ -27,11 +27,13 @@ inline double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y +
 inline Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+/// Returns the Euclidean length.
 inline double length(const Vec3& a) { return std::sqrt(dot(a, a)); }
+/// Tells whether all components are finite.
 inline bool is_finite(const Vec3& a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
-/// The largest absolute component.
+/// Returns the largest absolute component.
 inline double max_abs(const Vec3& a) { return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
-/// a / |a|, or the zero vector where a is zero.
+/// Returns a / |a|, or the zero vector if a is zero.
 inline Vec3 normalized(const Vec3& a) {
   const double scale = max_abs(a);
   if (!(scale > 0)) return {};
@@ -39,43 +41,43 @@ inline Vec3 normalized(const Vec3& a) {
   return (1 / length(b)) * b;
 }
 
-/// An axis-parallel box; empty (lower > upper) by default.
+/// An axis-parallel box. The default box is empty (lower > upper).
 struct Box3 {
-  /// Smallest and, below, largest coordinates; an empty box's are infinite.
+  /// The smallest coordinates; infinite in an empty box.
   Vec3 lower{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
              std::numeric_limits<double>::infinity()};
-  /// The largest coordinates.
+  /// The largest coordinates; -infinite in an empty box.
   Vec3 upper{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
              -std::numeric_limits<double>::infinity()};
 
-  /// Whether no point lies in it.
+  /// Whether the box contains no point.
   bool empty() const { return !(lower.x <= upper.x && lower.y <= upper.y && lower.z <= upper.z); }
-  /// So that the point lies in it.
+  /// Grows the box to contain the point.
   void extend(const Vec3& p) {
     lower = {std::min(lower.x, p.x), std::min(lower.y, p.y), std::min(lower.z, p.z)};
     upper = {std::max(upper.x, p.x), std::max(upper.y, p.y), std::max(upper.z, p.z)};
   }
-  /// So that the box lies in it.
+  /// Grows the box to contain the box b.
   void extend(const Box3& b) {
     if (b.empty()) return;
     extend(b.lower);
     extend(b.upper);
   }
-  Vec3 centre() const { return 0.5 * lower + 0.5 * upper; }  ///< of a box that is not empty
-  /// The length of the diagonal; 0 for an empty box. "The size" of a model means this.
+  Vec3 centre() const { return 0.5 * lower + 0.5 * upper; }  ///< the box must not be empty
+  /// The length of the diagonal; 0 for an empty box. It is the "size" of a model.
   double diagonal() const { return empty() ? 0 : length(upper - lower); }
 };
 
-/// p -> columns[0] p.x + columns[1] p.y + columns[2] p.z + translation.
+/// The affine map p -> columns[0] p.x + columns[1] p.y + columns[2] p.z + translation.
 struct Affine {
   std::array<Vec3, 3> columns{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};  ///< the images of the axes
   Vec3 translation{};                                                        ///< the image of the origin
 
   static Affine translated(const Vec3& by) { return {.translation = by}; }  ///< moves by a vector
-  /// Stretches along the axes.
+  /// Scales along the axes.
   static Affine scaled(const Vec3& by) { return {.columns = {Vec3{by.x, 0, 0}, Vec3{0, by.y, 0}, Vec3{0, 0, by.z}}}; }
-  /// By `angle` radians about an axis through the origin, counter-clockwise as seen from its tip. The identity for an
-  /// axis of no length.
+  /// Rotates by `angle` radians about an axis through the origin, counter-clockwise as seen from its tip. A zero axis
+  /// gives the identity.
   static Affine rotated(const Vec3& axis, double angle) {
     const Vec3 n = normalized(axis);
     if (n == Vec3{}) return {};
@@ -84,10 +86,11 @@ struct Affine {
     return {.columns = {turned({1, 0, 0}), turned({0, 1, 0}), turned({0, 0, 1})}};
   }
 
-  /// The image of a direction: the translation has no part in it.
+  /// Returns the image of a direction, without the translation.
   Vec3 vector(const Vec3& d) const { return d.x * columns[0] + d.y * columns[1] + d.z * columns[2]; }
   Vec3 point(const Vec3& p) const { return vector(p) + translation; }  ///< the image of a point
-  /// A bound of |vector(d)| / |d|, sharp where the columns are orthogonal: the root of the largest row sum of M^T M.
+  /// Returns a bound of |vector(d)| / |d|: the root of the largest row sum of |M^T M|. It is sharp for orthogonal
+  /// columns.
   double norm_bound() const {
     const double scale = std::max({max_abs(columns[0]), max_abs(columns[1]), max_abs(columns[2])});
     if (!(scale > 0)) return 0;
@@ -100,17 +103,18 @@ struct Affine {
     }
     return scale * std::sqrt(largest);
   }
-  /// How volumes grow; negative where the map mirrors.
+  /// The factor by which volumes grow; negative if the map mirrors.
   double determinant() const { return dot(columns[0], cross(columns[1], columns[2])); }
 
-  /// First b, then a.
+  /// Applies b first, then a.
   friend Affine operator*(const Affine& a, const Affine& b) {
     return {.columns = {a.vector(b.columns[0]), a.vector(b.columns[1]), a.vector(b.columns[2])},
             .translation = a.point(b.translation)};
   }
-  friend bool operator==(const Affine&, const Affine&) = default;  ///< the same numbers
+  friend bool operator==(const Affine&, const Affine&) = default;  ///< compares all twelve numbers
 };
 
+/// Tells whether all numbers of the map are finite.
 inline bool is_finite(const Affine& map) {
   return is_finite(map.columns[0]) && is_finite(map.columns[1]) && is_finite(map.columns[2]) &&
          is_finite(map.translation);
@@ -120,30 +124,30 @@ inline bool is_finite(const Affine& map) {
 struct Domain {
   double u0 = 0, u1 = 1, v0 = 0, v1 = 1;  ///< u0 < u1, v0 < v1
 
-  /// From local parameters in [0,1]^2 to this rectangle; exact at 0 and 1.
+  /// Maps a local parameter in [0,1] to u of this rectangle; exact at 0 and 1.
   double u_at(double s) const { return s == 1 ? u1 : u0 + s * (u1 - u0); }
-  double v_at(double t) const { return t == 1 ? v1 : v0 + t * (v1 - v0); }  ///< as u_at
-  /// From this rectangle to local parameters; exact at the ends.
+  double v_at(double t) const { return t == 1 ? v1 : v0 + t * (v1 - v0); }  ///< like u_at, for v
+  /// Maps u of this rectangle to a local parameter; exact at u0 and u1.
   double local_u(double u) const { return u == u1 ? 1 : (u - u0) / (u1 - u0); }
-  double local_v(double v) const { return v == v1 ? 1 : (v - v0) / (v1 - v0); }                 ///< as local_u
+  double local_v(double v) const { return v == v1 ? 1 : (v - v0) / (v1 - v0); }                 ///< like local_u, for v
   bool contains(double u, double v) const { return u >= u0 && u <= u1 && v >= v0 && v <= v1; }  ///< borders included
 
-  friend bool operator==(const Domain&, const Domain&) = default;  ///< by all four
+  friend bool operator==(const Domain&, const Domain&) = default;  ///< compares all four bounds
 };
 
-/// The four edges of a patch, as bits of a mask.
+/// An edge of a patch; also a bit of EdgeMask.
 enum class Edge : std::uint8_t { u0 = 1, u1 = 2, v0 = 4, v1 = 8 };
 
 /// A set of edges.
 struct EdgeMask {
-  std::uint8_t bits = 0;  ///< one an edge, as Edge numbers them
-  /// Whether the edge is in the set.
+  std::uint8_t bits = 0;  ///< one bit per edge, with the values of Edge
+  /// Whether the set contains the edge.
   bool has(Edge edge) const { return (bits & static_cast<std::uint8_t>(edge)) != 0; }
-  /// Puts the edge into the set.
+  /// Adds the edge to the set.
   void add(Edge edge) { bits = static_cast<std::uint8_t>(bits | static_cast<std::uint8_t>(edge)); }
-  bool any() const { return bits != 0; }  ///< whether an edge is in the set
+  bool any() const { return bits != 0; }  ///< whether the set contains an edge
 
-  friend bool operator==(const EdgeMask&, const EdgeMask&) = default;  ///< the same edges
+  friend bool operator==(const EdgeMask&, const EdgeMask&) = default;  ///< compares the sets
 };
 
 }  // namespace tessera::inline abi_0_1

@@ -1,5 +1,5 @@
 #pragma once
-// The limits of this machine, measured in this process, and how long a piece of work takes at them.
+// The speed limits of this machine, measured in this process, and how long a piece of work takes at them.
 
 #include <cstddef>
 #include <optional>
@@ -10,35 +10,35 @@
 #pragma GCC visibility push(default)
 namespace tessera::inline abi_0_1 {
 
-/// Work that a call cannot avoid, whatever the kernel.
+/// The work that a call cannot avoid, whatever the kernel.
 struct Work {
   double lane_operations = 0;     ///< fused multiply-adds, one float (or double) each
-  double bytes_written = 0;       ///< at the least
-  double bytes_read = 0;          ///< at the least
-  bool double_precision = false;  ///< whose multiply-adds are counted
+  double bytes_written = 0;       ///< lower bound
+  double bytes_read = 0;          ///< lower bound
+  bool double_precision = false;  ///< whether the multiply-adds are of doubles
 };
 
 /// Rates of one thread.
 struct Limits {
-  Isa isa = Isa::sse2;                          ///< the one that was measured
+  Isa isa = Isa::sse2;                          ///< the measured instruction set
   double float_operations_per_second = 0;       ///< fused multiply-adds, one float each (SSE2: multiply and add)
-  double double_operations_per_second = 0;      ///< the same in doubles
-  double store_bytes_per_second = 0;            ///< the better of plain and streaming fill at the size asked for
-  double plain_store_bytes_per_second = 0;      ///< by plain stores
-  double streaming_store_bytes_per_second = 0;  ///< past the caches
+  double double_operations_per_second = 0;      ///< likewise, one double each
+  double store_bytes_per_second = 0;            ///< the better of plain and streaming fill at the requested size
+  double plain_store_bytes_per_second = 0;      ///< with plain stores
+  double streaming_store_bytes_per_second = 0;  ///< with streaming stores, past the caches
 };
 
-/// What is measured, and how long.
+/// Options of measure_limits().
 struct LimitsOptions {
   std::optional<Isa> isa = {};           ///< default_isa() if empty
-  std::size_t store_bytes = 160u << 20;  ///< size of the buffer that is filled: that of the output in question
+  std::size_t store_bytes = 160u << 20;  ///< size of the filled buffer: that of the output in question
 };
 
-/// Measures in about a quarter of a second on the calling thread, best of several.
-/// Errors: isa_unavailable, out_of_memory.
+/// Measures on the calling thread, the best of several runs, in a fraction of a second by default. Errors:
+/// isa_unavailable, out_of_memory. Memory: `store_bytes` during the call.
 Result<Limits> measure_limits(const LimitsOptions& options = {});
 
-/// The larger of operations over their rate and bytes over theirs.
+/// Returns the larger of the operations over their rate and the larger byte count over the store rate.
 double seconds_at_limit(const Limits& limits, const Work& work);
 
 }  // namespace tessera::inline abi_0_1

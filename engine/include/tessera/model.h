@@ -1,5 +1,5 @@
 #pragma once
-// A file's worth of surfaces.
+// A model: the named, placed and trimmed surfaces of a file.
 
 #include <span>
 #include <string>
@@ -16,49 +16,52 @@
 #pragma GCC visibility push(default)
 namespace tessera::inline abi_0_1 {
 
-/// A closed chain of curves in the surface's parameters (x = u, y = v, z = 0), each from where the one before it ends.
-/// What lies inside a hole is cut away; what lies outside of all other loops too.
+/// A closed chain of curves in the surface's parameters (x = u, y = v, z = 0). The inside of a hole is cut away, and so
+/// is the outside of all other loops.
 struct TrimLoop {
-  std::vector<Curve> curves;  ///< each from where the one before it ends
-  bool hole = false;          ///< false: what lies outside is cut away
+  std::vector<Curve> curves;  ///< each begins where the one before it ends
+  bool hole = false;          ///< if false, the outside is cut away
 };
 
-/// A named surface, and where it stands in the model. Trims are kept for those who ask; neither patches, meshes nor rays
-/// honour them yet. Copies share everything.
+/// A named surface, and its placement in the model. Trims are kept for callers; patches, meshes and rays ignore them so
+/// far. Copies share everything.
 struct ModelSurface {
   Shared<std::string> name;                  ///< may be empty
   Surface surface;                           ///< in its own space
   Shared<Affine> placement = {};             ///< from its own space to the model's
-  Shared<std::vector<TrimLoop>> trims = {};  ///< kept, not honoured
+  Shared<std::vector<TrimLoop>> trims = {};  ///< kept, ignored so far
 };
 
-/// What a file holds, or a program makes.
+/// The surfaces of a file, or those that a program makes.
 struct Model {
   std::string name;                    ///< may be empty
   std::vector<ModelSurface> surfaces;  ///< in the order of the file
-  /// What a file holds and this model does not, a sentence each, with file and line: "part.obj:12: sp is not read".
+  /// Parts of the file that this model lacks, one sentence each, with file and line: "part.obj:12: sp is not read".
   std::vector<std::string> warnings = {};
 };
 
-/// `status` as "surface 3 (rim): ...", with the index 3.
+/// Returns `status` with the message "surface 3 (rim): ..." and the index 3; surface < model.surfaces.size().
 Status in_surface(const Model& model, std::size_t surface, const Status& status);
 
-/// Position and derivatives in the model, by the surface's own parameters. Errors: those of the kind; non_finite (placed
-/// beyond the range of numbers).
+/// Returns position and derivatives in the model, by the surface's own parameters. Errors: those of the kind,
+/// non_finite (placed beyond the range of numbers).
 Result<SurfaceJet> evaluate_jet(const ModelSurface& surface, double u, double v);
-/// The patches in the model's space; a tolerance and the fit error are lengths there. Errors: those of the kind,
-/// non_finite (the placement), and invalid_argument (a tolerance below what rounding leaves where the surface is placed).
+/// Converts to patches in the model's space; a tolerance and the fit error are lengths there. Errors: those of the
+/// kind, non_finite (the placement), invalid_argument (a tolerance below what rounding leaves where the surface is
+/// placed).
 Result<PatchGrid> to_bezier(const ModelSurface& surface, const FitOptions& options = {});
 
-/// The patches of all surfaces; source(k).surface is the index into model.surfaces, source(k).domain the patch's
-/// rectangle of the surface's parameters; PatchSet::fit_error() the largest of all, certified if all are. Errors: those
-/// of the conversions and of PatchSet::from, as "surface 3 (rim): ..." (index = the surface).
+/// Makes one set of the patches of all surfaces. source(k).surface is the index into model.surfaces, and
+/// source(k).domain the patch's rectangle of the surface's parameters. PatchSet::fit_error() is the largest of all,
+/// certified if all are.
+///
+/// Errors: those of the conversions and of PatchSet::from(), as "surface 3 (rim): ..." (index = the surface).
 Result<PatchSet> make_patch_set(const Model& model, const PatchSetOptions& options = {}, const FitOptions& fit = {});
 
-/// The patches of several surfaces in one set; source(k).surface is the index into `grids`, source(k).domain the patch's
-/// rectangle. Errors: those of PatchSet::from.
+/// Makes one set of the patches of several surfaces. source(k).surface is the index into `grids`, and source(k).domain
+/// the patch's rectangle. Errors: those of PatchSet::from().
 Result<PatchSet> make_patch_set(std::span<const PatchGrid> grids, const PatchSetOptions& options = {});
-/// The same of one surface; a grid that is moved here gives its patches without a copy.
+/// Makes a set of the patches of one surface. A grid that is moved here gives up its patches without a copy.
 Result<PatchSet> make_patch_set(PatchGrid grid, const PatchSetOptions& options = {});
 
 }  // namespace tessera::inline abi_0_1

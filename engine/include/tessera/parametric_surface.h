@@ -1,5 +1,5 @@
 #pragma once
-// Surfaces and curves that are functions of the caller's: evaluated as they are, and fitted by Bezier patches to a stated
+// Surfaces and curves given by the caller's functions: evaluated directly, and fitted by Bezier patches to a stated
 // tolerance.
 
 #include <array>
@@ -19,37 +19,38 @@ namespace tessera::inline abi_0_1 {
 
 class PatchGrid;  // tessera/convert.h
 
-/// What the caller knows of a surface p(u,v). Functions are called from one thread at a time, or from several if const
-/// calls on the surface are; what they throw becomes a Status.
+/// The caller's functions for a surface p(u,v). Threads: functions are called from one thread at a time, or from
+/// several if const calls on the surface are. An exception becomes a Status; if a bound throws one, there is no bound.
 struct SurfaceFunctions {
-  std::function<Vec3(double u, double v)> position;  ///< p(u,v); must be given
-  /// Position and derivatives to the second order; by differences if empty.
+  std::function<Vec3(double u, double v)> position;  ///< p(u,v); required
+  /// Position and derivatives up to the second order. If empty, derivatives are computed by differences.
   std::function<SurfaceJet(double u, double v)> jet = {};
-  /// Bounds of |d^k p / du^k| and |d^k p / dv^k| over a rectangle within the domain, k from 1 to 16; infinity where there
-  /// is none. If empty, fits are sampled, not certified. One that is too small makes a certificate false.
+  /// Bounds of |d^k p / du^k| and |d^k p / dv^k| over a rectangle within the domain, k from 1 to 16; infinity where
+  /// there is none. If empty, fits are sampled, not certified. A bound that is too small makes a certificate false.
   std::function<std::array<double, 2>(const Domain& part, int k)> derivative_bounds = {};
 };
 
 /// A disc of parameters.
 struct Disc {
-  double x = 0, y = 0, radius = 1;  ///< centre and radius, above 0
+  double x = 0, y = 0, radius = 1;  ///< centre, and radius > 0
 };
 
 /// The polar map of a disc: x = x0 + s rho cos(theta), y = y0 + s rho sin(theta), rho from 0 to the radius R and theta
-/// from 0 to 2 pi. The factor s is a little below 1, so that the points lie within the disc also after rounding: the
-/// rim is short of R by at most 7 units of 2^-52 of R and two of |x0| + |y0|, and R*R - dx*dx - dy*dy with dx = x - x0,
-/// dy = y - y0, in doubles and in any order, is never negative. (The root of it at the rim is noise below 1e-7 R.) The
-/// centre is one point for all theta, and theta = 2 pi is theta = 0, by ==.
+/// from 0 to 2 pi. The centre is one point for all theta, and theta = 2 pi gives the point of theta = 0, by ==.
+///
+/// The factor s is a little below 1, so that points lie within the disc even after rounding: the rim is short of R by
+/// at most 7 units of 2^-52 of R and two of |x0| + |y0|. So R*R - dx*dx - dy*dy with dx = x - x0, dy = y - y0, in
+/// doubles and in any order, is never negative. (Its root at the rim is noise below 1e-7 R.)
 class PolarMap {
  public:
-  /// Errors: non_finite (the disc, or its box), invalid_argument (a radius that is not positive, or lost beside the
-  /// centre).
+  /// Makes the map of a disc. Errors: non_finite (the disc, or its box), invalid_argument (a radius that is not
+  /// positive, or is lost beside the centre).
   static Result<PolarMap> make(const Disc& disc);
   Domain domain() const;                                             ///< [0, R] x [0, 2 pi]
-  const Disc& disc() const { return disc_; }                         ///< as given
-  double scale() const { return scale_; }                            ///< s
-  std::array<double, 2> operator()(double rho, double theta) const;  ///< x and y
-  /// By rho and theta, from position and derivatives by x and y at the same point.
+  const Disc& disc() const { return disc_; }                         ///< the mapped disc
+  double scale() const { return scale_; }                            ///< the factor s
+  std::array<double, 2> operator()(double rho, double theta) const;  ///< returns x and y
+  /// Returns the derivatives by rho and theta, from position and derivatives by x and y at the same point.
   SurfaceJet chain_rule(const SurfaceJet& by_xy, double rho, double theta) const;
 
  private:
@@ -58,26 +59,29 @@ class PolarMap {
   double scale_ = 1;
 };
 
-/// p(u,v) on a rectangle. Immutable but for assignment; copies share their functions.
+/// A surface p(u,v) on a rectangle. Immutable except for assignment; copies share their functions.
 class ParametricSurface {
  public:
+  /// Makes a surface from functions. generic_surface() of tessera/generic_callable.h makes all three functions from an
+  /// expression over any scalar type.
+  ///
   /// Errors: invalid_argument (no position, a rectangle that is empty or reversed), non_finite (the rectangle; the
-  /// position at a corner). Functions made of expressions over any scalar type get all three by generic_surface() of
-  /// tessera/generic_callable.h.
+  /// position at a corner).
   static Result<ParametricSurface> make(SurfaceFunctions functions, const Domain& domain = {});
-  /// p(x,y) over a disc by its polar map: u is rho, v theta. The edge u = 0 is collapsed, v0 and v1 are one curve.
-  /// Derivatives given are by x and y; those of the map are put in. Bounds are left out, for those of pure derivatives
-  /// say nothing of the mixed ones that polar lines need (generic_surface_over_disc() finds them). Errors: as above,
-  /// and those of PolarMap.
+  /// Makes a surface p(x,y) over a disc by its polar map: u is rho, v is theta. The edge u = 0 is collapsed; v0 and v1
+  /// are one curve. Given derivatives are by x and y, and the chain rule is applied. Bounds are dropped: pure
+  /// derivatives do not bound the mixed ones that polar curves need (generic_surface_over_disc() finds them).
+  ///
+  /// Errors: those of make() and PolarMap::make().
   static Result<ParametricSurface> over_disc(SurfaceFunctions functions, const Disc& disc = {});
 
-  const Domain& domain() const { return data_->domain; }  ///< where it is evaluated
-  /// Errors: non_finite (names u and v), invalid_argument (the function threw: its message).
+  const Domain& domain() const { return data_->domain; }  ///< rectangle on which it is evaluated
+  /// Returns p(u,v). Errors: non_finite (names u and v), invalid_argument (the function threw: its message).
   Result<Vec3> position(double u, double v) const;
-  bool has_derivatives() const { return data_->functions.jet != nullptr; }  ///< false: differences are taken
-  /// False: fits are sampled, not certified.
+  bool has_derivatives() const { return data_->functions.jet != nullptr; }  ///< if false, differences are used
+  /// Whether there are bounds; if not, fits are sampled, not certified.
   bool has_bounds() const { return data_->functions.derivative_bounds != nullptr; }
-  /// Bounds over a part of the domain, k >= 0; infinity where none is known.
+  /// Returns bounds over a part of the domain, k >= 0; infinity where none is known.
   std::array<double, 2> derivative_bounds(const Domain& part, int k) const;
 
  private:
@@ -90,68 +94,77 @@ class ParametricSurface {
   friend Result<SurfaceJet> evaluate_jet(const ParametricSurface& surface, double u, double v);
 };
 
-/// By the caller's derivatives, else by differences within the domain: 64 calls. With L the domain's length along u (or
-/// v), h = L / 256, F a bound of |p| near (u,v) and F_ab one of |d^(a+b) p / du^a dv^b|, the errors are at most
-///   p_u: h^6 F_70 / 140 + 2^-42 F / L,  p_uu: h^6 F_80 / 560 + 2^-33 F / L^2,
-///   p_uv: h^6 F_71 / 140 + k^6 F_17 / 63 + 2^-33 F / (L_u L_v), k being v's h;
-/// within three steps of the domain's edges
-///   p_u: h^6 F_70 / 7 + 2^-39 F / L,  p_uu: 0.7 h^5 F_70 + 2^-29 F / L^2,
+/// Returns position and derivatives, from the caller's function or else by differences within the domain in 64 calls.
+///
+/// Error bounds of differences, where L is the domain's length along u (or v), h = L / 256, k is the h of v, F is a
+/// bound of |p| near (u,v) and F_ab a bound of |d^(a+b) p / du^a dv^b|:
+///
+/// - away from the domain's edges p_u: h^6 F_70 / 140 + 2^-42 F / L; p_uu: h^6 F_80 / 560 + 2^-33 F / L^2;
+///   p_uv: h^6 F_71 / 140 + k^6 F_17 / 63 + 2^-33 F / (L_u L_v);
+/// - within three steps of them p_u: h^6 F_70 / 7 + 2^-39 F / L; p_uu: 0.7 h^5 F_70 + 2^-29 F / L^2;
 ///   p_uv: h^6 F_71 / 7 + 9 k^6 F_17 + 2^-25 F / (L_u L_v).
-/// Errors: as of position(); non_finite (a derivative: names it and (u,v)).
+///
+/// Errors: those of position(), non_finite (a derivative: names it and (u,v)).
 Result<SurfaceJet> evaluate_jet(const ParametricSurface& surface, double u, double v);
 
-/// How closely, and by how many patches, a callable is fitted.
+/// Options of a fit.
 struct FitOptions {
-  /// How far patches may lie from the surface at equal parameters, in the model's unit; 0 for 1e-6 of the diagonal of
-  /// the box of 17 x 17 points.
+  /// The largest distance from the surface at equal parameters, in the model's unit; 0 for 1e-6 of the diagonal of the
+  /// box of 17 x 17 points.
   double tolerance = 0;
-  int degree = 3;                      ///< of the patches, each way; 2 to max_degree
+  int degree = 3;                      ///< degree of the patches in each direction, 2 to max_degree
   std::size_t max_patches = 1u << 16;  ///< more are an error
-  /// By the surface's bounds, where it has them. Else by sampling, which takes fewer patches and more calls.
+  /// Whether to use the surface's bounds, if any. Sampled fits take fewer patches and more calls.
   bool certify = true;
-  /// Inner parameters at which the surface is not smooth: breakpoints from the start, so that no patch goes across.
+  /// Inner parameters where the surface is not smooth: breakpoints from the start, so that no patch crosses them.
   /// Finite, increasing, within the open range of u (or v).
   std::vector<double> breaks_u = {}, breaks_v = {};
 };
 
-/// Patches that interpolate the surface at Chebyshev-Lobatto parameters, over breakpoints that are halved where the
-/// tolerance is not kept: towards a border where derivatives are infinite they get as close as it needs. Only positions
-/// are asked for. Neighbours share their borders by ==, and edges on which all positions are equal by == are collapsed.
-/// PatchGrid::fit_error() is a proven bound where the surface has bounds on its derivatives that suffice, taking the
-/// function's values as exact; then the function is called once for each of (n cu + 1)(n cv + 1) points of cu x cv
-/// patches of degree n. Else it is the largest deviation found at (3 n + 1)^2 points of every patch, with about fifteen
-/// to forty times as many calls. What is narrower than the gaps between these points can be missed: a caller who knows
-/// of such features fits sub-rectangles. Errors: invalid_argument (options; a tolerance below what rounding leaves; one
-/// that is not kept by the largest count of patches, or at a jump: says what was reached, and where), and those of
-/// position().
+/// Fits a surface by patches that interpolate it at Chebyshev-Lobatto parameters. Intervals between breakpoints are
+/// halved where the tolerance is not reached, as often as needed next to a border with infinite derivatives. Only
+/// positions are evaluated. Neighbours share their borders by ==, and edges on which all positions are equal by == are
+/// collapsed.
+///
+/// PatchGrid::fit_error() of the result is one of two:
+///
+/// - a proven bound, where the surface has bounds on its derivatives that suffice, taking the function's values as
+///   exact. The function is called once for each of (n cu + 1)(n cv + 1) points of cu x cv patches of degree n.
+/// - otherwise the largest deviation found at (3 n + 1)^2 points of every patch, with about fifteen to forty times as
+///   many calls. Features narrower than the gaps between these points can be missed; fit sub-rectangles around them.
+///
+/// Errors: invalid_argument (options; a tolerance below what rounding leaves; one that is not reached with the largest
+/// number of patches, or at a jump: says what was reached, and where), those of position().
 Result<PatchGrid> to_bezier(const ParametricSurface& surface, const FitOptions& options = {});
 
-/// What the caller knows of a curve c(t). Functions are called from one thread at a time, or from several if const
-/// calls on the curve are; what they throw becomes a Status.
+/// The caller's functions for a curve c(t). Threads: functions are called from one thread at a time, or from several if
+/// const calls on the curve are. An exception becomes a Status; if a bound throws one, there is no bound.
 struct CurveFunctions {
-  std::function<Vec3(double t)> position;  ///< c(t); must be given
-  /// Position, first and second derivative; by differences if empty.
+  std::function<Vec3(double t)> position;  ///< c(t); required
+  /// Position, first and second derivative. If empty, derivatives are computed by differences.
   std::function<CurveJet(double t)> jet = {};
   /// A bound of |d^k c / dt^k| over an interval within the domain, k from 0 (|c| itself) to 16; infinity where there is
-  /// none. If empty, fits are not certified. One that is too small makes a certificate false.
+  /// none. If empty, fits are not certified. A bound that is too small makes a certificate false.
   std::function<double(const Interval& part, int k)> derivative_bound = {};
 };
 
-/// c(t) on an interval. Immutable but for assignment; copies share their functions.
+/// A curve c(t) on an interval. Immutable except for assignment; copies share their functions.
 class ParametricCurve {
  public:
+  /// Makes a curve from functions. generic_curve() of tessera/generic_callable.h makes all three functions from an
+  /// expression over any scalar type.
+  ///
   /// Errors: invalid_argument (no position, an interval that is empty or reversed), non_finite (the interval; the
-  /// position at an end). Functions made of expressions over any scalar type get all three by generic_curve() of
-  /// tessera/generic_callable.h.
+  /// position at an end).
   static Result<ParametricCurve> make(CurveFunctions functions, const Interval& domain = {});
 
-  const Interval& domain() const { return data_->domain; }  ///< where it is evaluated
-  /// Errors: non_finite (names t), invalid_argument (the function threw: its message).
+  const Interval& domain() const { return data_->domain; }  ///< interval on which it is evaluated
+  /// Returns c(t). Errors: non_finite (names t), invalid_argument (the function threw: its message).
   Result<Vec3> position(double t) const;
-  bool has_derivatives() const { return data_->functions.jet != nullptr; }  ///< false: differences are taken
-  /// False: fits are sampled, not certified.
+  bool has_derivatives() const { return data_->functions.jet != nullptr; }  ///< if false, differences are used
+  /// Whether there are bounds; if not, fits are sampled, not certified.
   bool has_bounds() const { return data_->functions.derivative_bound != nullptr; }
-  /// A bound of |d^k c / dt^k| over a part of the domain, k >= 0; infinity where none is known.
+  /// Returns a bound of |d^k c / dt^k| over a part of the domain, k >= 0; infinity where none is known.
   double derivative_bound(const Interval& part, int k) const;
 
  private:
@@ -164,15 +177,17 @@ class ParametricCurve {
   friend Result<CurveJet> evaluate_jet(const ParametricCurve& curve, double t);
 };
 
-/// By the caller's derivatives, else by differences as ParametricSurface takes them. t in the domain. Errors: as of
-/// position().
+/// Returns position and derivatives at t in the domain, from the caller's function or else by differences as for
+/// ParametricSurface. Errors: those of position(), non_finite (a derivative).
 Result<CurveJet> evaluate_jet(const ParametricCurve& curve, double t);
 
-/// A border: exact, or a function.
+/// A border: an exact curve, or a function.
 using BorderCurve = std::variant<Curve, ParametricCurve>;
+/// Returns the border's interval.
 const Interval& domain(const BorderCurve& border);
-/// Errors: those of the function; non_finite (t).
+/// Returns the border's point at t. Errors: those of the function, non_finite (t).
 Result<Vec3> position(const BorderCurve& border, double t);
+/// Returns the border's point and derivatives at t. Errors: as for position().
 Result<CurveJet> evaluate_jet(const BorderCurve& border, double t);
 
 }  // namespace tessera::inline abi_0_1

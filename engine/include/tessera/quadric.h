@@ -1,6 +1,6 @@
 #pragma once
 // Quadrics: classification, canonical frame, pieces between ranges of the canonical parameters, and ray intersection.
-// The conversion of a piece needs tessera/convert.h as well.
+// The conversion of a piece also needs tessera/convert.h.
 
 #include <array>
 #include <cstdint>
@@ -17,13 +17,13 @@ namespace tessera::inline abi_0_1 {
 
 class PatchGrid;
 
-/// a x^2 + b y^2 + c z^2 + 2 d xy + 2 e yz + 2 f xz + 2 g x + 2 h y + 2 j z + k = 0, that is P Q P^T = 0 with
-/// P = [x y z 1] and Q = [[a,d,f,g],[d,b,e,h],[f,e,c,j],[g,h,j,k]].
+/// The quadric a x^2 + b y^2 + c z^2 + 2 d xy + 2 e yz + 2 f xz + 2 g x + 2 h y + 2 j z + k = 0, that is P Q P^T = 0
+/// with P = [x y z 1] and Q = [[a,d,f,g],[d,b,e,h],[f,e,c,j],[g,h,j,k]].
 struct QuadricCoefficients {
-  double a = 0, b = 0, c = 0, d = 0, e = 0, f = 0, g = 0, h = 0, j = 0, k = 0;  ///< as in the equation
+  double a = 0, b = 0, c = 0, d = 0, e = 0, f = 0, g = 0, h = 0, j = 0, k = 0;  ///< coefficients of the equation
 };
 
-/// What a quadric is, with its equation in the canonical frame and the canonical parametrisation of its surface, where
+/// Kind of a quadric, with its equation in the canonical frame and the canonical parametrisation of its surface. Here
 /// a, b, c = Quadric::size(), x2 is x squared, and s = 1 on sheet 0, -1 on sheet 1. Angles are in radians.
 enum class QuadricKind : std::uint8_t {
   ellipsoid,               ///< x2/a2 + y2/b2 + z2/c2 = 1: (a cos u cos v, b sin u cos v, c sin v), |v| <= pi/2
@@ -46,55 +46,61 @@ enum class QuadricKind : std::uint8_t {
   imaginary_planes,        ///< x2 = -a2: empty
   empty,                   ///< k = 0 with k other than 0
 };
+/// Returns the kind's name for messages, such as "elliptic cone".
 std::string_view name(QuadricKind kind);
-/// Whether the real points of the kind form a surface.
+/// Tells whether the real points of the kind form a surface.
 bool is_surface(QuadricKind kind);
-/// Two for two sheets, two planes and a hyperbolic cylinder, else one; 0 where there is no surface.
+/// Returns the number of sheets: two for two sheets, two planes and a hyperbolic cylinder, otherwise one; 0 without a
+/// surface.
 int sheet_count(QuadricKind kind);
 
-/// What may be taken for zero.
+/// Largest values that count as zero.
 struct QuadricOptions {
-  /// An eigenvalue of the quadratic part is 0 below this share of the largest one; the linear part along null
-  /// directions below this share of the largest of quadratic, linear and constant part at length L; the constant, taken
-  /// at the centre, below this share of the terms that it is the sum of. Units of length and a common factor of the
-  /// coefficients don't matter.
+  /// Share in (0, 0.01]; units of length and a common factor of the coefficients have no effect. A value counts as 0
+  /// below this share of its reference:
+  ///
+  /// - an eigenvalue of the quadratic part: the largest eigenvalue;
+  /// - the linear part along null directions: the largest of quadratic, linear and constant part at length L;
+  /// - the constant, taken at the centre: the largest of the terms that it is the sum of.
   double tolerance = 1e-13;
-  /// L, the length at which terms of different degree are compared. 0: the largest at which the quadratic part equals
-  /// the linear or the constant one. Otherwise a part that is below `tolerance` of the largest at this length is 0
-  /// altogether: a plane with a trace of curvature needs it.
+  /// L, the length at which terms of different degree are compared. 0 takes the largest length at which the quadratic
+  /// part equals the linear or the constant one. Otherwise a part that is below `tolerance` of the largest at this
+  /// length counts as 0 altogether: a plane with a trace of curvature needs this.
   double length = 0;
 };
 
-/// A point of the model is origin + x axes[0] + y axes[1] + z axes[2]; the axes are a right-handed rotation.
-/// Where several frames fit, the axes lie as near to the model's own as can be.
+/// The canonical frame: a point of the model is origin + x axes[0] + y axes[1] + z axes[2]. The axes are a right-handed
+/// rotation. If several frames fit, the axes are as near to the model's own as possible.
 struct QuadricFrame {
-  Vec3 origin;  ///< centre or vertex; where there are many, the one nearest to zero
+  Vec3 origin;  ///< centre or vertex; if there are many, the one nearest to zero
   std::array<Vec3, 3> axes{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};  ///< unit, right-handed
 
-  /// From the frame to the model, a direction.
+  /// Maps a direction from the frame to the model.
   Vec3 vector(const Vec3& p) const { return p.x * axes[0] + p.y * axes[1] + p.z * axes[2]; }
-  Vec3 point(const Vec3& p) const { return origin + vector(p); }  ///< a point, from the frame to the model
-  /// From the model to the frame, a direction.
+  Vec3 point(const Vec3& p) const { return origin + vector(p); }  ///< maps a point from the frame to the model
+  /// Maps a direction from the model to the frame.
   Vec3 local_vector(const Vec3& d) const { return {dot(d, axes[0]), dot(d, axes[1]), dot(d, axes[2])}; }
-  Vec3 local(const Vec3& p) const { return local_vector(p - origin); }  ///< a point, from the model to the frame
+  Vec3 local(const Vec3& p) const { return local_vector(p - origin); }  ///< maps a point from the model to the frame
 };
 
-/// A classified quadric. Immutable but for assignment.
+/// A classified quadric. Immutable except for assignment.
 class Quadric {
  public:
-  /// Sizes and origin are right to some units of 2^-52 times the ratio of the largest eigenvalue to their own.
+  /// Classifies a quadric and finds its canonical frame. Sizes and origin are right to some units of 2^-52 times the
+  /// ratio of the largest eigenvalue to their own.
+  ///
   /// Errors: non_finite (index = the coefficient, 0..9 for a..k; or the canonical form overflows), invalid_argument
-  /// (all coefficients are 0; tolerance not in (0, 0.01]; length negative).
+  /// (all coefficients are 0; tolerance not in (0, 0.01]; length negative or not finite).
   static Result<Quadric> make(const QuadricCoefficients& coefficients, const QuadricOptions& options = {});
 
-  const QuadricCoefficients& coefficients() const { return coefficients_; }  ///< as given
-  QuadricKind kind() const { return kind_; }                                 ///< by eigenvalues
-  const QuadricFrame& frame() const { return frame_; }                       ///< in which the equation is canonical
-  const Vec3& size() const { return size_; }  ///< a, b, c of QuadricKind; 1 where the kind has none
+  const QuadricCoefficients& coefficients() const { return coefficients_; }  ///< the argument of make()
+  QuadricKind kind() const { return kind_; }                                 ///< found from the eigenvalues
+  const QuadricFrame& frame() const { return frame_; }  ///< the frame in which the equation is canonical
+  const Vec3& size() const { return size_; }            ///< a, b, c of QuadricKind; 1 where the kind has none
 
-  /// The canonical equation as squares . (x2, y2, z2) + linear . (x, y, z) + constant = 0.
+  /// The canonical equation squares . (x2, y2, z2) + linear . (x, y, z) + constant = 0.
   struct Diagonal {
-    Vec3 squares, linear;  ///< coefficients of squares and of linear terms
+    Vec3 squares, linear;  ///< coefficients of the squares and of the linear terms
     double constant = 0;   ///< the term without a variable
   };
   Diagonal diagonal() const;  ///< the equation in the frame
@@ -107,36 +113,45 @@ class Quadric {
   Vec3 size_{1, 1, 1};
 };
 
-/// Where a ray meets a quadric.
+/// Intersections of a line with a quadric.
 struct QuadricHits {
-  int count = 0;              ///< how many different t, 0 to 2
+  int count = 0;              ///< number of different t, 0 to 2
   std::array<double, 2> t{};  ///< ascending; points are origin + t direction, t of either sign
-  bool tangent = false;       ///< two roots in one: the discriminant is 0 within its own rounding
+  bool tangent = false;       ///< a double root: the discriminant is 0 within its own rounding
   bool contained = false;     ///< the whole line lies in the surface within rounding; count is then 0
 };
-/// All t on the line. Nothing for a zero or non-finite ray. Each t is a root of a quadratic that is within a few units
-/// of rounding of the true one about the line's point nearest to the centre (no cancellation for far origins); near
-/// tangency t itself has half the digits. A hit whose t overflows is left out.
+/// Intersects a whole line with a quadric.
+///
+/// Result: every t of origin + t direction on the quadric; none for a zero or non-finite ray. Each t is a root of a
+/// quadratic that is within a few units of rounding of the true one about the line's point nearest to the centre (no
+/// cancellation for far origins); near tangency t itself has half the digits. A hit whose t overflows is left out.
 QuadricHits intersect(const Quadric& quadric, const Vec3& origin, const Vec3& direction);
 
 /// The canonical parameters of a point, and its sheet.
 struct QuadricParameters {
-  double u = 0, v = 0;  ///< canonical, see QuadricKind
+  double u = 0, v = 0;  ///< canonical parameters, see QuadricKind
   int sheet = 0;        ///< below sheet_count()
 };
 
-/// A surface between ranges of the canonical parameters. Immutable but for assignment; copies share their quadric.
+/// The piece of a quadric between ranges of the canonical parameters. Immutable except for assignment; copies share
+/// their quadric.
 class QuadricPiece {
  public:
-  /// Angles u span at most 2 pi (to within 4e-15; then the piece closes) and |u| <= 100; latitudes of an ellipsoid lie
-  /// within [-pi/2, pi/2], arguments of cosh within [-300, 300]. Errors: unsupported (the kind has no surface),
-  /// non_finite, invalid_argument (a range that is empty, reversed or outside these limits; no such sheet).
+  /// Makes a piece.
+  ///
+  /// - `range`: angles u with |u| <= 100 that span at most 2 pi (to within 4e-15; at 2 pi the piece closes), latitudes
+  ///   of an ellipsoid within [-pi/2, pi/2], arguments of cosh within [-300, 300].
+  /// - `sheet`: from 0 to sheet_count() - 1.
+  ///
+  /// Errors: unsupported (the kind has no surface), non_finite, invalid_argument (a range that is empty, reversed or
+  /// outside these limits; no such sheet).
   static Result<QuadricPiece> make(const Quadric& quadric, const Domain& range, int sheet = 0);
 
   const Quadric& quadric() const { return data_->quadric; }  ///< the whole surface
-  const Domain& range() const { return data_->range; }       ///< of the canonical parameters
-  int sheet() const { return data_->sheet; }                 ///< as given
-  /// Parameters of a point of the surface, if it lies in the piece; its borders have a margin of 1e-12 of the ranges.
+  const Domain& range() const { return data_->range; }       ///< ranges of the canonical parameters
+  int sheet() const { return data_->sheet; }                 ///< the argument of make()
+  /// Returns the parameters of a point of the surface if it lies in the piece, whose borders have a margin of 1e-12 of
+  /// the ranges.
   std::optional<QuadricParameters> locate(const Vec3& point) const;
 
  private:
@@ -149,19 +164,22 @@ class QuadricPiece {
   std::shared_ptr<const Data> data_;
 };
 
-/// Position and derivatives by the canonical parameters: the reference evaluator.
+/// Returns position and derivatives by the canonical parameters: the reference evaluator.
 SurfaceJet evaluate_jet(const QuadricPiece& piece, double u, double v);
-/// Those hits of the whole quadric that lie in the piece; contained lines are not cut.
+/// Returns the hits of the whole quadric that lie in the piece. Contained lines are not cut.
 QuadricHits intersect(const QuadricPiece& piece, const Vec3& origin, const Vec3& direction);
 
-/// Rational patches, exact: degree 2 along circles, hyperbolas and parabolas, degree 1 along straight lines. Angular
-/// ranges are split into arcs of at most 90 degrees, ranges of cosh into pieces of at most 2. Breakpoints are canonical
-/// parameters; between two of them the patch covers the same strip at another pace, which grid_parameters() undoes.
+/// Converts a piece exactly to rational patches: degree 2 along circles, hyperbolas and parabolas, degree 1 along
+/// straight lines. Angular ranges are split into arcs of at most 90 degrees, ranges of cosh into pieces of at most 2.
+/// Breakpoints are canonical parameters; between two of them, the patch covers the same strip at another pace, which
+/// grid_parameters() undoes.
 Result<PatchGrid> to_bezier(const QuadricPiece& piece);
-/// The canonical parameters of the point that to_bezier(piece) has at its own parameters (u, v) in the range: on an arc
-/// about m of half-width h, m + 2 atan(tan(h/2) s) with s from -1 to 1 (atanh, tanh for cosh); else u, v themselves.
+/// Returns the canonical parameters of the point that to_bezier(piece) has at its own parameters (u, v) in the range:
+/// on an arc about m of half-width h, m + 2 atan(tan(h/2) s) with s from -1 to 1 (atanh and tanh for cosh); otherwise
+/// u, v themselves.
 QuadricParameters canonical_parameters(const QuadricPiece& piece, double u, double v);
-/// The inverse: the parameters in the grid of the point with these canonical ones.
+/// Returns the parameters in the grid of the point with these canonical parameters: the inverse of
+/// canonical_parameters().
 QuadricParameters grid_parameters(const QuadricPiece& piece, double u, double v);
 
 }  // namespace tessera::inline abi_0_1

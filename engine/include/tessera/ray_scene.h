@@ -1,5 +1,5 @@
 #pragma once
-// Ray queries on a patch set: single rays, and arrays of rays in float or double as renderers hold them.
+// Traces rays against a patch set: single rays, and arrays of rays in float or double as renderers hold them.
 
 #include <cstddef>
 #include <cstdint>
@@ -21,145 +21,180 @@
 #pragma GCC visibility push(default)
 namespace tessera::inline abi_0_1 {
 
-/// Points origin + t * direction, tnear <= t <= tfar, in the model's coordinates. The direction need not be a unit
-/// vector. Valid: finite origin and direction with components of at most 1.844e18, direction not zero, 0 <= tnear <=
-/// tfar; tfar may be infinite; a spawn_offset of 0 to 1.844e18. Both ends belong to the interval and hold for the refined
-/// t, in double.
+/// The points origin + t * direction with tnear <= t <= tfar, in the model's coordinates.
+///
+/// A ray is valid under these conditions; the interval includes both ends, which hold for the refined t, in double.
+///
+/// - origin and direction are finite, with components of at most 1.844e18
+/// - the direction is not zero; it need not be a unit vector
+/// - 0 <= tnear <= tfar; tfar may be infinite
+/// - spawn_offset is 0 to 1.844e18
 struct Ray {
   Vec3 origin = {}, direction = {};                       ///< in the model
   double tnear = 0;                                       ///< at least 0
   double tfar = std::numeric_limits<double>::infinity();  ///< at least tnear
-  /// Exact mode: above 0, the ray leaves the surfaces that pass its origin at no more than this distance: the root of each
-  /// of them that stands for the origin is no hit, wherever rounding has moved it. For an origin that is a hit's position
-  /// this is RayScene::spawn_offset(). Which root that is follows from Kantorovich's theorem, which shows that there is one
-  /// within so much of the origin and no other near it: other hits stay, at however small a distance and angle, as long as
-  /// the surface leaves the ray in between by more than the tolerance. Where it does not, as along a plane or over a chord
-  /// of sqrt(8 tolerance / curvature), all of that is the origin.
+  /// Exact mode: how far from its origin a surface may lie that the ray starts on; 0: no root is left out.
+  ///
+  /// Each surface that passes the origin at no more than this distance has one root that stands for the origin. That
+  /// root is no hit, wherever rounding has moved it. For an origin that is a hit's position, use
+  /// RayScene::spawn_offset().
+  ///
+  /// Kantorovich's theorem decides which root that is: it shows that there is one within this distance of the origin
+  /// and no other near it. So other hits are kept, at however small a distance and angle, as long as the surface
+  /// departs from the ray in between by more than the tolerance. Where it does not, as along a plane or over a chord of
+  /// sqrt(8 tolerance / curvature), all of that stretch counts as the origin.
   double spawn_offset = 0;
 };
+/// The largest magnitude of a valid ray's components: about the square root of float's range, Embree's limit.
+inline constexpr double max_ray_component = 1.844e18;
+/// Whether a ray is valid, as Ray says.
+bool is_valid(const Ray& ray);
 
+/// Whether a ray has a hit.
 enum class HitKind : std::uint8_t {
   miss,
   hit,
   invalid_ray,  ///< treated as a miss
 };
 
-/// What is to be known about a hit beside its numbers.
+/// Exceptions that the numbers of a hit do not show.
 struct HitFlags {
   bool unrefined : 1 = false;  ///< Newton did not converge inside the patch: t, position, u, v are those of the facet
   bool degenerate_normal : 1 = false;  ///< the normal is a limit at a degenerate point, or undefined (zero)
-  /// Exact mode: the point lies on the ray within the tolerance, but it was not proven to be the one root of the surface
-  /// thereabouts. The ray touches the surface or runs along it (t is then good to about the square root of tolerance
-  /// times size), meets a pole, or passes a border by less than the tolerance.
+  /// Exact mode: the point lies on the ray within the tolerance, but it was not proven to be the only root of the
+  /// surface near there. The ray touches the surface or runs along it (t is then good to about the square root of
+  /// tolerance times size), meets a pole, or passes a border by less than the tolerance.
   bool uncertified : 1 = false;
   /// Exact mode: the bound on the work for one piece of a patch was reached, as where a surface runs along the ray or
-  /// is folded up into a line. There may be other hits, of a miss too.
+  /// is folded up into a line. There may be other hits, also for a miss.
   bool incomplete : 1 = false;
-  /// Exact mode, of uncertified hits: the ray runs along the tangent plane, within 1e-3 of its direction.
+  /// Exact mode, uncertified hits: the ray runs along the tangent plane, within 1e-3 of its direction.
   bool tangential : 1 = false;
-  /// Exact mode, of uncertified hits: the position is off the ray by more than rounding, yet within the tolerance.
+  /// Exact mode, uncertified hits: the position is off the ray by more than rounding, yet within the tolerance.
   bool within_tolerance : 1 = false;
 };
 
-/// Where a ray meets a surface. Of a miss and an invalid ray only the kind counts.
+/// Where a ray meets a surface. For a miss or an invalid ray, only `kind` is meaningful; for a miss in exact mode also
+/// `steps` and HitFlags::incomplete.
 struct Hit {
-  HitKind kind = HitKind::miss;  ///< whether the rest means anything
-  HitFlags flags;                ///< what the numbers don't say
-  std::uint16_t steps =
-      0;  ///< exact mode: the work, pieces of patches looked at and parts of them searched; of misses too
+  HitKind kind = HitKind::miss;  ///< whether the other members are meaningful
+  HitFlags flags;                ///< exceptions that the numbers do not show
+  /// Exact mode: the work, in pieces of patches visited and parts of them searched.
+  std::uint16_t steps = 0;
   std::uint32_t surface = 0, patch = 0;  ///< PatchSource::surface, and the index in the set
-  static constexpr std::uint32_t no_instance = std::numeric_limits<std::uint32_t>::max();  ///< of other scenes' hits
+  /// The value of `instance` in scenes of patches.
+  static constexpr std::uint32_t no_instance = std::numeric_limits<std::uint32_t>::max();
   std::uint32_t instance = no_instance;                ///< index, in a scene of instances
   double t = std::numeric_limits<double>::infinity();  ///< position = origin + t * direction, up to the residual
   double u = 0, v = 0;                                 ///< in the surface's domain
   double patch_u = 0, patch_v = 0;                     ///< in the patch, [0,1]^2
   Vec3 position;                                       ///< on the surface at (u,v)
   Vec3 normal;                                         ///< unit, along du x dv
-  Vec3 du, dv;          ///< derivatives of the position by u and by v, the surface's; to about 1e-8
-  double residual = 0;  ///< distance from the position to the ray; of an unrefined hit, to the surface at (u,v)
+  Vec3 du, dv;          ///< derivatives of the position by the surface's u and v; to about 1e-8
+  double residual = 0;  ///< distance from the position to the ray; for an unrefined hit, to the surface at (u,v)
 };
 
-/// The hits of several rays one after the other: of ray k, in the order of t, hits[first[k]] to hits[first[k + 1] - 1].
+/// The hits of several rays: hits[first[k]] to hits[first[k + 1] - 1] are those of ray k, in the order of t.
 struct HitLists {
   std::vector<Hit> hits;           ///< ray after ray
-  std::vector<std::size_t> first;  ///< one more than rays
+  std::vector<std::size_t> first;  ///< one more than there are rays
 };
 
+/// The geometry that rays meet.
 enum class RayMode : std::uint8_t {
-  /// Evaluated grids in an Embree BVH, then Newton on the surface: every hit that is not flagged lies on it. Facets
-  /// decide what is met and in which order: a silhouette may be missed or flagged, and of two surfaces nearer to each
-  /// other than to their facets the farther one may come first. What the tessellation shows, with true t, u, v and
-  /// normals.
+  /// Facets of evaluated grids in an Embree BVH, then Newton on the surface: every hit that is not flagged lies on the
+  /// surface. It shows what the tessellation shows, with true t, u, v and normals.
+  ///
+  /// The facets decide what is met and in which order. A silhouette may be missed or flagged. Of two surfaces nearer to
+  /// each other than to their facets, the farther one may come first.
   grid,
-  /// The surface itself: pieces of patches in an Embree BVH, each searched by interval Newton steps in float and, where
-  /// these prove nothing, by branch and bound in double, with every rounding bounded, far origins included. What the
-  /// surface of the control points in double meets is hit, at shared borders and poles too, silhouettes down to the
-  /// tolerance; a returned hit lies within the tolerance of the ray. Hits that are not flagged uncertified are roots up
-  /// to rounding.
+  /// The surface itself, of the control points in double. Whatever the ray meets is hit, also at shared borders and
+  /// poles, silhouettes down to the tolerance. A returned hit lies within the tolerance of the ray; hits that are not
+  /// flagged uncertified are roots up to rounding.
+  ///
+  /// Pieces of patches lie in an Embree BVH. Interval Newton steps in float search each piece; where these prove
+  /// nothing, branch and bound in double does. Every rounding is bounded, also for far origins.
   exact,
 };
 
 /// How a scene is made.
 struct RaySceneOptions {
-  RayMode mode = RayMode::exact;  ///< what rays are to meet
-  int rate = 8;                   ///< grid mode: grid segments a patch and direction, 1 to 4096
+  RayMode mode = RayMode::exact;  ///< the geometry that rays meet
+  int rate = 8;                   ///< grid mode: grid segments per patch and direction, 1 to 4096
   bool refine = true;             ///< grid mode: false leaves hits on the facets (for comparison)
-  std::optional<Isa> isa = {};    ///< the hits of exact mode are those of every one, up to rounding
-  /// Exact mode: pieces a patch and direction at least, 1, 2, 4 or 8. Patches that are bent, twisted or much longer than wide
-  /// are cut into more, up to 64 a direction, by their own shape alone.
+  std::optional<Isa> isa = {};    ///< default_isa() if empty; hits of exact mode are equal on all, up to rounding
+  /// Exact mode: the least number of pieces per patch and direction, 1, 2, 4 or 8. Patches that are bent, twisted or
+  /// much longer than wide are cut into more, up to 64 per direction, by their own shape alone.
   int pieces = 1;
-  /// Exact mode: how far from the ray a point that is returned may lie, in the model's unit; above 0. It counts where
-  /// the ray touches the surface or passes a border: there points within it may be hits. By default 2e-12 of the set's
-  /// size; smaller ones than twice the bound on rounding (2e-12 of the size for bicubic patches, 9e-12 at degree 15,
-  /// at the most; a third more after edits) are raised to that.
+  /// Exact mode: how far a returned point may lie from the ray, in the model's unit, above 0.
+  ///
+  /// It matters where the ray touches the surface or passes a border: there, points within the tolerance may be hits.
+  /// By default 2e-12 of the set's size. The least is twice the bound on rounding; smaller values are raised to it.
+  /// That is at most 2e-12 of the size for bicubic patches and 9e-12 at degree 15; a third more after edits.
   std::optional<double> tolerance = {};
-  /// Exact mode: the box that takes the place of the set's wherever the scene's size and centre count; it holds the set's,
-  /// after edits too. Parts of a model, each in a scene of its own with the model's box and the other options alike, return
-  /// the numbers that the scene of the whole returns, to the last bit: the nearest of their closest hits is its closest hit.
-  /// A flag may be missing, `uncertified` where it is a neighbour that makes a hit unsure.
+  /// Exact mode: replaces the set's box wherever the scene's size and centre matter. It must contain the set's box,
+  /// also after edits. By default the set's box.
+  ///
+  /// Parts of a model can each have their own scene with the model's box and otherwise equal options. They return the
+  /// numbers of the scene of the whole model, to the last bit: the nearest of their closest hits is its closest hit. A
+  /// flag may be missing: `uncertified`, where a neighbour in another part makes a hit unsure.
   std::optional<Box3> box = {};
-  /// Exact mode: so many patches of the set, its first ones, are the scene's; those behind are neighbours, which decide
-  /// where a point at a border belongs, and are never hit themselves. Parts that have each the patches of the others that
-  /// share borders and corners with them return among them each hit of the whole, in all() as well, once. By default all.
+  /// Exact mode: the number of patches, the first ones of the set, that rays can hit. By default all.
+  ///
+  /// The patches after them are neighbours: they decide where a point at a border belongs and are never hit. If each
+  /// part of a model also has the patches of other parts that share borders and corners with it, then the parts
+  /// together return each hit of the whole model once, also in all().
   std::optional<std::size_t> patches = {};
-  /// Exact mode: makes ready for edits at once; else the first refit does, which then takes as long as a rebuild. Rays in a
-  /// scene that follows edits take about a fifth longer.
+  /// Exact mode: prepares for edits now. If false, the first refit does, and then takes as long as a rebuild. Rays take
+  /// about a fifth longer in a scene that follows edits.
   bool editable = false;
-  int rebuild_after = 0;  ///< exact mode: of so many refits each last one is a rebuild; 0: none is, 1: all are
+  int rebuild_after = 0;  ///< exact mode: n makes every n-th refit a rebuild; 0: none, 1: all
 };
 
 class RayScene;
 
-/// A scene that stands elsewhere: its patches, taken through an affine map. Mirrors are allowed, and scales that differ by
-/// direction; a condition number above 1e8 is not.
+/// A scene placed elsewhere by an affine map, which may mirror and scale differently by direction. Its condition number
+/// is at most 1e8.
 struct RayInstance {
-  const RayScene* scene = nullptr;  ///< of patches, in exact mode
-  Affine to_world = {};             ///< from the scene to where it stands
-  /// Rays of batches with masks (ray_batch.h) meet it where both masks have a bit in common; other rays have all bits.
+  const RayScene* scene = nullptr;  ///< a scene of patches in exact mode
+  Affine to_world = {};             ///< from the scene's coordinates to the world's
+  /// Rays with masks (RayViews::mask) meet the instance where both masks have a bit in common; other rays have all
+  /// bits.
   std::uint32_t mask = ~std::uint32_t{0};
 };
 
-/// A patch set ready for rays. Keeps a reference to the set's inner state: the set must outlive the scene (it may be
-/// moved). Threads: const calls from any number of threads; edits of the set, refit and rebuild exclude them and each
-/// other.
+/// A patch set prepared for rays.
+///
+/// Lifetime: the set must outlive the scene (it may be moved), because the scene refers to the set's inner state. After
+/// an edit of the set the scene is stale until refit() or rebuild(), and its queries fail.
+///
+/// Threads: const calls from any number of threads; edits of the set, refit and rebuild exclude them and each other.
 class RayScene {
  public:
-  /// Errors: invalid_argument (the rate, the pieces, the tolerance, the box, more patches than the set has, rebuild_after),
-  /// isa_unavailable, cancelled, out_of_memory, internal (Embree's own), unsupported. Grid mode: unsupported are no float
-  /// Bernstein blocks, a box with a diagonal below 1e-9 or reaching further than 1e12 from the set's origin, more than 2^32
-  /// grid points. Exact mode: unsupported are a diagonal outside of 1e-140 to 1e140, 2^32 pieces.
+  /// Makes a scene of a set's patches.
+  ///
+  /// Errors: invalid_argument (the rate, the pieces, the tolerance, the box, more patches than the set has,
+  /// rebuild_after), isa_unavailable, cancelled, out_of_memory, internal (Embree's own), and:
+  /// - grid mode: unsupported (no float Bernstein blocks; a box with a diagonal below 1e-9 or reaching further than
+  ///   1e12 from the set's origin; more than 2^32 grid points)
+  /// - exact mode: unsupported (a diagonal outside of 1e-140 to 1e140; 2^32 pieces)
   static Result<RayScene> make(const PatchSet& set, const RaySceneOptions& options = {},
                                const Execution& execution = {});
   /// Deleted: the set must outlive the scene.
   static Result<RayScene> make(PatchSet&& set, const RaySceneOptions& options = {},
                                const Execution& execution = {}) = delete;
 
-  /// Grid mode on facets that are there: the triangles and quads of a mesh of the set, such as one that keeps a tolerance,
-  /// in the memory where they are. It must stay there, and change only between edit and refit of the set. Of its positions
-  /// a copy is made if their vector has no room for one number more. Of the options `refine` and `isa` count.
-  /// Errors: invalid_argument (no patch of each face or no parameters of each vertex, as where vertices are shared; another
-  /// origin than the set's; index = the vertex or the face: numbers that are not finite, parameters outside of [0, 1], an
-  /// index that is no vertex, a patch that the set does not have), and those of grid mode.
+  /// Makes a scene in grid mode whose facets are the triangles and quads of a mesh of the set, such as one that keeps a
+  /// tolerance. Only the options `refine` and `isa` are used.
+  ///
+  /// Memory: the mesh is used where it lies. It must stay there and may change only between an edit and the refit of
+  /// the set. Its positions are copied if their vector has no capacity for one more number.
+  ///
+  /// Errors: those of grid mode, and:
+  /// - invalid_argument (no patch for each face, or no parameters for each vertex, as where vertices are shared;
+  ///   another origin than the set's)
+  /// - invalid_argument (index = the vertex or the face: numbers that are not finite, parameters outside of [0, 1], an
+  ///   index that is no vertex, a patch that the set does not have)
   static Result<RayScene> make(const PatchSet& set, const Mesh& mesh, const RaySceneOptions& options = {},
                                const Execution& execution = {});
   /// Deleted: the set and the mesh must outlive the scene.
@@ -168,69 +203,90 @@ class RayScene {
   static Result<RayScene> make(PatchSet&& set, const Mesh& mesh, const RaySceneOptions& options = {},
                                const Execution& execution = {}) = delete;
 
-  /// A scene of instances, of one scene or several, which must outlive it (they may be moved). Positions, normals and
-  /// residuals of its hits are in the world, surface, patch and parameters those of the instance's scene; normals are
-  /// along r_u x r_v there, so on the other side in an instance that is mirrored.
-  /// What exact mode says holds of the ray as taken back into an instance's coordinates, in double: all patches of an
-  /// instance see the same one, so nothing leaks between them. The map rounds it by 1e-15 times its condition number, of
-  /// the instance's size, however far away its origin is, and tnear and tfar hold to the last digit; the residual is the
-  /// distance from the ray as given. Nothing is promised where borders of two instances meet. The tolerance is that of the
-  /// instance's scene, a length there.
-  /// After a refit of one of the scenes this one is stale until it is refitted itself, which is always a rebuild, of the
-  /// boxes of instances alone.
-  /// Errors: invalid_argument (no instance; of the first one: no scene, a map that is not finite or nearly singular),
-  /// unsupported (of the first one: a scene in grid mode or of instances; sizes outside of 1e-140 to 1e140), stale (a
-  /// scene), cancelled, out_of_memory, internal (Embree's own). index = the instance.
+  /// Makes a scene of instances of one scene or several, which must outlive it (they may be moved).
+  ///
+  /// Hits: position, normal and residual are in the world; surface, patch and parameters are those of the instance's
+  /// scene. Normals are along r_u x r_v there, so on the other side in an instance that is mirrored.
+  ///
+  /// Accuracy: the guarantees of exact mode hold for the ray as mapped back into an instance's coordinates, in double.
+  /// All patches of an instance see the same mapped ray, so nothing leaks between them.
+  ///
+  /// - The map rounds the ray by 1e-15 times its condition number times the instance's size, however far away the ray's
+  ///   origin is; tnear and tfar hold to the last digit.
+  /// - The residual is the distance from the original ray.
+  /// - The tolerance is that of the instance's scene, a length there.
+  /// - Nothing is guaranteed where borders of two instances meet.
+  ///
+  /// After a refit of one of the scenes, this scene is stale until its own refit(), which is always a rebuild, but only
+  /// of the boxes of instances.
+  ///
+  /// Errors, index = the first such instance: invalid_argument (no scene; a map that is not finite or nearly singular),
+  /// unsupported (a scene in grid mode or of instances; sizes outside of 1e-140 to 1e140), stale (a scene). Without
+  /// index: invalid_argument (no instance), cancelled, out_of_memory, internal (Embree's own).
   static Result<RayScene> make(std::span<const RayInstance> instances, const Execution& execution = {});
 
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;
   ~RayScene();
 
-  /// The closest hit of each ray; hits.size() >= rays.size(). A ray that is not valid is a miss with
-  /// HitKind::invalid_ray. Allocates nothing, but that the first ray with a spawn_offset after a build or a refit looks for
-  /// the borders that patches share. Errors: buffer_too_small, stale (the set was edited: refit), cancelled, out_of_memory.
+  /// Finds the closest hit of each ray. hits.size() >= rays.size(). An invalid ray is a miss with HitKind::invalid_ray.
+  ///
+  /// Errors: buffer_too_small, stale (the set was edited: refit), cancelled, out_of_memory. Memory: allocates nothing,
+  /// except for the first ray with a spawn_offset after a build or a refit, which looks for the borders that patches
+  /// share.
   Status closest(std::span<const Ray> rays, std::span<Hit> hits, const Execution& execution = {}) const;
-  /// 1 where anything lies on the ray, 0 where not or where the ray is not valid; occluded.size() >= rays.size().
-  /// In grid mode the facets decide, not the surface: a ray that leaves the surface must begin further off than they
-  /// lie.
+  /// Writes 1 where anything lies on the ray, and 0 where nothing does or the ray is invalid. `occluded` must hold at
+  /// least rays.size() values. In grid mode the facets decide, not the surface: a ray that leaves the surface must
+  /// begin further away than the facets lie. Errors: as closest().
   Status occluded(std::span<const Ray> rays, std::span<std::uint8_t> occluded, const Execution& execution = {}) const;
-  /// All hits of each ray, in exact mode. A point that several pieces or neighbours share is one hit: two are the same
-  /// where they coincide on a patch or at a shared border, not where they are merely near in t. Rays that are not valid
-  /// have none. Memory of `lists` is used again; the first call after a build or a refit looks for the borders that
-  /// patches share. Errors: unsupported (grid mode), stale, cancelled, out_of_memory; the lists are then empty.
+  /// Finds all hits of each ray, in exact mode. An invalid ray has none.
+  ///
+  /// A point that several pieces or neighbours share is one hit. Two points are one where they coincide on a patch or
+  /// at a shared border, not where they are merely near in t.
+  ///
+  /// Errors, with empty lists: unsupported (grid mode), stale, cancelled, out_of_memory. Memory: that of `lists` is
+  /// reused; the first call after a build or a refit looks for the borders that patches share.
   Status all(std::span<const Ray> rays, HitLists& lists, const Execution& execution = {}) const;
-  /// One ray. A stale scene gives a miss with HitKind::invalid_ray.
+  /// Finds the closest hit of one ray. A stale scene, as any error, returns HitKind::invalid_ray.
   Hit closest(const Ray& ray) const;
-  bool occluded(const Ray& ray) const;  ///< one ray; false while the scene is stale
+  /// Whether anything lies on one ray. A stale scene, as any error, returns false: use the overload with a Status where
+  /// the set may have been edited.
+  bool occluded(const Ray& ray) const;
 
-  /// After edits of the set, whichever way they were made; between an edit and its refit all queries are errors. Exact
-  /// mode: makes the pieces of the edited patches anew, cut as they were, and refits the BVH, whose boxes overlap more the
-  /// further patches have moved: rays then take longer, until a rebuild. It is a rebuild where the set's box has left the
-  /// range that coordinates are scaled to, twice as large or half as large at the most, and in grid mode. Nothing is done
-  /// where nothing was edited. Errors: those of make; the scene then stays stale until a refit or a rebuild succeeds.
+  /// Updates the scene after edits of the set, however they were made. Between an edit and the refit all queries are
+  /// errors. Does nothing if nothing was edited.
+  ///
+  /// Exact mode: makes the pieces of the edited patches anew, cut as they were, and refits the BVH. Its boxes overlap
+  /// more the further patches have moved, so rays take longer until a rebuild. Grid mode always rebuilds. Exact mode
+  /// rebuilds where the set's box has left the range that coordinates are scaled to, at most twice or half as large.
+  ///
+  /// Errors: as make(); the scene is then stale until a refit or a rebuild succeeds.
   Status refit(const Execution& execution = {});
-  /// As made anew: all pieces or grids, and the BVH. Errors: as those of refit.
+  /// Makes all pieces or grids and the BVH anew. Errors: as refit().
   Status rebuild(const Execution& execution = {});
 
-  /// How far a hit's position may be from its surface, for rounding: the offset of secondary rays. Flags unrefined and
-  /// those of grid mode aside.
+  /// Returns how far a hit's position may lie from its surface through rounding: the Ray::spawn_offset of secondary
+  /// rays. It does not hold for hits with `unrefined` or with flags of grid mode.
   double spawn_offset() const;
-  /// Curvatures at a hit of this scene, with parameters those of the patch; in a scene of instances those of the surface as
-  /// it stands in the world. Errors: stale, invalid_argument (not a hit; no such patch, point or instance).
+  /// Returns the curvatures at a hit of this scene, by the parameters of the patch; in a scene of instances those of
+  /// the surface as placed in the world. Errors: stale, invalid_argument (not a hit; no such patch, point or instance).
   Result<LocalGeometry> local_geometry(const Hit& hit) const;
-  /// The point (u,v) in [0,1]^2 of a patch as a hit, t and residual 0: what else there is to know of a hit that came through
-  /// one's own Embree scene. Errors: stale, invalid_argument (no such patch or point), unsupported (instances).
+  /// Returns the point (u,v) in [0,1]^2 of a patch as a hit with t and residual 0: completes a hit that came through
+  /// the user's own Embree scene. Errors: stale, invalid_argument (no such patch or point), unsupported (instances).
   Result<Hit> resolve(std::uint32_t patch, double u, double v) const;
-  /// The same for a ray that is known to meet the patch near (u,v), in float for example: the root next to it with all the
-  /// digits of double. The hit is unrefined where there is none within the tolerance, and is then the point nearest to the
-  /// ray that was found. tnear and tfar count for nothing. Errors: as above; invalid_argument (the ray); unsupported (grid
-  /// mode).
+  /// Returns the root next to (u,v), with all the digits of double, for a ray that is known to meet the patch near
+  /// there, for example in float.
+  ///
+  /// If there is no root within the tolerance, the hit is unrefined: the point nearest to the ray that was found. tnear
+  /// and tfar are ignored. Errors: stale, invalid_argument (no such patch or point; the ray), unsupported (instances;
+  /// grid mode).
   Result<Hit> resolve(const Ray& ray, std::uint32_t patch, double u, double v) const;
 
-  Box3 box() const;                ///< of facets or pieces' nets: tighter than of all control points; empty while stale
-  std::uint64_t revision() const;  ///< of the set, when the scene was made or last refitted
-  /// Grids or nets, and BVH; of instances without their scenes. To make it, 128 bytes a patch more.
+  /// Returns the box of the facets or of the pieces' nets, tighter than that of all control points; empty while stale.
+  Box3 box() const;
+  std::uint64_t revision() const;  ///< the set's, when the scene was made or last refitted
+  /// Returns the bytes of grids or nets, and BVH; for instances without those of their scenes. Making the scene takes
+  /// 128 bytes per patch more.
   std::size_t memory_bytes() const;
 
   class [[gnu::visibility("hidden")]] Impl;
@@ -241,36 +297,39 @@ class RayScene {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Rays as arrays: ray k has record k of each view. There are as many rays as `direction` has records. The other views
-/// hold at least as many; or they have stride 0, and their record 0 belongs to all rays, such as the eye of a camera.
-/// Ranges and units are those of Ray. Numbers are taken to double, which is exact: a hit is that of the ray as given.
+/// Rays as arrays: ray k has record k of each view. Ranges and units are those of Ray.
+///
+/// There are as many rays as `direction` has records. The other views hold at least as many; or they have stride 0, and
+/// their record 0 belongs to all rays, such as the eye of a camera. Numbers are converted to double, which is exact.
 template <class T>
 struct RayViews {
   View3<const T> origin = {}, direction = {};  ///< required
   View1<const T> tnear = {};                   ///< empty: 0
   View1<const T> tfar = {};                    ///< empty: infinity
   View1<const T> spawn_offset = {};            ///< empty: 0
-  /// An instance is met where its mask and the ray's have a bit in common; scenes without instances take no notice.
-  /// Empty: all bits.
+  /// A ray meets an instance where their masks have a bit in common; scenes without instances ignore it. Empty: all
+  /// bits.
   View1<const std::uint32_t> mask = {};
 };
 
-/// Hits as arrays: record k of each view is written for ray k. Empty views are not computed: t, parameters and indices
-/// alone need no point of the surface. Units are those of Hit, from whose double numbers are rounded to T. Positions
-/// are in the model's coordinates, in float too. A miss and an invalid ray get t = infinity, `no_hit` for each index,
-/// no flag but `incomplete`, and 0 elsewhere.
+/// Hits as arrays: record k of each view is written for ray k. Units are those of Hit, whose double numbers are rounded
+/// to T. Positions are in the model's coordinates, also in float.
+///
+/// Empty views are not computed; t, parameters and indices alone need no point of the surface. A miss or an invalid ray
+/// gets t = infinity, `no_hit` for each index, no flag except `incomplete`, and 0 elsewhere.
 template <class T>
 struct HitViews {
+  /// The index of a patch, surface or instance where there is none.
   static constexpr std::uint32_t no_hit = std::numeric_limits<std::uint32_t>::max();
   View1<HitKind> kind = {};                               ///< hit, miss or invalid_ray
   View1<T> t = {};                                        ///< in [tnear, tfar], where these are numbers of T
   View1<T> u = {}, v = {};                                ///< in the surface's domain
   View1<T> patch_u = {}, patch_v = {};                    ///< in the patch, [0,1]^2
   View1<std::uint32_t> patch = {}, surface = {};          ///< as in Hit
-  View1<std::uint32_t> instance = {};                     ///< no_hit in scenes that are not of instances
+  View1<std::uint32_t> instance = {};                     ///< as in Hit; no_hit in scenes of patches
   View3<T> position = {}, normal = {}, du = {}, dv = {};  ///< as in Hit
   View1<T> residual = {};                                 ///< as in Hit
-  View1<HitFlags> flags = {};                             ///< the normal decides one of them and is computed for it
+  View1<HitFlags> flags = {};  ///< as in Hit; one depends on the normal, which is then computed
 };
 
 /// A point where a ray meets a surface, before it counts as a hit.
@@ -282,32 +341,38 @@ struct HitCandidate {
   double u = 0, v = 0, patch_u = 0, patch_v = 0;  ///< as in Hit
 };
 
-/// A filter's answer. Any other number stops the batch.
+/// A filter's answer. Any other value stops the batch.
 enum class HitVerdict : std::uint8_t {
   accept,  ///< the point may be the hit
   reject,  ///< the ray goes on as if the surface had a hole there
   stop,    ///< the batch ends
 };
 
-/// Decides which points count: cut-outs by a texture, layers that a ray does not see. The points of a ray come in any
-/// order, and not all of them: of closest hits only those that would be nearer than all accepted ones. A point at the
-/// border of two patches, or of two pieces of one, may come once for each. Threads: called from any, several at once.
-/// It may trace rays and may throw; see closest().
+/// Decides which points count, for example for cut-outs by a texture or layers that a ray does not see.
+///
+/// The points of a ray come in any order, and not all of them: for closest hits only those that would be nearer than
+/// all accepted ones. A point at the border of two patches, or of two pieces of one, may come once for each.
+///
+/// Threads: called from any thread, also from several at once. A filter may trace rays and may throw; see closest().
 using HitFilter = std::function<HitVerdict(const HitCandidate&)>;
 
 /// Options of a batch. Everything is optional.
 struct BatchOptions {
-  HitFilter filter = {};  ///< exact mode. Empty: all points count
+  HitFilter filter = {};  ///< exact mode only; empty: all points count
 };
 
-/// Finds the closest hit of each ray: that of RayScene::closest for the same numbers in double, bit for bit. Rays that
-/// follow on each other and are coherent are traced in packets. A ray that is not valid is a miss with
-/// HitKind::invalid_ray. Without rays nothing is looked at or written. Allocates nothing, but for borders as
-/// RayScene::closest.
-/// Errors, with nothing written: count_mismatch (a view of rays with fewer records than `direction`), buffer_too_small
-/// (an output with fewer), invalid_argument (no output; a view that lacks a component, is misaligned, has a stride
-/// below 0, or below 1 as an output; an output that shares memory with another view), unsupported (a filter in grid
-/// mode), stale.
+/// Finds the closest hit of each ray: that of RayScene::closest() for the same numbers in double, bit for bit.
+///
+/// Consecutive coherent rays are traced in packets. An invalid ray is a miss with HitKind::invalid_ray. Without rays no
+/// view is read, checked or written. Allocates nothing, except for borders as RayScene::closest().
+///
+/// Errors, with nothing written:
+/// - count_mismatch (a view of rays with fewer records than `direction`)
+/// - buffer_too_small (an output with fewer records than `direction`)
+/// - invalid_argument (no output; a view that lacks a component, is misaligned, or has a stride below 0, below 1 for an
+///   output; an output that shares memory with another view)
+/// - unsupported (a filter in grid mode), stale
+///
 /// Errors that leave outputs partly written: cancelled (by `execution`, or by the filter: index = the ray),
 /// out_of_memory, and the exception of a filter (internal with its message, or out_of_memory).
 Status closest(const RayScene& scene, const RayViews<float>& rays, const HitViews<float>& hits,
@@ -319,8 +384,8 @@ Status closest(const RayScene& scene, const RayViews<double>& rays, const HitVie
 Status closest(const RayScene& scene, const RayViews<double>& rays, const HitViews<double>& hits,
                const BatchOptions& options = {}, const Execution& execution = {});
 
-/// Writes 1 where anything lies on the ray, 0 where not or where the ray is not valid, as RayScene::occluded. The
-/// output is required. Errors: those of closest().
+/// Writes 1 where anything lies on the ray, and 0 where nothing does or the ray is invalid, as RayScene::occluded().
+/// The output is required. Errors: as closest().
 Status occluded(const RayScene& scene, const RayViews<float>& rays, const View1<std::uint8_t>& occluded,
                 const BatchOptions& options = {}, const Execution& execution = {});
 Status occluded(const RayScene& scene, const RayViews<double>& rays, const View1<std::uint8_t>& occluded,

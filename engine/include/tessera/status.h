@@ -1,5 +1,5 @@
 #pragma once
-// Errors as values. No exception leaves the library.
+// Errors as values: Status, and Result for a value or an error. No exception leaves the library.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,41 +11,41 @@
 #pragma GCC visibility push(default)
 namespace tessera::inline abi_0_1 {
 
-/// What kind of thing went wrong. The message says the rest.
+/// Kind of an error. The message gives the details.
 enum class StatusCode : std::uint8_t {
-  ok,
+  ok,                  ///< success
   invalid_argument,    ///< a value outside its stated range
-  non_finite,          ///< NaN or infinity where a finite number is wanted
+  non_finite,          ///< NaN or infinity where a finite number is required
   invalid_weight,      ///< a rational weight that is not positive
   unsupported_degree,  ///< a degree below 1 or above max_degree
   count_mismatch,      ///< a list whose length does not fit the others
   buffer_too_small,    ///< an output view with less room than the call needs
   unsupported,         ///< valid, but not available here (a kind of block, a file format)
   isa_unavailable,     ///< an instruction set that is unknown or that this machine lacks
-  stale,               ///< made from a state of the patch set that has since changed
-  parse_error,         ///< a file whose content is not what its format says
+  stale,               ///< an object made from a state of the patch set that has since changed
+  parse_error,         ///< a file whose content does not follow its format
   io_error,            ///< a file that cannot be opened, read or written
-  out_of_memory,
-  cancelled,  ///< the caller's cancellation flag was seen; outputs are partly written
-  internal,   ///< a fault of the library or of a dependency
+  out_of_memory,       ///< an allocation failed
+  cancelled,           ///< the caller's cancellation flag was seen; outputs are partly written
+  internal,            ///< a fault of the library or of a dependency
 };
 
-/// The code's name as written above, for messages and logs.
+/// Returns the code's name as spelled above, for messages and logs.
 std::string_view name(StatusCode code);
 
-/// Success, or what went wrong: a code, a sentence, and the index of the offending element if there is one.
+/// Success or an error: a code, a sentence, and the index of the offending element if there is one.
 class [[nodiscard]] Status {
  public:
-  static constexpr std::ptrdiff_t no_index = -1;  ///< no element is named
+  static constexpr std::ptrdiff_t no_index = -1;  ///< index() of a status that names no element
 
   Status() = default;  ///< success; never allocates
-  /// A failure; the message is a sentence. Cold: what leads to a call is compiled for size.
+  /// An error. The message is a sentence. Cold: code that leads to a call is compiled for size.
   [[gnu::cold]] Status(StatusCode code, std::string message, std::ptrdiff_t index = no_index);
 
   bool ok() const { return code_ == StatusCode::ok; }      ///< whether it is success
-  StatusCode code() const { return code_; }                ///< what kind of thing went wrong
+  StatusCode code() const { return code_; }                ///< kind of the error, or ok
   const std::string& message() const { return message_; }  ///< empty for success
-  std::ptrdiff_t index() const { return index_; }          ///< the offending element, or no_index
+  std::ptrdiff_t index() const { return index_; }          ///< index of the offending element, or no_index
 
  private:
   StatusCode code_ = StatusCode::ok;
@@ -53,16 +53,16 @@ class [[nodiscard]] Status {
   std::string message_;
 };
 
-/// A value, or the Status that says why there is none. Reading the value of a failed Result is a
-/// precondition violation (asserted by std::optional's hardened modes; undefined otherwise).
+/// A value, or the Status that says why there is none. The value of a failed Result must not be read: std::optional's
+/// hardened modes assert this; otherwise the behaviour is undefined.
 template <class T>
 class [[nodiscard]] Result {
  public:
   Result(T value) : value_(std::move(value)) {}          ///< a value
-  Result(Status status) : status_(std::move(status)) {}  ///< a failure
+  Result(Status status) : status_(std::move(status)) {}  ///< an error
 
   bool ok() const { return value_.has_value(); }    ///< whether there is a value
-  explicit operator bool() const { return ok(); }   ///< as ok()
+  explicit operator bool() const { return ok(); }   ///< whether there is a value
   const Status& status() const { return status_; }  ///< success where there is a value
 
   T& value() & { return *value_; }                   ///< the value

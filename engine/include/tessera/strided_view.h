@@ -1,5 +1,5 @@
 #pragma once
-// Sized, strided views of the caller's memory. They own nothing and never allocate.
+// Sized, strided views of the caller's memory. A view owns nothing and never allocates.
 
 #include <array>
 #include <cstddef>
@@ -8,21 +8,21 @@
 #pragma GCC visibility push(default)
 namespace tessera::inline abi_0_1 {
 
-/// `size` records of N components each: component c of record k is `component[c][k * stride]`.
-/// It names both structure-of-arrays and interleaved memory. An empty view (the default) means "not wanted".
+/// A view of `size` records of N components each, for structure-of-arrays and interleaved memory. Component c of record
+/// k is `component[c][k * stride]`. An empty view (the default) means "not wanted".
 template <class T, int N>
 struct VectorView {
   std::array<T*, N> component{};  ///< the first value of each component
   std::ptrdiff_t stride = 1;      ///< in elements of T, at least 1
-  std::size_t size = 0;           ///< how many records fit
+  std::size_t size = 0;           ///< number of records that fit
 
-  bool empty() const { return component[0] == nullptr; }  ///< not wanted
-  /// Component c of record k < size.
+  bool empty() const { return component[0] == nullptr; }  ///< whether the output is not wanted
+  /// Returns component c of record k < size.
   T& at(std::size_t k, int c) const {
     return component[static_cast<std::size_t>(c)][static_cast<std::ptrdiff_t>(k) * stride];
   }
 
-  /// One array a component. The shortest array bounds the size.
+  /// Makes a view of one array per component. The shortest array limits the size.
   static VectorView soa(const std::array<std::span<T>, N>& arrays) {
     VectorView view;
     view.size = arrays[0].size();
@@ -32,9 +32,11 @@ struct VectorView {
     }
     return view;
   }
-  /// Records of `record` elements; this vector's components are `first`, `first + 1`, ... of each.
-  /// Example: positions and normals in one buffer of 6 floats a vertex: interleaved(buffer, 6, 0) and (buffer, 6, 3).
-  /// Of memory that does not hold one record, or of records of no elements: of size 0, from the memory's begin.
+  /// Makes a view of records of `record` elements each, in which this vector's components are the N elements from
+  /// `first` on. Example, positions and normals in one buffer of 6 floats per vertex: interleaved(buffer, 6, 0) and
+  /// (buffer, 6, 3).
+  ///
+  /// If the memory holds no whole vector, or `record` is 0, the view has size 0 and points to the start of the memory.
   static VectorView interleaved(std::span<T> memory, std::size_t record = N, std::size_t first = 0) {
     VectorView view;
     view.stride = static_cast<std::ptrdiff_t>(record);
@@ -45,10 +47,13 @@ struct VectorView {
   }
 };
 
+/// View of scalars.
 template <class T>
 using View1 = VectorView<T, 1>;
+/// View of vectors in space.
 template <class T>
 using View3 = VectorView<T, 3>;
+/// View of pairs, such as parameters.
 template <class T>
 using View2 = VectorView<T, 2>;
 

@@ -1,5 +1,5 @@
 #pragma once
-// A surface of any kind. The conversion needs tessera/convert.h as well.
+// A surface of any kind. The conversion also needs tessera/convert.h.
 
 #include <array>
 #include <string_view>
@@ -16,22 +16,24 @@
 #pragma GCC visibility push(default)
 namespace tessera::inline abi_0_1 {
 
+/// A surface of any kind.
 using Surface = std::variant<BezierPatch, TensorPatch, BSplineSurface, HermitePatch, HermiteNetwork, RuledSurface,
                              CoonsPatch, ExplicitPolynomial, QuadricPiece, ParametricSurface>;
 
-/// "Bezier patch", "NURBS surface", and the like.
+/// Returns the kind's name for messages: "Bezier patch", "NURBS surface" and others.
 std::string_view kind_name(const Surface& surface);
-/// The rectangle of the surface's own parameters; [0,1]^2 for a Bezier patch.
+/// Returns the rectangle of the surface's own parameters; [0,1]^2 for a Bezier patch.
 Domain domain(const Surface& surface);
-/// By the kind's own reference evaluator. Errors: those of callables.
+/// Evaluates by the kind's own reference evaluator. Errors: those of callables.
 Result<SurfaceJet> evaluate_jet(const Surface& surface, double u, double v);
-/// The surface's own parameters of the point that its patches have at (u,v) of to_bezier()'s grid. The same ones, but for
-/// quadrics, whose arcs are rational: see canonical_parameters().
+/// Returns the surface's own parameters of the point that its patches have at (u,v) of to_bezier()'s grid. They are
+/// (u,v) for all kinds but quadrics, whose arcs are rational: see canonical_parameters().
 std::array<double, 2> own_parameters(const Surface& surface, double u, double v);
-/// The inverse: the parameters in to_bezier()'s grid of the point at the surface's own (u,v).
+/// Returns the parameters in to_bezier()'s grid of the point at the surface's own (u,v): the inverse of
+/// own_parameters().
 std::array<double, 2> grid_parameters(const Surface& surface, double u, double v);
 
-/// By the kind's own conversion: exact, but for callables, which are fitted by `options`. Errors: those of the kind.
+/// Converts by the kind's own conversion, exactly; only callables are fitted by `options`. Errors: those of the kind.
 Result<PatchGrid> to_bezier(const Surface& surface, const FitOptions& options = {});
 
 }  // namespace tessera::inline abi_0_1

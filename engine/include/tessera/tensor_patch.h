@@ -1,6 +1,6 @@
 #pragma once
-// Tensor-product patches over any polynomial bases, the two directions' own: Bezier, power, Hermite, uniform B-spline,
-// Catmull-Rom, or a matrix of the user's; graphs z = sum a_ij x^i y^j over a rectangle.
+// Tensor-product patches over polynomial bases, chosen per direction: Bezier, power, Hermite, uniform B-spline,
+// Catmull-Rom, or the user's matrix. Graphs z = sum a_ij x^i y^j over a rectangle.
 
 #include <memory>
 #include <span>
@@ -15,38 +15,43 @@ namespace tessera::inline abi_0_1 {
 
 class PatchGrid;  // tessera/convert.h
 
-/// A basis of the polynomials of one degree on [0,1] by the matrix M that turns the geometry of a curve into its power
-/// coefficients: r(t) = [1 t .. t^n] M G, with the blending functions f_i(t) = sum_k t^k M_ki. Immutable but for
-/// assignment; copies share the matrix.
+/// A basis of the polynomials of one degree on [0,1], given by the matrix M that turns the geometry of a curve into its
+/// power coefficients: r(t) = [1 t .. t^n] M G, with the blending functions f_i(t) = sum_k t^k M_ki. Immutable except
+/// for assignment; copies share the matrix.
 class BasisMatrix {
  public:
-  /// Bernstein polynomials. Error: unsupported_degree, as for all with a degree.
+  /// Makes the Bernstein polynomials. Errors: unsupported_degree, as for all makers with a degree.
   static Result<BasisMatrix> bezier(int degree);
-  /// Monomials: M is the identity.
+  /// Makes the monomials: M is the identity.
   static Result<BasisMatrix> power(int degree);
-  /// Cubic Hermite polynomials in the order position 0, tangent 0, tangent 1, position 1. Tangents are by the local
-  /// parameter, which runs over [0,1].
+  /// Makes the cubic Hermite polynomials in the order position 0, tangent 0, tangent 1, position 1. Tangents are
+  /// derivatives by the local parameter, which runs over [0,1].
   static Result<BasisMatrix> hermite();
-  /// One span of the uniform B-spline, f_0 the function that ends with the span (cubic: (1-t)^3/6 first, t^3/6 last).
+  /// Makes one span of the uniform B-spline; f_0 is the function that ends with the span (cubic: (1-t)^3/6 first, t^3/6
+  /// last).
   static Result<BasisMatrix> uniform_b_spline(int degree);
-  /// Catmull-Rom cubics: of four points, from the second to the third, with tangents of half the chord of the
+  /// Makes the Catmull-Rom cubics of four points, from the second to the third; a tangent is half the chord of its
   /// neighbours (Catmull and Rom, A class of local interpolating splines, 1974).
   static Result<BasisMatrix> catmull_rom();
-  /// (degree + 1)^2 entries M_ki, row by row, row k the coefficients of t^k. A singular matrix is a basis to evaluate
-  /// and convert from, not to. Errors: unsupported_degree, count_mismatch, non_finite (index = the entry).
+  /// Makes a basis from a matrix. A singular matrix serves to evaluate and to convert from, not to convert to.
+  ///
+  /// - `degree`: 1 to max_degree.
+  /// - `entries`: (degree + 1)^2 finite entries M_ki, row by row; row k has the coefficients of t^k.
+  ///
+  /// Errors: unsupported_degree, count_mismatch, non_finite (index = the entry).
   static Result<BasisMatrix> custom(int degree, std::span<const double> entries);
 
-  int degree() const { return data_->degree; }  ///< of the polynomials: there are degree + 1
-  /// M_ki: the coefficient of t^k in f_i.
+  int degree() const { return data_->degree; }  ///< degree of the polynomials; there are degree + 1
+  /// Returns M_ki: the coefficient of t^k in f_i.
   double power_coefficient(int k, int i) const { return data_->power[index(k, i)]; }
-  /// The coefficient of B_{k,n} in f_i: the matrix M_B^{-1} M that turns geometry into Bezier points.
+  /// Returns the coefficient of B_{k,n} in f_i: an entry of M_B^{-1} M, which turns geometry into Bezier points.
   double bernstein_coefficient(int k, int i) const { return data_->bernstein[index(k, i)]; }
-  /// Whether other bases can be converted to this one: M has an inverse, to the rounding of its entries.
+  /// Whether other bases can be converted to this one: M has an inverse, up to the rounding of its entries.
   bool is_regular() const { return !data_->from_bernstein.empty(); }
-  /// The entry [i][k] of M^{-1} M_B, which turns Bezier points into geometry. is_regular() must hold.
+  /// Returns the entry [i][k] of M^{-1} M_B, which turns Bezier points into geometry. is_regular() must be true.
   double inverse_coefficient(int i, int k) const { return data_->from_bernstein[index(i, k)]; }
 
-  /// By the matrices.
+  /// Compares the matrices.
   friend bool operator==(const BasisMatrix& a, const BasisMatrix& b) {
     return a.data_ == b.data_ || *a.data_ == *b.data_;
   }
@@ -63,24 +68,27 @@ class BasisMatrix {
   std::shared_ptr<const Data> data_;
 };
 
-/// r(u,v) = U M_u G M_v^T V^T, U = [1 s .. s^m] and V = [1 t .. t^n], where s and t run over [0,1] as u and v run over
-/// the domain. G holds points, tangents or twists, as the bases want them: tangents by s and t. Immutable but for
-/// assignment; copies share everything.
+/// A tensor-product patch r(u,v) = U M_u G M_v^T V^T, U = [1 s .. s^m], V = [1 t .. t^n], where s and t run over [0,1]
+/// as u and v run over the domain. G holds points, tangents or twists, as the bases require; tangents are derivatives
+/// by s and t. Immutable except for assignment; copies share everything.
 class TensorPatch {
  public:
-  /// `geometry`: (m + 1) * (n + 1) vectors [i][j], i along u, of the degrees of the bases.
+  /// Makes a patch from two bases of degrees m and n.
+  ///
+  /// - `geometry`: (m + 1) * (n + 1) finite vectors [i][j], i along u.
+  ///
   /// Errors: count_mismatch, non_finite (index = the offending element), invalid_argument (the domain).
   static Result<TensorPatch> make(const BasisMatrix& basis_u, const BasisMatrix& basis_v,
                                   std::span<const Vec3> geometry, const Domain& domain = {});
 
-  const BasisMatrix& basis_u() const { return data_->basis_u; }       ///< along u
-  const BasisMatrix& basis_v() const { return data_->basis_v; }       ///< along v
+  const BasisMatrix& basis_u() const { return data_->basis_u; }       ///< basis along u
+  const BasisMatrix& basis_v() const { return data_->basis_v; }       ///< basis along v
   std::span<const Vec3> geometry() const { return data_->geometry; }  ///< `[i][j]`
-  /// 0 <= i <= degree along u, 0 <= j <= degree along v.
+  /// Returns the element [i][j], 0 <= i <= degree along u, 0 <= j <= degree along v.
   const Vec3& element(int i, int j) const {
     return data_->geometry[static_cast<std::size_t>(i * (basis_v().degree() + 1) + j)];
   }
-  const Domain& domain() const { return data_->domain; }  ///< where it is evaluated
+  const Domain& domain() const { return data_->domain; }  ///< rectangle on which it is evaluated
 
  private:
   struct Data {
@@ -92,33 +100,38 @@ class TensorPatch {
   std::shared_ptr<const Data> data_;
 };
 
-/// The reference evaluator: sum f_i(s) g_j(t) g_ij in long double, the blending functions in Bernstein form, since
-/// powers cancel. Derivatives by u and v of the domain. Any finite (u,v).
+/// Evaluates sum f_i(s) g_j(t) g_ij in long double: the reference evaluator, for any finite (u,v). Blending functions
+/// are in Bernstein form, because powers cancel. Derivatives are by u and v of the domain.
 SurfaceJet evaluate_jet(const TensorPatch& patch, double u, double v);
 
-/// The same surface in other bases, of the same degrees or higher ones: G' = M'^{-1} M G (..)^T, exact to rounding,
-/// which the new bases' condition magnifies. A direction whose basis stays keeps its numbers. Errors:
-/// unsupported_degree (a degree below the patch's), invalid_argument (a singular basis), non_finite.
+/// Returns the same surface in other bases, of the same degrees or higher ones: G' = M'^{-1} M G (..)^T. It is exact up
+/// to rounding, which the new bases' condition magnifies. A direction whose basis does not change keeps its numbers.
+///
+/// Errors: unsupported_degree (a degree below the patch's), invalid_argument (a singular basis), non_finite.
 Result<TensorPatch> change_basis(const TensorPatch& patch, const BasisMatrix& basis_u, const BasisMatrix& basis_v);
-/// One Bezier patch over the patch's domain; exact to rounding. Error: non_finite (points too large).
+/// Converts to one Bezier patch over the patch's domain; exact up to rounding. Errors: non_finite (points too large).
 Result<PatchGrid> to_bezier(const TensorPatch& patch);
 
 class PatchGrid;
 
-/// (x, y, sum a_ij x^i y^j) with x = u and y = v over a rectangle. Immutable but for assignment; copies share
-/// everything.
+/// The graph (x, y, sum a_ij x^i y^j) with x = u and y = v over a rectangle. Immutable except for assignment; copies
+/// share everything.
 class ExplicitPolynomial {
  public:
-  /// `coefficients`: a_ij is coefficients[i * (degree_y + 1) + j]; degrees 0 to max_degree; the rectangle finite, with
-  /// u0 < u1 and v0 < v1. Errors: unsupported_degree, count_mismatch, non_finite (index = the coefficient),
-  /// invalid_argument.
+  /// Makes a graph.
+  ///
+  /// - `degree_x`, `degree_y`: 0 to max_degree.
+  /// - `coefficients`: a_ij is coefficients[i * (degree_y + 1) + j], finite.
+  /// - `rectangle`: finite, u0 < u1 and v0 < v1.
+  ///
+  /// Errors: unsupported_degree, count_mismatch, non_finite (index = the coefficient), invalid_argument.
   static Result<ExplicitPolynomial> make(int degree_x, int degree_y, std::span<const double> coefficients,
                                          const Domain& rectangle);
 
-  int degree_x() const { return data_->degree_x; }              ///< of x
-  int degree_y() const { return data_->degree_y; }              ///< of y
-  const Domain& rectangle() const { return data_->rectangle; }  ///< of x and y
-  /// Of x^i y^j.
+  int degree_x() const { return data_->degree_x; }              ///< degree in x
+  int degree_y() const { return data_->degree_y; }              ///< degree in y
+  const Domain& rectangle() const { return data_->rectangle; }  ///< range of x and y
+  /// Returns the coefficient of x^i y^j.
   double coefficient(int i, int j) const {
     return data_->coefficients[static_cast<std::size_t>(i * (degree_y() + 1) + j)];
   }
@@ -133,13 +146,13 @@ class ExplicitPolynomial {
   std::shared_ptr<const Data> data_;
 };
 
-/// Position and derivatives at x = u, y = v, inside the rectangle or not: the reference evaluator. Sums carry 106 bits,
-/// so that powers that cancel far from zero cost nothing as long as they are below 2^50 times the result.
+/// Returns position and derivatives at x = u, y = v, inside the rectangle or not: the reference evaluator. Sums carry
+/// 106 bits, so powers that cancel far from zero lose nothing while they are below 2^50 times the result.
 SurfaceJet evaluate_jet(const ExplicitPolynomial& surface, double u, double v);
 
-/// One polynomial patch of the same degrees (1 where the degree is 0), exact: control heights are the polar forms of
-/// the polynomial at the rectangle's ends, summed with 106 bits. Error: non_finite where a height is out of the range
-/// of doubles.
+/// Converts to one polynomial patch of the same degrees (1 for degree 0), exactly: control heights are the polar forms
+/// of the polynomial at the rectangle's ends, summed with 106 bits. Errors: non_finite (a height is out of the range of
+/// doubles).
 Result<PatchGrid> to_bezier(const ExplicitPolynomial& surface);
 
 }  // namespace tessera::inline abi_0_1

@@ -1,6 +1,6 @@
 #pragma once
-// Patches to triangles: at uniform rates, or so that a tolerance in length, angle or pixels provably holds without
-// cracks; and meshes that follow edits of control points.
+// Turns patches into triangles and quads: at uniform rates, or so that a tolerance in length, angle or pixels provably
+// holds without cracks. Updates such meshes after edits of control points.
 
 #include <cstddef>
 #include <cstdint>
@@ -25,36 +25,46 @@ struct Model;
 /// How finely patches are divided.
 struct TessellationOptions {
   int rate_u = 8;               ///< segments along u of every patch, 1 to 4096
-  int rate_v = 8;               ///< segments along v
+  int rate_v = 8;               ///< segments along v of every patch, 1 to 4096
   std::optional<Isa> isa = {};  ///< default_isa() if empty
 };
 
-/// Uniform tessellation: every patch at the same rates. Layout of the vertices: `[patch][iu][iv]`, so vertex
-/// (patch * (rate_u + 1) + iu) * (rate_v + 1) + iv. Border vertices are duplicated, one a patch; where two patches share
-/// the border's control points and run at equal rates, they are the same bits. Triangles that collapse at a pole are left out.
+/// Divides every patch at the same rates.
+///
+/// Layout of the vertices: `[patch][iu][iv]`, so vertex (patch * (rate_u + 1) + iu) * (rate_v + 1) + iv. Border
+/// vertices are stored once per patch. Where two patches share the control points of a border and run at equal rates
+/// there, these vertices are the same bits. Triangles that collapse at a pole are left out.
 class TessellationPlan {
  public:
-  /// Errors: invalid_argument (a rate out of range, counts that overflow 32-bit indices), isa_unavailable, unsupported
-  /// (the set has no float Bernstein blocks). Memory: 24 bytes a patch.
+  /// Makes a plan. Errors: invalid_argument (a rate out of range; counts that overflow 32-bit indices),
+  /// isa_unavailable, unsupported (the set has no float Bernstein blocks). Memory: 24 bytes per patch.
   static Result<TessellationPlan> make(const PatchSet& set, const TessellationOptions& options = {});
 
   TessellationPlan(TessellationPlan&&) noexcept;
   TessellationPlan& operator=(TessellationPlan&&) noexcept;
   ~TessellationPlan();
 
-  MeshCapacity capacity() const;  ///< exact, of triangles alone
-  /// The same with quads: cells that are whole are quads, those at poles stay triangles.
+  /// Returns the exact sizes of a mesh of triangles alone.
+  MeshCapacity capacity() const;
+  /// Returns the exact sizes of a mesh with quads: whole cells are quads, cells at poles are triangles.
   MeshCapacity quad_capacity() const;
   int rate_u() const;  ///< segments along u of every patch
-  int rate_v() const;  ///< segments along v
-  /// A mesh of the right size with all attributes, of triangles.
+  int rate_v() const;  ///< segments along v of every patch
+  /// Returns a mesh of capacity() with all attributes.
   Result<Mesh> allocate() const;
-  /// The same for quads, and for triangles where there are none.
+  /// Returns a mesh of quad_capacity() with all attributes.
   Result<Mesh> allocate_quads() const;
-  /// Writes the mesh, with quads if there is a view of them. `set` is the one that the plan was made for, at any revision
-  /// that collapses the same edges.
-  /// Errors: buffer_too_small, stale, invalid_argument, cancelled. Nothing is written on any but cancelled.
-  /// The same bytes for any number of threads. Allocates nothing after the first call.
+
+  /// Writes the mesh; with quads if `out.quads` is not empty.
+  ///
+  /// `set`: the set that the plan was made for, at any revision that collapses the same edges. The plan does not keep
+  /// the set itself: a run on another set of equal shape (patch count, degrees, rationality, collapsed edges) writes
+  /// that set's mesh, relative to that set's origin.
+  ///
+  /// Errors: buffer_too_small, stale (another number of patches, other degrees or collapsed edges), invalid_argument
+  /// (views; another set), cancelled. Nothing is written on any error but cancelled.
+  ///
+  /// The bytes are the same for any number of threads. Allocates nothing after the first call.
   Status run(const PatchSet& set, const MeshViews& out, const Execution& execution = {}) const;
 
   class [[gnu::visibility("hidden")]] Impl;
@@ -64,120 +74,156 @@ class TessellationPlan {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Mesh::parts by surfaces: a part for each run of triangles and quads whose patches come from one surface, with its name in
-/// the model ("surface 3" if it has none); they are gone through together, always the next one of the lower patch. `set` is
-/// the one of mesh.patches, made of `model`. Errors: count_mismatch (not one patch a triangle and a quad), invalid_argument
-/// (no such patch in the set, or surface in the model; index = the triangle or quad).
+/// Returns Mesh::parts by surfaces: one part for each run of triangles and quads whose patches come from one surface.
+///
+/// `set` is the one that mesh.patches refers to, made of `model`. Triangles and quads are merged in the order of their
+/// patches: the next face is always the one of the lower patch. A part has its surface's name in the model, or "surface
+/// 3" if that is empty.
+///
+/// Errors: count_mismatch (not one patch per triangle and per quad), invalid_argument (no such patch in the set, or no
+/// such surface in the model; index = the triangle or quad).
 Result<std::vector<MeshPart>> parts_by_surface(const Mesh& mesh, const PatchSet& set, const Model& model);
 
-/// A picture of width x height square pixels, its middle in the direction of the target.
+/// A picture of width x height square pixels, whose middle lies in the direction of the target.
 struct View {
-  Vec3 eye, target;           ///< where the camera stands, and what it looks at
-  Vec3 up{0, 0, 1};           ///< which way is up in the picture; another is taken where this is the direction of sight
-  bool orthographic = false;  ///< parallel rays; else they meet in the eye
+  Vec3 eye, target;           ///< where the camera stands, and the point that it looks at
+  Vec3 up{0, 0, 1};           ///< the direction that is up in the picture; replaced if parallel to the line of sight
+  bool orthographic = false;  ///< true: parallel rays; false: rays that meet in the eye
   double field_of_view = 40 * std::numbers::pi / 180;  ///< across the shorter side, radians, above 0 and below pi
-  double extent = 1;               ///< orthographic: how much the shorter side shows, in the model's lengths
-  int width = 1280, height = 800;  ///< of the picture, in pixels
-  /// In perspective, what is less deep than this in front of the eye is not seen. 0: a thousandth of the target's distance.
+  double extent = 1;               ///< orthographic: the length in the model that the shorter side shows, above 0
+  int width = 1280, height = 800;  ///< the picture's size in pixels, 1 to 1048576
+  /// Perspective: points less deep than this in front of the eye are not seen. 0: a thousandth of the target's
+  /// distance.
   double near_distance = 0;
 };
 
-/// How far mesh and surfaces may lie apart in a picture: every point of either that is seen lies within so many pixels of
-/// one of the other; silhouettes too. Along the rays it says nothing: an angle makes up for that in shading. Patches of
-/// which nothing is in the frame are not divided for it. Those that come nearer to the eye than the view's near distance,
-/// or pass behind it, are kept by their distance in space at the least depth at which anything of them is seen: so a
-/// camera may stand inside the model, and a patch that it all but touches takes many triangles.
+/// How far mesh and surfaces may lie apart in a picture.
+///
+/// Every seen point of the mesh or of a surface lies within `pixels` of a point of the other; silhouettes too.
+/// Distances along the rays are not bounded: combine this with an angle for shading.
+///
+/// - Patches with nothing in the frame are not divided for the picture.
+/// - Patches that come nearer to the eye than the view's near distance, or pass behind it, keep a distance in space
+///   instead, for the least depth at which anything of them is seen. So a camera may stand inside the model; a patch
+///   that it almost touches takes many triangles.
 struct PixelTolerance {
   double pixels = 0.5;  ///< above 0
   View view;            ///< the camera
 };
 
-/// At least one of tolerance, angle, pixels and smallest.
+/// The tolerances and limits of a certified mesh. At least one of tolerance, angle, pixels and smallest must be set.
 struct CertifiedOptions {
   /// The largest distance between surfaces and mesh, in the model's lengths, above 0: every point of either lies within
-  /// it of the other.
+  /// this distance of the other.
   std::optional<double> tolerance = {};
-  /// The tolerance is a share of the size of the set's box instead, its diagonal.
+  /// Whether the tolerance is a share of the diagonal of the set's box instead of a length.
   bool relative = false;
-  /// The largest angle by which the surface's normal turns within a triangle, radians, above 0, at most pi / 2: any two of
-  /// its normals over the triangle's parameters lie within it, and so does the mesh's shading, its vertices' normals mixed.
-  /// (Flat triangles' own normals are another matter: those of needles may look anywhere.) Where the normal has no direction,
-  /// at a cusp or at a corner with parallel tangents, there is no such bound, and nearly none where it turns at a rate of
-  /// more than 32 radians over a patch: such a patch gets at least angle_rate segments along each parameter instead and
-  /// counts in patches_without_angle(). Poles have bounds.
+  /// The largest angle by which the surface's normal turns within a triangle, radians, above 0, at most pi / 2.
+  ///
+  /// Any two surface normals over the triangle's parameters lie within this angle, and so does the shading that mixes
+  /// the normals of its vertices. It does not bound the flat triangles' own normals: those of needles may point
+  /// anywhere.
+  ///
+  /// There is no bound where the normal has no direction (at a cusp, or at a corner with parallel tangents), and hardly
+  /// one where it turns at a rate of more than 32 radians over a patch. Such a patch gets at least `angle_rate`
+  /// segments along each parameter instead and counts in patches_without_angle(). Poles have bounds.
   std::optional<double> angle = {};
-  int angle_rate = 64;                        ///< 1 to 4096
+  int angle_rate = 64;                        ///< segments of patches without an angle bound, 1 to 4096
   std::optional<PixelTolerance> pixels = {};  ///< a tolerance in a camera's picture
-  /// Borders that lie within this length of each other are joined: 0 to a twentieth of the set's size; 0 joins those of the
-  /// same bits alone. About
-  /// 1e-6 of the set's size suits files whose neighbours differ by rounding. It should stay below what the smallest patch
-  /// measures: thinner ones lose their area.
+  /// Borders that lie within this length of each other are joined: 0 to a twentieth of the set's size. 0 joins only
+  /// borders of the same bits. About 1e-6 of the set's size suits files whose neighbours differ by rounding. Keep it
+  /// below the width of the smallest patch: thinner patches lose their area.
   double weld = 0;
-  /// Patches that meet: where their normals lie within this angle of each other all along a border, radians, 0 to pi, and
-  /// look the same way, they get one normal a vertex, that of the patch that comes first; so does a pole all around. Borders
-  /// where they do not are creases, with a normal for each patch. 0.01 takes in joins that are G1 but for rounding. It is
-  /// found out by the normals of the mesh when the plan is made, and stays. (The angle that is proven, see above, is that
-  /// of each patch's own normals.) Without it each patch has its own normals.
+  /// The largest angle between normals that are joined, radians, 0 to pi. If empty, each patch has its own normals.
+  ///
+  /// Where the normals of two patches lie within this angle all along their common border, and point the same way, the
+  /// border has one normal per vertex, that of the patch that comes first; so has a pole all around. All other borders
+  /// are creases, with a normal for each patch. 0.01 takes in joins that are G1 up to rounding.
+  ///
+  /// make() decides this once, from the normals of the mesh; later edits do not change it. The proven `angle` is that
+  /// of each patch's own normals.
   std::optional<double> crease_angle = {};
-  /// Patches that meet share the vertices of their border by index, and a pole is one vertex: with a crease angle where
-  /// they share normals; without one everywhere, and then there are no normals. A shared vertex counts to the patch that
-  /// comes first: its parameters are those of that patch. Without it each patch has vertices of its own, of the same bits.
+  /// Whether patches that meet share the vertices of their border by index, and a pole is one vertex. If false, each
+  /// patch has its own vertices, whose positions are the same bits.
+  ///
+  /// With a crease angle, vertices are shared where normals are joined. Without a crease angle, vertices are shared
+  /// everywhere and the mesh has no normals. A shared vertex belongs to the patch that comes first: its parameters are
+  /// those of that patch.
   bool share_vertices = false;
-  /// More triangles than this are refused.
+  /// The largest number of triangles; a mesh that takes more is an error.
   std::uint64_t max_triangles = std::uint64_t{1} << 30;
-  /// The tolerance is not given but found: the smallest, within 1 percent, for which max_triangles are enough. Angle and
-  /// pixels are kept as well.
+  /// Finds the tolerance: the smallest, within 1 percent, for which max_triangles suffice. Angle and pixels are kept as
+  /// well.
   bool smallest = false;
-  /// Fewer triangles for more time: rates that bounds of many small pieces of each patch prove, where those of its halves ask
-  /// for more; and where a patch bends unevenly, segments of their own in the halves of its parameters, and of its borders
-  /// with the neighbours'; and, of those that will do, the ones that suit the neighbours (not beside an angle or pixels). It
-  /// saves a twentieth to a third, most on rational patches and on those that bend along u in one place and along v in
-  /// another, and never adds any. Takes 15 to 200 us a bicubic patch, some hundred times what a plan takes
-  /// without (many seconds for a budget of triangles, which tries many): for meshes that are drawn, stored or updated often.
+  /// Looks for fewer triangles and takes more time. It never adds triangles and saves a twentieth to a third of them,
+  /// most on rational patches and on those that bend along u in one place and along v in another. The means are:
+  ///
+  /// - rates proven by bounds of many small pieces of each patch, where bounds of its halves ask for more;
+  /// - where a patch bends unevenly, separate segments in the halves of its parameters and of the borders that it has
+  ///   with its neighbours;
+  /// - among rates that suffice, those that suit the neighbours (not with an angle or pixels).
+  ///
+  /// Time: about a hundred times that of a plan without it, of the order of 100 us per bicubic patch; many seconds with
+  /// `smallest`, which tries many plans. Meant for meshes that are drawn, stored or updated often.
   bool fewest = false;
   std::optional<Isa> isa = {};  ///< default_isa() if empty
-  /// Double: the mesh has positions in double as well, in the model's coordinates, and bounds are those of the mesh at these.
-  /// For parts so far apart, and tolerances so small, that float does not keep them. All vertices and normals then come from
-  /// the set's double control points, at about 1 us a vertex. Borders are one edge where their float control points are the
-  /// same bits and those in double lie within 2^-20 of the border's size of each other; others are welded within 2^-50 of the
-  /// largest coordinate, a few units in the last place.
+  /// Double: the mesh has positions in double as well, in the model's coordinates, and the bounds hold for these.
+  ///
+  /// Meant for parts so far apart, and tolerances so small, that float positions do not keep them. All vertices and
+  /// normals then come from the set's double control points, in about a microsecond per vertex. Borders are one edge
+  /// where their float control points are the same bits and their double ones lie within 2^-20 of the border's size of
+  /// each other. Other borders are welded within 2^-50 of the largest coordinate, a few units in the last place.
   Precision precision = Precision::single_precision;
 };
 
-/// A mesh of the fewest cells of one size that keep the tolerance, patch by patch. The bound of a patch is proven. It is the
-/// sum of a bound on the chords, the rounding of float vertices and the set's fit error. The chords are bounded by the second
-/// derivatives of the patch (Filip, Magedson, Markot 1986), those of a rational patch in homogeneous form or by exact
-/// numerators: a cylinder takes as many triangles at any height. Scaled sweeps rho(v) E(u) + T(v), as surfaces of revolution,
-/// extrusions and cones are, need no bound on the mixed derivative. A flat convex quadrilateral takes two triangles.
+/// Divides each patch into the fewest cells of one size that keep the tolerance, without cracks between patches.
 ///
-/// Vertices are sums of floats, in SIMD, unless the rounding of these sums takes more than an eighth of the tolerance, or
-/// all that pixels leave: parts far from each other beside a small tolerance. Then all vertices are sums of doubles, from the
-/// set's double control points, rounded once to float: off by half a unit in the last place of a position relative to the
-/// set's origin. They take several times as long and never go past the caches. Borders that were one edge when the plan was made
-/// keep one border's vertices in later revisions, as welded ones do.
+/// Bounds: the bound of a patch is proven. It is the sum of a bound on the chords, the rounding of float vertices and
+/// the set's fit error. The second derivatives of the patch bound the chords (Filip, Magedson, Markot 1986); for a
+/// rational patch those of its homogeneous form, or those of exact numerators. So a cylinder takes as many triangles at
+/// any height. Scaled sweeps rho(v) E(u) + T(v), such as surfaces of revolution, extrusions and cones, need no bound on
+/// the mixed derivative. A flat convex quadrilateral takes two triangles.
 ///
-/// Without cracks: borders of patches whose packed control points are the same bits, in either direction, run at one
-/// rate, and their vertices are the same bits in both patches. Each patch has an inner grid at rates of its own and strips of
-/// triangles between that and its borders. A collapsed border is one point, and no triangle stands on it.
+/// Vertices: usually sums of floats, in SIMD. If the rounding of these sums takes more than an eighth of the tolerance,
+/// or all that pixels leave, as for parts far from each other with a small tolerance, then all vertices are sums of
+/// doubles instead, from the set's double control points. These are rounded once to float: off by half a unit in the
+/// last place of a position relative to the set's origin. They take several times as long and are never written past
+/// the caches. Borders that were one edge when the plan was made keep the vertices of one border in later revisions, as
+/// welded ones do.
 ///
-/// Welding: a border that is no other's by its bits is joined to the nearest one within the tolerance, in either
-/// direction, of any degree: polynomial or rational, their points at equal parameters lie that near, by their control
-/// points raised to one degree. (Rational curves of one shape whose parameters run at different speeds are not joined, nor
-/// one long border to two short ones.) Its vertices become the other's, corners of joined borders become one corner's,
-/// and borders whose control points lie in a box of at most the tolerance become points, as collapsed ones are. How far
-/// vertices are moved is part of the bounds.
+/// No cracks: borders whose packed control points are the same bits, in either direction, run at one rate, and their
+/// vertices are the same bits in both patches. Each patch has an inner grid at its own rates, and strips of triangles
+/// between that grid and its borders. A collapsed border is one point without triangles on it.
 ///
-/// Layout of the vertices, patch after patch: first_vertex(k) + (iu - 1) * (rates v - 1) + iv - 1 for the inner points,
-/// then the border points counter-clockwise from (0,0), each corner once, but for shared ones that count to another patch.
-/// Immutable. Threads: any number of const calls. Memory: to make one 1 KiB a patch, to keep it 256 bytes; and about
-/// 512 KiB at most that a process keeps of what small plans share.
+/// Welding: a border that equals no other by its bits is joined to the nearest one within the weld tolerance.
+///
+/// - The two may run in either direction and have any degrees, polynomial or rational. Their points at equal parameters
+///   lie within the tolerance, proven by their control points raised to one degree.
+/// - Not joined: rational curves of one shape whose parameters run at different speeds; one long border and two short
+///   ones.
+/// - The border takes the other's vertices, and corners of joined borders become one corner.
+/// - Borders whose control points lie in a box of at most the tolerance become points, as collapsed ones are.
+/// - The bounds include how far vertices are moved.
+///
+/// Layout of the vertices, patch after patch: the inner points, then the border points counter-clockwise from (0,0),
+/// each corner once; shared points that belong to another patch are left out. The inner points of patch k are
+///   first_vertex(k) + (iu - 1) * (rates v - 1) + iv - 1.
+///
+/// Immutable. Threads: any number of const calls. Memory: 1 KiB per patch to make, 256 bytes per patch to keep; and at
+/// most about 512 KiB per set for tables that its small plans share.
 class CertifiedTessellation {
  public:
-  /// Errors: invalid_argument (no tolerance of any kind, or one that is not above 0; one that a patch's rounding, welding or
-  /// the fit error exceeds already, or nearly: the message names about the smallest that has a plan; a view without a
-  /// picture; a weld or a crease angle out of range; more triangles or vertices than allowed, or more than 4096 segments along
-  /// a parameter: the message says how many triangles it takes; fewer triangles than one cell a patch takes), unsupported
-  /// (the set has no float Bernstein blocks), isa_unavailable, cancelled.
+  /// Makes a plan.
+  ///
+  /// Errors:
+  /// - invalid_argument (no tolerance of any kind, or one that is not above 0)
+  /// - invalid_argument (a tolerance that a patch's rounding, welding or the fit error exceeds already, or nearly; the
+  ///   message names about the smallest tolerance that has a plan)
+  /// - invalid_argument (a view without a picture; a weld or a crease angle out of range)
+  /// - invalid_argument (more triangles or vertices than the limits, or more than 4096 segments along a parameter; the
+  ///   message says how many triangles the mesh takes)
+  /// - invalid_argument (max_triangles below what one cell per patch takes)
+  /// - unsupported (the set has no float Bernstein blocks), isa_unavailable, cancelled
   static Result<CertifiedTessellation> make(const PatchSet& set, const CertifiedOptions& options,
                                             const Execution& execution = {});
 
@@ -185,50 +231,64 @@ class CertifiedTessellation {
   CertifiedTessellation& operator=(CertifiedTessellation&&) noexcept;
   ~CertifiedTessellation();
 
-  /// What the mesh is proven to keep: the largest of bounds(). At most the tolerance. Of the revision that the plan was
-  /// made for.
+  /// Returns the distance that the mesh is proven to keep: the largest of bounds(), at most the tolerance. Like all
+  /// bounds of a plan it holds for the set and the revision that the plan was made for.
   double bound() const;
-  /// Whether that is proven; false where the set's fit error is only sampled.
+  /// Whether the bounds are proven; false where the set's fit error is only sampled.
   bool certified() const;
-  /// The same of each patch.
+  /// Returns the proven distance of each patch.
   std::span<const float> bounds() const;
-  /// The angle that is proven, radians: the largest of those patches that have a bound. 0 if none was asked for.
+  /// Returns the proven angle, radians: the largest of the patches that have a bound. 0 if no angle was set.
   double angle() const;
-  std::size_t patches_without_angle() const;  ///< those that have angle_rate segments instead of a bound
-  /// The same of each patch, infinite where there is none; empty if none was asked for.
+  std::size_t patches_without_angle() const;  ///< how many have angle_rate segments instead of a bound
+  /// Returns the proven angle of each patch, infinite where there is none; empty if no angle was set.
   std::span<const float> angles() const;
-  /// What is proven in the picture, in pixels. 0 if it was not asked for.
+  /// Returns the proven distance in the picture, in pixels. 0 if pixels were not set.
   double pixels() const;
-  /// The same of each patch, 0 where nothing is seen; empty if it was not asked for.
+  /// Returns the proven pixels of each patch, 0 where nothing is seen; empty if pixels were not set.
   std::span<const float> pixel_bounds() const;
-  /// Borders that take the vertices of others, and those made points: joined by welding, not by their bits.
+  /// Returns how many borders were joined by welding and not by their bits: those with the vertices of another border,
+  /// and those made points.
   std::size_t welded_borders() const;
-  MeshCapacity capacity() const;  ///< exact, of triangles alone
-  /// The same with quads: as many as there are cells that no strip belongs to, none where they are all in strips. A quad's
-  /// corners are those of a box of the patch's parameters, in which all of its triangles lie: whatever is proven of the
-  /// mesh holds for both, by either diagonal.
+  /// Returns the exact sizes of a mesh of triangles alone.
+  MeshCapacity capacity() const;
+  /// Returns the exact sizes of a mesh with quads: one quad for each cell that is not in a strip, so none where strips
+  /// take all cells. The corners of a quad are those of a box of the patch's parameters, in which both of its triangles
+  /// lie: all that is proven of the mesh holds for both, by either diagonal.
   MeshCapacity quad_capacity() const;
-  /// A mesh of the right size with all attributes that there are, of triangles.
+  /// Returns a mesh of capacity() with all attributes that the plan has.
   Result<Mesh> allocate() const;
-  /// The same for quads and the triangles of strips.
+  /// Returns a mesh of quad_capacity() with all attributes that the plan has.
   Result<Mesh> allocate_quads() const;
-  /// Writes the mesh of the set that the plan was made for, with quads if there is a view of them, at any revision: the same
-  /// triangles, whatever the control
-  /// points (the bounds hold for the plan's own revision). Errors: buffer_too_small, stale (another number of patches,
-  /// other degrees or collapsed borders), invalid_argument (views; normals of vertices that are shared everywhere),
-  /// cancelled. Nothing is written on any but cancelled. The same
-  /// bytes for any number of threads, and on every instruction set that fuses multiply-adds; border positions on all.
-  /// Packed views (three floats a record) of large meshes are written past the caches unless execution.stores is plain.
+
+  /// Writes the mesh; with quads if `out.quads` is not empty.
+  ///
+  /// `set`: the set that the plan was made for, at any revision; the triangles are the same for all control points. The
+  /// bounds hold only for the set and the revision that the plan was made for. The plan does not keep the set itself: a
+  /// run on another set of equal shape (patch count, degrees and collapsed borders) writes that set's mesh, relative to
+  /// that set's origin, for which nothing is proven.
+  ///
+  /// Errors: buffer_too_small, stale (another number of patches, other degrees or collapsed borders), unsupported (a set
+  /// without float Bernstein blocks), invalid_argument (views; a view of normals where vertices are shared everywhere),
+  /// cancelled. Nothing is written on any error but
+  /// cancelled.
+  ///
+  /// The bytes are the same for any number of threads, and on every instruction set that fuses multiply-adds; border
+  /// positions are the same on all. Packed views (three floats per record) of large meshes are written past the caches
+  /// unless execution.stores is plain.
   Status run(const PatchSet& set, const MeshViews& out, const Execution& execution = {}) const;
 
-  /// The plan for the set as it is now, by the options of this one: bounds, edges and welds are found anew, rates change
-  /// only where they must. A patch keeps its own as long as these keep the tolerances and have at most (1 + spare) times
-  /// the cells of the best; `spare` is at least 0. (All give way where triangles run out.) Errors: as make(); stale
-  /// (another number of patches).
+  /// Returns the plan for the set as it is now, with the options of this plan.
+  ///
+  /// Bounds, edges and welds are found anew; rates change only where they must. A patch keeps its segments while they
+  /// keep the tolerances and have at most (1 + spare) times the cells of the best ones; all patches take the best ones
+  /// if the triangles would exceed the limit. `spare` is at least 0.
+  ///
+  /// Errors: as make(); stale (another number of patches).
   Result<CertifiedTessellation> retessellate(const PatchSet& set, double spare = 0.25,
                                              const Execution& execution = {}) const;
-  /// How many patches are divided, or joined to others, otherwise than in another plan for the set. Where there is none, a
-  /// mesh of the one has the same triangles and vertices as one of the other.
+  /// Returns how many patches this plan divides, or joins to others, differently from another plan for the set. If
+  /// none, meshes of the two plans have the same triangles and vertices.
   std::size_t divided_otherwise(const CertifiedTessellation& other) const;
 
   class [[gnu::visibility("hidden")]] Impl;
@@ -239,8 +299,10 @@ class CertifiedTessellation {
   std::unique_ptr<Impl> impl_;
 };
 
-/// A certified plan and the memory for updates of its mesh, so that repeated ones allocate nothing. An animated model costs
-/// what the evaluation of its touched patches costs: triangles stay as they are. Threads: one call at a time.
+/// A certified plan with the memory for updates of its mesh, so that repeated updates allocate nothing.
+///
+/// A frame of an animated model costs the evaluation of its touched patches; the triangles are unchanged. Threads: one
+/// call at a time.
 ///
 ///   auto update = MeshUpdate::make(set, std::move(plan));   // once plan.run(set, mesh.views()) has written the mesh
 ///   update->run(set, {patches, points}, mesh.views());      // each frame
@@ -249,47 +311,59 @@ class CertifiedTessellation {
 ///       mesh = ...                                          // update->plan().allocate() and run()
 class MeshUpdate {
  public:
-  /// Takes over a plan of the set as it is. Errors: stale (another revision of the set, or number of patches);
-  /// out_of_memory. Memory: 256 bytes a patch, those of the plan among them.
+  /// Takes over a plan of the set as it is. Errors: stale (another revision of the set, or number of patches),
+  /// out_of_memory. Memory: 256 bytes per patch, which include those of the plan.
   static Result<MeshUpdate> make(const PatchSet& set, CertifiedTessellation plan);
 
   MeshUpdate(MeshUpdate&&) noexcept;
   MeshUpdate& operator=(MeshUpdate&&) noexcept;
   ~MeshUpdate();
 
-  const CertifiedTessellation& plan() const;  ///< that of the mesh as it is now
+  const CertifiedTessellation& plan() const;  ///< the plan of the mesh as it is now
 
-  /// PatchSet::set_control_points() for each edit, and then the positions and normals of these patches alone: each task
-  /// packs the patches that it evaluates while they are in its cache. `out` are the views of the mesh that the plan has
-  /// written; positions, and normals if wanted, are enough. Records of other patches are not touched, but for vertices
-  /// that welding takes from touched ones. The same bytes in the set and in the views as by those calls and by
-  /// CertifiedTessellation::run(), for any number of threads. The revision grows by one, unless there is no edit.
-  /// A patch's first update gives its points memory of their own, if it shares it with other patches; the next ones
-  /// allocate nothing, but for a patch with a border that welding made a point.
-  /// Where borders of the same bits are moved apart, so is the mesh; retessellate() finds what still meets.
-  /// Errors, with nothing written: those of the views (buffer_too_small, invalid_argument); stale (the set was edited by
-  /// other means; or index = the edit: other collapsed borders than in the plan); invalid_argument (index = the edit: no
-  /// such patch, or one that an edit before names); count_mismatch (points); non_finite (index = the edit: a point is
-  /// not finite, or does not fit the set's numbers relative to its origin). cancelled: each patch then has its new control
-  /// points and its new vertices, or neither.
+  /// Sets new control points and writes the positions and normals of these patches.
+  ///
+  /// `out`: the views of the mesh that the plan has written. Positions, and normals if wanted, are enough. Records of
+  /// other patches are not touched, except vertices that welding takes from edited patches.
+  ///
+  /// The set and the views get the same bytes as from PatchSet::set_control_points() for each edit and
+  /// CertifiedTessellation::run(), for any number of threads; but each task packs the patches that it evaluates while
+  /// they are in its cache. The revision grows by one, unless there is no edit. Where borders of the same bits are
+  /// moved apart, so is the mesh; retessellate() finds what still meets.
+  ///
+  /// Errors, with nothing written:
+  /// - buffer_too_small, invalid_argument (views)
+  /// - invalid_argument (another set; index = the edit: no such patch, or one that an edit before names)
+  /// - stale (the set was edited by other means; index = the edit: other collapsed borders than in the plan)
+  /// - count_mismatch (points)
+  /// - non_finite (index = the edit: a point is not finite, or does not fit the set's numbers relative to its origin)
+  ///
+  /// After cancelled, each patch has its new control points and its new vertices, or neither.
+  ///
+  /// Memory: the first update of a patch gives its points memory of their own, if it shares them with other patches.
+  /// Later updates allocate nothing, except for a patch with a border that welding made a point.
   Status run(PatchSet& set, const PatchEdits& edits, const MeshViews& out, const Execution& execution = {});
 
-  /// Proves anew how far the mesh lies from the patches that were touched since the last call: about a quarter of what
-  /// an update of theirs costs, but for plans of the fewest triangles, up to 110 us a bicubic patch; what such a plan has proven,
-  /// one patch in a hundred is not known to keep, by up to 6%. Distances alone: angles and pixels are proven by a plan, and
-  /// count as not proven for patches that were touched. Allocates nothing. Errors: stale (the set was edited by other
-  /// means), cancelled.
+  /// Proves anew how far the mesh lies from the patches that were touched since the last call.
+  ///
+  /// Only distances are proven: a touched patch with an angle or pixels counts as unproven. Allocates nothing. Errors:
+  /// stale (the set was edited by other means), cancelled.
+  ///
+  /// Time: about a quarter of an update of these patches; for plans with `fewest` up to the order of 100 us per bicubic
+  /// patch. With `fewest`, this finds a larger bound than the plan's for one patch in a hundred, by up to 6 %.
   Status restate(const PatchSet& set, const Execution& execution = {});
-  /// How far mesh and patches lie apart at most, as of the last restate(); at first the plan's bounds().
+  /// Returns the largest distance of each patch from the mesh, as of the last restate(); at first the plan's bounds().
   std::span<const float> bounds() const;
-  double bound() const;  ///< the largest
-  /// How many patches their rates no longer serve: whose bound is above the plan's tolerance, or of whose angle or pixels
-  /// nothing is known any more. As of the last restate().
+  double bound() const;  ///< the largest of bounds()
+  /// Returns how many patches need other rates, as of the last restate(): those whose bound exceeds the plan's
+  /// tolerance, or whose angle or pixels are no longer known.
   std::size_t unproven() const;
 
-  /// Takes CertifiedTessellation::retessellate() of the plan in its place. How many patches are divided otherwise: if none,
-  /// the mesh stays as it is; else it is another one, for plan().allocate() or capacity() and run(). All of them, if the
-  /// set was edited by other means: then run() is due in any case. Errors: as there; the plan stays then.
+  /// Replaces the plan by its CertifiedTessellation::retessellate().
+  ///
+  /// Returns how many patches are divided differently. If none, the mesh is unchanged; else it is another one, for
+  /// plan().allocate() or capacity() and run(). All patches, if the set was edited by other means: run() of the plan is
+  /// then due in any case. Errors: as CertifiedTessellation::retessellate(); the plan is then unchanged.
   Result<std::size_t> retessellate(const PatchSet& set, double spare = 0.25, const Execution& execution = {});
 
  private:

@@ -10,6 +10,7 @@
 #include "tessera/execution.h"
 #include "tessera/generic_callable.h"
 #include "tessera/geometry.h"
+#include "tessera/guard.h"
 #include "tessera/hermite_patch.h"
 #include "tessera/limits.h"
 #include "tessera/local_geometry.h"
@@ -19,6 +20,7 @@
 #include "tessera/parametric_surface.h"
 #include "tessera/patch_set.h"
 #include "tessera/quadric.h"
+#include "tessera/quantities.h"
 #include "tessera/status.h"
 #include "tessera/strided_view.h"
 #include "tessera/surface.h"
@@ -33,4 +35,5 @@
 #endif
 #if __has_include("tessera/io.h")
 #include "tessera/io.h"
+#include "tessera/text_cursor.h"
 #endif

@@ -8,7 +8,7 @@ void* allocate_aligned(std::size_t bytes) {
   void* const memory = ::operator new(bytes, alignment_of(bytes));
 #ifdef MADV_HUGEPAGE
   if (alignment_of(bytes) == std::align_val_t{large_page})
-    (void)madvise(memory, bytes / large_page * large_page, MADV_HUGEPAGE);  // a wish, no need
+    (void)madvise(memory, bytes / large_page * large_page, MADV_HUGEPAGE);  // only a hint: failure is harmless
 #endif
   return memory;
 }

@@ -11,15 +11,16 @@ namespace tessera::inline abi_0_1 {
 
 inline constexpr std::size_t cache_line = 64;
 
-/// Memory of several pages of this size is asked for in them, where the system has them: scattered reads of 4 KiB pages
-/// wait longer for the page's address than for the values. Less memory is not worth the time that getting them takes.
+/// Size of a large page. Allocations of several such pages ask the system for them: with 4 KiB pages, scattered reads
+/// wait longer for the page's address than for the values. For smaller allocations the request costs more time than it
+/// saves.
 inline constexpr std::size_t large_page = std::size_t{2} << 20, min_bytes_in_large_pages = 8 * large_page;
 
-/// Alignment of so many bytes.
+/// Alignment of an allocation of `bytes`.
 constexpr std::align_val_t alignment_of(std::size_t bytes) {
   return std::align_val_t{bytes >= min_bytes_in_large_pages ? large_page : cache_line};
 }
-/// `bytes` at that alignment. Throws std::bad_alloc.
+/// Allocates `bytes` with alignment_of(bytes). Throws std::bad_alloc.
 TESSERA_INTERNAL_EXPORT void* allocate_aligned(std::size_t bytes);
 
 template <class T>
@@ -50,7 +51,7 @@ struct UnsetAllocator : AlignedAllocator<T> {
   }
 };
 
-/// The same for numbers that are all written once there is room for them: resize() leaves new ones unset.
+/// A vector for numbers that are all written after resize(), which leaves new ones unset.
 template <class T>
 using UnsetVector = std::vector<T, UnsetAllocator<T>>;
 

@@ -1,11 +1,11 @@
 #pragma once
-// The way from a public object to what is inside it, for the library's own files.
+// Access from a public object to its implementation, for the library's own files.
 
 #include <type_traits>
 
 namespace tessera::inline abi_0_1 {
 
-/// A friend of every public class that keeps its inside in `impl_`.
+/// A friend of every public class that keeps its implementation in `impl_`.
 struct ImplAccess {
   template <class T>
   static auto& of(T& object) {
@@ -13,7 +13,7 @@ struct ImplAccess {
   }
 };
 
-/// The inside of a public object; const where the object is.
+/// The implementation of a public object; const if the object is.
 template <class T>
 std::conditional_t<std::is_const_v<T>, const typename T::Impl, typename T::Impl>& impl_of(T& object) {
   return ImplAccess::of(object);

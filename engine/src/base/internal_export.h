@@ -1,6 +1,5 @@
 #pragma once
-// The few functions inside the core that the libraries above it, of rays and of files, call too: a shared core exports them
-// beside what is public, and tests/house/exported_symbols.cpp lists
-// them. They are nobody else's.
+// Marks the few functions of the core that the libraries above it (rays, files) also call. A shared core exports them
+// beside the public ones; tests/house/exported_symbols.cpp lists them. No one else may call them.
 
 #define TESSERA_INTERNAL_EXPORT [[gnu::visibility("default")]]

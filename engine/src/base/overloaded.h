@@ -1,5 +1,5 @@
 #pragma once
-// One callable of several lambdas, to visit variants with.
+// Makes one callable of several lambdas, to visit variants with.
 
 namespace tessera::inline abi_0_1 {
 

@@ -1,19 +1,28 @@
 #pragma once
-// Numbers in messages.
+// Numbers and counts in messages.
 
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <string>
+#include <string_view>
 
 namespace tessera::inline abi_0_1 {
 
 /// The shortest text that reads back as the same double; "nan" for every NaN, whose sign means nothing. For messages of
-/// failures: what leads to a call is compiled for size.
+/// failures, hence cold: the compiler optimises the calls for size.
 [[gnu::cold]] inline std::string text(double value) {
   if (std::isnan(value)) return "nan";
   std::array<char, 32> digits;
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
+}
+
+/// "1 vertex", "2 vertices"; `plural` if an s is not enough.
+[[gnu::cold]] inline std::string counted(std::size_t count, std::string_view noun, std::string_view plural = {}) {
+  std::string out = std::to_string(count) + ' ';
+  out += count == 1 || plural.empty() ? noun : plural;
+  if (count != 1 && plural.empty()) out += 's';
+  return out;
 }
 
 }  // namespace tessera::inline abi_0_1

@@ -26,7 +26,7 @@ Status check_order(std::span<const double> knots, const std::string& name) {
               knot_text(knots, name, k) + " is below the knot before it, " + text(knots[k - 1]), index};
   }
   if (!std::isfinite(knots.back() - knots.front()))
-    return {StatusCode::non_finite, name + " reach too far: their last minus their first is not finite"};
+    return {StatusCode::non_finite, "the range of " + name + " is too large: last minus first is not finite"};
   return {};
 }
 
@@ -38,9 +38,9 @@ Status check_multiplicity(int degree, std::span<const double> knots, const std::
     const bool inner = knots[k] > start && knots[k] < end;
     if (count > p + (inner ? 0 : 1))
       return {StatusCode::invalid_argument,
-              knot_text(knots, name, k) + " stands " + std::to_string(count) + " times; of degree " +
-                  std::to_string(degree) + (inner ? " an inner knot may stand " : " a knot may stand ") +
-                  std::to_string(p + (inner ? 0 : 1)) + " times",
+              knot_text(knots, name, k) + " has multiplicity " + std::to_string(count) + ", at degree " +
+                  std::to_string(degree) + (inner ? " an inner knot" : " a knot") + " has at most " +
+                  std::to_string(p + (inner ? 0 : 1)),
               static_cast<std::ptrdiff_t>(k)};
     k += count;
   }
@@ -53,8 +53,8 @@ Status check_knots(int degree, std::span<const double> knots, const std::string&
   const std::size_t p = static_cast<std::size_t>(degree);
   if (knots.size() < 2 * (p + 1))
     return {StatusCode::count_mismatch, "degree " + std::to_string(degree) + " needs at least " +
-                                            std::to_string(2 * (p + 1)) + " " + name + ", " +
-                                            std::to_string(knots.size()) + " were given"};
+                                            std::to_string(2 * (p + 1)) + " " + name + ", found " +
+                                            std::to_string(knots.size())};
   if (Status status = check_order(knots, name); !status.ok()) return status;
   const std::size_t last = knots.size() - p - 1;
   if (!(knots[p] < knots[last]))
@@ -72,7 +72,7 @@ Status check_range(int degree, std::span<const double> knots, double from, doubl
   if (!(from < to)) return {StatusCode::invalid_argument, range + " is empty"};
   if (from < first || to > last)
     return {StatusCode::invalid_argument,
-            range + " reaches outside that of the knots, [" + text(first) + ", " + text(last) + "]"};
+            range + " exceeds that of the knots, [" + text(first) + ", " + text(last) + "]"};
   return {};
 }
 

@@ -4,14 +4,15 @@
 #include <iterator>
 #include <limits>
 
-#include "base/guard.h"
 #include "base/text.h"
 #include "block/patch_set_impl.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// Patches of surface after surface, and where each came from.
+/// The patches of one surface after the other, and the source of each patch.
 struct Gathered {
   std::vector<BezierPatch> patches;
   std::vector<PatchSource> sources;
@@ -50,7 +51,7 @@ struct Gathered {
   }
 };
 
-/// Of a tolerance; the rest is for the rounding of placed points.
+/// The share of a tolerance that fits may use; the rest is for the rounding of placed points.
 constexpr double share_for_fits = 0.99;
 
 }  // namespace
@@ -71,7 +72,7 @@ Result<SurfaceJet> evaluate_jet(const ModelSurface& surface, double u, double v)
   if (!is_finite(position))
     return Status(StatusCode::non_finite, "the surface's point at (" + text(u) + ", " + text(v) + ") is (" +
                                               text(position.x) + ", " + text(position.y) + ", " + text(position.z) +
-                                              ") where it is placed: beyond the range of numbers");
+                                              ") after its placement, beyond the range of double");
   return SurfaceJet{position,
                     map.vector(jet->du),
                     map.vector(jet->dv),
@@ -89,16 +90,17 @@ Result<PatchGrid> to_bezier(const ModelSurface& surface, const FitOptions& optio
   Result<PatchGrid> grid = to_bezier(surface.surface, before);
   if (grid) grid = transformed(*grid, surface.placement);
   if (grid && options.tolerance > 0 && grid->fit_error().distance > options.tolerance)
-    return Status(StatusCode::invalid_argument, "the tolerance " + text(options.tolerance) +
-                                                    " is below what rounding leaves where the surface is placed: " +
-                                                    text(grid->fit_error().distance) + " was reached");
+    return Status(StatusCode::invalid_argument,
+                  "the tolerance " + text(options.tolerance) +
+                      " is below the rounding of the placed surface; the error reached is " +
+                      text(grid->fit_error().distance));
   return grid;
 }
 
 Result<PatchSet> make_patch_set(const Model& model, const PatchSetOptions& options, const FitOptions& fit) {
   return guarded([&]() -> Result<PatchSet> {
     Gathered all;
-    std::vector<std::size_t> ends;  // of each surface's patches
+    std::vector<std::size_t> ends;  // the end of each surface's patches
     for (std::size_t k = 0; k < model.surfaces.size(); ++k) {
       Result<PatchGrid> grid = to_bezier(model.surfaces[k], fit);
       if (!grid) return in_surface(model, k, grid.status());

@@ -9,11 +9,11 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// Weights below these shares of the largest: derivatives grow with the inverse of that share, and normals with its
-/// square.
+/// The least share of the largest weight that a weight may be: derivatives grow with the inverse of that share, and
+/// normals with its square.
 constexpr double min_weight_in_float = 1e-9, min_weight_in_double = 1e-70;
 
-/// The largest |coefficient| of components `first` to before `end`.
+/// Returns the largest |coefficient| of components `first` to before `end`.
 double largest_of(std::span<const double> net, std::size_t components, std::size_t first, std::size_t end) {
   double largest = 0;
   for (std::size_t k = 0; k < net.size(); k += components)
@@ -21,7 +21,8 @@ double largest_of(std::span<const double> net, std::size_t components, std::size
   return largest;
 }
 
-/// Whether weights, and Bernstein coefficients as large as `largest`, suit blocks of which some are in float.
+/// Whether the weights, and Bernstein coefficients up to `largest`, fit the blocks; `in_float`: some of these are in
+/// float.
 bool fits(const RelativeNet& net, bool in_float, double largest) {
   const double ratio = net.weight_ratio();
   return largest <= largest_coefficient(in_float, 1) &&
@@ -29,16 +30,16 @@ bool fits(const RelativeNet& net, bool in_float, double largest) {
          !(ratio < (in_float ? min_weight_in_float : min_weight_in_double));
 }
 
-/// Where a patch goes, and what its doubts rest on.
+/// Where a patch is packed to, and the values that its thresholds follow from.
 struct Place {
   const BlockGroup& group;
   PatchSet::Slot slot;
-  std::uint32_t lane_count;  ///< of the block
+  std::uint32_t lane_count;  ///< the block's lanes in use
   const RelativeNet& net;
   bool curve;
   double diameter;
 
-  /// The patch's lane, and those that repeat it, by write_coefficients(lane). `size`: see normal_doubt().
+  /// Writes the patch's lane, and those that repeat it, by write_coefficients(lane). `size`: see normal_doubt().
   template <class T, class Write>
   void write(UnsetVector<T>& coefficients, UnsetVector<T>& doubts, double size, Write write_coefficients) const {
     constexpr std::size_t lanes = PatchSet::lanes;
@@ -55,7 +56,7 @@ struct Place {
       for (std::uint32_t lane = lane_count; lane < lanes; ++lane) write_to(lane);
   }
 
-  /// The patch for scattered points.
+  /// Writes the coefficients for scattered points.
   template <class T>
   void write_points(Coefficients<T>& to, double size) const {
     net.write_rows(to.points.data() + group.point_value(slot), group.point_values);

@@ -1,5 +1,5 @@
 #pragma once
-// One patch into its lanes of a block.
+// Packs one patch into its lanes of a block.
 
 #include <algorithm>
 #include <array>
@@ -12,48 +12,51 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Components of a coefficient: x, y, z, and w for rational patches.
+/// The number of components of a coefficient: x, y, z, and w for rational patches.
 constexpr int coefficient_components(bool rational) { return rational ? 4 : 3; }
 
-/// Values in one block of these degrees.
+/// The number of values in one block of these degrees.
 constexpr std::size_t block_values(int degree_u, int degree_v, bool rational) {
   return static_cast<std::size_t>((degree_u + 1) * (degree_v + 1) * coefficient_components(rational) * PatchSet::lanes);
 }
 
-/// Values from one patch to the next where patches lie one by one: whole cache lines in either precision.
+/// The number of values from one patch to the next where patches lie one by one: whole cache lines in either precision.
 constexpr std::size_t point_values(int degree_u, int degree_v, bool rational) {
   const std::size_t line = 16, values = block_values(degree_u, degree_v, rational) / PatchSet::lanes;
   return (values + line - 1) / line * line;
 }
 
-/// What the Bernstein coefficients of a patch, relative to the origin and over the largest weight, may reach, so that second
-/// derivatives are numbers: those of degree d are at most 4 d^2 times the coefficients, and the quotient rule divides twice
-/// by a weight. `weight_ratio`: of the smallest weight to the largest. Coefficients of powers, of which a second derivative
-/// sums up (d + 1)^2 d^2, may reach what it gives for ratio 1.
+/// The limit for the Bernstein coefficients of a patch, relative to the origin and over the largest weight, that keeps
+/// second derivatives finite.
+///
+/// Second derivatives of degree d are at most 4 d^2 times the coefficients, and the quotient rule divides twice by a
+/// weight.
+/// `weight_ratio`: the smallest weight over the largest. For power coefficients, of which a second derivative sums up
+/// (d + 1)^2 d^2, the limit is that of ratio 1.
 inline double largest_coefficient(bool in_float, double weight_ratio) {
   const double most = in_float ? double{std::numeric_limits<float>::max()} : std::numeric_limits<double>::max();
   return 0x1p-16 * most * weight_ratio * weight_ratio;
 }
 
-/// The coefficients of `patch` relative to `origin`, `[i][j][component]`: (V - o, or w (V - o) and w) in the Bernstein
-/// basis, or the same in powers of u and v. Weights are divided by a power of two that brings the largest near 1: they
-/// fit float whatever their size, and borders shared by patches keep their bits.
+/// The coefficients of `patch` relative to `origin` o, `[i][j][component]`, in the Bernstein basis or in powers of u
+/// and v: V - o, or w (V - o) and w. Weights are divided by a power of two that brings the largest near 1. So they fit
+/// float whatever their size, and borders that patches share keep their bits.
 class RelativeNet {
  public:
   RelativeNet(const BezierPatch& patch, const Vec3& origin);
 
-  double lightest() const { return scale_ * low_; }  ///< weight, once divided
-  double heaviest() const { return scale_ * high_; }
+  double lightest() const { return scale_ * low_; }      ///< the smallest divided weight
+  double heaviest() const { return scale_ * high_; }     ///< the largest divided weight
   double weight_ratio() const { return low_ / high_; }   ///< at most 1
   double weight_spread() const { return high_ / low_; }  ///< at least 1
 
-  /// Largest x, y or z of the Bernstein coefficients. `hull`: patch.hull_box(), whose corners hold that of a polynomial
-  /// patch, for rounding a difference keeps order.
+  /// Returns the largest |x|, |y| or |z| of the Bernstein coefficients. `hull`: patch.hull_box(). For a polynomial
+  /// patch its corners give the result, because rounding a difference keeps order.
   double largest(const Box3& hull) const;
-  /// The size that errors of tangents are proportional to, over the weight (sample_kernel.inl.h): largest() of a polynomial patch, the
-  /// largest |V - o| times the largest weight of a rational one.
+  /// Returns the size that errors of tangents are proportional to, over the weight (sample_kernel.inl.h): largest() for
+  /// a polynomial patch, the largest |V - o| times the largest weight for a rational one.
   double tangent_size(const Box3& hull) const { return heaviest() * farthest(hull); }
-  /// Writes the Bernstein coefficients into the lane that begins here, rounding to T once.
+  /// Writes the Bernstein coefficients into the lane that begins at `lane`, rounding to T once.
   template <class T>
   void write(T* lane) const {
     for_each([&](double value) {
@@ -80,17 +83,17 @@ class RelativeNet {
   }
 
   using Power = std::array<double, (max_degree + 1) * (max_degree + 1) * 4>;
-  /// The power coefficients, in `memory`.
+  /// Returns the power coefficients, stored in `memory`.
   std::span<const double> power(Power& memory) const;
 
  private:
-  /// put(value) for each Bernstein coefficient. Equal control points give equal bits: adding +0 turns -0 into +0.
+  /// Calls put(value) for each Bernstein coefficient. Equal control points give equal bits: adding +0 turns -0 into +0.
   template <class Put>
   void for_each(Put put) const {
     const auto points = patch_.points();
     const auto weights = patch_.weights();
     if (weights.empty()) {
-      const Vec3 shift = Vec3{} - origin_;  // never -0, nor is a sum with it
+      const Vec3 shift = Vec3{} - origin_;  // neither it nor a sum with it is -0
       for (const Vec3& point : points) {
         put(point.x + shift.x);
         put(point.y + shift.y);
@@ -105,46 +108,49 @@ class RelativeNet {
     }
   }
 
-  /// The largest |x|, |y| or |z| of V - o.
+  /// Returns the largest |x|, |y| or |z| of V - o.
   double farthest(const Box3& hull) const {
     return std::max(max_abs(hull.lower - origin_), max_abs(hull.upper - origin_));
   }
 
   const BezierPatch& patch_;
   const Vec3 origin_;
-  double low_ = 1, high_ = 1, scale_ = 1;  // of the weights
+  double low_ = 1, high_ = 1, scale_ = 1;  // the least and the largest weight, and the factor of all
 };
 
-/// From when on r_u x r_v can't be told from zero in a block's arithmetic.
+/// Where r_u x r_v can't be distinguished from zero in a block's arithmetic.
 struct DegenerateNormalThreshold {
   double squared_length = 0;  ///< at or below this |r_u x r_v|^2 the tangents' rounding errors count
-  double noise = 0;  ///< largest error of a tangent's component, times the weight; negative: no normal anywhere
+  double noise = 0;  ///< the largest error of a tangent's component, times the weight; negative: no normal anywhere
 };
 
-/// Whether all rows or all columns of the net are the same (for rational patches: both): then r_u or r_v is zero
-/// everywhere. `collapsed`: patch.collapsed_edges(); the ends of equal rows are two.
+/// Whether all rows or all columns of the net are equal (for rational patches: both), so that r_u or r_v is zero
+/// everywhere. `collapsed`: patch.collapsed_edges(); equal rows have two collapsed ends.
 bool is_curve(const BezierPatch& patch, EdgeMask collapsed);
 
-/// Of a curve.
+/// The threshold of a patch that is a curve.
 inline constexpr DegenerateNormalThreshold no_normal{.squared_length = std::numeric_limits<double>::infinity(),
                                                      .noise = -1};
 
-/// The error of a tangent where RelativeNet::tangent_size() is 1, `degree` = max(m, n).
+/// The largest error of a tangent where RelativeNet::tangent_size() is 1; `degree` = max(m, n).
 template <class T>
 constexpr double tangent_noise(int degree) {
   return 6 * degree * double{std::numeric_limits<T>::epsilon()};
 }
-/// |r_u|, |r_v| at the most where the hull's box has the diameter 1.
+/// The largest |r_u| or |r_v| where the hull's box has the diameter 1.
 constexpr double longest_tangent(int degree, double weight_spread = 1) { return degree * weight_spread; }
 
-/// Squared lengths below, 2^-80 or 2^-600, are out of the range of a float's or a double's squares.
+/// The least squared length that a kernel reads: smaller ones, below 2^-80 or 2^-600, are out of the range of a float's
+/// or a double's squares.
 template <class T>
 inline constexpr double min_doubt = sizeof(T) == 4 ? 0x1p-80 : 0x1p-600;
 
-/// The doubt of a patch that is no curve, in blocks of T, `degree` = max(m, n). The error of a tangent counts as
-/// 6 max(m, n) units of `size`, RelativeNet::tangent_size(), over the weight for rational patches: random nets of all
-/// degrees reach 4, tangents that vanish 1.6. And |r_u|, |r_v| <= max(m, n) (largest weight / smallest) diameter
-/// (Floater 1992, Derivatives of rational Bezier curves, eq. 10). `diameter`: of the hull's box.
+/// The threshold of a patch that is no curve, in blocks of T.
+///
+/// `degree` = max(m, n); `size`: RelativeNet::tangent_size(); `diameter`: that of the hull's box. The error of a
+/// tangent counts as 6 max(m, n) units of `size`, over the weight for rational patches: random nets of all degrees
+/// reach 4, tangents that vanish 1.6. The lengths |r_u|, |r_v| are at most max(m, n) (largest weight / smallest)
+/// diameter (Floater 1992, Derivatives of rational Bezier curves, eq. 10).
 template <class T>
 DegenerateNormalThreshold normal_doubt(int degree, double size, double diameter, double lightest,
                                        double weight_spread) {
@@ -154,7 +160,7 @@ DegenerateNormalThreshold normal_doubt(int degree, double size, double diameter,
   return {.squared_length = length * length, .noise = noise};
 }
 
-/// The same as a kernel reads it: squared length, noise.
+/// The threshold as a kernel reads it: squared length, noise.
 template <class T>
 std::array<T, 2> doubt_in(const DegenerateNormalThreshold& doubt) {
   const double largest = std::numeric_limits<T>::max();

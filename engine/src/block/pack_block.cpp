@@ -1,4 +1,4 @@
-// All patches of a block at once: the same bits as patch after patch, and several times faster for polynomial ones.
+// Packs all patches of a block at once: the same bits as patch after patch, several times faster for polynomial ones.
 
 #include <algorithm>
 #include <array>
@@ -18,8 +18,8 @@ Box3 box_of_lane(const kernel::NetBoxes& boxes, std::size_t lane) {
 
 }  // namespace
 
-/// One kind of a block's Bernstein coefficients as a kernel's job: what RelativeNet and normal_doubt() give patch by
-/// patch. `copies`: where the nets go as they are, or null.
+/// The kernel's job that packs one kind of a block's Bernstein coefficients: it writes what RelativeNet and
+/// normal_doubt() give patch by patch. `copies`: where the nets are copied to unchanged, or null.
 template <class T>
 kernel::PackJob<T> PatchSet::Impl::pack_job(const BlockGroup& group, std::size_t block, const double* const* nets,
                                             double* const* copies, Coefficients<T>& to) const {

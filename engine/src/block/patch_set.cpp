@@ -8,22 +8,24 @@
 #include <numeric>
 #include <string>
 
-#include "base/guard.h"
+#include "base/text.h"
 #include "block/pack.h"
 #include "block/patch_set_impl.h"
 #include "kernel/isa/kernel_table.h"
 #include "parallel/parallel_for.h"
 #include "surface/patch_pieces.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// Patches of equal key share blocks, which lie in the keys' order.
+/// Patches of equal key share blocks; blocks lie in the order of the keys.
 int block_key(const BezierPatch& patch) {
   return (patch.degree_u() * (max_degree + 1) + patch.degree_v()) * 2 + (patch.is_rational() ? 1 : 0);
 }
 
-/// The box of all control points, over threads.
+/// Returns the box of all control points, found by several threads.
 Result<Box3> box_of(std::span<const BezierPatch> patches) {
   constexpr std::size_t patches_in_piece = 2048;
   Box3 box;
@@ -73,7 +75,7 @@ void lay_out(PatchSet::Impl& set) {
       set.lane_patches[lane] = order[k];
       set.slots[order[k]] = {static_cast<std::uint32_t>(lane / lanes), static_cast<std::uint32_t>(lane % lanes)};
     }
-    if (const std::size_t used = (end - begin) % lanes; used > 0) {  // unused lanes repeat their block's first patch
+    if (const std::size_t used = (end - begin) % lanes; used > 0) {  // unused lanes repeat the block's first patch
       set.lane_counts.back() = static_cast<std::uint8_t>(used);
       for (std::size_t lane = set.lane_patches.size() - lanes + used; lane < set.lane_patches.size(); ++lane)
         set.lane_patches[lane] = set.lane_patches[set.lane_patches.size() - lanes];
@@ -114,8 +116,9 @@ Status too_large(std::size_t patch) {
 
 Status check_sources(std::span<const BezierPatch> patches, std::span<const PatchSource> sources) {
   if (sources.size() != patches.size())
-    return Status(StatusCode::count_mismatch, std::to_string(patches.size()) + " patches need as many sources, not " +
-                                                  std::to_string(sources.size()));
+    return Status(StatusCode::count_mismatch, "found " + counted(sources.size(), "source") + " for " +
+                                                  counted(patches.size(), "patch", "patches") +
+                                                  ", each patch needs one");
   for (std::size_t k = 0; k < sources.size(); ++k) {
     const Domain& d = sources[k].domain;
     if (!(d.u0 < d.u1 && d.v0 < d.v1) || !std::isfinite(d.u1 - d.u0) || !std::isfinite(d.v1 - d.v0))
@@ -145,7 +148,7 @@ Box3 PatchSet::Impl::box() const {
 Status PatchSet::Impl::pack_all() {
   constexpr std::size_t blocks_in_piece = 32;
   const kernel::KernelTable& kernels = kernel::default_kernels();
-  std::atomic<std::size_t> refused{lane_patches.size()};  // the first lane
+  std::atomic<std::size_t> refused{lane_patches.size()};  // the first lane that doesn't fit
   const auto pack_blocks = [&](std::size_t begin, std::size_t end) {
     for (std::size_t block = begin; block < end; ++block) {
       const std::size_t fitting = pack_block(block, kernels);
@@ -247,7 +250,7 @@ Status PatchSet::set_control_points(std::size_t index, std::span<const Vec3> poi
     std::swap(impl_->patches[index], *edited);
     if (!impl_->pack(index)) {
       std::swap(impl_->patches[index], *edited);
-      (void)impl_->pack(index);  // it fitted before
+      (void)impl_->pack(index);  // cannot fail: it fitted before
       return too_large(index);
     }
     const auto patch = static_cast<std::uint32_t>(index);

@@ -1,5 +1,5 @@
 #pragma once
-// The inside of a PatchSet: groups of blocks, for the floors that evaluate them.
+// Holds the inner state of a PatchSet: patches and groups of blocks, for the floors that evaluate them.
 
 #include <array>
 #include <cstdint>
@@ -9,6 +9,7 @@
 
 #include "base/aligned.h"
 #include "base/internal_export.h"
+#include "base/shared_slot.h"
 #include "tessera/patch_set.h"
 
 namespace tessera::inline abi_0_1 {
@@ -26,28 +27,29 @@ struct BlockGroup {
   bool rational = false;
   std::size_t first_block = 0, block_count = 0;
   std::size_t first_value = 0;        ///< in the coefficient arrays, which all have the same layout
-  std::size_t block_values = 0;       ///< values a block
-  std::size_t first_point_value = 0;  ///< in the coefficients for points
-  std::size_t point_values = 0;       ///< values from one patch to the next there, a multiple of 16
+  std::size_t block_values = 0;       ///< values per block
+  std::size_t first_point_value = 0;  ///< in Coefficients::points
+  std::size_t point_values = 0;       ///< values from one patch to the next in Coefficients::points, a multiple of 16
 
-  /// Where a patch of this group lies in the coefficients for points.
+  /// Returns where a patch of this group begins in Coefficients::points.
   std::size_t point_value(const PatchSet::Slot& slot) const {
     return first_point_value + ((slot.block - first_block) * PatchSet::lanes + slot.lane) * point_values;
   }
 };
 
-/// The coefficients of all groups in one precision, over either basis; empty where not asked for.
+/// The coefficients of all groups in one precision; kinds that the set does not hold are empty.
 template <class T>
 struct Coefficients {
   UnsetVector<T> bernstein, power;
-  /// `[block][doubt, noise][lane]`: see DegenerateNormalThreshold.
+  /// `[block][squared length, noise][lane]`: see DegenerateNormalThreshold.
   UnsetVector<T> bernstein_doubt, power_doubt;
-  /// Bernstein coefficients `[patch][i][component][j]`, patches in the order of slots, zeros in between; whole vectors
-  /// may be read from the last patch too.
+  /// Bernstein coefficients `[patch][i][component][j]`, patches in the order of slots, zeros in between. Room behind
+  /// the last patch lets it be read by whole vectors too.
   UnsetVector<T> points;
-  /// `[block * lanes + lane]`: doubt and noise, see DegenerateNormalThreshold; that of a curve is finite, and its noise negative.
+  /// `[block * lanes + lane]`: squared length and noise, see DegenerateNormalThreshold. The squared length of a curve
+  /// is finite, and its noise negative.
   std::vector<std::array<T, 2>> point_doubt;
-  T largest_doubt = 0;  ///< no patch's is larger
+  T largest_doubt = 0;  ///< the largest squared length in point_doubt, or more
   const UnsetVector<T>& of(Representation representation) const {
     return representation == Representation::bernstein ? bernstein : power;
   }
@@ -56,17 +58,19 @@ struct Coefficients {
   }
 };
 
+class MeshTables;
+
 class PatchSet::Impl {
  public:
   ~Impl();
 
   std::vector<BezierPatch> patches;
   std::vector<PatchSource> sources;
-  std::vector<Slot> slots;                  ///< of each patch
-  std::vector<EdgeMask> collapsed;          ///< of each patch
-  std::vector<BlockGroup> groups;           ///< by degree_u, degree_v, rational
+  std::vector<Slot> slots;                  ///< `[patch]`
+  std::vector<EdgeMask> collapsed;          ///< `[patch]`
+  std::vector<BlockGroup> groups;           ///< in the order of degree_u, degree_v, rational
   std::vector<std::uint32_t> lane_patches;  ///< `[block][lane]`: the patch there
-  std::vector<std::uint8_t> lane_counts;    ///< of each block: lanes in use; the others repeat its first patch
+  std::vector<std::uint8_t> lane_counts;    ///< `[block]`: lanes in use; the others repeat the block's first patch
   Coefficients<float> f32;
   Coefficients<double> f64;
   BlockKinds kinds;
@@ -74,9 +78,11 @@ class PatchSet::Impl {
   Vec3 origin;
   std::size_t surface_count = 0;
   std::uint64_t revision = 0;
-  std::vector<std::uint64_t> edited;  ///< of each patch: the revision that its last edit made; 0 where there is none
+  std::vector<std::uint64_t> edited;  ///< `[patch]`: the revision that its last edit made; 0 without an edit
+  /// The tables that plans of this set share (tess/write/mesh_tables.h), without and with those of bicubic points.
+  mutable std::array<SharedSlot<MeshTables>, 2> mesh_tables;
 
-  /// A new revision, in which these patches are not what they were.
+  /// Begins a new revision, in which these patches have been edited.
   void note_edits(std::span<const std::uint32_t> of) {
     ++revision;
     for (const std::uint32_t patch : of) edited[patch] = revision;
@@ -102,36 +108,39 @@ class PatchSet::Impl {
     return precision == Precision::single_precision ? kinds.float_points : kinds.double_points;
   }
 
-  /// Writes a patch's collapsed edges, its lane of every kind of block, and the unused lanes that repeat it. False, and
-  /// the lanes half-written, if a coefficient does not fit. Allocates nothing.
+  /// Writes a patch's collapsed edges, its lane of every kind of block, and the unused lanes that repeat it. Returns
+  /// false, with the lanes half-written, if a coefficient does not fit. Allocates nothing.
   bool pack(std::size_t index);
-  /// The same but for what all patches share, so that threads may pack different patches; note_doubt() completes it.
+  /// Does what pack() does, except for the value that all patches share, so that threads may pack different patches;
+  /// note_doubt() completes it.
   bool pack_lanes(std::size_t index);
   void note_doubt(std::size_t index);
-  /// The lanes of all patches of a block, with the same bits; note_doubt() completes it for each of them. The first lane
-  /// that doesn't fit; lanes if all do. `edits`: new points for every lane, which become the patches' own first (these
-  /// have memory of their own); null: the patches' own are packed.
+  /// Writes the lanes of all patches of a block, with the same bits as pack_lanes(); note_doubt() completes each of
+  /// them. Returns the first lane that doesn't fit, or `lanes` if all do. `edits`: new points for every lane, which
+  /// first become the patches' own (each patch must have memory of its own); null: packs the patches' present points.
   std::size_t pack_block(std::size_t block, const kernel::KernelTable& kernels, const Vec3* const* edits = nullptr);
 
-  /// PatchSet::from, without a copy, of sources that are known to be good. `box`: of all control points, where known.
+  /// PatchSet::from() without a copy; the sources must be valid. `box`: of all control points, if known.
   static Result<PatchSet> make(std::vector<BezierPatch> patches, std::vector<PatchSource> sources,
                                std::size_t surface_count, const std::optional<Box3>& box,
                                const PatchSetOptions& options);
 
  private:
-  /// The Bernstein coefficients of a block of polynomial patches, their collapsed edges and boxes; as pack_block().
+  /// Writes the Bernstein coefficients of a block of polynomial patches, their collapsed edges and boxes; result and
+  /// `edits` as in pack_block().
   std::size_t pack_polynomials(std::size_t block, const kernel::KernelTable& kernels, const Vec3* const* edits,
                                kernel::NetBoxes& boxes);
   template <class T>
   kernel::PackJob<T> pack_job(const BlockGroup& group, std::size_t block, const double* const* nets,
                               double* const* copies, Coefficients<T>& to) const;
-  /// Collapsed edges and boxes alone.
+  /// Finds only the collapsed edges and boxes of a block's patches.
   void bound_block(std::size_t block, const kernel::KernelTable& kernels, kernel::NetBoxes& boxes);
-  /// A patch of `group` whose collapsed edges are known into its lane over one basis; `hull` is its box.
+  /// Pack one kind of coefficients of a patch of `group` whose collapsed edges are known; `hull` is its box. Return
+  /// false if a coefficient does not fit.
   bool pack_bernstein(std::size_t index, const BlockGroup& group, const Box3& hull);
   bool pack_points(std::size_t index, const BlockGroup& group, const Box3& hull);
   bool pack_power(std::size_t index, const BlockGroup& group, const Box3& hull);
-  /// Errors: non_finite, of the first patch in the order of the lanes that doesn't fit.
+  /// Packs all patches. Errors: non_finite (the first patch in the order of the lanes that doesn't fit).
   Status pack_all();
 };
 

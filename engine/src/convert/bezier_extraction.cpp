@@ -9,7 +9,6 @@
 #include <type_traits>
 
 #include "base/aligned.h"
-#include "base/guard.h"
 #include "convert/extraction.h"
 #include "convert/spline_net.h"
 #include "kernel/isa/kernel_table.h"
@@ -18,6 +17,8 @@
 #include "surface/patch_pieces.h"
 #include "surface/spline_lines.h"
 #include "tessera/convert.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -1,8 +1,9 @@
 #include <algorithm>
 #include <string>
 
-#include "base/guard.h"
 #include "convert/bezier_net.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -12,10 +13,10 @@ Status check_curve(const BezierPolygon& curve) {
   const std::size_t size = curve.points.size();
   if (size < 2 || size > max_degree + 1)
     return {StatusCode::unsupported_degree,
-            "a curve has 2 to " + std::to_string(max_degree + 1) + " points, " + std::to_string(size) + " were given"};
+            "a curve has 2 to " + std::to_string(max_degree + 1) + " points, found " + std::to_string(size)};
   if (!curve.weights.empty() && curve.weights.size() != size)
-    return {StatusCode::count_mismatch, "a curve of " + std::to_string(size) + " points has as many weights or none, " +
-                                            std::to_string(curve.weights.size()) + " were given"};
+    return {StatusCode::count_mismatch, "a curve of " + std::to_string(size) + " points has " + std::to_string(size) +
+                                            " weights or none, found " + std::to_string(curve.weights.size())};
   return {};
 }
 
@@ -50,7 +51,8 @@ Result<BezierPatch> make_ruled(const BezierPolygon& c0, const BezierPolygon& c1)
 Result<BezierPatch> make_cylinder(const BezierPolygon& curve, const Vec3& direction) {
   return guarded([&]() -> Result<BezierPatch> {
     if (Status status = check_curve(curve); !status.ok()) return status;
-    if (direction == Vec3{}) return Status(StatusCode::invalid_argument, "the direction of a cylinder is not zero");
+    if (direction == Vec3{})
+      return Status(StatusCode::invalid_argument, "the direction of the cylinder is zero, it must not be");
     std::vector<Vec3> moved;
     for (const Vec3& p : curve.points) moved.push_back(p + direction);
     return patch_of_rows(curve, moved);

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <string>
 
-#include "base/guard.h"
 #include "base/text.h"
 #include "convert/bezier_net.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -108,16 +109,15 @@ Result<BezierPolygon> boundary_curve(const BezierPatch& patch, Edge edge) {
       case Edge::v1:
         return column_of(patch, patch.degree_v());
     }
-    return Status(StatusCode::invalid_argument, "a boundary curve is that of one edge: u0, u1, v0 or v1");
+    return Status(StatusCode::invalid_argument, "the edge of a boundary curve must be u0, u1, v0 or v1");
   });
 }
 
 Result<BezierPatch> derivative_patch(const BezierPatch& patch, int order_u, int order_v) {
   return guarded([&]() -> Result<BezierPatch> {
     if (order_u < 0 || order_v < 0)
-      return Status(StatusCode::invalid_argument, "the order of a derivative is not negative, (" +
-                                                      std::to_string(order_u) + ", " + std::to_string(order_v) +
-                                                      ") was asked for");
+      return Status(StatusCode::invalid_argument, "the order of the derivative is (" + std::to_string(order_u) + ", " +
+                                                      std::to_string(order_v) + "), it must not be negative");
     if (patch.is_rational())
       return Status(StatusCode::unsupported,
                     "derivatives of a rational patch are not Bezier patches on its differences");

@@ -1,13 +1,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/guard.h"
 #include "convert/blended_line.h"
 #include "convert/fit_surface.h"
 #include "convert/polar_forms.h"
 #include "convert/surface_net.h"
 #include "surface/border_curve.h"
 #include "tessera/coons_patch.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

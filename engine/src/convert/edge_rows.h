@@ -44,7 +44,7 @@ inline double width_across(const JoinSide& side) {
 
 inline Status check_side(const JoinSide& side, const char* which) {
   if (!is_edge(side.edge))
-    return {StatusCode::invalid_argument, std::string("the edge of patch ") + which + " is none of the four"};
+    return {StatusCode::invalid_argument, std::string("the edge of patch ") + which + " must be u0, u1, v0 or v1"};
   const double width = side.domain.u1 - side.domain.u0, height = side.domain.v1 - side.domain.v0;
   if (width > 0 && height > 0 && width < std::numeric_limits<double>::infinity() &&
       height < std::numeric_limits<double>::infinity())

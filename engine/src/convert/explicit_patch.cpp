@@ -1,9 +1,10 @@
 #include <algorithm>
 #include <vector>
 
-#include "base/guard.h"
 #include "convert/polar_forms.h"
 #include "tessera/convert.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 #include "tessera/tensor_patch.h"
 
 namespace tessera::inline abi_0_1 {

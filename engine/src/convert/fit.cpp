@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "base/guard.h"
 #include "base/safe_length.h"
 #include "base/text.h"
 #include "basis/chebyshev_lobatto.h"
@@ -14,7 +13,9 @@
 #include "convert/tensor_refinement.h"
 #include "surface/patch_pieces.h"
 #include "tessera/convert.h"
+#include "tessera/guard.h"
 #include "tessera/parametric_surface.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -31,7 +32,7 @@ Result<std::vector<double>> first_breaks(double from, std::span<const double> in
     if (!(inner[k] > breaks[k] && inner[k] < to))
       return Status(StatusCode::invalid_argument,
                     std::string("breakpoint ") + direction + "[" + std::to_string(k) + "] = " + text(inner[k]) +
-                        " is not above the one before it and within the domain",
+                        " must be above the one before it and inside the domain",
                     static_cast<std::ptrdiff_t>(k));
   return breaks;
 }
@@ -44,8 +45,8 @@ Status check_options(const FitOptions& options) {
     return {StatusCode::invalid_argument, "the degree of the patches is " + std::to_string(options.degree) +
                                               ", it must be 2 to " + std::to_string(max_degree)};
   if (options.max_patches / (options.breaks_u.size() + 1) < options.breaks_v.size() + 1)
-    return {StatusCode::invalid_argument, "the largest count of patches, " + std::to_string(options.max_patches) +
-                                              ", is below what the breakpoints make"};
+    return {StatusCode::invalid_argument,
+            "the largest count of patches is " + std::to_string(options.max_patches) + ", the breakpoints make more"};
   return {};
 }
 
@@ -70,7 +71,7 @@ Result<double> tolerance_of(const Box3& box, double wanted) {
   if (wanted == 0) return std::max(1e-6 * safe_length(box.upper - box.lower), least);
   if (wanted < least)
     return Status(StatusCode::invalid_argument, "the tolerance " + text(wanted) + " is below " + text(least) +
-                                                    ", which rounding leaves of coordinates as large as " + text(size));
+                                                    ", the rounding of coordinates as large as " + text(size));
   return wanted;
 }
 

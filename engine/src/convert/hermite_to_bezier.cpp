@@ -1,6 +1,7 @@
-#include "base/guard.h"
 #include "tessera/convert.h"
+#include "tessera/guard.h"
 #include "tessera/hermite_patch.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -49,7 +50,9 @@ Result<PatchGrid> to_bezier(const HermiteNetwork& network) {
     patches.reserve((network.count_u() - 1) * (network.count_v() - 1));
     for (std::size_t i = 0; i + 1 < network.count_u(); ++i)
       for (std::size_t j = 0; j + 1 < network.count_v(); ++j) {
-        auto bezier = bezier_of(network.patch(i, j).geometry());
+        const auto patch = network.patch(i, j);
+        if (!patch) return patch.status();
+        auto bezier = bezier_of(patch->geometry());
         if (!bezier) return bezier.status();
         patches.push_back(*std::move(bezier));
       }

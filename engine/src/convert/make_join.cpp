@@ -3,10 +3,11 @@
 #include <string>
 #include <vector>
 
-#include "base/guard.h"
 #include "convert/bezier_net.h"
 #include "convert/edge_rows.h"
 #include "tessera/bezier_operations.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -3,11 +3,12 @@
 #include <cmath>
 #include <limits>
 
-#include "base/guard.h"
 #include "convert/border_maximum.h"
 #include "convert/edge_rows.h"
 #include "surface/homogeneous.h"
 #include "tessera/bezier_operations.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 // G1 demands det(p_c, q_c, r_b) = 0 and (p_c x r_b) . (q_c x r_b) > 0 along the border b (Farin, Curves and Surfaces
 // for CAGD, 5th ed., sec. 17.2). Each side uses its own border tangent, so that gaps within tolerance do no harm: the

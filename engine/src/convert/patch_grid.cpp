@@ -2,9 +2,11 @@
 #include <cmath>
 #include <string>
 
-#include "base/guard.h"
+#include "base/text.h"
 #include "surface/checks.h"
 #include "tessera/convert.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -31,10 +33,10 @@ Result<PatchGrid> PatchGrid::make(std::vector<double> breaks_u, std::vector<doub
     if (Status status = check_increasing(breaks_v, "breakpoint", "v"); !status.ok()) return status;
     const std::size_t wanted = (breaks_u.size() - 1) * (breaks_v.size() - 1);
     if (patches.size() != wanted)
-      return Status(StatusCode::count_mismatch, "these breakpoints make " + std::to_string(wanted) + " patches, not " +
-                                                    std::to_string(patches.size()));
+      return Status(StatusCode::count_mismatch, "these breakpoints make " + counted(wanted, "patch", "patches") +
+                                                    ", found " + std::to_string(patches.size()));
     if (!(error.distance >= 0) || !std::isfinite(error.distance))
-      return Status(StatusCode::invalid_argument, "a fit error is finite and not negative");
+      return Status(StatusCode::invalid_argument, "the fit error must be finite and not negative");
     PatchGrid grid;
     grid.breaks_u_ = std::move(breaks_u);
     grid.breaks_v_ = std::move(breaks_v);

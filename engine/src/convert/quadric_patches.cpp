@@ -2,10 +2,11 @@
 #include <cmath>
 #include <vector>
 
-#include "base/guard.h"
 #include "surface/quadric_profile.h"
 #include "tessera/convert.h"
+#include "tessera/guard.h"
 #include "tessera/quadric.h"
+#include "tessera/status.h"
 
 // Conic segments as rational quadratics in standard form, weights (1, w, 1) (Farin, Curves and Surfaces for CAGD, 5th
 // ed., sec. 12.2 to 12.4). The middle point of a circle is where the end tangents meet, and w is the cosine of half the

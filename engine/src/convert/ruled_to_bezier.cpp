@@ -1,11 +1,12 @@
 #include <algorithm>
 
-#include "base/guard.h"
 #include "convert/blended_line.h"
 #include "convert/fit_surface.h"
 #include "convert/surface_net.h"
 #include "surface/border_curve.h"
 #include "tessera/coons_patch.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

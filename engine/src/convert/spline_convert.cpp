@@ -4,11 +4,12 @@
 #include <cmath>
 #include <string>
 
-#include "base/guard.h"
 #include "base/text.h"
 #include "convert/spline_net.h"
 #include "surface/spline_lines.h"
 #include "surface/validate.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -80,8 +81,8 @@ Status check_new_knots(const KnotLine& line, std::span<const double> knots, cons
     const std::size_t count =
         multiplicity(line.knots, knots[k]) + static_cast<std::size_t>(std::count(knots.begin(), knots.end(), knots[k]));
     if (count > static_cast<std::size_t>(line.degree))
-      return bad(StatusCode::invalid_argument, " would stand " + std::to_string(count) +
-                                                   " times, more than the degree, " + std::to_string(line.degree));
+      return bad(StatusCode::invalid_argument, " would have multiplicity " + std::to_string(count) +
+                                                   ", above the degree, " + std::to_string(line.degree));
   }
   return {};
 }

@@ -1,6 +1,7 @@
-#include "base/guard.h"
 #include "base/overloaded.h"
 #include "tessera/convert.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 #include "tessera/surface.h"
 
 namespace tessera::inline abi_0_1 {

@@ -1,8 +1,9 @@
 #include <string>
 
-#include "base/guard.h"
 #include "convert/bernstein_matrices.h"
 #include "tessera/convert.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 #include "tessera/tensor_patch.h"
 
 namespace tessera::inline abi_0_1 {

@@ -7,7 +7,8 @@
 #include <string>
 
 #include "base/aligned.h"
-#include "eval/grid_outputs.h"
+#include "eval/quantity_table.h"
+#include "kernel/isa/kernel_table.h"
 #include "tessera/evaluate.h"
 
 namespace tessera::inline abi_0_1 {
@@ -37,20 +38,20 @@ class BlockMemory {
 
 /// Errors: those of evaluate().
 template <class T>
-Status check_blocks(const GridPlan& plan, const GridBlocks<T>& out) {
+Status check_blocks(const GridPlan& plan, const QuantityBlocks<T>& out) {
   Status status;
   BlockMemory all;
-  for_each_output<T>([&](const auto& output) {
-    const auto memory = out.*output.memory;
+  for_each_quantity([&](const auto& quantity) {
+    const auto memory = quantity.of(out);
     if (memory.data() == nullptr || !status.ok()) return;
-    const std::size_t needed = plan.block_capacity() / 3 * static_cast<std::size_t>(output.width);
+    const std::size_t needed = plan.block_capacity() / 3 * static_cast<std::size_t>(quantity.width);
     if (memory.size() < needed)
-      status = Status(StatusCode::buffer_too_small, std::string(output.name) + " needs " + std::to_string(needed) +
+      status = Status(StatusCode::buffer_too_small, std::string(quantity.name) + " needs " + std::to_string(needed) +
                                                         " values, not " + std::to_string(memory.size()));
     else if (reinterpret_cast<std::uintptr_t>(memory.data()) % cache_line != 0)
-      status = Status(StatusCode::invalid_argument, std::string(output.name) + " must be aligned to 64 bytes");
+      status = Status(StatusCode::invalid_argument, std::string(quantity.name) + " must be aligned to 64 bytes");
     else
-      status = all.add(output.name, memory.first(needed));
+      status = all.add(quantity.name, memory.first(needed));
   });
   return status;
 }
@@ -58,16 +59,20 @@ Status check_blocks(const GridPlan& plan, const GridBlocks<T>& out) {
 /// The wanted outputs in blocks, from where on a piece's part of them is found.
 template <class T>
 class BlockOutputs {
+  using Outputs = kernel::GridJobOutputs<T>;
+
  public:
-  explicit BlockOutputs(const GridBlocks<T>& out) {
-    for_each_value_output<T>([&](const auto& output) {
-      const auto memory = out.*output.memory;
+  explicit BlockOutputs(const QuantityBlocks<T>& out) {
+    for_each_value_quantity([&](const auto& quantity) {
+      const auto memory = quantity.of(out);
       if (!memory.empty())
-        values_[value_count_++] = {output.job, memory.data(), static_cast<std::size_t>(output.width)};
+        values_[value_count_++] = {quantity.template member<Outputs>(), memory.data(),
+                                   static_cast<std::size_t>(quantity.width)};
     });
-    for_each_kind_output<T>([&](const auto& output) {
-      const auto memory = out.*output.memory;
-      if (!memory.empty()) kinds_[kind_count_++] = {output.job, reinterpret_cast<std::uint8_t*>(memory.data())};
+    for_each_kind_quantity([&](const auto& quantity) {
+      const auto memory = quantity.of(out);
+      if (!memory.empty())
+        kinds_[kind_count_++] = {quantity.template member<Outputs>(), reinterpret_cast<std::uint8_t*>(memory.data())};
     });
   }
   /// Points the job at the samples from `first` on.
@@ -79,16 +84,16 @@ class BlockOutputs {
 
  private:
   struct Values {
-    T* kernel::GridJob<T>::*job;
+    T* Outputs::*job;
     T* memory;
     std::size_t width;
   };
   struct Kinds {
-    std::uint8_t* kernel::GridJob<T>::*job;
+    std::uint8_t* Outputs::*job;
     std::uint8_t* memory;
   };
-  std::array<Values, std::size(vector_outputs<T>) + std::size(scalar_outputs<T>)> values_;
-  std::array<Kinds, 2> kinds_;
+  std::array<Values, value_quantities> values_;
+  std::array<Kinds, kind_quantities> kinds_;
   std::size_t value_count_ = 0, kind_count_ = 0;
 };
 

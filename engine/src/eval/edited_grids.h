@@ -65,7 +65,7 @@ class EditedBlocks {
 template <class T>
 class EditedGrids {
  public:
-  EditedGrids(const UpdateCall& call, const StageLayout<T>& layout, const GridViews<T>& out)
+  EditedGrids(const UpdateCall& call, const StageLayout<T>& layout, const QuantityViews<T>& out)
       : call_(call), stage_(call.kernels, layout, out, call.streaming), jobs_(call.set, call.plan, call.order) {
     stage_.place_outputs(jobs_.job());
   }

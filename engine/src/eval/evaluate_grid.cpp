@@ -6,21 +6,22 @@
 #include <cstdint>
 #include <string>
 
-#include "base/guard.h"
 #include "base/impl_access.h"
 #include "block/patch_set_impl.h"
 #include "eval/block_jobs.h"
 #include "eval/block_outputs.h"
 #include "eval/flat_grid.h"
 #include "eval/grid_calls.h"
-#include "eval/grid_outputs.h"
 #include "eval/grid_plan_impl.h"
+#include "eval/quantity_table.h"
 #include "eval/run_grid.h"
 #include "eval/staged_block.h"
 #include "eval/streaming_threshold.h"
 #include "eval/task_size.h"
 #include "eval/view_checks.h"
 #include "parallel/parallel_for.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -76,12 +77,21 @@ Status check_plan(const PatchSet::Impl& set, const GridPlan& plan) {
   return {};
 }
 
+template <class T, int N>
+bool is_wanted(const VectorView<T, N>& view) {
+  return !view.empty();
+}
+template <class T>
+bool is_wanted(const std::span<T>& memory) {
+  return memory.data() != nullptr;
+}
+
 /// The highest derivatives that the wanted outputs are made of. Errors: invalid_argument if none is wanted.
-template <class T, class Wanted>
-Result<int> order_of_outputs(Wanted&& wanted) {
+template <class All>
+Result<int> order_of_outputs(const All& out) {
   int order = -1;
-  for_each_output<T>([&](const auto& output) {
-    if (wanted(output)) order = std::max(order, output.order);
+  for_each_quantity([&](const auto& quantity) {
+    if (is_wanted(quantity.of(out))) order = std::max(order, quantity.order);
   });
   if (order < 0) return Status(StatusCode::invalid_argument, "no output is wanted");
   return order;
@@ -94,7 +104,7 @@ bool stores_stream(std::size_t bytes, Stores stores) {
 }
 
 template <class T>
-Status evaluate_blocks(const PatchSet& set, const GridPlan& plan, const GridBlocks<T>& out,
+Status evaluate_blocks(const PatchSet& set, const GridPlan& plan, const QuantityBlocks<T>& out,
                        const Execution& execution) {
   const Result<int> order = check_grids(impl_of(set), plan, out);
   if (!order) return order.status();
@@ -129,16 +139,16 @@ Status evaluate_blocks(const PatchSet& set, const GridPlan& plan, const GridBloc
 // ---- patch-contiguous outputs
 
 template <class T>
-Status check_views(const GridPlan& plan, const GridViews<T>& out) {
+Status check_views(const GridPlan& plan, const QuantityViews<T>& out) {
   ViewChecks checks(plan.capacity());
-  for_each_output<T>([&](const auto& output) {
-    if (!(out.*output.view).empty()) checks.add(output.name, out.*output.view);
+  for_each_quantity([&](const auto& quantity) {
+    if (!quantity.of(out).empty()) checks.add(quantity.name, quantity.of(out));
   });
   return checks.status();
 }
 
 template <class T>
-Status evaluate_views(const PatchSet::Impl& patches, const GridPlan& plan, const GridViews<T>& out,
+Status evaluate_views(const PatchSet::Impl& patches, const GridPlan& plan, const QuantityViews<T>& out,
                       const Execution& execution) {
   const Result<int> order = check_grids(patches, plan, out);
   if (!order) return order.status();
@@ -173,20 +183,21 @@ Status evaluate_views(const PatchSet::Impl& patches, const GridPlan& plan, const
 
 }  // namespace
 
-Status evaluate(const PatchSet& set, const GridPlan& plan, const GridBlocks<float>& out, const Execution& execution) {
+template <class T>
+Status evaluate(const PatchSet& set, const GridPlan& plan, const QuantityBlocks<T>& out, const Execution& execution) {
   return guarded([&] { return evaluate_blocks(set, plan, out, execution); });
 }
-Status evaluate(const PatchSet& set, const GridPlan& plan, const GridBlocks<double>& out, const Execution& execution) {
-  return guarded([&] { return evaluate_blocks(set, plan, out, execution); });
-}
-Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<float>& out, const Execution& execution) {
-  return guarded([&] { return evaluate_views(impl_of(set), plan, out, execution); });
-}
-Status evaluate(const PatchSet& set, const GridPlan& plan, const GridViews<double>& out, const Execution& execution) {
-  return guarded([&] { return evaluate_views(impl_of(set), plan, out, execution); });
-}
+template Status evaluate(const PatchSet&, const GridPlan&, const QuantityBlocks<float>&, const Execution&);
+template Status evaluate(const PatchSet&, const GridPlan&, const QuantityBlocks<double>&, const Execution&);
 
-Status evaluate(const PatchSet::Impl& set, const GridPlan& plan, const GridViews<float>& out,
+template <class T>
+Status evaluate(const PatchSet& set, const GridPlan& plan, const QuantityViews<T>& out, const Execution& execution) {
+  return guarded([&] { return evaluate_views(impl_of(set), plan, out, execution); });
+}
+template Status evaluate(const PatchSet&, const GridPlan&, const QuantityViews<float>&, const Execution&);
+template Status evaluate(const PatchSet&, const GridPlan&, const QuantityViews<double>&, const Execution&);
+
+Status evaluate(const PatchSet::Impl& set, const GridPlan& plan, const QuantityViews<float>& out,
                 const Execution& execution) {
   return guarded([&] { return evaluate_views(set, plan, out, execution); });
 }
@@ -194,22 +205,22 @@ Status evaluate(const PatchSet::Impl& set, const GridPlan& plan, const GridViews
 // ---- what other calls share
 
 template <class T>
-Result<int> check_grids(const PatchSet::Impl& set, const GridPlan& plan, const GridViews<T>& out) {
+Result<int> check_grids(const PatchSet::Impl& set, const GridPlan& plan, const QuantityViews<T>& out) {
   if (Status status = check_plan<T>(set, plan); !status.ok()) return status;
   if (Status status = check_views(plan, out); !status.ok()) return status;
-  return order_of_outputs<T>([&](const auto& output) { return !(out.*output.view).empty(); });
+  return order_of_outputs(out);
 }
-template Result<int> check_grids(const PatchSet::Impl&, const GridPlan&, const GridViews<float>&);
-template Result<int> check_grids(const PatchSet::Impl&, const GridPlan&, const GridViews<double>&);
+template Result<int> check_grids(const PatchSet::Impl&, const GridPlan&, const QuantityViews<float>&);
+template Result<int> check_grids(const PatchSet::Impl&, const GridPlan&, const QuantityViews<double>&);
 
 template <class T>
-Result<int> check_grids(const PatchSet::Impl& set, const GridPlan& plan, const GridBlocks<T>& out) {
+Result<int> check_grids(const PatchSet::Impl& set, const GridPlan& plan, const QuantityBlocks<T>& out) {
   if (Status status = check_plan<T>(set, plan); !status.ok()) return status;
   if (Status status = check_blocks(plan, out); !status.ok()) return status;
-  return order_of_outputs<T>([&](const auto& output) { return (out.*output.memory).data() != nullptr; });
+  return order_of_outputs(out);
 }
-template Result<int> check_grids(const PatchSet::Impl&, const GridPlan&, const GridBlocks<float>&);
-template Result<int> check_grids(const PatchSet::Impl&, const GridPlan&, const GridBlocks<double>&);
+template Result<int> check_grids(const PatchSet::Impl&, const GridPlan&, const QuantityBlocks<float>&);
+template Result<int> check_grids(const PatchSet::Impl&, const GridPlan&, const QuantityBlocks<double>&);
 
 template <class T>
 bool views_stream(const StageLayout<T>& layout, std::size_t records, Stores stores) {
@@ -220,15 +231,15 @@ template bool views_stream(const StageLayout<float>&, std::size_t, Stores);
 template bool views_stream(const StageLayout<double>&, std::size_t, Stores);
 
 template <class T>
-bool blocks_stream(const GridBlocks<T>& out, std::size_t records, Stores stores) {
+bool blocks_stream(const QuantityBlocks<T>& out, std::size_t records, Stores stores) {
   std::size_t bytes = 0;
-  for_each_value_output<T>([&](const auto& output) {
-    if (!(out.*output.memory).empty()) bytes += static_cast<std::size_t>(output.width) * sizeof(T);
+  for_each_value_quantity([&](const auto& quantity) {
+    if (!quantity.of(out).empty()) bytes += static_cast<std::size_t>(quantity.width) * sizeof(T);
   });
   return stores_stream(records * bytes, stores);
 }
-template bool blocks_stream(const GridBlocks<float>&, std::size_t, Stores);
-template bool blocks_stream(const GridBlocks<double>&, std::size_t, Stores);
+template bool blocks_stream(const QuantityBlocks<float>&, std::size_t, Stores);
+template bool blocks_stream(const QuantityBlocks<double>&, std::size_t, Stores);
 
 std::size_t blocks_per_task(const GridPlan::Impl& plan, std::size_t blocks, bool derivatives) {
   const std::size_t points = plan.samples() * PatchSet::lanes;

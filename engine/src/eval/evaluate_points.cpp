@@ -7,11 +7,12 @@
 #include <atomic>
 #include <string>
 
-#include "base/guard.h"
 #include "base/impl_access.h"
 #include "eval/point_chunk.h"
 #include "eval/point_sources.h"
 #include "parallel/parallel_for.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -21,8 +22,8 @@ constexpr std::size_t serial_positions = 4096, serial_normals = 2048;
 
 /// Of the options and the views; `order`: of the derivatives that are needed.
 template <class T, class Source>
-Status check_call(const PatchSet::Impl& set, const Source& source, const GridViews<T>& out, const PointOptions& options,
-                  int& order) {
+Status check_call(const PatchSet::Impl& set, const Source& source, const QuantityViews<T>& out,
+                  const PointOptions& options, int& order) {
   const bool twice = sizeof(T) == 8;
   if (!set.has_points(twice ? Precision::double_precision : Precision::single_precision))
     return Status(StatusCode::unsupported,
@@ -37,8 +38,8 @@ Status check_call(const PatchSet::Impl& set, const Source& source, const GridVie
                   "the smallest sine and the umbilic tolerance must lie from 0 to below 1");
   ViewChecks checks(source.count());
   order = -1;
-  for_each_output<T>([&](const auto& output) {
-    const auto& view = out.*output.view;
+  for_each_quantity([&](const auto& output) {
+    const auto& view = output.of(out);
     const bool wanted = std::ranges::any_of(view.component, [](const auto* memory) { return memory != nullptr; });
     if (!wanted) return;
     checks.add(output.name, view);
@@ -68,7 +69,7 @@ Status check_samples(const Source& source, const kernel::KernelTable& kernels, s
 }
 
 template <class T, class Source>
-Status run(const PatchSet::Impl& set, const Source& source, const GridViews<T>& out, const PointOptions& options,
+Status run(const PatchSet::Impl& set, const Source& source, const QuantityViews<T>& out, const PointOptions& options,
            const Execution& execution) {
   int order = 0;
   if (Status status = check_call(set, source, out, options, order); !status.ok()) return status;
@@ -99,41 +100,32 @@ Status run(const PatchSet::Impl& set, const Source& source, const GridViews<T>& 
   return status;
 }
 
+}  // namespace
+
 template <class T>
-Status run_patches(const PatchSet& set, const PatchSamples<T>& samples, const GridViews<T>& out,
-                   const PointOptions& options, const Execution& execution) {
+Status evaluate(const PatchSet& set, const PatchSamples<T>& samples, const QuantityViews<T>& out,
+                const PointOptions& options, const Execution& execution) {
   return guarded([&] {
     return run(impl_of(set), SamplesByPatch<T>(impl_of(set), samples, options.outside), out, options, execution);
   });
 }
+template Status evaluate(const PatchSet&, const PatchSamples<float>&, const QuantityViews<float>&, const PointOptions&,
+                         const Execution&);
+template Status evaluate(const PatchSet&, const PatchSamples<double>&, const QuantityViews<double>&,
+                         const PointOptions&, const Execution&);
 
 template <class T>
-Status run_surfaces(const PatchSet& set, const SurfaceMap& map, const SurfaceSamples& samples, const GridViews<T>& out,
-                    const PointOptions& options, const Execution& execution) {
+Status evaluate(const PatchSet& set, const SurfaceMap& map, const SurfaceSamples& samples, const QuantityViews<T>& out,
+                const PointOptions& options, const Execution& execution) {
   return guarded([&]() -> Status {
     if (impl_of(map).patch_count != set.patch_count() || map.surface_count() != set.surface_count())
       return Status(StatusCode::invalid_argument, "the surface map was made for another patch set");
     return run(impl_of(set), SamplesBySurface<T>(impl_of(map), samples, options.outside), out, options, execution);
   });
 }
-
-}  // namespace
-
-Status evaluate(const PatchSet& set, const PatchSamples<float>& samples, const PointViews<float>& out,
-                const PointOptions& options, const Execution& execution) {
-  return run_patches(set, samples, out, options, execution);
-}
-Status evaluate(const PatchSet& set, const PatchSamples<double>& samples, const PointViews<double>& out,
-                const PointOptions& options, const Execution& execution) {
-  return run_patches(set, samples, out, options, execution);
-}
-Status evaluate(const PatchSet& set, const SurfaceMap& map, const SurfaceSamples& samples, const PointViews<float>& out,
-                const PointOptions& options, const Execution& execution) {
-  return run_surfaces(set, map, samples, out, options, execution);
-}
-Status evaluate(const PatchSet& set, const SurfaceMap& map, const SurfaceSamples& samples,
-                const PointViews<double>& out, const PointOptions& options, const Execution& execution) {
-  return run_surfaces(set, map, samples, out, options, execution);
-}
+template Status evaluate(const PatchSet&, const SurfaceMap&, const SurfaceSamples&, const QuantityViews<float>&,
+                         const PointOptions&, const Execution&);
+template Status evaluate(const PatchSet&, const SurfaceMap&, const SurfaceSamples&, const QuantityViews<double>&,
+                         const PointOptions&, const Execution&);
 
 }  // namespace tessera::inline abi_0_1

@@ -9,15 +9,15 @@ namespace tessera::inline abi_0_1 {
 /// Of a plan and outputs for all patches of the set. Else the highest order of the derivatives that the outputs are made
 /// of. Errors: those of evaluate().
 template <class T>
-Result<int> check_grids(const PatchSet::Impl& set, const GridPlan& plan, const GridViews<T>& out);
+Result<int> check_grids(const PatchSet::Impl& set, const GridPlan& plan, const QuantityViews<T>& out);
 template <class T>
-Result<int> check_grids(const PatchSet::Impl& set, const GridPlan& plan, const GridBlocks<T>& out);
+Result<int> check_grids(const PatchSet::Impl& set, const GridPlan& plan, const QuantityBlocks<T>& out);
 
 /// Whether so many records go out by streaming stores.
 template <class T>
 bool views_stream(const StageLayout<T>& layout, std::size_t records, Stores stores);
 template <class T>
-bool blocks_stream(const GridBlocks<T>& out, std::size_t records, Stores stores);
+bool blocks_stream(const QuantityBlocks<T>& out, std::size_t records, Stores stores);
 
 /// How many blocks a task takes; all where one thread is faster than two.
 std::size_t blocks_per_task(const GridPlan::Impl& plan, std::size_t blocks, bool derivatives);

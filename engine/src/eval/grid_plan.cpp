@@ -2,14 +2,15 @@
 #include <cmath>
 #include <string>
 
-#include "base/guard.h"
 #include "base/impl_access.h"
 #include "basis/bernstein.h"
 #include "basis/power.h"
 #include "block/patch_set_impl.h"
 #include "eval/flat_grid.h"
-#include "eval/grid_outputs.h"
 #include "eval/grid_plan_impl.h"
+#include "eval/quantity_table.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -155,7 +156,7 @@ Status check_geometry(const LocalGeometryOptions& options) {
 }
 
 /// Lane operations a point, as GridPlan::work counts them.
-double operations_per_point(const PlannedGroup& group, const GridOutputs& outputs) {
+double operations_per_point(const PlannedGroup& group, const QuantityFlags& outputs) {
   const bool second = outputs.duu || outputs.duv || outputs.dvv;
   const bool curvatures = outputs.first_form || outputs.second_form || outputs.gaussian || outputs.mean ||
                           outputs.first_curvature || outputs.second_curvature || outputs.first_direction ||
@@ -265,13 +266,12 @@ std::size_t GridPlan::block_capacity() const { return impl_->block_count * impl_
 
 /// For a cubic 12 for positions, 36 with du and dv, 50 with the unit normal as well, 72 with second derivatives; in
 /// proportion to the order; rational: 4/3 of it and 4 more; 30 for curvatures of all sorts.
-Work GridPlan::work(const GridOutputs& outputs) const {
+Work GridPlan::work(const QuantityFlags& outputs) const {
   const bool is_double = impl_->options.precision == Precision::double_precision;
   const double value = is_double ? 8 : 4;
   double bytes = 0;
-  for_each_value_output<double>(
-      [&](const auto& output) { bytes += outputs.*output.wanted ? output.width * value : 0; });
-  for_each_kind_output<double>([&](const auto& output) { bytes += outputs.*output.wanted ? 1 : 0; });
+  for_each_value_quantity([&](const auto& quantity) { bytes += quantity.of(outputs) ? quantity.width * value : 0; });
+  for_each_kind_quantity([&](const auto& quantity) { bytes += quantity.of(outputs) ? 1 : 0; });
   Work work;
   work.double_precision = is_double;
   for (const PlannedGroup& group : impl_->groups) {

@@ -74,7 +74,7 @@ class GridPlan::Impl {
 };
 
 /// The public evaluate() for those who keep a set's inner state, which stays in place when the set is moved.
-Status evaluate(const PatchSet::Impl& set, const GridPlan& plan, const GridViews<float>& out,
+Status evaluate(const PatchSet::Impl& set, const GridPlan& plan, const QuantityViews<float>& out,
                 const Execution& execution);
 
 }  // namespace tessera::inline abi_0_1

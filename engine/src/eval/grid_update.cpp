@@ -3,13 +3,14 @@
 
 #include <atomic>
 
-#include "base/guard.h"
 #include "base/impl_access.h"
 #include "eval/edited_grids.h"
 #include "eval/patch_edits.h"
 #include "eval/task_size.h"
 #include "parallel/parallel_for.h"
 #include "tessera/evaluate.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 class GridUpdate::Impl {
@@ -17,7 +18,7 @@ class GridUpdate::Impl {
   explicit Impl(const PatchSet::Impl& set) : touched_(set), patch_count_(set.patches.size()) {}
 
   template <class T>
-  Status run(PatchSet::Impl& set, const GridPlan& plan, const PatchEdits& edits, const GridViews<T>& out,
+  Status run(PatchSet::Impl& set, const GridPlan& plan, const PatchEdits& edits, const QuantityViews<T>& out,
              const Execution& execution) {
     const Result<int> order = start(set, plan, edits, out, execution);
     if (!order) return order.status();
@@ -27,7 +28,7 @@ class GridUpdate::Impl {
                       [&](const UpdateCall& call) { return EditedGrids<T>(call, layout, out); });
   }
   template <class T>
-  Status run(PatchSet::Impl& set, const GridPlan& plan, const PatchEdits& edits, const GridBlocks<T>& out,
+  Status run(PatchSet::Impl& set, const GridPlan& plan, const PatchEdits& edits, const QuantityBlocks<T>& out,
              const Execution& execution) {
     const Result<int> order = start(set, plan, edits, out, execution);
     if (!order) return order.status();
@@ -85,21 +86,24 @@ GridUpdate::GridUpdate(GridUpdate&&) noexcept = default;
 GridUpdate& GridUpdate::operator=(GridUpdate&&) noexcept = default;
 GridUpdate::~GridUpdate() = default;
 
-Status GridUpdate::run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridViews<float>& out,
+template <class T>
+Status GridUpdate::run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const QuantityViews<T>& out,
                        const Execution& execution) {
   return guarded([&] { return impl_->run(impl_of(set), plan, edits, out, execution); });
 }
-Status GridUpdate::run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridBlocks<float>& out,
+template Status GridUpdate::run(PatchSet&, const GridPlan&, const PatchEdits&, const QuantityViews<float>&,
+                                const Execution&);
+template Status GridUpdate::run(PatchSet&, const GridPlan&, const PatchEdits&, const QuantityViews<double>&,
+                                const Execution&);
+
+template <class T>
+Status GridUpdate::run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const QuantityBlocks<T>& out,
                        const Execution& execution) {
   return guarded([&] { return impl_->run(impl_of(set), plan, edits, out, execution); });
 }
-Status GridUpdate::run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridViews<double>& out,
-                       const Execution& execution) {
-  return guarded([&] { return impl_->run(impl_of(set), plan, edits, out, execution); });
-}
-Status GridUpdate::run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const GridBlocks<double>& out,
-                       const Execution& execution) {
-  return guarded([&] { return impl_->run(impl_of(set), plan, edits, out, execution); });
-}
+template Status GridUpdate::run(PatchSet&, const GridPlan&, const PatchEdits&, const QuantityBlocks<float>&,
+                                const Execution&);
+template Status GridUpdate::run(PatchSet&, const GridPlan&, const PatchEdits&, const QuantityBlocks<double>&,
+                                const Execution&);
 
 }  // namespace tessera::inline abi_0_1

@@ -4,8 +4,9 @@
 #include <chrono>
 
 #include "base/aligned.h"
-#include "base/guard.h"
 #include "kernel/isa/kernel_table.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -6,10 +6,11 @@
 #include <mutex>
 #include <string>
 
-#include "base/guard.h"
 #include "base/text.h"
 #include "eval/parameter_grid.h"
 #include "parallel/parallel_for.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -88,13 +89,14 @@ Status evaluate_grid(const ParametricSurface& surface, std::span<const double> u
 
 }  // namespace
 
+template <class T>
 Status evaluate(const ParametricSurface& surface, std::span<const double> u, std::span<const double> v,
-                const View3<double>& out, const Execution& execution, Calls calls) {
+                const View3<T>& out, const Execution& execution, Calls calls) {
   return guarded([&] { return evaluate_grid(surface, u, v, out, execution, calls); });
 }
-Status evaluate(const ParametricSurface& surface, std::span<const double> u, std::span<const double> v,
-                const View3<float>& out, const Execution& execution, Calls calls) {
-  return guarded([&] { return evaluate_grid(surface, u, v, out, execution, calls); });
-}
+template Status evaluate(const ParametricSurface&, std::span<const double>, std::span<const double>,
+                         const View3<float>&, const Execution&, Calls);
+template Status evaluate(const ParametricSurface&, std::span<const double>, std::span<const double>,
+                         const View3<double>&, const Execution&, Calls);
 
 }  // namespace tessera::inline abi_0_1

@@ -9,7 +9,8 @@
 
 #include "base/aligned.h"
 #include "block/patch_set_impl.h"
-#include "eval/grid_outputs.h"
+#include "eval/quantity_table.h"
+#include "kernel/isa/kernel_table.h"
 #include "tessera/evaluate.h"
 
 namespace tessera::inline abi_0_1 {
@@ -19,7 +20,7 @@ template <class T>
 struct PointCall {
   const PatchSet::Impl& set;
   const kernel::KernelTable& kernels;
-  const GridViews<T>& out;
+  const QuantityViews<T>& out;
   LocalGeometryOptions geometry;
 };
 
@@ -64,18 +65,18 @@ class PointChunk {
   explicit PointChunk(const PointCall<T>& call) : call_(call), coefficients_(call.set.template coefficients<T>()) {
     prepare_job();
     T* next = stage_.data();
-    for_each_value_output<T>([&](const auto& output) {
-      const auto& view = call.out.*output.view;
+    for_each_value_quantity([&](const auto& quantity) {
+      const auto& view = quantity.of(call.out);
       if (view.empty()) return;
       Field& field = fields_[field_count_++];
-      field = {next, output.width, view.stride, {}, factors_of(output.name)};
+      field = {next, quantity.width, view.stride, {}, quantity.powers};
       std::copy(view.component.begin(), view.component.end(), field.out.begin());
-      job_.grid.*output.job = next;
-      next += std::ptrdiff_t{output.width} * lanes * batch;
+      quantity.of(job_.grid) = next;
+      next += std::ptrdiff_t{quantity.width} * lanes * batch;
     });
     std::size_t kind = 0;
-    for_each_kind_output<T>([&](const auto& output) {
-      job_.grid.*output.job = (call.out.*output.view).empty() ? nullptr : kinds_[kind].data();
+    for_each_kind_quantity([&](const auto& quantity) {
+      quantity.of(job_.grid) = quantity.of(call.out).empty() ? nullptr : kinds_[kind].data();
       ++kind;
     });
   }
@@ -103,33 +104,19 @@ class PointChunk {
  private:
   static constexpr int lanes = kernel::block_lanes;
   static constexpr int batch = kernel::point_slots;  ///< slots in the stage
-  static constexpr std::size_t max_fields = std::size(vector_outputs<T>) + std::size(scalar_outputs<T>);
-  static constexpr std::size_t stage_rows = 3 * std::size(vector_outputs<T>) + std::size(scalar_outputs<T>);
+  static constexpr std::size_t max_fields = value_quantities;
+  static constexpr std::size_t stage_rows = 3 * vector_quantities + scalar_quantities;
   /// Patches beyond this many bytes are fetched ahead, to the first-level cache, and further ahead, to the second.
   static constexpr std::size_t near_bytes = 32 << 10, far_bytes = 1 << 20;
 
-  /// How often each component of an output is to be divided by the patch's width along u and v.
-  struct Factors {
-    std::array<int, 3> u{}, v{};
-  };
   /// A wanted output.
   struct Field {
     T* stage = nullptr;
     int width = 3;
     std::ptrdiff_t stride = 1;
     std::array<T*, 3> out{};
-    Factors factors;
+    ParameterPowers powers;
   };
-
-  static Factors factors_of(std::string_view name) {
-    if (name == "du") return {{1, 1, 1}, {}};
-    if (name == "dv") return {{}, {1, 1, 1}};
-    if (name == "duu") return {{2, 2, 2}, {}};
-    if (name == "duv") return {{1, 1, 1}, {1, 1, 1}};
-    if (name == "dvv") return {{}, {2, 2, 2}};
-    if (name == "first_form" || name == "second_form") return {{2, 1, 0}, {0, 1, 2}};
-    return {};
-  }
 
   void prepare_job() {
     kernel::GridJob<T>& grid = job_.grid;
@@ -225,9 +212,9 @@ class PointChunk {
       }
     }
     std::size_t kind = 0;
-    for_each_kind_output<T>([&](const auto& output) {
+    for_each_kind_quantity([&](const auto& quantity) {
       const std::uint8_t* kinds = kinds_[kind++].data();
-      const auto& view = call_.out.*output.view;
+      const auto& view = quantity.of(call_.out);
       if (view.empty()) return;
       using Kind = std::remove_cvref_t<decltype(view.at(0, 0))>;
       for (int slot = 0; slot < job_.slot_count; ++slot)
@@ -240,8 +227,7 @@ class PointChunk {
   /// inverse may be out of range where the result is not.
   void scale(const Field& field) {
     for (int c = 0; c < field.width; ++c) {
-      const int by_u = field.factors.u[static_cast<std::size_t>(c)],
-                by_v = field.factors.v[static_cast<std::size_t>(c)];
+      const int by_u = field.powers.u[static_cast<std::size_t>(c)], by_v = field.powers.v[static_cast<std::size_t>(c)];
       if (by_u + by_v == 0) continue;
       for (int slot = 0; slot < job_.slot_count; ++slot) {
         T* values = field.stage + (slot * field.width + c) * lanes;

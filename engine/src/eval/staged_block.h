@@ -9,8 +9,10 @@
 #include <utility>
 
 #include "base/aligned.h"
-#include "eval/grid_outputs.h"
+#include "eval/quantity_table.h"
 #include "eval/run_grid.h"
+#include "kernel/isa/kernel_table.h"
+#include "tessera/evaluate.h"
 
 namespace tessera::inline abi_0_1 {
 
@@ -50,7 +52,7 @@ template <class T>
 class StageLayout {
  public:
   static constexpr int lanes = kernel::block_lanes;
-  static constexpr std::size_t max_fields = std::size(vector_outputs<T>) + std::size(scalar_outputs<T>);
+  static constexpr std::size_t max_fields = value_quantities;
   static constexpr std::size_t max_arrays = 3 * max_fields;
 
   /// A wanted view.
@@ -58,7 +60,7 @@ class StageLayout {
     std::array<T*, 3> component{};
     std::ptrdiff_t stride = 1;
     int width = 3;
-    T* kernel::GridJob<T>::*job = nullptr;
+    T* kernel::GridJobOutputs<T>::*job = nullptr;
     int first = 0;            ///< its place in the record, or in the stage, in rows of lanes
     int array = -1;           ///< the first of its arrays; -1 if it goes out by columns
     std::ptrdiff_t step = 1;  ///< of its arrays
@@ -72,16 +74,16 @@ class StageLayout {
     std::ptrdiff_t width = 1, stride = 1, first = 0, step = 1;
   };
 
-  explicit StageLayout(const GridViews<T>& out) {
-    for_each_value_output<T>([&](const auto& output) {
-      const auto& view = out.*output.view;
+  explicit StageLayout(const QuantityViews<T>& out) {
+    for_each_value_quantity([&](const auto& quantity) {
+      const auto& view = quantity.of(out);
       if (view.empty()) return;
       Field& field = fields_[field_count_++];
       std::copy(view.component.begin(), view.component.end(), field.component.begin());
       field.stride = view.stride;
-      field.width = output.width;
-      field.job = output.job;
-      record_width_ += output.width;
+      field.width = quantity.width;
+      field.job = quantity.template member<kernel::GridJobOutputs<T>>();
+      record_width_ += quantity.width;
     });
     if (find_record()) return;
     int first = 0;
@@ -153,7 +155,8 @@ class StageLayout {
 template <class T>
 class StagedBlock {
  public:
-  StagedBlock(const kernel::KernelTable& kernels, const StageLayout<T>& layout, const GridViews<T>& out, bool streaming)
+  StagedBlock(const kernel::KernelTable& kernels, const StageLayout<T>& layout, const QuantityViews<T>& out,
+              bool streaming)
       : kernels_(kernels), lines_{kernels}, layout_(layout), out_(out), streaming_(streaming) {}
   StagedBlock(const StagedBlock&) = delete;
   StagedBlock& operator=(const StagedBlock&) = delete;
@@ -163,8 +166,8 @@ class StagedBlock {
     job.vector_step = (layout_.one_record() ? layout_.record_width() : 3) * lanes;
     job.scalar_step = (layout_.one_record() ? layout_.record_width() : 1) * lanes;
     std::size_t kind = 0;
-    for_each_kind_output<T>([&](const auto& output) {
-      job.*output.job = (out_.*output.view).empty() ? nullptr : kinds_[kind].data();
+    for_each_kind_quantity([&](const auto& quantity) {
+      quantity.of(job) = quantity.of(out_).empty() ? nullptr : kinds_[kind].data();
       ++kind;
     });
   }
@@ -275,8 +278,8 @@ class StagedBlock {
 
   void put_kinds(const std::ptrdiff_t* records, int lane_count, std::ptrdiff_t first, std::ptrdiff_t count) {
     std::size_t stage = 0;
-    for_each_kind_output<T>([&](const auto& output) {
-      const auto& view = out_.*output.view;
+    for_each_kind_quantity([&](const auto& quantity) {
+      const auto& view = quantity.of(out_);
       const std::uint8_t* kinds = kinds_[stage++].data();
       if (view.empty()) return;
       using Kind = std::remove_cvref_t<decltype(view.at(0, 0))>;
@@ -289,7 +292,7 @@ class StagedBlock {
   const kernel::KernelTable& kernels_;
   LineKernels<T> lines_;
   const Layout& layout_;
-  const GridViews<T>& out_;
+  const QuantityViews<T>& out_;
   bool streaming_;
   alignas(cache_line) std::array<T, Layout::max_rows * lanes> stage_;
   std::array<kernel::LineState<T>, Layout::max_arrays> states_;

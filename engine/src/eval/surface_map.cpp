@@ -1,9 +1,10 @@
 #include <string>
 
-#include "base/guard.h"
 #include "base/impl_access.h"
 #include "block/patch_set_impl.h"
 #include "eval/surface_map_impl.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -7,11 +7,12 @@
 #include <limits>
 
 #include "base/aligned.h"
-#include "base/guard.h"
 #include "eval/parameter_grid.h"
 #include "kernel/isa/kernel_table.h"
 #include "parallel/parallel_for.h"
 #include "surface/border_curve.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -161,21 +162,24 @@ Status evaluate_grid(const Surface& surface, std::span<const double> u, std::spa
 
 }  // namespace
 
-Status evaluate(const CoonsPatch& patch, std::span<const double> u, std::span<const double> v, const View3<double>& out,
+template <class T>
+Status evaluate(const CoonsPatch& patch, std::span<const double> u, std::span<const double> v, const View3<T>& out,
                 const Execution& execution) {
   return guarded([&] { return evaluate_grid(patch, u, v, out, execution); });
 }
-Status evaluate(const CoonsPatch& patch, std::span<const double> u, std::span<const double> v, const View3<float>& out,
+template Status evaluate(const CoonsPatch&, std::span<const double>, std::span<const double>, const View3<float>&,
+                         const Execution&);
+template Status evaluate(const CoonsPatch&, std::span<const double>, std::span<const double>, const View3<double>&,
+                         const Execution&);
+
+template <class T>
+Status evaluate(const RuledSurface& surface, std::span<const double> u, std::span<const double> v, const View3<T>& out,
                 const Execution& execution) {
-  return guarded([&] { return evaluate_grid(patch, u, v, out, execution); });
-}
-Status evaluate(const RuledSurface& surface, std::span<const double> u, std::span<const double> v,
-                const View3<double>& out, const Execution& execution) {
   return guarded([&] { return evaluate_grid(surface, u, v, out, execution); });
 }
-Status evaluate(const RuledSurface& surface, std::span<const double> u, std::span<const double> v,
-                const View3<float>& out, const Execution& execution) {
-  return guarded([&] { return evaluate_grid(surface, u, v, out, execution); });
-}
+template Status evaluate(const RuledSurface&, std::span<const double>, std::span<const double>, const View3<float>&,
+                         const Execution&);
+template Status evaluate(const RuledSurface&, std::span<const double>, std::span<const double>, const View3<double>&,
+                         const Execution&);
 
 }  // namespace tessera::inline abi_0_1

@@ -132,7 +132,7 @@ Result<UniformGrid> UniformGrid::make(const PatchSet& set, int rate_u, int rate_
   return grid;
 }
 
-Status UniformGrid::run(const PatchSet::Impl& set, const GridViews<float>& out, const Execution& execution) const {
+Status UniformGrid::run(const PatchSet::Impl& set, const QuantityViews<float>& out, const Execution& execution) const {
   if (Status status = evaluate(set, plan_, out, execution); !status.ok()) return status;
   if (out.position.empty()) return {};
   const BorderWriter borders(set, kernel::kernels(plan_.isa()), rate_u_, rate_v_, out.position, border_weights_u_,

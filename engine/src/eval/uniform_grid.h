@@ -26,11 +26,11 @@ class UniformGrid {
   /// Records that each view must hold: patch_count * (rate_u + 1) * (rate_v + 1), in the order `[patch][iu][iv]`.
   std::size_t capacity() const { return plan_.capacity(); }
   /// Evaluates all patches. Errors: those of evaluate().
-  Status run(const PatchSet& set, const GridViews<float>& out, const Execution& execution) const {
+  Status run(const PatchSet& set, const QuantityViews<float>& out, const Execution& execution) const {
     return run(impl_of(set), out, execution);
   }
   /// The same for those who keep the set's inner state, which stays in place when the set is moved.
-  TESSERA_INTERNAL_EXPORT Status run(const PatchSet::Impl& set, const GridViews<float>& out,
+  TESSERA_INTERNAL_EXPORT Status run(const PatchSet::Impl& set, const QuantityViews<float>& out,
                                      const Execution& execution) const;
 
  private:

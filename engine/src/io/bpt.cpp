@@ -1,21 +1,23 @@
-// .bpt: the number of patches, then for each its degrees along u and v and its control points, v running fastest, all
-// separated by white space; `#` begins a comment. Polynomial patches only.
+// .bpt: the number of patches, then for each patch its degrees along u and v and its control points, v running fastest,
+// all separated by white space; `#` begins a comment. Polynomial patches only.
 
 #include <algorithm>
 #include <array>
 #include <string>
 
-#include "base/guard.h"
-#include "io/text_cursor.h"
+#include "base/text.h"
 #include "surface/patch_pool.h"
+#include "tessera/guard.h"
 #include "tessera/io.h"
+#include "tessera/status.h"
+#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
 
 using Points = std::array<Vec3, (max_degree + 1) * (max_degree + 1)>;
 
-/// Which patch is being read, in words for messages only.
+/// The patch that is being read. Messages alone need it in words.
 struct PatchPlace {
   std::int64_t patch, count;
   std::string words() const { return "patch " + std::to_string(patch + 1) + " of " + std::to_string(count); }
@@ -70,7 +72,7 @@ Result<Model> parse(std::string_view text, std::string_view name) {
   cursor = after;
 
   Model model;
-  // A file states what it likes; the shortest patch, of degree 1 x 1, takes 28 characters.
+  // Bounds the patches that a file may state: the shortest one, of degree 1 x 1, takes 28 characters.
   constexpr std::size_t shortest_patch = 28;
   model.surfaces.reserve(std::min(static_cast<std::size_t>(count), cursor.remaining() / shortest_patch + 1));
   Points points;
@@ -81,7 +83,8 @@ Result<Model> parse(std::string_view text, std::string_view name) {
     model.surfaces.push_back({{}, pool.placed(*patch)});
   }
   cursor.skip_space();
-  if (!cursor.at_end()) return cursor.expected("the end of the file after " + std::to_string(count) + " patches");
+  if (!cursor.at_end())
+    return cursor.expected("the end of the file after " + counted(static_cast<std::size_t>(count), "patch", "patches"));
   return model;
 }
 

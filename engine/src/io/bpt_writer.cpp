@@ -8,7 +8,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// Whether weights change nothing.
+/// Whether all weights are equal, so that they change nothing.
 bool is_polynomial(const BezierPatch& patch) {
   const auto weights = patch.weights();
   return std::all_of(weights.begin(), weights.end(), [&](double w) { return w == weights.front(); });
@@ -40,7 +40,7 @@ Status write_bpt(std::span<const WrittenSurface> surfaces, OutputFile& out, std:
       return {StatusCode::unsupported,
               (surface.patches.size() == 1 ? std::string("it")
                                            : "its patch " + std::to_string(rational - surface.patches.begin())) +
-                  " is rational, and .bpt has no weights: .obj has",
+                  " is rational, but .bpt has no weights: write .obj",
               static_cast<std::ptrdiff_t>(k)};
     if (!surface.trims.empty()) warnings.push_back(trims_left_out(k, surface, ".bpt has none"));
     patches += surface.patches.size();

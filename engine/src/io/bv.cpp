@@ -1,16 +1,18 @@
-// .bv, the files of BezierView (SurfLab, University of Florida): segments, each the number of its kind, its degrees and
-// its control points, the second parameter running fastest, all separated by white space; "group n name" lines between
-// them name what follows. The layouts are those of the program's page (www.cise.ufl.edu/research/SurfLab/bview).
+// .bv, the files of BezierView (SurfLab, University of Florida). A file is a list of segments: the number of the kind,
+// the degrees and the control points, the second parameter running fastest, all separated by white space. A "group n
+// name" line between segments names those that follow. The layouts are those of the program's page
+// (www.cise.ufl.edu/research/SurfLab/bview).
 
 #include <array>
 #include <string>
 
-#include "base/guard.h"
 #include "io/make_room.h"
 #include "io/passed_over.h"
-#include "io/text_cursor.h"
 #include "surface/patch_pool.h"
+#include "tessera/guard.h"
 #include "tessera/io.h"
+#include "tessera/status.h"
+#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -18,7 +20,7 @@ namespace {
 constexpr PartName polyhedra{"polyhedron", "polyhedra"}, triangles{"triangular patch", "triangular patches"},
     pn_triangles{"PN triangle", "PN triangles"}, pn_quads{"PN quad", "PN quads"};
 
-/// Degrees of segments that are passed over; what they ask for is skipped number by number.
+/// Largest degree of a segment that is skipped: its numbers are skipped one by one.
 constexpr std::int64_t degree_limit = 1000;
 
 bool is_group(std::string_view token) {
@@ -106,7 +108,7 @@ class BvReader {
     return {};
   }
 
-  /// Point k; rational ones stand there as x w, y w, z w, w.
+  /// Reads point k. The file holds rational points as x w, y w, z w, w.
   Status read_point(bool rational, std::size_t k, std::size_t wanted) {
     Vec3& point = points_[k];
     for (double* const coordinate : {&point.x, &point.y, &point.z}) {
@@ -139,7 +141,7 @@ class BvReader {
                             std::string(" for a control point (after ") + count + ")");
   }
 
-  /// Vertices, then faces: each the number of its corners, and their indices.
+  /// Skips vertices, then faces: each the number of its corners, and their indices.
   Status pass_over_polyhedron(const TextCursor& begin) {
     constexpr std::int64_t limit = std::int64_t{1} << 60;
     std::int64_t vertices = 0, faces = 0, corners = 0, index = 0;
@@ -156,7 +158,7 @@ class BvReader {
     return status;
   }
 
-  /// Points in rows of a triangle; a PN triangle's normals likewise.
+  /// Skips the points of a triangle, stored in rows, and the normals of a PN triangle likewise.
   Status pass_over_triangle(const TextCursor& begin, bool normals) {
     std::int64_t degree = 0, normal_degree = 0;
     Status status = read_integer("the degree", 0, degree_limit, degree);

@@ -21,7 +21,7 @@ class Descriptor {
 
   bool is_open() const { return number_ >= 0; }
   int number() const { return number_; }
-  /// 0, or the errno of a failed close: data may not have reached the disk.
+  /// Returns 0, or the errno of a failed close: data may not have reached the disk.
   int close() {
     if (number_ < 0) return 0;
     return ::close(std::exchange(number_, -1)) == 0 ? 0 : errno;

@@ -13,7 +13,7 @@
 #include <optional>
 
 #include "base/text.h"
-#include "io/text_cursor.h"
+#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -46,24 +46,24 @@ constexpr auto functions2 = std::to_array<NamedFunction2>({
     {"mod", mod},
 });
 
-/// A number at the begin of a text. muParser's own reader works by a stream, to which memory that runs out is a number
-/// that ends.
+/// Reads a number at the begin of a text. Replaces muParser's own reader, which uses a stream: for a stream, running
+/// out of memory looks like the end of the number.
 int read_number(const char* text, int* at, double* value) {
   if (!std::isdigit(static_cast<unsigned char>(text[0])) && text[0] != '.') return 0;
   const auto [end, error] = std::from_chars(text, text + std::strlen(text), *value);
-  if (error != std::errc{} || std::isalpha(static_cast<unsigned char>(*end))) return 0;  // as the stream takes it
+  if (error != std::errc{} || std::isalpha(static_cast<unsigned char>(*end))) return 0;  // as muParser's stream does
   *at += static_cast<int>(end - text);
   return 1;
 }
 
-/// muParser with the vocabulary above alone: its own pi has 13 digits, and it has random numbers.
+/// muParser with the vocabulary of expression.h alone. Its own pi has 13 digits, and it has random numbers.
 class Evaluator {
  public:
   Evaluator(const std::string& text, std::span<const std::string> variables) {
     parser_.ClearConst();
     parser_.ClearFun();
     parser_.AddValIdent(read_number);
-    parser_.EnableOptimizer(false);  // it reorders sums
+    parser_.EnableOptimizer(false);  // the optimizer reorders sums
     parser_.DefineConst("pi", std::numbers::pi);
     parser_.DefineConst("e", std::numbers::e);
     for (const NamedFunction& f : functions) parser_.DefineFun(f.name, f.function);
@@ -71,14 +71,14 @@ class Evaluator {
     for (std::size_t k = 0; k < variables.size(); ++k) parser_.DefineVar(variables[k], &values_[k]);
     parser_.SetExpr(text);
   }
-  Evaluator(const Evaluator&) = delete;  // the parser points at the values
+  Evaluator(const Evaluator&) = delete;  // the parser holds pointers to the values
   Evaluator& operator=(const Evaluator&) = delete;
 
   double operator()(std::span<const double> values) {
     std::copy(values.begin(), values.end(), values_.begin());
     return parser_.Eval();
   }
-  /// How many values the text has, separated by commas.
+  /// The number of values in the text, separated by commas.
   int count() {
     int count = 0;
     parser_.Eval(count);
@@ -94,7 +94,7 @@ Status refusal(std::string_view text, std::string_view reason) {
   return {StatusCode::parse_error, quote(text) + ": " + std::string(reason)};
 }
 
-/// What muParser would take beyond the vocabulary: assignments, strings, control characters.
+/// The error for a character that muParser would take beyond the vocabulary: assignments, strings, control characters.
 std::optional<Status> foreign_character(std::string_view text) {
   for (std::size_t k = 0; k < text.size(); ++k) {
     const char c = text[k];
@@ -105,12 +105,12 @@ std::optional<Status> foreign_character(std::string_view text) {
     const bool ends_comparison = k > 0 && std::string_view("<>!=").find(text[k - 1]) != std::string_view::npos;
     const bool begins_comparison = k + 1 < text.size() && text[k + 1] == '=';
     if (!ends_comparison && !begins_comparison)
-      return refusal(text, "nothing can be assigned (\"=\" at position " + std::to_string(k) + "); == compares");
+      return refusal(text, "there are no assignments (\"=\" at position " + std::to_string(k) + "); == compares");
   }
   return {};
 }
 
-/// muParser's words, fit to print and of bounded length.
+/// muParser's message, made printable and bounded in length.
 std::string reason(const mu::ParserError& error) {
   constexpr std::size_t longest = 120;
   std::string words;
@@ -155,7 +155,7 @@ Result<Expression> Expression::compile(std::string_view text, std::span<const st
   pool->variables.assign(variables.begin(), variables.end());
   try {
     auto evaluator = pool->take();
-    if (evaluator->count() != 1) return refusal(text, "one value is wanted, not a list");
+    if (evaluator->count() != 1) return refusal(text, "expected one value, found a list");
     pool->put_back(std::move(evaluator));
   } catch (const mu::ParserError& error) {
     return refusal(text, reason(error));

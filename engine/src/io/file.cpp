@@ -8,13 +8,14 @@
 #include <system_error>
 
 #include "io/descriptor.h"
+#include "tessera/io.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr std::size_t pipe_limit = std::size_t{1} << 30;  // an endless device must not eat all memory
+constexpr std::size_t pipe_limit = std::size_t{1} << 30;  // an endless device must not use all memory
 
-/// Fills `bytes` from its size `used` on to the end of the file, at most `limit` bytes in all. 0 or an errno.
+/// Fills `bytes` from its size `used` on to the end of the file, at most `limit` bytes in all. Returns 0 or an errno.
 int read_to_end(int descriptor, std::string& bytes, std::size_t used, std::size_t limit) {
   for (;;) {
     if (used == bytes.size()) {
@@ -46,7 +47,7 @@ Result<std::string> read_file(const std::filesystem::path& path) {
   if (S_ISDIR(facts.st_mode)) return Status(StatusCode::io_error, path.string() + ": is a directory, not a file");
   const bool regular = S_ISREG(facts.st_mode);
   std::string bytes;
-  // One byte more than the file has, so that the read that finds the end needs no more memory.
+  // One byte more than the file has: the read that finds the end then needs no more memory.
   if (regular) bytes.resize(static_cast<std::size_t>(facts.st_size) + 1);
   const int error = read_to_end(file.number(), bytes, 0, regular ? bytes.max_size() : pipe_limit);
   if (error != 0) return io_failure(path, "cannot be read", error);

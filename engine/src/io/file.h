@@ -1,5 +1,5 @@
 #pragma once
-// Whole files into memory.
+// Failures of files, in words.
 
 #include <filesystem>
 #include <string>
@@ -9,11 +9,7 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// The bytes of a file; of a pipe or a terminal up to its end, at most 1 GiB. Errors: io_error (missing, a directory,
-/// no permission, a failed read), parse_error (no bytes). Messages begin with the path.
-Result<std::string> read_file(const std::filesystem::path& path);
-
-/// "path: what: the system's words for error_number".
+/// The error "path: what: the system's words for error_number".
 Status io_failure(const std::filesystem::path& path, std::string_view what, int error_number);
 
 }  // namespace tessera::inline abi_0_1

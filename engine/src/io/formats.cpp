@@ -1,15 +1,15 @@
-#include "io/formats.h"
+#include "tessera/io.h"
 
 #include <array>
 #include <string>
 #include <system_error>
 
-#include "base/guard.h"
 #include "io/file.h"
 #include "io/mesh_formats.h"
 #include "io/model_formats.h"
 #include "io/valid_mesh.h"
-#include "tessera/io.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -43,7 +43,8 @@ constexpr std::array<Format, 10> formats{{
 
 constexpr std::string_view mesh_writers = "meshes are written", model_writers = "surfaces are written";
 
-/// The format that `path` names, if it has the ability `member`; otherwise an error that lists those that have.
+/// The format that `path` names, if it has the ability `member`; otherwise an error that lists the formats that have
+/// it.
 template <class Ability>
 Result<const Format*> find_format(const fs::path& path, Ability Format::*member, std::string_view what) {
   const std::string extension = lower_extension(path);
@@ -57,7 +58,7 @@ Result<const Format*> find_format(const fs::path& path, Ability Format::*member,
                 path.string() + ": unsupported format \"" + extension + "\": " + std::string(what) + " as " + able);
 }
 
-/// The file's bytes and its format. What cannot be opened is said before what cannot be understood.
+/// The file's bytes and its format. A file that cannot be opened is reported before an unknown format.
 template <class Content, class Ability, class... Options>
 Result<Content> read_as(const fs::path& path, Ability Format::*member, std::string_view what,
                         const Options&... options) {
@@ -70,15 +71,15 @@ Result<Content> read_as(const fs::path& path, Ability Format::*member, std::stri
   return ((*format)->*member)(*bytes, path.string(), options...);
 }
 
-/// That tessera::io_occt reads these files, if it does; else `status`.
+/// An error that points to tessera::io_occt if it reads these files; otherwise `status`.
 Status or_read_elsewhere(const fs::path& path, const Status& status) {
   const std::string extension = lower_extension(path);
   const bool step = extension == ".step" || extension == ".stp", iges = extension == ".iges" || extension == ".igs";
   if (status.code() != StatusCode::unsupported || (!step && !iges)) return status;
   return Status(StatusCode::unsupported,
                 path.string() + ": unsupported format \"" + extension + "\": " + (step ? "STEP" : "IGES") +
-                    " is read where OpenCASCADE is installed (libocct-data-exchange-dev) when Tessera is built, by "
-                    "read_cad of tessera/io_occt.h");
+                    " needs a Tessera that was built with OpenCASCADE (libocct-data-exchange-dev), and read_cad of "
+                    "tessera/io_occt.h");
 }
 
 }  // namespace

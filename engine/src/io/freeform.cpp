@@ -9,7 +9,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// Control points and weights as the kinds want them; no weights for what is not rational.
+/// Control points and weights as the surface kinds take them; no weights if nothing is rational.
 struct Net {
   std::vector<Vec3> points;
   std::vector<double> weights;
@@ -18,7 +18,7 @@ struct Net {
     points.push_back(p.vector());
     if (rational) weights.push_back(p.w);
   }
-  /// From a premultiplied point. A weight that is no divisor is left to the check of weights.
+  /// Adds a premultiplied point. The check of weights reports a weight that cannot divide.
   void add_projected(const Homogeneous& p, bool rational) {
     if (!rational) return points.push_back(p.vector());
     points.push_back(p.w > 0 ? p.project() : Vec3{});
@@ -53,7 +53,7 @@ Result<Surface> bezier_patch(int degree_u, int degree_v, const Net& net) {
   return Surface(*patch);
 }
 
-/// One run over the control points of a surface: along u, then along v.
+/// Makes the surfaces of one set of control points: one pass along u, then one along v.
 class SurfaceMaker {
  public:
   SurfaceMaker(const FreeformState& state, const ControlPoints& points, const Domain& range)
@@ -81,9 +81,10 @@ class SurfaceMaker {
     if (!count_v) return count_v.status();
     count_u_ = *count_u;
     count_v_ = *count_v;
-    if (points_.size() / count_u_ == count_v_ && points_.size() % count_u_ == 0) return {};  // no product to overflow
-    return {StatusCode::count_mismatch, "its parameters and degrees want " + std::to_string(count_u_) + " x " +
-                                            std::to_string(count_v_) + " control points, it has " +
+    // Divides: the product could overflow.
+    if (points_.size() / count_u_ == count_v_ && points_.size() % count_u_ == 0) return {};
+    return {StatusCode::count_mismatch, "its parameters and degrees need " + std::to_string(count_u_) + " x " +
+                                            std::to_string(count_v_) + " control points, found " +
                                             std::to_string(points_.size())};
   }
 
@@ -97,7 +98,7 @@ class SurfaceMaker {
     return net;
   }
 
-  /// Row by row, so that the homogeneous points of one row alone are held.
+  /// Works row by row, to hold the homogeneous points of one row only.
   Net cardinal_net() const {
     const std::size_t pieces_u = count_u_ - 3, pieces_v = count_v_ - 3;
     std::vector<Homogeneous> row(count_v_);
@@ -126,7 +127,7 @@ class SurfaceMaker {
   Result<std::vector<Surface>> pieces() const {
     const std::size_t size = static_cast<std::size_t>((degree_u_ + 1) * (degree_v_ + 1));
     const std::size_t count = (u_.parm.size() - 1) * (v_.parm.size() - 1);
-    // Pieces that share most of their points: so a short file cannot ask for much memory.
+    // Pieces may share most of their points; the limit keeps a short file from taking much memory.
     constexpr std::size_t largest_growth = 64;
     if (count > largest_growth * points_.size() / size)
       return Status(StatusCode::unsupported, "its " + std::to_string(count) + " pieces have more than " +
@@ -150,7 +151,7 @@ class SurfaceMaker {
     return surfaces;
   }
 
-  /// The piece of the control points [i0 ..][j0 ..] over `own`, of which `part` is wanted.
+  /// The surface of the control points [i0 ..][j0 ..] over `own`, restricted to `part`.
   Result<Surface> piece(std::size_t i0, std::size_t j0, const BasisMatrix& basis_u, const BasisMatrix& basis_v,
                         const Domain& own, const Domain& part) const {
     if (!rational_ && part == own) {
@@ -167,7 +168,7 @@ class SurfaceMaker {
                           std::move(net), part);
   }
 
-  /// The Bezier points of a piece: C_u G C_v^T, with C as of BasisMatrix::bernstein_coefficient.
+  /// The Bezier points of a piece: C_u G C_v^T, with C from BasisMatrix::bernstein_coefficient.
   Net piece_net(std::size_t i0, std::size_t j0, const BasisMatrix& basis_u, const BasisMatrix& basis_v) const {
     Net net;
     for (int k = 0; k <= degree_u_; ++k)
@@ -241,8 +242,8 @@ Result<std::vector<Curve>> freeform_curves(const FreeformState& state, const Con
   const Result<std::size_t> count = control_count(state.type, state.u, 'u', points.size());
   if (!count) return count.status();
   if (*count != points.size())
-    return Status(StatusCode::count_mismatch, "its parameters and degree want " + std::to_string(*count) +
-                                                  " control points, it has " + std::to_string(points.size()));
+    return Status(StatusCode::count_mismatch, "its parameters and degree need " + std::to_string(*count) +
+                                                  " control points, found " + std::to_string(points.size()));
   if (state.type == FreeformType::taylor || state.type == FreeformType::bmatrix) return curve_pieces(state, points);
   const int degree = degree_of(state.type, state.u);
   if (state.type == FreeformType::cardinal)

@@ -9,16 +9,16 @@ namespace tessera::inline abi_0_1 {
 namespace {
 
 std::string values(const FreeformLine& line, char direction) {
-  return std::string("parm ") + direction + " has " + std::to_string(line.parm.size()) + " values";
+  return std::string("parm ") + direction + " has " + counted(line.parm.size(), "value");
 }
 
 Status check_line_degree(FreeformType type, const FreeformLine& line, char direction) {
-  if (type == FreeformType::cardinal) return {};  // always 3, whatever deg says
+  if (type == FreeformType::cardinal) return {};  // cubic whatever deg says
   if (!line.degree) return {StatusCode::parse_error, std::string("there is no deg for ") + direction + " above"};
   if (*line.degree >= 1 && *line.degree <= max_degree) return {};
   return {StatusCode::unsupported_degree, std::string("the degree along ") + direction + " is " +
-                                              std::to_string(*line.degree) + ", 1 to " + std::to_string(max_degree) +
-                                              " are read"};
+                                              std::to_string(*line.degree) + ", it must be 1 to " +
+                                              std::to_string(max_degree)};
 }
 
 Status check_matrix(const FreeformLine& line, int degree, char direction) {
@@ -30,12 +30,12 @@ Status check_matrix(const FreeformLine& line, int degree, char direction) {
   if (line.matrix.empty()) return {StatusCode::parse_error, std::string("there is no bmat ") + direction + " above"};
   if (line.matrix.size() == wanted) return {};
   return {StatusCode::count_mismatch, std::string("bmat ") + direction + " has " + std::to_string(line.matrix.size()) +
-                                          " entries, degree " + std::to_string(degree) + " wants " +
+                                          " entries, degree " + std::to_string(degree) + " needs " +
                                           std::to_string(wanted)};
 }
 
 Status check_increasing_parameters(const FreeformLine& line, char direction) {
-  if (line.parm.size() < 2) return {StatusCode::count_mismatch, values(line, direction) + ", at least 2 are wanted"};
+  if (line.parm.size() < 2) return {StatusCode::count_mismatch, values(line, direction) + ", at least 2 are needed"};
   for (std::size_t k = 1; k < line.parm.size(); ++k)
     if (!(line.parm[k - 1] < line.parm[k]))
       return {StatusCode::invalid_argument, std::string("parm ") + direction + " does not increase: " +
@@ -48,8 +48,8 @@ Result<std::size_t> matrix_count(const FreeformLine& line, int degree, char dire
   const std::size_t step = static_cast<std::size_t>(*line.step), further = line.parm.size() - 2;
   if (further > 0 && (step > available || further > available / step))
     return Status(StatusCode::count_mismatch, values(line, direction) + " and the step is " + std::to_string(step) +
-                                                  ": that wants more than the " + std::to_string(available) +
-                                                  " control points there are");
+                                                  ": they need more than the " + std::to_string(available) +
+                                                  " control points found");
   return further * step + static_cast<std::size_t>(degree) + 1;
 }
 
@@ -68,7 +68,7 @@ Result<std::size_t> control_count(FreeformType type, const FreeformLine& line, c
   if (type == FreeformType::bspline) {
     if (parameters >= 2 * (n + 1)) return parameters - n - 1;
     return Status(StatusCode::count_mismatch, values(line, direction) + ", a B-spline of degree " +
-                                                  std::to_string(degree) + " wants at least " +
+                                                  std::to_string(degree) + " needs at least " +
                                                   std::to_string(2 * (n + 1)) + " knots");
   }
   if (type == FreeformType::bmatrix)
@@ -90,7 +90,7 @@ Status check_within(const FreeformLine& line, char direction, double from, doubl
   const std::string range = "the range from " + text(from) + " to " + text(to) + " along " + direction;
   if (!(from < to)) return {StatusCode::invalid_argument, range + " is empty"};
   if (line.parm.front() <= from && to <= line.parm.back()) return {};
-  return {StatusCode::invalid_argument, range + " reaches outside parm " + direction + ", which runs from " +
+  return {StatusCode::invalid_argument, range + " exceeds parm " + direction + ", which runs from " +
                                             text(line.parm.front()) + " to " + text(line.parm.back())};
 }
 
@@ -107,8 +107,7 @@ Result<BasisMatrix> piece_basis(FreeformType type, const FreeformLine& line) {
   const int degree = degree_of(type, line);
   if (type == FreeformType::taylor) return BasisMatrix::power(degree);
   const std::size_t size = static_cast<std::size_t>(degree) + 1;
-  std::vector<double> entries(size *
-                              size);  // row by row the coefficients of one power, where the file has one function
+  std::vector<double> entries(size * size);  // a row of the file is one function, here one power
   for (std::size_t i = 0; i < size; ++i)
     for (std::size_t j = 0; j < size; ++j) entries[j * size + i] = line.matrix[i * size + j];
   return BasisMatrix::custom(degree, entries);

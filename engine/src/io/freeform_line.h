@@ -1,5 +1,5 @@
 #pragma once
-// One direction of free-form geometry: whether its numbers fit each other, and its pieces.
+// One direction of free-form geometry: checks that its numbers fit each other, and finds its pieces.
 
 #include <algorithm>
 #include <cstddef>
@@ -11,26 +11,26 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// How many control points the line wants. `available` is how many there are, which bounds the steps. Errors:
-/// unsupported_degree, count_mismatch, invalid_argument.
+/// The number of control points that the direction needs. `available` is how many there are; it bounds the steps.
+/// Errors: unsupported_degree, count_mismatch, invalid_argument.
 Result<std::size_t> control_count(FreeformType type, const FreeformLine& line, char direction, std::size_t available);
 
-/// The degree, once control_count() has passed the line.
+/// The degree. Requires that control_count() has succeeded.
 int degree_of(FreeformType type, const FreeformLine& line);
 
-/// Errors: invalid_argument (empty, or not within parm). For all but bspline.
+/// Checks the range [from, to] of every type but bspline. Errors: invalid_argument (empty, or not within parm).
 Status check_within(const FreeformLine& line, char direction, double from, double to);
 
-/// Each inner parameter as often as the degree says, those at the ends once more.
+/// The knots: each inner parameter with multiplicity `degree`, the end ones with one more.
 std::vector<double> bezier_knots(int degree, std::span<const double> parameters);
 
-/// What a piece of taylor or bmatrix is blended by.
+/// The basis of a piece of taylor or bmatrix.
 Result<BasisMatrix> piece_basis(FreeformType type, const FreeformLine& line);
-/// By how many control points the pieces of taylor or bmatrix are apart.
+/// The step in control points between pieces of taylor or bmatrix.
 std::size_t piece_step(FreeformType type, const FreeformLine& line);
 
-/// Bezier point r of a line of `pieces` Catmull-Rom pieces, whose control points are at(i): the pieces' control points
-/// (c1, c1 + (c2 - c0) / 6, c2 - (c3 - c1) / 6, c2), the last of one being the first of the next.
+/// Bezier point r of `pieces` Catmull-Rom pieces whose control points are at(i). Each piece has the Bezier points (c1,
+/// c1 + (c2 - c0) / 6, c2 - (c3 - c1) / 6, c2); the last of one is the first of the next.
 template <class At>
 Homogeneous cardinal_bezier_point(std::size_t r, std::size_t pieces, At&& at) {
   const std::size_t piece = std::min(r / 3, pieces - 1), k = r - 3 * piece;

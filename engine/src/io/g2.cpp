@@ -1,17 +1,19 @@
-// .g2, the files of GoTools (SINTEF): objects one after the other. Of spline surfaces (class 200) stand the dimension
-// and whether it is rational, then for u and v the number of points, the order and the knots, then the points, u
-// running fastest; rational ones as w x, w y, w z, w. Objects that are not read end where the next header stands in a
-// line.
+// .g2, the files of GoTools (SINTEF): objects one after the other. A spline surface (class 200) holds the dimension and
+// whether it is rational; for u and v the number of points, the order and the knots; then the points, u running
+// fastest, rational ones as w x, w y, w z, w. An object of a class that is not read ends at the next line that is a
+// header.
 
 #include "io/g2.h"
+#include "base/text.h"
 
 #include <algorithm>
 #include <vector>
 
-#include "base/guard.h"
 #include "io/make_room.h"
 #include "io/passed_over.h"
+#include "tessera/guard.h"
 #include "tessera/io.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -44,7 +46,8 @@ PartName unread_name(std::int64_t kind) {
   return known == std::end(unread_classes) ? others : known->second;
 }
 
-/// The class of a header that stands here, past it; or 0, anywhere in it. `alone`: in a line of its own.
+/// Takes a header and returns its class, or returns 0 with the cursor anywhere in it. `alone`: the header must fill its
+/// line.
 std::int64_t take_header(TextCursor& cursor, bool alone) {
   const auto take = [&](std::int64_t& value) {
     alone ? cursor.skip_blanks() : cursor.skip_space();
@@ -54,7 +57,7 @@ std::int64_t take_header(TextCursor& cursor, bool alone) {
   if (!take(kind) || !take(major) || !take(minor) || !take(auxiliary)) return 0;
   if (kind < 100 || kind > 999 || major < 0 || major > 9 || minor < 0 || minor > 9) return 0;
   if (auxiliary < 0 || auxiliary > 16) return 0;
-  for (std::int64_t k = 0; k < auxiliary; ++k) {  // a colour, mostly
+  for (std::int64_t k = 0; k < auxiliary; ++k) {  // usually a colour
     if (!take(ignored)) return 0;
   }
   return !alone || cursor.take_line_end() ? kind : 0;
@@ -79,8 +82,8 @@ class G2Reader {
     }
     model_.warnings = passed_over_.warnings();
     if (swapped_ > 0) {
-      model_.warnings.push_back(std::string(name_) + ": u and v of " + std::to_string(swapped_) +
-                                " elementary surfaces are swapped in the file, and here are not");
+      model_.warnings.push_back(std::string(name_) + ": " + counted(swapped_, "elementary surface") +
+                                (swapped_ == 1 ? " has" : " have") + " u and v swapped in the file, but not here");
     }
     return std::move(model_);
   }
@@ -103,7 +106,7 @@ class G2Reader {
     }
   }
 
-  /// To the next line that is a header.
+  /// Skips to the next line that is a header.
   void pass_over(const PartName& name) {
     passed_over_.add(name, header_);
     for (cursor_.skip_space(); !cursor_.at_end(); cursor_.skip_space()) {
@@ -141,14 +144,14 @@ class G2Reader {
     line.points = numbers.integer("the number of points along a direction", 1, limit);
     line.order = numbers.integer("the order along a direction", 2, max_degree + 1);
     const std::int64_t count = line.points + line.order;
-    // A file states what it likes; a number takes two bytes.
+    // Bounded by the text that is left, whatever count the file states: a number takes two bytes.
     line.knots.reserve(std::min(static_cast<std::size_t>(count), numbers.cursor().remaining() / 2 + 1));
     for (std::int64_t k = 0; k < count && numbers.ok(); ++k) line.knots.push_back(numbers.number("a knot"));
   }
 
   Status read_spline(G2Numbers& numbers) {
     const std::int64_t dimension = numbers.integer("the dimension", 1, 3);
-    const bool rational = numbers.integer("whether the surface is rational", 0, 1) == 1;
+    const bool rational = numbers.integer("the flag of a rational surface", 0, 1) == 1;
     Line u, v;
     read_line(numbers, u);
     read_line(numbers, v);
@@ -158,7 +161,7 @@ class G2Reader {
       return {};
     }
     const auto count_u = static_cast<std::size_t>(u.points), count_v = static_cast<std::size_t>(v.points);
-    const auto bytes = static_cast<std::size_t>(2 * (dimension + rational));  // that a point takes, at least
+    const auto bytes = static_cast<std::size_t>(2 * (dimension + rational));  // the least that a point takes
     if (count_u * count_v > cursor_.remaining() / bytes + 1) {
       return numbers.failure("the file is shorter than its " + std::to_string(count_u) + " x " +
                              std::to_string(count_v) + " points");
@@ -180,7 +183,7 @@ class G2Reader {
     return {};
   }
 
-  /// Divided by the weight; surfaces of the plane lie in z = 0.
+  /// Divides by the weight. Surfaces of the plane lie in z = 0.
   static Vec3 read_point(G2Numbers& numbers, std::int64_t dimension, double* weight) {
     Vec3 point;
     point.x = numbers.number("a coordinate");
@@ -194,7 +197,7 @@ class G2Reader {
   std::string_view name_;
   TextCursor cursor_;
   std::size_t size_;
-  TextCursor header_ = cursor_;  // of the object that is being read
+  TextCursor header_ = cursor_;  // of the object being read
   PassedOver passed_over_;
   Model model_;
   std::size_t object_ = 0, swapped_ = 0;

@@ -6,10 +6,10 @@
 #include <optional>
 #include <string>
 
-#include "io/text_cursor.h"
 #include "tessera/geometry.h"
 #include "tessera/status.h"
 #include "tessera/surface.h"
+#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 
@@ -23,11 +23,11 @@ enum G2Class : std::int64_t {
   g2_torus = 290,
 };
 
-/// Numbers of an object, one by one; after the first that is missing or wrong nothing is read, and status() says what
-/// it was.
+/// Reads the numbers of an object one by one. After the first that is missing or wrong it reads nothing, and status()
+/// holds the error.
 class G2Numbers {
  public:
-  /// `header` is the object's place and `object` its name in messages.
+  /// `header` is the object's place; `object` names it in messages.
   G2Numbers(TextCursor& cursor, const TextCursor& header, std::string object)
       : cursor_(cursor), header_(header), object_(std::move(object)) {}
 
@@ -43,7 +43,7 @@ class G2Numbers {
   Vec3 vector(std::string_view what);
   const Status& status() const { return status_; }
   bool ok() const { return status_.ok(); }
-  /// What is wrong with the object as a whole.
+  /// An error of the object as a whole.
   Status failure(const std::string& sentence) const { return header_.failure(object_ + ": " + sentence); }
   TextCursor& cursor() { return cursor_; }
 
@@ -56,16 +56,17 @@ class G2Numbers {
   Status status_;
 };
 
-/// An object, or nothing where it is well-formed but of a kind that is not read: no surface of space, or unbounded.
+/// An object; empty if it is well-formed but of a kind that is not read: not a surface in space, or unbounded.
 struct G2Object {
   std::optional<Surface> surface = {};
   Affine placement = {};
-  std::string_view unread = {};  ///< why there is none: "unbounded"
-  bool swapped = false;          ///< the file runs its parameters the other way round
+  std::string_view unread = {};  ///< the reason if there is no surface: "unbounded"
+  bool swapped = false;          ///< the file has u and v swapped
 };
 
-/// Plane, cylinder, sphere, cone or torus after its header. Parameters are the file's (angles in radians), but for a
-/// cone's v, which is counted from the apex, and for a torus', which are those of its NURBS on [0,1]^2 or a part of it.
+/// Reads a plane, cylinder, sphere, cone or torus after its header. Parameters are the file's (angles in radians), with
+/// two exceptions: a cone's v counts from the apex, and a torus has the parameters of its NURBS on [0,1]^2 or a part of
+/// it.
 Result<G2Object> read_g2_elementary(std::int64_t kind, G2Numbers& numbers);
 
 }  // namespace tessera::inline abi_0_1

@@ -13,14 +13,14 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// Axes of length 1, x made square to z. None where they have no direction or the same.
+/// Axes of length 1, x made orthogonal to z. None if an axis is zero or the two are parallel.
 std::optional<Affine> frame(const Vec3& location, const Vec3& z_axis, const Vec3& x_axis) {
   const Vec3 z = normalized(z_axis), along = normalized(x_axis), y = normalized(cross(z, along));
   if (y == Vec3{}) return std::nullopt;
   return Affine{.columns = {normalized(cross(y, z)), y, z}, .translation = location};
 }
 
-/// Files print angles with 15 digits or fewer: what is a full turn or a pole to within their rounding is meant so.
+/// Files print angles with 15 digits or fewer: an angle within this of a full turn or a pole is taken as one.
 constexpr double printed = 1e-9;
 void snap_turn(double from, double& to) {
   if (std::abs(to - from - 2 * pi) <= printed) to = from + 2 * pi;
@@ -29,8 +29,8 @@ void snap_pole(double& latitude) {
   if (std::abs(std::abs(latitude) - pi / 2) <= printed) latitude = std::copysign(pi / 2, latitude);
 }
 
-/// The parameter of an angle in [0, 2 pi] on a circle of four rational arcs over [0,1]: on the arc about its middle m
-/// of half-width h, the angle is m + 2 atan(tan(h/2) s), s from -1 to 1.
+/// The parameter of an angle in [0, 2 pi] on a circle of four rational arcs over [0,1]. On the arc with middle angle m
+/// and half-width h, the angle is m + 2 atan(tan(h/2) s), s from -1 to 1.
 double circle_parameter(double angle) {
   const double arc = std::min(3.0, std::floor(angle / (pi / 2)));
   const double off_middle = angle - (arc + 0.5) * (pi / 2);
@@ -54,15 +54,15 @@ Elementary read_numbers(std::int64_t kind, G2Numbers& numbers, bool& swapped) {
   e.z_axis = numbers.vector("the z axis");
   e.x_axis = numbers.vector("the x axis");
   if (kind == g2_cone) e.angle = numbers.number("the cone's angle");
-  if (kind == g2_torus) numbers.integer("whether the outer part is meant", 0, 1);
+  if (kind == g2_torus) numbers.integer("the flag of the outer part", 0, 1);
   if (kind == g2_plane || kind == g2_cylinder || kind == g2_cone) {
-    e.bounded = numbers.integer("whether the surface is bounded", 0, 1) == 1;
+    e.bounded = numbers.integer("the flag of a bounded surface", 0, 1) == 1;
   }
   if (!numbers.ok() || !e.bounded) return e;
   for (double* const limit : {&e.range.u0, &e.range.u1, &e.range.v0, &e.range.v1}) {
     *limit = numbers.number("a limit of the parameters");
   }
-  swapped = numbers.integer("whether the parameters are swapped", 0, 1) == 1;
+  swapped = numbers.integer("the flag of swapped parameters", 0, 1) == 1;
   return e;
 }
 
@@ -75,14 +75,15 @@ Result<Surface> plane(const Elementary& e) {
   return Surface(*std::move(surface));
 }
 
-/// In the frame of the canonical quadric, whose parameters are the file's.
+/// A quadric in the canonical frame, where its parameters are the file's.
 Result<Surface> quadric(QuadricKind kind, const QuadricCoefficients& coefficients, Domain range) {
   snap_turn(range.u0, range.u1);
   const Result<Quadric> whole = Quadric::make(coefficients);
   if (!whole) return whole.status();
   if (whole->kind() != kind)
-    return Status(StatusCode::invalid_argument, "its sizes are too far from 1 for doubles: it comes out as the kind '" +
-                                                    std::string(name(whole->kind())) + "'");
+    return Status(StatusCode::invalid_argument,
+                  "its sizes are too far from 1 for double: it is classified as the kind '" +
+                      std::string(name(whole->kind())) + "'");
   Result<QuadricPiece> piece = QuadricPiece::make(*whole, range);
   if (!piece) return piece.status();
   return Surface(*std::move(piece));
@@ -99,14 +100,15 @@ Result<Surface> sphere(double radius, Domain range) {
   return quadric(QuadricKind::ellipsoid, {.a = square, .b = square, .c = square, .k = -1}, range);
 }
 
-/// About the origin; the turn begins at u0 and the tube at v0, so that ranges are the first parts of full circles.
+/// A torus about the origin. The turn begins at u0 and the tube at v0, so that ranges are the first parts of full
+/// circles.
 Result<Surface> torus(const Elementary& e) {
   Domain range = e.range;
   snap_turn(range.u0, range.u1);
   snap_turn(range.v0, range.v1);
   const double turn_u = range.u1 - range.u0, turn_v = range.v1 - range.v0;
   if (!(turn_u > 0 && turn_u <= 2 * pi + printed && turn_v > 0 && turn_v <= 2 * pi + printed)) {
-    return Status(StatusCode::invalid_argument, "its ranges are not above 0 and at most a full turn");
+    return Status(StatusCode::invalid_argument, "its ranges must be above 0 and at most a full turn");
   }
   const Vec3 outwards{std::cos(range.u0), std::sin(range.u0), 0}, up{0, 0, 1};
   const Result<Curve> tube = nurbs_circle({.origin = e.radius * outwards,
@@ -123,18 +125,18 @@ Result<Surface> torus(const Elementary& e) {
   return Surface(*std::move(part));
 }
 
-/// At v the radius is R + v tan(angle): the apex lies at v = -R / tan(angle), from where the canonical cone counts.
+/// The radius at v is R + v tan(angle). The apex lies at v = -R / tan(angle), where the canonical cone has v = 0.
 Result<Surface> cone(const Elementary& e, Affine& placement) {
   const double slope = std::tan(e.angle);
   if (std::abs(slope) <= printed) return cylinder(e.radius, e.range);
   const double apex = e.radius / slope;
   placement = placement * Affine::translated({0, 0, -apex}) * Affine::scaled({std::abs(slope), std::abs(slope), 1});
   const Domain range{e.range.u0, e.range.u1, e.range.v0 + apex, e.range.v1 + apex};
-  // A falling radius is a cone that is passed through from below: half a turn further on the same circles.
+  // A falling radius is the part of the cone below the apex: the same circles half a turn further on.
   if (slope < 0) {
     placement = placement * Affine::scaled({-1, -1, 1});
   }
-  return quadric(QuadricKind::elliptic_cone, {.a = 1, .b = 1, .c = -1}, range);  // of slope 1, then scaled
+  return quadric(QuadricKind::elliptic_cone, {.a = 1, .b = 1, .c = -1}, range);  // slope 1, then scaled
 }
 
 Result<Surface> make_surface(std::int64_t kind, const Elementary& e, Affine& placement) {

@@ -1,5 +1,5 @@
 // glTF 2.0 (Khronos Group, glTF 2.0 Specification, 2021) by tinygltf. All numbers lie in one buffer: positions, normals
-// and parameters of all vertices, then the indices. A part sees of the vertices the range that its indices span, so that
+// and parameters of all vertices, then the indices. A part refers to the range of vertices that its indices span, so
 // parts may share vertices and none is stored twice.
 
 #include <tiny_gltf.h>
@@ -24,7 +24,7 @@ static_assert(std::endian::native == std::endian::little, "glTF is written in th
 
 constexpr std::size_t max_bytes = std::numeric_limits<std::int32_t>::max();  // tinygltf keeps offsets in int
 
-/// What tinygltf writes goes into the file, which remembers failures.
+/// Passes tinygltf's output to the file, which remembers failures.
 class FileBuffer : public std::streambuf {
  public:
   explicit FileBuffer(OutputFile& out) : out_(out) {}
@@ -43,7 +43,7 @@ class FileBuffer : public std::streambuf {
   OutputFile& out_;
 };
 
-/// JSON holds UTF-8 alone: what is none becomes U+FFFD.
+/// JSON holds UTF-8 only: invalid bytes become U+FFFD.
 std::string utf8(const std::string& name) {
   const std::string quoted = nlohmann::json(name).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   return nlohmann::json::parse(quoted).get<std::string>();
@@ -54,12 +54,12 @@ Vec3 vector_at(const std::vector<float>& values, std::size_t k) {
 }
 
 bool is_unit(const Vec3& normal) {
-  constexpr double tolerance = 1e-3;  // of the square; the reference validator allows 6.7e-3 of the length
+  constexpr double tolerance = 1e-3;  // of the squared length; the reference validator accepts 6.7e-3 of the length
   return std::abs(dot(normal, normal) - 1) <= tolerance;
 }
 
-/// The mesh's normals, of unit length: where there is none the mean of the triangles around, weighted by their areas, and
-/// the z axis where that is none either.
+/// The mesh's normals, of unit length. An undefined one becomes the mean of the triangles around, weighted by area, or
+/// the z axis if that mean is undefined too.
 std::vector<float> unit_normals(const Mesh& mesh) {
   std::vector<Vec3> sums(mesh.vertex_count());
   for (std::size_t k = 0; k < mesh.indices.size(); k += 3) {
@@ -92,7 +92,7 @@ class GltfMesh {
     if (parts_.empty()) parts_.push_back({{}, 0, mesh.triangle_count()});
   }
 
-  /// Of the buffer.
+  /// The size of the buffer.
   static std::size_t byte_count(const Mesh& mesh) {
     return 4 * (mesh.positions.size() + mesh.normals.size() + mesh.parameters.size() + mesh.indices.size());
   }
@@ -114,7 +114,7 @@ class GltfMesh {
   }
 
  private:
-  /// Grey, and seen from both sides: surfaces need not be closed.
+  /// A grey material, seen from both sides: surfaces need not be closed.
   void add_material() {
     tinygltf::Material& material = model_.materials.emplace_back();
     material.doubleSided = true;
@@ -123,7 +123,7 @@ class GltfMesh {
     material.pbrMetallicRoughness.baseColorFactor = {0.8, 0.8, 0.8, 1};
   }
 
-  /// What comes next in the buffer.
+  /// A view of the next `bytes` of the buffer.
   tinygltf::BufferView view(int target, std::size_t bytes) const {
     tinygltf::BufferView view;
     view.buffer = 0;
@@ -149,7 +149,7 @@ class GltfMesh {
     std::memcpy(bytes.data() + begin, values, count * sizeof(T));
   }
 
-  /// The node of the origin, which holds all others.
+  /// Adds the node of the origin, the parent of all others.
   void add_root() {
     tinygltf::Node& root = model_.nodes.emplace_back();
     if (!(mesh_.origin == Vec3{})) root.translation = {mesh_.origin.x, mesh_.origin.y, mesh_.origin.z};
@@ -194,7 +194,7 @@ class GltfMesh {
     const std::size_t stride = model_.bufferViews[static_cast<std::size_t>(view)].byteStride;
     return add_accessor(view, type, TINYGLTF_COMPONENT_TYPE_FLOAT, first * stride, count);
   }
-  /// Of the part's triangles, counted from its first vertex.
+  /// Adds the indices of the part's triangles, counted from its first vertex.
   int add_indices(std::span<const std::uint32_t> indices, std::uint32_t first) {
     std::vector<std::uint32_t> own(indices.begin(), indices.end());
     for (std::uint32_t& index : own) index -= first;
@@ -202,7 +202,7 @@ class GltfMesh {
     append(own.data(), own.size());
     return add_accessor(indices_, TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, offset, own.size());
   }
-  /// Positions need their box.
+  /// Adds the bounding box, which the format requires for positions.
   void add_box(tinygltf::Accessor& accessor, std::size_t first, std::size_t count) const {
     const float* p = &mesh_.positions[3 * first];
     std::array<float, 3> least{p[0], p[1], p[2]}, most = least;
@@ -226,10 +226,11 @@ Status write(const Mesh& mesh, OutputFile& out, bool binary) {
     const Result<Mesh> split = split_quads(mesh);
     return split ? write(*split, out, binary) : split.status();
   }
-  if (mesh.triangle_count() == 0) return {StatusCode::invalid_argument, "the mesh has no triangles, glTF wants some"};
+  if (mesh.triangle_count() == 0)
+    return {StatusCode::invalid_argument, "the mesh has no triangles, glTF needs at least one"};
   if (const std::size_t bytes = GltfMesh::byte_count(mesh); bytes > max_bytes)
-    return {StatusCode::unsupported, "the mesh takes " + std::to_string(bytes) + " bytes, glTF files of up to " +
-                                         std::to_string(max_bytes) + " are written"};
+    return {StatusCode::unsupported, "the mesh takes " + std::to_string(bytes) + " bytes, a glTF file is limited to " +
+                                         std::to_string(max_bytes)};
   const tinygltf::Model model = GltfMesh(mesh).make();
   FileBuffer buffer(out);
   std::ostream stream(&buffer);

@@ -1,4 +1,4 @@
-// Curves of JSON models, and what belongs to them: knots, axes.
+// Curves of JSON models, and their parts: knots, axes.
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,8 @@ std::vector<double> weights_of(const Fields& fields, std::size_t count) {
   const std::optional<JsonValue> value = fields.find("weights");
   if (value) weights = read_numbers(*value);
   if (value && weights.size() != count)
-    value->fail("expected " + std::to_string(count) + " weights, one a point, found " + std::to_string(weights.size()));
+    value->fail("expected " + std::to_string(count) + " weights, one per point, found " +
+                std::to_string(weights.size()));
   return weights;
 }
 
@@ -76,7 +77,7 @@ JsonValue kind_of(const JsonValue& value) {
   return *kind;
 }
 
-/// An exact curve; `kind` counts the words bezier, b_spline, nurbs, circle.
+/// Reads an exact curve; `kind` is the index of its word in bezier, b_spline, nurbs, circle.
 Curve read_exact_curve(const JsonValue& value, std::size_t kind) {
   constexpr std::array readers{read_bezier_curve, read_b_spline_curve, read_nurbs_curve, read_circle};
   return readers[kind](value);

@@ -6,12 +6,12 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
-#include "io/text_cursor.h"
+#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// Reads bytes, and tells how many have been read.
+/// Reads bytes, and counts those read.
 struct CountingIterator {
   using iterator_category = std::input_iterator_tag;
   using value_type = char;
@@ -36,7 +36,7 @@ struct CountingIterator {
   bool operator!=(const CountingIterator& other) const { return at != other.at; }
 };
 
-/// What the parser says, without its own prefix, and with the text that it read made fit to print.
+/// The parser's message without its prefix; the text that it quotes is made printable.
 std::string readable(std::string_view message) {
   const std::size_t place = message.find("column ");
   if (place != std::string_view::npos) {
@@ -55,7 +55,7 @@ std::string readable(std::string_view message) {
 
 }  // namespace
 
-/// Turns the parser's events into the list of values. The parser keeps no stack of its own but a bit a level.
+/// Turns the parser's events into the list of values. The parser itself needs one bit per level of nesting.
 class JsonBuilder : public nlohmann::json_sax<nlohmann::json> {
  public:
   explicit JsonBuilder(JsonDocument& document) : document_(document) {}
@@ -77,10 +77,10 @@ class JsonBuilder : public nlohmann::json_sax<nlohmann::json> {
     document_.strings_.push_back(std::move(value));
     return add(JsonKind::string, {.string = document_.strings_.size() - 1});
   }
-  bool binary(binary_t&) override { return false; }  // not in texts
+  bool binary(binary_t&) override { return false; }  // does not occur in text
   bool key(string_t& value) override {
     document_.strings_.push_back(std::move(value));
-    append(JsonKind::string, {.string = document_.strings_.size() - 1});  // counted with its value
+    append(JsonKind::string, {.string = document_.strings_.size() - 1});  // its value counts it
     return true;
   }
   bool start_object(std::size_t) override { return open(JsonKind::object); }
@@ -121,7 +121,7 @@ class JsonBuilder : public nlohmann::json_sax<nlohmann::json> {
     open_.pop_back();
     return true;
   }
-  /// Sorted, since a hostile object may have a million keys.
+  /// Sorted: a hostile object may have a million keys.
   bool has_distinct_keys(std::size_t object) {
     const auto& nodes = document_.nodes_;
     const auto text_of = [&](std::size_t node) -> const std::string& {
@@ -135,12 +135,12 @@ class JsonBuilder : public nlohmann::json_sax<nlohmann::json> {
     if (twice == keys.end()) return true;
     const std::size_t second = twice[1];
     status_ = {StatusCode::parse_error, document_.line_of(nodes[second].offset) + "the key " + quote(text_of(second)) +
-                                            " stands twice in one object"};
+                                            " occurs twice in one object"};
     return false;
   }
 
   JsonDocument& document_;
-  std::size_t read_ = 0;  // bytes, of which the last may be the one behind a number
+  std::size_t read_ = 0;  // bytes; the last may be the one behind a number
   std::vector<std::size_t> open_;
   Status status_;
 };
@@ -155,7 +155,7 @@ Result<JsonDocument> JsonDocument::parse(std::string_view text, std::string_view
 }
 
 std::string JsonDocument::line_of(std::size_t offset) const {
-  // The last byte read belongs to the line, be it its end: numbers are known to be over by the byte behind them.
+  // The last byte read belongs to the line, even if it is the line's end: a number ends only at the byte behind it.
   const std::string_view before = text_.substr(0, offset == 0 ? 0 : offset - 1);
   return name_ + ":" + std::to_string(std::count(before.begin(), before.end(), '\n') + 1) + ": ";
 }
@@ -169,7 +169,7 @@ std::string JsonDocument::pointer_to(std::size_t node) const {
     for (;; child = behind(child), ++index) {
       if (is_object) {
         name = strings_[nodes_[child].content.string];
-        if (child == node) return pointer;  // a key: the place of its object
+        if (child == node) return pointer;  // a key: point to its object
         ++child;
       }
       if (node < behind(child)) break;

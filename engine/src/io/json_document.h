@@ -1,5 +1,5 @@
 #pragma once
-// JSON in memory that knows where everything stands, so that errors can say it: a line and a JSON pointer (RFC 6901).
+// JSON in memory that knows the place of every value, so that errors name it: a line and a JSON pointer (RFC 6901).
 
 #include <cstddef>
 #include <cstdint>
@@ -15,36 +15,36 @@ namespace tessera::inline abi_0_1 {
 
 enum class JsonKind : std::uint8_t { null, boolean, number, string, array, object };
 
-/// What readers of JSON throw; caught where a document's reading begins, and nowhere else.
+/// Thrown by the readers of JSON; caught only where the reading of a document begins.
 struct JsonFailure {
   Status status;
 };
 
 class JsonValue;
 
-/// A text as a list of values, parents before children. Memory: 16 bytes a value and the strings. Nested 64 deep at
-/// most, of at most 2^32 - 1 bytes. Views the text, which must outlive it.
+/// A text as a list of values, parents before children. Memory: 16 bytes per value, and the strings. Limits: nesting 64
+/// deep, 2^32 - 1 bytes. Views the text, which must outlive it.
 class JsonDocument {
  public:
   static constexpr std::size_t largest_depth = 64;
-  /// `name` stands for the file in messages. Errors: parse_error, with the line (no JSON, no UTF-8, a number beyond
-  /// double, a key that stands twice in an object, nesting too deep), unsupported (too long).
+  /// Parses `text`; `name` stands for the file in messages. Errors: parse_error, with the line (not JSON, not UTF-8, a
+  /// number beyond double, a duplicate key in an object, nesting too deep), unsupported (too long).
   static Result<JsonDocument> parse(std::string_view text, std::string_view name);
 
   JsonValue root() const;
 
  private:
   struct Children {
-    std::uint32_t count, end;  // elements or members; the value behind this one and its children
+    std::uint32_t count, end;  // elements or members; the index behind this value and its children
   };
   union Content {
-    double number;  // 0 or 1 of a boolean
+    double number;  // 0 or 1 for a boolean
     std::size_t string;
     Children children;
   };
   struct Node {
     JsonKind kind;
-    std::uint32_t offset;  // behind its first byte in the text
+    std::uint32_t offset;  // in the text, of the byte behind its first one
     Content content;
     bool has_children() const { return kind == JsonKind::array || kind == JsonKind::object; }
   };
@@ -57,25 +57,25 @@ class JsonDocument {
   std::size_t behind(std::size_t node) const {
     return nodes_[node].has_children() ? nodes_[node].content.children.end : node + 1;
   }
-  std::deque<Node> nodes_;  // of an object: key, value, key, value; a deque takes no second place to grow
+  std::deque<Node> nodes_;  // an object holds key, value, key, value; a deque grows without a second copy
   std::vector<std::string> strings_;
   friend class JsonBuilder;
   friend class JsonValue;
 };
 
-/// One value of a document, which must outlive it.
+/// One value of a document. The document must outlive it.
 class JsonValue {
  public:
   JsonKind kind() const { return node().kind; }
   bool is(JsonKind kind) const { return node().kind == kind; }
-  // What the kind has.
+  // The content; each call needs the matching kind.
   double number() const { return node().content.number; }
   const std::string& string() const { return document_->strings_[node().content.string]; }
   std::size_t size() const { return node().content.children.count; }  ///< elements or members
-  /// Values within this one, itself included.
+  /// The number of values within this one, itself included.
   std::size_t span() const { return document_->behind(at_) - at_; }
 
-  /// The elements of an array; keys and values in turn of an object.
+  /// Iterates over the elements of an array, or over the keys and values of an object in turn.
   class Iterator {
    public:
     Iterator(const JsonDocument* document, std::size_t at) : document_(document), at_(at) {}
@@ -92,7 +92,7 @@ class JsonValue {
   };
   Iterator begin() const { return {document_, at_ + 1}; }
   Iterator end() const { return {document_, document_->behind(at_)}; }
-  /// The member of an object. Linear in their count.
+  /// The member `key` of an object. Takes time linear in the number of members.
   std::optional<JsonValue> find(std::string_view key) const;
 
   /// Throws "file:line: pointer: sentence".

@@ -7,7 +7,7 @@
 #include "base/text.h"
 #include "io/expression.h"
 #include "io/json_kinds.h"
-#include "io/text_cursor.h"
+#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -16,7 +16,8 @@ struct Coordinate {
   JsonValue place;
   Expression expression;
 
-  /// Fails where it has no value: named here, where the coordinate is known, before a conversion comes upon it.
+  /// Fails if the expression has no value. The check is here, where the coordinate is known, rather than in the
+  /// conversion.
   void probe(std::span<const std::string_view> variables, std::span<const double> values) const {
     const double value = expression(values);
     if (std::isfinite(value)) return;
@@ -40,7 +41,7 @@ struct Coordinates {
   void probe(const std::array<double, N>& values) const {
     for (const Coordinate& coordinate : xyz) coordinate.probe(variables, values);
   }
-  /// Their function, without the document.
+  /// The function of the three, independent of the document.
   auto function() const {
     return [x = xyz[0].expression, y = xyz[1].expression, z = xyz[2].expression](auto... values) {
       const std::array<double, N> at{values...};
@@ -56,7 +57,7 @@ struct Coordinates {
   }
 };
 
-constexpr int probes = 8;  // intervals a direction
+constexpr int probes = 8;  // intervals per direction
 
 Disc read_disc(const JsonValue& value) {
   const Fields fields(value, {"x", "y", "radius"});

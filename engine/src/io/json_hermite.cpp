@@ -27,7 +27,7 @@ CornerTangents read_open_corner(const JsonValue& value) {
   return {read_vector(fields.at("position")), read_vector(fields.at("du")), read_vector(fields.at("dv"))};
 }
 
-/// The corners [i][j] of the domain.
+/// Reads the corners [i][j] of the domain.
 template <class Corner, class Read>
 std::array<Corner, 4> read_corners(const JsonValue& value, Read&& read) {
   const Net<Corner> net = read_net<Corner>(value, "corners", read);
@@ -41,29 +41,30 @@ HermiteOrder read_order(const JsonValue& value) {
   return read_word(value, {"by_end", "by_kind"}) == 0 ? HermiteOrder::by_end : HermiteOrder::by_kind;
 }
 
-/// Given, or 0, 1, 2 ..
+/// The knots of the file, or 0, 1, 2 ..
 std::vector<double> network_knots(const Fields& fields, std::string_view key, std::size_t count) {
   std::vector<double> knots;
   if (const std::optional<JsonValue> given = fields.find(key)) {
     knots = read_numbers(*given);
     if (knots.size() != count)
-      given->fail("expected " + std::to_string(count) + " knots, one a node, found " + std::to_string(knots.size()));
+      given->fail("expected " + std::to_string(count) + " knots, one per node, found " + std::to_string(knots.size()));
   }
   while (knots.size() < count) knots.push_back(static_cast<double>(knots.size()));
   return knots;
 }
 
-/// Given, or 1.
+/// The factors of the file, or 1.
 std::vector<double> network_factors(const Fields& fields, std::string_view key, std::size_t count) {
   const std::optional<JsonValue> given = fields.find(key);
   if (!given) return std::vector<double>(count, 1.0);
   std::vector<double> factors = read_numbers(*given);
   if (factors.size() != count)
-    given->fail("expected " + std::to_string(count) + " factors, one a span, found " + std::to_string(factors.size()));
+    given->fail("expected " + std::to_string(count) + " factors, one per span, found " +
+                std::to_string(factors.size()));
   return factors;
 }
 
-/// Replaces the nodes' twists as the word says.
+/// Replaces the twists of the nodes by estimates of the method `word`.
 void estimate_twists(const JsonValue& word, Net<HermiteNode>& nodes, const std::vector<double>& u,
                      const std::vector<double>& v) {
   constexpr std::array estimates{TwistEstimate::zero, TwistEstimate::adini, TwistEstimate::bessel};
@@ -77,7 +78,7 @@ Surface read_hermite_patch(const JsonValue& value) {
   const SurfaceFields fields(value, {"geometry", "order", "corners", "domain"});
   const std::optional<JsonValue> corners = fields.find("corners");
   if (corners && (fields.find("geometry") || fields.find("order")))
-    value.fail("\"corners\" stand alone, without \"geometry\" and \"order\"");
+    value.fail("\"corners\" cannot be combined with \"geometry\" or \"order\"");
   if (corners)
     return made(value, HermitePatch::from_corners(read_corners<HermiteNode>(*corners, read_node), domain_of(fields)));
   const Net<Vec3> geometry = read_4_by_4(fields.at("geometry"), "vectors");

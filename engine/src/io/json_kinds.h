@@ -1,5 +1,5 @@
 #pragma once
-// The parts of a JSON model, one reader each. All throw JsonFailure. What each reads is told in tools/models/FORMAT.md.
+// The parts of a JSON model, one reader each. All throw JsonFailure. tools/models/FORMAT.md describes what each reads.
 
 #include "io/json_reader.h"
 #include "tessera/geometry.h"
@@ -9,18 +9,18 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// The fields of a surface: those that all have, and its own.
+/// The fields of a surface: those common to all kinds, and its own.
 class SurfaceFields : public Fields {
  public:
   SurfaceFields(const JsonValue& value, std::initializer_list<std::string_view> own);
 };
 
-/// By its "kind".
+/// Reads a surface by its "kind".
 Surface read_surface(const JsonValue& value);
-/// A list of maps, the first applied first.
+/// Reads a list of maps, the first applied first.
 Affine read_placement(const JsonValue& value);
 
-// Surfaces, by kind.
+// Readers of surfaces, by kind.
 Surface read_bezier_patch(const JsonValue& value);
 Surface read_tensor_patch(const JsonValue& value);
 Surface read_b_spline_surface(const JsonValue& value);
@@ -42,22 +42,22 @@ Surface read_explicit_polynomial(const JsonValue& value);
 Surface read_quadric(const JsonValue& value);
 Surface read_parametric_surface(const JsonValue& value);
 
-// Curves, by kind: Bezier, B-spline, NURBS, circles; as borders also functions.
+// Reads a curve by kind: Bezier, B-spline, NURBS, circle; as a border also a function.
 Curve read_curve(const JsonValue& value);
 BorderCurve read_border(const JsonValue& value);
-/// The parametric curve of three expressions in t.
+/// Reads a parametric curve of three expressions in t.
 ParametricCurve read_parametric_curve(const JsonValue& value);
 
 Axis read_axis(const JsonValue& value);
 CircleArcs read_arcs(const JsonValue& value);
 
-/// Knots as given, or by a word: "clamped", "uniform" and "periodic" knots are the integers, a span from one to the
-/// next, and the domain begins at 0.
+/// Knots from the file, or by a word: "clamped", "uniform" and "periodic" knots are integers, each span has length 1,
+/// and the domain begins at 0.
 struct Knots {
   std::vector<double> values;
-  bool periodic = false;  ///< the first degree points stand again at the end
+  bool periodic = false;  ///< the first `degree` points repeat at the end
 };
-/// `count`: of the points.
+/// `count` is the number of points.
 Knots read_knots(const JsonValue& value, int degree, std::size_t count);
 
 }  // namespace tessera::inline abi_0_1

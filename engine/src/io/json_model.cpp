@@ -1,11 +1,12 @@
-// .json: surfaces of every kind. The format is told in tools/models/FORMAT.md.
+// .json: surfaces of every kind. tools/models/FORMAT.md describes the format.
 
 #include <array>
 
-#include "base/guard.h"
 #include "base/text.h"
 #include "io/json_kinds.h"
+#include "tessera/guard.h"
 #include "tessera/io.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -53,7 +54,7 @@ Model read_document(const JsonValue& root) {
   if (read_text(format) != "tessera") format.fail_expected("\"tessera\"");
   const JsonValue number = fields.at("version");
   if (read_integer(number, 1, 1 << 20) != version)
-    number.fail("version " + text(number.number()) + ", and this reader knows version " + std::to_string(version),
+    number.fail("found version " + text(number.number()) + ", this reader knows version " + std::to_string(version),
                 StatusCode::unsupported);
   if (const auto description = fields.find("description")) read_text(*description);
   Model model;

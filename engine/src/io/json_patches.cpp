@@ -5,7 +5,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// "degree", which may be left out, must be what the net says.
+/// Checks that "degree", which is optional, agrees with the net.
 void check_degree(const Fields& fields, int degree_u, int degree_v) {
   const std::optional<JsonValue> value = fields.find("degree");
   if (!value) return;
@@ -18,7 +18,7 @@ void check_degree(const Fields& fields, int degree_u, int degree_v) {
   }
 }
 
-/// A basis by its name, or by the rows of its matrix. `count`: elements of the geometry in this direction.
+/// Reads a basis by its name, or by the rows of its matrix. `count`: elements of the geometry in this direction.
 BasisMatrix read_basis(const JsonValue& value, std::size_t count) {
   const int degree = degree_of(count);
   if (value.is(JsonKind::array)) {
@@ -53,7 +53,7 @@ Surface read_bezier_patch(const JsonValue& value) {
   const std::optional<JsonValue> given = fields.find("weights");
   if (!given) return made(value, BezierPatch::polynomial(m, n, net.elements));
   const Net<double> weights = read_number_net(*given, "weights");
-  expect_shape(*given, weights, net.rows, net.columns, "one a point");
+  expect_shape(*given, weights, net.rows, net.columns, "one per point");
   return made(value, BezierPatch::rational(m, n, net.elements, weights.elements));
 }
 
@@ -62,7 +62,7 @@ Surface read_tensor_patch(const JsonValue& value) {
   const Net<Vec3> net = read_vector_net(fields.at("geometry"), "vectors");
   const std::optional<JsonValue> both = fields.find("basis");
   if (both && (fields.find("basis_u") || fields.find("basis_v")))
-    value.fail("\"basis\" is for both directions: it stands alone, without \"basis_u\" and \"basis_v\"");
+    value.fail("\"basis\" is for both directions and cannot be combined with \"basis_u\" or \"basis_v\"");
   const BasisMatrix u = read_basis(both ? *both : fields.at("basis_u"), net.rows);
   const BasisMatrix v = read_basis(both ? *both : fields.at("basis_v"), net.columns);
   return made(value, TensorPatch::make(u, v, net.elements, fields.get("domain", Domain{}, read_domain)));

@@ -1,4 +1,4 @@
-// Where a surface stands: a list of maps, the first applied first.
+// The placement of a surface: a list of maps, the first applied first.
 
 #include "io/json_kinds.h"
 
@@ -18,7 +18,7 @@ Affine read_rotation(const JsonValue& value) {
   return Affine::rotated(axis, read_number(fields.at("angle")));
 }
 
-/// 3 rows of 4: the linear part and, in the last column, the translation.
+/// Reads 3 rows of 4: the linear part and, in the last column, the translation.
 Affine read_matrix(const JsonValue& value) {
   const Net<double> m = read_number_net(value, "numbers");
   expect_shape(value, m, 3, 4, "the linear part and the translation");

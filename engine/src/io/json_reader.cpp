@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "io/expression.h"
-#include "io/text_cursor.h"
+#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -23,10 +23,10 @@ Fields::Fields(const JsonValue& value, std::initializer_list<std::string_view> k
   if (!value.is(JsonKind::object)) value.fail_expected("an object");
   for (auto member = value.begin(); member != value.end();) {
     const JsonValue key = *member;
-    ++member, ++member;  // past its value
+    ++member, ++member;  // past the key and its value
     const auto in = [&](const auto& list) { return std::find(list.begin(), list.end(), key.string()) != list.end(); };
     if (!in(keys) && !in(more))
-      key.fail("unknown key " + quote(key.string()) + "; there are " + listed(keys) +
+      key.fail("unknown key " + quote(key.string()) + "; known keys are " + listed(keys) +
                (more.size() == 0 ? "" : ", " + listed(more)));
   }
 }

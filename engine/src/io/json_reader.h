@@ -1,5 +1,5 @@
 #pragma once
-// The small things of which JSON models consist. All throw JsonFailure, with the place, for what is not what it should be.
+// The elements of which JSON models consist. Readers throw JsonFailure, with the place, for anything malformed.
 
 #include <algorithm>
 #include <initializer_list>
@@ -14,7 +14,7 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// An object whose keys are known. A key that is not is an error, so that no typo is silent.
+/// An object with a known set of keys. An unknown key is an error, so that no typing error is silent.
 class Fields {
  public:
   Fields(const JsonValue& value, std::initializer_list<std::string_view> keys,
@@ -23,7 +23,7 @@ class Fields {
   const JsonValue& value() const { return value_; }
   std::optional<JsonValue> find(std::string_view key) const { return value_.find(key); }
   JsonValue at(std::string_view key) const;
-  /// What `read` makes of the member, or `otherwise` where there is none.
+  /// Applies `read` to the member, or returns `otherwise` if there is none.
   template <class T, class Read>
   T get(std::string_view key, T otherwise, Read&& read) const {
     const std::optional<JsonValue> member = find(key);
@@ -34,31 +34,31 @@ class Fields {
   JsonValue value_;
 };
 
-/// The value of a result, or its failure with the place of what it was made from.
+/// The value of a result. On failure throws, with the place of the JSON that it was made from.
 template <class T>
 T made(const JsonValue& from, Result<T> result) {
   if (!result) from.fail(result.status().message(), result.status().code());
   return *std::move(result);
 }
 
-/// The elements of an array, at least `least` of them. `what` says what is wanted: "an array of points".
+/// The elements of an array, at least `least` of them. `what` says what is expected: "an array of points".
 JsonValue array(const JsonValue& value, std::string_view what, std::size_t least = 1);
-/// Exactly `count` elements.
+/// An array of exactly `count` elements.
 JsonValue array_of(const JsonValue& value, std::string_view what, std::size_t count);
 
-/// A number, or an expression of constants: "sqrt(2)/2".
+/// Reads a number, or an expression of constants: "sqrt(2)/2".
 double read_number(const JsonValue& value);
 int read_integer(const JsonValue& value, int least, int largest);
 const std::string& read_text(const JsonValue& value);
-/// The index into `words` of a string.
+/// Reads a string; returns its index in `words`.
 std::size_t read_word(const JsonValue& value, std::initializer_list<std::string_view> words);
-/// [x, y, z]
+/// Reads [x, y, z].
 Vec3 read_vector(const JsonValue& value);
 std::vector<double> read_numbers(const JsonValue& value);
 std::vector<Vec3> read_vectors(const JsonValue& value);
-/// [from, to]
+/// Reads [from, to].
 Interval read_interval(const JsonValue& value);
-/// [[u0, u1], [v0, v1]]
+/// Reads [[u0, u1], [v0, v1]].
 Domain read_domain(const JsonValue& value);
 
 /// Rows of equal length: [i][j], i along u.
@@ -67,9 +67,9 @@ struct Net {
   std::size_t rows = 0, columns = 0;
   std::vector<T> elements;
 };
-/// The degree of so many elements; beyond max_degree for more than there may be.
+/// The degree of a direction with `count` elements; for too many it is beyond max_degree.
 inline int degree_of(std::size_t count) { return static_cast<int>(std::min<std::size_t>(count, max_degree + 2)) - 1; }
-/// `what` says what it is of: "points".
+/// Reads a net; `what` names its elements: "points".
 template <class T, class Read>
 Net<T> read_net(const JsonValue& value, std::string_view what, Read&& read) {
   const std::string name(what);
@@ -94,7 +94,7 @@ inline Net<Vec3> read_vector_net(const JsonValue& value, std::string_view what =
 inline Net<double> read_number_net(const JsonValue& value, std::string_view what) {
   return read_net<double>(value, what, read_number);
 }
-/// Fails unless the net has this shape, which `reason` explains: "as there are points".
+/// Fails unless the net has this shape; `reason` explains it: "as there are points".
 template <class T>
 void expect_shape(const JsonValue& value, const Net<T>& net, std::size_t rows, std::size_t columns,
                   std::string_view reason) {

@@ -7,7 +7,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// The rows and columns that periodic knots want again at the end.
+/// Repeats the first rows and columns at the end, as periodic knots need.
 template <class T>
 std::vector<T> wrapped(const Net<T>& net, std::size_t rows, std::size_t columns) {
   std::vector<T> elements;
@@ -37,14 +37,14 @@ struct SplineNet {
     points = wrapped(net, rows, columns);
     if (const std::optional<JsonValue> given = fields.find("weights")) {
       const Net<double> all = read_number_net(*given, "weights");
-      expect_shape(*given, all, net.rows, net.columns, "one a point");
+      expect_shape(*given, all, net.rows, net.columns, "one per point");
       weights = wrapped(all, rows, columns);
     }
     if (const std::optional<JsonValue> part = fields.find("domain")) domain = read_domain(*part);
   }
 
  private:
-  /// One for both directions, or one for each.
+  /// Reads one degree for both directions, or one for each.
   void read_degrees(const JsonValue& value) {
     if (!value.is(JsonKind::array)) {
       degree_u = degree_v = read_integer(value, 1, max_degree);

@@ -1,5 +1,5 @@
 #pragma once
-// Lists that grow with a text that is being read, to about the size that they will have in the end.
+// Lists that grow while a text is read, to about their final size.
 
 #include <algorithm>
 #include <cstddef>
@@ -7,9 +7,9 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Room for one more element. What a text of `size` bytes has brought in the bytes that were read is expected of the
-/// rest of it too: a list that doubles would take up to three times its memory while it moves. More than what the
-/// shortest elements of a format would take is never asked for.
+/// Makes room for one more element. Expects as many elements per byte from the rest of the text of `size` bytes as from
+/// the bytes read so far: a list that doubles would take up to three times its memory while it moves. Never asks for
+/// more than the shortest elements of a format would take.
 template <class T>
 void make_room(std::vector<T>& list, std::size_t read, std::size_t size) {
   if (list.size() < list.capacity()) return;

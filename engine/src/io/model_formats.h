@@ -1,5 +1,5 @@
 #pragma once
-// Surfaces as Bezier patches into files, one source file a format. Called by write_model.
+// Writes surfaces as Bezier patches, one source file per format. Called by write_model.
 
 #include <cstddef>
 #include <filesystem>
@@ -8,17 +8,18 @@
 #include <string_view>
 #include <vector>
 
-#include "io/output_file.h"
 #include "tessera/io.h"
+#include "tessera/output_file.h"
 
 namespace tessera::inline abi_0_1 {
 
-/// What of a surface is written. Patches as in a PatchGrid: patch (a, b) at a * (breaks_v.size() - 1) + b.
+/// The parts of a surface that are written. Patches are ordered as in a PatchGrid: patch (a, b) is at a *
+/// (breaks_v.size() - 1) + b.
 struct WrittenSurface {
   std::string_view name;
   std::span<const double> breaks_u, breaks_v;
   std::span<const BezierPatch> patches;
-  std::span<const TrimLoop> trims;  ///< by the parameters of breaks_u and breaks_v
+  std::span<const TrimLoop> trims;  ///< in the parameters of breaks_u and breaks_v
 
   Domain patch_domain(std::size_t patch) const {
     const std::size_t count_v = breaks_v.size() - 1, a = patch / count_v, b = patch % count_v;
@@ -26,11 +27,11 @@ struct WrittenSurface {
   }
 };
 
-/// "surface 3 (rim): 2 trims are not written: <why>".
+/// The warning "surface 3 (rim): 2 trims are not written: <why>".
 std::string trims_left_out(std::size_t surface, const WrittenSurface& written, std::string_view why);
 
-/// One surface after the other; adds what the format does not hold to `warnings`. Errors: unsupported (a rational patch
-/// for .bpt; index = the surface).
+/// Writes one surface after the other; adds what the format does not hold to `warnings`. Errors: unsupported (a
+/// rational patch for .bpt; index = the surface).
 Status write_bpt(std::span<const WrittenSurface> surfaces, OutputFile& out, std::vector<std::string>& warnings);
 Status write_obj_freeform(std::span<const WrittenSurface> surfaces, OutputFile& out,
                           std::vector<std::string>& warnings);
@@ -38,7 +39,7 @@ Status write_obj_freeform(std::span<const WrittenSurface> surfaces, OutputFile& 
 struct SurfaceWriter {
   decltype(&write_bpt) write = nullptr;
 };
-/// By the extension of `path`. Errors: unsupported, with a list of those that are known.
+/// The writer for the extension of `path`. Errors: unsupported, with a list of the known extensions.
 Result<SurfaceWriter> surface_writer(const std::filesystem::path& path);
 
 }  // namespace tessera::inline abi_0_1

@@ -1,4 +1,4 @@
-// Wavefront OBJ, the polygons of it ("Object Files (.obj)", Appendix B1 of the Advanced Visualizer manual).
+// Polygons of Wavefront OBJ ("Object Files (.obj)", Appendix B1 of the Advanced Visualizer manual).
 
 #include <array>
 #include <limits>
@@ -8,7 +8,7 @@
 #include "io/obj_index.h"
 #include "io/obj_name.h"
 #include "io/polygon.h"
-#include "io/text_cursor.h"
+#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -23,7 +23,7 @@ void write_record(OutputFile& out, std::string_view keyword, std::span<const T> 
   out.write('\n');
 }
 
-/// "a", "a/a", "a//a" or "a/a/a", one-based.
+/// Writes "a", "a/a", "a//a" or "a/a/a", one-based.
 void write_corner(OutputFile& out, std::uint64_t index, bool parameters, bool normals) {
   out.write(' ');
   out.write_number(index + 1);
@@ -35,13 +35,13 @@ void write_corner(OutputFile& out, std::uint64_t index, bool parameters, bool no
   }
 }
 
-/// What stands for "no such index" in a corner.
+/// Stands for "no such index" in a corner.
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
 /// Position, parameter and normal of one corner of a polygon, zero-based.
 using Corner = std::array<std::uint32_t, 3>;
 
-/// The corners of a face.
+/// Writes a face with these corners.
 void write_face(OutputFile& out, std::span<const std::uint32_t> corners, bool parameters, bool normals) {
   out.write('f');
   for (const std::uint32_t corner : corners) write_corner(out, corner, parameters, normals);
@@ -83,7 +83,7 @@ class ObjReader {
     return cursor_.expected("a line of a mesh (v, vt, vn, f, g, o, s, usemtl, mtllib)");
   }
 
-  /// Appends the first `kept` numbers of `kept` to `most`.
+  /// Reads `kept` to `most` numbers and appends the first `kept`.
   Status read_values(std::string_view keyword, int kept, int most, std::vector<float>& values) {
     cursor_.skip(keyword);
     for (int k = 0; k < most; ++k) {
@@ -124,7 +124,7 @@ class ObjReader {
     corner = {none, none, none};
     for (std::size_t k = 0; k < 3; ++k) {
       if (k > 0 && !cursor_.take('/')) break;
-      if (k == 1 && !cursor_.at_end() && *cursor_.position() == '/') continue;  // a//c
+      if (k == 1 && !cursor_.at_end() && *cursor_.position() == '/') continue;  // the form a//c
       Status status = read_obj_index(cursor_, "an index of a corner", kinds[k], counts[k], corner[k]);
       if (!status.ok()) return status;
     }

@@ -1,6 +1,6 @@
-// Wavefront OBJ, the free-form curves and surfaces of it ("Object Files (.obj)", Appendix B1 of the Advanced Visualizer
-// manual). Attributes (cstype, deg, step, bmat) hold until they are stated anew; an element (surf, curv, curv2) gathers
-// its body (parm, trim, hole ...) and is made at its `end`. Polygons and what concerns pictures are left aside, and
+// Free-form curves and surfaces of Wavefront OBJ ("Object Files (.obj)", Appendix B1 of the Advanced Visualizer
+// manual). Attributes (cstype, deg, step, bmat) hold until they are stated anew. An element (surf, curv, curv2) gathers
+// its body (parm, trim, hole ...) and is made at its `end`. Statements about polygons and pictures are skipped and
 // counted.
 
 #include <algorithm>
@@ -11,20 +11,21 @@
 #include <utility>
 #include <vector>
 
-#include "base/guard.h"
 #include "io/freeform.h"
 #include "io/make_room.h"
 #include "io/obj_index.h"
 #include "io/obj_notes.h"
 #include "io/obj_trims.h"
+#include "tessera/guard.h"
 #include "tessera/io.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
 
 enum class ElementKind : std::uint8_t { none, surf, curv, curv2 };
 
-/// What stands between `surf`, `curv` or `curv2` and its `end`.
+/// The body of an element, between `surf`, `curv` or `curv2` and its `end`.
 struct Element {
   ElementKind kind = ElementKind::none;
   std::string_view statement;
@@ -83,7 +84,7 @@ class ObjFreeformReader {
 
   // Vertices.
 
-  /// Up to `most` finite numbers to the end of the line; `count`, how many.
+  /// Reads up to `most` finite numbers to the end of the line; `count` is how many.
   template <std::size_t most>
   Status read_values(std::array<double, most>& values, std::size_t least, std::string_view what, std::size_t& count) {
     for (count = 0; count < most; ++count) {
@@ -94,7 +95,7 @@ class ObjFreeformReader {
     return {};
   }
 
-  /// A weight may follow, or a colour, or both.
+  /// Reads a vertex. A weight may follow, or a colour, or both.
   Status read_vertex() {
     std::array<double, 7> p;
     std::size_t count = 0;
@@ -114,7 +115,7 @@ class ObjFreeformReader {
     if (Status status = read_values(p, 1, "1 to 3 finite coordinates after vp", count); !status.ok()) return status;
     if (parameter_vertices_.size() == std::numeric_limits<std::uint32_t>::max())
       return cursor_.failure("there are more vp lines than 32-bit indices can tell apart");
-    // A missing second coordinate does for special points; a curve that refers to such a point is refused.
+    // Special points have one coordinate: the second is NaN, and a curve that refers to such a point fails.
     const double v = count > 1 ? p[1] : std::numeric_limits<double>::quiet_NaN();
     make_room(parameter_vertices_, size_ - cursor_.remaining(), size_);
     parameter_vertices_.push_back({p[0], v, 0, count > 2 ? p[2] : 1});
@@ -172,7 +173,7 @@ class ObjFreeformReader {
 
   Status read_matrix() { return read_list(&FreeformLine::matrix, "bmat"); }
   Status read_parameters() { return read_list(&FreeformLine::parm, "parm"); }
-  /// The numbers after `bmat u` and the like.
+  /// Reads the numbers after `bmat u` and the like.
   Status read_list(std::vector<double> FreeformLine::*member, std::string_view statement) {
     const std::string_view direction = cursor_.peek_token();
     if (direction != "u" && direction != "v") return cursor_.expected("u or v after " + std::string(statement));
@@ -194,7 +195,7 @@ class ObjFreeformReader {
 
   Status read_object() { return read_name(object_); }
   Status read_group() { return read_name(group_); }
-  /// The rest of the line, at most 200 bytes of it.
+  /// Reads the rest of the line, at most 200 bytes of it.
   Status read_name(std::string& name) {
     constexpr std::size_t longest = 200;
     const char* const begin = cursor_.position();
@@ -203,7 +204,7 @@ class ObjFreeformReader {
     line = line.substr(0, std::min(line.find(" #"), line.find("\t#")));
     std::size_t size = std::min(line.size(), longest);
     while (size < line.size() && size > 0 && (static_cast<unsigned char>(line[size]) & 0xC0) == 0x80) --size;
-    line = line.substr(0, size);  // between characters of UTF-8
+    line = line.substr(0, size);  // cuts between characters of UTF-8
     name.assign(line);
     std::replace_if(
         name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
@@ -255,7 +256,7 @@ class ObjFreeformReader {
       for (const bool normal : {false, true}) {
         if (!status.ok()) return status;
         if (!cursor_.take('/')) break;
-        if (!normal && !cursor_.at_end() && *cursor_.position() == '/') continue;  // a//c
+        if (!normal && !cursor_.at_end() && *cursor_.position() == '/') continue;  // the form a//c
         std::uint32_t unused = 0;
         status = normal
                      ? read_obj_index(cursor_, "an index of a normal", "vn lines", normals_, unused)
@@ -376,7 +377,7 @@ class ObjFreeformReader {
   ObjNotes notes_;
 };
 
-// The commonest first.
+// Sorted by frequency in files: the commonest statement first.
 constexpr std::array<ObjFreeformReader::Statement, 20> ObjFreeformReader::statements{{
     {"v", &ObjFreeformReader::read_vertex},         {"vt", &ObjFreeformReader::count_texture_vertex},
     {"vn", &ObjFreeformReader::count_normal},       {"vp", &ObjFreeformReader::read_parameter_vertex},

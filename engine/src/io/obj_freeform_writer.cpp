@@ -1,6 +1,6 @@
-// Free-form Wavefront OBJ ("Object Files (.obj)", Appendix B1 of the Advanced Visualizer manual), Bezier patches with
-// their trims. A surface is one `surf` of all its patches where these share their borders, so that its parameters stay
-// what they are; else a `surf` a patch.
+// Writes free-form Wavefront OBJ ("Object Files (.obj)", Appendix B1 of the Advanced Visualizer manual): Bezier patches
+// with their trims. A surface is one `surf` of all its patches if these share their borders, which keeps its
+// parameters; otherwise one `surf` per patch.
 
 #include <array>
 #include <string>
@@ -11,7 +11,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// Patches by their place, as one net: control point (i, j) of the whole.
+/// The patches of a surface as one net: control point (i, j) of the whole.
 class Net {
  public:
   explicit Net(const WrittenSurface& surface)
@@ -29,14 +29,15 @@ class Net {
     const BezierPatch* patch;
     int i, j;
   };
-  /// Of two patches that meet in it, the one with the smaller index.
+  /// Where (i, j) is stored. On a common border, it is the patch with the smaller index.
   Place place(std::size_t i, std::size_t j) const {
     const std::size_t a = i == 0 ? 0 : (i - 1) / degree_u_, b = j == 0 ? 0 : (j - 1) / degree_v_;
     return {&surface_.patches[a * pieces_v_ + b], static_cast<int>(i - a * degree_u_),
             static_cast<int>(j - b * degree_v_)};
   }
 
-  /// Whether every patch has its part of the net: equal degrees, and the points and weights of shared borders by ==.
+  /// Whether each patch is its part of the net: degrees are equal, and shared borders have equal points and weights (by
+  /// ==).
   bool holds_all() const {
     for (std::size_t k = 0; k < surface_.patches.size(); ++k) {
       const BezierPatch& patch = surface_.patches[k];
@@ -49,7 +50,7 @@ class Net {
   }
 
  private:
-  /// The first row and column are those that another patch may have given.
+  /// Checks the first row and column, which another patch may have written.
   bool holds(const BezierPatch& patch, std::size_t first_i, std::size_t first_j) const {
     const auto same = [&](int i, int j) {
       const Place at = place(first_i + static_cast<std::size_t>(i), first_j + static_cast<std::size_t>(j));
@@ -70,7 +71,7 @@ class ObjSurfaceWriter {
  public:
   explicit ObjSurfaceWriter(OutputFile& out) : out_(out) {}
 
-  /// False if it has trims that are left out.
+  /// Returns false if the surface has trims that are left out.
   bool write(const WrittenSurface& surface) {
     write_group(surface.name);
     if (Net(surface).holds_all()) {
@@ -115,7 +116,7 @@ class ObjSurfaceWriter {
     out_.write("end\n");
   }
 
-  /// Along u first.
+  /// Writes vertices along u first.
   void write_vertices(const Net& net) {
     for (std::size_t j = 0; j < net.count_v(); ++j)
       for (std::size_t i = 0; i < net.count_u(); ++i) {
@@ -128,7 +129,7 @@ class ObjSurfaceWriter {
       }
   }
 
-  /// A trim's curve in the parameters, on its whole knots; trim and hole say which part of it counts.
+  /// Writes a trim's curve in the parameters, on its whole knots; `trim` and `hole` select the part of it.
   void write_curve(const Curve& curve) {
     for (std::size_t k = 0; k < curve.points().size(); ++k) {
       out_.write("vp");

@@ -1,23 +1,23 @@
 #pragma once
-// How OBJ files refer to what stands above: from 1 onwards, or from -1 backwards.
+// How OBJ files refer to earlier records: from 1 onwards, or from -1 backwards.
 
 #include <cstdint>
 #include <string>
 #include <string_view>
 
-#include "io/text_cursor.h"
+#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 
-/// What is wrong with a number that is no index into the `count` records (`kind`: "vertices") above `before`.
+/// The error for a number that is not an index into the `count` records (`kind`: "vertices") before it.
 inline Status obj_index_failure(const TextCursor& before, std::string_view kind, std::size_t count) {
-  const std::string last = std::to_string(count), above = last + " " + std::string(kind) + " above";
-  if (count == 0) return before.expected("no index, as there are " + above);
+  const std::string last = std::to_string(count), above = std::string(kind) + " above";
+  if (count == 0) return before.expected("no index, as there are no " + above);
   return before.expected("an index into the " + above + ", 1 to " + last + " or -" + last + " to -1");
 }
 
-/// The number here as an index from 0 into `count` records, at most 2^32. `what` names it in messages: "an index of a
-/// corner".
+/// Reads an index into `count` records, at most 2^32, and makes it count from 0. `what` names it in messages: "an index
+/// of a corner".
 inline Status read_obj_index(TextCursor& cursor, std::string_view what, std::string_view kind, std::size_t count,
                              std::uint32_t& index) {
   const TextCursor before = cursor;

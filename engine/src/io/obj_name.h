@@ -7,8 +7,8 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// `name` on one line, as it reads back: no control characters, no # that would begin a comment, no \ that would
-/// continue the line.
+/// `name` on one line, changed so that it reads back: no control characters, no # (begins a comment), no \ (continues
+/// the line).
 inline std::string obj_name(std::string_view name) {
   std::string line(name);
   const auto control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; };

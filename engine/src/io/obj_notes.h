@@ -1,5 +1,5 @@
 #pragma once
-// What a reader of OBJ files leaves aside, for one warning at the end.
+// Collects what a reader of OBJ files skips, for one warning at the end.
 
 #include <optional>
 #include <string>
@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "io/text_cursor.h"
+#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 
-/// Statements by name, how often, and where the first stood.
+/// Statements by name: how often each occurred, and where the first stood.
 class ObjNotes {
  public:
   void add(std::string_view statement, const TextCursor& place) {

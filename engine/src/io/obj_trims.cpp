@@ -41,7 +41,7 @@ Status ObjTrimCurves::read_loop(TextCursor& cursor, std::vector<Curve>& loop) {
     const Interval all{pieces.front().domain().from, pieces.back().domain().to};
     if (!(from < to && all.from <= from && to <= all.to))
       return before.failure("curv2 " + std::to_string(index + 1) + " runs " + range_text(all.from, all.to) +
-                            ", which does not hold a part " + range_text(from, to));
+                            ", it has no part " + range_text(from, to));
     const auto first =
         std::partition_point(pieces.begin(), pieces.end(), [&](const Curve& p) { return p.domain().to <= from; });
     for (auto at = first; at != pieces.end() && at->domain().from < to; ++at) {

@@ -4,15 +4,15 @@
 #include <cstddef>
 #include <vector>
 
-#include "io/text_cursor.h"
 #include "tessera/curve.h"
 #include "tessera/model.h"
+#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 
-/// Each curve is a chain of pieces. Loops share them, but for parts of a piece, which are copies with another domain: all
-/// of these together hold no more control points than the file has bytes, which no file reaches that refers to a curve a
-/// few times.
+/// Each curve is a chain of pieces. Loops share whole pieces; a part of a piece is a copy with another domain. All
+/// copies together may have as many control points as the file has bytes; files that refer to each curve a few times
+/// stay far below.
 class ObjTrimCurves {
  public:
   explicit ObjTrimCurves(std::size_t file_size) : allowed_(file_size) {}
@@ -20,7 +20,7 @@ class ObjTrimCurves {
   std::size_t size() const { return curves_.size(); }
   void add(std::vector<Curve> pieces) { curves_.push_back(std::move(pieces)); }
 
-  /// Triples "u0 u1 curv2" to the end of the line.
+  /// Reads triples "u0 u1 curv2" to the end of the line.
   Status read_loop(TextCursor& cursor, std::vector<Curve>& loop);
 
  private:

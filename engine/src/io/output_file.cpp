@@ -1,4 +1,4 @@
-#include "io/output_file.h"
+#include "tessera/output_file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -8,7 +8,9 @@
 #include <climits>
 #include <cstring>
 #include <system_error>
+#include <utility>
 
+#include "io/descriptor.h"
 #include "io/file.h"
 
 namespace tessera::inline abi_0_1 {
@@ -18,32 +20,32 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t buffer_bytes = std::size_t{1} << 20;
 
-/// The name of a temporary where a signal handler can read it: in memory that is never freed, behind no lock.
+/// The name of a temporary, where a signal handler can read it: in memory that is never freed, without a lock.
 struct NamePlace {
   std::atomic<bool> taken = false, readable = false;
   std::array<char, PATH_MAX> name{};
 };
-std::array<NamePlace, 8> name_places;  // more files at once are removed at their end all the same
+std::array<NamePlace, 8> name_places;  // more files at once are removed only at their normal end
 
-/// Where the file will lie: behind symbolic links, so that they stay links, even those whose target does not exist yet.
+/// The file's real place. Follows symbolic links, even dangling ones, so that they stay links.
 Result<fs::path> behind_links(const fs::path& path) {
   std::error_code error;
   if (!fs::is_symlink(path, error)) return path;
   fs::path target = fs::canonical(path, error);
   if (!error) return target;
-  // What exists under no path, such as the pipe behind /dev/stdout, is opened by the name given.
+  // An object that exists under no path, such as the pipe behind /dev/stdout, is opened by the caller's path.
   if (fs::exists(path, error)) return path;
   constexpr int max_links = 40;  // the system's own limit (path_resolution(7))
   target = path;
   for (int link = 0; link < max_links; ++link) {
     const fs::path next = fs::read_symlink(target, error);
-    if (error) return target;  // no link
+    if (error) return target;  // not a link
     target = target.parent_path() / next;
   }
   return io_failure(path, "cannot be written", ELOOP);
 }
 
-/// A name beside `target` that no other writer has, in this process or another.
+/// A name beside `target` that no other writer uses, in this process or another.
 fs::path temporary_beside(const fs::path& target) {
   static std::atomic<unsigned> serial{0};
   fs::path temporary = target;
@@ -51,13 +53,25 @@ fs::path temporary_beside(const fs::path& target) {
   return temporary;
 }
 
-}  // namespace
+/// The name of a file that is removed at the end, unless it is released; remove_temporaries knows it as long.
+class TemporaryName {
+ public:
+  TemporaryName() = default;
+  explicit TemporaryName(fs::path path);
+  TemporaryName(TemporaryName&& other) noexcept
+      : path_(std::exchange(other.path_, fs::path())), place_(std::exchange(other.place_, no_place)) {}
+  TemporaryName& operator=(TemporaryName&&) = delete;
+  ~TemporaryName();
 
-void remove_temporaries() noexcept {
-  for (const NamePlace& place : name_places) {
-    if (place.readable.load()) ::unlink(place.name.data());
-  }
-}
+  bool empty() const { return path_.empty(); }
+  const char* c_str() const { return path_.c_str(); }
+  void release();
+
+ private:
+  static constexpr std::size_t no_place = ~std::size_t{0};
+  fs::path path_;
+  std::size_t place_ = no_place;  // among those that remove_temporaries sees
+};
 
 TemporaryName::TemporaryName(fs::path path) : path_(std::move(path)) {
   const std::string& name = path_.native();
@@ -83,12 +97,27 @@ void TemporaryName::release() {
   place_ = no_place;
 }
 
-OutputFile::OutputFile(Descriptor file, fs::path target, TemporaryName temporary, const std::atomic<bool>* cancel)
-    : file_(std::move(file)),
-      target_(std::move(target)),
-      temporary_(std::move(temporary)),
-      cancel_(cancel),
-      buffer_(buffer_bytes) {}
+}  // namespace
+
+void remove_temporaries() noexcept {
+  for (const NamePlace& place : name_places) {
+    if (place.readable.load()) ::unlink(place.name.data());
+  }
+}
+
+/// Where the bytes go.
+class OutputFile::Destination {
+ public:
+  explicit Destination(Descriptor to, TemporaryName name = {}) : file(std::move(to)), temporary(std::move(name)) {}
+
+  Descriptor file;
+  TemporaryName temporary;  ///< empty: written directly
+};
+
+OutputFile::OutputFile(std::unique_ptr<Destination> destination, fs::path target, const std::atomic<bool>* cancel)
+    : destination_(std::move(destination)), target_(std::move(target)), cancel_(cancel), buffer_(buffer_bytes) {}
+OutputFile::OutputFile(OutputFile&&) noexcept = default;
+OutputFile::~OutputFile() = default;
 
 Result<OutputFile> OutputFile::create(const fs::path& path, const std::atomic<bool>* cancel) {
   const Result<fs::path> place = behind_links(path);
@@ -102,28 +131,28 @@ Result<OutputFile> OutputFile::create(const fs::path& path, const std::atomic<bo
   if (exists && !S_ISREG(facts.st_mode)) {
     Descriptor file(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
     if (!file.is_open()) return io_failure(path, "cannot be written", errno);
-    return OutputFile(std::move(file), path, {}, cancel);
+    return OutputFile(std::make_unique<Destination>(std::move(file)), path, cancel);
   }
-  // A rename would replace a file that its owner has protected from writing.
+  // A rename would replace a file that its owner has write-protected.
   if (exists && ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0)
     return io_failure(path, "cannot be written", errno);
   TemporaryName temporary(temporary_beside(target));
   Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
   if (!file.is_open()) {
     const int error = errno;
-    temporary.release();  // whatever has this name is another's
+    temporary.release();  // a file of this name belongs to another
     const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
     if (error == ENOENT) {
       return Status(StatusCode::io_error, path.string() + ": cannot be written: there is no folder " + folder.string());
     }
     return io_failure(path, "cannot be written in " + folder.string(), error);
   }
-  if (exists) ::fchmod(file.number(), facts.st_mode & 07777);  // at worst the file gets the usual mode
-  return OutputFile(std::move(file), target, std::move(temporary), cancel);
+  if (exists) ::fchmod(file.number(), facts.st_mode & 07777);  // if it fails, the file has the usual mode
+  return OutputFile(std::make_unique<Destination>(std::move(file), std::move(temporary)), target, cancel);
 }
 
 OutputFile OutputFile::standard_output(const std::atomic<bool>* cancel) {
-  return OutputFile(Descriptor(::dup(STDOUT_FILENO)), "standard output", {}, cancel);
+  return OutputFile(std::make_unique<Destination>(Descriptor(::dup(STDOUT_FILENO))), "standard output", cancel);
 }
 
 void OutputFile::write(std::string_view bytes) {
@@ -144,7 +173,7 @@ void OutputFile::flush() {
 void OutputFile::send(std::string_view bytes) {
   see_cancel();
   while (!bytes.empty() && status_.ok()) {
-    const ssize_t sent = ::write(file_.number(), bytes.data(), bytes.size());
+    const ssize_t sent = ::write(destination_->file.number(), bytes.data(), bytes.size());
     if (sent < 0 && errno == EINTR) {
       see_cancel();
     } else if (sent < 0) {
@@ -162,11 +191,11 @@ void OutputFile::see_cancel() {
 Status OutputFile::commit() {
   flush();
   see_cancel();
-  const int error = file_.close();
+  const int error = destination_->file.close();
   if (error != 0 && status_.ok()) status_ = io_failure(target_, "cannot be written", error);
-  if (status_.ok() && !temporary_.empty()) {
-    if (::rename(temporary_.c_str(), target_.c_str()) == 0) {
-      temporary_.release();
+  if (status_.ok() && !destination_->temporary.empty()) {
+    if (::rename(destination_->temporary.c_str(), target_.c_str()) == 0) {
+      destination_->temporary.release();
     } else {
       status_ = io_failure(target_, "cannot be written", errno);
     }

@@ -8,8 +8,8 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr std::size_t piece_bytes = std::size_t{1} << 16;  // what a thread packs at a time
-constexpr std::size_t pieces_in_buffer = 16;               // which stays in a cache until it is written
+constexpr std::size_t piece_bytes = std::size_t{1} << 16;  // packed by a thread at a time
+constexpr std::size_t pieces_in_buffer = 16;               // small enough to stay in a cache until it is written
 
 }  // namespace
 
@@ -18,7 +18,7 @@ Status write_packed(OutputFile& out, std::size_t count, std::size_t bytes,
   const std::size_t piece = piece_bytes / bytes, room = std::min(count, pieces_in_buffer * piece);
   auto buffer = std::make_unique_for_overwrite<char[]>(room * bytes),
        packed_before = std::make_unique_for_overwrite<char[]>(room * bytes);
-  std::string_view before;  // in packed_before: written by one thread while the others pack the next records
+  std::string_view before;  // lies in packed_before; one thread writes it while the others pack the next records
   for (std::size_t first = 0; first < count && !out.failed(); first += room) {
     const std::size_t records = std::min(room, count - first);
     Status status = parallel_for(1 + (records + piece - 1) / piece, 1, {}, [&](std::size_t k, std::size_t) {

@@ -5,18 +5,18 @@
 #include <cstring>
 
 #include "base/function_ref.h"
-#include "io/output_file.h"
 #include "tessera/geometry.h"
+#include "tessera/output_file.h"
 
 namespace tessera::inline abi_0_1 {
 
-/// Writes `count` records of `bytes` each: pack(first, last, to) lays down the records [first, last) from `to` on, and is
+/// Writes `count` records of `bytes` each. pack(first, last, to) stores the records [first, last) from `to` on, and is
 /// called for pieces of them from any number of threads. Memory: 2 MiB. Errors: what `pack` throws, as a Status.
 Status write_packed(OutputFile& out, std::size_t count, std::size_t bytes,
                     FunctionRef<void(std::size_t, std::size_t, char*)> pack);
 
-/// Three floats at `to`. Number by number: an array that is filled first and copied then is read before its stores are
-/// done, which costs half the time again.
+/// Stores three floats at `to`, one by one: to fill an array and copy it takes half as long again, because the copy
+/// reads before the stores are done.
 inline void put_floats(const Vec3& v, char* to) {
   const float x = static_cast<float>(v.x), y = static_cast<float>(v.y), z = static_cast<float>(v.z);
   std::memcpy(to, &x, sizeof x);

@@ -1,21 +1,21 @@
 #pragma once
-// What a reader passes over, counted by kind, for the model's warnings.
+// Counts what a reader skips, by kind, for the model's warnings.
 
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "io/text_cursor.h"
 #include "tessera/status.h"
+#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 
-/// Names of a kind of thing for one and for many of it: "polyhedron", "polyhedra". They must outlive the counts.
+/// Names of a kind of thing, for one and for many: "polyhedron", "polyhedra". They must outlive the counts.
 struct PartName {
   std::string_view one, many;
 };
 
-/// Counts of a few kinds, and where each stood first.
+/// Counts of a few kinds, and where the first of each stood.
 class PassedOver {
  public:
   /// `file` stands for the file in the sentences.
@@ -23,9 +23,10 @@ class PassedOver {
 
   void add(const PartName& name, const TextCursor& at);
   bool empty() const { return kinds_.empty(); }
-  /// "m.bv:12: 3 polyhedra are not read", a sentence a kind, in the order of their lines.
+  /// The warnings, such as "m.bv:12: 3 polyhedra are not read": one sentence per kind, in the order of their lines.
   std::vector<std::string> warnings() const;
-  /// For a file that holds nothing else: "m.bv: no surface that can be read, but 3 polyhedra". Error: unsupported.
+  /// The error of a file that holds nothing else: "m.bv: no surface that can be read, but 3 polyhedra". Code:
+  /// unsupported.
   Status nothing_else() const;
 
  private:
@@ -39,7 +40,7 @@ class PassedOver {
   std::vector<Kind> kinds_;
 };
 
-/// A surface's name out of a file: at most 200 bytes of it, whole characters of UTF-8.
+/// The name of a surface from a file: at most 200 bytes of `text`, cut between characters of UTF-8.
 std::string surface_name(std::string_view text);
 
 }  // namespace tessera::inline abi_0_1

@@ -12,7 +12,7 @@
 #include "io/packed_records.h"
 #include "io/ply_header.h"
 #include "io/polygon.h"
-#include "io/text_cursor.h"
+#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -46,7 +46,7 @@ class BinaryValues {
     }
     return false;
   }
-  /// The least bytes that a value takes, and the bytes left.
+  /// The fewest bytes that a value takes, and the bytes left.
   static std::size_t min_bytes(PlyType type) { return size_of(type); }
   std::size_t remaining() const { return static_cast<std::size_t>(end_ - at_); }
   bool at_end() { return at_ == end_; }
@@ -81,8 +81,8 @@ class AsciiValues {
     cursor_.skip_space();
     return cursor_.take_number(value);
   }
-  static std::size_t min_bytes(PlyType) { return 2; }                // a digit and what parts it from the next
-  std::size_t remaining() const { return cursor_.remaining() + 1; }  // the last one may end with the file
+  static std::size_t min_bytes(PlyType) { return 2; }                // a digit and a separator
+  std::size_t remaining() const { return cursor_.remaining() + 1; }  // the last value may end with the file
   bool at_end() {
     cursor_.skip_space();
     return cursor_.at_end();
@@ -121,7 +121,7 @@ class BodyReader {
       }
       if (!status.ok()) return status;
     }
-    if (!values_.at_end()) return values_.error("there is more after the last element");
+    if (!values_.at_end()) return values_.error("there is data after the last element");
     if (mesh_.positions.empty()) return values_.error("there are no vertices");
     for (const auto* indices : {&mesh_.indices, &mesh_.quads}) {
       const auto bad = std::find_if(indices->begin(), indices->end(),
@@ -134,7 +134,7 @@ class BodyReader {
   }
 
  private:
-  /// Before anything is allocated: whether the file can hold what it states.
+  /// Checks, before anything is allocated, that the file can hold what it states.
   Status check_size(const PlyElement& element) {
     std::uint64_t least = 0;
     for (const PlyProperty& property : element.properties) {
@@ -273,7 +273,7 @@ void write_header(const Mesh& mesh, OutputFile& out) {
   out.write(text + "end_header\n");
 }
 
-/// Faces of so many corners, each with its patch if `patches` are not empty.
+/// Writes faces with `corners` corners, each with its patch if `patches` is not empty.
 Status write_faces(OutputFile& out, std::size_t corners, std::span<const std::uint32_t> indices,
                    std::span<const std::uint32_t> patches) {
   const std::size_t face_bytes = 1 + sizeof(std::uint32_t) * (corners + (patches.empty() ? 0 : 1));

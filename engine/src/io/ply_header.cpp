@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "io/text_cursor.h"
+#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -123,7 +123,7 @@ class HeaderReader {
   }
 
   Status read_property() {
-    if (header_.elements.empty()) return cursor_.failure("expected element, found a property of none");
+    if (header_.elements.empty()) return cursor_.failure("expected element before the first property");
     PlyProperty property;
     property.is_list = next_word() == "list";
     Status status;

@@ -22,7 +22,7 @@ struct PlyProperty {
   PlyType count_type = PlyType::uint8;  ///< of a list's length
 };
 
-/// Whether it holds the corners of a face: both names are in use.
+/// Whether it holds the corners of a face; two names are in use.
 bool is_corner_list(const PlyProperty& property);
 
 struct PlyElement {
@@ -32,12 +32,12 @@ struct PlyElement {
 };
 
 struct PlyHeader {
-  bool binary = false;  ///< little endian; ascii otherwise
+  bool binary = false;  ///< little endian; otherwise ascii
   std::vector<PlyElement> elements;
-  std::size_t bytes = 0;  ///< of the header itself: the first record follows
+  std::size_t bytes = 0;  ///< of the header: the first record follows
 };
 
-/// Errors: parse_error, with the line; unsupported for big endian.
+/// Parses the header. Errors: parse_error, with the line; unsupported for big endian.
 Result<PlyHeader> parse_ply_header(std::string_view bytes, std::string_view name);
 
 }  // namespace tessera::inline abi_0_1

@@ -5,7 +5,7 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// The last two triangles, a fan of four corners, become a quad.
+/// Makes a quad of the last two triangles, a fan of four corners.
 inline void join_last_quad(Mesh& mesh) {
   const auto fan = mesh.indices.end() - 6;  // a b c a c d
   mesh.quads.insert(mesh.quads.end(), {fan[0], fan[1], fan[2], fan[5]});

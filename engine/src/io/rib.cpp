@@ -9,19 +9,20 @@
 #include <numbers>
 #include <optional>
 
-#include "base/guard.h"
 #include "io/make_room.h"
 #include "io/passed_over.h"
 #include "io/rib_lexer.h"
 #include "io/rib_state.h"
 #include "io/rib_surfaces.h"
 #include "io/rib_trims.h"
+#include "tessera/guard.h"
 #include "tessera/io.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// Requests that draw what is not read; the others say how and from where it is drawn.
+/// Requests that draw shapes that are not read. All other requests say how, and from where, the scene is drawn.
 constexpr std::string_view shapes[] = {"Sphere",
                                        "Cone",
                                        "Cylinder",
@@ -43,7 +44,7 @@ constexpr std::string_view shapes[] = {"Sphere",
                                        "Procedural",
                                        "Procedural2",
                                        "ReadArchive"};
-/// Requests that move what follows, in ways that are not read.
+/// Requests that move later shapes in ways that are not read.
 constexpr std::string_view other_transforms[] = {"Skew", "Perspective", "Deformation", "CoordSysTransform"};
 
 template <class Names>
@@ -51,7 +52,7 @@ bool contains(const Names& names, std::string_view name) {
   return std::find(std::begin(names), std::end(names), name) != std::end(names);
 }
 
-/// How often something was met, by name, and the line of the first.
+/// Counts occurrences by name, and keeps the line of the first.
 class Tally {
  public:
   void add(std::string_view name, const TextCursor& at) {
@@ -79,7 +80,7 @@ class Tally {
   std::size_t total_ = 0, line_ = 0;
 };
 
-/// What ObjectBegin and ObjectEnd enclose.
+/// The surfaces between ObjectBegin and ObjectEnd.
 using Object = std::vector<ModelSurface>;
 
 class RibReader {
@@ -162,7 +163,7 @@ class RibReader {
   Status instance() {
     const auto object = objects_.find(lexer_.at_value() ? lexer_.peek() : std::string_view());
     if (object == objects_.end()) return lexer_.expected("the number or name of an object above");
-    const Affine* own = nullptr;  // of the surface before, often the next one's too
+    const Affine* own = nullptr;  // of the surface before; often also of the next one
     Shared<Affine> placement;
     for (const ModelSurface& surface : object->second) {
       if (own != &*surface.placement) {
@@ -178,7 +179,7 @@ class RibReader {
     return lexer_.skip_values();
   }
 
-  /// What stands once in the file and often in the model is bounded by the file's size all the same.
+  /// Bounds the copies of objects in the model by the file's size: an object may be copied any number of times.
   Status count_copy() {
     constexpr std::size_t bytes = sizeof(ModelSurface) + sizeof(Affine);
     if (bytes > copies_left_) return failure("copies of objects would take more than 4 times the file");
@@ -243,7 +244,7 @@ class RibReader {
     return status;
   }
 
-  /// Only the name is of interest, Attribute "identifier" "name" ["rim"]; other forms are skipped like anything else.
+  /// Reads the name from Attribute "identifier" "name" ["rim"]; skips other forms like any unknown request.
   Status attribute() {
     RibLexer ahead = lexer_;
     std::string_view kind, parameter, name;
@@ -292,7 +293,7 @@ class RibReader {
     return {};
   }
 
-  // What is said at the end.
+  // Warnings.
 
   Status nothing_read() const {
     const std::string begin = std::string(name_) + ": no surface that can be read";
@@ -317,16 +318,17 @@ class RibReader {
                         " trimmed: trims are not honoured yet");
     }
     if (!later_samples_.empty()) {
-      say(later_samples_, "of what moves, the first moment alone is read, " + number(later_samples_) + " others not");
+      say(later_samples_, "motions are read at their first moment only, " + number(later_samples_) +
+                              (later_samples_.total() == 1 ? " other is" : " others are") + " skipped");
     }
     if (worlds_.total() > 1) {
-      say(worlds_, number(worlds_) + " worlds share one space, their surfaces may lie in one another");
+      say(worlds_, number(worlds_) + " worlds share one space, their surfaces may overlap");
     }
     if (stack_.is_open()) {
       model_.warnings.push_back(std::string(name_) + ": expected the blocks to end with the file, " +
                                 stack_.open_block());
     }
-    if (!others_.empty()) say(others_, "requests that are passed over: " + others_.words());
+    if (!others_.empty()) say(others_, "requests that are skipped: " + others_.words());
   }
 
   Tally& unread() {
@@ -355,12 +357,12 @@ class RibReader {
   std::string_view name_;
   std::size_t size_;
   RibLexer lexer_;
-  TextCursor start_;  // of the request that is being read
+  TextCursor start_;  // of the current request
   std::string_view request_;
   RibStack stack_;
   Model model_;
   std::map<std::string_view, Object> objects_;
-  std::optional<Object> object_;  // that is being defined
+  std::optional<Object> object_;  // being defined
   std::string_view handle_;
   std::size_t copies_left_;
   bool in_motion_ = false;

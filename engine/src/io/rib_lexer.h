@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/text_cursor.h"
+#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 
@@ -16,25 +16,25 @@ class RibLexer {
   /// `name` stands for the file in messages.
   RibLexer(std::string_view text, std::string_view name) : cursor_(text, name, {.separators = "[]\""}) {}
 
-  // What stands next, past white space and comments.
+  // Whether nothing follows but white space and comments.
   bool at_end();
   bool at_request();
   bool at_string();
-  /// A number, a string or an array.
+  /// Whether a number, a string or an array follows.
   bool at_value();
 
-  // Past the next thing, or an error that says what was wanted instead. Numbers are finite.
+  // Takes the next thing, or returns an error that says what was expected instead. Numbers are finite.
   Status take_request(std::string_view& request);
-  /// Between the quotes, escapes as they stand. Brackets around one string are allowed, as for numbers.
+  /// Takes the text between the quotes, escapes unchanged. One string may stand in brackets, as numbers may.
   Status take_string(std::string_view what, std::string_view& value);
   Status take_number(std::string_view what, double& value);
   Status take_integer(std::string_view what, std::int64_t low, std::int64_t high, std::int64_t& value);
-  /// As many as there is room for, in brackets or not.
+  /// Takes as many numbers as `values` holds, in brackets or not.
   Status take_numbers(std::string_view what, std::span<double> values);
-  /// An array, or one number without brackets. `likely`: how many will come, at a guess.
+  /// Takes an array, or one number without brackets. `likely` is a guess of how many will come.
   Status take_array(std::string_view what, std::vector<double>& values, std::size_t likely = 0);
   Status skip_value();
-  /// All values up to the next request.
+  /// Skips all values up to the next request.
   Status skip_values();
 
   /// The raw text of the next value, for comparisons: a number or a string with its quotes.

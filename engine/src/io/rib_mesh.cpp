@@ -8,7 +8,7 @@ namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr double sixth = 1.0 / 6;
-// The Interface's own (The RenderMan Interface Specification 3.2, sec. 5.2), rows from t^3 down to 1.
+// The Interface's own bases (The RenderMan Interface Specification 3.2, sec. 5.2), rows from t^3 down to 1.
 constexpr RibBasis bezier_basis{{-1, 3, -3, 1, 3, -6, 3, 0, -3, 3, 0, 0, 1, 0, 0, 0}, 3};
 constexpr RibBasis b_spline_basis{
     {-sixth, 0.5, -0.5, sixth, 0.5, -1, 0.5, 0, -0.5, 0, 0.5, 0, sixth, 4 * sixth, sixth, 0}, 1};
@@ -16,8 +16,8 @@ constexpr RibBasis catmull_rom_basis{{-0.5, 1.5, -1.5, 0.5, 1, -2.5, 2, -0.5, -0
 constexpr RibBasis hermite_basis{{2, 1, -2, 1, -3, -2, 3, -1, 0, 1, 0, 0, 1, 0, 0, 0}, 2};
 constexpr RibBasis power_basis{{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, 4};
 
-/// How a direction becomes a B-spline: its points as they are over simple or 3-fold knots, Catmull-Rom and Hermite
-/// cubics over double ones, else patch by patch.
+/// How a direction becomes a B-spline. The points are kept over simple or 3-fold knots; Catmull-Rom and Hermite cubics
+/// have double knots; other bases go patch by patch.
 enum class Form { linear, bezier, b_spline, catmull_rom, hermite, separate };
 
 Form form_of(const RibDirection& direction) {
@@ -29,7 +29,7 @@ Form form_of(const RibDirection& direction) {
   return basis == hermite_basis ? Form::hermite : Form::separate;
 }
 
-/// The Bezier points of one patch's geometry.
+/// Maps the geometry of one patch to its Bezier points.
 class PatchMatrix {
  public:
   static Result<PatchMatrix> make(const RibBasis& basis) {
@@ -52,18 +52,18 @@ class PatchMatrix {
   BasisMatrix matrix_;
 };
 
-/// One direction as it will be: lines of the mesh's points in, lines of control points out.
+/// One direction of the result: lines of the mesh's points in, lines of control points out.
 struct SplineDirection {
   Form form;
   int step = 1;
   std::size_t points, patches;
-  std::optional<PatchMatrix> matrix = {};  // of separate patches
-  std::vector<double> knots = {};          // not of separate ones
+  std::optional<PatchMatrix> matrix = {};  // only of separate patches
+  std::vector<double> knots = {};          // empty for separate patches
 
   int degree() const { return form == Form::linear ? 1 : 3; }
 };
 
-/// Knots on [0,1], the inner ones so many times.
+/// Knots on [0,1] clamped at the ends, inner ones of multiplicity `times`.
 std::vector<double> clamped_knots(int degree, std::size_t patches, int times) {
   std::vector<double> knots(static_cast<std::size_t>(degree + 1), 0.0);
   for (std::size_t k = 1; k < patches; ++k) {
@@ -113,7 +113,7 @@ Result<SplineDirection> make_direction(const RibDirection& direction, bool separ
 
 using Line = std::vector<Homogeneous>;
 
-/// A line of control points from one of the mesh's, which goes round if its end is beyond the last one.
+/// Makes a line of control points from a line of the mesh; wraps around if the end lies beyond its last point.
 Line spline_line(const SplineDirection& direction, const Line& line) {
   const auto at = [&](std::size_t k) { return line[k % line.size()]; };
   const std::size_t n = direction.patches;
@@ -151,13 +151,13 @@ Line spline_line(const SplineDirection& direction, const Line& line) {
   return out;
 }
 
-/// Whether the mesh's points are the control points along this direction, in their order.
+/// Whether the mesh's points are, in order, the control points along this direction.
 bool keeps_points(const SplineDirection& d) {
   const bool same = d.form == Form::linear || d.form == Form::bezier || d.form == Form::b_spline;
   return same && d.knots.size() == d.points + static_cast<std::size_t>(d.degree()) + 1;
 }
 
-/// Control points [i][j] and their weights, none of a polynomial net; filled one by one, in any order.
+/// Control points [i][j] and their weights (none for a polynomial net), filled one by one in any order.
 class Weighted {
  public:
   Weighted(std::size_t count, bool rational) : points(count), weights(rational ? count : 0) {}
@@ -188,7 +188,7 @@ class Weighted {
   double bad_weight_ = 0;
 };
 
-/// The net as it is. Error: invalid_weight.
+/// The net divided by its weights. Error: invalid_weight.
 Result<Weighted> divided(RibNet net) {
   Weighted weighted(net.points.size(), net.rational);
   for (std::size_t k = 0; k < net.points.size(); ++k) weighted.set(k, net.points[k]);
@@ -287,9 +287,9 @@ Result<std::int64_t> RibDirection::patches() const {
   if (periodic && points >= step && points % step == 0) return points / step;
   if (!periodic && points >= least && (points - least) % step == 0) return (points - least) / step + 1;
   const std::string wanted = periodic ? "a multiple of " + std::to_string(step)
-                                      : std::to_string(least) + " and a multiple of " + std::to_string(step) + " more";
-  return Status(StatusCode::count_mismatch, std::to_string(points) + " points a line make no " +
-                                                (periodic ? "closed " : "") + "mesh with this basis, which wants " +
+                                      : std::to_string(least) + " plus a multiple of " + std::to_string(step);
+  return Status(StatusCode::count_mismatch, std::to_string(points) + " points along one direction make no " +
+                                                (periodic ? "closed " : "") + "mesh with this basis, which needs " +
                                                 wanted);
 }
 
@@ -298,7 +298,7 @@ Result<std::vector<double>> height_field_parameters(const RibDirection& directio
   const Result<std::int64_t> patches = direction.patches();
   if (!patches) return patches.status();
   if (form == Form::hermite || form == Form::separate) {
-    return Status(StatusCode::unsupported, "a height field wants a basis of points (bezier, b-spline, catmull-rom)");
+    return Status(StatusCode::unsupported, "a height field needs a basis of points (bezier, b-spline, catmull-rom)");
   }
   // Control points at the averages of the knots (Greville) reproduce the parameter itself.
   const double n = static_cast<double>(*patches), first = form == Form::b_spline || form == Form::catmull_rom ? -1 : 0;

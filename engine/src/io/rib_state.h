@@ -1,20 +1,21 @@
 #pragma once
-// The graphics state of a RIB file as far as surfaces depend on it, and the blocks that save it.
+// The part of a RIB file's graphics state that surfaces depend on, and the blocks that save it.
 
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "io/rib_mesh.h"
-#include "io/text_cursor.h"
 #include "tessera/detail/shared.h"
 #include "tessera/geometry.h"
 #include "tessera/model.h"
+#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 
 struct RibState {
-  /// From the current coordinates to those at WorldBegin (ObjectBegin within an object, else the begin of the file).
+  /// From the current coordinates to those at WorldBegin (within an object: at ObjectBegin; before both: at the file's
+  /// begin).
   Shared<Affine> transform;
   Shared<std::string> name;
   RibBasis basis_u = *find_rib_basis("bezier"), basis_v = basis_u;
@@ -32,7 +33,7 @@ class RibStack {
     }
     return false;
   }
-  /// Saves the state. A world's and an object's own coordinates begin here. Error: parse_error (too deep).
+  /// Saves the state. A world and an object begin with coordinates of their own. Error: parse_error (too deep).
   Status begin(std::string_view kind, const TextCursor& at) {
     if (blocks_.size() == depth_limit) {
       return at.failure("blocks are nested deeper than " + std::to_string(depth_limit) + " levels");
@@ -41,7 +42,7 @@ class RibStack {
     if (kind == "World" || kind == "Object") state_.transform = {};
     return {};
   }
-  /// Brings back the state; a Transform block's transformation alone. Error: parse_error (another block is open).
+  /// Restores the state; for a Transform block only the transformation. Error: parse_error (another block is open).
   Status end(std::string_view kind, const TextCursor& at) {
     if (blocks_.empty() || blocks_.back().kind != kind) {
       const std::string name(kind);

@@ -37,7 +37,7 @@ Status read_positions(const RibSurfaceText& text, std::size_t points, Positions&
                       ", found " + std::to_string(positions.values.size()));
 }
 
-/// [i][j] with i along u, from the file's order with u first. `x` and `y` are of a height field.
+/// Makes the net [i][j], i along u, from the file's order, u first. `x` and `y` are those of a height field.
 RibNet make_net(const Positions& positions, std::size_t count_u, std::size_t count_v, std::span<const double> x,
                 std::span<const double> y) {
   RibNet net{.points = std::vector<Homogeneous>(count_u * count_v), .rational = positions.name == "Pw"};
@@ -52,7 +52,7 @@ RibNet make_net(const Positions& positions, std::size_t count_u, std::size_t cou
   return net;
 }
 
-/// Directions of bilinear surfaces have no basis.
+/// Reads the type. Bilinear surfaces have directions without a basis.
 Status read_type(const RibSurfaceText& text, RibDirection& u, RibDirection& v) {
   std::string_view type;
   Status status = text.lexer.take_string("\"bilinear\" or \"bicubic\"", type);
@@ -99,7 +99,7 @@ struct NurbsLine {
   std::array<double, 2> range{};
 
   int degree() const { return static_cast<int>(order) - 1; }
-  /// The averages of the knots (Greville), where points of a height field stand.
+  /// The averages of the knots (Greville), the parameters of a height field's points.
   std::vector<double> greville() const {
     std::vector<double> averages;
     for (std::size_t k = 0; k < static_cast<std::size_t>(points); ++k) {

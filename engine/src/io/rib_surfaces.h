@@ -1,5 +1,5 @@
 #pragma once
-// Patch, PatchMesh and NuPatch out of a RIB file.
+// Reads Patch, PatchMesh and NuPatch of a RIB file.
 
 #include <vector>
 
@@ -9,10 +9,10 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Of points in one direction.
+/// The most points in one direction.
 inline constexpr std::int64_t rib_count_limit = std::int64_t{1} << 30;
 
-/// What stands after the word that asks for a surface.
+/// The text of a surface, after the word that asks for it.
 struct RibSurfaceText {
   RibLexer& lexer;
   const TextCursor& begin;   ///< the request's place
@@ -22,8 +22,8 @@ struct RibSurfaceText {
   Status failure(const std::string& sentence) const { return begin.failure(std::string(request) + ": " + sentence); }
 };
 
-// With errors that name the line. Control points of the file run along u first; of their parameter lists, P (x y z),
-// Pw (w x, w y, w z, w) or Pz (z over x = u, y = v) is read and the rest ignored.
+// Readers; their errors name the line. The file's control points run along u first. A parameter list's P (x y z), Pw (w
+// x, w y, w z, w) or Pz (z over x = u, y = v) is read and the rest ignored.
 
 Result<std::vector<Surface>> read_patch(const RibSurfaceText& text);
 Result<std::vector<Surface>> read_patch_mesh(const RibSurfaceText& text);

@@ -18,7 +18,7 @@ constexpr std::array<std::string_view, part_count> part_names{"the curves of eac
                                                               "w of trimming curves"};
 using Parts = std::array<std::vector<double>, part_count>;
 
-/// A whole number within what the file can hold, or 0.
+/// `value` as a whole number from 1 to `limit`, or 0 if it is none.
 std::size_t count_of(double value, std::size_t limit) {
   return value >= 1 && value <= static_cast<double>(limit) && value == std::floor(value)
              ? static_cast<std::size_t>(value)
@@ -33,7 +33,7 @@ class LoopMaker {
     std::vector<TrimLoop> loops;
     for (const double stated : parts_[counts]) {
       const std::size_t count = count_of(stated, parts_[orders].size() - curve_);
-      if (count == 0) return failure("the loops want other numbers of curves than there are orders");
+      if (count == 0) return failure("the numbers of curves per loop do not fit the number of orders");
       TrimLoop& loop = loops.emplace_back();
       for (std::size_t k = 0; k < count; ++k) {
         Result<Curve> curve = next_curve();
@@ -52,7 +52,8 @@ class LoopMaker {
     const std::size_t order = count_of(parts_[orders][curve_], max_degree + 1),
                       count = count_of(parts_[lengths][curve_], points_left);
     if (order == 0 || count == 0 || count + order > parts_[knots].size() - knot_) {
-      return failure("curve " + std::to_string(curve_) + " has an order, a number of points and knots that do not fit");
+      return failure("curve " + std::to_string(curve_) +
+                     " has an order, a number of points and knots that do not fit each other");
     }
     std::vector<Vec3> points;
     std::vector<double> weights;

@@ -8,8 +8,8 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// The nine arrays after TrimCurve: ncurves order knot min max n u v w, points as (u w, v w, w). Which loops are holes
-/// follows from how they nest, not from the file: hole is false for all.
+/// Reads the nine arrays after TrimCurve: ncurves order knot min max n u v w, points as (u w, v w, w). `hole` is false
+/// for all loops: the nesting decides which are holes, not the file.
 Result<std::vector<TrimLoop>> read_trim_loops(RibLexer& lexer);
 
 }  // namespace tessera::inline abi_0_1

@@ -1,6 +1,6 @@
-// STL, the triangles of stereolithography (3D Systems, StereoLithography Interface Specification, 1988): 80 bytes of
-// anything but "solid" at their begin, the number of triangles, and for each its normal, three corners and two bytes
-// more; or the same as text.
+// STL, the triangles of stereolithography (3D Systems, StereoLithography Interface Specification, 1988). Binary: 80
+// bytes that should not begin with "solid", the number of triangles, and for each its normal, three corners and two
+// bytes. Ascii: the same as text.
 
 #include <algorithm>
 #include <array>
@@ -12,8 +12,8 @@
 
 #include "io/mesh_formats.h"
 #include "io/packed_records.h"
-#include "io/text_cursor.h"
 #include "io/vertex_welder.h"
+#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -23,7 +23,8 @@ static_assert(std::endian::native == std::endian::little, "STL is read and writt
 constexpr std::size_t title_bytes = 80, header_bytes = title_bytes + 4, triangle_bytes = 50;
 constexpr std::size_t max_vertices = std::numeric_limits<std::uint32_t>::max();
 
-/// The normal, from where the corners run counter-clockwise (zero if there is no area), the corners, and two bytes of 0.
+/// Stores the normal, which points to where the corners run counter-clockwise (zero if there is no area), the corners,
+/// and two bytes of 0.
 void put_triangle(const Mesh& mesh, std::size_t triangle, char* to) {
   std::array<Vec3, 3> corner;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -67,7 +68,7 @@ Status too_many(std::string_view name) {
                 std::string(name) + ": there are more vertices than 32-bit indices can tell apart");
 }
 
-/// How many triangles a binary file states to have.
+/// The number of triangles that a binary file states.
 std::size_t stated_triangles(std::string_view bytes) {
   std::uint32_t count = 0;
   std::memcpy(&count, bytes.data() + title_bytes, sizeof count);
@@ -88,7 +89,7 @@ Result<Mesh> parse_binary(std::string_view bytes, std::string_view name) {
   return mesh.take();
 }
 
-/// solid, facets, endsolid; several such follow each other in some files. Words in small letters or in capitals.
+/// Reads solid, facets, endsolid; some files hold several solids in a row. Words are in small letters or in capitals.
 class AsciiReader {
  public:
   AsciiReader(std::string_view text, std::string_view name)
@@ -102,7 +103,7 @@ class AsciiReader {
   }
 
  private:
-  static constexpr std::size_t min_facet = 84;  // bytes of the shortest one
+  static constexpr std::size_t min_facet = 84;  // bytes of the shortest facet
 
   bool take(std::string_view word) {
     cursor_.skip_space();
@@ -115,7 +116,7 @@ class AsciiReader {
 
   Status read_solid() {
     if (!take("solid")) return cursor_.expected("solid");
-    cursor_.skip_line();  // its name
+    cursor_.skip_line();  // skips its name
     while (!take("endsolid")) {
       if (!take("facet")) return cursor_.expected("facet or endsolid");
       if (Status status = read_facet(); !status.ok()) return status;
@@ -177,7 +178,7 @@ Status write_stl(const Mesh& mesh, OutputFile& out) {
 
 Result<Mesh> parse_stl(std::string_view bytes, std::string_view name, const MeshReadOptions&) {
   const bool has_header = bytes.size() >= header_bytes;
-  // The size decides: there are binary files that begin with "solid" all the same.
+  // The size decides, because some binary files begin with "solid".
   if (has_header && (bytes.size() - header_bytes) == stated_triangles(bytes) * triangle_bytes)
     return parse_binary(bytes, name);
   if (begins_with_solid(bytes, name)) return AsciiReader(bytes, name).read();

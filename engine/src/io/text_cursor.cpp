@@ -1,4 +1,4 @@
-#include "io/text_cursor.h"
+#include "tessera/text_cursor.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@ bool underflows(std::string_view number) {
   const std::size_t first = mantissa.find_first_of("123456789");
   if (first == std::string_view::npos) return true;
   const std::size_t point = std::min(mantissa.find('.'), mantissa.size());
-  // The decimal exponent of the first significant digit, but for one.
+  // The decimal exponent of the first significant digit; one too large if the digit stands before the point.
   auto exponent = static_cast<std::int64_t>(point) - static_cast<std::int64_t>(first);
   if (exponent_at != std::string_view::npos) {
     const std::string_view digits = number.substr(exponent_at + 1);
@@ -22,14 +22,14 @@ bool underflows(std::string_view number) {
     const char* const begin = digits.data() + (!digits.empty() && digits.front() == '+');
     const auto [end, error] = std::from_chars(begin, digits.data() + digits.size(), stated);
     if (error == std::errc::result_out_of_range) return digits.front() == '-';
-    // No text is so long that its digits could make up for this, and the sum does not overflow.
+    // No text is long enough for its digits to outweigh this limit, and the sum does not overflow.
     constexpr std::int64_t limit = std::int64_t{1} << 62;
     exponent += std::clamp(stated, -limit, limit);
   }
   return exponent < 0;
 }
 
-/// std::from_chars over a whole token, with a leading + allowed.
+/// std::from_chars over a whole token; accepts a leading +.
 template <class Number>
 std::errc parse(std::string_view token, Number& value) {
   if (token.size() > 1 && token[0] == '+' && token[1] != '-') token.remove_prefix(1);
@@ -50,7 +50,7 @@ bool TextCursor::continues(const char* at) const {
 }
 
 void TextCursor::skip_special() {
-  while (at_ != end_ && *at_ != 0) {  // 0 is no character of the syntax, though a text may hold it
+  while (at_ != end_ && *at_ != 0) {  // 0 means "none" in the syntax, but a text may hold a byte of 0
     if (is_blank(*at_)) {
       ++at_;
     } else if (*at_ == syntax_.comment) {
@@ -119,7 +119,7 @@ Status TextCursor::failure(std::string_view sentence) const {
 
 std::size_t TextCursor::line() const {
   auto line = static_cast<std::size_t>(std::count(begin_, at_, '\n')) + 1;
-  // At the end of a text whose last line is complete, that line is meant, not one that the file does not have.
+  // At the end of a text whose last line is complete, reports that line rather than one that does not exist.
   if (at_ == end_ && at_ != begin_ && at_[-1] == '\n') --line;
   return line;
 }

@@ -21,8 +21,8 @@ Status invalid(std::string message, std::size_t index) {
   return {StatusCode::invalid_argument, std::move(message), static_cast<std::ptrdiff_t>(index)};
 }
 
-/// The least k below `count` that find(begin, end) finds in the pieces of [0, count), or `count`. `find` gives `end`
-/// where there is none.
+/// The least k below `count` that find(begin, end) finds in the pieces of [0, count), or `count` if there is none.
+/// `find` returns `end` if it finds none.
 template <class Find>
 Result<std::size_t> first_of(std::size_t count, const Find& find) {
   std::atomic<std::size_t> found = count;
@@ -36,8 +36,8 @@ Result<std::size_t> first_of(std::size_t count, const Find& find) {
   return found.load();
 }
 
-/// The first of [begin, end) for which `bad` holds. Looked for where there is one alone: to see that there is none takes
-/// no branches.
+/// The first of [begin, end) for which `bad` holds, or `end`. Searches only if there is one: the test whether there is
+/// any takes no branches.
 template <class Bad>
 std::size_t first_bad(std::size_t begin, std::size_t end, const Bad& bad) {
   unsigned any = 0;
@@ -47,7 +47,7 @@ std::size_t first_bad(std::size_t begin, std::size_t end, const Bad& bad) {
   return begin;
 }
 
-/// The first of values that are not finite, or whose magnitude is above `bound`.
+/// The first value that is not finite, or whose magnitude is above `bound`.
 Result<std::size_t> first_beyond(std::span<const float> values, float bound) {
   return first_of(values.size(), [&](std::size_t begin, std::size_t end) {
     return first_bad(begin, end, [&](std::size_t k) { return !(std::abs(values[k]) <= bound); });
@@ -57,10 +57,10 @@ Result<std::size_t> first_not_finite(std::span<const float> values) {
   return first_beyond(values, std::numeric_limits<float>::max());
 }
 
-/// The first vertex that does not fit float in the model's space.
+/// The first vertex whose coordinates in the model's space exceed the range of float.
 Result<std::size_t> first_misplaced(const Mesh& mesh) {
   const std::array<double, 3> origin{mesh.origin.x, mesh.origin.y, mesh.origin.z};
-  constexpr float ample = 1e38f;  // it and an origin as large give a sum within float
+  constexpr float ample = 1e38f;  // the sum of two such numbers fits float
   const auto is_small = [](double x) { return std::abs(x) <= double{ample}; };
   Result<std::size_t> large = first_beyond(mesh.positions, ample);
   if (!large) return large;

@@ -1,5 +1,5 @@
 #pragma once
-// Corners of triangles, each with its own copy of the position, to vertices.
+// Makes vertices of the corners of triangles, each of which has its own copy of the position.
 
 #include <array>
 #include <cstdint>
@@ -7,18 +7,18 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Numbers distinct positions in the order in which they come. Positions are one if they are of the same bits, -0 taken
-/// as 0. Memory: 4 to 16 bytes a vertex beside the positions.
+/// Numbers distinct positions in the order in which they come. Positions are equal if their bits are, with -0 taken as
+/// 0. Memory: 4 to 16 bytes per vertex besides the positions.
 class VertexWelder {
  public:
-  /// `positions`: three floats a vertex, to which new ones are appended; at most 2^32 - 1 vertices.
+  /// New positions are appended to `positions`: three floats per vertex, at most 2^32 - 1 vertices.
   explicit VertexWelder(std::vector<float>& positions) : positions_(positions), table_(min_size, none) {}
 
   std::uint32_t index_of(const std::array<float, 3>& position);
 
  private:
   static constexpr std::uint32_t none = ~std::uint32_t{0};
-  static constexpr std::size_t min_size = 64;  // a power of two, as all sizes
+  static constexpr std::size_t min_size = 64;  // a power of two, like all sizes
 
   std::size_t slot_of(const std::array<float, 3>& position) const;
   void grow();

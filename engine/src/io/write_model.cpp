@@ -1,13 +1,14 @@
-// Surfaces to patches to files.
+// Converts surfaces to patches and writes them.
 
 #include <algorithm>
 #include <array>
 #include <string>
 #include <utility>
 
-#include "base/guard.h"
-#include "io/formats.h"
 #include "io/model_formats.h"
+#include "tessera/guard.h"
+#include "tessera/io.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -37,7 +38,7 @@ Result<WrittenModel> write(const Model& model, const fs::path& path, const FitOp
     add(facts, grid);
     WrittenSurface written{*surface.name, grid.breaks_u(), grid.breaks_v(), grid.patches(), *surface.trims};
     if (!written.trims.empty() && std::holds_alternative<QuadricPiece>(surface.surface)) {
-      facts.warnings.push_back(trims_left_out(k, written, "they are by other parameters than its patches"));
+      facts.warnings.push_back(trims_left_out(k, written, "their parameters are not those of its patches"));
       written.trims = {};
     }
     surfaces.push_back(written);

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double rounding = 1e-12;
 
-/// With zeros where only the rounding of pi is in the way.
+/// The point at an angle; coordinates that differ from zero only by the rounding of pi are zero.
 Arcs::Point on_circle(double angle) {
   const auto clean = [](double value) { return std::abs(value) < 1e-15 ? 0.0 : value; };
   return {clean(std::cos(angle)), clean(std::sin(angle)), 1};
@@ -26,7 +26,7 @@ std::vector<Arcs::Point> Arcs::points() const {
   std::vector<Point> points{on_circle(from_)};
   const double inner = std::cos(half());
   for (int k = 0; k < count_; ++k) {
-    const Point corner = on_circle(0.5 * (knot(k) + knot(k + 1)));  // of the tangents
+    const Point corner = on_circle(0.5 * (knot(k) + knot(k + 1)));  // where the tangents meet
     points.push_back({corner.cosine / inner, corner.sine / inner, inner});
     points.push_back(on_circle(knot(k + 1)));
   }

@@ -1,32 +1,32 @@
 #pragma once
-// The unit circle between two angles as rational quadratic arcs, and what their parameter is to the angle.
+// The unit circle between two angles as rational quadratic arcs, and the relation of their parameter to the angle.
 
 #include <vector>
 
 namespace tessera::inline abi_0_1 {
 
-/// Arcs of equal length, at most 90 degrees each, which meet in double knots; their parameter is the angle at the knots.
-/// Within an arc about m of half-width h it is m + h tan((angle - m)/2) / tan(h/2) (the rational quadratic of weights 1,
-/// cos h, 1 is the stereographic one: Farin, Curves and Surfaces for CAGD, 5th ed., sec. 12.6, 12.8).
+/// Arcs of equal length, at most 90 degrees each, which meet in double knots; at the knots, their parameter is the
+/// angle. Within an arc about m of half-width h, it is m + h tan((angle - m)/2) / tan(h/2): the rational quadratic of
+/// weights 1, cos h, 1 is the stereographic one (Farin, Curves and Surfaces for CAGD, 5th ed., sec. 12.6, 12.8).
 class Arcs {
  public:
-  /// from < to, at most a full turn, which closes bit for bit.
+  /// Requires from < to. At most a full turn, which closes bit for bit.
   Arcs(double from, double to);
 
   double from() const { return from_; }
   double to() const { return to_; }
 
-  /// A circle's point as a control point: (cosine, sine) are those of a point of the plane.
+  /// A control point of the circle, (cosine, sine) as coordinates in the plane.
   struct Point {
     double cosine = 1, sine = 0, weight = 1;
   };
   std::vector<Point> points() const;
   std::vector<double> knots() const;
 
-  /// Both ways; what lies outside goes on with the nearest arc.
+  /// Conversions between angle and parameter; an angle outside continues the nearest arc.
   double parameter(double angle) const;
   double angle(double parameter) const;
-  /// d parameter / d angle: continuous, as the arcs are equal.
+  /// d parameter / d angle; continuous, because the arcs are equal.
   double slope(double angle) const;
 
  private:

@@ -21,7 +21,7 @@ namespace {
 
 using opencascade::handle;
 
-/// "**** ERR StepFile : Undefined Parsing: Line 109: Incorrect syntax    ****" without its frame.
+/// A message such as "**** ERR StepFile : Undefined Parsing: Line 109: Incorrect syntax    ****" without its frame.
 std::string plain(std::string text) {
   for (const char* const prefix : {"ERR StepFile : ", "Undefined Parsing: "}) {
     const std::size_t place = text.find(prefix);
@@ -42,7 +42,7 @@ class LastFailure : public Message_Printer {
   std::string& text_;
 };
 
-/// "#51", "D113".
+/// A label such as "#51" or "D113".
 std::string label_of(const Interface_InterfaceModel& model, const handle<Standard_Transient>& entity) {
   if (entity.IsNull() || model.Number(entity) == 0) return {};
   const handle<TCollection_HAsciiString> label = model.StringLabel(entity);

@@ -1,5 +1,5 @@
 #pragma once
-// A file as OpenCASCADE understands it.
+// A file as OpenCASCADE reads it.
 
 #include <opencascade/TopoDS_Shape.hxx>
 #include <opencascade/XSControl_Reader.hxx>
@@ -11,29 +11,30 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Shapes, and what the file calls them. The maps' keys are the shapes' own identities (TShape), whatever their places.
+/// Shapes, and their names in the file. The keys of the maps are the identities of shapes (TShape), independent of
+/// placement.
 struct CadFile {
   TopoDS_Shape shape;
   std::unordered_map<const void*, std::string> names;   ///< of products and entities
   std::unordered_map<const void*, std::string> labels;  ///< of faces: "#51" in STEP, "D113" in IGES
-  std::vector<std::string> complaints;                  ///< of OpenCASCADE, about what it cannot make of the file
-  std::string contents;                                 ///< for a file without faces: what else there is, or nothing
+  std::vector<std::string> complaints;                  ///< OpenCASCADE's messages about parts that it cannot read
+  std::string contents;                                 ///< for a file without faces: what it holds instead, or empty
 };
 
-// Messages begin with `path`. OpenCASCADE's settings are changed, its messages taken away. Errors: parse_error.
-// May throw Standard_Failure.
+// Loads a file. Messages begin with `path`. Changes OpenCASCADE's settings and diverts its messages. Errors:
+// parse_error. May throw Standard_Failure.
 Result<CadFile> load_step(const std::string& path);
 Result<CadFile> load_iges(const std::string& path);
 
-// What both loaders share.
+// Shared by both loaders.
 
-/// Takes OpenCASCADE's messages away from standard output; `last_failure` keeps the last that tells of a failure.
+/// Diverts OpenCASCADE's messages from standard output; `last_failure` keeps the last that reports a failure.
 void take_messages(std::string& last_failure);
-/// Sets millimetres; after the reader is made, whose making defines the settings.
+/// Sets millimetres. Call it after making the reader, which defines the settings.
 void set_unit();
 /// The shape, the labels and the complaints of what the reader has transferred.
 CadFile transferred(const XSControl_Reader& reader);
-/// The identity under which maps keep a shape; null for a null shape.
+/// The key of a shape in the maps; null for a null shape.
 inline const void* identity(const TopoDS_Shape& shape) { return shape.IsNull() ? nullptr : shape.TShape().get(); }
 
 }  // namespace tessera::inline abi_0_1

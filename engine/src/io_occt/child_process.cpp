@@ -17,6 +17,7 @@
 #include <new>
 #include <system_error>
 
+#include "base/text.h"
 #include "io/descriptor.h"
 
 namespace tessera::inline abi_0_1 {
@@ -29,7 +30,7 @@ Status no_child(const char* what) {
   return Status(StatusCode::internal, std::string(what) + ": " + std::generic_category().message(errno));
 }
 
-/// Bytes that this process has for data, as RLIMIT_DATA counts them; 0 where the system does not say.
+/// Bytes of data of this process, as RLIMIT_DATA counts them; 0 if the system does not say.
 std::size_t data_bytes() {
   std::FILE* const file = std::fopen("/proc/self/statm", "re");
   if (!file) return 0;
@@ -39,7 +40,7 @@ std::size_t data_bytes() {
   return found == 6 ? data * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE)) : 0;
 }
 
-/// Lowers a limit; one that is lower already stays.
+/// Lowers a limit; never raises one.
 template <class Resource>
 void lower(Resource resource, rlim_t value) {
   rlimit now{};
@@ -59,7 +60,7 @@ bool write_all(int descriptor, const char* bytes, std::size_t count) {
   return true;
 }
 
-/// Nothing of the parent's is to be disturbed, and nothing is to remain.
+/// Detaches the child: it must not disturb the parent, and it must end with it.
 void leave_the_parent(int& output, pid_t parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(child_failed);
@@ -92,7 +93,7 @@ void leave_the_parent(int& output, pid_t parent) {
   }
 }
 
-/// Up to `count` bytes: fewer where the other end is closed before.
+/// Reads up to `count` bytes; fewer if the other end closes first.
 std::size_t read_up_to(int descriptor, char* bytes, std::size_t count) {
   std::size_t used = 0;
   while (used < count) {
@@ -104,7 +105,7 @@ std::size_t read_up_to(int descriptor, char* bytes, std::size_t count) {
   return used;
 }
 
-/// Reads what live_as_child writes; false where it is not complete.
+/// Reads what live_as_child writes; false if it is incomplete.
 bool receive(int descriptor, std::string& bytes) {
   Size size = 0;
   std::array<char, sizeof size> head;
@@ -122,10 +123,10 @@ bool receive(int descriptor, std::string& bytes) {
 Status end_of(int status, const ChildLimits& limits, std::string_view worker) {
   const std::string who(worker);
   if (WIFEXITED(status) && WEXITSTATUS(status) == child_out_of_memory)
-    return Status(StatusCode::out_of_memory, who + " wanted more memory than it is allowed");
+    return Status(StatusCode::out_of_memory, who + " exceeded its memory limit");
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
     return Status(StatusCode::internal,
-                  who + " came to no end in " + std::to_string(limits.cpu_seconds) + " seconds of computing");
+                  who + " did not end within " + counted(limits.cpu_seconds, "second") + " of processor time");
   if (!WIFSIGNALED(status)) return Status(StatusCode::internal, who + " ended without a result");
   const char* const signal = ::sigdescr_np(WTERMSIG(status));
   return Status(StatusCode::internal, who + " crashed (" + (signal ? signal : "unknown signal") + ")");
@@ -147,13 +148,13 @@ Result<std::string> run_in_child(FunctionRef<std::string()> work, const ChildLim
   bool complete = false;
   try {
     complete = receive(input.number(), bytes);
-  } catch (...) {  // no memory for the bytes: the child is not to remain
+  } catch (...) {  // no memory for the bytes: the child must end all the same
     ::kill(child, SIGKILL);
     while (::waitpid(child, nullptr, 0) < 0 && errno == EINTR) continue;
     throw;
   }
   input.close();
-  // Where the program itself collects its children, or ignores them, there is no status: what was received decides.
+  // If the program itself collects its children, or ignores them, there is no status: the bytes received decide.
   int status = 0;
   while (::waitpid(child, &status, 0) < 0) {
     if (errno != EINTR) break;

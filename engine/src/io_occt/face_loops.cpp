@@ -22,7 +22,8 @@ namespace {
 
 using opencascade::handle;
 
-/// Lengths below this are rounding to OpenCASCADE's users; above, edges and faces state their own.
+/// The largest tolerance that the face and its edges state, at least OpenCASCADE's own: shorter lengths are rounding to
+/// its users.
 double tolerance_of(const TopoDS_Face& face) {
   double tolerance = std::max(::Precision::Confusion(), BRep_Tool::Tolerance(face));
   for (TopExp_Explorer edge(face, TopAbs_EDGE); edge.More(); edge.Next())
@@ -34,9 +35,9 @@ double tolerance_of(const TopoDS_Face& face) {
 struct Side {
   double from, to;            // of the face
   double first, last;         // of the surface
-  double period;              // 0: none
-  double length_tolerance;    // of the face, as a parameter
-  std::vector<double> knots;  // of the surface, where it has any
+  double period;              // 0: not periodic
+  double length_tolerance;    // of the face, in units of the parameter
+  std::vector<double> knots;  // of the surface, if any
 
   double tolerance() const { return std::clamp(length_tolerance, 1e-9 * (to - from), 1e-4 * (to - from)); }
   void settle() {
@@ -55,7 +56,7 @@ struct Side {
   }
 
  private:
-  /// The nearest knot, if it is one but for rounding: else a patch as narrow as that would lie between the two.
+  /// The nearest knot if it is within `tol` of `end`: otherwise a patch as narrow as that would lie between the two.
   double settled_on_knot(double end, double tol) const {
     double nearest = end, distance = tol;
     for (const double knot : knots) {
@@ -87,7 +88,8 @@ std::vector<double> knots_v(const GeomAdaptor_Surface& surface) {
   return {};
 }
 
-/// The edges of a wire in their order. Where the wire is broken, those that the walk along it does not reach come last.
+/// The edges of a wire in their order. If the wire is broken, the edges that the walk along it does not reach come
+/// last.
 std::vector<TopoDS_Edge> edges_of(const TopoDS_Wire& wire, const TopoDS_Face& face) {
   std::vector<TopoDS_Edge> edges;
   for (BRepTools_WireExplorer walk(wire, face); walk.More(); walk.Next()) edges.push_back(walk.Current());
@@ -122,7 +124,7 @@ bool is_on_a_side(const Curve& curve, const FaceBox& box) {
          all([&](const Vec3& p) { return std::abs(p.y - d.v1) <= box.tolerance_v; });
 }
 
-/// Of the polygon of the curves' ends.
+/// The area of the polygon through the curves' ends.
 double enclosed_area(const std::vector<Curve>& curves) {
   double twice = 0;
   const Vec3 corner = curves.front().points().front();
@@ -130,7 +132,7 @@ double enclosed_area(const std::vector<Curve>& curves) {
   return 0.5 * twice;
 }
 
-/// Whether one loop goes around the box along its sides: then nothing is trimmed.
+/// Whether one loop goes around the box along its sides, so that nothing is trimmed.
 bool is_whole_box(const std::vector<TrimLoop>& loops, const FaceBox& box) {
   if (loops.size() != 1 || loops[0].curves.empty()) return false;
   const std::vector<Curve>& curves = loops[0].curves;
@@ -170,7 +172,7 @@ Result<FaceBox> face_box(const TopoDS_Face& face) {
 
 Result<std::vector<TrimLoop>> face_loops(const TopoDS_Face& given, const FaceBox& box,
                                          const Reparametrization& parameters) {
-  // Wires of a face that is reversed run the other way: what a loop encloses does not depend on that.
+  // Wires of a reversed face run the other way; the region that a loop encloses does not depend on that.
   const TopoDS_Face face = TopoDS::Face(given.Oriented(TopAbs_FORWARD));
   const TopoDS_Wire outer = BRepTools::OuterWire(face);
   std::vector<TrimLoop> loops;

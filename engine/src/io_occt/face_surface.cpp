@@ -25,7 +25,7 @@ namespace {
 
 using opencascade::handle;
 
-/// Axes at right angles, of unit length, left- or right-handed.
+/// Orthogonal axes of unit length, left- or right-handed.
 struct Frame {
   Vec3 origin, x, y, z;
 
@@ -49,7 +49,7 @@ Result<FaceSurface> made(Result<BSplineSurface> surface, const Reparametrization
   return FaceSurface{*std::move(surface), parameters, fit_error};
 }
 
-/// `profile`, whose points are in the frame's coordinates, along v, turned about the frame's z by the angles u.
+/// Revolves `profile`, which runs along v with points in the frame's coordinates, about the frame's z by the angles u.
 Result<FaceSurface> revolved(const Frame& frame, const Interval& angles, const SplineLine& profile) {
   const Arcs turn(angles.from, angles.to);
   std::vector<Vec3> points;
@@ -65,7 +65,7 @@ Result<FaceSurface> revolved(const Frame& frame, const Interval& angles, const S
               {turn, profile.arcs}, profile.fit_error);
 }
 
-/// `profile` along u, moved by v times `direction`.
+/// Moves `profile`, which runs along u, by v times `direction`.
 Result<FaceSurface> extruded(const SplineLine& profile, const Vec3& direction, const Interval& range) {
   std::vector<Vec3> points;
   std::vector<double> weights;
@@ -101,7 +101,7 @@ Result<FaceSurface> from_cone(const gp_Cone& cone, const Domain& box) {
                   straight_line({radii[0], 0, box.v0 * c}, {radii[1], 0, box.v1 * c}, range_v(box)));
 }
 
-/// The circle of radius `minor` whose centre is `major` away from the axis, turned about the axis.
+/// Revolves a circle of radius `minor`, whose centre is `major` away from the axis, about the axis.
 Result<FaceSurface> from_turned_circle(const gp_Ax3& axes, double major, double minor, const Domain& box) {
   return revolved(axes, range_u(box), ellipse_arcs({major, 0, 0}, {minor, 0, 0}, {0, 0, minor}, range_v(box)));
 }
@@ -160,7 +160,7 @@ Result<FaceSurface> from_bezier(const Geom_BezierSurface& surface, const Domain&
               {});
 }
 
-/// How far the two are apart at equal parameters, at a fine grid of them.
+/// The largest distance of the two surfaces at equal parameters, on a fine grid.
 double deviation(const Geom_Surface& a, const Geom_Surface& b, const Domain& box) {
   constexpr int steps = 48;
   double largest = 0;
@@ -172,8 +172,8 @@ double deviation(const Geom_Surface& a, const Geom_Surface& b, const Domain& box
   return largest;
 }
 
-/// Any surface, at equal parameters, to within 1e-6 of its size where OpenCASCADE gets there. C0 alone: of smoother fits
-/// OpenCASCADE 7.6 states errors that are too small by factors of thousands.
+/// Approximates any surface, at equal parameters, to within 1e-6 of its size if OpenCASCADE can. Asks for C0 only: for
+/// smoother fits OpenCASCADE 7.6 states errors that are too small by factors of thousands.
 Result<FaceSurface> fitted(const handle<Geom_Surface>& surface, const Domain& box) {
   Box3 points;
   for (int k = 0; k < 25; ++k) points.extend(vec3(surface->Value(box.u_at(k % 5 / 4.0), box.v_at(k / 5 / 4.0)).XYZ()));
@@ -187,7 +187,7 @@ Result<FaceSurface> fitted(const handle<Geom_Surface>& surface, const Domain& bo
   return face;
 }
 
-/// Without the clothes that change neither points nor parameters.
+/// The surface inside wrappers that change neither points nor parameters.
 handle<Geom_Surface> bare(handle<Geom_Surface> surface) {
   for (;;) {
     handle<Geom_Surface> inner;

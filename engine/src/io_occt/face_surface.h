@@ -1,5 +1,5 @@
 #pragma once
-// The surface of a face, in the form of ours.
+// The surface of a face as a surface of the engine.
 
 #include <array>
 #include <opencascade/Geom_Surface.hxx>
@@ -13,9 +13,9 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// From OpenCASCADE's parameters of a surface to ours.
+/// Maps OpenCASCADE's parameters of a surface to ours.
 struct Reparametrization {
-  std::optional<Arcs> u, v;  ///< empty: equal
+  std::optional<Arcs> u, v;  ///< empty: equal parameters
 
   bool is_identity() const { return !u && !v; }
   std::array<double, 2> operator()(double theirs_u, double theirs_v) const {

@@ -58,7 +58,7 @@ Result<CadFile> load_iges(const std::string& path) {
   take_messages(failure);
   IGESControl_Reader reader;
   set_unit();
-  // Splines as they are, not split where they are C0 alone.
+  // Keeps splines whole, rather than splitting them where they are only C0.
   Interface_Static::SetIVal("read.iges.bspline.continuity", 0);
   reader.SetReadVisible(false);
   if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) {

@@ -5,7 +5,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// 0 for a line that is too short.
+/// The letter of a line's section; 0 for a line that is too short.
 char section_of(const std::string& line) {
   constexpr std::size_t column = 72;
   return line.size() > column ? line[column] : '\0';
@@ -30,7 +30,7 @@ Status check_iges_sections(const std::string& path) {
   if (file.bad()) return Status(StatusCode::io_error, path + ": cannot be read");
   if (!ended)
     return Status(StatusCode::parse_error,
-                  path + ":" + std::to_string(number) + ": the file ends before its section T: it is cut short");
+                  path + ":" + std::to_string(number) + ": the file ends before its section T: it is truncated");
   return {};
 }
 

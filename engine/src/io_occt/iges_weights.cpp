@@ -11,7 +11,8 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// What parts parameters and ends records: the first two parameters of section G, as "1H,,1H;,", or empty for these.
+/// The characters that separate parameters and end records: the first two parameters of section G, as "1H,,1H;,", or
+/// empty for these.
 struct Delimiters {
   char parameter = ',', record = ';';
 
@@ -23,7 +24,7 @@ struct Delimiters {
   }
 };
 
-/// The numbers of a record; 0 for a parameter that is left out or no number. A D may stand for the E of an exponent.
+/// The numbers of a record; 0 for a parameter that is missing or not a number. A D may stand for the E of an exponent.
 std::vector<double> numbers_of(std::string_view record, char delimiter) {
   std::vector<double> numbers;
   while (!record.empty()) {
@@ -41,8 +42,8 @@ std::vector<double> numbers_of(std::string_view record, char delimiter) {
 
 std::size_t count(double number) { return number > 0 && number < 1e6 ? static_cast<std::size_t>(number) : 0; }
 
-/// 128, K1, K2, M1, M2, five flags of which the third is 1 for a polynomial surface, the knots, the weights with the
-/// first index running fastest (IGES 5.3, sec. 4.23).
+/// Checks 128, K1, K2, M1, M2, five flags (the third is 1 for a polynomial surface), the knots, and the weights with
+/// the first index running fastest (IGES 5.3, sec. 4.23).
 Status check_surface(const std::vector<double>& p, const std::string& where) {
   if (p.size() < 10 || p[0] != 128 || p[7] == 1) return {};
   const std::size_t row = count(p[1]) + 1, rows = count(p[2]) + 1;

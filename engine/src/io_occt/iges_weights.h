@@ -1,5 +1,5 @@
 #pragma once
-// Weights of the rational surfaces of an IGES file, as they stand in its text.
+// Checks the weights of the rational surfaces in the text of an IGES file.
 
 #include <string>
 
@@ -7,9 +7,9 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// That those of entities of type 128 are positive. OpenCASCADE silently leaves out all weights of a surface of which one
-/// is not, and reads another surface. What is no number is left to it. Errors: invalid_weight (names the entity and the
-/// weight).
+/// Checks that the weights of all entities of type 128 are positive. If one is not, OpenCASCADE silently drops all
+/// weights of that surface and reads another one. Text that is not a number is left to OpenCASCADE. Errors:
+/// invalid_weight (names the entity and the weight).
 Status check_iges_weights(const std::string& path);
 
 }  // namespace tessera::inline abi_0_1

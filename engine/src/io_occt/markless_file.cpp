@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "io/file.h"
+#include "tessera/io.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

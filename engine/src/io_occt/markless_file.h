@@ -8,11 +8,11 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// A file without the byte order mark that an editor has put before it: OpenCASCADE would take it for a part of the text,
-/// and in IGES it moves the columns of the first line. As long as it lives, path() can be opened.
+/// A file without the byte order mark that an editor may have put before it. OpenCASCADE would take the mark for text,
+/// and in IGES it moves the columns of the first line. path() can be opened during the object's lifetime.
 class MarklessFile {
  public:
-  /// The file itself, or a copy in memory where it has the mark. Errors: io_error.
+  /// Uses the file itself, or a copy in memory if it has the mark. Errors: io_error.
   static Result<MarklessFile> make(const std::string& path);
   const std::string& path() const { return path_; }
 

@@ -26,7 +26,7 @@ class Writer {
   std::string bytes_;
 };
 
-/// Each call is false where the bytes end before, and then leaves what it fills unspecified.
+/// Each call returns false if the bytes end too early, and then leaves its output unspecified.
 class Reader {
  public:
   explicit Reader(std::string_view bytes) : rest_(bytes) {}
@@ -39,7 +39,7 @@ class Reader {
     rest_.remove_prefix(sizeof value);
     return true;
   }
-  /// A count of things of which each takes at least `least` bytes.
+  /// Reads a count of things that take at least `least` bytes each.
   bool take_count(std::size_t& count, std::size_t least) {
     std::uint64_t stated = 0;
     if (!take(stated) || stated > rest_.size() / least) return false;

@@ -1,5 +1,5 @@
 #pragma once
-// A model of splines, or why there is none, as bytes for another process of this program.
+// A model of splines, or the error in its place, as bytes for another process of this program.
 
 #include <string>
 #include <string_view>
@@ -9,9 +9,9 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Of surfaces that are B-splines. Anything else becomes an error of kind internal.
+/// Converts a model to bytes. Its surfaces must be B-splines; any other kind gives an internal error.
 std::string to_bytes(const Result<Model>& model);
-/// The model again, bit for bit. Errors: the one that was written; internal (these are not bytes of to_bytes).
+/// Restores the model bit for bit. Errors: the one that was written; internal (these are not bytes of to_bytes).
 Result<Model> model_from_bytes(std::string_view bytes);
 
 }  // namespace tessera::inline abi_0_1

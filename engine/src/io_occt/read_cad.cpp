@@ -7,15 +7,16 @@
 #include <string_view>
 #include <system_error>
 
-#include "base/guard.h"
 #include "io/file.h"
-#include "io/formats.h"
 #include "io_occt/cad_file.h"
 #include "io_occt/child_process.h"
 #include "io_occt/markless_file.h"
 #include "io_occt/model_bytes.h"
 #include "io_occt/shape_model.h"
+#include "tessera/guard.h"
+#include "tessera/io.h"
 #include "tessera/io_occt.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -37,14 +38,14 @@ const CadFormat* find_format(const fs::path& path) {
   return nullptr;
 }
 
-/// The file's size, if it can be read at all.
+/// The size of the file, if it can be read.
 Result<std::uintmax_t> readable_size(const fs::path& path) {
   std::error_code error;
   const fs::file_status facts = fs::status(path, error);
   if (fs::is_directory(facts)) return Status(StatusCode::io_error, path.string() + ": is a directory, not a file");
-  // Read twice: a pipe would end, or keep whoever opens it waiting.
+  // Must be a regular file, because it is read twice: a pipe would end, or block whoever opens it.
   if (fs::exists(facts) && !fs::is_regular_file(facts))
-    return Status(StatusCode::unsupported, path.string() + ": STEP and IGES are read from files alone");
+    return Status(StatusCode::unsupported, path.string() + ": STEP and IGES are read from regular files only");
   if (!std::ifstream(path, std::ios::binary)) return io_failure(path, "cannot be opened", errno);
   const std::uintmax_t size = fs::file_size(path, error);
   if (error) return io_failure(path, "cannot be read", error.value());
@@ -52,7 +53,7 @@ Result<std::uintmax_t> readable_size(const fs::path& path) {
   return size;
 }
 
-/// A message that begins with the path of a copy, beginning with the file's own.
+/// Replaces the path of a copy at the begin of a message by the file's own path.
 Status renamed(const Status& status, const std::string& copy, const std::string& path) {
   if (!status.message().starts_with(copy)) return status;
   return Status(status.code(), path + status.message().substr(copy.size()), status.index());
@@ -65,9 +66,9 @@ Result<Model> load_model(const std::string& path, Load* load) {
     const Result<CadFile> file = load(plain->path());
     return file ? model_of(*file, path) : Result<Model>(renamed(file.status(), plain->path(), path));
   } catch (const Standard_OutOfMemory&) {
-    return Status(StatusCode::out_of_memory, path + ": OpenCASCADE wants more memory than it is allowed");
+    return Status(StatusCode::out_of_memory, path + ": OpenCASCADE exceeded its memory limit");
   } catch (const std::bad_alloc&) {
-    return Status(StatusCode::out_of_memory, path + ": OpenCASCADE wants more memory than it is allowed");
+    return Status(StatusCode::out_of_memory, path + ": OpenCASCADE exceeded its memory limit");
   } catch (const Standard_Failure& failure) {
     return Status(StatusCode::parse_error,
                   path + ": OpenCASCADE: " + failure.DynamicType()->Name() + ": " + failure.GetMessageString());

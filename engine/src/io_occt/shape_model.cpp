@@ -25,7 +25,7 @@ Affine affine(const gp_Trsf& map) {
   return {.columns = {column(1), column(2), column(3)}, .translation = column(4)};
 }
 
-/// u and v swapped: the normal points the other way.
+/// Swaps u and v, which turns the normal around.
 Result<BSplineSurface> transposed(const BSplineSurface& s) {
   std::vector<Vec3> points;
   std::vector<double> weights;
@@ -59,16 +59,12 @@ Status transpose(BSplineSurface& surface, std::vector<TrimLoop>& loops) {
   return {};
 }
 
-std::string counted(std::size_t count, const char* thing) {
-  return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
-}
-
-/// Gathers faces, and what is to be said of them.
+/// Gathers faces and their warnings.
 class ModelOfFaces {
  public:
   ModelOfFaces(const CadFile& file, const std::string& path) : file_(file), path_(path) {}
 
-  /// The faces of `shape`; `name` is that of what it is a part of.
+  /// Adds the faces of `shape`; `name` is the name of the whole that it belongs to.
   void add_all(const TopoDS_Shape& shape, const std::string* name) {
     if (shape.IsNull()) return;
     const auto own = file_.names.find(identity(shape));

@@ -9,8 +9,8 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// What tessera/io_occt.h says, face after face in the order of the shape. Messages begin with `path`. Errors: parse_error
-/// and those of the first face, if none is left.
+/// Makes the model that tessera/io_occt.h describes, face by face in the order of the shape. Messages begin with
+/// `path`. Errors: parse_error; if no face remains, the error of the first one.
 Result<Model> model_of(const CadFile& file, const std::string& path);
 
 }  // namespace tessera::inline abi_0_1

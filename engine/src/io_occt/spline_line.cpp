@@ -44,7 +44,7 @@ SplineLine from_bezier(const Geom_BezierCurve& curve, const Interval& range) {
   return out;
 }
 
-/// vertex + t^2/(4 f) x + t y: its blossom gives the control points.
+/// The parabola vertex + t^2/(4 f) x + t y; its blossom gives the control points.
 SplineLine from_parabola(const gp_Parab& parabola, const Interval& range) {
   const Vec3 vertex = vec3(parabola.Location().XYZ()), x = vec3(parabola.XAxis().Direction().XYZ()),
              y = vec3(parabola.YAxis().Direction().XYZ());
@@ -78,7 +78,8 @@ Result<SplineLine> fitted(const handle<Geom_Curve>& curve, const Interval& range
 }  // namespace
 
 Interval PoleLine::covered(const Interval& range) const {
-  // An end that is a knot but for the rounding of a period must be that knot: there would be a patch between the two.
+  // An end that equals a knot up to the rounding of a period must be that knot: otherwise a patch would lie between
+  // them.
   const double tiny = 1e-12 * (range.to - range.from);
   const auto settled = [&](double end) {
     const auto knot = std::lower_bound(knots.begin(), knots.end(), end - tiny);
@@ -96,7 +97,7 @@ PoleLine unrolled(const PoleCircle& circle, const TColStd_Array1OfReal& flat, co
     for (int k = 0; k < circle.pole_count; ++k) line.poles.push_back(k);
     return line;
   }
-  // flat[0] is the first knot of pole 0; each turn brings all poles again, a period on.
+  // flat[0] is the first knot of pole 0; each turn repeats all poles, one period on.
   const int count = circle.pole_count, p = circle.degree;
   const auto turn = [&](int k) { return static_cast<int>(std::floor(static_cast<double>(k) / count)); };
   const auto pole = [&](int k) { return k - count * turn(k); };
@@ -106,7 +107,7 @@ PoleLine unrolled(const PoleCircle& circle, const TColStd_Array1OfReal& flat, co
   while (knot(first + p + 1) <= range.from + tiny) ++first;
   for (int k = first;; ++k) {
     const double value = knot(k);
-    // Where a turn ends, equal knots may differ by the rounding of the period.
+    // At the end of a turn, equal knots may differ by the rounding of the period.
     line.knots.push_back(!line.knots.empty() && value < line.knots.back() + tiny ? line.knots.back() : value);
     const int domain_end = k - p;  // the knot that ends the domain, if this one is the last
     if (domain_end > first + p && knot(domain_end) >= range.to - tiny) break;

@@ -1,5 +1,5 @@
 #pragma once
-// Curves and surfaces of OpenCASCADE along one parameter, in the form of our splines.
+// Curves and surfaces of OpenCASCADE along one parameter, as our splines.
 
 #include <opencascade/Geom_Curve.hxx>
 #include <opencascade/TColStd_Array1OfReal.hxx>
@@ -16,7 +16,7 @@ namespace tessera::inline abi_0_1 {
 
 inline Vec3 vec3(const gp_XYZ& p) { return {p.X(), p.Y(), p.Z()}; }
 
-/// Knots, and which pole (from 0) stands at each place.
+/// Knots, and the pole (from 0) at each place.
 struct PoleLine {
   int degree = 1;
   std::vector<double> knots;
@@ -25,12 +25,12 @@ struct PoleLine {
   Interval covered(const Interval& range) const;
 };
 
-/// How OpenCASCADE holds one direction of a spline: `flat` is its KnotSequence, period 0 where it has none.
+/// One direction of a spline in OpenCASCADE: `flat` is its KnotSequence; the period is 0 if it has none.
 struct PoleCircle {
   int degree = 1, pole_count = 2;
   double period = 0;
 };
-/// Periodic splines are unrolled over [from, to], by repeated poles on unclamped knots: no pole is computed.
+/// Unrolls a periodic spline over [from, to], with repeated poles on unclamped knots: no pole is computed.
 PoleLine unrolled(const PoleCircle& circle, const TColStd_Array1OfReal& flat, const Interval& range);
 
 /// A curve over an interval. Points may have weights (empty: none).
@@ -40,7 +40,7 @@ struct SplineLine {
   std::vector<Vec3> points;
   std::vector<double> weights;
   Interval range;
-  std::optional<Arcs> arcs;  ///< how the given parameter is an angle; empty: parameters are equal
+  std::optional<Arcs> arcs;  ///< maps the caller's parameter, an angle, to ours; empty: they are equal
   double fit_error = 0;      ///< 0: exact
 
   double weight(std::size_t k) const { return weights.empty() ? 1 : weights[k]; }
@@ -48,11 +48,11 @@ struct SplineLine {
 
 /// The straight line with these ends at the ends of the range.
 SplineLine straight_line(const Vec3& start, const Vec3& end, const Interval& range);
-/// centre + cos(t) x + sin(t) y.
+/// The ellipse centre + cos(t) x + sin(t) y.
 SplineLine ellipse_arcs(const Vec3& centre, const Vec3& x, const Vec3& y, const Interval& range);
 
-/// Exact, but for offset curves and hyperbolas, which are fitted to within 1e-6 of their length. May throw
-/// Standard_Failure.
+/// Converts a curve exactly. Exceptions: offset curves and hyperbolas, which are fitted to within 1e-6 of their length.
+/// May throw Standard_Failure.
 Result<SplineLine> spline_line(const opencascade::handle<Geom_Curve>& curve, const Interval& range);
 
 }  // namespace tessera::inline abi_0_1

@@ -37,7 +37,8 @@ void collect_names(const XSControl_Reader& reader, CadFile& file) {
   }
 }
 
-/// Shapes that belong to no product are no roots: files that lack the products' part have them all the same.
+/// Transfers all representations of shapes, for files without products: a shape that belongs to no product is not a
+/// root.
 void transfer_representations(STEPControl_Reader& reader) {
   const handle<Interface_InterfaceModel> model = reader.Model();
   for (int k = 1; k <= model->NbEntities(); ++k)

@@ -14,7 +14,7 @@ namespace {
 
 using opencascade::handle;
 
-/// The spline itself, with its poles mapped: right where the map keeps straight what they span.
+/// The spline with its poles mapped: correct if the map keeps the span of the poles straight.
 Result<Curve> mapped_poles(const Geom2d_BSplineCurve& spline, const Reparametrization& parameters) {
   std::vector<Vec3> points;
   std::vector<double> weights;
@@ -42,7 +42,7 @@ struct Sample {
   Vec3 point, slope;
 };
 
-/// One knot interval of the spline as it runs in our parameters.
+/// One knot interval of the spline, in our parameters.
 class MappedSpan {
  public:
   MappedSpan(const Geom2d_BSplineCurve& spline, int span, const Reparametrization& parameters)
@@ -64,7 +64,7 @@ class MappedSpan {
   const Reparametrization& parameters_;
 };
 
-/// Cubics that share their ends, in Bezier form.
+/// Cubics in Bezier form that share their ends.
 struct Cubics {
   std::vector<Vec3> points;
   std::vector<double> knots;
@@ -83,7 +83,7 @@ struct Cubics {
   }
 };
 
-/// Position and slope at both ends; halved until the points between fit.
+/// Interpolates position and slope at both ends; halves the interval until the points between fit.
 void append_hermite(const MappedSpan& span, const Sample& a, const Sample& b, double tolerance, int depth,
                     Cubics& out) {
   const double third = (b.t - a.t) / 3;

@@ -1,5 +1,5 @@
 #pragma once
-// An edge's curve in a face's parameters, in the form of our splines.
+// The curve of an edge in a face's parameters, as one of our splines.
 
 #include <opencascade/Geom2d_Curve.hxx>
 
@@ -9,9 +9,9 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// The part of `curve` over `range` in our parameters, in the other direction if `reversed`. The curve's own spline where
-/// the parameters are equal, or where it is straight along one of them; else cubics within `tolerance`. Errors: those of
-/// Curve. May throw Standard_Failure.
+/// The part of `curve` over `range` in our parameters; reverses its direction if `reversed`. Uses the curve's own
+/// spline if the parameters are equal, or if the curve is straight along one of them; otherwise cubics within
+/// `tolerance`. Errors: those of Curve. May throw Standard_Failure.
 Result<Curve> trim_curve(const opencascade::handle<Geom2d_Curve>& curve, const Interval& range, bool reversed,
                          const Reparametrization& parameters, double tolerance);
 

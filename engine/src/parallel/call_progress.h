@@ -9,12 +9,12 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Turns the progress of a call's loops, each from 0 to 1, into one rise from 0 to 1. Threads: a loop reports one call at a
-/// time, and loops do not overlap.
+/// Turns the progress of a call's loops, each from 0 to 1, into one rise from 0 to 1. Threads: a loop must report one
+/// call at a time, and loops must not overlap.
 class CallProgress {
  public:
-  /// `ends`: the share of the call that is done after each loop, rising to at most 1. A loop beyond them takes half of the
-  /// rest. `execution` must outlive this object, and `ends` too.
+  /// `ends`: the share of the call that is done after each loop, rising to at most 1. A further loop takes half of the
+  /// rest. `execution` and `ends` must outlive this object.
   CallProgress(const Execution& execution, std::span<const double> ends)
       : execution_(execution),
         ends_(ends),
@@ -24,17 +24,17 @@ class CallProgress {
   CallProgress(const CallProgress&) = delete;
   CallProgress& operator=(const CallProgress&) = delete;
 
-  /// Options for each loop: the call's own, but for progress.
+  /// Options for each loop: those of the call, except for progress.
   const Execution& loops() const { return loops_; }
 
-  /// Ends the call: reports 1 unless the last loop did, if `status` is good, and returns it.
+  /// Ends the call and returns `status`. If it is ok, reports 1 unless the last loop did.
   Status finish(Status status) {
     if (status.ok()) report(1);
     return status;
   }
 
  private:
-  /// A loop's reports rise: one that does not is the first of the next loop.
+  /// The reports of a loop rise, so a report that does not rise is the first of the next loop.
   void loop_reports(double done) {
     if (done <= last_) {
       begin_ = end_;

@@ -1,5 +1,5 @@
 #pragma once
-// The first of several elements that threads find, whatever their order.
+// The least index that threads find, whatever their order.
 
 #include <atomic>
 #include <cstddef>

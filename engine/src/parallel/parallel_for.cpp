@@ -4,13 +4,14 @@
 #include <atomic>
 #include <mutex>
 
-#include "base/guard.h"
 #include "parallel/tbb_loop.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// Counts pieces and tells the caller, one call at a time and about a hundred times in all.
+/// Counts pieces and reports to the caller, one call at a time and about a hundred times in all.
 class Progress {
  public:
   Progress(const Execution& execution, std::size_t pieces) : execution_(execution), pieces_(pieces) {}
@@ -20,7 +21,7 @@ class Progress {
     const std::size_t done = ++done_;
     if (done != pieces_ && done * 100 / pieces_ == (done - 1) * 100 / pieces_) return;
     const std::lock_guard lock(mutex_);
-    if (done <= told_) return;  // a later piece was faster
+    if (done <= told_) return;  // a later piece has reported first
     told_ = done;
     execution_.progress(static_cast<double>(done) / static_cast<double>(pieces_));
   }

@@ -10,7 +10,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// What oneTBB promises, said to the thread sanitizer: the call happens before its pieces, and these before its return.
+/// Tells the thread sanitizer what oneTBB guarantees: the call happens before its pieces, and these before its return.
 /// Pieces are not ordered among themselves, so races between them are found.
 class Order {
  public:
@@ -21,7 +21,7 @@ class Order {
   void call_ends() { __tsan_acquire(&ended_); }
 
  private:
-  char begun_ = 0, ended_ = 0;  // their addresses are what counts
+  char begun_ = 0, ended_ = 0;  // only their addresses matter
 #else
   void call_begins() {}
   void piece_begins() {}

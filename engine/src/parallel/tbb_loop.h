@@ -1,6 +1,6 @@
 #pragma once
-// The plain loop over threads, apart so that the thread sanitizer can leave oneTBB's own templates out: it sees only half
-// of oneTBB's synchronisation, the other half being in a library that is not instrumented.
+// The plain loop over threads. A file of its own lets the thread sanitizer exclude oneTBB's templates: it sees only
+// half of oneTBB's synchronisation, because the other half is in a library that is not instrumented.
 
 #include <cstddef>
 
@@ -8,7 +8,8 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Calls body(piece) once for each piece in [0, pieces), in the caller's arena, in any order. What the body throws comes through.
+/// Calls body(piece) once for each piece in [0, pieces), in the caller's arena, in any order. Exceptions of the body
+/// propagate.
 void tbb_loop(std::size_t pieces, FunctionRef<void(std::size_t)> body);
 
 }  // namespace tessera::inline abi_0_1

@@ -1,11 +1,12 @@
 #include <cmath>
 #include <string>
 
-#include "base/guard.h"
 #include "base/text.h"
 #include "basis/bernstein.h"
 #include "basis/small_matrix.h"
 #include "surface/validate.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 #include "tessera/tensor_patch.h"
 
 // A basis holds three matrices: M itself, C = M_B^{-1} M, and C^{-1}. Each named basis has closed forms of all three,
@@ -123,8 +124,8 @@ Status check_entries(int degree, std::span<const double> entries) {
   const std::size_t size = static_cast<std::size_t>(degree) + 1;
   if (entries.size() != size * size)
     return {StatusCode::count_mismatch, "a basis matrix of degree " + std::to_string(degree) + " has " +
-                                            std::to_string(size) + " x " + std::to_string(size) + " entries, " +
-                                            std::to_string(entries.size()) + " were given"};
+                                            std::to_string(size) + " x " + std::to_string(size) + " entries, found " +
+                                            std::to_string(entries.size())};
   for (std::size_t k = 0; k < entries.size(); ++k)
     if (!std::isfinite(entries[k]))
       return {StatusCode::non_finite,

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <string>
 
-#include "base/guard.h"
 #include "surface/collapsed_edges.h"
 #include "surface/patch_pieces.h"
 #include "surface/validate.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -18,8 +19,7 @@ std::string size_text(int degree_u, int degree_v) {
 
 Status check_count(int degree_u, int degree_v, std::size_t count, const char* what) {
   if (count == static_cast<std::size_t>(degree_u + 1) * static_cast<std::size_t>(degree_v + 1)) return {};
-  return {StatusCode::count_mismatch,
-          size_text(degree_u, degree_v) + " " + what + ", " + std::to_string(count) + " were given"};
+  return {StatusCode::count_mismatch, size_text(degree_u, degree_v) + " " + what + ", found " + std::to_string(count)};
 }
 
 /// Checks the requirements of BezierPatch::polynomial.

@@ -2,13 +2,14 @@
 #include <cmath>
 #include <string>
 
-#include "base/guard.h"
 #include "base/text.h"
 #include "basis/double_double.h"
 #include "surface/callables.h"
 #include "surface/differences.h"
 #include "surface/validate.h"
 #include "tessera/coons_patch.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -63,7 +64,7 @@ Result<std::array<double, 3>> jet_by_differences(const std::function<double(doub
 Status check_condition(const char* condition, double error, double tolerance) {
   if (std::abs(error) <= tolerance) return {};
   return {StatusCode::invalid_argument, std::string("the blending functions must satisfy ") + condition +
-                                            ", they miss it by " + text(std::abs(error)) + "; allowed is " +
+                                            ", they miss it by " + text(std::abs(error)) + "; the tolerance is " +
                                             text(tolerance)};
 }
 

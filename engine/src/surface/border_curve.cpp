@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "base/guard.h"
 #include "base/text.h"
 #include "surface/spline_lines.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

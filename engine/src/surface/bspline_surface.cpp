@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <string>
 
-#include "base/guard.h"
 #include "surface/spline_lines.h"
 #include "surface/spline_window.h"
 #include "surface/validate.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -14,8 +15,7 @@ namespace {
 Status check_count(std::size_t count_u, std::size_t count_v, std::size_t count, const char* what) {
   if (count / count_u == count_v && count % count_u == 0) return {};
   return {StatusCode::count_mismatch, "these knots and degrees need " + std::to_string(count_u) + " x " +
-                                          std::to_string(count_v) + " " + what + ", " + std::to_string(count) +
-                                          " were given"};
+                                          std::to_string(count_v) + " " + what + ", found " + std::to_string(count)};
 }
 
 /// Checks the requirements of both kinds, and sets an empty domain to that of the knots.

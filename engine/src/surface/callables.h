@@ -23,7 +23,7 @@ auto called(Function&& function, Place&& place) -> Result<std::invoke_result_t<F
   } catch (const std::exception& error) {
     return Status(StatusCode::invalid_argument, place() + " threw: " + error.what());
   } catch (...) {
-    return Status(StatusCode::invalid_argument, place() + " threw what is no std::exception");
+    return Status(StatusCode::invalid_argument, place() + " threw an exception that is no std::exception");
   }
 }
 

@@ -31,8 +31,8 @@ Status check_vectors(std::span<const Vec3> vectors, std::size_t columns, const s
 
 Status check_increasing(std::span<const double> values, const std::string& what, const std::string& direction) {
   if (values.size() < 2)
-    return {StatusCode::invalid_argument, "at least two " + what + "s are wanted along " + direction + ", " +
-                                              std::to_string(values.size()) + " were given"};
+    return {StatusCode::invalid_argument,
+            "at least two " + what + "s are needed along " + direction + ", found " + std::to_string(values.size())};
   const auto bad = [&](StatusCode code, std::size_t k, const char* why) {
     return Status(code, what + " " + direction + "[" + std::to_string(k) + "] = " + text(values[k]) + why,
                   static_cast<std::ptrdiff_t>(k));

@@ -4,11 +4,12 @@
 #include <cmath>
 #include <string>
 
-#include "base/guard.h"
 #include "base/safe_length.h"
 #include "base/text.h"
 #include "surface/border_curve.h"
 #include "surface/checks.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -53,7 +54,7 @@ Status check_closed(const Ends& ends, double share) {
       return {StatusCode::invalid_argument,
               "the borders do not close at the corner r(u" + std::to_string(a) + ", v" + std::to_string(b) +
                   "): " + coons_border_names[b] + verb(a) + text_of(c) + ", " + coons_border_names[2 + a] + verb(b) +
-                  text_of(d) + ", a gap of " + text(gap) + "; allowed is " + text(share * diagonal),
+                  text_of(d) + ", a gap of " + text(gap) + "; the tolerance is " + text(share * diagonal),
               static_cast<std::ptrdiff_t>(2 * a + b)};
     }
   return {};

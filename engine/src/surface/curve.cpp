@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <string>
 
-#include "base/guard.h"
+#include "base/text.h"
 #include "surface/spline_lines.h"
 #include "surface/spline_window.h"
 #include "surface/validate.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -16,9 +18,8 @@ constexpr auto place = [](std::size_t k) { return "[" + std::to_string(k) + "]";
 Status check_size(int degree, std::size_t points, std::size_t knots) {
   const std::size_t wanted = points + static_cast<std::size_t>(degree) + 1;
   if (knots == wanted) return {};
-  return {StatusCode::count_mismatch, std::to_string(points) + " points of degree " + std::to_string(degree) +
-                                          " need " + std::to_string(wanted) + " knots, " + std::to_string(knots) +
-                                          " were given"};
+  return {StatusCode::count_mismatch, "degree " + std::to_string(degree) + " and " + counted(points, "point") +
+                                          " need " + std::to_string(wanted) + " knots, found " + std::to_string(knots)};
 }
 
 /// Checks the requirements of both kinds, and sets an empty domain to that of the knots.
@@ -91,8 +92,9 @@ Result<Curve> Curve::nurbs(int degree, std::span<const Vec3> points, std::span<c
   return guarded([&]() -> Result<Curve> {
     if (Status status = check_b_spline(degree, points, knots, domain); !status.ok()) return status;
     if (weights.size() != points.size())
-      return Status(StatusCode::count_mismatch, std::to_string(points.size()) + " points need as many weights, " +
-                                                    std::to_string(weights.size()) + " were given");
+      return Status(StatusCode::count_mismatch, std::to_string(points.size()) + " points need " +
+                                                    std::to_string(points.size()) + " weights, found " +
+                                                    std::to_string(weights.size()));
     if (Status status = check_weights(weights, place); !status.ok()) return status;
     if (all_equal(weights)) weights = {};
     return Curve({degree, copy(points), copy(weights), copy(knots), *domain});

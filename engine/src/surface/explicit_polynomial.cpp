@@ -4,8 +4,9 @@
 #include <cmath>
 #include <string>
 
-#include "base/guard.h"
 #include "basis/double_double.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -21,7 +22,7 @@ Status check_coefficients(int degree_x, int degree_y, std::span<const double> co
   const std::size_t row = static_cast<std::size_t>(degree_y) + 1, wanted = static_cast<std::size_t>(degree_x + 1) * row;
   if (coefficients.size() != wanted)
     return {StatusCode::count_mismatch, "a polynomial of these degrees has " + std::to_string(wanted) +
-                                            " coefficients, " + std::to_string(coefficients.size()) + " were given"};
+                                            " coefficients, found " + std::to_string(coefficients.size())};
   for (std::size_t k = 0; k < coefficients.size(); ++k)
     if (!std::isfinite(coefficients[k]))
       return {StatusCode::non_finite,

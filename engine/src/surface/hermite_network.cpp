@@ -5,10 +5,11 @@
 #include <new>
 #include <string>
 
-#include "base/guard.h"
 #include "base/text.h"
 #include "surface/hermite_nodes.h"
 #include "surface/validate.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -16,9 +17,9 @@ namespace {
 /// Checks that there is one positive factor per span, the first 1.
 Status check_factors(std::span<const double> factors, std::size_t spans, const std::string& name) {
   if (factors.size() != spans)
-    return {StatusCode::count_mismatch, "a network with " + std::to_string(spans + 1) + " lines of nodes has " +
-                                            std::to_string(spans) + " factors " + name + ", " +
-                                            std::to_string(factors.size()) + " were given"};
+    return {StatusCode::count_mismatch, "a network with " + std::to_string(spans + 1) +
+                                            " nodes along a direction has " + counted(spans, "factor") + " " + name +
+                                            ", found " + std::to_string(factors.size())};
   for (std::size_t i = 0; i < spans; ++i) {
     const auto bad = [&](StatusCode code, const char* wanted) {
       return Status(code, "factor " + name + "[" + std::to_string(i) + "] is " + text(factors[i]) + wanted,
@@ -75,8 +76,7 @@ Status check_nodes(std::size_t count_u, std::size_t count_v, std::span<const Her
   if (count_u < 2 || count_v < 2)
     return {StatusCode::invalid_argument, "a network has at least 2 x 2 nodes, not " + shape};
   if (nodes.size() / count_u != count_v || nodes.size() % count_u != 0)  // division: a product could overflow
-    return {StatusCode::count_mismatch,
-            "the network has " + shape + ", " + std::to_string(nodes.size()) + " were given"};
+    return {StatusCode::count_mismatch, "the network has " + shape + ", found " + std::to_string(nodes.size())};
   for (std::size_t k = 0; k < nodes.size(); ++k)
     if (!is_finite(nodes[k].position) || !is_finite(nodes[k].du) || !is_finite(nodes[k].dv) || !is_finite(nodes[k].duv))
       return {StatusCode::non_finite, "node " + place_in_rows(k, count_v) + " has a vector that is not finite",
@@ -146,10 +146,8 @@ HermitePatch::Corners HermiteNetwork::patch_corners(std::size_t i, std::size_t j
   return corners;
 }
 
-HermitePatch HermiteNetwork::patch(std::size_t i, std::size_t j) const {
-  Result<HermitePatch> patch = HermitePatch::from_corners(patch_corners(i, j));
-  if (!patch) throw std::bad_alloc();  // the nodes are finite
-  return *std::move(patch);
+Result<HermitePatch> HermiteNetwork::patch(std::size_t i, std::size_t j) const {
+  return HermitePatch::from_corners(patch_corners(i, j));
 }
 
 SurfaceJet evaluate_jet(const HermiteNetwork& network, double u, double v) {

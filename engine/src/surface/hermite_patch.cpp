@@ -4,11 +4,12 @@
 #include <cmath>
 #include <string>
 
-#include "base/guard.h"
 #include "base/text.h"
 #include "basis/hermite.h"
 #include "surface/checks.h"
 #include "surface/hermite_nodes.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -55,15 +56,15 @@ Grid scaled(const Grid& g, double along_u, double along_v) {
 Status check_count(std::size_t count, const char* what) {
   if (count == 16) return {};
   return {StatusCode::count_mismatch,
-          std::string("a bicubic patch has 4 x 4 ") + what + ", " + std::to_string(count) + " were given"};
+          std::string("a bicubic patch has 4 x 4 ") + what + ", found " + std::to_string(count)};
 }
 
 /// Returns the four parameters of a direction as local parameters, which must be finite and distinct.
 Result<std::array<double, 4>> local_parameters(std::span<const double> from, double start, double end,
                                                const char* name) {
   if (from.size() != 4)
-    return Status(StatusCode::count_mismatch, std::string("a grid of 4 x 4 points has four parameters ") + name + ", " +
-                                                  std::to_string(from.size()) + " were given");
+    return Status(StatusCode::count_mismatch, std::string("a grid of 4 x 4 points has four parameters ") + name +
+                                                  ", found " + std::to_string(from.size()));
   std::array<double, 4> local{};
   for (std::size_t k = 0; k < 4; ++k) {
     const auto number = [&](std::size_t i) { return std::string(name) + "[" + std::to_string(i) + "]"; };
@@ -75,7 +76,7 @@ Result<std::array<double, 4>> local_parameters(std::span<const double> from, dou
       if (local[i] == local[k])
         return Status(StatusCode::invalid_argument,
                       "the system of 16 points is singular: parameters " + number(i) + " = " + text(from[i]) + " and " +
-                          number(k) + " = " + text(from[k]) + " are the same",
+                          number(k) + " = " + text(from[k]) + " are equal",
                       static_cast<std::ptrdiff_t>(k));
   }
   return local;

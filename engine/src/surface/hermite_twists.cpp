@@ -1,8 +1,9 @@
 #include <algorithm>
 #include <string>
 
-#include "base/guard.h"
 #include "surface/hermite_nodes.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -54,8 +55,8 @@ Vec3 bessel_twist(const Nodes& n, std::size_t i, std::size_t j) {
 
 Status check_bessel(std::size_t count, const char* direction) {
   if (count >= 3) return {};
-  return {StatusCode::invalid_argument, std::string("Bessel twists want at least three nodes along ") + direction +
-                                            ", " + std::to_string(count) + " were given"};
+  return {StatusCode::invalid_argument, std::string("Bessel twists need at least three nodes along ") + direction +
+                                            ", found " + std::to_string(count)};
 }
 
 }  // namespace

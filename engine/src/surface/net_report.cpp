@@ -1,10 +1,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/guard.h"
 #include "basis/bernstein_net.h"
 #include "surface/homogeneous.h"
+#include "tessera/guard.h"
 #include "tessera/local_geometry.h"
+#include "tessera/status.h"
 
 // With r = A / w: w^2 r_u = A_u w - A w_u. Up to multiples of r_u and r_v, which do not change det(r_u, r_v, r_uv), w^2
 // r_uv = A_uv w - A w_uv. So the numerators are polynomials, and the hulls of their Bernstein coefficients bound them.
@@ -77,7 +78,7 @@ void add_sample(const BezierPatch& patch, double u, double v, NetReport& report)
 Result<NetReport> measure_net(const BezierPatch& patch, const NetOptions& options) {
   return guarded([&]() -> Result<NetReport> {
     if (options.samples < 2 || options.samples > 1000)
-      return Status(StatusCode::invalid_argument, "a net is sampled at 2 to 1000 points each way");
+      return Status(StatusCode::invalid_argument, "a net must be sampled at 2 to 1000 points in each direction");
     if (!(options.tolerance >= 0))
       return Status(StatusCode::invalid_argument, "the tolerance of a net must not be negative");
     NetReport report;

@@ -3,8 +3,9 @@
 #include <cmath>
 #include <string>
 
-#include "base/guard.h"
 #include "base/text.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -4,11 +4,12 @@
 #include <string>
 #include <utility>
 
-#include "base/guard.h"
 #include "base/text.h"
 #include "surface/callables.h"
 #include "surface/checks.h"
 #include "surface/differences.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

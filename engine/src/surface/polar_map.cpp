@@ -1,9 +1,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/guard.h"
 #include "base/text.h"
+#include "tessera/guard.h"
 #include "tessera/parametric_surface.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -41,7 +42,7 @@ Result<PolarMap> PolarMap::make(const Disc& disc) {
     map.scale_ = 1 - 0x1p-50 - 0x1p-52 * ((std::abs(disc.x) + std::abs(disc.y)) / disc.radius);
     if (!(map.scale_ > 0.5))
       return Status(StatusCode::invalid_argument,
-                    "the disc's radius " + text(disc.radius) + " is lost in the rounding of its centre");
+                    "the disc's radius " + text(disc.radius) + " is below the rounding of its centre");
     return map;
   });
 }

@@ -6,9 +6,10 @@
 #include <limits>
 #include <string>
 
-#include "base/guard.h"
 #include "basis/symmetric_eigen.h"
 #include "surface/homogeneous.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 // Reduction to principal axes: the quadratic part by its eigenvectors, then squares completed along the axes whose
 // eigenvalue is not 0 (any text on analytic geometry; Farin and Hansford, Practical Linear Algebra, on quadratic

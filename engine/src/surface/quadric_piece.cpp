@@ -3,9 +3,11 @@
 #include <numbers>
 #include <string>
 
-#include "base/guard.h"
+#include "base/text.h"
 #include "surface/quadric_profile.h"
+#include "tessera/guard.h"
 #include "tessera/quadric.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -82,12 +84,12 @@ Result<QuadricPiece> QuadricPiece::make(const Quadric& quadric, const Domain& ra
   return guarded([&]() -> Result<QuadricPiece> {
     const QuadricKind kind = quadric.kind();
     if (!is_surface(kind))
-      return Status(StatusCode::unsupported,
-                    "a quadric that is of the kind '" + std::string(name(kind)) + "' has no surface");
+      return Status(StatusCode::unsupported, "a quadric of the kind '" + std::string(name(kind)) + "' has no surface");
     if (sheet < 0 || sheet >= sheet_count(kind))
-      return Status(StatusCode::invalid_argument,
-                    "sheet " + std::to_string(sheet) + " of " + std::to_string(sheet_count(kind)) +
-                        " is wanted of a quadric of the kind '" + std::string(name(kind)) + "'");
+      return Status(StatusCode::invalid_argument, "there is no sheet " + std::to_string(sheet) +
+                                                      ": a quadric of the kind '" + std::string(name(kind)) + "' has " +
+                                                      counted(static_cast<std::size_t>(sheet_count(kind)), "sheet") +
+                                                      ", counted from 0");
     const Profiles profile = profiles(kind);
     if (Status status = check_range("u", profile.u, false, range.u0, range.u1); !status.ok()) return status;
     if (Status status = check_range("v", profile.v, true, range.v0, range.v1); !status.ok()) return status;

@@ -1,8 +1,9 @@
 #include "tessera/coons_patch.h"
 
-#include "base/guard.h"
 #include "surface/border_curve.h"
 #include "surface/checks.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -30,7 +31,7 @@ Result<RuledSurface> RuledSurface::make(const BorderCurve& first, const BorderCu
                                         Direction straight) {
   return guarded([&]() -> Result<RuledSurface> {
     if (straight != Direction::u && straight != Direction::v)
-      return Status(StatusCode::invalid_argument, "the direction of the straight lines is neither u nor v");
+      return Status(StatusCode::invalid_argument, "the direction of the straight lines must be u or v");
     if (Status status = check_same_interval(first, ruled_curve_names[0], second, ruled_curve_names[1]); !status.ok())
       return status;
     const RuledSurface surface({first, second, across, straight});

@@ -3,9 +3,10 @@
 #include <array>
 #include <string>
 
-#include "base/guard.h"
 #include "basis/bernstein.h"
 #include "surface/checks.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -54,9 +55,9 @@ Result<TensorPatch> TensorPatch::make(const BasisMatrix& basis_u, const BasisMat
     const std::size_t columns = static_cast<std::size_t>(basis_v.degree()) + 1;
     if (geometry.size() != rows * columns)
       return Status(StatusCode::count_mismatch, "bases of degree " + std::to_string(basis_u.degree()) + " and " +
-                                                    std::to_string(basis_v.degree()) + " want a geometry of " +
-                                                    std::to_string(rows) + " x " + std::to_string(columns) + ", " +
-                                                    std::to_string(geometry.size()) + " elements were given");
+                                                    std::to_string(basis_v.degree()) + " need a geometry of " +
+                                                    std::to_string(rows) + " x " + std::to_string(columns) +
+                                                    " elements, found " + std::to_string(geometry.size()));
     if (Status status = check_vectors(geometry, columns, "geometry element"); !status.ok()) return status;
     if (Status status = check_domain(domain); !status.ok()) return status;
     return TensorPatch({basis_u, basis_v, {geometry.begin(), geometry.end()}, domain});

@@ -18,7 +18,7 @@ namespace {
 
 using Random = std::mt19937_64;
 
-/// In [-1, 1), without a library's rounding.
+/// Uniform in [-1, 1), without a library's rounding.
 double uniform(Random& random) { return static_cast<double>(random() >> 11) * 0x1p-52 - 1; }
 
 template <class T>
@@ -33,7 +33,7 @@ template <class T>
 constexpr const char* type_name = sizeof(T) == 4 ? "float" : "double";
 
 /// The Bernstein polynomials of a parameter with their first and second derivatives, `[order][i]`, by de Casteljau's
-/// recurrence: multiplications and additions alone.
+/// recurrence: only multiplications and additions.
 template <class T>
 void append_weights(int degree, double t, AlignedVector<T>& out) {
   std::vector<std::vector<double>> row{{1}};
@@ -56,7 +56,7 @@ void append_weights(int degree, double t, AlignedVector<T>& out) {
                                  (value(degree - 2, i - 2) - 2 * value(degree - 2, i - 1) + value(degree - 2, i))));
 }
 
-/// The same of a parameter of each lane's own, `[order][i][lane]`: the odd ones have half of t.
+/// The Bernstein polynomials of a parameter per lane, `[order][i][lane]`: odd lanes have half of t.
 template <class T>
 void append_lane_weights(int degree, double t, AlignedVector<T>& out) {
   AlignedVector<T> weights[2];
@@ -66,7 +66,7 @@ void append_lane_weights(int degree, double t, AlignedVector<T>& out) {
     for (int lane = 0; lane < block_lanes; ++lane) out.push_back(weights[lane % 2][k]);
 }
 
-/// What the kernels ask of the caller where they can't decide: any function of the place will do.
+/// Stands in for the caller's part where kernels cannot decide: any function of the place will do.
 template <class T>
 int exact_normal(void*, int iu, int iv, int lane, T* normal) {
   normal[0] = static_cast<T>(iu);

@@ -1,5 +1,5 @@
 #pragma once
-// Values that are often left at their default, or are the same for many: held once, a pointer each.
+// Values that are often equal to their default, or equal in many objects: stored once, one pointer per object.
 
 #include <concepts>
 #include <memory>
@@ -8,13 +8,14 @@
 #pragma GCC visibility push(default)
 namespace tessera::inline abi_0_1 {
 
-/// A constant T that copies share. The default, which is T{}, takes no memory of its own. Stands for T where one is
-/// wanted; members by -> and *.
+/// A constant T that copies share. The default value T{} takes no memory of its own. Converts to T; its members are
+/// reached by -> and *.
 template <class T>
 class Shared {
  public:
+  /// The default value.
   Shared() = default;
-  /// The value.
+  /// Holds the value.
   template <class U>
   // NOLINTNEXTLINE(bugprone-forwarding-reference-overload): the constraint lets copies be copies
   requires(std::convertible_to<U&&, T> && !std::same_as<std::remove_cvref_t<U>, Shared>) Shared(U&& value) {
@@ -27,7 +28,7 @@ class Shared {
   operator const T&() const { return **this; }                               ///< the value
 
   friend bool operator==(const Shared& a, const Shared& b) { return a.value_ == b.value_ || *a == *b; }  ///< by value
-  /// By value.
+  /// Compares the values.
   template <class U>
   requires(!std::same_as<U, Shared> && requires(const T& a, const U& b) { a == b; }) friend bool operator==(
       const Shared& a, const U& b) {

@@ -1,5 +1,5 @@
 #pragma once
-// Memory that many objects hold together.
+// Memory that many objects share.
 
 #include <atomic>
 #include <cstddef>
@@ -9,21 +9,22 @@
 #pragma GCC visibility push(default)
 namespace tessera::inline abi_0_1 {
 
-/// A handle on memory that is freed with the last of its handles. Unlike those of std::shared_ptr, handles can be made
-/// and given up many at once by one change of their count: the pieces of one surface are ten thousands, and an atomic
-/// operation each would cost as much as computing them. Threads: as std::shared_ptr.
+/// A handle on memory that is freed with its last handle. Unlike std::shared_ptr, one change of the count makes or
+/// releases many handles: a surface has tens of thousands of pieces, and an atomic operation for each would cost as
+/// much as computing them. Threads: as for std::shared_ptr.
 class SharedMemory {
  public:
+  /// An empty handle.
   SharedMemory() = default;
-  /// The first handle on `bytes` of memory, unset. Throws std::bad_alloc.
+  /// The first handle on `bytes` of uninitialised memory. Throws std::bad_alloc.
   explicit SharedMemory(std::size_t bytes) : block_(::new (::operator new(sizeof(Block) + bytes)) Block) {}
-  /// One more handle.
+  /// Adds a handle on the memory.
   SharedMemory(const SharedMemory& other) noexcept : block_(other.block_) {
     if (block_) block_->handles.fetch_add(1, std::memory_order_relaxed);
   }
-  /// The same handle; the other one is empty.
+  /// Takes over the handle; `other` becomes empty.
   SharedMemory(SharedMemory&& other) noexcept : block_(std::exchange(other.block_, nullptr)) {}
-  /// Gives up the handle that it was.
+  /// Replaces this handle, and releases the previous one.
   SharedMemory& operator=(SharedMemory other) noexcept {
     std::swap(block_, other.block_);
     return *this;
@@ -32,9 +33,9 @@ class SharedMemory {
     if (block_) drop(block_, 1);
   }
 
-  /// Whether there is no other handle on the memory. The handle is not empty.
+  /// Whether this is the only handle on the memory. The handle must not be empty.
   bool sole() const noexcept { return block_->handles.load(std::memory_order_acquire) == 1; }
-  /// The first byte, aligned as operator new aligns. The handle is not empty.
+  /// Returns the first byte, aligned as by operator new. The handle must not be empty.
   void* data() const { return block_ + 1; }
 
  private:
@@ -51,10 +52,10 @@ class SharedMemory {
   Block* block_ = nullptr;
 
  public:
-  /// `count` more handles on the memory of `one`, counted at once.
+  /// `count` more handles on the memory of `one`, added to the count at once.
   class Copies {
    public:
-    /// Counts them.
+    /// Adds `count` to the count. `one` must not be empty.
     Copies(const SharedMemory& one, std::size_t count) noexcept : block_(one.block_), left_(count) {
       block_->handles.fetch_add(count, std::memory_order_relaxed);
     }
@@ -63,7 +64,7 @@ class SharedMemory {
     ~Copies() {
       if (left_ > 0) drop(block_, left_);
     }
-    /// One of them; at most `count` times.
+    /// Returns one of the handles; at most `count` calls.
     SharedMemory take() noexcept {
       --left_;
       return SharedMemory(block_);
@@ -74,14 +75,14 @@ class SharedMemory {
     std::size_t left_;
   };
 
-  /// Gives handles up, those on the same memory that come one after the other at once.
+  /// Releases handles. Consecutive handles on the same memory are released by one change of the count.
   class Sink {
    public:
     Sink() = default;
     Sink(const Sink&) = delete;
     Sink& operator=(const Sink&) = delete;
     ~Sink() { flush(); }
-    /// Leaves the handle empty.
+    /// Takes the handle to release it later, and leaves it empty.
     void take(SharedMemory& handle) noexcept {
       if (handle.block_ != block_) {
         flush();

@@ -1,5 +1,5 @@
 #pragma once
-// Derivatives of any order by arithmetic on truncated Taylor series: dual numbers and their like.
+// Derivatives of any order by arithmetic on truncated Taylor series (automatic differentiation).
 
 #include <array>
 #include <cmath>
@@ -12,35 +12,37 @@
 #pragma GCC visibility push(default)
 namespace tessera::inline abi_0_1 {
 
-/// sum c_ij (u - u0)^i (v - v0)^j, i + j <= Order, of a function of one or two Variables, c_ij being its derivative of
-/// order (i,j) at (u0,v0) over i! j!. What is computed of series are the series of what is computed (Griewank and
-/// Walther, Evaluating Derivatives, 2nd ed., ch. 13). Scalar is double or, for bounds of the coefficients over all
-/// (u0,v0) of a rectangle, IntervalNumber. Where a derivative is infinite (sqrt at 0) or not defined (abs at 0),
-/// coefficients from its order on are infinite or NaN, or without bound; the value stays. There is no order: an
-/// expression with branches does not compile.
+/// A truncated Taylor series sum c_ij (u - u0)^i (v - v0)^j, i + j <= Order, of a function of one or two Variables.
+/// c_ij is the function's derivative of order (i,j) at (u0,v0) over i! j!.
+///
+/// An operation on series gives the series of its result (Griewank and Walther, Evaluating Derivatives, 2nd ed., ch.
+/// 13). Scalar is double or, for bounds of the coefficients over all (u0,v0) of a rectangle, IntervalNumber. Where a
+/// derivative is infinite (sqrt at 0) or not defined (abs at 0), the coefficients from its order on are infinite, NaN
+/// or without bound; the value is unchanged. There is no order: an expression with branches does not compile.
 template <class Scalar, int Order, int Variables = 2>
 class Taylor {
   static_assert(Order >= 1 && (Variables == 1 || Variables == 2));
 
  public:
-  /// How many coefficients.
+  /// Number of coefficients.
   static constexpr std::size_t size = Variables == 1 ? Order + 1 : (Order + 1) * (Order + 2) / 2;
 
+  /// The constant 0.
   Taylor() : Taylor(0.0) {}
   Taylor(double constant) : Taylor(Scalar(constant), Filled{}) {}  ///< a constant
   /// A constant.
   explicit Taylor(const Scalar& constant) requires(!std::is_same_v<Scalar, double>) : Taylor(constant, Filled{}) {}
-  /// The variable u (0) or v (1) at `value`.
+  /// Makes the variable u (0) or v (1) at `value`.
   static Taylor variable(const Scalar& value, int which = 0) {
     Taylor t(value, Filled{});
     t.c_[static_cast<std::size_t>(1 + which)] = 1.0;
     return t;
   }
 
-  /// c_ij, i + j <= Order; j = 0 in one variable.
+  /// Returns c_ij, i + j <= Order, with j = 0 in one variable.
   const Scalar& coefficient(int i, int j = 0) const { return c_[index(i, j)]; }
   const Scalar& value() const { return c_[0]; }  ///< the coefficient of order 0
-  /// The derivative of order (i,j): i! j! c_ij.
+  /// Returns the derivative of order (i,j): i! j! c_ij.
   Scalar derivative(int i, int j = 0) const {
     double factor = 1;  // exact up to 18!
     for (int k = 2; k <= i; ++k) factor *= k;
@@ -48,23 +50,23 @@ class Taylor {
     return factor * c_[index(i, j)];
   }
 
-  /// By coefficients.
+  /// Negates each coefficient.
   friend Taylor operator-(const Taylor& a) {
     Taylor r;
     for (std::size_t k = 0; k < size; ++k) r.c_[k] = -a.c_[k];
     return r;
   }
-  /// By coefficients.
+  /// Adds the coefficients.
   friend Taylor operator+(const Taylor& a, const Taylor& b) {
     Taylor r;
     for (std::size_t k = 0; k < size; ++k) r.c_[k] = a.c_[k] + b.c_[k];
     return r;
   }
-  friend Taylor operator-(const Taylor& a, const Taylor& b) { return a + (-b); }  ///< by coefficients
-  /// The product, cut off at the order.
+  friend Taylor operator-(const Taylor& a, const Taylor& b) { return a + (-b); }  ///< subtracts the coefficients
+  /// The product, truncated at Order.
   friend Taylor operator*(const Taylor& a, const Taylor& b) {
     Taylor r = a.times_increment(b);
-    if (&a == &b) {  // the square of one number, which intervals know to be no less than 0
+    if (&a == &b) {  // a square, which intervals know to be at least 0
       r.c_[0] = a.c_[0] * a.c_[0];
       for (std::size_t k = 1; k < size; ++k) r.c_[k] += a.c_[k] * a.c_[0];
       return r;
@@ -72,19 +74,21 @@ class Taylor {
     for (std::size_t k = 0; k < size; ++k) r.c_[k] += a.c_[k] * b.c_[0];
     return r;
   }
-  /// The quotient, cut off at the order.
+  /// The quotient, truncated at Order.
   friend Taylor operator/(const Taylor& a, const Taylor& b) { return a * reciprocal(b); }
-  Taylor& operator+=(const Taylor& b) { return *this = *this + b; }  ///< as +
-  Taylor& operator-=(const Taylor& b) { return *this = *this - b; }  ///< as -
-  Taylor& operator*=(const Taylor& b) { return *this = *this * b; }  ///< as *
-  Taylor& operator/=(const Taylor& b) { return *this = *this / b; }  ///< as /
+  Taylor& operator+=(const Taylor& b) { return *this = *this + b; }  ///< like +
+  Taylor& operator-=(const Taylor& b) { return *this = *this - b; }  ///< like -
+  Taylor& operator*=(const Taylor& b) { return *this = *this * b; }  ///< like *
+  Taylor& operator/=(const Taylor& b) { return *this = *this / b; }  ///< like /
 
-  /// The root.
+  /// The square root.
   friend Taylor sqrt(const Taylor& x) { return x.composed(power_series(x.value(), 0.5, root(x.value()))); }
-  /// x^exponent by constant exponents; whole ones for any x (a negative one for x without 0), others for x > 0.
+  /// The power of x with a constant exponent: any x for a whole exponent (x without 0 for a negative one), x > 0 for
+  /// others.
   friend Taylor pow(const Taylor& x, double exponent) {
     using std::pow;
-    // Multiples of 2^-32 stay exact when whole numbers are taken off; then powers are taken one by one, also at 0.
+    // Multiples of 2^-32 remain exact when whole numbers are subtracted; then powers are computed one by one, also
+    // at 0.
     const bool exact = std::abs(exponent) < 0x1p20 && std::floor(exponent * 0x1p32) == exponent * 0x1p32;
     if (!exact) return x.composed(power_series(x.value(), exponent, pow(x.value(), exponent)));
     Coefficients f;
@@ -95,8 +99,8 @@ class Taylor {
     }
     return x.composed(f);
   }
-  friend Taylor pow(const Taylor& x, const Taylor& y) { return exp(y * log(x)); }  ///< by exp and log: x above 0
-  /// E^x.
+  friend Taylor pow(const Taylor& x, const Taylor& y) { return exp(y * log(x)); }  ///< by exp and log: x > 0
+  /// The exponential e^x.
   friend Taylor exp(const Taylor& x) {
     using std::exp;
     Coefficients f{exp(x.value())};
@@ -171,26 +175,27 @@ class Taylor {
   }
 
   static constexpr std::size_t at(int k) { return static_cast<std::size_t>(k); }
-  /// By total order, then by the order in v.
+  /// The index of c_ij: ordered by total order, then by the order in v.
   static constexpr std::size_t index(int i, int j) {
     if constexpr (Variables == 1) return at(i + j);
     return at((i + j) * (i + j + 1) / 2 + j);
   }
-  /// Roundings in the constant are for the interval to bound.
+  /// The constant as a scalar. An interval bounds the constant's rounding.
   static Scalar ratio(double value) {
     if constexpr (std::is_same_v<Scalar, IntervalNumber>) return IntervalNumber::around<4 * Order>(value);
     return value;
   }
 
-  /// a (b - b(u0,v0)). Each sum is finished before the next begins: gcc 12 at -O3 adds in another order to sums that are
-  /// built up in turns.
+  /// a (b - b(u0,v0)). Each sum is finished before the next begins: gcc 12 at -O3 changes the order of addition in sums
+  /// that are built up in turns.
   Taylor times_increment(const Taylor& b) const {
     Taylor r;
     for (int d = 1; d <= Order; ++d)
       for (int j = 0; j <= (Variables == 1 ? 0 : d); ++j) r.c_[index(d - j, j)] = sum_of_products(b, d, j);
     return r;
   }
-  /// Of total order d, j of it in v; from the lowest order of this on.
+  /// The coefficient of total order d, with order j in v, of this (b - b(u0,v0)); sums from the lowest order of this
+  /// on.
   Scalar sum_of_products(const Taylor& b, int d, int j) const {
     Scalar sum = 0.0;
     for (int da = 0; da < d; ++da) {
@@ -200,7 +205,7 @@ class Taylor {
     }
     return sum;
   }
-  /// f of this by Horner's scheme in the increment.
+  /// f of this series, by Horner's scheme in the increment.
   Taylor composed(const Coefficients& f) const {
     bool constant = true;
     for (std::size_t k = 1; k < size; ++k) constant = constant && c_[k] == Scalar(0.0);
@@ -217,7 +222,8 @@ class Taylor {
     using std::sqrt;
     return sqrt(x);
   }
-  /// x^p with x^p given: (p over k) x^p / x^k, each by powers of 1/x alone, which keeps intervals narrow.
+  /// The coefficients of x^p from its value: (p over k) x^p / x^k, each by powers of 1/x alone, which keeps intervals
+  /// narrow.
   static Coefficients power_series(const Scalar& x, double p, const Scalar& value) {
     const Scalar r = 1.0 / x, step = value * r;
     Coefficients f{value};
@@ -230,13 +236,14 @@ class Taylor {
     }
     return f;
   }
+  /// The reciprocal 1 / x.
   friend Taylor reciprocal(const Taylor& x) {
     const Scalar r = 1.0 / x.value();
     Coefficients f{r};
     for (int k = 1; k <= Order; ++k) f[at(k)] = -(f[at(k - 1)] * r);
     return x.composed(f);
   }
-  /// sin (shift 0) or cos (shift 1).
+  /// The coefficients of sin (shift 0) or cos (shift 1).
   static Coefficients wave(const Scalar& x, int shift) {
     using std::cos;
     using std::sin;
@@ -251,6 +258,7 @@ class Taylor {
     }
     return f;
   }
+  /// The coefficients of sinh (shift 0) or cosh (shift 1).
   static Coefficients hyperbolic(const Scalar& x, int shift) {
     using std::cosh;
     using std::sinh;
@@ -263,7 +271,7 @@ class Taylor {
     }
     return f;
   }
-  /// t' = 1 + sign t^2: tan, or tanh with sign -1.
+  /// Coefficients of the solution of t' = 1 + sign t^2: tan, or tanh with sign -1.
   static Coefficients tangent(const Scalar& value, double sign) {
     Coefficients f{value};
     for (int k = 0; k < Order; ++k) {
@@ -273,7 +281,7 @@ class Taylor {
     }
     return f;
   }
-  /// sign times the integral of w = (1 - x^2)^(-1/2), for which (1 - x^2) w' = x w.
+  /// The coefficients of sign times the integral of w = (1 - x^2)^(-1/2), for which (1 - x^2) w' = x w.
   static Coefficients arc(const Scalar& x, const Scalar& value, double sign) {
     const Scalar g = (1.0 - x) * (1.0 + x);
     Coefficients f{value}, w{1.0 / root(g)};

@@ -6,6 +6,7 @@
 
 #include "kernel/isa/block_lanes.h"
 #include "tessera/execution.h"
+#include "tessera/quantities.h"
 
 namespace tessera::inline abi_0_1::kernel {
 
@@ -21,9 +22,14 @@ using ExactNormal = int (*)(void* context, int iu, int iv, int lane, T* normal);
 template <class T>
 using LaneDoubt = void (*)(void* context, int iu, int lane, T* doubt, T* noise);
 
+/// Where a job's outputs go; null where a quantity is not wanted. Vectors are `[sample][component][lane]`, scalars and
+/// kinds `[sample][lane]`, samples in the order of the job's part of the grid, v fastest. Aligned to 64 bytes.
+template <class T>
+using GridJobOutputs = Quantities<T*, T*, std::uint8_t*>;
+
 /// A block of patches over a grid of tabulated weights. T is float or double.
 template <class T>
-struct GridJob {
+struct GridJob : GridJobOutputs<T> {
   const T* net = nullptr;  ///< `[i][j][component][lane]`, 64-byte aligned; 3 components, or 4 if rational (homogeneous)
   int degree_u = 0, degree_v = 0;
   bool rational = false;
@@ -35,29 +41,8 @@ struct GridJob {
   int u_begin = 0, u_end = 0;  ///< the part of the grid to evaluate
   int v_begin = 0, v_end = 0;
 
-  /// Outputs `[sample][component][lane]`, `vector_step` elements apart; samples in the order of the part, v fastest.
-  /// Null if not wanted. Aligned to the vector width (64 bytes is enough for all).
-  T* position = nullptr;
-  T* du = nullptr;
-  T* dv = nullptr;
-  T* normal = nullptr;
-  T* duu = nullptr;
-  T* duv = nullptr;
-  T* dvv = nullptr;
-  T* first_form = nullptr;   ///< r_u.r_u, r_u.r_v, r_v.r_v
-  T* second_form = nullptr;  ///< r_uu.N, r_uv.N, r_vv.N
-  T* first_direction = nullptr;
-  T* second_direction = nullptr;
-  std::ptrdiff_t vector_step = 3 * block_lanes;
-  /// Outputs `[sample][lane]`, `scalar_step` elements apart.
-  T* gaussian = nullptr;
-  T* mean = nullptr;
-  T* first_curvature = nullptr;
-  T* second_curvature = nullptr;
-  std::ptrdiff_t scalar_step = block_lanes;
-  /// Outputs `[sample][lane]` without gaps, with the values of NormalKind and CurvatureKind.
-  std::uint8_t* normal_kind = nullptr;
-  std::uint8_t* curvature_kind = nullptr;
+  std::ptrdiff_t vector_step = 3 * block_lanes;  ///< elements from one sample's vector to the next one's
+  std::ptrdiff_t scalar_step = block_lanes;      ///< elements from one sample's scalar to the next one's
   T offset[3] = {0, 0, 0};  ///< added to positions (doubles only: floats stay relative to the origin)
   bool streaming = false;   ///< non-temporal stores; the caller ends them with finish_streaming
   /// Cache lines behind the net, where the next block's is, that each row prefetches: row k those from k *

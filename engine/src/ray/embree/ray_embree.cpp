@@ -4,13 +4,14 @@
 #include <cmath>
 #include <limits>
 
-#include "base/guard.h"
 #include "base/impl_access.h"
 #include "ray/embree/embree_api.h"
 #include "ray/embree/embree_device.h"
 #include "ray/line/ray_segment.h"
 #include "ray/scene/exact_source.h"
 #include "ray/scene/ray_scene_impl.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -153,7 +154,7 @@ Result<const ExactSource*> usable_source(const RayScene& scene) {
   const ExactSource* const source = impl_of(scene).exact_source();
   if (source == nullptr)
     return Status(StatusCode::unsupported,
-                  "a ray scene in grid mode is no geometry for Embree's scenes: make it in exact mode");
+                  "a ray scene in grid mode cannot be an Embree geometry: make it in exact mode");
   if (!source->fresh())
     return Status(StatusCode::stale, "the patch set was edited after this ray scene was made: call refit");
   const Box3 box = scene.box();

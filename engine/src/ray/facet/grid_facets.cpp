@@ -23,7 +23,7 @@ class GridFacets final : public FacetSource {
     positions_.resize(3 * grid_.capacity() + padding);
     const auto view = View3<float>::interleaved(std::span(positions_).first(3 * grid_.capacity()));
     Status status =
-        grid_.run(set.impl(), GridViews<float>{.position = view, .du = {}, .dv = {}, .normal = {}}, execution);
+        grid_.run(set.impl(), QuantityViews<float>{.position = view, .du = {}, .dv = {}, .normal = {}}, execution);
     if (!status.ok()) return status;
     vertices.data = positions_.data();
     return scene.build(vertices, execution);

@@ -84,11 +84,11 @@ class MeshFacets final : public FacetSource {
   Status check(const SetView& set) const {
     const std::size_t vertices = mesh_.vertex_count();
     if (mesh_.positions.size() != 3 * vertices || mesh_.indices.size() % 3 != 0 || mesh_.quads.size() % 4 != 0)
-      return invalid("a mesh has three numbers a position, three indices a triangle and four a quad", 0);
+      return invalid("a mesh has three numbers per position, three indices per triangle and four per quad", 0);
     if (!mesh_.has_patches() || mesh_.parameters.size() != 2 * vertices)
       return invalid(
-          "rays are traced against a mesh that says of each face which patch it is of, and of each vertex its "
-          "parameters there: one without shared vertices",
+          "the mesh needs the patch of each face and the parameters of each vertex: tessellate without shared "
+          "vertices",
           0);
     if (!(mesh_.origin == set.origin())) return invalid("the mesh has another origin than the set", 0);
     for (std::size_t k = 0; k < mesh_.positions.size(); ++k) {
@@ -102,10 +102,10 @@ class MeshFacets final : public FacetSource {
     std::size_t count = 0;
     for_faces([&](std::span<const std::uint32_t> corners, std::uint32_t patch) {
       if (status.ok() && patch >= set.patch_count())
-        status = invalid("a face of the mesh is of no patch of the set", count);
+        status = invalid("a face of the mesh names a patch that is not in the set", count);
       for (const std::uint32_t corner : corners) {
         if (status.ok() && corner >= vertices)
-          status = invalid("a face of the mesh has a corner that is no vertex", count);
+          status = invalid("a face of the mesh has a corner beyond the vertices", count);
       }
       ++count;
     });

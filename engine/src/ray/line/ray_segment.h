@@ -9,12 +9,7 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// The largest magnitude of a ray's components, Embree's own limit (the square root of float's range).
-inline constexpr double max_ray_component = kernel::RayBundle::max_component;
-
-/// Returns whether the ray is finite, within the limit, with a nonzero direction, 0 <= tnear <= tfar and a spawn offset
-/// of at least 0.
-bool is_valid(const Ray& ray);
+static_assert(max_ray_component == kernel::RayBundle::max_component);
 
 /// The part of a ray that can meet the scene, by arc length: points start + s * direction, 0 <= s <= reach.
 struct RaySegment {

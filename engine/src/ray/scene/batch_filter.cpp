@@ -3,8 +3,9 @@
 #include <string>
 #include <utility>
 
-#include "base/guard.h"
 #include "ray/embree/embree_scene.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "base/text.h"
 #include "ray/embree/embree_leaves.h"
 #include "ray/embree/embree_scene.h"
 #include "ray/leaf/leaf_nets.h"
@@ -124,8 +125,8 @@ Result<Box3> ExactScene::frame_box() const {
   const Box3 box = set().box();
   if (!options_.box) return box;
   if (!holds(*options_.box, box))
-    return Status(StatusCode::invalid_argument, "the box of a ray scene, " + text_of(*options_.box) +
-                                                    ", must hold that of the patch set, " + text_of(box));
+    return Status(StatusCode::invalid_argument, "the box of the ray scene, " + text_of(*options_.box) +
+                                                    ", must contain that of the patch set, " + text_of(box));
   return *options_.box;
 }
 
@@ -145,8 +146,8 @@ Status ExactScene::build(const Execution& execution) {
   const Result<Box3> box = frame_box();
   if (!box) return box.status();
   if (own_patches() > set().patch_count())
-    return Status(StatusCode::invalid_argument, "a ray scene of " + std::to_string(own_patches()) +
-                                                    " patches of a set of " + std::to_string(set().patch_count()));
+    return Status(StatusCode::invalid_argument, "the ray scene takes " + counted(own_patches(), "patch", "patches") +
+                                                    ", the set has " + std::to_string(set().patch_count()));
   size_ = box->diagonal();
   if (!(size_ >= smallest_size && size_ <= largest_size))
     return Status(StatusCode::unsupported,
@@ -211,7 +212,7 @@ Result<Hit> ExactScene::resolve(const Ray& ray, std::uint32_t patch, double u, d
   Ray whole = ray;
   whole.tnear = 0, whole.tfar = std::numeric_limits<double>::infinity();
   const RayLine along = line(whole);
-  if (along.empty) return Status(StatusCode::invalid_argument, "the ray passes the scene by");
+  if (along.empty) return Status(StatusCode::invalid_argument, "the ray misses the scene");
   const LeafRoot root = nearest_to_ray(set().patch(patch), frame_, along, patch, u, v);
   Hit hit = hit_at(along, root);
   hit.flags.uncertified = hit.flags.tangential = hit.flags.within_tolerance = false;
@@ -371,15 +372,16 @@ Result<std::unique_ptr<RayScene::Impl>> make_exact_scene(const PatchSet& set, co
   if (const int pieces = options.pieces; pieces != 1 && pieces != 2 && pieces != 4 && pieces != 8) {
     return Status(
         StatusCode::invalid_argument,
-        "a patch of an exact ray scene is cut into 1, 2, 4 or 8 pieces a side, not " + std::to_string(pieces));
+        "a patch of an exact ray scene is cut into 1, 2, 4 or 8 pieces per side, not " + std::to_string(pieces));
   }
   if (options.tolerance && !(*options.tolerance > 0 && std::isfinite(*options.tolerance))) {
     return Status(StatusCode::invalid_argument, "the tolerance of a ray scene must be a finite length above 0, not " +
                                                     std::to_string(*options.tolerance));
   }
   if (options.rebuild_after < 0) {
-    return Status(StatusCode::invalid_argument, "refits until a rebuild are counted from 1, or 0 for none, not " +
-                                                    std::to_string(options.rebuild_after));
+    return Status(StatusCode::invalid_argument, "the number of refits until a rebuild is " +
+                                                    std::to_string(options.rebuild_after) +
+                                                    ", it must be at least 1, or 0 for none");
   }
   const Result<Isa> isa = options.isa ? parse_isa(name(*options.isa)) : default_isa();
   if (!isa) return isa.status();

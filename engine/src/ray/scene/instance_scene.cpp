@@ -165,10 +165,8 @@ Status InstanceScene::build(const Execution& execution) {
       boxes[k] = placed_box(instance.to_world, condition, instance.scene->box());
     }
     if (!placement || !is_finite(boxes[k].lower) || !is_finite(boxes[k].upper))
-      return Status(
-          StatusCode::invalid_argument,
-          name_of(k) + "the map is not finite, or so nearly singular that rays cannot be taken back through it",
-          static_cast<std::ptrdiff_t>(k));
+      return Status(StatusCode::invalid_argument, name_of(k) + "the map must be finite and not nearly singular",
+                    static_cast<std::ptrdiff_t>(k));
     instance.placement = *placement;
     box_.extend(boxes[k]);
     spawn_offset_ =
@@ -176,7 +174,8 @@ Status InstanceScene::build(const Execution& execution) {
                                     8 * epsilon * std::max(max_abs(boxes[k].lower), max_abs(boxes[k].upper)));
   }
   if (!(box_.diagonal() >= smallest_size && box_.diagonal() <= largest_size))
-    return Status(StatusCode::unsupported, "a scene of instances holds sizes from 1e-140 to 1e140");
+    return Status(StatusCode::unsupported,
+                  "a scene of instances is limited to sizes from 1e-140 to 1e140: scale the model");
   frame_ = SceneFrame::around(box_);
   for (Box3& box : boxes) box = {frame_.to_scene(box.lower), frame_.to_scene(box.upper)};
   scene_box_ = {frame_.to_scene(box_.lower), frame_.to_scene(box_.upper)};
@@ -387,7 +386,7 @@ Result<std::unique_ptr<RayScene::Impl>> make_instance_scene(std::span<const RayI
     if (scene == nullptr)
       return Status(StatusCode::invalid_argument, name_of(k) + "no scene", static_cast<std::ptrdiff_t>(k));
     if (impl_of(*scene).exact_source() == nullptr)
-      return Status(StatusCode::unsupported, name_of(k) + "its scene is none of patches in exact mode",
+      return Status(StatusCode::unsupported, name_of(k) + "its scene must be one of patches in exact mode",
                     static_cast<std::ptrdiff_t>(k));
     out.push_back({&impl_of(*scene), impl_of(*scene).exact_source(), instances[k].to_world, instances[k].mask, {}});
   }

@@ -5,12 +5,14 @@
 #include <optional>
 #include <string>
 
-#include "base/guard.h"
 #include "base/impl_access.h"
+#include "base/text.h"
 #include "eval/view_checks.h"
 #include "ray/scene/batch_filter.h"
 #include "ray/scene/batch_layout.h"
 #include "ray/scene/ray_scene_impl.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -125,8 +127,8 @@ class BatchChecks {
     const std::size_t records = view.stride == 0 ? std::min<std::size_t>(rays_, 1) : rays_;
     if (view.stride == 0) view.stride = 1;
     if (view.size < records && error_.ok())
-      error_ = Status(StatusCode::count_mismatch, std::to_string(rays_) + " rays need as many records of " + name +
-                                                      ", or one of stride 0, not " + std::to_string(view.size));
+      error_ = Status(StatusCode::count_mismatch, std::string(name) + " needs " + counted(rays_, "record") +
+                                                      ", or one of stride 0, found " + std::to_string(view.size));
     if (error_.ok()) checks_.add(name, view, records);
   }
   template <class T>
@@ -147,7 +149,7 @@ class BatchChecks {
     if (rays_ == 0) return {};
     if (!error_.ok()) return error_;
     if (Status status = checks_.status(); !status.ok()) return status;
-    return has_output_ ? Status() : Status(StatusCode::invalid_argument, "no output is wanted");
+    return has_output_ ? Status() : Status(StatusCode::invalid_argument, "no output is requested");
   }
 
  private:

@@ -5,10 +5,12 @@
 #include <utility>
 #include <vector>
 
-#include "base/guard.h"
+#include "base/text.h"
 #include "parallel/call_progress.h"
 #include "parallel/parallel_for.h"
 #include "ray/scene/ray_scene_impl.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -21,8 +23,7 @@ Status stale() {
 }
 
 Status short_output(std::size_t rays, std::size_t room) {
-  return Status(StatusCode::buffer_too_small,
-                std::to_string(rays) + " rays, but room for " + std::to_string(room) + " results");
+  return Status(StatusCode::buffer_too_small, counted(rays, "ray") + ", but room for " + counted(room, "result"));
 }
 
 }  // namespace
@@ -47,7 +48,7 @@ Status RayScene::Impl::refit(const Execution& execution) {
 }
 
 Result<Hit> RayScene::Impl::resolve(std::uint32_t, double, double) const {
-  return Status(StatusCode::unsupported, "points of instances are resolved by the scene that stands there");
+  return Status(StatusCode::unsupported, "a scene of instances resolves no points: ask the scene of the instance");
 }
 
 Result<Hit> RayScene::Impl::resolve(const Ray&, std::uint32_t, double, double) const {
@@ -57,7 +58,7 @@ Result<Hit> RayScene::Impl::resolve(const Ray&, std::uint32_t, double, double) c
 Status RayScene::Impl::check(const RayBatch& batch) const {
   if (!fresh()) return stale();
   if (batch.filter != nullptr && !can_filter())
-    return Status(StatusCode::unsupported, "filters are asked in exact mode only");
+    return Status(StatusCode::unsupported, "filters need a ray scene in exact mode");
   return {};
 }
 
@@ -193,7 +194,7 @@ Result<LocalGeometry> RayScene::local_geometry(const Hit& hit) const {
   return guarded([&]() -> Result<LocalGeometry> {
     if (!impl_->fresh()) return stale();
     if (hit.kind != HitKind::hit)
-      return Status(StatusCode::invalid_argument, "there is no curvature where a ray meets nothing");
+      return Status(StatusCode::invalid_argument, "only a hit has a curvature: this is a miss or an invalid ray");
     return impl_->local_geometry(hit);
   });
 }

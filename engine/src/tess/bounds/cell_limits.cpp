@@ -6,7 +6,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// The smallest v with this u.
+/// Returns the rates with this u and the smallest v that keeps the limits.
 std::optional<Rates> with_u(const CellLimits& limits, int u, int most) {
   std::optional<Rates> best;
   for (const bool even : {false, true}) {
@@ -43,7 +43,8 @@ std::optional<Rates> cheapest(const CellLimits& limits, int most) {
     best = rates;
     return true;
   };
-  // u v is large at both ends: first in steps of an eighth, then from the best of them one by one, both ways.
+  // u v is large at both ends. The first pass takes steps of an eighth, the second single steps from the best, both
+  // ways.
   constexpr int small = 16, patience = 4;
   const auto may_be_fewer = [&](int u) { return !best || u < double(best->u) * best->v; };
   for (int u = 1; u <= most && may_be_fewer(u); u += u < small ? 1 : u / 8) attempt(u);

@@ -13,10 +13,10 @@ namespace {
 
 static_assert(kernel::max_product_degree == max_product_degree);
 
-/// Kernels are given sizes below this: above, the unit would not fit.
+/// Bounds of kernels are used for sizes below this: above, the unit would not fit.
 constexpr float largest_size = 0x1p126f;
 
-/// x >= 0 to a float that is not above.
+/// Rounds x >= 0 to a float that is not above.
 float rounded_down(double x) {
   const auto nearest = static_cast<float>(x);
   return double(nearest) > x ? std::bit_cast<float>(std::bit_cast<std::uint32_t>(nearest) - 1) : nearest;
@@ -26,7 +26,7 @@ bool is_bounded_in_blocks(const BlockGroup& group) {
   return !group.rational || std::max(group.degree_u, group.degree_v) <= kernel::max_rational_degree;
 }
 
-/// How many pairs of control points of different second derivatives there are; 0 where products are not looked for.
+/// Returns the number of pairs of control points of different second derivatives; 0 where products are not used.
 double pairs_of_products(const BlockGroup& group) {
   if (std::max(group.degree_u, group.degree_v) > max_product_degree) return 0;
   const double m = group.degree_u, n = group.degree_v, uu = (m - 1) * (n + 1), uv = m * n, vv = (m + 1) * (n - 1);
@@ -42,7 +42,7 @@ ChordBlocks::ChordBlocks(const PatchSet::Impl& set, bool by_doubles)
       size_(unit_.size(), -1.0f),
       slack_(unit_.size(), 0.0f),
       source_(unit_.size(), Source::packed) {
-  for (const BlockGroup& group : set.groups)  // whose lanes are not all bounded
+  for (const BlockGroup& group : set.groups)  // bound() leaves some lanes of these groups unset
     if (by_doubles || !is_bounded_in_blocks(group))
       std::fill_n(pieces_.data() + group.first_block * block_pieces, group.block_count * block_pieces, 0.0f);
 }
@@ -163,7 +163,7 @@ double ChordBlocks::saved_by_products(const PatchSet::Impl& set, std::size_t blo
                                       const Choice& choice) const {
   const BlockGroup& group = set.group_of_block(block);
   alignas(cache_line) Lanes<float> share;
-  // Of rational patches, for which it takes as long as the products themselves: about a tenth is saved.
+  // For rational patches this would take as long as the products themselves: about a tenth is saved.
   share.fill(0.9f);
   if (!group.rational)
     kernel::default_kernels().share_of_products(
@@ -177,7 +177,8 @@ double ChordBlocks::saved_by_products(const PatchSet::Impl& set, std::size_t blo
   for (std::size_t lane = 0; lane < count; ++lane)
     if (source_[block * lanes + lane] != Source::exact)
       saved += std::max(0.0, 1 - double(share[lane])) * choice.rates[lane].u * choice.rates[lane].v;
-  // These take 3.5 times as long as those of polynomial patches, and what is made of a cell up to twice as long.
+  // Products of rational patches take 3.5 times as long as those of polynomial ones, and their cells up to twice as
+  // long.
   return (group.rational ? 0.5 : 1) * saved / double(count);
 }
 
@@ -188,7 +189,7 @@ ChordBlocks::Choice ChordBlocks::cheapest(const PatchSet::Impl& set, std::size_t
   const double pairs = pairs_of_products(set.group_of_block(block));
   double all = 0;
   for (std::size_t lane = 0; lane < count; ++lane) all += cells(lane);
-  // Their time goes by the pairs, that of a mesh by its cells; where these are many, fewer are worth some time.
+  // The time of products goes by the pairs, that of a mesh by its cells: products pay where there are many cells.
   if (pairs == 0 || !(all >= std::min(0.5 * pairs, 150.0) * double(count))) return choice;
   if (!(saved_by_products(set, block, count, choice) >= 0.03 * pairs)) return choice;
   products.find(*this, set, block);

@@ -1,5 +1,5 @@
 #pragma once
-// The chord bounds of all patches of a set, block by block as the patches are packed.
+// Holds the chord bounds of all patches of a set, block by block as the patches are packed.
 
 #include <array>
 #include <cstdint>
@@ -12,55 +12,59 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// ChordBound in float, rounded up, of a set with float Bernstein blocks. Bounds come from the packed coefficients, sixteen
-/// patches at a time, and include their rounding. Rational patches are bounded from double as well, by exact numerators, and
-/// keep the bound with fewer cells; so do scaled sweeps and flat quadrilaterals (ChordBound) of any kind. Homogeneous bounds
-/// of rational patches of high degrees or uneven weights, or which are small beside the model, are found one by one.
+/// ChordBound in float, rounded up, for the patches of a set with float Bernstein blocks.
+///
+/// Bounds come from the packed coefficients, sixteen patches at a time, and include their rounding. Rational patches
+/// are also bounded from double, by exact numerators, and take the bound with fewer cells; so do scaled sweeps and flat
+/// quadrilaterals (ChordBound) of any kind. Homogeneous bounds of rational patches are found one by one if the patch
+/// has a high degree or uneven weights or is small beside the model.
 class ChordBlocks {
  public:
   template <class T>
   using Lanes = std::array<T, PatchSet::lanes>;
 
-  /// Kinds of a lane's bounds.
+  /// Where a lane's bounds come from.
   enum class Source : std::uint8_t {
-    packed,  ///< of the block's kernel
-    alone,   ///< of the homogeneous patch, in double
-    exact,   ///< of exact numerators; without products
-    sweep,   ///< as `packed`, of a scaled sweep: uv is 0, and so are its products
+    packed,  ///< the block's kernel
+    alone,   ///< the homogeneous patch, in double
+    exact,   ///< exact numerators; without products
+    sweep,   ///< as `packed`, for a scaled sweep: uv is 0, and so are its products
   };
-  /// `by_doubles`: all patches one by one, from double. For sets that reach so far that the rounding of packed coefficients
-  /// would be most of the bounds.
+  /// `by_doubles`: bounds all patches one by one, from double, for sets that reach so far that the rounding of packed
+  /// coefficients would be most of the bounds.
   explicit ChordBlocks(const PatchSet::Impl& set, bool by_doubles = false);
 
-  /// Finds the bounds of a block, of those lanes at least whose bits are set. Threads: any number, each a block of its own.
+  /// Finds the bounds of a block, at least of the lanes whose bits are set. Threads: any number, each with its own
+  /// block.
   void bound(const PatchSet::Impl& set, std::size_t block, std::uint32_t wanted = ~0u);
-  /// The largest |x|, |y|, |z| of the control points relative to the origin, as found on the way, rounded up.
+  /// Returns the largest |x|, |y| or |z| of the control points relative to the origin, rounded up; empty if bound() has
+  /// not found it.
   std::optional<double> size(std::size_t block, std::size_t lane) const {
     const float size = size_[block * lanes + lane];
     if (size < 0) return {};
-    return (1 + 0x1p-22) * double(size);  // the control points were rounded
+    return (1 + 0x1p-22) * double(size);  // because the packed control points were rounded
   }
   Source source(std::size_t block, std::size_t lane) const { return source_[block * lanes + lane]; }
-  /// Returns the length that counts beside the chord: twice the distance of a patch from the sweep or the quadrilateral that it is bounded as.
+  /// Returns the length to add to the chord: twice the distance of a patch from the sweep or the quadrilateral that it
+  /// is bounded as.
   double slack(std::size_t block, std::size_t lane) const { return double(slack_[block * lanes + lane]); }
-  /// Bounds on the products of second derivatives, found where they are asked for.
+  /// Bounds on the products of second derivatives of one block, found on request.
   class Products {
    public:
-    /// Of a block that is as it was when it was bounded. Once; then it is free.
+    /// Finds them; further calls do nothing. The block must not have changed since ChordBlocks::bound().
     void find(const ChordBlocks& chords, const PatchSet::Impl& set, std::size_t block);
-    const float* values() const {
-      return is_found_ ? values_.data() : nullptr;
-    }  ///< as pieces_, in units of unit_ squared
+    /// Laid out as pieces_, in units of unit_ squared; null before find().
+    const float* values() const { return is_found_ ? values_.data() : nullptr; }
 
    private:
     bool is_found_ = false;
     alignas(cache_line) std::array<float, 9 * 3 * PatchSet::lanes> values_;
   };
 
-  /// One patch's bound, by the products as well if there are `products`.
+  /// Returns one patch's bound; `products`, if not null, sharpen it.
   ChordBound chord(std::size_t block, std::size_t lane, const Products* products = nullptr) const;
 
-  /// One of ChordBound::pieces() without products.
+  /// Returns one of ChordBound::pieces() without products.
   SecondDerivatives piece(std::size_t block, std::size_t lane, std::size_t which) const {
     const double unit = unit_[block * lanes + lane];
     const float* d = pieces_.data() + block * block_pieces + which * 3 * lanes + lane;
@@ -69,26 +73,27 @@ class ChordBlocks {
 
   struct Choice {
     Lanes<Rates> rates;        ///< 0 where no rates up to the most keep the distance
-    Lanes<double> distance{};  ///< what they keep
+    Lanes<double> distance{};  ///< the distance that the rates keep
   };
-  /// Rates with about the fewest cells that keep a distance to each of a block's first `count` patches. The same on every
-  /// instruction set. Products are looked for where they save more than they take.
+  /// Returns rates with about the fewest cells, up to `most`, that keep a distance to each of a block's first `count`
+  /// patches. The rates are equal on every instruction set. Products are found where they save more time than they
+  /// take.
   Choice cheapest(const PatchSet::Impl& set, std::size_t block, std::size_t count, const Lanes<double>& distance,
                   int most, Products& products) const;
 
  private:
-  /// Bounds of a block's lanes that are found in double.
+  /// The bounds of a block's lanes that are found in double.
   struct Exact;
 
-  /// Bounds the lane's patch alone.
+  /// Bounds one lane's homogeneous patch in double (Source::alone).
   void bound_alone(const BezierPatch& patch, std::size_t block, std::size_t lane);
-  /// The power of two at or below the largest bound, so that float holds squares of the others.
+  /// Sets the lane's unit: the power of two at or below the largest bound, so that float holds squares of the others.
   void set_unit(std::size_t block, std::size_t lane, double most);
-  /// Writes bounds(piece, which of uu, uv, vv), in lengths, in the lane's unit.
+  /// Writes bound(piece, which of uu, uv, vv), given in lengths, in the lane's unit.
   template <class Bound>
   void store(std::size_t block, std::size_t lane, const Bound& bound);
-  /// Takes the bounds of sweeps and flat quadrilaterals, and of exact numerators where they are the smaller ones. `hints`: see
-  /// kernel::ChordHint.
+  /// Takes the bounds of sweeps and flat quadrilaterals, and those of exact numerators where they are smaller. `hints`:
+  /// see kernel::ChordHint.
   void bound_exactly(const PatchSet::Impl& set, std::size_t block, const Lanes<float>& hints, std::uint32_t wanted);
   double homogeneous_cells(const BezierPatch& patch, std::size_t block, std::size_t lane) const;
   static void find_exact(const PatchSet::Impl& set, std::size_t block, bool any_patch, Exact& exact);
@@ -96,9 +101,9 @@ class ChordBlocks {
   void take_flat(const BezierPatch& patch, std::size_t block, std::size_t lane);
   void take_exact(const BezierPatch& patch, const Exact& exact, std::size_t block, std::size_t lane);
 
-  /// How many cells a patch products save, about, of those that a choice has.
+  /// Estimates how many cells of a choice, per patch, products save.
   double saved_by_products(const PatchSet::Impl& set, std::size_t block, std::size_t count, const Choice& choice) const;
-  /// By the kernel, and one by one where it has found none.
+  /// Finds rates by the kernel, and one by one where it has found none.
   Choice search(std::size_t block, std::size_t count, const Lanes<double>& distance, int most,
                 const Products* products) const;
 
@@ -107,7 +112,7 @@ class ChordBlocks {
   bool by_doubles_;
   UnsetVector<float> pieces_;   ///< `[block][piece][uu, uv, vv][lane]`, in units of unit_
   AlignedVector<float> unit_;   ///< `[block][lane]`, powers of two
-  AlignedVector<float> size_;   ///< `[block][lane]`, negative where not known
+  AlignedVector<float> size_;   ///< `[block][lane]`, negative where unknown
   std::vector<float> slack_;    ///< `[block][lane]`
   std::vector<Source> source_;  ///< `[block][lane]`
 };

@@ -9,10 +9,10 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// What a piece takes from the quarters that it is made of: bit 2 i + j stands for quarter [i][j].
+/// The quarters that each piece is made of: bit 2 i + j stands for quarter [i][j].
 constexpr unsigned quarters_of_piece[9] = {0b1111, 0b0011, 0b1100, 0b0101, 0b1010, 0b0001, 0b0010, 0b0100, 0b1000};
 
-/// The smallest t >= 1 with a + b / t + c / t^2 <= limit, a <= limit; infinite if there is none.
+/// Returns the smallest t >= 1 with a + b / t + c / t^2 <= limit, a <= limit; infinite if there is none.
 double smallest_rate(double a, double b, double c, double limit) {
   const double room = limit - a;
   if (b == 0 && c == 0) return 1;
@@ -39,7 +39,7 @@ ChordBound::ChordBound(const BezierPatch& patch, bool products) {
       piece.vv[piece.count] = &vv[i][j];
       piece.points[piece.count++] = &points[i][j];
     }
-    // Each difference of four coefficients, the translation and the cuts round by less than 16 units of what enters.
+    // Each difference of four coefficients, the translation and the cuts round by less than 16 units of their operands.
     pieces_[k] = bound_piece(nets, piece, 0x1p-46, products);
   }
 }
@@ -93,7 +93,7 @@ std::optional<Rates> ChordBound::with_rate(double tolerance, int fixed, bool fix
     if ((rate % 2 == 0) != even) ++rate;
     const auto rates = [&] { return fixed_u ? Rates{fixed, rate} : Rates{rate, fixed}; };
     if (!(distance(rates()) <= tolerance)) rate += 2;  // the root was rounded, or the parameters are
-    // By the products it may be less.
+    // With products a smaller rate may do.
     for (int low = even ? 0 : -1; std::isfinite(pieces_[0].uu_vv) && rate - low > 2;) {
       const int high = rate;
       rate = low + (high - low) / 4 * 2;
@@ -108,8 +108,9 @@ std::optional<Rates> ChordBound::with_rate(double tolerance, int fixed, bool fix
 std::optional<Rates> ChordBound::cheapest(double tolerance, int most) const {
   std::optional<Rates> best;
   double least = std::numeric_limits<double>::infinity();
-  // Over real rates the fewest cells have h^2 uu = k^2 vv, hence 4 tolerance = h^2 (uu + uv sqrt(uu / vv)). Whole numbers
-  // and halves move the minimum a little: walk from there both ways, over the smaller rate, whose steps are the larger.
+  // Over real rates the fewest cells have h^2 uu = k^2 vv, hence 4 tolerance = h^2 (uu + uv sqrt(uu / vv)). Whole
+  // numbers and halves move the minimum a little: walk from there both ways over the smaller rate, whose relative steps
+  // are larger.
   const SecondDerivatives& d = pieces_[0];
   const bool fixed_u = d.uu <= d.vv;
   const double small = fixed_u ? d.uu : d.vv, large = fixed_u ? d.vv : d.uu;

@@ -8,8 +8,8 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// Cuts a Bezier curve of `count` points, `step` apart, at 1/2 by de Casteljau: the points become its upper half, and its
-/// lower half goes to `low`.
+/// Cuts a Bezier curve of `count` points, `step` apart, at 1/2 by de Casteljau: `high` becomes its upper half, and
+/// `low` its lower half.
 void cut(Homogeneous* high, Homogeneous* low, int count, int step) {
   for (int k = 0; k < count; ++k) {
     low[k * step] = high[0];
@@ -17,7 +17,7 @@ void cut(Homogeneous* high, Homogeneous* low, int count, int step) {
   }
 }
 
-/// Leaves the part of a curve from `begin` to `end`.
+/// Cuts a Bezier curve down to its part from `begin` to `end`.
 void cut_to(Homogeneous* at, int count, int step, double begin, double end) {
   const auto mixed = [&](int i, double t) { return (1 - t) * at[i * step] + t * at[(i + 1) * step]; };
   if (end < 1)
@@ -28,8 +28,8 @@ void cut_to(Homogeneous* at, int count, int step, double begin, double end) {
       for (int i = 0; i + k < count; ++i) at[i * step] = mixed(i, begin / end);
 }
 
-/// Where a rational piece lies: its points are within `radius` of `centre`, its weights at least `lightest`. A polynomial
-/// one has radius 0, which leaves the derivatives as they are.
+/// Where a rational piece lies: its points are within `radius` of `centre`, its weights at least `lightest`. The
+/// default is for polynomial pieces: it leaves the derivatives unchanged.
 struct Place {
   Vec3 centre;
   double radius = 0, lightest = 1;
@@ -54,7 +54,7 @@ Place place_of(const DerivativePiece& piece) {
   return place;
 }
 
-/// NaN is larger than all else.
+/// The larger of both; NaN is larger than all numbers.
 double larger(double most, double one) { return one > most || std::isnan(one) ? one : most; }
 
 double largest(const DerivativePiece& piece, const DerivativePiece::Nets& nets, const Place& place) {
@@ -65,13 +65,13 @@ double largest(const DerivativePiece& piece, const DerivativePiece::Nets& nets, 
   return most / place.lightest;
 }
 
-/// What largest() measures: vectors, each with a ball around it; the balls of polynomial pieces are points.
+/// The vectors that largest() measures, each the centre of a ball; the balls of polynomial pieces are points.
 struct Vectors {
   static constexpr std::size_t capacity = std::size_t{4} * (max_product_degree + 1) * (max_product_degree + 1);
   using Numbers = double[capacity];
   Numbers x, y, z, radius, size;  // the first `count`
   std::size_t count = 0;
-  double doubt = 0;  ///< NaN where one of them is not finite
+  double doubt = 0;  ///< NaN if one of them is not finite, else 0
 
   Vectors(const DerivativePiece& piece, const DerivativePiece::Nets& nets, const Place& place) {
     for_vectors(piece, nets, [&](const Homogeneous& a) {
@@ -87,7 +87,8 @@ struct Vectors {
   }
 };
 
-/// The largest product of vectors in balls of both, or its largest size; NaN where one of them is not finite.
+/// Returns the largest product of a vector in a ball of `a` and one in a ball of `b`, or the largest size of these
+/// products; NaN if a vector is not finite.
 template <bool Balls, bool Size>
 double largest_product(const Vectors& a, const Vectors& b) {
   if (a.count == 0 || b.count == 0) return 0;
@@ -174,7 +175,7 @@ SecondDerivatives bound_piece(const DerivativeNets& patch, const DerivativePiece
                       scale * (largest(piece, piece.vv, place) + (n > 1 ? n * (n - 1) * rounded : 0))};
   make_infinite_where_nan({&d.uu, &d.uv, &d.vv});
   if (!products || std::max(m, n) > max_product_degree) return d;
-  // What was added to the bounds was that for a vector's error, and a product's errors are those with the other vector.
+  // The bounds include each vector's error; the error of a product is that of each vector times the other vector.
   const Vectors a(piece, piece.uu, place), b(piece, piece.uv, place), c(piece, piece.vv, place);
   const auto bound = [&](double product, double x, double y, double degrees) {
     return scale * scale * product + 0x1p-38 * x * y + scale * degrees * rounded * (x + y);

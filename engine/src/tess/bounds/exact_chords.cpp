@@ -1,4 +1,4 @@
-// Bounds of a block's patches that are found in double: by exact numerators, of scaled sweeps and of flat quadrilaterals.
+// Finds bounds of a block's patches in double: by exact numerators, for scaled sweeps and for flat quadrilaterals.
 
 #include <algorithm>
 #include <bit>
@@ -32,7 +32,7 @@ namespace {
 
 using Net = std::array<double, (max_degree + 1) * (max_degree + 1) * 4 * PatchSet::lanes>;
 
-/// The patch into its lane of a net as ExactChordJob has it.
+/// Packs the patch into its lane of a net, laid out as in ExactChordJob.
 void pack(const BezierPatch& patch, double* lane) {
   const Vec3 centre = patch.hull_box().centre();
   if (patch.is_rational()) {
@@ -48,18 +48,18 @@ void pack(const BezierPatch& patch, double* lane) {
   }
 }
 
-/// Exact numerators replace a homogeneous bound only where they take fewer cells by this factor: products of second
-/// derivatives save as much of the other.
+/// Exact numerators replace a homogeneous bound only where they reduce the cells to this share: the homogeneous bound
+/// can save as much by products of second derivatives.
 constexpr double min_gain = 0.8;
-/// About the cells that a patch takes at a tolerance of 2^-10 of its size, times a factor of the patch's. `bound(kind)`: of
-/// uu, uv, vv.
+/// Estimates the cells that a patch takes at a tolerance of 2^-10 of its size, times a factor of the patch's.
+/// `bound(kind)` is that of uu, uv or vv.
 template <class Bound>
 double cells(double size, const Bound& bound) {
   const double one = std::sqrt(0x1p-7 * size);
   return (std::sqrt(bound(0)) + one) * (std::sqrt(bound(2)) + one) + bound(1);
 }
 
-/// The lanes that have a hint, a bit each.
+/// Returns the lanes that have a hint, one bit each.
 std::uint32_t lanes_with(kernel::ChordHint hint, const ChordBlocks::Lanes<float>& hints) {
   std::uint32_t bits = 0;
   for (std::size_t lane = 0; lane < hints.size(); ++lane)
@@ -165,10 +165,11 @@ void ChordBlocks::bound_exactly(const PatchSet::Impl& set, std::size_t block, co
       visit(lane, set.patches[set.lane_patches[block * lanes + lane]]);
     }
   };
-  // Numerators of a block take a microsecond or more a lane: for one that gains much, or an eighth that gain.
+  // Numerators of a block take a microsecond or more per lane: worth it for one lane that gains much, or an eighth that
+  // may gain.
   const auto gaining = static_cast<std::size_t>(std::popcount(hinted(kernel::may_gain)));
   const bool any_patch = rational && (hinted(kernel::will_gain) != 0 || 8 * gaining > count);
-  // Lanes that are bounded alone have every hint: this is where rational ones are.
+  // Lanes with Source::alone have every hint, so take_exact() bounds the rational ones among them.
   if (hinted(kernel::may_be_sweep) != 0 || any_patch) {
     Exact exact;
     find_exact(set, block, any_patch, exact);

@@ -8,7 +8,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// Deviations up to this share of the diagonals pass for rounding.
+/// Deviations up to this share of the longer diagonal count as rounding.
 constexpr double tolerance = 0x1p-30;
 
 double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
@@ -48,7 +48,7 @@ std::optional<double> flat_quad_deviation(const BezierPatch& patch) {
       if (i == 0) add(distance_to_segment(p, corner[0], corner[3]));
     }
   if (!(most <= tolerance * size)) return {};
-  // Sums and products of numbers up to their distance from zero round by a few units of it.
+  // Sums and products of coordinates round by a few units of the largest one.
   const Box3 box = patch.hull_box();
   const double rounding = 0x1p-48 * (max_abs(box.lower) + max_abs(box.upper));
   return 4 * most + rounding;

@@ -1,5 +1,5 @@
 #pragma once
-// Patches that are flat quadrilaterals, whatever their parameters do inside.
+// Recognises patches that are flat quadrilaterals, whatever their parameters do inside.
 
 #include <optional>
 
@@ -7,9 +7,12 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// How far a patch may lie from the flat convex quadrilateral of its corners: empty if that is more than rounding. Its
-/// control points lie in that quadrilateral, and those of its borders on the sides. So the patch lies in it (convex hull), and
-/// covers it (its border runs once around it): as two triangles do, and any others with vertices on the patch.
+/// Returns how far a patch may lie from the flat convex quadrilateral of its corners; empty if that is more than
+/// rounding.
+///
+/// All control points lie in that quadrilateral, and those of the borders on its sides. So the patch lies in it (convex
+/// hull) and covers it (its border runs once around it). Two triangles do the same, and so do any others with vertices
+/// on the patch.
 std::optional<double> flat_quad_deviation(const BezierPatch& patch);
 
 }  // namespace tessera::inline abi_0_1

@@ -12,17 +12,17 @@ namespace {
 
 constexpr std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
-/// A float parameter i / rate lies up to 2^-25 beside it.
+/// Half the width of a triangle's box. A float parameter lies up to 2^-25 beside i / rate.
 double margin(int least) { return 0.5 / least + 0x1p-24; }
 
 constexpr Domain whole{0, 1, 0, 1};
-/// Of so many parts.
+/// Part (i, j) of the whole, divided into parts.u x parts.v.
 Domain part(Rates parts, int i, int j) {
   const auto begin = [](int k, int count) { return double(k) / count; };
   return {begin(i, parts.u), begin(i + 1, parts.u), begin(j, parts.v), begin(j + 1, parts.v)};
 }
 
-/// Bounds of rectangles, each widened inside a part of the patch.
+/// Bounds rectangles, each widened within a part of the patch.
 class Widened {
  public:
   Widened(const DerivativeNets& patch, const Domain& part, Rates least)
@@ -44,7 +44,7 @@ class Widened {
   double margin_u_, margin_v_;
 };
 
-/// The smallest rate v with this u, between `least` and `most`, if `most` will do.
+/// Returns the smallest rate v with this u, between `least` and `most`; empty if `most` does not keep the limits.
 template <class Keeps>
 std::optional<int> min_v(int u, int least, int most, const Keeps& keeps) {
   if (most < least || !keeps({u, most})) return {};
@@ -55,7 +55,7 @@ std::optional<int> min_v(int u, int least, int most, const Keeps& keeps) {
   return most;
 }
 
-/// Rates down to so many parts of those known are looked for.
+/// The least rates of a search: this share of the known ones.
 Rates shrunk(Rates rates, double share) {
   const auto least = [share](int rate) { return std::max(1, static_cast<int>(share * rate)); };
   return {least(rates.u), least(rates.v)};
@@ -81,7 +81,7 @@ LocalChord::LocalChord(const DerivativeNets& patch, const Domain& part, Rates le
   while (count_ < pieces) {
     const Domain d = pieces_.front().rectangle;
     const double cells_u = (d.u1 - d.u0) * about.u, cells_v = (d.v1 - d.v0) * about.v;
-    if (std::max(cells_u, cells_v) <= 0.5) break;  // hardly less than its margins
+    if (std::max(cells_u, cells_v) <= 0.5) break;  // no wider than its margins
     std::pop_heap(pieces_.data(), pieces_.data() + count_--, is_smaller);
     const double u = 0.5 * (d.u0 + d.u1), v = 0.5 * (d.v0 + d.v1);
     const bool halves_u = cells_u >= cells_v;
@@ -105,13 +105,13 @@ bool LocalChord::keeps(Rates rates, double distance) const {
 
 namespace {
 
-/// Bounds are first made roughly, then of smaller pieces about what was found.
+/// One pass of a search: the first has rough bounds, the next has smaller pieces near the rates that were found.
 struct Pass {
-  double share;  ///< of rates, down to which they hold
+  double share;  ///< the bounds hold down to this share of the known rates
   std::size_t pieces;
 };
 
-/// Adds uniform segments.
+/// Adds uniform segments to the choices.
 void add_uniform(const DerivativeNets& patch, double distance, FunctionRef<bool(Rates)> also, SegmentChoices& choices) {
   for (const Pass pass : {Pass{0.65, 16}, Pass{0.85, 32}}) {
     const Rates rates = choices.fewest().segments.rates();
@@ -128,17 +128,17 @@ void add_uniform(const DerivativeNets& patch, double distance, FunctionRef<bool(
   }
 }
 
-/// Into how many parts the parameters are taken.
+/// The number of parts along each parameter.
 using PartCounts = Rates;
 
-/// The rates of segments of a part, and the segments of both.
+/// The rate at which uniform segments are as long as `count` of a part, and the segments of both parts.
 int rate_of(int count, int parts) { return parts * count; }
 Segments joined(int lower, int upper, int parts) { return parts == 2 ? Segments::halves(lower, upper) : lower; }
 
-/// What a part of a patch needs: for each number of segments along its u the least along its v.
+/// The needs of a part of a patch: for each number of segments along its u the least number along its v.
 class PartNeeds {
  public:
-  /// Of segments a part: at most `most`.
+  /// `most`: the largest numbers of segments of the part.
   PartNeeds(const LocalChord& local, PartCounts parts, Rates most, double distance)
       : min_v_(at(most.u) + 1, most.v + 1) {
     const auto keeps = [&](Rates counts) {
@@ -147,13 +147,13 @@ class PartNeeds {
     for (int u = local.least().u / parts.u; u <= most.u; ++u)
       if (const auto v = min_v(u, local.least().v / parts.v, most.v, keeps)) min_v_[at(u)] = *v;
   }
-  int min_v_for(int u) const { return min_v_[at(u)]; }  ///< above the most if none will do
+  int min_v_for(int u) const { return min_v_[at(u)]; }  ///< above `most` if no number suffices
 
  private:
   std::vector<int> min_v_;
 };
 
-/// Bounds of the parts of a patch: quarters, or halves where the other parameter is one segment that none would part.
+/// Bounds of the parts of a patch: quarters, or halves where the other parameter has only one segment.
 class PartChords {
  public:
   PartChords(const DerivativeNets& patch, PatchSegments about, Pass pass)
@@ -183,7 +183,7 @@ class PartChords {
   std::array<std::optional<LocalChord>, 4> chords_;
 };
 
-/// Adds segments of any length in the halves.
+/// Adds segments whose lengths may differ between the halves to the choices.
 void add_halves(const PartChords& chords, double distance, FunctionRef<bool(Rates)> also, SegmentChoices& choices) {
   const PatchSegments known = choices.fewest().segments;
   const PartCounts parts = chords.parts();
@@ -206,7 +206,7 @@ void add_halves(const PartChords& chords, double distance, FunctionRef<bool(Rate
 }
 
 void add_halves(const DerivativeNets& patch, double distance, FunctionRef<bool(Rates)> also, SegmentChoices& choices) {
-  constexpr int min_cells = 12;  // of fewer none is saved
+  constexpr int min_cells = 12;  // with fewer cells nothing is saved
   for (const Pass pass : {Pass{0.5, 12}, Pass{0.8, 24}}) {
     const PatchSegments known = choices.fewest().segments;
     if (known.cells() < min_cells) return;

@@ -1,5 +1,5 @@
 #pragma once
-// Chord bounds over many small pieces of a patch, for rates with fewer cells than bounds over halves prove.
+// Bounds chords over many small pieces of a patch, for rates with fewer cells than bounds over halves prove.
 
 #include <array>
 #include <optional>
@@ -13,21 +13,22 @@ namespace tessera::inline abi_0_1 {
 
 struct DerivativeNets;
 
-/// Bounds over rectangles that tile the patch, small where it bends most. A triangle's parameter box, at most h x k, has its
-/// centre in one of them, and so lies within that one widened by h / 2 and k / 2: for this part of the patch it is bounded.
-/// So, unlike bounds over halves, those of a whole patch know no difference between even and odd rates. Takes about 20 us of
-/// a bicubic patch.
+/// Bounds over rectangles that tile the patch, small where it bends most.
+///
+/// A triangle's parameter box, at most h x k, has its centre in one of the rectangles. So it lies within this rectangle
+/// widened by h / 2 and k / 2, and the bound is made for this part of the patch. Unlike bounds over halves, those of a
+/// whole patch make no difference between even and odd rates. Time: some 10 us per bicubic patch.
 class LocalChord {
  public:
   static constexpr std::size_t max_pieces = 32;
 
-  /// For rates of at least `least`; rectangles, at most so many, are chosen for rates of about `about`.
+  /// Makes bounds for rates of at least `least`, over at most `pieces` rectangles that suit rates near `about`.
   LocalChord(const BezierPatch& patch, Rates least, Rates about, std::size_t pieces = max_pieces);
-  /// For triangles inside a part of the patch alone.
+  /// Makes bounds for triangles that lie inside a part of the patch.
   LocalChord(const DerivativeNets& patch, const Domain& part, Rates least, Rates about, std::size_t pieces);
 
   Rates least() const { return least_; }
-  /// As ChordBound::distance, of rates not below least().
+  /// Returns the largest distance, as ChordBound::distance(), for rates not below least().
   double distance(Rates rates) const;
   bool keeps(Rates rates, double distance) const;
 
@@ -35,18 +36,18 @@ class LocalChord {
   struct Piece {
     Domain rectangle;
     SecondDerivatives bound;
-    double chord = 0;  ///< by the rates that the pieces are chosen for
+    double chord = 0;  ///< at the rates that the pieces are chosen for
   };
 
   Rates least_;
-  std::array<Piece, max_pieces> pieces_;  ///< those of the largest chord first
+  std::array<Piece, max_pieces> pieces_;  ///< in the order of chords, largest first
   std::size_t count_ = 0;
 };
 
-/// Adds segments with fewer cells than there are, that keep a distance and `also` hold at the coarsest rates; and others
-/// with about as few.
+/// Adds segments to `choices` that keep the distance with fewer cells than its present ones, or about as few. `also`
+/// must hold for their coarsest rates.
 void find_fewer(const BezierPatch& patch, double distance, FunctionRef<bool(Rates)> also, SegmentChoices& choices);
-/// What they keep, so.
+/// Returns the distance that segments keep by such bounds.
 double local_distance(const BezierPatch& patch, PatchSegments segments);
 
 }  // namespace tessera::inline abi_0_1

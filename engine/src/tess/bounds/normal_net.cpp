@@ -10,8 +10,8 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// Coefficients of a polynomial of the given degrees over B_i B_j times the binomials C(m,i) C(n,j): such nets multiply by
-/// convolution (Farouki and Rajan 1988, Algorithms for polynomials in Bernstein form, eq. 44).
+/// Coefficients of a polynomial of the given degrees over B_i B_j times the binomials C(m,i) C(n,j): such nets multiply
+/// by convolution (Farouki and Rajan 1988, Algorithms for polynomials in Bernstein form, eq. 44).
 template <class T>
 struct Scaled {
   int degree_u, degree_v;
@@ -40,7 +40,7 @@ Scaled<Vec3> multiple(const Scaled<double>& w, const Scaled<Vec3>& a) {
   return product(w, a, [](double s, const Vec3& p) { return s * p; });
 }
 
-/// Of part(A) of the net, differentiated once along u or v, or not.
+/// Returns part(A) of the net, differentiated once along u or along v, or not at all.
 template <class Part>
 auto scaled(const HomogeneousNet& net, int along_u, int along_v, Part part) {
   const int m = net.degree_u - along_u, n = net.degree_v - along_v;
@@ -69,7 +69,7 @@ Scaled<Vec3> normal_numerator(const HomogeneousNet& net, bool rational) {
   return sum;
 }
 
-/// The field over u, 1 - u, v or 1 - v, of a field that vanishes at that edge.
+/// Divides a field that vanishes at an edge by u, 1 - u, v or 1 - v.
 VectorNet divided(const VectorNet& net, Edge edge) {
   const bool along_u = edge == Edge::u0 || edge == Edge::u1, low = edge == Edge::u0 || edge == Edge::v0;
   VectorNet out;
@@ -87,7 +87,7 @@ VectorNet divided(const VectorNet& net, Edge edge) {
   return out;
 }
 
-/// As if every point and weight were the largest: the sum of the sizes of all that is added up.
+/// Bounds the sum of the sizes of all terms, as if every point and weight were the largest.
 double largest_term(const HomogeneousNet& net, bool rational) {
   double size = 0, weight = 0;
   for (std::size_t k = 0; k < net.size(); ++k) {

@@ -1,5 +1,5 @@
 #pragma once
-// The normal of a patch as a Bezier net.
+// Computes the normal of a patch as a Bezier net.
 
 #include <vector>
 
@@ -21,12 +21,14 @@ struct VectorNet {
 
 struct NormalNet {
   VectorNet net;
-  double rounding = 0;  ///< what a control point may be off by
+  double rounding = 0;  ///< the largest error of a control point
 };
 
-/// A field that points everywhere where r_u x r_v does, polynomial or rational, scaled to sizes near 1: for a rational
-/// patch A / w the numerator of that product, w A_u x A_v - w_v A_u x A - w_u A x A_v. Collapsed edges, at which both
-/// vanish, are divided out: there it points along the limit of the normal. Where it is zero the patch has no normal.
+/// Returns a field that points everywhere in the direction of r_u x r_v, scaled to sizes near 1.
+///
+/// For a rational patch A / w the field is the numerator of that product, w A_u x A_v - w_v A_u x A - w_u A x A_v. At a
+/// collapsed edge both vanish; the edge is divided out, so that the field points along the limit of the normal there.
+/// Where the field is zero the patch has no normal.
 NormalNet normal_net(const BezierPatch& patch);
 
 }  // namespace tessera::inline abi_0_1

@@ -19,7 +19,7 @@ constexpr int max_pixels = 1 << 20;
 
 Status bad(const std::string& message) { return {StatusCode::invalid_argument, message}; }
 
-/// Points in the camera's axes, with weights.
+/// A patch's control points in the camera's axes, and its weights.
 struct LocalNet {
   int rows = 0, columns = 0;
   std::vector<Vec3> points;
@@ -50,14 +50,15 @@ struct LocalNet {
     for (const Vec3& p : points) z = std::max(z, p.z);
     return z;
   }
-  /// Whether all of the hull lies outside one plane of the frame, by more than the margin.
+  /// Whether the whole hull lies outside one plane of the frame, by more than the margin.
   bool is_unseen(const Camera& camera, double margin) const {
     for (int plane = 0; plane < camera.plane_count(); ++plane)
       if (std::all_of(points.begin(), points.end(), [&](const Vec3& p) { return camera.outside(p, plane) > margin; }))
         return true;
     return false;
   }
-  /// The lower and the upper half by the rational algorithm of de Casteljau (Farin, sec. 13.3): points stay in the hull.
+  /// Returns the lower and the upper half by the rational algorithm of de Casteljau (Farin, sec. 13.3), which keeps
+  /// points in the hull.
   std::pair<LocalNet, LocalNet> halves(bool along_u) const {
     LocalNet low = *this, high = *this;
     const int count = along_u ? rows : columns, lines = along_u ? columns : rows;
@@ -77,8 +78,8 @@ struct LocalNet {
   }
 };
 
-/// No point of the patch that lies within the margin of what the camera sees is less deep; infinite if there is none. At
-/// least the near distance less the margin.
+/// Bounds the depth from below at which a point of the patch lies within the margin of what the camera sees. The depth
+/// is infinite if no point does, and at least the near distance less the margin.
 class NearestSeen {
  public:
   NearestSeen(const Camera& camera, const LocalNet& net, double margin) : camera_(camera), margin_(margin) {
@@ -106,7 +107,7 @@ class NearestSeen {
   double margin_, depth_ = infinity;
 };
 
-/// The picture of a net, in place: its points in pixels, all deeper than 0 in perspective.
+/// Replaces a net by its picture, with points in pixels. In perspective all points must be deeper than 0.
 void project(const Camera& camera, LocalNet& net) {
   for (std::size_t k = 0; k < net.points.size(); ++k) {
     Vec3& p = net.points[k];
@@ -126,7 +127,7 @@ double size_of(const LocalNet& net) {
   return size;
 }
 
-/// The pictures of some patches of a block, for the kernel.
+/// Pictures of some patches of a block, for the kernel.
 class PictureBlock {
  public:
   PictureBlock(int degree_u, int degree_v) : degree_u_(degree_u), degree_v_(degree_v) {
@@ -134,7 +135,7 @@ class PictureBlock {
     for (std::size_t k = 0; k < 4 * lanes * count; ++k) net_[k] = k / lanes % 4 == 3 ? 1.0f : 0.0f;
   }
 
-  /// Takes a picture if float may hold it.
+  /// Adds a picture if float can hold it; else returns false.
   bool add(std::size_t lane, const LocalNet& net) {
     const auto [lightest, heaviest] = std::minmax_element(net.weights.begin(), net.weights.end());
     if (!(*lightest >= min_weight * *heaviest && *heaviest <= largest && *heaviest >= 1 / largest)) return false;
@@ -169,7 +170,7 @@ class PictureBlock {
         pieces[k][kind] = double(unit_[lane]) * double(pieces_[(3 * k + kind) * lanes + lane]);
     return pieces;
   }
-  /// Whether rounding is little of what was found. It holds in any case.
+  /// Whether rounding is a small part of the bound. The bound holds in any case.
   bool is_sharp(std::size_t lane) const { return size_[lane] >= 0; }
 
  private:
@@ -185,7 +186,7 @@ class PictureBlock {
 }  // namespace
 
 Result<Camera> Camera::make(const View& view) {
-  // Written so that NaN fails.
+  // The conditions are written so that NaN fails.
   constexpr double largest = 1e100;
   const auto in_range = [](const Vec3& v) { return is_finite(v) && max_abs(v) <= largest; };
   if (!in_range(view.eye) || !in_range(view.target) || !in_range(view.up))
@@ -198,7 +199,7 @@ Result<Camera> Camera::make(const View& view) {
     return bad("the view's extent is " + text(view.extent) + ", it must be finite and above 0");
   if (view.width < 1 || view.height < 1 || view.width > max_pixels || view.height > max_pixels)
     return bad("the view is " + std::to_string(view.width) + " x " + std::to_string(view.height) +
-               " pixels, from 1 to 1048576 are allowed");
+               " pixels, each must be from 1 to 1048576");
   if (!(view.near_distance >= 0 && view.near_distance <= largest))
     return bad("the view's near distance is " + text(view.near_distance) + ", it must be finite and at least 0");
   Camera camera;
@@ -254,7 +255,7 @@ ScreenSpaceBound::ScreenSpaceBound(const Camera& camera, const BezierPatch& patc
 void ScreenSpaceBound::allow_for(const Camera& camera, double moved, double shallowest, double size) {
   const double tangent = camera.orthographic() ? 0 : size / camera.focal();
   const double slope = camera.focal() * std::sqrt(1 + tangent * tangent);
-  // What arithmetic did to the points in the plane is far below 2^-40 of them.
+  // The rounding of the points in the plane is far below 2^-40 of them.
   const double room = camera.orthographic() ? 1 : shallowest - moved;
   moved_pixels_ = room > 0 ? slope * moved / room + 0x1p-40 * size : infinity;
 }
@@ -262,7 +263,7 @@ void ScreenSpaceBound::allow_for(const Camera& camera, double moved, double shal
 void ScreenSpaceBound::find(const Camera& camera, const PatchSet::Impl& set, std::size_t block,
                             const std::array<double, PatchSet::lanes>& moved, double pixels,
                             ScreenSpaceBound* pictures) {
-  constexpr double little = 0.1;  // of the pixels that are to be kept
+  constexpr double little = 0.1;  // a share of the tolerance in pixels
   const BlockGroup& group = set.group_of_block(block);
   const std::uint32_t* const patches = set.lane_patches.data() + block * PatchSet::lanes;
   const std::size_t count = set.lane_counts[block];
@@ -295,13 +296,14 @@ void ScreenSpaceBound::find(const Camera& camera, const PatchSet::Impl& set, std
 
 void ScreenSpaceBound::bound_by_depth(const Camera& camera, const BezierPatch& patch, double moved, double pixels) {
   distance_ = 0;
-  if (camera.orthographic()) return;  // beyond double
+  if (camera.orthographic()) return;  // only if the picture's numbers are beyond double
   const LocalNet net(camera, patch);
   steepest_ = camera.steepest();
   const auto kept_at = [&](double depth) { return pixels * depth / (steepest_ + pixels); };
-  // Where q is seen, and p lies within d of it, p lies within d of what is seen: so at least as deep as all of the patch, or
-  // of the mesh, that does. A distance is sought that is kept at the depth that it leads to itself. Nothing seen: the mesh
-  // then passes beside the frame as the patch does.
+  // 1. Where q is seen and p lies within d of q, p lies within d of what is seen. So p is at least as deep as the least
+  //    deep point of the patch, or of the mesh, that lies within d of what is seen.
+  // 2. So the search is for a distance that is kept at the depth to which this distance itself leads.
+  // 3. If nothing is seen at a distance, the mesh passes beside the frame as the patch does.
   const double seen = NearestSeen(camera, net, moved).depth();
   double distance = std::isinf(seen) ? patch.hull_box().diagonal() : kept_at(seen);
   while (distance > moved) {

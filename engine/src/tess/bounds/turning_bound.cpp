@@ -10,15 +10,15 @@ namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// A quarter is cut into up to 4^max_depth pieces; a bound this near to what its corners have is good enough.
+/// A quarter is cut into up to 4^max_depth pieces. A bound is good enough within this factor of the turning at corners.
 constexpr int max_depth = 5;
 constexpr double close_enough = 1.25;
-/// Turning per unit of a parameter that doesn't matter: less than float's rounding of normals.
+/// Turning per unit of a parameter that is below float's rounding of normals.
 constexpr double negligible = 0x1p-20;
-/// Radians along a parameter: beyond them the normal has nearly no direction somewhere.
+/// Radians per unit of a parameter beyond which the normal has nearly no direction somewhere.
 constexpr double max_turning = 32;
 
-/// Cuts each of the nets' lines at 1/2 by de Casteljau; `low` becomes the lower half.
+/// Cuts each row or column of a net at 1/2 by de Casteljau; `low` becomes the lower half.
 void cut(VectorNet& high, VectorNet& low, bool along_u) {
   low = high;
   const int degree = along_u ? high.degree_u : high.degree_v, lines = along_u ? high.degree_v : high.degree_u;
@@ -30,25 +30,26 @@ void cut(VectorNet& high, VectorNet& low, bool along_u) {
     }
 }
 
-/// One piece of the field: bounds over it, and what is true at its corners.
+/// One piece of the field: bounds over it, and the turning at its corners.
 class Piece {
  public:
-  /// `scale`: over its own parameters, times the patch's.
+  /// `scale`: the factor from derivatives by the piece's parameters to those by the patch's.
   Piece(const VectorNet& net, double scale, double rounding) : net_(net), scale_(scale), rounding_(rounding) {
     Vec3 sum;
     for (const Vec3& n : net.at) sum += n;
     axis_ = normalized(sum);
     least_ = infinity;
-    double steepest = 0, beside = 1;  // of the widest angle with the axis: its sides
+    double steepest = 0, beside = 1;  // the sides, across and along the axis, of the widest angle with it
     for (const Vec3& n : net.at) {
       const double along = dot(n, axis_), across = length(n - along * axis_) + rounding;
       least_ = std::min(least_, along - rounding);
       if (across * beside > steepest * (along - rounding)) steepest = across, beside = along - rounding;
     }
-    sine_ = steepest / std::hypot(steepest, beside);  // where there is a bound: all of the net lies along the axis
+    sine_ = steepest / std::hypot(steepest, beside);  // bound() uses it only if all of the net lies along the axis
   }
 
-  /// With N within the angle phi of the axis, |N_u x n| <= |N_u across the axis| + |N_u along it| sin phi.
+  /// Returns the bound. With N within the angle phi of the axis,
+  ///   |N_u x n| <= |N_u across the axis| + |N_u along it| sin phi.
   Turning bound() const {
     if (!(least_ > 0)) return {infinity, infinity};
     Turning most;
@@ -61,7 +62,7 @@ class Piece {
     });
     return std::isnan(most.u + most.v) ? Turning{infinity, infinity} : most;
   }
-  /// No more than the largest that there is.
+  /// Returns the largest turning at the corners, a lower bound of the largest over the piece.
   Turning at_corners() const {
     Turning most;
     const int m = net_.degree_u, n = net_.degree_v;
@@ -78,7 +79,7 @@ class Piece {
   }
 
  private:
-  /// visit(along u, difference of neighbours, degree)
+  /// Calls visit(along u, difference of neighbours, degree) for all neighbours.
   template <class Visit>
   void differences(Visit visit) const {
     for (int i = 0; i <= net_.degree_u; ++i)
@@ -94,7 +95,7 @@ class Piece {
   double least_, sine_;
 };
 
-/// The bounds over one quarter.
+/// Finds the bounds over one quarter.
 class Search {
  public:
   Search(const VectorNet& net, double rounding) : rounding_(rounding) { visit(net, 0); }
@@ -129,7 +130,8 @@ class Search {
   Turning bound_, true_;
 };
 
-/// The quarters that a cell may lie in, for rates that are even or not: a cell that may straddle the middle takes both.
+/// Calls visit(turning) for each part that a cell may lie in: a cell that may cross the middle takes the larger of both
+/// halves.
 template <class Visit>
 void for_pieces(const std::array<Turning, 4>& quarters, bool even_u, bool even_v, Visit visit) {
   for (int i = 0; i < (even_u ? 2 : 1); ++i)

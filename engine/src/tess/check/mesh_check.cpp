@@ -5,18 +5,20 @@
 #include <limits>
 #include <string>
 
-#include "base/guard.h"
+#include "base/text.h"
 #include "tess/check/t_junctions.h"
 #include "tess/edges/position_bits.h"
+#include "tessera/guard.h"
 #include "tessera/mesh.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// Edges keep a vertex and a direction in 32 bits.
+/// The limit of an edge's 32 bits, which hold a vertex and a direction.
 constexpr std::size_t max_vertices = std::size_t{1} << 31;
 
-/// Positions as they are checked: those in double, where there are any.
+/// The positions that are checked: those in double if there are any, else those in float.
 struct FloatPlaces {
   static constexpr double rounding = 0x1p-23;
   const Mesh& mesh;
@@ -37,11 +39,11 @@ struct DoublePlaces {
 };
 
 struct Welded {
-  std::vector<std::uint32_t> place;  ///< of each vertex, 0 .. count - 1
+  std::vector<std::uint32_t> place;  ///< `[vertex]`: the number of its position, 0 .. count - 1
   std::size_t count = 0;
 };
 
-/// Numbers the distinct positions, by an open hash table of the first vertex at each.
+/// Numbers the distinct positions, by a hash table with open addressing of the first vertex at each.
 template <class Places>
 Welded weld(const Mesh& mesh, const Places& places) {
   constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
@@ -67,10 +69,10 @@ Status check_counts(const Mesh& mesh) {
   const auto bad = [](std::string message) { return Status(StatusCode::invalid_argument, std::move(message)); };
   const auto fits = [](const auto& values, std::size_t wanted) { return values.empty() || values.size() == wanted; };
   if (mesh.positions.size() % 3 != 0)
-    return bad(std::to_string(mesh.positions.size()) + " numbers in positions are not three a vertex");
+    return bad(std::to_string(mesh.positions.size()) + " numbers in positions are not three per vertex");
   if (mesh.indices.size() % 3 != 0)
-    return bad(std::to_string(mesh.indices.size()) + " indices are not three a triangle");
-  if (mesh.quads.size() % 4 != 0) return bad(std::to_string(mesh.quads.size()) + " indices are not four a quad");
+    return bad(std::to_string(mesh.indices.size()) + " indices are not three per triangle");
+  if (mesh.quads.size() % 4 != 0) return bad(std::to_string(mesh.quads.size()) + " indices are not four per quad");
   if (mesh.vertex_count() > max_vertices)
     return bad(std::to_string(mesh.vertex_count()) + " vertices are more than " + std::to_string(max_vertices));
   if (!fits(mesh.positions_f64, mesh.positions.size()))
@@ -83,15 +85,13 @@ Status check_counts(const Mesh& mesh) {
     return bad(std::to_string(mesh.parameters.size()) + " numbers in parameters for " +
                std::to_string(mesh.vertex_count()) + " vertices");
   if (!fits(mesh.patches, mesh.triangle_count()))
-    return bad(std::to_string(mesh.patches.size()) + " patches for " + std::to_string(mesh.triangle_count()) +
-               " triangles");
+    return bad(counted(mesh.patches.size(), "patch", "patches") + " for " + counted(mesh.triangle_count(), "triangle"));
   if (!fits(mesh.quad_patches, mesh.quad_count()))
-    return bad(std::to_string(mesh.quad_patches.size()) + " patches for " + std::to_string(mesh.quad_count()) +
-               " quads");
+    return bad(counted(mesh.quad_patches.size(), "patch", "patches") + " for " + counted(mesh.quad_count(), "quad"));
   return {};
 }
 
-/// `corners` of each face.
+/// Checks that all indices are vertices. `corners`: the number per face.
 Status check_indices(std::span<const std::uint32_t> indices, std::ptrdiff_t corners, const char* face,
                      std::size_t vertices) {
   const auto bad = std::find_if(indices.begin(), indices.end(), [&](std::uint32_t k) { return k >= vertices; });
@@ -118,15 +118,16 @@ Vec3 vertex(const std::vector<float>& values, std::size_t k) {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// Whether the corners of a triangle lie on one line. Products of differences of floats are exact in double unless
-/// their exponents lie far apart, so this is no matter of tolerance.
+/// Whether the corners of a triangle are collinear. Products of differences of floats are exact in double unless their
+/// exponents lie far apart, so no tolerance is needed.
 template <class Places>
 bool has_no_area(const Places& places, const Triangle& corners) {
   const auto point = [&](std::size_t k) { return places.at(corners[k]); };
   return cross(point(1) - point(0), point(2) - point(0)) == Vec3{};
 }
 
-/// The edges of triangles, gathered by their lower vertex: each as twice the upper one, plus 1 if it runs downwards.
+/// The edges of triangles, grouped by their lower vertex. An edge is stored as twice its upper vertex, plus 1 if it
+/// runs from that vertex to the lower one.
 class EdgeTable {
  public:
   EdgeTable(const std::vector<Triangle>& triangles, std::size_t vertices) : first_(vertices + 1) {
@@ -142,7 +143,7 @@ class EdgeTable {
       }
   }
 
-  /// Open edges are told as well.
+  /// Counts the faults of edges; also lists the open edges.
   void count_into(MeshReport& report, std::vector<std::array<std::uint32_t, 2>>& open) {
     for (std::size_t k = 0; k + 1 < first_.size(); ++k) {
       const std::span<std::uint32_t> edges(edges_.data() + first_[k], first_[k + 1] - first_[k]);
@@ -162,7 +163,7 @@ class EdgeTable {
   std::vector<std::uint32_t> edges_;
 };
 
-/// Whether the triangle looks the other way than the normals at its corners do, taken together.
+/// Whether the triangle faces away from the sum of the normals at its corners.
 template <class Places>
 bool is_flipped(const Mesh& mesh, const Places& places, const Triangle& corners) {
   const auto at = [&](std::size_t k) { return places.at(corners[k]); };

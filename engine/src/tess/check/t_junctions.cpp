@@ -9,7 +9,7 @@ namespace {
 
 double component(const Vec3& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
-/// Points in a k-d tree without nodes: the middle element of each range divides the others along the axis of its depth
+/// A k-d tree of points without nodes: the middle element of each range divides the others along the axis of its depth
 /// (Bentley 1975, Multidimensional binary search trees).
 class PointTree {
  public:
@@ -18,7 +18,7 @@ class PointTree {
     divide(0, order_.size(), 0);
   }
 
-  /// visit(k) for the points in a box.
+  /// Calls visit(k) for the points in a box.
   template <class Visit>
   void in_box(const Box3& box, const Visit& visit) const {
     in_box(box, visit, 0, order_.size(), 0);

@@ -1,5 +1,5 @@
 #pragma once
-// What the patches that meet at an edge need of it.
+// Collects the rates that the patches at an edge need there.
 
 #include <algorithm>
 #include <cstdint>
@@ -11,12 +11,13 @@ namespace tessera::inline abi_0_1 {
 
 constexpr Segments along(PatchSegments patch, Side side) { return runs_along_u(side) ? patch.u : patch.v; }
 
-/// Where all have uniform segments.
+/// The needs of patches with uniform segments.
 struct EdgeNeeds {
-  std::uint16_t most = 1;     ///< of their rates
-  std::uint16_t is_even = 0;  ///< the edge's must be, as one of them counts on no triangle straddling the middle
+  std::uint16_t most = 1;  ///< the largest rate of the patches
+  /// 1: the edge's rate must be even, for a patch whose triangles must not cross the middle.
+  std::uint16_t is_even = 0;
 
-  /// `never`: 1 for patches that count on that.
+  /// `never`: 1 for a patch none of whose triangles may cross the middle.
   void add(Segments along, std::uint16_t never) {
     most = std::max(most, static_cast<std::uint16_t>(along.rate()));
     is_even = static_cast<std::uint16_t>(is_even | (never & along.parts_halves()));
@@ -24,7 +25,7 @@ struct EdgeNeeds {
   Segments segments() const { return most + (most & is_even); }
 };
 
-/// The most of rates in the halves of an edge, as its first border runs.
+/// The largest rates in the halves of an edge, in the direction of its first border.
 struct HalfNeeds {
   std::uint16_t lower = 1, upper = 1;
 

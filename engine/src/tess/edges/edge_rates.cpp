@@ -1,4 +1,4 @@
-// The rates of borders: one for all patches that meet there.
+// Chooses the rates of borders: one for all patches that meet there.
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// Of a patch with higher rates, an odd one in the place of the next even one saves too little to look for.
+/// At higher rates of a patch, an odd border rate instead of the next even one saves too little to look for.
 constexpr int max_to_straddle = 2;
 
 }  // namespace
@@ -22,7 +22,7 @@ std::vector<std::uint8_t> CertifiedPlanner::borders_against() const {
   std::vector<std::uint32_t> welds(borders, none), heads(edges_.count(), none);
   for (std::uint32_t k = 0; k < weld_.borders.size(); ++k) welds[weld_.borders[k].to] = k;
   const auto edge = [&](std::uint32_t border) { return edges_.edge(border / 4, all_sides[border % 4]); };
-  // Curves are welded to nothing, and have no segments.
+  // Borders of curves are welded to none, and have no segments.
   const auto counts = [&](std::uint32_t border) { return edge(border) != none && !shapes_[border / 4].is_curve; };
   for (std::uint32_t border = 0; border < borders; ++border)
     if (counts(border) && welds[border] == none && heads[edge(border)] == none) heads[edge(border)] = border;
@@ -38,11 +38,11 @@ std::vector<std::uint8_t> CertifiedPlanner::borders_against() const {
 
 bool CertifiedPlanner::may_straddle(std::size_t patch, Side side, const std::array<Segments, 4>& borders,
                                     double tolerance, CertifiedPlan& plan) const {
-  // Where no inner points lie between them, the opposite border's segment may do it as well.
+  // If no inner points lie between them, a segment of the opposite border may cross the middle as well.
   const auto s = static_cast<std::size_t>(side);
   const Segments border = borders[s], opposite = borders[(s + 2) % 4];
   const int rate = opposite.parts_halves() ? border.rate() : std::min(border.rate(), opposite.rate());
-  assert(plan.segments_[patch].are_uniform());  // only coarse ones come here
+  assert(plan.segments_[patch].are_uniform());  // only patches of at most max_to_straddle segments come here
   const auto [piece, rates] = ChordBound::straddling(plan.segments_[patch].rates(), edge_of(side), rate);
   const PatchSet::Slot slot = set_->slots[patch];
   const double given = roundings_[patch] + fit_error_,
@@ -54,7 +54,7 @@ bool CertifiedPlanner::may_straddle(std::size_t patch, Side side, const std::arr
 
 namespace {
 
-/// Of each edge. `against`: of each border, whether it runs against the edge.
+/// Returns the needs of each edge in its halves. `against`: for each border, whether it runs against the edge.
 std::vector<HalfNeeds> half_needs(std::span<const PatchSegments> segments, std::span<const PatchShape> shapes,
                                   const SharedEdges& edges, std::span<const std::uint8_t> against) {
   std::vector<HalfNeeds> needs(edges.count());
@@ -70,7 +70,7 @@ std::vector<HalfNeeds> half_needs(std::span<const PatchSegments> segments, std::
 void CertifiedPlanner::divide(double tolerance, CertifiedPlan& plan) const {
   const std::span<const PatchShape> shapes = divided_shapes();
   const std::span<const PatchSegments> segments = plan.segments_;
-  // Angles and pixels are known of halves alone.
+  // Only distances are known for triangles that cross the middle; angles and pixels hold for halves.
   const bool by_distance = !options_.angle && !options_.camera;
   const auto is_coarse = [&](std::size_t k) {
     return by_distance && std::max(segments[k].u.rate(), segments[k].v.rate()) <= max_to_straddle;
@@ -86,7 +86,7 @@ void CertifiedPlanner::divide(double tolerance, CertifiedPlan& plan) const {
     }
   }
   std::vector<std::uint8_t> against;
-  std::vector<HalfNeeds> halves;  // where there are any, and so it matters which way edges run
+  std::vector<HalfNeeds> halves;  // only if some segments are not uniform: then directions of edges matter
   if (options_.fewest && !std::all_of(segments.begin(), segments.end(), [](auto s) { return s.are_uniform(); })) {
     against = borders_against();
     halves = half_needs(segments, shapes, edges_, against);

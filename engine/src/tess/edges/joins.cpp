@@ -10,7 +10,7 @@ namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr std::uint32_t none = SharedEdges::none;
-/// Float normals of one direction lie within this of each other.
+/// The largest distance between two float normals of one direction.
 constexpr double normal_rounding = 1e-5;
 
 class Joiner {
@@ -83,7 +83,7 @@ class Joiner {
       if (!agree(to(k), from(opposite ? to.rate() - k : k))) return false;
     return true;
   }
-  /// Vectors that are zero agree with none.
+  /// Whether two vertices may share a normal. A normal of zero agrees with none.
   bool agree(std::size_t a, std::size_t b) const {
     if (!normals_) return true;
     const auto at = [&](std::size_t k) {
@@ -98,7 +98,7 @@ class Joiner {
   const SharedEdges& edges_;
   const View3<float>* normals_;
   double apart_;                       ///< how far the tips of two normals may lie apart
-  std::vector<std::uint32_t> welded_;  ///< of each border, its place in the weld's list
+  std::vector<std::uint32_t> welded_;  ///< `[border]`: its place in the weld's list, or none
   UnionFind corners_;
   VertexCopies joins_;
 };

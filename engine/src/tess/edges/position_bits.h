@@ -1,5 +1,5 @@
 #pragma once
-// Positions by their bits, for tables of distinct ones.
+// Turns positions into keys by their bits, for tables of distinct positions.
 
 #include <array>
 #include <bit>
@@ -11,13 +11,13 @@ namespace tessera::inline abi_0_1 {
 using PositionBits = std::array<std::uint32_t, 3>;
 using DoublePositionBits = std::array<std::uint64_t, 3>;
 
-/// Of three floats; -0 counts as 0.
+/// Returns the key of three floats; -0 counts as 0.
 inline PositionBits position_bits(const float* p) {
   return {std::bit_cast<std::uint32_t>(p[0] + 0.0f), std::bit_cast<std::uint32_t>(p[1] + 0.0f),
           std::bit_cast<std::uint32_t>(p[2] + 0.0f)};
 }
 
-/// The key of three doubles.
+/// Returns the key of three doubles; -0 counts as 0.
 inline DoublePositionBits position_bits(const double* p) {
   return {std::bit_cast<std::uint64_t>(p[0] + 0.0), std::bit_cast<std::uint64_t>(p[1] + 0.0),
           std::bit_cast<std::uint64_t>(p[2] + 0.0)};

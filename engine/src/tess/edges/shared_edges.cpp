@@ -9,7 +9,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// equal(), for borders of as many points, of three components or four.
+/// equal() for borders of `count` points each, of three or four components.
 template <int Components>
 bool is_equal(const PackedBorder& a, const PackedBorder& b, int count, bool reversed) {
   const auto bits = [](const PackedBorder& border, int point, int component) {
@@ -18,7 +18,7 @@ bool is_equal(const PackedBorder& a, const PackedBorder& b, int count, bool reve
   };
   const int last = count - 1;
   const auto differ = [&](int k, int c) { return bits(a, k, c) ^ bits(b, reversed ? last - k : k, c); };
-  if (differ(0, 0)) return false;  // as most that differ do
+  if (differ(0, 0)) return false;  // most borders that differ do so here
   std::uint32_t differing = 0;
   for (int k = 0; k < count; ++k)
     for (int c = 0; c < Components; ++c) differing |= differ(k, c);
@@ -32,14 +32,16 @@ bool is_equal(const PackedBorder& a, const PackedBorder& b, bool reversed) {
   return count == 4 ? is_equal<3>(a, b, 4, reversed) : is_equal<3>(a, b, count, reversed);
 }
 
-/// Borders by their hashes: open addressing. A probe that fails takes longest, and half of all do: so at most half full.
+/// Borders by their hashes, with open addressing. At most half full: a probe that fails takes longest, and half of all
+/// fail.
 class BorderTable {
  public:
-  /// Where most borders are those of two patches there are about two edges a patch.
+  /// Makes room for about two edges per patch, as there are where most borders are those of two patches.
   explicit BorderTable(std::size_t patches) : entries_(std::bit_ceil(5 * patches + 1)), mask_(entries_.size() - 1) {}
 
   void fetch(std::uint32_t hash) const { __builtin_prefetch(&entries_[hash & mask_]); }
-  /// A border of that hash that `is_same`, or this one, which is there from then on.
+  /// Returns a border in the table with that hash for which `is_same` holds. If there is none, adds `border` and
+  /// returns it.
   template <class IsSame>
   std::size_t find_or_add(std::uint32_t hash, std::uint32_t border, const IsSame& is_same) {
     std::size_t at = hash & mask_;
@@ -52,7 +54,7 @@ class BorderTable {
 
  private:
   struct Entry {
-    std::uint32_t hash = 0, border = 0;  ///< the number of the border + 1; 0: none
+    std::uint32_t hash = 0, border = 0;  ///< border: its number + 1; 0: none
   };
 
   void grow() {
@@ -73,7 +75,7 @@ class BorderTable {
 constexpr std::uint32_t none = SharedEdges::none;
 constexpr std::size_t lanes = PatchSet::lanes;
 
-/// Takes block after block and gives each border its edge.
+/// Gives each border its edge, block after block.
 class EdgeFinder {
  public:
   EdgeFinder(const PatchSet::Impl& set, const BorderHashes& hashes, std::span<std::uint32_t> edges)
@@ -117,8 +119,8 @@ class EdgeFinder {
     if (first < number) back_[static_cast<std::size_t>(side)] = number - first;
   }
 
-  /// In rows of patches the next edge of a side is met as many borders back as the last one was: a block's borders are
-  /// compared with those there at once. Fills in met_ where they are equal.
+  /// Fills met_ with borders that are equal to the block's own. In rows of patches the next edge of a side is met as
+  /// many borders back as the last one was, so the block's borders are compared, all at once, with those so far back.
   void look_back(const BlockGroup& group, std::size_t block, Side side) {
     const auto s = static_cast<std::size_t>(side);
     const std::size_t back = back_[s];
@@ -165,15 +167,16 @@ class EdgeFinder {
       if (!any) return;
     }
   }
-  static constexpr std::ptrdiff_t max_away = std::ptrdiff_t{1} << 30;  // floats
+  static constexpr std::ptrdiff_t max_away = std::ptrdiff_t{1} << 30;  // in floats
 
   const PatchSet::Impl& set_;
   const BorderHashes& hashes_;
   const kernel::KernelTable& kernels_ = kernel::default_kernels();
   std::span<std::uint32_t> edges_;
   BorderTable table_;
-  std::array<std::size_t, 4> back_{};  ///< how far back the last edge of each side was met, in borders; 0: none was
-  std::array<std::array<std::uint32_t, lanes>, 4> met_;  ///< of the block, borders that are equal() to its own, or none
+  std::array<std::size_t, 4> back_{};  ///< `[side]`: how many borders back its last edge was met; 0: none was met
+  /// `[side][lane]`: a border equal() to the block's own, or none.
+  std::array<std::array<std::uint32_t, lanes>, 4> met_;
   std::size_t count_ = 0;
 };
 
@@ -184,7 +187,7 @@ bool equal(const PackedBorder& a, const PackedBorder& b, bool reversed) { return
 float PackedBorder::weight_scale() const {
   float heaviest = 0;
   for (int k = 0; k < count_; ++k) heaviest = std::max(heaviest, packed(k, 3));
-  // 2^-k for a weight of at least 2^(k-1) and below 2^k, all of which are far from the ends of float's range.
+  // Returns 2^-k for a weight of at least 2^(k-1) and below 2^k; packed weights are far from the ends of float's range.
   return std::bit_cast<float>((253u - (std::bit_cast<std::uint32_t>(heaviest) >> 23)) << 23);
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Which borders of the patches of a set are one curve.
+// Finds the borders of a set's patches that are one curve.
 
 #include <array>
 #include <cstddef>
@@ -23,7 +23,7 @@ constexpr Edge edge_of(Side side) {
   return edges[static_cast<int>(side)];
 }
 
-/// Where the control points of a side lie in a block, in floats.
+/// Where the control points of a side lie in a block, counted in floats.
 struct BorderPlaces {
   std::ptrdiff_t first, step;
   int count, components;
@@ -36,9 +36,9 @@ struct BorderPlaces {
   }
 };
 
-/// A border's packed float control points, relative to the set's origin, homogeneous if there are 4 components; they run
-/// with u or v. Patches scale their weights by powers of two, each its own: here they are scaled so that the border's
-/// largest weight lies in [1/2, 1). The set must have float Bernstein blocks.
+/// A border's packed float control points, relative to the set's origin, homogeneous if there are 4 components. They
+/// run in the direction of u or v. Each patch scales its weights by its own power of two; here they are scaled so that
+/// the border's largest weight lies in [1/2, 1). The set must have float Bernstein blocks.
 class PackedBorder {
  public:
   PackedBorder(const PatchSet::Impl& set, std::size_t patch, Side side) {
@@ -55,7 +55,7 @@ class PackedBorder {
   int count() const { return count_; }
   int components() const { return components_; }
   float scale() const { return scale_; }  ///< a power of two; 1 for polynomial patches
-  /// The packed number itself, without the scale.
+  /// Returns the packed number itself, without the scale.
   float packed(int point, int component) const {
     return first_[point * step_ + component * std::ptrdiff_t{PatchSet::lanes}];
   }
@@ -70,18 +70,18 @@ class PackedBorder {
   int count_, components_;
 };
 
-/// Whether borders are the same bits, the one running backwards if `reversed`.
+/// Whether two borders are the same bits; if `reversed`, with one of them backwards.
 bool equal(const PackedBorder& a, const PackedBorder& b, bool reversed);
 
-/// Hashes of all borders of a set: the same for borders that are equal(), in either direction.
+/// Hashes of all borders of a set. Borders that are equal(), in either direction, have the same hash.
 class BorderHashes {
  public:
   /// The set must have float Bernstein blocks.
   explicit BorderHashes(const PatchSet::Impl& set) : hashes_(set.lane_counts.size() * 4 * PatchSet::lanes) {}
-  /// Finds those of a block. Threads: any number, each a block of its own.
+  /// Finds the hashes of a block. Threads: any number, each with its own block.
   void find(const PatchSet::Impl& set, std::size_t block);
 
-  /// Of a block's sides, `[side][lane]`; once found.
+  /// Returns the hashes of a block, `[side][lane]`, after find().
   const std::uint32_t* of_block(std::size_t block) const { return hashes_.data() + block * 4 * PatchSet::lanes; }
   std::uint32_t of(PatchSet::Slot slot, std::size_t side) const {
     return of_block(slot.block)[side * PatchSet::lanes + slot.lane];
@@ -91,15 +91,15 @@ class BorderHashes {
   UnsetVector<std::uint32_t> hashes_;
 };
 
-/// The edges of a set: borders whose packed float control points and weights are the same bits, in either direction, are one edge. It
-/// is these floats that get evaluated, so equal bits make equal curves. Borders of different degree are different edges.
-/// Collapsed borders belong to none.
+/// The edges of a set: borders whose packed float control points and weights are the same bits, in either direction,
+/// are one edge. These floats are what is evaluated, so equal bits make equal curves. Borders of different degrees are
+/// different edges. Collapsed borders belong to no edge.
 class SharedEdges {
  public:
   static constexpr std::uint32_t none = 0xffffffff;
 
   SharedEdges() = default;
-  /// Edges are numbered by the first border of each, in the order of the blocks, of their patches and of `all_sides`.
+  /// Finds the edges. They are numbered in the order of their first borders: by blocks, by patches, and by `all_sides`.
   SharedEdges(const PatchSet::Impl& set, const BorderHashes& hashes);
   explicit SharedEdges(const PatchSet::Impl& set);
   /// `edges` by 4 * patch + side, below `count` or none.
@@ -107,7 +107,7 @@ class SharedEdges {
 
   std::size_t count() const { return count_; }
   std::uint32_t edge(std::size_t patch, Side side) const { return edges_[4 * patch + static_cast<std::size_t>(side)]; }
-  /// Gives each edge another number, below count(), or none.
+  /// Gives each edge a new number, below count(), or none.
   void renumber(std::span<const std::uint32_t> numbers);
 
  private:

@@ -29,7 +29,7 @@ Box3 SideCurve::box() const {
 }
 
 void SideCurve::elevate(int degree) {
-  // Farin, Curves and Surfaces for CAGD, 5th ed., sec. 6.1, in ratios so that points stay what they are where they agree.
+  // Farin, Curves and Surfaces for CAGD, 5th ed., sec. 6.1. In ratios, so that points that are equal are unchanged.
   for (; degree_ < degree; ++degree_) {
     const auto n = static_cast<std::size_t>(degree_);
     points_[n + 1] = points_[n];
@@ -69,8 +69,9 @@ bool runs_against(const PatchSet::Impl& set, std::uint32_t border, std::uint32_t
 SharedEdges parted_by_doubles(const PatchSet::Impl& set, const SharedEdges& edges) {
   constexpr std::uint32_t none = SharedEdges::none;
   const auto curve = [&](std::uint32_t border) { return SideCurve(set.patches[border / 4], all_sides[border % 4]); };
-  // Borders near each other have middles near each other along a direction in which no model lies.
-  constexpr Vec3 direction{0.7548776662466927, 0.5698402909980532, 0.3247179572447461};  // of length 1
+  // Borders near each other have near middles along any direction; along this one, which models hardly align with, few
+  // others do.
+  constexpr Vec3 direction{0.7548776662466927, 0.5698402909980532, 0.3247179572447461};  // a unit vector
   struct Place {
     std::uint32_t edge, border;
     double middle, reach;
@@ -91,7 +92,7 @@ SharedEdges parted_by_doubles(const PatchSet::Impl& set, const SharedEdges& edge
   }
   std::sort(places.begin(), places.end());
   auto count = static_cast<std::uint32_t>(edges.count());
-  std::vector<std::size_t> leaders;  // of the parts of an edge, in the order of their middles
+  std::vector<std::size_t> leaders;  // the first place of each part of an edge, in the order of their middles
   for (std::size_t k = 0; k < places.size(); ++k) {
     const Place& place = places[k];
     if (k == 0 || places[k - 1].edge != place.edge) leaders.clear();

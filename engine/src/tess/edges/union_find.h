@@ -1,5 +1,5 @@
 #pragma once
-// Disjoint sets whose members have a direction relative to each other.
+// Holds disjoint sets whose members have a direction relative to each other.
 
 #include <cstdint>
 #include <numeric>
@@ -17,7 +17,7 @@ class UnionFind {
 
   struct Root {
     std::uint32_t member;
-    bool turned;  ///< against the member that was asked for
+    bool turned;  ///< whether it runs against the member that find() was called for
   };
   Root find(std::uint32_t k) {
     bool turned = false;
@@ -30,7 +30,7 @@ class UnionFind {
     }
     return {k, turned};
   }
-  /// Nothing if they are in one set already.
+  /// Unites the sets of a and b; `turned`: a runs against b. Does nothing if they are in one set already.
   void unite(std::uint32_t a, std::uint32_t b, bool turned = false) {
     Root low = find(a), high = find(b);
     if (low.member == high.member) return;
@@ -41,7 +41,7 @@ class UnionFind {
 
  private:
   std::vector<std::uint32_t> parents_;
-  std::vector<std::uint8_t> turned_;  ///< against the parent; roots are not
+  std::vector<std::uint8_t> turned_;  ///< whether a member runs against its parent; 0 for roots
 };
 
 }  // namespace tessera::inline abi_0_1

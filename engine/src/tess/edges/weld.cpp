@@ -21,13 +21,13 @@ SideCurve curve_of(const PatchSet::Impl& set, std::uint32_t border) {
   return {set.patches[patch_of(border)], side_of(border)};
 }
 
-/// The bits that a corner's vertex has.
+/// Returns a corner's vertex as it is packed in float.
 std::array<float, 3> packed_corner(const PatchSet::Impl& set, std::uint32_t corner) {
   const Vec3 p = corner_of(set.patches[patch_of(corner)], corner) - set.origin + Vec3{};
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
 
-/// Edges by the middle of their ends, in cells: those whose middle lies within the tolerance of a point.
+/// Edges in cells by the middle of their ends; finds the edges whose middle lies within the tolerance of a point.
 class EdgeCells {
  public:
   EdgeCells(const Box3& box, double tolerance)
@@ -46,7 +46,7 @@ class EdgeCells {
 
  private:
   using Index = std::array<std::int64_t, 3>;
-  /// Beside 21 bits there are none: a box has at most 2^20 cells along an axis.
+  /// Packs a cell's index. 21 bits per axis suffice: a box has at most 2^20 cells along an axis.
   static std::uint64_t key(const Index& at) {
     const auto part = [&](std::size_t c) { return static_cast<std::uint64_t>(at[c] + 1) & 0x1fffff; };
     return part(0) << 42 | part(1) << 21 | part(2);
@@ -100,7 +100,7 @@ class Welder {
   SideCurve curve(std::uint32_t border) const { return curve_of(set_, border); }
   std::uint32_t edge_of_border(std::uint32_t border) const { return edges_.edge(patch_of(border), side_of(border)); }
 
-  /// visit(border, edge) for those of patches with an area.
+  /// Calls visit(border, edge) for borders of patches with an area.
   template <class Visit>
   void for_borders(Visit visit) const {
     for (std::size_t patch = 0; patch < set_.patches.size(); ++patch)
@@ -141,13 +141,13 @@ class Welder {
     }
   }
 
-  /// Whether a border runs against the canonical one of what its edge was joined to.
+  /// Whether a border runs against the leading border of its canonical edge.
   bool runs_against(std::uint32_t border, std::uint32_t edge) {
     const std::uint32_t head = heads_[edge];
     const bool turned = tessera::runs_against(set_, border, head);
     return turned != joined_.find(edge).turned;
   }
-  /// The edge whose head all that are joined take the points of.
+  /// Returns the edge whose leading border gives its points to all edges joined to it.
   std::uint32_t canonical(std::uint32_t edge) { return joined_.find(edge).member; }
 
   void find_poles() {
@@ -205,10 +205,10 @@ class Welder {
   double tolerance_;
   bool every_edge_;
   SharedEdges& edges_;
-  UnionFind joined_;                       ///< edges
-  std::vector<std::uint32_t> heads_;       ///< the first border of each edge that has an area behind it
-  std::vector<std::uint32_t> borders_of_;  ///< how many such borders
-  std::vector<std::uint8_t> is_pole_;      ///< by canonical edge
+  UnionFind joined_;                       ///< sets of joined edges
+  std::vector<std::uint32_t> heads_;       ///< `[edge]`: its leading border, the first one of a patch with an area
+  std::vector<std::uint32_t> borders_of_;  ///< `[edge]`: the number of its borders of patches with an area
+  std::vector<std::uint8_t> is_pole_;      ///< `[canonical edge]`
   Weld weld_;
 };
 

@@ -18,9 +18,9 @@ namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr std::size_t patches_per_task = 64, blocks_per_task = 8;
-constexpr std::uint64_t max_vertices = std::uint64_t{1} << 32;  // 32-bit indices
+constexpr std::uint64_t max_vertices = std::uint64_t{1} << 32;  // the limit of 32-bit indices
 
-/// Whether segments that a patch has are few enough beside the best.
+/// Whether the kept segments of a patch are few enough compared with the best.
 bool is_spared(const KeptSegments& kept, std::size_t patch, PatchSegments best) {
   return !kept.segments.empty() && kept.segments[patch].cells() <= (1 + kept.spare) * best.cells();
 }
@@ -70,7 +70,7 @@ Result<CertifiedPlanner> CertifiedPlanner::make(const PatchSet::Impl& set, const
       }
     }
   };
-  // Edges are found one after the other: beside the bounds, by whichever thread comes first.
+  // One thread finds the edges, one after the other, while the others find the bounds.
   const std::size_t pieces = 1 + (blocks + blocks_per_task - 1) / blocks_per_task;
   const auto find_or_bound = [&](std::size_t begin, std::size_t end) {
     for (std::size_t piece = begin; piece < end; ++piece) {
@@ -87,7 +87,7 @@ Result<CertifiedPlanner> CertifiedPlanner::make(const PatchSet::Impl& set, const
     planner.largest_rounding_ = std::max(planner.largest_rounding_, rounding);
   double weld = options.weld;
   if (options.f64_positions) {
-    // Far away the last bits of doubles reach into the floats of small coordinates.
+    // Far from zero the last bits of doubles affect the floats of coordinates that are small relative to the origin.
     weld = std::max(weld, 0x1p-50 * std::max(max_abs(set.box().lower), max_abs(set.box().upper)));
     planner.edges_ = parted_by_doubles(set, planner.edges_);
   }
@@ -120,10 +120,10 @@ Status CertifiedPlanner::bound_turning_and_picture(const PatchSet::Impl& set, co
     for (std::size_t k = begin; k < end; ++k) {
       if (shapes_[k].is_curve) continue;
       BezierPatch patch = set.patches[k];
-      for (const Side side : all_sides)  // what welding makes a pole is one
+      for (const Side side : all_sides)  // borders that welding makes poles are poles
         if (divided_shapes()[k].collapsed.has(edge_of(side)) && !shapes_[k].collapsed.has(edge_of(side))) {
           Result<BezierPatch> pole = with_pole(patch, side);
-          if (!pole) throw std::bad_alloc();  // the points are those of the patch
+          if (!pole) throw std::bad_alloc();  // no other error is possible: the points are those of the patch
           patch = *std::move(pole);
         }
       turnings_[k] = TurningBound(patch);
@@ -168,7 +168,7 @@ CertifiedPlanner::Choice CertifiedPlanner::choose(std::size_t patch, const Reque
     choice.failure = Failure::wide;
     return choice;
   }
-  // Rates that were raised may be odd now: what holds for a half may not hold for the whole.
+  // Raised rates may have become odd: bounds of halves may not hold for the whole.
   if (!(limits.keeps(*rates))) rates = {rates->u + rates->u % 2, rates->v + rates->v % 2};
   choice.cells = double(rates->u) * rates->v;
   if (most > max_rate) return choice;
@@ -339,7 +339,7 @@ Result<CertifiedPlan> CertifiedPlanner::plan(double tolerance, std::uint64_t max
   Result<CertifiedPlan> best = plan({tolerance, options_.fewest, kept, max_triangles}, execution);
   if (!best) return best;
   if (options_.fewest && kept.segments.empty()) {
-    // What neighbours cost one another is estimated where segments are chosen: rarely, others have fewer.
+    // Segments are chosen by an estimate of their neighbours' costs: rarely, the plain ones have fewer triangles.
     Result<CertifiedPlan> plain = plan({tolerance}, {.cancel = execution.cancel});
     if (!plain) return plain;
     if (plain->capacity().triangles < best->capacity().triangles) best = std::move(plain);
@@ -347,13 +347,13 @@ Result<CertifiedPlan> CertifiedPlanner::plan(double tolerance, std::uint64_t max
   const auto [vertices, triangles, quads] = best->capacity();
   if (triangles <= max_triangles && vertices <= max_vertices) return best;
   return Status(StatusCode::invalid_argument, wanted(tolerance) + " takes " + std::to_string(triangles) +
-                                                  " triangles and " + std::to_string(vertices) + " vertices, " +
-                                                  std::to_string(max_triangles) + " and " +
-                                                  std::to_string(max_vertices) + " are allowed");
+                                                  " triangles and " + std::to_string(vertices) +
+                                                  " vertices, the limits are " + std::to_string(max_triangles) +
+                                                  " and " + std::to_string(max_vertices));
 }
 
 Result<double> CertifiedPlanner::smallest_tolerance(std::uint64_t max_triangles, const Execution& execution) const {
-  // One cell a patch keeps `high`; float vertices keep no more than `low`.
+  // One cell per patch keeps `high`; float vertices cannot keep less than `low`.
   double low = 0, high = 0;
   for (std::size_t k = 0; k < shapes_.size(); ++k) {
     const double given = roundings_[k] + fit_error_;

@@ -6,7 +6,6 @@
 #include <numbers>
 #include <string>
 
-#include "base/guard.h"
 #include "base/impl_access.h"
 #include "base/text.h"
 #include "kernel/isa/kernel_table.h"
@@ -17,12 +16,15 @@
 #include "tess/write/mesh_views.h"
 #include "tess/write/patch_writer.h"
 #include "tess/write/welded_vertices.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr std::size_t patches_per_task = 64;
-constexpr double planning_ends[] = {0.5, 0.95};  // of bounds and of rates; angles, pixels and searches take longer
+/// Progress after bounds and after rates; angles, pixels and searches take longer.
+constexpr double planning_ends[] = {0.5, 0.95};
 
 }  // namespace
 
@@ -37,7 +39,7 @@ CertifiedTessellation::Impl::Impl(const PatchSet& set, const CertifiedOptions& o
       fit_error_(set.fit_error()),
       revision_(set.revision()),
       isa_(isa),
-      tables_(MeshTables::of(shapes_, plan_.divisions(), kernel::kernels(isa).mesh_points != nullptr)) {
+      tables_(MeshTables::of(impl_of(set), shapes_, plan_.divisions(), kernel::kernels(isa).mesh_points != nullptr)) {
   for (const float bound : plan_.bounds()) bound_ = std::max(bound_, bound);
   for (const float pixels : plan_.pixels()) pixels_ = std::max(pixels_, pixels);
   for (const float angle : plan_.angles()) {
@@ -49,7 +51,7 @@ CertifiedTessellation::Impl::Impl(const PatchSet& set, const CertifiedOptions& o
 Status CertifiedTessellation::Impl::join(const PatchSet& set, const CertifiedPlanner& planner,
                                          const Execution& execution) {
   if (!options_.crease_angle && !options_.share_vertices) return {};
-  Mesh mesh;  // as it is while each patch has vertices of its own
+  Mesh mesh;  // written while each patch still has its own vertices
   MeshViews views;
   if (options_.crease_angle) {
     mesh = empty_mesh(plan_.capacity(), origin_);
@@ -76,7 +78,7 @@ Mesh CertifiedTessellation::Impl::allocate(const MeshCapacity& capacity) const {
 
 Status CertifiedTessellation::Impl::check_normals(const MeshViews& out) const {
   if (out.normal.empty() || has_normals()) return {};
-  return {StatusCode::invalid_argument, "vertices that patches share have no normals without a crease angle"};
+  return {StatusCode::invalid_argument, "normals of shared vertices need a crease angle"};
 }
 
 Status CertifiedTessellation::Impl::write_copies(const PatchSet::Impl& set, const MeshViews& out,
@@ -125,14 +127,14 @@ std::size_t CertifiedTessellation::Impl::divided_otherwise(const Impl& other) co
 
 namespace {
 
-constexpr double max_weld = 0.05;  // of the model's size
+constexpr double max_weld = 0.05;  // a share of the model's size
 
-/// What is asked for, where it makes sense. Errors: invalid_argument.
+/// Checks the options and turns them into those of a planner. Errors: invalid_argument.
 Result<PlannerOptions> checked(const CertifiedOptions& options, const PatchSet& set) {
   const auto bad = [](const std::string& message) { return Status(StatusCode::invalid_argument, message); };
-  // Written so that NaN fails.
+  // The conditions are written so that NaN fails.
   if (!options.tolerance && !options.angle && !options.pixels && !options.smallest)
-    return bad("no tolerance is given: a distance, an angle, pixels or the smallest");
+    return bad("there is no tolerance: set a distance, an angle, pixels or the smallest");
   if (options.tolerance && !(*options.tolerance > 0 && std::isfinite(*options.tolerance)))
     return bad("the tolerance is " + text(*options.tolerance) + ", it must be finite and above 0");
   if (options.angle && !(*options.angle > 0 && *options.angle <= std::numbers::pi / 2))
@@ -162,7 +164,7 @@ Result<PlannerOptions> checked(const CertifiedOptions& options, const PatchSet& 
   return planner;
 }
 
-/// Tells the tolerance that positions in double would keep as well.
+/// Returns the refusal, which also names the tolerance that positions in double would keep.
 Status refused_in_float(const Status& refusal, const PatchSet& set, PlannerOptions planned, double tolerance,
                         const CertifiedOptions& options) {
   planned.f64_positions = true;
@@ -175,11 +177,11 @@ Status refused_in_float(const Status& refusal, const PatchSet& set, PlannerOptio
           refusal.index()};
 }
 
-/// `kept`: segments that patches keep where they may; they give way where triangles run out.
+/// Makes a plan. `kept`: segments that patches keep where possible; if triangles then exceed their limit, none are
+/// kept.
 Result<std::unique_ptr<CertifiedTessellation::Impl>> plan_for(const PatchSet& set, const CertifiedOptions& options,
                                                               const KeptSegments& kept, const Execution& execution) {
-  if (!set.blocks().float_bernstein)
-    return Status(StatusCode::unsupported, "a tessellation needs float Bernstein blocks, the set has none");
+  if (!set.blocks().float_bernstein) return no_float_blocks();
   Result<PlannerOptions> planned = checked(options, set);
   if (!planned) return planned.status();
   const Result<Isa> isa = options.isa ? parse_isa(name(*options.isa)) : default_isa();

@@ -1,5 +1,5 @@
 #pragma once
-// The inside of a CertifiedTessellation.
+// Holds the inner state of a CertifiedTessellation.
 
 #include <memory>
 #include <vector>
@@ -12,19 +12,19 @@ namespace tessera::inline abi_0_1 {
 
 class CertifiedTessellation::Impl {
  public:
-  /// `tolerance`: the distance that is kept, infinite if any will do.
+  /// `tolerance`: the distance to keep, infinite if there is no limit.
   Impl(const PatchSet& set, const CertifiedOptions& options, double tolerance, CertifiedPlan plan,
        const CertifiedPlanner& planner, Isa isa);
 
   const CertifiedOptions& options() const { return options_; }
   double tolerance() const { return tolerance_; }
   const CertifiedPlan& plan() const { return plan_; }
-  std::span<const PatchShape> shapes() const { return shapes_; }  ///< before welding
+  std::span<const PatchShape> shapes() const { return shapes_; }  ///< those before welding
   const Weld& weld() const { return weld_; }
-  const VertexCopies& joins() const { return joins_; }  ///< vertices that share normals, or that are one
+  const VertexCopies& joins() const { return joins_; }  ///< vertices with a common normal, or stored once
   const MeshTables& tables() const { return *tables_; }
   Isa isa() const { return isa_; }
-  std::uint64_t revision() const { return revision_; }  ///< of the set, when the plan was made
+  std::uint64_t revision() const { return revision_; }  ///< the set's, when the plan was made
 
   double bound() const { return bound_; }
   double angle() const { return angle_; }
@@ -33,16 +33,15 @@ class CertifiedTessellation::Impl {
   bool certified() const { return fit_error_.certified; }
   std::size_t welded_borders() const { return weld_.joined_by_distance; }
 
-  /// Finds what neighbours share, if anything. Once, of the set that the plan was made for. Errors: cancelled.
+  /// Finds what neighbours share, if anything; called once, with the set that the plan was made for. Errors: cancelled.
   Status join(const PatchSet& set, const CertifiedPlanner& planner, const Execution& execution);
-  /// A mesh of that size.
+  /// Returns a mesh of that size with all attributes that the plan has.
   Mesh allocate(const MeshCapacity& capacity) const;
-  /// Errors: invalid_argument.
+  /// Checks that normals are only written if there are any. Errors: invalid_argument.
   Status check_normals(const MeshViews& out) const;
   /// Checks views that a mesh is written to. Errors: as check_views().
-  Status check_vertices(const MeshViews& out) const;
   bool has_normals() const { return !options_.share_vertices || options_.crease_angle; }
-  /// What is written once all patches are: vertices of patches that are written, or take from those.
+  /// Writes the copies of vertices after all patches are written: for patches that are written, or that copy from such.
   Status write_copies(const PatchSet::Impl& set, const MeshViews& out, const Execution& execution,
                       FunctionRef<bool(std::size_t patch)> is_written) const;
   Status run(const PatchSet& set, const MeshViews& out, const Execution& execution) const;

@@ -1,4 +1,4 @@
-// Where the vertices and triangles of a certified plan lie.
+// Lays out the vertices and triangles of a certified plan.
 
 #include "tess/plan/certified_plan.h"
 

@@ -2,7 +2,6 @@
 
 #include <string>
 
-#include "base/guard.h"
 #include "base/impl_access.h"
 #include "eval/patch_edits.h"
 #include "kernel/isa/kernel_table.h"
@@ -11,16 +10,18 @@
 #include "tess/plan/present_bounds.h"
 #include "tess/write/mesh_views.h"
 #include "tess/write/vertex_pass.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr std::size_t blocks_per_task = 8;
-constexpr double restating_ends[] = {0.8, 1};  // of bounds, and of what they say of the mesh
+constexpr double restating_ends[] = {0.8, 1};  // after the patches' bounds, and after those of the mesh
 
 Status edited_otherwise(std::uint64_t revision, std::uint64_t known) {
   return {StatusCode::stale, "the set is at revision " + std::to_string(revision) + ", the mesh at " +
-                                 std::to_string(known) + ": it was edited by other means"};
+                                 std::to_string(known) + ": the set was edited by other means"};
 }
 
 }  // namespace
@@ -79,7 +80,7 @@ class MeshUpdate::Impl {
   }
 
  private:
-  /// Packs and writes block after block.
+  /// Packs and writes the touched blocks.
   Status write(PatchSet::Impl& set, const PatchEdits& edits, const MeshViews& out, const Execution& execution) {
     const CertifiedTessellation::Impl& plan = impl_of(plan_);
     const kernel::KernelTable& kernels = kernel::kernels(plan.isa());

@@ -1,4 +1,4 @@
-// Tolerances that the rounding of vertices does not leave room for, and what is said of them.
+// Finds tolerances that the rounding of vertices leaves no room for, and makes the messages about them.
 
 #include <algorithm>
 #include <array>
@@ -13,13 +13,13 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr std::uint64_t max_vertices = std::uint64_t{1} << 32;  // 32-bit indices
+constexpr std::uint64_t max_vertices = std::uint64_t{1} << 32;  // the limit of 32-bit indices
 
 Status invalid(std::string message, std::size_t patch) {
   return {StatusCode::invalid_argument, std::move(message), static_cast<std::ptrdiff_t>(patch)};
 }
 
-/// x > 0 to two digits, not below.
+/// Rounds x > 0 up to two digits.
 double rounded_up_shortly(double x) {
   const double unit = std::pow(10.0, std::floor(std::log10(x)) - 1);
   for (double count = std::ceil(x / unit); std::isfinite(count); ++count) {
@@ -30,7 +30,7 @@ double rounded_up_shortly(double x) {
     std::from_chars(digits.data(), end, value);
     if (value >= x) return value;
   }
-  return x;  // below what double divides
+  return x;  // too small for two digits in double
 }
 
 }  // namespace
@@ -54,7 +54,7 @@ bool CertifiedPlanner::is_rough(double tolerance) const {
 std::optional<double> CertifiedPlanner::nearest_tolerance(std::uint64_t max_triangles) const {
   double given = 0;
   for (const double rounding : roundings_) given = std::max(given, rounding + fit_error_);
-  // The rest is for chords: rates go by its root.
+  // `room` is left for the chords; rates go by its root.
   for (double room = given / 8; room < 1e12 * given; room *= 2) {
     const double tolerance = rounded_up_shortly(given + room);
     const auto serves = [&](std::size_t k) { return choose(k, {tolerance}, max_rate).failure == Failure::none; };
@@ -70,20 +70,21 @@ std::optional<double> CertifiedPlanner::nearest_tolerance(std::uint64_t max_tria
 
 Status CertifiedPlanner::refusal(Failure failure, std::size_t patch, const Request& request) const {
   const double tolerance = request.tolerance;
-  const std::string vertices = (options_.f64_positions ? "vertices in double of patch " : "float vertices of patch ") +
-                               std::to_string(patch) + (options_.weld > 0 ? ", welded," : "") + " keep, " +
-                               text(rounded_up_shortly(roundings_[patch])) + ", and the fit error, " + text(fit_error_);
+  const std::string rounding = std::string(options_.weld > 0 ? "the displacement of welded " : "the rounding of ") +
+                               (options_.f64_positions ? "vertices in double of patch " : "float vertices of patch ") +
+                               std::to_string(patch) + ", " + text(rounded_up_shortly(roundings_[patch])) +
+                               ", plus the fit error, " + text(fit_error_);
   const bool is_near = failure == Failure::wide && roundings_[patch] + fit_error_ > tolerance / 2;
   if (failure == Failure::rough || is_near) {
     const std::optional<double> nearest = nearest_tolerance(request.max_triangles);
-    return invalid("the tolerance " + text(tolerance) + (is_near ? " is little above what " : " is not above what ") +
-                       vertices + (nearest ? "; " + text(*nearest) + " would do" : ""),
+    return invalid("the tolerance " + text(tolerance) + (is_near ? " is little above " : " is not above ") + rounding +
+                       (nearest ? "; " + text(*nearest) + " would do" : ""),
                    patch);
   }
   if (failure == Failure::rough_pixels)
-    return invalid("so near to the eye, " + text(options_.pixels) + " pixels are not above what " + vertices +
-                       "; a larger near distance leaves more room",
-                   patch);
+    return invalid(
+        text(options_.pixels) + " pixels so near to the eye are not above " + rounding + "; set a larger near distance",
+        patch);
   constexpr int unlimited = 1 << 24;
   double triangles = 0;
   const char* about = "about ";

@@ -12,10 +12,10 @@ namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr std::size_t blocks_per_task = 8;
-/// Bounds of one net by different sums differ by less; the planner has added it already.
+/// Bounds of one net by different sums differ by less than this factor; the planner's bounds include it already.
 constexpr double float_sums = 1 + 0x1p-20;
 
-/// With that of triangles at borders of odd rates beside even ones.
+/// Returns the chord distance of a patch, including that of triangles at borders of odd rates beside even ones.
 double distance(const ChordBound& chord, PatchSegments segments, const Division& division) {
   double most = chord.distance_of(segments);
   for (const Side side : all_sides) {
@@ -23,7 +23,7 @@ double distance(const ChordBound& chord, PatchSegments segments, const Division&
     const Segments border = division.border[s], opposite = division.border[(s + 2) % 4];
     if (!(runs_along_u(side) ? segments.u : segments.v).parts_halves() || border.parts_halves()) continue;
     const int rate = opposite.parts_halves() ? border.rate() : std::min(border.rate(), opposite.rate());
-    assert(segments.are_uniform());  // borders of others part halves
+    assert(segments.are_uniform());  // if they are not, the border has a point at 1/2
     const auto straddling = ChordBound::straddling(segments.rates(), edge_of(side), rate);
     most = std::max(most, chord.pieces()[straddling.piece].chord(straddling.rates));
   }
@@ -44,7 +44,7 @@ PresentBounds::PresentBounds(const PatchSet::Impl& set, const CertifiedTessellat
       is_unknown_(set.patches.size(), 0),
       touched_lanes_(set.lane_counts.size(), 0) {
   touched_blocks_.reserve(set.lane_counts.size());
-  // Then bounds and roundings of patches that are not touched matter as well.
+  // With displacements, bounds and roundings of patches that are not touched matter as well.
   std::copy(plan.weld().displacements.begin(), plan.weld().displacements.end(), displacements_.begin());
   for (std::size_t k = 0; k < displacements_.size(); ++k)
     roundings_[k] = is_f64_ ? f64_rounding(set.patches[k], set.origin) : vertex_rounding(set.patches[k], set.origin);
@@ -104,7 +104,7 @@ void PresentBounds::find_moved(const PatchSet::Impl& set, const CertifiedTessell
     if (moved_[patch]) displacements_[patch] = 0;
   const auto is_moved = [&](std::size_t patch) { return moved_[patch] != 0; };
   measure_displacements(set, plan.weld(), roundings_, is_moved, displacements_);
-  // Shared vertices lie beside the border of a patch that has left the one that they count to.
+  // Where borders have moved apart, shared vertices follow the patch that owns them and lie beside the other's border.
   if (plan.plan().shares_vertices())
     measure_displacements(set, plan.joins(), roundings_, is_moved, displacements_, true);
 }

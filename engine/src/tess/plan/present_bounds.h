@@ -1,5 +1,5 @@
 #pragma once
-// What a plan's rates keep while its patches move.
+// Bounds the distances that a plan's rates keep while its patches move.
 
 #include <cstdint>
 #include <span>
@@ -9,14 +9,14 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Distances that the mesh keeps to each patch. Memory for all of them, so that no call allocates.
+/// The distances that the mesh keeps to each patch. Holds memory for all patches, so that no call allocates.
 class PresentBounds {
  public:
   PresentBounds(const PatchSet::Impl& set, const CertifiedTessellation::Impl& plan);
 
-  /// These patches have other control points; the bounds stay until restate().
+  /// Notes that these patches have new control points; their bounds are unchanged until restate().
   void touch(const PatchSet::Impl& set, std::span<const std::uint32_t> patches);
-  /// Errors: cancelled; what was touched stays so.
+  /// Finds the bounds of touched patches anew. Errors: cancelled; touched patches then stay touched.
   Status restate(const PatchSet::Impl& set, const CertifiedTessellation::Impl& plan, const Execution& execution);
 
   std::span<const float> bounds() const { return bounds_; }
@@ -29,7 +29,7 @@ class PresentBounds {
   }
   Status bound_blocks(const PatchSet::Impl& set, const Execution& execution);
   void find_moved(const PatchSet::Impl& set, const CertifiedTessellation::Impl& plan);
-  /// `products` of the patch's block.
+  /// Sets a patch's bound; `products` are those of its block.
   void set_bound(const PatchSet::Impl& set, const CertifiedTessellation::Impl& plan, std::size_t patch,
                  ChordBlocks::Products& products);
 
@@ -37,13 +37,14 @@ class PresentBounds {
 
   bool is_f64_, has_f64_positions_;
   ChordBlocks chords_;
-  std::vector<double> roundings_;      ///< of each patch's vertices, before welding
-  std::vector<double> displacements_;  ///< of vertices that others' take the place of; empty where there are none
-  std::vector<float> bounds_;
-  std::vector<std::uint8_t> moved_;  ///< patches with vertices of touched ones
+  std::vector<double> roundings_;      ///< `[patch]`: those of its vertices, before welding
+  std::vector<double> displacements_;  ///< `[patch]`: how far copies move its vertices; empty where there are no copies
+  std::vector<float> bounds_;          ///< `[patch]`
+  std::vector<std::uint8_t> moved_;    ///< `[patch]`: 1 if it copies vertices, and it or their source is touched
+  /// `[patch]`: 1 if its bound exceeds the tolerance or it is unknown; 1 if its angle or pixels are no longer known.
   std::vector<std::uint8_t> is_unproven_, is_unknown_;
-  std::vector<std::uint32_t> touched_lanes_;   ///< a bit each, of each block
-  std::vector<std::uint32_t> touched_blocks_;  ///< those with one
+  std::vector<std::uint32_t> touched_lanes_;   ///< `[block]`: one bit per touched lane
+  std::vector<std::uint32_t> touched_blocks_;  ///< blocks with a touched lane
   std::size_t unproven_ = 0;
 };
 

@@ -9,7 +9,7 @@ namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr int rounds = 4;
-/// Of edges with more borders, what these need is summed up once a round: at least that is needed.
+/// For edges with more borders, needs are summed up once per round; the needs of a choice can only add to that sum.
 constexpr std::size_t max_looked_at = 8;
 
 class Chooser {
@@ -62,7 +62,7 @@ class Chooser {
     }
   };
   std::size_t border_count(std::uint32_t edge) const { return first_[edge + 1] - first_[edge]; }
-  /// Of all its borders, if the patch takes that choice.
+  /// Returns the needs of all borders of an edge if the patch takes that choice.
   Needs needs_with(std::uint32_t edge, std::size_t patch, const ProvenSegments& choice) const {
     Needs needs;
     for (std::size_t k = first_[edge]; k < first_[edge + 1]; ++k) {
@@ -76,7 +76,7 @@ class Chooser {
       if (border_count(edge) > max_looked_at) needs_[edge] = needs_with(edge, choices_.size(), {});  // no patch
   }
 
-  /// Whether a patch took another choice.
+  /// Does one round; returns whether a patch took another choice.
   bool improve() {
     bool has_changed = false;
     sum_up();
@@ -91,8 +91,9 @@ class Chooser {
     return has_changed;
   }
 
-  /// A patch's triangles, and those of its neighbours at its borders; but for a number that is the same unless a neighbour
-  /// whose borders are joined gets inner points for it.
+  /// Counts a patch's triangles, and those of its neighbours at its borders. The neighbours' other triangles are left
+  /// out: their number does not depend on the choice, except where a neighbour whose borders are joined gets inner
+  /// points.
   std::size_t cost(std::size_t patch, const ProvenSegments& choice) const {
     std::array<Segments, 4> borders;
     std::size_t beside = 0;
@@ -104,7 +105,7 @@ class Chooser {
     }
     return beside + Division::of(shapes_[patch], choice.segments, borders).triangle_count();
   }
-  /// What a border has if its patch takes that choice.
+  /// Returns the segments of a border if its patch takes that choice.
   Segments border_with(std::size_t patch, Side side, const ProvenSegments& choice) const {
     const std::uint32_t edge = edges_.edge(patch, side);
     if (edge == SharedEdges::none) return along(choice.segments, side);
@@ -134,9 +135,9 @@ class Chooser {
   std::span<const SegmentChoices> choices_;
   const std::atomic<bool>* cancel_;
   std::vector<std::uint8_t> chosen_;
-  std::vector<std::size_t> first_;      ///< of each edge among borders_, and the number of all
+  std::vector<std::size_t> first_;      ///< `[edge]`: its first place in borders_, and the number of all at the end
   std::vector<std::uint32_t> borders_;  ///< edge by edge, 4 * patch + side
-  std::vector<Needs> needs_;            ///< of edges with many
+  std::vector<Needs> needs_;            ///< `[edge]`, set for edges with more than max_looked_at borders
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-// Segments that a patch may have, and which of them suit its neighbours.
+// Holds the segments that a patch may have, and chooses those that suit its neighbours.
 
 #include <algorithm>
 #include <array>
@@ -19,10 +19,11 @@ namespace tessera::inline abi_0_1 {
 struct ProvenSegments {
   PatchSegments segments;
   double distance = 0;
-  bool anywhere = false;  ///< wherever triangles lie; else if none straddles a middle that segments part
+  /// The distance holds wherever triangles lie; if false, only if none crosses a middle that segments part.
+  bool anywhere = false;
 };
 
-/// Those with the fewest cells, fewest first.
+/// The proven segments of a patch with the fewest cells, in the order of their cells.
 class SegmentChoices {
  public:
   static constexpr std::size_t most = 8;
@@ -31,12 +32,13 @@ class SegmentChoices {
   std::size_t count() const { return count_; }
   const ProvenSegments& operator[](std::size_t k) const { return all_[k]; }
   const ProvenSegments& fewest() const { return all_.front(); }
-  /// Cells beyond which a choice saves nothing elsewhere.
+  /// Returns the number of cells beyond which a choice saves nothing for neighbours.
   double max_cells() const { return 1.25 * fewest().segments.cells() + 2; }
   bool has_room_for(PatchSegments segments) const {
     return segments.cells() <= max_cells() && (count_ < most || segments.cells() < all_[count_ - 1].segments.cells());
   }
-  /// If there is room. Behind those of as many cells; the last gives way. Of the same segments those proven anywhere stay.
+  /// Adds a choice if there is room, behind those of as many cells; the last one is dropped if there are too many. Of
+  /// equal segments, those proven anywhere are kept.
   void add(const ProvenSegments& choice) {
     if (!has_room_for(choice.segments)) return;
     for (std::size_t k = 0; k < count_; ++k)
@@ -55,9 +57,11 @@ class SegmentChoices {
   std::size_t count_ = 1;
 };
 
-/// Which choice of each patch it takes: with these the mesh has about the fewest triangles, borders and strips counted, and
-/// about no more than with the first. One patch after the other takes the best for it and its borders, the others' being as
-/// they are, four times over. `against`: of each border, whether it runs against its edge. Errors: cancelled.
+/// Returns the choice for each patch with which the mesh has about the fewest triangles, including borders and strips,
+/// and about no more than with the first choices.
+///
+/// One patch after the other takes the best choice for itself and its borders while the others are unchanged; this is
+/// done four times. `against`: for each border, whether it runs against its edge. Errors: cancelled.
 Result<std::vector<std::uint8_t>> choose_together(std::span<const PatchShape> shapes, const SharedEdges& edges,
                                                   std::span<const std::uint8_t> against,
                                                   std::span<const SegmentChoices> choices,

@@ -1,5 +1,5 @@
 #pragma once
-// How the parameters of a patch are divided.
+// Describes how the parameters of a patch are divided.
 
 #include <algorithm>
 #include <cassert>
@@ -9,11 +9,11 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Rates stay at most this, those of halves too: parameters i / rate are then well apart in float.
+/// The largest rate, also of halves: up to it, parameters i / rate are well apart in float.
 inline constexpr int max_rate = 4096;
 
-/// The segments of a parameter from 0 to 1: all of one length, or those of each half. One word: where halves of it are
-/// stored, copies of the whole wait for them.
+/// The segments of a parameter from 0 to 1: all of one length, or of one length in each half. Stored as one word: after
+/// stores of its parts, a copy of the whole would wait for them.
 class Segments {
  public:
   constexpr Segments() = default;  ///< none
@@ -26,25 +26,25 @@ class Segments {
   friend constexpr bool operator==(Segments, Segments) = default;
 
   constexpr bool is_uniform() const { return word_ >> rate_bits == 0; }
-  constexpr int rate() const { return static_cast<int>(word_ & ((1u << rate_bits) - 1)); }  ///< how many
-  /// Another number for others.
+  constexpr int rate() const { return static_cast<int>(word_ & ((1u << rate_bits) - 1)); }  ///< the number of segments
+  /// Returns a number that differs for different segments.
   constexpr std::uint32_t key() const { return word_; }
-  /// Whether 1/2 lies within none of them. Without a branch, as odd rates come at random.
+  /// Whether 1/2 lies inside no segment. Without a branch, because odd rates come at random.
   constexpr bool parts_halves() const { return bool(int{!is_uniform()} | (rate() % 2 == 0)); }
-  /// The rate at which uniform segments are as long as those of a half.
+  /// The rate at which uniform segments are as long as those of one half.
   constexpr int lower_rate() const { return is_uniform() ? rate() : 2 * lower(); }
   constexpr int upper_rate() const { return is_uniform() ? rate() : 2 * upper(); }
   constexpr int coarsest_rate() const { return std::min(lower_rate(), upper_rate()); }
-  /// As they are against the parameter.
+  /// Returns the segments seen against the direction of the parameter.
   constexpr Segments reversed() const { return is_uniform() ? *this : halves(upper(), lower()); }
 
   struct Fraction {
     int numerator, denominator;
     constexpr double value() const { return double(numerator) / denominator; }
-    constexpr double rest() const { return double(denominator - numerator) / denominator; }  ///< up to 1
+    constexpr double rest() const { return double(denominator - numerator) / denominator; }  ///< 1 - value()
   };
-  /// Where segment k begins, k = 0 .. rate. Of reversed() segments the numerators are the others' rests: value() and rest()
-  /// change places, bit for bit.
+  /// Returns where segment k = 0 .. rate begins; rate: 1. For reversed() segments value() and rest() are exchanged, bit
+  /// for bit.
   constexpr Fraction at(int k) const {
     if (is_uniform()) return {k, rate()};
     if (k <= lower()) return {k, 2 * lower()};
@@ -53,14 +53,14 @@ class Segments {
 
  private:
   static constexpr int rate_bits = 13;  // up to max_rate
-  // Where those of the halves differ.
+  // The numbers of segments in the halves, where they differ.
   constexpr int lower() const { return static_cast<int>(word_ >> rate_bits); }
   constexpr int upper() const { return rate() - lower(); }
 
-  std::uint32_t word_ = 0;  ///< the rate; above it how many are below 1/2, where those are others than above
+  std::uint32_t word_ = 0;  ///< the rate; in the bits above it lower() if the halves differ, else 0
 };
 
-/// Those of both parameters.
+/// The segments of both parameters of a patch.
 struct PatchSegments {
   Segments u = 1, v = 1;
 
@@ -71,10 +71,10 @@ struct PatchSegments {
 
   constexpr bool are_uniform() const { return u.is_uniform() && v.is_uniform(); }
   constexpr Rates rates() const { return {u.rate(), v.rate()}; }
-  /// Those of uniform segments as long as the longest.
+  /// The rates of uniform segments as long as the longest ones.
   constexpr Rates coarsest() const { return {u.coarsest_rate(), v.coarsest_rate()}; }
   constexpr double cells() const { return double(u.rate()) * v.rate(); }
-  /// Those of uniform segments as long as a quarter's, by the halves of u and v, 1 being the upper ones.
+  /// The rates of uniform segments as long as those of a quarter; half_u and half_v: 0 is the lower half, 1 the upper.
   constexpr Rates of_quarter(int half_u, int half_v) const {
     return {half_u ? u.upper_rate() : u.lower_rate(), half_v ? v.upper_rate() : v.lower_rate()};
   }

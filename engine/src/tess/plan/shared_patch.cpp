@@ -1,4 +1,4 @@
-// Patches of a mesh that shares vertices, or has quads.
+// Writes patches of a mesh that shares vertices, or has quads.
 
 #include <algorithm>
 
@@ -10,10 +10,10 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// Points of a ring that are evaluated at once. A border has no more.
+/// The largest number of ring points that are evaluated at once. A border has no more.
 constexpr std::size_t max_points = max_rate;
 
-/// The job is for a part of the division that it was prepared for.
+/// Restricts a job to a part of the division that it was prepared for.
 void restrict_to(const Division& part, VertexJob& vertices) {
   vertices.exact.division = &part;
   vertices.job.inner_u = part.inner.u.rate();

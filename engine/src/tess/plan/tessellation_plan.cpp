@@ -1,21 +1,22 @@
 #include <algorithm>
 #include <string>
 
-#include "base/guard.h"
 #include "eval/uniform_grid.h"
 #include "parallel/call_progress.h"
 #include "parallel/parallel_for.h"
 #include "tess/write/mesh_views.h"
 #include "tess/write/patch_triangles.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 #include "tessera/tessellation.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr int max_rate = 4096;
-constexpr std::uint64_t max_vertices = std::uint64_t{1} << 32;  // 32-bit indices
+constexpr std::uint64_t max_vertices = std::uint64_t{1} << 32;  // the limit of 32-bit indices
 constexpr std::size_t patches_per_task = 64;
-constexpr double progress_ends[] = {0.7, 1};  // of vertices, and of all else
+constexpr double progress_ends[] = {0.7, 1};  // after the vertices, and after all else
 
 Status invalid(std::string message) { return {StatusCode::invalid_argument, std::move(message)}; }
 
@@ -82,13 +83,13 @@ class TessellationPlan::Impl {
 
  private:
   Status write_vertices(const PatchSet& set, const MeshViews& out, const Execution& execution) const {
-    GridViews<float> grid;
+    QuantityViews<float> grid;
     grid.position = out.position;
     grid.normal = out.normal;
     return grid_.run(set, grid, execution);
   }
 
-  /// Parameters, indices and patch numbers.
+  /// Writes parameters, indices and patch numbers.
   Status write_rest(const MeshViews& out, const Execution& execution) const {
     ExecutionReport report;
     Execution part{.cancel = execution.cancel, .progress = {}, .stores = execution.stores, .report = &report};
@@ -118,7 +119,7 @@ class TessellationPlan::Impl {
     fill(out.quad_patch, first_quad_[k], first_quad_[k + 1]);
   }
 
-  /// Of those that are no half of a quad.
+  /// Returns the first triangle of a patch among those that are not half of a quad.
   std::size_t first_lone_triangle(std::size_t patch) const { return first_triangle_[patch] - 2 * first_quad_[patch]; }
 
   void write_parameters(std::size_t patch, const View2<float>& view) const {
@@ -135,7 +136,7 @@ class TessellationPlan::Impl {
   std::vector<float> u_, v_;
   Vec3 origin_;
   std::vector<PatchShape> shapes_;
-  std::vector<std::size_t> first_triangle_, first_quad_;  ///< of each patch, and the number of all
+  std::vector<std::size_t> first_triangle_, first_quad_;  ///< `[patch]`, and the number of all at the end
 };
 
 Result<TessellationPlan> TessellationPlan::make(const PatchSet& set, const TessellationOptions& options) {

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
-/// C(n,k) (t^k s^(n-k)) at the fractions t and s = 1 - t: B_k is B_{n-k} at the rest, bit for bit.
+/// The weights C(n,k) (t^k s^(n-k)) at the fractions t and s = 1 - t. B_k at t is B_{n-k} at s, bit for bit.
 struct Weights {
   std::array<double, max_degree + 1> value;
 
@@ -24,7 +24,7 @@ struct Weights {
   }
 };
 
-/// The sum of weight[k] * point(k), k = 0 .. degree: the same bits where both run the other way.
+/// Returns the sum of weights.value[k] * point(k), k = 0 .. degree. The bits are the same if both run the other way.
 template <class Point>
 Homogeneous symmetric_sum(int degree, const Weights& weights, Point point) {
   const auto term = [&](int k) { return weights.value[at(k)] * point(k); };
@@ -34,14 +34,15 @@ Homogeneous symmetric_sum(int degree, const Weights& weights, Point point) {
   return sum;
 }
 
-/// How far a patch goes from a point.
+/// Returns the largest distance of a control point from `from`.
 double reach(const BezierPatch& patch, const Vec3& from) {
   double most = 0;
   for (const Vec3& p : patch.points()) most = std::max(most, length(p - from));
   return most;
 }
 
-/// Twice g and one for the division; twice that covers what lengths and products of roundings add.
+/// Returns twice 2 g + 2 u: 2 g as derived in the header, 2 u for the division; the factor covers what lengths and
+/// products of roundings add.
 double evaluation_rounding(const BezierPatch& patch) {
   return 4 * (3.0 * (patch.degree_u() + patch.degree_v()) + 9) * 0x1p-53;
 }

@@ -1,12 +1,13 @@
 #include "tessera/mesh.h"
 
-#include "base/guard.h"
 #include "tess/write/mesh_parts.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// Three corners a triangle out of all faces, part by part.
+/// Makes triangles of all faces, part by part.
 class QuadSplitter {
  public:
   explicit QuadSplitter(const Mesh& mesh) : mesh_(mesh), has_patches_(mesh.has_patches()) {
@@ -15,7 +16,7 @@ class QuadSplitter {
     if (has_patches_) patches_.reserve(triangles);
   }
 
-  /// Returns the part's first triangle.
+  /// Adds the triangles of a part and returns the first.
   std::size_t add(const MeshPart& part) {
     const std::size_t first = indices_.size() / 3;
     const auto at = [](const auto& values, std::size_t k) { return values.begin() + static_cast<std::ptrdiff_t>(k); };
@@ -61,7 +62,7 @@ Result<Mesh> split_quads(const Mesh& mesh) {
     if (mesh.indices.size() % 3 != 0 || mesh.quads.size() % 4 != 0)
       return Status(StatusCode::count_mismatch, std::to_string(mesh.indices.size()) + " indices of triangles and " +
                                                     std::to_string(mesh.quads.size()) +
-                                                    " of quads are not three and four each");
+                                                    " of quads are not three per triangle and four per quad");
     if (Status status = check_parts(mesh); !status.ok()) return status;
     if (mesh.quads.empty()) return mesh;
     Mesh split;

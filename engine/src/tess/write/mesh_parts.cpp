@@ -1,8 +1,10 @@
 #include <string>
 
-#include "base/guard.h"
+#include "base/text.h"
 #include "tess/write/mesh_parts.h"
+#include "tessera/guard.h"
 #include "tessera/model.h"
+#include "tessera/status.h"
 #include "tessera/tessellation.h"
 
 namespace tessera::inline abi_0_1 {
@@ -15,9 +17,9 @@ Status no_such(const char* what, std::size_t index, std::size_t count, const cha
           static_cast<std::ptrdiff_t>(place)};
 }
 
-Status check_patches(const char* faces, std::size_t patches, std::size_t count) {
+Status check_patches(const char* face, std::size_t patches, std::size_t count) {
   if (patches == count) return {};
-  return {StatusCode::count_mismatch, std::to_string(patches) + " patches for " + std::to_string(count) + " " + faces};
+  return {StatusCode::count_mismatch, counted(patches, "patch", "patches") + " for " + counted(count, face)};
 }
 
 std::string name_of(const Model& model, std::size_t surface) {
@@ -25,12 +27,13 @@ std::string name_of(const Model& model, std::size_t surface) {
   return name.empty() ? "surface " + std::to_string(surface) : name;
 }
 
-/// Parts that grow by one face after the other.
+/// Builds parts face by face.
 class PartList {
  public:
   PartList(const PatchSet& set, const Model& model) : set_(set), model_(model) {}
 
-  /// The face is triangle `t`, or quad `q` that comes after so many triangles. Errors: invalid_argument.
+  /// Adds a face: triangle `t`, or quad `q`, which comes after `t` triangles. Errors: invalid_argument (no such patch
+  /// or surface).
   Status add(std::uint32_t patch, bool is_quad, std::size_t t, std::size_t q) {
     if (parts_.empty() || patch != patch_) {
       const char* const face = is_quad ? "quad" : "triangle";
@@ -52,7 +55,7 @@ class PartList {
   const PatchSet& set_;
   const Model& model_;
   std::vector<MeshPart> parts_;
-  std::uint32_t patch_ = 0;  ///< of the last face
+  std::uint32_t patch_ = 0;  ///< that of the last face
   std::size_t surface_ = 0;
 };
 
@@ -64,9 +67,10 @@ Status check_parts(const Mesh& mesh) {
     const MeshPart& part = mesh.parts[k];
     if (part.first_triangle != triangle || part.triangle_count > mesh.triangle_count() - triangle ||
         (part.quad_count > 0 && part.first_quad != quad) || part.quad_count > mesh.quad_count() - quad)
-      return {StatusCode::invalid_argument,
-              "part " + std::to_string(k) + " of the mesh does not follow on the one before, within its faces",
-              static_cast<std::ptrdiff_t>(k)};
+      return {
+          StatusCode::invalid_argument,
+          "part " + std::to_string(k) + " of the mesh must begin where the one before ends, and stay within its faces",
+          static_cast<std::ptrdiff_t>(k)};
     triangle += part.triangle_count;
     quad += part.quad_count;
   }
@@ -83,8 +87,8 @@ Status check_parts(const Mesh& mesh) {
 Result<std::vector<MeshPart>> parts_by_surface(const Mesh& mesh, const PatchSet& set, const Model& model) {
   return guarded([&]() -> Result<std::vector<MeshPart>> {
     const std::size_t triangles = mesh.triangle_count(), quads = mesh.quad_count();
-    if (Status status = check_patches("triangles", mesh.patches.size(), triangles); !status.ok()) return status;
-    if (Status status = check_patches("quads", mesh.quad_patches.size(), quads); !status.ok()) return status;
+    if (Status status = check_patches("triangle", mesh.patches.size(), triangles); !status.ok()) return status;
+    if (Status status = check_patches("quad", mesh.quad_patches.size(), quads); !status.ok()) return status;
     PartList parts(set, model);
     for (std::size_t t = 0, q = 0; t < triangles || q < quads;) {
       const bool is_quad = t == triangles || (q < quads && mesh.quad_patches[q] < mesh.patches[t]);

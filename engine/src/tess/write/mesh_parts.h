@@ -1,5 +1,5 @@
 #pragma once
-// The parts of meshes.
+// Checks the parts of meshes.
 
 #include "base/internal_export.h"
 #include "tessera/mesh.h"
@@ -7,8 +7,9 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Whether the parts, if there are any, are runs one after the other that together are all triangles and quads. Errors:
-/// invalid_argument (index = the part), count_mismatch.
+/// Checks that the parts, if there are any, are runs one after the other that together are all triangles and quads.
+/// Errors: invalid_argument (a part that does not begin where the one before ends; index = the part), count_mismatch
+/// (parts that are not all faces).
 TESSERA_INTERNAL_EXPORT Status check_parts(const Mesh& mesh);
 
 }  // namespace tessera::inline abi_0_1

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <mutex>
 #include <utility>
 
 #include "basis/bernstein.h"
@@ -30,7 +29,7 @@ class WeightsAt {
       t[at(n)] = t[at(n - 1)] * along;
       s[at(n)] = s[at(n - 1)] * back;
     }
-    // C(n,i) (t^i s^(n-i)): B_i is B_{n-i} at the rest, bit for bit.
+    // C(n,i) (t^i s^(n-i)): B_i at t is B_{n-i} at s, bit for bit.
     for (int i = 0; i <= degree_; ++i) value_[at(i)] = binomial_[at(i)] * (t[at(i)] * s[at(degree_ - i)]);
     // n (B^{n-1}_{i-1} - B^{n-1}_i)
     double before = 0;
@@ -50,7 +49,8 @@ class WeightsAt {
   std::array<double, max_degree + 1> binomial_{}, below_{}, value_, slope_;
 };
 
-/// `[tile][order][i][8]` where segments k = first .. begin, the last of which then repeats; an even number of tiles.
+/// Returns weights `[tile][order][i][8]` where segments k = first .. begin. The last one repeats up to an even number
+/// of tiles.
 AlignedVector<float> tiles_of_weights(int degree, Segments along, int first) {
   const auto count = static_cast<std::size_t>(along.rate() - first), terms = static_cast<std::size_t>(degree) + 1;
   const std::size_t tiles = (count + 2 * tile - 1) / (2 * tile) * 2;
@@ -67,13 +67,13 @@ AlignedVector<float> tiles_of_weights(int degree, Segments along, int first) {
   return weights;
 }
 
-/// The entry of a vector that grows to hold it.
+/// Returns the entry of a vector, which grows to hold it.
 template <class T>
 T& grown(std::vector<T>& entries, std::size_t at) {
   if (at >= entries.size()) entries.resize(at + 1);
   return entries[at];
 }
-/// The entry, or nothing.
+/// Returns the entry of a vector, or T{} if there is none.
 template <class T>
 T found(const std::vector<T>& entries, std::size_t at) {
   return at < entries.size() ? entries[at] : T{};
@@ -194,33 +194,11 @@ void MeshTables::add_strip(Segments border, Segments inner, bool collapsed) {
   strip = {hold(std::move(whole)), static_cast<int>(codes.size())};
 }
 
-/// What a process keeps for the plans to come.
-class CommonTables {
- public:
-  static CommonTables& get() {
-    static CommonTables& all = *new CommonTables;  // for plans that outlive static objects
-    return all;
-  }
-  std::shared_ptr<const MeshTables> load(bool with_cubic) {
-    const std::lock_guard lock(mutex_);
-    return tables_[with_cubic];
-  }
-  void store(bool with_cubic, std::shared_ptr<const MeshTables> tables) {
-    const std::lock_guard lock(mutex_);
-    tables_[with_cubic].swap(tables);
-  }
-
- private:
-  std::mutex mutex_;
-  std::array<std::shared_ptr<const MeshTables>, 2> tables_;
-};
-
-/// Takes what is common, and a copy of it to add to where that isn't enough.
+/// Uses the common tables, or a copy of them to which it adds what they lack.
 class TableMaker {
  public:
-  TableMaker(std::size_t patches, bool with_cubic)
-      : common_(CommonTables::get().load(with_cubic)),
-        seen_(std::bit_ceil(std::clamp<std::size_t>(16 * patches, 64, 4096))) {
+  TableMaker(SharedSlot<MeshTables>& kept, std::size_t patches, bool with_cubic)
+      : kept_(kept), common_(kept.load()), seen_(std::bit_ceil(std::clamp<std::size_t>(16 * patches, 64, 4096))) {
     if (!common_) common_ = own_ = std::shared_ptr<MeshTables>(new MeshTables(with_cubic));
     common_bytes_ = common_->bytes();
   }
@@ -238,14 +216,14 @@ class TableMaker {
       }
     }
   }
-  /// They are common from now on, if they are small. Where those of many plans have become large, others begin anew.
+  /// Returns the tables. They become the common ones if they are small. If they are too large and the common ones are
+  /// more than half full, the common ones begin anew.
   std::shared_ptr<const MeshTables> take() {
     if (!own_) return common_;
-    CommonTables& all = CommonTables::get();
     if (own_->bytes() <= MeshTables::max_common_bytes) {
-      all.store(own_->with_cubic_, own_);
+      kept_.store(own_);
     } else if (common_bytes_ > MeshTables::max_common_bytes / 2) {
-      all.store(own_->with_cubic_, nullptr);
+      kept_.store(nullptr);
     }
     return own_;
   }
@@ -264,15 +242,16 @@ class TableMaker {
     own_->add(degree, inner, border, collapsed);
   }
 
+  SharedSlot<MeshTables>& kept_;
   std::shared_ptr<const MeshTables> common_;
   std::size_t common_bytes_;
-  std::shared_ptr<MeshTables> own_;  ///< a copy that takes its place, if more was needed
-  std::vector<std::uint32_t> seen_;  ///< some of what has been added: degrees, inner and border rates
+  std::shared_ptr<MeshTables> own_;  ///< a copy that replaces common_, if it lacked something
+  std::vector<std::uint32_t> seen_;  ///< a cache of what has been added: degrees, inner and border rates
 };
 
-std::shared_ptr<const MeshTables> MeshTables::of(std::span<const PatchShape> shapes,
+std::shared_ptr<const MeshTables> MeshTables::of(const PatchSet::Impl& set, std::span<const PatchShape> shapes,
                                                  std::span<const Division> divisions, bool with_cubic) {
-  TableMaker maker(shapes.size(), with_cubic);
+  TableMaker maker(set.mesh_tables[with_cubic ? 1 : 0], shapes.size(), with_cubic);
   for (std::size_t k = 0; k < shapes.size(); ++k) maker.add(shapes[k], divisions[k]);
   return maker.take();
 }

@@ -43,7 +43,7 @@ void add_wanted(ViewChecks& checks, const char* name, std::span<std::uint32_t> n
   if (!numbers.empty()) checks.add(name, view, records);
 }
 
-/// The views of vertices: aligned, and apart from each other.
+/// Returns checks that the views of vertices are aligned and do not share memory.
 ViewChecks vertex_checks(const MeshViews& out, const MeshCapacity& wanted) {
   ViewChecks checks(wanted.vertices);
   add_wanted(checks, "position", out.position);
@@ -68,7 +68,7 @@ Status check_lengths(const MeshViews& out, const MeshCapacity& wanted, bool f64)
 Mesh empty_mesh(const MeshCapacity& capacity, const Vec3& origin) {
   Mesh mesh;
   mesh.origin = origin;
-  mesh.positions.reserve(3 * capacity.vertices + 1);  // room that rays need behind the last (RayScene::make)
+  mesh.positions.reserve(3 * capacity.vertices + 1);  // RayScene::make() needs room for one more number
   mesh.positions.resize(3 * capacity.vertices);
   mesh.normals.resize(3 * capacity.vertices);
   mesh.parameters.resize(2 * capacity.vertices);
@@ -111,8 +111,13 @@ Status check_count(const PatchSet& set, std::size_t planned) {
           "the plan is for " + std::to_string(planned) + " patches, the set has " + std::to_string(set.patch_count())};
 }
 
+Status no_float_blocks() {
+  return {StatusCode::unsupported, "a tessellation needs float Bernstein blocks, the set has none"};
+}
+
 Status check_shapes(const PatchSet& set, std::span<const PatchShape> planned) {
   if (Status status = check_count(set, planned.size()); !status.ok()) return status;
+  if (!set.blocks().float_bernstein) return no_float_blocks();
   LeastIndex changed;
   const auto compare = [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {

@@ -1,5 +1,5 @@
 #pragma once
-// What every tessellation checks before it writes.
+// Checks that every tessellation makes before it writes.
 
 #include <span>
 
@@ -9,19 +9,23 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// A mesh with all attributes, zeros, of so many vertices, triangles and quads.
+/// Returns a mesh with all attributes, filled with zeros.
 Mesh empty_mesh(const MeshCapacity& capacity, const Vec3& origin);
 
-/// Quads are looked at if the capacity holds any. Errors: buffer_too_small; invalid_argument (no positions, a null
-/// component, a stride below 1). `f64`: positions in double are required, those in float are not; else there must be none.
+/// Checks views that a mesh is written to. `f64`: positions in double are required and those in float are optional;
+/// else there must be no positions in double. Errors: buffer_too_small, invalid_argument (no positions; a null
+/// component; a stride below 1; views that are misaligned or share memory).
 Status check_views(const MeshViews& out, const MeshCapacity& wanted, bool f64 = false);
 
-/// Of positions and normals alone.
+/// check_views() for positions and normals alone.
 Status check_vertex_views(const MeshViews& out, const MeshCapacity& wanted, bool f64 = false);
 
-/// Whether a set has as many patches as a plan. Errors: stale.
+/// Checks that a set has as many patches as a plan. Errors: stale.
 Status check_count(const PatchSet& set, std::size_t planned);
-/// Whether the patches of a set are still those that a plan was made for. Errors: stale, of the first that is not.
+/// The error of a set without float Bernstein blocks: unsupported.
+Status no_float_blocks();
+/// Checks that a set has the blocks that meshes are made from, and patches of the shapes that a plan was made for.
+/// Errors: unsupported, stale (index = the first patch of another shape).
 Status check_shapes(const PatchSet& set, std::span<const PatchShape> planned);
 
 }  // namespace tessera::inline abi_0_1

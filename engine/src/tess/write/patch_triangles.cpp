@@ -5,12 +5,12 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// Whether the patch is a curve or a point. Where the points do not depend on one parameter but the weights do, three
-/// points and more are mixed to an area, and two to a segment.
+/// Whether the patch is a curve or a point. If the points do not depend on one parameter but the weights do, weights
+/// mix three or more points to an area, and two points to a segment.
 bool has_no_area(const BezierPatch& patch, std::span<const Vec3> points) {
   const int m = patch.degree_u(), n = patch.degree_v();
   const auto point = [&](int i, int j) { return points[static_cast<std::size_t>(i * (n + 1) + j)]; };
-  bool points_u = true, points_v = true, weights_u = true, weights_v = true;  // constant along it
+  bool points_u = true, points_v = true, weights_u = true, weights_v = true;  // constant along u, v
   for (int i = 0; i <= m; ++i)
     for (int j = 0; j <= n; ++j) {
       points_u = points_u && point(i, j) == point(0, j);
@@ -24,8 +24,8 @@ bool has_no_area(const BezierPatch& patch, std::span<const Vec3> points) {
 // A cell with corners 00, 10, 11, 01 (first digit along u) is split from 00 to 11 into these two triangles.
 enum CellTriangle : unsigned { lower = 1, upper = 2 };  // 00 10 11 and 00 11 01
 
-/// Those left of a cell some of whose edges have collapsed to points. Two collapsed edges that meet at 01 or at 10 make
-/// one point of 00 and 11 as well.
+/// Returns the triangles left of a cell some of whose edges have collapsed to points. Two collapsed edges that meet at
+/// 01 or at 10 make 00 and 11 one point as well.
 unsigned remaining(EdgeMask cell) {
   const bool u0 = cell.has(Edge::u0), u1 = cell.has(Edge::u1), v0 = cell.has(Edge::v0), v1 = cell.has(Edge::v1);
   const bool keeps_lower = !v0 && !u1 && !(u0 && v1);
@@ -33,7 +33,7 @@ unsigned remaining(EdgeMask cell) {
   return (keeps_lower ? lower : 0u) | (keeps_upper ? upper : 0u);
 }
 
-/// The patch's collapsed edges that a cell lies at.
+/// Returns the collapsed edges of the patch that a cell lies at.
 EdgeMask edges_of_cell(EdgeMask patch, Rates rates, int iu, int iv) {
   EdgeMask at;
   if (iu == 0) at.add(Edge::u0);
@@ -50,7 +50,7 @@ std::uint32_t* write(std::uint32_t* to, std::uint32_t a, std::uint32_t b, std::u
   return to + 3;
 }
 
-/// How much is left of the cells of a patch: `all` of each, but `count(remaining())` of those at collapsed edges.
+/// Sums up what is left of a patch's cells: `all` for each, but count(remaining()) for those at collapsed edges.
 template <class Count>
 std::size_t remaining_count(const PatchShape& shape, Rates rates, std::size_t all, const Count& count) {
   if (shape.is_curve) return 0;
@@ -70,7 +70,7 @@ std::size_t remaining_count(const PatchShape& shape, Rates rates, std::size_t al
   return sum;
 }
 
-/// Both triangles of each of `count` cells in a row, p00 being vertices first, first + 1, ..
+/// Writes both triangles of each of `count` cells in a row; the corners 00 are vertices first, first + 1, ...
 std::uint32_t* write_whole_cells(std::uint32_t first, std::uint32_t row, int count, std::uint32_t* to) {
   for (std::uint32_t p00 = first; p00 != first + static_cast<std::uint32_t>(count); ++p00) {
     to = write(to, p00, p00 + row, p00 + row + 1);

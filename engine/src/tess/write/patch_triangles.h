@@ -1,5 +1,5 @@
 #pragma once
-// The triangles of one patch on a uniform grid, without those that collapse.
+// Writes the triangles of one patch on a uniform grid, without those that collapse.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,15 +9,16 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// What of a patch decides which triangles it has.
+/// The properties of a patch that decide which triangles it has.
 struct PatchShape {
   std::uint8_t degree_u = 0, degree_v = 0;
   EdgeMask collapsed;
   bool is_curve = false;  ///< a curve or a point: no triangle has an area
 
   static PatchShape of(const BezierPatch& patch) { return of(patch, patch.collapsed_edges()); }
-  static PatchShape of(const BezierPatch& patch, EdgeMask collapsed);  ///< patch.collapsed_edges()
-  /// With other control points, as many.
+  /// `collapsed`: patch.collapsed_edges().
+  static PatchShape of(const BezierPatch& patch, EdgeMask collapsed);
+  /// The shape that the patch would have with as many other control points.
   static PatchShape of(const BezierPatch& patch, std::span<const Vec3> points);
   friend bool operator==(const PatchShape& a, const PatchShape& b) {
     return a.degree_u == b.degree_u && a.degree_v == b.degree_v && a.collapsed.bits == b.collapsed.bits &&
@@ -31,15 +32,15 @@ struct Rates {
   std::size_t vertices() const { return static_cast<std::size_t>(u + 1) * static_cast<std::size_t>(v + 1); }
 };
 
-/// How many triangles a patch has.
+/// Returns the number of triangles of a patch.
 std::size_t triangle_count(const PatchShape& shape, Rates rates);
-/// How many of its cells are whole, two triangles each: those that may be quads.
+/// Returns the number of whole cells, of two triangles each, which may be quads.
 std::size_t quad_count(const PatchShape& shape, Rates rates);
 
-/// Writes their corners, three indices a triangle, vertex [iu][iv] being `first` + iu * (rates.v + 1) + iv;
-/// counter-clockwise seen from where r_u x r_v points. Returns the end of what it wrote.
+/// Writes the corners of all triangles, three indices per triangle, counter-clockwise seen from where r_u x r_v points.
+/// Vertex [iu][iv] is `first` + iu * (rates.v + 1) + iv. Returns the end of what it wrote.
 std::uint32_t* write_triangles(const PatchShape& shape, Rates rates, std::uint32_t first, std::uint32_t* indices);
-/// The same with whole cells as quads, four indices each, and the triangles of the others alone.
+/// Writes whole cells as quads, four indices each, and the triangles of other cells, as write_triangles().
 void write_quads(const PatchShape& shape, Rates rates, std::uint32_t first, std::uint32_t* indices,
                  std::uint32_t* quads);
 

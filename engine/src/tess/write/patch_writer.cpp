@@ -11,7 +11,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// A side's first control point as packed: w p / w would depend on the weight.
+/// Returns a side's first control point as packed. It is not computed as w p / w, which would depend on the weight.
 std::array<float, 3> start_of(const BezierPatch& net, const Vec3& origin, Side side) {
   const bool end_u = side == Side::u1 || side == Side::v1, end_v = side == Side::v1 || side == Side::u0;
   const Vec3 p = net.point(end_u ? net.degree_u() : 0, end_v ? net.degree_v() : 0) - origin + Vec3{};
@@ -25,7 +25,7 @@ void put_vector(const View3<T>& view, std::size_t at, const Vec3& p) {
   view.at(at, 2) = static_cast<T>(p.z);
 }
 
-/// Kernels move indices as they move numbers.
+/// Kernels write indices past the caches as if they were floats.
 kernel::StreamState lines_from(std::uint32_t* index) { return stream_from(reinterpret_cast<float*>(index)); }
 
 }  // namespace
@@ -44,7 +44,7 @@ PatchWriter::PatchWriter(const PatchSet::Impl& set, const CertifiedPlan& plan, c
 
 void PatchWriter::write(std::size_t begin, std::size_t end) const {
   VertexJob vertices;
-  std::optional<kernel::StreamState> lines;  // of indices
+  std::optional<kernel::StreamState> lines;  // cache lines of indices
   if (streaming_) {
     vertices.start_lines(out_, plan_.first_vertex(begin));
     lines = lines_from(out_.indices.data() + 3 * plan_.first_triangle(begin));
@@ -87,7 +87,7 @@ void PatchWriter::write_f64(std::size_t k) const {
   const F64Points points(patch, set_.origin);
   const Division& division = plan_.division(k);
   const bool normals = plan_.has_f64_positions() && !out_.normal.empty();
-  std::size_t vertex = plan_.first_vertex(k), place = 0;  // in the mesh, and among all of the division
+  std::size_t vertex = plan_.first_vertex(k), place = 0;  // numbers in the mesh, and among all vertices of the division
   const auto put = [&](const Vec3& p) {
     if (!out_.position.empty()) put_vector(out_.position, vertex, p);
     if (!out_.position_f64.empty()) put_vector(out_.position_f64, vertex, set_.origin + p);
@@ -174,7 +174,7 @@ void PatchWriter::prepare_weights(std::size_t k, const BlockGroup& group, const 
     border.weights =
         tables_.border_weights(runs_along_u(side) ? group.degree_u : group.degree_v, division.along_ring(side));
     border.is_point = division.collapsed.has(edge_of(side));
-    if (!border.is_point && !group.rational) continue;  // all others are as set
+    if (!border.is_point && !group.rational) continue;  // other borders use neither start nor scale
     vertices.starts[s] = start_of(set_.patches[k], set_.origin, side);
     border.start = vertices.starts[s].data();
     border.scale = group.rational ? PackedBorder(set_, k, side).scale() : 1;

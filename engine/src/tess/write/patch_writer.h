@@ -1,5 +1,5 @@
 #pragma once
-// One patch of a certified mesh, from its packed control points into the caller's memory.
+// Writes patches of a certified mesh from their packed control points into the caller's memory.
 
 #include <optional>
 
@@ -18,12 +18,12 @@ struct StreamState;
 
 struct VertexJob;
 
-/// Writes patches [begin, end) of a plan, as triangles, or as quads if there are views of these, and nothing outside their
-/// records. The bits of a vertex do not depend on the
-/// range; borders of patches that are one edge have the same positions.
+/// Writes patches [begin, end) of a plan, as triangles, or with quads if there are views of these, and nothing outside
+/// their records. The bits of a vertex do not depend on the range. Borders of patches that are one edge have the same
+/// positions.
 class [[gnu::visibility("hidden")]] PatchWriter {
  public:
-  /// `bytes`: how much will be written, if not all.
+  /// `bytes`: how much will be written, if not the whole mesh.
   PatchWriter(const PatchSet::Impl& set, const CertifiedPlan& plan, const MeshTables& tables,
               const kernel::KernelTable& kernels, const MeshViews& out, Stores stores,
               std::optional<std::size_t> bytes = {});
@@ -34,23 +34,24 @@ class [[gnu::visibility("hidden")]] PatchWriter {
 
  private:
   friend class VertexPass;
-  /// Positions and normals of a patch whose vertices are its own; records before `end` may be written, whatever they hold.
+  /// Writes positions and normals of a patch whose vertices are its own; may overwrite any records before `end`.
   void write_vertices(std::size_t k, std::size_t end, VertexJob & vertices) const;
-  /// What a patch's vertices and triangles are written from, but for where they go.
+  /// Sets all that a patch's vertices are written from; the caller sets where they are written.
   void prepare(std::size_t k, VertexJob & vertices) const;
   void prepare_points(const PatchSet::Slot& slot, const float* net, const Division& division, VertexJob& vertices)
       const;
   void prepare_weights(std::size_t k, const BlockGroup& group, const Division& division, VertexJob& vertices) const;
-  /// `end`: of what may be written, whatever it then holds. `lines`: stand at `out`, and take the indices past the caches.
+  /// Writes the triangles of a patch; may overwrite anything before `end`. `lines`: if not null, it stands at `out`,
+  /// and the indices are written past the caches.
   void write_triangles(std::size_t k, std::uint32_t * out, std::uint32_t * end, kernel::StreamState* lines = nullptr)
       const;
-  /// Puts shared vertices in the place of a patch's own in the indices of its strips.
+  /// Replaces a patch's own vertices by shared ones in the indices of its strips.
   void share_indices(std::size_t k, std::uint32_t * indices) const;
   void write_quads(std::size_t k) const;
-  /// Positions from the double control points: in double, or rounded once in the place of those that are written. Normals as
-  /// well beside positions in double.
+  /// Writes positions from the double control points: rounded once to float, in place of those from float sums; and in
+  /// double, with normals, for plans with positions in double.
   void write_f64(std::size_t k) const;
-  /// The vertices that a patch owns where others are shared.
+  /// Writes only the vertices that a patch owns, in a mesh with shared vertices.
   void write_owned(std::size_t k, VertexJob & vertices) const;
   void write_ring(std::size_t k, const Division& part, VertexJob& vertices) const;
   void write_parameters(std::size_t k) const;

@@ -1,11 +1,11 @@
 #pragma once
-// The vertices of a border in a mesh.
+// Finds the vertices of a border in a mesh.
 
 #include "tess/plan/certified_plan.h"
 
 namespace tessera::inline abi_0_1 {
 
-/// Those of point k of a border, as the ring runs, k = 0 .. rate: each corner included.
+/// The vertices of a border's points k = 0 .. rate in the direction of the ring, with both corners.
 class RingVertices {
  public:
   RingVertices(const CertifiedPlan& plan, std::uint32_t border)

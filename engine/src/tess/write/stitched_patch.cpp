@@ -12,23 +12,23 @@ std::uint32_t* write(std::uint32_t* to, std::uint32_t a, std::uint32_t b, std::u
   return to + 3;
 }
 
-/// The points where segments k = first .. last begin, whose vertices are `vertex(k)`.
+/// A row of points: where segments k = first .. last begin, with vertices `vertex(k)`.
 template <class Vertex>
 struct Line {
   Segments segments;
   int first, last;
-  bool is_point;  ///< all at one place: no triangle has an edge on it
+  bool is_point;  ///< all points are at one place: no triangle has an edge on the row
   Vertex vertex;
 };
 template <class Vertex>
 Line(Segments, int, int, bool, Vertex) -> Line<Vertex>;
 
-/// A border.
+/// The row of a border's points.
 template <class Vertex>
 Line<Vertex> whole_line(Segments segments, bool is_point, Vertex vertex) {
   return {segments, 0, segments.rate(), is_point, vertex};
 }
-/// Of the points that lie inside a patch.
+/// The row of the inner points beside a border.
 template <class Vertex>
 Line<Vertex> inner_line(Segments segments, Vertex vertex) {
   return {segments, 1, segments.rate() - 1, false, vertex};
@@ -38,9 +38,9 @@ bool is_not_behind(Segments::Fraction a, Segments::Fraction b) {
   return std::int64_t{a.numerator} * b.denominator <= std::int64_t{b.numerator} * a.denominator;
 }
 
-/// The triangles between two lines that run the same way, `right` of which lies to the right. The line whose next point
-/// comes first goes on: so a triangle is no wider than the wider of both lines' steps, and where both lines have a point
-/// at one parameter no triangle straddles it.
+/// Writes the triangles between two rows that run the same way, `right` to the right of `left`. The row whose next
+/// point comes first advances. So a triangle is no wider than the wider step of both rows, and where both rows have a
+/// point at one parameter, no triangle crosses it.
 template <class Right, class Left>
 std::uint32_t* write_strip(const Line<Right>& right, const Line<Left>& left, std::uint32_t* to) {
   int i = right.first, j = left.first;
@@ -58,9 +58,10 @@ std::uint32_t* write_strip(const Line<Right>& right, const Line<Left>& left, std
   return to;
 }
 
-/// The triangles between two borders that run the same way, as write_strip(), and those at their ends: `first` runs from the
-/// begin of `left` to that of `right`, `last` from the end of `right` to that of `left`. Where an end has more than one
-/// segment, they make a fan with the next point of one of the borders: no triangle there is higher than that one's step.
+/// Writes the triangles between two borders that run the same way, as write_strip(), and those at their ends. `first`
+/// runs from the begin of `left` to that of `right`, `last` from the end of `right` to that of `left`. If an end has
+/// more than one segment, these make a fan with the next point of one of the two borders: no triangle there is higher
+/// than that border's step.
 template <class Vertex>
 std::uint32_t* write_joined(const Line<Vertex>& first, Line<Vertex> right, const Line<Vertex>& last, Line<Vertex> left,
                             std::uint32_t* to) {
@@ -75,8 +76,8 @@ std::uint32_t* write_joined(const Line<Vertex>& first, Line<Vertex> right, const
   return write_strip(right, left, to);
 }
 
-/// Borders between joined ones that have more segments than this are joined to a point in the middle of the patch: by fans
-/// from a corner their triangles would be needles.
+/// The most segments of a border between joined ones. With more, the patch gets a point in its middle instead, because
+/// fans from a corner would be needles.
 constexpr int max_at_ends = 3;
 
 }  // namespace
@@ -97,7 +98,7 @@ std::size_t Division::special_triangle_count() const {
   std::size_t count = 0;
   for (const Side side : all_sides)
     if (!collapsed.has(edge_of(side))) count += border[static_cast<std::size_t>(side)].rate();
-  if (!has_inner_points()) return count - 2;  // one of each pair of sides is joined by an edge, not by triangles
+  if (!has_inner_points()) return count - 2;  // a polygon of `count` sides has count - 2 triangles
   return count + 2 * (inner_count() - 1);
 }
 
@@ -128,9 +129,9 @@ std::uint32_t* Division::write_triangles(std::uint32_t first, std::uint32_t* to,
   if (empty) return to;
   const std::uint32_t ring = first + static_cast<std::uint32_t>(inner_count());
   const auto ring_size = static_cast<std::uint32_t>(ring_count());
-  std::array<std::uint32_t, 4> start{};  // of each side along the ring
+  std::array<std::uint32_t, 4> start{};  // the first ring point of each side
   for (std::size_t side = 1; side < 4; ++side) start[side] = start[side - 1] + border[side - 1].rate();
-  /// A side as the ring runs, the patch on its left; or the other way.
+  // A side in the direction of the ring, the patch on its left; or `backward`.
   const auto line = [&](Side side, bool backward) {
     const Segments along = along_ring(side);
     const std::uint32_t begin = start[static_cast<std::size_t>(side)];

@@ -1,6 +1,5 @@
 #pragma once
-// The vertices and triangles of one patch whose four borders have rates of their own: an inner grid, a ring of border
-// points, and strips between them.
+// Divides a patch whose borders have their own rates: an inner grid, a ring of border points, and strips between them.
 
 #include <algorithm>
 #include <array>
@@ -13,18 +12,20 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// How a patch is divided. Vertices: the inner points [iu - 1][iv - 1] where the segments of `inner` begin, then the ring:
-/// border points where segments begin, counter-clockwise from (0,0), each corner once.
+/// How a patch is divided. Vertices: first the inner points [iu - 1][iv - 1] where the segments of `inner` begin; then
+/// the ring, border points where segments begin, counter-clockwise from (0,0), each corner once.
 ///
-/// Every triangle's parameter box is no wider along a parameter than the segments asked for there: an inner cell's, and a
-/// strip's too, whose border has no longer ones. None straddles the middle of a parameter along which no segment of the
-/// patch and of its borders does. Where a border's does beside a patch's that don't, only triangles
-/// at it do, no wider than its segments, or those of the opposite border if one of these does too.
+/// Along a parameter, no triangle's parameter box is wider than the segments asked for there. This holds for inner
+/// cells, and for strips because the border has no longer segments.
+///
+/// A triangle crosses the middle of a parameter only if a segment of the patch or of its borders does. If only a
+/// segment of a border does, then only triangles at this border do. They are no wider than its segments, or those of
+/// the opposite border if one of these crosses the middle too.
 struct Division {
   PatchSegments inner;               ///< both 1: no inner points
   std::array<Segments, 4> border{};  ///< by Side, along the parameter
-  EdgeMask collapsed;                ///< these borders are points: no triangle stands on them
-  bool empty = false;                ///< a curve or a point: neither vertices nor triangles
+  EdgeMask collapsed;                ///< borders that are points: no triangle stands on them
+  bool empty = false;                ///< a curve or a point: no vertices, no triangles
   bool across_u = false;             ///< without inner points: triangles go from border u0 to u1, else from v0 to v1
 
   friend bool operator==(const Division& a, const Division& b) {
@@ -32,13 +33,13 @@ struct Division {
            a.across_u == b.across_u;
   }
 
-  /// `asked` for the patch; none of the segments of `borders` is longer than what is asked there.
+  /// Divides a patch. `asked`: the segments that the patch needs; none of the segments of `borders` may be longer.
   static Division of(const PatchShape& shape, PatchSegments asked, const std::array<Segments, 4>& borders) {
     Division division;
     division.set(shape, asked, borders);
     return division;
   }
-  /// The same in place: copies of a record that was just made wait for its stores.
+  /// Does what of() does in place, because a copy of a new record would wait for its stores.
   void set(const PatchShape& shape, PatchSegments asked, const std::array<Segments, 4>& borders) {
     inner = {asked.u.rate() > 1 ? asked.u : 2, asked.v.rate() > 1 ? asked.v : 2};
     border = borders;
@@ -65,43 +66,43 @@ struct Division {
     if (empty || collapsed.any() || !has_inner_points()) return special_triangle_count();
     return ring_count() + 2 * (inner_count() - 1);
   }
-  /// Cells between inner points, of two triangles each, which come last.
+  /// Returns the number of cells between inner points. Their triangles, two each, come last.
   std::size_t cell_count() const {
     if (empty || !has_inner_points()) return 0;
     return static_cast<std::size_t>(inner.u.rate() - 2) * static_cast<std::size_t>(inner.v.rate() - 2);
   }
 
   bool has_inner_points() const { return inner.u.rate() > 1; }
-  /// The segments of the inner points beside a border.
+  /// Returns the segments of the inner points beside a border.
   Segments inner_along(Side side) const { return runs_along_u(side) ? inner.u : inner.v; }
-  /// As the ring runs: a border's segments, and those of the inner points beside it.
+  /// A border's segments, and those of the inner points beside it, in the direction of the ring.
   Segments along_ring(Side side) const { return as_ring_runs(border[static_cast<std::size_t>(side)], side); }
   Segments inner_along_ring(Side side) const { return as_ring_runs(inner_along(side), side); }
-  /// The place of a vertex.
+  /// The parameters of a vertex.
   struct Parameters {
     double u, v;
   };
   Parameters parameters(std::size_t vertex) const;
-  /// visit(u, v) for each vertex, in order.
+  /// Calls visit(u, v) for each vertex, in order.
   template <class Visit>
   void for_parameters(Visit visit) const;
-  /// Writes the corners of all triangles, counter-clockwise seen from where r_u x r_v points; vertices are counted from
-  /// `first`; those of the cells between inner points come last, if at all. Returns the end of what it wrote.
+  /// Writes the corners of all triangles, counter-clockwise seen from where r_u x r_v points. Vertices are counted from
+  /// `first`. Triangles of cells between inner points come last, and only if `cells`. Returns the end of what it wrote.
   std::uint32_t* write_triangles(std::uint32_t first, std::uint32_t* indices, bool cells = true) const;
 
  private:
   static Segments as_ring_runs(Segments along, Side side) {
     return !along.is_uniform() && is_backward(side) ? along.reversed() : along;
   }
-  /// Whether the borders u0 and u1, or v0 and v1, are joined without inner points between them.
+  /// Whether the borders u0 and u1 (`across_u`), or v0 and v1, are joined without inner points between them.
   static bool joins_borders(const PatchShape& shape, PatchSegments asked, const std::array<Segments, 4>& borders,
                             bool across_u);
   std::size_t special_triangle_count() const;
 };
 
-/// The corners of the triangles between a border and at least 2 `inner` segments beside it, both as the ring runs, as
-/// Division::write_triangles writes them: border point k is border_code + k, the one where inner segment k begins k - 1.
-/// `collapsed`: no triangle stands on the border.
+/// Returns the corners of the triangles between a border and at least 2 `inner` segments beside it, both in the
+/// direction of the ring, as Division::write_triangles() writes them. Border point k has the code border_code + k; the
+/// point where inner segment k begins has the code k - 1. `collapsed`: no triangle stands on the border.
 std::vector<std::uint32_t> strip_codes(Segments border, Segments inner, bool collapsed, std::uint32_t border_code);
 
 template <class Visit>

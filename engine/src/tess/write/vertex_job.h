@@ -1,5 +1,5 @@
 #pragma once
-// What the vertices of patches are written with: the kernel's job, and what that points to.
+// Holds the kernel's job that writes the vertices of patches, with the memory that the job points to.
 
 #include <algorithm>
 #include <array>
@@ -10,13 +10,13 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// What an exact normal is made from.
+/// The source of exact normals: a patch and its division.
 struct ExactPatch {
   const BezierPatch* patch = nullptr;
   const Division* division = nullptr;
 };
 
-/// See kernel::ExactNormal and MeshVertexJob::grid.
+/// Computes an exact normal: see kernel::ExactNormal and MeshVertexJob::grid.
 inline int exact_normal(void* context, int first, int second, int lane, float* normal) {
   const auto& exact = *static_cast<const ExactPatch*>(context);
   const auto vertex =
@@ -31,14 +31,14 @@ inline int exact_normal(void* context, int first, int second, int lane, float* n
 
 inline kernel::StreamState stream_from(float* memory) { return {.first = memory, .next = memory}; }
 
-/// A job and what it points to; patches of one range take turns with it.
+/// A job and the memory that it points to, used for one patch after the other.
 struct VertexJob {
   kernel::MeshVertexJob job;
-  std::array<kernel::StreamState, 2> lines;  ///< of positions and normals
+  std::array<kernel::StreamState, 2> lines;  ///< cache lines of positions and of normals
   alignas(cache_line) std::array<float, kernel::block_lanes> doubt, noise;
   std::array<std::array<float, 3>, 4> starts;
   ExactPatch exact;
-  /// The patches of a block, by themselves: see kernel::MeshKernels::mesh_points.
+  /// The points of a block's patches, patch by patch: see kernel::MeshKernels::mesh_points.
   static constexpr std::size_t no_block = static_cast<std::size_t>(-1);
   std::size_t points_block = no_block;
   alignas(cache_line) std::array<float, std::size_t{kernel::mesh_patch_points} * kernel::block_lanes> points;
@@ -52,7 +52,8 @@ struct VertexJob {
   VertexJob(const VertexJob&) = delete;
   VertexJob& operator=(const VertexJob&) = delete;
 
-  /// Vertices go past the caches from now on, from this one of a mesh on, each patch behind the one before.
+  /// From now on writes vertices past the caches, beginning with this one of a mesh; each patch must follow the one
+  /// before.
   void start_lines(const MeshViews& out, std::size_t vertex) {
     lines[0] = stream_from(out.position.component[0] + 3 * vertex);
     job.position.lines = &lines[0];
@@ -60,7 +61,7 @@ struct VertexJob {
     lines[1] = stream_from(out.normal.component[0] + 3 * vertex);
     job.normal.lines = &lines[1];
   }
-  /// What is still on its way.
+  /// Writes lines that are not complete yet.
   void finish_lines(const kernel::KernelTable& kernels) {
     for (const kernel::MeshRecords* records : {&job.position, &job.normal})
       if (records->lines) kernels.finish_lines(*records->lines);
@@ -71,7 +72,7 @@ inline bool is_packed(const View3<float>& view) {
   return view.stride == 3 && view.component[1] == view.component[0] + 1 && view.component[2] == view.component[0] + 2;
 }
 
-/// Field by field: copies of a record that was just made wait for its stores.
+/// Sets records field by field, because a copy of a new record would wait for its stores.
 inline void set_packed(kernel::MeshRecords& out, float* first) {
   for (int c = 0; c < 3; ++c) out.out[c] = first ? first + c : nullptr;
   out.stride = 3;

@@ -1,12 +1,12 @@
 #pragma once
-// Positions and normals of some patches of a certified mesh, the rest of which stays as it is.
+// Writes positions and normals of some patches of a certified mesh and leaves the rest unchanged.
 
 #include "tess/write/patch_writer.h"
 #include "tess/write/vertex_job.h"
 
 namespace tessera::inline abi_0_1 {
 
-/// Takes patch after patch: fastest in the order of the mesh. Writes nothing outside their records. Lives on a task's
+/// Writes patch after patch, fastest in the order of the mesh, and nothing outside their records. Lives on a task's
 /// stack; allocates nothing.
 class VertexPass {
  public:
@@ -15,14 +15,14 @@ class VertexPass {
   VertexPass& operator=(const VertexPass&) = delete;
 
   void write(std::size_t patch);
-  /// What is still on its way. Once, at the end.
+  /// Completes the writes; must be called once, at the end.
   void finish();
 
  private:
   static constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
 
   const PatchWriter& writer_;
-  std::size_t next_ = nowhere;  ///< the vertex at which the lines stand
+  std::size_t next_ = nowhere;  ///< the vertex at which writes past the caches stand
   VertexJob vertices_;
 };
 

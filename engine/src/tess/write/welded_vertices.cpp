@@ -20,7 +20,7 @@ void copy_positions(const MeshViews& out, std::size_t from, std::size_t to) {
   if (!out.position_f64.empty()) copy(out.position_f64, from, to);
 }
 
-/// visit(vertex, the one that it is taken from) for the points inside a border.
+/// Calls visit(vertex, vertex that it is copied from) for the points inside a border.
 template <class Visit>
 void for_copies(const VertexCopies::Border& border, const CertifiedPlan& plan, Visit visit) {
   const RingVertices to(plan, border.to), from(plan, border.from);

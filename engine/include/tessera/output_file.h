@@ -5,80 +5,62 @@
 #include <charconv>
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
-#include "io/descriptor.h"
 #include "tessera/status.h"
 
+#pragma GCC visibility push(default)
 namespace tessera::inline abi_0_1 {
 
 /// Unlinks the temporaries of all open OutputFiles. For signal handlers that end the process: async-signal-safe.
 void remove_temporaries() noexcept;
 
-/// The name of a file that is removed at the end, unless it is released; remove_temporaries knows it as long.
-class TemporaryName {
- public:
-  TemporaryName() = default;
-  explicit TemporaryName(std::filesystem::path path);
-  TemporaryName(TemporaryName&& other) noexcept
-      : path_(std::exchange(other.path_, std::filesystem::path())), place_(std::exchange(other.place_, no_place)) {}
-  TemporaryName& operator=(TemporaryName&&) = delete;
-  ~TemporaryName();
-
-  bool empty() const { return path_.empty(); }
-  const char* c_str() const { return path_.c_str(); }
-  void release();
-
- private:
-  static constexpr std::size_t no_place = ~std::size_t{0};
-  std::filesystem::path path_;
-  std::size_t place_ = no_place;  // among those that remove_temporaries sees
-};
-
-/// Writes beside the place of a file, then renames: `commit` is the moment at which the file appears, and without it
-/// nothing stays behind. What is no regular file (a pipe, a terminal, /dev/stdout) is written to directly. Memory: 1
-/// MiB, whatever is written. A failed write is remembered, later ones are dropped, and commit reports the first.
+/// Writes beside the place of a file, then renames. The file appears at `commit`; without it nothing remains. Anything
+/// but a regular file (a pipe, a terminal, /dev/stdout) is written directly. Memory: 1 MiB, whatever is written. After
+/// a failed write later ones are dropped, and commit reports the first failure.
 class OutputFile {
  public:
-  /// Errors: io_error (a directory, a missing folder, no permission).
-  /// Once `cancel` is true, writes fail with cancelled, and the file does not appear.
+  /// Opens the file. Once `cancel` is true, writes fail with cancelled, and the file does not appear. Errors: io_error
+  /// (a directory, a missing folder, no permission).
   static Result<OutputFile> create(const std::filesystem::path& path, const std::atomic<bool>* cancel = nullptr);
   /// The process's standard output.
   static OutputFile standard_output(const std::atomic<bool>* cancel = nullptr);
 
-  OutputFile(OutputFile&& other) = default;
+  OutputFile(OutputFile&&) noexcept;
   OutputFile& operator=(OutputFile&&) = delete;
+  ~OutputFile();  ///< without commit(), removes what was written
 
   void write(std::string_view bytes);
   void write(char c) {
     if (buffer_.size() - used_ < 1) flush();
     buffer_[used_++] = c;
   }
-  /// Integers, and floats in the shortest form that reads back as the same number.
+  /// Writes integers, and floats in the shortest form that reads back as the same number.
   template <class Number>
   void write_number(Number value) {
     char* const begin = room(32);
     used_ += static_cast<std::size_t>(std::to_chars(begin, begin + 32, value).ptr - begin);
   }
-  /// `digits` <= 17 significant digits.
+  /// Writes `digits` <= 17 significant digits.
   void write_number(double value, int digits) {
     char* const begin = room(32);
     used_ += static_cast<std::size_t>(std::to_chars(begin, begin + 32, value, std::chars_format::general, digits).ptr -
                                       begin);
   }
 
-  /// Where the file will lie.
+  /// The final place of the file.
   const std::filesystem::path& path() const { return target_; }
   /// Whether any write has failed: a long writer may stop early.
   bool failed() const { return !status_.ok(); }
-  /// Writes what is buffered, closes, renames. Errors: io_error, cancelled. To be called once, as the last thing.
+  /// Writes the buffer, closes, renames. Call it once, last. Errors: io_error, cancelled.
   Status commit();
 
  private:
-  OutputFile(Descriptor file, std::filesystem::path target, TemporaryName temporary, const std::atomic<bool>* cancel);
+  class Destination;
+  OutputFile(std::unique_ptr<Destination> destination, std::filesystem::path target, const std::atomic<bool>* cancel);
   char* room(std::size_t bytes) {
     if (buffer_.size() - used_ < bytes) flush();
     return buffer_.data() + used_;
@@ -87,9 +69,8 @@ class OutputFile {
   void send(std::string_view bytes);
   void see_cancel();
 
-  Descriptor file_;
+  std::unique_ptr<Destination> destination_;
   std::filesystem::path target_;
-  TemporaryName temporary_;  // empty: written directly
   const std::atomic<bool>* cancel_;
   std::vector<char> buffer_;
   std::size_t used_ = 0;
@@ -97,3 +78,4 @@ class OutputFile {
 };
 
 }  // namespace tessera::inline abi_0_1
+#pragma GCC visibility pop

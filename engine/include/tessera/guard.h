@@ -1,16 +1,16 @@
 #pragma once
-// No exception leaves the library: public entry points run their body in here.
+// Exceptions as values: how the library, and code around it, turns what is thrown into a Status.
 
 #include <exception>
 #include <new>
-#include <string>
 #include <utility>
 
 #include "tessera/status.h"
 
+#pragma GCC visibility push(default)
 namespace tessera::inline abi_0_1 {
 
-/// Of the exception that is being handled.
+/// The Status of the exception that is being handled: out_of_memory, or internal with its message.
 [[gnu::cold]] inline Status status_of_exception() noexcept {
   try {
     try {
@@ -22,12 +22,12 @@ namespace tessera::inline abi_0_1 {
     } catch (...) {
       return Status(StatusCode::internal, "unknown exception");
     }
-  } catch (...) {  // not even the message could be stored
+  } catch (...) {  // no memory even for the message
     return Status(StatusCode::out_of_memory, {});
   }
 }
 
-/// Calls body() and returns what it returns; an exception becomes a Status. R is Status or Result<T>.
+/// Calls body() and returns its result, a Status or a Result; an exception becomes a Status.
 template <class Body>
 auto guarded(Body&& body) noexcept -> decltype(body()) {
   try {
@@ -38,3 +38,4 @@ auto guarded(Body&& body) noexcept -> decltype(body()) {
 }
 
 }  // namespace tessera::inline abi_0_1
+#pragma GCC visibility pop

@@ -1,5 +1,5 @@
 #pragma once
-// Tokens and numbers out of a text in memory, with the line of whatever is wrong. Knows no locale.
+// Takes tokens and numbers out of a text in memory; errors name the line. Independent of the locale.
 
 #include <charconv>
 #include <cstdint>
@@ -8,13 +8,14 @@
 
 #include "tessera/status.h"
 
+#pragma GCC visibility push(default)
 namespace tessera::inline abi_0_1 {
 
-/// What a text format means by its characters. 0: there is none of the kind.
+/// The meaning of characters in a text format. 0: the format has none of the kind.
 struct TextSyntax {
   char comment = '#';                ///< begins a comment that runs to the end of the line
-  std::string_view separators = {};  ///< each ends a token, as blanks do, and is a token of its own
-  char continuation = 0;             ///< at the end of a line, it and the end count as a blank
+  std::string_view separators = {};  ///< each ends a token, as blanks do, and is itself a token
+  char continuation = 0;             ///< at the end of a line, counts as a blank together with that end
 };
 
 /// A place in a text. Blanks are spaces, tabs and carriage returns, so that CRLF ends a line like LF. A byte order mark
@@ -24,47 +25,47 @@ class TextCursor {
   /// `name` stands for the file in messages.
   TextCursor(std::string_view text, std::string_view name, const TextSyntax& syntax = {});
 
-  /// Past blanks and a comment, not past the end of the line.
+  /// Skips blanks and a comment, but not the end of the line.
   void skip_blanks() {
     while (at_ != end_ && is_blank(*at_)) ++at_;
     if (at_ != end_ && (*at_ == syntax_.comment || *at_ == syntax_.continuation)) skip_special();
   }
-  /// Past blanks, comments and ends of lines.
+  /// Skips blanks, comments and ends of lines.
   void skip_space() {
     for (skip_blanks(); at_ != end_ && *at_ == '\n'; skip_blanks()) ++at_;
   }
-  /// Past blanks, a comment and the end of the line. False, and no move past the blanks, if something else stands
-  /// there.
+  /// Takes blanks, a comment and the end of the line. If something else follows the blanks, returns false and takes
+  /// only these.
   bool take_line_end() {
     skip_blanks();
     if (!at_line_end()) return false;
     if (at_ != end_) ++at_;
     return true;
   }
-  /// To the end of the line, continued ones included.
+  /// Skips to the end of the line, including continued lines.
   void skip_line();
   bool at_end() const { return at_ == end_; }
-  /// Whether the line ends here; after skip_blanks.
+  /// Whether the line ends here; call skip_blanks first.
   bool at_line_end() const { return at_ == end_ || *at_ == '\n'; }
 
-  /// What stands here, up to a blank, separator, comment or end of line; empty at an end. Skips nothing before it.
+  /// The token here, up to a blank, separator, comment or end of line; empty at an end. Skips nothing before it.
   std::string_view peek_token() const {
     const char* token_end = at_;
     while (!ends_token(token_end)) ++token_end;
     return {at_, static_cast<std::size_t>(token_end - at_)};
   }
   void skip(std::string_view token) { at_ += token.size(); }
-  /// Past `c` if it stands here.
+  /// Takes `c` if it stands here.
   bool take(char c) {
     if (at_ == end_ || *at_ != c) return false;
     ++at_;
     return true;
   }
 
-  /// A whole token as a number, or false and no move. Doubles may be written as inf or nan: see take_finite.
+  /// Takes a whole token as a number, or returns false without a move. Accepts inf and nan as doubles: see take_finite.
   bool take_number(double& value) { return take_plain(value) || take_signed_or_extreme(value); }
   bool take_number(std::int64_t& value) { return take_plain(value) || take_signed(value); }
-  /// The same, where infinity, NaN and what lies outside the range of double are no numbers.
+  /// Takes a finite number: infinity, NaN and values outside the range of double are not numbers.
   bool take_finite(double& value) {
     const char* const before = at_;
     double parsed = 0;
@@ -76,9 +77,9 @@ class TextCursor {
     return false;
   }
 
-  /// "name:line: expected <what>, found "<token>"", or "found the end of the line" or "of the file".
+  /// The error "name:line: expected <what>, found "<token>"", or "found the end of the line" or "of the file".
   Status expected(std::string_view what) const;
-  /// "name:line: <sentence>" for the line of this place.
+  /// The error "name:line: <sentence>" for this line.
   Status failure(std::string_view sentence) const;
   /// "name:line" of this place.
   std::string place() const { return std::string(name_) + ":" + std::to_string(line()); }
@@ -92,12 +93,12 @@ class TextCursor {
   bool is_separator(char c) const { return syntax_.separators.find(c) != std::string_view::npos; }
   bool ends_token(const char* at) const {
     if (at == end_ || is_blank(*at) || *at == '\n') return true;
-    if (*at == 0) return false;  // what the syntax has not
+    if (*at == 0) return false;  // a kind of character that the syntax lacks
     return *at == syntax_.comment || is_separator(*at) || (*at == syntax_.continuation && continues(at));
   }
-  /// Whether nothing but blanks stands between a character of continuation and the end of the line.
+  /// Whether only blanks stand between a continuation character and the end of the line.
   bool continues(const char* at) const;
-  /// Past a comment, or past a continuation and what may be skipped after it.
+  /// Skips a comment, or a continuation and the blanks after it.
   void skip_special();
 
   template <class Number>
@@ -117,14 +118,15 @@ class TextCursor {
   TextSyntax syntax_;
 };
 
-/// `text` in quotes for a message: at most 40 bytes, what cannot be printed as \xNN.
+/// `text` in quotes for a message: at most 40 bytes, unprintable ones as \xNN.
 std::string quote(std::string_view text);
 
-/// What `status` says of an element that `text` holds: a parse_error there, unless memory ran out. `text` is a cursor, or
-/// what has a failure() as cursors have.
+/// Turns `status` of an element in `text` into a parse_error at that place; out_of_memory is unchanged. `text` is a
+/// cursor, or has a failure() as cursors have.
 template <class Text>
 Status refused_element(const Text& text, const Status& status, const std::string& element = {}) {
   return status.code() == StatusCode::out_of_memory ? status : text.failure(element + status.message());
 }
 
 }  // namespace tessera::inline abi_0_1
+#pragma GCC visibility pop
