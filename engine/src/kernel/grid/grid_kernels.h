@@ -22,8 +22,8 @@ using ExactNormal = int (*)(void* context, int iu, int iv, int lane, T* normal);
 template <class T>
 using LaneDoubt = void (*)(void* context, int iu, int lane, T* doubt, T* noise);
 
-/// The memory of a job's outputs; null if a quantity is not wanted. Vectors are `[sample][component][lane]`, scalars and
-/// kinds `[sample][lane]`, samples in the order of the job's part of the grid, v fastest. Aligned to 64 bytes.
+/// The memory of a job's outputs; null if a quantity is not wanted. Vectors are `[sample][component][lane]`, scalars
+/// and kinds `[sample][lane]`, samples in the order of the job's part of the grid, v fastest. Aligned to 64 bytes.
 template <class T>
 using GridJobOutputs = Quantities<T*, T*, std::uint8_t*>;
 
