@@ -5,7 +5,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// values[0..degree] -> factor * (v_{i-1} - v_i), one value more.
+/// Replaces values[0..degree] by factor * (v_{i-1} - v_i), one value more.
 template <class Real>
 void difference_and_scale(int degree, Real factor, Real* values) {
   values[degree + 1] = factor * values[degree];
@@ -34,7 +34,7 @@ void bernstein_values(int degree, Real t, Real* values) {
   }
 }
 
-// Farin, sec. 5.3: the derivatives are differences of the polynomials of lower degree.
+// The derivatives are differences of the polynomials of lower degree (Farin, sec. 5.3).
 template <class Real>
 void bernstein_derivatives(int degree, Real t, Real* values) {
   if (degree < 1) {

@@ -1,6 +1,6 @@
 #pragma once
 // Polynomials in one or two variables on [0,1] as Bernstein coefficients: products, sums, derivatives, halves. Every
-// value over [0,1]^2 lies in the hull of the coefficients: what is proven of these holds everywhere.
+// value over [0,1]^2 lies in the hull of the coefficients, so a bound of the coefficients holds everywhere.
 
 #include <algorithm>
 #include <cstddef>
@@ -11,8 +11,8 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// sum_ij B_{i,degree_u}(u) B_{j,degree_v}(v) values[i * (degree_v + 1) + j]; a curve has degree_v = 0. T is double or
-/// Vec3.
+/// The polynomial sum_ij B_{i,degree_u}(u) B_{j,degree_v}(v) values[i * (degree_v + 1) + j]. A curve has degree_v = 0.
+/// T is double or Vec3.
 template <class T>
 struct BernsteinNet {
   BernsteinNet(int m, int n) : degree_u(m), degree_v(n), values(static_cast<std::size_t>((m + 1) * (n + 1))) {}
@@ -25,16 +25,16 @@ struct BernsteinNet {
   std::vector<T> values;
 };
 
-/// The constant 1 of the given degrees.
+/// Returns the constant 1 of the given degrees.
 inline BernsteinNet<double> bernstein_one(int degree_u, int degree_v) {
   BernsteinNet<double> one(degree_u, degree_v);
   for (double& value : one.values) value = 1;
   return one;
 }
 
-/// The product of two polynomials under the bilinear `times` (Farin, Curves and Surfaces for CAGD, 5th ed., sec. 6.10):
-/// c_k = sum_i C(m,i) C(n,k-i) / C(m+n,k) a_i b_{k-i} each way. Convex combinations: rounding stays a few units times
-/// the degrees of the largest product of coefficients.
+/// Returns the product of two polynomials under the bilinear `times`: c_k = sum_i C(m,i) C(n,k-i) / C(m+n,k) a_i
+/// b_{k-i} in each direction (Farin, Curves and Surfaces for CAGD, 5th ed., sec. 6.10). The sums are convex
+/// combinations, so the rounding error is at most a few units times the degrees of the largest product of coefficients.
 template <class A, class B, class Times>
 auto product(BernsteinNet<A> a, BernsteinNet<B> b, Times times) {
   const auto scale = [](auto& net) {
@@ -59,7 +59,7 @@ BernsteinNet<T> operator*(const BernsteinNet<double>& a, const BernsteinNet<T>& 
   return product(a, b, [](double x, const T& y) { return x * y; });
 }
 
-/// The same polynomial by higher degrees.
+/// Returns the polynomial with higher degrees.
 template <class T>
 BernsteinNet<T> elevated(const BernsteinNet<T>& a, int degree_u, int degree_v) {
   if (degree_u == a.degree_u && degree_v == a.degree_v) return a;
@@ -75,7 +75,7 @@ BernsteinNet<T> operator-(const BernsteinNet<T>& a, const BernsteinNet<T>& b) {
   return result;
 }
 
-/// d/du; the constant 0 for degree 0.
+/// Returns d/du; the constant 0 for degree 0.
 template <class T>
 BernsteinNet<T> derivative_u(const BernsteinNet<T>& a) {
   if (a.degree_u == 0) return BernsteinNet<T>(0, a.degree_v);
@@ -84,7 +84,7 @@ BernsteinNet<T> derivative_u(const BernsteinNet<T>& a) {
     for (int j = 0; j <= a.degree_v; ++j) result.at(i, j) = double(a.degree_u) * (a.at(i + 1, j) - a.at(i, j));
   return result;
 }
-/// d/dv; the constant 0 for degree 0.
+/// Returns d/dv; the constant 0 for degree 0.
 template <class T>
 BernsteinNet<T> derivative_v(const BernsteinNet<T>& a) {
   if (a.degree_v == 0) return BernsteinNet<T>(a.degree_u, 0);
@@ -94,7 +94,7 @@ BernsteinNet<T> derivative_v(const BernsteinNet<T>& a) {
   return result;
 }
 
-/// A curve (degree_v = 0) cut at 1/2 by de Casteljau.
+/// Cuts a curve (degree_v = 0) at 1/2 by de Casteljau's algorithm.
 template <class T>
 std::pair<BernsteinNet<T>, BernsteinNet<T>> halves(BernsteinNet<T> curve) {
   BernsteinNet<T> left(curve.degree_u, 0);

@@ -11,7 +11,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// B_{j,n}(parameters[i]).
+/// Returns the matrix B_{j,n}(parameters[i]).
 Matrix bernstein_matrix(int n, std::span<const double> parameters) {
   Matrix matrix(static_cast<int>(parameters.size()), n + 1);
   std::vector<long double> values(static_cast<std::size_t>(n + 1));
@@ -22,7 +22,7 @@ Matrix bernstein_matrix(int n, std::span<const double> parameters) {
   return matrix;
 }
 
-/// The largest sum of absolute entries of a row.
+/// Returns the largest row sum of absolute entries.
 double norm(const Matrix& matrix) {
   long double largest = 0;
   for (int i = 0; i < matrix.rows(); ++i) {
@@ -51,7 +51,7 @@ double lobatto_parameter(std::span<const double> parameters, std::size_t i, doub
 
 Matrix lobatto_to_bernstein(int n) {
   const auto matrix = inverse(bernstein_matrix(n, lobatto_parameters(n)));
-  assert(matrix);  // of distinct parameters, and far from singular for every degree of a patch
+  assert(matrix);  // the parameters are distinct; far from singular for every degree of a patch
   return *matrix;
 }
 
@@ -69,7 +69,7 @@ Matrix lobatto_evaluation(int n, std::span<const double> parameters) {
 }
 
 double lobatto_error_factor(int n) {
-  // Above the exact value by more than the rounding of the parameters and of this product.
+  // The factor 1 + 2^-40 exceeds the rounding of the parameters and of this product.
   double factor = 1 + 0x1p-40;
   for (int k = 1; k <= n; ++k) factor /= 4.0 * k;
   return factor / (n + 1);

@@ -1,23 +1,23 @@
 #pragma once
-// Unevaluated sums of two doubles: about 106 bits, for sums that cancel (Dekker, A floating-point technique for
+// Unevaluated sums of two doubles, about 106 bits, for sums that cancel (Dekker, A floating-point technique for
 // extending the available precision, 1971; Ogita, Rump and Oishi, Accurate sum and dot product, 2005).
 
 #include <cmath>
 
 namespace tessera::inline abi_0_1 {
 
-/// high + low, |low| at most half a unit in the last place of high.
+/// The number high + low; |low| is at most half a unit in the last place of high.
 struct DoubleDouble {
   double high = 0, low = 0;
   double rounded() const { return high + low; }
 };
 
-/// a + b exactly (Knuth).
+/// Returns a + b exactly (Knuth).
 inline DoubleDouble two_sum(double a, double b) {
   const double sum = a + b, part = sum - a;
   return {sum, (a - (sum - part)) + (b - part)};
 }
-/// a * b exactly.
+/// Returns a * b exactly.
 inline DoubleDouble two_product(double a, double b) {
   const double product = a * b;
   return {product, std::fma(a, b, -product)};

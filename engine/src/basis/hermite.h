@@ -7,19 +7,19 @@
 
 namespace tessera::inline abi_0_1 {
 
-// Any finite t. Written as products, which don't cancel on [0,1].
+// All functions take any finite t. They use products, which do not cancel on [0,1].
 
-/// H_i(t): exactly 0 and 1 at t = 0 and t = 1.
+/// Returns H_i(t), exactly 0 and 1 at t = 0 and t = 1.
 inline std::array<double, 4> hermite_values(double t) {
   const double s = 1 - t;
   return {s * s * (1 + 2 * t), t * (s * s), -(t * t) * s, t * t * (3 - 2 * t)};
 }
-/// H_i'(t).
+/// Returns H_i'(t).
 inline std::array<double, 4> hermite_derivatives(double t) {
   const double s = 1 - t;
   return {-6 * (t * s), s * (1 - 3 * t), t * (3 * t - 2), 6 * (t * s)};
 }
-/// H_i''(t).
+/// Returns H_i''(t).
 inline std::array<double, 4> hermite_second_derivatives(double t) {
   return {12 * t - 6, 6 * t - 4, 6 * t - 2, 6 - 12 * t};
 }

@@ -11,8 +11,8 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// One direction of a spline: its knots u_0 .. u_{m+p+1} for degree p and points 0 .. m, and the interval of the
-/// parameter that is used, [from, to] within [u_p, u_{m+1}]. A view; the knots have passed check_knots.
+/// One direction of a spline: the knots u_0 .. u_{m+p+1} for degree p and points 0 .. m, and the parameter interval in
+/// use, [from, to] within [u_p, u_{m+1}]. A view: it does not own the knots, which have passed check_knots.
 struct KnotLine {
   int degree = 0;
   std::span<const double> knots;
@@ -22,31 +22,35 @@ struct KnotLine {
   std::size_t point_count() const { return knots.size() - order(); }
 };
 
-/// Knots of degree >= 1: at least 2 (degree + 1), finite, non-decreasing, no value within the domain more than `degree`
-/// times and none more than degree + 1 times, u_p < u_{m+1}. `name` is what messages call them ("knots u").
-/// Errors: count_mismatch, non_finite, invalid_argument (index = the knot).
+/// Checks the knots of a spline of degree >= 1. They must be:
+/// - at least 2 (degree + 1), finite and non-decreasing, with u_p < u_{m+1};
+/// - repeated at most `degree` times within the domain and at most degree + 1 times elsewhere.
+///
+/// `name` is what messages call them ("knots u"). Errors: count_mismatch, non_finite, invalid_argument (index = the
+/// knot).
 Status check_knots(int degree, std::span<const double> knots, const std::string& name);
-/// [from, to] within [u_p, u_{m+1}], from < to. Errors: non_finite, invalid_argument.
+/// Checks that [from, to] lies within [u_p, u_{m+1}] and from < to. Errors: non_finite, invalid_argument.
 Status check_range(int degree, std::span<const double> knots, double from, double to, const std::string& name);
 
-/// How many knots equal t.
+/// Returns how many knots equal t.
 std::size_t multiplicity(std::span<const double> knots, double t);
 
-/// The k with u_k <= t < u_{k+1}: at a knot the span on its right, at the end of the interval the last one that it
-/// meets. For t outside the interval the first or the last. The span is not empty; points k-p .. k act on it.
+/// Returns the k with u_k <= t < u_{k+1}. At a knot this is the span on its right; at the end of the interval, the last
+/// span that it meets. For t outside the interval it is the first or the last span. The span is not empty; points k-p
+/// .. k act on it.
 std::size_t find_span(const KnotLine& line, double t);
-/// The spans that the interval meets in more than a point, in order.
+/// Returns the spans that the interval meets in more than a point, in order.
 std::vector<std::size_t> distinct_spans(const KnotLine& line);
 
-/// Weights c of the blossom on one span: f(t_1, .., t_p) = sum_j c_j P_{span-p+j}, f being the symmetric multiaffine
-/// form with f(t, .., t) = the curve (Ramshaw, Blossoming, 1987; Farin, Curves and Surfaces for CAGD, 5th ed., sec.
-/// 8.6). Any order of the arguments means the same; steps with an argument within the span are convex, and the last
-/// ones are the most forgiving of others. `arguments`: degree of them, `weights`: degree + 1. Real is double or long
-/// double.
+/// Computes the weights c of the blossom on one span: f(t_1, .., t_p) = sum_j c_j P_{span-p+j}, where f is the
+/// symmetric multiaffine form with f(t, .., t) = the curve (Ramshaw, Blossoming, 1987; Farin, Curves and Surfaces for
+/// CAGD, 5th ed., sec. 8.6). Any order of the arguments gives the same blossom. Steps with an argument within the span
+/// are convex; arguments outside of it do the least harm in the last steps. `arguments` holds `degree` values,
+/// `weights` degree + 1. Real is double or long double.
 template <class Real>
 void blossom_weights(int degree, std::span<const double> knots, std::size_t span, const Real* arguments, Real* weights);
 
-/// N_{span-p+j,p}(t), j = 0..p: the blossom with all arguments t.
+/// Writes N_{span-p+j,p}(t), j = 0..p: the blossom with all arguments t.
 void b_spline_values(const KnotLine& line, std::size_t span, double t, double* values);
 
 }  // namespace tessera::inline abi_0_1

@@ -6,7 +6,7 @@ template <class Real>
 void power_values(int degree, Real t, Real* values) {
   values[0] = 1;
   if (degree > 0) values[1] = t;
-  // Products of halves round log2(i) times, not i times.
+  // A product of halves rounds log2(i) times, not i times.
   for (int i = 2; i <= degree; ++i) values[i] = values[i / 2] * values[i - i / 2];
 }
 

@@ -3,15 +3,16 @@
 
 namespace tessera::inline abi_0_1 {
 
-// Each writes degree + 1 values, i = 0..degree, of degree >= 0. Any finite t; 0^0 = 1. Real is double or long double.
+// Each function writes degree + 1 values, i = 0..degree, for degree >= 0 and any finite t; 0^0 = 1. Real is double or
+// long double.
 
-/// t^i.
+/// Writes t^i.
 template <class Real>
 void power_values(int degree, Real t, Real* values);
-/// i t^(i-1).
+/// Writes i t^(i-1).
 template <class Real>
 void power_derivatives(int degree, Real t, Real* values);
-/// i (i-1) t^(i-2).
+/// Writes i (i-1) t^(i-2).
 template <class Real>
 void power_second_derivatives(int degree, Real t, Real* values);
 

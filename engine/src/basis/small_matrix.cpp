@@ -7,7 +7,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// Divides each column by its largest entry, which it returns; nothing if a column is zero.
+/// Divides each column by its largest entry and returns these entries; nothing if a column is zero or not finite.
 std::optional<std::vector<long double>> scale_columns(Matrix& matrix) {
   std::vector<long double> scales;
   for (int j = 0; j < matrix.columns(); ++j) {
@@ -24,7 +24,7 @@ void swap_rows(Matrix& matrix, int a, int b) {
   for (int j = 0; j < matrix.columns(); ++j) std::swap(matrix(a, j), matrix(b, j));
 }
 
-/// row a += factor * row b.
+/// Adds factor * row b to row a.
 void add_row(Matrix& matrix, int a, long double factor, int b) {
   for (int j = 0; j < matrix.columns(); ++j) matrix(a, j) += factor * matrix(b, j);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Small dense matrices in long double: products and inverses that are to be right to the last bits of a double.
+// Small dense matrices in long double, for products and inverses that must be right to the last bits of a double.
 
 #include <optional>
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// `rows` x `columns` entries, zero at first.
+/// A matrix of `rows` x `columns` entries, initially zero.
 class Matrix {
  public:
   Matrix(int rows, int columns);
@@ -25,16 +25,15 @@ class Matrix {
   std::vector<long double> entries_;
 };
 
-/// a b, where a.columns() == b.rows().
+/// Returns a b; a.columns() == b.rows().
 Matrix operator*(const Matrix& a, const Matrix& b);
 
-/// The inverse of a square matrix by Gauss-Jordan elimination with row pivoting (Golub and Van Loan, Matrix
-/// Computations, 4th ed., sec. 3.4), columns scaled first. Nothing for a matrix that is singular to the rounding of
-/// entries in double:
-/// a pivot below rows * 2^-52 of its scaled column.
+/// Returns the inverse of a square matrix by Gauss-Jordan elimination with row pivoting (Golub and Van Loan, Matrix
+/// Computations, 4th ed., sec. 3.4), after scaling the columns. Returns nothing for a matrix that is singular to the
+/// rounding of entries in double: a pivot is at most rows * 2^-52 of its scaled column.
 std::optional<Matrix> inverse(const Matrix& matrix);
 
-/// a G b^T for a net G of a.columns() x b.columns() points [i][j]; rounded once, at the end.
+/// Returns a G b^T for a net G of a.columns() x b.columns() points [i][j], rounded once, at the end.
 std::vector<Vec3> tensor_product(const Matrix& a, std::span<const Vec3> net, const Matrix& b);
 
 }  // namespace tessera::inline abi_0_1

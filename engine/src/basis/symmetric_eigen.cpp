@@ -8,7 +8,7 @@ namespace {
 
 using Matrix3 = std::array<std::array<double, 3>, 3>;
 
-/// Rotates rows and columns p and q so that a[p][q] vanishes, and the columns of v with them.
+/// Rotates rows and columns p and q so that a[p][q] vanishes, and the columns p and q of v.
 void rotate(Matrix3& a, Matrix3& v, std::size_t p, std::size_t q) {
   if (a[p][q] == 0) return;
   const double theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
@@ -34,7 +34,7 @@ void rotate(Matrix3& a, Matrix3& v, std::size_t p, std::size_t q) {
 SymmetricEigen symmetric_eigen(double xx, double yy, double zz, double xy, double yz, double xz) {
   Matrix3 a{{{xx, xy, xz}, {xy, yy, yz}, {xz, yz, zz}}};
   Matrix3 v{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-  // Convergence is quadratic: six sweeps do for any matrix, the rest costs nothing once the entries are zero.
+  // Convergence is quadratic: six sweeps suffice for any matrix. Further sweeps skip zero entries.
   for (int sweep = 0; sweep < 16; ++sweep) {
     rotate(a, v, 0, 1);
     rotate(a, v, 0, 2);

@@ -4,8 +4,8 @@
 
 namespace tessera::inline abi_0_1 {
 
-// V'_i = sum_j C(m,j) C(n-m,i-j) / C(n,i) V_j: V'_i = i/(m+1) V_{i-1} + (1 - i/(m+1)) V_i repeated (Farin, Curves and
-// Surfaces for CAGD, 5th ed., sec. 6.1). Numerators and denominators are whole numbers.
+// V'_i = sum_j C(m,j) C(n-m,i-j) / C(n,i) V_j is the repeated step V'_i = i/(m+1) V_{i-1} + (1 - i/(m+1)) V_i (Farin,
+// Curves and Surfaces for CAGD, 5th ed., sec. 6.1). Numerators and denominators are whole numbers.
 Matrix elevation_matrix(int m, int n) {
   Matrix matrix(n + 1, m + 1);
   for (int i = 0; i <= n; ++i)
@@ -14,8 +14,8 @@ Matrix elevation_matrix(int m, int n) {
   return matrix;
 }
 
-// Point i of the piece is the blossom with n-i arguments a and i arguments b (Farin, ch. 4); its coefficient of V_j
-// is that of x^j in (1-a + a x)^(n-i) (1-b + b x)^i.
+// Point i of the piece is the blossom with n-i arguments a and i arguments b (Farin, ch. 4). Its coefficient of V_j is
+// the coefficient of x^j in (1-a + a x)^(n-i) (1-b + b x)^i.
 Matrix restriction_matrix(int n, double a, double b) {
   Matrix matrix(n + 1, n + 1);
   for (int i = 0; i <= n; ++i) {

@@ -23,8 +23,8 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// values[0..width) = sum of `count` weights times `rows`, which lie `stride` apart. In one pass, which keeps sums in
-/// registers.
+/// Writes values[0..width) = the sum of `count` weights times `rows`, which lie `stride` apart. One pass keeps the sums
+/// in registers.
 template <std::size_t count, class Width>
 void combine(const double* weights, const double* rows, std::size_t stride, Width width, double* values) {
   std::array<double, count> w;
@@ -36,7 +36,8 @@ void combine(const double* weights, const double* rows, std::size_t stride, Widt
   }
 }
 
-/// values[0..width) = sum of the row's weights times `rows`, which lie `stride` apart. Width: std::size_t, or a constant.
+/// Writes values[0..width) = the sum of the row's weights times `rows`, which lie `stride` apart. Width is std::size_t
+/// or a constant.
 template <class Width>
 void apply(const Extraction& extraction, const Extraction::Row& row, const double* rows, std::size_t stride,
            Width width, double* values) {
@@ -50,7 +51,7 @@ void apply(const Extraction& extraction, const Extraction::Row& row, const doubl
     for (std::size_t x = 0; x < width; ++x) values[x] += weights[k] * from[k * stride + x];
 }
 
-/// What brings points and weights near 1, so that products of them neither over- nor underflow: powers of two.
+/// Powers of two that bring points and weights near 1, so that their products neither overflow nor underflow.
 struct Scales {
   double point = 1, weight = 1;
 
@@ -62,7 +63,7 @@ struct Scales {
   }
 };
 
-/// Control points as numbers, `components` each: x y z, or x w, y w, z w, w scaled.
+/// Writes each control point as numbers: x y z, or x w, y w, z w, w, both scaled.
 void write_numbers(std::span<const Vec3> points, std::span<const double> weights, const Scales* scales, double* to) {
   for (std::size_t k = 0; k < points.size(); ++k) {
     const double w = scales != nullptr ? weights[k] / scales->weight : 1;
@@ -83,13 +84,13 @@ bool all_finite(std::span<const double> values) {
   return finite;
 }
 
-/// The numbers of whole cache lines, so that rows begin where vectors are loaded in one piece.
+/// Rounds up to the numbers of whole cache lines, so that each row begins on a line and vector loads do not split.
 constexpr std::size_t whole_lines(std::size_t numbers) {
   constexpr std::size_t line = cache_line / sizeof(double);
   return (numbers + line - 1) / line * line;
 }
 
-/// A surface's control net extracted along v: what all strips of patches are made of.
+/// A surface's control net extracted along v, the input of all strips of patches.
 class ExtractedRows {
  public:
   explicit ExtractedRows(const BSplineSurface& surface)
@@ -98,7 +99,7 @@ class ExtractedRows {
     values_.resize(surface.count_u() * row_size());
   }
 
-  /// Computes them all.
+  /// Computes all rows.
   Status compute() {
     constexpr std::size_t points_in_piece = 4096;
     return parallel_for(surface_.count_u(), points_in_piece / v_.rows.size(), {},
@@ -143,13 +144,14 @@ class ExtractedRows {
 
   const BSplineSurface& surface_;
   const Extraction u_, v_;
-  std::optional<Scales> scales_;            ///< of rational surfaces
+  std::optional<Scales> scales_;            ///< only for rational surfaces
   UnsetVector<double> values_;              ///< [control row][row of v_][component], rows row_size() apart
-  std::atomic<bool> may_overflow_ = false;  ///< means of points are no larger than these but for rounding
+  std::atomic<bool> may_overflow_ = false;  ///< true if a mean may overflow: means exceed the points at most by
+                                            ///< rounding
 };
 
-/// The Bezier net of a few patches along v, of one strip after the other along u: each point computed once, since
-/// neighbours share it, and written while it is in the nearest cache.
+/// The Bezier net of up to max_patches patches along v, computed for one strip after the other along u. Each point is
+/// computed once, since neighbours share it, and is written while it is in the nearest cache.
 class Strip {
  public:
   static constexpr std::size_t max_patches = 64;
@@ -165,13 +167,13 @@ class Strip {
     homogeneous_.resize(max_columns * 4);
   }
 
-  /// Goes to the spans from b_begin to b_end of v, max_patches at most.
+  /// Selects the spans from b_begin to b_end of v, at most max_patches.
   void select(std::size_t b_begin, std::size_t b_end) {
     b_begin_ = b_begin;
     b_end_ = b_end;
     columns_ = (b_end - b_begin) * degree_v() + 1;
   }
-  /// Computes the strip of span `a` of u. `next`: it follows the strip that was computed before.
+  /// Computes the strip of span `a` of u. `next` says that it follows the strip computed before.
   void compute(std::size_t a, bool next) {
     const std::size_t p = from_.order_u() - 1;
     if (next) {  // the last row of a strip is the first of the next
@@ -180,7 +182,7 @@ class Strip {
     }
     for (std::size_t i = next ? 1 : 0; i <= p; ++i) compute_row(from_.u().rows[a * p + i], i);
   }
-  /// Of the points computed so far.
+  /// Returns the box of the points computed so far.
   Box3 box() const {
     Box3 box;
     for (std::size_t k = 0; k < kernel::PointBounds::run; k += 3) {
@@ -191,8 +193,8 @@ class Strip {
   }
   bool is_finite() const { return finite_; }
 
-  /// Writes its patches, `first` being that of the first span of v. Order: std::size_t, or a constant, with which a row
-  /// of points is copied in a few instructions.
+  /// Writes the strip's patches; `first` is the index of the patch of the first span of v. Order is std::size_t, or a
+  /// constant for which a row of points is copied in a few instructions.
   template <class Order>
   void write(std::size_t first, Order order, PatchPieces& pieces) const {
     for (std::size_t b = b_begin_; b < b_end_; ++b) {
@@ -229,7 +231,7 @@ class Strip {
     for (std::size_t j = 0; j < columns_; ++j) {
       const Extraction::Row& column = from_.v().rows[b_begin_ * degree_v() + j];
       NetPoint at = project(&homogeneous_[4 * j], *from_.scales());
-      if (row.count == 1 && column.count == 1)  // keeps its bits, and its weight's
+      if (row.count == 1 && column.count == 1)  // keep the bits of the point and of its weight
         at = {surface.point(row.first, column.first), surface.weight(row.first, column.first)};
       const double point[] = {at.point.x, at.point.y, at.point.z};
       std::copy_n(point, 3, points + 3 * j);
@@ -248,7 +250,7 @@ class Strip {
   bool finite_ = true;
 };
 
-/// write(order), order being a constant for the degrees that are met most.
+/// Calls write(order), with a constant order for the most frequent degrees.
 template <class Write>
 void with_order(int degree, Write write) {
   if (degree == 1) return write(std::integral_constant<std::size_t, 2>{});
@@ -257,13 +259,13 @@ void with_order(int degree, Write write) {
   write(static_cast<std::size_t>(degree) + 1);
 }
 
-/// The patches of strips after strips, pieces of them on threads; and the box of their control points.
+/// Writes the patches strip by strip, in parallel, and returns the box of their control points.
 Result<Box3> write_patches(const ExtractedRows& rows, PatchPieces& pieces) {
   constexpr std::size_t patches_in_piece = 1024;
   const std::size_t in_strip = rows.v().span_count();
   Box3 box;
   bool finite = true;
-  std::mutex mutex;  // of these two
+  std::mutex mutex;  // guards `box` and `finite`
   const Status status =
       parallel_for(rows.u().span_count(), patches_in_piece / in_strip, {}, [&](std::size_t begin, std::size_t end) {
         Strip strip(rows);
@@ -283,7 +285,7 @@ Result<Box3> write_patches(const ExtractedRows& rows, PatchPieces& pieces) {
   return box;
 }
 
-/// The patches, of those between `breaks`, whose spans point i acts on: [u_i, u_{i+p+1}].
+/// Returns the range of patches along `line` whose spans point i acts on: [u_i, u_{i+p+1}].
 std::pair<std::size_t, std::size_t> touched(const KnotLine& line, std::size_t i) {
   const std::vector<std::size_t> spans = distinct_spans(line);
   const auto first = std::lower_bound(spans.begin(), spans.end(), i);

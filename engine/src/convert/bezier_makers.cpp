@@ -8,7 +8,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// What a curve must have before a net is laid out for it; the rest is checked by BezierPatch.
+/// Checks what a net needs before it is laid out; BezierPatch checks the rest.
 Status check_curve(const BezierPolygon& curve) {
   const std::size_t size = curve.points.size();
   if (size < 2 || size > max_degree + 1)
@@ -20,7 +20,7 @@ Status check_curve(const BezierPolygon& curve) {
   return {};
 }
 
-/// The patch whose rows are two curves with the weights of the first, polynomial if these are all equal.
+/// Returns the patch whose rows are two curves with the weights of the first; polynomial if these are all equal.
 Result<BezierPatch> patch_of_rows(const BezierPolygon& c0, std::span<const Vec3> c1) {
   const int degree = static_cast<int>(c0.points.size()) - 1;
   std::vector<Vec3> points = c0.points;

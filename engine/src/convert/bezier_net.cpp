@@ -8,7 +8,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// What one row of the matrix makes of one column of the net.
+/// The point and weight that one row of the matrix makes of one column of the net.
 struct Combination {
   const Matrix& matrix;
   const BezierNet& net;
@@ -25,7 +25,7 @@ struct Combination {
     return largest;
   }
 
-  /// sum c_i w_i.
+  /// Returns sum c_i w_i.
   double combined_weight() const {
     const int centre = heaviest();
     long double sum = 0;
@@ -33,7 +33,7 @@ struct Combination {
     return static_cast<double>(weight(centre) + sum);
   }
 
-  /// sum c_i w_i p_i / sum c_i w_i.
+  /// Returns sum c_i w_i p_i / sum c_i w_i.
   Vec3 combined_point() const {
     const Vec3& centre = point(heaviest());
     long double total = 0, x = 0, y = 0, z = 0;
@@ -70,7 +70,7 @@ Result<BezierPatch> BezierNet::patch() const {
   if (weights.empty()) return BezierPatch::polynomial(rows - 1, columns - 1, points);
   Result<BezierPatch> checked = BezierPatch::rational(rows - 1, columns - 1, points, weights);
   if (!checked || checked->is_rational()) return checked;
-  return PatchPieces::single(rows - 1, columns - 1, points, weights);  // its weights are all equal, and kept
+  return PatchPieces::single(rows - 1, columns - 1, points, weights);  // all weights are equal, and kept
 }
 
 BezierNet transform_u(const Matrix& matrix, const BezierNet& net) {

@@ -1,5 +1,5 @@
 #pragma once
-// Nets of Bezier points with their weights, polynomial or rational, under matrices that keep their hull.
+// Nets of Bezier points with their weights, polynomial or rational, and matrix products that keep them in their hull.
 
 #include <vector>
 
@@ -8,7 +8,7 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// rows * columns points [i][j], i along u; as many weights, or none. A curve is one row.
+/// A net of rows * columns points [i][j], i along u, with as many weights or none. A curve is one row.
 struct BezierNet {
   int rows = 0, columns = 0;
   std::vector<Vec3> points;
@@ -19,24 +19,25 @@ struct BezierNet {
   explicit BezierNet(const BezierPolygon& curve);
 
   std::size_t index(int i, int j) const { return static_cast<std::size_t>(i * columns + j); }
-  /// Rational if there are weights, even equal ones: a part of a rational patch stays rational, as its neighbours do.
-  /// Errors: those of BezierPatch::polynomial and rational.
+  /// Returns the patch. It is rational if there are weights, even equal ones: a part of a rational patch stays
+  /// rational, as its neighbours do. Errors: those of BezierPatch::polynomial and BezierPatch::rational.
   Result<BezierPatch> patch() const;
-  /// A net of one row or one column.
+  /// Returns a net of one row or one column as a curve.
   BezierPolygon polygon() const { return {points, weights}; }
 };
 
-// The matrix's columns() fit the net. Entries and rows as in bernstein_matrices.h; rational nets in homogeneous form.
-// Sums are relative to the point with the largest entry, so equal points stay equal to the last bit, and what depends
-// on the same points by the same entries is the same bits.
+// Apply a matrix to each column (u) or row (v) of the net; its columns() must fit the net. Entries and rows are as in
+// bernstein_matrices.h; rational nets are transformed in homogeneous form. Sums are relative to the point with the
+// largest entry. So equal points stay equal to the last bit, and results from the same points and the same entries are
+// bit-equal.
 
 BezierNet transform_u(const Matrix& matrix, const BezierNet& net);
 BezierNet transform_v(const Matrix& matrix, const BezierNet& net);
 
-/// The same curve by a degree that is not lower.
+/// Returns the curve with a degree that is not lower.
 BezierPolygon elevated(const BezierPolygon& curve, int degree);
 
-/// The net with u and v exchanged.
+/// Returns the net with u and v exchanged.
 BezierNet transpose(const BezierNet& net);
 
 }  // namespace tessera::inline abi_0_1

@@ -29,7 +29,7 @@ Status check_elevation(int from, int to, const char* direction) {
                                               std::to_string(max_degree)};
 }
 
-/// Points of every row's, or of one column's, border.
+/// Return one row or one column of the net as a curve.
 BezierPolygon row_of(const BezierPatch& patch, int i) {
   BezierPolygon curve;
   for (int j = 0; j <= patch.degree_v(); ++j) {
@@ -47,7 +47,7 @@ BezierPolygon column_of(const BezierPatch& patch, int j) {
   return curve;
 }
 
-/// The net of the derivative of some order in u. (Farin, Curves and Surfaces for CAGD, 5th ed., sec. 14.5.)
+/// Returns the net of the derivative of the given order in u (Farin, Curves and Surfaces for CAGD, 5th ed., sec. 14.5).
 BezierNet difference_u(const BezierNet& net, int order) {
   BezierNet result = net;
   for (; order > 0 && result.rows > 1; --order) {

@@ -10,7 +10,8 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// A polynomial on [0,1] by its Bernstein coefficients. Long double: the surface's points are rounded once, at the end.
+/// A polynomial on [0,1] by its Bernstein coefficients. Long double, because the surface's points are rounded once, at
+/// the end.
 using Coefficients = std::vector<long double>;
 
 int degree_of(const Coefficients& a) { return static_cast<int>(a.size()) - 1; }
@@ -30,7 +31,7 @@ Coefficients elevated(const Coefficients& a, int degree) {
   return product(Coefficients(static_cast<std::size_t>(degree - degree_of(a)) + 1, 1), a);
 }
 
-/// The inner knots of `other` that are none of the curve's.
+/// Returns the inner knots of `other` that the curve does not have.
 std::vector<double> missing_breaks(const Curve& curve, const Curve& other) {
   std::vector<double> missing;
   for (const double t : other.knots()) {
@@ -41,7 +42,7 @@ std::vector<double> missing_breaks(const Curve& curve, const Curve& other) {
   return missing;
 }
 
-/// A curve in Bezier pieces, its weights near 1; polynomial ones have weights of degree 0.
+/// A curve in Bezier pieces with weights near 1. A polynomial curve has weights of degree 0.
 class HomogeneousPieces {
  public:
   static Result<HomogeneousPieces> make(const Curve& curve, const Curve& other) {
@@ -59,7 +60,7 @@ class HomogeneousPieces {
   int degree() const { return pieces_.degree; }
   bool is_rational() const { return !pieces_.weights.empty(); }
   const std::vector<double>& breaks() const { return pieces_.breaks; }
-  /// The weights as given over those here: a power of two.
+  /// Returns the original weights divided by those here: a power of two.
   double scale() const { return scale_; }
   const Vec3& point(std::size_t piece, std::size_t i) const { return pieces_.points[place(piece) + i]; }
 
@@ -68,7 +69,7 @@ class HomogeneousPieces {
     const auto from = pieces_.weights.begin() + static_cast<std::ptrdiff_t>(place(piece));
     return {from, from + degree() + 1};
   }
-  /// w x, w y or w z.
+  /// Returns the coefficients of w x, w y or w z.
   Coefficients numerator(std::size_t piece, double Vec3::*component) const {
     Coefficients values;
     for (std::size_t i = 0; i <= static_cast<std::size_t>(degree()); ++i) {
@@ -85,7 +86,7 @@ class HomogeneousPieces {
   double scale_;
 };
 
-/// w1 == w2 to the last bit once both have the higher degree.
+/// Returns true if w1 == w2 to the last bit once both have the higher degree.
 bool same_weights(const HomogeneousPieces& a, const HomogeneousPieces& b) {
   if (!a.is_rational() || !b.is_rational()) return false;
   const int degree = std::max(a.degree(), b.degree());
@@ -133,19 +134,19 @@ class LineMaker {
   }
 
  private:
-  /// W; of lower degree where the two are the same.
+  /// Returns W; of the lower degree if the two weight functions are equal.
   Coefficients common_weights(std::size_t piece) const {
     if (same_) return curves_[curves_[0]->degree() <= curves_[1]->degree() ? 0 : 1]->weights(piece);
     return product(curves_[0]->weights(piece), curves_[1]->weights(piece));
   }
 
-  /// Where the weights are those of one curve, they are as it has them; products stay near 1.
+  /// Restores the original scale where the weights are those of one curve; products of two stay near 1.
   double scale() const {
     if (same_) return curves_[0]->scale();
     return curves_[0]->is_rational() && curves_[1]->is_rational() ? 1 : curves_[0]->scale() * curves_[1]->scale();
   }
 
-  /// numerator / W, each coefficient by its own.
+  /// Returns numerator / W, each coefficient divided by the weight of the same index.
   Coefficients over_weights(const Coefficients& numerator, const Coefficients& weights) const {
     Coefficients values = elevated(numerator, degree_);
     for (std::size_t i = 0; i < values.size(); ++i) values[i] /= weights[i];
@@ -168,7 +169,7 @@ class LineMaker {
     }
   }
 
-  /// The points of curve a; its ends keep their bits.
+  /// Writes the points of curve a; its ends keep their bits.
   void fill_curve(std::vector<Vec3>& points, std::size_t first, std::size_t piece, std::size_t a,
                   const Coefficients& weights) const {
     const HomogeneousPieces& curve = *curves_[a];

@@ -6,8 +6,9 @@
 #include <numbers>
 #include <vector>
 
-// Branch and bound: hulls of the coefficients bound a figure on a piece from above, the ends of pieces from below, and
-// pieces that may still hold the maximum are halved. Hulls close in with the square of the length (Farin, sec. 6.9).
+// Branch and bound: the hull of the coefficients bounds the function on a piece from above, the ends of the piece bound
+// the maximum from below, and pieces that may still hold the maximum are halved. The hull converges with the square of
+// the length (Farin, sec. 6.9).
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -52,7 +53,7 @@ double largest(const BernsteinNet<Vec3>& net) {
   return value;
 }
 
-/// A lower bound of |p| over the hull: the nearest that it comes to zero along its mean direction.
+/// Returns a lower bound of |p| over the hull: the least distance from zero along the mean direction.
 double smallest(const BernsteinNet<Vec3>& net) {
   Vec3 mean;
   for (const Vec3& p : net.values) mean += p;
@@ -75,7 +76,8 @@ Maximum largest_length(const VectorRatio& ratio, double floor) {
 
 Maximum largest_angle(const VectorRatio& ratio, double floor) {
   const auto upper = [](const VectorRatio& r) {
-    // The angle falls with the denominator; at a fixed one its maximum is at an end of the range of the numerator.
+    // The angle falls as the denominator grows. For a fixed denominator the maximum is at an end of the numerator's
+    // range.
     const double least = *std::min_element(r.denominator.values.begin(), r.denominator.values.end());
     const double far = largest(r.numerator), near = smallest(r.numerator);
     if (far == 0 && least == 0) return std::numbers::pi;  // a normal vanishes

@@ -15,10 +15,10 @@ namespace {
 
 constexpr double Vec3::*components[] = {&Vec3::x, &Vec3::y, &Vec3::z};
 
-/// Over the common denominator W(u) w(v) of all borders, point [i][j] of the net is
+/// Returns the net over the common denominator W(u) w(v) of all borders. Point [i][j] is
 ///   sum_b C_b[i] g_b[j] + sum_a f_a[i] (D_a[j] - sum_b r_ab g_b[j]),
 /// since the formula is a sum of products of one direction each. Where borders meet without a gap, the net's first and
-/// last column are the points of C1 and C2; its first and last row are those of D1 and D2.
+/// last column are the points of C1 and C2, and its first and last row those of D1 and D2.
 SurfaceNet blended_net(const CoonsPatch& patch, const BlendedLine& u, const BlendedLine& v) {
   const bool rational = !u.weights.empty() || !v.weights.empty();
   SurfaceNet net(u.degree, u.breaks, v.degree, v.breaks, rational);
@@ -66,7 +66,7 @@ struct Side {
   Interval interval;
 };
 
-/// max |d^k f_a / dt^k| over the part, by the curve's parameter: the hull of its Bernstein coefficients.
+/// Bounds |d^k f_a / dt^k| over the part, by the curve's parameter: the hull of its Bernstein coefficients.
 double largest_derivative(const Side& side, std::size_t a, const Interval& part, int k) {
   const std::span<const double> f = a == 0 ? side.blend->first() : side.blend->second();
   std::vector<double> derivative(f.begin(), f.end());
@@ -84,8 +84,8 @@ double largest_derivative(const Side& side, std::size_t a, const Interval& part,
   return static_cast<double>(largest) * (1 + 0x1p-40);
 }
 
-/// |d^k r| along `along`, whose curves are X_b, blended by g_b across, and whose blend f_a weighs the curves Y_a
-/// across: sum_b |g_b| |X_b^(k)| + sum_a |f_a^(k)| (|Y_a| + sum_b |r_ab| |g_b|).
+/// Bounds |d^k r| along `along`: sum_b |g_b| |X_b^(k)| + sum_a |f_a^(k)| (|Y_a| + sum_b |r_ab| |g_b|). X_b are the
+/// curves of `along`, blended by g_b across; f_a is its blend, which weights the curves Y_a across.
 double bound_along(const Side& along, const Interval& part_along, const Side& across, const Interval& part_across,
                    const std::array<std::array<double, 2>, 2>& corners, int k) {
   double bound = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// Rows of control points counted from an edge of a patch.
+// Rows of control points counted from an edge of a patch, for making and measuring joins.
 
 #include <limits>
 #include <string>
@@ -13,7 +13,8 @@ namespace tessera::inline abi_0_1 {
 inline bool crosses_u(Edge edge) { return edge == Edge::u0 || edge == Edge::u1; }
 inline bool is_edge(Edge edge) { return crosses_u(edge) || edge == Edge::v0 || edge == Edge::v1; }
 
-/// Degrees and places seen from an edge: row 0 is the border, k runs along it (with the parameter, or against it).
+/// Degrees and indices seen from an edge: row 0 is the border, and k runs along it, with the parameter or (reversed)
+/// against it.
 struct EdgeView {
   EdgeView(int m, int n, Edge seen_from, bool against)
       : edge(seen_from),
@@ -36,7 +37,7 @@ inline EdgeView edge_view(const BezierPatch& patch, Edge edge, bool reversed) {
   return {patch.degree_u(), patch.degree_v(), edge, reversed};
 }
 
-/// The domain's length in the direction that crosses the edge.
+/// Returns the domain's length in the direction that crosses the edge.
 inline double width_across(const JoinSide& side) {
   return crosses_u(side.edge) ? side.domain.u1 - side.domain.u0 : side.domain.v1 - side.domain.v0;
 }

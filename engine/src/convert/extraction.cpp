@@ -10,8 +10,8 @@ namespace {
 
 using Blossom = std::array<long double, max_degree + 1>;
 
-/// Appends the blossom f(a, .., a, b, .., b), b standing i times: Bezier point i of [a, b] within the span (Farin,
-/// Curves and Surfaces for CAGD, 5th ed., sec. 8.6). Every step is convex there.
+/// Appends the blossom f(a, .., a, b, .., b), with b i times: Bezier point i of [a, b] within the span (Farin, Curves
+/// and Surfaces for CAGD, 5th ed., sec. 8.6). Every step is convex there.
 void append_row(Extraction& extraction, const KnotLine& line, std::size_t span, double a, double b, std::size_t i) {
   const std::size_t p = static_cast<std::size_t>(line.degree);
   Blossom arguments{}, weights{};

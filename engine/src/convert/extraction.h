@@ -1,6 +1,6 @@
 #pragma once
-// How the Bezier points of all spans of a spline direction come from its control points: the extraction operators of
-// Borden, Scott, Evans, Hughes 2011 (Isogeometric finite element data structures based on Bezier extraction), by
+// Extraction operators of a spline direction: how the Bezier points of all its spans come from its control points
+// (Borden, Scott, Evans, Hughes, Isogeometric finite element data structures based on Bezier extraction, 2011), by
 // blossoms.
 
 #include <cstddef>
@@ -10,15 +10,16 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Row r of the operator, r = span * degree + i, gives Bezier point i of that span; the last of a span is the first of
-/// the next, one row. Each weight is >= 0 and right to half a unit in the last place.
+/// The operator of one direction. Row r = span * degree + i gives Bezier point i of that span. The last point of a span
+/// is the first of the next, so they share a row. Each weight is >= 0 and right to half a unit in the last place.
 struct Extraction {
   struct Row {
-    std::size_t first = 0;    ///< the first control point that acts
-    std::size_t count = 0;    ///< how many do; 1: the Bezier point is that control point, with weight 1
-    std::size_t weights = 0;  ///< where its weights begin
+    std::size_t first = 0;    ///< index of the first control point that acts
+    std::size_t count = 0;    ///< number of control points that act; 1: the Bezier point is that control point, with
+                              ///< weight 1
+    std::size_t weights = 0;  ///< index of its first weight
   };
-  std::vector<double> breaks;  ///< of the spans: one more than these
+  std::vector<double> breaks;  ///< parameters between the spans: one more than spans
   std::vector<Row> rows;
   std::vector<double> weights;
 

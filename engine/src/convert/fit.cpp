@@ -20,10 +20,10 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// The share of the tolerance for interpolation; the rest is for rounding, and for what lies between samples.
+/// The share of the tolerance for interpolation. The rest is for rounding and for errors between samples.
 constexpr double accepted_share = 0.8;
 
-/// The range's ends and, between them, the breakpoints asked for.
+/// Returns the range's ends and, between them, the requested breakpoints.
 Result<std::vector<double>> first_breaks(double from, std::span<const double> inner, double to, const char* direction) {
   std::vector<double> breaks{from};
   breaks.insert(breaks.end(), inner.begin(), inner.end());
@@ -50,7 +50,7 @@ Status check_options(const FitOptions& options) {
   return {};
 }
 
-/// The box of 17 x 17 points.
+/// Returns the box of 17 x 17 points.
 Result<Box3> coarse_box(const ParametricSurface& surface) {
   Box3 box;
   for (int i = 0; i <= 16; ++i)
@@ -64,7 +64,7 @@ Result<Box3> coarse_box(const ParametricSurface& surface) {
   return box;
 }
 
-/// The tolerance meant, or why it cannot be kept.
+/// Returns the tolerance to use, or why it cannot be met.
 Result<double> tolerance_of(const Box3& box, double wanted) {
   const double size = std::max(max_abs(box.lower), max_abs(box.upper));
   const double least = std::max(0x1p-48 * size, std::numeric_limits<double>::min());
@@ -75,7 +75,7 @@ Result<double> tolerance_of(const Box3& box, double wanted) {
   return wanted;
 }
 
-/// The parameters of all nodes of one direction, ends of intervals once.
+/// Returns the parameters of all nodes of one direction; adjacent intervals share their end.
 std::vector<double> lattice(std::span<const double> breaks, std::span<const double> parameters) {
   std::vector<double> lattice{breaks.front()};
   for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
@@ -84,7 +84,7 @@ std::vector<double> lattice(std::span<const double> breaks, std::span<const doub
   return lattice;
 }
 
-/// Patches from values on the lattice of nodes, each asked for once.
+/// Makes patches from values on the lattice of nodes, and evaluates each node once.
 class Interpolation {
  public:
   Interpolation(const ParametricSurface& surface, int degree, const TensorBreaks& breaks)
@@ -109,11 +109,11 @@ class Interpolation {
     return pieces_.take();
   }
 
-  /// How far rounding may have moved a point of a patch; 2 for the three coordinates together.
+  /// Bounds how far rounding may have moved a point of a patch; the factor 2 covers the three coordinates together.
   double rounding() const { return 2 * lobatto_to_bernstein_rounding(degree_, largest_value_, largest_point_); }
 
  private:
-  /// Line i of the current column of patches.
+  /// Samples line i of the current column of patches.
   Status sample_line(std::size_t i, std::size_t u_index) {
     for (std::size_t j = 0; j < v_.size(); ++j) {
       const auto point = surface_.position(u_[u_index], v_[j]);
@@ -139,7 +139,7 @@ class Interpolation {
     return {};
   }
 
-  /// Edges on which all values are one point, so that poles are poles whatever the rounding.
+  /// Sets each edge on which all values are one point to that point, so that rounding keeps poles.
   void collapse_edges(std::vector<Vec3>& points) const {
     const std::size_t count = static_cast<std::size_t>(degree_) + 1, last = count - 1;
     const auto collapse = [&](std::size_t first, std::size_t step) {
@@ -164,7 +164,7 @@ class Interpolation {
   double largest_value_ = 0, largest_point_ = 0;
 };
 
-/// What rounding adds to a proven error.
+/// Bounds what rounding adds to a proven error.
 double rounding_bound(const ProvenError& proven, const TensorBreaks& breaks, const Interpolation& interpolation) {
   double largest = 0;
   for (std::size_t a = 0; a + 1 < breaks.u.size(); ++a)
@@ -178,7 +178,7 @@ Result<PatchGrid> grid_of(TensorBreaks breaks, Result<std::vector<BezierPatch>> 
   return PatchGrid::make(std::move(breaks.u), std::move(breaks.v), *std::move(patches), error);
 }
 
-/// Nothing where bounds do not suffice.
+/// Returns nothing where bounds do not suffice.
 std::optional<Result<PatchGrid>> certified_fit(const ParametricSurface& surface, int degree, const TensorBreaks& first,
                                                const RefinementLimits& limits) {
   const ProvenError proven(surface, degree);

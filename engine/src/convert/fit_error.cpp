@@ -13,7 +13,8 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// factor h^(n+1) bound, 0 for a bound of 0. The bound comes first: powers of a short h underflow.
+/// Returns factor h^(n+1) bound, and 0 for a bound of 0. The bound is multiplied first, because powers of a short h
+/// underflow.
 double interpolation_error(int degree, double h, double bound) {
   if (bound == 0) return 0;
   double error = lobatto_error_factor(degree) * bound;
@@ -38,8 +39,8 @@ Result<CellError> ProvenError::operator()(const Domain& cell) const {
 }
 
 double ProvenError::rounding(const Domain& cell) const {
-  // A node's parameter a + t (b - a): the difference and its product by at most 2^-52 of the largest, for they may be
-  // twice as large, and the sum by 2^-53.
+  // A node's parameter is a + t (b - a). The difference and the product each round by at most 2^-52 of the largest
+  // parameter, since they may be twice as large as it; the sum rounds by 2^-53.
   const double u = 0x1p-50 * std::max(std::abs(cell.u0), std::abs(cell.u1));
   const double v = 0x1p-50 * std::max(std::abs(cell.v0), std::abs(cell.v1));
   const auto bounds = surface_.derivative_bounds(cell, 1);
@@ -49,7 +50,7 @@ double ProvenError::rounding(const Domain& cell) const {
 
 SampledError::SampledError(const ParametricSurface& surface, int degree)
     : surface_(surface), nodes_(static_cast<std::size_t>(degree) + 1) {
-  // In a gap the error of a smooth function is like sin(pi part), part being taken in the angle of the nodes.
+  // In a gap the error of a smooth function is like sin(pi part), with `part` measured in the angle of the nodes.
   const std::vector<double> nodes = lobatto_parameters(degree);
   for (std::size_t i = 0; i + 1 < nodes_; ++i) {
     parameters_.push_back(nodes[i]);

@@ -1,10 +1,12 @@
 #pragma once
-// How far tensor-product interpolation at Chebyshev-Lobatto parameters is from a surface on a cell: by bounds of
-// derivatives, or by sampling.
+// Error of tensor-product interpolation at Chebyshev-Lobatto parameters on a cell of a surface: proven by bounds of
+// derivatives, or sampled.
 //
-// With Iu, Iv the interpolation in u and v, f - Iu Iv f = (f - Iu f) + Iu (f - Iv f), and the same with u and v
-// exchanged, so |f - Iu Iv f| <= eu + ev + (L - 1) min(eu, ev), where eu bounds |f - Iu f|, ev bounds |f - Iv f| and L
-// is the Lebesgue constant.
+// Iu and Iv are the interpolation in u and v, eu bounds |f - Iu f|, ev bounds |f - Iv f|, and L is the Lebesgue
+// constant.
+// 1. f - Iu Iv f = (f - Iu f) + Iu (f - Iv f), so |f - Iu Iv f| <= eu + L ev.
+// 2. With u and v exchanged, |f - Iu Iv f| <= ev + L eu.
+// 3. Together: |f - Iu Iv f| <= eu + ev + (L - 1) min(eu, ev).
 
 #include <array>
 #include <vector>
@@ -14,13 +16,13 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Proven, by bounds of the derivatives of order n + 1. Where there are none, the cell should be halved while it is
-/// longer than a 64th of the domain; then the error is `unsupported`.
+/// The proven error, by bounds of the derivatives of order n + 1. Without such a bound, the cell should be halved while
+/// it is longer than a 64th of the domain; then the error is `unsupported`.
 class ProvenError {
  public:
   ProvenError(const ParametricSurface& surface, int degree) : surface_(surface), degree_(degree) {}
   Result<CellError> operator()(const Domain& cell) const;
-  /// What the rounding of the nodes' parameters adds, by bounds of the first derivatives.
+  /// Bounds what the rounding of the nodes' parameters adds, by bounds of the first derivatives.
   double rounding(const Domain& cell) const;
 
  private:
@@ -28,8 +30,8 @@ class ProvenError {
   int degree_;
 };
 
-/// Found at the (3 n + 1)^2 points of a grid: the nodes, and two parameters in every gap between them, one near
-/// the largest error of a smooth function, one off it.
+/// The error found at the (3 n + 1)^2 points of a grid: the nodes, and two parameters in each gap between them, one
+/// near the largest error of a smooth function and one off it.
 class SampledError {
  public:
   SampledError(const ParametricSurface& surface, int degree);

@@ -1,5 +1,5 @@
 #pragma once
-// Surfaces of other kinds as functions, for the fit.
+// Adapters that present surfaces of other kinds to the fit as functions of (u, v).
 
 #include <algorithm>
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Bounds of derivatives as SurfaceFunctions has them; empty if there are none.
+/// Bounds of derivatives, as in SurfaceFunctions; empty if there are none.
 using DerivativeBounds = std::function<std::array<double, 2>(const Domain& part, int k)>;
 
 /// Adds the inner knots at which a border has fewer continuous derivatives than patches of this degree need.
@@ -29,8 +29,8 @@ inline void add_breaks(std::vector<double>& breaks, const BorderCurve& border, i
   }
 }
 
-/// Patches by a fit to a surface with position(surface, u, v) and evaluate_jet(surface, u, v), which may fail: the fit
-/// then fails with their Status.
+/// Fits patches to a surface with position(surface, u, v) and evaluate_jet(surface, u, v). Either may fail; the fit
+/// then fails with the same Status.
 template <class Surface>
 Result<PatchGrid> fitted(const Surface& surface, DerivativeBounds bounds, const FitOptions& options) {
   Status failure;

@@ -8,10 +8,10 @@ namespace {
 
 Vec3 divided(const Vec3& vector, double by) { return {vector.x / by, vector.y / by, vector.z / by}; }
 
-/// A corner's quarter of the Bezier net: with signs of the directions that lead into the patch, V = r, V' = r +- r_u /
-/// 3, r +- r_v / 3, r +- r_u / 3 +- r_v / 3 +- r_uv / 9 (M_B^{-1} M_H; Farin, Curves and Surfaces for CAGD, 5th ed.,
-/// ch. 15).
-/// What lies on a border depends on the border's vectors alone, so neighbours in a network share it by ==.
+/// Writes a corner's quarter of the Bezier net (M_B^{-1} M_H; Farin, Curves and Surfaces for CAGD, 5th ed., ch. 15).
+/// With signs of the directions that lead into the patch, the points are r, r +- r_u / 3, r +- r_v / 3 and r +- r_u / 3
+/// +- r_v / 3 +- r_uv / 9. Points on a border depend on the border's vectors alone, so neighbours in a network share
+/// them by ==.
 void set_quarter(std::vector<Vec3>& points, const HermitePatch::Grid& g, std::size_t a, std::size_t b) {
   const Vec3& r = g[4 * (3 * a) + 3 * b];
   const double sign_u = a == 0 ? 1 : -1, sign_v = b == 0 ? 1 : -1;
@@ -25,7 +25,7 @@ void set_quarter(std::vector<Vec3>& points, const HermitePatch::Grid& g, std::si
   at(1 + a, 1 + b) = r + (along_u + along_v + twist);
 }
 
-/// From the geometry matrix by local parameters.
+/// Makes the patch from the geometry matrix by local parameters.
 Result<BezierPatch> bezier_of(const HermitePatch::Grid& local) {
   std::vector<Vec3> points(16);
   for (std::size_t a = 0; a < 2; ++a)

@@ -12,7 +12,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// A row of control points along an edge, raised to `degree`; with weights if the patch is rational.
+/// Returns a row of control points along an edge, raised to `degree`; with weights if the patch is rational.
 BezierPolygon row_of(const BezierPatch& patch, const EdgeView& view, int row, int degree) {
   BezierPolygon polygon;
   for (int k = 0; k <= view.along; ++k) {
@@ -22,7 +22,7 @@ BezierPolygon row_of(const BezierPatch& patch, const EdgeView& view, int row, in
   return elevated(polygon, degree);
 }
 
-/// The row that continues from `before` through `border`: border + factor (border - before), homogeneous.
+/// Returns the row that continues from `before` through `border`: border + factor (border - before), homogeneous.
 Result<BezierPolygon> continued(const BezierPolygon& before, const BezierPolygon& border, double factor) {
   BezierPolygon next = border;
   for (std::size_t k = 0; k < next.points.size(); ++k) {
@@ -37,7 +37,7 @@ Result<BezierPolygon> continued(const BezierPolygon& before, const BezierPolygon
                         " in its first row inside the patch, at " + std::to_string(k) +
                         " along the edge: k is too small",
                     static_cast<std::ptrdiff_t>(k));
-    // (w P + factor (w P - v B)) / weight, about P.
+    // (w P + factor (w P - v B)) / weight, relative to P.
     next.points[k] = border.points[k] + (factor * v / weight) * (border.points[k] - before.points[k]);
     next.weights[k] = weight;
   }

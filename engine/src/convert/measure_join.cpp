@@ -11,8 +11,8 @@
 #include "tessera/status.h"
 
 // G1 demands det(p_c, q_c, r_b) = 0 and (p_c x r_b) . (q_c x r_b) > 0 along the border b (Farin, Curves and Surfaces
-// for CAGD, 5th ed., sec. 17.2). Both sides' own border tangents are used, so that gaps within tolerance spoil nothing:
-// (p_c x p_b) x (q_c x q_b) over (p_c x p_b) . (q_c x q_b) is the tangent of the angle between the normals.
+// for CAGD, 5th ed., sec. 17.2). Each side uses its own border tangent, so that gaps within tolerance do no harm: the
+// quotient of (p_c x p_b) x (q_c x q_b) and (p_c x p_b) . (q_c x q_b) is the tangent of the angle between the normals.
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -24,7 +24,7 @@ using Vectors = BernsteinNet<Vec3>;
 struct Border {
   Vectors point;
   Scalars weight;  ///< degree 0 for a polynomial patch
-  Vectors across;  ///< into the patch, by its domain
+  Vectors across;  ///< derivative into the patch, by its domain
   Vectors tangent;
 };
 
@@ -54,7 +54,7 @@ Border border(const JoinSide& side, bool reversed, const Vec3& origin, double sc
   };
   const Scalars w0 = weights(0), w1 = weights(1);
   const Vectors p0 = points(0, w0), p1 = points(1, w1);
-  // With r = A / w: r' = (A' w - A w') / w^2, and across the border A' and w' are differences of the two rows.
+  // With r = A / w: r' = (A' w - A w') / w^2. Across the border A' and w' are differences of the two rows.
   Vectors across = w0 * p1 - w1 * p0;
   for (Vec3& d : across.values) d = (view.across / width_across(side)) * d;
   Vectors tangent = patch.is_rational() ? w0 * derivative_u(p0) - derivative_u(w0) * p0 : derivative_u(p0);
@@ -89,7 +89,7 @@ Vectors normal_numerator(const Border& b) {
   return without_end_zeros(std::move(normal));
 }
 
-/// The angle between the normals, p's seen from the other side: its derivative runs into p.
+/// Bounds the angle between the normals. The sign of p's normal is reversed, because its derivative runs into p.
 Maximum normal_angle(const Border& p, const Border& q) {
   const Vectors np = normal_numerator(p), nq = normal_numerator(q);
   VectorRatio ratio{product(np, nq, [](const Vec3& x, const Vec3& y) { return cross(x, y); }),
@@ -106,7 +106,7 @@ Vectors times(double factor, Vectors net) {
 struct CrossDerivatives {
   Vectors p, q;
   Scalars denominator;
-  double size_p = 0, size_q = 0;  ///< their largest lengths
+  double size_p = 0, size_q = 0;  ///< the largest lengths of p and of q
 
   double gap(double k, bool& sharp) const {
     const double floor = 1e-15 * std::max(size_p, std::abs(k) * size_q);
@@ -124,7 +124,7 @@ CrossDerivatives cross_derivatives(const Border& p, const Border& q) {
   return result;
 }
 
-/// The k > 0 that brings k q_c nearest to p_c, coefficient by coefficient; 0 if there is none.
+/// Returns the k > 0 that brings k q_c nearest to p_c, coefficient by coefficient; 0 if there is none.
 double nearest_ratio(const CrossDerivatives& d) {
   const int degree = std::max(d.p.degree_u, d.q.degree_u);
   const Vectors p = elevated(d.p, degree, 0), q = elevated(d.q, degree, 0);
@@ -137,7 +137,7 @@ double nearest_ratio(const CrossDerivatives& d) {
   return ratio > 0 && std::isfinite(ratio) ? ratio : 0;
 }
 
-/// Which way q's edge runs: the way that brings its ends and two inner points nearer.
+/// Returns true if q's edge runs against p's: this brings its ends and two inner points nearer.
 bool runs_against(const JoinSide& p, const JoinSide& q) {
   std::array<double, 2> gap{};
   for (const bool reversed : {false, true})

@@ -11,7 +11,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// The interval that holds t, from the right; the last one at the end.
+/// Returns the interval that holds t. A breakpoint belongs to the interval on its right; the end, to the last one.
 std::size_t interval(std::span<const double> breaks, double t) {
   const auto above = std::upper_bound(breaks.begin(), breaks.end(), t);
   return std::min<std::size_t>(static_cast<std::size_t>(above - breaks.begin()) - 1, breaks.size() - 2);
@@ -80,7 +80,7 @@ Result<PatchGrid> transformed(const PatchGrid& grid, const Affine& map) {
     patches.reserve(grid.patches().size());
     std::vector<Vec3> points;
     const auto& [x, y, z] = map.columns;
-    double size = 0;  // of what the sums of products are made of
+    double size = 0;  // bounds the terms of each coordinate's sum of products
     for (const BezierPatch& patch : grid.patches()) {
       points.clear();
       for (const Vec3& p : patch.points()) {
@@ -98,7 +98,8 @@ Result<PatchGrid> transformed(const PatchGrid& grid, const Affine& map) {
     const FitError& error = grid.fit_error();
     double distance = 0;  // an exact surface stays exact
     if (error.distance > 0) {
-      // A coordinate is a sum of three rounded products and the translation: six roundings of 2^-53, in three of them.
+      // A coordinate is a sum of three rounded products and the translation: six roundings of 2^-53, in three
+      // coordinates.
       const double rounding = 0x1p-49 * (size + max_abs(map.translation));
       distance = error.distance * map.norm_bound() * (1 + 0x1p-40) + rounding;
     }

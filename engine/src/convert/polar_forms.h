@@ -1,7 +1,7 @@
 #pragma once
-// Power coefficients to Bernstein coefficients on any interval. Control value k of degree n on [a, b] is the polar form
-// at n - k times a and k times b; that of t^i is the elementary symmetric polynomial e_i of these arguments over C(n,
-// i) (Ramshaw, Blossoms are polar forms, 1989). With twice the digits: the sums cancel.
+// Power coefficients to Bernstein coefficients on any interval, in double-double because the sums cancel. Control value
+// k of degree n on [a, b] is the polar form at n - k times a and k times b. The polar form of t^i is the elementary
+// symmetric polynomial e_i of these arguments over C(n, i) (Ramshaw, Blossoms are polar forms, 1989).
 
 #include <array>
 #include <cstddef>
@@ -16,7 +16,7 @@ namespace tessera::inline abi_0_1 {
 
 using PolarForms = std::array<DoubleDouble, max_degree + 1>;
 
-/// Polar forms of t^0 .. t^degree for control value k.
+/// Returns the polar forms of t^0 .. t^degree for control value k.
 inline PolarForms polar_forms(int degree, int k, double a, double b) {
   PolarForms e{};
   e[0] = {1, 0};
@@ -32,7 +32,8 @@ inline PolarForms polar_forms(int degree, int k, double a, double b) {
   return e;
 }
 
-/// The Bernstein coefficients on [a, b] of the polynomial sum_i coefficients[i] t^i, of degree coefficients.size() - 1.
+/// Returns the Bernstein coefficients on [a, b] of the polynomial sum_i coefficients[i] t^i, of degree
+/// coefficients.size() - 1.
 inline std::vector<long double> bernstein_coefficients(std::span<const double> coefficients, double a, double b) {
   const int degree = static_cast<int>(coefficients.size()) - 1;
   std::vector<long double> values;

@@ -8,7 +8,8 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// One direction: `count` curves of the given degree whose point i is the `width` values at curve * next + i * step.
+/// Transforms one direction: `count` curves of the given degree. Point i of a curve is the `width` values at curve *
+/// next + i * step.
 void transform_curves(int degree, double* values, std::size_t step, std::size_t width, std::size_t count,
                       std::size_t next) {
   for (std::size_t curve = 0; curve < count; ++curve) {

@@ -9,8 +9,8 @@
 #include "tessera/status.h"
 
 // Conic segments as rational quadratics in standard form, weights (1, w, 1) (Farin, Curves and Surfaces for CAGD, 5th
-// ed., sec. 12.2 to 12.4): a circle's middle point is where the end tangents meet, w the cosine of half the arc;
-// likewise cosh for hyperbolas; a parabola has w = 1.
+// ed., sec. 12.2 to 12.4). The middle point of a circle is where the end tangents meet, and w is the cosine of half the
+// arc. A hyperbola uses cosh likewise; a parabola has w = 1.
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -50,7 +50,8 @@ std::vector<double> breaks_of(Profile profile, double from, double to) {
   return breaks;
 }
 
-/// Neighbours share the values at the break between them, and a full turn ends where it began.
+/// Returns the segments between the breaks. Neighbours share the values at their break; a full turn ends where it
+/// began.
 std::vector<Segment> segments(Profile profile, const std::vector<double>& breaks) {
   std::vector<ProfileValue> ends;
   for (const double t : breaks) ends.push_back(profile_value(profile, t));

@@ -11,7 +11,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// Over one denominator the points of both curves are the rows of a net of degree 1.
+/// Converts exactly: over one denominator the points of both curves are the rows of a net of degree 1.
 Result<PatchGrid> exact(const RuledSurface& surface) {
   const bool along_u = surface.straight() == Direction::v;
   const auto line =
@@ -28,7 +28,8 @@ Result<PatchGrid> exact(const RuledSurface& surface) {
   return along_u ? net.patches() : transposed(net).patches();
 }
 
-/// Along the curves the larger of theirs; across them |C2 - C1| over the length, and nothing beyond.
+/// Bounds the derivatives: along the curves by the larger of the two curves' bounds, across them by |C2 - C1| over the
+/// length for the first derivative and by 0 for higher ones.
 DerivativeBounds bounds_of(const RuledSurface& surface) {
   for (const BorderCurve* border : {&surface.first(), &surface.second()})
     if (!has_bounds(*border)) return {};

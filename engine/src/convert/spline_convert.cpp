@@ -107,7 +107,7 @@ auto elevating(double from, double to, int by) {
   };
 }
 
-/// Gives `net` the inner knots of `other` as often as they stand there.
+/// Gives `net` the inner knots of `other` with the same multiplicity.
 void merge_knots(SplineNet& net, const SplineNet& other) {
   for (const double t : other.knots) raise_multiplicity(net, t, multiplicity(other.knots, t));
 }

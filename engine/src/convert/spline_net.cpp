@@ -9,8 +9,8 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// sum_j weights[j] rows[j], of each curve; rational ones with the weights as they act, so that the ratios stay in the
-/// hull.
+/// Writes sum_j factors[j] rows[j] of each curve. For rational curves the factors include the weights, normalized, so
+/// that the points stay in the hull.
 void combine(const SplineNet& net, std::size_t first, std::size_t count, const double* factors, NetPoint* out) {
   for (std::size_t c = 0; c < net.width; ++c) {
     const NetPoint* from = &net.points[first * net.width + c];
@@ -27,7 +27,7 @@ void combine(const SplineNet& net, std::size_t first, std::size_t count, const d
   }
 }
 
-/// The knots with each value once more.
+/// Returns the knots with each value once more.
 std::vector<double> raised_knots(const std::vector<double>& knots) {
   std::vector<double> raised;
   raised.reserve(2 * knots.size());
@@ -40,8 +40,8 @@ std::vector<double> raised_knots(const std::vector<double>& knots) {
 
 using Blossom = std::array<long double, max_degree + 1>;
 
-/// The mean of the blossoms of all but one of the degree + 1 `arguments`: that is the blossom of the curve seen as one
-/// of the next degree (Farin, sec. 8.7). Arguments near the span come first, where the steps are narrow.
+/// Returns the mean of the blossoms of all but one of the degree + 1 `arguments`, which is the blossom of the curve
+/// seen as one of the next degree (Farin, sec. 8.7). Arguments near the span come first, where the steps are narrow.
 Blossom elevated_blossom(const SplineNet& net, std::size_t span, const double* arguments) {
   const std::size_t p = static_cast<std::size_t>(net.degree);
   Blossom sorted{};
@@ -68,13 +68,13 @@ void insert_knot(SplineNet& net, double t) {
   const std::size_t p = static_cast<std::size_t>(net.degree), width = net.width;
   const auto above = std::upper_bound(net.knots.begin(), net.knots.end(), t);
   const std::size_t k = static_cast<std::size_t>(above - net.knots.begin()) - 1, s = multiplicity(net.knots, t);
-  std::vector<NetPoint> inserted((p - s) * width);  // the points k-p+1 .. k-s of the new net
+  std::vector<NetPoint> inserted((p - s) * width);  // points k-p+1 .. k-s of the new net
   for (std::size_t i = k - p + 1; i + s <= k; ++i) {
     const double left = net.knots[i], right = net.knots[i + p];
     const double factors[] = {(right - t) / (right - left), (t - left) / (right - left)};
     combine(net, i - 1, 2, factors, &inserted[(i - (k - p + 1)) * width]);
   }
-  // p - s new rows stand in for the p - s - 1 old ones between k-p and k-s.
+  // p - s new rows replace the p - s - 1 old ones between k-p and k-s.
   const auto row = [&](std::size_t i) { return net.points.begin() + static_cast<std::ptrdiff_t>(i * width); };
   const auto grown = net.points.insert(row(k - s), width, NetPoint{});
   std::copy(inserted.begin(), inserted.end(), grown - static_cast<std::ptrdiff_t>((p - s - 1) * width));
@@ -91,7 +91,7 @@ void clamp(SplineNet& net, double from, double to) {
   raise_multiplicity(net, to, p);
   const auto first = std::upper_bound(net.knots.begin(), net.knots.end(), from);
   const auto last = std::lower_bound(net.knots.begin(), net.knots.end(), to);
-  // The first span acts on the points up to its own index, less the degree; the last one ends before `to`.
+  // The first span acts on the points from its own index less the degree; the last span ends before `to`.
   const std::size_t first_point = static_cast<std::size_t>(first - net.knots.begin()) - 1 - p;
   const std::size_t end_point = static_cast<std::size_t>(last - net.knots.begin());
   std::vector<double> knots(p + 1, from);
@@ -108,7 +108,7 @@ SplineNet degree_elevated(const SplineNet& net) {
   const std::size_t count = result.knots.size() - p - 2;
   result.points.resize(count * net.width);
   for (std::size_t i = 0; i < count; ++i) {
-    // A span on which point i acts, in the middle of its knots.
+    // Takes a span on which point i acts, in the middle of its knots.
     const double middle = result.knots[i + 1 + p / 2];
     const auto at = result.knots[i + p + 2] == middle ? std::lower_bound(net.knots.begin(), net.knots.end(), middle)
                                                       : std::upper_bound(net.knots.begin(), net.knots.end(), middle);

@@ -9,13 +9,13 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// A control point and its weight, apart: so what does not move keeps its bits.
+/// A control point and its weight, kept apart so that what does not move keeps its bits.
 struct NetPoint {
   Vec3 point;
   double weight = 1;
 };
 
-/// `width` curves: the points of all of them with index i are the row points[i * width ..].
+/// A net of `width` curves. The points with index i of all curves are the row points[i * width ..].
 struct SplineNet {
   int degree = 1;
   bool rational = false;
@@ -26,15 +26,16 @@ struct SplineNet {
   std::size_t count() const { return points.size() / width; }
 };
 
-/// Boehm's algorithm (The NURBS Book, eq. 5.15): t within the domain of the knots, fewer than degree times there.
+/// Inserts t by Boehm's algorithm (The NURBS Book, eq. 5.15). t must be within the domain of the knots and have a
+/// multiplicity below the degree.
 void insert_knot(SplineNet& net, double t);
-/// Inserts t until it stands `times` times.
+/// Inserts t until its multiplicity is `times`.
 void raise_multiplicity(SplineNet& net, double t, std::size_t times);
-/// Ends at `from` and `to`, (degree + 1)-fold; from < to within the domain of the knots.
+/// Makes `from` and `to` the ends, (degree + 1)-fold; from < to within the domain of the knots.
 void clamp(SplineNet& net, double from, double to);
-/// One degree more; of a clamped net.
+/// Returns the net with one degree more; `net` must be clamped.
 SplineNet degree_elevated(const SplineNet& net);
-/// Rows and curves exchanged; the knots stay with the caller.
+/// Returns the points with rows and curves exchanged. The caller keeps the knots.
 std::vector<NetPoint> transposed(const std::vector<NetPoint>& points, std::size_t width);
 
 }  // namespace tessera::inline abi_0_1

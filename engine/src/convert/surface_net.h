@@ -7,8 +7,8 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// (count_u degree_u + 1) x (count_v degree_v + 1) points [i][j], i along u, over count_u x count_v patches; as many
-/// weights, or none.
+/// A net of (count_u degree_u + 1) x (count_v degree_v + 1) points [i][j], i along u, over count_u x count_v patches,
+/// with as many weights or none.
 struct SurfaceNet {
   int degree_u, degree_v;
   std::vector<double> breaks_u, breaks_v;
@@ -21,11 +21,12 @@ struct SurfaceNet {
   std::size_t columns() const { return (breaks_v.size() - 1) * static_cast<std::size_t>(degree_v) + 1; }
   std::size_t index(std::size_t i, std::size_t j) const { return i * columns() + j; }
 
-  /// Errors: non_finite (a point), invalid_weight (below 1e-100 of the largest of its patch); both say which patch.
+  /// Returns the patches. Errors: non_finite (a point), invalid_weight (below 1e-100 of the largest of its patch); both
+  /// say which patch.
   Result<PatchGrid> patches() const;
 };
 
-/// u and v exchanged.
+/// Returns the net with u and v exchanged.
 SurfaceNet transposed(const SurfaceNet& net);
 
 }  // namespace tessera::inline abi_0_1

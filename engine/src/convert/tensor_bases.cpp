@@ -25,7 +25,8 @@ Matrix from_bernstein(const BasisMatrix& basis) {
   return matrix;
 }
 
-/// M'^{-1} M: geometry of one basis to that of another, `to.degree() >= from.degree()` and `to` regular.
+/// Returns M'^{-1} M, from the geometry in one basis to that in another. Requires to.degree() >= from.degree() and a
+/// regular `to`.
 Matrix conversion(const BasisMatrix& from, const BasisMatrix& to) {
   if (from == to) return Matrix::identity(from.degree() + 1);
   return from_bernstein(to) * (elevation_matrix(from.degree(), to.degree()) * to_bernstein(from));

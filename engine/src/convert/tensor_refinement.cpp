@@ -14,7 +14,7 @@ namespace {
 /// The intervals between breakpoints of one direction.
 struct Line {
   std::vector<double> breaks;
-  std::vector<char> halve = std::vector<char>(breaks.size() - 1);  // which to halve next
+  std::vector<char> halve = std::vector<char>(breaks.size() - 1);  // 1: halve this interval next
 
   std::size_t count() const { return breaks.size() - 1; }
   std::size_t halved_count() const {
@@ -24,7 +24,7 @@ struct Line {
     const double a = breaks[k], b = breaks[k + 1];
     return (b - a) / 2 < shortest * std::max(std::abs(a), std::abs(b)) || !std::isnormal((b - a) / 2);
   }
-  /// Halves, and tells of each new interval which old one it is, or that it is new.
+  /// Halves the marked intervals. Returns for each new interval the old one that it equals, or nothing if it is new.
   std::vector<std::optional<std::size_t>> apply() {
     std::vector<std::optional<std::size_t>> origin;
     std::vector<double> halved{breaks.front()};
@@ -86,7 +86,7 @@ class Refinement {
     return {};
   }
 
-  /// Whether the cell is to be halved.
+  /// Marks the cell's intervals for halving and returns whether it did.
   Result<bool> mark(std::size_t a, std::size_t b) {
     const CellError& error = *errors_[a * v_.count() + b];
     if (error.total <= limits_.accepted) return false;

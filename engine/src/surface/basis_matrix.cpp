@@ -9,15 +9,15 @@
 #include "tessera/status.h"
 #include "tessera/tensor_patch.h"
 
-// A basis is held three times: M itself, C = M_B^{-1} M, and C^{-1}. Each named basis has closed forms of all three,
-// with entries that are whole numbers or right to the last bit; only matrices of the user's are inverted.
+// A basis holds three matrices: M itself, C = M_B^{-1} M, and C^{-1}. Each named basis has closed forms of all three,
+// with entries that are whole numbers or right to the last bit. Only the user's own matrices are inverted.
 
 namespace tessera::inline abi_0_1 {
 namespace {
 
 using Entries = std::vector<double>;
 
-/// value(k, i) for each entry, row by row.
+/// Returns value(k, i) for each entry, row by row.
 template <class Value>
 Entries entries_of(int degree, Value&& value) {
   Entries entries;
@@ -30,20 +30,20 @@ Entries identity(int degree) {
   return entries_of(degree, [](int k, int i) { return k == i ? 1.0 : 0.0; });
 }
 
-/// M_B: B_{i,n} = sum_k (-1)^(k-i) C(n,k) C(k,i) t^k (Farin, Curves and Surfaces for CAGD, 5th ed., sec. 5.8).
+/// Returns M_B: B_{i,n} = sum_k (-1)^(k-i) C(n,k) C(k,i) t^k (Farin, Curves and Surfaces for CAGD, 5th ed., sec. 5.8).
 Entries power_of_bernstein(int n) {
   return entries_of(n, [n](int k, int i) { return ((k - i) % 2 == 0 ? 1 : -1) * binomial(n, k) * binomial(k, i); });
 }
 
-/// M_B^{-1}: t^i = sum_k C(k,i) / C(n,i) B_{k,n} (Farin, sec. 5.8).
+/// Returns M_B^{-1}: t^i = sum_k C(k,i) / C(n,i) B_{k,n} (Farin, sec. 5.8).
 Entries bernstein_of_power(int n) {
   return entries_of(n, [n](int k, int i) { return binomial(k, i) / binomial(n, i); });
 }
 
-/// The blending functions of one uniform B-spline span, grown from those of degree 0 by the recurrence
-/// n N_i^n(t) = (t + n - i) N_{i-1}^{n-1}(t) + (1 + i - t) N_i^{n-1}(t)  (de Boor, A Practical
-/// Guide to Splines, ch. X). `step(function, at_0, at_1, target)` adds the product of a function and the linear factor
-/// with those values to target. n! times the functions results, one function a row.
+/// Returns n! times the blending functions of one uniform B-spline span, one function per row. They grow from degree 0
+/// by the recurrence n N_i^n(t) = (t + n - i) N_{i-1}^{n-1}(t) + (1 + i - t) N_i^{n-1}(t) (de Boor, A Practical Guide
+/// to Splines, ch. X). `step(function, at_0, at_1, target)` adds to target the product of a function and the linear
+/// factor with these values at 0 and 1.
 template <class Step>
 std::vector<std::vector<long double>> uniform_functions(int degree, Step&& step) {
   std::vector<std::vector<long double>> functions{{1}};
@@ -68,7 +68,7 @@ Entries over_factorial(int degree, const std::vector<std::vector<long double>>& 
   });
 }
 
-/// Whole numbers below 2^53 until the one division by n!.
+/// Computes with whole numbers below 2^53 until the one division by n!.
 Entries power_of_uniform(int degree) {
   const auto step = [](const std::vector<long double>& function, int at_0, int at_1, std::vector<long double>& target) {
     for (std::size_t k = 0; k < function.size(); ++k) {
@@ -79,7 +79,7 @@ Entries power_of_uniform(int degree) {
   return over_factorial(degree, uniform_functions(degree, step));
 }
 
-/// Nothing cancels: all factors are positive.
+/// All factors are positive, so nothing cancels.
 Entries bernstein_of_uniform(int degree) {
   const auto step = [](const std::vector<long double>& function, int at_0, int at_1, std::vector<long double>& target) {
     const int n = static_cast<int>(function.size());
@@ -92,8 +92,8 @@ Entries bernstein_of_uniform(int degree) {
   return over_factorial(degree, uniform_functions(degree, step));
 }
 
-/// De Boor point i is the blossom at the knots i-n+1 .. i (Farin, ch. 8), whose coefficient of Bezier point k is
-/// that of x^k in the product of (1 - t + t x) over these knots: whole numbers below 2^53 up to degree 15.
+/// De Boor point i is the blossom at the knots i-n+1 .. i (Farin, ch. 8). Its coefficient of Bezier point k is the
+/// coefficient of x^k in the product of (1 - t + t x) over these knots: whole numbers below 2^53 up to degree 15.
 Entries uniform_of_bernstein(int degree) {
   Entries entries;
   for (int i = 0; i <= degree; ++i) {
@@ -107,7 +107,7 @@ Entries uniform_of_bernstein(int degree) {
   return entries;
 }
 
-/// Rounded inverse of C, or nothing for a singular one.
+/// Returns the rounded inverse of C, or nothing for a singular one.
 Entries inverse_entries(int degree, const Entries& bernstein) {
   Matrix matrix(degree + 1, degree + 1);
   for (int k = 0; k <= degree; ++k)

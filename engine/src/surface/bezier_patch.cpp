@@ -22,7 +22,7 @@ Status check_count(int degree_u, int degree_v, std::size_t count, const char* wh
   return {StatusCode::count_mismatch, size_text(degree_u, degree_v) + " " + what + ", found " + std::to_string(count)};
 }
 
-/// What BezierPatch::polynomial asks for.
+/// Checks the requirements of BezierPatch::polynomial.
 Status check_net(int degree_u, int degree_v, std::span<const Vec3> points) {
   if (Status status = check_degree(degree_u, "degree u"); !status.ok()) return status;
   if (Status status = check_degree(degree_v, "degree v"); !status.ok()) return status;

@@ -14,20 +14,20 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr double largest_coefficient = 1e6;  // larger ones hide the conditions in their own rounding
+constexpr double largest_coefficient = 1e6;  // rounding of larger ones would hide the conditions
 constexpr double polynomial_tolerance = 1e-12, callable_tolerance = 1e-9;
 constexpr int samples = 65;
 
 std::string name_of(std::size_t a) { return a == 0 ? "f1" : "f2"; }
 
-/// p(t) by Horner's scheme with twice the digits: power coefficients cancel near t = 1.
+/// Returns p(t) by Horner's scheme in double-double, since power coefficients cancel near t = 1.
 double polynomial_value(std::span<const double> coefficients, double t) {
   DoubleDouble p;
   for (std::size_t i = coefficients.size(); i-- > 0;) p = p * t + DoubleDouble{coefficients[i], 0};
   return p.rounded();
 }
 
-/// p(t), p'(t) and p''(t) likewise.
+/// Returns p(t), p'(t) and p''(t) in the same way.
 std::array<double, 3> polynomial_jet(std::span<const double> coefficients, double t) {
   std::array<DoubleDouble, 3> p{};
   for (std::size_t i = coefficients.size(); i-- > 0;) {
@@ -60,7 +60,7 @@ Result<std::array<double, 3>> jet_by_differences(const std::function<double(doub
                     stencil.derivative(stencil.second, values, *middle)};
 }
 
-/// `condition` holds: |error| <= tolerance.
+/// Checks that `condition` holds: |error| <= tolerance.
 Status check_condition(const char* condition, double error, double tolerance) {
   if (std::abs(error) <= tolerance) return {};
   return {StatusCode::invalid_argument, std::string("the blending functions must satisfy ") + condition +
@@ -68,13 +68,13 @@ Status check_condition(const char* condition, double error, double tolerance) {
                                             text(tolerance)};
 }
 
-/// Of a blend f1, f2 with these values at 0 and 1; the sum is checked elsewhere.
+/// Checks f1 at 0 and 1; the caller checks the sum f1 + f2.
 Status check_ends(double at_zero, double at_one, double tolerance) {
   if (Status status = check_condition("f1(0) = 1", at_zero - 1, tolerance); !status.ok()) return status;
   return check_condition("f1(1) = 0", at_one, tolerance);
 }
 
-/// Finite, not too large; without leading zeros. The degree is what remains.
+/// Returns finite coefficients that are not too large, without leading zeros; their number gives the degree.
 Result<std::vector<double>> coefficients_of(std::span<const double> given, std::size_t a) {
   for (std::size_t i = 0; i < given.size(); ++i) {
     const auto bad = [&](StatusCode code, const std::string& wanted) {
@@ -134,7 +134,7 @@ Result<Blend> Blend::polynomial(std::span<const double> first, std::span<const d
     Blend blend;
     blend.count_ = f1->size();
     std::copy(f1->begin(), f1->end(), blend.first_.begin());
-    // What the conditions were missed by is put right, so that patches meet their borders.
+    // Corrects the accepted errors of the conditions, so that patches meet their borders exactly.
     blend.first_[0] = 1;
     blend.first_[1] -= polynomial_value(blend.first(), 1);
     for (std::size_t i = 1; i < blend.count_; ++i) blend.second_[i] = -blend.first_[i];

@@ -13,7 +13,8 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The (k-1)-th derivative is continuous within the part: knots there stand at most degree + 1 - k times.
+/// Returns true if the (k-1)-th derivative is continuous within the part: the multiplicity of each knot there is at
+/// most degree + 1 - k.
 bool is_smooth(const Curve& curve, const Interval& part, int k) {
   for (const double knot : curve.knots()) {
     if (!(knot > part.from && knot < part.to)) continue;
@@ -22,14 +23,14 @@ bool is_smooth(const Curve& curve, const Interval& part, int k) {
   return true;
 }
 
-/// A vector and a bound of what rounding can have done to it.
+/// A vector and a bound of its rounding error.
 struct Rounded {
   Vec3 value;
   double error = 0;
 };
 
-/// Control points of the k-th derivative (Piegl and Tiller, The NURBS Book, eq. 3.8). Those between equal knots act
-/// nowhere. Each step rounds a point four times, and magnifies the errors of the two that it is the difference of.
+/// Returns the control points of the k-th derivative (Piegl and Tiller, The NURBS Book, eq. 3.8). Points between equal
+/// knots act nowhere. Each step rounds a point four times and magnifies the errors of the two points that it subtracts.
 std::vector<Rounded> derivative_points(const Curve& curve, int k) {
   std::vector<Rounded> points;
   for (const Vec3& point : curve.points()) points.push_back({point});
@@ -58,7 +59,7 @@ double derivative_bound(const Curve& curve, const Interval& part, int k) {
     for (std::size_t i = span - p; i + order <= span; ++i)
       bound = std::max(bound, length(points[i].value) + points[i].error);
   }
-  return bound * (1 + 0x1p-40);  // the hull's own rounding
+  return bound * (1 + 0x1p-40);  // covers the hull's own rounding
 }
 
 Status not_finite(double t) { return {StatusCode::non_finite, "the parameter is " + text(t) + ", it must be finite"}; }

@@ -18,7 +18,7 @@ Status check_count(std::size_t count_u, std::size_t count_v, std::size_t count, 
                                           std::to_string(count_v) + " " + what + ", found " + std::to_string(count)};
 }
 
-/// What both kinds ask for; an empty domain becomes that of the knots.
+/// Checks the requirements of both kinds, and sets an empty domain to that of the knots.
 Status check_polynomial(int degree_u, std::span<const double> knots_u, int degree_v, std::span<const double> knots_v,
                         std::span<const Vec3> points, std::optional<Domain>& domain) {
   if (Status status = check_degree(degree_u, "degree u"); !status.ok()) return status;
@@ -98,7 +98,7 @@ SurfaceJet evaluate_jet(const BSplineSurface& surface, double u, double v) {
   const Vec3 corner = surface.point(i0 + nearer_end(lu.degree, knot_u, u), j0 + nearer_end(lv.degree, knot_v, v));
   const WindowFrame frame(largest, largest_weight, rational ? corner : Vec3{});
 
-  // Along v on each row; then the rows' values and derivatives are windows along u.
+  // Evaluate each row along v; the rows' values and derivatives are then windows along u.
   std::array<SplineWindow, 3> across;
   for (std::size_t i = 0; i <= p; ++i) {
     SplineWindow row;

@@ -1,5 +1,5 @@
 #pragma once
-// Calls of the caller's functions.
+// Calls of functions that the caller passed in: their exceptions become errors.
 
 #include <exception>
 #include <limits>
@@ -12,8 +12,8 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// What `function` returns. What it throws becomes a Status: out_of_memory, else invalid_argument, with a message that
-/// begins with place(): "the curve at t = 0.5".
+/// Returns what `function` returns. An exception becomes a Status: out_of_memory or else invalid_argument, with a
+/// message that begins with place(), for example "the curve at t = 0.5".
 template <class Function, class Place>
 auto called(Function&& function, Place&& place) -> Result<std::invoke_result_t<Function>> {
   try {
@@ -27,13 +27,13 @@ auto called(Function&& function, Place&& place) -> Result<std::invoke_result_t<F
   }
 }
 
-/// A bound that the caller's function returns; infinity where it returns none or throws.
+/// Returns the bound that the caller's function returns; infinity if it returns none or throws.
 template <class Function>
 double bound_of(Function&& function) {
   try {
     const double bound = std::forward<Function>(function)();
     if (bound >= 0) return bound;
-  } catch (...) {  // a bound is never needed: without one a fit is sampled
+  } catch (...) {  // a bound is optional: without one a fit is sampled
   }
   return std::numeric_limits<double>::infinity();
 }

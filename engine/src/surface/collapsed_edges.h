@@ -1,5 +1,5 @@
 #pragma once
-// Which edges of a control net are points.
+// Finds the edges of a control net that are a single point.
 
 #include <span>
 
@@ -7,7 +7,7 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Those whose control points, `[i][j]`, all coincide by ==.
+/// Returns the edges whose control points, `[i][j]`, all coincide by ==.
 inline EdgeMask collapsed_edges(int degree_u, int degree_v, std::span<const Vec3> points) {
   const int m = degree_u, n = degree_v;
   const auto point = [&](int i, int j) -> const Vec3& { return points[static_cast<std::size_t>(i * (n + 1) + j)]; };

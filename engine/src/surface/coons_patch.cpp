@@ -18,7 +18,7 @@ std::array<const BorderCurve*, 4> all_of(const CoonsBorders& b) { return {&b.c1,
 
 std::string text_of(const Vec3& p) { return "(" + text(p.x) + ", " + text(p.y) + ", " + text(p.z) + ")"; }
 
-/// Where the four curves end: [border][end].
+/// The ends of the four curves: [border][end].
 using Ends = std::array<std::array<Vec3, 2>, 4>;
 
 Result<Ends> ends_of(const CoonsBorders& borders) {
@@ -35,7 +35,7 @@ Result<Ends> ends_of(const CoonsBorders& borders) {
   return ends;
 }
 
-/// C_b and D_a meet at the corner r(u_a, v_b).
+/// Checks that C_b and D_a meet at the corner r(u_a, v_b).
 Status check_closed(const Ends& ends, double share) {
   if (!(share >= 0 && std::isfinite(share)))
     return {StatusCode::invalid_argument,
@@ -60,7 +60,8 @@ Status check_closed(const Ends& ends, double share) {
   return {};
 }
 
-/// By the surface's own parameter: the chain rule over an interval of this length.
+/// Turns derivatives by the local parameter into those by the surface's: the chain rule over an interval of this
+/// length.
 Blend::Jet over(Blend::Jet blend, double length) {
   for (std::size_t a = 0; a < 2; ++a) {
     blend[1][a] /= length;
@@ -72,7 +73,7 @@ Blend::Jet over(Blend::Jet blend, double length) {
 /// Position, first and second derivative.
 using Jet = std::array<Vec3, 3>;
 
-/// D_a - r_a0 g1 - r_a1 g2: what f_a adds to the surface between C1 and C2.
+/// Returns D_a - r_a0 g1 - r_a1 g2, which f_a adds to the surface between C1 and C2.
 Jet correction(const Jet& d, const Vec3& r_a0, const Vec3& r_a1, const Blend::Jet& g) {
   Jet result;
   for (std::size_t k = 0; k < 3; ++k) result[k] = d[k] - (g[k][0] * r_a0 + g[k][1] * r_a1);

@@ -22,7 +22,7 @@ Status check_size(int degree, std::size_t points, std::size_t knots) {
                                           " need " + std::to_string(wanted) + " knots, found " + std::to_string(knots)};
 }
 
-/// What both kinds ask for; an empty domain becomes that of the knots.
+/// Checks the requirements of both kinds, and sets an empty domain to that of the knots.
 Status check_b_spline(int degree, std::span<const Vec3> points, std::span<const double> knots,
                       std::optional<Interval>& domain) {
   if (Status status = check_degree(degree, "the degree"); !status.ok()) return status;

@@ -16,7 +16,7 @@ using CurveNet = std::array<Point, max_points>;
 template <class Point>
 using SurfaceNet = std::array<Point, max_points * max_points>;
 
-/// A point of the curve of the first degree + 1 points, which are used up.
+/// Returns a point of the curve of the first degree + 1 points, and overwrites them.
 template <class Point>
 Point curve_point(int degree, CurveNet<Point>& net, double t) {
   for (std::size_t last = static_cast<std::size_t>(degree); last > 0; --last)
@@ -48,7 +48,7 @@ Point bilinear(int degree_u, int degree_v, std::span<const Point> from, double u
         const Point* p = &net[i * row + j];
         net[i * row + j] = (1 - u) * ((1 - v) * p[0] + v * p[1]) + u * ((1 - v) * p[row] + v * p[row + 1]);
       }
-  // What is left is one curve, in the direction of the higher degree.
+  // One curve remains, in the direction of the higher degree.
   const bool along_u = degree_u > degree_v;
   CurveNet<Point> left;
   const int degree = std::max(degree_u, degree_v) - steps;
@@ -56,13 +56,13 @@ Point bilinear(int degree_u, int degree_v, std::span<const Point> from, double u
   return curve_point(degree, left, along_u ? u : v);
 }
 
-/// A point and its weight, apart.
+/// A point and its weight, not multiplied.
 struct WeightedPoint {
   Vec3 point;
   double weight = 1;
 };
 
-/// Rational de Casteljau (Farin, eq. 13.5): ratios of weights, so that the points stay in the hull.
+/// Rational de Casteljau (Farin, eq. 13.5): uses ratios of weights, so that the points stay in the hull.
 WeightedPoint rational_curve_point(int degree, CurveNet<WeightedPoint>& net, double t) {
   for (std::size_t last = static_cast<std::size_t>(degree); last > 0; --last)
     for (std::size_t i = 0; i < last; ++i) {

@@ -1,6 +1,6 @@
 #pragma once
-// Derivatives of a net as Bezier patches of lower degree on its difference nets (Farin, Curves and Surfaces for CAGD,
-// 5th ed., sec. 14.5). Differences come before any sum: what is small stays accurate.
+// Derivatives of a homogeneous net as Bezier patches of lower degree on its difference nets (Farin, Curves and Surfaces
+// for CAGD, 5th ed., sec. 14.5). Differences are taken before sums, so small ones stay accurate.
 
 #include <algorithm>
 
@@ -9,7 +9,7 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// B_{i,n-k}(t) for k = 0, 1, 2: what the derivatives of order k are summed with.
+/// B_{i,n-k}(t) for k = 0, 1, 2: the factors in the sums of the derivatives of order k.
 struct LoweredBernstein {
   LoweredBernstein(int n, double t) : degree(n) {
     for (int order = 0; order < 3 && order <= n; ++order) bernstein_values(n - order, t, values[order]);
@@ -18,7 +18,7 @@ struct LoweredBernstein {
   double values[3][max_degree + 1];
 };
 
-/// The difference of order A along u and B along v at [i][j].
+/// Returns the difference of order A along u and B along v at [i][j].
 template <int A, int B>
 Homogeneous difference(const HomogeneousNet& net, int i, int j) {
   if constexpr (A > 0)
@@ -29,7 +29,8 @@ Homogeneous difference(const HomogeneousNet& net, int i, int j) {
     return net.at(i, j);
 }
 
-/// The largest component of the first differences of which difference<A, B> is made: what its rounding is relative to.
+/// Returns the scale of the rounding of difference<A, B>: the sum of the largest components of the first differences
+/// that it is made of.
 template <int A, int B>
 double spread(const HomogeneousNet& net, int i, int j) {
   if constexpr (A + B == 1)
@@ -40,13 +41,14 @@ double spread(const HomogeneousNet& net, int i, int j) {
     return spread<A, B - 1>(net, i, j + 1) + spread<A, B - 1>(net, i, j);
 }
 
-/// n (n-1) .. of K factors.
+/// Returns n (n-1) .. with K factors.
 template <int K>
 double falling_factorial(int n) {
   return K == 0 ? 1 : K == 1 ? n : n * (n - 1);
 }
 
-/// The derivative of order A in u and B in v of the four homogeneous components; zero where the degree is too low.
+/// Returns the derivative of order A in u and B in v of the four homogeneous components; zero where the degree is too
+/// low.
 template <int A, int B>
 Homogeneous derivative(const HomogeneousNet& net, const LoweredBernstein& u, const LoweredBernstein& v) {
   Homogeneous sum{0, 0, 0, 0};
@@ -58,7 +60,8 @@ Homogeneous derivative(const HomogeneousNet& net, const LoweredBernstein& u, con
   return falling_factorial<A>(u.degree) * falling_factorial<B>(v.degree) * sum;
 }
 
-/// The same sum over spreads: the rounding error of derivative<A, B> is a few units times the degrees of it.
+/// Returns the same sum over spreads. The rounding error of derivative<A, B> is at most a few units times the degrees
+/// of this sum.
 template <int A, int B>
 double derivative_magnitude(const HomogeneousNet& net, const LoweredBernstein& u, const LoweredBernstein& v) {
   double sum = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// Derivatives of a function of which only values are known.
+// Derivatives of a function of which only values are known, by finite differences.
 
 #include <algorithm>
 #include <array>
@@ -8,10 +8,10 @@
 namespace tessera::inline abi_0_1 {
 
 /// Seven parameters around t that stay within an interval, and the weights of the values there in the first and second
-/// derivative at t: those of the sextic through them (Fornberg, Generation of finite difference formulas on arbitrarily
-/// spaced grids, 1988). The step h is 2^-8 of the interval's length L. The weights sum to zero, so derivative() takes
-/// values relative to the one at t, and constants have derivative 0. With F a bound of |f| near t and F_k one of its
-/// k-th derivative:
+/// derivative at t. The weights are those of the sextic through the values (Fornberg, Generation of finite difference
+/// formulas on arbitrarily spaced grids, 1988), with a step h of 2^-8 of the interval's length L. They sum to zero, so
+/// derivative() takes values relative to the one at t, and constants have derivative 0. With F a bound of |f| near t
+/// and F_k a bound of its k-th derivative:
 ///   |error of f'| <= h^6 F_7 / 140 + 2^-42 F / L,  |error of f''| <= h^6 F_8 / 560 + 2^-33 F / L^2;
 /// next to the ends, where t is not the middle parameter,
 ///   |error of f'| <= h^6 F_7 / 7 + 2^-39 F / L,    |error of f''| <= 0.7 h^5 F_7 + 2^-29 F / L^2.
@@ -22,7 +22,7 @@ struct DifferenceStencil {
   DifferenceStencil(double t, double from, double to) {
     const double step = 0x1p-8 * (to - from);
     const double start = std::clamp(t - 3 * step, from, to - 6 * step);
-    std::array<double, size> offset;  // in steps from t, as the parameters came out rounded
+    std::array<double, size> offset;  // in steps from t, from the rounded parameters
     for (std::size_t k = 0; k < size; ++k) {
       at[k] = std::min(start + static_cast<double>(k) * step, to);
       offset[k] = (at[k] - t) / step;
@@ -30,7 +30,7 @@ struct DifferenceStencil {
     for (std::size_t k = 0; k < size; ++k) set_weights(k, offset, step);
   }
 
-  /// sum_k weights[k] (values[k] - value), value being the one at t; T is double or Vec3.
+  /// Returns sum_k weights[k] (values[k] - value), where `value` is the one at t; T is double or Vec3.
   template <class T>
   static T derivative(const std::array<double, size>& weights, const std::array<T, size>& values, const T& value) {
     T sum{};
@@ -39,7 +39,7 @@ struct DifferenceStencil {
   }
 
  private:
-  /// From the Lagrange polynomial of parameter k, prod_{j != k} (x - x_j) / (x_k - x_j): its coefficients of x and x^2.
+  /// Sets weight k from the coefficients of x and x^2 of its Lagrange polynomial prod_{j != k} (x - x_j) / (x_k - x_j).
   void set_weights(std::size_t k, const std::array<double, size>& offset, double step) {
     std::array<double, 3> c{1, 0, 0};
     double denominator = 1;

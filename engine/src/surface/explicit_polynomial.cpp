@@ -41,10 +41,10 @@ Status check_interval(const char* direction, double from, double to) {
                                             " is empty or reversed"};
 }
 
-/// p(t), p'(t) and p''(t)/2.
+/// The values p(t), p'(t) and p''(t)/2.
 using Taylor = std::array<DoubleDouble, 3>;
 
-/// One step of Horner's scheme for value and derivatives: from p to p t + a, where a is itself a value.
+/// Takes one step of Horner's scheme for value and derivatives, from p to p t + a, where a is itself a value.
 void horner_step(Taylor& p, double t, const DoubleDouble& a) {
   p[2] = p[2] * t + p[1];
   p[1] = p[1] * t + p[0];

@@ -14,7 +14,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// One positive factor a span, the first 1.
+/// Checks that there is one positive factor per span, the first 1.
 Status check_factors(std::span<const double> factors, std::size_t spans, const std::string& name) {
   if (factors.size() != spans)
     return {StatusCode::count_mismatch, "a network with " + std::to_string(spans + 1) +
@@ -32,7 +32,8 @@ Status check_factors(std::span<const double> factors, std::size_t spans, const s
   return {};
 }
 
-/// 0, 1, .. with the spacings h_i = k_i h_{i-1}; a spacing that is lost beside the knots before it is an error.
+/// Returns the knots 0, 1, .. with the spacings h_i = k_i h_{i-1}. Errors: a spacing that rounding loses beside the
+/// knots before it.
 Result<std::vector<double>> knots_of(std::span<const double> factors, const std::string& name) {
   std::vector<double> knots{0};
   double spacing = 1;
@@ -56,13 +57,13 @@ std::vector<double> factors_of(std::span<const double> knots) {
   return factors;
 }
 
-/// h_{i-1}, and at the first knot h_0.
+/// Returns h_{i-1}, and h_0 at the first knot.
 double spacing_before(std::span<const double> knots, std::size_t i) {
   const std::size_t end = std::max<std::size_t>(i, 1);
   return knots[end] - knots[end - 1];
 }
 
-/// The span that holds t, from the right; the first or last one outside.
+/// Returns the span that holds t: at a knot the one on its right, outside the first or last one.
 std::size_t span_at(std::span<const double> knots, double t) {
   const auto above = std::upper_bound(knots.begin() + 1, knots.end() - 1, t);
   return static_cast<std::size_t>(above - knots.begin()) - 1;
@@ -74,7 +75,7 @@ Status check_nodes(std::size_t count_u, std::size_t count_v, std::span<const Her
   const std::string shape = std::to_string(count_u) + " x " + std::to_string(count_v) + " nodes";
   if (count_u < 2 || count_v < 2)
     return {StatusCode::invalid_argument, "a network has at least 2 x 2 nodes, not " + shape};
-  if (nodes.size() / count_u != count_v || nodes.size() % count_u != 0)  // no product that could overflow
+  if (nodes.size() / count_u != count_v || nodes.size() % count_u != 0)  // division: a product could overflow
     return {StatusCode::count_mismatch, "the network has " + shape + ", found " + std::to_string(nodes.size())};
   for (std::size_t k = 0; k < nodes.size(); ++k)
     if (!is_finite(nodes[k].position) || !is_finite(nodes[k].du) || !is_finite(nodes[k].dv) || !is_finite(nodes[k].duv))

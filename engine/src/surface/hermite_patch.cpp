@@ -19,14 +19,14 @@ using Matrix4 = double[4][4];
 
 constexpr std::size_t at(int i, int j) { return static_cast<std::size_t>(4 * i + j); }
 
-/// The place in order by_end of each row and column in order by_kind.
+/// The index in order by_end of each row and column in order by_kind.
 constexpr int by_kind_order[4] = {0, 3, 1, 2};
 
-/// Power coefficients of H0 .. H3, one function a column; and its inverse.
+/// Power coefficients of H0 .. H3, one function per column, and the inverse of this matrix.
 constexpr Matrix4 power_of_hermite = {{1, 0, 0, 0}, {0, 1, 0, 0}, {-3, -2, -1, 3}, {2, 1, 1, -2}};
 constexpr Matrix4 hermite_of_power = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 1, 2, 3}, {1, 1, 1, 1}};
 
-/// M G M^T.
+/// Returns M G M^T.
 Grid transformed(const Matrix4& m, const Grid& g) {
   Grid along, result;
   for (int i = 0; i < 4; ++i)
@@ -40,7 +40,7 @@ Grid transformed(const Matrix4& m, const Grid& g) {
 
 bool is_tangent(int row) { return row == 1 || row == 2; }
 
-/// Tangents along u times `along_u`, along v times `along_v`.
+/// Scales tangents along u by `along_u` and along v by `along_v`.
 Grid scaled(const Grid& g, double along_u, double along_v) {
   Grid result;
   for (int i = 0; i < 4; ++i)
@@ -59,7 +59,7 @@ Status check_count(std::size_t count, const char* what) {
           std::string("a bicubic patch has 4 x 4 ") + what + ", found " + std::to_string(count)};
 }
 
-/// The four parameters of a direction by the local parameter; finite and distinct.
+/// Returns the four parameters of a direction as local parameters, which must be finite and distinct.
 Result<std::array<double, 4>> local_parameters(std::span<const double> from, double start, double end,
                                                const char* name) {
   if (from.size() != 4)
@@ -82,8 +82,8 @@ Result<std::array<double, 4>> local_parameters(std::span<const double> from, dou
   return local;
 }
 
-/// Power coefficients of the cubic through values[0], values[step], .. at four parameters, in place: Newton's divided
-/// differences, then to powers (Björck and Pereyra, Solution of Vandermonde systems of equations, 1970).
+/// Computes in place the power coefficients of the cubic through values[0], values[step], .. at four parameters:
+/// Newton's divided differences, then powers (Björck and Pereyra, Solution of Vandermonde systems of equations, 1970).
 void solve_vandermonde(const std::array<double, 4>& t, Vec3* values, std::size_t step) {
   for (std::size_t order = 0; order < 3; ++order)
     for (std::size_t k = 3; k > order; --k)
@@ -154,7 +154,7 @@ Result<HermitePatch> HermitePatch::adini(const OpenCorners& corners, const Domai
     const Vec3 mixed = (corners[3].position - corners[1].position) - (corners[2].position - corners[0].position);
     Corners closed;
     for (std::size_t k = 0; k < 4; ++k) {
-      const std::size_t column = k & 2, row = k & 1;  // u = const, v = const
+      const std::size_t column = k & 2, row = k & 1;  // corners with the same u, and with the same v
       const Vec3 along_v = over_v * (corners[column + 1].du - corners[column].du);
       const Vec3 along_u = over_u * (corners[2 + row].dv - corners[row].dv);
       closed[k] = {corners[k].position, corners[k].du, corners[k].dv, along_v + along_u - (over_u * over_v) * mixed};
@@ -198,7 +198,7 @@ Result<HermitePatch> HermitePatch::through_points(std::span<const Vec3> points, 
   });
 }
 
-// The corners' derivatives are all that a bicubic has; those of degree below 3 are bicubics too.
+// The corners' derivatives determine a bicubic; patches of degree below 3 are bicubics too.
 Result<HermitePatch> HermitePatch::from_bezier(const BezierPatch& patch, const Domain& domain) {
   return guarded([&]() -> Result<HermitePatch> {
     if (patch.is_rational()) return Status(StatusCode::unsupported, "a rational patch has no bicubic Hermite form");

@@ -14,7 +14,7 @@ struct Nodes {
   std::span<const HermiteNode> nodes;
 
   const HermiteNode& at(std::size_t i, std::size_t j) const { return nodes[i * v.size() + j]; }
-  /// P(i1,j1) - P(i0,j1) - P(i1,j0) + P(i0,j0) over the area.
+  /// Returns (P(i1,j1) - P(i0,j1) - P(i1,j0) + P(i0,j0)) / area.
   Vec3 mixed_difference(std::size_t i0, std::size_t i1, std::size_t j0, std::size_t j1) const {
     const Vec3 high = at(i1, j1).position - at(i0, j1).position, low = at(i1, j0).position - at(i0, j0).position;
     return (1 / (v[j1] - v[j0])) * ((1 / (u[i1] - u[i0])) * (high - low));
@@ -28,7 +28,7 @@ Vec3 adini_twist(const Nodes& n, std::size_t i, std::size_t j) {
          (1 / (n.v[j1] - n.v[j0])) * (n.at(i, j1).du - n.at(i, j0).du) - n.mixed_difference(i0, i1, j0, j1);
 }
 
-/// The two spans whose slopes give the derivative at a node, by the parabola through three nodes.
+/// The two spans whose slopes give the derivative at a node by the parabola through three nodes, and their weights.
 struct BesselWeights {
   BesselWeights(std::span<const double> knots, std::size_t i) {
     const std::size_t inner = std::clamp<std::size_t>(i, 1, knots.size() - 2);
@@ -38,7 +38,7 @@ struct BesselWeights {
     weight[0] = low;
     weight[1] = i < inner ? -a : i > inner ? 2 - a : a;
   }
-  std::size_t span;  ///< the first one
+  std::size_t span;  ///< index of the first one
   double weight[2];
 };
 

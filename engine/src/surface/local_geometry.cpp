@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-// do Carmo, Differential Geometry of Curves and Surfaces, sec. 3.3. With r_u = a e1 and r_v = b e1 + c e2 in an
-// orthonormal basis e1, e2 of the tangent plane, the second form in it is S = J^-T II J^-1, J = [[a, b], [0, c]].
+// With r_u = a e1 and r_v = b e1 + c e2 in an orthonormal basis e1, e2 of the tangent plane, the second form in it is S
+// = J^-T II J^-1, J = [[a, b], [0, c]] (do Carmo, Differential Geometry of Curves and Surfaces, sec. 3.3).
 
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// r_u = a e1, r_v = b e1 + c e2.
+/// The basis with r_u = a e1, r_v = b e1 + c e2.
 struct TangentBasis {
   Vec3 e1, e2, normal;
   double a = 0, b = 0, c = 0;

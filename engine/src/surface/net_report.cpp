@@ -7,8 +7,8 @@
 #include "tessera/local_geometry.h"
 #include "tessera/status.h"
 
-// With r = A / w: w^2 r_u = A_u w - A w_u, and w^2 r_uv = A_uv w - A w_uv up to multiples of r_u and r_v, which don't
-// change det(r_u, r_v, r_uv). So numerators are polynomials, and hulls of their Bernstein coefficients bound them.
+// With r = A / w: w^2 r_u = A_u w - A w_u. Up to multiples of r_u and r_v, which do not change det(r_u, r_v, r_uv), w^2
+// r_uv = A_uv w - A w_uv. So the numerators are polynomials, and the hulls of their Bernstein coefficients bound them.
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -16,7 +16,7 @@ namespace {
 using Scalars = BernsteinNet<double>;
 using Vectors = BernsteinNet<Vec3>;
 
-/// w^2 r_u, w^2 r_v, w^2 r_uv (up to r_u, r_v) of the net as scaled.
+/// Numerators of the scaled net: w^2 r_u, w^2 r_v, and w^2 r_uv up to multiples of r_u and r_v.
 struct Numerators {
   Vectors u, v, uv;
 };
@@ -56,7 +56,7 @@ void add_bounds(const BezierPatch& patch, double tolerance, NetReport& report) {
   const double volumes = largest(product(product(n.u, n.v, outer), n.uv, inner));
   const double size_u = largest(n.u), size_v = largest(n.v), size_uv = largest(n.uv);
   report.orthogonal = dots <= tolerance * size_u * size_v;
-  // A translation surface has r_uv = 0 but for rounding, which is relative to r_u and r_v.
+  // A translation surface has r_uv = 0 except for rounding, which is relative to r_u and r_v.
   report.conjugate = volumes <= tolerance * size_u * size_v * std::max({size_uv, size_u, size_v});
   report.dot_bound = dots / std::pow(min_weight, 4) * net.scale * net.scale;
   report.volume_bound = volumes / std::pow(min_weight, 6) * net.scale * net.scale * net.scale;

@@ -12,7 +12,7 @@ namespace {
 
 struct Frame {
   Vec3 origin, x, y, z;
-  /// The point at (x, y, z) of the frame.
+  /// Returns the point at (x, y, z) of the frame.
   Vec3 at(const Vec3& p) const { return origin + (p.x * x + p.y * y) + p.z * z; }
 };
 
@@ -36,7 +36,7 @@ Status check_positive(double value, const char* name) {
   return {};
 }
 
-/// The unit circle: corners of the arcs and the points between, the first again at the end; z = 0.
+/// The unit circle at z = 0: ends of the arcs and the points between; the first point is repeated at the end.
 struct UnitCircle {
   std::vector<Vec3> points;
   std::vector<double> weights, knots;
@@ -58,7 +58,7 @@ UnitCircle unit_circle(CircleArcs arcs) {
   return circle;
 }
 
-/// A profile in the frame: any points and weights, v's degree and knots.
+/// A profile in the frame, with any points and weights, and v's degree and knots.
 struct Profile {
   int degree = 1;
   std::vector<double> knots;
@@ -83,7 +83,7 @@ Result<BSplineSurface> revolve(const Profile& profile, const Frame& frame, Circl
   return BSplineSurface::rational(2, turn.knots, profile.degree, profile.knots, points, weights, domain);
 }
 
-/// Straight from (bottom, 0, 0) to (top, 0, height).
+/// Revolves the straight line from (bottom, 0, 0) to (top, 0, height).
 Result<BSplineSurface> revolve_line(const Axis& axis, double bottom, double top, double height, CircleArcs arcs) {
   const Result<Frame> frame = frame_of(axis);
   if (!frame) return frame.status();
@@ -156,7 +156,7 @@ Result<BSplineSurface> nurbs_cylinder(const Axis& axis, double radius, double he
 
 Result<BSplineSurface> nurbs_cone(const Axis& axis, double bottom, double top, double height, CircleArcs arcs) {
   return guarded([&]() -> Result<BSplineSurface> {
-    // An apex has no radius; what is not one must be positive.
+    // A radius of 0 at one end is an apex; every other radius must be positive.
     if (bottom != 0 || top == 0)
       if (Status status = check_positive(bottom, "the bottom radius"); !status.ok()) return status;
     if (top != 0)

@@ -29,7 +29,7 @@ Status check_jet(const CurveJet& jet, double t) {
   return {};
 }
 
-/// By the values at parameters around t.
+/// Estimates the jet from the values at parameters around t.
 Result<CurveJet> jet_by_differences(const ParametricCurve& curve, double t) {
   const DifferenceStencil stencil(t, curve.domain().from, curve.domain().to);
   const auto middle = curve.position(t);

@@ -20,7 +20,7 @@ auto place_at(double u, double v) {
 
 using Points = std::array<Vec3, DifferenceStencil::size>;
 
-/// At (u[k], v), or (u, v[k]).
+/// Returns the points at (u[k], v) or (u, v[k]).
 template <class Parameters>
 Result<Points> points_along(const ParametricSurface& surface, const Parameters& parameters) {
   Points points;
@@ -111,7 +111,7 @@ std::array<double, 2> ParametricSurface::derivative_bounds(const Domain& part, i
   try {
     const auto [along_u, along_v] = data_->functions.derivative_bounds(part, k);
     return {bound_or_infinity(along_u), bound_or_infinity(along_v)};
-  } catch (...) {  // a bound is never needed: without one a fit is sampled
+  } catch (...) {  // a bound is optional: without one a fit is sampled
     return {none, none};
   }
 }

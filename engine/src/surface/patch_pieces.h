@@ -1,5 +1,5 @@
 #pragma once
-// The patches of one surface, with all their points in one array: one allocation instead of one a patch.
+// The patches of one surface with all points in one array: one allocation in total instead of one per patch.
 
 #include <algorithm>
 #include <cassert>
@@ -10,8 +10,9 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Filled patch by patch, from any number of threads, then taken. What is written must be what BezierPatch::polynomial
-/// and rational accept; weights are kept even where those of a patch are all equal, for rationality is the surface's own.
+/// Patches that are filled one by one, from any number of threads, and then taken. Points and weights must be valid for
+/// BezierPatch::polynomial or rational. A patch keeps its weights even if they are all equal, because rationality is a
+/// property of the surface.
 class PatchPieces {
  public:
   PatchPieces(int degree_u, int degree_v, std::size_t count, bool rational)
@@ -27,7 +28,7 @@ class PatchPieces {
   Vec3* points(std::size_t patch) { return &points_[patch * size_]; }
   double* weights(std::size_t patch) { return &weights_[patch * size_]; }
 
-  /// All of them, in order.
+  /// Returns all patches, in order.
   std::vector<BezierPatch> take() {
     std::vector<BezierPatch> patches;
     patches.reserve(count_);
@@ -35,27 +36,27 @@ class PatchPieces {
     for (std::size_t k = 0; k < count_; ++k) patches.push_back(patch(k, handles.take()));
     return patches;
   }
-  /// One patch of these; no weights: polynomial.
+  /// Makes one patch with memory of its own; without weights it is polynomial.
   static BezierPatch single(int degree_u, int degree_v, std::span<const Vec3> points, std::span<const double> weights) {
     PatchPieces piece(degree_u, degree_v, 1, !weights.empty());
     std::copy(points.begin(), points.end(), piece.points_);
     std::copy(weights.begin(), weights.end(), piece.weights_);
     return piece.patch(0, std::move(piece.memory_));
   }
-  /// Gives a patch memory of its own, unless it has that, so that overwrite() changes no other.
+  /// Gives a patch memory of its own, unless it has it already, so that overwrite() changes no other patch.
   static void make_sole(BezierPatch& patch) {
     if (!patch.memory_.sole()) patch = single(patch.degree_u(), patch.degree_v(), patch.points(), patch.weights());
   }
-  /// The points of a patch that has memory of its own, to be written: finite ones.
+  /// Returns the writable points of a patch that has memory of its own. They must stay finite.
   static Vec3* sole_points(const BezierPatch& patch) {
     assert(patch.memory_.sole());
     return const_cast<Vec3*>(patch.points_);
   }
-  /// New control points for such a patch: as many as before, finite.
+  /// Replaces the control points of such a patch: as many as before, finite.
   static void overwrite(BezierPatch& patch, const Vec3* points) {
     std::copy_n(points, patch.count(), sole_points(patch));
   }
-  /// Ends what patches hold, all pieces of a surface at once; they can then only be destroyed.
+  /// Releases the memory of all patches of a surface at once. Afterwards they can only be destroyed.
   static void release(std::span<BezierPatch> patches) {
     SharedMemory::Sink sink;
     for (BezierPatch& patch : patches) sink.take(patch.memory_);

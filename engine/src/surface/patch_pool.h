@@ -1,5 +1,5 @@
 #pragma once
-// Bezier patches that share memory, of whatever degrees they are: a few allocations instead of one a patch.
+// Bezier patches of any degrees that share memory: a few allocations instead of one per patch.
 
 #include <algorithm>
 #include <cstddef>
@@ -9,10 +9,10 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Where the patches of a file keep their points. Memory lives as long as a patch that has points in it.
+/// The memory for the points of a file's patches. A block lives as long as a patch that has points in it.
 class PatchPool {
  public:
-  /// The same patch, its numbers in the pool.
+  /// Returns the patch with its numbers in the pool.
   BezierPatch placed(const BezierPatch& patch) {
     const auto points = patch.points();
     const auto weights = patch.weights();
@@ -25,7 +25,7 @@ class PatchPool {
   }
 
  private:
-  /// What may be left over at the end is small beside a file that fills it.
+  /// Limits the unused rest of the last block, which is small beside a file that fills it.
   static constexpr std::size_t largest = 48 * 1024;
 
   void reserve(std::size_t bytes) {

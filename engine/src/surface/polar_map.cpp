@@ -11,7 +11,7 @@ namespace {
 
 constexpr double full_turn = 2 * std::numbers::pi;
 
-/// cos and sin, the end of the turn being its start.
+/// Returns cos and sin; a full turn gives the same as 0.
 std::array<double, 2> direction(double theta) {
   if (theta == full_turn) theta = 0;
   return {std::cos(theta), std::sin(theta)};
@@ -19,10 +19,15 @@ std::array<double, 2> direction(double theta) {
 
 }  // namespace
 
-// Why the points stay within. With e = 2^-53: cos and sin are right to 1.1 e, the two products to e each, the sum with
-// the centre to e (|x0| + R), the caller's x - x0 to e again, and the squares, sums and differences of
-// R R - dx dx - dy dy to 3 e of R R together, which counts half for the radius. So the point's distance comes out at
-// most R s (1 + e (1.1 + 2 + 1.4 + 1 + 1.5)) + e (|x0| + |y0|) = R s (1 + 7 e) + e (|x0| + |y0|).
+// The points stay within the disc. With e = 2^-53 the relative errors of a point's distance from the centre are:
+// 1. cos and sin: 1.1 e.
+// 2. Two products: e each.
+// 3. Sum with the centre: e (|x0| + R), in both coordinates together 1.4 e of R.
+// 4. The caller's x - x0: e again.
+// 5. The squares, sums and differences of R R - dx dx - dy dy: 3 e of R R together, which counts half for the radius.
+//
+// The distance is therefore at most
+//   R s (1 + e (1.1 + 2 + 1.4 + 1 + 1.5)) + e (|x0| + |y0|) = R s (1 + 7 e) + e (|x0| + |y0|).
 Result<PolarMap> PolarMap::make(const Disc& disc) {
   return guarded([&]() -> Result<PolarMap> {
     const double size = std::abs(disc.x) + std::abs(disc.y) + disc.radius;

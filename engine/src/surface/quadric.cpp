@@ -11,13 +11,14 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-// Principal axes: the quadratic part by its eigenvectors, then squares completed along those whose eigenvalue is not 0
-// (any text on analytic geometry; Farin and Hansford, Practical Linear Algebra, on quadratic forms).
+// Reduction to principal axes: the quadratic part by its eigenvectors, then squares completed along the axes whose
+// eigenvalue is not 0 (any text on analytic geometry; Farin and Hansford, Practical Linear Algebra, on quadratic
+// forms).
 
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// One principal axis: square lambda x^2 and linear term 2 slope x along it.
+/// One principal axis, with the square lambda x^2 and the linear term 2 slope x along it.
 struct PrincipalAxis {
   Vec3 direction;
   double lambda = 0, slope = 0;
@@ -51,7 +52,7 @@ PrincipalForm principal_form(const QuadricCoefficients& q, const QuadricOptions&
   const Vec3 linear{q.g, q.h, q.j};
   const double size = std::max({std::abs(eigen.values[0]), std::abs(eigen.values[1]), std::abs(eigen.values[2])});
   const double slope = length(linear), constant = std::abs(q.k);
-  // At its own length the quadratic part is the largest, if there is one.
+  // At this length the quadratic part, if there is one, is the largest.
   const double own_length = size > 0                    ? std::max(slope / size, std::sqrt(constant / size))
                             : slope > 0 && constant > 0 ? constant / slope
                                                         : 1;
@@ -106,8 +107,8 @@ QuadricKind classify(const PrincipalForm& form) {
   }
 }
 
-/// Puts positive squares first, then negative ones, then null directions; of such orders the one nearest to x, y, z.
-/// Returns how near: the sum of the axes' own components.
+/// Orders positive squares first, then negative ones, then null directions; among such orders it takes the one nearest
+/// to x, y, z. Returns how near it is: the sum of the axes' own components.
 double arrange(std::array<PrincipalAxis, 3>& axes) {
   const auto rank = [](const PrincipalAxis& axis) { return axis.sign() > 0 ? 0 : axis.sign() < 0 ? 1 : 2; };
   std::array<std::size_t, 3> order{0, 1, 2}, best{};
@@ -125,8 +126,8 @@ double arrange(std::array<PrincipalAxis, 3>& axes) {
   return highest;
 }
 
-/// Turns the signs so that no more squares are negative than positive and the kind's equation is met, and arranges the
-/// axes.
+/// Chooses the signs so that at most as many squares are negative as positive and the kind's equation holds, and
+/// arranges the axes.
 void make_canonical(PrincipalForm& form) {
   if (form.negative > form.positive) negate(form);
   PrincipalForm other = form;
@@ -141,19 +142,19 @@ void make_canonical(PrincipalForm& form) {
   if (turn) form = other;
 }
 
-/// a or -a: the one whose given component is positive, or if that is 0 its first other one.
+/// Returns a or -a: the one whose given component is positive or, if that is 0, its first nonzero one.
 Vec3 oriented(const Vec3& a, double component) {
   const double decisive = component != 0 ? component : a.x != 0 ? a.x : a.y != 0 ? a.y : a.z;
   return decisive < 0 ? -a : a;
 }
 
-/// A unit vector at right angles to `axis`, as near to z as can be (to y where axis lies along z).
+/// Returns a unit vector at right angles to `axis`, as near to z as possible (to y if the axis is nearly z).
 Vec3 beside(const Vec3& axis) {
   const Vec3 wanted = std::abs(axis.z) < 0.9 ? Vec3{0, 0, 1} : Vec3{0, 1, 0};
   return normalized(wanted - dot(wanted, axis) * axis);
 }
 
-/// The frame, of axes already arranged. Where the linear part decides, the third axis points where the surface opens.
+/// Returns the frame of arranged axes. Where the linear part decides, the third axis points where the surface opens.
 QuadricFrame frame_of(QuadricKind kind, const PrincipalForm& form) {
   QuadricFrame frame;
   Vec3 x = form.axes[0].direction, z = form.axes[2].direction;
@@ -229,7 +230,8 @@ Status check(const std::array<double, 10>& coefficients, const QuadricOptions& o
   return {};
 }
 
-/// Divided by a power of two near the largest: products stay in range, and nothing rounds but what is 2^-1000 of it.
+/// Divides by a power of two near the largest coefficient. Products then stay in range, and only coefficients below
+/// 2^-1000 of the largest round.
 QuadricCoefficients scaled(const QuadricCoefficients& q, const std::array<double, 10>& list) {
   double largest = 0;
   for (const double x : list) largest = std::max(largest, std::abs(x));

@@ -38,10 +38,10 @@ Status check_range(const char* direction, Profile profile, bool latitude, double
 
 double sign_of(const QuadricPiece& piece) { return piece.sheet() == 0 ? 1 : -1; }
 
-/// t moved by a full turn or two to where the range from `from` begins.
+/// Returns t moved by whole turns to the turn that begins at `from`.
 double turned(double t, double from, double margin) { return t + 2 * pi * std::ceil((from - margin - t) / (2 * pi)); }
 
-/// The parameters of a canonical point, up to full turns of u.
+/// Returns the parameters of a canonical point, up to full turns of u.
 QuadricParameters raw_parameters(const Quadric& quadric, const Vec3& p, int sheet) {
   const double x = p.x / quadric.size().x, y = p.y / quadric.size().y, z = p.z / quadric.size().z;
   const double radius = std::hypot(x, y), angle = std::atan2(y, x);

@@ -9,10 +9,10 @@ namespace {
 
 constexpr double quarter_turn = std::numbers::pi / 2;
 
-/// cos and sin, exact at multiples of pi/2 so that poles and quadrants come out as such.
+/// Returns cos and sin, exact at multiples of pi/2 so that poles and quadrants are exact.
 std::array<double, 2> cos_sin(double t) {
   const double quarters = std::round(t / quarter_turn);
-  if (!(std::abs(quarters) < 1e9)) return {std::cos(t), std::sin(t)};  // NaN too; beyond, no double is a multiple
+  if (!(std::abs(quarters) < 1e9)) return {std::cos(t), std::sin(t)};  // NaN too; no larger double is a multiple
   if (std::abs(t - quarters * quarter_turn) > 4e-16 * std::max(1.0, std::abs(t))) return {std::cos(t), std::sin(t)};
   switch (static_cast<long>(quarters) & 3) {
     case 0:
@@ -108,7 +108,7 @@ bool is_full_turn(double from, double to) { return std::abs(to - from - 4 * quar
 SegmentedRange::SegmentedRange(Profile profile, double from, double to) : from_(from), to_(to) {
   const bool round = profile == Profile::circle;
   if (!round && profile != Profile::hyperbola) return;
-  // A range that is a whole number of arcs but for rounding is not cut once more.
+  // The margin avoids a further cut of a range that is a whole number of arcs except for rounding.
   const double widest = round ? quarter_turn * (1 + 1e-12) : 2;
   count = std::max(1, static_cast<int>(std::ceil((to - from) / widest)));
 }

@@ -1,5 +1,5 @@
 #pragma once
-// The canonical parametrisations of quadrics as products of plane curves, for the evaluator and the conversion.
+// The canonical parametrisations of quadrics as products of plane curves, for evaluation and conversion.
 
 #include <array>
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// How a canonical parameter t runs: the two functions of it that the parametrisation is made of.
+/// The two functions of a canonical parameter t that make the parametrisation.
 enum class Profile : std::uint8_t {
   circle,     ///< cos t, sin t
   hyperbola,  ///< cosh t, sinh t
@@ -18,23 +18,23 @@ enum class Profile : std::uint8_t {
 struct Profiles {
   Profile u, v;
 };
-/// Of a kind that is a surface.
+/// Returns the profiles of a kind that is a surface.
 Profiles profiles(QuadricKind kind);
 
-/// One direction's contribution: the constant 1, and the profile's two functions (or their derivatives: 0, f', g').
+/// One direction's contribution: the constant 1 and the profile's two functions, or their derivatives 0, f', g'.
 struct ProfileValue {
   double one = 1, f = 0, g = 0;
 };
-/// The order-th derivative of (1, f, g), order 0 to 2; cos and sin are exact at multiples of pi/2.
+/// Returns the order-th derivative of (1, f, g), order 0 to 2; cos and sin are exact at multiples of pi/2.
 ProfileValue profile_value(Profile profile, double t, int order = 0);
-/// The canonical point: bilinear in the two directions' values. `sign` is 1 on sheet 0, -1 on sheet 1.
+/// Returns the canonical point, bilinear in the two directions' values. `sign` is 1 on sheet 0, -1 on sheet 1.
 Vec3 canonical_point(const Quadric& quadric, double sign, const ProfileValue& u, const ProfileValue& v);
 
-/// A range of t cut into Bezier segments of equal width: their number, and where segment k begins; the ends are exact.
+/// A range of t cut into Bezier segments of equal width: their number, and where segment k begins. The ends are exact.
 struct SegmentedRange {
   SegmentedRange(Profile profile, double from, double to);
   double begin(int k) const { return k == 0 ? from_ : k == count ? to_ : from_ + (to_ - from_) * k / count; }
-  /// The segment that holds t, from the right; the first or last for t outside.
+  /// Returns the segment that holds t, at a break the one on its right; the first or last for t outside.
   int segment(double t) const;
 
   int count = 1;
@@ -42,9 +42,9 @@ struct SegmentedRange {
  private:
   double from_, to_;
 };
-/// Whether [from, to] is a full turn.
+/// Returns whether [from, to] is a full turn.
 bool is_full_turn(double from, double to);
-/// The canonical parameter at the fraction s of the Bezier segment over [from, to], and back.
+/// Convert the fraction s of the Bezier segment over [from, to] to the canonical parameter, and back.
 double profile_parameter(Profile profile, double from, double to, double s);
 double profile_fraction(Profile profile, double from, double to, double t);
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
 
-/// A sum and the sum of its terms' sizes, which its rounding is relative to.
+/// A sum and the sum of its terms' absolute values, to which its rounding is relative.
 struct Sum {
   double value = 0, size = 0;
   void add(double term) {
@@ -19,7 +19,7 @@ struct Sum {
   bool vanishes() const { return !(std::abs(value) > rounding * size); }
 };
 
-/// a t^2 + 2 b t + c along the line.
+/// The quadratic a t^2 + 2 b t + c along the ray.
 struct LineQuadratic {
   Sum a, b, c;
 };
@@ -38,13 +38,13 @@ LineQuadratic along(const Quadric::Diagonal& q, const Vec3& o, const Vec3& d) {
   return line;
 }
 
-/// b^2 - a c without cancellation of the products' rounding (Kahan).
+/// Returns b^2 - a c accurately even if the rounded products cancel (Kahan).
 double discriminant(double a, double b, double c) {
   const double product = a * c;
   return std::fma(b, b, -product) + std::fma(-a, c, product);
 }
 
-/// Roots of line in `hits`, by q = -(b + sign(b) sqrt(discriminant)), t = q/a and c/q (Numerical Recipes, sec. 5.6).
+/// Writes the roots to `hits`, by q = -(b + sign(b) sqrt(discriminant)), t = q/a and c/q (Numerical Recipes, sec. 5.6).
 void solve(const LineQuadratic& line, QuadricHits& hits) {
   const double a = line.a.value, b = line.b.value, c = line.c.value;
   if (line.a.vanishes()) {

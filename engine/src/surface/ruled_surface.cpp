@@ -8,7 +8,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// A point's parameter along the curves, and the shares of the two.
+/// A point's parameter along the curves, and the weights of the two curves.
 struct Place {
   Place(const RuledSurface& surface, double u, double v) {
     const bool along_u = surface.straight() == Direction::v;
@@ -19,7 +19,7 @@ struct Place {
     first = (to - across) / length;
     second = (across - from) / length;
   }
-  /// Exact at the ends.
+  /// Interpolates, exactly at the ends.
   Vec3 between(const Vec3& a, const Vec3& b) const { return first * a + second * b; }
 
   double along, length, first, second;

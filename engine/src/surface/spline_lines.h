@@ -1,5 +1,5 @@
 #pragma once
-// The directions of curves and surfaces as knot lines.
+// Conversions from the directions of curves and surfaces to knot lines.
 
 #include "basis/knots.h"
 #include "tessera/curve.h"

@@ -1,5 +1,5 @@
 #pragma once
-// De Boor's algorithm on the points that act on one span.
+// De Boor's algorithm on the degree + 1 homogeneous points that act on one span, for curves and B-spline surfaces.
 
 #include <algorithm>
 #include <array>
@@ -12,14 +12,14 @@ namespace tessera::inline abi_0_1 {
 /// The degree + 1 points k-p .. k that act on the span k.
 using SplineWindow = std::array<Homogeneous, max_degree + 1>;
 
-/// Where the points of a window are homogeneous: points and weights are divided by powers of two that bring the largest
-/// near 1, so that nothing over- or underflows; rational windows are relative to one of their points, which shrinks
-/// what the rounding of the weights does, and makes that point evaluate exactly.
+/// The scale and origin of a window's homogeneous points. Points and weights are divided by powers of two that bring
+/// the largest near 1, so that nothing overflows or underflows. Rational windows are relative to one of their points,
+/// which reduces the effect of the weights' rounding and makes that point evaluate exactly.
 struct WindowFrame {
   double scale = 1, weight_factor = 1;
   Vec3 scaled_origin;
 
-  /// `largest_weight` 0: polynomial, all weights are 1.
+  /// `largest_weight` is 0 for a polynomial; all weights are then 1.
   WindowFrame(double largest, double largest_weight, const Vec3& origin)
       : scale(power_of_two_near(largest)),
         weight_factor(1 / power_of_two_near(largest_weight)),
@@ -33,7 +33,7 @@ struct WindowFrame {
   Vec3 position(const Vec3& p) const { return scale * (p + scaled_origin); }
   Vec3 vector(const Vec3& p) const { return scale * p; }
 };
-/// The end of the window, 0 or degree, that lies on t's side of the span.
+/// Returns the end of the window, 0 or degree, that lies on t's side of the span.
 inline std::size_t nearer_end(int degree, const double* span, double t) {
   return t - span[0] > span[1] - t ? static_cast<std::size_t>(degree) : 0;
 }
@@ -41,8 +41,8 @@ inline std::size_t nearer_end(int degree, const double* span, double t) {
 /// Value, first and second derivative.
 using SplineJet = std::array<Homogeneous, 3>;
 
-/// The curve at t; `span` points at the knot u_k. Each step is an affine combination, convex for t within the span (de
-/// Boor, A Practical Guide to Splines, ch. X; The NURBS Book, sec. 5.2).
+/// Returns the curve at t; `span` points at the knot u_k. Each step is an affine combination, convex for t within the
+/// span (de Boor, A Practical Guide to Splines, ch. X; The NURBS Book, sec. 5.2).
 inline Homogeneous de_boor(int degree, const double* span, double t, SplineWindow points) {
   for (int r = 1; r <= degree; ++r)
     for (int j = degree; j >= r; --j) {
@@ -53,8 +53,8 @@ inline Homogeneous de_boor(int degree, const double* span, double t, SplineWindo
   return points[static_cast<std::size_t>(degree)];
 }
 
-/// The points of the derivative, one fewer: p (P_{i+1} - P_i) / (u_{i+p+1} - u_{i+1}) (The NURBS Book, eq. 3.4). Of
-/// degree - 1 on the same knots, and the same span.
+/// Returns the points of the derivative, one fewer: p (P_{i+1} - P_i) / (u_{i+p+1} - u_{i+1}) (The NURBS Book, eq.
+/// 3.4). The derivative has degree - 1, the same knots and the same span.
 inline SplineWindow derivative_points(int degree, const double* span, const SplineWindow& points) {
   SplineWindow result{};
   for (int j = 0; j < degree; ++j) {

@@ -32,7 +32,7 @@ struct Blending {
   std::array<Real, max_degree + 1> values[3];
 };
 
-/// The derivative of order a in s and b in t, times `factor`.
+/// Returns the derivative of order a in s and b in t, times `factor`.
 Vec3 blended(const TensorPatch& patch, const Blending& f, const Blending& g, int a, int b, Real factor) {
   Real x = 0, y = 0, z = 0;
   for (int i = 0; i <= patch.basis_u().degree(); ++i)

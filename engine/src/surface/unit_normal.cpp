@@ -9,12 +9,12 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// Parameters within this of an end are seen from inside the patch alone.
+/// Parameters within this distance of an end are seen only from inside the patch.
 constexpr double border_width = 0x1p-20;
-/// Limits from two sides that differ by less are one.
+/// Limits from two sides are equal if they differ by less.
 constexpr double same_direction = 1e-6;
 
-/// A vector and a bound of what rounding can have done to it.
+/// A vector and a bound of its rounding error.
 struct Bounded {
   Vec3 value;
   double error = 0;
@@ -33,7 +33,7 @@ Bounded bounded_derivative(const HomogeneousNet& net, const LoweredBernstein& u,
 }
 
 /// Moves a rational net so that the point at the parameters is zero. Then r vanishes from the quotient rule, and
-/// numerators alone give the direction of r_u x r_v, and where that vanishes those of D_u and D_v.
+/// numerators are enough for the direction of r_u x r_v and, where that vanishes, the directions of D_u and D_v.
 void move_to_point(HomogeneousNet& net, const LoweredBernstein& u, const LoweredBernstein& v) {
   const Vec3 r = derivative<0, 0>(net, u, v).project();
   for (std::size_t k = 0; k < net.size(); ++k) {
@@ -42,7 +42,7 @@ void move_to_point(HomogeneousNet& net, const LoweredBernstein& u, const Lowered
   }
 }
 
-/// The one direction that all views from inside the patch agree on.
+/// The one direction on which all views from inside the patch agree.
 class CommonLimit {
  public:
   void see(const Bounded& first_order, double parameter) {

@@ -9,7 +9,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// Weights below this share of the largest one underflow in products and ratios of them.
+/// Weights below this share of the largest one underflow in their products and ratios.
 constexpr double smallest_weight_ratio = 1e-100;
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-// What every kind of surface and curve asks of its numbers, with messages that name the offending element.
+// Checks of numbers for every kind of surface and curve, with messages that name the offending element.
 
 #include <span>
 #include <string>
@@ -10,18 +10,19 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// How messages name element k of a list: "[i][j]".
+/// Returns how messages name element k of a list: "[i][j]".
 using Place = FunctionRef<std::string(std::size_t k)>;
-/// "[k / row][k % row]".
+/// Returns "[k / row][k % row]".
 std::string place_in_rows(std::size_t k, std::size_t row);
 
-/// 1 to max_degree. `name` is "degree u" or the like. Errors: unsupported_degree.
+/// Checks that the degree is 1 to max_degree. `name` is "degree u" or the like. Errors: unsupported_degree.
 Status check_degree(int degree, const char* name);
-/// Errors: non_finite (index = the point).
+/// Checks that all points are finite. Errors: non_finite (index = the point).
 Status check_points(std::span<const Vec3> points, Place place);
-/// Finite, greater than 0, at least 1e-100 of the largest. Errors: invalid_weight (index = the weight).
+/// Checks that weights are finite, above 0, and at least 1e-100 of the largest. Errors: invalid_weight (index = the
+/// weight).
 Status check_weights(std::span<const double> weights, Place place);
-/// All equal by ==: the surface is polynomial.
+/// Returns whether all weights are equal by ==, so that the surface is polynomial.
 bool all_equal(std::span<const double> weights);
 
 }  // namespace tessera::inline abi_0_1

@@ -1,5 +1,5 @@
 #pragma once
-// What unit_chord_any.cpp has for unit_chord.cpp, of the same instruction set.
+// The kernels that unit_chord_any.cpp provides to unit_chord.cpp of the same instruction set.
 
 #include "kernel/chord/chord_kernels.h"
 #include "kernel/isa/lanes.h"

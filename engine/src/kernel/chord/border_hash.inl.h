@@ -1,8 +1,8 @@
 #pragma once
-// Hashes of the borders of a block of patches, lanes = patches: the same for both directions, and for weights that
-// differ by a power of two (tess/edges/shared_edges.h). A sum over the control points, each mixed with its distance to
-// the nearer end, by multiplications and shifts as in MurmurHash3 (Appleby 2011). And whether those with one hash are
-// the same curve.
+// Hashes and comparison of the borders of a block of patches, lanes = patches, for finding shared edges
+// (tess/edges/shared_edges.h). A hash is the same for both directions, and for weights that differ by a power of two.
+// It is a sum over the control points, each mixed with its distance to the nearer end by multiplications and shifts as
+// in MurmurHash3 (Appleby 2011). match_borders() then decides whether borders with one hash are the same curve.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/chord/chord_kernels.h, kernel/isa/lanes.h.
 
@@ -21,7 +21,7 @@ template <class L>
   return bits;
 }
 
-/// Of a rational border of `count` points: a power of two that brings the largest weight into [1/2, 1).
+/// Returns a power of two that brings the largest weight of a rational border of `count` points into [1/2, 1).
 template <class L, class Weight>
 [[gnu::always_inline]] inline typename L::Batch weight_scale(int count, const Weight& weight) {
   auto heaviest = weight(0);

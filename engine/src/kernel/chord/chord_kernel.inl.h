@@ -1,12 +1,11 @@
 #pragma once
-// Bounds on the second derivatives of polynomial patches and the rates that keep a distance
-// (tess/bounds/chord_bound.h), lanes = patches of a block. No multiply-add is fused, so that every instruction set
-// finds the same rates.
+// Bounds on the second derivatives of polynomial patches, lanes = patches of a block, for the rates that keep a
+// distance (tess/bounds/chord_bound.h). No multiply-add is fused, so that every instruction set finds the same rates.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/chord/chord_kernels.h, kernel/isa/lanes.h.
 
-/// Cuts the curve of `count` points, `step` apart, at 1/2: cut[0 .. 2 count - 2] are its lower half's points, then, from
-/// the shared one on, its upper half's.
+/// Cuts the curve of `count` points, `step` apart, at 1/2. cut[0 .. 2 count - 2] are the points of its lower half and
+/// then, from the shared one on, of its upper half.
 template <class L>
 [[gnu::always_inline]] inline void cut_curve(const typename L::Batch* points, int step, int count,
                                              typename L::Batch* cut, int cut_step) {
@@ -20,7 +19,8 @@ template <class L>
   for (int i = 1; i < count; ++i) cut[(count - 1 + i) * cut_step] = high[i];
 }
 
-/// The largest squared lengths of a net's vectors, `[component][i][j]`, rows x columns, in each quarter [2 i + j].
+/// Finds the largest squared lengths of a net's vectors, `[component][i][j]`, rows x columns, in each quarter [2 i +
+/// j].
 template <class L, int Rows, int Columns>
 [[gnu::always_inline]] inline void largest_in_quarters(const typename L::Batch* net, int rows, int columns,
                                                        typename L::Batch (&quarter)[4]) {
@@ -50,12 +50,13 @@ template <class L, int Rows, int Columns>
     }
 }
 
-/// One kind of second derivative in all pieces: the whole, the halves of u, the halves of v, the quarters.
+/// Stores one kind of second derivative in all pieces: the whole, the halves of u, the halves of v, the quarters.
 template <class L>
 [[gnu::always_inline]] inline void store_pieces(const ChordJob& job, int kind, int lane, float factor,
                                                 const typename L::Batch (&squared)[4]) {
   typename L::Batch q[4];
-  // Roundings of differences of numbers below 1, and of halving them; three components. Then of what is done here.
+  // Covers the rounding of differences of numbers below 1 and of halving them, in three components. The factor 1 +
+  // 2^-20 covers the rounding in this function.
   const float rounding = static_cast<float>(0x1p-24 * 1.7321 * (12 + 4 * (job.degree_u + job.degree_v)));
   for (int k = 0; k < 4; ++k)
     q[k] = L::broadcast(factor * static_cast<float>(1 + 0x1p-20)) * (xsimd::sqrt(squared[k]) + L::broadcast(rounding));
@@ -65,7 +66,7 @@ template <class L>
   for (int k = 0; k < 9; ++k) L::store(job.pieces + (k * 3 + kind) * block_lanes + lane, pieces[k]);
 }
 
-/// The inverse of the power of two above `size`, at least 2^-120, which goes to job.unit.
+/// Returns the inverse of the power of two above `size`, at least 2^-120, and stores that power in job.unit.
 template <class L>
 [[gnu::always_inline]] inline typename L::Batch inverse_unit(const ChordJob& job, int lane,
                                                              const typename L::Batch& size) {
@@ -81,7 +82,8 @@ template <class L>
   return L::load(inverse);
 }
 
-/// Control points in units of the power of two above the largest, which go to job.unit, so that squares stay in range.
+/// Loads control points in units of the power of two above the largest, so that squares stay in range, and stores this
+/// unit in job.unit.
 template <class L, int Degree>
 [[gnu::always_inline]] inline void scaled_net(const ChordJob& job, int lane, typename L::Batch* net) {
   using Batch = typename L::Batch;
@@ -98,7 +100,8 @@ template <class L, int Degree>
   for (int k = 0; k < 3 * points; ++k) net[k] = net[k] * scale;
 }
 
-/// Writes the hints of patches with these corners, (0, 0), (1, 0), (1, 1), (0, 1), in units of the block; after the bounds.
+/// Writes the hints of patches with the corners (0, 0), (1, 0), (1, 1), (0, 1), in units of the block. The bounds must
+/// be written before.
 template <class L, bool Rational>
 void store_hints(const ChordJob& job, int lane, const typename L::Batch (&corner)[4][3]) {
   using Batch = typename L::Batch;

@@ -1,12 +1,12 @@
 #pragma once
 // Bounds on the products of second derivatives of polynomial patches (tess/bounds/chord_bound.h), lanes = patches of a
-// block. No multiply-add is fused, as there.
+// block. No multiply-add is fused, as in chord_kernel.inl.h.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/chord/chord_kernels.h, kernel/isa/lanes.h.
 
 #include "kernel/chord/chord_kernel.inl.h"
 
-/// A net of vectors, cut at 1/2 along u, along v, both or neither: `[component][i][j]`, where the halves share points.
+/// A net of vectors `[component][i][j]`, cut at 1/2 along u, along v, both or neither; the halves share points.
 template <class L, int Rows, int Columns>
 class CutNet {
  public:
@@ -37,7 +37,7 @@ class CutNet {
   static constexpr int order = max_product_degree + 1, max_count = Rows > 0 ? Rows *Columns : order *order;
 
   int count() const { return Rows > 0 ? Rows * Columns : rows_ * columns_; }
-  /// The vectors of a half or quarter, `[component][max_count]`.
+  /// Copies the vectors of a half or quarter, `[component][max_count]`.
   void copy(int half_u, int half_v, Batch* to) const {
     for (int c = 0; c < 3; ++c)
       for (int i = 0, k = 0; i < rows_; ++i)
@@ -52,8 +52,8 @@ class CutNet {
   Batch at_[3][max_rows * max_columns];
 };
 
-/// The largest product of a vector of one net and one of another, or the largest size of such a product. Strides A and B
-/// from one component to the next; as many vectors, or fewer.
+/// Returns the largest product of a vector of one net and one of another, or with Size the largest absolute value. A
+/// and B are the strides from one component to the next; each net has at most that many vectors.
 template <class L, bool Size, int A, int B>
 [[gnu::always_inline]] inline typename L::Batch largest_product(const typename L::Batch* a, int count_a,
                                                                 const typename L::Batch* b, int count_b) {
@@ -99,7 +99,8 @@ class ChordProducts {
     write_pieces(true, true, 5, 4);
   }
 
-  /// The bound by the products over the plain one where h^2 uu = k^2 vv for the whole patch, in its roughest quarter.
+  /// Writes the bound by the products over the plain bound, in the roughest quarter, for steps with h^2 uu = k^2 vv for
+  /// the whole patch.
   void write_share() const {
     const auto [h, k] = balanced_steps();
     const Nets nets(*this, true, true);
@@ -135,7 +136,7 @@ class ChordProducts {
   struct Products {
     Batch uu_vv, uu_uv, uv_vv;
   };
-  /// Those of a half or quarter.
+  /// The vectors of a half or quarter.
   struct Vectors {
     int counts[3];
     Batch uu[3 * Uu::max_count], uv[3 * Uv::max_count], vv[3 * Vv::max_count];
@@ -174,7 +175,7 @@ class ChordProducts {
   Batch of_uv() const { return L::broadcast(static_cast<float>(m_ * n_)); }
   Batch of_vv() const { return L::broadcast(static_cast<float>(n_ * (n_ - 1))); }
 
-  /// Of `count` pieces from `first` on.
+  /// Writes `count` pieces from `first` on.
   void write_pieces(bool cut_u, bool cut_v, int first, int count) const {
     const Nets nets(*this, cut_u, cut_v);
     for (int k = 0; k < count; ++k) {
@@ -188,8 +189,8 @@ class ChordProducts {
     }
   }
 
-  /// With the rounding of both factors, as in store_pieces(), and of the sums: of vectors that the bounds, those of the net
-  /// once cut, may be exceeded by a few times.
+  /// Stores a product with the rounding of both factors, as in store_pieces(), and of the sums. The vectors in the sums
+  /// may exceed the bounds, which are those of the net after cutting, by a few times.
   void store(int piece, int which, const Batch& factor_a, int kind_a, const Batch& factor_b, int kind_b,
              const Batch& product) const {
     const Batch rounding =
@@ -206,7 +207,7 @@ class ChordProducts {
   struct Steps {
     Batch h, k;
   };
-  /// Where h^2 uu = k^2 vv for the whole patch.
+  /// Returns steps with h^2 uu = k^2 vv for the whole patch.
   Steps balanced_steps() const {
     const Batch least = L::broadcast(static_cast<float>(0x1p-40));
     const Batch uu = xsimd::max(bound(0, 0), least), vv = xsimd::max(bound(0, 2), least);

@@ -7,7 +7,7 @@
 
 #include "kernel/chord/exact_derivative.inl.h"
 
-/// One lane group of a block.
+/// The bounds of the patches in one vector of lanes.
 template <class L>
 class ExactChords {
  public:
@@ -52,18 +52,18 @@ class ExactChords {
   using Batch = typename L::Batch;
   using Net = ScaledNet<L>;
   static constexpr int max_points = max_order * max_order;
-  /// Deviations up to this share of the patch's radius pass for rounding.
+  /// Deviations up to this share of the patch's radius count as rounding.
   static constexpr double sweep_tolerance = 0x1p-30;
 
   int index(bool along_u, int i, int j) const { return along_u ? i * (n_ + 1) + j : j * (n_ + 1) + i; }
 
-  /// Finds E, rho and T with points E_i rho_j + T_j and weights a_i b_j; i along u if `along_u`. Returns how far the patch may
-  /// lie from that surface.
+  /// Finds E, rho and T with points E_i rho_j + T_j and weights a_i b_j; i runs along u if `along_u`. Returns how far
+  /// the patch may lie from that surface.
   Batch find_sweep(bool along_u) {
     const int count_i = (along_u ? m_ : n_) + 1, count_j = (along_u ? n_ : m_) + 1;
     const auto point = [&](int c, int i, int j) -> const Batch& { return point_[c][index(along_u, i, j)]; };
     const auto weight = [&](int i, int j) -> const Batch& { return weight_[index(along_u, i, j)]; };
-    // The longest row is E.
+    // E is the longest row.
     Batch longest = L::broadcast(-1);
     for (int j = 0; j < count_j; ++j) {
       Batch squared = L::broadcast(0);
@@ -96,11 +96,11 @@ class ExactChords {
         skew = xsimd::max(skew, xsimd::abs(weight(i, 0) * weight(0, j) * unit / weight(i, j) - L::broadcast(1)));
       }
     }
-    // Means by weights that differ by a share of skew differ by at most 2 skew / (1 - skew) of what lies around.
+    // Two means whose weights differ by a relative `skew` differ by at most 2 skew / (1 - skew) of the points' radius.
     return xsimd::sqrt(squared) + (L::broadcast(2.5) * skew + L::broadcast(0x1p-46)) * radius_;
   }
 
-  /// Puts the bounds of the sweep that was found last in the place of those of `where`.
+  /// Replaces the bounds of the lanes in `where` by those of the sweep that was found last.
   template <class Where>
   void bound_sweep(bool along_u, const Where& where) {
     const int count_i = (along_u ? m_ : n_) + 1, count_j = (along_u ? n_ : m_) + 1;
@@ -132,7 +132,7 @@ class ExactChords {
       const Batch along = largest_second_derivative<L>(line_, count_i - 1);
       Batch across[2] = {L::broadcast(0), L::broadcast(0)};
       for (int i = 0; i < count_i && !is_straight; ++i) {
-        // The curve that this point of E runs along.
+        // The curve along which this point of E moves.
         for (int c = 0; c < 3; ++c) {
           const Batch e = half_[c][first + i] / half_[3][first + i];
           for (int j = 0; j < count_j; ++j)
@@ -157,7 +157,7 @@ class ExactChords {
     }
   }
 
-  /// Puts bounds of any patch up to max_exact_degree, from the nets of its quarters, in the place of those of `where`.
+  /// Replaces the bounds of the lanes in `where` by those of any patch up to max_exact_degree, from its quarters' nets.
   template <class Where>
   void bound_patch(const Where& where) {
     for (int quarter = 0; quarter < 4; ++quarter) {
@@ -206,15 +206,18 @@ class ExactChords {
       for (int i = 0; i < count; ++i) (c < 3 ? line_.point[c] : line_.weight)[i] = point(c, i);
   }
 
-  /// With rounding. A coefficient of N_uu is a mean of products, at most F s omega^2, F = m (8 m - 4), of N_uv F = 8 m n, where
-  /// s and omega are the largest coordinate and weight; each of two stages sums at most t = max(m (n + 1), (m + 1) n)
-  /// products, and cuts, differences and elevations add fewer than 60 roundings: off by at most (2 t + 60) u F s omega^2 a
-  /// coordinate (Higham, Accuracy and Stability, 2nd ed., sec. 3.1), here less than 2^-44 with sqrt(3) and points up to two radii long, over w^3.
+  /// Bounds the rounding of N_uu / w^3 and N_uv / w^3, with s and omega the largest coordinate and weight.
+  /// 1. A coefficient is a mean of products, at most F s omega^2, with F = m (8 m - 4) for N_uu and F = 8 m n for N_uv.
+  /// 2. Each of two stages sums at most t = max(m (n + 1), (m + 1) n) products; cuts, differences and elevations add
+  ///    fewer than 60 roundings.
+  /// 3. So a coordinate is off by at most (2 t + 60) u F s omega^2 (Higham, Accuracy and Stability, 2nd ed., sec. 3.1).
+  /// 4. With sqrt(3) and points up to two radii long this is less than 2^-44 F s omega^2, over w^3.
   Batch rounding(int factor) const {
     const Batch ratio = heaviest_ / lightest_, spread = ratio * ratio / lightest_;
     return L::broadcast(0x1p-44 * factor) * xsimd::max(largest_, heaviest_ * radius_) * spread;
   }
-  /// Turns a bound of a quarter by its own parameters into one by the patch's, twice as long each, and adds the rounding.
+  /// Turns a bound of a quarter by its own parameters into one by the patch's, where each is twice as long, and adds
+  /// the rounding.
   Batch sure(const Batch& bound, int factor) const {
     return L::broadcast(4 * (1 + 0x1p-40)) * bound + L::broadcast(4) * rounding(factor);
   }

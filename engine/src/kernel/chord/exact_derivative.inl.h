@@ -6,8 +6,9 @@
 
 #include "kernel/chord/rational_nets.inl.h"
 
-/// A polynomial in two parameters: Bernstein coefficients times their binomials, C(m,i) C(n,j) c_ij, `[i][j]`. Products are
-/// then plain convolutions, degree elevation by one adds neighbours, and the factors cancel in quotients of equal degrees.
+/// A polynomial in two parameters as Bernstein coefficients times their binomials, C(m,i) C(n,j) c_ij, `[i][j]`.
+/// Products are then plain convolutions, degree elevation by one adds neighbours, and the factors cancel in quotients
+/// of equal degrees.
 template <class L>
 struct ScaledNet {
   using Batch = typename L::Batch;
@@ -19,7 +20,7 @@ struct ScaledNet {
   int count() const { return rows * columns; }
 };
 
-/// Adds (or, with `Minus`, subtracts) factor a b to `sum`, whose shape it has.
+/// Adds a b to `sum`, or with `Minus` subtracts it; `sum` has the shape of the product.
 template <class L, bool Minus = false>
 [[gnu::noinline]] void add_product(const ScaledNet<L>& a, const ScaledNet<L>& b, ScaledNet<L>& sum) {
   for (int i = 0; i < a.rows; ++i)
@@ -33,7 +34,7 @@ template <class L, bool Minus = false>
     }
 }
 
-/// Zeros of the shape of a product.
+/// Sets `sum` to zeros in the shape of a product.
 template <class L>
 void clear_for_product(const ScaledNet<L>& a, const ScaledNet<L>& b, ScaledNet<L>& sum) {
   sum.rows = a.rows + b.rows - 1;
@@ -61,7 +62,7 @@ void elevate(ScaledNet<L>& net, bool along_u) {
   ++net.columns;
 }
 
-/// p = (1 - t) low + t high: the two polynomials of one degree less, t being u or v.
+/// Splits p = (1 - t) low + t high into two polynomials of one degree less, where t is u or v.
 template <class L>
 void split(const ScaledNet<L>& p, bool along_u, ScaledNet<L>& low, ScaledNet<L>& high) {
   const int degree = (along_u ? p.rows : p.columns) - 1;
@@ -88,15 +89,15 @@ struct HomogeneousNet {
 ///   S_u = N / w^2, N = m (w0 P1 - w1 P0), of degree (2 m - 2, 2 n);
 ///   S_uu = N_uu / w^3, N_uu = (2 m - 2) (w0 N1 - w1 N0) - 2 (w1 - w0) N, of degree (3 m - 3, 3 n);
 ///   S_uv = N_uv / w^3, N_uv = 2 n (w0 N1 - w1 N0), rows along v, of degree (3 m - 2, 3 n - 2)
-/// (quotient rule; leading terms cancel before anything is multiplied). Raised to the degree of w^3, N / w^3 is a rational
-/// Bezier form whose points, coefficient over coefficient, bound it.
+/// by the quotient rule; leading terms cancel before anything is multiplied. Raised to the degree of w^3, N / w^3 is a
+/// rational Bezier form, and its points, coefficient over coefficient, bound it.
 template <class L>
 class ExactDerivatives {
  public:
   using Batch = typename L::Batch;
   using Net = ScaledNet<L>;
 
-  /// The largest |S_uu|, and |S_uv| if asked for, without rounding.
+  /// Finds the largest |S_uu| and, if `with_uv`, |S_uv|, without the rounding.
   void find(const HomogeneousNet<L>& patch, bool with_uv) {
     const Net& w = patch.weight;
     const int m = w.rows - 1, n = w.columns - 1;
@@ -183,7 +184,8 @@ struct HomogeneousCurve {
   typename L::Batch point[3][max_order], weight[max_order];
 };
 
-/// The largest second derivative of a curve, without rounding: as ExactDerivatives, in one parameter. `Degree`: 0 for any.
+/// Returns the largest second derivative of a curve, without the rounding: ExactDerivatives in one parameter. `Degree`
+/// is 0 for any degree.
 template <class L, int Degree>
 typename L::Batch largest_second_derivative(const HomogeneousCurve<L>& curve, int degree) {
   using Batch = typename L::Batch;

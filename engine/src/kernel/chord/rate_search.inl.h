@@ -1,13 +1,14 @@
 #pragma once
-// The rates that keep a distance, by bounds of patches of a block (tess/bounds/chord_bound.h), lanes = patches. No
+// The rates that keep a distance, from the bounds of a block's patches (tess/bounds/chord_bound.h), lanes = patches. No
 // multiply-add is fused, so that every instruction set finds the same rates.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/chord/chord_kernels.h, kernel/isa/lanes.h.
 
 #include "kernel/chord/chord_kernel.inl.h"
 
-/// The search for rates, one patch a lane. Along one parameter, `first`, whose second derivatives are the smaller, rates are
-/// tried around that of the fewest cells if cells were no whole numbers; the other's follow.
+/// The search for rates, one patch per lane. Along one parameter, `first`, whose second derivatives are the smaller, it
+/// tries rates around the one with the fewest cells if cells need not be whole numbers. The other rate follows from
+/// each.
 template <class L>
 class RateSearch {
  public:
@@ -15,7 +16,7 @@ class RateSearch {
     const Batch whole[3] = {piece(0, 0), piece(0, 1), piece(0, 2)};
     is_u_ = xsimd::select(whole[0] <= whole[2], L::broadcast(1), L::broadcast(0));
     const auto u = is_u_ > L::broadcast(0);
-    // The same pieces with `first` in the place of u.
+    // The pieces with `first` in the place of u.
     constexpr int other[9] = {0, 3, 4, 1, 2, 5, 7, 6, 8};
     for (int k = 0; k < 9; ++k) {
       first_[k] = xsimd::select(u, piece(k, 0), piece(other[k], 2));
@@ -44,14 +45,15 @@ class RateSearch {
  private:
   using Batch = typename L::Batch;
 
-  /// Fewer cells by the products as well, where they keep the distance.
+  /// Finds rates with fewer cells that keep the distance by the products as well.
   void sharpen(Batch& first, Batch& second, Batch& chord) {
     const Batch eight = L::broadcast(8), more = L::broadcast(static_cast<float>(1.01));
     Batch share[4];
     shares_at(first, second, share);
     chord = sharp_chord_of(first, second, chord);
     for (int attempts = 0; attempts < 2; ++attempts) {
-      // At one ratio of the rates the plain bound is that share of what it is: as many times the distance is allowed by it.
+      // At a fixed ratio of the rates the bound by the products is this share of the plain one, so the plain bound may
+      // be wanted_ / share.
       for (int k = 0; k < 4; ++k) room_[k] = wanted_ / share[k];
       search();
       const Batch sharp = sharp_chord_of(best_first_, best_second_, chord_of(best_first_, best_second_));
@@ -64,7 +66,8 @@ class RateSearch {
       for (Batch& of_class : share) of_class = xsimd::select(keeps, of_class, of_class * more);
     }
   }
-  /// The bound by the products over the plain one at some rates, by the pieces of each parity: whole, halves, quarters.
+  /// Finds the bound by the products over the plain one at these rates, by the pieces of each parity: whole, halves,
+  /// quarters.
   void shares_at(const Batch& first, const Batch& second, Batch (&share)[4]) const {
     const Batch one = L::broadcast(1), h = step_of(xsimd::max(first, one)), k = step_of(xsimd::max(second, one));
     for (int parity = 0; parity < 4; ++parity) {
@@ -80,10 +83,10 @@ class RateSearch {
   }
   static Batch tiny() { return L::broadcast(static_cast<float>(0x1p-60)); }
 
-  /// The fewest cells by the plain bound.
+  /// Finds the fewest cells by the plain bound.
   void search() {
     const Batch zero = L::broadcast(0), two = L::broadcast(2), half = L::broadcast(static_cast<float>(0.5));
-    // first^2 cells' h and k: h^2 uu = k^2 vv, hence room / 2 = h^2 (uu + uv sqrt(uu / vv)).
+    // The start has h^2 uu = k^2 vv, hence room / 2 = h^2 (uu + uv sqrt(uu / vv)).
     const Batch ratio = xsimd::sqrt(first_[0] / xsimd::max(second_[0], tiny()));
     const Batch start = xsimd::sqrt((first_[0] + mixed_[0] * ratio) * two / xsimd::max(wanted_, tiny()));
     const Batch middle = two * xsimd::floor(half * xsimd::min(start, most_));
@@ -98,14 +101,14 @@ class RateSearch {
 
   Batch piece(int k, int kind) const { return L::load(job_.pieces + (k * 3 + kind) * block_lanes + lane_); }
 
-  /// Above the step of a rate in parameters, which are rounded to float: 1 / rate + 2^-24.
+  /// Returns a bound above the step of a rate in parameters that are rounded to float: 1 / rate + 2^-24.
   static Batch step_of(const Batch& rate) {
     return L::broadcast(1) / rate * L::broadcast(static_cast<float>(1 + 0x1p-22)) +
            L::broadcast(static_cast<float>(0x1p-24));
   }
 
-  /// A little above the least rate t >= 1 with h^2 first + 2 h mixed / t + second / t^2 <= room over the pieces of a parity;
-  /// infinite where there is none.
+  /// Returns a little above the least rate t >= 1 with h^2 first + 2 h mixed / t + second / t^2 <= room over the pieces
+  /// of a parity; infinite where there is none.
   Batch needed(int parity, const Batch& h) const {
     Batch most = L::broadcast(1);
     for (int k = begin_of[parity]; k < begin_of[parity + 1]; ++k) {
@@ -118,7 +121,7 @@ class RateSearch {
     return most;
   }
 
-  /// All pairs with this rate along `first`.
+  /// Tries this rate along `first` with the least rates, odd and even, along the other.
   template <bool Even>
   void attempt(const Batch& rate) {
     const Batch one = L::broadcast(1), two = L::broadcast(2), half = L::broadcast(static_cast<float>(0.5));
@@ -134,7 +137,7 @@ class RateSearch {
     best_second_ = xsimd::select(better, second, best_second_);
   }
 
-  /// Goes on beyond the even rate `low` and the odd rate `high` while a lane has its fewest cells at an end.
+  /// Continues beyond the even rate `low` and the odd rate `high` while a lane has its fewest cells at an end.
   void widen(Batch low, Batch high) {
     const Batch one = L::broadcast(1), two = L::broadcast(2);
     for (int rounds = 0; rounds < 32; ++rounds) {
@@ -149,7 +152,7 @@ class RateSearch {
     }
   }
 
-  /// The largest over the pieces that serve the rates.
+  /// Returns the largest chord over the pieces that serve the rates.
   template <class Chord>
   Batch max_of(const Batch& first, const Batch& second, const Chord& chord) const {
     const Batch half = L::broadcast(static_cast<float>(0.5));
@@ -164,7 +167,7 @@ class RateSearch {
                          xsimd::select(even_second, most(2), most(0)));
   }
 
-  /// A bound on the chord error of rates.
+  /// Returns a bound on the chord error of rates.
   Batch chord_of(Batch first, Batch second) const {
     const Batch one = L::broadcast(1);
     first = xsimd::max(first, one), second = xsimd::max(second, one);
@@ -173,7 +176,7 @@ class RateSearch {
     return eighth * max_of(first, second, [&](int p) { return plain_chord(p, h, k); });
   }
 
-  /// The same by the products, and no more than `plain`, chord_of().
+  /// Returns such a bound by the products, at most `plain`, the result of chord_of().
   Batch sharp_chord_of(Batch first, Batch second, const Batch& plain) const {
     const Batch one = L::broadcast(1);
     first = xsimd::max(first, one), second = xsimd::max(second, one);
@@ -206,11 +209,11 @@ class RateSearch {
 
   const RateJob& job_;
   const int lane_;
-  /// Pieces where the rates along first and second are odd and odd, even and odd, odd and even, even and even.
+  /// The pieces where the rates along first and second are odd and odd, even and odd, odd and even, even and even.
   static constexpr int begin_of[5] = {0, 1, 3, 5, 9};
 
   Batch first_[9], mixed_[9], second_[9], most_, is_u_;
-  Batch wanted_, room_[4];  ///< eight times the distance; what of it is for the plain bound, by parity
+  Batch wanted_, room_[4];  ///< eight times the distance; the part for the plain bound, by parity
   Batch best_first_, best_second_, least_;
 };
 

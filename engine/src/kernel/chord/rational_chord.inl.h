@@ -1,6 +1,6 @@
 #pragma once
-// Bounds on the second derivatives of rational patches: the largest |A'' - c w''| + R |w''|, over w_min, at the
-// control points of a piece's quarters.
+// Bounds on the second derivatives of rational patches, lanes = patches of a block: the largest
+// (|A'' - c w''| + R |w''|) / w_min at the control points of a piece's quarters (see rational_nets.inl.h).
 //
 // Needs before it, outside of the instruction set's namespace: kernel/chord/chord_kernels.h, kernel/isa/lanes.h.
 
@@ -33,8 +33,8 @@ class RationalChords {
   using Batch = typename L::Batch;
   using Part = typename Nets::Part;
 
-  /// Adds the hints that exact numerators would save cells: where the second derivatives at the corners, what no bound is
-  /// below, ask for far fewer than the bounds of quarters.
+  /// Adds the hints that exact numerators would save cells: the second derivatives at the corners, below which no bound
+  /// can be, ask for far fewer cells than the bounds of quarters.
   void add_gain() {
     Batch most[3], least[3];
     for (int kind = 0; kind < 3; ++kind) {
@@ -70,7 +70,7 @@ class RationalChords {
     for (int quarter = 0; quarter < 4; ++quarter) {
       const int half_u = quarter / 2, half_v = quarter % 2;
       const int first = half_u * (shape.rows - 1) * Nets::max_cut + half_v * (shape.columns - 1);
-      for (const int k : {0, 1 + half_u, 3 + half_v, 5 + quarter}) {  // the pieces that it is part of
+      for (const int k : {0, 1 + half_u, 3 + half_v, 5 + quarter}) {  // pieces that contain it
         const Part& part = nets_.parts[k];
         Batch most = L::broadcast(0);
         for (int i = 0; i < shape.rows; ++i)
@@ -88,7 +88,8 @@ class RationalChords {
   const ChordJob& job_;
   const int lane_;
   Nets nets_;
-  Batch sum_ = L::broadcast(0), unsure_ = sum_;  // of the bounds of the whole, and how much of that is rounding
+  Batch sum_ = L::broadcast(0), unsure_ = sum_;  // the sum of the bounds of the whole, and the part of it that is
+                                                 // rounding
   Batch d_[4][Nets::capacity * Nets::capacity], cut_[4][Nets::max_cut * Nets::max_cut];
 };
 

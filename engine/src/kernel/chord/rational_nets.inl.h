@@ -1,14 +1,18 @@
 #pragma once
-// Rational patches of a block and where their pieces lie, for bounds on their second derivatives
-// (tess/bounds/chord_bound.h), lanes = patches. No multiply-add is fused, so that every instruction set finds the same
+// Rational patches of a block and the balls that hold their pieces, lanes = patches, for bounds on their second
+// derivatives (tess/bounds/chord_bound.h). No multiply-add is fused, so that every instruction set finds the same
 // bounds.
 //
-// Over a piece whose points lie within R of c and whose weights are at least w_min, with A the points times their weights
-// relative to the patch's centre, second derivatives count as balls (A'' - c w'') / w_min of radius R |w''| / w_min.
+// Over a piece whose points lie within R of c and whose weights are at least w_min, second derivatives count as balls
+// around (A'' - c w'') / w_min of radius R |w''| / w_min. A is the points times their weights, relative to the patch's
+// centre.
 //
-// Rounding, in units of u = 2^-24 and of the block's unit, in which coefficients and points are below 1, as are the weights;
-// k = m + n: A, packed and made relative, is off by at most 5 and its second differences, cut, by 36 + 8 k; those of w by
-// 8 + 2 k; A'' - c w'', c below 2, by (36 + 8 k) + 2 (8 + 2 k) + 16; cut weights by 1 + k and points by (13 + 4 k) / w_min.
+// Rounding errors, in units of u = 2^-24 and of the block's unit, in which coefficients, points and weights are below
+// 1; k = m + n:
+// 1. A, packed and made relative: at most 5; its second differences, cut: 36 + 8 k.
+// 2. Second differences of w, cut: 8 + 2 k.
+// 3. A'' - c w'' with c below 2: (36 + 8 k) + 2 (8 + 2 k) + 16.
+// 4. Cut weights: 1 + k; cut points: (13 + 4 k) / w_min.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/chord/chord_kernels.h, kernel/isa/lanes.h.
 
@@ -21,13 +25,13 @@ class RationalNets {
   static constexpr int capacity = max_rational_degree + 1, max_cut = 2 * capacity - 1;
   static constexpr float half = static_cast<float>(0.5), more = static_cast<float>(1 + 0x1p-20);
 
-  /// A piece: its points are within `radius` of `centre`, relative to the patch's.
+  /// A piece: its points are within `radius` of `centre`, relative to the patch's centre.
   struct Part {
     Batch lower[3], upper[3], centre[3], radius, lightest, inverse;
   };
 
   const int m, n;
-  const float slack, slope;  ///< how far A'' - c w'' and w'' are off
+  const float slack, slope;  ///< errors of A'' - c w'' and of w''
   Batch size;                ///< the largest coordinate of a point, at least 2^-120
   Part parts[9];             ///< the whole, the halves of u, the halves of v, the quarters
 
@@ -55,10 +59,10 @@ class RationalNets {
   RationalNets(const RationalNets&) = delete;
   RationalNets& operator=(const RationalNets&) = delete;
 
-  /// Of points and coefficients.
+  /// Returns the largest coordinate of points and coefficients.
   Batch largest() const { return xsimd::max(size, coefficient_); }
-  /// Once, with the inverse of the unit, a power of two above largest(): coefficients become relative to the middle of the
-  /// points' box, and parts are found.
+  /// Makes coefficients relative to the middle of the points' box and finds the parts. Call it once, with the inverse
+  /// of the unit, a power of two above largest().
   void place(const Batch& scale) {
     for (int c = 0; c < 3; ++c) {
       const Batch middle = L::broadcast(half) * (scale * lower_[c]) + L::broadcast(half) * (scale * upper_[c]);
@@ -67,14 +71,14 @@ class RationalNets {
     find_parts();
   }
 
-  /// The points (0, 0), (1, 0), (1, 1), (0, 1), relative to the patch's middle.
+  /// Returns the points (0, 0), (1, 0), (1, 1), (0, 1), relative to the patch's middle.
   void corners(Batch (&corner)[4][3]) const {
     const int at[4] = {0, m * (n + 1), m * (n + 1) + n, n};
     for (int k = 0; k < 4; ++k)
       for (int c = 0; c < 3; ++c) corner[k][c] = net_[c][at[k]] / net_[3][at[k]];
   }
 
-  /// The largest |r_uu|, |r_uv|, |r_vv| at the corners, by the quotient rule.
+  /// Finds the largest |r_uu|, |r_uv|, |r_vv| at the corners, by the quotient rule.
   void corner_derivatives(Batch (&most)[3]) const {
     for (Batch& of_kind : most) of_kind = L::broadcast(0);
     for (int corner = 0; corner < 4; ++corner) {
@@ -82,12 +86,12 @@ class RationalNets {
       const auto at = [&](int i, int j) { return (high_u ? m - i : i) * (n + 1) + (high_v ? n - j : j); };
       const Batch inverse = L::broadcast(1) / net_[3][at(0, 0)];
       const auto weight = [&](int i, int j) { return net_[3][at(i, j)] * inverse; };
-      /// The weight, over that of the corner, times the step from the corner.
+      /// Returns the weight over that of the corner, times the step from the corner.
       const auto step = [&](int i, int j, int c) {
         return net_[c][at(i, j)] * inverse - weight(i, j) * (net_[c][at(0, 0)] * inverse);
       };
       const auto number = [](int k) { return L::broadcast(static_cast<float>(k)); };
-      // n (n - 1) w2 (P2 - P0) - 2 n (n w1 - 1) w1 (P1 - P0), w0 being 1.
+      // n (n - 1) w2 (P2 - P0) - 2 n (n w1 - 1) w1 (P1 - P0) with w0 = 1.
       const auto second = [&](int degree, int i, int j, int c) {
         const Batch along = number(2 * degree) * (number(degree) * weight(i, j) - number(1)) * step(i, j, c);
         if (degree < 2) return number(0) - along;
@@ -109,7 +113,7 @@ class RationalNets {
     int rows, columns;
     int count() const { return rows * columns; }
   };
-  /// The second differences uu, uv or vv, `[component of 4][i][j]`, components a distance `step` apart.
+  /// Writes the second differences uu, uv or vv, `[component of 4][i][j]`, components `step` apart.
   Shape second_differences(int kind, Batch* to, int step) const {
     const int along_u = kind == 0 ? 2 : kind == 1 ? 1 : 0, along_v = 2 - along_u;
     const Shape shape{m + 1 - along_u, n + 1 - along_v};
@@ -124,8 +128,8 @@ class RationalNets {
     return shape;
   }
 
-  /// Cuts one component of a net at 1/2 along u, along v, both or neither: halves share a row or column. Rows of `to` are
-  /// max_cut apart.
+  /// Cuts one component of a net at 1/2 along u, along v, both or neither; halves share a row or column. Rows of `to`
+  /// are max_cut apart.
   [[gnu::noinline]] static void cut(const Batch* net, Shape shape, bool cut_u, bool cut_v, Batch* to) {
     Batch by_row[max_cut * capacity];
     const Batch* rows = net;
@@ -141,8 +145,8 @@ class RationalNets {
     }
   }
 
-  /// The square root, or up to 0.36% more: a step of Newton's from the guess by its exponent is at most 0.1753% too small
-  /// (Lomont 2003, Fast inverse square root).
+  /// Returns the square root, or up to 0.36% more: a Newton step from the guess by its exponent is at most 0.1753% too
+  /// small (Lomont 2003, Fast inverse square root).
   [[gnu::always_inline]] static Batch root(const Batch& squared) {
     const Batch guess = L::inverse_root_guess(squared);
     const Batch inverse =

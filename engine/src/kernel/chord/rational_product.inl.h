@@ -1,6 +1,6 @@
 #pragma once
-// Bounds on the products of second derivatives of rational patches: of vectors in two balls, p q + |p| s + |q| r + r
-// s.
+// Bounds on the products of second derivatives of rational patches, lanes = patches of a block: for vectors in two
+// balls around p and q of radii r and s, at most p q + |p| s + |q| r + r s.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/chord/chord_kernels.h, kernel/isa/lanes.h.
 
@@ -33,7 +33,7 @@ class RationalProducts {
     Batch x[most], y[most], z[most], size[most], radius[most];
   };
 
-  /// Of `count` pieces from `first` on.
+  /// Writes `count` pieces from `first` on.
   void write_pieces(bool cut_u, bool cut_v, int first, int count) {
     for (int kind = 0; kind < 3; ++kind)
       for (int c = 0; c < 4; ++c)
@@ -66,7 +66,7 @@ class RationalProducts {
       }
   }
 
-  /// The largest product of vectors in balls of both, or its largest size.
+  /// Returns the largest product of vectors in balls of both, or with Size its largest absolute value.
   template <bool Size>
   Batch largest_product(const Balls& a, const Balls& b) const {
     Batch found = L::broadcast(a.count > 0 && b.count > 0 ? -std::numeric_limits<float>::max() : 0);
@@ -81,7 +81,8 @@ class RationalProducts {
     return found;
   }
 
-  /// With the rounding of the products, whose factors exceed the bounds, those of the net once cut, by a few times at most.
+  /// Stores a product with its rounding. The factors exceed the bounds, which are those of the net after cutting, by a
+  /// few times at most.
   void store(int piece, int which, int kind_a, int kind_b, int factor, const Batch& product) const {
     const auto bound = [&](int kind) { return L::load(job_.pieces + (piece * 3 + kind) * block_lanes + lane_); };
     L::store(job_.products + (piece * 3 + which) * block_lanes + lane_,

@@ -1,4 +1,4 @@
-// Bounds, rates and hashes for certified plans. One unit an instruction set: see cmake/TesseraIsaFlags.cmake.
+// Bounds, rates and hashes for certified plans. One unit per instruction set: see cmake/TesseraIsaFlags.cmake.
 
 #include "kernel/chord/any_chord_kernels.h"
 #include "kernel/chord/chord_kernels.h"

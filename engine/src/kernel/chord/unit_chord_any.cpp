@@ -1,5 +1,5 @@
-// Bounds of patches of any degree, and of rational ones, for certified plans: a unit beside unit_chord.cpp, compiled for less code. One unit an
-// instruction set: see cmake/TesseraIsaFlags.cmake.
+// Bounds of patches of any degree, and of rational ones, for certified plans: a unit beside unit_chord.cpp, compiled
+// for less code. One unit per instruction set: see cmake/TesseraIsaFlags.cmake.
 
 #include "kernel/chord/any_chord_kernels.h"
 #include "kernel/isa/lanes.h"

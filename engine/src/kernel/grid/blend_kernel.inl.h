@@ -1,13 +1,14 @@
 #pragma once
-// Kernel 3, transfinite blending, lanes = parameters v: what the border curves give for one u is broadcast, what they
-// give for v streams through, as many columns at a time as stay in the second-level cache (a first-level tile would
-// cut the runs of stores short, which cost more than the loads).
+// Kernel 3, transfinite blending, lanes = parameters v. The border curves' values for one u are broadcast, and those
+// for v stream through, as many columns at a time as stay in the second-level cache. (A first-level tile would shorten
+// the runs of stores, which cost more than the loads.)
 //
 // Needs before it, outside of the instruction set's namespace: kernel/grid/line_kernels.h, kernel/isa/lanes.h.
 
 #include "kernel/store/store.inl.h"
 
-/// Columns begin .. end of one row: ((g1 C1 + g2 C2) + f1 K1) + f2 K2 in this order, all but the first product fused.
+/// Blends columns begin .. end of one row: ((g1 C1 + g2 C2) + f1 K1) + f2 K2 in this order, all but the first product
+/// fused.
 template <class L, Records Layout>
 inline void blend_row(const BlendJob<typename L::Scalar>& job, std::ptrdiff_t row, std::ptrdiff_t begin,
                       std::ptrdiff_t end) {

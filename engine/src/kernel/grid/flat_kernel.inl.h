@@ -1,8 +1,8 @@
 #pragma once
-// Kernel 3, lanes = neighbouring numbers of a row of a patch's grid, x y z x y z .., for positions alone. The curves
-// of four rows lie in one vector, q_j = sum_i f_i(row) c_ij; those of one are spread over its vectors, r = sum_j
-// g_j(column) q_j: the same sums in the same order as in grid_kernel.inl.h, without a transpose, and no block of
-// sixteen patches is needed. What leaves goes to memory by whole aligned vectors.
+// Kernel 3, positions only, lanes = neighbouring numbers of a row of a patch's grid, x y z x y z .. One vector holds
+// the curves of four rows, q_j = sum_i f_i(row) c_ij. The curves of one row are spread over its vectors, r = sum_j
+// g_j(column) q_j. These are the same sums in the same order as in grid_kernel.inl.h, without a transpose and without a
+// block of sixteen patches. Results go to memory by whole aligned vectors.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/grid/flat_kernels.h, kernel/isa/block_lanes.h,
 // kernel/isa/lanes.h, kernel/store/stream_state.h.
@@ -32,7 +32,7 @@ class FlatGrid {
   int count_i() const { return job_.degree_u + 1; }
   int count_j() const { return DegreeV > 0 ? DegreeV + 1 : job_.degree_v + 1; }
 
-  /// The control points, each as x y z x y z .. A block's first patch asks for the block behind it.
+  /// Spreads the control points, each as x y z x y z .. A block's first patch prefetches the next block.
   void spread(const float* net) {
     const std::ptrdiff_t block_values = std::ptrdiff_t{count_i()} * count_j() * 3 * block_lanes;
     if (reinterpret_cast<std::uintptr_t>(net) % 64 == 0)
@@ -42,7 +42,7 @@ class FlatGrid {
         triples_[i * capacity + j] = L::triples(net, net + block_lanes, net + 2 * block_lanes);
   }
 
-  /// Those of group g, rows flat_rows g and following.
+  /// Computes the curves of group g: rows flat_rows g and following.
   [[gnu::always_inline]] void row_curves(int g, Curves& curves) const {
     const float* weights = job_.u_weights + std::ptrdiff_t{g} * count_i() * L::width;
     auto weight = L::load(weights);
@@ -58,7 +58,7 @@ class FlatGrid {
     Curves curves;
     for (int row = 0; row < job_.count_u; ++row) {
       if (row % flat_rows == 0) row_curves(row / flat_rows, curves);
-      // A vector of 16 numbers begins with x, y or z, as its number in the row is 0, 1 or 2 modulo 3.
+      // A vector of 16 numbers begins with x, y or z, as its index in the row is 0, 1 or 2 modulo 3.
       typename L::Batch turned[3][capacity];
       for (int phase = 0; phase < 3; ++phase) {
         const auto place = L::load_places(row_places[row % flat_rows][phase]);
@@ -82,7 +82,7 @@ class FlatGrid {
     }
   }
 
-  /// Row r of a group for vectors that begin with x, y, z.
+  /// The lanes to pick for row r of a group, for vectors that begin with x, y, z.
   struct RowPlaces {
     alignas(64) std::int32_t of[flat_rows][3][flat_lanes]{};
     constexpr RowPlaces() {

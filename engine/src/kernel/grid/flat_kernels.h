@@ -1,5 +1,5 @@
 #pragma once
-// Positions of polynomial patches, patch after patch in memory, lanes = neighbouring numbers of a row of the grid.
+// Positions of polynomial patches, one patch after the other in memory, lanes = neighbouring numbers of a grid's row.
 
 #include <cstddef>
 
@@ -7,16 +7,16 @@
 
 namespace tessera::inline abi_0_1::kernel {
 
-/// Numbers of a vector, and the rows of a grid whose row curves lie together in one, three components each.
+/// The numbers of a vector, and the rows of a grid whose row curves share one vector, three components each.
 inline constexpr int flat_lanes = 16, flat_rows = 4;
 
 /// Rows of a grid for patches that follow each other in memory. Tables are aligned to 64 bytes.
 struct FlatJob {
-  const float* const* nets = nullptr;  ///< of each patch: its first coefficient, `[i][j][component]`, block_lanes apart
+  const float* const* nets = nullptr;  ///< per patch: its first coefficient, `[i][j][component]`, block_lanes apart
   int patches = 0;
   int degree_u = 0, degree_v = 0;
-  int count_u = 0, count_v = 0;  ///< of the part of the grid: rows and columns
-  /// From the part's first row on, `[count_u / flat_rows, rounded up][i][lane]`: lane l has the weights of row l / 3.
+  int count_u = 0, count_v = 0;  ///< rows and columns of the part of the grid
+  /// `[count_u / flat_rows, rounded up][i][lane]` from the part's first row on: lane l has the weights of row l / 3.
   const float* u_weights = nullptr;
   /// `[vector of a row][j][lane]`: lane l of vector k has the weights of column (16 k + l) / 3.
   const float* v_weights = nullptr;
@@ -26,7 +26,7 @@ struct FlatJob {
 };
 
 struct FlatKernels {
-  /// Null where it would not pay. The same bits as GridKernels.
+  /// Gives the same bits as GridKernels. Null where it would not pay.
   Isa (*flat_f32)(const FlatJob&);
 };
 

@@ -1,14 +1,14 @@
 #pragma once
 // Kernel 1, lanes = patches: each vector holds one coefficient of 4, 8 or 16 patches of a block. For each u the row
 // curves q_j = sum_i f_i(u) c_ij stay in registers while v runs: r = sum_j g_j(v) q_j. The weights f, g are tabulated,
-// so the same code evaluates Bernstein and power coefficients. Any subset of the outputs in one pass.
+// so the same code evaluates Bernstein and power coefficients. One pass writes any subset of the outputs.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/grid/grid_kernels.h, kernel/isa/lanes.h.
 
 #include "kernel/sample/curvature_kernel.inl.h"
 #include "kernel/store/line_stores.inl.h"
 
-/// Where the outputs of one sample go, for one vector of patches.
+/// The places of one sample's outputs, for one vector of patches.
 struct Offsets {
   std::ptrdiff_t vector, scalar, byte;
 };
@@ -24,7 +24,7 @@ template <class L, class Stores>
   stores.put(position_line, job.position + out, position);
 }
 
-/// Values where they are defined, zero elsewhere.
+/// Stores values where they are defined, and zero elsewhere.
 template <class L>
 class DefinedStore {
  public:
@@ -50,7 +50,7 @@ class DefinedStore {
   typename L::Batch defined_;
 };
 
-/// Principal curvatures and directions: out of line, since they are much code.
+/// Stores principal curvatures and directions. Out of line, since it is much code.
 template <class L>
 [[gnu::noinline]] void store_principal(const GridJob<typename L::Scalar>& job, const Offsets& out,
                                        const CurvatureExchange<L>& exchange, const AskedStores<L>& stores) {
@@ -97,8 +97,8 @@ inline bool wants_curvatures(const GridJob<T>& job) {
          job.first_direction || job.second_direction || job.curvature_kind;
 }
 
-/// What a loop over samples leaves to the job, and what it is made for: a mesh is positions and normals, and nothing else,
-/// of patches of one degree in both directions.
+/// The outputs of a loop over samples: `any` asks the job, `mesh` is positions and normals only, of patches with one
+/// degree in both directions.
 enum class Wanted { any, mesh };
 
 template <class L, int Order, Wanted Outputs, class Stores>
@@ -149,8 +149,8 @@ Offsets sample_before(const GridJob<typename L::Scalar>& job, const Offsets& nex
   return {next.vector - job.vector_step, next.scalar - job.scalar_step, next.byte - block_lanes};
 }
 
-/// The normals of the sample before the one whose outputs are `next`, whose tangents are gone. `exchange.kind`: 1 in the
-/// lanes that are safe.
+/// Computes the normals of the sample before the one whose outputs are `next`; its tangents are no longer known.
+/// `exchange.kind` is 1 in the lanes that are safe.
 template <class L>
 [[gnu::noinline, gnu::cold]] void finish_degenerate(const GridJob<typename L::Scalar>& job, int lane, Offsets next,
                                                     NormalExchange<L>& exchange, const AskedStores<L>& stores) {
@@ -166,14 +166,14 @@ template <class L>
   store_normal<L, Wanted::any>(job, normal, out, stores);
 }
 
-/// Normals of grids, each finished once the next sample's is begun: the chain of operations from r_u x r_v to a unit
-/// normal is long, and so runs beside the next sample's sums.
+/// Normals of grids. Each is finished after the next sample's is begun: the chain of operations from r_u x r_v to a
+/// unit normal is long, and so runs beside the next sample's sums.
 template <class L, Wanted Outputs>
 class DeferredNormals {
  public:
   using Job = GridJob<typename L::Scalar>;
 
-  /// `out` is the sample's.
+  /// Begins the normal of the sample with the outputs `out`.
   template <class Stores>
   [[gnu::always_inline]] void begin(const Job& job, const Sample<L>& sample, int lane, const Offsets& out,
                                     const Stores& stores) {
@@ -184,7 +184,7 @@ class DeferredNormals {
     copy<L>(direction, direction_);
     squared_ = squared;
   }
-  /// The sample before the one whose outputs are `next`, if there is one.
+  /// Finishes the sample before the one whose outputs are `next`, if there is one.
   template <class Stores>
   [[gnu::always_inline]] void finish(const Job& job, int lane, const Offsets& next, const Stores& stores) const {
     if (next.byte < block_lanes || (Outputs == Wanted::any && !wants_normals(job))) return;
@@ -206,15 +206,15 @@ class DeferredNormals {
   typename L::Batch squared_ = L::broadcast(0), direction_[3] = {squared_, squared_, squared_};
 };
 
-/// Lines `first` and following.
+/// Prefetches `count` lines from line `first` on.
 template <class T>
 [[gnu::always_inline]] inline void prefetch_lines(const T* memory, int first, int count) {
   const char* line = reinterpret_cast<const char*>(memory) + std::ptrdiff_t{first} * 64;
   for (int k = 0; k < count; ++k) __builtin_prefetch(line + std::ptrdiff_t{k} * 64);
 }
 
-/// `Groups` neighbouring vectors of patches, from `lane`, over the job's part of the grid. DegreeV 0 reads the degree
-/// from the job.
+/// Evaluates `Groups` neighbouring vectors of patches, from `lane`, over the job's part of the grid. DegreeV 0 reads
+/// the degree from the job.
 template <class L, bool ByLane, int DegreeV, bool Rational, int Order, Way How, int Groups, Wanted Outputs>
 void evaluate_lanes(const GridJob<typename L::Scalar>& job, int lane) {
   constexpr int components = Rational ? 4 : 3;
@@ -263,8 +263,9 @@ void evaluate_lanes(const GridJob<typename L::Scalar>& job, int lane) {
     }
 }
 
-/// Plain stores take one vector of patches after the other; streaming stores take whole cache lines, and vectors of a line
-/// two of them: lines of a block that are left out cost as much as others. Both share one loop where it is much code: any degree, and second derivatives.
+/// Plain stores take one vector of patches at a time. Streaming stores take a whole cache line at a time, or two
+/// vectors of a whole line each, since lines of a block that are left out cost as much as others. Both share one loop
+/// where it is much code: for any degree, and for second derivatives.
 template <class L, int DegreeV, bool Rational, int Order, Wanted Outputs = Wanted::any>
 void evaluate_block(const GridJob<typename L::Scalar>& job) {
   constexpr int line = 64 / static_cast<int>(sizeof(typename L::Scalar));
@@ -281,7 +282,7 @@ void evaluate_block(const GridJob<typename L::Scalar>& job) {
   }
 }
 
-/// One loop for all degrees, and first derivatives in any case: such grids are rare.
+/// One loop serves all degrees, and always computes first derivatives: such grids are rare.
 template <class L, int Order>
 void evaluate_by_lane(const GridJob<typename L::Scalar>& job) {
   for (int lane = 0; lane < block_lanes; lane += L::width)
@@ -289,8 +290,8 @@ void evaluate_by_lane(const GridJob<typename L::Scalar>& job) {
                  : evaluate_lanes<L, true, 0, false, Order, Way::plain, 1, Wanted::any>(job, lane);
 }
 
-/// Degrees are fixed where it pays: the loop over any degree is within 15% but for positions of low degree. Rational second
-/// derivatives are as much code as all the rest.
+/// Degrees are fixed where it pays: the loop over any degree is within 15% except for positions of low degree. Rational
+/// second derivatives are as much code as all the rest.
 template <class L, int DegreeV, bool Rational, int Order>
 inline constexpr bool is_fixed = fixed_degrees &&
                                  (DegreeV == 3 ? !Rational || Order < 2

@@ -1,14 +1,14 @@
 #pragma once
-// Kernel 2's way out, patch-contiguous: values of a block, `[value][lane]`, are transposed for a few lanes at once,
-// and what a lane gets is joined with what was left of its last vector, so that memory sees whole aligned vectors
-// alone, plain or streamed. Vectors in which one lane ends and the next begins are put together when all are through.
+// Kernel 2's output, patch-contiguous: values of a block, `[value][lane]`, are transposed for a few lanes at a time and
+// joined with the rest of each lane's last vector, so that memory receives only whole aligned vectors, plain or
+// streamed. Vectors in which one lane ends and the next begins are assembled at the end.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/grid/line_kernels.h, kernel/isa/lanes.h.
 
 #include "kernel/store/store.inl.h"
 
-/// Lanes that are transposed at once: 16 bytes of a row, or half a vector of 64. Fewer would cost more loads, more would
-/// cost more shuffles across a vector, which few ports execute.
+/// Lanes that are transposed at a time: 16 bytes of a row, or half a vector of 64 bytes. Fewer would cost more loads,
+/// more would cost more shuffles across a vector, which few ports execute.
 template <class L>
 inline constexpr int lane_group = (L::width * sizeof(typename L::Scalar) == 64 ? 32 : 16) / sizeof(typename L::Scalar);
 
@@ -23,7 +23,7 @@ void begin_lines(LineState<typename L::Scalar>& state, typename L::Scalar* const
   }
 }
 
-/// What the lanes of a group have in hand.
+/// The values that the lanes of a group carry.
 template <class L>
 struct GroupLines {
   typename L::Batch carry[lane_group<L>];
@@ -31,7 +31,7 @@ struct GroupLines {
   typename L::Scalar* next[lane_group<L>];
 };
 
-/// Vectors go to memory, but for a lane's first one if that is shared.
+/// Writes a vector to memory, or to the state if it is a lane's first one and shared.
 template <class L>
 [[gnu::always_inline]] inline void put_first(const LineJob<typename L::Scalar>& job, int l, typename L::Scalar* memory,
                                              const typename L::Batch& vector) {
@@ -44,7 +44,7 @@ template <class L>
   }
 }
 
-/// The values of `width` rows for the lanes of a group. Step 0 reads the rows' distance from the job.
+/// Loads the values of `width` rows for the lanes of a group. Step 0 reads the rows' distance from the job.
 template <class L, int Step>
 [[gnu::always_inline]] inline void load_group(const LineJob<typename L::Scalar>& job, const typename L::Scalar* rows,
                                               typename L::Batch (&column)[lane_group<L>]) {
@@ -52,7 +52,7 @@ template <class L, int Step>
   L::load_columns([&](int k) { return rows + k * step; }, column);
 }
 
-/// The values of fewer than `width` rows.
+/// Puts the values of fewer than `width` rows.
 template <class L, int Step>
 [[gnu::always_inline]] inline void put_rest(const LineJob<typename L::Scalar>& job, const typename L::Scalar* rows,
                                             int l) {
@@ -76,13 +76,13 @@ template <class L, int Step>
   }
 }
 
-/// The lanes from l on.
+/// Puts the values of the group of lanes from l on.
 template <class L, int Step>
 [[gnu::always_inline]] inline void put_group(const LineJob<typename L::Scalar>& job, int l) {
   constexpr int group = lane_group<L>, width = L::width;
   LineState<typename L::Scalar>& state = *job.state;
   GroupLines<L> out;
-  int turned = 0;  // 0 if all lanes go on with a whole vector: nothing is to be joined then
+  int turned = 0;  // 0 if all lanes continue with a whole vector: then nothing is joined
 #pragma GCC unroll 8
   for (int k = 0; k < group; ++k) {
     turned |= state.end[l + k];
@@ -128,14 +128,14 @@ void put_lines(const LineJob<typename L::Scalar>& job) {
   job.step == block_lanes ? put_groups<L, block_lanes>(job) : put_groups<L, 0>(job);
 }
 
-/// Parts of vectors, one after the other: neighbours in one vector become one store.
+/// Writes parts of vectors, one after the other; neighbours in one vector become one store.
 template <class L>
 class PartialVectors {
  public:
   using T = typename L::Scalar;
   explicit PartialVectors(bool streaming) : streaming_(streaming), vector_(L::broadcast(0)) {}
 
-  /// Values begin .. end - 1 of the vector at `memory`.
+  /// Puts values begin .. end - 1 of the vector at `memory`.
   [[gnu::always_inline]] void put(T* memory, const typename L::Batch& vector, int begin, int end) {
     if (memory == memory_ && begin == end_) {
       vector_ = xsimd::select(L::load(place) < L::broadcast(static_cast<T>(begin)), vector_, vector);

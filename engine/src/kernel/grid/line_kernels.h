@@ -1,5 +1,5 @@
 #pragma once
-// What else grids are made of: borders, patch-contiguous results, and blends of border curves.
+// Jobs and kernels for other parts of grids: borders, patch-contiguous results, and blends of border curves.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace tessera::inline abi_0_1::kernel {
 
-/// Border curves of a block, evaluated so that the direction of the parameter does not change a bit.
+/// Border curves of a block, lanes = patches, evaluated so that the parameter's direction does not change a bit.
 template <class T>
 struct BorderJob {
   const T* control = nullptr;       ///< the first control point, `[component][lane]`
@@ -21,13 +21,14 @@ struct BorderJob {
   T* position = nullptr;  ///< `[k][component][lane]`
 };
 
-/// Results of a block's lanes on their way to an array each, from piece to piece of the grid: what falls short of a whole
-/// aligned vector waits here.
+/// Results of a block's lanes on their way to one array each, from piece to piece of the grid. Values that do not yet
+/// fill a whole aligned vector wait here.
 template <class T>
 struct LineState {
   static constexpr int values = 64 / static_cast<int>(sizeof(T));
-  alignas(64) T carry[block_lanes][values];  ///< of the vector at `next`, known up to `end`: what shift_in() joins
-  alignas(64) T head[block_lanes][values];   ///< once next is beyond first: that one, which another lane may share
+  alignas(64) T carry[block_lanes][values];  ///< of the vector at `next`, known up to `end`: the input of shift_in()
+  alignas(64) T head[block_lanes][values];   ///< once `next` is beyond `first`: the vector there, which another lane
+                                             ///< may share
   T* first[block_lanes];  ///< the vector in which the lane begins, at value `begin`; null where that is 0
   T* next[block_lanes];
   int begin[block_lanes], end[block_lanes];
@@ -37,7 +38,8 @@ struct LineState {
 template <class T>
 struct LineJob {
   LineState<T>* state = nullptr;
-  /// Value k of lane l at rows[k * step + l]; aligned to 64 bytes. Another 15 rows can be read, and mean nothing.
+  /// Value k of lane l is at rows[k * step + l]; aligned to 64 bytes. Another 15 rows must be readable; they are
+  /// ignored.
   const T* rows = nullptr;
   std::ptrdiff_t step = block_lanes;
   std::ptrdiff_t count = 0;
@@ -58,7 +60,7 @@ struct BlendJob {
 
 struct LineKernels {
   void (*border_f32)(const BorderJob<float>&);
-  /// Patch-contiguous results: where those of each lane begin, in order the pieces, and what is left in the end.
+  /// Patch-contiguous results: begin with each lane's memory, put the pieces in order, and end with the rest.
   void (*begin_lines_f32)(LineState<float>& state, float* const* memory);
   void (*begin_lines_f64)(LineState<double>& state, double* const* memory);
   void (*put_lines_f32)(const LineJob<float>&);

@@ -1,7 +1,7 @@
 #pragma once
-// Kernels 1 and 2 in one loop, for positions and normals of bicubic patches where a vector holds a block: samples go
-// to a ring of rows in the first-level cache, and after each of them a few rows of those before leave it, so that
-// their shuffles run beside the next sample's multiply-adds.
+// Kernels 1 and 2 in one loop, for positions and normals of bicubic patches where a vector holds a block,
+// lanes = patches. Samples go to a ring of rows in the first-level cache. After each sample a few earlier rows leave
+// it, so that their shuffles run beside the next sample's multiply-adds.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/grid/grid_kernels.h, kernel/grid/line_kernels.h,
 // kernel/isa/lanes.h.
@@ -9,7 +9,7 @@
 #include "kernel/grid/grid_kernel.inl.h"
 #include "kernel/grid/line_kernel.inl.h"
 
-/// The rows of a ring, `[row][lane]`, on their way to lines, by units: `width` rows of a few lanes.
+/// The rows of a ring, `[row][lane]`, on their way to patch-contiguous memory in units: `width` rows of a few lanes.
 template <class L>
 class LineRing {
  public:
@@ -18,14 +18,14 @@ class LineRing {
   explicit LineRing(const LineJob<T>& job) : job_(job), state_(*job.state), rows_(job.rows) {
     for (int l = 0; l < L::width; ++l) turned_ |= state_.end[l];
   }
-  /// A sample more, six rows: as much as a unit at the most.
+  /// Adds a sample of six rows: at most as much as a unit.
   [[gnu::always_inline]] void put_sample() {
     due_ += 6;
     if (due_ < group) return;
     due_ -= group;
     put_unit();
   }
-  /// What is left of `count` rows.
+  /// Puts the rest of `count` rows.
   void finish(int count) {
     while (gone_ + L::width <= count) put_unit();
     for (int l = 0; l < L::width; ++l) {
@@ -42,7 +42,7 @@ class LineRing {
   }
 
  private:
-  /// Lanes of a unit: as many as it would have rows if it had all lanes.
+  /// Lanes of a unit: the number of rows that it would have with all lanes.
   static constexpr int group = lane_group<L>;
   static_assert(L::width == block_lanes && 2 * group == L::width && group >= 6);
   /// Rows by which units stay behind: 14 wait for a normal or belong to a unit's other lanes, and more have hardly left
@@ -62,7 +62,7 @@ class LineRing {
         column[k] = vector;
       }
     }
-    if (turned_ != 0 && gone_ == 0) {  // shared, most of them
+    if (turned_ != 0 && gone_ == 0) {  // most of them are shared
 #pragma GCC unroll 8
       for (int k = 0; k < group; ++k) L::store(state_.head[l + k], column[k]);
     } else if (job_.streaming) {
@@ -82,7 +82,7 @@ class LineRing {
   const LineJob<T>& job_;
   LineState<T>& state_;
   int lane_ = 0, due_ = -lag;
-  int turned_ = 0;  ///< 0 if all lanes begin with a line: nothing is to be joined then
+  int turned_ = 0;  ///< 0 if all lanes begin with a line: then nothing is joined
   std::ptrdiff_t gone_ = 0;
   const T* rows_;
 };
@@ -96,7 +96,7 @@ Isa mesh_lines(const GridJob<typename L::Scalar>& job, const LineJob<typename L:
   LineRing<L> ring(lines);
   std::ptrdiff_t at = 0;
   int sample = 0;
-  Offsets next{0, 0, 0};  // after the sample before, if the ring went on
+  Offsets next{0, 0, 0};  // after the sample before, if the ring did not wrap
   const auto* next_net = job.net + count * count * 3 * block_lanes;
   for (int iu = job.u_begin; iu < job.u_end; ++iu) {
     prefetch_lines(next_net, iu * job.prefetched_lines, job.prefetched_lines);

@@ -1,4 +1,4 @@
-// Positions patch after patch. One unit an instruction set: see cmake/TesseraIsaFlags.cmake.
+// Positions patch after patch. One unit per instruction set: see cmake/TesseraIsaFlags.cmake.
 
 #include "kernel/isa/block_lanes.h"
 #include "kernel/grid/flat_kernels.h"

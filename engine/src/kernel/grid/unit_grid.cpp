@@ -1,4 +1,4 @@
-// Grids of floats. One unit an instruction set: see cmake/TesseraIsaFlags.cmake.
+// Grids of floats. One unit per instruction set: see cmake/TesseraIsaFlags.cmake.
 
 #include <utility>
 

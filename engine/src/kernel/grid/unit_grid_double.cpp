@@ -1,4 +1,4 @@
-// Grids of doubles. One unit an instruction set: see cmake/TesseraIsaFlags.cmake.
+// Grids of doubles. One unit per instruction set: see cmake/TesseraIsaFlags.cmake.
 
 #include <utility>
 

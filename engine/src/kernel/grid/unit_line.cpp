@@ -1,4 +1,4 @@
-// Borders, patch-contiguous results, blends. One unit an instruction set: see cmake/TesseraIsaFlags.cmake.
+// Borders, patch-contiguous results, blends. One unit per instruction set: see cmake/TesseraIsaFlags.cmake.
 
 #include "kernel/isa/lanes.h"
 #include "kernel/grid/line_kernels.h"

@@ -1,7 +1,6 @@
 #pragma once
-// Four and Fours of the instruction set that this unit is compiled for: four floats, for kernels that take points by their
-// coordinates. In an
-// unnamed namespace, as lanes.h.
+// Four and Fours of the instruction set that this unit is compiled for: vectors of four floats, for kernels that read
+// points by their coordinates. In an unnamed namespace, as lanes.h.
 
 #include "kernel/isa/lanes.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-// Four floats in a register of NEON.
+// Vectors of four floats and of three doubles in registers of NEON.
 
 #include <arm_neon.h>
 
@@ -18,24 +18,24 @@ struct Fours {
   static Four fma(Four a, Four b, Four c) { return vfmaq_f32(c, a, b); }             // a b + c
   static Four fms(Four a, Four b, Four c) { return vfmaq_f32(vnegq_f32(c), a, b); }  // a b - c
   static Four fnma(Four a, Four b, Four c) { return vfmsq_f32(c, a, b); }            // c - a b
-  /// One of them in all places.
+  /// Copies one value to all places.
   template <int k>
   static Four lane(Four a) {
     return vdupq_laneq_f32(a, k);
   }
-  // Of the first three.
+  // Functions of the first three values.
   static float sum3(Four a) { return vgetq_lane_f32(a + lane<1>(a) + lane<2>(a), 0); }
   static float max3(Four a) { return vgetq_lane_f32(max(max(a, lane<1>(a)), lane<2>(a)), 0); }
   static float min3(Four a) { return vgetq_lane_f32(min(min(a, lane<1>(a)), lane<2>(a)), 0); }
-  /// Of magnitudes whose reciprocals are finite; signs stay.
+  /// Returns magnitudes whose reciprocals are finite, with unchanged signs.
   static Four away_from_zero(Four a) {
     return vbslq_f32(vdupq_n_u32(0x80000000u), a, vmaxq_f32(vabsq_f32(a), vdupq_n_f32(1e-18f)));
   }
-  /// The first three of `a`, the last of `b`.
+  /// Returns the first three values of `a` and the last of `b`.
   static Four with_last(Four a, Four b) { return vcopyq_laneq_f32(a, 3, b, 3); }
 };
 
-/// Three doubles, and a fourth that means nothing.
+/// Three doubles, and an ignored fourth.
 struct Triple {
   float64x2_t low, high;
   static Triple load(const double* p) { return {vld1q_f64(p), vdupq_n_f64(p[2])}; }

@@ -1,5 +1,6 @@
 #pragma once
-// Four floats in a register of SSE, with fused multiply-adds where the unit is compiled for them.
+// Vectors of four floats and of three doubles in registers of SSE or AVX, with fused multiply-adds if the unit has
+// them.
 
 #include <immintrin.h>
 
@@ -24,27 +25,27 @@ struct Fours {
   static Four fms(Four a, Four b, Four c) { return a * b - c; }
   static Four fnma(Four a, Four b, Four c) { return c - a * b; }
 #endif
-  /// One of them in all places.
+  /// Copies one value to all places.
   template <int k>
   static Four lane(Four a) {
     return _mm_shuffle_ps(a, a, 0x55 * k);
   }
-  // Of the first three.
+  // Functions of the first three values.
   static float sum3(Four a) { return _mm_cvtss_f32(a + lane<1>(a) + lane<2>(a)); }
   static float max3(Four a) { return _mm_cvtss_f32(max(max(a, lane<1>(a)), lane<2>(a))); }
   static float min3(Four a) { return _mm_cvtss_f32(min(min(a, lane<1>(a)), lane<2>(a))); }
-  /// Of magnitudes whose reciprocals are finite; signs stay.
+  /// Returns magnitudes whose reciprocals are finite, with unchanged signs.
   static Four away_from_zero(Four a) {
     return _mm_or_ps(_mm_max_ps(abs(a), _mm_set1_ps(1e-18f)), _mm_and_ps(_mm_set1_ps(-0.0f), a));
   }
-  /// The first three of `a`, the last of `b`.
+  /// Returns the first three values of `a` and the last of `b`.
   static Four with_last(Four a, Four b) {
     const Four ends = _mm_shuffle_ps(a, b, _MM_SHUFFLE(3, 3, 2, 2));
     return _mm_shuffle_ps(a, ends, _MM_SHUFFLE(2, 0, 1, 0));
   }
 };
 
-/// Three doubles, and a fourth that means nothing.
+/// Three doubles, and an ignored fourth.
 struct Triple {
 #if defined(__AVX2__)
   __m256d all;

@@ -1,5 +1,5 @@
-// The families' tables of one instruction set, which its units define, and all in one. Included by machine_*.cpp inside
-// the ISA's namespace, after this_isa.
+// The kernel tables of one instruction set, which its units define, and the table of them all. Included by
+// machine_*.cpp inside the ISA's namespace, after this_isa.
 
 extern const GridKernels grid_kernels;
 extern const DoubleGridKernels double_grid_kernels;

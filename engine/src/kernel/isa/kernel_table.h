@@ -1,6 +1,6 @@
 #pragma once
 // The table of the kernels of one instruction set: plain function pointers over raw memory. Callers validate; kernels
-// assume. What each is given stands with its family; a family has a unit of its own for each instruction set.
+// assume. Each family's header describes its inputs; a family has one unit per instruction set.
 
 #include <optional>
 #include <span>
@@ -32,23 +32,24 @@ struct KernelTable : GridKernels,
   Isa isa;
 };
 
-/// The kernels of every ISA that processor and operating system support, slowest first; at least one.
+/// Returns the kernels of every ISA that processor and operating system support, slowest first; at least one.
 std::span<const KernelTable* const> machine_kernels();
 
-/// Those of default_isa(), or the baseline's where TESSERA_ISA names none: for kernels that compute the same bits on all.
+/// Returns the kernels of default_isa(), or the baseline's if TESSERA_ISA names none. For kernels that compute the same
+/// bits on all.
 const KernelTable& default_kernels();
 
-/// The kernels of an ISA. Call it only for one that available_isas() lists.
+/// Returns the kernels of an ISA, which must be one that available_isas() lists.
 const KernelTable& kernels(Isa isa);
 
 }  // namespace tessera::inline abi_0_1::kernel
 
 namespace tessera::inline abi_0_1 {
 
-/// The instruction set of a call: the wanted one, or default_isa(). Errors: isa_unavailable.
+/// Returns the instruction set of a call: the wanted one, or default_isa(). Errors: isa_unavailable.
 TESSERA_INTERNAL_EXPORT Result<Isa> usable_isa(std::optional<Isa> wanted);
 
-/// Kernels of rays, for the library of rays: the namespace `kernel` stays inside the core.
+/// Returns the kernels of rays, for the library of rays: the namespace `kernel` stays inside the core.
 TESSERA_INTERNAL_EXPORT const kernel::RayKernels& ray_kernels(Isa isa);
 
 }  // namespace tessera::inline abi_0_1

@@ -1,6 +1,7 @@
 #pragma once
-// Lanes<float> and Lanes<double> of the instruction set that this unit is compiled for, in a namespace of that ISA:
-// TESSERA_ISA_NAMESPACE. In an unnamed namespace there, for no inline function may be merged with one of another unit.
+// Lanes<float> and Lanes<double> of the instruction set that this unit is compiled for, in TESSERA_ISA_NAMESPACE, a
+// namespace of that ISA. They are in an unnamed namespace there, since no inline function may be merged with one of
+// another unit.
 
 #if defined(__AVX512F__)
 #include "kernel/isa/lanes_avx512.h"

@@ -1,5 +1,5 @@
 #pragma once
-// What the kernels call on AVX2 with FMA.
+// Lanes of AVX2 with FMA, 8 floats or 4 doubles: the operations that the kernels call.
 
 #include <immintrin.h>
 
@@ -16,14 +16,14 @@ namespace isa_avx2 {
 namespace {
 
 constexpr Isa this_isa = Isa::avx2;
-/// Grids of degrees 1 to 3 by loops of their own.
+/// Grids of degrees 1 to 3 have loops of their own.
 constexpr bool fixed_degrees = true;
 
 /// An immediate operand.
 template <int bits>
 using Bits = std::integral_constant<int, bits>;
 
-/// Eight lanes (a double takes two) turned by `count`: where they come from, and which of them then belong to the vector
+/// Eight lanes (a double takes two) turned by `count`: their sources, and which of them then belong to the vector
 /// before.
 struct Turn {
   __m256i lanes, before;
@@ -68,18 +68,18 @@ struct Lanes<float> {
       _mm256_maskstore_ps(p, _mm256_cmpgt_epi32(_mm256_set1_epi32(count), index), a);
     }
   }
-  /// from[places[lane]]
+  /// Returns from[places[lane]].
   static Batch gather(const float* from, const std::int32_t* places) {
     return _mm256_i32gather_ps(from, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(places)), sizeof(float));
   }
-  /// The first `count` values, zeros in the other lanes; reads no more.
+  /// Loads the first `count` values and zeros in the other lanes; reads no more.
   static Batch load_first(const float* p, int count) {
     if (count == 4) return _mm256_zextps128_ps256(_mm_loadu_ps(p));
     const __m256i index = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
     return _mm256_maskload_ps(p, _mm256_cmpgt_epi32(_mm256_set1_epi32(count), index));
   }
-  /// x0 x1 .. | y0 y1 .. | z0 z1 .. to x0 y0 z0 x1 ..: value 8 k + l comes from lane (8 k + l) / 3, by permutations, of
-  /// component (8 k + l) % 3, by blends.
+  /// Turns x0 x1 .. | y0 y1 .. | z0 z1 .. into x0 y0 z0 x1 ..: value 8 k + l comes by permutations from lane (8 k + l)
+  /// / 3 and by blends from component (8 k + l) % 3.
   static void interleave(Batch (&p)[3]) {
     const auto blended = [&](__m256i lanes, auto second, auto third) {
       const __m256 x = _mm256_permutevar8x32_ps(p[0], lanes), y = _mm256_permutevar8x32_ps(p[1], lanes);
@@ -95,23 +95,24 @@ struct Lanes<float> {
   /// A shift by `count` lanes, below `width`.
   using Shift = Turn;
   static Shift shift_by(int count) { return turn_by(count); }
-  /// The last lanes of the vector before `next` and the first ones of `next`; `carry` keeps what the following call needs.
+  /// Returns the last lanes of the vector before `next` and the first ones of `next`; `carry` is for the following
+  /// call.
   static Batch shift_in(Batch& carry, Batch next, const Shift& shift) {
     const __m256 turned = _mm256_permutevar8x32_ps(next, shift.lanes);
     const __m256 shifted = _mm256_blendv_ps(turned, carry, _mm256_castsi256_ps(shift.before));
     carry = turned;
     return shifted;
   }
-  /// The carry with which the next shift_in() leaves the first lanes of `a` where they are.
+  /// Returns the carry with which the next shift_in() leaves the first lanes of `a` in place.
   static Batch carried(Batch a, const Shift&) { return a; }
-  /// The lanes begin .. end - 1.
+  /// Stores the lanes begin .. end - 1.
   static void store_between(float* p, Batch a, int begin, int end) {
     const __m256i index = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
     const __m256i from = _mm256_cmpgt_epi32(_mm256_set1_epi32(begin), index);
     _mm256_maskstore_ps(p, _mm256_andnot_si256(from, _mm256_cmpgt_epi32(_mm256_set1_epi32(end), index)), a);
   }
-  /// Vector l becomes value l of the rows at row(0), row(1), ..., of which four values are read: rows k and k + 4 share a
-  /// vector from the start, which spares a third of a transpose's shuffles.
+  /// Sets vector l to value l of the rows at row(0), row(1), ..., of which four values are read. Rows k and k + 4 share
+  /// a vector from the start, which saves a third of a transpose's shuffles.
   template <class Row>
   static void load_columns(const Row& row, Batch (&column)[4]) {
     __m256 a[4];

@@ -1,5 +1,5 @@
 #pragma once
-// What the kernels call on AVX-512 (F, DQ, BW, VL).
+// Lanes of AVX-512 (F, DQ, BW, VL), 16 floats or 8 doubles: the operations that the kernels call.
 
 #include <immintrin.h>
 
@@ -15,13 +15,13 @@ namespace isa_avx512 {
 namespace {
 
 constexpr Isa this_isa = Isa::avx512;
-/// Grids of degrees 1 to 3 by loops of their own.
+/// Grids of degrees 1 to 3 have loops of their own.
 constexpr bool fixed_degrees = true;
 template <class T>
 using BatchOf = xsimd::batch<T, xsimd::avx512f>;
 
-/// Value l of vector k of interleaved triples is lane (width k + l) / 3 of component (width k + l) % 3: what two
-/// permutations of two vectors pick, the first from x and y, the second from its result and z.
+/// The permutations that interleave triples. Value l of vector k is lane (width k + l) / 3 of component (width k + l) %
+/// 3. The first permutation picks from x and y, the second from its result and z.
 template <class Index, int width>
 struct InterleavedTriples {
   alignas(64) Index xy[3][width]{}, z[3][width]{};
@@ -35,7 +35,7 @@ struct InterleavedTriples {
   }
 };
 
-/// The few operations that xsimd lacks, or (fma on AVX-512 before 12.1) does not fuse.
+/// The few operations that xsimd lacks or, like fma on AVX-512 before 12.1, does not fuse.
 template <class T>
 struct Lanes;
 
@@ -67,11 +67,11 @@ struct Lanes<float> {
       _mm512_mask_storeu_ps(p, static_cast<__mmask16>((1u << count) - 1u), a);
     }
   }
-  /// from[places[lane]]
+  /// Returns from[places[lane]].
   static Batch gather(const float* from, const std::int32_t* places) {
     return _mm512_i32gather_ps(_mm512_loadu_si512(places), from, sizeof(float));
   }
-  /// The first `count` values, zeros in the other lanes; reads no more.
+  /// Loads the first `count` values and zeros in the other lanes; reads no more.
   static Batch load_first(const float* p, int count) {
     return _mm512_maskz_loadu_ps(static_cast<__mmask16>((1u << count) - 1u), p);
   }
@@ -86,8 +86,8 @@ struct Lanes<float> {
     _mm256_storeu_ps(low, _mm512_castps512_ps256(a));
     _mm256_storeu_ps(high, _mm512_extractf32x8_ps(a, 1));
   }
-  /// Four rows of 12 values from three aligned vectors; the last four lanes of a row mean nothing. An unaligned load
-  /// takes as long as two.
+  /// Loads four rows of 12 values from three aligned vectors; the last four lanes of a row are to be ignored. An
+  /// unaligned load takes as long as two.
   static void load_twelves(const float* p, Batch (&rows)[4]) {
     const __m512i a = _mm512_load_si512(p), b = _mm512_load_si512(p + 16), c = _mm512_load_si512(p + 32);
     rows[0] = _mm512_castsi512_ps(a);
@@ -95,7 +95,7 @@ struct Lanes<float> {
     rows[2] = _mm512_castsi512_ps(_mm512_alignr_epi32(c, b, 8));
     rows[3] = _mm512_castsi512_ps(_mm512_alignr_epi32(c, c, 4));
   }
-  /// x0 x1 .. | y0 y1 .. | z0 z1 .. to x0 y0 z0 x1 ..
+  /// Turns x0 x1 .. | y0 y1 .. | z0 z1 .. into x0 y0 z0 x1 ..
   static void interleave(Batch (&p)[3]) {
     static constexpr InterleavedTriples<int, width> lanes;
     const __m512 x = p[0], y = p[1], z = p[2];
@@ -106,35 +106,36 @@ struct Lanes<float> {
   }
   /// A shift by `count` lanes, below `width`.
   struct Shift {
-    __m512i lanes;  ///< from the vector before where bit 4 is set; higher ones mean nothing
+    __m512i lanes;  ///< from the vector before where bit 4 is set; higher bits are ignored
   };
   static __m512i each_lane() { return _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15); }
   static Shift shift_by(int count) { return {_mm512_sub_epi32(each_lane(), _mm512_set1_epi32(count))}; }
-  /// The last lanes of the vector before `next` and the first ones of `next`; `carry` keeps what the following call needs.
+  /// Returns the last lanes of the vector before `next` and the first ones of `next`; `carry` is for the following
+  /// call.
   static Batch shift_in(Batch& carry, Batch next, const Shift& shift) {
     const __m512 shifted = _mm512_permutex2var_ps(next, shift.lanes, carry);
     carry = next;
     return shifted;
   }
-  /// The carry with which the next shift_in() leaves the first lanes of `a` where they are.
+  /// Returns the carry with which the next shift_in() leaves the first lanes of `a` in place.
   static Batch carried(Batch a, const Shift& shift) {
     const __m512i twice = _mm512_add_epi32(each_lane(), each_lane());
     return _mm512_permutexvar_ps(_mm512_sub_epi32(twice, shift.lanes), a);
   }
-  /// x y z x y z ..
+  /// Returns x y z x y z ..
   static Batch triples(const float* x, const float* y, const float* z) {
     const __m512 xy = _mm512_mask_broadcastss_ps(_mm512_set1_ps(*x), 0x2492, _mm_load_ss(y));
     return _mm512_mask_broadcastss_ps(xy, 0x4924, _mm_load_ss(z));
   }
-  /// Each lane from the one that `places` names.
+  /// Loads the source of each lane for picked().
   static __m512i load_places(const std::int32_t* places) { return _mm512_load_si512(places); }
   static Batch picked(Batch a, __m512i places) { return _mm512_permutexvar_ps(places, a); }
-  /// The lanes begin .. end - 1.
+  /// Stores the lanes begin .. end - 1.
   static void store_between(float* p, Batch a, int begin, int end) {
     _mm512_mask_storeu_ps(p, static_cast<__mmask16>((1u << end) - (1u << begin)), a);
   }
-  /// Vector l becomes value l of the rows at row(0), row(1), ..., of which eight values are read: rows k and k + 4 share a
-  /// vector from the start, which spares half of the shuffles across a vector.
+  /// Sets vector l to value l of the rows at row(0), row(1), ..., of which eight values are read. Rows k and k + 4
+  /// share a vector from the start, which saves half of the shuffles across a vector.
   template <class Row>
   static void load_columns(const Row& row, Batch (&column)[8]) {
     __m512 a[8];
@@ -224,17 +225,18 @@ struct Lanes<double> {
   }
   /// A shift by `count` lanes, below `width`.
   struct Shift {
-    __m512i lanes;  ///< from the vector before where bit 3 is set; higher ones mean nothing
+    __m512i lanes;  ///< from the vector before where bit 3 is set; higher bits are ignored
   };
   static __m512i each_lane() { return _mm512_setr_epi64(0, 1, 2, 3, 4, 5, 6, 7); }
   static Shift shift_by(int count) { return {_mm512_sub_epi64(each_lane(), _mm512_set1_epi64(count))}; }
-  /// The last lanes of the vector before `next` and the first ones of `next`; `carry` keeps what the following call needs.
+  /// Returns the last lanes of the vector before `next` and the first ones of `next`; `carry` is for the following
+  /// call.
   static Batch shift_in(Batch& carry, Batch next, const Shift& shift) {
     const __m512d shifted = _mm512_permutex2var_pd(next, shift.lanes, carry);
     carry = next;
     return shifted;
   }
-  /// The carry with which the next shift_in() leaves the first lanes of `a` where they are.
+  /// Returns the carry with which the next shift_in() leaves the first lanes of `a` in place.
   static Batch carried(Batch a, const Shift& shift) {
     const __m512i twice = _mm512_add_epi64(each_lane(), each_lane());
     return _mm512_permutexvar_pd(_mm512_sub_epi64(twice, shift.lanes), a);

@@ -1,5 +1,5 @@
 #pragma once
-// What the kernels call on NEON of AArch64, with fused multiply-adds: the bytes of AVX2 and AVX-512.
+// Lanes of NEON on AArch64, 4 floats or 2 doubles, with fused multiply-adds: the same bits as AVX2 and AVX-512.
 
 #include <arm_neon.h>
 
@@ -14,14 +14,15 @@ namespace isa_neon64 {
 namespace {
 
 constexpr Isa this_isa = Isa::neon64;
-/// Grids of degrees 1 to 3 by loops of their own.
+/// Grids of degrees 1 to 3 have loops of their own.
 constexpr bool fixed_degrees = true;
 
-// What the kernels call by the name of xsimd. Debian's xsimd (8.1) divides floats and takes their roots by estimates on
-// NEON, and its minimum and maximum treat a NaN otherwise than x86's do: other bits. So these few stand in for it.
+// The functions that the kernels call by the name of xsimd. On NEON, Debian's xsimd (8.1) divides floats and takes
+// roots by estimates, and its minimum and maximum treat NaN differently from x86: other bits. These functions replace
+// it.
 namespace xsimd {
 
-/// The registers of floats, or of doubles.
+/// The register type of floats or doubles, and its operations.
 template <class T>
 struct Neon;
 
@@ -61,7 +62,7 @@ struct Neon<double> {
   static std::uint32_t highest(Bits mask) { return vmaxvq_u32(vreinterpretq_u32_u64(mask)); }
 };
 
-/// A truth for each lane: all bits or none.
+/// A truth value for each lane: all bits or none.
 template <class T>
 struct batch_bool {
   typename Neon<T>::Bits bits;
@@ -113,7 +114,7 @@ inline batch<float> copysign(batch<float> size, batch<float> sign) {
 }
 inline batch<float> floor(batch<float> a) { return vrndmq_f32(a); }
 inline batch<float> ceil(batch<float> a) { return vrndpq_f32(a); }
-/// As x86 has it: the second where one is not a number.
+/// As on x86: returns the second value where one is NaN.
 template <class T>
 batch<T> min(batch<T> a, batch<T> b) {
   return select(a < b, a, b);
@@ -133,7 +134,7 @@ bool any(batch_bool<T> mask) {
 
 }  // namespace xsimd
 
-/// What lines of a cache need and NEON has no instructions for, through memory.
+/// Operations on lanes for which NEON has no instructions, through memory.
 template <class Scalar>
 struct ThroughMemory {
   using Batch = xsimd::batch<Scalar>;
@@ -143,13 +144,14 @@ struct ThroughMemory {
     int count;
   };
   static Shift shift_by(int count) { return {count}; }
-  /// The carry with which the next shift_in() leaves the first lanes of `a` where they are.
+  /// Returns the carry with which the next shift_in() leaves the first lanes of `a` in place.
   static Batch carried(Batch a, const Shift& shift) {
     Batch carry;
     for (int i = 0; i < width; ++i) carry.lanes[i] = a.lanes[(i + shift.count) % width];
     return carry;
   }
-  /// The last lanes of the vector before `next` and the first ones of `next`; `carry` keeps what the following call needs.
+  /// Returns the last lanes of the vector before `next` and the first ones of `next`; `carry` is for the following
+  /// call.
   static Batch shift_in(Batch& carry, Batch next, const Shift& shift) {
     Batch shifted;
     for (int i = 0; i < width; ++i)
@@ -157,7 +159,7 @@ struct ThroughMemory {
     carry = next;
     return shifted;
   }
-  /// The first `count` values, zeros in the other lanes; reads no more.
+  /// Loads the first `count` values and zeros in the other lanes; reads no more.
   static Batch load_first(const Scalar* p, int count) {
     Batch a(Scalar(0));
     for (int i = 0; i < width && i < count; ++i) a.lanes[i] = p[i];
@@ -177,7 +179,7 @@ struct Lanes<float> : ThroughMemory<float> {
   static Batch broadcast(float x) { return Batch(x); }
   static Batch load(const float* p) { return vld1q_f32(p); }
   static void store(float* p, Batch a) { vst1q_f32(p, a); }
-  static void stream(float* p, Batch a) { vst1q_f32(p, a); }  // AArch64 has hints alone
+  static void stream(float* p, Batch a) { vst1q_f32(p, a); }  // AArch64 has only hints
   static void fence() {}
   static Batch fma(Batch a, Batch b, Batch c) { return vfmaq_f32(c, a, b); }             // a b + c
   static Batch fms(Batch a, Batch b, Batch c) { return vfmaq_f32(vnegq_f32(c), a, b); }  // a b - c
@@ -185,7 +187,7 @@ struct Lanes<float> : ThroughMemory<float> {
   static Batch inverse_root_guess(Batch a) {                                             // halves the exponent
     return vreinterpretq_f32_u32(vsubq_u32(vdupq_n_u32(0x5f3759df), vshrq_n_u32(vreinterpretq_u32_f32(a), 1)));
   }
-  /// from[places[lane]]
+  /// Returns from[places[lane]].
   static Batch gather(const float* from, const std::int32_t* places) {
     const float values[width] = {from[places[0]], from[places[1]], from[places[2]], from[places[3]]};
     return vld1q_f32(values);
@@ -203,13 +205,13 @@ struct Lanes<float> : ThroughMemory<float> {
       for (int i = 0; i < count; ++i) p[i] = values[i];
     }
   }
-  /// x0 x1 .. | y0 y1 .. | z0 z1 .. to x0 y0 z0 x1 ..
+  /// Turns x0 x1 .. | y0 y1 .. | z0 z1 .. into x0 y0 z0 x1 ..
   static void interleave(Batch (&p)[3]) {
     alignas(16) float values[3 * width];
     vst3q_f32(values, float32x4x3_t{{p[0], p[1], p[2]}});
     for (int k = 0; k < 3; ++k) p[k] = vld1q_f32(values + k * width);
   }
-  /// Vector l becomes value l of the rows at row(0), row(1), ...
+  /// Sets vector l to value l of the rows at row(0), row(1), ...
   template <class Row>
   static void load_columns(const Row& row, Batch (&column)[width]) {
     for (int k = 0; k < width; ++k) column[k] = load(row(k));
@@ -259,7 +261,7 @@ struct Lanes<double> : ThroughMemory<double> {
     p[1] = vcombine_f64(vget_low_f64(z), vget_high_f64(x));
     p[2] = vzip2q_f64(y, z);
   }
-  /// Vector l becomes value l of the rows at row(0), row(1), ...
+  /// Sets vector l to value l of the rows at row(0), row(1), ...
   template <class Row>
   static void load_columns(const Row& row, Batch (&column)[width]) {
     for (int k = 0; k < width; ++k) column[k] = load(row(k));

@@ -1,6 +1,6 @@
 #pragma once
-// What the kernels call on SSE2, the baseline of x86-64. There is no fused multiply-add: results differ in their last bits from
-// those of the other units, within the same stated bounds.
+// Lanes of SSE2, the baseline of x86-64, 4 floats or 2 doubles: the operations that the kernels call. Without fused
+// multiply-adds, results differ in their last bits from those of the other units, within the same stated bounds.
 
 #include <emmintrin.h>
 
@@ -16,7 +16,7 @@ namespace isa_sse2 {
 namespace {
 
 constexpr Isa this_isa = Isa::sse2;
-/// Grids of degrees 1 to 3 by loops of their own: not here, for the code's size.
+/// Grids of degrees 1 to 3 have no loops of their own, to limit the code's size.
 constexpr bool fixed_degrees = false;
 
 template <class T>
@@ -52,18 +52,18 @@ struct Lanes<float> {
       for (int i = 0; i < count; ++i) p[i] = values[i];
     }
   }
-  /// from[places[lane]]
+  /// Returns from[places[lane]].
   static Batch gather(const float* from, const std::int32_t* places) {
     return _mm_setr_ps(from[places[0]], from[places[1]], from[places[2]], from[places[3]]);
   }
-  /// The first `count` values, zeros in the other lanes; reads no more.
+  /// Loads the first `count` values and zeros in the other lanes; reads no more.
   static Batch load_first(const float* p, int count) {
     if (count == width) return _mm_loadu_ps(p);
     alignas(16) float values[width] = {0, 0, 0, 0};
     for (int i = 0; i < count; ++i) values[i] = p[i];
     return _mm_load_ps(values);
   }
-  /// x0 x1 .. | y0 y1 .. | z0 z1 .. to x0 y0 z0 x1 ..
+  /// Turns x0 x1 .. | y0 y1 .. | z0 z1 .. into x0 y0 z0 x1 ..
   static void interleave(Batch (&p)[3]) {
     const __m128 x = p[0], y = p[1], z = p[2];
     const __m128 zx_low = _mm_shuffle_ps(z, x, 0x50), yz = _mm_shuffle_ps(y, z, 0x55);  // z0 z0 x1 x1, y1 y1 z1 z1
@@ -77,15 +77,16 @@ struct Lanes<float> {
     int count;
   };
   static Shift shift_by(int count) { return {count}; }
-  /// The last lanes of the vector before `next` and the first ones of `next`; `carry` keeps what the following call needs.
+  /// Returns the last lanes of the vector before `next` and the first ones of `next`; `carry` is for the following
+  /// call.
   static Batch shift_in(Batch& carry, Batch next, const Shift& shift) {
     const Batch before = carry;
     carry = next;
     return shifted(before, next, shift.count);
   }
-  /// The carry with which the next shift_in() leaves the first lanes of `a` where they are.
+  /// Returns the carry with which the next shift_in() leaves the first lanes of `a` in place.
   static Batch carried(Batch a, const Shift& shift) { return shifted(a, a, width - shift.count); }
-  /// `count` last lanes of a, then the first ones of b.
+  /// Returns the `count` last lanes of a, then the first ones of b.
   static Batch shifted(__m128 a, __m128 b, int count) {
     switch (count) {
       case 0:
@@ -100,7 +101,7 @@ struct Lanes<float> {
         return a;
     }
   }
-  /// Vector l becomes value l of the rows at row(0), row(1), ...
+  /// Sets vector l to value l of the rows at row(0), row(1), ...
   template <class Row>
   static void load_columns(const Row& row, Batch (&column)[width]) {
     for (int k = 0; k < width; ++k) column[k] = load(row(k));
@@ -158,13 +159,14 @@ struct Lanes<double> {
     int count;
   };
   static Shift shift_by(int count) { return {count}; }
-  /// The last lanes of the vector before `next` and the first ones of `next`; `carry` keeps what the following call needs.
+  /// Returns the last lanes of the vector before `next` and the first ones of `next`; `carry` is for the following
+  /// call.
   static Batch shift_in(Batch& carry, Batch next, const Shift& shift) {
     const Batch before = carry;
     carry = next;
     return shifted(before, next, shift.count);
   }
-  /// The carry with which the next shift_in() leaves the first lanes of `a` where they are.
+  /// Returns the carry with which the next shift_in() leaves the first lanes of `a` in place.
   static Batch carried(Batch a, const Shift& shift) { return shifted(a, a, width - shift.count); }
   static Batch shifted(__m128d a, __m128d b, int count) {
     return count == 0 ? b : count == 1 ? _mm_shuffle_pd(a, b, 1) : a;

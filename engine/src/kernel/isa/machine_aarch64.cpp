@@ -1,4 +1,4 @@
-// Every AArch64 machine has NEON.
+// The kernel tables of AArch64, where every machine has NEON.
 
 #include "kernel/isa/kernel_table.h"
 

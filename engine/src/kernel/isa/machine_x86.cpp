@@ -1,4 +1,4 @@
-// Which of the instruction sets of x86-64 this machine has.
+// Detects which instruction sets of x86-64 this machine has.
 
 #include <array>
 
@@ -25,7 +25,8 @@ struct Machine {
   std::size_t count = 0;
 };
 
-/// The compiler's own test asks the processor and the operating system (XGETBV); xsimd's asks the processor alone.
+/// Uses the compiler's test, which asks the processor and the operating system (XGETBV); xsimd's asks the processor
+/// only.
 Machine detect() {
   __builtin_cpu_init();
   Machine found;

@@ -1,4 +1,4 @@
-// Which instruction set a call uses, of those that this machine has.
+// Chooses the instruction set of a call among those that this machine has.
 
 #include <algorithm>
 #include <array>

@@ -1,13 +1,13 @@
 #pragma once
-// The vertices of one polynomial bicubic patch of a mesh, on AVX-512: the same sums in the same order as in
-// mesh_kernel.inl.h, hence the same bits, with the points of the inner grid, and then those of the ring, sixteen at a
-// time wherever rows and sides end. What each point takes comes by permutations from registers that hold the patch.
+// The vertices of one polynomial bicubic patch of a mesh, on AVX-512, lanes = sixteen points of the inner grid, then of
+// the ring, wherever rows and sides end. The sums and their order are those of mesh_kernel.inl.h, hence the bits too.
+// Each point's inputs come by permutations from registers that hold the patch.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/isa/lanes.h, kernel/mesh/mesh_kernels.h.
 
 #include "kernel/mesh/mesh_kernel.inl.h"
 
-/// From a block `[i][j][component][lane]` to its patches, `[lane][component][i][j]`. Asks for the block behind it.
+/// Turns a block `[i][j][component][lane]` into its patches, `[lane][component][i][j]`, and prefetches the next block.
 template <class L>
 void write_mesh_points(const float* net, float* points) {
   for (int k = 0; k < mesh_patch_points; ++k) __builtin_prefetch(net + (mesh_patch_points + k) * block_lanes);
@@ -35,7 +35,7 @@ class CubicVertices {
   using Batch = typename L::Batch;
   static constexpr int width = 16, rows_at_once = 8;
 
-  /// Row curves of up to eight u: [order][component] holds, at 4 row + j, coefficient j of a row.
+  /// Row curves of up to eight u: [order][component] holds coefficient j of a row at 4 row + j.
   using Curves = __m512[Order + 1][3][2];
 
   void write_inner() {
@@ -93,7 +93,8 @@ class CubicVertices {
   }
 
   void write_ring() {
-    // Control points of the borders as the ring runs, at 4 side + i: v = 0, u = 1, v = 1, u = 0; and those next to them.
+    // Control points of the borders in the order of the ring, at 4 side + i: v = 0, u = 1, v = 1, u = 0; and those next
+    // to them.
     alignas(64) static constexpr int on[16] = {0, 4, 8, 12, 12, 13, 14, 15, 15, 11, 7, 3, 3, 2, 1, 0};
     alignas(64) static constexpr int beside[16] = {1, 5, 9, 13, 8, 9, 10, 11, 14, 10, 6, 2, 7, 6, 5, 4};
     __m512 border[3], across[3];
@@ -149,7 +150,7 @@ class CubicVertices {
   }
   static int within(int lane, int least) { return lane < least ? least : lane > width ? width : lane; }
 
-  /// The next `count` vertices.
+  /// Writes the next `count` vertices.
   [[gnu::always_inline]] void put(const Sample<L>& sample, int count) {
     const int writable = vertex_ + width <= job_.writable ? width : count;
     Batch p[3];

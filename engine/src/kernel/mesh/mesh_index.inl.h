@@ -1,5 +1,5 @@
 #pragma once
-// The triangles of one patch of a mesh (tess/write/stitched_patch.h), written in whole vectors.
+// The triangles of one patch of a mesh (tess/write/stitched_patch.h), lanes = indices, written in whole vectors.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/isa/lanes.h, kernel/mesh/mesh_kernels.h.
 
@@ -12,12 +12,12 @@ template <class L>
   __builtin_memcpy(&indices, from, sizeof indices);
   return indices;
 }
-/// Indices to memory, in whole vectors: what runs over the end of a piece is overwritten by the next.
+/// Writes indices to memory in whole vectors; the part beyond the end of a piece is overwritten by the next piece.
 template <class L>
 class IndexRecords {
  public:
   explicit IndexRecords(const MeshIndexJob& job) : out_(job.out), end_(job.end) {}
-  /// The first `count` of a vector.
+  /// Puts the first `count` indices of a vector.
   [[gnu::always_inline]] void put(const Indices<L>& indices, int count) {
     if (end_ - out_ >= L::width) {
       __builtin_memcpy(out_, &indices, sizeof indices);
@@ -32,7 +32,7 @@ class IndexRecords {
   std::uint32_t *out_, *const end_;
 };
 
-/// Indices past the caches.
+/// Writes indices past the caches.
 template <class L>
 class IndexLines {
  public:
@@ -53,7 +53,7 @@ class IndexLines {
   LineSink<L, true> sink_;
 };
 
-/// One strip by its template.
+/// Writes one strip by its template.
 template <class L, class Sink>
 [[gnu::always_inline]] inline void write_strip(const MeshIndexJob& job, const MeshStrip& strip, Sink& sink) {
   const std::uint32_t wrap = job.ring + job.ring_size;
@@ -76,7 +76,7 @@ struct CellCorners {
   }
 };
 
-/// Both triangles of the inner cells, row after row, eight cells at a time.
+/// Writes both triangles of the inner cells, row after row, eight cells at a time.
 template <class L, class Sink>
 [[gnu::always_inline]] inline void write_cells(const MeshIndexJob& job, Sink& sink) {
   constexpr int cells = 8, vectors = 6 * cells / L::width;

@@ -1,13 +1,15 @@
 #pragma once
-// The vertices of one patch of a mesh: an inner grid, then the ring of its border points (tess/write/stitched_patch.h). Lanes are
-// samples of the patch, in tiles of eight neighbours; an AVX-512 vector holds two tiles, each of a row of its own.
+// The vertices of one patch of a mesh: an inner grid, then the ring of its border points (tess/write/stitched_patch.h).
+// Lanes are samples of the patch, in tiles of eight neighbours; an AVX-512 vector holds two tiles, each of a row of its
+// own.
 //
-// Inner points: first the row curves of sixteen u at once, q = sum_i f_i(u) row_i with lanes = u; then along each the
-// points, sum_j g_j(v) q_j with lanes = v. The same sums in the same order as in a grid (grid_kernel.inl.h). Border
-// points: by the sum of border_kernel.inl.h, whose bits are those of every patch that has the border. Their normals
-// come from the border's own tangent and the one across it, degree (second row - first row), which points inwards: as
-// the ring runs counter-clockwise, along x inwards is r_u x r_v on every side. Where the border is a point, its own
-// tangent is zero, but that of the row next to it, relative to the point, is what r_u tends to.
+// Inner points: first the row curves of sixteen u at once, q = sum_i f_i(u) row_i with lanes = u, then along each the
+// points, sum_j g_j(v) q_j with lanes = v. The sums and their order are those of a grid (grid_kernel.inl.h).
+//
+// Border points: the sum of border_kernel.inl.h, whose bits are those of every patch that has the border. Their normals
+// come from the border's own tangent and the one across it, degree (second row - first row), which points inwards: the
+// ring runs counter-clockwise, so along x inwards is r_u x r_v on every side. Where the border is a point its own
+// tangent is zero; r_u then tends to the tangent of the row next to it, relative to the point.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/isa/lanes.h, kernel/mesh/mesh_kernels.h.
 
@@ -15,7 +17,7 @@
 #include "kernel/sample/normal_kernel.inl.h"
 #include "kernel/sample/symmetric_sum.inl.h"
 
-/// One number a tile in its lanes.
+/// Returns one number per tile in the tile's lanes.
 template <class L>
 [[gnu::always_inline]] inline typename L::Batch in_tiles(const float* a, const float* b) {
   if constexpr (L::width == 2 * mesh_tile) {
@@ -24,7 +26,7 @@ template <class L>
     return L::broadcast(*a);
   }
 }
-/// The lanes of tiles from `lane` on.
+/// Loads the lanes of tiles from `lane` on.
 template <class L>
 [[gnu::always_inline]] inline typename L::Batch load_tiles(const float* a, const float* b, int lane) {
   if constexpr (L::width == 2 * mesh_tile) {
@@ -44,28 +46,28 @@ template <class L>
 
 /// Up to eight neighbouring inner points of a row.
 struct InnerTile {
-  const float* row;      ///< its first coefficient
+  const float* row;      ///< first coefficient of the row
   const float* weights;  ///< `[order][i][mesh_tile]`
-  int at;                ///< the place of the first in the stage
+  int at;                ///< place of the first point in the stage
 };
 /// Up to eight neighbouring points of a border.
 struct BorderTile {
-  const float* first;            ///< control point
-  std::ptrdiff_t step, inwards;  ///< to the next control point, to the one of the second row
+  const float* first;            ///< first control point
+  std::ptrdiff_t step, inwards;  ///< to the next control point, and to that of the second row
   const float* weights;
   int at, count;
   const MeshBorder* border;
-  bool starts;       ///< with the border's first point
-  bool leaves_pole;  ///< this one being the last of a border that is a point
+  bool starts;       ///< the tile has the border's first point
+  bool leaves_pole;  ///< that point is also the last of a border that is a point
 };
-/// By whether a tile leaves a pole: 1 at the point that does.
+/// Indexed by whether a tile leaves a pole: 1 in the lane of the point that does.
 constexpr float pole_lanes[2][mesh_tile] = {{}, {1}};
 
 inline bool is_packed(const MeshRecords& out) {
   return out.stride == 3 && out.out[1] == out.out[0] + 1 && out.out[2] == out.out[0] + 2;
 }
 
-/// Records of three that follow each other, or go to places of their own.
+/// Writes records of three that follow each other or have places of their own.
 template <class L>
 class RecordSink {
  public:
@@ -73,7 +75,7 @@ class RecordSink {
   RecordSink(const RecordSink&) = delete;
   RecordSink& operator=(const RecordSink&) = delete;
 
-  /// The first `count` of a vector, from a record on; memory of `writable` may be written, whatever it then holds.
+  /// Puts the first `count` records of a vector from `record` on. The memory of `writable` records may be overwritten.
   [[gnu::always_inline]] void put(int record, typename L::Batch (&p)[3], int count, int writable) {
     if constexpr (has_lines<L>)
       if (out_.lines) return put_to_lines(p, count);
@@ -162,7 +164,7 @@ class PatchVertices {
     }
   }
 
-  /// The row curves of sixteen u: rows_[order][component][j][row].
+  /// Computes the row curves of sixteen u: rows_[order][component][j][row].
   void fill_rows(int first) {
     const int terms_u = count_u(), terms_v = count_v();
     const std::ptrdiff_t tile_values = std::ptrdiff_t{2} * terms_u * mesh_tile;
@@ -244,7 +246,7 @@ class PatchVertices {
     }
   }
   static bool needs_fix(const BorderTile& tile) { return tile.border->is_point || (Rational && tile.starts); }
-  /// Positions that are no sums.
+  /// Replaces positions that are no sums.
   [[gnu::noinline]] void fix(const BorderTile& tile) {
     for (int k = 0; k < (tile.border->is_point ? tile.count : 1); ++k)
       for (int c = 0; c < 3; ++c) stage_[c][tile.at + k] = tile.border->start[c];
@@ -282,7 +284,7 @@ class PatchVertices {
       const int k = i * mesh_tile, derivative = (count + i) * mesh_tile;
       const Batch weight = load_tiles<L>(a.weights + k, b.weights + k, lane);
       const float *at_a = a.first + i * a.step, *at_b = b.first + i * b.step;
-      // Where a derivative vanishes at a pole its own along the border does not.
+      // A derivative that vanishes at a pole is replaced by its own derivative along the border, which does not.
       for (int c = 0; c < components; ++c) {
         Batch point = in_tiles<L>(at_a + c * block_lanes, at_b + c * block_lanes);
         if constexpr (Rational) point = point * scale;
@@ -315,7 +317,7 @@ class PatchVertices {
     }
   }
 
-  /// As symmetric_sum(), of the products.
+  /// Adds the products in the order of symmetric_sum().
   [[gnu::always_inline]] static Batch symmetric(const Batch* term, int degree) {
     Batch sum = term[0] + term[degree];
     for (int i = 1; 2 * i < degree; ++i) sum = sum + (term[i] + term[degree - i]);
@@ -323,7 +325,7 @@ class PatchVertices {
     return sum;
   }
 
-  /// What is staged goes to the caller's records.
+  /// Writes the stage to the caller's records.
   void flush() {
     write_records(job_.position, stage_);
     if constexpr (Order > 0) write_records(job_.normal, stage_ + 3);
@@ -331,7 +333,7 @@ class PatchVertices {
     staged_ = 0;
   }
 
-  /// Packed vectors run over the end into records that the same thread writes later.
+  /// Packed vectors may run over the end into records that the same thread writes later.
   void write_records(const MeshRecords& out, const float (*stage)[staged + rows_at_once]) const {
     RecordSink<L> sink(out);
     for (int k = 0; k < staged_; k += L::width) {

@@ -1,4 +1,4 @@
-// Vertices and triangles of meshes. One unit an instruction set: see cmake/TesseraIsaFlags.cmake.
+// Vertices and triangles of meshes. One unit per instruction set: see cmake/TesseraIsaFlags.cmake.
 
 #include "kernel/isa/lanes.h"
 #include "kernel/mesh/mesh_kernels.h"

@@ -1,10 +1,10 @@
 #pragma once
-// Control nets of a block's patches, `[number]` in the memory of each, taken as `[number][lane]`.
+// Control nets of a block's patches, lanes = patches: `[number]` in each patch's memory becomes `[number][lane]`.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/isa/lanes.h, kernel/net/net_kernels.h.
 
-/// use(number, component, values of the lanes) for each number of L::width nets; the component is known when compiled.
-/// `copies`: as in PackJob.
+/// Calls use(number, component, values of the lanes) for each number of L::width nets. The component is known at
+/// compile time. `copies`: as in PackJob.
 template <class L, class Use>
 inline void for_numbers(const double* const* nets, double* const* copies, std::size_t count, Use use) {
   constexpr std::size_t width = L::width, run = 3 * width;
@@ -53,7 +53,7 @@ class BoxesOfLanes {
       L::store(boxes.upper[c] + lane, upper_[c]);
     }
   }
-  /// The largest |x|, |y|, |z| of what is in the box, once the origin is taken off: rounding keeps order.
+  /// Returns the largest |x|, |y|, |z| in the box relative to the origin; rounding keeps the order of values.
   Batch largest(const double (&origin)[3]) const {
     Batch result = L::broadcast(0);
     for (int c = 0; c < 3; ++c) {
@@ -73,8 +73,8 @@ class BoxesOfLanes {
   Batch lower_[3] = {infinity_, infinity_, infinity_}, upper_[3] = {-infinity_, -infinity_, -infinity_};
 };
 
-/// Whether an edge of some lane begins with two equal points: if none does, no edge is a point. Equal doubles are equal
-/// in T too.
+/// Returns whether an edge of some lane begins with two equal points; if none does, no edge is a point. Equal doubles
+/// are equal in T too.
 template <class T>
 inline bool may_have_pointed_edge(const PackJob<T>& job) {
   using L = Lanes<T>;
@@ -92,7 +92,7 @@ inline bool may_have_pointed_edge(const PackJob<T>& job) {
   return false;
 }
 
-/// See PackJob::doubts.
+/// Writes PackJob::doubts.
 template <class T, class L>
 inline void write_doubts(const PackJob<T>& job, typename L::Batch largest, typename L::Batch diagonal, int lane) {
   const auto most = L::broadcast(double{std::numeric_limits<T>::max()});
@@ -103,7 +103,7 @@ inline void write_doubts(const PackJob<T>& job, typename L::Batch largest, typen
   L::store_as(job.doubts + block_lanes + lane, xsimd::min(noise, most));
 }
 
-/// The same bits on every ISA: a sum of doubles, rounded to T.
+/// Gives the same bits on every ISA: a sum of doubles, rounded to T.
 template <class T>
 void pack_nets(const PackJob<T>& job, PackedNets& found) {
   using L = Lanes<double>;
@@ -135,7 +135,7 @@ inline void bound_nets(const double* const* nets, std::size_t count, NetBoxes& b
   }
 }
 
-/// The bounds of points that lie together.
+/// Extends the bounds by points that lie together.
 inline void bound_points(const double* points, std::size_t count, PointBounds& bounds) {
   using L = Lanes<double>;
   using Batch = L::Batch;
@@ -181,7 +181,8 @@ inline bool all_within(const double* numbers, std::size_t count, double limit) {
   return true;
 }
 
-/// Products and sums rounded one by one, in order: the same bits on every ISA. Count: std::size_t, or a constant.
+/// Combines rows; products and sums are rounded one by one, in order: the same bits on every ISA. Count is std::size_t
+/// or a constant.
 template <class Count>
 inline void combine_rows(const CombineJob& job, Count count) {
   using L = Lanes<double>;
@@ -202,7 +203,7 @@ inline void combine_rows(const CombineJob& job, Count count) {
 }
 
 inline void combine_rows(const CombineJob& job) {
-  switch (job.count) {  // those of degrees 1 to 3
+  switch (job.count) {  // constants for degrees 1 to 3
     case 2:
       return combine_rows(job, std::integral_constant<std::size_t, 2>{});
     case 3:

@@ -1,4 +1,4 @@
-// Control nets, memory, and the machine's limits. One unit an instruction set: see cmake/TesseraIsaFlags.cmake.
+// Control nets, memory, and the machine's limits. One unit per instruction set: see cmake/TesseraIsaFlags.cmake.
 
 #include "kernel/isa/lanes.h"
 #include "kernel/store/memory_kernels.h"

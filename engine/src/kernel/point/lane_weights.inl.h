@@ -1,13 +1,13 @@
 #pragma once
-// Bernstein weights of a vector of parameters, one a lane. A power t^k and the error of its rounding are carried along
-// together (Graillat 2009, Accurate floating-point product and exponentiation, alg. 3.5; the rest of 1 - t by Dekker's
-// FastTwoSum), so that a weight is right to about one rounding, as tabulated ones are: plain products lose 2.7 units
-// at degree 3 and 8.8 at degree 15, these 1.7 and 1.9, as weights that are rounded once. Without fused multiply-adds
-// the rests of products come out as zero. Derivatives take plain products.
+// Bernstein weights of a vector of parameters, one per lane, for scattered samples. A power t^k carries the error of
+// its rounding along (Graillat 2009, Accurate floating-point product and exponentiation, alg. 3.5; the rest of 1 - t by
+// Dekker's FastTwoSum). So a weight is right to about one rounding, as tabulated ones are: these lose 1.7 units at
+// degree 3 and 1.9 at degree 15, like weights that are rounded once, plain products 2.7 and 8.8. Without fused
+// multiply-adds the rests of products are zero. Derivatives use plain products.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/isa/lanes.h, kernel/point/point_kernels.h.
 
-/// C(n, i).
+/// The binomials C(n, i).
 template <class T>
 struct Binomials {
   T of[max_order][max_order]{};
@@ -19,12 +19,12 @@ struct Binomials {
 template <class T>
 inline constexpr Binomials<T> binomials;
 
-/// Powers of t + rest below the degree, each a rounded value and what that lacks.
+/// Powers of t + rest below the degree, each as a rounded value and its rest.
 template <class L, int Capacity>
 struct Powers {
   typename L::Batch value[Capacity], rest[Capacity];
 
-  /// Of t alone; rest[1] is zero and stays unset.
+  /// Fills the powers of t alone; rest[1] is zero and stays unset.
   [[gnu::always_inline]] void fill(const typename L::Batch& t, int degree) {
     value[0] = L::broadcast(1);
     value[1] = t;
@@ -48,7 +48,7 @@ struct Powers {
   }
 };
 
-/// C(n,i) t^i s^(n-i), rounded about once.
+/// Computes C(n,i) t^i s^(n-i), rounded about once.
 template <class L, int Capacity>
 [[gnu::always_inline]] inline void bernstein_values(const Powers<L, Capacity>& t, const Powers<L, Capacity>& s,
                                                     int degree, typename L::Batch* weights) {
@@ -69,7 +69,7 @@ template <class L, int Capacity>
                             : t.value[1];
 }
 
-/// factor C(n,i) t^i s^(n-i) for a lower degree n.
+/// Returns factor C(n,i) t^i s^(n-i) for a lower degree n.
 template <class L, int Capacity>
 [[gnu::always_inline]] inline typename L::Batch plain_bernstein(const Powers<L, Capacity>& t,
                                                                 const Powers<L, Capacity>& s, int degree, int i,
@@ -78,7 +78,7 @@ template <class L, int Capacity>
   return L::broadcast(static_cast<T>(factor) * binomials<T>.of[degree][i]) * (t.value[i] * s.value[degree - i]);
 }
 
-/// n (B^{n-1}_{i-1} - B^{n-1}_i).
+/// Computes n (B^{n-1}_{i-1} - B^{n-1}_i).
 template <class L, int Capacity>
 [[gnu::always_inline]] inline void bernstein_first(const Powers<L, Capacity>& t, const Powers<L, Capacity>& s,
                                                    int degree, typename L::Batch* weights) {
@@ -92,7 +92,7 @@ template <class L, int Capacity>
   weights[degree] = before;
 }
 
-/// n (n - 1) (B^{n-2}_{i-2} - 2 B^{n-2}_{i-1} + B^{n-2}_i).
+/// Computes n (n - 1) (B^{n-2}_{i-2} - 2 B^{n-2}_{i-1} + B^{n-2}_i).
 template <class L, int Capacity>
 [[gnu::always_inline]] inline void bernstein_second(const Powers<L, Capacity>& t, const Powers<L, Capacity>& s,
                                                     int degree, typename L::Batch* weights) {
@@ -107,7 +107,7 @@ template <class L, int Capacity>
       });
 }
 
-/// `weights[order * (degree + 1) + i]` at t, for orders up to Order.
+/// Computes `weights[order * (degree + 1) + i]` at t, for orders up to Order.
 template <class L, int Order, int Capacity>
 [[gnu::always_inline]] inline void bernstein_weights(const typename L::Batch& t, int degree,
                                                      typename L::Batch* weights) {

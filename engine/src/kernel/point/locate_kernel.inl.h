@@ -1,6 +1,6 @@
 #pragma once
-// Span search for a batch of parameters, without a branch that depends on them: binary search in as many steps for
-// each, in loops over lanes that the compiler turns into gathers and comparisons.
+// Span search for a batch of parameters, lanes = parameters: binary search in the same number of steps for each,
+// without a branch that depends on them, in loops that the compiler turns into gathers and comparisons.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/isa/lanes.h, kernel/point/point_kernels.h.
 

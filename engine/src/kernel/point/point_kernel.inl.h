@@ -1,9 +1,11 @@
 #pragma once
-// Kernel 4, scattered samples. A patch lies together, rows [component][j] one after the other. For each sample whole
-// vectors of its patch's rows are summed, q = sum_i f_i(u) row_i; a transpose of `width` samples then gives the row
-// curves with lanes = samples, from where on everything goes as in a grid. Where all samples of a slot lie on one
-// patch its coefficients are broadcast instead: the same sums in the same order, so that the choice does not change a
-// bit.
+// Kernel 4, scattered samples, lanes = samples. A patch lies together, rows [component][j] one after the other.
+// 1. For each sample, whole vectors of its patch's rows are summed: q = sum_i f_i(u) row_i.
+// 2. A transpose of `width` samples gives the row curves with lanes = samples.
+// 3. The rest is evaluated as in a grid.
+//
+// If all samples of a slot lie on one patch, its coefficients are broadcast instead. The sums and their order are the
+// same, so the choice does not change a bit.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/isa/lanes.h, kernel/point/point_kernels.h.
 
@@ -18,7 +20,7 @@ struct SlotWeights {
   static constexpr int count = (Order + 1) * capacity_of<Degree>;
   alignas(64) typename L::Scalar of[block_lanes / L::width][count][L::width];
 
-  /// Of the first `samples`, and of those that share their vectors.
+  /// Fills the weights of the first `samples`, and of those that share their vectors.
   [[gnu::always_inline]] void fill(const typename L::Scalar* parameters, int samples, int degree) {
     for (int lane = 0; lane < samples; lane += L::width) {
       typename L::Batch weights[count];
@@ -28,8 +30,9 @@ struct SlotWeights {
   }
 };
 
-/// sums[order] = sum_i weights[order][i] net[i * length], one vector of a row's `rest` last values; `weights` are
-/// `[order][i][lane]` from one lane on. Reads no value behind the last row: that may lie on another cache line.
+/// Computes sums[order] = sum_i weights[order][i] net[i * length] for one vector of a row's `rest` last values;
+/// `weights` are `[order][i][lane]` from one lane on. Reads no value behind the last row, which may lie on another
+/// cache line.
 template <class L, int Order>
 [[gnu::always_inline]] inline void row_sums(const typename L::Scalar* net, const typename L::Scalar* weights,
                                             int count_u, std::ptrdiff_t length, int rest,
@@ -46,7 +49,7 @@ template <class L, int Order>
   }
 }
 
-/// The same of four rows of 12 that fill three vectors.
+/// Computes these sums for four rows of 12 that fill three vectors.
 template <class L, int Order>
 [[gnu::always_inline]] inline void four_row_sums(const typename L::Scalar* net, const typename L::Scalar* weights,
                                                  typename L::Batch (&sums)[Order + 1]) {
@@ -64,7 +67,7 @@ template <class T>
   return job.points + patch * job.patch_values;
 }
 
-/// The patches of samples behind the one at `patch`, towards the near caches.
+/// Prefetches the patches of samples behind the one at `patch` into the near caches.
 template <int Degree, int Components, class T>
 [[gnu::always_inline]] inline void fetch_ahead(const PointJob<T>& job, const std::uint32_t* patch) {
   constexpr std::size_t known = std::size_t{(Degree + 1) * (Degree + 1) * Components} * sizeof(T);
@@ -76,7 +79,7 @@ template <int Degree, int Components, class T>
   for (std::size_t b = 0; b < bytes; b += 64) __builtin_prefetch(far + b, 0, 2);
 }
 
-/// Column l of the sums becomes row curve k + l, counted over all components.
+/// Makes column l of the sums row curve k + l, counted over all components.
 template <class L, int Components, int Capacity>
 [[gnu::always_inline]] inline void put_columns(typename L::Batch (&tile)[L::width], int k, int count_v,
                                                typename L::Batch (&curve)[Components][Capacity]) {
@@ -95,7 +98,7 @@ template <class L, int Components, int Capacity>
   }
 }
 
-/// Row curves of `width` samples from their patches' rows. `weights`: `[order][i][lane]`.
+/// Computes the row curves of `width` samples from their patches' rows. `weights`: `[order][i][lane]`.
 template <class L, int Degree, int Order, int Components, int Capacity>
 [[gnu::always_inline]] inline void curves_by_rows(const PointJob<typename L::Scalar>& job, int first,
                                                   const typename L::Scalar* weights, int count_u, int count_v,
@@ -128,7 +131,7 @@ template <class L, int Degree, int Order, int Components, int Capacity>
   }
 }
 
-/// `Count` neighbouring row curves of samples of one patch.
+/// Computes `Count` neighbouring row curves of samples of one patch.
 template <class L, int Count>
 [[gnu::always_inline]] inline void run_sums(const typename L::Scalar* net, const typename L::Scalar* weights,
                                             int count_u, std::ptrdiff_t length, typename L::Batch* sums) {
@@ -141,7 +144,7 @@ template <class L, int Count>
   for (int k = 0; k < Count; ++k) sums[k] = sum[k];
 }
 
-/// Row curves of `width` samples of one patch.
+/// Computes the row curves of `width` samples of one patch.
 template <class L, int Degree, int Components, int Capacity>
 [[gnu::always_inline]] inline void curves_by_run(const typename L::Scalar* net, const typename L::Scalar* weights,
                                                  int count_u, int count_v,
@@ -156,7 +159,7 @@ template <class L, int Degree, int Components, int Capacity>
   }
 }
 
-/// Row curves of all orders, of `width` samples from `first` on.
+/// Computes the row curves of all orders for `width` samples from `first` on.
 template <class L, int Degree, int Order, int Components, int Capacity>
 [[gnu::always_inline]] inline void sample_curves(const PointJob<typename L::Scalar>& job, int first, bool run,
                                                  const typename L::Scalar* weights, int count_u, int count_v,
@@ -183,8 +186,8 @@ __attribute__((noinline)) void fill_any(SlotWeights<L, 0, Order>& weights, const
   weights.fill(parameters, samples, degree);
 }
 
-/// The samples of slot k. Each slot's weights come right before it: the rows that follow keep the memory busy, and more
-/// weights at once would leave it idle for longer than instructions overlap.
+/// Evaluates the samples of slot k. Each slot's weights come right before it: the rows that follow keep the memory
+/// busy, and more weights at once would leave it idle for longer than instructions overlap.
 template <class L, int Degree, bool Rational, int Order>
 inline void evaluate_slot(const PointJob<typename L::Scalar>& job, int k) {
   constexpr int components = Rational ? 4 : 3, capacity = capacity_of<Degree>;
@@ -220,7 +223,7 @@ void evaluate_slots(const PointJob<typename L::Scalar>& job) {
   for (int k = 0; k < job.slot_count; ++k) evaluate_slot<L, Degree, Rational, Order>(job, k);
 }
 
-/// Degrees that are fixed where it pays, which for doubles is the cubic alone; and any.
+/// Fixes the degrees where it pays, for doubles only the cubic; other degrees share one loop.
 template <class L, int Order>
 void choose_degree(const PointJob<typename L::Scalar>& job) {
   const int degree = job.grid.degree_u == job.grid.degree_v ? job.grid.degree_u : 0;

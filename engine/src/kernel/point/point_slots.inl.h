@@ -1,6 +1,6 @@
 #pragma once
-// What precedes the evaluation of scattered samples: whether they can be evaluated, and which go together. Loops over
-// lanes that the compiler turns into vectors.
+// Work before the evaluation of scattered samples, in loops over samples that the compiler turns into vectors: checks
+// whether they can be evaluated, and cuts them into slots.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/isa/lanes.h, kernel/point/point_kernels.h.
 
@@ -19,11 +19,11 @@ bool check_points(const PointCheckJob<T>& job) {
          all_within(job.v, job.count, job.low, job.high);
 }
 
-/// Fewer samples of one patch in a vector are faster among others of their neighbours'.
+/// Shorter runs of one patch in a vector are faster among their neighbours' samples.
 template <class L>
 inline constexpr int shortest_run = (7 * L::width + 9) / 10;
 
-/// How many of the next `rest` samples, block_lanes at the most, lie on the patch of the first and are best taken
+/// Returns how many of the next `rest` samples, at most block_lanes, lie on the patch of the first and are best taken
 /// alone.
 template <class L>
 inline int run_length(const std::uint32_t* patch, int rest) {

@@ -1,19 +1,19 @@
 #pragma once
-// Outputs of scattered samples from the stage to the caller's records.
+// Stores outputs of scattered samples, lanes = samples, from the stage to the caller's records.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/isa/lanes.h, kernel/point/point_kernels.h.
 
 #include "kernel/store/store.inl.h"
 
-/// What the next call is to store here, towards the second-level cache, since patches need the first: stores leave in order, so
-/// that one to a far line holds up all that follow it. `width`: values of a record.
+/// Prefetches the memory that the next call stores to into the second-level cache, since patches need the first. Stores
+/// leave in order, so one to a far line holds up all that follow. `width`: values of a record.
 template <class T>
 inline void fetch_next(const T* out, int width) {
   const auto* next = reinterpret_cast<const char*>(out + width * point_slots * block_lanes);
   for (int b = 0; b < width * block_lanes * static_cast<int>(sizeof(T)); b += 64) __builtin_prefetch(next + b, 1, 2);
 }
 
-/// The samples of a slot as neighbouring records of three, or as numbers one after the other.
+/// Stores the samples of a slot as neighbouring records of three, or as numbers one after the other.
 template <class L, Records Layout>
 inline void store_slot(const PointStoreJob<typename L::Scalar>& job, const typename L::Scalar* stage,
                        const PointSlot& slot) {
@@ -36,7 +36,7 @@ inline std::ptrdiff_t record_of(const PointStoreJob<T>& job, int sample) {
   return (job.records ? static_cast<std::ptrdiff_t>(job.records[sample]) : sample) * job.stride;
 }
 
-/// Vectors whose three components lie together, each sample where it belongs.
+/// Stores vectors whose three components lie together, each sample at its own record.
 template <class L>
 inline void store_vectors(const PointStoreJob<typename L::Scalar>& job, const typename L::Scalar* stage,
                           const PointSlot& slot) {
@@ -53,7 +53,7 @@ inline void store_vectors(const PointStoreJob<typename L::Scalar>& job, const ty
   }
 }
 
-/// One component after the other, each sample where it belongs.
+/// Stores one component after the other, each sample at its own record.
 template <class T>
 inline void store_apart(const PointStoreJob<T>& job, const T* stage, const PointSlot& slot) {
   for (int c = 0; c < job.width; ++c)

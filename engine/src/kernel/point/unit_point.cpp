@@ -1,4 +1,4 @@
-// Scattered points. One unit an instruction set: see cmake/TesseraIsaFlags.cmake.
+// Scattered points. One unit per instruction set: see cmake/TesseraIsaFlags.cmake.
 
 #include <utility>
 

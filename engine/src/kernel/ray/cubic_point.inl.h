@@ -1,9 +1,10 @@
 #pragma once
-// A point of a patch and its derivatives in double, for the last steps of a ray's root. Needs `Triple`.
+// A point of a patch of degree up to 3 and its derivatives in double, one coordinate per lane of `Triple`, for the last
+// steps of a ray's root.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/isa/four_floats.h, kernel/ray/ray_kernels.h.
 
-/// B_{i,3}(t) and their derivatives (Farin, Curves and Surfaces for CAGD, 5th ed., eqs. 5.2 and 5.23).
+/// The polynomials B_{i,3}(t) and their derivatives (Farin, Curves and Surfaces for CAGD, 5th ed., eqs. 5.2 and 5.23).
 struct CubicBasis {
   double value[4], derivative[4];
 
@@ -35,7 +36,8 @@ void cubic_point(const double* points, const double* origin, double u_at, double
   dv.store(out.dv);
 }
 
-/// The same of any degree up to three, by raising it from the one below. `Fixed` is the degree where it is known.
+/// The Bernstein polynomials of any degree up to three and their derivatives, raised from the degree below. `Fixed` is
+/// the degree if it is known, else 0.
 template <int Fixed>
 struct LowBasis {
   double value[4] = {1, 0, 0, 0}, derivative[4] = {0, 0, 0, 0};
@@ -60,7 +62,7 @@ struct LowBasis {
   }
 };
 
-/// Quotient rule (Piegl and Tiller, The NURBS Book, eq. 4.20): r_u = (A_u - w_u r) / w.
+/// Uses the quotient rule r_u = (A_u - w_u r) / w (Piegl and Tiller, The NURBS Book, eq. 4.20).
 template <int Fixed>
 void rational_point(const double* points, const double* weights, int any_m, int any_n, const double* origin,
                     double u_at, double v_at, RayPoint& out) {

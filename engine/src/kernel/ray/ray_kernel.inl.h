@@ -1,14 +1,17 @@
 #pragma once
-// A ray against a piece of a patch: interval Newton steps on rectangles of the parameters, from values, first
-// derivatives and bounds of second ones. One rectangle is nearly always enough.
+// A ray against a piece of a patch, in `Four`, vectors of the coordinates: interval Newton steps on rectangles of the
+// parameters, from values, first derivatives and bounds of second ones. One rectangle is nearly always enough.
 //
-// With the ray as x = o + tau d in the piece's coordinates and m the largest component of d, the two other components
-// of q(u,v) = r(u,v) - o give the equations F_k = q_k - (d_k / d_m) q_m = 0. On a rectangle of middle c and half widths
-// h, F(x) = F(c) + J (x - c) + E with |E_k| <= 1/2 sum |second derivatives| h h =: R_k (Taylor), noise included. With
-// A = J^-1 every root lies in c - A F(c) +- |A| R; T(x) = x - A F(x) maps the rectangle into that, and contracts by
-// 2 |A| R / h in the norm that h weighs. So where |A| R < h / 2 there is one root at the most, and one exactly where the
-// image lies inside (Brouwer; Neumaier, Interval Methods for Systems of Equations, sec. 5.1). Everything here rounds by
-// less than RayLeaf::noise and a factor of 1.001 allow for. Needs `Four`, four floats.
+// The ray is x = o + tau d in the piece's coordinates, and m is the largest component of d.
+// 1. The two other components of q(u,v) = r(u,v) - o give the equations F_k = q_k - (d_k / d_m) q_m = 0.
+// 2. On a rectangle of middle c and half widths h, F(x) = F(c) + J (x - c) + E with |E_k| <= 1/2 sum |second
+//    derivatives| h h =: R_k (Taylor), noise included.
+// 3. With A = J^-1 every root lies in the image c - A F(c) +- |A| R.
+// 4. T(x) = x - A F(x) maps the rectangle into the image, and contracts by 2 |A| R / h in the norm weighted by h.
+// 5. So if |A| R < h / 2 there is at most one root, and exactly one if the image lies inside the rectangle (Brouwer;
+//    Neumaier, Interval Methods for Systems of Equations, sec. 5.1).
+//
+// All rounding here is less than RayLeaf::noise and a factor of 1.001 allow for.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/isa/four_floats.h, kernel/ray/ray_kernels.h.
 
@@ -60,7 +63,7 @@ class LeafTrace {
   static constexpr float epsilon = 0x1p-24f;
   static constexpr int step = Rational ? 4 : 3;
 
-  /// Makes it the first where it is.
+  /// Makes the last root the first if it is inside.
   static bool is_last_inside(RayRoots& roots) {
     const RayRoot last = roots.root[roots.count - 1];
     if (last.at_border) return false;
@@ -68,8 +71,8 @@ class LeafTrace {
     return true;
   }
 
-  /// The ray in the piece's coordinates and the rectangle where its roots lie, wherever the ray begins and ends: what is
-  /// found of a root does not depend on that. False where it passes the box by.
+  /// Finds the ray in the piece's coordinates and the rectangle where its roots lie. Both do not depend on where the
+  /// ray begins and ends, so neither does a root. Returns false if the ray misses the box.
   bool start(RayBox& box) {
     const Four from = Fours::load(leaf_.centre) - Fours::load(ray_.origin), d = Fours::load(ray_.direction);
     shift_ = Fours::sum3(from * d);
@@ -107,7 +110,7 @@ class LeafTrace {
     slope_y_ = d[y_] * inverse_;
   }
 
-  /// q and its derivatives at one point.
+  /// The point q and its derivatives at one parameter.
   struct Value {
     alignas(16) float q[4], qu[4], qv[4];
   };
@@ -140,7 +143,7 @@ class LeafTrace {
     }
   }
 
-  /// Half the second derivatives' bounds on a rectangle of half widths u, v.
+  /// Computes half the second derivatives' bounds on a rectangle of half widths u, v.
   void remainder(float u, float v, float (&out)[4]) const {
     Four sum = Fours::fma(Fours::load(leaf_.bend_uu), Fours::all(0.5f * u * u),
                           Fours::fma(Fours::load(leaf_.bend_uv), Fours::all(u * v),
@@ -149,13 +152,13 @@ class LeafTrace {
     Fours::store(out, sum);
   }
 
-  /// F = (f, g) at the middle of a rectangle of half widths ru, rv, its derivatives, and bounds of what the linear model
-  /// leaves out.
+  /// F = (f, g) at the middle of a rectangle of half widths ru, rv, its derivatives, and bounds of the errors of the
+  /// linear model.
   struct Model {
     float u, v, ru, rv;
     float f, g, fu, fv, gu, gv;
     float ef, eg, noise;
-    float rest_m, rest_w;  ///< of the coordinate along the ray and of the weight
+    float rest_m, rest_w;  ///< errors of the coordinate along the ray and of the weight
   };
 
   Model model_of(const RayBox& box, Value& at) const {
@@ -188,14 +191,14 @@ class LeafTrace {
       if (outcome != RayStep::split) return outcome;
     }
     if (is_off_obliquely(m)) return RayStep::leave;
-    return m.ef + m.eg < 4 * m.noise ? RayStep::open : RayStep::split;  // smaller rectangles say no more
+    return m.ef + m.eg < 4 * m.noise ? RayStep::open : RayStep::split;  // smaller rectangles decide no more
   }
 
-  /// The image of the rectangle: all roots lie in it. `split` where that decides nothing.
+  /// Computes the image of the rectangle, in which all roots lie. Returns `split` if that decides nothing.
   RayStep newton(const Model& m, const Value& at, float determinant, float products, RayBox& box,
                  RayRoots& roots) const {
     const float inverse = 1 / determinant, size = magnitude(inverse);
-    const float inexact = 16 * epsilon * products * size;  // of A J from one
+    const float inexact = 16 * epsilon * products * size;  // error of A J as the identity
     const float bu = 1.001f * (size * (magnitude(m.gv) * m.ef + magnitude(m.fv) * m.eg) + inexact * m.ru) + 4 * epsilon;
     const float bv = 1.001f * (size * (magnitude(m.gu) * m.ef + magnitude(m.fu) * m.eg) + inexact * m.rv) + 4 * epsilon;
     const float du = -(m.gv * m.f - m.fv * m.g) * inverse, dv = -(m.fu * m.g - m.gu * m.f) * inverse;
@@ -208,7 +211,7 @@ class LeafTrace {
     const bool unique = bu <= 0.45f * m.ru && bv <= 0.45f * m.rv;
     if (unique && image.u0 >= box.u0 && image.u1 <= box.u1 && image.v0 >= box.v0 && image.v1 <= box.v1) {
       const bool inside = image.u0 >= -0.5f && image.u1 <= 0.5f && image.v0 >= -0.5f && image.v1 <= 0.5f;
-      const bool narrow = bu + bv < 1.0f / 128 || m.ef + m.eg < 8 * m.noise;  // a border hardly leaves a smaller one
+      const bool narrow = bu + bv < 1.0f / 128 || m.ef + m.eg < 8 * m.noise;  // a smaller one seldom crosses a border
       if (inside || narrow) return add_root(m, at, {du, dv, bu, bv}, !inside, roots);
     }
     if (!unique && m.ef + m.eg < 4 * m.noise) return RayStep::open;
@@ -217,7 +220,7 @@ class LeafTrace {
     return unique || narrower ? RayStep::narrow : RayStep::split;
   }
 
-  /// Seen edge on: across the larger derivative.
+  /// Returns whether the ray misses a piece seen edge on, across the larger derivative.
   static bool is_off_obliquely(const Model& m) {
     const float size_u = magnitude(m.fu) + magnitude(m.gu), size_v = magnitude(m.fv) + magnitude(m.gv);
     const bool by_u = size_u * m.ru >= size_v * m.rv;
@@ -230,7 +233,7 @@ class LeafTrace {
     return value > 1.001f * (other + sizes) + rounding;
   }
 
-  /// Leaves the half to be visited first in the place of the other's end.
+  /// Splits the box: `box` becomes the half to be visited later, `other` the one to be visited first.
   static void split(RayBox& box, RayBox& other) {
     other = box;
     if (box.u1 - box.u0 >= box.v1 - box.v0) {
@@ -242,7 +245,7 @@ class LeafTrace {
     }
   }
 
-  /// From the middle to the root, and how far it may be off.
+  /// The step from the middle to the root, and its error.
   struct Step {
     float du, dv, bu, bv;
   };

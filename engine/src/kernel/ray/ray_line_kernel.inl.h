@@ -1,6 +1,6 @@
 #pragma once
-// Lines of rays side by side, by the operations of line_of (ray/line/ray_line.cpp) in their order: the same numbers. Needs
-// Lanes<double> with a true fused multiply-add.
+// Lines of rays, lanes = rays in double, by the operations of line_of (ray/line/ray_line.cpp) in their order: the same
+// numbers. Needs Lanes<double> with a true fused multiply-add.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/isa/four_floats.h, kernel/ray/ray_kernels.h.
 
@@ -50,7 +50,7 @@ class RayLineLanes {
   Batch load(const double* from) const { return L::load(from + first_); }
   void store(double* to, Batch x) const { L::store(to + first_, x); }
 
-  /// origin + t d - centre, rounded as if all but the last sum were exact to twice the precision.
+  /// Returns origin + t d - centre, rounded as if all but the last sum were exact to twice the precision.
   static Batch near_centre(Batch origin, Batch t, Batch d, Batch centre) {
     const Batch product = t * d, rest = L::fms(t, d, product);
     const Batch from = origin - centre, from_part = from - origin;
@@ -60,7 +60,7 @@ class RayLineLanes {
     return sum + (sum_low + (from_low + rest));
   }
 
-  /// Valid (is_valid, ray/line/ray_segment.cpp), and no number of it asks for care. Written so that NaN fails.
+  /// Returns whether the ray is valid (is_valid, ray/line/ray_segment.cpp) and no number of it needs care. NaN fails.
   Where is_plain() const {
     constexpr double smallest = 1e-100, parallel = 1e-300;
     const Batch most(RayBundle::max_component), near = load(rays_.near);

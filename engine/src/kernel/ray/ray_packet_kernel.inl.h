@@ -1,6 +1,6 @@
 #pragma once
-// The rays of a packet against a piece, side by side: LeafTrace (ray_kernel.inl.h) as long as each has one rectangle, by
-// the same operations in the same order, so that a ray meets what it meets alone. Needs Lanes<float>.
+// A packet of rays against a piece, lanes = rays in float: LeafTrace (ray_kernel.inl.h) as long as each ray has one
+// rectangle, by the same operations in the same order, so that a ray hits what it hits alone. Needs Lanes<float>.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/isa/four_floats.h, kernel/ray/ray_kernels.h.
 
@@ -70,7 +70,7 @@ class PacketTrace {
     return touches;
   }
 
-  // Of three components: that along which the ray runs most, and the two others as LeafTrace orders them.
+  // Select from three components the one along which the ray runs most, and the two others as LeafTrace orders them.
   Batch largest(const Batch* x) const { return xsimd::select(third_, x[2], xsimd::select(first_largest_, x[0], x[1])); }
   Batch one_after(const Batch* x) const {
     return xsimd::select(third_, x[0], xsimd::select(first_largest_, x[1], x[2]));
@@ -79,7 +79,7 @@ class PacketTrace {
     return xsimd::select(third_, x[1], xsimd::select(first_largest_, x[2], x[0]));
   }
 
-  /// By component, the weight last.
+  /// Values by component, the weight last.
   struct Value {
     Batch q[step], qu[step], qv[step];
   };
@@ -126,12 +126,12 @@ class PacketTrace {
 
   static Batch size(Batch x) { return xsimd::abs(x); }
 
-  /// As LeafTrace has it.
+  /// LeafTrace::Model for several rays.
   struct Model {
     Batch u, v, ru, rv;
     Batch f, g, fu, fv, gu, gv;
     Batch ef, eg, noise;
-    Batch qm, qum, qvm, rest_m;  ///< of the coordinate along the ray
+    Batch qm, qum, qvm, rest_m;  ///< for the coordinate along the ray
     Value at;
     Batch rest[step];
   };
@@ -152,7 +152,7 @@ class PacketTrace {
     m.eg = loose * (two_after(m.rest) + size(slope_y_) * m.rest_m + m.noise + Batch(4 * epsilon) * size(m.g));
   }
 
-  /// One rectangle, as LeafTrace::visit and newton. Returns where a smaller one is to be visited.
+  /// Visits one rectangle, as LeafTrace::visit and newton. Returns the lanes where a smaller one is to be visited.
   Where visit(Where open) {
     const Batch half(0.5f), loose(1.001f), tiny(4 * epsilon);
     Model m;
@@ -171,7 +171,7 @@ class PacketTrace {
     const Where proven = unique & (u0 >= low_[0]) & (u1 <= high_[0]) & (v0 >= low_[1]) & (v1 <= high_[1]);
     const Where inside = proven & (u0 >= -half) & (u1 <= half) & (v0 >= -half) & (v1 <= half);
     const Where narrow = (bu + bv < Batch(1.0f / 128)) | (m.ef + m.eg < Batch(8.0f) * m.noise);
-    const Where at_border = proven & !inside & narrow;  // each ray alone decides that in double
+    const Where at_border = proven & !inside & narrow;  // decided in double for each ray alone
     low_[0] = xsimd::max(low_[0], u0), high_[0] = xsimd::min(high_[0], u1);
     low_[1] = xsimd::max(low_[1], v0), high_[1] = xsimd::min(high_[1], v1);
     const Where outside = (low_[0] > high_[0]) | (low_[1] > high_[1]) | (low_[0] > half) | (high_[0] < -half) |
@@ -180,7 +180,7 @@ class PacketTrace {
     state_ = xsimd::select((open & leaves) | ends, Batch(RayPacket::nothing), state_);
     add_roots(m, ends, du, dv, bu, bv);
     const Where narrower = (high_[0] - low_[0] < Batch(1.2f) * m.ru) | (high_[1] - low_[1] < Batch(1.2f) * m.rv);
-    const Where resolves = m.ef + m.eg >= Batch(4.0f) * m.noise;  // where not, smaller rectangles say no more
+    const Where resolves = m.ef + m.eg >= Batch(4.0f) * m.noise;  // otherwise smaller rectangles decide no more
     return open & regular & !leaves & !inside & !at_border & (unique | (narrower & resolves));
   }
 

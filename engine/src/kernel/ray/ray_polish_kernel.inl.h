@@ -1,12 +1,13 @@
 #pragma once
-// Newton's method in double for rays at roots of one patch, side by side, by the operations of polish()
-// (ray/leaf/polished_root.cpp), cubic_point and low_rational_point in their order: the same numbers. Needs Lanes<double>.
+// Newton's method in double for roots of one patch, lanes = rays, by the operations of polish()
+// (ray/leaf/polished_root.cpp), cubic_point and low_rational_point in their order: the same numbers. Needs
+// Lanes<double>.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/isa/four_floats.h, kernel/ray/ray_kernels.h.
 
 #include "kernel/ray/cubic_point.inl.h"
 
-/// Of bicubic patches, or of rational ones of degrees up to three.
+/// Polishes roots of bicubic patches, or of rational ones of degrees up to three.
 template <bool Rational>
 class RootPolish {
   using L = Lanes<double>;
@@ -62,7 +63,7 @@ class RootPolish {
            load(rays_.across[which][2]) * x[2];
   }
 
-  /// CubicBasis.
+  /// CubicBasis for several rays.
   struct Cubic {
     Batch value[4], derivative[4];
     Cubic(int, Batch t) {
@@ -72,7 +73,7 @@ class RootPolish {
       derivative[3] = three * tt;
     }
   };
-  /// LowBasis.
+  /// LowBasis for several rays.
   struct Low {
     Batch value[4], derivative[4];
     Low(int degree, Batch t) {

@@ -1,4 +1,4 @@
-// Exact rays. One unit an instruction set: see cmake/TesseraIsaFlags.cmake.
+// Exact rays. One unit per instruction set: see cmake/TesseraIsaFlags.cmake.
 
 #include <limits>
 

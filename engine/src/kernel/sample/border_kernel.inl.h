@@ -1,5 +1,5 @@
 #pragma once
-// Border curves whose bits do not depend on the direction of the parameter: by symmetric_sum.
+// Border curves of a block, lanes = patches, whose bits do not depend on the parameter's direction: by symmetric_sum.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/grid/line_kernels.h, kernel/isa/lanes.h.
 

@@ -1,9 +1,9 @@
 #pragma once
-// Fundamental forms, curvatures and principal directions of a vector of patches, as surface/local_geometry.cpp defines
-// them: with e1 = r_u / |r_u|, e2 = N x e1 the second form is the symmetric matrix (s11, s12; s12, s22), so that k1
-// and k2 don't suffer from H^2 - K (do Carmo, Differential Geometry of Curves and Surfaces, sec. 3.3). By E = r_u.r_u,
-// F = r_u.r_v, L = r_uu.N, ...:   s11 = L / E,  s12 = (M - (F/E) L) / |r_u x r_v|,  s22 = (N - 2 (F/E) M + (F/E)^2 L)
-// E / |r_u x r_v|^2.
+// Fundamental forms, curvatures and principal directions, lanes = patches, as surface/local_geometry.cpp defines them.
+// With e1 = r_u / |r_u|, e2 = N x e1 the second form is the symmetric matrix (s11, s12; s12, s22), so k1 and k2 do not
+// suffer from H^2 - K (do Carmo, Differential Geometry of Curves and Surfaces, sec. 3.3). With E = r_u.r_u,
+// F = r_u.r_v, L = r_uu.N, ...:
+//   s11 = L / E,  s12 = (M - (F/E) L) / |r_u x r_v|,  s22 = (N - 2 (F/E) M + (F/E)^2 L) E / |r_u x r_v|^2.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/grid/grid_kernels.h, kernel/isa/lanes.h.
 
@@ -14,16 +14,16 @@ struct Curvature {
   typename L::Batch e, f, g, l, m, n;  ///< the two forms
   typename L::Batch s11, s12, s22;
   typename L::Batch r_u[3], inverse_e;  ///< the direction of r_u, and 1 over its squared length
-  typename L::Batch skewed;             ///< 1 where the sine of the tangents' angle is above the smallest
-  typename L::Batch defined;            ///< 1 where there are curvatures
+  typename L::Batch skewed;             ///< 1 where the sine of the tangents' angle is above the limit
+  typename L::Batch defined;            ///< 1 where curvatures are defined
 };
 constexpr int distinct_curvatures = 0, umbilic_point = 1, undefined_curvatures = 2;
 
-/// Largest |s_ij| that counts as a number: then K and products of it stay in range.
+/// The largest |s_ij| that counts as a number: K and its products then stay in range.
 template <class T>
 constexpr T largest_curvature = static_cast<T>(sizeof(T) == 4 ? 0x1p60 : 0x1p500);
 
-/// All but `defined`, from tangents whose squares are in range.
+/// Computes all but `defined`, from tangents whose squares are in range.
 template <class L>
 [[gnu::always_inline]] inline void shape_operator(const GridJob<typename L::Scalar>& job, const Sample<L>& at,
                                                   const Normal<L>& normal, Curvature<L>& k) {
@@ -45,13 +45,13 @@ template <class L>
   k.skewed = xsimd::select(normal.squared * k.inverse_e > sine * k.g, L::broadcast(1), L::broadcast(0));
 }
 
-/// The vectors that go to a call and back through memory: those that a call may see can't stay in registers.
+/// The vectors passed to a call and back through memory: vectors that a call may see cannot stay in registers.
 template <class L>
 struct ShapeExchange {
   using Vector = typename L::Scalar[L::width];
   alignas(64) Vector tangents[5][3];  ///< r_u, r_v, r_uu, r_uv, r_vv
   alignas(64) Vector normal[3];
-  alignas(64) Vector safe;                                      ///< 1 in the lanes that keep what they have
+  alignas(64) Vector safe;                                      ///< 1 in the lanes that are unchanged
   alignas(64) Vector s11, s12, s22, inverse_e, skewed, r_u[3];  ///< in and out
 
   static void put(const typename L::Batch (&from)[3], Vector (&to)[3]) {
@@ -62,8 +62,8 @@ struct ShapeExchange {
   }
 };
 
-/// Tangents and second derivatives by parameters scaled so that the largest components of r_u and r_v are 1, which
-/// changes the forms and not the curvatures.
+/// Scales tangents and second derivatives by parameters such that the largest components of r_u and r_v are 1. This
+/// changes the forms but not the curvatures.
 template <class L>
 inline void rescale(ShapeExchange<L>& exchange) {
   typename L::Batch du[3], dv[3];
@@ -82,7 +82,7 @@ inline void rescale(ShapeExchange<L>& exchange) {
   }
 }
 
-/// The shape operator of lanes whose squares leave the range.
+/// Computes the shape operator of lanes whose squares leave the range.
 template <class L>
 [[gnu::noinline, gnu::cold]] void rescaled_shape(const GridJob<typename L::Scalar>& job, ShapeExchange<L>& exchange) {
   rescale<L>(exchange);
@@ -108,7 +108,7 @@ template <class L>
   for (int c = 0; c < 3; ++c) choose(exchange.r_u[c], other.r_u[c]);
 }
 
-/// The same of vectors in registers. Lanes that are `safe` keep what they have.
+/// Does so for vectors in registers. Lanes that are `safe` are unchanged.
 template <class L>
 [[gnu::always_inline]] inline void rescale_unsafe(const GridJob<typename L::Scalar>& job, const Sample<L>& at,
                                                   const Normal<L>& normal, const typename L::Batch& safe,
@@ -160,7 +160,7 @@ inline typename L::Batch mean_curvature(const Curvature<L>& k) {
   return L::broadcast(static_cast<typename L::Scalar>(0.5)) * (k.s11 + k.s22);
 }
 
-/// What the principal curvatures are made of, by way of memory as in ShapeExchange.
+/// The inputs of the principal curvatures, passed through memory as in ShapeExchange.
 template <class L>
 struct CurvatureExchange {
   using Vector = typename L::Scalar[L::width];
@@ -190,7 +190,7 @@ struct CurvatureExchange {
   }
 };
 
-/// k1 >= k2 and their kind. The radius of Mohr's circle, hypot((s11 - s22) / 2, s12), is taken without squares that
+/// k1 >= k2 and their kind. The radius of Mohr's circle, hypot((s11 - s22) / 2, s12), is computed without squares that
 /// leave the range.
 template <class L>
 struct Principal {
@@ -208,15 +208,15 @@ template <class L>
   p.radius = xsimd::select(larger > zero, larger * xsimd::sqrt(L::fma(ratio, ratio, one)), zero);
   p.first = mean + p.radius;
   p.second = mean - p.radius;
-  // A difference that is subnormal counts as none: it has no inverse, by which the directions are found.
+  // A subnormal difference counts as none: it has no inverse, which the directions need.
   using T = typename L::Scalar;
   const auto bound = L::fma(L::broadcast(job.umbilic_tolerance), xsimd::abs(p.first) + xsimd::abs(p.second),
                             L::broadcast(4 * std::numeric_limits<T>::min()));
   p.umbilic = xsimd::select(p.radius + p.radius > bound, zero, one);
 }
 
-/// The unit tangents of k1 and k2, first x second = N, by the half angle of (half_difference, s12); at an umbilic e1
-/// and e2.
+/// Computes the unit tangents of k1 and k2, first x second = N, by the half angle of (half_difference, s12); e1 and e2
+/// at an umbilic.
 template <class L>
 [[gnu::always_inline]] inline void principal_directions(const Curvature<L>& k, const typename L::Batch (&normal)[3],
                                                         const Principal<L>& p, typename L::Batch (&first)[3],

@@ -1,23 +1,25 @@
 #pragma once
-// Unit normals of a vector of patches. Where r_u x r_v is safely above what rounding does to the tangents it is the
-// normal. The other lanes look closer: on a collapsed edge the limit comes from r_uv, elsewhere from tangents of their
-// own scale, and what is still within rounding errors goes to the caller's exact arithmetic.
+// Unit normals, lanes = patches. Where r_u x r_v is safely above the tangents' rounding errors, it is the normal. For
+// other lanes:
+// 1. On a collapsed edge the limit comes from r_uv.
+// 2. Elsewhere the tangents are compared at their own scale.
+// 3. Lanes that are still within rounding errors go to the caller's exact arithmetic.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/grid/grid_kernels.h, kernel/isa/lanes.h.
 
 #include "kernel/sample/sample_kernel.inl.h"
 
-/// A unit normal, how it was found, and what curvatures need of it.
+/// A unit normal, how it was found, and the values that curvatures need.
 template <class L>
 struct Normal {
   typename L::Batch direction[3];
   typename L::Batch squared, reciprocal;  ///< |r_u x r_v|^2 and 1 / |r_u x r_v|, unless they are out of range
-  typename L::Batch kind;                 ///< of NormalKind
-  typename L::Batch uncertain;            ///< 1 where the tangents' own errors left it open, whatever was found then
+  typename L::Batch kind;                 ///< a NormalKind
+  typename L::Batch uncertain;            ///< 1 where the tangents' own errors left it open, whatever was found later
 };
 constexpr int regular_normal = 0, limit_normal = 1, undefined_normal = 2;
 
-/// Squared lengths of r_u x r_v within these lose nothing to overflow and underflow.
+/// Squared lengths of r_u x r_v within these limits lose nothing to overflow and underflow.
 template <class T>
 struct SafeRange {
   static constexpr T lowest = static_cast<T>(sizeof(T) == 4 ? 0x1p-80 : 0x1p-600);
@@ -30,7 +32,7 @@ struct Tangents {
   typename L::Batch du[3], dv[3], noise;
 };
 
-/// Which sample of which lanes is at work.
+/// The sample and lanes being evaluated.
 struct Place {
   int iu, iv, lane;
 };
@@ -40,7 +42,7 @@ inline typename L::Batch dot(const typename L::Batch (&a)[3], const typename L::
   return L::fma(a[2], b[2], L::fma(a[1], b[1], a[0] * b[0]));
 }
 
-/// n = a x b, and its squared length.
+/// Computes n = a x b and returns its squared length.
 template <class L>
 inline typename L::Batch cross(const typename L::Batch (&a)[3], const typename L::Batch (&b)[3],
                                typename L::Batch (&n)[3]) {
@@ -55,10 +57,14 @@ inline typename L::Batch largest_component(const typename L::Batch (&a)[3]) {
   return xsimd::max(xsimd::max(xsimd::abs(a[0]), xsimd::abs(a[1])), xsimd::abs(a[2]));
 }
 
-/// 1 / sqrt(x) within 3 units in the last place for x in SafeRange, from the exponent's half, y (3.5% off): with e = 1 -
-/// x y^2 it is y (1 - e)^(-1/2), a polynomial in e (interpolated at Chebyshev nodes, 2.6e-8 off where |e| <= 0.07); for
-/// doubles a step of Halley follows, y (1 + e/2 + 3 e^2/8). Root and division would take longer than the rest of a normal,
-/// and these multiply-adds as well give the same bits on every instruction set that fuses them.
+/// Returns 1 / sqrt(x) within 3 units in the last place for x in SafeRange.
+/// 1. Half the exponent gives y, 3.5% off.
+/// 2. With e = 1 - x y^2 the result is y (1 - e)^(-1/2), a polynomial in e (interpolated at Chebyshev nodes, 2.6e-8 off
+///    where |e| <= 0.07).
+/// 3. For doubles a step of Halley follows, y (1 + e/2 + 3 e^2/8).
+///
+/// Root and division would take longer than the rest of a normal. These multiply-adds also give the same bits on every
+/// instruction set that fuses them.
 template <class L>
 [[gnu::always_inline]] inline typename L::Batch inverse_root(const typename L::Batch& x) {
   const auto constant = [](double value) { return L::broadcast(static_cast<typename L::Scalar>(value)); };
@@ -70,8 +76,9 @@ template <class L>
   return L::fma(root * rest, L::fma(rest, constant(0.375), constant(0.5)), root);
 }
 
-/// a x b / |a x b|, each vector divided by its largest component first; 1 in `certain` where that exceeds what errors
-/// of `noise_a` and `noise_b` in the components of a and b can make of it: 3 (noise_a / max|a| + noise_b / max|b|).
+/// Computes n = a x b / |a x b|, with each vector first divided by its largest component. Returns 1 in the lanes where
+/// the product exceeds what errors of `noise_a` and `noise_b` in the components of a and b can make of it:
+/// 3 (noise_a / max|a| + noise_b / max|b|).
 template <class L>
 inline typename L::Batch certain_direction(const typename L::Batch (&a)[3], const typename L::Batch (&b)[3],
                                            const typename L::Batch& noise_a, const typename L::Batch& noise_b,
@@ -95,13 +102,13 @@ inline typename L::Batch certain_direction(const typename L::Batch (&a)[3], cons
   return xsimd::select(certain, one, zero);
 }
 
-/// Lanes whose patch is one point along the edge that their parameter lies on.
+/// Lanes whose patch is one point along the edge on which their parameter lies.
 template <class L>
 struct OnCollapsed {
   typename L::Batch on;       ///< 1 there, 0 elsewhere
   typename L::Batch inwards;  ///< -1 where the parameter is 1, 1 elsewhere
 };
-/// `edges` of parameter k; `first_edge`: 0 for u, 2 for v.
+/// Looks up `edges` of parameter k; `first_edge` is 0 for u, 2 for v.
 template <class L>
 inline OnCollapsed<L> on_collapsed(const GridJob<typename L::Scalar>& job, const std::uint8_t* edges, int k,
                                    int first_edge, int lane) {
@@ -114,7 +121,7 @@ inline OnCollapsed<L> on_collapsed(const GridJob<typename L::Scalar>& job, const
   return {L::load(on), L::load(inwards)};
 }
 
-/// Weight i of parameter k, from its derivatives of an order on: of all lanes, or of each its own.
+/// Returns weight i of parameter k, from its derivatives of an order on; by lane if the job is.
 template <class L>
 inline typename L::Batch weight_at(const GridJob<typename L::Scalar>& job, const typename L::Scalar* table, int k,
                                    int count, int i, int lane) {
@@ -122,14 +129,14 @@ inline typename L::Batch weight_at(const GridJob<typename L::Scalar>& job, const
   return job.by_lane ? L::load(table + at * block_lanes + lane) : L::broadcast(table[at]);
 }
 
-/// sum = weight * value, or sum + weight * value after the first.
+/// Sets sum = weight * value for the first, and sum + weight * value after that.
 template <class L, int Components>
 inline void add_product(bool first, const typename L::Batch& weight, const typename L::Batch (&value)[Components],
                         typename L::Batch (&sum)[Components]) {
   for (int c = 0; c < Components; ++c) sum[c] = first ? weight * value[c] : L::fma(weight, value[c], sum[c]);
 }
 
-/// From sums over the net to Cartesian derivatives.
+/// Turns sums over the net into Cartesian derivatives.
 template <class L>
 inline void derivatives_of(const typename L::Batch (&)[3], const typename L::Batch (&p_u)[3],
                            const typename L::Batch (&p_v)[3], const typename L::Batch (&p_uv)[3], Sample<L>& sample) {
@@ -148,8 +155,8 @@ inline void derivatives_of(const typename L::Batch (&p)[4], const typename L::Ba
   divide_mixed<L>(p_uv, p_u[3], p_v[3], sample, sample.duv);
 }
 
-/// The first derivatives of a sample, and r_uv, made anew from the block with the same bits: so few points ask for them
-/// that the others don't keep them.
+/// Computes the first derivatives of a sample, and r_uv, again from the block with the same bits. So few points need
+/// them that the others do not keep them.
 template <class L, bool Rational>
 [[gnu::noinline, gnu::cold]] void derive_again(const GridJob<typename L::Scalar>& job, const Place& place,
                                                Sample<L>& sample) {
@@ -181,9 +188,9 @@ inline void derive_again(const GridJob<typename L::Scalar>& job, const Place& pl
   job.rational ? derive_again<L, true>(job, place, sample) : derive_again<L, false>(job, place, sample);
 }
 
-/// The limit normals of lanes on a collapsed edge, by one derivative more: where r_u vanishes along v = 0, r_u(u, k) =
-/// k r_uv + ..., so that r_uv x r_v decides, and -r_uv x r_v at v = 1; likewise r_u x r_uv along u = 0. A corner of two
-/// collapsed edges has none. The error of r_uv is taken as 4 max(m, n) times that of the tangents.
+/// Finds the limit normals of lanes on a collapsed edge by one more derivative. Where r_u vanishes along v = 0, r_u(u,
+/// k) = k r_uv + ..., so r_uv x r_v decides, and -r_uv x r_v at v = 1; likewise r_u x r_uv along u = 0. A corner of two
+/// collapsed edges has no limit. The error of r_uv is taken as 4 max(m, n) times that of the tangents.
 template <class L>
 [[gnu::noinline, gnu::cold]] void limit_normals(const GridJob<typename L::Scalar>& job, const Tangents<L>& tangents,
                                                 const Place& place, typename L::Batch& doubtful, Normal<L>& normal) {
@@ -211,7 +218,7 @@ template <class L>
   doubtful = xsimd::select(found | ((on_u + on_v) > one), zero, doubtful);
 }
 
-/// Doubtful lanes whose tangents, at their own scale, are safely independent.
+/// Finds the normals of doubtful lanes whose tangents, at their own scale, are safely independent.
 template <class L>
 [[gnu::noinline, gnu::cold]] void certain_normals(const Tangents<L>& tangents, typename L::Batch& doubtful,
                                                   Normal<L>& normal) {
@@ -224,7 +231,7 @@ template <class L>
   doubtful = xsimd::select(found, zero, doubtful);
 }
 
-/// Doubtful lanes one by one, in the caller's arithmetic.
+/// Finds the normals of doubtful lanes one by one, in the caller's arithmetic.
 template <class L>
 [[gnu::noinline, gnu::cold]] void exact_normals(const GridJob<typename L::Scalar>& job, const Place& place,
                                                 const typename L::Batch& doubtful, Normal<L>& normal) {
@@ -243,20 +250,21 @@ template <class L>
   for (int c = 0; c < 3; ++c) normal.direction[c] = L::load(direction[c]);
 }
 
-/// What a call for degenerate lanes sees and changes: through memory, so that the main loop's vectors stay in
+/// The inputs and outputs of a call for degenerate lanes, through memory, so that the main loop's vectors stay in
 /// registers.
 template <class L>
 struct NormalExchange {
   using Vector = typename L::Scalar[L::width];
   alignas(64) Vector du[3];
   alignas(64) Vector dv[3];
-  alignas(64) Vector reciprocal_weight;  ///< of rational patches
+  alignas(64) Vector reciprocal_weight;  ///< for rational patches
   alignas(64) Vector direction[3];       ///< in and out
   alignas(64) Vector kind;               ///< out
   alignas(64) Vector uncertain;          ///< out
 };
 
-/// Where lanes are samples of many patches: those that are safe by their own patch's doubt, and the patches' noise.
+/// For lanes that are samples of many patches: returns the lanes that are safe by their own patch's doubt, and the
+/// patches' noise.
 template <class L>
 inline typename L::Batch own_doubts(const GridJob<typename L::Scalar>& job, const Place& place,
                                     const typename L::Batch& safe, const NormalExchange<L>& exchange,
@@ -281,8 +289,8 @@ inline typename L::Batch own_doubts(const GridJob<typename L::Scalar>& job, cons
   return xsimd::select((safe > zero) | own, one, zero);
 }
 
-/// Lanes whose |r_u x r_v|^2 is out of range or in doubt; `safe` is 1 in the others, which keep what they have, so that
-/// a lane's bits don't depend on its neighbours.
+/// Finds the normals of lanes whose |r_u x r_v|^2 is out of range or in doubt. `assumed_safe` is 1 in the other lanes,
+/// which are unchanged, so that a lane's bits do not depend on its neighbours.
 template <class L>
 [[gnu::noinline, gnu::cold]] void degenerate_normals(const GridJob<typename L::Scalar>& job, const Place& place,
                                                      const typename L::Batch& assumed_safe,
@@ -312,7 +320,8 @@ template <class L>
   L::store(exchange.kind, normal.kind);
 }
 
-/// From r_u x r_v in `direction` and its square in `squared` to the unit normal. Returns the lanes where that is one.
+/// Turns r_u x r_v in `direction` and its square in `squared` into the unit normal. Returns the lanes where that is
+/// valid.
 template <class L>
 [[gnu::always_inline]] inline auto regular_normals(const GridJob<typename L::Scalar>& job, int lane,
                                                    Normal<L>& normal) {
@@ -340,7 +349,7 @@ template <class L>
   normal.uncertain = L::load(exchange.uncertain);
 }
 
-/// The unit normal; zero where there is none.
+/// Computes the unit normal; zero where there is none.
 template <class L, bool Rational>
 [[gnu::always_inline]] inline void unit_normal(const GridJob<typename L::Scalar>& job, const Sample<L>& sample,
                                                const Place& place, Normal<L>& normal) {

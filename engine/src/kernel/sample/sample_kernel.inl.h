@@ -1,18 +1,18 @@
 #pragma once
-// One sample of a block from the row curves of its u: position and derivatives up to an order, polynomial or rational.
+// One sample of a block from the row curves of its u, lanes = patches: position and derivatives up to an order,
+// polynomial or rational.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/grid/line_kernels.h, kernel/isa/lanes.h.
 
-/// Coefficients of the highest degree that an evaluation is made for. Degree 0: any.
+/// Coefficients of the highest degree that an evaluation is made for. Degree 0 is any degree.
 template <int Degree>
 constexpr int capacity_of = Degree > 0 ? Degree + 1 : max_order;
 
-/// r(u,v) and its derivatives in Cartesian coordinates, three components each; what lies above the order is left as it
-/// is.
+/// r(u,v) and its derivatives in Cartesian coordinates, three components each; those above the order are not set.
 template <class L>
 struct Sample {
   typename L::Batch position[3], du[3], dv[3], duu[3], duv[3], dvv[3];
-  typename L::Batch reciprocal_weight;  ///< of rational patches
+  typename L::Batch reciprocal_weight;  ///< for rational patches
 };
 
 /// The row curves of one u for one vector of patches: their values, and their first and second derivatives by u.
@@ -28,7 +28,7 @@ struct LaneWeights {
   typename L::Batch operator[](int i) const { return L::load(first + i * block_lanes); }
   LaneWeights operator+(int count) const { return {first + count * block_lanes}; }
 };
-/// The weights of parameter k, of `count` coefficients, for the lanes from `lane` on.
+/// Returns the weights of parameter k, of `count` coefficients, for the lanes from `lane` on.
 template <class L, bool ByLane>
 [[gnu::always_inline]] inline auto weights_at(const typename L::Scalar* table, int k, int count, int lane) {
   const std::ptrdiff_t first = std::ptrdiff_t{k} * 3 * count;
@@ -39,7 +39,7 @@ template <class L, bool ByLane>
   }
 }
 
-/// use(i) from `first` to before `end`: laid out in full where the capacity says that the degree is known, for there it
+/// Calls use(i) from `first` to before `end`: unrolled where the capacity says that the degree is known, since there it
 /// pays, and a loop elsewhere.
 template <int Capacity, class Use>
 [[gnu::always_inline]] inline void for_each_coefficient(int first, int end, Use use) {
@@ -52,7 +52,7 @@ template <int Capacity, class Use>
   }
 }
 
-/// A weight of all lanes, or one a lane.
+/// Returns one weight for all lanes, or one per lane.
 template <class L>
 inline typename L::Batch in_lanes(typename L::Scalar weight) {
   return L::broadcast(weight);
@@ -66,7 +66,7 @@ inline const typename L::Batch& in_lanes(const typename L::Batch& weight) {
   return weight;
 }
 
-/// sum_j weights[j] * curve[component][j], in ascending order: one multiplication, then fused multiply-adds.
+/// Computes sum_j weights[j] * curve[component][j], in ascending order: one multiplication, then fused multiply-adds.
 template <class L, class Weights, int Components, int Capacity>
 inline void combine(const Weights weights, int count, const typename L::Batch (&curve)[Components][Capacity],
                     typename L::Batch (&sum)[Components]) {
@@ -79,8 +79,8 @@ inline void combine(const Weights weights, int count, const typename L::Batch (&
       });
 }
 
-/// `Count` neighbouring row curves from index j, and their derivatives up to the order: each coefficient is read once, and
-/// the sums are independent, so that the multiply-adds overlap.
+/// Computes `Count` neighbouring row curves from index j, and their derivatives up to the order. Each coefficient is
+/// read once, and the sums are independent, so that the multiply-adds overlap.
 template <class L, int Count, int Order, class Weights, int Components, int Capacity>
 [[gnu::always_inline]] inline void row_curves_from(int j, const typename L::Scalar* net, const Weights weights,
                                                    int count_u, std::ptrdiff_t row,
@@ -107,8 +107,8 @@ template <class L, int Count, int Order, class Weights, int Components, int Capa
       for (int c = 0; c < Components; ++c) curves.by_u[order][c][j + k] = sum[order][k][c];
 }
 
-/// The row curves of one u: by_u[order][component][j] = sum_i weights[order][i] net[i][j][component], i ascending. As many
-/// at once as the sums of all orders fit the registers.
+/// Computes the row curves of one u: by_u[order][component][j] = sum_i weights[order][i] net[i][j][component], i
+/// ascending; as many at once as the registers hold sums of all orders.
 template <class L, int DegreeV, int Order, class Weights, int Components, int Capacity>
 [[gnu::always_inline]] inline void row_curves(const typename L::Scalar* net, const Weights weights, int count_u,
                                               int count_v, RowCurves<L, Order, Components, Capacity>& curves) {
@@ -130,14 +130,17 @@ template <class L, int DegreeV, int Order, class Weights, int Components, int Ca
 }
 
 // From homogeneous A = (P, w) to Cartesian (Piegl and Tiller, The NURBS Book, eq. 4.20), q = 1 / w:
-// r = P q,  r_u = (P_u - w_u r) q,  r_uu = (P_uu - 2 w_u r_u - w_uu r) q,  r_uv = (P_uv - w_u r_v - w_v r_u - w_uv r)
-// q.
-// Rounding errors: R is the largest |V - o|, W the largest weight, d the degree, e a few roundings. Sums of Bernstein
-// weights err by e w in w and by e R in r. The weights of a derivative add up to at most 2 d, so P_u errs by 2 d e W R
-// and w_u by 2 d e W. With |r| <= R, |w_u| <= d W and |r_u| <= 2 d R W / w the error of r_u is at most
-// (2 + 2 + 1 + 2) e d R W / w: from P_u, w_u, r and the division. Its order is reached midway between points V and -V,
-// even where w (V - o) is small: the error of r stays, and points of weight W near o make w_u large. For r_uu the term
-// 2 w_u r_u brings W / w once more: its error is at most 2 (4 + 7) e d^2 R (W / w)^2.
+//   r = P q,  r_u = (P_u - w_u r) q,
+//   r_uu = (P_uu - 2 w_u r_u - w_uu r) q,  r_uv = (P_uv - w_u r_v - w_v r_u - w_uv r) q.
+//
+// Rounding errors. R is the largest |V - o|, W the largest weight, d the degree, e a few roundings.
+// 1. Sums of Bernstein weights err by e w in w and by e R in r.
+// 2. The weights of a derivative add up to at most 2 d, so P_u errs by 2 d e W R and w_u by 2 d e W.
+// 3. With |r| <= R, |w_u| <= d W and |r_u| <= 2 d R W / w the error of r_u is at most (2 + 2 + 1 + 2) e d R W / w: from
+//    P_u, w_u, r and the division.
+// 4. This order is reached midway between points V and -V, even where w (V - o) is small: the error of r remains, and
+//    points of weight W near o make w_u large.
+// 5. For r_uu the term 2 w_u r_u brings W / w once more: its error is at most 2 (4 + 7) e d^2 R (W / w)^2.
 
 template <class L>
 inline void divide_first(const typename L::Batch (&point_u)[4], const typename L::Batch& q,
@@ -167,7 +170,7 @@ inline void copy(const typename L::Batch (&from)[3], typename L::Batch (&to)[3])
   for (int c = 0; c < 3; ++c) to[c] = from[c];
 }
 
-/// One sample of order `Order` from the row curves; `weights` are those of v, `[order][j]`.
+/// Evaluates one sample of order `Order` from the row curves; `weights` are those of v, `[order][j]`.
 template <class L, int Order, int Components, int Capacity, class Weights>
 [[gnu::always_inline]] inline void evaluate_sample(const RowCurves<L, Order, Components, Capacity>& curves,
                                                    const Weights weights, int count, Sample<L>& sample) {

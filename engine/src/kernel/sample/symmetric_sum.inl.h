@@ -1,7 +1,7 @@
 #pragma once
-// Border curves whose bits do not depend on the direction of the parameter: the sum pairs the control points i and n -
-// i, (w_0 c_0 + w_n c_n) + (w_1 c_1 + w_{n-1} c_{n-1}) + ..., by separate multiplications and additions, which
-// commute. With weights that are themselves symmetric, running the other way gives the same bits.
+// A sum for border curves, lanes = patches, whose bits do not depend on the parameter's direction. It pairs the control
+// points i and n - i, (w_0 c_0 + w_n c_n) + (w_1 c_1 + w_{n-1} c_{n-1}) + ..., by separate multiplications and
+// additions, which commute. With weights that are themselves symmetric, the other direction gives the same bits.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/grid/line_kernels.h, kernel/isa/lanes.h.
 

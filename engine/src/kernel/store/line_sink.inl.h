@@ -1,11 +1,11 @@
 #pragma once
-// Numbers that follow each other in memory, on their way there by whole aligned vectors.
+// Stores numbers that follow each other in memory, lanes = neighbouring numbers, by whole aligned vectors.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/isa/lanes.h, kernel/store/stream_state.h.
 
 #include "kernel/store/store.inl.h"
 
-/// Whether there is a LineSink of vectors like these.
+/// True if there is a LineSink of such vectors.
 template <class L>
 constexpr bool has_lines = requires {
   L::store_between;
@@ -16,7 +16,7 @@ template <class L, bool Streaming>
 class LineSink {
  public:
   explicit LineSink(float* memory) : shift_(L::shift_by(0)), carry_(L::broadcast(0)) { start(memory); }
-  /// Goes on where another stopped.
+  /// Continues where another stopped.
   explicit LineSink(const StreamState& state) : LineSink(state.next) {
     begin_ = state.first > next_ ? static_cast<int>(state.first - next_) : 0;
     carry_ = L::load(state.carry);
@@ -27,14 +27,14 @@ class LineSink {
     L::store(state.carry, carry_);
   }
 
-  /// Where the next number goes.
+  /// Sets the place of the next number.
   [[gnu::always_inline]] void turn_to(float* memory) {
     if (memory == next_ + end_) return;
     finish();
     start(memory);
   }
   [[gnu::always_inline]] void put(const typename L::Batch& vector) { send(L::shift_in(carry_, vector, shift_)); }
-  /// The first `count` numbers of a vector.
+  /// Puts the first `count` numbers of a vector.
   [[gnu::always_inline]] void put(const typename L::Batch& vector, int count) {
     auto joined = L::shift_in(carry_, vector, shift_);
     end_ += count;
@@ -67,7 +67,7 @@ class LineSink {
     next_ += L::width;
   }
 
-  float* next_;  ///< the vector at work, of which the numbers begin_ .. end_ - 1 are known
+  float* next_;  ///< the current vector, of which the numbers begin_ .. end_ - 1 are known
   int begin_, end_;
   typename L::Shift shift_;  ///< by end_
   typename L::Batch carry_;  ///< its last end_ lanes are those numbers

@@ -1,11 +1,11 @@
 #pragma once
-// How the grids' values go to memory.
+// Stores of the grids' values, lanes = patches: plain ones, or streamed by whole cache lines.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/grid/grid_kernels.h, kernel/isa/lanes.h.
 
 #include "kernel/store/store.inl.h"
 
-/// By plain stores, by streaming ones, or as the job says.
+/// Plain stores, streaming ones, or as the job asks.
 enum class Way { plain, streaming, asked };
 
 /// The first line of each output among those of a sample.
@@ -28,9 +28,9 @@ enum Line : int {
   line_count
 };
 
-/// Vectors of a cache line. They leave together, but for positions: lines that are streamed in parts wait for the rest in
-/// one of about ten buffers of the processor, and go to memory in parts, at a tenth of the speed, where a sample has more of
-/// them than there are buffers.
+/// The number of vectors in a cache line. Except for positions they are stored together. A line that is streamed in
+/// parts waits for its rest in one of about ten buffers of the processor; where a sample has more such lines than there
+/// are buffers, they go to memory in parts, at a tenth of the speed.
 template <class L>
 inline constexpr int line_parts = 64 / static_cast<int>(sizeof(typename L::Scalar)) / L::width;
 
@@ -41,7 +41,7 @@ struct WaitingLines {
       typename L::Scalar line[How == Way::plain || line_parts<L> == 1 ? 1 : int{line_count}][line_parts<L> * L::width];
 };
 
-/// Stores of one vector of a block's patches; `Group`, a number or a constant, says which.
+/// Stores one vector of a block's patches; `Group`, a number or a constant, says which.
 template <class L, Way How, class Group>
 class LineStores {
  public:
@@ -69,7 +69,7 @@ class LineStores {
   [[gnu::always_inline]] void put(int line, T* memory, const typename L::Batch (&vector)[3]) const {
     for (int c = 0; c < 3; ++c) put(line + c, memory + c * block_lanes, vector[c]);
   }
-  /// The same for code that is made once for all ways.
+  /// Returns these stores for code that is compiled once for all ways.
   [[gnu::always_inline]] LineStores<L, Way::asked, int> asked() const { return {streaming_, waiting_, group_}; }
 
  private:
@@ -81,7 +81,7 @@ class LineStores {
 template <class L>
 using AskedStores = LineStores<L, Way::asked, int>;
 
-/// use(group) for each vector of a block: numbers, or constants.
+/// Calls use(group) for each vector of a block, with numbers or constants.
 template <int Count, bool Constant, class Use>
 [[gnu::always_inline]] inline void for_each_group(Use use) {
   if constexpr (Constant) {

@@ -1,17 +1,18 @@
 #pragma once
-// Stores past the caches, and the probes of the machine's limits.
+// Kernels that end stores past the caches, and that probe the machine's limits.
 
 #include <cstddef>
 
 namespace tessera::inline abi_0_1::kernel {
 
 struct MemoryKernels {
-  /// For limits.h: `rounds` times 16 independent fused multiply-adds of whole vectors; returns the lanes of a vector.
+  /// For limits.h: `rounds` times 16 independent fused multiply-adds of whole vectors. Return the lanes of a vector.
   int (*fma_f32)(std::size_t rounds, float* sink);
   int (*fma_f64)(std::size_t rounds, double* sink);
   /// For limits.h: fills bytes (a multiple of 64, aligned to 64) with full-width stores.
   void (*fill)(void* memory, std::size_t bytes, bool streaming);
-  /// Once a task has streamed, before its results are given to other threads. Not once a block: a fence waits for memory.
+  /// Call it once a task has streamed, before other threads get its results; not once per block: a fence waits for
+  /// memory.
   void (*finish_streaming)();
 };
 

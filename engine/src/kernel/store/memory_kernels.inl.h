@@ -1,9 +1,10 @@
 #pragma once
-// The end of streaming, and the probes of the machine's limits.
+// The end of streaming, and the probes of the machine's limits, in vectors of any width.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/isa/lanes.h, kernel/net/net_kernels.h.
 
-/// 16 independent chains hide the latency of the multiply-adds; the sum of all keeps the compiler from dropping them.
+/// Uses 16 independent chains to hide the latency of the multiply-adds; the sum of all keeps the compiler from dropping
+/// them.
 template <class L>
 int fma_rate(std::size_t rounds, typename L::Scalar* sink) {
   typename L::Batch chain[16];
@@ -19,7 +20,7 @@ int fma_rate(std::size_t rounds, typename L::Scalar* sink) {
   return L::width;
 }
 
-/// Other threads see what was streamed before.
+/// Makes streamed results visible to other threads.
 template <class L>
 void finish_streaming() {
   L::fence();

@@ -1,5 +1,5 @@
 #pragma once
-// Vectors to memory.
+// Stores of vectors and of records of three components.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/isa/block_lanes.h, kernel/isa/lanes.h.
 
@@ -16,10 +16,10 @@ template <class L, bool Streaming>
   for (int c = 0; c < 3; ++c) store<L, Streaming>(memory + c * block_lanes, vector[c]);
 }
 
-/// How records lie in memory.
+/// The layout of records in memory.
 enum class Records { packed, arrays, strided };
 
-/// The first `count` lanes of three components to the job's `out` and `stride`, from a record on.
+/// Stores the first `count` lanes of three components to the job's `out` and `stride`, from a record on.
 template <class L, Records Layout, class Job>
 inline void store_records(const Job& job, std::ptrdiff_t record, typename L::Batch (&p)[3], int count) {
   using T = typename L::Scalar;

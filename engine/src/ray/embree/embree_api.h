@@ -1,5 +1,5 @@
 #pragma once
-// Embree 3.13 and 4 as one: what the two call differently. For the files of this floor that speak to Embree.
+// The calls in which Embree 3.13 and 4 differ, behind one interface, for the files of this floor that call Embree.
 
 #include "tessera/ray_embree.h"
 
@@ -7,8 +7,8 @@ namespace tessera::inline abi_0_1 {
 
 enum class Coherence { incoherent, coherent };
 
-/// Empties the interval of each inactive lane. Embree 3.13 ignores `valid` of 16-wide packets on machines without AVX-512,
-/// where it traces them as narrower ones; it skips a ray with tnear > tfar on all.
+/// Empties the interval of each inactive lane. On machines without AVX-512, Embree 3.13 traces 16-wide packets as
+/// narrower ones and ignores their `valid`; on all machines it skips a ray with tnear > tfar.
 inline void empty_inactive_lanes(const int* valid, RTCRay16& rays) {
   for (unsigned k = 0; k < 16; ++k)
     if (valid[k] == 0) rays.tnear[k] = 1, rays.tfar[k] = 0;
@@ -113,7 +113,7 @@ inline void filter_hit(const RTCOccludedFunctionNArguments* of, const RTCFilterF
 
 #endif
 
-/// Where in a hit the instances are told; in Embree 4.1 and later also which of an array.
+/// Copies the context's instances into a hit; in Embree 4.1 and later also the index in an instance array.
 inline void set_instances(const EmbreeContext& context, RTCHit& hit) {
   for (unsigned level = 0; level < RTC_MAX_INSTANCE_LEVEL_COUNT; ++level) {
     hit.instID[level] = context.instID[level];

@@ -9,11 +9,12 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// What a call of Embree's carries to the callback: first what Embree knows, so that one points to the other.
+/// The data that a call of Embree carries to the callback. Embree's context comes first, so that a pointer to it is one
+/// to this.
 struct Call {
   EmbreeContext context;
   EmbreeBoxes::Visit visit;
-  std::size_t count;                             ///< of lines
+  std::size_t count;                             ///< number of lines
   std::array<float, EmbreeBoxes::packet> enter;  ///< s where Embree's rays begin, by their ids
 };
 
@@ -30,7 +31,7 @@ struct EmbreeBoxes::State {
     *arguments->bounds_o = padded(state.boxes[arguments->primID]);
   }
 
-  /// Embree 3 comes with lanes that it calls valid and that are none of ours: see embree_leaves.cpp.
+  /// Embree 3 passes lanes that it calls valid but that have no ray of this call: see embree_leaves.cpp.
   static void intersect(const RTCIntersectFunctionNArguments* arguments) {
     Call& call = *reinterpret_cast<Call*>(arguments->context);
     const unsigned count = arguments->N;

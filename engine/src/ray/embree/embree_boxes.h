@@ -1,5 +1,5 @@
 #pragma once
-// A BVH of boxes whose insides somebody else knows. Embree's types stay in embree_boxes.cpp.
+// A BVH of boxes whose contents the caller traces. Embree's types stay in embree_boxes.cpp.
 
 #include <array>
 #include <cstddef>
@@ -24,18 +24,18 @@ class EmbreeBoxes {
   EmbreeBoxes& operator=(EmbreeBoxes&&) noexcept;
   ~EmbreeBoxes();
 
-  /// Boxes within [-1,1]^3. On errors there are none. Errors: cancelled, Embree's own.
+  /// Builds the BVH of boxes within [-1,1]^3. On errors there are none. Errors: cancelled, Embree's own.
   Status build(std::vector<Box3> boxes, const Execution& execution);
 
   static constexpr std::size_t packet = 16;
 
-  /// Calls visit(box, lanes, ends) for each box that some of the lines meet, whose bits are set in `lanes`, and perhaps
-  /// for others; the nearer ones rather first. It sets for each line the s up to which boxes are still of interest;
-  /// minus infinity ends the visits. One line to a packet of lines that are worth it; none may be empty.
+  /// Calls visit(box, lanes, ends) for each box that some of the lines meet, and perhaps for others, roughly from near
+  /// to far. The lines' bits are set in `lanes`. For each line the call sets the s up to which boxes are still of
+  /// interest; minus infinity ends the visits. `lines` is one line or a packet of coherent ones; none may be empty.
   using Visit = FunctionRef<void(unsigned box, unsigned lanes, std::array<double, packet>& ends)>;
   void visit(std::span<const RayLine* const> lines, Visit visit) const;
 
-  /// What Embree has allocated, and the boxes.
+  /// Returns the bytes that Embree has allocated, and those of the boxes.
   std::size_t memory_bytes() const;
 
  private:

@@ -68,7 +68,7 @@ Status commit(RTCScene scene, EmbreeMonitor& monitor, const Execution& execution
   if (execution.cancel) {
     rtcSetSceneProgressMonitorFunction(scene, &not_cancelled, const_cast<std::atomic<bool>*>(execution.cancel));
   }
-  // Not rtcJoinCommitScene: with TBB that one works in an arena of Embree's own, this one in the caller's.
+  // With TBB rtcJoinCommitScene would work in an arena of Embree's own; this call works in the caller's.
   rtcCommitScene(scene);
   rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
   return monitor.take();

@@ -1,5 +1,5 @@
 #pragma once
-// Embree's handles, and what it reports. For the files of this floor that speak to Embree.
+// Embree's handles and error reports, for the files of this floor that call Embree.
 
 #include <atomic>
 #include <cstddef>
@@ -27,10 +27,10 @@ struct GeometryRelease {
 template <class Handle, class Release>
 using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
 
-/// What Embree reports through its callbacks, from any thread.
+/// Collects what Embree reports through its callbacks, from any thread.
 class EmbreeMonitor {
  public:
-  /// The first error since the last call, as a Status.
+  /// Returns the first error since the last call, as a Status.
   Status take();
   std::size_t bytes() const;
 
@@ -45,8 +45,8 @@ class EmbreeMonitor {
   std::string message_;
 };
 
-/// A device that starts no thread and binds none. `isa`: what Embree's own kernels are held to, by default the machine's
-/// best. The monitor must outlive it. Errors: internal, out_of_memory.
+/// Makes a device that starts no thread and binds none. `isa` limits Embree's own kernels, by default to the machine's
+/// best. The monitor must outlive the device. Errors: internal, out_of_memory.
 Result<Owned<RTCDevice, DeviceRelease>> make_device(EmbreeMonitor& monitor, std::optional<Isa> isa = {});
 
 /// Commits a scene in the caller's arena. Errors: cancelled, Embree's own.

@@ -15,8 +15,8 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// What a call of Embree's carries to the callbacks: first what Embree knows, so that one points to the other. Of a
-/// packet's rays, by their ids.
+/// The data that a call of Embree carries to the callbacks. Embree's context comes first, so that a pointer to it is
+/// one to this. Arrays are indexed by the ids of the packet's rays.
 struct Call {
   EmbreeContext context;
   SearchSpace* space;
@@ -40,9 +40,8 @@ struct EmbreeLeaves::State {
     *arguments->bounds_o = padded(state.tracer.nets->boxes()[arguments->primID]);
   }
 
-  /// Searches a leaf for the valid rays of a call, then does `then(k, ray, query)` with each. Embree 3 takes 16 rays by
-  /// eights or fours where the machine has no wider vectors, and a part without a ray of ours comes with lanes that it
-  /// calls valid.
+  /// Searches a leaf for the valid rays of a call, then calls `then(k, ray, query)` for each. On machines without wider
+  /// vectors Embree 3 splits 16 rays into eights or fours; a part without a ray of ours has lanes that it calls valid.
   template <class IdOf, class Then>
   void search(unsigned leaf, Call& call, unsigned count, const int* valid, const IdOf& id_of, const Then& then) const {
     unsigned lanes = 0, places = 0;
@@ -64,7 +63,7 @@ struct EmbreeLeaves::State {
     }
   }
 
-  /// The end of Embree's ray follows the closest root, rounded up by what boxes are padded with. One ray or a packet.
+  /// Moves the end of Embree's ray to the closest root, rounded up by the padding of boxes. For one ray or a packet.
   static void intersect(const RTCIntersectFunctionNArguments* arguments) {
     const State& state = *static_cast<const State*>(arguments->geometryUserPtr);
     Call& call = *reinterpret_cast<Call*>(arguments->context);
@@ -119,8 +118,8 @@ Status EmbreeLeaves::build(const TracedLeaves& leaves, bool follows, const Execu
   rtcSetGeometryBoundsFunction(geometry, &State::bounds, nullptr);
   rtcSetGeometryIntersectFunction(geometry, &State::intersect);
   rtcSetGeometryOccludedFunction(geometry, &State::occluded);
-  // Embree refits in dynamic scenes of low quality alone, which hold a tree for each geometry: this one's is built as
-  // well as any, and later refitted, where it says so from the start.
+  // Embree refits only in dynamic scenes of low quality, which hold one tree per geometry. If the geometry asks for
+  // refitting from the start, its tree is built as well as any, and later refitted.
   if (follows) {
     rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_REFIT);
     rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_LOW);

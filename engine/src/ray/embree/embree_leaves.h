@@ -26,21 +26,22 @@ class EmbreeLeaves {
   EmbreeLeaves& operator=(EmbreeLeaves&&) noexcept;
   ~EmbreeLeaves();
 
-  /// Builds the BVH, in the caller's arena. What `leaves` refers to must stay in place, and unchanged while the scene is
-  /// used, but for borders, which may be found meanwhile. `follows`: refit() will be called; otherwise the nets' boxes may
-  /// be dropped afterwards. On errors the scene is empty. Errors: cancelled, Embree's own.
+  /// Builds the BVH, in the caller's arena. Everything that `leaves` refers to must stay in place, and must not change
+  /// while the scene is used, except borders, which may be found meanwhile. `follows`: refit() will be called;
+  /// otherwise the nets' boxes may be dropped afterwards. On errors the scene is empty. Errors: cancelled, Embree's
+  /// own.
   Status build(const TracedLeaves& leaves, bool follows, const Execution& execution);
-  /// The boxes of the BVH that was built follow those of the nets. After an error the scene is empty. Errors: as above.
+  /// Refits the BVH to the boxes of the nets. After an error the scene is empty. Errors: as above.
   Status refit(double tolerance, const Execution& execution);
 
   /// Runs the query against all leaves that its line meets. The line must not be empty.
   void trace(RayQuery& query, SearchSpace& space) const;
-  /// The same for up to a packet of queries for the same kind of roots; quicker than one by one where they are coherent.
+  /// Runs up to a packet of queries for the same kind of roots; faster than one by one if they are coherent.
   void trace(std::span<RayQuery* const> queries, SearchSpace& space) const;
 
-  /// Of what was built.
+  /// Returns the tracer of the leaves that were built.
   const LeafTracer& tracer() const;
-  /// What Embree has allocated.
+  /// Returns the bytes that Embree has allocated.
   std::size_t memory_bytes() const;
 
  private:

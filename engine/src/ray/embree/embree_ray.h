@@ -1,5 +1,5 @@
 #pragma once
-// Lines and boxes of a scene's own coordinates as Embree takes them. For the files of this floor that speak to Embree.
+// Lines and boxes of a scene's own coordinates in Embree's form, for the files of this floor that call Embree.
 
 #include "ray/embree/embree_api.h"
 #include "ray/line/ray_line.h"
@@ -7,8 +7,9 @@
 
 namespace tessera::inline abi_0_1 {
 
-// Rays in float: start and direction round by 2^-24 of at most 3.5 and over at most 4, a component by 5e-7. Boxes are
-// larger by four times that on each side; Embree's own arithmetic is conservative in robust scenes.
+// Padding of boxes for rays in float. Start and direction round by 2^-24, of at most 3.5 and over at most 4: 5e-7 per
+// component. Boxes are larger by four times that on each side; Embree's own arithmetic is conservative in robust
+// scenes.
 inline constexpr float box_pad = 2e-6f;
 
 inline RTCBounds padded(const Box3& box) {
@@ -19,7 +20,7 @@ inline RTCBounds padded(const Box3& box) {
   return out;
 }
 
-/// Of a line that is not empty: from where it enters the scene's box to where it leaves it.
+/// Returns the ray of a line that is not empty, from where it enters the scene's box to where it leaves it.
 inline RTCRay embree_ray(const RayLine& line) {
   const auto narrow = [](double x) { return static_cast<float>(x); };
   const Vec3 start = line.start + line.enter * line.direction, &d = line.direction;
@@ -31,7 +32,7 @@ inline RTCRay embree_ray(const RayLine& line) {
   return ray;
 }
 
-/// A packet of at most 16 rays as Embree takes it, with their numbers as ids; line(k): line k of `count`.
+/// Fills a packet of at most 16 rays, with their indices as ids; line(k) is line k of `count`.
 template <class Line>
 void set_packet(std::size_t count, const Line& line, RTCRayHit16& hit, int (&valid)[16]) {
   for (unsigned k = 0; k < 16; ++k) {

@@ -28,7 +28,7 @@ constexpr unsigned quad_geometry = 1;  // triangles and grids: 0
 
 using Lanes = std::array<int, EmbreeScene::packet>;  // -1: active, 0: not
 
-/// Fills the lanes of a packet; returns which are active. Idle lanes repeat the first ray.
+/// Fills the lanes of a packet and returns which are active. Idle lanes repeat the first ray.
 Lanes to_embree(std::span<const FacetRay> rays, RTCRay16& out) {
   Lanes valid{};
   for (std::size_t k = 0; k < EmbreeScene::packet; ++k) {
@@ -55,7 +55,7 @@ CountDenormals::~CountDenormals() { _mm_setcsr(saved_); }
 struct EmbreeScene::State {
   EmbreeMonitor monitor;        // outlives the device, which calls it
   std::vector<RTCGrid> grids;   // borrowed by the geometry
-  std::uint32_t triangles = 0;  // in front of quads
+  std::uint32_t triangles = 0;  // come before quads
   Owned<RTCDevice, DeviceRelease> device;
   Owned<RTCScene, SceneRelease> scene;
 
@@ -160,7 +160,7 @@ bool EmbreeScene::occluded(const FacetRay& ray) const {
   EmbreeContext context = embree_context();
   RTCRay query = to_embree(ray);
   tessera::occluded(state_->scene.get(), context, Coherence::incoherent, query);
-  return query.tfar < 0;  // -infinity where something was met
+  return query.tfar < 0;  // -infinity where something was hit
 }
 
 void EmbreeScene::closest(std::span<const FacetRay> rays, std::span<FacetHit> hits) const {

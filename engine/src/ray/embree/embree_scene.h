@@ -1,6 +1,6 @@
 #pragma once
-// Embree's side of a ray scene: grids, or triangles and quads, over borrowed vertices, and the tracing of single rays and packets.
-// Embree's types stay in embree_scene.cpp.
+// Embree's side of a ray scene: grids, or triangles and quads, over borrowed vertices, and the tracing of single rays
+// and packets. Embree's types stay in embree_scene.cpp.
 
 #include <array>
 #include <cstddef>
@@ -15,7 +15,7 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Grids of height x width vertices each, one after the other, 3 floats a vertex, rows (of equal height index)
+/// Grids of height x width vertices each, one after the other, 3 floats per vertex, rows (of equal height index)
 /// contiguous.
 struct GridVertices {
   const float* data =
@@ -24,21 +24,22 @@ struct GridVertices {
   int height = 0, width = 0;
 };
 
-/// Triangles and quads by their corners, 3 and 4 indices each, over vertices of which the last is read in the same way.
+/// Triangles and quads by their corners, 3 and 4 indices each, over vertices. The last vertex is read as in
+/// GridVertices.
 struct FacetVertices {
   const float* data = nullptr;
   std::size_t vertices = 0;
   std::span<const std::uint32_t> triangles, quads;
 };
 
-/// A ray as Embree takes it: every number finite, 0 <= tnear <= tfar, direction not zero.
+/// A ray in Embree's form: every number finite, 0 <= tnear <= tfar, direction not zero.
 struct FacetRay {
   std::array<float, 3> origin{}, direction{};
   float tnear = 0, tfar = 0;
 };
 
-/// Where a ray meets a facet of a grid: u runs along its height, v along its width, both from 0 to 1. Of triangles and quads
-/// `grid` counts first those and then these, and u and v are Embree's v and u.
+/// The place where a ray meets a facet. On a grid u runs along its height and v along its width, both from 0 to 1. For
+/// triangles and quads `grid` counts first triangles and then quads, and u and v are Embree's v and u.
 struct FacetHit {
   static constexpr std::uint32_t nothing = std::numeric_limits<std::uint32_t>::max();
   std::uint32_t grid = nothing;
@@ -46,8 +47,8 @@ struct FacetHit {
   bool hit() const { return grid != nothing; }
 };
 
-/// Flush-to-zero and denormals-are-zero for this thread (and floating-point exceptions masked), as Embree wants them
-/// for speed; the caller's state comes back at the end of the scope. Doubles are affected too: only tracing belongs
+/// Sets flush-to-zero and denormals-are-zero for this thread, and masks floating-point exceptions, as Embree wants them
+/// for speed; the end of the scope restores the caller's state. Doubles are affected too, so only tracing belongs
 /// inside.
 class FlushDenormals {
  public:
@@ -60,7 +61,7 @@ class FlushDenormals {
   unsigned saved_;
 };
 
-/// Within a FlushDenormals: denormal numbers count, for code that is not ours.
+/// Within a FlushDenormals: lets denormal numbers count again, for foreign code.
 class CountDenormals {
  public:
   CountDenormals();
@@ -76,7 +77,7 @@ class CountDenormals {
 class EmbreeScene {
  public:
   static constexpr std::size_t packet = 16;
-  /// Embree checks none of this before 4.4.1.
+  /// Embree does not check this before 4.4.1.
   static constexpr int max_vertices_a_side = 32767;
 
   /// Errors: internal and out_of_memory, from Embree.
@@ -85,23 +86,23 @@ class EmbreeScene {
   EmbreeScene& operator=(EmbreeScene&&) noexcept;
   ~EmbreeScene();
 
-  /// Whether that many vertices fit one scene. Errors: unsupported.
+  /// Checks that so many vertices fit one scene. Errors: unsupported.
   static Status check_size(const GridVertices& vertices);
-  /// Builds the BVH, in the caller's arena; what was built before is dropped. `vertices` must stay in place and
-  /// unchanged while the scene is used. On errors the scene is empty. Errors: unsupported (too many vertices),
-  /// cancelled, Embree's own.
+  /// Builds the BVH, in the caller's arena, and drops the one built before. `vertices` must stay in place and unchanged
+  /// while the scene is used. On errors the scene is empty. Errors: unsupported (too many vertices), cancelled,
+  /// Embree's own.
   Status build(const GridVertices& vertices, const Execution& execution);
   Status build(const FacetVertices& facets, const Execution& execution);
 
   FacetHit closest(const FacetRay& ray) const;
   bool occluded(const FacetRay& ray) const;
-  /// At most `packet` rays at once; quicker than one by one where they are coherent.
+  /// Trace at most `packet` rays at once; faster than one by one if they are coherent.
   void closest(std::span<const FacetRay> rays, std::span<FacetHit> hits) const;
   void occluded(std::span<const FacetRay> rays, std::span<std::uint8_t> occluded) const;
 
-  /// Of all vertices; empty before the first build.
+  /// Returns the box of all vertices; empty before the first build.
   Box3 box() const;
-  /// What Embree has allocated.
+  /// Returns the bytes that Embree has allocated.
   std::size_t memory_bytes() const;
 
  private:

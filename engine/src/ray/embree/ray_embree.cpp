@@ -21,15 +21,15 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 
 const ExactSource& source_of(void* user_data) { return *static_cast<const ExactSource*>(user_data); }
 
-/// The box of a leaf in the model's coordinates, with all that counts as met and every rounding.
+/// Returns the box of a leaf in the model's coordinates, with all points that count as hit and every rounding.
 void bounds(const RTCBoundsFunctionArguments* arguments) {
   const LeafTracer& tracer = source_of(arguments->geometryUserPtr).tracer();
   const SceneFrame& frame = tracer.nets->frame();
-  Vec3 low{-1, -1, -1}, high{1, 1, 1};  // every leaf lies in it
+  Vec3 low{-1, -1, -1}, high{1, 1, 1};  // holds every leaf
   try {
     const Box3 box = tracer.nets->box(*tracer.set, arguments->primID);
     low = box.lower, high = box.upper;
-  } catch (...) {  // no memory; Embree knows no exceptions
+  } catch (...) {  // no memory; Embree cannot handle exceptions
   }
   const double pad = tracer.tolerance_of(tracer.nets->leaves()[arguments->primID]) + 1e-12;
   low = frame.to_model(low - Vec3{pad, pad, pad}), high = frame.to_model(high + Vec3{pad, pad, pad});
@@ -49,7 +49,7 @@ Ray ray_of(RTCRayN* rays, unsigned count, unsigned k) {
   return ray;
 }
 
-/// One call of Embree's for one leaf: RTCIntersectFunctionNArguments or RTCOccludedFunctionNArguments.
+/// One call of Embree for one leaf, with RTCIntersectFunctionNArguments or RTCOccludedFunctionNArguments.
 template <class Arguments>
 class LeafCall {
  public:
@@ -59,13 +59,13 @@ class LeafCall {
         source_(source_of(arguments->geometryUserPtr)),
         space_(source_.tracer().nets->largest()) {}
 
-  /// Whether there is anything to be met.
+  /// Returns whether there is anything to hit.
   static bool is_open(const Arguments* arguments) {
     const ExactSource& source = source_of(arguments->geometryUserPtr);
     return source.fresh() && arguments->primID < source.tracer().nets->leaves().size();
   }
 
-  /// The nearest root of the leaf on one of the rays that no filter rejects, as a hit; the ray then ends there.
+  /// Finds the leaf's nearest root on one of the rays that no filter rejects, as a hit; the ray then ends there.
   bool meet(unsigned k, RTCHit& hit) {
     const Ray ray = ray_of(rays_, arguments_->N, k);
     if (!is_valid(ray)) return false;
@@ -84,11 +84,11 @@ class LeafCall {
     source_.tracer().search(arguments_->primID, probe, query, space_);
   }
 
-  /// After a filter has rejected the first root.
+  /// Continues after a filter has rejected the first root.
   bool meet_behind(unsigned k, const Ray& ray, const RayLine& line, LeafRoot before, RTCHit& hit) {
     RayQuery query(ray, line, RootsWanted::all);
     search(query);
-    before.certified = false;  // of a query for the closest root, which doesn't tell its side
+    before.certified = false;  // it comes from a query for the closest root, which does not set its side
     std::sort(query.roots.begin(), query.roots.end(), [](const LeafRoot& a, const LeafRoot& b) { return a.s < b.s; });
     for (const LeafRoot& root : query.roots) {
       if (same_place(root, before)) continue;
@@ -98,7 +98,7 @@ class LeafCall {
     return false;
   }
 
-  /// Asks the filters. Also what they see.
+  /// Fills the hit and asks the filters.
   bool accept(unsigned k, const RayLine& line, const LeafRoot& root, RTCHit& hit) {
     const Hit found = source_.hit_at(line, root);
     hit.Ng_x = static_cast<float>(found.normal.x), hit.Ng_y = static_cast<float>(found.normal.y);
@@ -149,7 +149,7 @@ void occlude_leaf(const RTCOccludedFunctionNArguments* arguments) {
   }
 }
 
-/// The scene's, where Embree can hold it.
+/// Returns the scene's source, if Embree can hold it.
 Result<const ExactSource*> usable_source(const RayScene& scene) {
   const ExactSource* const source = impl_of(scene).exact_source();
   if (source == nullptr)

@@ -5,10 +5,11 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// A triangle with corners on a polynomial piece and a parameter box h x k lies within
-/// (h^2 Muu + 2 h k Muv + k^2 Mvv) / 8 of it (Taylor at the point and the variance of the parameters over the corners;
-/// Filip, Magedson and Markot, Surface algorithms using bounds on derivatives, CAGD 3, 1986, for one triangulation).
-/// The M bound second derivatives by second differences of the control net, `at(i, j)`, measured by `norm`.
+/// Bounds the distance of facets from a polynomial piece by (h^2 Muu + 2 h k Muv + k^2 Mvv) / 8, for triangles with
+/// corners on the piece in a parameter box h x k. The proof is Taylor's theorem at the point and the variance of the
+/// parameters over the corners (Filip, Magedson and Markot, Surface algorithms using bounds on derivatives, CAGD 3,
+/// 1986, for one triangulation). The M bound second derivatives by second differences of the control net, `at(i, j)`,
+/// measured by `norm`.
 template <class At, class Norm>
 double box_rule(int m, int n, double h, double k, At at, Norm norm) {
   double uu = 0, uv = 0, vv = 0;
@@ -36,8 +37,8 @@ double facet_deviation(const BezierPatch& patch, double h, double k) {
         m, n, h, k, [&](int i, int j) { return patch.point(i, j); }, vector_norm);
     return std::min(bound, farthest);
   }
-  // With the bounds e_P of w (P - c) and e_w of w, about the hull's centre c with radius R, the quotient is off by at
-  // most (e_P + R e_w) / min w.
+  // With the bounds e_P of w (P - c) and e_w of w, about the hull's centre c with radius R, the quotient has an error
+  // of at most (e_P + R e_w) / min w.
   const Vec3 centre = hull.centre();
   const double points = box_rule(
       m, n, h, k, [&](int i, int j) { return patch.weight(i, j) * (patch.point(i, j) - centre); }, vector_norm);

@@ -1,12 +1,12 @@
 #pragma once
-// How far facets lie from the surface.
+// A bound on the distance of facets from a patch, for grid mode.
 
 #include "tessera/bezier_patch.h"
 
 namespace tessera::inline abi_0_1 {
 
-/// An upper bound on the distance between the patch and facets with corners on it, in boxes of its parameters of h x k at the
-/// most.
+/// Returns an upper bound on the distance between the patch and facets with corners on it, in parameter boxes of at
+/// most h x k.
 double facet_deviation(const BezierPatch& patch, double h, double k);
 
 }  // namespace tessera::inline abi_0_1

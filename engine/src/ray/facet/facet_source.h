@@ -1,5 +1,5 @@
 #pragma once
-// What grid mode traces: facets over the patches of a set.
+// The facets over the patches of a set that grid mode traces.
 
 #include <cstddef>
 #include <memory>
@@ -16,24 +16,26 @@ namespace tessera::inline abi_0_1 {
 class FacetSource {
  public:
   virtual ~FacetSource() = default;
-  /// Makes the facets for the set as it is now and the BVH over them, which borrows them. After an error the scene is empty.
+  /// Makes the facets for the set as it is now, and the BVH over them, which borrows them. After an error the scene is
+  /// empty.
   virtual Status build(const SetView& set, EmbreeScene& scene, const Execution& execution) = 0;
-  // Of what was built:
-  /// An upper bound of the facets' distances from the surface.
+  // The functions below describe the facets that were built.
+
+  /// Returns an upper bound of the facets' distances from the surface.
   virtual double deviation(const SetView& set) const = 0;
-  /// The longest side of a facet in the parameters of its patch.
+  /// Returns the longest side of a facet in the parameters of its patch.
   virtual double largest_cell() const = 0;
-  /// What the BVH has met, by patch and its parameters.
+  /// Converts a hit of the BVH to a patch and its parameters.
   virtual FacetHit located(const FacetHit& hit) const = 0;
   virtual std::size_t memory_bytes() const = 0;
 };
 
-/// Grids of rate x rate cells a patch, evaluated into memory of their own. Errors: those of UniformGrid, unsupported (too
-/// many vertices).
+/// Makes grids of rate x rate cells per patch, evaluated into memory of their own. Errors: those of UniformGrid,
+/// unsupported (too many vertices).
 Result<std::unique_ptr<FacetSource>> grid_facets(const PatchSet& set, int rate, std::optional<Isa> isa);
 
-/// The triangles and quads of a mesh of the set, where they are; it must stay there. Checked each time that it is built.
-/// Errors of that: as of RayScene::make.
+/// Uses the triangles and quads of a mesh of the set in place; the mesh must stay there. Each build checks it. Errors
+/// of a build: as of RayScene::make.
 std::unique_ptr<FacetSource> mesh_facets(const Mesh& mesh);
 
 }  // namespace tessera::inline abi_0_1

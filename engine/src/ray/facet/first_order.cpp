@@ -9,9 +9,9 @@ using Values = std::array<double, max_degree + 1>;
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// B_{i,n}(t) and their derivatives, by B_{i,n} = (1-t) B_{i,n-1} + t B_{i-1,n-1} and
-/// B'_{i,n} = n (B_{i-1,n-1} - B_{i,n-1}) (Farin, Curves and Surfaces for CAGD, 5th ed., eqs. 5.2 and 5.23).
-/// `Fixed` is the degree where the compiler knows it, or 0.
+/// The polynomials B_{i,n}(t) and their derivatives, by B_{i,n} = (1-t) B_{i,n-1} + t B_{i-1,n-1} and B'_{i,n} = n
+/// (B_{i-1,n-1} - B_{i,n-1}) (Farin, Curves and Surfaces for CAGD, 5th ed., eqs. 5.2 and 5.23). `Fixed` is the degree
+/// if the compiler knows it, else 0.
 template <int Fixed>
 struct Basis {
   int degree;
@@ -33,7 +33,7 @@ struct Basis {
   int size() const { return (Fixed ? Fixed : degree) + 1; }
 
  private:
-  /// From degree n - 1 to n, in place.
+  /// Raises degree n - 1 to n, in place.
   void raise(int n, double s, double t) {
     value[at(n)] = t * value[at(n - 1)];
     for (int i = n - 1; i > 0; --i) value[at(i)] = s * value[at(i)] + t * value[at(i - 1)];
@@ -61,7 +61,7 @@ FirstOrder polynomial(const BezierPatch& patch, double u_at, double v_at, const 
   return out;
 }
 
-/// Quotient rule (Piegl and Tiller, The NURBS Book, eq. 4.20): r_u = (A_u - w_u r) / w.
+/// Uses the quotient rule r_u = (A_u - w_u r) / w (Piegl and Tiller, The NURBS Book, eq. 4.20).
 FirstOrder rational(const BezierPatch& patch, double u_at, double v_at, const Vec3& origin) {
   const Basis<0> u(patch.degree_u(), u_at), v(patch.degree_v(), v_at);
   FirstOrder out;

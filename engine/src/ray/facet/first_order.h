@@ -1,6 +1,5 @@
 #pragma once
-// Position and first derivatives of a Bezier patch, as quickly as scalar double code gives them: what Newton's method
-// asks for.
+// Position and first derivatives of a Bezier patch in fast scalar double code, for Newton's method.
 
 #include "tessera/bezier_patch.h"
 
@@ -8,11 +7,11 @@ namespace tessera::inline abi_0_1 {
 
 struct FirstOrder {
   Vec3 position, du, dv;
-  bool valid = true;  ///< false where, outside [0,1]^2, the weight function of a rational patch is not positive
+  bool valid = true;  ///< false outside [0,1]^2 where the weight function of a rational patch is not positive
 };
 
-/// Any finite (u,v). The position is less `origin`, which is taken off the control points. Agrees with evaluate_jet up to
-/// rounding.
+/// Evaluates at any finite (u,v). The position is less `origin`, which is subtracted from the control points. Agrees
+/// with evaluate_jet up to rounding.
 FirstOrder first_order(const BezierPatch& patch, double u, double v, const Vec3& origin = {});
 
 }  // namespace tessera::inline abi_0_1

@@ -1,4 +1,4 @@
-// Facets of grids that are evaluated for the purpose.
+// Facets of grids that are evaluated for a ray scene.
 
 #include <algorithm>
 
@@ -11,7 +11,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr std::size_t padding = 1;  // floats behind the last vertex, which Embree reads as 16 bytes
+constexpr std::size_t padding = 1;  // floats after the last vertex, which Embree reads as 16 bytes
 
 class GridFacets final : public FacetSource {
  public:

@@ -23,16 +23,16 @@ namespace {
 constexpr int max_rate = 4096;
 // Products of three lengths must stay in float's range on a facet far smaller than the model, and on the whole model.
 constexpr double smallest_size = 1e-9, largest_size = 1e12;
-// Facets lie before or behind the surface: so far are rays traced beyond their ends, in units of the bound on the
-// distance, for rays that meet the surface at less than a right angle.
+// Facets lie before or behind the surface, so rays are traced beyond their ends by this multiple of the bound on the
+// distance. It is above 1 for rays that meet the surface at less than a right angle.
 constexpr double margin_deviations = 4;
-constexpr double reach_cells = 3;        // a facet of a tame grid lies within one cell of its root
-constexpr double float_rounding = 1e-6;  // of the size: positions, origins and directions in float
+constexpr double reach_cells = 3;        // a facet of a regular grid lies within one cell of its root
+constexpr double float_rounding = 1e-6;  // share of the size: positions, origins and directions in float
 
 using Packet = std::array<FacetRay, EmbreeScene::packet>;
 static_assert(rays_per_turn <= EmbreeScene::packet);
 
-/// Rays that start near each other and run nearly the same way are worth a packet.
+/// Returns whether rays start near each other and run nearly the same way, so that a packet pays.
 bool coherent(std::span<const RaySegment> segments, double size) {
   const RaySegment& first = segments.front();
   for (const RaySegment& other : segments) {
@@ -57,7 +57,7 @@ class GridScene final : public PatchScene {
 
  private:
   Status build(const Execution& execution) override;
-  /// Embree refits no grids.
+  /// Embree does not refit grids.
   Status update(std::uint64_t, const Execution& execution) override { return build(execution); }
   double size() const override { return size_; }
   Box3 model_box() const override {
@@ -92,10 +92,10 @@ class GridScene final : public PatchScene {
   Box3 box_;      // relative to the origin, a little larger than the set's
   double size_ = 0;
   double margin_ = 0;
-  double reach_ = 0;  // of roots from their facets, in parameters
+  double reach_ = 0;  // distance of roots from their facets, in parameters
 };
 
-/// What the rays need to know of the set: neighbours, box, and how far facets lie from the surface.
+/// Measures the set for the rays: neighbours, box, and the facets' distance from the surface.
 void GridScene::measure() {
   adjacency_ = Adjacency(set());
   const Vec3 origin = set().origin();
@@ -114,7 +114,7 @@ Status GridScene::build(const Execution& execution) {
   if (!(size_ >= smallest_size && reach <= largest_size)) {
     return Status(StatusCode::unsupported, "a ray scene holds models of a size from 1e-9 to 1e12: scale the model");
   }
-  // Until the BVH stands again nothing may trace in it, so a failure on the way leaves the scene stale.
+  // Until the BVH is complete nothing may trace in it, so a failure before that leaves the scene stale.
   if (Status status = facets_->build(set(), scene_, execution); !status.ok()) return status;
   measure();
   return {};
@@ -131,7 +131,7 @@ void GridScene::closest_piece(const RayBatch& batch, const HitWriter& writer, st
   });
 }
 
-/// At most a packet of rays.
+/// Traces at most a packet of rays.
 void GridScene::closest_packet(std::span<const Ray> rays, std::span<Hit> hits) const {
   std::array<RaySegment, EmbreeScene::packet> segments;
   std::array<FacetHit, EmbreeScene::packet> facets;
@@ -168,13 +168,13 @@ void GridScene::trace(std::span<const RaySegment> segments, std::span<FacetHit> 
   }
 }
 
-/// From the first facet on, the first one whose point of the surface lies in [tnear, tfar].
+/// Returns the first hit, from the first facet on, whose point of the surface lies in [tnear, tfar].
 Hit GridScene::hit_of(const Ray& ray, const RaySegment& segment, FacetHit facet) const {
   for (Hit hit; facet.hit();) {
     SurfaceRoot root;
     const bool refined = refine(segment, facet, root);
     if (accept(ray, segment, root, refined, hit)) return hit;
-    // Embree takes a denormal tnear for 0, and would find a facet at 0 again without end.
+    // Embree treats a denormal tnear as 0, and would find a facet at 0 again forever.
     const float next = std::nextafter(facet.t, std::numeric_limits<float>::max());
     const FacetRay behind = segment.facet_ray(std::max(next, std::numeric_limits<float>::min()));
     if (!(behind.tnear <= behind.tfar)) break;
@@ -184,16 +184,16 @@ Hit GridScene::hit_of(const Ray& ray, const RaySegment& segment, FacetHit facet)
   return {};
 }
 
-/// Where that fails, `root` is the facet's own point.
+/// Moves a facet's hit to the surface. If that fails, `root` is the facet's own point.
 bool GridScene::refine(const RaySegment& segment, const FacetHit& facet, SurfaceRoot& root) const {
   const Refiner refiner(set(), adjacency_, set_box_, reach_);
   if (refines_ && refiner.refine(segment, facet.grid, facet.u, facet.v, root)) return true;
-  refiner.evaluate(segment, facet.grid, facet.u, facet.v, root);  // on [0,1]^2 this is always defined
+  refiner.evaluate(segment, facet.grid, facet.u, facet.v, root);  // always defined on [0,1]^2
   root.s = facet.t;
   return false;
 }
 
-/// False where t is not between the ray's ends.
+/// Returns false if t is not between the ray's ends.
 bool GridScene::accept(const Ray& ray, const RaySegment& segment, const SurfaceRoot& root, bool refined,
                        Hit& hit) const {
   hit.t = segment.t_at(root.s);
@@ -219,7 +219,7 @@ void GridScene::occluded_piece(const RayBatch& batch, const View1<std::uint8_t>&
   });
 }
 
-/// At most a packet of rays. Facets decide, so the rays end where they say.
+/// Tests at most a packet of rays. Facets decide, so the rays end at [tnear, tfar].
 void GridScene::occluded_packet(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const {
   std::array<RaySegment, EmbreeScene::packet> segments;
   for (std::size_t k = 0; k < rays.size(); ++k) {

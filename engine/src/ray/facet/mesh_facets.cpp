@@ -1,4 +1,4 @@
-// Facets of a mesh that was made for other ends, such as one that keeps a tolerance.
+// Facets of a mesh that was made for other purposes, such as one that keeps a tolerance.
 
 #include <algorithm>
 #include <array>
@@ -46,7 +46,7 @@ class MeshFacets final : public FacetSource {
     for (const Cell& cell : cells_) most = std::max({most, cell.u, cell.v});
     return most;
   }
-  /// Embree's v runs along our u. A quad is two triangles to Embree, with u and v from its first corner.
+  /// Embree's v runs along our u. Embree splits a quad into two triangles, with u and v from its first corner.
   FacetHit located(const FacetHit& hit) const override {
     const float along = hit.v, across = hit.u;
     const std::size_t triangles = mesh_.triangle_count();
@@ -72,7 +72,7 @@ class MeshFacets final : public FacetSource {
     double u = 0, v = 0;
   };
 
-  /// face(corners, patch) for each.
+  /// Calls face(corners, patch) for each face.
   template <class Face>
   void for_faces(const Face& face) const {
     for (std::size_t k = 0; k < mesh_.triangle_count(); ++k)
@@ -128,7 +128,7 @@ class MeshFacets final : public FacetSource {
 
   const Mesh& mesh_;
   std::vector<Cell> cells_;  // the largest of each patch
-  std::vector<float> copy_;  // of the positions, where there is no room behind them
+  std::vector<float> copy_;  // of the positions, if there is no room after them
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
 #pragma once
-// From the facets that a packet's rays met to the true surface, rays of one patch side by side: Refiner (refine.h) decides
-// what this leaves open.
+// Newton's method from the facets that a packet's rays hit to the true surface, lanes = rays of one patch. Refiner
+// (refine.h) decides the rays that this leaves open.
 
 #include <cstddef>
 #include <cstdint>
@@ -22,11 +22,11 @@ class PacketRefiner {
   PacketRefiner(const SetView& set, const kernel::RayKernels& kernels, double cells)
       : set_(set), kernels_(kernels), cells_(cells) {}
 
-  /// The roots next to those facets that were hit, as far as Newton's method goes straight to them inside of their patches.
-  /// The same for each ray, whatever others are with it.
+  /// Finds the roots next to the facets that were hit, as far as Newton's method goes straight to them inside of their
+  /// patches. Each ray gets the same result, whatever other rays there are.
   void run(std::span<const RaySegment> segments, std::span<const FacetHit> facets);
   bool has_root(std::size_t k) const { return (found_ >> k & 1u) != 0; }
-  /// Where there is one. `segment`, `facet`: those of the ray.
+  /// Returns the root of a ray that has one. `segment`, `facet`: those of the ray.
   SurfaceRoot root(std::size_t k, const RaySegment& segment, const FacetHit& facet) const;
 
  private:

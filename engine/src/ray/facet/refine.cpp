@@ -11,12 +11,12 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr double overshoot = 0.25;  // how far outside [0,1] Newton may wander before it comes back or changes the patch
+constexpr double overshoot = 0.25;  // how far outside [0,1] Newton may go before it comes back or changes the patch
 constexpr int max_steps = 16;       // quadratic convergence takes 2 to 4
 constexpr int max_halvings = 6;
-constexpr std::size_t max_patches = 8;  // visited for one hit: all around a vertex of usual valence
+constexpr std::size_t max_patches = 8;  // limit of patches visited for one hit: all around a vertex of usual valence
 
-/// Solves x a + y b = c as seen along the ray; false where a and b are parallel or zero.
+/// Solves x a + y b = c as seen along the ray; false if a and b are parallel or zero.
 bool solve(const OrthonormalBasis& e, const Vec3& a, const Vec3& b, const Vec3& c, double& x, double& y) {
   const double a1 = dot(e.first, a), a2 = dot(e.second, a), b1 = dot(e.first, b), b2 = dot(e.second, b);
   const double c1 = dot(e.first, c), c2 = dot(e.second, c);
@@ -28,15 +28,14 @@ bool solve(const OrthonormalBasis& e, const Vec3& a, const Vec3& b, const Vec3& 
 
 }  // namespace
 
-/// The rectangle of parameters that Newton's iterates are kept in.
+/// The rectangle of parameters that limits Newton's iterates.
 struct Refiner::Leash {
   Domain box;
   double u(double value) const { return std::clamp(value, box.u0, box.u1); }
   double v(double value) const { return std::clamp(value, box.v0, box.v1); }
 };
 
-/// Patches still to be tried, each with a start, in the order found and no place twice (a closed patch is its own
-/// neighbour).
+/// Patches to try, each with a start, in the order found and no place twice (a closed patch is its own neighbour).
 class Refiner::Frontier {
  public:
   struct Start {
@@ -70,7 +69,7 @@ Refiner::Refiner(const SetView& set, const Adjacency& adjacency, const Box3& box
 }
 
 Refiner::Leash Refiner::leash(std::uint32_t patch, double u, double v) const {
-  // Near a pole the parameter that runs around it says little: there it is free.
+  // Near a pole the parameter that runs around it says little, so it is free there.
   const EdgeMask collapsed = set_.collapsed_edges(patch);
   const double du = collapsed.has(Edge::v0) || collapsed.has(Edge::v1) ? 1 : cells_;
   const double dv = collapsed.has(Edge::u0) || collapsed.has(Edge::u1) ? 1 : cells_;
@@ -87,12 +86,12 @@ bool Refiner::evaluate(const RaySegment& segment, std::uint32_t patch, double u,
   return true;
 }
 
-/// One step of Newton's method on the two coordinates across the ray, halved until the residual shrinks.
+/// Takes one step of Newton's method on the two coordinates across the ray, halved until the residual shrinks.
 bool Refiner::descend(const RaySegment& segment, const Leash& leash, SurfaceRoot& root) const {
   const Vec3 error = root.position - set_.origin() - segment.start;
   double du = 0, dv = 0;
   if (!solve(OrthonormalBasis(segment.direction), root.du, root.dv, error, du, dv)) return false;
-  const int halvings = root.residual > tolerance_ ? max_halvings : 0;  // below, only rounding can be in the way
+  const int halvings = root.residual > tolerance_ ? max_halvings : 0;  // below, only rounding can prevent progress
   for (int halving = 0; halving <= halvings; ++halving) {
     const double u = leash.u(root.u - du), v = leash.v(root.v - dv);
     SurfaceRoot next;
@@ -105,7 +104,7 @@ bool Refiner::descend(const RaySegment& segment, const Leash& leash, SurfaceRoot
   return false;
 }
 
-/// Whether the root lies in the patch, or within the tolerance of it: then it is moved to the border.
+/// Returns whether the root lies in the patch, or within the tolerance of it, and then moves it to the border.
 bool Refiner::inside(const RaySegment& segment, SurfaceRoot& root) const {
   const double u = std::clamp(root.u, 0.0, 1.0), v = std::clamp(root.v, 0.0, 1.0);
   if (u == root.u && v == root.v) return true;
@@ -118,7 +117,7 @@ bool Refiner::inside(const RaySegment& segment, SurfaceRoot& root) const {
 Refiner::Outcome Refiner::newton(const RaySegment& segment, SurfaceRoot& root) const {
   const Leash leash = this->leash(root.patch, root.u, root.v);
   for (int step = 0; step < max_steps && root.residual > rounding_; ++step) {
-    if (!descend(segment, leash, root)) break;  // as small as it gets, by rounding or by the shape of the surface
+    if (!descend(segment, leash, root)) break;  // as small as rounding or the shape of the surface allows
   }
   if (root.residual <= tolerance_ && inside(segment, root)) return Outcome::inside;
   const bool left = root.u < 0 || root.u > 1 || root.v < 0 || root.v > 1;
@@ -130,7 +129,7 @@ void Refiner::push_neighbours(const SurfaceRoot& root, Frontier& frontier) const
   const EdgeMask collapsed = set_.collapsed_edges(root.patch);
   const bool over_pole = (collapsed.has(Edge::u0) && excess[0] > 0) || (collapsed.has(Edge::u1) && excess[1] > 0) ||
                          (collapsed.has(Edge::v0) && excess[2] > 0) || (collapsed.has(Edge::v1) && excess[3] > 0);
-  std::array<int, 4> order{0, 1, 2, 3};  // the edge that was left by most comes first
+  std::array<int, 4> order{0, 1, 2, 3};  // the edge with the largest excess comes first
   std::sort(order.begin(), order.end(), [&](int a, int b) {
     const double x = excess[static_cast<std::size_t>(a)], y = excess[static_cast<std::size_t>(b)];
     return x != y ? x > y : a < b;

@@ -1,5 +1,5 @@
 #pragma once
-// From a facet that a ray met to the true surface: Newton's method in double.
+// Newton's method in double, from a facet that a ray hit to the true surface.
 
 #include "ray/line/ray_segment.h"
 #include "ray/scene/set_view.h"
@@ -7,11 +7,11 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// A point r(u,v) of the surface, seen from a ray; a root where the residual is rounding.
+/// A point r(u,v) of the surface and its distance from a ray; a root if the residual is rounding.
 struct SurfaceRoot {
   std::uint32_t patch = 0;
   double u = 0, v = 0;
-  double s = 0;   ///< arc length along the segment of the position's foot on the ray
+  double s = 0;   ///< arc length along the segment to the position's foot on the ray
   Vec3 position;  ///< absolute
   Vec3 du, dv;
   double residual = 0;  ///< distance from the position to the ray
@@ -23,15 +23,15 @@ class Refiner {
   /// `reach`: how far a root may lie from its facet, in parameters. The adjacency must outlive this. `box`: the set's.
   Refiner(const SetView& set, const Adjacency& adjacency, const Box3& box, double reach);
 
-  /// The root near (u,v) on `patch` or, where it lies over a seam, on the patches behind. False if there is none within
-  /// a few grid cells: the ray grazes the surface, or the surface is too crooked for its grid.
+  /// Finds the root near (u,v) on `patch` or, if it lies across a seam, on the patches behind. Returns false if there
+  /// is none within a few grid cells: the ray grazes the surface, or the surface is too crooked for its grid.
   bool refine(const RaySegment& segment, std::uint32_t patch, double u, double v, SurfaceRoot& root) const;
 
-  /// Position and derivatives at (u,v), with s and residual towards the segment. False where there are none
-  /// (first_order.h).
+  /// Evaluates position and derivatives at (u,v), with s and residual towards the segment. Returns false where there
+  /// are none (first_order.h).
   bool evaluate(const RaySegment& segment, std::uint32_t patch, double u, double v, SurfaceRoot& root) const;
 
-  /// The residual up to which a point of the surface counts as a root.
+  /// Returns the residual up to which a point of the surface counts as a root.
   double tolerance() const { return tolerance_; }
 
  private:
@@ -47,8 +47,8 @@ class Refiner {
 
   SetView set_;
   const Adjacency& adjacency_;
-  double cells_;     ///< the leash, in parameters
-  double rounding_;  ///< a residual of this size is as good as it gets
+  double cells_;     ///< limit of the iterates' distance from the start, in parameters
+  double rounding_;  ///< the smallest residual that rounding allows
   double tolerance_;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Steps of Newton's method that stay in the unit square: the closest point of a net to a ray, borders included.
+// Steps of Newton's method within the unit square, to the closest point of a net to a ray, borders included.
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,7 @@ struct NetPoint {
 
 namespace bounded {
 
-/// The best point of one side of the square for the linear model; true if it beats `best`.
+/// Finds the best point of one side of the square for the linear model; true if it beats `best`.
 inline bool try_side(const NetValue& f, NetPoint from, bool fixed_u, double at, NetPoint& to, double& best) {
   const double across = at - (fixed_u ? from.u : from.v);
   const double x = f.x + across * (fixed_u ? f.xu : f.xv), y = f.y + across * (fixed_u ? f.yu : f.yv);
@@ -31,9 +31,9 @@ inline bool try_side(const NetValue& f, NetPoint from, bool fixed_u, double at, 
 
 }  // namespace bounded
 
-/// The point of [0,1]^2 where the linear model f + J d at `from` is smallest. That, and not Newton's point moved to the
-/// square, is what a ray next to a border needs: where the derivatives are nearly parallel across the ray, the moved
-/// point is off by the rounding divided by the sine of their angle, the closest one by the rounding alone.
+/// Returns the point of [0,1]^2 where the linear model f + J d at `from` is smallest. A ray next to a border needs this
+/// point and not Newton's point moved to the square. Where the derivatives are nearly parallel across the ray, the
+/// moved point has an error of the rounding divided by the sine of their angle, the closest one only of the rounding.
 inline NetPoint bounded_step(const NetValue& f, NetPoint from) {
   constexpr double parallel = 1e-9;  // sine of the angle
   const double determinant = f.xu * f.yv - f.xv * f.yu;
@@ -42,7 +42,7 @@ inline NetPoint bounded_step(const NetValue& f, NetPoint from) {
   if (std::abs(determinant) > parallel * std::sqrt(uu * vv)) {
     du = -(f.x * f.yv - f.y * f.xv) / determinant;
     dv = -(f.y * f.xu - f.x * f.yu) / determinant;
-  } else {  // the shortest of all that are equally good, a little damped (Levenberg, 1944)
+  } else {  // the shortest of all equally good ones, slightly damped (Levenberg, 1944)
     const double damping = 1e-14 * (uu + vv), a = uu + damping, c = vv + damping;
     const double b = f.xu * f.xv + f.yu * f.yv, gu = f.xu * f.x + f.yu * f.y, gv = f.xv * f.x + f.yv * f.y;
     const double det = a * c - b * b;

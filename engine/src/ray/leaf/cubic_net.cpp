@@ -12,7 +12,7 @@ constexpr double reach = kernel::RayLeaf::reach;
 
 using Cubic = std::array<double, 4>;
 
-/// B_{i,n}(1/2 + x) as coefficients of x^k, `[i][k]`, by B_{i,n} = (1/2 - x) B_{i,n-1} + (1/2 + x) B_{i-1,n-1}.
+/// Returns B_{i,n}(1/2 + x) as coefficients of x^k, `[i][k]`, by B_{i,n} = (1/2 - x) B_{i,n-1} + (1/2 + x) B_{i-1,n-1}.
 std::array<Cubic, 4> centred_powers(int degree) {
   std::array<Cubic, 4> row{};
   row[0][0] = 1;
@@ -29,14 +29,14 @@ std::array<Cubic, 4> centred_powers(int degree) {
   return row;
 }
 
-/// The Chebyshev series of Bernstein polynomials of one degree: of T_k(x / reach) in B_i(1/2 + x).
+/// The Chebyshev series of the Bernstein polynomials of one degree: coefficients of T_k(x / reach) in B_i(1/2 + x).
 struct Series {
   std::array<std::array<double, most>, most> of{};  ///< [i][k]
   double sizes = 0;                                 ///< the sum of magnitudes
 };
 
-/// By the same recursion, with t T_k = (T_{k+1} + T_{|k-1|}) / 2. Its terms are up to 1e4 times as large as their sums:
-/// hence more digits than those of double.
+/// Uses the same recursion, with t T_k = (T_{k+1} + T_{|k-1|}) / 2. Its terms are up to 1e4 times as large as their
+/// sums, so it needs more digits than double has.
 Series series(int degree) {
   using Rows = std::array<std::array<long double, most>, most>;
   Rows row{};
@@ -73,7 +73,7 @@ const Series& series_of(int degree) {
   return all[static_cast<std::size_t>(degree)];
 }
 
-/// sum_ij net[i][j] by_u[i][a] by_v[j][b], for the first `rows` x `columns` of [a][b].
+/// Adds sum_ij net[i][j] by_u[i][a] by_v[j][b] to out[a][b], for the first `rows` x `columns` of [a][b].
 template <class ByU, class ByV, class Out>
 void transform(const NetShape<0, 0>& shape, const double* net, const ByU& by_u, const ByV& by_v, std::size_t rows,
                std::size_t columns, Out& out) {
@@ -88,7 +88,7 @@ void transform(const NetShape<0, 0>& shape, const double* net, const ByU& by_u, 
   }
 }
 
-/// T_0 to T_3 in powers of x, `[k][power]`.
+/// The polynomials T_0 to T_3 in powers of x, `[k][power]`.
 constexpr std::array<Cubic, 4> chebyshev = [] {
   constexpr double r = 1 / reach;
   return std::array<Cubic, 4>{{{1, 0, 0, 0}, {0, r, 0, 0}, {-1, 0, 2 * r * r, 0}, {0, -3 * r, 0, 4 * r * r * r}}};
@@ -114,7 +114,7 @@ CubicNet economised(const NetShape<0, 0>& shape, const FourNets& net) {
         }
       }
     }
-    // Terms are sums of products, fewer than 64 roundings each; those of the series are in `sizes`, 2^15 at the most.
+    // Terms are sums of products, fewer than 64 roundings each; those of the series are in `sizes`, at most 2^15.
     double largest = 0;
     for (std::size_t k = 0; k < static_cast<std::size_t>(shape.size()); ++k)
       largest = std::max(largest, std::abs(net[c][k]));

@@ -1,5 +1,5 @@
 #pragma once
-// Where the roots of a box can be whose x and y together say nothing, as next to a silhouette.
+// Bounds of the roots in a box for which x and y together decide nothing, as next to a silhouette.
 
 #include <algorithm>
 #include <array>
@@ -12,20 +12,22 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Two combinations of x and y at a right angle, g = a x + b y and h = a y - b x: g grows the fastest along p = u or v, and
-/// h does not grow along p in the mean. All of it in the box's own parameters, counted from a point where g nearly
-/// vanishes: P = p - p0, and Q = q - 1/2 for q the other one. A root has g = h = 0, but for noise.
+/// Two combinations of x and y at a right angle, g = a x + b y and h = a y - b x. g grows the fastest along p = u or v,
+/// and h does not grow along p in the mean. Parameters are the box's own, relative to a point where g nearly vanishes:
+/// P = p - p0, and Q = q - 1/2 for the other parameter q. A root has g = h = 0, except for noise.
 ///
-/// With s = g_q / g_p there and P = e - s Q, e is what a root is off from g's tangent. By the mean value theorem
+/// With s = g_q / g_p at that point and P = e - s Q, e is the root's distance from g's tangent.
+/// 1. By the mean value theorem
 ///   e = -(g(0) + (g_q - s g_p) Q) / g_p
-/// with derivatives from their hulls. By Taylor's theorem along the straight line to the root
+/// with derivatives from their hulls.
+/// 2. By Taylor's theorem along the straight line to the root
 ///   h = h(0) + (h_q - s h_p) Q + h_p e + (h_qq - 2 s h_pq + s^2 h_pp) Q^2 / 2 + (h_pq - s h_pp) Q e + h_pp e^2 / 2
-/// with first derivatives at that point and second ones from their hulls: about a silhouette a parabola in Q, which bounds Q
-/// where its second derivative has one sign.
+/// with first derivatives at that point and second ones from their hulls.
+/// 3. About a silhouette this is a parabola in Q, which bounds Q where its second derivative has one sign.
 class EdgeOn {
  public:
-  /// `reach`: how large |x| and |y| of what counts as a root may be; `rounding`: how far coefficients are off; `degree`: the
-  /// larger one.
+  /// `reach`: how large |x| and |y| of a point that counts as a root may be; `rounding`: error of coefficients;
+  /// `degree`: the larger one.
   EdgeOn(const DerivativeHulls& x, const DerivativeHulls& y, int degree, double reach, double rounding)
       : x_(x),
         y_(y),
@@ -40,10 +42,10 @@ class EdgeOn {
     least_ = length_ - (std::abs(a_) * xp.radius() + std::abs(b_) * yp.radius() + slope_noise_);
   }
 
-  /// Whether g grows along p in the whole box; nothing else is known where it doesn't.
+  /// Returns whether g grows along p in the whole box. If not, nothing else is known.
   bool grows() const { return least_ > 0.01 * length_; }
 
-  /// `value`: of the net and its derivatives at a point.
+  /// Bounds the roots. `value` returns the net's value and derivatives at a point.
   template <class Shape, class Value>
   RootBox roots(const Shape& shape, const double* net, const Value& value) const {
     NetPoint at{0.5, 0.5};
@@ -60,7 +62,7 @@ class EdgeOn {
     const Hull aslant = sum(bends.pq, -s, bends.pp);
     Hull bend = sum(sum(bends.qq, -2 * s, bends.pq), s * s, bends.pp);
     if (bend.high < 0) bend = {-bend.high, -bend.low}, h = -h, slope = -slope;
-    double first = -0.5, last = 0.5;  // of Q
+    double first = -0.5, last = 0.5;  // range of Q
     if (const double least = bend.low - (1 + s * s) * 2 * bend_noise_; least > 0) {
       const double off = (std::abs(hp) + slope_noise_ + 0.5 * (aslant.largest() + (1 + std::abs(s)) * bend_noise_) +
                           0.5 * e * (bends.pp.largest() + bend_noise_)) *
@@ -88,12 +90,12 @@ class EdgeOn {
   static double squared(const Hull& a, const Hull& b) { return a.centre() * a.centre() + b.centre() * b.centre(); }
   static RootBox nothing() { return {{1, 1}, {0, 0}}; }
 
-  /// a + factor b
+  /// Returns a + factor b.
   static Hull sum(const Hull& a, double factor, const Hull& b) {
     return {a.low + factor * (factor < 0 ? b.high : b.low), a.high + factor * (factor < 0 ? b.low : b.high)};
   }
 
-  /// The largest |g_q - s g_p|.
+  /// Returns the largest |g_q - s g_p|.
   double turn_of(double s) const {
     const Hull &xp = by_u_ ? x_.u : x_.v, &yp = by_u_ ? y_.u : y_.v, &xq = by_u_ ? x_.v : x_.u,
                &yq = by_u_ ? y_.v : y_.u;
@@ -102,14 +104,15 @@ class EdgeOn {
            (1 + std::abs(s)) * slope_noise_;
   }
 
-  /// A side of the box, widened by rounding.
+  /// Sets a side of the box, widened by rounding.
   static void set(RootBox& out, int side, double first, double last) {
     constexpr double epsilon = 64 * std::numeric_limits<double>::epsilon();
     out.low[side] = std::max(0.0, first - epsilon * (1 + std::abs(first)));
     out.high[side] = std::min(1.0, last + epsilon * (1 + std::abs(last)));
   }
 
-  /// By differences of coefficients (Farin, Curves and Surfaces for CAGD, 5th ed., eqs. 5.24 and 14.11).
+  /// Bounds second derivatives by differences of coefficients (Farin, Curves and Surfaces for CAGD, 5th ed., eqs. 5.24
+  /// and 14.11).
   template <class Shape>
   Bends bends_of(const Shape& shape, const double* net) const {
     const int size = shape.size(), columns = shape.columns();
@@ -133,7 +136,7 @@ class EdgeOn {
   double noise_, slope_noise_, bend_noise_;
   bool by_u_ = true;
   double a_ = 0, b_ = 0;
-  double length_ = 0, least_ = 0;  ///< of g_p: in the mean, at least
+  double length_ = 0, least_ = 0;  ///< of g_p: mean, lower bound
 };
 
 }  // namespace tessera::inline abi_0_1

@@ -13,18 +13,19 @@ namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr int max_halvings_a_side = 6, max_halvings_by_bend = 3, max_halvings_by_certificate = 5;
-constexpr int max_halvings_of_folds = 4;  // of patches that look folded everywhere, as those without an area
-constexpr double max_net_bend = 0.12;     // of a piece's length: an arc of nearly a radian
+constexpr int max_halvings_of_folds = 4;  // for patches that look folded everywhere, such as those without an area
+constexpr double max_net_bend = 0.12;     // share of a piece's length: an arc of nearly a radian
 
-/// Measures of a control net, before it is cut.
+/// Measures of a control net before it is cut.
 struct NetShapes {
   double length_u = 0, length_v = 0;  ///< of the longest lines
   double bend_u = 0,
-         bend_v = 0;    ///< how far lines leave their chords, at the most, by second differences (Farin, sec. 5.4)
-  double shortest = 0;  ///< side
+         bend_v = 0;    ///< upper bound of the lines' distance from their chords, by second differences (Farin, sec.
+                        ///< 5.4)
+  double shortest = 0;  ///< shortest side
 };
 
-/// The longest line along u or v, and the largest bend.
+/// Finds the longest line along u or v, and the largest bend.
 void measure_lines(const BezierPatch& patch, bool along_u, double& longest, double& bend) {
   const int lines = along_u ? patch.degree_v() : patch.degree_u(),
             steps = along_u ? patch.degree_u() : patch.degree_v();
@@ -54,14 +55,14 @@ NetShapes measure(const BezierPatch& patch) {
   return out;
 }
 
-/// How much more than half the second derivatives of a patch may be for its weights: a guess.
+/// Returns a guess of the factor by which weights increase half the second derivatives of a patch.
 double spread_of_weights(const BezierPatch& patch) {
   if (!patch.is_rational()) return 1;
   const auto [lightest, heaviest] = std::minmax_element(patch.weights().begin(), patch.weights().end());
   return *heaviest / *lightest;
 }
 
-/// Each halving takes half of the bend, for its length.
+/// Returns the halvings for a bend; each halves the bend relative to the length.
 int halvings_by_bend(double bend, double length) {
   int halvings = 0;
   for (double share = bend; share > max_net_bend * length && halvings < max_halvings_by_bend; share *= 0.5) ++halvings;
@@ -80,7 +81,7 @@ Cuts cuts_by_net(const NetShapes& net, int halvings) {
   return {by_u + more(piece_u, piece_v, by_u), by_v + more(piece_v, piece_u, by_v)};
 }
 
-/// Whether the whole patch is so flat that nothing else needs to be looked at. A guess that leaves room.
+/// Returns whether the whole patch is so flat that nothing else needs a look. A guess with a margin.
 bool is_surely_flat(const BezierPatch& patch, const NetShapes& net, double max_bend) {
   const int m = patch.degree_u(), n = patch.degree_v();
   const Vec3 twist = patch.point(0, 0) - patch.point(0, n) - patch.point(m, 0) + patch.point(m, n);
@@ -88,8 +89,8 @@ bool is_surely_flat(const BezierPatch& patch, const NetShapes& net, double max_b
   return bend * spread * spread + (spread - 1) * (net.length_u + net.length_v) < 0.5 * max_bend * net.shortest;
 }
 
-/// How far kernels' linear models of a piece are off, of its length: half the second derivatives, along u and v alone too,
-/// and what a float root is uncertain by for terms that kernels leave out.
+/// Errors of the kernels' linear models of a piece, relative to its length: half the second derivatives, also along u
+/// and v alone, and the uncertainty of a float root from terms that kernels omit.
 struct Bend {
   double all = 0, along_u = 0, along_v = 0;
 };
@@ -107,8 +108,8 @@ Bend bend_of(const kernel::RayLeaf& leaf) {
   return out;
 }
 
-/// Whether the net tapers off along u or v: a side of nearly no length beside the one across. Towards a pole pieces look
-/// alike however small they are, and none gets flat.
+/// Returns whether the net tapers off along u or v: a side has nearly no length beside the opposite one. Towards a pole
+/// all pieces look alike, however small they are, and none becomes flat.
 bool is_tapered(const NetShape<0, 0>& shape, bool rational, const double* net) {
   constexpr double least = 1e-3;
   const int size = shape.size(), last = size - 1, columns = shape.columns();
@@ -166,11 +167,11 @@ void PatchCutter::cut(const Cuts& cuts) {
   while (cuts_.v < cuts.v) halve(false);
 }
 
-/// Whether more than one piece in ten bends by more than that, and along what.
+/// Returns whether more than one piece in ten bends by more than `max_bend`, and along which parameter.
 bool PatchCutter::bends(double max_bend, bool& along_u) const {
   alignas(kernel::RayLeaf) std::byte room[kernel::ray_leaf_bytes(true)];
   const NetShape<0, 0> shape{patch_->degree_u(), patch_->degree_v()};
-  /// Pieces that count.
+  /// Counts of pieces and of their bends.
   struct Tally {
     std::size_t count = 0, bent = 0;
     double by_u = 0, by_v = 0;

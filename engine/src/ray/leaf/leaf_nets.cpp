@@ -14,10 +14,10 @@ namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr std::size_t patches_per_task = 64;
-/// Halvings of a direction that write_net() counts at the most: so much do the two passes of restrict_net() round.
+/// The most halvings of a direction that write_net() makes; the two passes of restrict_net() round as much as these.
 constexpr int halvings_of_restriction = 3;
 
-/// Of the control points.
+/// Returns the box of the control points.
 Box3 box_of(const Leaf& leaf, const double* net) {
   const std::size_t size = static_cast<std::size_t>(leaf.size());
   Box3 box;
@@ -28,8 +28,8 @@ Box3 box_of(const Leaf& leaf, const double* net) {
   return box;
 }
 
-/// Second derivatives of a rational patch, and with them what a linear step leaves out, grow with the square of how much
-/// its weights differ.
+/// Returns the limit of linear steps. The second derivatives of a rational patch, and with them the error of a linear
+/// step, grow with the square of the ratio of its weights.
 float linear_step_of(const BezierPatch& patch) {
   if (!patch.is_rational()) return static_cast<float>(linear_step);
   const auto [lightest, heaviest] = std::minmax_element(patch.weights().begin(), patch.weights().end());
@@ -38,13 +38,13 @@ float linear_step_of(const BezierPatch& patch) {
 
 }  // namespace
 
-/// Where the pieces of a patch stand.
+/// The place of a patch's pieces.
 struct LeafNets::Plan {
   Cuts cuts;
   std::size_t first_leaf = 0;
 };
 
-/// Cuts, and room for what they make.
+/// Chooses the cuts, and makes room for the pieces.
 Result<std::vector<LeafNets::Plan>> LeafNets::plan(const SetView& set, const Flatness& flatness,
                                                    const Execution& execution) {
   std::vector<Plan> plans(set.patch_count());
@@ -74,7 +74,7 @@ Result<std::vector<LeafNets::Plan>> LeafNets::plan(const SetView& set, const Fla
   return plans;
 }
 
-/// As it was made.
+/// Returns the plan with which the patch was built.
 LeafNets::Plan LeafNets::plan_of(std::uint32_t patch) const {
   const auto first = std::lower_bound(leaves_.begin(), leaves_.end(), patch,
                                       [](const Leaf& leaf, std::uint32_t index) { return leaf.patch < index; });

@@ -1,6 +1,6 @@
 #pragma once
-// The pieces of patches that exact rays are traced against: what the kernels take, and control nets in the scene's
-// coordinates where they are asked for.
+// The pieces of patches that exact rays are traced against: float leaves for the kernels, and on request control nets
+// in the scene's coordinates.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,8 +16,7 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Steps of Newton's method, of a patch's parameters, up to which the surface is its tangent plane but for less than
-/// rounding.
+/// Steps of Newton's method, in a patch's parameters, up to which the surface equals its tangent plane within rounding.
 constexpr double linear_step = 1e-9;
 
 /// A piece [u0, u0 + du] x [v0, v0 + dv] of a patch.
@@ -28,29 +27,30 @@ struct Leaf {
   std::uint8_t halvings_u = 0, halvings_v = 0;     ///< from the patch to the piece
   float linear = static_cast<float>(linear_step);  ///< linear_step, or less where weights differ
   double u0 = 0, v0 = 0, du = 1, dv = 1;
-  const Vec3* points = nullptr;  ///< of the patch when the piece was made: to be fetched, not read
+  const Vec3* points = nullptr;  ///< of the patch when the piece was made: only for prefetching
 
   int size() const { return (degree_u + 1) * (degree_v + 1); }
   int components() const { return rational ? 4 : 3; }
-  /// How much its net is rounded (LeafNets::write_net), in halvings.
+  /// Returns the rounding of its net (LeafNets::write_net), in halvings.
   int halvings() const;
-  static constexpr int max_halvings = 6;  ///< of that
+  static constexpr int max_halvings = 6;  ///< upper bound of halvings()
 };
 
-/// How flat the pieces are to be.
+/// The flatness that pieces must have.
 struct Flatness {
-  int halvings = 0;     ///< of each side, at least
-  double max_bend = 1;  ///< PatchCutter::flatten
+  int halvings = 0;     ///< minimum for each side
+  double max_bend = 1;  ///< see PatchCutter::flatten
 };
 
 class PatchCutter;
 
 class LeafNets {
  public:
-  /// Cuts every patch by itself, so that the pieces are nearly flat and roughly square. Errors: cancelled, out_of_memory.
+  /// Cuts every patch by itself, so that the pieces are nearly flat and roughly square. Errors: cancelled,
+  /// out_of_memory.
   Status build(const SetView& set, const SceneFrame& frame, const Flatness& flatness, const Execution& execution);
-  /// The pieces of these patches anew, with their boxes, which must not have been dropped. Patches are cut as they were
-  /// when they were built, however they bend now. After an error some pieces are as they were. Errors: cancelled,
+  /// Makes the pieces of these patches again, with their boxes, which must not have been dropped. The cuts stay those
+  /// of build(), however the patches bend now. After an error some pieces are not updated. Errors: cancelled,
   /// out_of_memory.
   Status update(const SetView& set, std::span<const std::uint32_t> patches, const Execution& execution);
 
@@ -58,15 +58,16 @@ class LeafNets {
   const kernel::RayLeaf& local(std::size_t leaf) const {
     return *reinterpret_cast<const kernel::RayLeaf*>(local_.data() + leaf * local_bytes_);
   }
-  /// Of the control points: the piece lies in it but for rounding. One a leaf, until they are dropped.
+  /// Returns the boxes of the control points, one per leaf, until they are dropped. A piece lies in its box except for
+  /// rounding.
   std::span<const Box3> boxes() const { return boxes_; }
   void drop_boxes() { boxes_ = {}; }
-  /// The box of one leaf, whether they are dropped or not. `set`: as it was built from.
+  /// Returns the box of one leaf, whether they are dropped or not. `set`: as it was built from.
   Box3 box(const SetView& set, std::size_t leaf) const;
-  /// The piece's part of write_patch(). `other`: of the same size, is written as well. `set`: as it was built from.
+  /// Writes the piece's part of write_patch(). `other`, of the same size, is overwritten. `set`: as it was built from.
   void write_net(const SetView& set, const Leaf& leaf, double* net, double* other) const;
   const SceneFrame& frame() const { return frame_; }
-  /// Values in the largest net.
+  /// Returns the number of values in the largest net.
   std::size_t largest() const { return largest_; }
   std::size_t memory_bytes() const {
     return leaves_.capacity() * sizeof(Leaf) + boxes_.capacity() * sizeof(Box3) + local_.capacity();

@@ -34,7 +34,7 @@ class LeafSearch {
   void run(const double* net) {
     project<Rational>(shape_, net, query_.line, space_.net(0));
     space_.box(0) = {};
-    count_ = 1;  // slot 0 holds the whole leaf and stays; the stack begins above
+    count_ = 1;  // slot 0 keeps the whole leaf; the stack begins above
     visit(0);
     for (int visited = 1; count_ > 1 && !query_.done(); ++visited) {
       if (visited == max_boxes) {
@@ -48,7 +48,7 @@ class LeafSearch {
  private:
   static constexpr int components = Rational ? 4 : 3;
 
-  /// Hulls of x, y and z as distances; `heaviest` of the weight.
+  /// Hulls of x, y and z as distances; `heaviest` bounds the weight.
   struct Extent {
     Hull x, y, z;
     double heaviest = 1;
@@ -63,7 +63,7 @@ class LeafSearch {
       out.x.extend(scale * net[k]);
       out.y.extend(scale * net[size + k]);
     }
-    // The quotient rounds by less than what `rounding_` leaves over.
+    // The quotient rounds by less than `rounding_` leaves over.
     out.off_ray = out.x.low > rounding_ || out.x.high < -rounding_ || out.y.low > rounding_ || out.y.high < -rounding_;
     if (out.off_ray) return out;
     if constexpr (Rational) out.heaviest = *std::max_element(net + 3 * size, net + 4 * size);
@@ -73,8 +73,8 @@ class LeafSearch {
     return out;
   }
 
-  /// Whether the hull across the direction (dx, dy) leaves the ray aside: a derivative's, so that the part is seen
-  /// edge on. Next to a silhouette no other direction can tell.
+  /// Returns whether the hull across the direction (dx, dy) misses the ray. The direction is a derivative's, so that
+  /// the part is seen edge on. Next to a silhouette no other direction can decide this.
   bool is_off_obliquely(const double* net, double dx, double dy) const {
     const double length = std::sqrt(dx * dx + dy * dy);
     if (!(length > 0)) return false;
@@ -85,7 +85,7 @@ class LeafSearch {
       const double value = nx * net[k] + ny * net[size + k];
       across.extend(Rational ? value / net[3 * size + k] : value);
     }
-    const double rounding = 1.5 * rounding_;  // |nx| + |ny| <= sqrt(2), and that of the products
+    const double rounding = 1.5 * rounding_;  // |nx| + |ny| <= sqrt(2), and the products' rounding
     return across.low > rounding || across.high < -rounding;
   }
 
@@ -120,8 +120,8 @@ class LeafSearch {
 
   NetValue value(const double* net, NetPoint at) const { return evaluate<Rational>(shape_, net, at.u, at.v); }
 
-  /// Every point within the tolerance of the ray, and either all on it or all at one place. What was met before doesn't
-  /// count: the part is the same one whichever is searched first.
+  /// Returns whether every point lies within the tolerance of the ray, with s in its range or at a single place. Roots
+  /// found before do not count, so that the part is the same whichever is searched first.
   bool lies_on_ray(const Extent& extent) const {
     if (std::max(extent.x.largest(), extent.y.largest()) > tolerance_) return false;
     const bool between = extent.z.low >= query_.near && extent.z.high <= query_.line.far + query_.line.slack;
@@ -131,9 +131,9 @@ class LeafSearch {
     return std::max({extent.x.radius(), extent.y.radius(), extent.z.radius()}) <= 0.5 * extent_;
   }
 
-  /// Whether the part leaves its tangent plane at the middle by no more than the tolerance across the ray: by the mean
-  /// value theorem by at most half the sum of the derivatives' radii. Its roots are then one place, or lie along a line
-  /// that the ray does not leave; a part that is merely small may be folded where weights differ much.
+  /// Returns whether the part leaves its tangent plane at the middle by at most the tolerance across the ray: by the
+  /// mean value theorem, by at most half the sum of the derivatives' radii. Its roots are then one place, or lie along
+  /// a line that the ray does not leave. A part that is merely small may be folded if weights differ much.
   bool is_flat(const double* net, const DerivativeHulls& x, const DerivativeHulls& y) const {
     const double* const weights = net + 3 * shape_.size();
     const double lightest = Rational ? *std::min_element(weights, weights + shape_.size()) : 1;
@@ -153,7 +153,8 @@ class LeafSearch {
     take(slot, nearest, false, from);
   }
 
-  /// The point nearest to the ray, where it is a root within the tolerance. Others of the part may come before it.
+  /// Takes the point nearest to the ray if it is a root within the tolerance. Other points of the part may come before
+  /// it.
   bool take_closest_point(int slot, double from) {
     NetPoint at{0.5, 0.5};
     NetValue f = value(space_.net(slot), at);
@@ -166,7 +167,7 @@ class LeafSearch {
     return f.residual() <= tolerance_ && take(slot, at, false, from);
   }
 
-  /// Decides a box with one root at the most. False where it could not.
+  /// Decides a box with at most one root. Returns false if it could not.
   bool decide(int slot, const RootCertificate& certificate, NetValue f, NetPoint at) {
     const Outcome outcome = solve(space_.net(slot), certificate, f, at);
     if (outcome == Outcome::found) take(slot, at, is_root(f), no_part);
@@ -190,8 +191,8 @@ class LeafSearch {
     const NetValue nearest = f;
     const NetPoint there = at;
     const bool touches = f.residual() <= tolerance_;
-    // The clamped contraction comes to stand at the root or where it proves that there is none: then a point within the
-    // tolerance is not the box's root, and touches.
+    // The clamped contraction converges to the root, or proves that there is none. In the second case a point within
+    // the tolerance is not the box's root, and touches.
     bool none = false;
     for (int step = 0; step < max_contractions && !(none = excluded()); ++step) {
       const std::array<double, 2> by = certificate.step(f);
@@ -208,7 +209,7 @@ class LeafSearch {
     const SearchBox& box = space_.box(slot);
     NetPoint in_leaf{box.u0 + at.u * box.du, box.v0 + at.v * box.dv};
     NetValue f = value(space_.net(0), in_leaf);
-    for (int step = 0; step < 3 && certified; ++step) {  // the leaf's own net has rounded the least
+    for (int step = 0; step < 3 && certified; ++step) {  // the leaf's own net has the least rounding
       const NetPoint next = bounded_step(f, in_leaf);
       const NetValue there = value(space_.net(0), next);
       if (!(there.residual() < f.residual())) break;
@@ -220,7 +221,7 @@ class LeafSearch {
     root.s = f.s();
     root.residual = f.residual();
     root.noise = search_rounding(shape_.m(), shape_.n(), leaf_.halvings(), 0);
-    // A point that is clamped to a border and off the ray by more than rounding touches: the root is beyond.
+    // A point that is clamped to a border and off the ray by more than rounding touches: the root lies beyond.
     root.certified = certified && root.residual <= 2 * root.noise;
     root.from = from;
     if (from != no_part || !set_gain(f, leaf_.du, leaf_.dv, root)) {
@@ -229,7 +230,7 @@ class LeafSearch {
     return query_.take(root);
   }
 
-  /// Cuts a box down to where its roots are, if that is worth it.
+  /// Cuts a box down to the rectangle of its roots, if that pays.
   bool narrow(int slot, const RootBox& within) {
     if (std::min(within.width(0), within.width(1)) > worth_narrowing) return false;
     int target = slot;
@@ -240,7 +241,7 @@ class LeafSearch {
     }
     SearchBox& box = space_.box(target);
     for (int i = 0; i < 2; ++i) {
-      // A root at the very end stays inside, and the part keeps a width.
+      // The margin keeps a root at the very end inside, and gives the part a width.
       const double low = std::max(0.0, within.low[i] - 1e-12), high = std::min(1.0, within.high[i] + 1e-12);
       if (high - low > worth_narrowing) continue;
       restrict_net(shape_, components, space_.net(target), i == 0, low, high);
@@ -254,8 +255,8 @@ class LeafSearch {
     return true;
   }
 
-  /// Narrows where x and y together say nothing, as next to a silhouette. True as well where nothing of the box is left.
-  /// All that is cut off is further from the ray than the tolerance.
+  /// Narrows a box for which x and y together decide nothing, as next to a silhouette. Returns true also if nothing of
+  /// the box remains. All points that it cuts off are further from the ray than the tolerance.
   bool narrow_edge_on(int slot, const DerivativeHulls& x, const DerivativeHulls& y, double heaviest) {
     const EdgeOn seen(x, y, std::max(shape_.m(), shape_.n()), tolerance_ * heaviest, rounding_ * heaviest);
     if (!seen.grows()) return false;
@@ -264,7 +265,7 @@ class LeafSearch {
     return within.empty() || narrow(slot, within);
   }
 
-  /// Halves a box across its longer side as the ray sees it, along the ray where it sees none; the half that seems
+  /// Halves a box across its longer side as the ray sees it, or along the ray if it sees none. The half that seems
   /// nearer is searched first.
   void halve(int slot, const DerivativeHulls& x, const DerivativeHulls& y, double heaviest) {
     const double* const net = space_.net(slot);

@@ -11,7 +11,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-// Of s in a kernel: what the ray's start and direction round by in float (embree_ray.h), and as much again.
+// Padding of s in a kernel: twice the rounding of the ray's start and direction in float (embree_ray.h).
 constexpr double probe_pad = 4e-6;
 
 float narrow(double x) { return static_cast<float>(x); }
@@ -20,14 +20,15 @@ void fetch(const void* from, std::size_t bytes) {
   for (std::size_t k = 0; k < bytes; k += 64) _mm_prefetch(static_cast<const char*>(from) + k, _MM_HINT_T0);
 }
 
-/// What a root is polished with and a hit made of, while the kernel works; the points before the patch says where they are.
+/// Prefetches the data that polish a root and make a hit, while the kernel works. The leaf gives the points' address,
+/// since the patch is not loaded yet.
 void fetch_patch(const SetView& set, const Leaf& leaf) {
   fetch(&set.patch(leaf.patch), sizeof(BezierPatch));
   fetch(&set.source(leaf.patch), sizeof(PatchSource));
   fetch(leaf.points, std::min<std::size_t>(static_cast<std::size_t>(leaf.size()), 16) * sizeof(Vec3));
 }
 
-/// Whether tnear and tfar are no question.
+/// Returns whether the root is surely between tnear and tfar.
 bool lies_between(const kernel::RayRoot& root, const RayLine& line) {
   const double s = root.s, off = static_cast<double>(root.s_error) + line.slack;
   return s - off > line.near && s + off < line.far;
@@ -37,7 +38,7 @@ kernel::RayRoot root_of(const kernel::RayPacket& rays, std::size_t lane) {
   return {rays.u[lane], rays.v[lane], rays.s[lane], rays.radius_u[lane], rays.radius_v[lane], rays.s_error[lane]};
 }
 
-/// Of a kernel's ray.
+/// Returns the far end of a kernel's ray.
 float probe_far(const RayQuery& query) { return narrow(std::min(query.far, 8.0) + probe_pad); }
 
 }  // namespace
@@ -62,7 +63,7 @@ void QueryPacket::set(std::size_t lane, RayQuery& query) {
   put(line.across[0], polished.across[0], lane), put(line.across[1], polished.across[1], lane);
 }
 
-/// A ray that ends before it begins: kernels look at it too, and decide it at once.
+/// Sets a ray that ends before it begins: kernels look at it too, and decide it at once.
 void QueryPacket::set_idle(std::size_t lane) {
   queries[lane] = nullptr;
   for (std::size_t i = 0; i < 3; ++i) rays.origin[i][lane] = rays.direction[i][lane] = 0;
@@ -98,7 +99,7 @@ void LeafTracer::search(unsigned leaf_index, QueryPacket& packet, unsigned lanes
   }
 }
 
-/// What is decided for all at once. Returns the lanes for which it is not.
+/// Decides a packet's rays together. Returns the lanes that remain undecided.
 unsigned LeafTracer::decide(unsigned leaf_index, QueryPacket& packet, unsigned lanes) const {
   const Leaf& leaf = nets->leaves()[leaf_index];
   fetch_patch(*set, leaf);
@@ -124,7 +125,7 @@ unsigned LeafTracer::decide(unsigned leaf_index, QueryPacket& packet, unsigned l
   return roots == 0 ? open : open | take_roots(leaf, packet, roots);
 }
 
-/// Takes the roots of those lanes. Returns the lanes where rounding leaves something to be decided.
+/// Takes the roots of these lanes. Returns the lanes that rounding leaves undecided.
 unsigned LeafTracer::take_roots(const Leaf& leaf, QueryPacket& packet, unsigned lanes) const {
   const BezierPatch& patch = set->patch(leaf.patch);
   if (!polished_side_by_side(patch)) return take_each_root(leaf, packet, lanes);
@@ -159,7 +160,7 @@ unsigned LeafTracer::take_roots(const Leaf& leaf, QueryPacket& packet, unsigned 
   return open;
 }
 
-/// The same one by one.
+/// Takes the roots one by one.
 unsigned LeafTracer::take_each_root(const Leaf& leaf, QueryPacket& packet, unsigned lanes) const {
   unsigned open = 0;
   for (std::size_t lane = 0; lane < QueryPacket::size; ++lane) {
@@ -182,7 +183,7 @@ OriginRoot LeafTracer::judge(const RayLine& line, const LeafRoot& root) const {
   return judge_origin(*set, borders->found(), nets->frame(), line, root);
 }
 
-/// In float, where that proves what there is; then in double what was found.
+/// Decides in float, if that proves which roots there are, and then finds these in double.
 bool LeafTracer::decide(const Leaf& leaf, unsigned leaf_index, kernel::RayProbe& probe, RayQuery& query) const {
   const auto trace = leaf.rational ? kernels->trace_rational_leaf : kernels->trace_polynomial_leaf;
   const kernel::RayLeaf& local = nets->local(leaf_index);
@@ -194,13 +195,13 @@ bool LeafTracer::decide(const Leaf& leaf, unsigned leaf_index, kernel::RayProbe&
   if (probe.any && !roots.root[0].at_border) {
     query.found = lies_between(roots.root[0], query.line);
     if (query.found) return true;
-    probe.any = false;  // that one is next to an end: all must be looked at
+    probe.any = false;  // that root is next to an end, so all are needed
     if (!trace(local, probe, roots)) return false;
   }
   return take_roots(leaf, roots, query);
 }
 
-/// Takes the roots of one ray. False where rounding leaves something to be decided.
+/// Takes the roots of one ray. Returns false if rounding leaves something undecided.
 bool LeafTracer::take_roots(const Leaf& leaf, const kernel::RayRoots& roots, RayQuery& query) const {
   LeafRoot taken[kernel::RayRoots::most];
   int count = 0;

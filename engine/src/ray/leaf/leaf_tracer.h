@@ -1,5 +1,6 @@
 #pragma once
-// One ray against one piece of a patch: the kernels in float first, then the search in double where they prove nothing.
+// One ray or a packet against one piece of a patch: the float kernels first, then the search in double where these
+// prove nothing.
 
 #include <array>
 #include <cstddef>
@@ -13,14 +14,15 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// The ray of a query as kernels take it.
+/// Returns the ray of a query in the kernels' form.
 kernel::RayProbe probe_of(const RayQuery& query);
 
-/// The queries of rays that are traced together, all for the closest or all for any root, and what kernels are told of them.
+/// The queries of rays that are traced together, all for the closest or all for any root, and the kernels' inputs for
+/// them.
 struct QueryPacket {
   static constexpr std::size_t size = kernel::RayPacket::size;
 
-  std::array<RayQuery*, size> queries;  ///< null of idle lanes
+  std::array<RayQuery*, size> queries;  ///< null in idle lanes
   std::array<kernel::RayProbe, size> probes;
   kernel::RayPacket rays;
   kernel::PolishedRays polished;
@@ -29,29 +31,31 @@ struct QueryPacket {
   void set_idle(std::size_t lane);
 };
 
-/// The pieces that are traced, and what they belong to.
+/// The pieces that are traced, and the set and borders that they belong to.
 struct TracedLeaves {
   const SetView* set = nullptr;
   const LeafNets* nets = nullptr;
-  const LazyAdjacency* borders = nullptr;  ///< across which roots of rays that leave a surface are followed, once found
-  std::size_t patches = 0;                 ///< those from here on are neighbours, whose roots count for all hits alone
-  double tolerance = 0;                    ///< as asked for, in the scene's coordinates
+  const LazyAdjacency* borders = nullptr;  ///< once found, roots of rays that leave a surface are followed across them
+  std::size_t patches = 0;                 ///< patches from this index on are neighbours, whose roots count only for
+                                           ///< all hits
+  double tolerance = 0;                    ///< as requested, in the scene's coordinates
 
-  /// That of search_leaf: no less than rounding allows.
+  /// Returns the tolerance for search_leaf: at least what rounding requires.
   double tolerance_of(const Leaf& leaf) const;
 };
 
-/// Refers to what it is made of. Const calls from any number of threads, each with a search space of its own.
+/// Traces leaves; refers to the data that it is made of. Const calls from any number of threads, each with a search
+/// space of its own.
 struct LeafTracer final : OriginTest, TracedLeaves {
   const kernel::RayKernels* kernels = nullptr;
 
-  /// Adds to the query what it wants of a leaf. `probe`: of the query, used again from leaf to leaf.
+  /// Adds to the query the roots that it wants from a leaf. `probe` is the query's, reused from leaf to leaf.
   void search(unsigned leaf, kernel::RayProbe& probe, RayQuery& query, SearchSpace& space) const;
 
-  /// The same for the queries of a packet whose bits are set in `lanes`, each as if alone.
+  /// Does so for the queries of a packet whose bits are set in `lanes`, each as if alone.
   void search(unsigned leaf, QueryPacket& packet, unsigned lanes, SearchSpace& space) const;
 
-  /// spawn_root.h
+  /// See spawn_root.h.
   OriginRoot judge(const RayLine& line, const LeafRoot& root) const override;
 
  private:

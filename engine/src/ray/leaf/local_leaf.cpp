@@ -11,14 +11,14 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr double unit = 0x1p-24;  // of float's rounding
+constexpr double unit = 0x1p-24;  // rounding of float
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double reach = kernel::RayLeaf::reach;
-// How far a ray's point near the scene may be off in float, a component: its start rounds by 2^-24, its direction by
-// 2^-25 over 3.5, the centre less the start by 2^-23, the product by 2^-23; and more.
+// Bounds the error in float of a component of a ray's point near the scene: its start rounds by 2^-24, its direction by
+// 2^-25 over 3.5, the centre less the start by 2^-23, the product by 2^-23; with a margin.
 constexpr double ray_rounding = 5e-7;
 
-/// By exponent.
+/// Powers of `reach` by exponent.
 constexpr std::array<double, 7> reach_powers = [] {
   std::array<double, 7> out{1};
   for (std::size_t k = 1; k < out.size(); ++k) out[k] = reach * out[k - 1];
@@ -45,7 +45,7 @@ class LeafMaker {
     return {net_[k] / w, net_[size + k] / w, net_[2 * size + k] / w};
   }
 
-  /// From the corners: u and v along the mean sides, the third as long as their geometric mean.
+  /// Sets the frame from the corners: u and v along the mean sides, the third axis as long as their geometric mean.
   void set_frame() {
     const int m = shape_.m(), n = shape_.n();
     if (rational_) scale_ = 1 / *std::max_element(net_ + 3 * shape_.size(), net_ + 4 * shape_.size());
@@ -72,7 +72,7 @@ class LeafMaker {
     }
   }
 
-  /// The net in the frame as it stands in float.
+  /// Computes the net in the frame as rounded to float.
   void to_local() {
     const int size = shape_.size();
     for (int k = 0; k < size; ++k) {
@@ -107,7 +107,7 @@ class LeafMaker {
             {size, std::abs(p.x - leaf_.centre[0]), std::abs(p.y - leaf_.centre[1]), std::abs(p.z - leaf_.centre[2])});
       }
     }
-    // A point of the ray next to the piece: the ray's own rounding, and that of the products with the axes.
+    // For a point of the ray next to the piece: the ray's own rounding, and that of the products with the axes.
     largest_ = std::max(extent, 2 * gain * size);
     line_noise_ = gain * (ray_rounding + 16 * unit * size) + 32 * unit * (1 + extent);
     leaf_.lower[3] = leaf_.upper[3] = 0;
@@ -116,7 +116,7 @@ class LeafMaker {
       leaf_.upper[c] = static_cast<float>(high[c] + 2 * line_noise_);
     }
     leaf_.noise = static_cast<float>(infinity), leaf_.slope_noise = 0;
-    leaf_.spread = 1e30f;  // no coordinate says anything about a parameter
+    leaf_.spread = 1e30f;  // no coordinate bounds a parameter
     leaf_.lightest = static_cast<float>(lightest_ * (1 - 2 * unit));
   }
 
@@ -132,7 +132,7 @@ class LeafMaker {
         for (std::size_t c = 0; c < step; ++c) out[(4 * i + j) * step + c] = static_cast<float>(power[c][i][j]);
       }
     }
-    if (!rational_) out[16 * step] = 0;  // is read with the last point
+    if (!rational_) out[16 * step] = 0;  // read with the last point
     double value = 0, slope = 0;
     for (std::size_t c = 0; c < 4; ++c) {
       const double sum = bound(power[c], 0, 0);
@@ -148,7 +148,7 @@ class LeafMaker {
     leaf_.slope_noise = static_cast<float>(32 * unit * slope * (1 + largest_) + 1.001 * left_out(cubic.slope_error));
   }
 
-  /// A coordinate less the weight times that of the ray differs by so much, where components do by `error`.
+  /// Returns the error of a coordinate less the weight times the ray's, if components have errors of `error`.
   double left_out(const std::array<double, 4>& error) const {
     return std::max({error[0], error[1], error[2]}) + largest_ * error[3];
   }
@@ -173,7 +173,7 @@ class LeafMaker {
     return largest;
   }
 
-  /// Of the derivative of that order, for parameters within reach.
+  /// Bounds the derivative of the given order, for parameters within reach.
   static double bound(const CubicNet::Power& power, int order_u, int order_v) {
     const auto falling = [](int k, int order) { return order == 0 ? 1 : order == 1 ? k : k * (k - 1); };
     double sum = 0;
@@ -191,7 +191,7 @@ class LeafMaker {
   const double* net_;
   kernel::RayLeaf& leaf_;
   double scale_ = 1, lightest_ = 1, line_noise_ = 0;
-  double largest_ = 0;  // coordinate of the piece or of the ray's point nearest to the centre
+  double largest_ = 0;  // largest coordinate of the piece or of the ray's point nearest to the centre
   FourNets local_;
 };
 

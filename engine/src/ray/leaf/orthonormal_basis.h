@@ -1,4 +1,5 @@
 #pragma once
+// Two unit vectors across a direction, for projections along a ray.
 
 #include <cmath>
 
@@ -6,8 +7,8 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Two unit vectors that make an orthonormal basis with the unit vector d: Duff et al., Building an orthonormal basis,
-/// revisited, JCGT 6(1), 2017.
+/// Two unit vectors that make an orthonormal basis with the unit vector d (Duff et al., Building an orthonormal basis,
+/// revisited, JCGT 6(1), 2017).
 struct OrthonormalBasis {
   Vec3 first, second;
 

@@ -15,7 +15,7 @@ using kernel::PolishJob;
 
 Vec3 triple(const double* x) { return {x[0], x[1], x[2]}; }
 
-/// In the scene's coordinates.
+/// Evaluates in the scene's coordinates.
 FirstOrder scene_point(const BezierPatch& patch, const SceneFrame& frame, const kernel::RayKernels& kernels, double u,
                        double v) {
   const double* const points = &patch.points().data()->x;
@@ -62,8 +62,8 @@ bool polish(const BezierPatch& patch, const SceneFrame& frame, const kernel::Ray
   return false;
 }
 
-/// The line passes the piece by where each of its points is off by more than the tolerance: the parameters of a point that
-/// is no further off lie within `gain * tolerance` of the root's, and twice that bounds the change of the gain.
+/// The line misses the piece if each of the piece's points is off by more than the tolerance. The parameters of a point
+/// within the tolerance lie within `gain * tolerance` of the root's; twice that also bounds the change of the gain.
 BorderRoot polish_at_border(const BezierPatch& patch, const SceneFrame& frame, const kernel::RayKernels& kernels,
                             const RayLine& line, RootStart start, double tolerance, LeafRoot& root) {
   constexpr double beyond_border = static_cast<double>(kernel::RayLeaf::reach) - 0.5;

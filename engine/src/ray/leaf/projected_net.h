@@ -1,5 +1,5 @@
 #pragma once
-// Bezier nets as a ray sees them: across it in x and y, along it in z, with the weight where there is one. The inner
+// Bezier nets in a ray's frame: x and y across it, z along it, and the weight if there is one. These are the inner
 // loops of exact rays. Each net is `[component][i][j]`, doubles; degrees that the compiler knows are unrolled.
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// The degrees of a net. M, N: where the compiler knows them, else 0.
+/// The degrees of a net. M, N: the degrees if the compiler knows them, else 0.
 template <int M, int N>
 struct NetShape {
   int degree_u = M, degree_v = N;
@@ -22,7 +22,8 @@ struct NetShape {
   int size() const { return (m() + 1) * (n() + 1); }
 };
 
-/// A net of homogeneous (x, y, z[, w]) into the ray's frame: (w (x - start) . across, w (x - start) . direction[, w]).
+/// Projects a net of homogeneous (x, y, z[, w]) into the ray's frame: (w (x - start) . across, w (x - start) .
+/// direction[, w]).
 template <bool Rational, class Shape>
 void project(const Shape& shape, const double* net, const RayLine& line, double* out) {
   const int size = shape.size();
@@ -39,7 +40,7 @@ void project(const Shape& shape, const double* net, const RayLine& line, double*
   if constexpr (Rational) std::copy(net + 3 * size, net + 4 * size, out + 3 * size);
 }
 
-/// One line of coefficients, `stride` apart, cut at 1/2 (de Casteljau). `lower` or `upper` may be `in`.
+/// Cuts one line of coefficients, `stride` apart, at 1/2 (de Casteljau). `lower` or `upper` may be `in`.
 inline void halve_line(int degree, const double* in, int stride, double* lower, double* upper) {
   std::array<double, max_degree + 1> row;
   for (int k = 0; k <= degree; ++k) row[static_cast<std::size_t>(k)] = in[k * stride];
@@ -51,7 +52,7 @@ inline void halve_line(int degree, const double* in, int stride, double* lower, 
   }
 }
 
-/// The halves of a net along u or v. `lower` or `upper` may be `in`.
+/// Computes the halves of a net along u or v. `lower` or `upper` may be `in`.
 template <class Shape>
 void halve(const Shape& shape, int components, const double* in, bool along_u, double* lower, double* upper) {
   const int columns = shape.columns(), size = shape.size();
@@ -66,7 +67,7 @@ void halve(const Shape& shape, int components, const double* in, bool along_u, d
   }
 }
 
-/// One line of coefficients, `stride` apart, restricted to [a, b] in [0,1], a < b, in place: first to [0, b].
+/// Restricts one line of coefficients, `stride` apart, to [a, b] in [0,1], a < b, in place: first to [0, b].
 inline void restrict_line(int degree, double* line, int stride, double a, double b) {
   std::array<double, max_degree + 1> row;
   for (int k = 0; k <= degree; ++k) row[static_cast<std::size_t>(k)] = line[k * stride];
@@ -97,16 +98,17 @@ void restrict_net(const Shape& shape, int components, double* net, bool along_u,
   }
 }
 
-/// x, y, z, w of a projected net and the derivatives of x and y, homogeneous, at one point.
+/// Values x, y, z, w of a projected net and the derivatives of x and y, homogeneous, at one point.
 struct NetValue {
   double x = 0, y = 0, z = 0, w = 1;
   double xu = 0, xv = 0, yu = 0, yv = 0;
-  /// The distance from the ray.
+  /// Returns the distance from the ray.
   double residual() const { return std::sqrt(x * x + y * y) / w; }
   double s() const { return z / w; }
 };
 
-/// B_{i,n}(t) and derivatives: raising by one degree, the derivative from the degree below (Farin, eqs. 5.2 and 5.23).
+/// The polynomials B_{i,n}(t), raised one degree at a time, and their derivatives from the degree below (Farin, eqs.
+/// 5.2 and 5.23).
 template <int Fixed>
 struct NetBasis {
   std::array<double, (Fixed ? Fixed : max_degree) + 1> value, derivative;
@@ -133,7 +135,7 @@ struct NetBasis {
   }
 };
 
-/// The net at (u,v) in [0,1]^2.
+/// Evaluates the net at (u,v) in [0,1]^2.
 template <bool Rational, int M, int N>
 NetValue evaluate(const NetShape<M, N>& shape, const double* net, double u, double v) {
   const NetBasis<M> bu(shape.m(), u);

@@ -1,5 +1,5 @@
 #pragma once
-// What can be proven about the roots of a net's (x, y) in its square from the hulls of its derivatives.
+// Proofs about the roots of a net's (x, y) in its square, from the hulls of its derivatives.
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Lowest and highest of some coefficients.
+/// The lowest and highest of some coefficients.
 struct Hull {
   double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
   void extend(double value) {
@@ -23,7 +23,7 @@ struct Hull {
   double largest() const { return std::max(-low, high); }
 };
 
-/// Of the derivatives of one component over the square: those of its differences, times the degree (Farin, eq. 5.23).
+/// Hulls of the derivatives of one component over the square: of its differences, times the degree (Farin, eq. 5.23).
 struct DerivativeHulls {
   Hull u, v;
 };
@@ -41,19 +41,20 @@ DerivativeHulls derivative_hulls(const Shape& shape, const double* component) {
   return out;
 }
 
-/// The map x -> x - A f(x) with a constant A near the inverse of the Jacobian J, in the maximum norm. For points x, y
-/// of the square |(x - A f(x)) - (y - A f(y))|_i <= row[i] max|x - y| with row[i] = sum_j max |I - A J|_ij (the mean
-/// value theorem with Krawczyk's operator: Neumaier, Interval Methods for Systems of Equations, sec. 5.1). Where both
-/// are below 1 the square holds one root at the most.
+/// The map x -> x - A f(x) with a constant A near the inverse of the Jacobian J, in the maximum norm.
+/// 1. For points x, y of the square |(x - A f(x)) - (y - A f(y))|_i <= row[i] max|x - y| with row[i] = sum_j max |I - A
+///    J|_ij (the mean value theorem with Krawczyk's operator: Neumaier, Interval Methods for Systems of Equations, sec.
+///    5.1).
+/// 2. If both rows are below 1 the square holds at most one root.
 ///
-/// All of it for the true net, of which the computed one is off by at most `rounding` times the weight in each
-/// coefficient: derivatives then by 2 degree rounding, A f by `spread`, and A itself is any matrix. What rounds here
-/// is bounded by eps times the sums of magnitudes.
+/// This holds for the true net. The computed net has an error of at most `rounding` times the weight in each
+/// coefficient; so derivatives have one of 2 degree rounding, A f one of `spread`, and A itself is any matrix. Rounding
+/// in this computation is bounded by eps times the sums of magnitudes.
 struct RootCertificate {
   double a[2][2] = {};
   double row[2] = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   double spread[2] = {};
-  bool regular = false;  ///< false: the mean Jacobian says nothing
+  bool regular = false;  ///< false: the mean Jacobian is singular
 
   double contraction() const { return std::max(row[0], row[1]); }
   std::array<double, 2> step(const NetValue& f) const {
@@ -86,15 +87,15 @@ inline RootCertificate certify(const DerivativeHulls& x, const DerivativeHulls& 
   return out;
 }
 
-/// Where the roots of the square must lie.
+/// The rectangle in which the roots of the square must lie.
 struct RootBox {
   double low[2] = {0, 0}, high[2] = {1, 1};
   bool empty() const { return low[0] > high[0] || low[1] > high[1]; }
   double width(int i) const { return high[i] - low[i]; }
 };
 
-/// From the value at one point: every root is within `distance` of it, and the image of the point within row *
-/// distance of the root.
+/// Bounds the roots from the value at one point: every root is within `distance` of the point, and the image of the
+/// point within row * distance of the root.
 inline RootBox roots_near(const RootCertificate& certificate, const NetValue& f, NetPoint at, double distance) {
   constexpr double epsilon = 8 * std::numeric_limits<double>::epsilon();
   const std::array<double, 2> step = certificate.step(f);
@@ -110,7 +111,7 @@ inline RootBox roots_near(const RootCertificate& certificate, const NetValue& f,
   return box;
 }
 
-/// A bound on the distance of the one root from `at`, for contraction() < 1: |at - x| <= |A f(at)| + k |at - x|.
+/// Bounds the distance of the one root from `at`, for contraction() < 1: |at - x| <= |A f(at)| + k |at - x|.
 inline double root_distance(const RootCertificate& certificate, const NetValue& f) {
   const std::array<double, 2> step = certificate.step(f);
   const double length = std::max(std::abs(step[0]) + certificate.spread[0], std::abs(step[1]) + certificate.spread[1]);

@@ -1,5 +1,5 @@
 #pragma once
-// Memory of searches that the threads of one scene lend each other, so that repeated queries take none.
+// Memory of searches that the threads of one scene share, so that repeated queries allocate nothing.
 
 #include <memory>
 #include <mutex>
@@ -12,7 +12,7 @@ namespace tessera::inline abi_0_1 {
 /// A part of a leaf's square that may hold roots.
 struct SearchBox {
   double u0 = 0, v0 = 0, du = 1, dv = 1;
-  int depth = 0;  ///< cuts on the way here
+  int depth = 0;  ///< number of cuts to this box
 };
 
 struct SearchMemory {
@@ -20,10 +20,10 @@ struct SearchMemory {
   std::vector<SearchBox> boxes;
 };
 
-/// As many pieces of memory as there were ever searches at a time. Any number of threads.
+/// Holds as many pieces of memory as there were ever searches at a time. Calls from any number of threads.
 class SearchPool {
  public:
-  /// One of so many values and boxes; nothing where there is no memory.
+  /// Returns memory for so many values and boxes, or null if there is none.
   std::unique_ptr<SearchMemory> take(std::size_t values, std::size_t boxes) noexcept {
     try {
       std::unique_ptr<SearchMemory> memory = idle();
@@ -39,7 +39,7 @@ class SearchPool {
     try {
       const std::lock_guard lock(mutex_);
       idle_.push_back(std::move(memory));
-    } catch (...) {  // then it is freed
+    } catch (...) {  // the memory is then freed
     }
   }
 

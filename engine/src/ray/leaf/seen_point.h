@@ -1,5 +1,5 @@
 #pragma once
-// A point of a patch and its derivatives as a ray sees them.
+// Projects a point of a patch and its derivatives into a ray's frame.
 
 #include "ray/facet/first_order.h"
 #include "ray/leaf/projected_net.h"
@@ -7,7 +7,7 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Both in the scene's coordinates.
+/// Both are in the scene's coordinates.
 inline NetValue seen(const FirstOrder& at, const RayLine& line) {
   const Vec3 from = at.position - line.start;
   NetValue f;

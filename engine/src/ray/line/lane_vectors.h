@@ -1,5 +1,5 @@
 #pragma once
-// Vectors of rays side by side, `[coordinate][ray]`, as the kernels have them.
+// Access to the vectors of several rays, `[coordinate][ray]`, as in the kernels.
 
 #include <cstddef>
 

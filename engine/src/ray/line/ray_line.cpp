@@ -21,7 +21,7 @@ struct TwoSum {
   }
 };
 
-/// origin + t d - centre, rounded as if all but the last sum were exact to twice the precision.
+/// Returns origin + t d - centre, rounded as if all but the last sum were exact to twice the precision.
 double point_on_line(double origin, double t, double d, double centre) {
   const double product = t * d, rest = std::fma(t, d, -product);
   const TwoSum from(origin, -centre), sum(from.high, product);
@@ -67,7 +67,7 @@ Box3 clipping_box(const Box3& box) {
 
 namespace {
 
-/// Sets the unit direction and the speed. `given`: the ray's, in the model's coordinates.
+/// Sets the unit direction and the speed. `given`: the ray's direction, in the model's coordinates.
 template <bool Placed>
 void set_direction(const Vec3& given, double scale, RayLine& line) {
   const double largest = max_abs(given);
@@ -75,7 +75,7 @@ void set_direction(const Vec3& given, double scale, RayLine& line) {
     const double stretch = length(given);
     line.direction = (1 / stretch) * given;
     line.speed = stretch * scale;
-  } else {  // by the largest component first, whose square is no normal number
+  } else {  // divides first by the largest component, whose square is no normal number
     const Vec3 scaled{given.x / largest, given.y / largest, given.z / largest};
     const double stretch = length(scaled);
     line.direction = (1 / stretch) * scaled;
@@ -83,18 +83,18 @@ void set_direction(const Vec3& given, double scale, RayLine& line) {
   }
 }
 
-/// o + line.base d - c.
+/// Returns o + line.base d - c.
 Vec3 near_centre(const Ray& ray, const RayLine& line, const Vec3& c) {
   const Vec3 &o = ray.origin, &d = ray.direction;
   return {point_on_line(o.x, line.base, d.x, c.x), point_on_line(o.y, line.base, d.y, c.y),
           point_on_line(o.z, line.base, d.z, c.z)};
 }
 
-/// Once base, start, direction and speed are known. `scale`: an upper bound of what lengths grow by. One a kind of ray, so
-/// that each is inlined where it is used.
+/// Completes the line from base, start, direction and speed. `scale`: an upper bound of the factor by which lengths
+/// grow. One instance per kind of ray, so that each is inlined where it is used.
 template <bool Placed>
 void complete(const Ray& ray, double scale, const Box3& box, RayLine& line) {
-  line.shift = -dot(line.start, line.direction);  // what the rounding of `base` has left
+  line.shift = -dot(line.start, line.direction);  // the rest from the rounding of `base`
   line.start += line.shift * line.direction;
 
   line.slack = 8 * epsilon * (1 + std::abs(line.base) * line.speed);
@@ -128,7 +128,7 @@ RayLine line_of(const Ray& ray, const SceneFrame& frame, const Box3& box) {
 
 std::optional<Placement> Placement::of(const Affine& to_world, const SceneFrame& frame) {
   constexpr double most = 1e8;
-  using Long = long double;  // where that is longer than double, the inverse is right to its last digits
+  using Long = long double;  // if longer than double, the inverse is right to its last digits
   const auto& c = to_world.columns;
   const auto cross_of = [](const Vec3& a, const Vec3& b) {
     const Long x = a.x, y = a.y, z = a.z;

@@ -1,5 +1,5 @@
 #pragma once
-// The lines of rays that come many at a time.
+// The lines of up to 16 rays at a time, lanes = rays.
 
 #include <array>
 #include <span>
@@ -9,18 +9,18 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Rays of a turn, checked and made ready by vectors where the machine has them.
+/// Checks the rays of a turn and prepares their lines, by vectors if the machine has them.
 class RayTurn {
  public:
   static constexpr std::size_t size = kernel::RayBundle::size;
 
   RayTurn(const SceneFrame& frame, const Box3& box, const kernel::RayKernels& kernels);
 
-  /// One to `size` rays.
+  /// Sets one to `size` rays.
   void set(std::span<const Ray> rays);
-  /// For each ray that was set; further ones mean nothing.
+  /// Returns a flag for each ray that was set; further ones are meaningless.
   std::span<const bool> valid() const { return valid_; }
-  /// That of line_of(), where the ray is valid; empty where it isn't.
+  /// Returns the line of line_of() if the ray is valid, else an empty one.
   const RayLine& line(std::size_t k) const { return lines_[k]; }
 
  private:

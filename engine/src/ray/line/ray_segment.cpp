@@ -43,7 +43,7 @@ FacetRay RaySegment::facet_ray(float s_near) const {
 
 RaySegment cut(const Ray& ray, const Vec3& origin, const Box3& box, double margin) {
   RaySegment out;
-  // By the largest component first, so that neither tiny nor huge directions under- or overflow.
+  // Divides first by the largest component, so that neither tiny nor huge directions overflow or underflow.
   const double largest = max_abs(ray.direction);
   const Vec3 scaled{ray.direction.x / largest, ray.direction.y / largest, ray.direction.z / largest};
   const double stretch = length(scaled);
@@ -55,12 +55,12 @@ RaySegment cut(const Ray& ray, const Vec3& origin, const Box3& box, double margi
   clip(from.x, d.x, box.lower.x, box.upper.x, near, far);
   clip(from.y, d.y, box.lower.y, box.upper.y, near, far);
   clip(from.z, d.z, box.lower.z, box.upper.z, near, far);
-  // A far origin rounds by its distance; what the box then misses by that much counts as met.
+  // A far origin rounds by its distance; a miss of the box by that much counts as a hit.
   const double slack = margin + 4 * std::numeric_limits<double>::epsilon() * (max_abs(from) + std::abs(near));
   if (!std::isfinite(near) || !(near <= far + slack)) return out;
   out.offset = near - slack;
   out.start = from + out.offset * d;
-  // A set so far away rounds by more than Embree takes; nor could it be told what is met.
+  // A set so far away rounds by more than Embree accepts, and hits could not be told apart.
   if (!(max_abs(out.start) <= max_ray_component)) return out;
   out.reach = std::max(far - near, 0.0) + 2 * slack;
   out.empty = false;

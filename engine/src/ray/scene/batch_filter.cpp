@@ -22,7 +22,7 @@ HitVerdict BatchFilter::ask(const HitCandidate& candidate) noexcept {
   return HitVerdict::stop;
 }
 
-/// The first reason stands.
+/// Keeps the first reason.
 void BatchFilter::stop(Status status) noexcept {
   const std::lock_guard lock(mutex_);
   if (stopped_.exchange(true)) return;

@@ -1,5 +1,5 @@
 #pragma once
-// The caller's filter, which may throw, on behalf of searches inside of Embree, which may not.
+// Calls of the caller's filter, which may throw, from searches inside of Embree, which must not throw.
 
 #include <atomic>
 #include <cstdint>
@@ -12,17 +12,17 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// One for each call. Any number of threads.
+/// The filter of one call. Any number of threads.
 class BatchFilter {
  public:
-  /// Refers to the filter, which is not empty.
+  /// Refers to the filter, which must not be empty.
   explicit BatchFilter(const HitFilter& filter) : filter_(filter) {}
 
-  /// Asks the filter, where denormal numbers count as in the thread's own environment. What it throws is kept, and
-  /// stops the batch.
+  /// Asks the filter, with denormal numbers as in the thread's own environment. An exception is kept, and stops the
+  /// batch.
   HitVerdict ask(const HitCandidate& candidate) noexcept;
   bool stopped() const { return stopped_.load(std::memory_order_relaxed); }
-  /// Why. Once all threads are done.
+  /// Returns why the batch stopped. Call it once all threads are done.
   Status status() const { return status_; }
 
  private:
@@ -34,13 +34,13 @@ class BatchFilter {
   Status status_;
 };
 
-/// The roots of one scene's patches before the filter of a batch.
+/// Passes the roots of one scene's patches to the filter of a batch.
 class SceneFilter final : public RootFilter {
  public:
   SceneFilter(BatchFilter* filter, const SetView& set, std::uint32_t instance = Hit::no_instance)
       : filter_(filter), set_(set), instance_(instance) {}
 
-  /// For a query: null where the batch has no filter.
+  /// Returns the filter of a query: null if the batch has none.
   const RootFilter* if_any() const { return filter_ == nullptr ? nullptr : this; }
   HitVerdict judge(const RayQuery& query, const LeafRoot& root) const noexcept override;
 

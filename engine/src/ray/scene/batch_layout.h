@@ -1,5 +1,5 @@
 #pragma once
-// Rays and hits of a call whatever their layout: read and written by turns of a few.
+// Readers of a call's rays and writers of its hits, whatever their layout, in turns of up to 16.
 
 #include <algorithm>
 #include <cstddef>
@@ -13,7 +13,7 @@ namespace tessera::inline abi_0_1 {
 
 inline constexpr std::size_t rays_per_turn = 16;
 
-/// Memory for the records of a turn, which nobody sets to zero.
+/// Memory for the records of a turn, without initialisation.
 template <class T>
 class TurnRoom {
  public:
@@ -25,7 +25,7 @@ class TurnRoom {
 
 class RayReader {
  public:
-  /// Rays from `first` on: the caller's own, or made in `room`. count <= rays_per_turn.
+  /// Returns the rays from `first` on: the caller's own, or made in `room`. count <= rays_per_turn.
   virtual std::span<const Ray> read(std::size_t first, std::size_t count, std::span<Ray> room) const = 0;
   virtual std::uint32_t mask(std::size_t) const { return ~0u; }
 
@@ -33,20 +33,20 @@ class RayReader {
   ~RayReader() = default;
 };
 
-/// The parts of a hit that are wanted beside indices, parameters and t.
+/// The wanted parts of a hit besides indices, parameters and t.
 struct HitParts {
   bool point = true;        ///< position and residual
   bool derivatives = true;  ///< du and dv
-  bool normal = true;       ///< and the flags that it decides
+  bool normal = true;       ///< and the flags that depend on it
   bool any() const { return point || derivatives || normal; }
 };
 
 class HitWriter {
  public:
   virtual HitParts parts() const { return {}; }
-  /// Returns where the hits of a turn are to be made: the caller's own memory or `room`.
+  /// Returns the place for the hits of a turn: the caller's own memory or `room`.
   virtual std::span<Hit> place(std::size_t first, std::size_t count, std::span<Hit> room) const = 0;
-  /// Called with the hits of a turn once they are made in that place.
+  /// Called with the hits of a turn once they are in that place.
   virtual void write(std::size_t first, std::span<const Hit> hits) const = 0;
 
  protected:
@@ -76,10 +76,10 @@ class HitSpan final : public HitWriter {
   std::span<Hit> hits_;
 };
 
-/// The rays of a call, and the caller's say in what they meet.
+/// The rays of a call, and the caller's filter of their hits.
 struct RayBatch {
   const RayReader& rays;
-  BatchFilter* filter = nullptr;  ///< null: all counts
+  BatchFilter* filter = nullptr;  ///< null: all hits count
 
   bool stopped() const { return filter != nullptr && filter->stopped(); }
 };

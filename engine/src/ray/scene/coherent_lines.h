@@ -1,5 +1,5 @@
 #pragma once
-// Decides whether rays are traced together.
+// Decides whether rays are traced as a packet.
 
 #include <cstddef>
 
@@ -7,8 +7,8 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Whether lines are worth a packet: enough of them, which pass near each other and run nearly the same way. line(k):
-/// line k of `count`.
+/// Returns whether lines are worth a packet: there are enough, they pass near each other and run nearly the same way.
+/// line(k) is line k of `count`.
 template <class Line>
 bool worth_a_packet(std::size_t count, const Line& line) {
   constexpr std::size_t least = 6;

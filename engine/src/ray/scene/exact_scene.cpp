@@ -31,13 +31,13 @@ namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr double smallest_size = 1e-140, largest_size = 1e140;  // squares of lengths stay normal numbers
-constexpr double default_tolerance = 2e-12;                     // of the size
+constexpr double default_tolerance = 2e-12;                     // share of the size
 constexpr std::size_t max_leaves = 0xffffffff;
-constexpr double max_bend = 1;  // of a piece's length
+constexpr double max_bend = 1;  // share of a piece's length
 constexpr std::size_t min_in_turn = 4;
 static_assert(rays_per_turn == RayTurn::size && rays_per_turn <= EmbreeLeaves::packet);
 
-/// Rays of one turn once they are traced; no query where a ray is not valid or passes the scene by.
+/// The rays of one turn after tracing. A ray that is invalid or misses the scene has no query.
 struct TracedTurn {
   std::size_t first;
   std::span<const bool> valid;
@@ -106,20 +106,21 @@ class ExactScene final : public PatchScene, private ExactSource {
   void trace_queries(std::span<RayQuery* const> queries, SearchSpace& space) const;
   void trace_turn(std::span<std::optional<RayQuery>> queries, SearchSpace& space) const;
 
-  LeafNets nets_;  // borrowed by scene_, as are the borders
+  LeafNets nets_;  // borrowed by scene_, like the borders
   LazyAdjacency adjacency_;
   EmbreeLeaves scene_;
   RaySceneOptions options_;
   mutable SearchPool pool_;
   SceneFrame frame_;
   Box3 box_,
-      scene_box_;  // of the leaves' control points, in the model's coordinates; of all that is met, in the scene's
+      scene_box_;  // box of the leaves' control points, in the model's coordinates; of all possible hits, in the
+                   // scene's
   double size_ = 0;
-  bool follows_;     // what stands can be updated
+  bool follows_;     // the BVH can be updated
   int updates_ = 0;  // since the last build
 };
 
-/// The box that gives size and centre.
+/// Returns the box that gives size and centre.
 Result<Box3> ExactScene::frame_box() const {
   const Box3 box = set().box();
   if (!options_.box) return box;
@@ -129,7 +130,7 @@ Result<Box3> ExactScene::frame_box() const {
   return *options_.box;
 }
 
-/// Boxes of all pieces as they stand. Returns the tolerance.
+/// Measures the boxes of all current pieces. Returns the tolerance.
 double ExactScene::measure() {
   scene_box_ = {};
   for (const Box3& leaf_box : nets_.boxes()) scene_box_.extend(leaf_box);
@@ -204,7 +205,7 @@ void ExactScene::set_hit(const RayLine& line, const LeafRoot& root, HitParts par
   }
 }
 
-/// From (u,v) on to the point nearest to the ray, which is a root where there is one.
+/// Moves from (u,v) to the point nearest to the ray, which is a root if there is one.
 Result<Hit> ExactScene::resolve(const Ray& ray, std::uint32_t patch, double u, double v) const {
   if (Status status = check_point(patch, u, v); !status.ok()) return status;
   if (!is_valid(ray)) return Status(StatusCode::invalid_argument, "the ray is not valid");
@@ -221,7 +222,7 @@ Result<Hit> ExactScene::resolve(const Ray& ray, std::uint32_t patch, double u, d
   return hit;
 }
 
-/// As a packet where the rays are coherent.
+/// Traces the queries, as a packet if the rays are coherent.
 void ExactScene::trace_queries(std::span<RayQuery* const> queries, SearchSpace& space) const {
   const auto line = [&](std::size_t k) -> const RayLine& { return queries[k]->line; };
   if (worth_a_packet(queries.size(), line)) return scene_.trace(queries, space);
@@ -242,13 +243,13 @@ void ExactScene::trace_turn(std::span<std::optional<RayQuery>> queries, SearchSp
   trace_queries(std::span(wanted).first(count), space);
 }
 
-/// Does `done(turn)` after each turn.
+/// Calls `done(turn)` after each turn.
 template <class Done>
 void ExactScene::trace_all(const RayBatch& batch, std::size_t begin, std::size_t end, RootsWanted wanted,
                            const Done& done) const {
   SearchSpace space(nets_.largest(), &pool_);
   const auto finish = [&](const TracedTurn& turn) {
-    // A search that got no memory has decided nothing; this becomes the call's Status.
+    // A search without memory has decided nothing; this becomes the call's Status.
     for (const std::optional<RayQuery>& query : turn.queries)
       if (query && query->overflow) throw std::bad_alloc();
     done(turn);
@@ -278,7 +279,7 @@ void ExactScene::trace_each(const RayBatch& batch, std::size_t begin, std::size_
   }
 }
 
-/// Lines, searches and hits by turns of a few rays: denormal numbers count in the first and the last alone.
+/// Makes lines, searches and hits by turns of a few rays: denormal numbers count only in the first and the last step.
 template <class Done>
 void ExactScene::trace_turns(const RayBatch& batch, std::size_t begin, std::size_t end, RootsWanted wanted,
                              SearchSpace& space, const Done& done) const {

@@ -1,5 +1,5 @@
 #pragma once
-// What an exact scene lends to others: to Embree's callbacks in scenes of the user's, and to scenes of instances.
+// Access to an exact scene for Embree's callbacks in the user's scenes, and for scenes of instances.
 
 #include <algorithm>
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// As Hit::steps.
+/// Limits steps to the range of Hit::steps.
 inline std::uint16_t saturated_u16(std::uint32_t steps) { return static_cast<std::uint16_t>(std::min(steps, 0xffffu)); }
 
 /// Stays in place while its ray scene lives. Const calls from any number of threads.
@@ -23,14 +23,15 @@ class ExactSource {
   virtual ~ExactSource() = default;
   virtual bool fresh() const = 0;
   virtual const LeafTracer& tracer() const = 0;
-  /// Of a valid ray in the model's coordinates.
+  /// Returns the line of a valid ray in the model's coordinates.
   virtual RayLine line(const Ray& ray) const = 0;
   virtual RayLine line(const Ray& ray, const Placement& placement) const = 0;
-  /// Runs the query, of a line that is not empty, inside a FlushDenormals.
+  /// Runs the query, whose line must not be empty, inside a FlushDenormals.
   virtual void trace(RayQuery& query) const = 0;
-  /// Runs up to a packet of queries for one kind of roots, together where they are coherent.
+  /// Runs up to a packet of queries for one kind of roots, together if they are coherent.
   virtual void trace(std::span<RayQuery* const> queries) const = 0;
-  /// Sets what `parts` names, flags, patch, surface and parameters; leaves t, steps and the instance, and all else.
+  /// Sets the members that `parts` names, and flags, patch, surface and parameters. All others, such as t, steps and
+  /// the instance, are unchanged.
   virtual void set_hit(const RayLine& line, const LeafRoot& root, HitParts parts, Hit& hit) const = 0;
   Hit hit_at(const RayLine& line, const LeafRoot& root) const {
     Hit hit;
@@ -38,7 +39,7 @@ class ExactSource {
     hit.t = line.t_at(root.s);
     return hit;
   }
-  /// Appends what a query for all roots has met, in order and each once.
+  /// Appends the hits of a query for all roots, in order and each once.
   virtual void hits_of(RayQuery& query, std::vector<Hit>& hits) const = 0;
 };
 

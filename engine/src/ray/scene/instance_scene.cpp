@@ -1,4 +1,4 @@
-// Scenes of instances: exact scenes that stand in several places, each met by the ray as taken back into its coordinates.
+// Scenes of instances: exact scenes that stand in several places. A ray is mapped back into the coordinates of each.
 
 #include <algorithm>
 #include <array>
@@ -24,19 +24,19 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-constexpr double smallest_size = 1e-140, largest_size = 1e140;  // as of exact scenes
+constexpr double smallest_size = 1e-140, largest_size = 1e140;  // as for exact scenes
 
 struct Instance {
   const RayScene::Impl* scene;
   const ExactSource* source;
   Affine to_world;
   std::uint32_t mask;
-  Placement placement;  ///< of the scene's frame, as it was when this was built
+  Placement placement;  ///< of the scene's frame at the last build
 };
 
 std::string name_of(std::size_t instance) { return "instance " + std::to_string(instance) + ": "; }
 
-/// Of the corners, with their rounding and that of the rays.
+/// Returns the box of the corners, with their rounding and that of the rays.
 Box3 placed_box(const Affine& map, double condition, const Box3& box) {
   Box3 out;
   for (int corner = 0; corner < 8; ++corner) {
@@ -48,7 +48,7 @@ Box3 placed_box(const Affine& map, double condition, const Box3& box) {
   return {out.lower - Vec3{rounding, rounding, rounding}, out.upper + Vec3{rounding, rounding, rounding}};
 }
 
-/// det(M) M^-T n: what r_u x r_v becomes.
+/// Returns the direction of det(M) M^-T n, which r_u x r_v becomes.
 Vec3 placed_normal(const Affine& map, const Vec3& n) {
   const auto& c = map.columns;
   const double scale = 1 / std::max({max_abs(c[0]), max_abs(c[1]), max_abs(c[2])});
@@ -56,7 +56,7 @@ Vec3 placed_normal(const Affine& map, const Vec3& n) {
   return normalized(n.x * cross(v, w) + n.y * cross(w, u) + n.z * cross(u, v));
 }
 
-/// A ray on its way through the instances, and the nearest root that it has met.
+/// A ray on its way through the instances, and the nearest root found so far.
 struct Lane {
   Ray ray;  ///< its end follows the root
   bool valid;
@@ -65,9 +65,9 @@ struct Lane {
   std::uint32_t mask;
   bool found, incomplete, overflow, stopped;
   std::uint32_t steps;
-  double t;           ///< of the root, where the closest is wanted
-  unsigned instance;  ///< where it stands
-  RayLine own;        ///< the line there
+  double t;           ///< of the root, if the closest is wanted
+  unsigned instance;  ///< the root's instance
+  RayLine own;        ///< the line in that instance
   LeafRoot root;
 
   Lane() {}
@@ -76,7 +76,7 @@ struct Lane {
     found = incomplete = overflow = stopped = false;
     steps = 0;
   }
-  /// Takes over what a query has met in an instance. Where roots have one t, the first instance's counts, in any order.
+  /// Takes over the result of a query in an instance. Among roots with one t the first instance's counts, in any order.
   void take(const RayQuery& query, unsigned in) {
     incomplete |= query.incomplete, overflow |= query.overflow, stopped |= query.stopped;
     steps += query.steps;
@@ -89,7 +89,7 @@ struct Lane {
     }
     found = true;
   }
-  /// The s up to which instances are still of interest.
+  /// Returns the s up to which instances are still of interest.
   double end(RootsWanted wanted) const {
     if (stopped || overflow || (found && wanted == RootsWanted::any)) return -infinity;
     return (ray.tfar - line->base) * line->speed - line->shift + line->slack;
@@ -110,7 +110,7 @@ class InstanceScene final : public RayScene::Impl {
   Result<LocalGeometry> local_geometry(const Hit& hit) const override;
 
  private:
-  /// Grows with each refit of one of the scenes; of no scene that is stale.
+  /// Grows with each refit of a scene. While a scene is stale it is the largest value, which no build has.
   std::uint64_t source_revision() const override {
     std::uint64_t sum = 0;
     for (const RayScene::Impl* scene : scenes_) {
@@ -182,7 +182,7 @@ Status InstanceScene::build(const Execution& execution) {
   return boxes_.build(std::move(boxes), execution);
 }
 
-/// Runs a query of each lane against an instance, and take(lane, query) after it.
+/// Runs a query of each lane against an instance, and calls take(lane, query) after it.
 template <std::size_t Most, class Take>
 void InstanceScene::meet_instance(unsigned instance, std::span<Lane* const> lanes, RootsWanted wanted,
                                   BatchFilter* filter, const Take& take) const {
@@ -207,7 +207,7 @@ void InstanceScene::meet_instance(unsigned instance, std::span<Lane* const> lane
   }
 }
 
-/// Lanes that are worth a packet, or one.
+/// Traces one lane, or several that are worth a packet.
 template <std::size_t Most>
 void InstanceScene::meet_together(std::span<Lane* const> lanes, RootsWanted wanted, BatchFilter* filter) const {
   std::array<const RayLine*, Most> lines;
@@ -231,7 +231,7 @@ void InstanceScene::meet(std::span<Lane* const> lanes, RootsWanted wanted, Batch
   for (Lane* const& lane : lanes) meet_together<1>({&lane, 1}, wanted, filter);
 }
 
-/// One turn: `lines` of the rays are empty where these are not valid or pass by. Does done(first, lanes) at its end.
+/// Traces one turn. A ray that is invalid or misses the scene has an empty line. Calls done(first, lanes) at the end.
 template <class LineOf, class Done>
 void InstanceScene::trace(const RayBatch& batch, std::size_t first, std::span<const Ray> rays, const LineOf& line_at,
                           std::span<Lane> lanes, RootsWanted wanted, const Done& done) const {
@@ -276,7 +276,7 @@ void InstanceScene::trace_all(const RayBatch& batch, std::size_t begin, std::siz
   });
 }
 
-/// From the coordinates of the instance's scene.
+/// Maps a hit from the coordinates of the instance's scene.
 void InstanceScene::place(const RayLine& line, unsigned instance, HitParts parts, Hit& hit) const {
   const Affine& map = instances_[instance].to_world;
   hit.instance = instance;
@@ -353,7 +353,7 @@ Status InstanceScene::all_of(const Ray& ray, std::vector<Hit>& hits) const {
         place(line, instance, {}, hit);
         hits.push_back(hit);
       }
-    } catch (...) {  // called from Embree, which knows no exceptions
+    } catch (...) {  // called from Embree, which cannot handle exceptions
       lane.overflow = true;
     }
   };

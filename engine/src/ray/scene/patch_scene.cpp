@@ -1,4 +1,4 @@
-// What scenes of patches know of a point, however rays are traced.
+// Points of scenes of patches, for both modes.
 
 #include <algorithm>
 #include <cmath>

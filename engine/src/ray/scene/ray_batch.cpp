@@ -116,12 +116,12 @@ bool is_wanted(const View& view) {
   return std::ranges::any_of(view.component, [](const auto* memory) { return memory != nullptr; });
 }
 
-/// The views of a call, one after the other; the first error stands.
+/// Checks the views of a call one after the other and keeps the first error.
 class BatchChecks {
  public:
   explicit BatchChecks(std::size_t rays) : rays_(rays), checks_(rays) {}
 
-  /// One record of a view of stride 0 belongs to all rays.
+  /// A view of stride 0 has one record for all rays.
   template <class T, int N>
   void input(const char* name, VectorView<T, N> view) {
     const std::size_t records = view.stride == 0 ? std::min<std::size_t>(rays_, 1) : rays_;
@@ -159,7 +159,7 @@ class BatchChecks {
   bool has_output_ = false;
 };
 
-/// Runs call(batch, rays) for rays whose views are sound.
+/// Runs call(batch, rays) for rays whose views are valid.
 template <class T, class Call>
 Status run(const RayViews<T>& rays, const BatchOptions& options, const BatchChecks& checks, const Call& call) {
   if (Status status = checks.status(); !status.ok()) return status;

@@ -1,5 +1,5 @@
 #pragma once
-// What a ray is asked for in exact mode, and the roots that it has met so far.
+// The query of a ray in exact mode, and the roots that it has found so far.
 
 #include <algorithm>
 #include <bit>
@@ -15,39 +15,39 @@
 namespace tessera::inline abi_0_1 {
 
 constexpr double no_part = std::numeric_limits<double>::infinity();
-constexpr double parameter_rounding = 1e-15;  // of a patch's parameters
+constexpr double parameter_rounding = 1e-15;  // in a patch's parameters
 
 /// A point of a patch on a ray.
 struct LeafRoot {
   std::uint32_t patch = 0;
   double u = 0, v = 0;            ///< in the patch
   double s = 0;                   ///< along the line
-  double from = no_part;          ///< of a part that is taken as one root: nothing of it comes before that s
+  double from = no_part;          ///< of a part that is taken as one root: a lower bound of its s
   double residual = 0;            ///< distance from the line, in the scene's coordinates
-  double noise = 0;               ///< bound on the rounding of that
-  double gain_u = 0, gain_v = 0;  ///< how far a parameter moves where the point moves by 1 across the line
+  double noise = 0;               ///< bound on the rounding of the residual
+  double gain_u = 0, gain_v = 0;  ///< how far a parameter moves if the point moves by 1 across the line
   double part_u = 0, part_v = 0;  ///< extent of a part that is taken as one root, else 0
-  bool certified = false;         ///< the one root of its surroundings, up to rounding
-  bool upwards = false;           ///< where the gains are known: the side of du x dv that the line goes to
+  bool certified = false;         ///< the only root of its surroundings, up to rounding
+  bool upwards = false;           ///< if the gains are known: the side of du x dv to which the line goes
   bool has_point = false;
-  Vec3 position, du, dv;  ///< where has_point: of the patch, in the scene's coordinates
+  Vec3 position, du, dv;  ///< if has_point: of the patch, in the scene's coordinates
 };
 
-/// How far in u and v the one root that `a` and another point may both stand for can be from `a`. Both points lie within
-/// `apart` of the line, so within that of each other across it, and the parameters follow by the Jacobian there: for a
-/// map with a contraction of 1/2 by 2 |J^-1| apart (root_certificate.h). Parts that are taken as a whole reach as far as
-/// they are large.
+/// Bounds, in u and v, the distance from `a` of the root that `a` and another point may both stand for. Both points lie
+/// within `apart` of the line, so within that of each other across it. The parameters follow by the Jacobian there: for
+/// a map with a contraction of 1/2 by 2 |J^-1| apart (root_certificate.h). A part that is taken as a whole reaches as
+/// far as its size.
 inline double reach_u(const LeafRoot& a, double apart) { return a.part_u + 2 * a.gain_u * apart + parameter_rounding; }
 inline double reach_v(const LeafRoot& a, double apart) { return a.part_v + 2 * a.gain_v * apart + parameter_rounding; }
-/// Of two points of a line: their distance across it is at most this.
+/// Bounds the distance of two points of a line across it.
 inline double apart(const LeafRoot& a, const LeafRoot& b) { return a.residual + a.noise + b.residual + b.noise; }
 
-/// Whether a surface is left on one side at `a` and on the other at `b`, which are two roots then.
+/// Returns whether the line leaves a surface on one side at `a` and on the other at `b`; these are then two roots.
 inline bool on_other_sides(const LeafRoot& a, const LeafRoot& b) {
   return a.certified && b.certified && a.upwards != b.upwards;
 }
 
-/// Whether two points of one patch stand for the same root.
+/// Returns whether two points of one patch stand for the same root.
 inline bool same_place(const LeafRoot& a, const LeafRoot& b) {
   if (on_other_sides(a, b)) return false;
   const double across = apart(a, b);
@@ -57,14 +57,14 @@ inline bool same_place(const LeafRoot& a, const LeafRoot& b) {
 
 enum class RootsWanted : std::uint8_t { closest, any, all };
 
-/// Whether a root stands for the origin of the ray.
+/// Says whether a root stands for the origin of the ray.
 enum class OriginRoot : std::uint8_t {
   other,
   same,
-  indistinct,  ///< it and its neighbours can't be told apart
+  indistinct,  ///< cannot be told apart from its neighbours
 };
 
-/// What tells that: spawn_root.h.
+/// The test that decides this: see spawn_root.h.
 class OriginTest {
  public:
   virtual OriginRoot judge(const RayLine& line, const LeafRoot& root) const = 0;
@@ -73,20 +73,22 @@ class OriginTest {
   ~OriginTest() = default;
 };
 
-/// The least number from x on, x >= 0, that counts in a search, which takes denormal ones for 0: told by its bits.
+/// Returns the least number from x on, x >= 0, that counts in a search, where denormal ones are taken as 0. Decided by
+/// bits.
 inline double min_normal(double x) {
   constexpr double least = std::numeric_limits<double>::min();
   return std::bit_cast<std::uint64_t>(x) - 1 < std::bit_cast<std::uint64_t>(least) - 1 ? least : x;
 }
 
-/// Along the line. A point that patches or pieces share is that of the first of them, whichever was searched first.
+/// Orders roots along the line. A point that patches or pieces share is that of the first of them, whichever was
+/// searched first.
 inline bool comes_before(const LeafRoot& a, const LeafRoot& b) {
   return a.s < b.s || (a.s == b.s && std::tie(a.patch, a.u, a.v) < std::tie(b.patch, b.u, b.v));
 }
 
 struct RayQuery;
 
-/// The caller's say in which roots count: batch_filter.h.
+/// The caller's filter of roots: see batch_filter.h.
 class RootFilter {
  public:
   virtual HitVerdict judge(const RayQuery& query, const LeafRoot& root) const noexcept = 0;
@@ -107,30 +109,30 @@ struct RayQuery {
   const Ray& ray;
   const RayLine& line;
   RootsWanted wanted;
-  double least;             ///< t of roots
-  double near, far;         ///< roots outside are of no use; far shrinks to the closest so far
+  double least;             ///< least t of roots
+  double near, far;         ///< range of useful roots; far shrinks to the closest so far
   double unsure = no_part;  ///< least `from` of the roots so far
   bool found = false;
-  std::uint32_t steps = 0;             ///< leaves looked at and parts of them searched
-  bool incomplete = false;             ///< a bound on work was reached: there may be more
+  std::uint32_t steps = 0;             ///< number of leaves and of their parts that were searched
+  bool incomplete = false;             ///< a limit of work was reached: there may be more roots
   bool overflow = false;               ///< memory for more roots ran out
-  LeafRoot best;                       ///< where found
-  std::vector<LeafRoot> roots;         ///< where all are wanted
-  const OriginTest* origin = nullptr;  ///< where the line leaves a surface
-  const RootFilter* filter = nullptr;  ///< where not all roots count; never where all are wanted
-  std::size_t index = 0;               ///< of the ray in the batch, for the filter
+  LeafRoot best;                       ///< if found
+  std::vector<LeafRoot> roots;         ///< if all are wanted
+  const OriginTest* origin = nullptr;  ///< if the line leaves a surface
+  const RootFilter* filter = nullptr;  ///< if not all roots count; never if all are wanted
+  std::size_t index = 0;               ///< index of the ray in the batch, for the filter
   bool stopped = false;                ///< by the filter
 
-  /// Of a root that was taken, seen from where denormal numbers count.
+  /// Returns t of a root that was taken. Call it where denormal numbers count.
   double t_of(const LeafRoot& root) const { return std::clamp(line.t_at(root.s), ray.tnear, ray.tfar); }
   bool done() const { return (found && wanted == RootsWanted::any) || overflow || stopped; }
-  /// Whether each root must be known to its last digits, one by one.
+  /// Returns whether each root must be known to its last digits, one by one.
   bool judges() const { return origin != nullptr || filter != nullptr; }
 
-  /// False where the root's t is outside of [tnear, tfar], or where it stands for the origin that the ray leaves: there
-  /// may be others beside it.
+  /// Takes a root. Returns false if its t is outside of [tnear, tfar], or if it stands for the origin that the ray
+  /// leaves: there may be others beside it.
   bool take(const LeafRoot& root) {
-    if (origin != nullptr) {  // first: rounding may have left the origin itself before tnear
+    if (origin != nullptr) {  // first: rounding may put the origin itself before tnear
       const OriginRoot is = origin->judge(line, root);
       if (is != OriginRoot::other) return is == OriginRoot::indistinct;
     }
@@ -139,7 +141,7 @@ struct RayQuery {
     if (wanted == RootsWanted::all) {
       try {
         roots.push_back(root);
-      } catch (...) {  // called from Embree, which knows no exceptions
+      } catch (...) {  // called from Embree, which cannot handle exceptions
         overflow = true;
       }
     } else if (!found || comes_before(root, best)) {
@@ -148,7 +150,7 @@ struct RayQuery {
       far = std::min(far, root.s);
     }
     unsure = std::min(unsure, root.from);
-    if (unsure < best.s) best.certified = false;  // the part may hold a root that comes before
+    if (unsure < best.s) best.certified = false;  // the part may hold an earlier root
     found = true;
     return true;
   }

@@ -16,7 +16,7 @@ namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr std::size_t rays_per_task = 512;
-constexpr double progress_ends[] = {0.2, 0.4};  // of cuts and of pieces; the rest is the BVH's
+constexpr double progress_ends[] = {0.2, 0.4};  // after the cuts, after the pieces; the BVH is the rest
 
 Status stale() {
   return Status(StatusCode::stale, "the patch set was edited after this ray scene was made: call refit");

@@ -1,5 +1,5 @@
 #pragma once
-// The state of a patch set as a ray scene keeps it: valid while the set lives, wherever the set itself is moved.
+// A ray scene's view of a patch set: valid while the set lives, even if the PatchSet object is moved.
 
 #include <cstdint>
 #include <vector>
@@ -19,9 +19,9 @@ class SetView {
   const PatchSource& source(std::size_t index) const { return set_->sources[index]; }
   EdgeMask collapsed_edges(std::size_t index) const { return set_->collapsed[index]; }
   Vec3 origin() const { return set_->origin; }
-  Box3 box() const { return set_->box(); }  ///< looks at every control point
+  Box3 box() const { return set_->box(); }  ///< visits every control point
   std::uint64_t revision() const { return set_->revision; }
-  /// The patches that are not what they were in that revision, in order.
+  /// Returns the patches that were edited after that revision, in order.
   std::vector<std::uint32_t> edited_since(std::uint64_t revision) const {
     std::vector<std::uint32_t> out;
     for (std::uint32_t k = 0; k < set_->edited.size(); ++k) {

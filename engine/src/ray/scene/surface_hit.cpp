@@ -6,7 +6,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// unit_normal's answer, taken from the derivatives at hand where they are clearly regular.
+/// Sets the normal of unit_normal, from the given derivatives if these are clearly regular.
 void set_normal(const BezierPatch& patch, double size, double u, double v, const FirstOrder& at, Hit& hit) {
   constexpr double clearly = 1e-6;
   const Vec3 normal = cross(at.du, at.dv);

@@ -1,5 +1,5 @@
 #pragma once
-// A point of a patch as a hit.
+// Turns a point of a patch into a hit, for both modes.
 
 #include "ray/facet/first_order.h"
 #include "ray/scene/batch_layout.h"
@@ -8,8 +8,8 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Sets kind, patch, surface and parameters. (u,v): of the patch, in [0,1]^2. Returns the patch's part of the surface's
-/// domain.
+/// Sets kind, patch, surface and parameters; (u,v) are the patch's, in [0,1]^2. Returns the patch's part of the
+/// surface's domain.
 inline const Domain& set_place(const SetView& set, std::uint32_t patch, double u, double v, Hit& hit) {
   const PatchSource& source = set.source(patch);
   hit.kind = HitKind::hit;
@@ -19,9 +19,9 @@ inline const Domain& set_place(const SetView& set, std::uint32_t patch, double u
   return source.domain;
 }
 
-/// Sets these, and position, derivatives and normal, with its flag, as far as `parts` names them; leaves t and residual.
-/// `at`: of the patch at (u,v), derivatives in another unit of length perhaps, of which `unit` is the model's; `size`:
-/// the model's, in that unit.
+/// Sets these, and position, derivatives and normal, with its flag, as far as `parts` names them; t and residual are
+/// unchanged. `at`: the patch at (u,v), with derivatives perhaps in another unit of length; `unit`: that unit in the
+/// model's; `size`: the model's size in that unit.
 void set_surface_point(const SetView& set, double size, double unit, std::uint32_t patch, double u, double v,
                        const FirstOrder& at, Hit& hit, HitParts parts = {});
 

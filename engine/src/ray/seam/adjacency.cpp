@@ -34,7 +34,7 @@ std::uint64_t mix(std::uint64_t hash, double value) {
   return hash ^ (hash >> 29);
 }
 
-/// The same for both directions: the sum of the hashes of the two.
+/// Returns a hash that is the same for both directions: the sum of the two directions' hashes.
 std::uint64_t hash(const Border& border) {
   std::uint64_t forward = 1, backward = 1;
   const int last = border.size() - 1;
@@ -66,7 +66,7 @@ Adjacency::Adjacency(const SetView& set) : links_(set.patch_count()) {
   std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
     return a.hash != b.hash ? a.hash < b.hash : a.patch != b.patch ? a.patch < b.patch : a.edge < b.edge;
   });
-  // Equal edges lie in runs of equal hashes; a run of other than two edges is a border, a branching or a collision.
+  // Equal edges lie in runs of equal hashes. A run of other than two edges is a border, a branching or a collision.
   for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end) {
     while (end < entries.size() && entries[end].hash == entries[begin].hash) ++end;
     if (end - begin != 2) continue;

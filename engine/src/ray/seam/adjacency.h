@@ -1,5 +1,5 @@
 #pragma once
-// Which patches share a border: a root of Newton's method that lies just over a seam is looked for on the other side.
+// The patches that share a border, so that a root that lies just across a seam is searched on the other side.
 
 #include <array>
 #include <cstddef>
@@ -24,8 +24,8 @@ struct EdgeLink {
   bool exists() const { return patch != no_patch; }
 };
 
-/// Two edges are linked where they, and no third one, have the same control points and weights (by ==), in either
-/// order. Collapsed edges are not linked.
+/// Links two edges if they, and no third one, have the same control points and weights (by ==), in either order.
+/// Collapsed edges are not linked.
 class Adjacency {
  public:
   Adjacency() = default;

@@ -54,7 +54,8 @@ class Sameness {
     return false;
   }
 
-  /// Of patches around a vertex, side by side or not: one between them may have no root to tell.
+  /// Compares roots of patches around a vertex, side by side or not: a patch between them may have no root that links
+  /// them.
   bool at_a_vertex(const LeafRoot& a, const LeafRoot& b) const {
     const double between = apart(a, b);
     return reaches_vertex(a, between) && reaches_vertex(b, between) &&
@@ -70,8 +71,8 @@ class Sameness {
   const Adjacency& adjacency_;
 };
 
-/// Roots in classes of the same ones, certified and uncertified ones apart, so that a point which is not proven never joins
-/// two that are. The leader of each class is its first.
+/// Classes of equal roots. Certified and uncertified ones are kept apart, so that an unproven point never joins two
+/// proven ones. The leader of each class is its first root.
 class RootClasses {
  public:
   RootClasses(std::span<const LeafRoot> roots, const Sameness& same)
@@ -91,7 +92,7 @@ class RootClasses {
     const std::size_t x = leader(a), y = leader(b);
     if (x != y && same_(roots_[a], roots_[b])) leader_[std::max(x, y)] = std::min(x, y);
   }
-  /// An uncertified root and a certified one that it may stand for.
+  /// Returns the pairs of an uncertified root and a certified one that it may stand for.
   std::span<const std::pair<std::size_t, std::size_t>> covered() const { return covered_; }
 
  private:
@@ -101,27 +102,27 @@ class RootClasses {
   std::vector<std::pair<std::size_t, std::size_t>> covered_;
 };
 
-/// Where a root may be the same as others, along one parameter.
+/// The range along one parameter in which a root may equal others.
 struct Interval {
   double low, high;
   std::size_t root;
 };
 
-/// Compares what overlaps.
+/// Compares roots whose intervals overlap.
 void sweep(std::vector<Interval>& intervals, RootClasses& classes) {
   std::sort(intervals.begin(), intervals.end(),
             [](const Interval& a, const Interval& b) { return std::tie(a.low, a.root) < std::tie(b.low, b.root); });
   std::vector<Interval> open;
   for (const Interval& next : intervals) {
     std::erase_if(open, [&](const Interval& before) { return before.high < next.low; });
-    // The latest first: mostly they are in one class then, and the others are not looked at.
+    // The latest first: mostly all are in one class then, and the others are skipped.
     for (std::size_t k = open.size(); k-- > 0;) classes.compare(open[k].root, next.root);
     open.push_back(next);
   }
 }
 
-/// Where a surface runs along the ray it has tens of thousands of roots: what can be the same is found by sweeps over the
-/// parameters of each patch and along each border, in time that grows with the roots and with how many overlap.
+/// Compares roots in sweeps over the parameters of each patch and along each border, in time that grows with the number
+/// of roots and of overlaps. A surface that runs along the ray has tens of thousands of roots.
 class Sweeps {
  public:
   Sweeps(std::span<const LeafRoot> roots, const Sameness& same, RootClasses& classes)
@@ -148,7 +149,7 @@ class Sweeps {
  private:
   using Indices = std::vector<std::size_t>;
 
-  /// At one point by themselves: one of each kind stands for the others.
+  /// Roots at one point. They are equal by themselves, so one of each kind stands for the others.
   class Pole {
    public:
     void add(std::size_t root, std::span<const LeafRoot> roots, RootClasses& classes) {
@@ -170,10 +171,10 @@ class Sweeps {
     std::array<std::optional<std::size_t>, 2> first_;
   };
 
-  /// The distance of a root to any that it may be the same as, across the line.
+  /// Bounds the distance across the line of a root from any that it may equal.
   double farthest(const LeafRoot& root) const { return root.residual + root.noise + widest_; }
 
-  /// Along the parameter over which they lie more apart.
+  /// Sweeps along the parameter over which the roots lie more apart.
   void inside(const Indices& all) {
     const auto spread = [&](double LeafRoot::*place, auto reach) {
       double low = roots_[all[0]].*place, high = low, covered = 0;
@@ -199,7 +200,8 @@ class Sweeps {
     }
   }
 
-  /// What is at a pole is the same on each side of the border by itself, so that one of each kind is enough.
+  /// Sweeps along a border. Roots at a pole are equal on each side of the border by themselves, so one of each kind is
+  /// enough.
   void border(const Indices& here, int edge, const Indices& there, const EdgeLink& link) {
     std::array<std::array<Pole, 2>, 2> poles;
     intervals_.clear();
@@ -219,7 +221,7 @@ class Sweeps {
     sweep(intervals_, classes_);
   }
 
-  /// Whose patches need not be side by side.
+  /// Compares roots at vertices, whose patches need not be side by side.
   void vertices() {
     std::map<std::uint32_t, Indices> at_vertices;
     for (const auto& [patch, all] : of_patch_) {
@@ -245,12 +247,13 @@ class Sweeps {
   const Sameness& same_;
   RootClasses& classes_;
   std::map<std::uint32_t, Indices> of_patch_;
-  double widest_ = 0;  // distance of any root from the line
+  double widest_ = 0;  // largest distance of any root from the line
   std::vector<Interval> intervals_;
 };
 
-/// Whether a stays of two that are the same: the one nearer to the line, and where both are as near, mostly the same
-/// point of a border, that of the patch whose numbers come first. The patches' order in the set says nothing.
+/// Returns whether `a` is kept of two equal roots: the one nearer to the line. If both are as near, mostly at the same
+/// point of a border, it is the one of the patch whose coordinates come first; the patches' order in the set has no
+/// effect.
 bool is_better(const SetView& set, const LeafRoot& a, const LeafRoot& b) {
   if (a.residual != b.residual || a.patch == b.patch) return a.residual < b.residual;
   const auto before = [](const Vec3& p, const Vec3& q) { return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z); };
@@ -258,7 +261,7 @@ bool is_better(const SetView& set, const LeafRoot& a, const LeafRoot& b) {
   return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end(), before);
 }
 
-/// Up to so many each is compared with each.
+/// Up to this number of roots, each is compared with each.
 constexpr std::size_t few = 64;
 
 void compare_all(std::span<const LeafRoot> roots, const Sameness& same, RootClasses& classes) {
@@ -296,7 +299,7 @@ void keep_distinct(const SetView& set, const Adjacency& adjacency, std::vector<L
   for (std::size_t k = 0; k < roots.size(); ++k) {
     if (classes.leader(k) != k || dropped[k]) continue;
     roots[kept] = roots[k];
-    if (roots[kept].from < roots[kept].s) roots[kept].certified = false;  // the part may hold a root that comes before
+    if (roots[kept].from < roots[kept].s) roots[kept].certified = false;  // the part may hold an earlier root
     ++kept;
   }
   roots.resize(kept);

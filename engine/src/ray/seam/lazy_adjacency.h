@@ -1,5 +1,5 @@
 #pragma once
-// Shared borders, found when they are first asked for: closest hits of rays that leave no surface need none.
+// Shared borders, found on first use: closest hits of rays that leave no surface need none.
 
 #include <atomic>
 #include <cstddef>
@@ -13,7 +13,7 @@ namespace tessera::inline abi_0_1 {
 /// Const calls from any number of threads.
 class LazyAdjacency {
  public:
-  /// Takes memory the first time. Throws bad_alloc.
+  /// Allocates memory the first time. Throws bad_alloc.
   const Adjacency& of(const SetView& set) const {
     if (const Adjacency* const made = found()) return *made;
     const std::lock_guard lock(mutex_);
@@ -21,7 +21,7 @@ class LazyAdjacency {
     made_.store(owned_.get(), std::memory_order_release);
     return *owned_;
   }
-  /// Null before of() was called.
+  /// Returns null before of() was called.
   const Adjacency* found() const { return made_.load(std::memory_order_acquire); }
   void forget() {
     made_ = nullptr;

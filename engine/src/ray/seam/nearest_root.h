@@ -1,5 +1,5 @@
 #pragma once
-// From a point of a patch to the root beside it.
+// Finds the root of a patch next to a given point of it.
 
 #include <cstdint>
 
@@ -8,7 +8,7 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// The point of the patch nearest to the line, from (u,v) on by Newton's method in the square; not certified.
+/// Returns the point of the patch nearest to the line, from (u,v) on by Newton's method in the square; not certified.
 LeafRoot nearest_to_ray(const BezierPatch& patch, const SceneFrame& frame, const RayLine& line, std::uint32_t index,
                         double u, double v);
 

@@ -17,7 +17,7 @@ void RootFan::spread(const LeafRoot& from) {
     if (reaches_edge(from, edge, apart_)) add(carried_over(from, edge, link));
     const int pole = pole_of_edge(set_, from, edge, apart_);
     if (pole < 0) continue;
-    LeafRoot at_pole = from;  // all of the collapsed edge is one point, the end of this edge too
+    LeafRoot at_pole = from;  // all of the collapsed edge is one point, which is also the end of this edge
     (edge < 2 ? at_pole.v : at_pole.u) = pole;
     add(carried_over(at_pole, edge, link));
   }

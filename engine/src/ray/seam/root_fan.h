@@ -1,5 +1,5 @@
 #pragma once
-// A root as the patches around it see it, from border to border.
+// The places of a root in the patches around it, from border to border.
 
 #include <array>
 #include <cstddef>
@@ -9,12 +9,12 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// The places of a root beyond all borders, vertices and poles that it reaches, where `apart` is how far a point for the
+/// The places of a root beyond all borders, vertices and poles that it reaches. `apart` bounds how far a point for the
 /// same root can be off across the line.
 class RootFan {
  public:
   RootFan(const SetView& set, const Adjacency& borders, const LeafRoot& root, double apart);
-  /// Without the root itself.
+  /// Returns the places without the root itself.
   std::span<const LeafRoot> beyond() const { return std::span(places_).first(count_).subspan(1); }
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// Where the roots of patches lie beside borders: what is needed to know one again from the other side.
+// The places of roots beside borders, used to recognise one from the other side.
 
 #include <cmath>
 
@@ -9,13 +9,13 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Along an edge, an index into all_edges: the parameter that varies there.
+/// Functions along an edge, an index into all_edges: of the parameter that varies there.
 inline double along_edge(const LeafRoot& root, int edge) { return edge < 2 ? root.v : root.u; }
 inline double reach_along(const LeafRoot& root, int edge, double apart) {
   return edge < 2 ? reach_v(root, apart) : reach_u(root, apart);
 }
 
-/// Whether the edge is no further from the root than another point for the same root can be.
+/// Returns whether the edge is as near to the root as another point for the same root can be.
 inline bool reaches_edge(const LeafRoot& root, int edge, double apart) {
   const double across = edge < 2 ? root.u : root.v;
   return std::abs(across - edge % 2) <= (edge < 2 ? reach_u(root, apart) : reach_v(root, apart));
@@ -24,12 +24,12 @@ inline bool reaches_edge(const LeafRoot& root, int edge, double apart) {
 inline bool is_collapsed(const SetView& set, std::uint32_t patch, int edge) {
   return set.collapsed_edges(patch).has(all_edges[static_cast<std::size_t>(edge)]);
 }
-/// Whether the edge is a pole, and no further from the root than that.
+/// Returns whether the edge is a pole, and as near as that.
 inline bool reaches_pole(const SetView& set, const LeafRoot& root, int edge, double apart) {
   return is_collapsed(set, root.patch, edge) && reaches_edge(root, edge, apart);
 }
 
-/// The end of an edge, 0 or 1, that is a collapsed edge which the root reaches; -1 if it reaches none.
+/// Returns the end of an edge, 0 or 1, that is a collapsed edge which the root reaches; -1 if it reaches none.
 inline int pole_of_edge(const SetView& set, const LeafRoot& root, int edge, double apart) {
   const int first = edge < 2 ? 2 : 0;
   for (const int other : {first, first + 1}) {
@@ -43,15 +43,15 @@ inline bool reaches_vertex(const LeafRoot& root, double apart) {
          (reaches_edge(root, 2, apart) || reaches_edge(root, 3, apart));
 }
 
-/// Whether du x dv of both patches is on the same side of the surface: their ways along the edge, with the interiors to the
-/// left, are opposite then.
+/// Returns whether du x dv of both patches is on the same side of the surface. Their directions along the edge, with
+/// the interiors to the left, are then opposite.
 inline bool is_oriented_alike(int edge, const EdgeLink& link) {
-  const auto has_interior_left = [](int k) { return k == 1 || k == 2; };  // going with the parameter
+  const auto has_interior_left = [](int k) { return k == 1 || k == 2; };  // in the parameter's direction
   return (has_interior_left(edge) == has_interior_left(link.edge)) == link.reversed;
 }
 
-/// The place of a root at an edge as the patch beyond sees it. Gains are of the root's own patch, the larger one for both
-/// parameters.
+/// Returns the place of a root at an edge as the patch beyond sees it. Gains are those of the root's own patch, with
+/// the larger one for both parameters.
 inline LeafRoot carried_over(const LeafRoot& root, int edge, const EdgeLink& link) {
   LeafRoot out = root;
   const double along = along_edge(root, edge), beyond = link.reversed ? 1 - along : along;

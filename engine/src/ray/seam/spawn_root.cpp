@@ -11,7 +11,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr double noise = 4e-15;  // of points on the scale of the scene, and of distances between them
+constexpr double noise = 4e-15;  // rounding of points at the scale of the scene, and of distances between them
 
 struct Nearest {
   double u, v, distance;
@@ -23,7 +23,7 @@ FirstOrder scene_point(const BezierPatch& patch, const SceneFrame& frame, double
   return {frame.scale * at.position, frame.scale * at.du, frame.scale * at.dv};
 }
 
-/// From (u,v) on by Gauss and Newton's method in the square.
+/// Moves from (u,v) by the Gauss-Newton method in the square.
 Nearest nearest_from(const BezierPatch& patch, const SceneFrame& frame, const Vec3& p, double u, double v) {
   constexpr int max_steps = 12;
   Nearest best{u, v, 0, scene_point(patch, frame, u, v)};
@@ -31,7 +31,7 @@ Nearest nearest_from(const BezierPatch& patch, const SceneFrame& frame, const Ve
   for (int step = 0; step < max_steps && best.distance > 0; ++step) {
     const Vec3 off = best.at.position - p;
     const double uu = dot(best.at.du, best.at.du), uv = dot(best.at.du, best.at.dv), vv = dot(best.at.dv, best.at.dv);
-    // Each by itself, for beside a pole one is far the smaller; at the pole it is 0.
+    // Damps each by itself, since beside a pole one is far smaller; at the pole it is 0.
     const double damped = 1 + 1e-14, least = 1e-40 * (uu + vv);
     const double a = damped * uu + least, c = damped * vv + least, determinant = a * c - uv * uv;
     if (!(determinant > 0)) break;
@@ -46,14 +46,14 @@ Nearest nearest_from(const BezierPatch& patch, const SceneFrame& frame, const Ve
   return best;
 }
 
-/// Whether one parameter moves the point much less than the other, as beside a pole.
+/// Returns whether one parameter moves the point much less than the other, as beside a pole.
 bool is_squeezed(const FirstOrder& at) {
   const double u = length(at.du), v = length(at.dv);
   return std::min(u, v) < 1e-3 * std::max(u, v);
 }
 
-/// The point of the patch nearest to p, near (u,v). Beside a pole all angles are near, and the method ends at a wrong one
-/// if it begins far from p's: it is begun from several.
+/// Returns the point of the patch nearest to p, near (u,v). Beside a pole all angles are near, and the method ends at a
+/// wrong one if it begins far from p's angle, so it is started from several.
 Nearest nearest_point(const BezierPatch& patch, const SceneFrame& frame, const Vec3& p, double u, double v,
                       double enough) {
   Nearest best = nearest_from(patch, frame, p, u, v);
@@ -66,8 +66,8 @@ Nearest nearest_point(const BezierPatch& patch, const SceneFrame& frame, const V
   return best;
 }
 
-/// Bounds the second derivatives of w(u,v) (r(u,v) - p) on the patch, r in the scene, in the maximum norm of (u,v): by the
-/// second differences of its coefficients (Farin, sec. 14.6).
+/// Bounds the second derivatives of w(u,v) (r(u,v) - p) on the patch, r in the scene, in the maximum norm of (u,v), by
+/// the second differences of its coefficients (Farin, sec. 14.6).
 double bend_bound(const BezierPatch& patch, const SceneFrame& frame, const Vec3& p) {
   const int m = patch.degree_u(), n = patch.degree_v();
   const auto at = [&](int i, int j) { return patch.weight(i, j) * (frame.to_scene(patch.point(i, j)) - p); };
@@ -86,7 +86,7 @@ double min_weight(const BezierPatch& patch) {
   return patch.is_rational() ? *std::min_element(patch.weights().begin(), patch.weights().end()) : 1;
 }
 
-/// |J^-1| in the maximum norm of (u,v), for vectors across the ray by their lengths; infinite where J is singular.
+/// Returns |J^-1| in the maximum norm of (u,v), for vectors across the ray by their lengths; infinite if J is singular.
 double inverse_norm(const FirstOrder& at, const RayLine& line) {
   const double xu = dot(line.across[0], at.du), xv = dot(line.across[0], at.dv);
   const double yu = dot(line.across[1], at.du), yv = dot(line.across[1], at.dv);
@@ -98,7 +98,7 @@ double distance_from(const RayLine& line, const Vec3& p) {
   return std::sqrt(x * x + y * y);
 }
 
-/// How far along the ray a root at a degenerate point may lie that is the origin's, by the normal there.
+/// Returns whether a root at a degenerate point is near enough along the ray to be the origin's, by the normal there.
 bool is_near_along(const BezierPatch& patch, const RayLine& line, const LeafRoot& root, double offset) {
   const UnitNormal normal = unit_normal(patch, root.u, root.v);
   const double sine = std::abs(dot(normal.direction, line.direction));
@@ -110,7 +110,7 @@ OriginRoot judge_on_patch(const BezierPatch& patch, const SceneFrame& frame, con
   constexpr double clearly = 1e3, touching = 1e-5;
   const double offset = line.spawn + noise, ahead = std::abs(root.s - line.s_of_origin());
   if (root.has_point) {
-    // The tangent plane there passes the origin by so much.
+    // The tangent plane there passes the origin at this distance.
     const Vec3 normal = cross(root.du, root.dv);
     const double area = dot(normal, normal), sine = std::abs(dot(normal, line.direction));
     if (sine * sine * ahead * ahead > clearly * clearly * offset * offset * area) return OriginRoot::other;
@@ -136,7 +136,7 @@ OriginRoot judge_on_patch(const BezierPatch& patch, const SceneFrame& frame, con
   };
   if (root.certified) return is_origin(root.u, root.v, root.residual) ? OriginRoot::same : OriginRoot::other;
 
-  // Of a part that is within the tolerance of the ray: the root that it belongs to, if it is one's.
+  // For a part within the tolerance of the ray: the root to which it belongs, if it belongs to one.
   const LeafRoot near = nearest_to_ray(patch, frame, line, root.patch, root.u, root.v);
   if (near.residual > 4 * noise)
     return away(root.u, root.v) <= alone || ahead <= touching ? OriginRoot::indistinct : OriginRoot::other;
@@ -145,7 +145,8 @@ OriginRoot judge_on_patch(const BezierPatch& patch, const SceneFrame& frame, con
   return part <= alone / 8 || away(root.u, root.v) + part <= alone ? OriginRoot::indistinct : OriginRoot::same;
 }
 
-/// Beside a pole, where a point that is not certified may belong to any of the patches around: the pole in its stead.
+/// Returns the pole beside an uncertified point, in the point's place, since such a point may belong to any of the
+/// patches around the pole.
 std::optional<LeafRoot> pole_beside(const SetView& set, const SceneFrame& frame, const LeafRoot& root) {
   constexpr double close = 1e-2;  // in parameters
   if (root.certified || !is_squeezed(scene_point(set.patch(root.patch), frame, root.u, root.v))) return std::nullopt;
@@ -159,8 +160,8 @@ std::optional<LeafRoot> pole_beside(const SetView& set, const SceneFrame& frame,
   return std::nullopt;
 }
 
-/// The root itself, but in the stead of a part its point nearest to the ray: where the patch has no root, and a
-/// neighbour's is near, that lies on their border.
+/// Returns the root itself or, for a part, its point nearest to the ray. If the patch has no root, and a neighbour's is
+/// near, that point lies on their border.
 LeafRoot place_on_border(const BezierPatch& patch, const SceneFrame& frame, const RayLine& line, const LeafRoot& root) {
   return root.from == no_part ? root : nearest_to_ray(patch, frame, line, root.patch, root.u, root.v);
 }
@@ -169,7 +170,7 @@ LeafRoot place_on_border(const BezierPatch& patch, const SceneFrame& frame, cons
 
 OriginRoot judge_origin(const SetView& set, const Adjacency* borders, const SceneFrame& frame, const RayLine& line,
                         const LeafRoot& root) {
-  constexpr double beside = 1e-3;  // along the ray: from further away no root is the origin's
+  constexpr double beside = 1e-3;  // along the ray: no root further away is the origin's
   const OriginRoot here = judge_on_patch(set.patch(root.patch), frame, line, root);
   if (here != OriginRoot::other || borders == nullptr || std::abs(root.s - line.s_of_origin()) > beside) return here;
   const std::optional<LeafRoot> pole = pole_beside(set, frame, root);
