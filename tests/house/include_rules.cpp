@@ -134,10 +134,10 @@ std::vector<std::string> check_includes(const SourceFile& file, const FloorTable
   return faults;
 }
 
-Names private_includes(const std::string& text, const FloorTable& table) {
+Names quoted_includes(const std::string& text) {
   Names names;
   for (const Include& include : includes_of(text))
-    if (include.open == '"' && table.on.contains(split_at_slash(include.path).first)) names.insert(include.path);
+    if (include.open == '"') names.insert(include.path);
   return names;
 }
 

@@ -23,7 +23,7 @@ std::vector<std::string> check_includes(const SourceFile& file, const FloorTable
 /// build, but must agree with the table.
 std::map<std::string, Names, std::less<>> floors_of_cmake(const std::string& text);
 
-/// Headers of engine/src that a text includes.
-Names private_includes(const std::string& text, const FloorTable& table);
+/// Paths that a text includes in quotes.
+Names quoted_includes(const std::string& text);
 
 }  // namespace tessera::house

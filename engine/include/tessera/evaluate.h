@@ -262,7 +262,7 @@ class GridUpdate {
   template <class T>
   Status run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const QuantityViews<T>& out,
              const Execution& execution = {});
-  /// The same into block-interleaved memory of all patches. A block with an edited patch is evaluated whole: its other
+  /// Does so in block-interleaved memory of all patches. A block with an edited patch is evaluated whole: its other
   /// lanes are written again, with the same bytes.
   template <class T>
   Status run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const QuantityBlocks<T>& out,

@@ -124,8 +124,8 @@ std::string lower_extension(const std::filesystem::path& path);
 Status check_mesh_format(const std::filesystem::path& path);
 /// Checks that write_model() writes the format of `path`'s extension. Errors: unsupported, with a list of those.
 Status check_model_format(const std::filesystem::path& path);
-/// Writes the mesh to a file that was created for `path`, and leaves commit() to the caller, which reports failed writes.
-/// Errors: unsupported, and those of a mesh that no file can hold.
+/// Writes the mesh to a file that was created for `path`, and leaves commit() to the caller, which reports failed
+/// writes. Errors: unsupported, and those of a mesh that no file can hold.
 Status write_mesh(const Mesh& mesh, const std::filesystem::path& path, OutputFile& out);
 /// Writes the model to a file that was created for `path`, and leaves commit() to the caller, which reports failed
 /// writes. Errors: as write_model(), but for io_error.

@@ -22,8 +22,8 @@ enum class Representation : std::uint8_t {
   power,      ///< monomials u^i v^j; rounding errors grow with the degree: see evaluate()
 };
 
-/// Which coefficients a set holds. They are packed when it is made and again with each edit. Memory: each kind takes
-/// (m+1)(n+1) * 3 coefficients per patch of degrees m and n, or * 4 if it is rational.
+/// Kinds of coefficients that a set holds. They are packed when it is made and again with each edit. Memory: each kind
+/// takes (m+1)(n+1) * 3 coefficients per patch of degrees m and n, or * 4 if it is rational.
 struct BlockKinds {
   bool float_bernstein = true;    ///< for grids, meshes and rays
   bool double_bernstein = false;  ///< for grids in double

@@ -268,10 +268,9 @@ class CertifiedTessellation {
   /// run on another set of equal shape (patch count, degrees and collapsed borders) writes that set's mesh, relative to
   /// that set's origin, for which nothing is proven.
   ///
-  /// Errors: buffer_too_small, stale (another number of patches, other degrees or collapsed borders), unsupported (a set
-  /// without float Bernstein blocks), invalid_argument (views; a view of normals where vertices are shared everywhere),
-  /// cancelled. Nothing is written on any error but
-  /// cancelled.
+  /// Errors: buffer_too_small, stale (another number of patches, other degrees or collapsed borders), unsupported (a
+  /// set without float Bernstein blocks), invalid_argument (views; a view of normals where vertices are shared
+  /// everywhere), cancelled. Nothing is written on any error but cancelled.
   ///
   /// The bytes are the same for any number of threads, and on every instruction set that fuses multiply-adds; border
   /// positions are the same on all. Packed views (three floats per record) of large meshes are written past the caches

@@ -35,5 +35,6 @@
 #endif
 #if __has_include("tessera/io.h")
 #include "tessera/io.h"
+#include "tessera/output_file.h"
 #include "tessera/text_cursor.h"
 #endif

@@ -44,6 +44,7 @@ class TextCursor {
   }
   /// Skips to the end of the line, including continued lines.
   void skip_line();
+  /// Whether the text ends here.
   bool at_end() const { return at_ == end_; }
   /// Whether the line ends here; call skip_blanks first.
   bool at_line_end() const { return at_ == end_ || *at_ == '\n'; }
@@ -54,6 +55,7 @@ class TextCursor {
     while (!ends_token(token_end)) ++token_end;
     return {at_, static_cast<std::size_t>(token_end - at_)};
   }
+  /// Skips a token that peek_token() returned.
   void skip(std::string_view token) { at_ += token.size(); }
   /// Takes `c` if it stands here.
   bool take(char c) {
@@ -64,6 +66,7 @@ class TextCursor {
 
   /// Takes a whole token as a number, or returns false without a move. Accepts inf and nan as doubles: see take_finite.
   bool take_number(double& value) { return take_plain(value) || take_signed_or_extreme(value); }
+  /// Takes a whole token as an integer, or returns false without a move.
   bool take_number(std::int64_t& value) { return take_plain(value) || take_signed(value); }
   /// Takes a finite number: infinity, NaN and values outside the range of double are not numbers.
   bool take_finite(double& value) {
@@ -77,16 +80,16 @@ class TextCursor {
     return false;
   }
 
-  /// The error "name:line: expected <what>, found "<token>"", or "found the end of the line" or "of the file".
+  /// The error `name:line: expected WHAT, found "TOKEN"`, or "found the end of the line" or "of the file".
   Status expected(std::string_view what) const;
-  /// The error "name:line: <sentence>" for this line.
+  /// The error `name:line: SENTENCE` for this line.
   Status failure(std::string_view sentence) const;
   /// "name:line" of this place.
   std::string place() const { return std::string(name_) + ":" + std::to_string(line()); }
-  std::size_t line() const;
-  std::string_view name() const { return name_; }
-  std::size_t remaining() const { return static_cast<std::size_t>(end_ - at_); }
-  const char* position() const { return at_; }
+  std::size_t line() const;                                                       ///< counted from 1
+  std::string_view name() const { return name_; }                                 ///< as given
+  std::size_t remaining() const { return static_cast<std::size_t>(end_ - at_); }  ///< bytes
+  const char* position() const { return at_; }                                    ///< the byte here
 
  private:
   static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }

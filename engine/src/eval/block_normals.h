@@ -1,5 +1,5 @@
 #pragma once
-// What a block's kernel needs to tell regular normals from limits: collapsed edges by lane, and the exact normal of a
+// Data by which a block's kernel tells regular normals from limits: collapsed edges by lane, and the exact normal of a
 // point.
 
 #include <array>
@@ -16,7 +16,7 @@ class BlockNormals {
  public:
   BlockNormals(const PatchSet::Impl& set, const GridPlan::Impl& plan) : set_(set), plan_(plan) {}
 
-  /// What the jobs of all blocks have in common. They must not outlive this object.
+  /// Fills in what the jobs of all blocks share. They must not outlive this object.
   void begin(kernel::GridJob<T>& job) {
     job.u_edges = plan_.u_edges.data();
     job.v_edges = plan_.v_edges.data();
@@ -34,7 +34,8 @@ class BlockNormals {
     job.u_edges = plan_.u_edges.data() + block * PatchSet::lanes * plan_.count_u;
     job.v_edges = plan_.v_edges.data() + block * PatchSet::lanes * plan_.count_v;
   }
-  /// Of 16 patches that stand in no block together, of a plan with parameters for all; `doubts`: `[doubt, noise][lane]`.
+  /// Prepares 16 patches that are in no block together, of a plan with parameters for all.
+  /// `doubts`: `[doubt, noise][lane]`.
   void prepare(const std::uint32_t* lane_patches, const T* doubts, kernel::GridJob<T>& job) {
     lane_patches_ = lane_patches;
     job.doubt = doubts;

@@ -16,7 +16,7 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// What all tasks of an update share.
+/// Data that all tasks of an update share.
 struct UpdateCall {
   PatchSet::Impl& set;
   const GridPlan::Impl& plan;

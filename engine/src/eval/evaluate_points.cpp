@@ -1,5 +1,5 @@
-// Scattered samples over threads: all are checked before the first is evaluated, then chunk after chunk goes through the
-// kernels.
+// Scattered samples over threads: all are checked before the first is evaluated, then chunk after chunk goes through
+// the kernels.
 
 #include "tessera/evaluate.h"
 
@@ -20,7 +20,7 @@ namespace {
 /// Below these many samples one thread is faster than waking another.
 constexpr std::size_t serial_positions = 4096, serial_normals = 2048;
 
-/// Of the options and the views; `order`: of the derivatives that are needed.
+/// Checks options and views; `order` becomes that of the derivatives that are needed.
 template <class T, class Source>
 Status check_call(const PatchSet::Impl& set, const Source& source, const QuantityViews<T>& out,
                   const PointOptions& options, int& order) {

@@ -1,13 +1,13 @@
 #pragma once
-// What other calls over grids share with evaluate(): its checks and decisions. T is float or double.
+// Checks and decisions of evaluate() that other calls over grids share. T is float or double.
 
 #include "eval/grid_plan_impl.h"
 #include "eval/staged_block.h"
 
 namespace tessera::inline abi_0_1 {
 
-/// Of a plan and outputs for all patches of the set. Else the highest order of the derivatives that the outputs are made
-/// of. Errors: those of evaluate().
+/// Checks a plan and outputs for all patches of the set. Returns the highest order of the derivatives that the outputs
+/// are made of. Errors: those of evaluate().
 template <class T>
 Result<int> check_grids(const PatchSet::Impl& set, const GridPlan& plan, const QuantityViews<T>& out);
 template <class T>

@@ -15,8 +15,8 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// Values, first and second derivatives of one basis, computed in long double and rounded once: put(k, value) for k from
-/// 0 to 3 (degree + 1) - 1.
+/// Values, first and second derivatives of one basis, computed in long double and rounded once: put(k, value) for k
+/// from 0 to 3 (degree + 1) - 1.
 template <class T, class Put>
 void tabulate(int degree, long double t, Representation representation, Put&& put) {
   std::array<long double, max_degree + 1> values{}, derivatives{}, second{};
@@ -43,7 +43,7 @@ void tabulate_degree(int degree, std::span<const double> parameters, const GridP
     tabulate<T>(degree, t, plan.options.representation, [&](std::size_t, T value) { table.push_back(value); });
 }
 
-/// Of each lane its own patch's parameters, `count` of them.
+/// Tabulates for each lane the parameters of its own patch, `count` of them.
 template <class T>
 void tabulate_blocks(const PatchSet::Impl& set, std::span<const double> parameters, std::size_t count,
                      int BlockGroup::*degree, Representation representation, LaneTables<T>& tables) {

@@ -11,11 +11,12 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// `[k][order][i]` for parameter k: values, first and second derivatives, degree + 1 of each; one table a degree in use.
+/// `[k][order][i]` for parameter k: values, first and second derivatives, degree + 1 of each; one table a degree in
+/// use.
 template <class T>
 using WeightTables = std::array<AlignedVector<T>, max_degree + 1>;
 
-/// The same of parameters that differ from patch to patch: a table `[k][order][i][lane]` a block, and where each begins.
+/// Weights of parameters that differ from patch to patch: a table `[k][order][i][lane]` a block, and where each begins.
 template <class T>
 struct LaneTables {
   UnsetVector<T> values;
@@ -57,7 +58,7 @@ class GridPlan::Impl {
   FlatTables flat;
   /// Whether any parameter lies on the edges u = 0, u = 1, v = 0, v = 1: only there can a collapsed edge be met.
   EdgeMask edges;
-  /// Of each parameter: edge_start at 0, edge_end at 1 (see kernel_table.h); `[k]`, or `[block][k][lane]`.
+  /// Where each parameter lies: edge_start at 0, edge_end at 1 (see kernel_table.h); `[k]`, or `[block][k][lane]`.
   std::vector<std::uint8_t> u_edges, v_edges;
 
   std::size_t samples() const { return count_u * count_v; }

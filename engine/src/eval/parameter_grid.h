@@ -1,5 +1,5 @@
 #pragma once
-// What every evaluation over a grid of a surface's own parameters asks of its arguments.
+// Checks of arguments for every evaluation over a grid of a surface's own parameters.
 
 #include <span>
 #include <string>
@@ -23,8 +23,8 @@ inline Status check_parameters(std::span<const double> parameters, const char* n
   return {};
 }
 
-/// Room for u.size() * v.size() records, aligned, and apart from each other and the parameters. Errors: invalid_argument,
-/// buffer_too_small.
+/// Room for u.size() * v.size() records, aligned, and apart from each other and the parameters. Errors:
+/// invalid_argument, buffer_too_small.
 template <class T>
 Status check_view(const View3<T>& out, std::span<const double> u, std::span<const double> v) {
   if (out.empty() || out.component[1] == nullptr || out.component[2] == nullptr || out.stride < 1)

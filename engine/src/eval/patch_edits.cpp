@@ -13,9 +13,9 @@ namespace {
 
 constexpr std::size_t edits_per_task = 256;
 
-/// Coordinates up to here, and an origin as near, fit blocks with weights that did: in float, with the smallest weight 1e-9
-/// of the largest, coefficients may reach 5.2e15 (largest_coefficient). Those of powers, up to 3^30 times as large and times
-/// 1e7 where weights are near the largest double, may reach 5.2e33.
+/// Coordinates up to here, and an origin as near, fit blocks with weights that did: in float, with the smallest weight
+/// 1e-9 of the largest, coefficients may reach 5.2e15 (largest_coefficient). Those of powers, up to 3^30 times as large
+/// and times 1e7 where weights are near the largest double, may reach 5.2e33.
 constexpr double plain_size = 0x1p40;
 
 bool all_plain(std::span<const Vec3> points) {

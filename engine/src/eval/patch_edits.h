@@ -13,8 +13,8 @@ namespace tessera::inline abi_0_1 {
 /// Whether a patch with these control points is still what a plan was made for.
 using KeepsShape = FunctionRef<bool(std::uint32_t patch, std::span<const Vec3> points)>;
 
-/// Looks at all new points, and makes room for them: patches get memory of their own. Errors: non_finite, stale (a patch
-/// that does not keep its shape), both of the first such edit; cancelled. What they are is then as before.
+/// Looks at all new points, and makes room for them: patches get memory of their own. Errors: non_finite, stale (a
+/// patch that does not keep its shape), both of the first such edit; cancelled. What they are is then as before.
 Status prepare_edits(PatchSet::Impl& set, const PatchEdits& edits, const TouchedBlocks& touched,
                      const Execution& execution, const KeepsShape* keeps_shape = nullptr);
 

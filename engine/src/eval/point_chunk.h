@@ -15,7 +15,7 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// What all chunks of a call share.
+/// Data that all chunks of a call share.
 template <class T>
 struct PointCall {
   const PatchSet::Impl& set;
@@ -39,7 +39,7 @@ struct ChunkSamples {
   const T* v = nullptr;
   alignas(cache_line) Memory<std::uint32_t> own_patch;
   alignas(cache_line) Memory<T> own_u, own_v;
-  /// What derivatives by local parameters are to be divided by: widths of the patch in the surface's parameters.
+  /// Divisors of derivatives by local parameters: widths of the patch in the surface's parameters.
   bool scaled = false;
   std::array<double, capacity> width_u, width_v;
 

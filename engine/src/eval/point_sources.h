@@ -57,7 +57,7 @@ class SamplesByPatch {
     checks.add("v", samples_.v);
   }
 
-  /// Of samples [begin, end): the first one that can't be evaluated.
+  /// Returns the first of samples [begin, end) that can't be evaluated.
   Status check(std::size_t begin, std::size_t end, const kernel::KernelTable& kernels) const {
     if (lie_together() && all_pass(begin, end - begin, kernels)) return {};
     for (std::size_t k = begin; k < end; ++k) {

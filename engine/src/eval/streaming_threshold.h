@@ -9,8 +9,8 @@
 namespace tessera::inline abi_0_1 {
 
 /// Bytes beyond which streaming stores win: a third of the last-level cache, or eight times a core's second-level one
-/// where that is less. A last-level cache that many cores share is not one call's to fill: with 480 MB of it beside 2 MB
-/// a core, plain stores are 15% faster up to 28 MB, half as fast at 32 MB, and a sixth as fast at 200 MB.
+/// where that is less. A last-level cache that many cores share is not one call's to fill: with 480 MB of it beside 2
+/// MB a core, plain stores are 15% faster up to 28 MB, half as fast at 32 MB, and a sixth as fast at 200 MB.
 inline std::size_t streaming_threshold() {
   static const std::size_t bytes = [] {
     const long own = sysconf(_SC_LEVEL2_CACHE_SIZE), shared = sysconf(_SC_LEVEL3_CACHE_SIZE);

@@ -1,5 +1,5 @@
 #pragma once
-// Which edit is whose, by the blocks of a set: what an update finds out before it writes.
+// Edits sorted by the blocks of a set: an update does this before it writes.
 
 #include <algorithm>
 #include <cstdint>

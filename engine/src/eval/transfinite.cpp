@@ -20,7 +20,7 @@ namespace {
 /// Points a task, and below how many one thread is faster than waking another.
 constexpr std::size_t points_per_task = 16384, serial_points = 32768;
 
-/// What the borders give for each u and for each v, in the layout of kernel::BlendJob.
+/// Samples of the borders for each u and for each v, in the layout of kernel::BlendJob.
 template <class T>
 class Samples {
  public:

@@ -12,9 +12,9 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// The grid i / rate_u x j / rate_v over every patch of a set. Positions on a border depend on that border's control points
-/// and the rate along it alone, and not on the direction in which the border runs: two patches that share a border's
-/// control points share the bits of its positions. A collapsed border is one point, bit for bit.
+/// The grid i / rate_u x j / rate_v over every patch of a set. Positions on a border depend on that border's control
+/// points and the rate along it alone, and not on the direction in which the border runs: two patches that share a
+/// border's control points share the bits of its positions. A collapsed border is one point, bit for bit.
 class UniformGrid {
  public:
   /// Rates of at least 1. Errors: those of GridPlan::make.
@@ -29,7 +29,7 @@ class UniformGrid {
   Status run(const PatchSet& set, const QuantityViews<float>& out, const Execution& execution) const {
     return run(impl_of(set), out, execution);
   }
-  /// The same for those who keep the set's inner state, which stays in place when the set is moved.
+  /// For callers that keep the set's inner state, which stays in place when the set is moved.
   TESSERA_INTERNAL_EXPORT Status run(const PatchSet::Impl& set, const QuantityViews<float>& out,
                                      const Execution& execution) const;
 
@@ -38,7 +38,7 @@ class UniformGrid {
 
   GridPlan plan_;
   int rate_u_, rate_v_;
-  /// Of each degree in use along u and v: `[k][i]`, see BorderJob::weights.
+  /// Weights of each degree in use along u and v: `[k][i]`, see BorderJob::weights.
   std::array<AlignedVector<float>, max_degree + 1> border_weights_u_, border_weights_v_;
 };
 

@@ -15,7 +15,7 @@ namespace tessera::inline abi_0_1 {
 /// Takes note of the views of one call, one after the other; the first error stands.
 class ViewChecks {
  public:
-  /// Of every view so many records are used, where no other number is given.
+  /// `records`: how many records of a view are used, unless add() states another number.
   explicit ViewChecks(std::size_t records) : records_(records) {}
 
   /// Errors: invalid_argument (a component is missing or misaligned, the stride is below 1 or leaves memory),

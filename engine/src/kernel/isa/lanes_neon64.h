@@ -114,7 +114,7 @@ inline batch<float> copysign(batch<float> size, batch<float> sign) {
 }
 inline batch<float> floor(batch<float> a) { return vrndmq_f32(a); }
 inline batch<float> ceil(batch<float> a) { return vrndpq_f32(a); }
-/// As on x86: returns the second value where one is NaN.
+/// Returns, as on x86, the second value where one is NaN.
 template <class T>
 batch<T> min(batch<T> a, batch<T> b) {
   return select(a < b, a, b);

@@ -78,7 +78,7 @@ class EmbreeScene {
  public:
   static constexpr std::size_t packet = 16;
   /// Embree does not check this before 4.4.1.
-  static constexpr int max_vertices_a_side = 32767;
+  static constexpr int max_vertices_per_side = 32767;
 
   /// Errors: internal and out_of_memory, from Embree.
   static Result<EmbreeScene> make();
