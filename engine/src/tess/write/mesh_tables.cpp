@@ -122,8 +122,8 @@ const T* MeshTables::hold(AlignedVector<T> made) {
 void MeshTables::add_parameters(Segments along) {
   const float*& made = grown(tables(along).parameters, place(along));
   if (made) return;
-  AlignedVector<float> parameters;
-  for (int k = 0; k <= along.rate(); ++k) parameters.push_back(static_cast<float>(along.at(k).value()));
+  AlignedVector<float> parameters(at(along.rate()) + 1);
+  for (int k = 0; k <= along.rate(); ++k) parameters[at(k)] = static_cast<float>(along.at(k).value());
   made = hold(std::move(parameters));
 }
 
