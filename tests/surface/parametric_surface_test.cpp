@@ -210,7 +210,7 @@ TEST(ParametricSurface, RefusesBadInput) {
     expect_refused(Surface::over_disc({.position = flat}, {.radius = radius}), StatusCode::invalid_argument, -1,
                    "radius");
   expect_refused(Surface::over_disc({.position = flat}, {.x = 1, .radius = 1e-16}), StatusCode::invalid_argument, -1,
-                 "lost");
+                 "below the rounding of its centre");
   expect_refused(Surface::over_disc({.position = flat}, {.x = infinity}), StatusCode::non_finite, -1, "finite");
   expect_refused(Surface::over_disc({.position = flat}, {.radius = not_a_number}), StatusCode::non_finite, -1,
                  "finite");

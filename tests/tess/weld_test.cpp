@@ -194,7 +194,8 @@ TEST(Weld, WrongLengthsAreRefused) {
   const PatchSet apart = set_of(shaken(closed_body(), 0.01, 1));
   const auto plan = CertifiedTessellation::make(apart, {.tolerance = 0.005, .weld = 0.04});
   ASSERT_FALSE(plan.ok());
-  EXPECT_NE(plan.status().message().find("welded, keep"), std::string::npos) << plan.status().message();
+  EXPECT_NE(plan.status().message().find("the displacement of welded float vertices"), std::string::npos)
+      << plan.status().message();
   for (const double weld : {0.5, 1e300}) {
     const auto plan_of_all = CertifiedTessellation::make(apart, {.tolerance = 0.05, .weld = weld});
     ASSERT_FALSE(plan_of_all.ok());

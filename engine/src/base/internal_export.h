@@ -3,3 +3,6 @@
 // beside the public ones; tests/house/exported_symbols.cpp lists them. No one else may call them.
 
 #define TESSERA_INTERNAL_EXPORT [[gnu::visibility("default")]]
+
+/// For explicit instantiations of public function templates: gcc forgets that the header exports them.
+#define TESSERA_EXPORT [[gnu::visibility("default")]]

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/impl_access.h"
+#include "base/internal_export.h"
 #include "block/patch_set_impl.h"
 #include "eval/block_jobs.h"
 #include "eval/block_outputs.h"
@@ -187,15 +188,19 @@ template <class T>
 Status evaluate(const PatchSet& set, const GridPlan& plan, const QuantityBlocks<T>& out, const Execution& execution) {
   return guarded([&] { return evaluate_blocks(set, plan, out, execution); });
 }
-template Status evaluate(const PatchSet&, const GridPlan&, const QuantityBlocks<float>&, const Execution&);
-template Status evaluate(const PatchSet&, const GridPlan&, const QuantityBlocks<double>&, const Execution&);
+template TESSERA_EXPORT Status evaluate(const PatchSet&, const GridPlan&, const QuantityBlocks<float>&,
+                                        const Execution&);
+template TESSERA_EXPORT Status evaluate(const PatchSet&, const GridPlan&, const QuantityBlocks<double>&,
+                                        const Execution&);
 
 template <class T>
 Status evaluate(const PatchSet& set, const GridPlan& plan, const QuantityViews<T>& out, const Execution& execution) {
   return guarded([&] { return evaluate_views(impl_of(set), plan, out, execution); });
 }
-template Status evaluate(const PatchSet&, const GridPlan&, const QuantityViews<float>&, const Execution&);
-template Status evaluate(const PatchSet&, const GridPlan&, const QuantityViews<double>&, const Execution&);
+template TESSERA_EXPORT Status evaluate(const PatchSet&, const GridPlan&, const QuantityViews<float>&,
+                                        const Execution&);
+template TESSERA_EXPORT Status evaluate(const PatchSet&, const GridPlan&, const QuantityViews<double>&,
+                                        const Execution&);
 
 Status evaluate(const PatchSet::Impl& set, const GridPlan& plan, const QuantityViews<float>& out,
                 const Execution& execution) {

@@ -1,6 +1,7 @@
 // Scattered samples over threads: all are checked before the first is evaluated, then chunk after chunk goes through
 // the kernels.
 
+#include "base/internal_export.h"
 #include "tessera/evaluate.h"
 
 #include <algorithm>
@@ -109,10 +110,10 @@ Status evaluate(const PatchSet& set, const PatchSamples<T>& samples, const Quant
     return run(impl_of(set), SamplesByPatch<T>(impl_of(set), samples, options.outside), out, options, execution);
   });
 }
-template Status evaluate(const PatchSet&, const PatchSamples<float>&, const QuantityViews<float>&, const PointOptions&,
-                         const Execution&);
-template Status evaluate(const PatchSet&, const PatchSamples<double>&, const QuantityViews<double>&,
-                         const PointOptions&, const Execution&);
+template TESSERA_EXPORT Status evaluate(const PatchSet&, const PatchSamples<float>&, const QuantityViews<float>&,
+                                        const PointOptions&, const Execution&);
+template TESSERA_EXPORT Status evaluate(const PatchSet&, const PatchSamples<double>&, const QuantityViews<double>&,
+                                        const PointOptions&, const Execution&);
 
 template <class T>
 Status evaluate(const PatchSet& set, const SurfaceMap& map, const SurfaceSamples& samples, const QuantityViews<T>& out,
@@ -123,9 +124,9 @@ Status evaluate(const PatchSet& set, const SurfaceMap& map, const SurfaceSamples
     return run(impl_of(set), SamplesBySurface<T>(impl_of(map), samples, options.outside), out, options, execution);
   });
 }
-template Status evaluate(const PatchSet&, const SurfaceMap&, const SurfaceSamples&, const QuantityViews<float>&,
-                         const PointOptions&, const Execution&);
-template Status evaluate(const PatchSet&, const SurfaceMap&, const SurfaceSamples&, const QuantityViews<double>&,
-                         const PointOptions&, const Execution&);
+template TESSERA_EXPORT Status evaluate(const PatchSet&, const SurfaceMap&, const SurfaceSamples&,
+                                        const QuantityViews<float>&, const PointOptions&, const Execution&);
+template TESSERA_EXPORT Status evaluate(const PatchSet&, const SurfaceMap&, const SurfaceSamples&,
+                                        const QuantityViews<double>&, const PointOptions&, const Execution&);
 
 }  // namespace tessera::inline abi_0_1

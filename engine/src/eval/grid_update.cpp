@@ -4,6 +4,7 @@
 #include <atomic>
 
 #include "base/impl_access.h"
+#include "base/internal_export.h"
 #include "eval/edited_grids.h"
 #include "eval/patch_edits.h"
 #include "eval/task_size.h"
@@ -91,19 +92,19 @@ Status GridUpdate::run(PatchSet& set, const GridPlan& plan, const PatchEdits& ed
                        const Execution& execution) {
   return guarded([&] { return impl_->run(impl_of(set), plan, edits, out, execution); });
 }
-template Status GridUpdate::run(PatchSet&, const GridPlan&, const PatchEdits&, const QuantityViews<float>&,
-                                const Execution&);
-template Status GridUpdate::run(PatchSet&, const GridPlan&, const PatchEdits&, const QuantityViews<double>&,
-                                const Execution&);
+template TESSERA_EXPORT Status GridUpdate::run(PatchSet&, const GridPlan&, const PatchEdits&,
+                                               const QuantityViews<float>&, const Execution&);
+template TESSERA_EXPORT Status GridUpdate::run(PatchSet&, const GridPlan&, const PatchEdits&,
+                                               const QuantityViews<double>&, const Execution&);
 
 template <class T>
 Status GridUpdate::run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const QuantityBlocks<T>& out,
                        const Execution& execution) {
   return guarded([&] { return impl_->run(impl_of(set), plan, edits, out, execution); });
 }
-template Status GridUpdate::run(PatchSet&, const GridPlan&, const PatchEdits&, const QuantityBlocks<float>&,
-                                const Execution&);
-template Status GridUpdate::run(PatchSet&, const GridPlan&, const PatchEdits&, const QuantityBlocks<double>&,
-                                const Execution&);
+template TESSERA_EXPORT Status GridUpdate::run(PatchSet&, const GridPlan&, const PatchEdits&,
+                                               const QuantityBlocks<float>&, const Execution&);
+template TESSERA_EXPORT Status GridUpdate::run(PatchSet&, const GridPlan&, const PatchEdits&,
+                                               const QuantityBlocks<double>&, const Execution&);
 
 }  // namespace tessera::inline abi_0_1

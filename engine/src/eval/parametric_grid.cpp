@@ -1,3 +1,4 @@
+#include "base/internal_export.h"
 #include "tessera/surface_grid.h"
 
 #include <atomic>
@@ -94,9 +95,9 @@ Status evaluate(const ParametricSurface& surface, std::span<const double> u, std
                 const View3<T>& out, const Execution& execution, Calls calls) {
   return guarded([&] { return evaluate_grid(surface, u, v, out, execution, calls); });
 }
-template Status evaluate(const ParametricSurface&, std::span<const double>, std::span<const double>,
-                         const View3<float>&, const Execution&, Calls);
-template Status evaluate(const ParametricSurface&, std::span<const double>, std::span<const double>,
-                         const View3<double>&, const Execution&, Calls);
+template TESSERA_EXPORT Status evaluate(const ParametricSurface&, std::span<const double>, std::span<const double>,
+                                        const View3<float>&, const Execution&, Calls);
+template TESSERA_EXPORT Status evaluate(const ParametricSurface&, std::span<const double>, std::span<const double>,
+                                        const View3<double>&, const Execution&, Calls);
 
 }  // namespace tessera::inline abi_0_1

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/aligned.h"
+#include "base/internal_export.h"
 #include "eval/parameter_grid.h"
 #include "kernel/isa/kernel_table.h"
 #include "parallel/parallel_for.h"
@@ -167,19 +168,19 @@ Status evaluate(const CoonsPatch& patch, std::span<const double> u, std::span<co
                 const Execution& execution) {
   return guarded([&] { return evaluate_grid(patch, u, v, out, execution); });
 }
-template Status evaluate(const CoonsPatch&, std::span<const double>, std::span<const double>, const View3<float>&,
-                         const Execution&);
-template Status evaluate(const CoonsPatch&, std::span<const double>, std::span<const double>, const View3<double>&,
-                         const Execution&);
+template TESSERA_EXPORT Status evaluate(const CoonsPatch&, std::span<const double>, std::span<const double>,
+                                        const View3<float>&, const Execution&);
+template TESSERA_EXPORT Status evaluate(const CoonsPatch&, std::span<const double>, std::span<const double>,
+                                        const View3<double>&, const Execution&);
 
 template <class T>
 Status evaluate(const RuledSurface& surface, std::span<const double> u, std::span<const double> v, const View3<T>& out,
                 const Execution& execution) {
   return guarded([&] { return evaluate_grid(surface, u, v, out, execution); });
 }
-template Status evaluate(const RuledSurface&, std::span<const double>, std::span<const double>, const View3<float>&,
-                         const Execution&);
-template Status evaluate(const RuledSurface&, std::span<const double>, std::span<const double>, const View3<double>&,
-                         const Execution&);
+template TESSERA_EXPORT Status evaluate(const RuledSurface&, std::span<const double>, std::span<const double>,
+                                        const View3<float>&, const Execution&);
+template TESSERA_EXPORT Status evaluate(const RuledSurface&, std::span<const double>, std::span<const double>,
+                                        const View3<double>&, const Execution&);
 
 }  // namespace tessera::inline abi_0_1
