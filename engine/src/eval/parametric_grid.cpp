@@ -1,4 +1,3 @@
-#include "base/internal_export.h"
 #include "tessera/surface_grid.h"
 
 #include <atomic>
@@ -7,6 +6,7 @@
 #include <mutex>
 #include <string>
 
+#include "base/internal_export.h"
 #include "base/text.h"
 #include "eval/parameter_grid.h"
 #include "parallel/parallel_for.h"
