@@ -29,7 +29,7 @@ namespace tessera::inline abi_0_1 {
 
 /// Calls body() and returns its result, a Status or a Result; an exception becomes a Status.
 template <class Body>
-auto guarded(Body&& body) noexcept -> decltype(body()) {
+[[gnu::visibility("hidden")]] auto guarded(Body&& body) noexcept -> decltype(body()) {
   try {
     return std::forward<Body>(body)();
   } catch (...) {
