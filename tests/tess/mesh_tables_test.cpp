@@ -37,7 +37,7 @@ TEST(MeshTables, PlansOutliveTheSet) {
 
 TEST(MeshTables, LargeOnesAreOfTheirPlanAlone) {
   const PatchSet body = set_of(closed_body());
-  const CertifiedTessellation large = plan_of(body, 3e-6), next = plan_of(body, 0.01);
+  const CertifiedTessellation large = plan_of(body, 1.5e-6), next = plan_of(body, 0.01);
   EXPECT_GT(tables_of(large).bytes(), MeshTables::max_common_bytes);
   EXPECT_LE(tables_of(next).bytes(), MeshTables::max_common_bytes);
 }
