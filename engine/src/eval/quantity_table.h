@@ -39,10 +39,6 @@ constexpr Quantity<Width, Select> quantity(const char* name, int order, const Pa
   return {name, order, powers, select};
 }
 
-inline constexpr std::size_t vector_quantities = 11, scalar_quantities = 4, kind_quantities = 2;
-inline constexpr std::size_t value_quantities = vector_quantities + scalar_quantities;
-static_assert(sizeof(Quantities<char>) == value_quantities + kind_quantities);
-
 #define TESSERA_QUANTITY(member, width, order, ...) \
   f(quantity<width>(#member, order, {__VA_ARGS__}, []<class All>(std::type_identity<All>) { return &All::member; }))
 /// Calls f(row) for each quantity of numbers, vectors first.
@@ -77,5 +73,15 @@ constexpr void for_each_quantity(F&& f) {
   for_each_value_quantity(f);
   for_each_kind_quantity(f);
 }
+
+/// Counts the rows of numbers with `width` values per sample.
+constexpr std::size_t count_of_width(int width) {
+  std::size_t count = 0;
+  for_each_value_quantity([&](const auto& row) { count += row.width == width ? 1 : 0; });
+  return count;
+}
+inline constexpr std::size_t vector_quantities = count_of_width(3), scalar_quantities = count_of_width(1);
+inline constexpr std::size_t value_quantities = vector_quantities + scalar_quantities, kind_quantities = 2;
+static_assert(sizeof(Quantities<char>) == value_quantities + kind_quantities, "a member has no row");
 
 }  // namespace tessera::inline abi_0_1
