@@ -116,7 +116,7 @@ struct MeshReadOptions {
 /// become one vertex where their bits are equal. Errors: io_error, parse_error, unsupported.
 Result<Mesh> read_mesh(const std::filesystem::path& path, const MeshReadOptions& options = {});
 
-// For programs that open their output before the work is done whose result it shall hold.
+// These calls serve programs that check and open their output before they compute what it will hold.
 
 /// The extension of `path`, in small letters: ".obj".
 std::string lower_extension(const std::filesystem::path& path);

@@ -2,7 +2,7 @@
 // One sample of a block from the row curves of its u, lanes = patches: position and derivatives up to an order,
 // polynomial or rational.
 //
-// Needs before it, outside of the instruction set's namespace: kernel/grid/line_kernels.h, kernel/isa/lanes.h.
+// Needs before it, outside of the instruction set's namespace: kernel/isa/block_lanes.h, kernel/isa/lanes.h.
 
 /// Coefficients of the highest degree that an evaluation is made for. Degree 0 is any degree.
 template <int Degree>

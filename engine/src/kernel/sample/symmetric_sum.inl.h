@@ -3,7 +3,7 @@
 // points i and n - i, (w_0 c_0 + w_n c_n) + (w_1 c_1 + w_{n-1} c_{n-1}) + ..., by separate multiplications and
 // additions, which commute. With weights that are themselves symmetric, the other direction gives the same bits.
 //
-// Needs before it, outside of the instruction set's namespace: kernel/grid/line_kernels.h, kernel/isa/lanes.h.
+// Needs before it, outside of the instruction set's namespace: kernel/isa/block_lanes.h, kernel/isa/lanes.h.
 
 template <class L>
 inline typename L::Batch symmetric_sum(const typename L::Scalar* control, std::ptrdiff_t step, int degree,

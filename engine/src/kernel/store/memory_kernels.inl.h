@@ -1,7 +1,7 @@
 #pragma once
 // The end of streaming, and the probes of the machine's limits, in vectors of any width.
 //
-// Needs before it, outside of the instruction set's namespace: kernel/isa/lanes.h, kernel/net/net_kernels.h.
+// Needs before it, outside of the instruction set's namespace: kernel/isa/lanes.h, kernel/store/memory_kernels.h.
 
 /// Uses 16 independent chains to hide the latency of the multiply-adds; the sum of all keeps the compiler from dropping
 /// them.
