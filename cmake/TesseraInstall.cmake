@@ -32,7 +32,7 @@ if(TESSERA_BUILD_IO)
   tessera_install_pkg_config(tessera-io tessera_io_library "Tessera's readers of surfaces and writers of meshes" ON tessera
     REQUIRES muparser tinygltf)
 else()
-  list(APPEND left_out PATTERN "io.h" EXCLUDE PATTERN "output_file.h" EXCLUDE PATTERN "text_cursor.h" EXCLUDE)
+  list(APPEND left_out PATTERN "io.h" EXCLUDE PATTERN "files.h" EXCLUDE)
 endif()
 if(TESSERA_HAS_IO_OCCT)
   tessera_install_component(io_occt tessera_io_occt_library)

@@ -14,8 +14,9 @@
 #include "base/aligned.h"
 #include "suite.h"
 #include "support/synthetic_sets.h"
+#include "tessera/coons_patch.h"
 #include "tessera/evaluate.h"
-#include "tessera/surface_grid.h"
+#include "tessera/parametric_surface.h"
 #include "timing.h"
 
 namespace tessera::bench {

@@ -1,6 +1,8 @@
 // Callables on grids: every record is the function's own value.
 
-#include "tessera/surface_grid.h"
+#include "tessera/coons_patch.h"
+#include "tessera/evaluate.h"
+#include "tessera/parametric_surface.h"
 
 #include <atomic>
 #include <thread>

@@ -1,7 +1,9 @@
 // Ruled surfaces and Coons patches evaluated directly on grids: values, calls of the borders, layouts, determinism,
 // errors.
 
-#include "tessera/surface_grid.h"
+#include "tessera/coons_patch.h"
+#include "tessera/evaluate.h"
+#include "tessera/parametric_surface.h"
 
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
@@ -13,7 +15,6 @@
 #include "support/borders.h"
 #include "support/errors.h"
 #include "support/ulp.h"
-#include "tessera/evaluate.h"
 
 namespace tessera::test {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "support/privileges.h"
 #include "support/scratch_folder.h"
+#include "tessera/files.h"
 #include "tessera/io.h"
-#include "tessera/output_file.h"
 
 namespace tessera {
 namespace {

@@ -1,6 +1,6 @@
 // Tokens, numbers and the lines of errors.
 
-#include "tessera/text_cursor.h"
+#include "tessera/files.h"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,9 @@
 #include "robustness/bad_views.h"
 #include "support/borders.h"
 #include "support/grids.h"
+#include "tessera/coons_patch.h"
 #include "tessera/evaluate.h"
-#include "tessera/surface_grid.h"
+#include "tessera/parametric_surface.h"
 #include "tessera/tessellation.h"
 
 namespace tessera::test {

@@ -9,8 +9,10 @@
 #include "support/random_splines.h"
 #include "tessera/bezier_operations.h"
 #include "tessera/convert.h"
+#include "tessera/coons_patch.h"
+#include "tessera/evaluate.h"
 #include "tessera/nurbs_surface.h"
-#include "tessera/surface_grid.h"
+#include "tessera/parametric_surface.h"
 #ifdef TESSERA_HAS_IO
 #include "support/scratch_folder.h"
 #include "tessera/io.h"

@@ -9,7 +9,9 @@
 #include "robustness/scene.h"
 #include "robustness/workers.h"
 #include "support/borders.h"
-#include "tessera/surface_grid.h"
+#include "tessera/coons_patch.h"
+#include "tessera/evaluate.h"
+#include "tessera/parametric_surface.h"
 
 namespace tessera::test {
 namespace {

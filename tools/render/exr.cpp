@@ -10,8 +10,8 @@
 #include <string>
 
 #include "render/hit_image.h"
+#include "tessera/files.h"
 #include "tessera/guard.h"
-#include "tessera/output_file.h"
 #include "tessera/status.h"
 
 namespace tessera::render {

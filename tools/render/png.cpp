@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "render/render.h"
+#include "tessera/files.h"
 #include "tessera/guard.h"
-#include "tessera/output_file.h"
 #include "tessera/status.h"
 
 namespace tessera::render {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "tessera/execution.h"
+#include "tessera/files.h"
 #include "tessera/geometry.h"
-#include "tessera/output_file.h"
 #include "tessera/ray_scene.h"
 #include "tessera/status.h"
 

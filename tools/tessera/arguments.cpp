@@ -6,7 +6,7 @@
 #include <system_error>
 
 #include "suggestions.h"
-#include "tessera/text_cursor.h"
+#include "tessera/files.h"
 
 namespace tessera::cli {
 namespace {

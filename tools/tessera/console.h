@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "tessera/execution.h"
+#include "tessera/files.h"
 #include "tessera/geometry.h"
-#include "tessera/output_file.h"
 #include "tessera/status.h"
 
 namespace tessera::cli {

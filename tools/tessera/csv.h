@@ -9,10 +9,10 @@
 #include <string_view>
 #include <vector>
 
+#include "tessera/files.h"
 #include "tessera/model.h"
 #include "tessera/ray_scene.h"
 #include "tessera/status.h"
-#include "tessera/text_cursor.h"
 
 namespace tessera::cli {
 

@@ -3,8 +3,8 @@
 
 #include <cstddef>
 
+#include "tessera/files.h"
 #include "tessera/model.h"
-#include "tessera/output_file.h"
 #include "tessera/ray_scene.h"
 
 namespace tessera::cli {

@@ -8,7 +8,7 @@
 
 #include "arguments.h"
 #include "progress.h"
-#include "tessera/text_cursor.h"
+#include "tessera/files.h"
 
 namespace tessera::cli {
 namespace {

@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
+#include "tessera/files.h"
 #include "tessera/mesh.h"
 #include "tessera/model.h"
-#include "tessera/output_file.h"
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)

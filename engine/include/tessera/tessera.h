@@ -20,11 +20,9 @@
 #include "tessera/parametric_surface.h"
 #include "tessera/patch_set.h"
 #include "tessera/quadric.h"
-#include "tessera/quantities.h"
 #include "tessera/status.h"
 #include "tessera/strided_view.h"
 #include "tessera/surface.h"
-#include "tessera/surface_grid.h"
 #include "tessera/tensor_patch.h"
 #include "tessera/tessellation.h"
 #include "tessera/version.h"
@@ -34,7 +32,6 @@
 #include "tessera/ray_scene.h"
 #endif
 #if __has_include("tessera/io.h")
+#include "tessera/files.h"
 #include "tessera/io.h"
-#include "tessera/output_file.h"
-#include "tessera/text_cursor.h"
 #endif

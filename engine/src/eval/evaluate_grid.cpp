@@ -63,7 +63,9 @@ template <class T>
 Status check_plan(const PatchSet::Impl& set, const GridPlan& plan) {
   const bool twice = plan.precision() == Precision::double_precision;
   if (twice != (sizeof(T) == 8))
-    return Status(StatusCode::invalid_argument, "the plan's precision is not that of the outputs");
+    return Status(StatusCode::invalid_argument, std::string("the plan is in ") + (twice ? "double" : "single") +
+                                                    " precision, but the outputs are of type " +
+                                                    (twice ? "float" : "double"));
   const auto& planned = impl_of(plan).groups;
   const auto& groups = set.groups;
   const bool same = impl_of(plan).patch_count == set.patches.size() &&
@@ -94,7 +96,8 @@ Result<int> order_of_outputs(const All& out) {
   for_each_quantity([&](const auto& quantity) {
     if (is_wanted(quantity.of(out))) order = std::max(order, quantity.order);
   });
-  if (order < 0) return Status(StatusCode::invalid_argument, "no output is wanted");
+  if (order < 0)
+    return Status(StatusCode::invalid_argument, "all output views are empty: at least one must have memory");
   return order;
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "base/impl_access.h"
+#include "base/text.h"
 #include "eval/point_chunk.h"
 #include "eval/point_sources.h"
 #include "parallel/parallel_for.h"
@@ -32,11 +33,10 @@ Status check_call(const PatchSet::Impl& set, const Source& source, const Quantit
                       (twice ? "double_points" : "float_points"));
   if (!source.lengths_fit())
     return Status(StatusCode::count_mismatch,
-                  std::to_string(source.count()) + " samples need as many parameters and numbers each way");
+                  "every list of these samples must hold at least " + counted(source.count(), "record"));
   const auto fraction = [](double value) { return value >= 0 && value < 1; };
   if (!fraction(options.geometry.min_sine) || !fraction(options.geometry.umbilic_tolerance))
-    return Status(StatusCode::invalid_argument,
-                  "the smallest sine and the umbilic tolerance must lie from 0 to below 1");
+    return Status(StatusCode::invalid_argument, "min_sine and umbilic_tolerance must lie in [0, 1)");
   ViewChecks checks(source.count());
   order = -1;
   for_each_quantity([&](const auto& output) {
@@ -48,7 +48,8 @@ Status check_call(const PatchSet::Impl& set, const Source& source, const Quantit
   });
   if (source.count() > 0) source.check_views(checks);
   if (Status status = checks.status(); !status.ok()) return status;
-  return order < 0 ? Status(StatusCode::invalid_argument, "no output is wanted") : Status();
+  return order < 0 ? Status(StatusCode::invalid_argument, "all output views are empty: at least one must have memory")
+                   : Status();
 }
 
 /// The first sample that can't be evaluated, for any number of threads.

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "base/impl_access.h"
+#include "base/text.h"
 #include "basis/bernstein.h"
 #include "basis/power.h"
 #include "block/patch_set_impl.h"
@@ -104,9 +105,9 @@ Status check_count(std::size_t count, const char* direction) {
 
 Status check_lists(std::span<const double> parameters, std::size_t patches, const char* direction) {
   if (parameters.size() % patches == 0) return check_count(parameters.size() / patches, direction);
-  return Status(StatusCode::invalid_argument, std::to_string(parameters.size()) + " parameters along " + direction +
-                                                  " are not as many for each of " + std::to_string(patches) +
-                                                  " patches");
+  return Status(StatusCode::invalid_argument, "the number of parameters along " + std::string(direction) + ", " +
+                                                  std::to_string(parameters.size()) + ", must be a multiple of the " +
+                                                  counted(patches, "patch", "patches"));
 }
 
 /// Records, values and bytes of every output must be countable.
@@ -146,12 +147,11 @@ void find_edges(const PatchSet::Impl& set, GridPlan::Impl& plan) {
 }
 
 Status check_geometry(const LocalGeometryOptions& options) {
-  const std::pair<const char*, double> figures[] = {{"smallest sine", options.min_sine},
-                                                    {"umbilic tolerance", options.umbilic_tolerance}};
+  const std::pair<const char*, double> figures[] = {{"min_sine", options.min_sine},
+                                                    {"umbilic_tolerance", options.umbilic_tolerance}};
   for (const auto& [what, value] : figures)
     if (!(value >= 0 && value < 1))
-      return Status(StatusCode::invalid_argument,
-                    std::string("the ") + what + " must lie from 0 to below 1, not " + std::to_string(value));
+      return Status(StatusCode::invalid_argument, std::string(what) + " must lie in [0, 1), not " + text(value));
   return {};
 }
 

@@ -1,4 +1,4 @@
-#include "tessera/surface_grid.h"
+#include "tessera/evaluate.h"
 
 #include <atomic>
 #include <cmath>
@@ -11,6 +11,7 @@
 #include "eval/parameter_grid.h"
 #include "parallel/parallel_for.h"
 #include "tessera/guard.h"
+#include "tessera/parametric_surface.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

@@ -69,7 +69,7 @@ Status prepare_edits(PatchSet::Impl& set, const PatchEdits& edits, const Touched
   if (const std::size_t k = reshaped.index(); reshaped.found())
     return refused_edit(
         StatusCode::stale, k,
-        "patch " + std::to_string(edits.patch[k]) + " would have other collapsed edges than when the plan was made");
+        "the edit changes which edges of patch " + std::to_string(edits.patch[k]) + " are collapsed; make a new plan");
   return {};
 }
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <type_traits>
 
-#include "tessera/quantities.h"
+#include "tessera/strided_view.h"
 
 namespace tessera::inline abi_0_1 {
 

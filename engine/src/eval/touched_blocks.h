@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/text.h"
 #include "block/patch_set_impl.h"
 #include "tessera/evaluate.h"
 
@@ -52,9 +53,9 @@ class TouchedBlocks {
       next += set.patches[patch].points().size();
     }
     if (next == edits.points.size()) return {};
-    return refuse(Status(StatusCode::count_mismatch, "the patches of " + std::to_string(edits.patch.size()) +
-                                                         " edits have " + std::to_string(next) + " control points, " +
-                                                         std::to_string(edits.points.size()) + " were given"));
+    return refuse(Status(StatusCode::count_mismatch, counted(edits.patch.size(), "edit") + " must bring " +
+                                                         counted(next, "control point") + ", found " +
+                                                         std::to_string(edits.points.size())));
   }
 
   void clear() {

@@ -1,4 +1,4 @@
-#include "tessera/surface_grid.h"
+#include "tessera/evaluate.h"
 
 #include <algorithm>
 #include <array>
@@ -12,6 +12,7 @@
 #include "kernel/isa/kernel_table.h"
 #include "parallel/parallel_for.h"
 #include "surface/border_curve.h"
+#include "tessera/coons_patch.h"
 #include "tessera/guard.h"
 #include "tessera/status.h"
 

@@ -7,10 +7,10 @@
 
 #include "base/text.h"
 #include "surface/patch_pool.h"
+#include "tessera/files.h"
 #include "tessera/guard.h"
 #include "tessera/io.h"
 #include "tessera/status.h"
-#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

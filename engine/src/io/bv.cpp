@@ -9,10 +9,10 @@
 #include "io/make_room.h"
 #include "io/passed_over.h"
 #include "surface/patch_pool.h"
+#include "tessera/files.h"
 #include "tessera/guard.h"
 #include "tessera/io.h"
 #include "tessera/status.h"
-#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

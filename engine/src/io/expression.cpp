@@ -13,7 +13,7 @@
 #include <optional>
 
 #include "base/text.h"
-#include "tessera/text_cursor.h"
+#include "tessera/files.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -6,10 +6,10 @@
 #include <optional>
 #include <string>
 
+#include "tessera/files.h"
 #include "tessera/geometry.h"
 #include "tessera/status.h"
 #include "tessera/surface.h"
-#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 

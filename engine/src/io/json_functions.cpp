@@ -7,7 +7,7 @@
 #include "base/text.h"
 #include "io/expression.h"
 #include "io/json_kinds.h"
-#include "tessera/text_cursor.h"
+#include "tessera/files.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

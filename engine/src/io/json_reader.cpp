@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "io/expression.h"
-#include "tessera/text_cursor.h"
+#include "tessera/files.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

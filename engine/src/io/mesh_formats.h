@@ -5,9 +5,9 @@
 
 #include <string_view>
 
+#include "tessera/files.h"
 #include "tessera/io.h"
 #include "tessera/mesh.h"
-#include "tessera/output_file.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

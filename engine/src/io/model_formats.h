@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "tessera/files.h"
 #include "tessera/io.h"
-#include "tessera/output_file.h"
 
 namespace tessera::inline abi_0_1 {
 

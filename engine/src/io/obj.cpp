@@ -8,7 +8,7 @@
 #include "io/obj_index.h"
 #include "io/obj_name.h"
 #include "io/polygon.h"
-#include "tessera/text_cursor.h"
+#include "tessera/files.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "tessera/text_cursor.h"
+#include "tessera/files.h"
 
 namespace tessera::inline abi_0_1 {
 

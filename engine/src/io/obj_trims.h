@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "tessera/curve.h"
+#include "tessera/files.h"
 #include "tessera/model.h"
-#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 

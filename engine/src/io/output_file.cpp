@@ -1,4 +1,4 @@
-#include "tessera/output_file.h"
+#include "tessera/files.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>

@@ -5,8 +5,8 @@
 #include <cstring>
 
 #include "base/function_ref.h"
+#include "tessera/files.h"
 #include "tessera/geometry.h"
-#include "tessera/output_file.h"
 
 namespace tessera::inline abi_0_1 {
 

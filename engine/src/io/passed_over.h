@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "tessera/files.h"
 #include "tessera/status.h"
-#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 

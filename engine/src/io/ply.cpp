@@ -12,7 +12,7 @@
 #include "io/packed_records.h"
 #include "io/ply_header.h"
 #include "io/polygon.h"
-#include "tessera/text_cursor.h"
+#include "tessera/files.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

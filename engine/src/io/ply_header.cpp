@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "tessera/text_cursor.h"
+#include "tessera/files.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

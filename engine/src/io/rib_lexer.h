@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tessera/text_cursor.h"
+#include "tessera/files.h"
 
 namespace tessera::inline abi_0_1 {
 

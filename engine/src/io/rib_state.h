@@ -7,9 +7,9 @@
 
 #include "io/rib_mesh.h"
 #include "tessera/detail/shared.h"
+#include "tessera/files.h"
 #include "tessera/geometry.h"
 #include "tessera/model.h"
-#include "tessera/text_cursor.h"
 
 namespace tessera::inline abi_0_1 {
 

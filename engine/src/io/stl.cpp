@@ -13,7 +13,7 @@
 #include "io/mesh_formats.h"
 #include "io/packed_records.h"
 #include "io/vertex_welder.h"
-#include "tessera/text_cursor.h"
+#include "tessera/files.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

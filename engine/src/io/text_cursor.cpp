@@ -1,4 +1,4 @@
-#include "tessera/text_cursor.h"
+#include "tessera/files.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 
 #include "kernel/isa/block_lanes.h"
 #include "tessera/execution.h"
-#include "tessera/quantities.h"
+#include "tessera/strided_view.h"
 
 namespace tessera::inline abi_0_1::kernel {
 
