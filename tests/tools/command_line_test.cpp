@@ -51,12 +51,13 @@ TEST_F(CommandLine, EveryOptionIsInTheHelp) {
 }
 
 TEST_F(CommandLine, WhatIsNoCommandLineEndsWithTwo) {
-  expect_failure({}, 2,
-                 "expected a command (info, eval, tessellate, raycast, convert, check, completion or man), found none");
+  expect_failure(
+      {}, 2,
+      "expected a command (info, eval, tessellate, raycast, convert, check, completion, man or help), found none");
   expect_failure({"paint"}, 2, "paint");
   expect_failure({"info"}, 2, "MODEL");
   expect_failure({"info", teapot, "--colour"}, 2, "--colour");
-  expect_failure({"completion", "bash", "another"}, 2, "tessera completion: the word another is not expected");
+  expect_failure({"completion", "bash", "another"}, 2, "tessera: completion: the word another is not expected");
   expect_failure({"eval", teapot}, 2, "");
   expect_failure({"eval", teapot, "--grid", "3x3", "--params", "p.csv"}, 2, "");
   expect_failure({"eval", teapot, "--grid", "3x3", "--derivs", "3"}, 2, "--derivs");
@@ -71,6 +72,30 @@ TEST_F(CommandLine, WhatIsNoCommandLineEndsWithTwo) {
   expect_failure({"raycast", teapot, "--hits", "a.csv"}, 2, "--rays");
   expect_failure({"raycast", teapot, "-o", "a.png", "--rays", "a.csv", "--hits", "b.csv"}, 2, "--rays");
   expect_failure({"raycast", teapot, "-o", "a.png", "--shade", "toon"}, 2, "--shade");
+}
+
+TEST_F(CommandLine, RulesOfOptionsAreSaidInPlainWords) {
+  expect_failure({"info"}, 2, "tessera: info: expected MODEL, found none\n");
+  expect_failure({"tessellate", teapot, "--grid", "3x3"}, 2,
+                 "tessera: tessellate: expected --output FILE, found none\n");
+  expect_failure({"eval", teapot}, 2, "tessera: eval: expected --grid or --params, found none of them\n");
+  expect_failure({"eval", teapot, "--grid", "3x3", "--params", "p.csv"}, 2,
+                 "tessera: --params: cannot be combined with --grid\n");
+  expect_failure({"eval", teapot, "--grid", "3x3", "--grid", "4x4"}, 2,
+                 "tessera: --grid: is there 2 times; give it once\n");
+  expect_failure({"eval", teapot, "--grid"}, 2, "tessera: --grid: expected NxM, found nothing\n");
+  expect_failure({"raycast", teapot, "--rays", "a.csv"}, 2, "tessera: --rays: needs --hits FILE.csv\n");
+  expect_failure({"help", "raycsat"}, 2, "tessera: there is no command raycsat; did you mean raycast?\n");
+}
+
+TEST_F(CommandLine, HelpOfACommandIsThatOfTheOption) {
+  EXPECT_EQ(output_of({"help"}), output_of({"--help"}));
+  for (const char* const command : {"info", "raycast", "help"}) {
+    const std::string help = output_of({"help", command});
+    EXPECT_EQ(help, output_of({command, "--help"}));
+    EXPECT_EQ(help.find("[Option Group"), std::string::npos);
+    EXPECT_EQ(help.find("Excludes"), std::string::npos);
+  }
 }
 
 TEST_F(CommandLine, NumbersOfOptionsAreChecked) {

@@ -50,7 +50,7 @@ TEST_F(ConvertTool, WhatIsLostIsAWarning) {
 }
 
 TEST_F(ConvertTool, WhatCannotBeConverted) {
-  expect_failure({"convert", teapot}, 2, "--output is required");
+  expect_failure({"convert", teapot}, 2, "convert: expected --output FILE, found none");
   expect_failure({"convert", teapot, "-o", "a.ply"}, 2, "surfaces are written as .bpt, .obj");
   expect_failure({"convert", models + "goblet.json", "-o", "a.bpt"}, 1,
                  "tessera: a.bpt: surface 0 (goblet): its patch 0 is rational, but .bpt has no weights: write .obj");

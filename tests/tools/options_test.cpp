@@ -17,10 +17,10 @@ TEST_F(CommonOptions, WrongWordsAreNamedWithWhatMayBeMeant) {
   expect_failure({"ray", teapot}, 2, "there is no command ray; did you mean raycast?");
   expect_failure({"paint"}, 2, "there is no command paint\n");
   expect_failure({"raycast", teapot, "-o", "a.png", "--sise", "20x20"}, 2,
-                 "tessera raycast has no option --sise; did you mean --size?");
+                 "tessera: raycast has no option --sise; did you mean --size?");
   expect_failure({"raycast", teapot, "-o", "a.png", "--sise=20x20"}, 2, "did you mean --size?");
-  expect_failure({"info", "--jsno"}, 2, "tessera info has no option --jsno; did you mean --json?");
-  expect_failure({"info", teapot, "--colourful"}, 2, "tessera info has no option --colourful\n");
+  expect_failure({"info", "--jsno"}, 2, "tessera: info has no option --jsno; did you mean --json?");
+  expect_failure({"info", teapot, "--colourful"}, 2, "tessera: info has no option --colourful\n");
   expect_failure({"--versoin"}, 2, "there is no option --versoin before a command; did you mean --version?");
   expect_failure(
       {"raycast", teapot, "-o", "a.png", "--shade", "normal"}, 2,

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <system_error>
 
-#include "suggestions.h"
 #include "tessera/files.h"
 
 namespace tessera::cli {
@@ -28,8 +27,8 @@ Extent parse_extent(const std::string& option, const std::string& text, int leas
   if (good) rest.remove_prefix(1);
   good = good && take_integer(rest, least, most, extent.second) && rest.empty();
   if (!good) {
-    throw CLI::ValidationError(option, "expected two numbers from " + std::to_string(least) + " to " +
-                                           std::to_string(most) + " like 16x16, found " + quote(text));
+    throw UsageError(option, "expected two numbers from " + std::to_string(least) + " to " + std::to_string(most) +
+                                 " like 16x16, found " + quote(text));
   }
   return extent;
 }
@@ -46,7 +45,7 @@ std::vector<double> parse_numbers(const std::string& option, const std::string& 
     cursor.skip_blanks();
   } while (cursor.take(','));
   if (values.size() != count || !cursor.at_end()) {
-    throw CLI::ValidationError(
+    throw UsageError(
         option, (count == 1 ? "expected a finite number " : "expected " + std::to_string(count) + " finite numbers ") +
                     form + ", found " + quote(text));
   }
@@ -55,31 +54,9 @@ std::vector<double> parse_numbers(const std::string& option, const std::string& 
 
 std::string fault_of_name(const std::string& name) { return name.empty() ? "expected the name of a file" : ""; }
 
-CLI::Validator one_of(const std::vector<std::string>& words) {
-  std::string list;
-  for (const std::string& word : words) list += (list.empty() ? "" : ",") + word;
-  return {[words](std::string& text) {
-            if (std::find(words.begin(), words.end(), text) != words.end()) return std::string();
-            return "expected " + listed(words, "or") + ", found " + quote(text) + did_you_mean(text, words);
-          },
-          "{" + list + "}"};
-}
-
-CLI::Validator whole_number(int least, int most) {
-  return {[least, most](std::string& text) {
-            std::string_view rest = text;
-            int value = 0;
-            if (take_integer(rest, least, most, value) && rest.empty()) return std::string();
-            return "expected a whole number from " + std::to_string(least) + " to " + std::to_string(most) +
-                   ", found " + quote(text);
-          },
-          ""};
-}
-
-void add_text_output(CLI::App& command, std::string& output) {
-  command.add_option("-o,--output", output, "The file to write [standard output]")
-      ->check(fault_of_name)
-      ->type_name("FILE");
+void add_text_output(Command& command, std::string& output) {
+  command.add_text("-o,--output", "FILE", "The file to write [standard output]", output).check(fault_of_name);
+  command.add_help();
 }
 
 void refuse_overwriting(const std::string& option, const std::string& output, const std::vector<std::string>& inputs) {
@@ -87,7 +64,7 @@ void refuse_overwriting(const std::string& option, const std::string& output, co
   if (!std::filesystem::is_regular_file(output, error)) return;
   for (const std::string& input : inputs) {
     if (std::filesystem::equivalent(output, input, error)) {
-      throw CLI::ValidationError(option, output + " is the input " + input + ", which would be overwritten");
+      throw UsageError(option, output + " is the input " + input + ", which would be overwritten");
     }
   }
 }

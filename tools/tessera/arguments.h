@@ -1,9 +1,10 @@
 #pragma once
-// Values of options that consist of several numbers. Faults throw CLI::ValidationError: the command line is wrong.
+// Values of options: numbers, names of files. Faults throw UsageError, or are texts for Option::check().
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
+
+#include "command_line.h"
 
 namespace tessera::cli {
 
@@ -18,16 +19,11 @@ Extent parse_extent(const std::string& option, const std::string& text, int leas
 std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count,
                                   const std::string& form);
 
-/// A check for CLI11: a file name must not be empty.
+/// A check of an option: a file name must not be empty.
 std::string fault_of_name(const std::string& name);
 
-/// A check for CLI11: one of these words. Its name "{a,b}" appears in help and completions.
-CLI::Validator one_of(const std::vector<std::string>& words);
-/// A check for CLI11: a whole number from `least` to `most`.
-CLI::Validator whole_number(int least, int most);
-
-/// Adds -o for a command that writes text; the default is standard output.
-void add_text_output(CLI::App& command, std::string& output);
+/// Adds -o and --help for a command that writes text; the default is standard output.
+void add_text_output(Command& command, std::string& output);
 
 /// Throws if `output` is one of `inputs`, under any name: it would be overwritten. Empty names stand for no file; a
 /// pipe or a terminal may be both.

@@ -71,22 +71,20 @@ constexpr const char* footer =
 
 }  // namespace
 
-void add_check(CLI::App& app, Session& session) {
-  CLI::App* const command = app.add_subcommand("check", "Check meshes for cracks, flipped triangles and NaN");
+void add_check(Command& tool, Session& session) {
+  Command& command = tool.add_command("check", "Check meshes for cracks, flipped triangles and NaN");
   const auto meshes = std::make_shared<std::vector<std::string>>();
-  command->add_option("MESH", *meshes, "Files with meshes (.obj, .ply, .stl), or patterns of their names")
-      ->required()
-      ->check(fault_of_name)
-      ->type_name("FILE");
-  add_common(*command, session.common);
-  command->footer(footer);
-  command->callback([meshes, &session] {
+  command.add_words("MESH", "FILE", "Files with meshes (.obj, .ply, .stl), or patterns of their names", *meshes)
+      .check(fault_of_name);
+  add_common(command, session.common);
+  command.footer = footer;
+  command.choose = [meshes, &session] {
     session.command = [&session, plan = plan_jobs(*meshes, "", {"MESH", "", false})] {
       return run_jobs(plan, session.common, [&session](const Job& job, Timings& timings) {
         return run_check(job.inputs[0], session.common, timings);
       });
     };
-  });
+  };
 }
 
 }  // namespace tessera::cli

@@ -8,30 +8,27 @@
 
 namespace tessera::cli {
 
-void add_completion(CLI::App& app, Session& session) {
-  CLI::App* const command = app.add_subcommand("completion", "Print the script that completes commands in a shell");
+void add_completion(Command& tool, Session& session) {
+  Command& command = tool.add_command("completion", "Print the script that completes commands in a shell");
   const auto shell = std::make_shared<std::string>();
-  command->add_option("SHELL", *shell, "The shell")
-      ->required()
-      ->type_name("NAME")
-      ->check(one_of({"bash", "zsh", "fish"}));
+  command.add_choice("SHELL", {"bash", "zsh", "fish"}, "The shell", [shell](const std::string& name) { *shell = name; })
+      .require();
   const auto output = std::make_shared<std::string>();
-  add_text_output(*command, *output);
-  command->footer(
+  add_text_output(command, *output);
+  command.footer =
       "Packages install the scripts where the shells look for them. Without them:\n"
       "\nExamples:\n"
       "  eval \"$(tessera completion bash)\"                                       # in ~/.bashrc\n"
       "  source <(tessera completion zsh)                                        # in ~/.zshrc, after compinit\n"
-      "  tessera completion fish -o ~/.config/fish/completions/tessera.fish");
-  command->callback([shell, output, &app, &session] {
-    session.command = [shell, output, &app] {
-      const CommandText tool = command_text(app);
+      "  tessera completion fish -o ~/.config/fish/completions/tessera.fish";
+  command.choose = [shell, output, &tool, &session] {
+    session.command = [shell, output, &tool] {
       const std::string script = *shell == "bash"  ? bash_completion(tool)
                                  : *shell == "zsh" ? zsh_completion(tool)
                                                    : fish_completion(tool);
       return write_text(script, *output);
     };
-  });
+  };
 }
 
 }  // namespace tessera::cli

@@ -1,6 +1,5 @@
 // tessera convert: converts surfaces to Bezier patches in another format.
 
-#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "arguments.h"
@@ -68,25 +67,26 @@ constexpr const char* footer =
 
 }  // namespace
 
-void add_convert(CLI::App& app, Session& session) {
-  CLI::App* const command = app.add_subcommand("convert", "Write surfaces as Bezier patches in another format");
+void add_convert(Command& tool, Session& session) {
+  Command& command = tool.add_command("convert", "Write surfaces as Bezier patches in another format");
   const auto options = std::make_shared<Options>();
-  add_models(*command, options->models);
+  add_models(command, options->models);
   command
-      ->add_option("-o,--output", options->output, "The file of surfaces (.bpt, .obj), a folder, or a name with {name}")
-      ->required()
-      ->type_name("FILE")
-      ->check(fault_of_output);
-  add_common(*command, session.common);
-  command->footer(footer);
-  command->callback([options, &session] {
+      .add_text("-o,--output", "FILE", "The file of surfaces (.bpt, .obj), a folder, or a name with {name}",
+                options->output)
+      .require()
+      .check(fault_of_output);
+  add_fit(command, options->models);
+  add_common(command, session.common);
+  command.footer = footer;
+  command.choose = [options, &session] {
     const Plan plan = plan_jobs(options->models.files, options->output, {"--output", extension_in_folders});
     session.command = [options, plan, &session] {
       return run_jobs(plan, session.common, [&](const Job& job, Timings& timings) {
         return run_convert(job, *options, session.common, timings);
       });
     };
-  });
+  };
 }
 
 }  // namespace tessera::cli

@@ -74,7 +74,7 @@ class RowWriter {
   void end(const Json& more) {
     if (!json_) return;
     out_.write("\n]");
-    for (const auto& [key, value] : more.items()) out_.write(", \"" + key + "\": " + value.dump());
+    for (const Json::Member& member : more.members()) out_.write(", \"" + member.name + "\": " + member.value.text());
     out_.write("}\n");
   }
 
@@ -265,42 +265,36 @@ constexpr const char* footer =
     "  tessera eval teapot.bpt --params places.csv --derivs 2 --format json";
 
 /// Adds --grid and --params.
-void add_places(CLI::App& command, Options& options) {
-  CLI::Option_group* const where = command.add_option_group("Where", "One of these options");
-  where->require_option(1);
-  where
-      ->add_option_function<std::string>(
-          "--grid", [&options](const std::string& text) { options.grid = parse_extent("--grid", text, 2, 65536); },
-          "N x M points on every surface, from border to border, 2 to 65536 each")
-      ->type_name("NxM");
-  where->add_option("--params", options.places, "The places in this table")
-      ->check(fault_of_name)
-      ->type_name("FILE.csv");
+void add_places(Command& command, Options& options) {
+  command.begin_group("Where, one of");
+  Option& grid =
+      command.add("--grid", "NxM", "N x M points on every surface, from border to border, 2 to 65536 each",
+                  [&options](const std::string& text) { options.grid = parse_extent("--grid", text, 2, 65536); });
+  Option& places = command.add_text("--params", "FILE.csv", "The places in this table", options.places);
+  places.check(fault_of_name).exclude(grid);
+  command.one_of = {&grid, &places};
 }
 
 }  // namespace
 
-void add_eval(CLI::App& app, Session& session) {
-  CLI::App* const command = app.add_subcommand("eval", "Evaluate surfaces: positions, derivatives, normals");
+void add_eval(Command& tool, Session& session) {
+  Command& command = tool.add_command("eval", "Evaluate surfaces: positions, derivatives, normals");
   const auto options = std::make_shared<Options>();
-  add_models(*command, options->models);
-  add_places(*command, *options);
-  command->add_option("--derivs", options->derivatives, "Derivatives up to this order, 0 to 2")
-      ->type_name("ORDER")
-      ->check(whole_number(0, 2))
-      ->capture_default_str();
-  command->add_option("--format", options->format, "Format of the rows")
-      ->type_name("NAME")
-      ->check(one_of({"csv", "json"}))
-      ->capture_default_str();
+  add_models(command, options->models);
   command
-      ->add_option("-o,--output", options->output,
-                   "The file to write, a folder, or a name with {name} [standard output]")
-      ->check(fault_of_name)
-      ->type_name("FILE");
-  add_common(*command, session.common);
-  command->footer(footer);
-  command->callback([options, &session] {
+      .add_text("-o,--output", "FILE", "The file to write, a folder, or a name with {name} [standard output]",
+                options->output)
+      .check(fault_of_name);
+  add_places(command, *options);
+  command.begin_group("Rows");
+  command.add_count("--derivs", "ORDER", "Derivatives up to this order, 0 to 2 [0]", 0, 2,
+                    [options](std::size_t order) { options->derivatives = static_cast<int>(order); });
+  command.add_choice("--format", {"csv", "json"}, "Format of the rows [csv]",
+                     [options](const std::string& name) { options->format = name; });
+  add_fit(command, options->models);
+  add_common(command, session.common);
+  command.footer = footer;
+  command.choose = [options, &session] {
     const std::string extension = "." + options->format;
     const Plan plan = plan_jobs(options->models.files, options->output, {"--output", extension});
     for (const Job& job : plan.jobs) refuse_overwriting("--output", job.output, {options->places});
@@ -309,7 +303,7 @@ void add_eval(CLI::App& app, Session& session) {
         return run_eval(job, *options, session.common, timings);
       });
     };
-  });
+  };
 }
 
 }  // namespace tessera::cli

@@ -151,24 +151,23 @@ constexpr const char* footer =
 
 }  // namespace
 
-void add_info(CLI::App& app, Session& session) {
-  CLI::App* const command = app.add_subcommand("info", "Describe models: surfaces, joins, sizes, memory");
+void add_info(Command& tool, Session& session) {
+  Command& command = tool.add_command("info", "Describe models: surfaces, joins, sizes, memory");
   const auto options = std::make_shared<Options>();
-  add_models(*command, options->models);
-  command->add_option("--joins", options->max_joins, "Measure at most this many joins; 0 leaves them out")
-      ->type_name("COUNT")
-      ->check(whole_number(0, 1'000'000'000))
-      ->capture_default_str();
-  add_common(*command, session.common);
-  command->footer(footer);
-  command->callback([options, &session] {
+  add_models(command, options->models);
+  command.add_count("--joins", "COUNT", "Measure at most this many joins; 0 leaves them out [20000]", 0, 1'000'000'000,
+                    [options](std::size_t count) { options->max_joins = count; });
+  add_fit(command, options->models);
+  add_common(command, session.common);
+  command.footer = footer;
+  command.choose = [options, &session] {
     const Plan plan = plan_jobs(options->models.files, "", {"MODEL", "", false});
     session.command = [options, plan, &session] {
       return run_jobs(plan, session.common, [&](const Job& job, Timings& timings) {
         return run_info(job, *options, session.common, timings);
       });
     };
-  });
+  };
 }
 
 }  // namespace tessera::cli

@@ -9,14 +9,14 @@
 
 namespace tessera::cli {
 
-void add_man(CLI::App& app, Session& session) {
-  CLI::App* const command = app.add_subcommand("man", "Print the manual page");
+void add_man(Command& tool, Session& session) {
+  Command& command = tool.add_command("man", "Print the manual page");
   const auto output = std::make_shared<std::string>();
-  add_text_output(*command, *output);
-  command->footer("Example:\n  tessera man | man -l -");
-  command->callback([output, &app, &session] {
-    session.command = [output, &app] { return write_text(man_page(command_text(app), TESSERA_VERSION), *output); };
-  });
+  add_text_output(command, *output);
+  command.footer = "Example:\n  tessera man | man -l -";
+  command.choose = [output, &tool, &session] {
+    session.command = [output, &tool] { return write_text(man_page(tool, TESSERA_VERSION), *output); };
+  };
 }
 
 }  // namespace tessera::cli

@@ -238,7 +238,7 @@ render::Camera parse_camera(const std::string& text) {
   camera.target = {n[3], n[4], n[5]};
   camera.fov_degrees = n[6];
   const Status status = render::check(camera);
-  if (!status.ok()) throw CLI::ValidationError("--camera", status.message());
+  if (!status.ok()) throw UsageError("--camera", status.message());
   return camera;
 }
 
@@ -256,8 +256,8 @@ const std::map<std::string, render::Shade> shades{
     {"patch", render::Shade::patch},     {"error", render::Shade::error},     {"curvature", render::Shade::curvature},
     {"steps", render::Shade::steps}};
 
-/// The options that make sense only with a picture.
-std::vector<CLI::Option*> add_picture_options(CLI::App& command, Options& options) {
+/// Adds the options that make sense only with a picture, and returns them.
+std::vector<const Option*> add_picture_options(Command& command, Options& options) {
   const auto set_size = [&options](const std::string& text) {
     const Extent size = parse_extent("--size", text, 1, 16384);
     options.settings.width = size.first;
@@ -269,36 +269,42 @@ std::vector<CLI::Option*> add_picture_options(CLI::App& command, Options& option
     if (options.settings.shade == render::Shade::error) options.settings.samples = 2;  // distances are slow
   };
   const auto set_camera = [&options](const std::string& text) { options.settings.camera = parse_camera(text); };
-  return {command
-              .add_option_function<std::string>("--size", set_size,
-                                                "Pixels of the picture, 1 to 16384 each [1280x800; the terminal's]")
-              ->type_name("WxH"),
-          command.add_option_function<std::string>("--shade", set_shade, "How surfaces are coloured [lambert]")
-              ->type_name("NAME")
-              ->check(one_of({"lambert", "normals", "uv", "patch", "error", "curvature", "steps"})),
-          command
-              .add_option_function<std::string>("--camera", set_camera,
-                                                "Eye, target, field of view in degrees over the picture's shorter side "
-                                                "[a view from above that fits the model]")
-              ->type_name("ex,ey,ez,tx,ty,tz,fovdeg"),
-          command.add_flag("--terminal", options.terminal, "Draw on standard output, even if it is no terminal"),
-          command.add_option("--colour,--color", options.colour, "Colours in the terminal; \"always\" also in a pipe")
-              ->type_name("WHEN")
-              ->check(one_of({"auto", "always", "never"}))
-              ->capture_default_str()};
+  command.begin_group("Pictures");
+  Option& picture =
+      command
+          .add_text("-o,--output", "FILE",
+                    "The picture file (.png, .exr), a folder, or a name with {name} [the terminal]", options.picture)
+          .check(fault_of_name)
+          .check(fault_of_picture);
+  return {&picture,
+          &command.add("--size", "WxH", "Pixels of the picture, 1 to 16384 each [1280x800; the terminal's]", set_size),
+          &command.add("--camera", "EX,EY,EZ,TX,TY,TZ,FOV",
+                       "Eye, target, field of view in degrees over the picture's shorter side [a view from above that "
+                       "fits the model]",
+                       set_camera),
+          &command.add_choice("--shade", {"lambert", "normals", "uv", "patch", "error", "curvature", "steps"},
+                              "How surfaces are coloured [lambert]", set_shade),
+          &command.add_flag("--terminal", "Draw on standard output, even if it is no terminal", options.terminal)
+               .exclude(picture),
+          &command
+               .add_choice("--colour,--color", {"auto", "always", "never"},
+                           "Colours in the terminal; \"always\" also in a pipe [auto]",
+                           [&options](const std::string& text) { options.colour = text; })
+               .exclude(picture)};
 }
 
 /// Adds --rays and --hits, which belong together and exclude pictures.
-void add_ray_options(CLI::App& command, Options& options, const std::vector<CLI::Option*>& of_pictures) {
-  CLI::Option* const rays = command.add_option("--rays", options.rays, "The table of rays to read");
-  rays->check(fault_of_name)->type_name("FILE.csv");
-  CLI::Option* const hits =
-      command.add_option("--hits", options.hits, "The table of hits to write, a folder, or a name with {name}");
-  hits->check(fault_of_name)->type_name("FILE.csv")->needs(rays);
-  rays->needs(hits);
-  command.add_flag("--all-hits", options.all_hits, "Find all hits of each ray, not only the closest, in exact mode")
-      ->needs(rays);
-  for (CLI::Option* const picture : of_pictures) rays->excludes(picture);
+void add_ray_options(Command& command, Options& options, const std::vector<const Option*>& of_pictures) {
+  command.begin_group("Hits of your own rays");
+  Option& rays = command.add_text("--rays", "FILE.csv", "The table of rays to read", options.rays).check(fault_of_name);
+  rays.need(
+      command
+          .add_text("--hits", "FILE.csv", "The table of hits to write, a folder, or a name with {name}", options.hits)
+          .check(fault_of_name)
+          .need(rays));
+  command.add_flag("--all-hits", "Find all hits of each ray, not only the closest, in exact mode", options.all_hits)
+      .need(rays);
+  for (const Option* const picture : of_pictures) rays.exclude(*picture);
 }
 
 Plan plan_raycast(const Options& options, const CommonOptions& common) {
@@ -309,65 +315,59 @@ Plan plan_raycast(const Options& options, const CommonOptions& common) {
   }
   const bool in_terminal = options.picture.empty();
   if (in_terminal && (common.json || (!options.terminal && !output_is_terminal()))) {
-    throw CLI::ValidationError(
-        "raycast", "expected -o FILE, or --rays FILE.csv and --hits FILE.csv" +
-                       std::string(common.json ? "" : ", or --terminal, as standard output is no terminal"));
+    throw UsageError("raycast",
+                     "expected -o FILE, or --rays FILE.csv and --hits FILE.csv" +
+                         std::string(common.json ? "" : ", or --terminal, as standard output is no terminal"));
   }
   return plan_jobs(options.models.files, options.picture, {"--output", picture_extension, false});
 }
 
-void add_mode(CLI::App& command, Options& options) {
-  const auto set_mode = [&options](const std::string& text) {
-    options.mode = text == "exact" ? RayMode::exact : RayMode::grid;
-  };
-  command
-      .add_option_function<std::string>("--mode", set_mode,
-                                        "Rays meet the surfaces (exact), or facets first (grid) [exact]")
-      ->type_name("MODE")
-      ->check(one_of({"grid", "exact"}));
-  command
-      .add_option("--rate", options.rate,
-                  "Segments of a patch's grid in each direction in --mode grid, 1 to 256 [64, fewer for many patches]")
-      ->type_name("N")
-      ->check(CLI::Range(1, 256));
+void add_mode(Command& command, Options& options) {
+  command.begin_group("Method");
+  command.add_choice(
+      "--mode", {"grid", "exact"}, "Rays meet the surfaces (exact), or facets first (grid) [exact]",
+      [&options](const std::string& text) { options.mode = text == "exact" ? RayMode::exact : RayMode::grid; });
+  command.add_count(
+      "--rate", "N",
+      "Segments of a patch's grid in each direction in --mode grid, 1 to 256 [64, fewer for many patches]", 1, 256,
+      [&options](std::size_t rate) { options.rate = static_cast<int>(rate); });
+}
+
+/// Rules that depend on the values of options.
+void check_options(Command& command, const Options& options) {
+  if (command.option("--shade").count > 0 && is_exr(options.picture))
+    throw UsageError("--shade", "an .exr picture holds numbers and takes no --shade");
+  check_error_options(command, options.settings.shade);
+  if (options.all_hits && options.mode == RayMode::grid)
+    throw UsageError("--all-hits", "needs --mode exact, found --mode grid");
+  if (options.settings.shade == render::Shade::steps && options.mode == RayMode::grid)
+    throw UsageError("--shade", "steps needs --mode exact, found --mode grid");
+  if (options.rate > 0 && options.mode != RayMode::grid)
+    throw UsageError("--rate", "needs --mode grid, found --mode exact");
 }
 
 }  // namespace
 
-void add_raycast(CLI::App& app, Session& session) {
-  CLI::App* const command = app.add_subcommand("raycast", "Draw pictures with rays, or find the hits of your own rays");
+void add_raycast(Command& tool, Session& session) {
+  Command& command = tool.add_command("raycast", "Draw pictures with rays, or find the hits of your own rays");
   const auto options = std::make_shared<Options>();
-  add_models(*command, options->models);
-  CLI::Option* const picture = command->add_option(
-      "-o,--output", options->picture, "The picture file (.png, .exr), a folder, or a name with {name} [the terminal]");
-  picture->check(fault_of_name)->check(fault_of_picture)->type_name("FILE");
-  std::vector<CLI::Option*> of_pictures = add_picture_options(*command, *options);
-  for (CLI::Option* const option : of_pictures) {
-    if (option->check_name("--terminal") || option->check_name("--colour")) option->excludes(picture);
-  }
-  of_pictures.push_back(picture);
-  add_ray_options(*command, *options, of_pictures);
-  add_error_options(*command, options->error, of_pictures[1]);
-  add_mode(*command, *options);
-  add_common(*command, session.common);
-  command->footer(raycast_footer);
-  command->callback([options, command, shade = of_pictures[1], &session] {
-    if (shade->count() > 0 && is_exr(options->picture))
-      throw CLI::ValidationError("--shade", "an .exr picture holds numbers and takes no --shade");
-    check_error_options(*command, options->settings.shade);
-    if (options->all_hits && options->mode == RayMode::grid)
-      throw CLI::ValidationError("--all-hits", "needs --mode exact, found --mode grid");
-    if (options->settings.shade == render::Shade::steps && options->mode == RayMode::grid)
-      throw CLI::ValidationError("--shade", "steps needs --mode exact, found --mode grid");
-    if (options->rate > 0 && options->mode != RayMode::grid)
-      throw CLI::ValidationError("--rate", "needs --mode grid, found --mode exact");
+  add_models(command, options->models);
+  const std::vector<const Option*> of_pictures = add_picture_options(command, *options);
+  add_error_options(command, options->error, command.option("--shade"));
+  add_ray_options(command, *options, of_pictures);
+  add_mode(command, *options);
+  add_fit(command, options->models);
+  add_common(command, session.common);
+  command.footer = raycast_footer;
+  command.choose = [options, &command, &session] {
+    check_options(command, *options);
     const Plan plan = plan_raycast(*options, session.common);
     session.command = [options, plan, &session] {
       return run_jobs(plan, session.common, [&](const Job& job, Timings& timings) {
         return run_raycast(job, *options, session.common, timings);
       });
     };
-  });
+  };
 }
 
 }  // namespace tessera::cli

@@ -32,6 +32,7 @@ struct Options {
 constexpr double rounding_share = 1e-6;
 constexpr double degree = std::numbers::pi / 180;
 constexpr int max_segments = 4096;
+constexpr std::size_t max_triangles = std::size_t{1} << 40;
 
 struct Tessellated {
   Mesh mesh;
@@ -176,206 +177,177 @@ constexpr const char* footer =
     "  tessera tessellate teapot.bpt -o teapot.ply --pixels 0.5 --camera=4,-8,5,0,0,1.5,40\n"
     "  tessera tessellate 'parts/*.json' -o 'meshes/{name}.obj' --grid 8x8";
 
-/// Adds an option whose value is one number above 0.
-CLI::Option* add_number(CLI::App& command, const char* name, const char* type, const char* help,
-                        const std::function<void(double)>& set) {
-  const auto parse = [name, set](const std::string& text) {
-    const double value = parse_numbers(name, text, 1, "above 0")[0];
-    if (!(value > 0)) throw CLI::ValidationError(name, "expected a number above 0, found \"" + text + "\"");
-    set(value);
-  };
-  return command.add_option_function<std::string>(name, parse, help)->type_name(type);
-}
-
 /// Adds the options for how fine the mesh is; the user must choose one.
-void add_density(CLI::App& command, Options& options) {
-  CLI::App& group = *command.add_option_group("Density");
+void add_density(Command& command, Options& options) {
   CertifiedOptions& certified = options.certified;
-  CLI::Option* const grid =
-      group
-          .add_option_function<std::string>(
-              "--grid",
-              [&options](const std::string& text) { options.grid = parse_extent("--grid", text, 1, max_segments); },
-              "Segments of every patch, along u and along v, 1 to 4096 each")
-          ->type_name("NxM");
-  CLI::Option* const tolerance = add_number(group, "--tolerance", "LENGTH",
-                                            "Largest distance between mesh and surfaces, in the model's unit; proven",
-                                            [&certified](double value) { certified.tolerance = value; });
-  CLI::Option* const relative =
-      add_number(group, "--relative", "SHARE", "The tolerance as a share of the model's size, the diagonal of its box",
-                 [&certified](double value) {
-                   certified.tolerance = value;
-                   certified.relative = true;
-                 });
-  CLI::Option* const triangles = group
-                                     .add_option_function<std::uint64_t>(
-                                         "--triangles",
-                                         [&certified](std::uint64_t count) {
-                                           certified.max_triangles = count;
-                                           certified.smallest = true;
-                                         },
-                                         "The smallest tolerance that needs at most this many triangles")
-                                     ->type_name("COUNT");
-  CLI::Option* const angle = add_number(
-      group, "--angle", "DEGREES", "Largest turn of the surfaces' normals within a triangle, up to 90; proven",
+  command.begin_group("Density, at least one of");
+  Option& grid = command.add(
+      "--grid", "NxM", "Segments of every patch, along u and along v, 1 to 4096 each",
+      [&options](const std::string& text) { options.grid = parse_extent("--grid", text, 1, max_segments); });
+  Option& tolerance = command.add_length("--tolerance", "LENGTH",
+                                         "Largest distance between mesh and surfaces, in the model's unit; proven",
+                                         [&certified](double value) { certified.tolerance = value; });
+  Option& relative =
+      command.add_length("--relative", "SHARE", "The tolerance as a share of the model's size, the diagonal of its box",
+                         [&certified](double value) {
+                           certified.tolerance = value;
+                           certified.relative = true;
+                         });
+  Option& triangles =
+      command.add_count("--triangles", "COUNT", "The smallest tolerance that needs at most this many triangles", 1,
+                        max_triangles, [&certified](std::size_t count) {
+                          certified.max_triangles = count;
+                          certified.smallest = true;
+                        });
+  Option& angle = command.add_length(
+      "--angle", "DEGREES", "Largest turn of the surfaces' normals within a triangle, up to 90; proven",
       [&certified](double value) {
-        if (value > 90) throw CLI::ValidationError("--angle", "expected at most 90 degrees, found " + readable(value));
+        if (value > 90) throw UsageError("--angle", "expected at most 90 degrees, found " + readable(value));
         certified.angle = value * degree;
       });
-  CLI::Option* const pixels = add_number(
-      group, "--pixels", "P", "Largest distance between mesh and surfaces in --camera's picture, in pixels; proven",
+  Option& pixels = command.add_length(
+      "--pixels", "P", "Largest distance between mesh and surfaces in --camera's picture, in pixels; proven",
       [&options](double value) { options.pixels = value; });
-  for (CLI::Option* const other : {tolerance, relative, triangles, angle, pixels}) grid->excludes(other);
-  tolerance->excludes(relative)->excludes(triangles);
-  relative->excludes(triangles);
-  group.require_option(1, 0);
+  for (const Option* const other : {&tolerance, &relative, &triangles, &angle, &pixels}) grid.exclude(*other);
+  tolerance.exclude(relative).exclude(triangles);
+  relative.exclude(triangles);
+  command.one_of = {&grid, &tolerance, &relative, &triangles, &angle, &pixels};
 }
 
 /// Adds the camera of --pixels.
-void add_view(CLI::App& command, Options& options) {
+void add_view(Command& command, Options& options) {
   View& view = options.view;
-  CLI::Option* const pixels = command.get_option("--pixels");
   const auto set_camera = [&view](const std::string& text) {
     const std::vector<double> n = parse_numbers("--camera", text, 7, "ex,ey,ez,tx,ty,tz,fovdeg");
     view.eye = {n[0], n[1], n[2]};
     view.target = {n[3], n[4], n[5]};
     view.field_of_view = n[6] * degree;
-    if (view.eye == view.target) throw CLI::ValidationError("--camera", "the eye and the target are the same point");
-    if (!(n[6] > 0 && n[6] < 180))
-      throw CLI::ValidationError("--camera", "the field of view must lie between 0 and 180 degrees");
+    if (view.eye == view.target) throw UsageError("--camera", "the eye and the target are the same point");
+    if (!(n[6] > 0 && n[6] < 180)) throw UsageError("--camera", "the field of view must lie between 0 and 180 degrees");
   };
-  CLI::Option* const camera =
-      command
-          .add_option_function<std::string>("--camera", set_camera,
-                                            "Eye, target and field of view in degrees across the shorter side; z is up")
-          ->type_name("EX,EY,EZ,TX,TY,TZ,FOV");
-  pixels->needs(camera);
-  camera->needs(pixels);
+  const auto set_size = [&view](const std::string& text) {
+    const Extent size = parse_extent("--size", text, 1, 1 << 20);
+    view.width = size.first;
+    view.height = size.second;
+  };
+  Option& pixels = command.option("--pixels");
+  command.begin_group("The camera of --pixels");
+  Option& camera = command.add("--camera", "EX,EY,EZ,TX,TY,TZ,FOV",
+                               "Eye, target and field of view in degrees across the shorter side; z is up", set_camera);
+  pixels.need(camera);
+  camera.need(pixels);
+  command.add("--size", "WxH", "Pixels of the camera's picture [1280x800]", set_size).need(camera);
   command
-      .add_option_function<std::string>(
-          "--size",
-          [&view](const std::string& text) {
-            const Extent size = parse_extent("--size", text, 1, 1 << 20);
-            view.width = size.first;
-            view.height = size.second;
-          },
-          "Pixels of the camera's picture [1280x800]")
-      ->type_name("WxH")
-      ->needs(camera);
-  add_number(command, "--near", "LENGTH",
-             "Points nearer to the eye are not seen [a thousandth of the target's distance]",
-             [&view](double value) { view.near_distance = value; })
-      ->needs(camera);
-  add_number(command, "--orthographic", "LENGTH",
-             "Parallel rays, and the length that the picture's shorter side shows; the field of view is not used",
-             [&view](double value) {
-               view.orthographic = true;
-               view.extent = value;
-             })
-      ->needs(camera);
+      .add_length("--near", "LENGTH", "Points nearer to the eye are not seen [a thousandth of the target's distance]",
+                  [&view](double value) { view.near_distance = value; })
+      .need(camera);
+  command
+      .add_length("--orthographic", "LENGTH",
+                  "Parallel rays, and the length that the picture's shorter side shows; the field of view is not used",
+                  [&view](double value) {
+                    view.orthographic = true;
+                    view.extent = value;
+                  })
+      .need(camera);
 }
 
 /// Adds a budget: a limit of the triangles, not a target.
-void add_cap(CLI::App& command, Options& options) {
+void add_cap(Command& command, Options& options) {
   command
-      .add_option_function<std::uint64_t>(
-          "--most-triangles", [&options](std::uint64_t count) { options.certified.max_triangles = count; },
-          "Limit on triangles, not for --grid; an error says how many are needed [1073741824]")
-      ->type_name("COUNT")
-      ->excludes(command.get_option("--triangles"));
+      .add_count("--most-triangles", "COUNT",
+                 "Limit on triangles, not for --grid; an error says how many are needed [1073741824]", 1, max_triangles,
+                 [&options](std::size_t count) { options.certified.max_triangles = count; })
+      .exclude(command.option("--triangles"));
   command
-      .add_flag("--fewest", options.certified.fewest,
-                "Search for a mesh with fewer triangles, not for --grid; takes 15 to 200 us per patch")
-      ->excludes(command.get_option("--grid"));
+      .add_flag("--fewest", "Search for a mesh with fewer triangles, not for --grid; takes 15 to 200 us per patch",
+                options.certified.fewest)
+      .exclude(command.option("--grid"));
 }
 
-void add_weld(CLI::App& command, Options& options) {
+void add_weld(Command& command, Options& options) {
   const auto set_weld = [&options](const std::string& text) {
     options.weld_rounding = text == "auto";
     if (options.weld_rounding) return;
     options.certified.weld = parse_numbers("--weld", text, 1, "of at least 0, or auto")[0];
     if (!(options.certified.weld >= 0))
-      throw CLI::ValidationError("--weld", "expected a length of at least 0, or auto, found \"" + text + "\"");
+      throw UsageError("--weld", "expected a length of at least 0, or auto, found " + quote(text));
   };
-  command
-      .add_option_function<std::string>(
-          "--weld", set_weld,
-          "Join borders within this distance of each other, not for --grid; auto: 1e-6 of the "
-          "model's size [0: borders with equal bits]")
-      ->type_name("LENGTH");
+  command.add("--weld", "LENGTH",
+              "Join borders within this distance of each other, not for --grid; auto: 1e-6 of the model's size "
+              "[0: borders with equal bits]",
+              set_weld);
 }
 
 /// Adds options for the normals and vertices that neighbours share.
-void add_sharing(CLI::App& command, Options& options) {
-  CLI::Option* const grid = command.get_option("--grid");
+void add_sharing(Command& command, Options& options) {
+  const Option& grid = command.option("--grid");
   const auto set_crease = [&options](const std::string& text) {
     const double angle = parse_numbers("--crease", text, 1, "from 0 to 180")[0];
     if (!(angle >= 0 && angle <= 180))
-      throw CLI::ValidationError("--crease", "expected an angle of 0 to 180 degrees, found \"" + text + "\"");
+      throw UsageError("--crease", "expected an angle of 0 to 180 degrees, found " + quote(text));
     options.certified.crease_angle = angle * degree;
   };
   command
-      .add_option_function<std::string>(
-          "--crease", set_crease,
-          "Share normals along a border where they differ by no more than this angle, and keep "
-          "a crease elsewhere [each patch has its own normals]")
-      ->type_name("DEGREES")
-      ->excludes(grid);
+      .add("--crease", "DEGREES",
+           "Share normals along a border where they differ by no more than this angle, and keep a crease elsewhere "
+           "[each patch has its own normals]",
+           set_crease)
+      .exclude(grid);
   command
-      .add_flag("--share-vertices", options.certified.share_vertices,
+      .add_flag("--share-vertices",
                 "Store vertices once that neighbours share: with --crease those with the same normal, otherwise all, "
-                "without normals")
-      ->excludes(grid);
+                "without normals",
+                options.certified.share_vertices)
+      .exclude(grid);
 }
 
-void add_precision(CLI::App& command, Options& options) {
-  const auto set_precision = [&options](const std::string& text) {
-    if (text != "float" && text != "double")
-      throw CLI::ValidationError("--precision", "expected float or double, found \"" + text + "\"");
-    options.certified.precision = text == "double" ? Precision::double_precision : Precision::single_precision;
-  };
+void add_precision(Command& command, Options& options) {
   command
-      .add_option_function<std::string>("--precision", set_precision,
-                                        "Precision of positions; double (.ply and .obj) keeps a small tolerance "
-                                        "for parts far from each other [float]")
-      ->type_name("float|double")
-      ->excludes(command.get_option("--grid"));
+      .add_choice("--precision", {"float", "double"},
+                  "Precision of positions; double (.ply and .obj) keeps a small tolerance for parts far from each "
+                  "other [float]",
+                  [&options](const std::string& text) {
+                    options.certified.precision =
+                        text == "double" ? Precision::double_precision : Precision::single_precision;
+                  })
+      .exclude(command.option("--grid"));
 }
 
 /// The formats without quads and without positions in double.
 constexpr const char* simple_formats[] = {".stl", ".glb", ".gltf"};
 
-/// Throws CLI::ValidationError if a file cannot hold what an option requests.
+/// Throws UsageError if a file cannot hold what an option requests.
 void check_formats(const Plan& plan, const char* option, const std::string& held, const std::string& wanted) {
   for (const Job& job : plan.jobs) {
     const std::string extension = lower_extension(job.output);
     if (std::find(std::begin(simple_formats), std::end(simple_formats), extension) != std::end(simple_formats))
-      throw CLI::ValidationError(option, extension + " can hold only " + held + "; .obj and .ply can hold " + wanted);
+      throw UsageError(option, extension + " can hold only " + held + "; .obj and .ply can hold " + wanted);
   }
 }
 
 }  // namespace
 
-void add_tessellate(CLI::App& app, Session& session) {
-  CLI::App* const command = app.add_subcommand("tessellate", "Turn surfaces into meshes");
+void add_tessellate(Command& tool, Session& session) {
+  Command& command = tool.add_command("tessellate", "Turn surfaces into meshes");
   const auto options = std::make_shared<Options>();
-  add_models(*command, options->models);
+  add_models(command, options->models);
   command
-      ->add_option("-o,--output", options->output,
-                   "The mesh file (.obj, .ply, .stl, .glb, .gltf), a folder, or a name with {name}")
-      ->required()
-      ->type_name("FILE")
-      ->check(fault_of_output);
-  add_density(*command, *options);
-  add_view(*command, *options);
-  add_cap(*command, *options);
-  add_weld(*command, *options);
-  add_sharing(*command, *options);
-  add_precision(*command, *options);
-  command->add_flag("--quads", options->quads, "Write whole cells as quads, in .obj and .ply [triangles only]");
-  add_common(*command, session.common);
-  command->footer(footer);
-  command->callback([options, &session] {
+      .add_text("-o,--output", "FILE", "The mesh file (.obj, .ply, .stl, .glb, .gltf), a folder, or a name with {name}",
+                options->output)
+      .require()
+      .check(fault_of_output);
+  add_density(command, *options);
+  command.begin_group("The mesh");
+  add_cap(command, *options);
+  add_weld(command, *options);
+  add_sharing(command, *options);
+  command.add_flag("--quads", "Write whole cells as quads, in .obj and .ply [triangles only]", options->quads);
+  add_precision(command, *options);
+  add_fit(command, options->models);
+  add_view(command, *options);
+  add_common(command, session.common);
+  command.footer = footer;
+  command.choose = [options, &session] {
     const Plan plan = plan_jobs(options->models.files, options->output, {"--output", extension_in_folders});
     if (options->quads) check_formats(plan, "--quads", "triangles", "quads");
     if (options->certified.precision == Precision::double_precision)
@@ -385,7 +357,7 @@ void add_tessellate(CLI::App& app, Session& session) {
         return run_tessellate(job, *options, session.common, timings);
       });
     };
-  });
+  };
 }
 
 }  // namespace tessera::cli

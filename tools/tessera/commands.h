@@ -1,9 +1,9 @@
 #pragma once
 // The commands of the tool. Each adds its options to the command line, and itself to the session if it is chosen.
 
-#include <CLI/CLI.hpp>
 #include <functional>
 
+#include "command_line.h"
 #include "common_options.h"
 #include "tessera/status.h"
 
@@ -15,13 +15,17 @@ struct Session {
   CommonOptions common;
 };
 
-void add_info(CLI::App& app, Session& session);
-void add_eval(CLI::App& app, Session& session);
-void add_tessellate(CLI::App& app, Session& session);
-void add_raycast(CLI::App& app, Session& session);
-void add_convert(CLI::App& app, Session& session);
-void add_check(CLI::App& app, Session& session);
-void add_completion(CLI::App& app, Session& session);
-void add_man(CLI::App& app, Session& session);
+/// Sets name, purpose and closing words of `tessera --help`.
+void describe(Command& tool);
+
+void add_info(Command& tool, Session& session);
+void add_eval(Command& tool, Session& session);
+void add_tessellate(Command& tool, Session& session);
+void add_raycast(Command& tool, Session& session);
+void add_convert(Command& tool, Session& session);
+void add_check(Command& tool, Session& session);
+void add_completion(Command& tool, Session& session);
+void add_man(Command& tool, Session& session);
+void add_help(Command& tool, Session& session);
 
 }  // namespace tessera::cli

@@ -2,7 +2,6 @@
 
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
-#include <CLI/CLI.hpp>
 
 #include <cstdlib>
 #include <utility>
@@ -16,26 +15,22 @@ namespace {
 /// Selects an instruction set for all evaluation of this process, as the environment variable does.
 void force_isa(const std::string& name) {
   const Result<Isa> isa = parse_isa(name);
-  if (!isa) throw CLI::ValidationError("--isa", isa.status().message());
+  if (!isa) throw UsageError("--isa", isa.status().message());
   ::setenv("TESSERA_ISA", name.c_str(), 1);
 }
 
 }  // namespace
 
-void add_common(CLI::App& command, CommonOptions& options) {
-  constexpr const char* group = "Options of every command";
-  constexpr int max_threads = 1024;
-  command.add_flag("--json", options.json, "Print one JSON object per line, for programs")->group(group);
-  command.add_flag("--timings", options.timings, "Print the seconds of each phase")->group(group);
-  command.add_option("--threads", options.threads, "Number of threads [all of the machine]")
-      ->type_name("N")
-      ->check(whole_number(1, max_threads))
-      ->group(group);
-  command
-      .add_option_function<std::string>("--isa", force_isa, "Instruction set of the evaluation [the machine's best]")
-      ->type_name("NAME")
-      ->check(one_of({"sse2", "avx2", "avx512"}))
-      ->group(group);
+void add_common(Command& command, CommonOptions& options) {
+  constexpr std::size_t max_threads = 1024;
+  command.begin_group("Options of every command");
+  command.add_flag("--json", "Print one JSON object per line, for programs", options.json);
+  command.add_flag("--timings", "Print the seconds of each phase", options.timings);
+  command.add_count("--threads", "N", "Number of threads [all of the machine]", 1, max_threads,
+                    [&options](std::size_t count) { options.threads = static_cast<int>(count); });
+  command.add_choice("--isa", {"sse2", "avx2", "avx512"}, "Instruction set of the evaluation [the machine's best]",
+                     force_isa);
+  command.add_help();
 }
 
 Status with_threads(int threads, const std::function<Status()>& work) {

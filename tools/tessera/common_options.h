@@ -3,12 +3,9 @@
 
 #include <functional>
 
+#include "command_line.h"
 #include "tessera/status.h"
 #include "timings.h"
-
-namespace CLI {
-class App;
-}
 
 namespace tessera::cli {
 
@@ -18,7 +15,7 @@ struct CommonOptions {
 };
 
 /// Adds --json, --timings, --threads and --isa.
-void add_common(CLI::App& command, CommonOptions& options);
+void add_common(Command& command, CommonOptions& options);
 
 /// Runs `work` in an arena of `threads` threads.
 Status with_threads(int threads, const std::function<Status()>& work);

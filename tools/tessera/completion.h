@@ -3,12 +3,19 @@
 
 #include <string>
 
-#include "command_text.h"
+#include "command_line.h"
 
 namespace tessera::cli {
 
-std::string bash_completion(const CommandText& tool);
-std::string zsh_completion(const CommandText& tool);
-std::string fish_completion(const CommandText& tool);
+/// The help of an option in completions: the first sentence, without the default.
+std::string short_text(const Option& option);
+/// `text` with a backslash before each of `characters`.
+std::string escaped(const std::string& text, const std::string& characters);
+/// `text` in single quotes, as all shells accept it.
+std::string shell_quoted(const std::string& text);
+
+std::string bash_completion(const Command& tool);
+std::string zsh_completion(const Command& tool);
+std::string fish_completion(const Command& tool);
 
 }  // namespace tessera::cli

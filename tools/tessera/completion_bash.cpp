@@ -9,25 +9,25 @@ std::string joined(const std::vector<std::string>& words, const char* between) {
   return text;
 }
 
-std::string named_options(const CommandText& command) {
+std::string named_options(const Command& command) {
   std::vector<std::string> names;
-  for (const OptionText& option : command.options) {
-    if (!option.positional) names.insert(names.end(), option.names.begin(), option.names.end());
+  for (const Option& option : command.options) {
+    if (!option.is_positional()) names.insert(names.end(), option.names.begin(), option.names.end());
   }
   return joined(names, " ");
 }
 
-std::string command_names(const CommandText& tool) {
+std::string command_names(const Command& tool) {
   std::vector<std::string> names;
-  for (const CommandText& command : tool.commands) names.push_back(command.name);
+  for (const Command& command : tool.commands) names.push_back(command.name);
   return joined(names, " ");
 }
 
 /// The words that may follow `before`: a list `words`, or `files`.
-std::string value_cases(const CommandText& command) {
+std::string value_cases(const Command& command) {
   std::string cases;
-  for (const OptionText& option : command.options) {
-    if (option.positional || option.value.empty()) continue;
+  for (const Option& option : command.options) {
+    if (option.is_positional() || option.value.empty()) continue;
     const std::string what = option.takes_file()      ? "files=yes"
                              : option.choices.empty() ? "none=yes"
                                                       : "words=" + shell_quoted(joined(option.choices, " "));
@@ -36,15 +36,15 @@ std::string value_cases(const CommandText& command) {
   return cases;
 }
 
-std::string positional_words(const CommandText& command) {
-  for (const OptionText& option : command.options) {
-    if (!option.positional) continue;
+std::string positional_words(const Command& command) {
+  for (const Option& option : command.options) {
+    if (!option.is_positional()) continue;
     return option.takes_file() ? "files=yes" : "words=" + shell_quoted(joined(option.choices, " "));
   }
   return ":";
 }
 
-std::string command_case(const CommandText& command) {
+std::string command_case(const Command& command) {
   const std::string cases = value_cases(command);
   std::string text = "    " + command.name + ")\n      options=" + shell_quoted(named_options(command)) + "\n";
   text += "      case $before in\n" + cases + "        *) " + positional_words(command) + " ;;\n      esac ;;\n";
@@ -89,11 +89,11 @@ complete -F _tessera tessera
 
 }  // namespace
 
-std::string bash_completion(const CommandText& tool) {
+std::string bash_completion(const Command& tool) {
   std::string text = begin;
   text += "    '')\n      options=" + shell_quoted(named_options(tool)) +
           "\n      words=" + shell_quoted(command_names(tool)) + " ;;\n";
-  for (const CommandText& command : tool.commands) text += command_case(command);
+  for (const Command& command : tool.commands) text += command_case(command);
   return text + end;
 }
 

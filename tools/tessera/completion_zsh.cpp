@@ -3,7 +3,7 @@
 namespace tessera::cli {
 namespace {
 
-std::string value_action(const OptionText& option) {
+std::string value_action(const Option& option) {
   if (option.takes_file()) return "_files";
   if (option.choices.empty()) return " ";
   std::string words;
@@ -12,9 +12,9 @@ std::string value_action(const OptionText& option) {
 }
 
 /// The specifications of an option for _arguments: one per name, each excluding the others.
-std::string option_specs(const OptionText& option) {
+std::string option_specs(const Option& option) {
   const std::string value = option.value.empty() ? "" : ":" + escaped(option.value, ":\\") + ":" + value_action(option);
-  if (option.positional) return "        " + shell_quoted((option.repeated ? "*" : "1") + value) + " \\\n";
+  if (option.is_positional()) return "        " + shell_quoted((option.repeated ? "*" : "1") + value) + " \\\n";
   std::string all, specs;
   for (const std::string& name : option.names) all += (all.empty() ? "" : " ") + name;
   for (const std::string& name : option.names) {
@@ -27,9 +27,9 @@ std::string option_specs(const OptionText& option) {
   return specs;
 }
 
-std::string all_specs(const CommandText& command) {
+std::string all_specs(const Command& command) {
   std::string specs;
-  for (const OptionText& option : command.options) specs += option_specs(option);
+  for (const Option& option : command.options) specs += option_specs(option);
   return specs;
 }
 
@@ -44,15 +44,15 @@ _tessera() {
 
 }  // namespace
 
-std::string zsh_completion(const CommandText& tool) {
+std::string zsh_completion(const Command& tool) {
   std::string text = begin;
   text += "  commands=(\n";
-  for (const CommandText& command : tool.commands)
+  for (const Command& command : tool.commands)
     text += "    " + shell_quoted(command.name + ":" + escaped(command.text, ":\\")) + "\n";
   text += "  )\n  _arguments -C \\\n" + all_specs(tool) +
           "        '1:command:->command' \\\n        '*::argument:->argument'\n"
           "  case $state in\n    command) _describe command commands ;;\n    argument)\n      case $words[1] in\n";
-  for (const CommandText& command : tool.commands) {
+  for (const Command& command : tool.commands) {
     std::string specs = all_specs(command);
     specs.erase(specs.rfind(" \\\n"));
     text += "      " + command.name + ") _arguments -s \\\n" + specs + " ;;\n";

@@ -36,10 +36,7 @@ Status write_text(std::string_view text, const std::string& path) {
   return out->commit();
 }
 
-Status print_json(const Json& object) {
-  // File names need not be UTF-8, but JSON must be.
-  return print(object.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
-}
+Status print_json(const Json& object) { return print(object.text() + "\n"); }
 
 void complain(const std::string& message) { std::fprintf(stderr, "tessera: %s\n", message.c_str()); }
 void warn(const std::string& message) { complain("warning: " + message); }

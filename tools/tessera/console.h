@@ -4,18 +4,16 @@
 #include <atomic>
 #include <chrono>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 
+#include "json.h"
 #include "tessera/execution.h"
 #include "tessera/files.h"
 #include "tessera/geometry.h"
 #include "tessera/status.h"
 
 namespace tessera::cli {
-
-using Json = nlohmann::ordered_json;
 
 /// Opens the output file, or standard output if `path` is empty. After an interrupt the file does not appear. Open it
 /// before the work, so that a wrong place is reported at once. Errors: io_error.

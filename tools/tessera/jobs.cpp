@@ -64,8 +64,7 @@ void refuse_shared_outputs(const std::vector<Job>& jobs, const OutputRule& rule)
   for (const Job& job : jobs) {
     const auto [place, is_new] = inputs.emplace(fs::path(job.output).lexically_normal().string(), job.inputs[0]);
     if (is_new || job.output.empty()) continue;
-    throw CLI::ValidationError(rule.option,
-                               place->second + " and " + job.inputs[0] + " would both be written as " + job.output);
+    throw UsageError(rule.option, place->second + " and " + job.inputs[0] + " would both be written as " + job.output);
   }
 }
 

@@ -32,7 +32,7 @@ struct OutputRule {
 /// The files that `words` name. A name with *, ? or [ that is not a file stands for the files that it matches, in the
 /// order of their bytes; if there are none, running the jobs reports an error. If the output is a folder, or holds
 /// {name} (the file's name without folder and extension), each file has its own result; otherwise all files make one.
-/// Throws CLI::ValidationError if two files would be written to one place.
+/// Throws UsageError if two files would be written to one place.
 Plan plan_jobs(const std::vector<std::string>& words, const std::string& output, const OutputRule& rule);
 
 /// Whether an output is a folder, which gets a result per file.

@@ -102,22 +102,18 @@ Status add_file(const std::string& file, const FitOptions& fit, With with, Timin
 
 std::string model_formats() { return std::string(".bpt, .bv, .g2, .json, .obj, .rib") + cad_formats; }
 
-void add_models(CLI::App& command, ModelOptions& options) {
+void add_models(Command& command, ModelOptions& options) {
   command
-      .add_option("MODEL", options.files, "Files with surfaces (" + model_formats() + "), or patterns of their names")
-      ->required()
-      ->check(fault_of_name)
-      ->type_name("FILE");
-  command
-      .add_option("--fit-tolerance", options.fit.tolerance,
-                  "Largest distance of patches from surfaces that are written as expressions, in the model's unit "
-                  "[1e-6 of the surface's size]")
-      ->type_name("LENGTH")
-      ->check([](const std::string& text) {
-        double value = 0;
-        const bool good = CLI::detail::lexical_cast(text, value) && value > 0 && std::isfinite(value);
-        return good ? std::string() : "expected a number above 0, found \"" + text + "\"";
-      });
+      .add_words("MODEL", "FILE", "Files with surfaces (" + model_formats() + "), or patterns of their names",
+                 options.files)
+      .check(fault_of_name);
+}
+
+void add_fit(Command& command, ModelOptions& options) {
+  command.add_length("--fit-tolerance", "LENGTH",
+                     "Largest distance of patches from surfaces that are written as expressions, in the model's unit "
+                     "[1e-6 of the surface's size]",
+                     [&options](double length) { options.fit.tolerance = length; });
 }
 
 std::size_t Loaded::trimmed() const { return count_trimmed(model.surfaces); }

@@ -7,10 +7,6 @@
 #include "jobs.h"
 #include "tessera/model.h"
 
-namespace CLI {
-class App;
-}
-
 namespace tessera::cli {
 
 /// The options of the command line for models.
@@ -18,8 +14,10 @@ struct ModelOptions {
   std::vector<std::string> files;  ///< names and patterns from the command line
   FitOptions fit;
 };
-/// Adds MODEL... and --fit-tolerance.
-void add_models(CLI::App& command, ModelOptions& options);
+/// Adds MODEL...
+void add_models(Command& command, ModelOptions& options);
+/// Adds --fit-tolerance.
+void add_fit(Command& command, ModelOptions& options);
 
 /// The extensions of files that can be read: ".bpt, .bv, ...".
 std::string model_formats();

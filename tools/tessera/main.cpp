@@ -1,58 +1,39 @@
 // The command line: surfaces in, points, meshes, pictures and ray hits out.
 
-#include <cstdio>
 #include <exception>
-#include <sstream>
 
 #include "commands.h"
 #include "console.h"
+#include "help.h"
+#include "suggestions.h"
 #include "tessera/execution.h"
-#include "usage.h"
+#include "tessera/version.h"
 
 namespace tessera::cli {
 namespace {
 
 constexpr int success = 0, bad_input = 1, bad_command_line = 2;
+constexpr const char* hint = "\nTry tessera --help, or tessera help COMMAND.";
 
-void add_commands(CLI::App& app, Session& session) {
-  add_info(app, session);
-  add_eval(app, session);
-  add_tessellate(app, session);
-  add_raycast(app, session);
-  add_convert(app, session);
-  add_check(app, session);
-  add_completion(app, session);
-  add_man(app, session);
+void add_commands(Command& tool, Session& session) {
+  add_info(tool, session);
+  add_eval(tool, session);
+  add_tessellate(tool, session);
+  add_raycast(tool, session);
+  add_convert(tool, session);
+  add_check(tool, session);
+  add_completion(tool, session);
+  add_man(tool, session);
+  add_help(tool, session);
 }
 
-/// Prints help and version on standard output, faults on standard error.
-int end_of_parsing(const CLI::App& app, const CLI::ParseError& error) {
-  if (error.get_exit_code() != 0) {
-    complain(usage_fault(app, error));
-    return bad_command_line;
-  }
-  std::ostringstream output, errors;
-  (void)app.exit(error, output, errors);
-  const Status printed = print(output.str());
-  if (printed.ok()) return success;
-  complain(printed.message());
-  return bad_input;
+int print_text(const std::string& text) {
+  const Status printed = print(text);
+  if (!printed.ok()) complain(printed.message());
+  return printed.ok() ? success : bad_input;
 }
 
-int run(int argc, char** argv) {
-  CLI::App app("Tessera turns parametric surfaces into points, meshes, pictures and ray hits", "tessera");
-  Session session;
-  describe(app);
-  add_commands(app, session);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return end_of_parsing(app, error);
-  }
-  if (!session.command) {
-    complain(missing_command(app));
-    return bad_command_line;
-  }
+int run_command(const Session& session) {
   if (const Result<Isa> isa = default_isa(); !isa) {
     complain(isa.status().message());
     return bad_command_line;
@@ -62,6 +43,28 @@ int run(int argc, char** argv) {
   if (!status.ok() && status.code() != StatusCode::cancelled && !is_already_said(status)) complain(status.message());
   end_by_signal();
   return status.ok() ? success : bad_input;
+}
+
+int run(int argc, char** argv) {
+  Command tool;
+  Session session;
+  bool version = false;
+  describe(tool);
+  tool.add_flag("--version", "Print the version", version);
+  tool.add_help();
+  add_commands(tool, session);
+  Parsed parsed;
+  try {
+    parsed = parse(tool, argc, argv);
+  } catch (const UsageError& error) {
+    complain(error.what() + std::string(hint));
+    return bad_command_line;
+  }
+  if (parsed.help) return print_text(help_text(tool, parsed.command ? *parsed.command : tool));
+  if (version) return print_text("tessera " TESSERA_VERSION "\n");
+  if (session.command) return run_command(session);
+  complain("expected a command (" + listed(tool.command_names(), "or") + "), found none" + hint);
+  return bad_command_line;
 }
 
 }  // namespace

@@ -21,21 +21,19 @@ std::string roff(const std::string& text) {
 }
 
 /// "\fB\-o\fR, \fB\-\-output\fR \fIFILE\fR".
-std::string names_of(const OptionText& option) {
+std::string names_of(const Option& option) {
   std::string text;
   for (const std::string& name : option.names) {
     text += text.empty() ? "" : ", ";
-    text += (option.positional ? "\\fI" : "\\fB") + roff(name) + "\\fR";
+    text += (option.is_positional() ? "\\fI" : "\\fB") + roff(name) + "\\fR";
   }
   if (option.repeated) text += " ...";
-  if (!option.positional && !option.value.empty()) text += " \\fI" + roff(option.value) + "\\fR";
+  if (!option.is_positional() && !option.value.empty()) text += " \\fI" + roff(option.value) + "\\fR";
   return text;
 }
 
-std::string option_entry(const OptionText& option) {
-  std::string text = ".TP\n" + names_of(option) + "\n" + roff(option.text);
-  for (std::size_t k = 0; k < option.choices.size(); ++k)
-    text += (k == 0 ? ": " : k + 1 == option.choices.size() ? " or " : ", ") + roff(option.choices[k]);
+std::string option_entry(const Option& option) {
+  std::string text = ".TP\n" + names_of(option) + "\n" + roff(option.full_text());
   if (option.required) text += " (required)";
   return text + "\n";
 }
@@ -58,35 +56,35 @@ std::string footer_text(const std::string& footer) {
   return text + (examples ? ".fi\n.RE\n" : "");
 }
 
-std::string synopsis(const CommandText& tool) {
+std::string synopsis(const Command& tool) {
   std::string text;
-  for (const CommandText& command : tool.commands) {
+  for (const Command& command : tool.commands) {
     std::string words;
-    for (const OptionText& option : command.options)
-      if (option.positional) words += " \\fI" + roff(option.names[0]) + "\\fR" + (option.repeated ? " ..." : "");
+    for (const Option& option : command.options)
+      if (option.is_positional()) words += " \\fI" + roff(option.names[0]) + "\\fR" + (option.repeated ? " ..." : "");
     text +=
         (text.empty() ? "" : ".br\n") + std::string("\\fBtessera ") + command.name + "\\fR" + words + " [options]\n";
   }
   return text;
 }
 
-std::string command_section(const CommandText& command) {
+std::string command_section(const Command& command) {
   std::string text = ".SS \"tessera " + command.name + "\"\n" + roff(command.text) + ".\n";
-  for (const OptionText& option : command.options) text += option_entry(option);
+  for (const Option& option : command.options) text += option_entry(option);
   return text + footer_text(command.footer);
 }
 
 }  // namespace
 
-std::string man_page(const CommandText& tool, const std::string& version) {
+std::string man_page(const Command& tool, const std::string& version) {
   std::string text = ".TH TESSERA 1 \"\" \"tessera " + roff(version) + "\" \"User Commands\"\n";
   text += ".SH NAME\ntessera \\- turns parametric surfaces into points, meshes, pictures and ray hits\n";
   text += ".SH SYNOPSIS\n" + synopsis(tool);
   text += ".SH DESCRIPTION\n" + footer_text(tool.footer);
   text += ".SH OPTIONS\n";
-  for (const OptionText& option : tool.options) text += option_entry(option);
+  for (const Option& option : tool.options) text += option_entry(option);
   text += ".SH COMMANDS\n";
-  for (const CommandText& command : tool.commands) text += command_section(command);
+  for (const Command& command : tool.commands) text += command_section(command);
   return text;
 }
 

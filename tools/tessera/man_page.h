@@ -3,10 +3,10 @@
 
 #include <string>
 
-#include "command_text.h"
+#include "command_line.h"
 
 namespace tessera::cli {
 
-std::string man_page(const CommandText& tool, const std::string& version);
+std::string man_page(const Command& tool, const std::string& version);
 
 }  // namespace tessera::cli

@@ -50,27 +50,24 @@ std::string MeshError::caption() const {
 
 Json MeshError::json() const { return {{"triangles", triangles}, {"found", found}, {"red", red}, {"proven", proven}}; }
 
-void add_error_options(CLI::App& command, MeshErrorOptions& options, CLI::Option* shade) {
-  CLI::Option* const mesh = command.add_option(
-      "--mesh", options.mesh, "The mesh whose distance --shade error shows (.obj, .ply, .stl) [a certified mesh]");
-  mesh->check(fault_of_name)->type_name("FILE")->needs(shade);
-  const auto set_relative = [&options](const std::string& text) {
-    options.relative = parse_numbers("--relative", text, 1, "above 0")[0];
-    if (!(options.relative > 0))
-      throw CLI::ValidationError("--relative", "expected a number above 0, found \"" + text + "\"");
-  };
+void add_error_options(Command& command, MeshErrorOptions& options, const Option& shade) {
+  const Option& mesh =
+      command
+          .add_text("--mesh", "FILE",
+                    "The mesh whose distance --shade error shows (.obj, .ply, .stl) [a certified mesh]", options.mesh)
+          .check(fault_of_name)
+          .need(shade);
   command
-      .add_option_function<std::string>("--relative", set_relative,
-                                        "The tolerance of the certified mesh that --shade error shows, a share of the "
-                                        "model's size [0.001]")
-      ->type_name("SHARE")
-      ->needs(shade)
-      ->excludes(mesh);
+      .add_length("--relative", "SHARE",
+                  "The tolerance of the certified mesh that --shade error shows, a share of the model's size [0.001]",
+                  [&options](double share) { options.relative = share; })
+      .need(shade)
+      .exclude(mesh);
 }
 
-void check_error_options(const CLI::App& command, render::Shade shade) {
-  if (command.count("--mesh") + command.count("--relative") > 0 && shade != render::Shade::error)
-    throw CLI::ValidationError("--shade", "--mesh and --relative need --shade error");
+void check_error_options(Command& command, render::Shade shade) {
+  if (command.option("--mesh").count + command.option("--relative").count > 0 && shade != render::Shade::error)
+    throw UsageError("--shade", "--mesh and --relative need --shade error");
 }
 
 Result<MeshError> measure_error(const MeshErrorOptions& options, const PatchSet& set) {

@@ -1,11 +1,10 @@
 #pragma once
 // `raycast --shade error`: the distance of a mesh from its surfaces.
 
-#include <CLI/CLI.hpp>
-
 #include <memory>
 #include <string>
 
+#include "command_line.h"
 #include "console.h"
 #include "render/mesh_distance.h"
 #include "render/render.h"
@@ -33,9 +32,9 @@ struct MeshError {
   Json json() const;
 };
 
-/// Adds --mesh and --relative, which need --shade error. The check throws CLI::ValidationError if that is missing.
-void add_error_options(CLI::App& command, MeshErrorOptions& options, CLI::Option* shade);
-void check_error_options(const CLI::App& command, render::Shade shade);
+/// Adds --mesh and --relative, which need --shade error. The check throws UsageError if that is missing.
+void add_error_options(Command& command, MeshErrorOptions& options, const Option& shade);
+void check_error_options(Command& command, render::Shade shade);
 
 /// Measures the distance. Errors: those of reading, of the tessellation, and of render::MeshDistance.
 Result<MeshError> measure_error(const MeshErrorOptions& options, const PatchSet& set);

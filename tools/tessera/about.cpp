@@ -1,0 +1,37 @@
+#include "commands.h"
+#include "loading.h"
+
+namespace tessera::cli {
+
+void describe(Command& tool) {
+  tool.name = "tessera";
+  tool.text = "Tessera turns parametric surfaces into points, meshes, pictures and ray hits";
+  tool.footer =
+
+      "Files read: surfaces as " + model_formats() +
+      ";\n"
+      "meshes as .obj, .ply, .stl. Surfaces are Bezier patches (.bpt), BezierView (.bv), GoTools (.g2), RenderMan\n"
+      "(.rib), free-form OBJ, CAD parts (if OpenCASCADE was there at the build), and surfaces of every kind (.json;\n"
+      "tools/models/FORMAT.md describes the format). A warning names each part of a file that is skipped.\n"
+      "\nFiles written: meshes as .obj, .ply, .stl, .glb and .gltf; surfaces as .obj and .bpt; pictures as .png, and "
+      "as\n"
+      ".exr (numbers: depth, normals, parameters); tables as text. A file appears whole or not at all.\n"
+      "\nSeveral files: a command takes names and quoted patterns ('parts/*.bpt'). A pattern means the files that "
+      "match\n"
+      "it, sorted. With one output, all files are one scene. If the output is a folder, or contains {name} (the "
+      "file's\n"
+      "name without folder and extension), each file gets its own result. If a file fails, the others go on.\n"
+      "Surfaces, patches and rays are counted from 0. Surfaces are counted on from file to file.\n"
+      "\nEnvironment: TESSERA_ISA=sse2|avx2|avx512 does the same as --isa; NO_COLOR turns colours off.\n"
+      "\nExit status: 0 done, 1 an input is bad or an output cannot be written, 2 the command line is bad.\n"
+      "\nExamples:\n"
+      "  tessera info 'models/*.json'\n"
+      "  tessera raycast teapot.bpt\n"
+      "  tessera raycast teapot.bpt -o teapot.png --size 1280x720\n"
+      "  tessera tessellate body.iges wing.iges -o plane.ply --grid 8x8\n"
+      "  tessera convert goblet.json -o goblet.obj\n"
+      "  tessera raycast 'parts/*.step' -o 'pictures/{name}.png' --json\n"
+      "  eval \"$(tessera completion bash)\"";
+}
+
+}  // namespace tessera::cli
