@@ -17,7 +17,7 @@ class Interruption : public ToolTest {
     for (int k = 0; k < 20000; ++k) {
       for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
         std::error_code error;
-        const bool temporary = entry.path().filename().string().find(".tmp-") != std::string::npos;
+        const bool temporary = entry.path().filename().string().find(".tessera-") != std::string::npos;
         if (temporary && entry.file_size(error) >= bytes && !error) return true;
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -56,6 +56,33 @@ TEST_F(Interruption, WhileNothingListensASecondOneEndsTheToolAndItsTemporary) {
     EXPECT_GT(tool.wait().status, 128);
     EXPECT_EQ(folder_.names(), Names{"silent.bpt"}) << words[1];
   }
+  ::close(pipe);
+}
+
+TEST_F(Interruption, TheNextRunRemovesTheTemporaryOfAKilledOne) {
+  RunningProgram tool(folder_, {TESSERA_TOOL, "tessellate", teapot, "-o", "a.obj", "--grid", "256x256"});
+  ASSERT_TRUE(temporary_appears(1));
+  tool.signal(SIGKILL);
+  EXPECT_EQ(tool.wait().status, 128 + SIGKILL);
+  EXPECT_EQ(folder_.names(), Names{"a.obj.tessera-0.tmp"});
+  output_of({"tessellate", teapot, "-o", "b.obj", "--grid", "2x2"});  // of another file: stays
+  EXPECT_EQ(folder_.names(), (Names{"a.obj.tessera-0.tmp", "b.obj"}));
+  output_of({"tessellate", teapot, "-o", "a.obj", "--grid", "2x2"});
+  EXPECT_EQ(folder_.names(), (Names{"a.obj", "b.obj"}));
+}
+
+TEST_F(Interruption, TheTemporaryOfALivingRunIsUnchanged) {
+  const std::string model = folder_ / "silent.bpt";
+  ASSERT_EQ(::mkfifo(model.c_str(), 0600), 0);
+  const int pipe = ::open(model.c_str(), O_RDWR | O_CLOEXEC);
+  ASSERT_GE(pipe, 0);
+  RunningProgram tool(folder_, {TESSERA_TOOL, "tessellate", model, "-o", "a.ply", "--grid", "4x4"});
+  ASSERT_TRUE(temporary_appears(0));
+  output_of({"tessellate", teapot, "-o", "a.ply", "--grid", "2x2"});
+  EXPECT_EQ(folder_.names(), (Names{"a.ply", "a.ply.tessera-0.tmp", "silent.bpt"}));
+  tool.signal(SIGINT);
+  tool.signal(SIGTERM);
+  tool.wait();
   ::close(pipe);
 }
 

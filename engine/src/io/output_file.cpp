@@ -1,6 +1,7 @@
 #include "tessera/files.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 
 #include <array>
@@ -43,14 +44,6 @@ Result<fs::path> behind_links(const fs::path& path) {
     target = target.parent_path() / next;
   }
   return io_failure(path, "cannot be written", ELOOP);
-}
-
-/// A name beside `target` that no other writer uses, in this process or another.
-fs::path temporary_beside(const fs::path& target) {
-  static std::atomic<unsigned> serial{0};
-  fs::path temporary = target;
-  temporary += ".tmp-" + std::to_string(::getpid()) + "-" + std::to_string(serial++);
-  return temporary;
 }
 
 /// The name of a file that is removed at the end, unless it is released; remove_temporaries knows it as long.
@@ -97,6 +90,46 @@ void TemporaryName::release() {
   place_ = no_place;
 }
 
+bool is_same_file(int descriptor, const char* path) {
+  struct stat opened {
+  }, named{};
+  return ::fstat(descriptor, &opened) == 0 && ::lstat(path, &named) == 0 && opened.st_dev == named.st_dev &&
+         opened.st_ino == named.st_ino;
+}
+
+/// Removes a temporary that nobody holds locked: its writer was killed.
+bool remove_abandoned(const char* path) {
+  const Descriptor file(::open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+  return file.is_open() && ::flock(file.number(), LOCK_EX | LOCK_NB) == 0 && is_same_file(file.number(), path) &&
+         ::unlink(path) == 0;
+}
+
+/// A temporary beside its target.
+struct Temporary {
+  TemporaryName name;
+  Descriptor file;
+  int error = 0;  ///< errno of a failure
+};
+
+/// Creates `target`.tessera-0.tmp, or the next one that no living writer has, and locks it as long as it is open.
+Temporary open_temporary(const fs::path& target) {
+  constexpr int max_writers = 1000;  // of one target at once
+  for (int number = 0, tries = 0; number < max_writers && tries < 2 * max_writers; ++tries) {
+    fs::path path = target;
+    path += ".tessera-" + std::to_string(number) + ".tmp";
+    Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    if (file.is_open()) {
+      // Another writer may have taken the file for abandoned before it was locked: then this name is not ours.
+      if (::flock(file.number(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) continue;
+      if (!is_same_file(file.number(), path.c_str())) continue;
+      return {TemporaryName(std::move(path)), std::move(file), 0};
+    }
+    if (errno != EEXIST) return {{}, {}, errno};
+    if (!remove_abandoned(path.c_str())) ++number;
+  }
+  return {{}, {}, EEXIST};
+}
+
 }  // namespace
 
 void remove_temporaries() noexcept {
@@ -136,19 +169,17 @@ Result<OutputFile> OutputFile::create(const fs::path& path, const std::atomic<bo
   // A rename would replace a file that its owner has write-protected.
   if (exists && ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0)
     return io_failure(path, "cannot be written", errno);
-  TemporaryName temporary(temporary_beside(target));
-  Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-  if (!file.is_open()) {
-    const int error = errno;
-    temporary.release();  // a file of this name belongs to another
+  Temporary temporary = open_temporary(target);
+  if (!temporary.file.is_open()) {
     const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-    if (error == ENOENT) {
+    if (temporary.error == ENOENT) {
       return Status(StatusCode::io_error, path.string() + ": cannot be written: there is no folder " + folder.string());
     }
-    return io_failure(path, "cannot be written in " + folder.string(), error);
+    return io_failure(path, "cannot be written in " + folder.string(), temporary.error);
   }
-  if (exists) ::fchmod(file.number(), facts.st_mode & 07777);  // if it fails, the file has the usual mode
-  return OutputFile(std::make_unique<Destination>(std::move(file), std::move(temporary)), target, cancel);
+  if (exists) ::fchmod(temporary.file.number(), facts.st_mode & 07777);  // if it fails, the file has the usual mode
+  return OutputFile(std::make_unique<Destination>(std::move(temporary.file), std::move(temporary.name)), target,
+                    cancel);
 }
 
 OutputFile OutputFile::standard_output(const std::atomic<bool>* cancel) {
@@ -191,6 +222,7 @@ void OutputFile::see_cancel() {
 Status OutputFile::commit() {
   flush();
   see_cancel();
+  const Descriptor lock(::dup(destination_->file.number()));  // until the file has its name
   const int error = destination_->file.close();
   if (error != 0 && status_.ok()) status_ = io_failure(target_, "cannot be written", error);
   if (status_.ok() && !destination_->temporary.empty()) {
