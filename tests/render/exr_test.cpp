@@ -59,7 +59,7 @@ TEST(HitImages, EachPixelIsWhatItsRayMeets) {
     const Scene scene = Scene::of(name);
     constexpr int width = 37, height = 23;
     const HitImage image = scene.image(size(width, height));
-    const Camera camera = fit_camera(scene.rays.box(), width, height);
+    const Camera camera = fit_camera(scene.rays.box(), width, height, Up::z);
     const PixelRays pixels(camera, width, height);
     std::size_t met = 0;
     for (std::size_t k = 0; k < image.depths.size(); ++k) {

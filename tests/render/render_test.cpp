@@ -177,6 +177,36 @@ TEST(Render, ScaleAndPlaceDoNotMatter) {
   }
 }
 
+TEST(Render, AnyAxisMayPointUp) {
+  // The model is turned so that its z axis becomes `up`: the picture is unchanged.
+  std::vector<Image> images;
+  for (const Up up : {Up::x, Up::y, Up::z}) {
+    std::vector<BezierPatch> turned;
+    for (const BezierPatch& patch : test::closed_body()) {
+      std::vector<Vec3> points;
+      for (int i = 0; i <= patch.degree_u(); ++i)
+        for (int j = 0; j <= patch.degree_v(); ++j) points.push_back(from_z_up(patch.point(i, j), up));
+      turned.push_back(value_of(BezierPatch::polynomial(patch.degree_u(), patch.degree_v(), points)));
+    }
+    Settings settings = small();
+    settings.up = up;
+    settings.samples = 8;  // random directions differ with the axes
+    images.push_back(Drawn(turned).image(settings));
+  }
+  for (const Image& image : {images[0], images[1]}) {
+    std::size_t differing = 0;
+    for (std::size_t k = 0; k < image.rgb.size(); ++k) differing += std::abs(image.rgb[k] - images[2].rgb[k]) > 24;
+    EXPECT_LT(differing, image.rgb.size() / 100);
+  }
+}
+
+TEST(Render, SimpleLightKeepsSunAndShadow) {
+  Settings settings = small();
+  settings.simple_light = true;
+  const Image image = Drawn(test::sphere()).image(settings);
+  EXPECT_LT(darkest(image), pixel(image, 2, 39).sum() / 2);
+}
+
 TEST(Render, BadSettings) {
   const Drawn ball(test::sphere());
   const auto code = [&](auto&& spoil) {

@@ -36,10 +36,11 @@ std::array<Vec3, 8> corners(const Box3& box) {
 
 }  // namespace
 
-Camera fit_camera(const Box3& box, int width, int height) {
+Camera fit_camera(const Box3& box, int width, int height, Up up) {
   Camera camera;
-  const Vec3 back{std::cos(azimuth) * std::cos(elevation), std::sin(azimuth) * std::cos(elevation),
-                  std::sin(elevation)};
+  camera.up = from_z_up({0, 0, 1}, up);
+  const Vec3 back = from_z_up(
+      {std::cos(azimuth) * std::cos(elevation), std::sin(azimuth) * std::cos(elevation), std::sin(elevation)}, up);
   const Axes axes(back, {}, camera.up);
   const double tangent = fill * std::tan(camera.fov_degrees / 2 * degree), shorter = std::min(width, height);
   const double tangent_x = tangent * width / shorter, tangent_y = tangent * height / shorter;
@@ -59,6 +60,10 @@ Camera fit_camera(const Box3& box, int width, int height) {
   camera.target = box.centre() + 0.5 * (right - left) * axes.right + rise * axes.up;
   camera.eye = camera.target + distance * back;
   return camera;
+}
+
+Camera choose_camera(const Settings& settings, const Box3& box) {
+  return settings.camera ? *settings.camera : fit_camera(box, settings.width, settings.height, settings.up);
 }
 
 Status check(const Camera& camera) {

@@ -8,7 +8,7 @@
 namespace tessera::render {
 namespace {
 
-constexpr int glyph_width = 5, glyph_height = 7, advance = glyph_width + 1, margin = 1;  // dots
+constexpr int glyph_width = 5, glyph_height = text_dots_high, advance = glyph_width + 1, margin = 1;  // dots
 constexpr int strip_height = glyph_height + 2 * margin;
 
 /// One number per row of dots; the leftmost dot is the bit of value 16.
@@ -16,7 +16,7 @@ struct Glyph {
   char letter;
   std::array<unsigned char, glyph_height> rows;
 };
-constexpr std::array<Glyph, 44> font{{
+constexpr std::array<Glyph, 45> font{{
     {'A', {0x0e, 0x11, 0x11, 0x1f, 0x11, 0x11, 0x11}}, {'B', {0x1e, 0x11, 0x11, 0x1e, 0x11, 0x11, 0x1e}},
     {'C', {0x0e, 0x11, 0x10, 0x10, 0x10, 0x11, 0x0e}}, {'D', {0x1e, 0x11, 0x11, 0x11, 0x11, 0x11, 0x1e}},
     {'E', {0x1f, 0x10, 0x10, 0x1e, 0x10, 0x10, 0x1f}}, {'F', {0x1f, 0x10, 0x10, 0x1e, 0x10, 0x10, 0x10}},
@@ -37,8 +37,9 @@ constexpr std::array<Glyph, 44> font{{
     {'8', {0x0e, 0x11, 0x11, 0x0e, 0x11, 0x11, 0x0e}}, {'9', {0x0e, 0x11, 0x11, 0x0f, 0x01, 0x02, 0x0c}},
     {'.', {0x00, 0x00, 0x00, 0x00, 0x00, 0x0c, 0x0c}}, {',', {0x00, 0x00, 0x00, 0x00, 0x0c, 0x04, 0x08}},
     {':', {0x00, 0x0c, 0x0c, 0x00, 0x0c, 0x0c, 0x00}}, {'!', {0x04, 0x04, 0x04, 0x04, 0x00, 0x00, 0x04}},
-    {'-', {0x00, 0x00, 0x00, 0x1f, 0x00, 0x00, 0x00}}, {'(', {0x02, 0x04, 0x08, 0x08, 0x08, 0x04, 0x02}},
-    {')', {0x08, 0x04, 0x02, 0x02, 0x02, 0x04, 0x08}}, {'/', {0x00, 0x01, 0x02, 0x04, 0x08, 0x10, 0x00}},
+    {'-', {0x00, 0x00, 0x00, 0x1f, 0x00, 0x00, 0x00}}, {'+', {0x00, 0x04, 0x04, 0x1f, 0x04, 0x04, 0x00}},
+    {'(', {0x02, 0x04, 0x08, 0x08, 0x08, 0x04, 0x02}}, {')', {0x08, 0x04, 0x02, 0x02, 0x02, 0x04, 0x08}},
+    {'/', {0x00, 0x01, 0x02, 0x04, 0x08, 0x10, 0x00}},
 }};
 
 bool dot(char letter, int x, int y) {
@@ -47,7 +48,8 @@ bool dot(char letter, int x, int y) {
   return glyph != font.end() && (glyph->rows[static_cast<std::size_t>(y)] >> (glyph_width - 1 - x) & 1) != 0;
 }
 
-int width_of(const std::string& text) { return static_cast<int>(text.size()) * advance - 1 + 2 * margin; }
+/// The width of a caption with its margins, in dots.
+int width_of(const std::string& text) { return text_dots_wide(text) + 2 * margin; }
 
 /// Pixels per dot: at least one, and otherwise at most what fits a strip of a fortieth of the picture's height and the
 /// picture's width.
@@ -60,29 +62,43 @@ std::uint8_t* pixel(Image& image, int x, int y) {
                          static_cast<std::size_t>(x))];
 }
 
-void darken(Image& image, int from_row) {
-  const std::size_t begin = 3 * static_cast<std::size_t>(from_row) * static_cast<std::size_t>(image.width);
-  for (std::size_t k = begin; k < image.rgb.size(); ++k) image.rgb[k] = static_cast<std::uint8_t>(image.rgb[k] / 4);
+}  // namespace
+
+int text_dots_wide(const std::string& text) { return static_cast<int>(text.size()) * advance - 1; }
+
+void set_pixel(Image& image, int x, int y, const Vec3& colour) {
+  const auto byte = [](double channel) { return static_cast<std::uint8_t>(std::clamp(channel, 0.0, 1.0) * 255 + 0.5); };
+  std::uint8_t* const to = pixel(image, x, y);
+  to[0] = byte(colour.x), to[1] = byte(colour.y), to[2] = byte(colour.z);
 }
 
-}  // namespace
+void darken(Image& image, int first_row, int rows) {
+  const std::size_t row = 3 * static_cast<std::size_t>(image.width), begin = row * static_cast<std::size_t>(first_row),
+                    end = begin + row * static_cast<std::size_t>(rows);
+  for (std::size_t k = begin; k < end; ++k) image.rgb[k] = static_cast<std::uint8_t>(image.rgb[k] / 4);
+}
+
+void add_text(Image& image, int left, int top, int scale, const std::string& text) {
+  const int right = std::min(left + text_dots_wide(text) * scale, image.width);
+  const int bottom = std::min(top + glyph_height * scale, image.height);
+  for (int y = std::max(top, 0); y < bottom; ++y) {
+    for (int x = std::max(left, 0); x < right; ++x) {
+      const int at = (x - left) / scale, column = at % advance;
+      if (column == glyph_width) continue;
+      if (dot(text[static_cast<std::size_t>(at / advance)], column, (y - top) / scale))
+        std::fill_n(pixel(image, x, y), 3, std::uint8_t{235});
+    }
+  }
+}
 
 void add_caption(Image& image, const std::vector<std::string>& texts) {
   if (image.height < strip_height || texts.empty()) return;
   const auto fits = [&](const std::string& text) { return width_of(text) <= image.width; };
   const auto fitting = std::find_if(texts.begin(), texts.end(), fits);
   const std::string& text = fitting == texts.end() ? texts.back() : *fitting;
-  const int scale = scale_of(image, width_of(text)), top = image.height - scale * strip_height;
-  darken(image, top);
-  const int columns = std::min(width_of(text) * scale, image.width);
-  for (int y = 0; y < glyph_height * scale; ++y) {
-    for (int x = margin * scale; x < columns; ++x) {
-      const int at = x / scale - margin, letter = at / advance, column = at % advance;
-      if (letter >= static_cast<int>(text.size()) || column == glyph_width) continue;
-      if (!dot(text[static_cast<std::size_t>(letter)], column, y / scale)) continue;
-      std::fill_n(pixel(image, x, top + margin * scale + y), 3, std::uint8_t{235});
-    }
-  }
+  const int scale = scale_of(image, width_of(text)), height = scale * strip_height;
+  darken(image, image.height - height, height);
+  add_text(image, margin * scale, image.height - height + margin * scale, scale, text);
 }
 
 }  // namespace tessera::render

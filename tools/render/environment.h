@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "render/up_axis.h"
 #include "tessera/geometry.h"
 
 namespace tessera::render {
@@ -13,9 +14,10 @@ inline Vec3 mix(const Vec3& a, const Vec3& b, double share) { return (1 - share)
 
 class Environment {
  public:
-  /// The floor is at the height of the box's bottom. It is invisible from below.
-  Environment(const Box3& box, const Vec3& eye);
+  /// The floor is at the lower end of the box along `up`. It is invisible from below.
+  Environment(const Box3& box, const Vec3& eye, Up up);
 
+  Vec3 up() const { return from_z_up({0, 0, 1}, up_); }
   Vec3 sun_direction() const;  ///< towards the sun, a unit vector
   Vec3 sun_light() const;      ///< the light that a white wall across the sunlight reflects
   double sun_tangent() const;  ///< of half the sun's angle
@@ -31,7 +33,8 @@ class Environment {
   Vec3 surroundings(const Vec3& direction) const;
 
  private:
-  Vec3 centre_;
+  Up up_;
+  Vec3 centre_;  // z is up, here and below
   double height_, size_;
   bool has_floor_;
 };

@@ -48,8 +48,7 @@ Result<HitImage> cast(const RayScene& scene, const Box3& box, const Model& model
                       const Execution& execution) {
   if (Status status = check(settings, box); !status.ok()) return status;
   HitImage image = empty_image(settings.width, settings.height);
-  const Camera camera = settings.camera ? *settings.camera : fit_camera(box, settings.width, settings.height);
-  const PixelRays pixels(camera, settings.width, settings.height);
+  const PixelRays pixels(choose_camera(settings, box), settings.width, settings.height);
   const std::size_t count = image.depths.size(), width = static_cast<std::size_t>(settings.width);
   std::vector<Ray> rays;
   std::vector<Hit> hits(std::min(count, rays_per_band));

@@ -59,14 +59,15 @@ bool LitTile::meet(std::size_t sample, const Ray& ray, const Hit& hit, Point& po
   point.direction = ray.direction;
   if (const auto t = world_.floor(ray.origin, ray.direction, farthest)) {
     point.position = ray.origin + *t * ray.direction;
-    point.normal = {0, 0, 1};
+    point.normal = world_.up();
     point.on_model = false;
     return true;
   }
   if (!met) return false;
   point.position = hit.position;
-  point.normal = dot(hit.normal, ray.direction) > 0 ? -hit.normal : hit.normal;
-  if (hit.normal == Vec3{}) point.normal = -ray.direction;
+  const Vec3 normal = shading_normal(view_.settings, hit);
+  point.normal = dot(normal, ray.direction) > 0 ? -normal : normal;
+  if (normal == Vec3{}) point.normal = -ray.direction;
   point.on_model = true;
   return true;
 }
@@ -108,8 +109,17 @@ Status LitTile::sunlight(const std::vector<Point>& points, Purpose purpose, std:
   return {};
 }
 
-/// Adds diffuse light from all else, by one direction per sample.
+/// Adds diffuse light from all else, by one direction per sample; in simple light without rays: a mean of
+/// sky and floor by the normal, and a quarter from neighbours.
 Status LitTile::ambient(const std::vector<Point>& points, std::vector<Vec3>& light) {
+  if (view_.settings.simple_light) {
+    const Vec3 above = world_.surroundings(world_.up()), below = world_.surroundings(-world_.up());
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const Vec3 around = mix(below, above, 0.5 + 0.5 * dot(points[k].normal, world_.up()));
+      light[k] += multiply(albedo(points[k]), mix(shaded_neighbour, around, 0.75));
+    }
+    return {};
+  }
   work_.secondary_rays.clear();
   for (const Point& point : points) {
     work_.secondary_rays.push_back(leave(point, cosine_direction(point.normal, random(point, Purpose::ambient))));
@@ -188,7 +198,9 @@ Status LitTile::shade() {
   light.assign(points.size(), {});
   if (Status status = ambient(points, light); !status.ok()) return status;
   if (Status status = sunlight(points, Purpose::sun, light); !status.ok()) return status;
-  if (Status status = reflections(points, light); !status.ok()) return status;
+  if (!view_.settings.simple_light) {
+    if (Status status = reflections(points, light); !status.ok()) return status;
+  }
   for (std::size_t k = 0; k < points.size(); ++k) {
     const Point& point = points[k];
     work_.colours[point.sample] = point.on_model ? light[k] : world_.in_haze(light[k], point.position, point.direction);

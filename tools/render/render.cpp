@@ -42,6 +42,18 @@ Vec3 average(const Vec3* colours, int count, bool lit) {
 
 std::uint8_t to_byte(double x) { return static_cast<std::uint8_t>(std::clamp(x, 0.0, 1.0) * 255 + 0.5); }
 
+/// Draws the samples that lie on a line: those that appear no farther from an edge than half a line's width.
+void draw_edges(const View& view, Workspace& work) {
+  const Vec3 ink = view.settings.shade == Shade::lambert ? Vec3{0.012, 0.014, 0.02} : Vec3{0.10, 0.11, 0.14};
+  const double width = std::max(1.2, std::min(view.settings.width, view.settings.height) / 800.0);  // pixels
+  for (std::size_t k = 0; k < work.hits.size(); ++k) {
+    const Hit& hit = work.hits[k];
+    if (hit.kind != HitKind::hit) continue;
+    const Vec3 &along = work.rays[k].direction, apart = hit.position - view.settings.nearest_edge(hit);
+    if (length(apart - dot(apart, along) * along) < 0.5 * width * hit.t * view.camera.pixel()) work.colours[k] = ink;
+  }
+}
+
 Status draw(const View& view, const Tile& tile, Workspace& work, Image& image) {
   if (Status status = trace(view, tile, work); !status.ok()) return status;
   const bool lit = view.settings.shade == Shade::lambert;
@@ -50,6 +62,7 @@ Status draw(const View& view, const Tile& tile, Workspace& work, Image& image) {
   } else {
     shade_flat(view, work);
   }
+  if (view.settings.nearest_edge) draw_edges(view, work);
   const int count = view.settings.samples * view.settings.samples;
   const Vec3* next = work.colours.data();
   for (int y = tile.y; y < tile.y + tile.height; ++y) {
@@ -145,8 +158,8 @@ Result<Image> render(const RayScene& scene, const Box3& box, const Settings& set
   try {
     Image image{settings.width, settings.height, {}};
     image.rgb.resize(3 * static_cast<std::size_t>(settings.width) * static_cast<std::size_t>(settings.height));
-    const Camera camera = settings.camera ? *settings.camera : fit_camera(box, settings.width, settings.height);
-    const Environment environment(box, camera.eye);
+    const Camera camera = choose_camera(settings, box);
+    const Environment environment(box, camera.eye, settings.up);
     const PixelRays rays(camera, settings.width, settings.height);
     const View view{scene, environment, rays, settings, box.diagonal(), execution.cancel};
     if (Status status = Drawing(view, execution, image).run(); !status.ok()) return status;

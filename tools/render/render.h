@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "render/up_axis.h"
 #include "tessera/execution.h"
 #include "tessera/files.h"
 #include "tessera/geometry.h"
@@ -31,6 +32,7 @@ enum class Shade : std::uint8_t {
   patch,      ///< a colour per patch
   error,      ///< distance of the surface by Settings::error: dark where small, red where largest
   curvature,  ///< Gaussian: domes red, saddles blue, grey where it is zero
+  clay,       ///< grey, lit from above the eye; no floor
   steps,      ///< Hit::steps, the cost of each ray, hits and misses: blue at 1, red from max_steps_shown on
 };
 
@@ -39,11 +41,18 @@ inline constexpr double max_steps_shown = 256;
 struct Settings {
   int width = 1280, height = 800;  ///< 1 to 32768
   Shade shade = Shade::lambert;
-  std::optional<Camera> camera;  ///< if empty, one that fits the box to the picture
-  int samples = 4;               ///< samples x samples per pixel, 1 to 16
+  std::optional<Camera> camera;         ///< if empty, one that fits the box to the picture
+  Up up = Up::z;                        ///< for sky, floor and the camera that fits the box
+  int samples = 4;                      ///< samples x samples per pixel, 1 to 16
+  bool simple_light = false;            ///< for Shade::lambert: only the sun casts shadows, and nothing is reflected
+  Vec3 background{0.955, 0.955, 0.96};  ///< of all shades but lambert, sRGB from 0 to 1
   /// For Shade::error: the distance at a point of the surface, as a share of the largest one that colours distinguish;
   /// above 1 is magenta. Called from any number of threads.
   std::function<double(const Vec3&)> error = {};
+  /// The unit normal to shade at a hit; empty: the surface's. Called from any number of threads.
+  std::function<Vec3(const Hit&)> normal = {};
+  /// The point nearest to a hit on the edges to draw as lines; empty: no lines. Called from any number of threads.
+  std::function<Vec3(const Hit&)> nearest_edge = {};
 };
 
 /// Rows from the top, three bytes per pixel, sRGB.

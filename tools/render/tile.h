@@ -62,6 +62,11 @@ Status check(const Settings& settings, const Box3& box);
 /// Fills samples, rays and hits.
 Status trace(const View& view, const Tile& tile, Workspace& work);
 
+/// The normal that is shaded at a hit: the surface's, or that of Settings::normal.
+inline Vec3 shading_normal(const Settings& settings, const Hit& hit) {
+  return settings.normal ? settings.normal(hit) : hit.normal;
+}
+
 /// Fill colours from samples, rays and hits.
 Status shade_lit(const View& view, Workspace& work);
 void shade_flat(const View& view, Workspace& work);

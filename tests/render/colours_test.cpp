@@ -1,0 +1,45 @@
+// Colours of numbers, and the bar that explains them.
+
+#include "render/colours.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace tessera::render {
+namespace {
+
+Image blank(int width, int height) {
+  return {width, height, std::vector<std::uint8_t>(3 * static_cast<std::size_t>(width * height), 255)};
+}
+
+TEST(Colours, CurvatureAndItsShareAreInverse) {
+  for (const double gaussian : {-40.0, -1.0, -1e-3, 1e-3, 1.0, 40.0}) {
+    const double share = curvature_share(gaussian, 3);
+    EXPECT_NEAR(curvature_at(share, 3), gaussian, 1e-12 * std::abs(gaussian));
+    EXPECT_LT(std::abs(share), 1);
+  }
+  EXPECT_EQ(curvature_share(0, 3), 0);
+  EXPECT_DOUBLE_EQ(curvature_share(1 / (0.25 * 0.25), 4), 0.5);  // a radius of a sixteenth of the size
+}
+
+TEST(Colours, TheBarShowsItsColoursAndMarks) {
+  Image image = blank(400, 200);
+  add_colour_bar(image, {error_colour, {{0, "0"}, {1, "0.5"}}});
+  const auto pixel = [&](int x, int y) { return &image.rgb[3 * static_cast<std::size_t>(y * 400 + x)]; };
+  EXPECT_GT(pixel(82, 4)[2], pixel(82, 4)[0]);    // blue at the left end
+  EXPECT_GT(pixel(317, 4)[0], pixel(317, 4)[2]);  // red at the right end
+  EXPECT_EQ(pixel(10, 4)[0], 63);                 // the dark strip
+  EXPECT_EQ(pixel(10, 60)[0], 255);               // the picture below
+  const auto is_letter = [](std::uint8_t channel) { return channel == 235; };
+  EXPECT_GT(std::count_if(image.rgb.begin(), image.rgb.end(), is_letter), 3 * 30);
+}
+
+TEST(Colours, SmallPicturesHaveNoBar) {
+  Image image = blank(30, 20);
+  add_colour_bar(image, {error_colour, {{0, "0"}, {1, "0.5"}}});
+  EXPECT_EQ(image.rgb, blank(30, 20).rgb);
+}
+
+}  // namespace
+}  // namespace tessera::render
