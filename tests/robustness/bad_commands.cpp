@@ -121,8 +121,8 @@ void fill_model_commands(Table& table) {
   tool.row(1, {"eval", "teapot.bpt", "--params", "nosuch.csv"});
 
   table.of("an output that cannot be written");
-  tool.row(1, {"tessellate", "teapot.bpt", "-o", "none/a.ply", "--grid", "2x2"});
-  tool.row(1, {"raycast", "teapot.bpt", "-o", "none/a.png", "--size", "8x8"});
+  tool.row(1, {"tessellate", "teapot.bpt", "-o", "teapot.bpt/a/a.ply", "--grid", "2x2"});
+  tool.row(1, {"raycast", "teapot.bpt", "-o", "teapot.bpt/a/a.png", "--size", "8x8"});
   tool.row(1, {"eval", "teapot.bpt", "--grid", "2x2", "-o", "/dev/full"});
   tool.row(2, {"eval", "teapot.bpt", "--grid", "2x2", "-o", "teapot.bpt"});
   tool.row(2, {"raycast", "teapot.bpt", "--rays", "rays.csv", "--hits", "./rays.csv"});

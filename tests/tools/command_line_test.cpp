@@ -26,13 +26,16 @@ TEST_F(CommandLine, HelpThatCannotBeWrittenEndsWithOne) {
 }
 
 TEST_F(CommandLine, OutputsThatCannotBeWrittenAreRefusedBeforeTheWork) {
+  folder_.file("file", "x");
   // The model would be an error, too: it is not even read.
   for (const std::vector<std::string>& command :
-       {Names{"tessellate", "missing.bpt", "--grid", "2x2", "-o", "none/a.ply"},
-        Names{"eval", "missing.bpt", "--grid", "2x2", "-o", "none/a.csv"},
-        Names{"raycast", "missing.bpt", "-o", "none/a.png"},
-        Names{"raycast", "missing.bpt", "--rays", "missing.csv", "--hits", "none/a.csv"}}) {
-    expect_failure(command, 1, "tessera: " + command.back() + ": cannot be written: there is no folder none");
+       {Names{"tessellate", "missing.bpt", "--grid", "2x2", "-o", "file/a/a.ply"},
+        Names{"eval", "missing.bpt", "--grid", "2x2", "-o", "file/a/a.csv"},
+        Names{"raycast", "missing.bpt", "-o", "file/a/a.png"},
+        Names{"raycast", "missing.bpt", "--rays", "missing.csv", "--hits", "file/a/a.csv"}}) {
+    expect_failure(
+        command, 1,
+        "tessera: " + command.back() + ": cannot be written: the folder file/a cannot be made: Not a directory");
   }
 }
 
@@ -63,7 +66,6 @@ TEST_F(CommandLine, WhatIsNoCommandLineEndsWithTwo) {
   expect_failure({"eval", teapot, "--grid", "3x3", "--derivs", "3"}, 2, "--derivs");
   expect_failure({"eval", teapot, "--grid", "3x3", "--format", "xml"}, 2, "--format");
   expect_failure({"tessellate", teapot, "--grid", "3x3"}, 2, "--output");
-  expect_failure({"tessellate", teapot, "-o", "a.ply"}, 2, "--grid");
   expect_failure({"tessellate", teapot, "-o", "a.off", "--grid", "3x3"}, 2,
                  "meshes are written as .obj, .ply, .stl, .glb, .gltf");
   expect_failure({"raycast", teapot}, 2, "expected -o");
@@ -192,17 +194,19 @@ TEST_F(CommandLine, BadModelsEndWithOne) {
 }
 
 TEST_F(CommandLine, OutputsThatCannotBeWrittenEndWithOne) {
+  folder_.file("file", "x");
   std::filesystem::create_directories(folder_.path() / "folder" / "teapot.ply");
   std::filesystem::create_directories(folder_.path() / "folder" / "teapot.png");
-  expect_failure({"tessellate", teapot, "-o", "none/a.ply", "--grid", "2x2"}, 1, "none/a.ply: cannot be written");
+  expect_failure({"tessellate", teapot, "-o", "file/a/a.ply", "--grid", "2x2"}, 1, "file/a/a.ply: cannot be written");
   expect_failure({"tessellate", teapot, "-o", "folder", "--grid", "2x2"}, 1,
                  "folder/teapot.ply: cannot be written: it is a directory");
-  expect_failure({"eval", teapot, "--grid", "2x2", "-o", "none/a.csv"}, 1, "none/a.csv: cannot be written");
+  expect_failure({"eval", teapot, "--grid", "2x2", "-o", "file/a/a.csv"}, 1, "file/a/a.csv: cannot be written");
   expect_failure({"eval", teapot, "--grid", "2x2", "-o", "/dev/full"}, 1, "No space left on device");
-  expect_failure({"raycast", teapot, "-o", "none/a.png", "--size", "8x8"}, 1, "none/a.png");
+  expect_failure({"raycast", teapot, "-o", "file/a/a.png", "--size", "8x8"}, 1, "file/a/a.png");
   expect_failure({"raycast", teapot, "-o", "folder/", "--size", "8x8"}, 1, "folder/teapot.png");
   folder_.file("rays.csv", "ox,oy,oz,dx,dy,dz\n0,0,9,0,0,-1\n");
-  expect_failure({"raycast", teapot, "--rays", "rays.csv", "--hits", "none/a.csv"}, 1, "none/a.csv: cannot be written");
+  expect_failure({"raycast", teapot, "--rays", "rays.csv", "--hits", "file/a/a.csv"}, 1,
+                 "file/a/a.csv: cannot be written");
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ TEST_F(ConvertTool, WhatCannotBeConverted) {
   expect_failure({"convert", "missing.bpt", "-o", "a.obj"}, 1, "missing.bpt: cannot be opened");
   folder_.file("m.bpt", content_of(teapot));
   expect_failure({"convert", "m.bpt", "-o", "m.bpt"}, 2, "which would be overwritten");
-  expect_failure({"convert", "m.bpt", "-o", "none/m.obj"}, 1, "there is no folder");
+  expect_failure({"convert", "m.bpt", "-o", "m.bpt/a/m.obj"}, 1, "the folder m.bpt/a cannot be made");
 }
 
 TEST_F(ConvertTool, MeshesOfEveryFormatAreWritten) {

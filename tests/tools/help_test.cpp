@@ -54,7 +54,7 @@ TEST_F(Help, EveryOptionSaysWhatItTakesAndItsDefault) {
   const std::string raycast = output_of({"raycast", "--help"});
   for (const char* const word :
        {"Pixels of the picture, 1 to 16384 each [1280x800", "field of view in degrees",
-        "lambert, normals, uv, patch, error, curvature or steps [lambert]", "auto, always or never [auto]"}) {
+        "lambert, normals, uv, patch, error, curvature, clay or steps [lambert]", "auto, always or never [auto]"}) {
     std::string squeezed = std::regex_replace(raycast, std::regex("\\s+"), " ");
     EXPECT_NE(squeezed.find(word), std::string::npos) << word << squeezed;
   }
@@ -124,7 +124,7 @@ TEST_F(BashCompletion, EveryOptionOfEveryCommand) {
 }
 
 TEST_F(BashCompletion, WordsThatAnOptionTakes) {
-  const Names shades{"curvature", "error", "lambert", "normals", "patch", "steps", "uv"};
+  const Names shades{"clay", "curvature", "error", "lambert", "normals", "patch", "steps", "uv"};
   EXPECT_EQ(offers({"raycast", "--shade", ""}), shades);
   EXPECT_EQ(offers({"raycast", "--shade", "="}), shades);
   EXPECT_EQ(offers({"raycast", "--shade", "=", "n"}), Names{"normals"});

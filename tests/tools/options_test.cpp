@@ -24,7 +24,7 @@ TEST_F(CommonOptions, WrongWordsAreNamedWithWhatMayBeMeant) {
   expect_failure({"--versoin"}, 2, "there is no option --versoin before a command; did you mean --version?");
   expect_failure(
       {"raycast", teapot, "-o", "a.png", "--shade", "normal"}, 2,
-      "expected lambert, normals, uv, patch, error, curvature or steps, found \"normal\"; did you mean normals?");
+      "expected lambert, normals, uv, patch, error, curvature, clay or steps, found \"normal\"; did you mean normals?");
 }
 
 TEST_F(CommonOptions, InstructionSetsAreForced) {

@@ -26,13 +26,13 @@ std::pair<unsigned, unsigned> png_size(const std::string& bytes) {
 }
 
 TEST_F(RaycastTool, PicturesHaveTheSizeAskedFor) {
-  for (const char* shade : {"lambert", "normals", "uv", "patch", "error", "curvature", "steps"}) {
+  for (const char* shade : {"lambert", "normals", "uv", "patch", "error", "curvature", "clay", "steps"}) {
     const std::string name = std::string(shade) + ".png";
     output_of({"raycast", teapot, "-o", name, "--size", "64x48", "--shade", shade});
     EXPECT_EQ(png_size(content_of(folder_ / name)), (std::pair{64u, 48u}));
   }
-  EXPECT_EQ(folder_.names(),
-            (Names{"curvature.png", "error.png", "lambert.png", "normals.png", "patch.png", "steps.png", "uv.png"}));
+  EXPECT_EQ(folder_.names(), (Names{"clay.png", "curvature.png", "error.png", "lambert.png", "normals.png", "patch.png",
+                                    "steps.png", "uv.png"}));
   EXPECT_NE(content_of(folder_ / "uv.png"), content_of(folder_ / "patch.png"));
 }
 
@@ -74,6 +74,60 @@ TEST_F(RaycastTool, ErrorsOfMeshesAreShown) {
   expect_failure({"raycast", teapot, "-o", "a.png", "--shade", "uv", "--mesh", "mesh.ply"}, 2, "--shade error");
   expect_failure({"raycast", teapot, "-o", "a.png", "--shade", "error", "--relative", "0"}, 2, "above 0");
   expect_failure({"raycast", teapot, "-o", "a.png", "--shade", "error", "--mesh", "none.ply"}, 1, "none.ply");
+}
+
+TEST_F(RaycastTool, MeshesAreDrawn) {
+  output_of({"tessellate", teapot, "-o", "mesh.ply", "--grid", "4x4", "--quads"});
+  for (const char* const format : {"obj", "stl"})
+    output_of({"tessellate", teapot, "-o", std::string("mesh.") + format, "--grid", "4x4"});
+  std::vector<std::string> pictures;
+  for (const char* const mesh : {"mesh.ply", "mesh.obj", "mesh.stl"}) {
+    const json facts =
+        json::parse(output_of({"raycast", mesh, "-o", "a.png", "--size", "64x48", "--shade", "clay", "--json"}));
+    EXPECT_EQ(facts["triangles"], 32 * 32 - 32) << mesh;  // without those of no area, at the poles of four patches
+    pictures.push_back(content_of(folder_ / "a.png"));
+  }
+  EXPECT_EQ(pictures[0], pictures[1]);
+  EXPECT_NE(pictures[0], pictures[2]);  // an .stl file has no normals
+  output_of({"raycast", "mesh.stl", "-o", "a.png", "--size", "64x48", "--shade", "clay", "--edges"});
+  EXPECT_NE(content_of(folder_ / "a.png"), pictures[2]);
+  EXPECT_EQ(output_of({"raycast", "mesh.stl", "-o", "b.png", "--size", "64x48"}), "b.png: 64 x 48, 992 triangles\n");
+}
+
+TEST_F(RaycastTool, OptionsThatMeshesCannotHave) {
+  output_of({"tessellate", teapot, "-o", "mesh.ply", "--grid", "4x4"});
+  folder_.file("rays.csv", "ox,oy,oz,dx,dy,dz\n0,0,9,0,0,-1\n");
+  expect_failure({"raycast", "mesh.ply", "--rays", "rays.csv", "--hits", "hits.csv"}, 1,
+                 "tessera: --rays needs surfaces, found the mesh mesh.ply\n");
+  expect_failure({"raycast", "mesh.ply", "-o", "a.exr"}, 1, "an .exr picture needs surfaces, found the mesh mesh.ply");
+  expect_failure({"raycast", "mesh.ply", "-o", "a.png", "--shade", "uv"}, 1, "need surfaces, found the mesh mesh.ply");
+  expect_failure({"raycast", "mesh.ply", teapot, "-o", "a.png"}, 1,
+                 "shows surfaces or meshes, found the mesh mesh.ply and");
+  expect_failure({"raycast", teapot, "-o", "a.png", "--edges"}, 1,
+                 "--edges draws the edges of meshes, found the surfaces of");
+  folder_.file("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+  expect_failure({"raycast", "flat.obj", "-o", "a.png"}, 1, "flat.obj: the mesh has no triangle with an area");
+  folder_.file("far.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 4\n");
+  expect_failure({"raycast", "far.obj", "-o", "a.png"}, 1, "far.obj");
+}
+
+TEST_F(RaycastTool, TheAxisThatPointsUp) {
+  std::vector<std::string> pictures;
+  for (const char* const up : {"x", "y", "z"}) {
+    output_of({"raycast", teapot, "-o", "a.png", "--size", "32x32", "--shade", "clay", "--up", up});
+    pictures.push_back(content_of(folder_ / "a.png"));
+  }
+  EXPECT_NE(pictures[0], pictures[1]);
+  EXPECT_NE(pictures[1], pictures[2]);
+  output_of({"raycast", teapot, "-o", "a.png", "--size", "32x32", "--shade", "clay"});
+  EXPECT_EQ(content_of(folder_ / "a.png"), pictures[2]);
+  expect_failure({"raycast", teapot, "-o", "a.png", "--up", "w"}, 2, "--up: ");
+}
+
+TEST_F(RaycastTool, DraftsDiffer) {
+  output_of({"raycast", teapot, "-o", "a.png", "--size", "32x32", "--quality", "draft"});
+  output_of({"raycast", teapot, "-o", "b.png", "--size", "32x32"});
+  EXPECT_NE(content_of(folder_ / "a.png"), content_of(folder_ / "b.png"));
 }
 
 TEST_F(RaycastTool, CamerasMatter) {

@@ -10,6 +10,11 @@
 namespace tessera::cli {
 namespace {
 
+struct Options {
+  std::vector<std::string> meshes;
+  bool require_closed = false;
+};
+
 Json as_json(const std::string& mesh, const MeshReport& report) {
   return {{"mesh", mesh},
           {"vertices", report.vertices},
@@ -43,7 +48,7 @@ std::string as_text(const std::string& mesh, const MeshReport& report) {
          line("NaN or infinite       ", report.non_finite_vertices, "  (vertices)");
 }
 
-Status run_check(const std::string& file, const CommonOptions& common, Timings& timings) {
+Status run_check(const std::string& file, const Options& options, const CommonOptions& common, Timings& timings) {
   const Result<Mesh> mesh = [&] {
     const auto phase = timings.phase("read");
     return read_mesh(file, {.keep_quads = true});
@@ -57,14 +62,20 @@ Status run_check(const std::string& file, const CommonOptions& common, Timings& 
   Json json = as_json(file, *report);
   add_seconds(json, common, timings);
   if (Status status = common.json ? print_json(json) : print(as_text(file, *report)); !status.ok()) return status;
-  if (report->non_finite_vertices == 0) return {};
-  complain(file + ": " + counted(report->non_finite_vertices, "vertex", "vertices") + " with NaN or infinity");
-  return already_said(StatusCode::non_finite);
+  if (report->non_finite_vertices > 0) {
+    complain(file + ": " + counted(report->non_finite_vertices, "vertex", "vertices") + " with NaN or infinity");
+    return already_said(StatusCode::non_finite);
+  }
+  if (!options.require_closed || report->closed()) return {};
+  complain(file + ": expected a closed mesh, found " + counted(report->open_edges, "open edge") + " and " +
+           counted(report->non_manifold_edges, "non-manifold edge"));
+  return already_said(StatusCode::invalid_argument);
 }
 
 constexpr const char* footer =
     "Vertices at the same position, bit for bit, count as one. Open edges are no error, because a model may be open.\n"
-    "The exit status is 1 only if a mesh cannot be read, holds NaN or infinity, or has an index out of range.\n"
+    "The exit status is 1 only if a mesh cannot be read, holds NaN or infinity, has an index out of range, or is not\n"
+    "closed with --require-closed (closed: no open and no non-manifold edges).\n"
     "\nExamples:\n"
     "  tessera check teapot.ply\n"
     "  tessera check 'meshes/*.ply' --json";
@@ -73,15 +84,16 @@ constexpr const char* footer =
 
 void add_check(Command& tool, Session& session) {
   Command& command = tool.add_command("check", "Check meshes for cracks, flipped triangles and NaN");
-  const auto meshes = std::make_shared<std::vector<std::string>>();
-  command.add_words("MESH", "FILE", "Files with meshes (.obj, .ply, .stl), or patterns of their names", *meshes)
+  const auto options = std::make_shared<Options>();
+  command.add_words("MESH", "FILE", "Files with meshes (.obj, .ply, .stl), or patterns of their names", options->meshes)
       .check(fault_of_name);
+  command.add_flag("--require-closed", "Exit with 1 if a mesh is not closed", options->require_closed);
   add_common(command, session.common);
   command.footer = footer;
-  command.choose = [meshes, &session] {
-    session.command = [&session, plan = plan_jobs(*meshes, "", {"MESH", "", false})] {
-      return run_jobs(plan, session.common, [&session](const Job& job, Timings& timings) {
-        return run_check(job.inputs[0], session.common, timings);
+  command.choose = [options, &session] {
+    session.command = [options, &session, plan = plan_jobs(options->meshes, "", {"MESH", "", false})] {
+      return run_jobs(plan, session.common, [&](const Job& job, Timings& timings) {
+        return run_check(job.inputs[0], *options, session.common, timings);
       });
     };
   };

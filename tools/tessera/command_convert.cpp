@@ -6,6 +6,7 @@
 #include "commands.h"
 #include "console.h"
 #include "loading.h"
+#include "output.h"
 #include "tessera/io.h"
 
 namespace tessera::cli {
@@ -13,14 +14,15 @@ namespace {
 
 struct Options {
   ModelOptions models;
-  std::string output;
+  std::string output, format;
 };
 
 Status report(const Job& job, const CommonOptions& common, const Loaded& loaded, const WrittenModel& written,
               const Timings& timings) {
   if (!common.json) {
-    return print(job.output + ": " + counted(written.surfaces, "surface") + ", " +
-                 counted(written.patches, "patch", "patches") + "\n" + fit_line(written.fit_error));
+    return print_report(job.output, job.output + ": " + counted(written.surfaces, "surface") + ", " +
+                                        counted(written.patches, "patch", "patches") + "\n" +
+                                        fit_line(written.fit_error));
   }
   Json object = files_json(loaded);
   object["output"] = job.output;
@@ -30,17 +32,17 @@ Status report(const Job& job, const CommonOptions& common, const Loaded& loaded,
   object["warnings"] = warnings_json(loaded.model);
   for (const std::string& warning : written.warnings) object["warnings"].push_back(warning);
   add_seconds(object, common, timings);
-  return print_json(object);
+  return print_report(job.output, object.text() + "\n");
 }
 
 Status run_convert(const Job& job, const Options& options, const CommonOptions& common, Timings& timings) {
   Result<OutputFile> out = open_output(job.output);
   if (!out) return out.status();
-  const Result<Loaded> loaded = load(job, options.models.fit, With::surfaces, timings);
+  const Result<Loaded> loaded = load(job, options.models, With::surfaces, timings);
   if (!loaded) return loaded.status();
   const Result<WrittenModel> written = [&] {
     const auto phase = timings.phase("write");
-    return write_model(loaded->model, job.output, options.models.fit, *out);
+    return write_model(loaded->model, format_path(job.output, options.format), options.models.fit, *out);
   }();
   if (!written) return written.status();
   if (Status status = out->commit(); !status.ok()) return status;
@@ -53,7 +55,7 @@ constexpr const char* extension_in_folders = ".obj";
 
 std::string fault_of_output(const std::string& path) {
   if (path.empty()) return fault_of_name(path);
-  return is_folder(path) ? "" : check_model_format(path).message();
+  return is_folder(path) || is_stream(path) ? "" : check_model_format(path).message();
 }
 
 constexpr const char* footer =
@@ -72,14 +74,18 @@ void add_convert(Command& tool, Session& session) {
   const auto options = std::make_shared<Options>();
   add_models(command, options->models);
   command
-      .add_text("-o,--output", "FILE", "The file of surfaces (.bpt, .obj), a folder, or a name with {name}",
+      .add_text("-o,--output", "FILE",
+                "The file of surfaces (.bpt, .obj), a folder, a name with {name}, or - for standard output",
                 options->output)
       .require()
       .check(fault_of_output);
+  add_stream_format(command, {"bpt", "obj"}, options->format);
   add_fit(command, options->models);
   add_common(command, session.common);
   command.footer = footer;
   command.choose = [options, &session] {
+    check_input(options->models);
+    check_stream_format(options->output, options->format);
     const Plan plan = plan_jobs(options->models.files, options->output, {"--output", extension_in_folders});
     session.command = [options, plan, &session] {
       return run_jobs(plan, session.common, [&](const Job& job, Timings& timings) {

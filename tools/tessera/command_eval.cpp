@@ -9,6 +9,7 @@
 #include "commands.h"
 #include "csv.h"
 #include "loading.h"
+#include "output.h"
 #include "progress.h"
 #include "tessera/evaluate.h"
 
@@ -229,7 +230,7 @@ Status report(const Job& job, const CommonOptions& common, const Loaded& loaded,
 Status run_eval(const Job& job, const Options& options, const CommonOptions& common, Timings& timings) {
   Result<OutputFile> out = open_output(job.output);
   if (!out) return out.status();
-  const Result<Loaded> loaded = load(job, options.models.fit, With::surfaces, timings);
+  const Result<Loaded> loaded = load(job, options.models, With::surfaces, timings);
   if (!loaded) return loaded.status();
   const Result<Places> places = places_of(options, loaded->model);
   if (!places) return places.status();
@@ -295,6 +296,7 @@ void add_eval(Command& tool, Session& session) {
   add_common(command, session.common);
   command.footer = footer;
   command.choose = [options, &session] {
+    check_input(options->models);
     const std::string extension = "." + options->format;
     const Plan plan = plan_jobs(options->models.files, options->output, {"--output", extension});
     for (const Job& job : plan.jobs) refuse_overwriting("--output", job.output, {options->places});

@@ -8,6 +8,7 @@
 #include "facts.h"
 #include "joins.h"
 #include "loading.h"
+#include "memory.h"
 #include "tessera/execution.h"
 
 namespace tessera::cli {
@@ -119,7 +120,7 @@ std::string as_text(const Findings& found) {
 }
 
 Status run_info(const Job& job, const Options& options, const CommonOptions& common, Timings& timings) {
-  const Result<Loaded> loaded = load(job, options.models.fit, With::patches, timings);
+  const Result<Loaded> loaded = load(job, options.models, With::patches, timings);
   if (!loaded) return loaded.status();
   const Result<PatchSet> set = pack(*loaded, timings);
   if (!set) return set.status();
@@ -161,6 +162,7 @@ void add_info(Command& tool, Session& session) {
   add_common(command, session.common);
   command.footer = footer;
   command.choose = [options, &session] {
+    check_input(options->models);
     const Plan plan = plan_jobs(options->models.files, "", {"MODEL", "", false});
     session.command = [options, plan, &session] {
       return run_jobs(plan, session.common, [&](const Job& job, Timings& timings) {

@@ -10,6 +10,8 @@
 #include "arguments.h"
 #include "commands.h"
 #include "loading.h"
+#include "memory.h"
+#include "output.h"
 #include "progress.h"
 #include "tessera/io.h"
 #include "tessera/tessellation.h"
@@ -19,9 +21,11 @@ namespace {
 
 struct Options {
   ModelOptions models;
-  std::string output;
+  std::string output, format;
   std::optional<Extent> grid;
-  CertifiedOptions certified;  ///< used if there is no grid
+  CertifiedOptions certified;    ///< used if there is no grid
+  bool is_default = false;       ///< whether no density is on the command line
+  std::uint64_t max_memory = 0;  ///< bytes of the mesh; 0: a share of what is free
   bool quads = false;
   bool weld_rounding = false;  ///< whether the weld is a share of the size
   double pixels = 0;           ///< above 0 if requested
@@ -30,6 +34,7 @@ struct Options {
 
 /// Numbers of six or seven digits in files, and surfaces that programs have rotated into place, differ by about this.
 constexpr double rounding_share = 1e-6;
+constexpr double default_share = 1e-3;
 constexpr double degree = std::numbers::pi / 180;
 constexpr int max_segments = 4096;
 constexpr std::size_t max_triangles = std::size_t{1} << 40;
@@ -45,11 +50,26 @@ struct Tessellated {
   bool proven = false;  ///< false if sampled: callables fitted without bounds on their derivatives
 };
 
+/// Refuses a mesh that takes more memory than `max_bytes`, or than most of what is free.
+Status check_memory(const MeshCapacity& mesh, std::uint64_t max_bytes) {
+  // Position, normal and parameters of a vertex in float; the indices and the patch of a triangle; and writing takes
+  // about as much again as the vertices.
+  constexpr std::uint64_t vertex_bytes = 2 * 32, triangle_bytes = 16;
+  const std::uint64_t needed = mesh.vertices * vertex_bytes + mesh.triangles * triangle_bytes;
+  const std::uint64_t limit = max_bytes > 0 ? max_bytes : available_memory() / 4 * 3;
+  if (needed <= limit) return {};
+  return {StatusCode::out_of_memory, "a mesh of " + counted(mesh.triangles, "triangle") + " needs " +
+                                         readable_bytes(needed) + " of memory, the limit is " + readable_bytes(limit) +
+                                         (max_bytes > 0 ? "" : ", three quarters of what is free") +
+                                         "; use fewer segments, a tolerance, or --max-memory"};
+}
+
 /// Runs a plan of either kind.
 template <class Plan>
-Result<Mesh> run_plan(const Result<Plan>& plan, const PatchSet& set, bool quads) {
+Result<Mesh> run_plan(const Result<Plan>& plan, const PatchSet& set, const Options& options) {
   if (!plan) return plan.status();
-  Result<Mesh> mesh = quads ? plan->allocate_quads() : plan->allocate();
+  if (Status status = check_memory(plan->capacity(), options.max_memory); !status.ok()) return status;
+  Result<Mesh> mesh = options.quads ? plan->allocate_quads() : plan->allocate();
   if (!mesh) return mesh;
   Progress progress("tessellating");
   const Status status = plan->run(set, mesh->views(), progress.execution());
@@ -63,7 +83,7 @@ Result<Tessellated> tessellate(const Options& options, const Model& model, const
     if (options.grid)
       return run_plan(
           TessellationPlan::make(set, {.rate_u = options.grid->first, .rate_v = options.grid->second, .isa = {}}), set,
-          options.quads);
+          options);
     CertifiedOptions certified = options.certified;
     if (options.pixels > 0) certified.pixels = PixelTolerance{options.pixels, options.view};
     if (options.weld_rounding) certified.weld = rounding_share * set.box().diagonal();
@@ -77,7 +97,7 @@ Result<Tessellated> tessellate(const Options& options, const Model& model, const
       made.bound = plan->bound();
       made.proven = plan->certified();
     }
-    return run_plan(plan, set, options.quads);
+    return run_plan(plan, set, options);
   }();
   if (!mesh) return mesh.status();
   Result<std::vector<MeshPart>> parts = parts_by_surface(*mesh, set, model);
@@ -98,6 +118,7 @@ std::string kept(const Options& options, const Tessellated& made) {
   }
   if (options.pixels > 0) said += ", within " + readable(made.pixels, 3) + " pixels in the picture";
   said += made.proven ? ", proven" : ", proven except for fits that are sampled";
+  if (options.is_default) said += " (--relative " + readable(default_share) + ", the default)";
   return said + (made.welded_borders ? ", " + counted(made.welded_borders, "border") + " welded" : "");
 }
 
@@ -105,10 +126,10 @@ Status report(const Job& job, const Options& options, const CommonOptions& commo
               const PatchSet& set, const Tessellated& made, const Timings& timings) {
   const Mesh& mesh = made.mesh;
   if (!common.json)
-    return print(job.output + ": " + counted(mesh.vertex_count(), "vertex", "vertices") + ", " +
-                 counted(mesh.triangle_count(), "triangle") +
-                 (options.quads ? ", " + counted(mesh.quad_count(), "quad") : "") + kept(options, made) + "\n" +
-                 fit_line(set));
+    return print_report(job.output, job.output + ": " + counted(mesh.vertex_count(), "vertex", "vertices") + ", " +
+                                        counted(mesh.triangle_count(), "triangle") +
+                                        (options.quads ? ", " + counted(mesh.quad_count(), "quad") : "") +
+                                        kept(options, made) + "\n" + fit_line(set));
   Json object = files_json(loaded);
   object["output"] = job.output;
   object["vertices"] = mesh.vertex_count();
@@ -119,6 +140,7 @@ Status report(const Job& job, const Options& options, const CommonOptions& commo
     object["rate_v"] = options.grid->second;
   } else {
     object["precision"] = options.certified.precision == Precision::double_precision ? "double" : "float";
+    object["default_relative"] = options.is_default ? Json(default_share) : Json();
     object["bound"] = made.bound;
     object["certified"] = made.proven;
     object["angle"] = options.certified.angle ? Json(made.angle) : Json();
@@ -129,13 +151,13 @@ Status report(const Job& job, const Options& options, const CommonOptions& commo
   }
   add_model_facts(object, loaded, set);
   add_seconds(object, common, timings);
-  return print_json(object);
+  return print_report(job.output, object.text() + "\n");
 }
 
 Status run_tessellate(const Job& job, const Options& options, const CommonOptions& common, Timings& timings) {
   Result<OutputFile> out = open_output(job.output);
   if (!out) return out.status();
-  const Result<Loaded> loaded = load(job, options.models.fit, With::patches, timings);
+  const Result<Loaded> loaded = load(job, options.models, With::patches, timings);
   if (!loaded) return loaded.status();
   const Result<PatchSet> set = pack(*loaded, timings);
   if (!set) return set.status();
@@ -146,7 +168,7 @@ Status run_tessellate(const Job& job, const Options& options, const CommonOption
   if (!made) return in_file(job.inputs[0], made.status());
   {
     const auto phase = timings.phase("write");
-    Status status = write_mesh(made->mesh, job.output, *out);
+    Status status = write_mesh(made->mesh, format_path(job.output, options.format), *out);
     if (status.ok()) status = out->commit();
     if (!status.ok()) return status;
   }
@@ -158,7 +180,7 @@ constexpr const char* extension_in_folders = ".ply";
 
 std::string fault_of_output(const std::string& path) {
   if (path.empty()) return fault_of_name(path);
-  return is_folder(path) ? "" : check_mesh_format(path).message();
+  return is_folder(path) || is_stream(path) ? "" : check_mesh_format(path).message();
 }
 
 constexpr const char* footer =
@@ -177,10 +199,10 @@ constexpr const char* footer =
     "  tessera tessellate teapot.bpt -o teapot.ply --pixels 0.5 --camera=4,-8,5,0,0,1.5,40\n"
     "  tessera tessellate 'parts/*.json' -o 'meshes/{name}.obj' --grid 8x8";
 
-/// Adds the options for how fine the mesh is; the user must choose one.
-void add_density(Command& command, Options& options) {
+/// Adds the options for how fine the mesh is, and returns them. Without any, a relative tolerance is used.
+std::vector<const Option*> add_density(Command& command, Options& options) {
   CertifiedOptions& certified = options.certified;
-  command.begin_group("Density, at least one of");
+  command.begin_group("Density [--relative 0.001]");
   Option& grid = command.add(
       "--grid", "NxM", "Segments of every patch, along u and along v, 1 to 4096 each",
       [&options](const std::string& text) { options.grid = parse_extent("--grid", text, 1, max_segments); });
@@ -211,7 +233,7 @@ void add_density(Command& command, Options& options) {
   for (const Option* const other : {&tolerance, &relative, &triangles, &angle, &pixels}) grid.exclude(*other);
   tolerance.exclude(relative).exclude(triangles);
   relative.exclude(triangles);
-  command.one_of = {&grid, &tolerance, &relative, &triangles, &angle, &pixels};
+  return {&grid, &tolerance, &relative, &triangles, &angle, &pixels};
 }
 
 /// Adds the camera of --pixels.
@@ -262,6 +284,11 @@ void add_cap(Command& command, Options& options) {
       .add_flag("--fewest", "Search for a mesh with fewer triangles, not for --grid; takes 15 to 200 us per patch",
                 options.certified.fewest)
       .exclude(command.option("--grid"));
+}
+
+void add_memory(Command& command, Options& options) {
+  command.add("--max-memory", "SIZE", "Limit on the mesh's memory, like 800M or 12G [three quarters of what is free]",
+              [&options](const std::string& text) { options.max_memory = parse_bytes("--max-memory", text); });
 }
 
 void add_weld(Command& command, Options& options) {
@@ -332,13 +359,16 @@ void add_tessellate(Command& tool, Session& session) {
   const auto options = std::make_shared<Options>();
   add_models(command, options->models);
   command
-      .add_text("-o,--output", "FILE", "The mesh file (.obj, .ply, .stl, .glb, .gltf), a folder, or a name with {name}",
+      .add_text("-o,--output", "FILE",
+                "The mesh file (.obj, .ply, .stl, .glb, .gltf), a folder, a name with {name}, or - for standard output",
                 options->output)
       .require()
       .check(fault_of_output);
-  add_density(command, *options);
+  add_stream_format(command, {"obj", "ply", "stl", "glb", "gltf"}, options->format);
+  const std::vector<const Option*> density = add_density(command, *options);
   command.begin_group("The mesh");
   add_cap(command, *options);
+  add_memory(command, *options);
   add_weld(command, *options);
   add_sharing(command, *options);
   command.add_flag("--quads", "Write whole cells as quads, in .obj and .ply [triangles only]", options->quads);
@@ -347,7 +377,11 @@ void add_tessellate(Command& tool, Session& session) {
   add_view(command, *options);
   add_common(command, session.common);
   command.footer = footer;
-  command.choose = [options, &session] {
+  command.choose = [options, &session, density] {
+    check_input(options->models);
+    check_stream_format(options->output, options->format);
+    options->is_default = std::ranges::none_of(density, [](const Option* option) { return option->count > 0; });
+    if (options->is_default) options->certified.relative = true, options->certified.tolerance = default_share;
     const Plan plan = plan_jobs(options->models.files, options->output, {"--output", extension_in_folders});
     if (options->quads) check_formats(plan, "--quads", "triangles", "quads");
     if (options->certified.precision == Precision::double_precision)

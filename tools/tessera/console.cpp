@@ -3,6 +3,8 @@
 #include <csignal>
 #include <cstdio>
 
+#include "output.h"
+
 namespace tessera::cli {
 namespace {
 
@@ -21,11 +23,6 @@ extern "C" void remember_signal(int signal) {
 }
 
 }  // namespace
-
-Result<OutputFile> open_output(const std::string& path) {
-  if (path.empty()) return OutputFile::standard_output(&interrupt_flag);
-  return OutputFile::create(path, &interrupt_flag);
-}
 
 Status print(std::string_view text) { return write_text(text, {}); }
 

@@ -15,9 +15,6 @@
 
 namespace tessera::cli {
 
-/// Opens the output file, or standard output if `path` is empty. After an interrupt the file does not appear. Open it
-/// before the work, so that a wrong place is reported at once. Errors: io_error.
-Result<OutputFile> open_output(const std::string& path);
 /// Writes to standard output. Errors: io_error, cancelled.
 Status print(std::string_view text);
 /// Writes to a file, or to standard output if `path` is empty. Errors: io_error, cancelled.

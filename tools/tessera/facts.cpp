@@ -103,12 +103,4 @@ std::optional<std::uintmax_t> file_bytes(const std::string& path) {
   return bytes;
 }
 
-std::string readable_bytes(std::uintmax_t bytes) {
-  constexpr std::array<const char*, 5> units{" bytes", " kB", " MB", " GB", " TB"};
-  auto value = static_cast<double>(bytes);
-  std::size_t unit = 0;
-  for (; value >= 1000 && unit + 1 < units.size(); ++unit) value /= 1000;
-  return (unit == 0 ? std::to_string(bytes) : readable(value, 3)) + units[unit];
-}
-
 }  // namespace tessera::cli

@@ -36,7 +36,4 @@ Facts count_facts(const Model& model, const PatchSet& set);
 /// The size of a file; empty if it is not a regular file.
 std::optional<std::uintmax_t> file_bytes(const std::string& path);
 
-/// "12.3 MB", with units of powers of 1000.
-std::string readable_bytes(std::uintmax_t bytes);
-
 }  // namespace tessera::cli

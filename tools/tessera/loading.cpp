@@ -7,9 +7,12 @@
 #include <iterator>
 #include <mutex>
 #include <optional>
+#include <sstream>
 
 #include "arguments.h"
+#include "output.h"
 #include "progress.h"
+#include "standard_input.h"
 #include "tessera/io.h"
 #ifdef TESSERA_HAS_IO_OCCT
 #include "tessera/io_occt.h"
@@ -22,12 +25,23 @@ namespace {
 constexpr const char* cad_formats = ", .step, .stp, .iges, .igs";
 
 /// Reads a model by the component that knows its format.
-Result<Model> read_any_model(const std::string& path) { return is_cad_file(path) ? read_cad(path) : read_model(path); }
+Result<Model> read_file_model(const std::string& path) { return is_cad_file(path) ? read_cad(path) : read_model(path); }
 #else
 constexpr const char* cad_formats = "";
 
-Result<Model> read_any_model(const std::string& path) { return read_model(path); }
+Result<Model> read_file_model(const std::string& path) { return read_model(path); }
 #endif
+
+/// Reads a file, or standard input, whose messages then name it instead of its copy.
+Result<Model> read_any_model(const std::string& path, const std::string& input_format) {
+  if (path != stream_name) return read_file_model(path);
+  const Result<StandardInput> input = StandardInput::make(input_format);
+  if (!input) return input.status();
+  Result<Model> model = read_file_model(input->path());
+  if (!model) return Status(model.status().code(), input->renamed(model.status().message()), model.status().index());
+  for (std::string& warning : model->warnings) warning = input->renamed(warning);
+  return model;
+}
 
 std::size_t count_trimmed(std::span<const ModelSurface> surfaces) {
   return static_cast<std::size_t>(std::count_if(surfaces.begin(), surfaces.end(),
@@ -73,16 +87,16 @@ Result<std::vector<PatchGrid>> convert(const Model& model, const FitOptions& fit
 }
 
 /// Reads one file and adds it to `loaded`.
-Status add_file(const std::string& file, const FitOptions& fit, With with, Timings& timings, Loaded& loaded) {
+Status add_file(const std::string& file, const ModelOptions& options, With with, Timings& timings, Loaded& loaded) {
   Result<Model> model = [&] {
     const auto phase = timings.phase("read");
-    return read_any_model(file);
+    return read_any_model(file, options.input_format);
   }();
   if (!model) return model.status();
   say_warnings(file, *model);
   if (with == With::patches) {
     const auto phase = timings.phase("convert");
-    Result<std::vector<PatchGrid>> grids = convert(*model, fit);
+    Result<std::vector<PatchGrid>> grids = convert(*model, options.fit);
     if (!grids) return in_file(file, grids.status());
     std::move(grids->begin(), grids->end(), std::back_inserter(loaded.grids));
   }
@@ -100,13 +114,31 @@ Status add_file(const std::string& file, const FitOptions& fit, With with, Timin
 
 }  // namespace
 
+std::vector<std::string> model_format_names() {
+  std::vector<std::string> names;
+  std::istringstream list(model_formats());
+  for (std::string name; list >> name;) names.push_back(name.substr(1, name.find(',') - 1));
+  return names;
+}
+
 std::string model_formats() { return std::string(".bpt, .bv, .g2, .json, .obj, .rib") + cad_formats; }
 
 void add_models(Command& command, ModelOptions& options) {
   command
-      .add_words("MODEL", "FILE", "Files with surfaces (" + model_formats() + "), or patterns of their names",
+      .add_words("MODEL", "FILE",
+                 "Files with surfaces (" + model_formats() + "), patterns of their names, or - for standard input",
                  options.files)
       .check(fault_of_name);
+  command.add_choice("--input-format", model_format_names(), "Format of standard input, for MODEL -",
+                     [&options](const std::string& name) { options.input_format = name; });
+}
+
+void check_input(const ModelOptions& options) {
+  const auto streams = std::count(options.files.begin(), options.files.end(), stream_name);
+  if (streams > 1) throw UsageError("MODEL", "- is there " + std::to_string(streams) + " times; give it once");
+  if (streams > 0 && options.input_format.empty()) throw UsageError("MODEL", "- needs --input-format NAME");
+  if (streams == 0 && !options.input_format.empty())
+    throw UsageError("--input-format", "is for MODEL - only; the extension of a file decides its format");
 }
 
 void add_fit(Command& command, ModelOptions& options) {
@@ -128,10 +160,10 @@ Status Loaded::in_surface(std::size_t surface, const Status& status) const {
 
 Status Loaded::status() const { return failed.empty() ? Status() : already_said(failed.back().second.code()); }
 
-Result<Loaded> load(const Job& job, const FitOptions& fit, With with, Timings& timings) {
+Result<Loaded> load(const Job& job, const ModelOptions& options, With with, Timings& timings) {
   Loaded loaded;
   for (const std::string& file : job.inputs) {
-    const Status status = add_file(file, fit, with, timings, loaded);
+    const Status status = add_file(file, options, with, timings, loaded);
     if (status.ok()) continue;
     if (job.inputs.size() == 1 || status.code() == StatusCode::cancelled || interrupted()) return status;
     complain(status.message());

@@ -12,9 +12,12 @@ namespace tessera::cli {
 /// The options of the command line for models.
 struct ModelOptions {
   std::vector<std::string> files;  ///< names and patterns from the command line
+  std::string input_format;        ///< of standard input, without the dot
   FitOptions fit;
 };
-/// Adds MODEL...
+/// Throws UsageError if standard input has no format, or is there twice.
+void check_input(const ModelOptions& options);
+/// Adds MODEL... and --input-format.
 void add_models(Command& command, ModelOptions& options);
 /// Adds --fit-tolerance.
 void add_fit(Command& command, ModelOptions& options);
@@ -42,7 +45,7 @@ enum class With { surfaces, patches };
 /// Reads the files of a job one after the other, and converts their surfaces, on all threads. Prints a warning on
 /// standard error for each part of a file that is not read, and leaves out files that fail. Errors: those of the only
 /// file, or of the last one if all of several fail.
-Result<Loaded> load(const Job& job, const FitOptions& fit, With with, Timings& timings);
+Result<Loaded> load(const Job& job, const ModelOptions& options, With with, Timings& timings);
 
 /// Packs all patches into a set. Errors name file and surface.
 Result<PatchSet> pack(const Loaded& loaded, Timings& timings);

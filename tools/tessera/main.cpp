@@ -5,6 +5,7 @@
 #include "commands.h"
 #include "console.h"
 #include "help.h"
+#include "output.h"
 #include "suggestions.h"
 #include "tessera/execution.h"
 #include "tessera/version.h"
@@ -41,6 +42,7 @@ int run_command(const Session& session) {
   catch_signals();
   const Status status = with_threads(session.common.threads, session.command);
   if (!status.ok() && status.code() != StatusCode::cancelled && !is_already_said(status)) complain(status.message());
+  remove_empty_folders();
   end_by_signal();
   return status.ok() ? success : bad_input;
 }

@@ -1,0 +1,62 @@
+#pragma once
+// The parts of tessera raycast: the scene, pictures of it, and hits of the user's rays.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "loading.h"
+#include "mesh_error.h"
+#include "render/mesh_patches.h"
+#include "render/render.h"
+#include "tessera/ray_scene.h"
+
+namespace tessera::cli {
+
+struct RaycastOptions {
+  ModelOptions models;
+  std::string picture, format, rays, hits, colour = "auto";
+  bool terminal = false;
+  bool sized = false;   ///< whether --size is on the command line
+  bool shaded = false;  ///< whether --shade is on the command line
+  bool edges = false;
+  bool all_hits = false;
+  RayMode mode = RayMode::exact;
+  int rate = 0;  ///< of grid mode; 0: chosen by the number of patches
+  render::Settings settings;
+  MeshErrorOptions error;
+};
+
+/// The data of a job: surfaces, or meshes whose triangles are the patches. The scene refers to the set.
+struct RaycastScene {
+  Loaded loaded;  ///< without surfaces for meshes
+  PatchSet set;
+  RayScene rays;
+  std::optional<render::MeshPatches> meshes;
+  std::optional<MeshError> error;  ///< the error to shade, if any
+
+  /// The options' settings, with what this scene adds.
+  render::Settings settings(const RaycastOptions& options) const;
+  /// Captions for the lower border of the picture, the longest first. The first that fits is drawn.
+  std::vector<std::string> captions() const;
+  std::string counted_parts() const;  ///< "32 patches", "1 triangle"
+};
+
+/// Reads the models or meshes of a job, and builds the scene. Errors: those of reading; invalid_argument (surfaces and
+/// meshes in one job; options that meshes cannot have); those of the scene.
+Result<RaycastScene> make_scene(const Job& job, const RaycastOptions& options, Timings& timings);
+
+/// "exact" or "grid".
+const char* name_of(RayMode mode);
+bool is_exr(const std::string& path);
+
+/// Draws the job's picture into its file, and reports it.
+Status draw_file(const Job& job, const RaycastOptions& options, const CommonOptions& common, const RaycastScene& scene,
+                 OutputFile& out, Timings& timings);
+/// Draws the picture with characters.
+Status draw_characters(const RaycastOptions& options, const RaycastScene& scene, OutputFile& out, Timings& timings);
+/// Casts the user's rays, writes the table of hits, and reports it.
+Status write_ray_hits(const Job& job, const RaycastOptions& options, const CommonOptions& common,
+                      const RaycastScene& scene, std::span<const Ray> rays, OutputFile& out, Timings& timings);
+
+}  // namespace tessera::cli

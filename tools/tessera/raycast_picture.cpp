@@ -1,0 +1,119 @@
+// Pictures of scenes: files, and characters of a terminal.
+
+#include <cmath>
+
+#include "output.h"
+#include "progress.h"
+#include "raycast.h"
+#include "render/caption.h"
+#include "render/colours.h"
+#include "render/hit_image.h"
+#include "terminal_picture.h"
+
+namespace tessera::cli {
+namespace {
+
+Result<render::Image> draw(const RaycastScene& scene, const render::Settings& settings, Timings& timings) {
+  const auto phase = timings.phase("evaluate");
+  Progress progress("casting rays");
+  return render::render(scene.rays, scene.rays.box(), settings, progress.execution());
+}
+
+/// The bar that explains the colours of a shade; nothing for shades whose colours are no numbers.
+std::optional<render::ColourBar> colour_bar(render::Shade shade, const RaycastScene& scene) {
+  if (shade == render::Shade::error && scene.error) {
+    const double red = scene.error->red;
+    return render::ColourBar{render::error_colour, {{0, "0"}, {0.5, readable(red / 2, 3)}, {1, readable(red, 3)}}};
+  }
+  if (shade == render::Shade::curvature) {
+    const double full = render::curvature_at(0.5, scene.rays.box().diagonal());
+    return render::ColourBar{[](double place) { return render::curvature_colour(2 * place - 1); },
+                             {{0.25, readable(-full, 3)}, {0.5, "0"}, {0.75, readable(full, 3)}}};
+  }
+  if (shade == render::Shade::steps) {
+    const auto steps = [](double place) { return std::pow(render::max_steps_shown, place); };
+    return render::ColourBar{[steps](double place) { return render::cost_colour(steps(place)); },
+                             {{0, "1"}, {0.5, readable(steps(0.5))}, {1, readable(steps(1))}}};
+  }
+  return {};
+}
+
+/// Writes the picture: with a bar if colours are numbers, and a caption if the model is trimmed or an error is shown.
+Status write_colours(const Job& job, const render::Settings& settings, const RaycastScene& scene, OutputFile& out,
+                     Timings& timings) {
+  Result<render::Image> image = draw(scene, settings, timings);
+  if (!image) return in_file(job.output, image.status());
+  if (const auto bar = colour_bar(settings.shade, scene)) render::add_colour_bar(*image, *bar);
+  if (const std::vector<std::string> captions = scene.captions(); !captions.empty())
+    render::add_caption(*image, captions);
+  const std::string trims = trims_text(scene.loaded.trimmed());
+  const auto phase = timings.phase("write");
+  Status status =
+      render::write_png(*image, out, trims.empty() ? render::PngTexts{} : render::PngTexts{{"Warning", trims}});
+  return status.ok() ? out.commit() : status;
+}
+
+Status write_numbers(const Job& job, const render::Settings& settings, const RaycastScene& scene, OutputFile& out,
+                     Timings& timings) {
+  const Result<render::HitImage> image = [&] {
+    const auto phase = timings.phase("evaluate");
+    Progress progress("casting rays");
+    return render::cast_hits(scene.rays, scene.rays.box(), scene.loaded.model, settings, progress.execution());
+  }();
+  if (!image) return in_file(job.output, image.status());
+  const auto phase = timings.phase("write");
+  Status status = render::write_exr(*image, out);
+  return status.ok() ? out.commit() : status;
+}
+
+}  // namespace
+
+Status draw_file(const Job& job, const RaycastOptions& options, const CommonOptions& common, const RaycastScene& scene,
+                 OutputFile& out, Timings& timings) {
+  const render::Settings settings = scene.settings(options);
+  const bool numbers = is_exr(format_path(job.output, options.format));
+  const Status written =
+      numbers ? write_numbers(job, settings, scene, out, timings) : write_colours(job, settings, scene, out, timings);
+  if (!written.ok()) return written;
+  if (!common.json) {
+    return print_report(job.output, job.output + ": " + std::to_string(settings.width) + " x " +
+                                        std::to_string(settings.height) + ", " + scene.counted_parts() + "\n" +
+                                        (scene.error ? scene.error->text() : "") + fit_line(scene.set));
+  }
+  Json object = files_json(scene.loaded);
+  object["output"] = job.output;
+  object["width"] = settings.width;
+  object["height"] = settings.height;
+  object["mode"] = name_of(options.mode);
+  object["triangles"] = scene.meshes ? Json(scene.meshes->triangle_count()) : Json();
+  const std::vector<std::string> captions = scene.captions();
+  object["caption"] = numbers || captions.empty() ? "" : captions.front();
+  if (scene.error) object["error"] = scene.error->json();
+  add_model_facts(object, scene.loaded, scene.set);
+  add_seconds(object, common, timings);
+  return print_report(job.output, object.text() + "\n");
+}
+
+Status draw_characters(const RaycastOptions& options, const RaycastScene& scene, OutputFile& out, Timings& timings) {
+  render::Settings settings = scene.settings(options);
+  if (!options.sized) {
+    const PixelSize size = picture_size(terminal_size());
+    settings.width = size.width;
+    settings.height = size.height;
+  }
+  const Colours colours = output_colours(options.colour);
+  if (colours == Colours::none) {
+    // Brightness alone shows a model if nothing else is in the picture.
+    settings.background = {};
+    if (!options.shaded) settings.shade = render::Shade::clay;
+  }
+  const Result<render::Image> image = draw(scene, settings, timings);
+  if (!image) return in_file(scene.loaded.files[0], image.status());
+  const auto phase = timings.phase("write");
+  out.write(as_characters(*image, colours));
+  const std::vector<std::string> captions = scene.captions();
+  out.write(scene.loaded.files[0] + (captions.empty() ? "" : ": " + captions.front()) + "\n");
+  return out.commit();
+}
+
+}  // namespace tessera::cli

@@ -1,0 +1,143 @@
+// Scenes of surfaces and of meshes.
+
+#include <algorithm>
+
+#include "output.h"
+#include "progress.h"
+#include "raycast.h"
+#include "tessera/io.h"
+
+namespace tessera::cli {
+namespace {
+
+/// Smaller models get finer grids: their facets then have about the size of pixels, and the scene of a large model
+/// still fits into memory.
+int scene_rate(std::size_t patches) {
+  constexpr std::size_t segments = std::size_t{1} << 20;
+  int rate = 64;
+  while (rate > 8 && patches * static_cast<std::size_t>(rate * rate) > segments) rate /= 2;
+  return rate;
+}
+
+bool holds_only_meshes(const std::string& path) {
+  const std::string extension = lower_extension(path);
+  return extension == ".ply" || extension == ".stl" || extension == ".glb" || extension == ".gltf";
+}
+
+/// Whether a file is a mesh. An .obj file is one if it has no surfaces that can be read, but faces.
+bool is_mesh(const std::string& path) {
+  if (holds_only_meshes(path)) return true;
+  if (lower_extension(path) != ".obj") return false;
+  const Result<Model> model = read_model(path);
+  if (model || model.status().code() != StatusCode::unsupported) return false;
+  const Result<Mesh> mesh = read_mesh(path);
+  return mesh && mesh->triangle_count() > 0;
+}
+
+/// Refuses options that need surfaces.
+Status check_mesh_options(const std::string& mesh, const Job& job, const RaycastOptions& options) {
+  using enum render::Shade;
+  const render::Shade shade = options.settings.shade;
+  std::string wants;
+  if (!options.rays.empty()) wants = "--rays needs";
+  if (is_exr(format_path(job.output, options.format))) wants = "an .exr picture needs";
+  if (shade == error || shade == curvature || shade == uv) wants = "--shade error, curvature and uv need";
+  if (wants.empty()) return {};
+  return {StatusCode::invalid_argument, wants + " surfaces, found the mesh " + mesh};
+}
+
+Result<RayScene> build(const PatchSet& set, const RaycastOptions& asked, const std::string& file, Timings& timings) {
+  const auto phase = timings.phase("build");
+  Progress progress("building the scene");
+  RaySceneOptions options;
+  options.mode = asked.mode;
+  options.rate = asked.rate > 0 ? asked.rate : scene_rate(set.patch_count());
+  Result<RayScene> rays = RayScene::make(set, options, progress.execution());
+  return rays ? std::move(rays) : in_file(file, rays.status());
+}
+
+/// Reads a mesh and adds its triangles.
+Status add_mesh(const std::string& file, render::MeshPatches& meshes) {
+  const Result<Mesh> mesh = read_mesh(file, {.keep_quads = true});
+  if (!mesh) return mesh.status();
+  const Status status = meshes.add(*mesh);
+  return status.ok() ? status : in_file(file, status);
+}
+
+Result<RaycastScene> make_mesh_scene(const Job& job, const RaycastOptions& options, Timings& timings) {
+  Loaded loaded;
+  render::MeshPatches meshes;
+  for (const std::string& file : job.inputs) {
+    const auto phase = timings.phase("read");
+    if (Status status = add_mesh(file, meshes); !status.ok()) return status;
+    loaded.files.push_back(file);
+  }
+  Result<PatchSet> set = [&] {
+    const auto phase = timings.phase("pack");
+    return meshes.pack();
+  }();
+  if (!set) return in_file(job.inputs[0], set.status());
+  Result<RayScene> rays = build(*set, options, job.inputs[0], timings);
+  if (!rays) return rays.status();
+  return RaycastScene{std::move(loaded), *std::move(set), *std::move(rays), std::move(meshes), {}};
+}
+
+Result<RaycastScene> make_surface_scene(const Job& job, const RaycastOptions& options, Timings& timings) {
+  Result<Loaded> loaded = load(job, options.models, With::patches, timings);
+  if (!loaded) return loaded.status();
+  Result<PatchSet> set = pack(*loaded, timings);
+  if (!set) return set.status();
+  Result<RayScene> rays = build(*set, options, loaded->files[0], timings);
+  if (!rays) return rays.status();
+  RaycastScene scene{*std::move(loaded), *std::move(set), *std::move(rays), {}, {}};
+  if (options.settings.shade == render::Shade::error) {
+    const auto phase = timings.phase("measure");
+    Result<MeshError> error = measure_error(options.error, scene.set);
+    if (!error) return error.status();
+    scene.error = *std::move(error);
+  }
+  return scene;
+}
+
+}  // namespace
+
+const char* name_of(RayMode mode) { return mode == RayMode::exact ? "exact" : "grid"; }
+
+bool is_exr(const std::string& path) { return lower_extension(path) == ".exr"; }
+
+render::Settings RaycastScene::settings(const RaycastOptions& options) const {
+  render::Settings own = options.settings;
+  if (error) own.error = [this](const Vec3& point) { return error->share(point); };
+  if (meshes) own.normal = [this](const Hit& hit) { return meshes->normal(hit); };
+  if (meshes && options.edges) own.nearest_edge = [this](const Hit& hit) { return meshes->nearest_edge(hit); };
+  return own;
+}
+
+std::vector<std::string> RaycastScene::captions() const {
+  const std::string trims = trims_text(loaded.trimmed());
+  std::vector<std::string> texts;
+  if (error) texts = {error->caption() + (trims.empty() ? "" : ", trims not honoured")};
+  if (!trims.empty()) texts.insert(texts.end(), {trims, "trims not honoured", "trims!"});
+  return texts;
+}
+
+std::string RaycastScene::counted_parts() const {
+  return meshes ? counted(meshes->triangle_count(), "triangle") : counted(set.patch_count(), "patch", "patches");
+}
+
+Result<RaycastScene> make_scene(const Job& job, const RaycastOptions& options, Timings& timings) {
+  std::vector<std::string> meshes, models;
+  for (const std::string& file : job.inputs) (is_mesh(file) ? meshes : models).push_back(file);
+  if (!meshes.empty() && !models.empty())
+    return Status(StatusCode::invalid_argument, "a picture shows surfaces or meshes, found the mesh " + meshes[0] +
+                                                    " and the surfaces of " + models[0]);
+  if (!meshes.empty()) {
+    if (Status status = check_mesh_options(meshes[0], job, options); !status.ok()) return status;
+  }
+  if (meshes.empty() && options.edges)
+    return Status(StatusCode::invalid_argument,
+                  "--edges draws the edges of meshes, found the surfaces of " + models[0]);
+  return meshes.empty() ? make_surface_scene(job, options, timings) : make_mesh_scene(job, options, timings);
+}
+
+}  // namespace tessera::cli
