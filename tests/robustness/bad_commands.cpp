@@ -58,7 +58,10 @@ void fill_commands(Table& table) {
     tool.row(2, {"info", "teapot.bpt", "--threads", threads});
   table.of("tessera tessellate MODEL -o MESH");
   tool.row(2, {"tessellate", "teapot.bpt", "--grid", "3x3"});
-  tool.row(2, {"tessellate", "teapot.bpt", "-o", "a.ply"});
+  tool.row(2, {"tessellate", "teapot.bpt", "-o", "-"});
+  tool.row(2, {"tessellate", "teapot.bpt", "-o", "a.ply", "--max-memory", "0"});
+  tool.row(1, {"tessellate", "teapot.bpt", "-o", "a.ply", "--grid", "64x64", "--max-memory", "1M"});
+  tool.row(2, {"info", "-"});
   tool.row(2, {"tessellate", "teapot.bpt", "-o", "", "--grid", "3x3"});
   tool.row(2, {"tessellate", "teapot.bpt", "-o", "a.off", "--grid", "3x3"});
   for (const std::string& grid : bad_grids) tool.row(2, {"tessellate", "teapot.bpt", "-o", "a.ply", "--grid", grid});

@@ -222,7 +222,6 @@ TEST_F(MeshTools, TolerancesAndBudgets) {
   EXPECT_EQ(mesh["flipped_triangles"], 0);
   for (const char* const wrong : {"0", "-1", "nan", "x", ""})
     expect_failure({"tessellate", teapot, "-o", "d.ply", "--tolerance", wrong}, 2, "--tolerance");
-  expect_failure({"tessellate", teapot, "-o", "d.ply"}, 2, "--grid");
   expect_failure({"tessellate", teapot, "-o", "d.ply", "--grid", "2x2", "--tolerance", "1"}, 2, "");
   expect_failure({"tessellate", teapot, "-o", "d.ply", "--tolerance", "1e-30"}, 1,
                  "the rounding of float vertices of patch");
