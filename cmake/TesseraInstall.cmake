@@ -45,7 +45,11 @@ else()
 endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/engine/include/tessera DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
   FILES_MATCHING PATTERN "*.h" ${left_out})
+# Every installed text may name these, and no other page.
+set(doc_dir ${CMAKE_INSTALL_DATAROOTDIR}/doc/tessera)
+install(FILES ${PROJECT_SOURCE_DIR}/tools/models/FORMAT.md ${PROJECT_SOURCE_DIR}/tools/models/gallery.jpg DESTINATION ${doc_dir})
 if(TESSERA_BUILD_TOOLS)
+  install(FILES ${PROJECT_SOURCE_DIR}/tools/tessera/JSON.md DESTINATION ${doc_dir})
   install(TARGETS tessera_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
   if(TARGET tessera_cli_texts)
     set(texts ${PROJECT_BINARY_DIR}/tools/texts)

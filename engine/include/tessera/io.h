@@ -20,7 +20,7 @@ namespace tessera::inline abi_0_1 {
 /// - .bpt: Bezier patches; `#` begins a comment
 /// - .bv: BezierView, tensor and rational patches
 /// - .g2: GoTools, spline and elementary surfaces
-/// - .json: surfaces of every kind; tools/models/FORMAT.md describes the format
+/// - .json: surfaces of every kind; share/doc/tessera/FORMAT.md describes the format
 /// - .obj: free-form surfaces
 /// - .rib: RenderMan, Patch, PatchMesh and NuPatch
 ///
