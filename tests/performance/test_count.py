@@ -9,7 +9,7 @@ import unittest
 from pathlib import Path
 
 from support import FAKE, PERF, perf, script
-from performance import baselines, count
+from performance import count, json_file
 from performance.console import Failure
 
 FACTS = {"compiler": "gcc 12.2.0", "build_type": "Release", "flags": "-O3", "libraries": {"glibc": "2.36"},
@@ -50,15 +50,15 @@ class Reading(unittest.TestCase):
     def test_baselines(self):
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder, "deeper", "counts.json")
-            self.assertIsNone(baselines.read(file))
-            baselines.write(file, {"counts": {"a": 1}})
-            self.assertEqual(baselines.read(file, ("counts",)), {"counts": {"a": 1}})
+            self.assertIsNone(json_file.read(file))
+            json_file.write(file, {"counts": {"a": 1}})
+            self.assertEqual(json_file.read(file, ("counts",)), {"counts": {"a": 1}})
             self.assertEqual(os.listdir(file.parent), ["counts.json"])
             with self.assertRaisesRegex(Failure, 'no "compiler"'):
-                baselines.read(file, ("compiler",))
+                json_file.read(file, ("compiler",))
             file.write_text("{")
             with self.assertRaisesRegex(Failure, "not JSON"):
-                baselines.read(file)
+                json_file.read(file)
 
 
 def checked(content, counts, facts=None):
@@ -69,7 +69,7 @@ def checked(content, counts, facts=None):
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, "counts.json")
         if content is not None:
-            baselines.write(file, content)
+            json_file.write(file, content)
         done = subprocess.run([sys.executable, "-c", program, str(PERF.parent), str(file), json.dumps(counts),
                                json.dumps(facts or FACTS)], capture_output=True, text=True, check=False)
     return done.returncode, done.stdout + done.stderr
@@ -114,7 +114,7 @@ class Reasons(unittest.TestCase):
                        capture_output=True)
 
     def commit(self, counts, message):
-        baselines.write(self.file, dict(FACTS, counts=counts))
+        json_file.write(self.file, dict(FACTS, counts=counts))
         self.git("add", "-A")
         self.git("commit", "-q", "--allow-empty", "-m", message)
 

@@ -10,7 +10,7 @@ import xml.etree.ElementTree
 from pathlib import Path
 
 from support import FAKE, perf, script
-from performance import plots, report
+from performance import plots, records, report
 
 VOID = {"meta", "br", "line", "circle", "rect", "polyline"}
 
@@ -97,14 +97,14 @@ class Reports(unittest.TestCase):
     def test_a_record_that_became_a_baseline_stands_once(self):
         first, content = self.record("a.json")
         (self.folder / "copy.json").write_text(json.dumps(content))
-        self.assertEqual(len(report.read_records([first, self.folder / "copy.json"], self.folder)), 1)
+        self.assertEqual(len(records.read([first, self.folder / "copy.json"], self.folder)), 1)
 
     def test_records_of_other_machines_are_left_out(self):
         _, content = self.record("a.json")
         other = json.loads(json.dumps(content))
         other["machine"]["processor"], other["commit_time"] = "another", 0
-        kept, _ = report.comparable([other, content])
-        self.assertEqual(kept, [content])
+        kept, others = records.choose([other, content])
+        self.assertEqual((kept, others), ([content], [other]))
 
     def test_what_is_broken_or_missing_is_named(self):
         bad = self.folder / "bad.json"

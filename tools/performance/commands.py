@@ -2,7 +2,7 @@
 
 import argparse
 
-from . import compare, count, peers, record, report
+from . import baselines, compare, count, export, peers, record, records, report, track
 from .console import FAILED, GOOD, REGRESSION, SKIPPED, USAGE, Failure, say
 
 DESCRIPTION = """\
@@ -11,7 +11,10 @@ Catches what makes Tessera slower, on machines that do other things as well.
   tools/perf compare main .                  is this tree slower than main? Builds both, runs them in turns
   tools/perf count --check                   has any counted case come to take more instructions?
   tools/perf record --roofline               this build's figures, kept in build/perf/records
+  tools/perf track ./my_bench                the figures of a program that is not Tessera's, kept in perf-records
+  tools/perf list                            what was recorded: date, commit, machine, cases
   tools/perf report                          a page of what was recorded: history, roofline, peers
+  tools/perf export                          the newest figures, for github-action-benchmark
 """
 STATUS = f"""\
 exit status: {GOOD} good, {REGRESSION} something is slower, {USAGE} wrong arguments, {FAILED} could not be done (a build, a program, a file),
@@ -86,7 +89,7 @@ def add_count(commands):
     parser.add_argument("--threshold", type=number(0, 1000), default=1.0, metavar="PERCENT",
                         help="that a count may grow by (default: 1)")
     parser.add_argument("--update", action="store_true", help="write the baselines")
-    parser.add_argument("--baselines", default=count.baselines.FOLDER, metavar="FOLDER",
+    parser.add_argument("--baselines", default=baselines.FOLDER, metavar="FOLDER",
                         help="default: bench/baselines")
     parser.set_defaults(run=count.command)
 
@@ -113,18 +116,68 @@ def add_record(commands):
     parser.set_defaults(run=record.command)
 
 
+def add_track(commands):
+    parser = commands.add_parser(
+        "track", help="the figures of a program that is not Tessera's", formatter_class=argparse.RawDescriptionHelpFormatter,
+        description="Runs PROGRAM, which must print the JSON of Google Benchmark to standard output, and keeps its rates with machine,\n"
+        "commit and date. engine/docs/tracking-speed.md says which fields count.",
+        epilog="The program's arguments come last: tools/perf track --passes 3 ./my_bench --benchmark_format=json\n" + STATUS)
+    parser.add_argument("tracked", metavar="PROGRAM", help="a file, or a name in PATH")
+    parser.add_argument("arguments", nargs=argparse.REMAINDER, metavar="...", help="its arguments")
+    parser.add_argument("--name", help="of the program in records and reports (default: that of its file)")
+    parser.add_argument("--of", metavar="TEXT", help="a commit or another name of the version that is measured (default: the commit "
+                        "of the git repository in the current folder)")
+    parser.add_argument("--passes", type=number(1, 100, True), default=1, metavar="N",
+                        help="runs of the program; each case counts by its best rate (default: 1)")
+    parser.add_argument("--time-limit", type=number(0.01, 1e6), default=600, metavar="S",
+                        help="for one run, after which the program is stopped (default: 600)")
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument("-o", "--output", metavar="FILE", help="default: DATE_COMMIT.json in the folder of records")
+    where.add_argument("--records", default="perf-records", metavar="FOLDER", help="default: perf-records")
+    parser.set_defaults(run=track.command)
+
+
+def add_records(parser, choice=True):
+    """The arguments that name records, and choose among them."""
+    parser.add_argument("records", nargs="*", metavar="RECORD",
+                        help="of record or track, or folders of them (default: build/perf/records and the times in bench/baselines)")
+    parser.add_argument("--baselines", default=baselines.FOLDER, metavar="FOLDER", help="default: bench/baselines")
+    if choice:
+        parser.add_argument("--machine", metavar="TEXT", help="records of machines with this text in their name, as list prints it "
+                            "(default: the newest record's machine)")
+        parser.add_argument("--program", metavar="NAME", help="records of this program (default: the newest record's program)")
+
+
+def add_list(commands):
+    parser = commands.add_parser(
+        "list", help="date, commit, machine and cases of records", formatter_class=argparse.RawDescriptionHelpFormatter,
+        description="Prints a line of text for each record, the oldest first. A commit with + had changes.", epilog=STATUS)
+    add_records(parser, choice=False)
+    parser.set_defaults(run=records.command)
+
+
+def add_export(commands):
+    parser = commands.add_parser(
+        "export", help="the newest record's figures, for other tools", formatter_class=argparse.RawDescriptionHelpFormatter,
+        description="Prints the figures of the newest record as JSON. github-action-benchmark reads rates as its tool customBiggerIsBetter,\n"
+        "and times as customSmallerIsBetter.", epilog=STATUS)
+    add_records(parser)
+    parser.add_argument("--format", choices=export.FORMATS, default=export.FORMATS[0], help=f"default: {export.FORMATS[0]}")
+    parser.add_argument("--figure", choices=("rate", "time"), default="rate",
+                        help="items per second, or nanoseconds per item (default: rate)")
+    parser.add_argument("-o", "--output", metavar="FILE", help="default: standard output")
+    parser.set_defaults(run=export.command)
+
+
 def add_report(commands):
     parser = commands.add_parser(
         "report", help="a page of what was recorded", formatter_class=argparse.RawDescriptionHelpFormatter,
         description="Writes one page of HTML that needs no other file: the history of rates and of instructions, the roofline, the peers.\n"
         "Its plots also as PNG, by rsvg-convert (Debian's package librsvg2-bin).", epilog=STATUS)
-    parser.add_argument("records", nargs="*", metavar="RECORD",
-                        help="of record (default: build/perf/records and the times in bench/baselines)")
+    add_records(parser)
     parser.add_argument("-o", "--output", metavar="FILE", help="default: build/perf/report.html; plots lie beside it")
     parser.add_argument("--peers", metavar="FILE", help="what tools/peers.sh left (default: build/peers/peers.json, "
-                        "else the table in bench/baselines)")
-    parser.add_argument("--baselines", default=count.baselines.FOLDER, metavar="FOLDER",
-                        help="default: bench/baselines")
+                        "else the table in bench/baselines; of the records' machine in each case)")
     parser.set_defaults(run=report.command)
 
 
@@ -137,13 +190,17 @@ def add_peers(commands):
     parser.set_defaults(run=peers.command)
 
 
-def main(words):
+def make_parser():
     parser = argparse.ArgumentParser(prog="tools/perf", description=DESCRIPTION, epilog=STATUS,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
-    for add in (add_compare, add_count, add_record, add_report, add_peers):
+    for add in (add_compare, add_count, add_record, add_track, add_list, add_report, add_export, add_peers):
         add(commands)
-    arguments = parser.parse_args(words)  # exits with status 2 if they are wrong
+    return parser
+
+
+def main(words):
+    arguments = make_parser().parse_args(words)  # exits with status 2 if they are wrong
     try:
         return arguments.run(arguments)
     except Failure as failure:

@@ -11,7 +11,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from . import baselines, builds, suite
+from . import baselines, builds, json_file, suite
 from .console import FAILED, GOOD, REGRESSION, SKIPPED, Failure, say, table
 from .repository import ROOT, git
 
@@ -126,7 +126,7 @@ def raised_without_reason(path, threshold, root=ROOT):
     """
     try:
         name = str(Path(path).resolve().relative_to(Path(root).resolve()))
-        before, now = (suite.read_json(git("show", f"{commit}:{name}", cwd=root), name) for commit in ("HEAD^", "HEAD"))
+        before, now = (json_file.parse(git("show", f"{commit}:{name}", cwd=root), name) for commit in ("HEAD^", "HEAD"))
         body = git("log", "-1", "--format=%b", cwd=root).strip()
         merge = len(git("log", "-1", "--format=%P", cwd=root).split()) > 1
     except (Failure, ValueError):
@@ -139,7 +139,7 @@ def raised_without_reason(path, threshold, root=ROOT):
 
 def check(isa, counts, facts, path, threshold, filtered):
     """Compares counts with the baseline and prints the result; returns the exit status."""
-    baseline = baselines.read(path, ("counts", *KEYS))
+    baseline = json_file.read(path, ("counts", *KEYS))
     if baseline is None:
         print(f"{isa}: skipped: there is no baseline {path}")
         return SKIPPED
@@ -182,7 +182,7 @@ def command(arguments):
     results = []
     for isa in arguments.isa or ISAS:
         path = baselines.counts_file(isa, arguments.baselines)
-        if arguments.check and baselines.read(path, ("counts", *KEYS)) and differences(facts, baselines.read(path)):
+        if arguments.check and json_file.read(path, ("counts", *KEYS)) and differences(facts, json_file.read(path)):
             results.append(check(isa, {}, facts, path, arguments.threshold / 100, True))  # prints why
             continue
         counts, spread = repeated(program, isa, arguments.filter, arguments.repeat)
@@ -193,9 +193,9 @@ def command(arguments):
         else:
             print(table([("case", isa), *((name, f"{n:,}") for name, n in sorted(counts.items()))], right=(1,)))
         if arguments.update:
-            before = baselines.read(path) or {}
+            before = json_file.read(path) or {}
             kept = {} if arguments.filter is None else before.get("counts", {})
-            baselines.write(path, dict(facts, counts=dict(kept, **counts)))
+            json_file.write(path, dict(facts, counts=dict(kept, **counts)))
             print(f"{isa}: written to {path}")
     return max((r for r in results if r != SKIPPED), default=SKIPPED if results else GOOD)
 

@@ -25,11 +25,13 @@ def describe():
             "system": f"{platform.system()} {platform.release()}"}
 
 
-def title():
-    """The machine in a few words. Processors in clouds often have no better name than their family and model."""
-    found = describe()
-    numbers = f" (family {found['family']}, model {found['model']})" if found["family"] else ""
-    return f"{found['processor']}{numbers}, {found['cores']} cores"
+def title(found=None):
+    """A described machine, by default this one, in a few words. Processors in clouds often have no better name than their
+    family and model.
+    """
+    found = found or describe()
+    numbers = f" (family {found['family']}, model {found.get('model', '')})" if found.get("family") else ""
+    return f"{found.get('processor', 'unknown processor')}{numbers}, {found.get('cores', 'unknown')} cores"
 
 
 def slug():

@@ -2,9 +2,8 @@
 
 import datetime
 
-from . import baselines, machine
+from . import json_file, machine
 from .console import GOOD, Failure, scaled
-from .suite import read_json
 
 KEYS = ("task", "peer", "way", "rate", "against", "ratio", "main")
 
@@ -18,7 +17,7 @@ def read_lines(path):
         raise Failure(f"{path} can't be read: {error}") from None
     rows = []
     for number, line in enumerate(lines, 1):
-        row = read_json(line, f"line {number} of {path}")
+        row = json_file.parse(line, f"line {number} of {path}")
         missing = [key for key in KEYS if not isinstance(row, dict) or key not in row]
         if missing:
             raise Failure(f"line {number} of {path} has no \"{missing[0]}\"")
@@ -50,6 +49,6 @@ def command(arguments):
     content = {"date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d"),
                "machine": machine.title(), "rows": read_lines(arguments.results)}
     if arguments.output:
-        baselines.write(arguments.output, content)
+        json_file.write(arguments.output, content)
     print(markdown(content))
     return GOOD

@@ -35,10 +35,12 @@ class Canvas:
         self.parts.append(f"<rect x='{x:.1f}' y='{y:.1f}' width='{max(0.5, width):.1f}' height='{height:.1f}' rx='2' "
                           f"fill='{colour}'>{tip}</rect>")
 
-    def text(self, x, y, words, colour=INK, size=13, anchor="start", bold=False):
+    def text(self, x, y, words, colour=INK, size=13, anchor="start", bold=False, halo=False):
+        """With a halo, the grid behind the words is covered."""
         weight = " font-weight='bold'" if bold else ""
+        behind = f" stroke='{PAPER}' stroke-width='4' paint-order='stroke'" if halo else ""
         self.parts.append(f"<text x='{x:.1f}' y='{y:.1f}' fill='{colour}' font-size='{size}' text-anchor='{anchor}'"
-                          f"{weight}>{escape(words)}</text>")
+                          f"{weight}{behind}>{escape(words)}</text>")
 
     def svg(self):
         return (f"<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {self.width} {self.height}' width='{self.width}' "
@@ -136,46 +138,6 @@ class LogAxis:
                 if self.low * 0.9999 <= decade * step <= self.high * 1.0001:
                     yield decade * step
             decade *= 10
-
-
-def roofline(content):
-    """Operations per second over operations per byte written, as tessera_bench --roofline=FILE.json measures them."""
-    canvas = Canvas(1100, 560)
-    left, right, top, bottom = 70, 1060, 70, 500
-    fastest = content["isas"][-1]
-    peak = fastest["float_operations"]
-    stores = max(fastest["plain_store"], fastest["streaming_store"])
-    x = LogAxis(0.1, 10, left, right)
-    y = LogAxis(1e-9 * peak / 100, 2e-9 * peak, bottom, top)
-    canvas.text(left, 28, f"{content['machine']}, one thread", size=16, bold=True)
-    canvas.text(left, 48, "G multiply-adds a second, over multiply-adds a byte written", QUIET, 12)
-    for tick in x.ticks():
-        canvas.line(x(tick), top, x(tick), bottom)
-        canvas.text(x(tick), bottom + 20, f"{tick:g}", QUIET, 12, "middle")
-    for tick in y.ticks():
-        canvas.line(left, y(tick), right, y(tick))
-        canvas.text(left - 8, y(tick) + 4, f"{tick:g}", QUIET, 12, "end")
-    for isa in content["isas"]:
-        height = 1e-9 * isa["float_operations"]
-        canvas.line(x(0.6), y(height), right, y(height), INK, 1.5)
-        canvas.text(right - 4, y(height) - 6, isa["isa"], INK, 13, "end")
-    for label, rate, colour, below in (("to the cache", content["cache_store"], COLOURS[0], False),
-                                       ("to memory", stores, COLOURS[1], True)):
-        edge = min(10.0, peak / rate)
-        start = max(0.1, 1e9 * y.low / rate)
-        canvas.path([(x(start), y(1e-9 * rate * start)), (x(edge), y(1e-9 * rate * edge)), (right, y(1e-9 * peak))],
-                    colour, 2)
-        at = start ** 0.7 * edge ** 0.3  # low on the slope, away from the points
-        canvas.text(x(at) + (10 if below else -10), y(1e-9 * rate * at) + (12 if below else -6),
-                    f"{1e-9 * rate:.3g} GB/s {label}", colour, 13, "start" if below else "end")
-    for where, colour in ((True, COLOURS[0]), (False, COLOURS[1])):
-        points = [p for p in content["points"] if p["in_cache"] == where]
-        places = [(x(min(10, max(0.1, p["per_byte"]))), y(max(y.low, 1e-9 * p["operations"]))) for p in points]
-        for p, (px, py), label in zip(points, places, apart([place[1] for place in places], 15)):
-            canvas.dot(px, py, colour, 5.5, f"{p['name']}: {1e-6 * p['points']:.0f} M points/s")
-            side = -1 if not where and p["per_byte"] < 1.1 else 1  # off the roof, and off the other points
-            canvas.text(px + 10 * side, label + 4, p["name"], colour, 12, "start" if side > 0 else "end")
-    return canvas.svg()
 
 
 def ratios(title, rows):

@@ -2,11 +2,9 @@
 
 import datetime
 
-from . import baselines, builds, machine, suite
+from . import baselines, builds, json_file, machine, process, records, suite
 from .console import GOOD, Failure, Progress, say
 from .repository import WORK, commit_of, describe, is_dirty
-
-KEYS = ("commit", "date", "machine", "facts", "cases")
 
 
 def rounded(value, digits=5):
@@ -45,6 +43,8 @@ def measure(build, cases, seconds, limits, passes):
         for group in groups:
             progress.step(f"runs {group[0]} and {len(group) - 1} more")
             for name, case in suite.run(build.program, group, seconds, limits).items():
+                if case.rate == 0:
+                    raise Failure(f"{name} reports no items a second")
                 if name not in best or case.rate > best[name].rate:
                     best[name] = case
     progress.end()
@@ -54,10 +54,10 @@ def measure(build, cases, seconds, limits, passes):
 def roofline_of(build):
     file = WORK / "roofline.json"
     file.parent.mkdir(parents=True, exist_ok=True)
-    done = suite.start(build.program, f"--roofline={file}")
+    done = process.start(build.program, f"--roofline={file}")
     if done.returncode != 0:
         raise Failure(f"{build.program} --roofline failed: {done.stderr.strip()}")
-    return baselines.read(file, ("isas", "points"))
+    return json_file.read(file, ("isas", "points"))
 
 
 def command(arguments):
@@ -74,7 +74,7 @@ def command(arguments):
     found = measure(build, cases, arguments.seconds, not arguments.no_limits, arguments.passes)
     short, dirty, seconds, subject = origin_of(build, arguments.of)
     content = {"commit": short, "dirty": dirty, "commit_time": seconds, "subject": subject,
-               "date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M"),
+               "date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M:%S"),
                "machine": machine.describe(), "facts": facts,
                "cases": {name: entry_of(case) for name, case in found.items()}}
     if arguments.roofline:
@@ -82,7 +82,7 @@ def command(arguments):
     if arguments.baseline:
         path = baselines.times_file(machine.slug(), facts["isa"])
     else:
-        path = arguments.output or WORK / "records" / f"{content['date'].replace(' ', '_').replace(':', '')}_{short}.json"
-    baselines.write(path, content)
+        path = arguments.output or records.new_file(WORK / "records", content["date"], short)
+    json_file.write(path, content)
     print(f"{len(found)} cases of {build.label}: {path}")
     return GOOD

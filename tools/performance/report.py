@@ -7,11 +7,9 @@ import subprocess
 from html import escape
 from pathlib import Path
 
-from . import baselines, count, plots
+from . import baselines, count, json_file, machine, plots, records, roofline
 from .console import GOOD, Failure, say, scaled
-from .record import KEYS
 from .repository import ROOT, WORK, describe, git
-from .suite import read_json
 
 STYLE = """
 body{font:15px/1.5 'DejaVu Sans',Verdana,sans-serif;color:#23272e;background:#fcfcf9;max-width:1100px;margin:2em auto;padding:0 1em}
@@ -19,28 +17,8 @@ h1{font-size:26px;margin-bottom:0}h2{font-size:20px;margin-top:2em}p.quiet{color
 table{border-collapse:collapse;font-size:13px;width:100%}th,td{padding:2px 8px;text-align:left;border-bottom:1px solid #e3e3dc;vertical-align:middle}
 td.n,th.n{text-align:right;font-variant-numeric:tabular-nums}th{color:#6b7078;font-weight:normal}
 .slower{color:#a8324a;font-weight:bold}.faster{color:#00805c;font-weight:bold}svg{max-width:100%;height:auto}svg.spark{display:block}
-details{margin:1em 0}summary{cursor:pointer}
+.gone{color:#6b7078;font-style:italic}details{margin:1em 0}summary{cursor:pointer}
 """
-
-
-def read_records(names, folder):
-    """Records in the order of their commits' dates."""
-    files = [Path(name) for name in names] or sorted((WORK / "records").glob("*.json")) + sorted(Path(folder).glob("*/times.json"))
-    records = []
-    for file in files:
-        content = baselines.read(file, KEYS)
-        if content is None:
-            raise Failure(f"there is no record {file}")
-        if content not in records:  # a baseline may repeat a record that is still there
-            records.append(content)
-    return sorted(records, key=lambda r: (r.get("commit_time", 0), r["date"]))
-
-
-def comparable(records):
-    """The records with the machine and instruction set of the newest one; and these two."""
-    kind = lambda r: (r["machine"].get("processor"), r["facts"].get("isa"))
-    newest = kind(records[-1])
-    return [r for r in records if kind(r) == newest], newest
 
 
 def family(case):
@@ -67,22 +45,34 @@ def label_of(record):
     return (record["commit"] + ("+" if record.get("dirty") else ""), record["date"][:10])
 
 
-def rates_table(records):
-    last = records[-1]
-    rows = ["<tr><th>case</th><th class=n>items/s</th><th class=n>of the limit</th><th>history</th>"
-            "<th class=n>to the one before</th></tr>"]
-    for case in sorted(last["cases"]):
-        entry = last["cases"][case]
-        values = [r["cases"].get(case, {}).get("rate") for r in records]
-        before = next((v for v in reversed(values[:-1]) if v), None)
-        ratio = entry["rate"] / before if before else None
-        word = "" if ratio is None else "slower" if ratio < 0.9 else "faster" if ratio > 1.1 else ""
-        change = "" if ratio is None else f"{ratio:.2f}"
-        limit = entry.get("limit_fraction")
-        rows.append(f"<tr><td>{escape(case)}</td><td class=n>{scaled(entry['rate'])}</td>"
-                    f"<td class=n>{'' if limit is None else f'{limit:.2f}'}</td><td>{plots.spark(values)}</td>"
-                    f"<td class='n {word}'>{change}</td></tr>")
-    return "<table>" + "".join(rows) + "</table>"
+def cases_of(found):
+    """The cases of all records in order. The newest record may lack some of them."""
+    return sorted({case for record in found for case in record["cases"]})
+
+
+def row_of(case, found):
+    """A row of the table. A case that the newest record lacks keeps its last value, marked with its date."""
+    values = [r["cases"].get(case, {}).get("rate") for r in found]
+    known = [k for k, value in enumerate(values) if value]
+    entry = found[known[-1]]["cases"][case]
+    limit, mark, change, word = entry.get("limit_fraction"), "", "", ""
+    if known[-1] < len(found) - 1:
+        mark = f" <span class=gone>not in the newest record; last on {escape(' with commit '.join(label_of(found[known[-1]])[::-1]))}</span>"
+    elif len(known) > 1:
+        ratio = entry["rate"] / values[known[-2]]
+        change, word = f"{ratio:.2f}", "slower" if ratio < 0.9 else "faster" if ratio > 1.1 else ""
+    return (f"<tr><td>{escape(case)}{mark}</td><td class=n>{scaled(entry['rate'])}</td>"
+            f"<td class=n>{'' if limit is None else f'{limit:.2f}'}</td><td>{plots.spark(values)}</td>"
+            f"<td class='n {word}'>{change}</td></tr>")
+
+
+def rates_table(found):
+    cases = cases_of(found)
+    gone = len(cases) - len(found[-1]["cases"])
+    rows = "".join(row_of(case, found) for case in cases)
+    return (f"<details open><summary>{len(cases)} {'case' if len(cases) == 1 else 'cases'}"
+            f"{f', {gone} of them not in the newest record' if gone else ''}</summary><table><tr><th>case</th><th class=n>items/s</th>"
+            f"<th class=n>of the limit</th><th>history</th><th class=n>to the one before</th></tr>{rows}</table></details>")
 
 
 def counts_history(isa, folder):
@@ -96,13 +86,13 @@ def counts_history(isa, folder):
     labels, rows = [], []
     for commit in commits:
         try:
-            content = read_json(git("show", f"{commit}:{name}"), name)
+            content = json_file.parse(git("show", f"{commit}:{name}"), name)
         except Failure:
             continue  # the commit deleted it
         short, seconds, _ = describe(commit)
         labels.append((short, datetime.datetime.fromtimestamp(seconds, datetime.timezone.utc).strftime("%Y-%m-%d")))
         rows.append(content.get("counts", {}))
-    now = baselines.read(path, ("counts",))
+    now = json_file.read(path, ("counts",))
     if now and (not rows or rows[-1] != now["counts"]):
         labels.append(("this tree", datetime.date.today().isoformat()))
         rows.append(now["counts"])
@@ -139,60 +129,83 @@ def counts_part(folder, pictures):
             "</table></details>")
 
 
-def peers_content(name, folder):
+def peers_content(name, folder, place):
+    """The comparison with peers in a named file; by default one of the machine `place`, and none of another machine."""
     if name:
-        content = baselines.read(name, ("date", "rows"))
+        content = json_file.read(name, ("date", "rows"))
         if content is None:
             raise Failure(f"there is no {name}")
         return content
+    others = []
     for path in [ROOT / "build" / "peers" / "peers.json", *sorted(Path(folder).glob("*/peers.json"))]:
-        content = baselines.read(path, ("date", "rows"))
-        if content:
+        content = json_file.read(path, ("date", "rows"))
+        if content and content.get("machine") == place:
             return content
+        others += [str(content.get("machine", "an unknown machine"))] if content else []
+    if others:
+        say(f"perf: the comparison with peers is left out: it was made on {'; '.join(others)}, and the records on {place}. "
+            "tools/peers.sh compares on this machine, --peers FILE shows another machine's under that name")
     return None
 
 
-def peers_part(content, pictures):
+def peers_part(content, pictures, place):
+    """The comparison with peers; its title says if it was made on another machine than the records."""
     rows = "".join(f"<tr><td>{escape(r['task'])}</td><td>{escape(r['peer'])}</td><td>{escape(r['way'])}</td>"
                    f"<td class=n>{scaled(r['rate'])}</td><td>{escape(r['against'])}</td><td class=n>{r['ratio']:.3g}</td></tr>"
                    for r in content["rows"])
     bars = [(f"{r['task']}: {r['peer']}, {r['way']}", r["ratio"]) for r in content["rows"] if r.get("main", True)]
     pictures["peers"] = plots.ratios("Beside other programs, in one run", bars)
-    return (f"<h2>Peers</h2><p>{escape(content['date'])}, {escape(content.get('machine', ''))}, one thread each, in turns; every "
+    elsewhere = "" if content.get("machine") == place else " on another machine"
+    return (f"<h2>Peers{elsewhere}</h2><p>{escape(content['date'])}, {escape(content.get('machine', ''))}, one thread each, in turns; every "
             f"answer was compared first.</p>{pictures['peers']}<details><summary>{len(content['rows'])} comparisons</summary>"
             "<table><tr><th>task</th><th>program</th><th>way</th><th class=n>items/s</th><th>Tessera's way</th>"
             f"<th class=n>Tessera is faster by</th></tr>{rows}</table></details>")
 
 
-def page(records, folder, peers):
-    """(HTML, name to SVG)"""
-    pictures, body = {}, ""
-    title, quiet = "Tessera, measured", ""
-    if records:
-        records, (processor, isa) = comparable(records)
-        last = records[-1]
-        quiet = (f"{last['date']}, commit {last['commit']}{' and changes' if last.get('dirty') else ''}: {last.get('subject', '')}. "
-                 f"{processor}, {last['machine'].get('cores')} cores, {isa}, {last['facts'].get('compiler', 'compiler unknown')}")
-        body += ("<h2>History</h2><p>Each record is one run, on a machine that did other things as well: read trends here. Whether a "
-                 "commit is slower than another one, <code>tools/perf compare</code> finds out.</p>")
-        if len(records) > 1:
-            rows = [{case: entry["rate"] for case, entry in r["cases"].items()} for r in records]
-            pictures["history"] = plots.history("Rates", [label_of(r) for r in records], lines_of(rows),
-                                                "geometric means of a family's rates, over the first record's: more is better")
-            body += pictures["history"]
-        body += f"<details open><summary>{len(last['cases'])} cases</summary>{rates_table(records)}</details>"
-        drawn = next((r["roofline"] for r in reversed(records) if r.get("roofline")), None)
-        if drawn:
-            pictures["roofline"] = plots.roofline(drawn)
-            body += ("<h2>Roofline</h2><p>Grids of bicubic patches in blocks: blue where the output stays in the second-level cache, "
-                     f"orange where it goes to memory.</p>{pictures['roofline']}")
-    body += counts_part(folder, pictures)
+def history_part(found, others, pictures):
+    """The figures of comparable records, and a sentence about the others."""
+    own = records.program_of(found[-1]) == records.OWN
+    html = ("<h2>History</h2><p>Each record is one run, on a machine that did other things as well: read trends here."
+            + (" Whether a commit is slower than another one, <code>tools/perf compare</code> finds out." if own else "") + "</p>")
+    if others:
+        html += f"<p class=quiet>{escape(records.left_out(others))}</p>"
+    if len(found) > 1:
+        rows = [{case: entry["rate"] for case, entry in r["cases"].items()} for r in found]
+        pictures["history"] = plots.history("Rates", [label_of(r) for r in found], lines_of(rows),
+                                            "geometric means of a family's rates, over the first record's: more is better")
+        html += pictures["history"]
+    html += rates_table(found)
+    drawn = next((r["roofline"] for r in reversed(found) if r.get("roofline")), None)
+    if drawn:
+        pictures["roofline"] = roofline.draw(drawn)
+        html += ("<h2>Roofline</h2><p>Grids of bicubic patches in blocks: blue where the output stays in the second-level cache, "
+                 f"orange where it goes to memory.</p>{pictures['roofline']}")
+    return html
+
+
+def summary(last):
+    """The commit, machine and compiler of a record."""
+    subject = f": {last['subject']}" if last.get("subject") else ""
+    return (f"{last['date']}, commit {last['commit']}{' and changes' if last.get('dirty') else ''}{subject}. "
+            f"{records.place_of(last)}, {last['facts'].get('compiler', 'compiler unknown')}")
+
+
+def page(found, others, folder, peers):
+    """(HTML, name to SVG). Counts of instructions and peers are Tessera's: pages of other programs are without."""
+    pictures, body, quiet = {}, "", ""
+    program = records.program_of(found[-1]) if found else records.OWN
+    title = f"{'Tessera' if program == records.OWN else program}, measured"
+    if found:
+        quiet = summary(found[-1])
+        body += history_part(found, others, pictures)
+    if program == records.OWN:
+        body += counts_part(folder, pictures)
     if peers:
-        body += peers_part(peers, pictures)
+        body += peers_part(peers, pictures, machine.title(found[-1]["machine"] if found else None))
     if not body:
-        raise Failure("nothing was recorded yet: tools/perf record")
-    html = (f"<!doctype html><html lang=en><head><meta charset=utf-8><title>{title}</title><style>{STYLE}</style></head><body>"
-            f"<h1>{title}</h1><p class=quiet>{escape(quiet)}</p>{body}</body></html>\n")
+        raise Failure("nothing was recorded yet: tools/perf record, or tools/perf track for programs that are not Tessera's")
+    html = (f"<!doctype html><html lang=en><head><meta charset=utf-8><title>{escape(title)}</title><style>{STYLE}</style></head><body>"
+            f"<h1>{escape(title)}</h1><p class=quiet>{escape(quiet)}</p>{body}</body></html>\n")
     return html, pictures
 
 
@@ -212,12 +225,19 @@ def write_pictures(pictures, folder):
 
 
 def command(arguments):
-    records = read_records(arguments.records, arguments.baselines)
-    html, pictures = page(records, arguments.baselines, peers_content(arguments.peers, arguments.baselines))
+    found, others = records.chosen(arguments)
+    peers = None
+    if arguments.peers or not found or records.program_of(found[-1]) == records.OWN:
+        place = machine.title(found[-1]["machine"] if found else None)
+        peers = peers_content(arguments.peers, arguments.baselines, place)
+    html, pictures = page(found, others, arguments.baselines, peers)
     output = Path(arguments.output) if arguments.output else WORK / "report.html"
-    output.parent.mkdir(parents=True, exist_ok=True)
-    output.write_text(html, encoding="utf-8")
-    print(f"{len(records)} records: {output}")
+    try:
+        output.parent.mkdir(parents=True, exist_ok=True)
+        output.write_text(html, encoding="utf-8")
+    except OSError as error:
+        raise Failure(f"{output} can't be written: {error.strerror}") from None
+    print(f"{len(found)} {'record' if len(found) == 1 else 'records'}: {output}")
     for file in write_pictures(pictures, output.parent):
         print(file)
     return GOOD

@@ -1,13 +1,12 @@
 """Runs tessera_bench and reads its results."""
 
-import json
-import os
 import re
-import subprocess
 import tempfile
 from pathlib import Path
 
+from . import json_file
 from .console import Failure
+from .process import ending, start
 
 SUFFIX = "/manual_time"  # Google Benchmark's, in lists of names
 
@@ -18,27 +17,24 @@ class Case:
     def __init__(self, entry):
         self.name = entry["name"].removesuffix(SUFFIX) if hasattr(str, "removesuffix") else entry["name"].split(SUFFIX)[0]
         self.error = entry.get("error_message") if entry.get("error_occurred") else None
-        self.rate = float(entry.get("items_per_second", 0))
+        self.rate = entry.get("items_per_second", 0)
         self.limit_fraction = entry.get("limit_fraction")
         self.bytes = entry.get("bytes_per_second")
 
 
-def start(program, *words, environment=None):
-    try:
-        return subprocess.run([str(program), *words], capture_output=True, text=True, check=False,
-                              env=dict(os.environ, **(environment or {})))
-    except FileNotFoundError:
-        raise Failure(f"there is no program {program}") from None
-    except OSError as error:
-        raise Failure(f"{program} does not start: {error.strerror}") from None
+def hint(program):
+    return f"\nA program that is not Tessera's is tracked by 'tools/perf track {program}'"
 
 
 def names(program, part="full", filter=None):
     """The cases of a set that match the regular expression, in their order."""
     done = start(program, f"--set={part}", "--benchmark_list_tests=true")
     if done.returncode != 0:
-        raise Failure(f"{program} --benchmark_list_tests failed: {done.stderr.strip()[-500:]}")
+        raise Failure(f"{program} --benchmark_list_tests ended with {ending(done)}{hint(program)}")
     found = [line[: -len(SUFFIX)] if line.endswith(SUFFIX) else line for line in done.stdout.split()]
+    odd = [name for name in found if name.count("/") < 5]
+    if odd:
+        raise Failure(f"{program} lists the case '{odd[0]}'; wanted operation/surface/degree/size/isa/threads{hint(program)}")
     if filter is not None:
         try:
             found = [name for name in found if re.search(filter, name)]
@@ -54,13 +50,6 @@ def exactly(cases):
     return "^(" + "|".join(re.sub(r"([.+])", r"\\\1", name) for name in cases) + f")({SUFFIX})?$"
 
 
-def read_json(text, origin):
-    try:
-        return json.loads(text)
-    except ValueError as error:
-        raise Failure(f"{origin} is not JSON: {error}") from None
-
-
 def run(program, cases, seconds, limits=False):
     """Runs cases for about `seconds` each; returns a dictionary of names to Case."""
     with tempfile.TemporaryDirectory() as folder:
@@ -70,8 +59,8 @@ def run(program, cases, seconds, limits=False):
                      environment={} if limits else {"TESSERA_BENCH_LIMITS": "0"})
         text = file.read_text(encoding="utf-8") if file.exists() else ""
     if not text:
-        raise Failure(f"{program} wrote no results (exit status {done.returncode}): {done.stderr.strip()[-500:]}")
-    content = read_json(text, f"what {program} wrote")
+        raise Failure(f"{program} wrote no results and ended with {ending(done)}")
+    content = json_file.parse(text, f"what {program} wrote")
     if not isinstance(content, dict) or not isinstance(content.get("benchmarks"), list):
         raise Failure(f"{program} wrote JSON that Google Benchmark does not write: no list \"benchmarks\"")
     found = {}
@@ -79,6 +68,8 @@ def run(program, cases, seconds, limits=False):
         case = Case(entry)
         if case.error:
             raise Failure(f"{program}: {case.name} failed its check: {case.error}")
+        if case.rate != 0 and not json_file.is_positive(case.rate):
+            raise Failure(f"{program}: {case.name} has the items_per_second {case.rate}; it must be a finite number above 0")
         found[case.name] = case
     missing = [name for name in cases if name not in found]
     if missing:
@@ -92,4 +83,4 @@ def facts(program):
     done = start(program, "--facts")
     if done.returncode != 0:
         return {}
-    return read_json(done.stdout, f"what {program} --facts printed")
+    return json_file.parse(done.stdout, f"what {program} --facts printed")
