@@ -27,7 +27,8 @@ fail() {
 # cmake/TesseraDependencies.cmake says what each package is for.
 demo_packages=(g++ cmake ninja-build libtbb-dev libxsimd-dev libembree-dev libcli11-dev nlohmann-json3-dev libmuparser-dev
   libtinygltf-dev libpng-dev libopenexr-dev)
-test_packages=(binutils libgtest-dev libgmock-dev libbenchmark-dev libocct-data-exchange-dev python3 valgrind)
+test_packages=(binutils libgtest-dev libgmock-dev libbenchmark-dev libocct-data-exchange-dev python3
+  python3-yaml valgrind)
 neon_packages=(g++-aarch64-linux-gnu qemu-user)
 peer_packages=(libocct-modeling-data-dev libocct-modeling-algorithms-dev libocct-data-exchange-dev libosd-dev
   libsisl-dev povray python3)

@@ -101,6 +101,8 @@ def chosen(arguments):
     kept, others = choose(read(arguments.records, arguments.baselines), arguments.machine, arguments.program)
     if others:
         say("perf: " + left_out(others))
+    if kept and machine.title(kept[-1]["machine"]) != machine.title():
+        say(f"perf: the figures are of {place_of(kept[-1])}; this machine is {machine.title()}")
     return kept, others
 
 
