@@ -104,11 +104,20 @@ function(check_package prefix)
   run_programs(rays ${kind})
   build_consumer(no_embree -D CMAKE_PREFIX_PATH=${prefix} -D CMAKE_BUILD_TYPE=Release -D CONSUMER_RAYS=OFF)
   run_in(no_embree tessellate_only)
+  build_speed(${prefix})
   if(PKG_CONFIG)
     build_by_pkg_config(${prefix})
   else()
     message(STATUS "pkg-config is not there: tessera.pc is not tried")
   endif()
+endfunction()
+
+# build_speed(PREFIX): the template of programs that tools/perf tracks, as the project that it is copied to.
+function(build_speed prefix)
+  run(${CMAKE_COMMAND} -S ${SOURCE}/tools/performance/template -B ${WORK}/speed -G ${GENERATOR}
+    -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_PREFIX_PATH=${prefix})
+  run(${CMAKE_COMMAND} --build ${WORK}/speed)
+  run_in(speed speed)
 endfunction()
 
 function(build_by_pkg_config prefix)

@@ -14,8 +14,8 @@ sys.path.insert(0, str(ROOT / "tools"))
 
 def perf(*words, folder=None, **environment):
     """Runs tools/perf in a folder: (exit status, standard output, standard error)."""
-    done = subprocess.run([sys.executable, str(PERF), *map(str, words)], cwd=folder, capture_output=True, text=True, check=False,
-                          env=dict(os.environ, **environment))
+    done = subprocess.run([sys.executable, str(PERF), *map(str, words)], cwd=folder, capture_output=True, text=True,
+                          check=False, env=dict(os.environ, **environment))
     return done.returncode, done.stdout, done.stderr
 
 

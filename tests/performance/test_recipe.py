@@ -25,9 +25,10 @@ except ImportError:
 RECIPE = ROOT / "tools" / "performance" / "template" / "speed.yml"
 GUIDES = [ROOT / "engine" / "docs" / "tracking-speed.md", ROOT / "bench" / "README.md"]
 # The inputs of github-action-benchmark v1, from its action.yml.
-INPUTS = set("""name tool output-file-path gh-pages-branch gh-repository benchmark-data-dir-path github-token ref auto-push
-skip-fetch-gh-pages comment-on-pull-request comment-always summary-always save-data-file comment-on-alert alert-threshold fail-on-alert
-fail-threshold alert-comment-cc-users external-data-json-path max-items-in-chart""".split())
+INPUTS = set("""name tool output-file-path gh-pages-branch gh-repository benchmark-data-dir-path github-token ref
+auto-push skip-fetch-gh-pages comment-on-pull-request comment-always summary-always save-data-file comment-on-alert
+alert-threshold fail-on-alert fail-threshold alert-comment-cc-users external-data-json-path
+max-items-in-chart""".split())
 
 
 def command_lines(text):
@@ -85,7 +86,8 @@ class Recipe(unittest.TestCase):
         self.assertLessEqual(set(action["with"]), INPUTS)
 
     def run_script(self, name):
-        done = subprocess.run(["bash", "-e", "-c", self.scripts[name]], cwd=self.folder, capture_output=True, text=True, check=False)
+        done = subprocess.run(["bash", "-e", "-c", self.scripts[name]], cwd=self.folder, capture_output=True, text=True,
+                              check=False)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
     def git(self, *words, cwd=None, **environment):
@@ -99,17 +101,19 @@ class Recipe(unittest.TestCase):
             self.git("init", "-q", "--bare", str(origin), cwd=folder)
             self.git("clone", "-q", str(origin), str(self.folder), cwd=folder)
             setup = re.search(r"#   (git switch --orphan .*)", RECIPE.read_text())[1]
-            subprocess.run(["bash", "-e", "-c", setup.replace("git commit", "git -c user.name=t -c user.email=t@t commit")], cwd=self.folder,
-                           capture_output=True, check=True)
+            setup = setup.replace("git commit", "git -c user.name=t -c user.email=t@t commit")
+            subprocess.run(["bash", "-e", "-c", setup], cwd=self.folder, capture_output=True, check=True)
             self.git("switch", "-q", "--orphan", "main")
             self.git("clone", "-q", "--branch", "speed-history", str(origin), "history")
             (self.folder / "tessera").symlink_to(ROOT)
             program = self.folder / "build" / "speed" / "speed"
             program.parent.mkdir(parents=True)
             for rate in (5, 6):
-                program.write_text(f"#!{sys.executable}\nprint('{{\"benchmarks\": [{{\"name\": \"a\", \"items_per_second\": {rate}}}]}}')\n")
+                content = json.dumps({"benchmarks": [{"name": "a", "items_per_second": rate}]})
+                program.write_text(f"#!{sys.executable}\nprint('{content}')\n")
                 program.chmod(0o755)
-                self.git("commit", "-q", "--allow-empty", "-m", f"rate {rate}", GIT_COMMITTER_DATE=f"2026-01-0{rate} 12:00:00")
+                self.git("commit", "-q", "--allow-empty", "-m", f"rate {rate}",
+                         GIT_COMMITTER_DATE=f"2026-01-0{rate} 12:00:00")
                 self.run_script("Track")
                 self.run_script("Keep")
             kept = self.git("ls-tree", "-r", "--name-only", "speed-history", cwd=origin).split()

@@ -10,7 +10,7 @@ import xml.etree.ElementTree
 from pathlib import Path
 
 from support import FAKE, perf, script
-from performance import plots, records, report
+from performance import machine, plots, records, report
 
 VOID = {"meta", "br", "line", "circle", "rect", "polyline"}
 
@@ -105,6 +105,20 @@ class Reports(unittest.TestCase):
         other["machine"]["processor"], other["commit_time"] = "another", 0
         kept, others = records.choose([other, content])
         self.assertEqual((kept, others), ([content], [other]))
+
+    def test_peers_of_another_machine_are_never_this_ones(self):
+        record, content = self.record("a.json")
+        row = {"task": "positions", "peer": "SISL", "way": "s1506", "rate": 2e6, "against": "blocks", "ratio": 17.5}
+        peers = self.folder / "baselines" / "abacus" / "peers.json"
+        peers.parent.mkdir()
+        for place, shown in (("Abacus 2", False), (machine.title(content["machine"]), True)):
+            peers.write_text(json.dumps({"date": "2026-01-01", "machine": place, "rows": [row]}))
+            page, (status, out, err) = self.report(record)
+            self.assertEqual((status, "made on Abacus 2" in err), (0, not shown), out + err)
+            self.assertEqual(("s1506" in page.read_text(), "<h2>Peers</h2>" in page.read_text()), (shown, shown))
+        peers.write_text(json.dumps({"date": "2026-01-01", "machine": "Abacus 2", "rows": [row]}))
+        page, (status, out, err) = self.report(record, words=("--peers", peers))
+        self.assertEqual((status, "<h2>Peers on another machine</h2>" in page.read_text()), (0, True), out + err)
 
     def test_what_is_broken_or_missing_is_named(self):
         bad = self.folder / "bad.json"

@@ -118,15 +118,17 @@ def add_record(commands):
 
 def add_track(commands):
     parser = commands.add_parser(
-        "track", help="the figures of a program that is not Tessera's", formatter_class=argparse.RawDescriptionHelpFormatter,
-        description="Runs PROGRAM, which must print the JSON of Google Benchmark to standard output, and keeps its rates with machine,\n"
-        "commit and date. engine/docs/tracking-speed.md says which fields count.",
-        epilog="The program's arguments come last: tools/perf track --passes 3 ./my_bench --benchmark_format=json\n" + STATUS)
+        "track", help="the figures of a program that is not Tessera's",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        description="Runs PROGRAM, which must print the JSON of Google Benchmark to standard output, and keeps its\n"
+        "rates with machine, commit and date. engine/docs/tracking-speed.md says which fields count.",
+        epilog="The program's arguments come last: tools/perf track --passes 3 ./my_bench --benchmark_format=json\n"
+        + STATUS)
     parser.add_argument("tracked", metavar="PROGRAM", help="a file, or a name in PATH")
     parser.add_argument("arguments", nargs=argparse.REMAINDER, metavar="...", help="its arguments")
     parser.add_argument("--name", help="of the program in records and reports (default: that of its file)")
-    parser.add_argument("--of", metavar="TEXT", help="a commit or another name of the version that is measured (default: the commit "
-                        "of the git repository in the current folder)")
+    parser.add_argument("--of", metavar="TEXT", help="a commit or another name of the version that is measured "
+                        "(default: the commit of the git repository in the current folder)")
     parser.add_argument("--passes", type=number(1, 100, True), default=1, metavar="N",
                         help="runs of the program; each case counts by its best rate (default: 1)")
     parser.add_argument("--time-limit", type=number(0.01, 1e6), default=600, metavar="S",
@@ -140,29 +142,34 @@ def add_track(commands):
 def add_records(parser, choice=True):
     """The arguments that name records, and choose among them."""
     parser.add_argument("records", nargs="*", metavar="RECORD",
-                        help="of record or track, or folders of them (default: build/perf/records and the times in bench/baselines)")
+                        help="of record or track, or folders of them (default: build/perf/records and the times in "
+                        "bench/baselines)")
     parser.add_argument("--baselines", default=baselines.FOLDER, metavar="FOLDER", help="default: bench/baselines")
     if choice:
-        parser.add_argument("--machine", metavar="TEXT", help="records of machines with this text in their name, as list prints it "
-                            "(default: the newest record's machine)")
-        parser.add_argument("--program", metavar="NAME", help="records of this program (default: the newest record's program)")
+        parser.add_argument("--machine", metavar="TEXT", help="records of machines with this text in their name, as "
+                            "list prints it (default: the newest record's machine)")
+        parser.add_argument("--program", metavar="NAME",
+                            help="records of this program (default: the newest record's program)")
 
 
 def add_list(commands):
     parser = commands.add_parser(
-        "list", help="date, commit, machine and cases of records", formatter_class=argparse.RawDescriptionHelpFormatter,
-        description="Prints a line of text for each record, the oldest first. A commit with + had changes.", epilog=STATUS)
+        "list", help="date, commit, machine and cases of records",
+        formatter_class=argparse.RawDescriptionHelpFormatter, epilog=STATUS,
+        description="Prints a line of text for each record, the oldest first. A commit with + had changes.")
     add_records(parser, choice=False)
     parser.set_defaults(run=records.command)
 
 
 def add_export(commands):
     parser = commands.add_parser(
-        "export", help="the newest record's figures, for other tools", formatter_class=argparse.RawDescriptionHelpFormatter,
-        description="Prints the figures of the newest record as JSON. github-action-benchmark reads rates as its tool customBiggerIsBetter,\n"
-        "and times as customSmallerIsBetter.", epilog=STATUS)
+        "export", help="the newest record's figures, for other tools",
+        formatter_class=argparse.RawDescriptionHelpFormatter, epilog=STATUS,
+        description="Prints the figures of the newest record as JSON. github-action-benchmark reads rates as its tool\n"
+        "customBiggerIsBetter, and times as customSmallerIsBetter.")
     add_records(parser)
-    parser.add_argument("--format", choices=export.FORMATS, default=export.FORMATS[0], help=f"default: {export.FORMATS[0]}")
+    parser.add_argument("--format", choices=export.FORMATS, default=export.FORMATS[0],
+                        help=f"default: {export.FORMATS[0]}")
     parser.add_argument("--figure", choices=("rate", "time"), default="rate",
                         help="items per second, or nanoseconds per item (default: rate)")
     parser.add_argument("-o", "--output", metavar="FILE", help="default: standard output")

@@ -23,7 +23,7 @@ def github_action_benchmark(record, figure):
 def command(arguments):
     found, _ = records.chosen(arguments)
     if not found:
-        raise Failure("nothing was recorded yet: tools/perf record, or tools/perf track for programs that are not Tessera's")
+        raise Failure(records.NOTHING)
     content = github_action_benchmark(found[-1], arguments.figure)
     if arguments.output:
         json_file.write(arguments.output, content)

@@ -62,8 +62,8 @@ class Labels:
         return sum(box.meets(b) for b in self.boxes) + sum(box.meets_segment(*s) for s in self.segments)
 
     def find(self, words, size, candidates):
-        """(cost, place, box) of the first of the candidates (x, y, anchor) within the frame that covers nothing; otherwise of
-        the one that covers least. The cost is the candidate's number, and 1000 for each thing covered.
+        """(cost, place, box) of the first of the candidates (x, y, anchor) within the frame that covers nothing;
+        otherwise of the one that covers least. The cost is the candidate's number, and 1000 for each thing covered.
         """
         best = None
         for number, (x, y, anchor) in enumerate(candidates):
@@ -86,8 +86,8 @@ class Labels:
         return best[1]
 
     def place_all(self, labels):
-        """The places of several labels (words, size, candidates). The order of placing is the best one among its rotations,
-        because early labels take the room of later ones.
+        """The places of several labels (words, size, candidates). Early labels take the room of later ones, so the
+        order of placing is the best one among its rotations.
         """
         base, best = self.boxes, None
         for forward in (range(len(labels)), range(len(labels) - 1, -1, -1)):

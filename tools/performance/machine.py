@@ -26,8 +26,8 @@ def describe():
 
 
 def title(found=None):
-    """A described machine, by default this one, in a few words. Processors in clouds often have no better name than their
-    family and model.
+    """A described machine, by default this one, in a few words. Processors in clouds often have no better name than
+    their family and model.
     """
     found = found or describe()
     numbers = f" (family {found['family']}, model {found.get('model', '')})" if found.get("family") else ""

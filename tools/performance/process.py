@@ -30,7 +30,8 @@ def start(program, *words, environment=None, limit=None):
         out, err = process.communicate(timeout=limit)
     except subprocess.TimeoutExpired:
         end(process)
-        raise Failure(f"{program} did not end within {limit:g} s and was stopped: --time-limit S gives it longer") from None
+        raise Failure(f"{program} did not end within {limit:g} s and was stopped: --time-limit S gives it "
+                      "longer") from None
     except BaseException:
         end(process)
         raise

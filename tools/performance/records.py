@@ -10,6 +10,8 @@ from .repository import WORK
 KEYS = ("commit", "date", "machine", "facts", "cases")
 OWN = "tessera_bench"
 ADVICE = "delete the file, or record again"
+NOTHING = ("nothing was recorded yet: tools/perf record, or tools/perf track for programs that are not "
+           "Tessera's")
 
 
 def read_one(file):
@@ -38,7 +40,8 @@ def files_of(names, folder):
     for name in map(Path, names):
         found = sorted(name.glob("*.json")) if name.is_dir() else [name]
         if not found:
-            raise Failure(f"the folder {name} holds no record (*.json): tools/perf track --records {name} keeps some there")
+            raise Failure(f"the folder {name} holds no record (*.json): tools/perf track --records {name} keeps some "
+                          "there")
         files += found
     return files
 
@@ -69,13 +72,13 @@ def place_of(record):
     return machine.title(record["machine"]) + (f", {isa}" if isa else "")
 
 
-def names_of(records, word):
+def names_of(records):
     """The programs and places of records, with the number of records of each."""
     counts = {}
     for record in records:
         kind = f"{program_of(record)} on {place_of(record)}"
         counts[kind] = counts.get(kind, 0) + 1
-    return "; ".join(f"{kind} ({number} {word if number == 1 else word + 's'})" for kind, number in counts.items())
+    return "; ".join(f"{kind} ({number} record{'' if number == 1 else 's'})" for kind, number in counts.items())
 
 
 def choose(records, machine_text=None, program=None):
@@ -83,8 +86,9 @@ def choose(records, machine_text=None, program=None):
     fit = [r for r in records if (machine_text is None or machine_text.lower() in place_of(r).lower())
            and (program is None or program_of(r) == program)]
     if records and not fit:
-        wanted = [f"--{name} {text}" for name, text in (("machine", machine_text), ("program", program)) if text is not None]
-        raise Failure(f"no record fits {' '.join(wanted)}; there are {names_of(records, 'record')}")
+        asked = {"--machine": machine_text, "--program": program}
+        wanted = " ".join(f"{name} {text}" for name, text in asked.items() if text is not None)
+        raise Failure(f"no record fits {wanted}; there are {names_of(records)}")
     kind = lambda r: (program_of(r), place_of(r))
     kept = [r for r in fit if kind(r) == kind(fit[-1])]
     return kept, [r for r in fit if kind(r) != kind(fit[-1])]
@@ -92,8 +96,9 @@ def choose(records, machine_text=None, program=None):
 
 def left_out(others):
     """A sentence about records that are not comparable with the newest one."""
-    return (f"{len(others)} {'record is' if len(others) == 1 else 'records are'} left out, of another machine, instruction set "
-            f"or program than the newest one: {names_of(others, 'record')}. --machine TEXT and --program NAME choose.")
+    return (f"{len(others)} {'record is' if len(others) == 1 else 'records are'} left out, of another machine, "
+            f"instruction set or program than the newest one: {names_of(others)}. --machine TEXT and --program NAME "
+            "choose.")
 
 
 def chosen(arguments):
@@ -128,9 +133,10 @@ def command(arguments):
     rows = [("date", "commit", "program", "machine", "cases", "file")]
     for content, file in sorted(found, key=lambda pair: age(pair[0])):
         commit = content["commit"] + ("+" if content.get("dirty") else "")
-        rows.append((content["date"], commit, program_of(content), place_of(content), str(len(content["cases"])), str(file)))
+        rows.append((content["date"], commit, program_of(content), place_of(content), str(len(content["cases"])),
+                     str(file)))
     if found:
         print(table(rows, right=(4,)))
     elif not faults:
-        say("perf: nothing was recorded yet: tools/perf record, or tools/perf track for programs that are not Tessera's")
+        say("perf: " + NOTHING)
     return FAILED if faults else GOOD

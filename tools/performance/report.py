@@ -57,7 +57,9 @@ def row_of(case, found):
     entry = found[known[-1]]["cases"][case]
     limit, mark, change, word = entry.get("limit_fraction"), "", "", ""
     if known[-1] < len(found) - 1:
-        mark = f" <span class=gone>not in the newest record; last on {escape(' with commit '.join(label_of(found[known[-1]])[::-1]))}</span>"
+        commit, date = label_of(found[known[-1]])
+        mark = (f" <span class=gone>not in the newest record; last on {escape(date)} with commit {escape(commit)}"
+                "</span>")
     elif len(known) > 1:
         ratio = entry["rate"] / values[known[-2]]
         change, word = f"{ratio:.2f}", "slower" if ratio < 0.9 else "faster" if ratio > 1.1 else ""
@@ -71,8 +73,9 @@ def rates_table(found):
     gone = len(cases) - len(found[-1]["cases"])
     rows = "".join(row_of(case, found) for case in cases)
     return (f"<details open><summary>{len(cases)} {'case' if len(cases) == 1 else 'cases'}"
-            f"{f', {gone} of them not in the newest record' if gone else ''}</summary><table><tr><th>case</th><th class=n>items/s</th>"
-            f"<th class=n>of the limit</th><th>history</th><th class=n>to the one before</th></tr>{rows}</table></details>")
+            f"{f', {gone} of them not in the newest record' if gone else ''}</summary><table><tr><th>case</th>"
+            "<th class=n>items/s</th><th class=n>of the limit</th><th>history</th>"
+            f"<th class=n>to the one before</th></tr>{rows}</table></details>")
 
 
 def counts_history(isa, folder):
@@ -136,15 +139,15 @@ def peers_content(name, folder, place):
         if content is None:
             raise Failure(f"there is no {name}")
         return content
-    others = []
-    for path in [ROOT / "build" / "peers" / "peers.json", *sorted(Path(folder).glob("*/peers.json"))]:
+    others, own = [], [ROOT / "build" / "peers" / "peers.json"] if Path(folder) == baselines.FOLDER else []
+    for path in [*own, *sorted(Path(folder).glob("*/peers.json"))]:
         content = json_file.read(path, ("date", "rows"))
         if content and content.get("machine") == place:
             return content
         others += [str(content.get("machine", "an unknown machine"))] if content else []
     if others:
-        say(f"perf: the comparison with peers is left out: it was made on {'; '.join(others)}, and the records on {place}. "
-            "tools/peers.sh compares on this machine, --peers FILE shows another machine's under that name")
+        say(f"perf: the comparison with peers is left out: it was made on {'; '.join(others)}, and the records on "
+            f"{place}. tools/peers.sh compares on this machine, --peers FILE shows another machine's under its name")
     return None
 
 
@@ -156,8 +159,9 @@ def peers_part(content, pictures, place):
     bars = [(f"{r['task']}: {r['peer']}, {r['way']}", r["ratio"]) for r in content["rows"] if r.get("main", True)]
     pictures["peers"] = plots.ratios("Beside other programs, in one run", bars)
     elsewhere = "" if content.get("machine") == place else " on another machine"
-    return (f"<h2>Peers{elsewhere}</h2><p>{escape(content['date'])}, {escape(content.get('machine', ''))}, one thread each, in turns; every "
-            f"answer was compared first.</p>{pictures['peers']}<details><summary>{len(content['rows'])} comparisons</summary>"
+    return (f"<h2>Peers{elsewhere}</h2><p>{escape(content['date'])}, {escape(content.get('machine', ''))}, one thread "
+            f"each, in turns; every answer was compared first.</p>{pictures['peers']}<details><summary>"
+            f"{len(content['rows'])} comparisons</summary>"
             "<table><tr><th>task</th><th>program</th><th>way</th><th class=n>items/s</th><th>Tessera's way</th>"
             f"<th class=n>Tessera is faster by</th></tr>{rows}</table></details>")
 
@@ -166,20 +170,21 @@ def history_part(found, others, pictures):
     """The figures of comparable records, and a sentence about the others."""
     own = records.program_of(found[-1]) == records.OWN
     html = ("<h2>History</h2><p>Each record is one run, on a machine that did other things as well: read trends here."
-            + (" Whether a commit is slower than another one, <code>tools/perf compare</code> finds out." if own else "") + "</p>")
+            + (" Whether a commit is slower than another one, <code>tools/perf compare</code> finds out."
+               if own else "") + "</p>")
     if others:
         html += f"<p class=quiet>{escape(records.left_out(others))}</p>"
     if len(found) > 1:
         rows = [{case: entry["rate"] for case, entry in r["cases"].items()} for r in found]
-        pictures["history"] = plots.history("Rates", [label_of(r) for r in found], lines_of(rows),
-                                            "geometric means of a family's rates, over the first record's: more is better")
+        unit = "geometric means of a family's rates, over the first record's: more is better"
+        pictures["history"] = plots.history("Rates", [label_of(r) for r in found], lines_of(rows), unit)
         html += pictures["history"]
     html += rates_table(found)
     drawn = next((r["roofline"] for r in reversed(found) if r.get("roofline")), None)
     if drawn:
         pictures["roofline"] = roofline.draw(drawn)
-        html += ("<h2>Roofline</h2><p>Grids of bicubic patches in blocks: blue where the output stays in the second-level cache, "
-                 f"orange where it goes to memory.</p>{pictures['roofline']}")
+        html += ("<h2>Roofline</h2><p>Grids of bicubic patches in blocks: blue where the output stays in the "
+                 f"second-level cache, orange where it goes to memory.</p>{pictures['roofline']}")
     return html
 
 
@@ -203,9 +208,10 @@ def page(found, others, folder, peers):
     if peers:
         body += peers_part(peers, pictures, machine.title(found[-1]["machine"] if found else None))
     if not body:
-        raise Failure("nothing was recorded yet: tools/perf record, or tools/perf track for programs that are not Tessera's")
-    html = (f"<!doctype html><html lang=en><head><meta charset=utf-8><title>{escape(title)}</title><style>{STYLE}</style></head><body>"
-            f"<h1>{escape(title)}</h1><p class=quiet>{escape(quiet)}</p>{body}</body></html>\n")
+        raise Failure(records.NOTHING)
+    html = (f"<!doctype html><html lang=en><head><meta charset=utf-8><title>{escape(title)}</title>"
+            f"<style>{STYLE}</style></head><body><h1>{escape(title)}</h1><p class=quiet>{escape(quiet)}</p>"
+            f"{body}</body></html>\n")
     return html, pictures
 
 

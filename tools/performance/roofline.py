@@ -91,13 +91,15 @@ def draw(content):
     ceilings = chart.ceilings()
     stores = max(fastest["plain_store"], fastest["streaming_store"])
     slopes = []
-    for label, rate, colour in (("to the cache", content["cache_store"], COLOURS[0]), ("to memory", stores, COLOURS[1])):
+    for label, rate, colour in (("to the cache", content["cache_store"], COLOURS[0]),
+                                ("to memory", stores, COLOURS[1])):
         points, slope = chart.roof(rate)
         chart.path(points, colour, 2)
         slopes.append((f"{1e-9 * rate:.3g} GB/s {label}", colour, slope, label == "to memory"))
     marks = chart.draw_points()
     for words, colour, slope, below in slopes:
-        chart.label(words, colour, SIZE, chart.labels.place(words, SIZE, [*beside(slope, below), *beside(slope, not below)]))
+        candidates = [*beside(slope, below), *beside(slope, not below)]
+        chart.label(words, colour, SIZE, chart.labels.place(words, SIZE, candidates))
     for name, height in ceilings:
         chart.label(name, INK, SIZE, chart.labels.place(name, SIZE, along(height)))
     places = chart.labels.place_all([(p["name"], 12, list(around(x, y))) for p, x, y, _ in marks])

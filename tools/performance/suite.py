@@ -34,7 +34,8 @@ def names(program, part="full", filter=None):
     found = [line[: -len(SUFFIX)] if line.endswith(SUFFIX) else line for line in done.stdout.split()]
     odd = [name for name in found if name.count("/") < 5]
     if odd:
-        raise Failure(f"{program} lists the case '{odd[0]}'; wanted operation/surface/degree/size/isa/threads{hint(program)}")
+        raise Failure(f"{program} lists the case '{odd[0]}'; wanted operation/surface/degree/size/isa/threads"
+                      f"{hint(program)}")
     if filter is not None:
         try:
             found = [name for name in found if re.search(filter, name)]
@@ -69,7 +70,8 @@ def run(program, cases, seconds, limits=False):
         if case.error:
             raise Failure(f"{program}: {case.name} failed its check: {case.error}")
         if case.rate != 0 and not json_file.is_positive(case.rate):
-            raise Failure(f"{program}: {case.name} has the items_per_second {case.rate}; it must be a finite number above 0")
+            raise Failure(f"{program}: {case.name} has the items_per_second {case.rate}; it must be a finite number "
+                          "above 0")
         found[case.name] = case
     missing = [name for name in cases if name not in found]
     if missing:

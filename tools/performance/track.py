@@ -13,6 +13,7 @@ from .repository import commit_of, describe, is_dirty
 SECONDS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}
 FACTS = ("compiler", "flags", "build_type", "isa", "version")
 CONTRACT = "engine/docs/tracking-speed.md says what a tracked program prints"
+ADVICE = "a program that uses Google Benchmark needs the argument --benchmark_format=json"
 
 
 def rate_of(entry, origin):
@@ -72,13 +73,12 @@ def run(program, words, limit):
     if done.returncode != 0:
         raise Failure(f"{program} ended with {process.ending(done)}")
     if not done.stdout.strip():
-        raise Failure(f"{program} printed nothing on standard output: {CONTRACT}; a program that uses Google Benchmark "
-                      "needs the argument --benchmark_format=json")
+        raise Failure(f"{program} printed nothing on standard output: {CONTRACT}; {ADVICE}")
     try:
         content = json_file.parse(done.stdout, f"what {program} printed")
     except Failure as failure:
-        raise Failure(f"{failure}; it begins with '{done.stdout.strip().splitlines()[0][:60]}'. {CONTRACT}; a program that "
-                      "uses Google Benchmark needs the argument --benchmark_format=json") from None
+        first = done.stdout.strip().splitlines()[0][:60]
+        raise Failure(f"{failure}; it begins with '{first}'. {CONTRACT}; {ADVICE}") from None
     return cases_of(content, program), facts_of(content)
 
 
@@ -89,7 +89,8 @@ def best(program, words, limit, passes):
         again, _ = run(program, words, limit)
         if again.keys() != cases.keys():
             odd = sorted(again.keys() ^ cases.keys())[0]
-            raise Failure(f"{program}: case '{odd}' is not in all runs: run 1 has {len(cases)} cases, run {number} has {len(again)}")
+            raise Failure(f"{program}: case '{odd}' is not in all runs: run 1 has {len(cases)} cases, run {number} has "
+                          f"{len(again)}")
         cases = {name: max(entry, again[name], key=lambda e: e["rate"]) for name, entry in cases.items()}
     return cases, facts
 
@@ -101,8 +102,8 @@ def origin_of(said):
         short, seconds, subject = describe(commit_of(said or "HEAD", cwd=here), cwd=here)
     except Failure:
         if said is None:
-            raise Failure(f"{here} is in no git repository with a commit: start tools/perf in the program's repository, or "
-                          "name the version by --of TEXT") from None
+            raise Failure(f"{here} is in no git repository with a commit: start tools/perf in the program's "
+                          "repository, or name the version by --of TEXT") from None
         return said, False, int(datetime.datetime.now().timestamp()), ""
     return short, said is None and is_dirty(here), seconds, subject
 
