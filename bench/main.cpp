@@ -19,7 +19,7 @@ namespace {
 
 constexpr const char* usage =
     R"(tessera_bench [--set=quick|full] [options of Google Benchmark]
-tessera_bench --roofline[=FILE.png|FILE.json]
+tessera_bench --roofline[=FILE.json]
 tessera_bench --count [--benchmark_filter=REGEX]
 tessera_bench --facts
 
@@ -27,8 +27,8 @@ Times every hot path: operation/surface/degree/size/isa/threads. Each case check
 items and bytes a second by the best time of a call, and limit_fraction, the time at the limits of this machine over that
 time (include/tessera/limits.h). The set quick takes two minutes; full, the default, holds all. --benchmark_filter=REGEX
 chooses among a set's names, --benchmark_list_tests=true prints them.
---roofline prints the limits of this machine and how near the kernels come to them, and writes the picture (roofline.png),
-or the numbers as JSON.
+--roofline prints the limits of this machine and how near the kernels come to them, and writes the numbers to
+FILE.json, which tools/perf roofline draws.
 --count does the work of the counted cases once each, for callgrind to count its instructions: tools/perf count starts it
 under valgrind and reads the counts. TESSERA_ISA chooses the instruction set.
 --facts prints what the figures of this program depend on, as JSON: compiler, flags, libraries, instruction sets.
@@ -36,9 +36,9 @@ under valgrind and reads the counts. TESSERA_ISA chooses the instruction set.
 
 struct Arguments {
   Part part = Part::full;
-  std::string roofline;       ///< path of the picture; empty if not requested
+  std::string limits_file;    ///< path of the roofline's numbers; empty: they are only printed
   std::vector<char*> others;  ///< Google Benchmark's
-  bool to_file = false, help = false, wrong = false, count = false, facts = false;
+  bool to_file = false, help = false, wrong = false, count = false, facts = false, roofline = false;
 };
 
 Arguments parse(int count, char** words) {
@@ -59,9 +59,14 @@ Arguments parse(int count, char** words) {
     } else if (word == "--facts") {
       out.facts = true;
     } else if (word == "--roofline") {
-      out.roofline = "roofline.png";
-    } else if (word.starts_with("--roofline=") && word.size() > std::strlen("--roofline=")) {
-      out.roofline = word.substr(std::strlen("--roofline="));
+      out.roofline = true;
+    } else if (word.starts_with("--roofline=") && word.ends_with(".json")) {
+      out.roofline = true;
+      out.limits_file = word.substr(std::strlen("--roofline="));
+    } else if (word.starts_with("--roofline=")) {
+      std::fprintf(stderr, "tessera_bench: %s: the name must end in .json; tools/perf roofline draws that file\n",
+                   words[k]);
+      out.wrong = true;
     } else if (word.starts_with("--benchmark_")) {
       out.to_file = out.to_file || word.starts_with("--benchmark_out=");
       out.others.push_back(words[k]);
@@ -78,8 +83,8 @@ int run(int count, char** words) {
   if (arguments.wrong) return 2;
   if (arguments.help) return std::fputs(usage, stdout), 0;
   if (arguments.facts) return std::fputs(build_facts().c_str(), stdout), 0;
-  if (!arguments.roofline.empty()) {
-    const Status status = print_roofline(arguments.roofline);
+  if (arguments.roofline) {
+    const Status status = print_roofline(arguments.limits_file);
     if (!status.ok()) return std::fprintf(stderr, "tessera_bench: %s\n", status.message().c_str()), 1;
     return 0;
   }

@@ -179,7 +179,8 @@ Status print_roofline(const std::string& file) {
   const auto roofline = measure_roofline();
   if (!roofline) return roofline.status();
   print(*roofline);
-  const Status status = file.ends_with(".json") ? write_json(*roofline, file) : draw_roofline(*roofline, file);
+  if (file.empty()) return {};
+  const Status status = write_json(*roofline, file);
   if (status.ok()) std::printf("written: %s\n", file.c_str());
   return status;
 }

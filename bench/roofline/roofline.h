@@ -1,5 +1,5 @@
 #pragma once
-// Reports the limits of the user's machine, and how near the kernels come to them, as text and a picture.
+// Reports the limits of the user's machine, and how near the kernels come to them.
 
 #include <string>
 #include <vector>
@@ -25,11 +25,8 @@ struct Roofline {
   std::vector<RooflinePoint> points;
 };
 
-/// Measures (some seconds), prints, and writes the picture, or the numbers if the file's name ends in .json. Errors:
-/// those of the measurements, and of writing the file.
+/// Measures (some seconds), prints, and writes the numbers as JSON, unless `file` is empty. Errors: those of the
+/// measurements, and io_error.
 Status print_roofline(const std::string& file);
-
-/// Draws only the picture.
-Status draw_roofline(const Roofline& roofline, const std::string& path);
 
 }  // namespace tessera::bench

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "roofline/canvas.h"
+#include "soak/canvas.h"
 #include "soak/soak.h"
 
 namespace tessera::bench {

@@ -2,10 +2,13 @@
 
 import json
 import random
+import shutil
+import tempfile
 import unittest
 import xml.etree.ElementTree
+from pathlib import Path
 
-from support import ROOT
+from support import ROOT, perf
 from performance import plots, roofline
 from performance.labels import Box, Labels, around
 
@@ -85,6 +88,43 @@ class Roofline(unittest.TestCase):
         self.assertEqual(faults(text(0, "abc"), "<polyline points='0,0 20,10'/>"), ["'abc' covers a line"])
         self.assertEqual(faults(text(0, "abc"), "<circle cx='20' cy='8' r='4'/>"), ["'abc' covers a mark"])
         self.assertEqual(faults(text(0, "abc"), text(19, "d"), "<polyline points='0,12.5 20,13'/>"), [])
+
+
+class Command(unittest.TestCase):
+    def test_a_measured_file_becomes_a_picture(self):
+        with tempfile.TemporaryDirectory() as folder:
+            measured = Path(folder, "machine.json")
+            measured.write_text(json.dumps(content_of(random.Random(1))))
+            status, out, err = perf("roofline", measured)
+            self.assertEqual((status, out.strip()), (0, str(measured.with_suffix(".svg"))), err)
+            self.assertEqual(len(Picture(measured.with_suffix(".svg").read_text()).marks), 8)
+            picture = Path(folder, "machine.png")
+            status, _, err = perf("roofline", measured, "-o", picture)
+            if shutil.which("rsvg-convert"):
+                self.assertEqual((status, picture.read_bytes()[:4]), (0, b"\x89PNG"), err)
+            else:
+                self.assertEqual((status, "not installed" in err), (3, True), err)
+
+    def test_broken_files_are_named(self):
+        good = content_of(random.Random(1))
+        point = good["points"][0]
+        with tempfile.TemporaryDirectory() as folder:
+            measured = Path(folder, "machine.json")
+            self.expect_fault(measured, "there is no")
+            for content, word in (([], "the object"), ({}, "cache_store"), (dict(good, isas=[]), "isas"),
+                                  (dict(good, points=[dict(point, operations=float("nan"))]), "operations in points"),
+                                  (dict(good, points=[dict(point, name=5)]), "a name in points"),
+                                  (dict(good, points=[dict(point, in_cache=None)]), "in_cache")):
+                measured.write_text(json.dumps(content))
+                self.expect_fault(measured, word)
+            measured.write_text(json.dumps(good)[:300])
+            self.expect_fault(measured, "not JSON")
+            measured.write_text(json.dumps(good))
+            self.expect_fault(measured, "must end in", "-o", Path(folder, "machine.gif"))
+
+    def expect_fault(self, measured, word, *options):
+        status, _, err = perf("roofline", measured, *options)
+        self.assertEqual((status, word in err, "Traceback" in err), (3, True, False), err)
 
 
 class Boxes(unittest.TestCase):

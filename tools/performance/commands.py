@@ -2,7 +2,7 @@
 
 import argparse
 
-from . import baselines, compare, count, export, peers, record, records, report, track
+from . import baselines, compare, count, export, peers, record, records, report, roofline, track
 from .console import FAILED, GOOD, REGRESSION, SKIPPED, USAGE, Failure, say
 
 DESCRIPTION = """\
@@ -188,6 +188,16 @@ def add_report(commands):
     parser.set_defaults(run=report.command)
 
 
+def add_roofline(commands):
+    parser = commands.add_parser(
+        "roofline", help="a picture of the machine's limits", formatter_class=argparse.RawDescriptionHelpFormatter,
+        description="Draws what 'tessera_bench --roofline=FILE.json' measured. PNG needs rsvg-convert (Debian's package\n"
+        "librsvg2-bin).", epilog=STATUS)
+    parser.add_argument("measured", metavar="FILE.json")
+    parser.add_argument("-o", "--output", metavar="FILE", help=".svg or .png (default: FILE.svg)")
+    parser.set_defaults(run=roofline.command)
+
+
 def add_peers(commands):
     parser = commands.add_parser(
         "peers", help="the table of what tools/peers.sh found", formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -201,7 +211,8 @@ def make_parser():
     parser = argparse.ArgumentParser(prog="tools/perf", description=DESCRIPTION, epilog=STATUS,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
-    for add in (add_compare, add_count, add_record, add_track, add_list, add_report, add_export, add_peers):
+    for add in (add_compare, add_count, add_record, add_track, add_list, add_report, add_export,
+                add_roofline, add_peers):
         add(commands)
     return parser
 

@@ -30,12 +30,17 @@ def read(path, keys=()):
 
 
 def write(path, content):
-    """Writes the file whole or not at all. Each case is a line of text, so that a change is a line of a diff."""
+    """Each case is a line of text, so that a change is a line of a diff."""
+    write_text(path, json.dumps(content, indent=1, sort_keys=True) + "\n")
+
+
+def write_text(path, text):
+    """Writes the file whole or not at all, and its folder if there is none."""
     path = Path(path)
     temporary = path.with_suffix(".new")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        temporary.write_text(json.dumps(content, indent=1, sort_keys=True) + "\n", encoding="utf-8")
+        temporary.write_text(text, encoding="utf-8")
         temporary.replace(path)
     except OSError as error:
         raise Failure(f"{path} can't be written: {error.strerror}") from None

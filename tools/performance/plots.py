@@ -1,7 +1,10 @@
 """Plots as SVG, for the page and for rsvg-convert."""
 
 import math
+import subprocess
 from html import escape
+
+from .console import Failure
 
 PAPER, INK, QUIET, FAINT = "#fcfcf9", "#23272e", "#6b7078", "#e3e3dc"
 # Colour-blind readers can tell these apart too (Okabe and Ito, Color Universal Design, 2008, darkened for text on
@@ -46,6 +49,17 @@ class Canvas:
         return (f"<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {self.width} {self.height}' width='{self.width}' "
                 f"height='{self.height}' {FONT} role='img'><rect width='100%' height='100%' fill='{PAPER}'/>"
                 + "".join(self.parts) + "</svg>")
+
+
+def write_png(svg, file):
+    """Writes a plot as PNG, by rsvg-convert."""
+    try:
+        done = subprocess.run(["rsvg-convert", "--zoom=1.5", "-o", str(file)], input=svg.encode(), capture_output=True,
+                              check=False)
+    except FileNotFoundError:
+        raise Failure(f"{file} can't be drawn: rsvg-convert is not installed (Debian's package librsvg2-bin)") from None
+    if done.returncode != 0:
+        raise Failure(f"rsvg-convert can't draw {file}: {done.stderr.decode(errors='replace').strip()}")
 
 
 def apart(places, gap):

@@ -2,7 +2,7 @@
 
 import datetime
 
-from . import baselines, builds, json_file, machine, process, records, suite
+from . import baselines, builds, json_file, machine, process, records, roofline, suite
 from .console import GOOD, Failure, Progress, say
 from .repository import WORK, commit_of, describe, is_dirty
 
@@ -57,7 +57,7 @@ def roofline_of(build):
     done = process.start(build.program, f"--roofline={file}")
     if done.returncode != 0:
         raise Failure(f"{build.program} --roofline failed: {done.stderr.strip()}")
-    return json_file.read(file, ("isas", "points"))
+    return roofline.checked(json_file.read(file), file)
 
 
 def command(arguments):

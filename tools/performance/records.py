@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from . import json_file, machine
+from . import json_file, machine, roofline
 from .console import FAILED, GOOD, Failure, say, table
 from .repository import WORK
 
@@ -29,6 +29,8 @@ def read_one(file):
         rate = entry.get("rate") if isinstance(entry, dict) else None
         if not json_file.is_positive(rate):
             raise Failure(f"{file}: the rate of case '{case}' is {rate}; it must be a finite number above 0: {ADVICE}")
+    if content.get("roofline"):
+        roofline.checked(content["roofline"], f"{file}: roofline")
     return content
 
 

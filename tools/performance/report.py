@@ -3,7 +3,6 @@
 import datetime
 import math
 import shutil
-import subprocess
 from html import escape
 from pathlib import Path
 
@@ -220,14 +219,10 @@ def write_pictures(pictures, folder):
     if not shutil.which("rsvg-convert"):
         say("perf: no PNG of the plots: rsvg-convert is not installed (Debian's package librsvg2-bin)")
         return []
-    written = []
+    files = {name: folder / f"{name}.png" for name in pictures}
     for name, svg in pictures.items():
-        file = folder / f"{name}.png"
-        done = subprocess.run(["rsvg-convert", "--zoom=1.5", "-o", str(file)], input=svg.encode(), capture_output=True, check=False)
-        if done.returncode != 0:
-            raise Failure(f"rsvg-convert can't draw {file}: {done.stderr.decode().strip()}")
-        written.append(file)
-    return written
+        plots.write_png(svg, files[name])
+    return list(files.values())
 
 
 def command(arguments):
@@ -238,11 +233,7 @@ def command(arguments):
         peers = peers_content(arguments.peers, arguments.baselines, place)
     html, pictures = page(found, others, arguments.baselines, peers)
     output = Path(arguments.output) if arguments.output else WORK / "report.html"
-    try:
-        output.parent.mkdir(parents=True, exist_ok=True)
-        output.write_text(html, encoding="utf-8")
-    except OSError as error:
-        raise Failure(f"{output} can't be written: {error.strerror}") from None
+    json_file.write_text(output, html)
     print(f"{len(found)} {'record' if len(found) == 1 else 'records'}: {output}")
     for file in write_pictures(pictures, output.parent):
         print(file)

@@ -2,12 +2,40 @@
 --roofline=FILE.json measures it: operations per second over operations per byte written.
 """
 
+from pathlib import Path
+
+from . import json_file
+from .console import GOOD, Failure
 from .labels import Box, Labels, around
-from .plots import COLOURS, FAINT, INK, QUIET, Canvas, LogAxis
+from .plots import COLOURS, FAINT, INK, QUIET, Canvas, LogAxis, write_png
 
 LEFT, RIGHT, TOP, BOTTOM = 70, 1060, 70, 500
 SIZE = 13
 CEILING_FROM = 0.6  # operations per byte at which the ceilings of instruction sets begin
+
+
+RATES = {"isas": ("float_operations", "plain_store", "streaming_store"), "points": ("per_byte", "operations", "points")}
+
+
+def checked(content, origin):
+    """What tessera_bench --roofline=FILE.json wrote, with all fields that the plot needs."""
+    def need(good, field):
+        if not good:
+            raise Failure(f"{origin}: {field} is missing or of the wrong kind; write the file anew by "
+                          "'tessera_bench --roofline=FILE.json'")
+
+    need(isinstance(content, dict), "the object of the roofline")
+    need(json_file.is_positive(content.get("cache_store")), "cache_store")
+    need(isinstance(content.get("machine"), str), "machine")
+    for key, rates in RATES.items():
+        rows = content.get(key)
+        need(isinstance(rows, list) and rows and all(isinstance(row, dict) for row in rows), key)
+        for row in rows:
+            need(isinstance(row.get("isa" if key == "isas" else "name"), str), f"a name in {key}")
+            for rate in rates:
+                need(json_file.is_positive(row.get(rate)), f"{rate} in {key}")
+    need(all(isinstance(row.get("in_cache"), bool) for row in content["points"]), "in_cache in points")
+    return content
 
 
 class Chart:
@@ -111,3 +139,19 @@ def draw(content):
     for p, x, y, colour in marks:
         chart.canvas.dot(x, y, colour, 5.5, f"{p['name']}: {1e-6 * p['points']:.0f} M points/s")
     return chart.canvas.svg()
+
+
+def command(arguments):
+    content = json_file.read(arguments.measured)
+    if content is None:
+        raise Failure(f"there is no {arguments.measured}: 'tessera_bench --roofline={arguments.measured}' writes it")
+    svg = draw(checked(content, arguments.measured))
+    output = Path(arguments.output or Path(arguments.measured).with_suffix(".svg"))
+    if output.suffix not in (".svg", ".png"):
+        raise Failure(f"{output}: the name must end in .svg or .png")
+    if output.suffix == ".png":
+        write_png(svg, output)
+    else:
+        json_file.write_text(output, svg)
+    print(output)
+    return GOOD

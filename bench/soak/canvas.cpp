@@ -1,4 +1,4 @@
-#include "roofline/canvas.h"
+#include "soak/canvas.h"
 
 #include <array>
 #include <cmath>
