@@ -26,10 +26,14 @@ if(TESSERA_SANITIZE)
   target_link_options(tessera_compile INTERFACE -fsanitize=${TESSERA_SANITIZE})
 endif()
 
-# tessera_floor(NAME SOURCES... [BALANCED sources...] [SIZE_OPTIMIZED sources...] BELOW floors...): the target tessera_NAME, compiled from
-# engine/src/NAME. A floor sees the public headers, its own folder and those below it, all as <folder>/<file>; tests/house
-# checks every #include. In Release, what counted instructions (tools/perf count) don't grow by is not blown up: BALANCED
-# sources, which hand batches to kernels, are compiled at -O2, SIZE_OPTIMIZED ones, which work once for a surface, at -Os.
+# tessera_floor(NAME SOURCES... [BALANCED sources...] [SIZE_OPTIMIZED sources...] BELOW floors...)
+#
+# Makes the target tessera_NAME of sources in engine/src/NAME. They include the public headers, their own folder and the
+# floors below, all as <folder>/<file>; tests/house checks every #include.
+#
+# Optimisation in Release: SOURCES at -O3; BALANCED sources, which hand batches to kernels, at -O2; SIZE_OPTIMIZED sources,
+# which run once per surface, at -Os. Move a source to a smaller level only if that does not change the instructions that
+# tools/perf count reports.
 function(tessera_floor name)
   get_filename_component(engine ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../engine ABSOLUTE)
   cmake_parse_arguments(FLOOR "" "" "SOURCES;BALANCED;SIZE_OPTIMIZED;BELOW" ${ARGN})

@@ -1,8 +1,11 @@
-# The units of the floor `kernel`, once for each instruction set of the processor that is built for: a target an ISA,
-# tessera_kernel_ISA, or two where units' flags differ; their objects: tessera_isa_objects. tessera_machine is the source
-# that finds out at run time which of them the machine can run. The units' flags stand here and nowhere else. Optimised in
-# every configuration, so that small inline functions don't stay behind as symbols that the linker could merge into the
-# baseline; less under the sanitizers, whose checks make the compiler work for minutes at -O3.
+# Compiles the units of the floor `kernel` once for each instruction set of the target processor.
+# - Each instruction set has a target tessera_kernel_ISA; sse2 has two, because its units have different flags.
+# - tessera_isa_objects lists the objects of all of them.
+# - tessera_machine is the source that finds out at run time which instruction sets the machine has.
+#
+# No other file sets flags of instruction sets. The units are optimised in every configuration: otherwise small inline
+# functions would remain as symbols, which the linker could merge into the baseline. Sanitized builds use -O1, because at
+# -O3 the compiler takes minutes for their checks.
 set(TESSERA_KERNEL_LEVEL "-O3" CACHE STRING "How the kernels are optimised: another level than -O3 is for tests of compilers alone")
 mark_as_advanced(TESSERA_KERNEL_LEVEL)
 set(kernel_flags ${TESSERA_KERNEL_LEVEL} -fno-trapping-math -fno-exceptions)
@@ -18,7 +21,7 @@ set(less_code)
 if(TESSERA_KERNEL_LEVEL STREQUAL -O3 AND NOT TESSERA_SANITIZE)
   set(less_code -O2)
 endif()
-# Loops over a degree that is not known gain nothing by being laid out in full.
+# Its loops run over a degree that is not known at compile time, so unrolling gains nothing.
 set_source_files_properties(${kernel_folder}/chord/unit_chord_any.cpp PROPERTIES COMPILE_OPTIONS "${less_code}")
 
 # tessera_isa(NAME "units" flags...)
@@ -38,8 +41,8 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64)$")
   tessera_isa(neon64 "${kernel_units}")
 else()
   set(tessera_machine ${kernel_folder}/isa/machine_x86.cpp)
-  # Machines without AVX2 are few and old. For them plans and meshes, a quarter slower at -O2, are half as much code; grids
-  # and points would take twice the time for a tenth less.
+  # Few machines lack AVX2. For these, plans and meshes are compiled at -O2: half the code, a quarter slower. Grids and
+  # points stay at -O3: at -O2 they have a tenth less code, but take twice the time.
   set(mesh_units ${kernel_units})
   list(FILTER mesh_units INCLUDE REGEX "unit_(chord|mesh)\\.cpp$")
   set(other_units ${kernel_units})

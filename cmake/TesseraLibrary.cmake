@@ -1,4 +1,4 @@
-# The libraries that the floors make up.
+# Makes the libraries from the objects of the floors.
 
 include(CheckLinkerFlag)
 configure_file(${CMAKE_CURRENT_LIST_DIR}/tessera.map.in ${PROJECT_BINARY_DIR}/tessera.map @ONLY)
@@ -6,21 +6,26 @@ set(tessera_exports ${PROJECT_BINARY_DIR}/tessera.map)
 set(tessera_exports_flag "LINKER:--version-script=${tessera_exports}")
 check_linker_flag(CXX "${tessera_exports_flag}" TESSERA_LINKER_READS_VERSION_SCRIPTS)
 
-# tessera_shared_settings(TARGET): what a shared library of Tessera has beside its code: a versioned name, which changes
-# where the interface may; its exports, versioned too; and its place beside the others.
+# tessera_shared_settings(TARGET): the properties of a shared library of Tessera.
+# - Its name ends in the major and minor version, because these change with the interface.
+# - It exports the public interface with a version, and nothing else.
+# - It finds the other libraries of Tessera in its own folder.
 function(tessera_shared_settings target)
   set_target_properties(${target} PROPERTIES INSTALL_RPATH "$ORIGIN"
     VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   if(TESSERA_LINKER_READS_VERSION_SCRIPTS)
-    # What is not exported and not called by what is, goes.
+    # The linker drops code that no export reaches.
     target_link_options(${target} PRIVATE "${tessera_exports_flag}" LINKER:--gc-sections)
     set_target_properties(${target} PROPERTIES LINK_DEPENDS ${tessera_exports})
   endif()
 endfunction()
 
-# tessera_library(NAME OBJECTS ... [ON library] PUBLIC ... PRIVATE ...): tessera::NAME, static or shared as BUILD_SHARED_LIBS
-# says, on the library ON of Tessera. And tessera_internal::NAME, for the project's own programs, which use more than what is
-# public: the same target, or its static twin if it is shared. The targets: tessera, or tessera_NAME_library.
+# tessera_library(NAME OBJECTS ... [ON library] PUBLIC ... PRIVATE ...)
+#
+# Makes the target tessera, or tessera_NAME_library, with two names:
+# - tessera::NAME for users. BUILD_SHARED_LIBS says whether it is static or shared. It links Tessera's library ON.
+# - tessera_internal::NAME for the project's own programs, which use internal functions too: the same library if that is
+#   static, otherwise a static one of the same objects.
 function(tessera_library name)
   cmake_parse_arguments(LIBRARY "" "ON" "OBJECTS;PUBLIC;PRIVATE" ${ARGN})
   set(target tessera)

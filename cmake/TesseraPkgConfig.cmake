@@ -1,5 +1,5 @@
-# One file a component for pkg-config: tessera.pc, tessera-ray.pc, tessera-io.pc, tessera-io_occt.pc. What a static library
-# needs beside it, its users link; what a shared one needs is its own affair.
+# Writes one file per component for pkg-config: tessera.pc, tessera-ray.pc, tessera-io.pc, tessera-io_occt.pc. Users of a
+# static library link its dependencies too, so its file lists them; a shared library links them itself.
 
 # tessera_names_of(OUT TARGETS...): -l of imported libraries, and of those of their project that they are linked with.
 function(tessera_names_of out)

@@ -66,7 +66,7 @@ bool is_right(const GridTask& task, const GridRun& ours) {
 void report(const GridTask& task, const std::vector<GridRun>& runs, const std::vector<double>& seconds,
             std::size_t own) {
   const std::string what = std::string(task.tangents ? "positions + du + dv" : "positions") + " of grids, " +
-                           std::to_string(task.per_span) + " x " + std::to_string(task.per_span) + " points a span";
+                           std::to_string(task.per_span) + " x " + std::to_string(task.per_span) + " points per span";
   for (std::size_t k = own; k < runs.size(); ++k)
     for (std::size_t mine = 0; mine < own; ++mine)
       if (runs[mine].in_double == runs[k].in_double)

@@ -93,7 +93,7 @@ bool is_acceptable(const Difference& d, const RayRun& run) {
 
 void print(const RayTask& task, const std::vector<RayRun>& runs, const std::vector<double>& seconds,
            const std::vector<Difference>& differences, std::size_t own) {
-  std::printf("\nclosest hits: %d x %d spans, %zu camera rays, facets of %d x %d a span, one thread\n", spans, spans,
+  std::printf("\nclosest hits: %d x %d spans, %zu camera rays, facets of %d x %d per span, one thread\n", spans, spans,
               task.camera.rays(), facets_per_side, facets_per_side);
   std::printf("%-20s %-20s %10s %9s %10s %10s   %s\n", "", "", "k rays/s", "wrong", "median", "largest",
               "Tessera is faster by: exact, refined, facets");

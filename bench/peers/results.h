@@ -9,7 +9,7 @@
 namespace tessera::bench {
 
 struct PeerResult {
-  std::string task;     ///< "positions, 9 x 9 a span"
+  std::string task;     ///< "positions, 9 x 9 per span"
   std::string peer;     ///< name and version
   std::string way;      ///< the function, the precision
   double rate = 0;      ///< the peer's, items per second

@@ -150,7 +150,7 @@ TEST(RibScene, ErrorsSayWhereWhatAndWhatWasWanted) {
       {"Color [1 1\n\"red\n", "m:2: the file ends within a string that begins here"},
       {"Color [1 1\n", "m:1: the file ends within an array that begins here"},
       {"Patch \"bilinear\" \"Pw\" [0 0 0 1 1 0 0 1 0 1 0 0 1 1 0 1]",
-       "m:1: Patch: weight 0.000000 of control point 1 is not above 0"},
+       "m:1: Patch: weight 0 of control point 1 is not above 0"},
       {"PatchMesh \"bicubic\" 5 \"nonperiodic\" 4 \"nonperiodic\" \"P\" [" +
            [] {
              std::string zeros;

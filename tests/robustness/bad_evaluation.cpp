@@ -30,8 +30,8 @@ void grid_plans(Table& table, const PatchSet& set) {
             GridPlan::make(set, t, t, {.precision = Precision::double_precision}));
   table.row("a representation that the set does not hold", unsupported,
             GridPlan::make(set, t, t, {.representation = Representation::power}));
-  table.row("a precision that is none", unsupported, GridPlan::make(set, t, t, {.precision = Precision{7}}));
-  table.row("an instruction set that is none", isa_unavailable, GridPlan::make(set, t, t, {.isa = Isa{9}}));
+  table.row("an unknown precision", unsupported, GridPlan::make(set, t, t, {.precision = Precision{7}}));
+  table.row("an unknown instruction set", isa_unavailable, GridPlan::make(set, t, t, {.isa = Isa{9}}));
   table.row("a smallest sine of -1e-9", invalid_argument, GridPlan::make(set, t, t, {.geometry = {.min_sine = -1e-9}}));
   table.row("an umbilic tolerance of NaN", invalid_argument,
             GridPlan::make(set, t, t, {.geometry = {.umbilic_tolerance = not_a_number}}));
@@ -136,7 +136,7 @@ void samples_by_patch(Table& table, const PatchSet& set) {
   table.of("evaluate(set, PatchSamples, QuantityViews, options, execution)");
   PointRows rows(table, set);
   const float nan = static_cast<float>(not_a_number), inf = static_cast<float>(infinity);
-  rows.with_samples("a patch that is none", invalid_argument, [](auto& s) { s.patch[3] = 2; });
+  rows.with_samples("an unknown patch", invalid_argument, [](auto& s) { s.patch[3] = 2; });
   rows.with_samples("patch 4294967295", invalid_argument, [](auto& s) { s.patch[4] = 4294967295u; });
   rows.with_samples("u of -0.001", invalid_argument, [](auto& s) { s.u[2] = -0.001f; });
   rows.with_samples("v of 1e30", invalid_argument, [](auto& s) { s.v[1] = 1e30f; });
@@ -165,7 +165,7 @@ void samples_by_patch(Table& table, const PatchSet& set) {
   rows.refused("parameters in the place of an output", invalid_argument, over, rows.views());
   const auto sound = rows.sound().views();
   rows.refused("a smallest sine of 1", invalid_argument, sound, rows.views(), {.geometry = {.min_sine = 1}});
-  rows.refused("an instruction set that is none", isa_unavailable, sound, rows.views(), {.isa = Isa{9}});
+  rows.refused("an unknown instruction set", isa_unavailable, sound, rows.views(), {.isa = Isa{9}});
   table.gives("no samples", "nothing written", evaluate(set, PatchSamples<float>{}, rows.views()).ok());
   const PatchSet plain = set_of(wavy_field(1, 2));
   table.row("a set without coefficients for points", unsupported, evaluate(plain, sound, rows.views()));
@@ -190,7 +190,7 @@ void samples_by_surface(Table& table, const PatchSet& set) {
                                  View1<const double>::interleaved(v)};
     table.row(input, code, evaluate(set, map, samples, memory.views()), [&] { return memory == clean; });
   };
-  refused("a surface that is none", invalid_argument, wrong, {0.5, 0.5}, {0.5, 0.5});
+  refused("an unknown surface", invalid_argument, wrong, {0.5, 0.5}, {0.5, 0.5});
   refused("u outside the surface's domain", invalid_argument, surfaces, {0.5, 7}, {0.5, 0.5});
   refused("v of NaN", non_finite, surfaces, {0.5, 0.5}, {not_a_number, 0.5});
   refused("v of 1e300", invalid_argument, surfaces, {0.5, 0.5}, {1e300, 0.5});

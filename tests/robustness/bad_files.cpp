@@ -62,11 +62,11 @@ void bezier_texts(Table& table) {
   bpt.row("a point too many", "1\n1 1\n" + corners + "1 2 3\n", parse_error);
   Texts bv(table, parse<parse_bv>, "parse_bv(text, name)");
   bv.row("degree 99", "4\n99\n", parse_error);
-  bv.row("a kind that is none", "77\n3\n", parse_error);
+  bv.row("an unknown kind", "77\n3\n", parse_error);
   bv.row("a weight of 0", "8\n1 1\n0 0 0 1\n0 1 0 1\n1 0 0 0\n1 1 0 1\n", parse_error);
   bv.row("a point too few", "4\n1\n0 0 0\n0 1 0\n", parse_error);
   Texts g2(table, parse<parse_g2>, "parse_g2(text, name)");
-  g2.row("a class that is none", "999 1 0 0\n", unsupported);
+  g2.row("an unknown class", "999 1 0 0\n", unsupported);
   g2.row("a knot that decreases", "200 1 0 0\n3 0\n2 2\n0 0 1 1\n2 2\n0 1 0 1\n" + corners, parse_error);
   g2.row("2^31 control points", "200 1 0 0\n3 0\n2147483647 2\n0 0 1 1\n", parse_error);
 }
@@ -74,7 +74,7 @@ void bezier_texts(Table& table) {
 void scene_texts(Table& table) {
   Texts obj(table, parse<parse_obj_freeform>, "parse_obj_freeform(text, name)", unsupported);
   const std::string bezier = "v 0 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\ncstype bezier\ndeg 1 1\n";
-  obj.row("an index that is none", bezier + "surf 0 1 0 1 1 2 3 9\nparm u 0 1\nparm v 0 1\nend\n", parse_error);
+  obj.row("an unknown index", bezier + "surf 0 1 0 1 1 2 3 9\nparm u 0 1\nparm v 0 1\nend\n", parse_error);
   obj.row("index 0", bezier + "surf 0 1 0 1 0 2 3 4\nparm u 0 1\nparm v 0 1\nend\n", parse_error);
   obj.row("no parameters", bezier + "surf 0 1 0 1 1 2 3 4\nend\n", parse_error);
   obj.row("a surface without an end", bezier + "surf 0 1 0 1 1 2 3 4\nparm u 0 1\n", parse_error);
@@ -94,7 +94,7 @@ void scene_texts(Table& table) {
   json.row("a text that is cut", "{\"surfaces\": [", parse_error);
   json.row("another format", "{\"format\": \"gltf\", \"surfaces\": []}", parse_error);
   json.row("no surfaces", "{\"format\": \"tessera\", \"version\": 1, \"surfaces\": []}", parse_error);
-  json.row("a kind that is none", surface("\"kind\": \"sponge\""), parse_error);
+  json.row("an unknown kind", surface("\"kind\": \"sponge\""), parse_error);
   json.row("a member too many", surface("\"kind\": \"bezier\", \"colour\": 3"), parse_error);
   json.row("NaN", surface("\"kind\": \"bezier\", \"degree\": [1, 1], \"points\": [NaN]"), parse_error);
   json.row("1e400", surface("\"kind\": \"bezier\", \"degree\": [1, 1], \"points\": [[1e400, 0, 0]]"), parse_error);
@@ -103,14 +103,14 @@ void scene_texts(Table& table) {
 
 void mesh_texts(Table& table) {
   Texts obj(table, parse_faces<parse_obj>, "read_mesh(\"m.obj\")");
-  obj.row("an index that is none", "v 0 0 0\nv 1 0 0\nf 1 2 3\n", parse_error);
+  obj.row("an unknown index", "v 0 0 0\nv 1 0 0\nf 1 2 3\n", parse_error);
   obj.row("a face of two", "v 0 0 0\nv 1 0 0\nf 1 2\n", parse_error);
   Texts ply(table, parse_faces<parse_ply>, "read_mesh(\"m.ply\")");
   ply.row("4,000,000,000 vertices",
           "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\n"
           "property float y\nproperty float z\nend_header\n",
           parse_error);
-  ply.row("a format that is none", "ply\nformat binary_middle_endian 1.0\nend_header\n", parse_error);
+  ply.row("an unknown format", "ply\nformat binary_middle_endian 1.0\nend_header\n", parse_error);
   ply.row("a header without an end", "ply\nformat ascii 1.0\nelement vertex 1\n", parse_error);
   Texts stl(table, parse_faces<parse_stl>, "read_mesh(\"m.stl\")");
   stl.row("4,000,000,000 triangles", std::string(80, ' ') + "\xff\xff\xff\xee" + std::string(50, '\0'), parse_error);

@@ -75,7 +75,7 @@ void certified_options(Table& table, const PatchSet& set) {
   row("a crease angle of 4", invalid_argument, {.tolerance = 0.01, .crease_angle = 4.0});
   row("a crease angle of NaN", invalid_argument, {.tolerance = 0.01, .crease_angle = not_a_number});
   row("the smallest tolerance for no triangle", invalid_argument, {.max_triangles = 0, .smallest = true});
-  row("an instruction set that is none", isa_unavailable, {.tolerance = 0.01, .isa = Isa{9}});
+  row("an unknown instruction set", isa_unavailable, {.tolerance = 0.01, .isa = Isa{9}});
   const std::atomic<bool> cancel = true;
   table.row("a cancellation before the first task", cancelled,
             CertifiedTessellation::make(set, {.tolerance = 0.01}, {.cancel = &cancel}));
@@ -139,7 +139,7 @@ void fill_tessellations(Table& table) {
   row("rate 0", invalid_argument, {.rate_u = 0});
   row("rate -2147483648", invalid_argument, {.rate_v = std::numeric_limits<int>::min()});
   row("rate 4097", invalid_argument, {.rate_u = 4097});
-  row("an instruction set that is none", isa_unavailable, {.isa = Isa{9}});
+  row("an unknown instruction set", isa_unavailable, {.isa = Isa{9}});
   const std::vector<BezierPatch> many(256, *BezierPatch::polynomial(1, 1, std::vector<Vec3>(4)));
   table.row("more vertices than 32 bits count", invalid_argument,
             TessellationPlan::make(set_of(many), {.rate_u = 4096, .rate_v = 4096}));
@@ -231,7 +231,7 @@ void fill_meshes(Table& table) {
   without.patches.clear();
   beyond.patches[0] = 7;
   table.row("a mesh without patches", count_mismatch, parts_by_surface(without, set, model));
-  table.row("a patch that is none", invalid_argument, parts_by_surface(beyond, set, model));
+  table.row("an unknown patch", invalid_argument, parts_by_surface(beyond, set, model));
   table.row("a model that lacks the surface", invalid_argument, parts_by_surface(sound, set, Model{}));
 }
 
@@ -246,7 +246,7 @@ void fill_machine(Table& table) {
   ::setenv("TESSERA_ISA", kept.c_str(), 1);
   if (!before) ::unsetenv("TESSERA_ISA");
   table.of("measure_limits(options)");
-  table.row("an instruction set that is none", isa_unavailable, measure_limits({.isa = Isa{9}}));
+  table.row("an unknown instruction set", isa_unavailable, measure_limits({.isa = Isa{9}}));
   table.row("a buffer of 2^63 bytes", out_of_memory, measure_limits({.store_bytes = std::size_t{1} << 63}));
 }
 

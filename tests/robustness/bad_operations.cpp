@@ -65,7 +65,7 @@ void spline_operations(Table& table) {
   const Curve other = *Curve::bezier(std::vector<Vec3>(3), {}, {100, 101});
   table.row("curves of other domains", invalid_argument, compatible(curve, other));
   table.of("touched_patches(surface, i, j)");
-  table.row("a point that is none", invalid_argument, touched_patches(surface, 1000, 0));
+  table.row("an unknown point", invalid_argument, touched_patches(surface, 1000, 0));
 }
 
 void joins(Table& table, const BezierPatch& patch) {
@@ -166,7 +166,7 @@ void fill_sets(Table& table) {
     });
   };
   std::vector<Vec3> points(patches[1].points().begin(), patches[1].points().end());
-  refused("a patch that is none", invalid_argument, 2, points);
+  refused("an unknown patch", invalid_argument, 2, points);
   refused("the largest number for a patch", invalid_argument, std::numeric_limits<std::size_t>::max(), points);
   refused("no points", count_mismatch, 1, {});
   refused("a point too few", count_mismatch, 1, std::vector<Vec3>(15));

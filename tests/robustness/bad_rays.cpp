@@ -19,14 +19,14 @@ void scenes(Table& table) {
     table.row(input, code, RayScene::make(set, options));
   };
   table.of("RayScene::make(set, options, execution)");
-  row("a mode that is none", invalid_argument, {.mode = RayMode{7}});
+  row("an unknown mode", invalid_argument, {.mode = RayMode{7}});
   row("grid mode, rate 0", invalid_argument, {.mode = RayMode::grid, .rate = 0});
   row("grid mode, rate 4097", invalid_argument, {.mode = RayMode::grid, .rate = 4097});
   for (const int pieces : {0, 3, 16, -1}) row(std::to_string(pieces) + " pieces", invalid_argument, {.pieces = pieces});
   for (const auto& [tolerance, name] :
        {std::pair{0.0, "0"}, {-1.0, "-1"}, {not_a_number, "NaN"}, {infinity, "infinity"}})
     row(std::string("a tolerance of ") + name, invalid_argument, {.tolerance = tolerance});
-  row("an instruction set that is none", isa_unavailable, {.isa = Isa{9}});
+  row("an unknown instruction set", isa_unavailable, {.isa = Isa{9}});
   const std::vector<Vec3> point(16, Vec3{1, 2, 3});
   const PatchSet degenerate = set_of({*BezierPatch::polynomial(3, 3, point), *BezierPatch::polynomial(3, 3, point)});
   table.row("a set whose every patch is one point", unsupported, RayScene::make(degenerate));

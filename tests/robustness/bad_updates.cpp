@@ -107,7 +107,7 @@ void bad_edits(Table& table, Edited& edited, Run run, Clean clean) {
     const Status status = run(edited);
     table.row(input, code, status, [&] { return clean() && !edited.changed(before); });
   };
-  refused("a patch that is none", invalid_argument, [](Edited& e) { e.patch[0] = 2; });
+  refused("an unknown patch", invalid_argument, [](Edited& e) { e.patch[0] = 2; });
   refused("patch 4294967295", invalid_argument, [](Edited& e) { e.patch[0] = 4294967295u; });
   refused("a patch named twice", invalid_argument, [](Edited& e) {
     e.patch = {1, 1};

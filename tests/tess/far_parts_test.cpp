@@ -219,7 +219,7 @@ TEST(FarParts, ARefusalNamesATolerance) {
     const auto refused = CertifiedTessellation::make(set, {.tolerance = bad.tolerance});
     ASSERT_FALSE(refused) << bad.name;
     EXPECT_EQ(refused.status().code(), StatusCode::invalid_argument);
-    const double named = number_before(refused.status().message(), " would do");
+    const double named = number_before(refused.status().message(), " is enough");
     EXPECT_NE(refused.status().message().find("; positions in double keep"), std::string::npos)
         << refused.status().message();
     EXPECT_GT(named, bad.tolerance) << refused.status().message();

@@ -108,7 +108,7 @@ TEST_F(Tolerances, PositionsInDouble) {
   EXPECT_EQ(twice["precision"], "double");
   EXPECT_LE(twice["bound"], single["bound"].get<double>() * 1.01);
   EXPECT_EQ(checked()["t_junctions"], 0);
-  expect_refusal({"--tolerance", "1e-8"}, 1, "would do; positions in double keep ");
+  expect_refusal({"--tolerance", "1e-8"}, 1, "is enough; positions in double keep ");
   expect_refusal({"--relative", "0.003", "--precision", "half"}, 2, "expected float or double");
   expect_refusal({"--grid", "4x4", "--precision", "double"}, 2, "--grid");
   for (const char* const name : {"a.stl", "a.glb", "a.gltf"})

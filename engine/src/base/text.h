@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "tessera/geometry.h"
+
 namespace tessera::inline abi_0_1 {
 
 /// The shortest text that reads back as the same double; "nan" for every NaN, whose sign means nothing. For messages of
@@ -15,6 +17,11 @@ namespace tessera::inline abi_0_1 {
   if (std::isnan(value)) return "nan";
   std::array<char, 32> digits;
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
+}
+
+/// "(x, y, z)".
+[[gnu::cold]] inline std::string text(const Vec3& p) {
+  return '(' + text(p.x) + ", " + text(p.y) + ", " + text(p.z) + ')';
 }
 
 /// "1 vertex", "2 vertices"; `plural` if an s is not enough.

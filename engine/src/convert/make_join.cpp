@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "base/text.h"
 #include "convert/bezier_net.h"
 #include "convert/edge_rows.h"
 #include "tessera/bezier_operations.h"
@@ -33,9 +34,8 @@ Result<BezierPolygon> continued(const BezierPolygon& before, const BezierPolygon
     const double w = border.weights[k], v = before.weights[k], weight = w + factor * (w - v);
     if (!(weight > 0))
       return Status(StatusCode::invalid_weight,
-                    "the join would need the weight " + std::to_string(weight) +
-                        " in its first row inside the patch, at " + std::to_string(k) +
-                        " along the edge: k is too small",
+                    "the join would need the weight " + text(weight) + " in its first row inside the patch, at " +
+                        std::to_string(k) + " along the edge: k is too small",
                     static_cast<std::ptrdiff_t>(k));
     // (w P + factor (w P - v B)) / weight, relative to P.
     next.points[k] = border.points[k] + (factor * v / weight) * (border.points[k] - before.points[k]);

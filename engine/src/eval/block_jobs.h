@@ -1,17 +1,18 @@
 #pragma once
-// The kernel's jobs over one block after the other.
+// The grid kernel's job, block after block.
 
 #include "eval/block_normals.h"
 #include "eval/grid_plan_impl.h"
 
 namespace tessera::inline abi_0_1 {
 
-/// One job, of which from block to block only that is set which changes: setting up a job takes as long as a small
-/// grid. Outputs are the caller's to fill in, and stay as they are. Lives on a task's stack; allocates nothing.
+/// One job that serves block after block: turn_to() sets only the members that differ between blocks, because setting
+/// all of them takes as long as a small grid. The caller sets the outputs; turn_to() does not change them. Lives on a
+/// task's stack; allocates nothing.
 template <class T>
 class BlockJobs {
  public:
-  /// `order`: of the derivatives that the outputs are made of.
+  /// `order`: the highest order of the derivatives that the outputs need.
   BlockJobs(const PatchSet::Impl& set, const GridPlan::Impl& plan, int order)
       : set_(set), plan_(plan), has_normals_(order > 0), normals_(set, plan) {
     job_.by_lane = plan.by_patch;
@@ -29,7 +30,7 @@ class BlockJobs {
 
   kernel::GridJob<T>& job() { return job_; }
 
-  /// Turns to a block, until the next call.
+  /// Makes the job that of a block.
   void turn_to(std::size_t block) {
     if (group_ == nullptr || block - group_->first_block >= group_->block_count) set_group(set_.group_of_block(block));
     job_.net = net_ + (block - group_->first_block) * group_->block_values;
@@ -39,7 +40,7 @@ class BlockJobs {
     }
     if (has_normals_) normals_.prepare(block, job_);
   }
-  /// Turns to 16 patches of a group that stand in no block together; see BlockNormals::prepare.
+  /// Makes the job that of 16 patches of a group that are gathered from several blocks; see BlockNormals::prepare.
   void turn_to(const BlockGroup& group, const T* net, const std::uint32_t* lane_patches, const T* doubts) {
     set_group(group);
     job_.net = net;

@@ -13,7 +13,7 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// The memory of outputs in blocks, one after the other; the first that shares some with one before is refused.
+/// The memory of the outputs of one call. Output after output is added; one that overlaps an earlier one is an error.
 class BlockMemory {
  public:
   template <class T>
@@ -36,7 +36,7 @@ class BlockMemory {
   std::size_t count_ = 0;
 };
 
-/// Errors: those of evaluate().
+/// Checks size, alignment and overlap of the outputs. Errors: those of evaluate().
 template <class T>
 Status check_blocks(const GridPlan& plan, const QuantityBlocks<T>& out) {
   Status status;
@@ -56,7 +56,7 @@ Status check_blocks(const GridPlan& plan, const QuantityBlocks<T>& out) {
   return status;
 }
 
-/// The wanted outputs in blocks, from where on a piece's part of them is found.
+/// The wanted outputs in blocks; place() points a job at the part of each that belongs to its samples.
 template <class T>
 class BlockOutputs {
   using Outputs = kernel::GridJobOutputs<T>;

@@ -1,5 +1,10 @@
-// Blocks and grids over threads. Two ways out of the kernels: block-interleaved memory, which they write themselves,
-// and patch-contiguous views, through a stage that stays in the first-level cache and leaves it line by line.
+// Evaluates the blocks of a set over a grid of parameters, on threads. The call chain of a sample:
+//   evaluate() -> evaluate_blocks() or evaluate_views(): one task takes some blocks, or some rows of one block
+//   -> BlockJobs::turn_to() (eval/block_jobs.h): the block's control points and the plan's weights
+//   -> run_grid() (eval/run_grid.h) -> the kernel of the instruction set (kernel/grid/grid_kernel.inl.h)
+//   -> evaluate_sample() (kernel/sample/sample_kernel.inl.h): the sums, and what their rounding is.
+// The kernels write block-interleaved outputs themselves. Patch-contiguous outputs pass a stage in the first-level
+// cache (eval/staged_block.h).
 
 #include <algorithm>
 #include <array>
@@ -8,6 +13,7 @@
 
 #include "base/impl_access.h"
 #include "base/internal_export.h"
+#include "base/text.h"
 #include "block/patch_set_impl.h"
 #include "eval/block_jobs.h"
 #include "eval/block_outputs.h"
@@ -27,14 +33,14 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// A part of a block's grid: rows of parameters u.
+/// Some rows u of a block's grid.
 struct Piece {
   std::size_t block;
   int u_begin, u_end;
 };
 
-/// The work as pieces of about points_per_task points: several blocks, or some rows of one. The same for any number of
-/// threads.
+/// Cuts the work into pieces of about points_per_task points: several blocks, or some rows of one. The pieces do not
+/// depend on the number of threads.
 class Pieces {
  public:
   Pieces(const GridPlan::Impl& plan, bool derivatives) : rows_(plan.count_u), count_u_(rows_) {
@@ -61,11 +67,11 @@ class Pieces {
 
 template <class T>
 Status check_plan(const PatchSet::Impl& set, const GridPlan& plan) {
-  const bool twice = plan.precision() == Precision::double_precision;
-  if (twice != (sizeof(T) == 8))
-    return Status(StatusCode::invalid_argument, std::string("the plan is in ") + (twice ? "double" : "single") +
+  const bool is_f64 = plan.precision() == Precision::double_precision;
+  if (is_f64 != (sizeof(T) == 8))
+    return Status(StatusCode::invalid_argument, std::string("the plan is in ") + (is_f64 ? "double" : "single") +
                                                     " precision, but the outputs are of type " +
-                                                    (twice ? "float" : "double"));
+                                                    (is_f64 ? "float" : "double"));
   const auto& planned = impl_of(plan).groups;
   const auto& groups = set.groups;
   const bool same = impl_of(plan).patch_count == set.patches.size() &&
@@ -74,9 +80,16 @@ Status check_plan(const PatchSet::Impl& set, const GridPlan& plan) {
                                  return a.degree_u == b.degree_u && a.degree_v == b.degree_v &&
                                         a.rational == b.rational && a.blocks == b.block_count;
                                });
-  if (!same || !set.has(plan.precision(), impl_of(plan).options.representation))
-    return Status(StatusCode::invalid_argument,
-                  "the plan was made for another patch set: counts, degrees or blocks differ");
+  if (!same)
+    return Status(StatusCode::stale,
+                  "the plan was made for a set of " + counted(impl_of(plan).patch_count, "patch", "patches") +
+                      ", this set has " + std::to_string(set.patches.size()) +
+                      (impl_of(plan).patch_count == set.patches.size() ? " of other degrees or rationality" : "") +
+                      "; make a new plan");
+  if (!set.has(plan.precision(), impl_of(plan).options.representation))
+    return Status(StatusCode::stale,
+                  "the plan reads blocks that this set does not hold; make the set with the plan's blocks, see "
+                  "PatchSetOptions::blocks");
   return {};
 }
 
@@ -89,7 +102,7 @@ bool is_wanted(const std::span<T>& memory) {
   return memory.data() != nullptr;
 }
 
-/// The highest derivatives that the wanted outputs are made of. Errors: invalid_argument if none is wanted.
+/// Returns the highest order of the derivatives that the wanted outputs need. Errors: invalid_argument (none is wanted).
 template <class All>
 Result<int> order_of_outputs(const All& out) {
   int order = -1;
@@ -210,7 +223,7 @@ Status evaluate(const PatchSet::Impl& set, const GridPlan& plan, const QuantityV
   return guarded([&] { return evaluate_views(set, plan, out, execution); });
 }
 
-// ---- what other calls share
+// ---- checks and decisions that other calls share
 
 template <class T>
 Result<int> check_grids(const PatchSet::Impl& set, const GridPlan& plan, const QuantityViews<T>& out) {

@@ -1,5 +1,5 @@
-// Scattered samples over threads: all are checked before the first is evaluated, then chunk after chunk goes through
-// the kernels.
+// Evaluates scattered samples, on threads. All samples are checked before the first one is evaluated; then each task
+// evaluates chunk after chunk.
 
 #include "base/internal_export.h"
 #include "tessera/evaluate.h"
@@ -12,6 +12,7 @@
 #include "base/text.h"
 #include "eval/point_chunk.h"
 #include "eval/point_sources.h"
+#include "kernel/isa/kernel_table.h"
 #include "parallel/parallel_for.h"
 #include "tessera/guard.h"
 #include "tessera/status.h"
@@ -22,21 +23,23 @@ namespace {
 /// Below these many samples one thread is faster than waking another.
 constexpr std::size_t serial_positions = 4096, serial_normals = 2048;
 
-/// Checks options and views; `order` becomes that of the derivatives that are needed.
+/// Checks options and views. Sets `order` to the highest order of the derivatives that the outputs need.
 template <class T, class Source>
 Status check_call(const PatchSet::Impl& set, const Source& source, const QuantityViews<T>& out,
                   const PointOptions& options, int& order) {
-  const bool twice = sizeof(T) == 8;
-  if (!set.has_points(twice ? Precision::double_precision : Precision::single_precision))
+  const bool is_f64 = sizeof(T) == 8;
+  if (!set.has_points(is_f64 ? Precision::double_precision : Precision::single_precision))
     return Status(StatusCode::unsupported,
-                  std::string("the patch set holds no coefficients for points; see BlockKinds::") +
-                      (twice ? "double_points" : "float_points"));
+                  std::string("the patch set has no coefficients for scattered points; make it with BlockKinds::") +
+                      (is_f64 ? "double_points" : "float_points"));
   if (!source.lengths_fit())
     return Status(StatusCode::count_mismatch,
                   "every list of these samples must hold at least " + counted(source.count(), "record"));
   const auto fraction = [](double value) { return value >= 0 && value < 1; };
   if (!fraction(options.geometry.min_sine) || !fraction(options.geometry.umbilic_tolerance))
-    return Status(StatusCode::invalid_argument, "min_sine and umbilic_tolerance must lie in [0, 1)");
+    return Status(StatusCode::invalid_argument, "min_sine and umbilic_tolerance must lie in [0, 1), they are " +
+                                                    text(options.geometry.min_sine) + " and " +
+                                                    text(options.geometry.umbilic_tolerance));
   ViewChecks checks(source.count());
   order = -1;
   for_each_quantity([&](const auto& output) {
@@ -52,7 +55,7 @@ Status check_call(const PatchSet::Impl& set, const Source& source, const Quantit
                    : Status();
 }
 
-/// The first sample that can't be evaluated, for any number of threads.
+/// Returns the error of the first sample that cannot be evaluated, the same one for any number of threads.
 template <class Source>
 Status check_samples(const Source& source, const kernel::KernelTable& kernels, std::size_t grain,
                      const Execution& execution) {
@@ -75,7 +78,7 @@ Status run(const PatchSet::Impl& set, const Source& source, const QuantityViews<
            const Execution& execution) {
   int order = 0;
   if (Status status = check_call(set, source, out, options, order); !status.ok()) return status;
-  const Result<Isa> isa = options.isa ? parse_isa(name(*options.isa)) : default_isa();
+  const Result<Isa> isa = usable_isa(options.isa);
   if (!isa) return isa.status();
   const std::size_t capacity = ChunkSamples<T>::capacity;
   const bool serial = source.count() <= (order > 0 ? serial_normals : serial_positions);
@@ -121,7 +124,10 @@ Status evaluate(const PatchSet& set, const SurfaceMap& map, const SurfaceSamples
                 const PointOptions& options, const Execution& execution) {
   return guarded([&]() -> Status {
     if (impl_of(map).patch_count != set.patch_count() || map.surface_count() != set.surface_count())
-      return Status(StatusCode::invalid_argument, "the surface map was made for another patch set");
+      return Status(StatusCode::stale, "the surface map was made for " + counted(map.surface_count(), "surface") +
+                                           " of " + counted(impl_of(map).patch_count, "patch", "patches") +
+                                           ", this set has " + counted(set.surface_count(), "surface") + " of " +
+                                           counted(set.patch_count(), "patch", "patches") + "; make a new map");
     return run(impl_of(set), SamplesBySurface<T>(impl_of(map), samples, options.outside), out, options, execution);
   });
 }

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t lanes = kernel::flat_lanes, group_rows = kernel::flat_rows;
 
-/// `[group][i][lane]` from `[k][order][i]`.
+/// Returns the weights of the rows as `[group][i][lane]`, from a table `[k][order][i]`.
 AlignedVector<float> weights_of_rows(std::span<const float> weights, std::size_t rows, std::size_t count) {
   AlignedVector<float> table((rows + group_rows - 1) / group_rows * count * lanes, 0);
   for (std::size_t row = 0; row < rows; ++row)
@@ -21,7 +21,7 @@ AlignedVector<float> weights_of_rows(std::span<const float> weights, std::size_t
   return table;
 }
 
-/// `[vector][j][lane]` of the numbers of a row.
+/// Returns the weights of the numbers of a row as `[vector][j][lane]`, from a table `[k][order][i]`.
 AlignedVector<float> weights_of_columns(std::span<const float> weights, std::size_t columns, std::size_t count) {
   AlignedVector<float> table((3 * columns + lanes - 1) / lanes * count * lanes, 0);
   for (std::size_t value = 0; value < 3 * columns; ++value)
@@ -30,7 +30,9 @@ AlignedVector<float> weights_of_columns(std::span<const float> weights, std::siz
   return table;
 }
 
-/// Vectors begin anew with each row, so rows must fill theirs, unless blocks would be filled worse.
+/// Whether the flat kernel is faster than the grid kernel. Each row begins with a new vector, so the last vector of a row
+/// is partly empty; a last block is partly empty too. The flat kernel pays if it wastes at most 15% of its lanes, about
+/// what the grid kernel's transpose costs, or less than the blocks do.
 bool pays(const GridPlan::Impl& plan) {
   constexpr double max_waste = 1.15;
   const std::size_t values = 3 * plan.count_v, vectors = (values + lanes - 1) / lanes;
@@ -50,7 +52,8 @@ class FlatRun {
     job_.streaming = streaming;
   }
 
-  /// Rows of one patch, from a multiple of group_rows on; whole patches after each other wait for each other.
+  /// Adds rows of one patch; `first_row` is a multiple of group_rows. Whole patches wait until the kernel can take many
+  /// of them at once.
   void add(std::size_t patch, std::size_t first_row, std::size_t rows) {
     const PatchSet::Slot slot = set_.slots[patch];
     if (group_ == nullptr || slot.block - group_->first_block >= group_->block_count) {
@@ -63,7 +66,7 @@ class FlatRun {
         (slot.block - group_->first_block) * group_->block_values + slot.lane;
     if (rows != plan_.count_u || static_cast<std::size_t>(job_.patches) == nets_.size()) flush();
   }
-  /// The ISA that ran last.
+  /// Evaluates the patches that wait. Returns the instruction set that ran last.
   Isa finish() {
     flush();
     if (job_.streaming) kernels_.finish_streaming();
@@ -112,7 +115,7 @@ void tabulate_flat(const PatchSet::Impl& set, GridPlan::Impl& plan) {
 
 Status evaluate_flat(const PatchSet::Impl& set, const GridPlan::Impl& plan, float* out, bool streaming,
                      const Execution& execution) {
-  // Many patches a task, or some rows of one.
+  // A task takes many patches, or some rows of one.
   std::size_t rows = plan.count_u, grain = items_per_task(plan.patch_count, plan.samples());
   if (plan.samples() * plan.patch_count <= serial_positions) {
     grain = plan.patch_count;

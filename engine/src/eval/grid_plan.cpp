@@ -10,6 +10,7 @@
 #include "eval/flat_grid.h"
 #include "eval/grid_plan_impl.h"
 #include "eval/quantity_table.h"
+#include "kernel/isa/kernel_table.h"
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
@@ -87,7 +88,7 @@ Status check_values(std::span<const double> parameters, const char* direction) {
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     const double t = parameters[k];
     const auto place = [&] {
-      return std::string("parameter ") + direction + "[" + std::to_string(k) + "] = " + std::to_string(t);
+      return std::string("parameter ") + direction + "[" + std::to_string(k) + "] = " + text(t);
     };
     if (!std::isfinite(t))
       return Status(StatusCode::non_finite, place() + " is not finite", static_cast<std::ptrdiff_t>(k));
@@ -110,7 +111,7 @@ Status check_lists(std::span<const double> parameters, std::size_t patches, cons
                                                   counted(patches, "patch", "patches"));
 }
 
-/// Records, values and bytes of every output must be countable.
+/// Checks that the bytes of every output can be counted.
 Status check_size(const PatchSet::Impl& set, std::size_t count_u, std::size_t count_v) {
   const double bytes = static_cast<double>(set.lane_counts.size()) * PatchSet::lanes * 3 * sizeof(double) *
                        static_cast<double>(count_u) * static_cast<double>(count_v);
@@ -155,7 +156,17 @@ Status check_geometry(const LocalGeometryOptions& options) {
   return {};
 }
 
-/// Lane operations a point, as GridPlan::work counts them.
+/// Returns lane operations per point, as GridPlan::work() counts them: fused multiply-adds and the like, one per lane.
+///
+/// The figures of a bicubic polynomial patch. A sum over 4 coefficients of 3 components takes 12 operations. The rows of
+/// u are shared by all points of a row and do not count.
+/// - positions: one sum: 12
+/// - du and dv: two sums more: 36
+/// - the normal: 9 for the cross product, 3 for the squared length, 2 for the root and the check: 50
+/// - second derivatives: three sums more: 72
+/// Sums grow with the order, so figures of other degrees are in proportion. A rational patch has a fourth component, and
+/// divides: 4/3 and 4 more. Curvatures take 30 more (forms 6 x 3, then 12 for their quotients), and the normal besides
+/// second derivatives its 14.
 double operations_per_point(const PlannedGroup& group, const QuantityFlags& outputs) {
   const bool second = outputs.duu || outputs.duv || outputs.dvv;
   const bool curvatures = outputs.first_form || outputs.second_form || outputs.gaussian || outputs.mean ||
@@ -181,7 +192,7 @@ std::vector<double> uniform_parameters(int count) {
 
 namespace {
 
-/// A plan whose parameters are checked and counted.
+/// Completes a plan whose parameters are checked and counted.
 Result<std::unique_ptr<GridPlan::Impl>> make_plan(const PatchSet::Impl& set, std::unique_ptr<GridPlan::Impl> plan) {
   const GridPlanOptions& options = plan->options;
   if (Status status = check_geometry(options.geometry); !status.ok()) return status;
@@ -189,7 +200,7 @@ Result<std::unique_ptr<GridPlan::Impl>> make_plan(const PatchSet::Impl& set, std
     return Status(
         StatusCode::unsupported,
         "the patch set holds no blocks of the precision and representation asked for; see PatchSetOptions::blocks");
-  const Result<Isa> isa = options.isa ? parse_isa(name(*options.isa)) : default_isa();
+  const Result<Isa> isa = usable_isa(options.isa);
   if (!isa) return isa.status();
   if (Status status = check_size(set, plan->count_u, plan->count_v); !status.ok()) return status;
   plan->isa = *isa;
@@ -264,8 +275,6 @@ Precision GridPlan::precision() const { return impl_->options.precision; }
 std::size_t GridPlan::capacity() const { return impl_->patch_count * impl_->samples(); }
 std::size_t GridPlan::block_capacity() const { return impl_->block_count * impl_->samples() * 3 * PatchSet::lanes; }
 
-/// For a cubic 12 for positions, 36 with du and dv, 50 with the unit normal as well, 72 with second derivatives; in
-/// proportion to the order; rational: 4/3 of it and 4 more; 30 for curvatures of all sorts.
 Work GridPlan::work(const QuantityFlags& outputs) const {
   const bool is_double = impl_->options.precision == Precision::double_precision;
   const double value = is_double ? 8 : 4;

@@ -31,7 +31,7 @@ struct GridWeights {
   LaneTables<T> u_lanes, v_lanes;
 };
 
-/// The tables of kernel 3 by degree, see FlatJob.
+/// Tables of the flat kernel by degree, see FlatJob.
 struct FlatTables {
   WeightTables<float> u, v;
 };
@@ -54,7 +54,7 @@ class GridPlan::Impl {
   std::size_t patch_count = 0, block_count = 0;
   GridWeights<float> f32;
   GridWeights<double> f64;
-  bool is_flat = false;  ///< positions alone are evaluated by kernel 3
+  bool is_flat = false;  ///< the flat kernel evaluates positions if they are the only output
   FlatTables flat;
   /// Whether any parameter lies on the edges u = 0, u = 1, v = 0, v = 1: only there can a collapsed edge be met.
   EdgeMask edges;

@@ -1,10 +1,11 @@
-// Updates over threads: everything is checked before the first number is written, then block after block is packed and
-// evaluated by one task.
+// Updates of grids, on threads. All input is checked before the first number is written. Then each task packs and
+// evaluates block after block.
 
 #include <atomic>
 
 #include "base/impl_access.h"
 #include "base/internal_export.h"
+#include "base/text.h"
 #include "eval/edited_grids.h"
 #include "eval/patch_edits.h"
 #include "eval/task_size.h"
@@ -40,22 +41,26 @@ class GridUpdate::Impl {
   }
 
  private:
-  /// Everything that may fail. The order of the derivatives that the outputs are made of.
+  /// Makes all checks and allocations that can fail. Returns the highest order of the derivatives that the outputs need.
   template <class Outputs>
   Result<int> start(PatchSet::Impl& set, const GridPlan& plan, const PatchEdits& edits, const Outputs& out,
                     const Execution& execution) {
     const Result<int> order = check_grids(set, plan, out);
     if (!order) return order.status();
     if (impl_of(plan).by_patch)
-      return Status(StatusCode::unsupported, "grids with parameters of each patch's own can't be updated");
+      return Status(
+          StatusCode::unsupported,
+          "a plan with PatchParameters cannot update grids: make one with the same parameters for all patches");
     if (patch_count_ != set.patches.size() || touched_.block_count() != set.lane_counts.size())
-      return Status(StatusCode::invalid_argument, "the update was made for another patch set");
+      return Status(StatusCode::stale, "the update was made for a set of " + counted(patch_count_, "patch", "patches") +
+                                           ", this set has " + std::to_string(set.patches.size()) +
+                                           "; make a new update");
     if (Status status = touched_.add(set, edits); !status.ok()) return status;
     if (Status status = prepare_edits(set, edits, touched_, execution); !status.ok()) return status;
     return *order;
   }
 
-  /// Gives every touched block to what `make_task` makes for each task.
+  /// Adds every touched block to an object that `make_task` makes for each task.
   template <class MakeTask>
   Status each_block(PatchSet::Impl& set, const GridPlan& plan, const PatchEdits& edits, int order, bool streaming,
                     const Execution& execution, MakeTask&& make_task) {

@@ -15,7 +15,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// The best of several runs.
+/// Returns the seconds of the fastest of several runs.
 template <class Run>
 double best_seconds(int runs, Run&& run) {
   double best = 1e30;
@@ -40,7 +40,7 @@ double operations_per_second(int (*probe)(std::size_t, T*)) {
 
 Result<Limits> measure_limits(const LimitsOptions& options) {
   return guarded([&]() -> Result<Limits> {
-    const Result<Isa> isa = options.isa ? parse_isa(name(*options.isa)) : default_isa();
+    const Result<Isa> isa = usable_isa(options.isa);
     if (!isa) return isa.status();
     const auto& kernels = kernel::kernels(*isa);
     Limits limits;

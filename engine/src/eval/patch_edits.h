@@ -1,5 +1,5 @@
 #pragma once
-// New control points into a set, block by block: what updates of grids and of meshes have in common.
+// Writes new control points into a set, block by block; updates of grids and of meshes share it.
 
 #include <cstdint>
 #include <span>
@@ -10,19 +10,20 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Whether a patch with these control points is still what a plan was made for.
+/// Whether a plan still holds for a patch with these control points.
 using KeepsShape = FunctionRef<bool(std::uint32_t patch, std::span<const Vec3> points)>;
 
-/// Looks at all new points, and makes room for them: patches get memory of their own. Errors: non_finite, stale (a
-/// patch that does not keep its shape), both of the first such edit; cancelled. What they are is then as before.
+/// Checks all new points, and gives each edited patch memory that no other patch shares. Errors, which leave the set's
+/// values as they were: non_finite, stale (a patch that does not keep its shape), index = the first such edit; cancelled.
 Status prepare_edits(PatchSet::Impl& set, const PatchEdits& edits, const TouchedBlocks& touched,
                      const Execution& execution, const KeepsShape* keeps_shape = nullptr);
 
-/// The edits of one block, prepared: into its patches and their lanes. Threads: any number, each a block of its own.
+/// Writes the edits of one block into its patches and their lanes. prepare_edits() has checked them. Threads: several
+/// calls may run at once, for different blocks.
 void pack_edits(PatchSet::Impl& set, const PatchEdits& edits, const TouchedBlocks& touched,
                 const kernel::KernelTable& kernels, std::uint32_t block);
 
-/// Once all blocks are packed.
+/// Updates what the set derives from its points. Call it once, after pack_edits() of every touched block.
 void finish_edits(PatchSet::Impl& set, const PatchEdits& edits);
 
 }  // namespace tessera::inline abi_0_1

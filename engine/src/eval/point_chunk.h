@@ -1,5 +1,5 @@
 #pragma once
-// A task's share of scattered samples, on their way from patches and parameters to the caller's records.
+// Evaluates a task's share of scattered samples, chunk by chunk, into the caller's records.
 
 #include <algorithm>
 #include <array>
@@ -24,8 +24,8 @@ struct PointCall {
   LocalGeometryOptions geometry;
 };
 
-/// Samples of a chunk by patch and local parameters, as a source of samples hands them out: where they lie already, or
-/// in memory of the chunk's own. All are readable for kernel::point_padding beyond the last.
+/// The samples of a chunk by patch and local parameters. The pointers lead to the caller's arrays, or to `own_patch`,
+/// `own_u` and `own_v`. Each array is readable for kernel::point_padding values beyond the last sample.
 template <class T>
 struct ChunkSamples {
   static constexpr std::size_t capacity = 2048;
@@ -43,7 +43,7 @@ struct ChunkSamples {
   bool scaled = false;
   std::array<double, capacity> width_u, width_v;
 
-  /// For samples in memory of the chunk's own; the padding repeats the last.
+  /// Points to the chunk's own memory and fills the padding with the last sample.
   void use_own() {
     patch = padded(own_patch, count);
     u = padded(own_u, count);
@@ -94,7 +94,7 @@ class PointChunk {
     Isa isa = Isa::sse2;
     for (std::size_t k = 0; k < samples_.count; ++k) of_group[k] = 0;
     for (std::size_t k = 0; k < samples_.count; ++k) {
-      if (of_group[k]) continue;  // of a group that is done
+      if (of_group[k]) continue;  // its group is done
       const BlockGroup& group = call_.set.group_of_block(call_.set.slots[samples_.patch[k]].block);
       isa = run_group(group, k, of_group);
     }
@@ -135,7 +135,7 @@ class PointChunk {
     grid.umbilic_tolerance = static_cast<T>(std::max(call_.geometry.umbilic_tolerance, smallest_tolerance));
   }
 
-  /// Every sample is of this group: patches lie in their own order.
+  /// Evaluates all samples, which belong to one group: no list is needed.
   Isa run_all(const BlockGroup& group) {
     list_ = nullptr;
     count_ = samples_.count;
@@ -145,7 +145,7 @@ class PointChunk {
     return run_list(group);
   }
 
-  /// The samples of one group, from the first on; marks them in `done`.
+  /// Evaluates the samples of one group, from `first` on, and marks them in `done`.
   Isa run_group(const BlockGroup& group, std::size_t first, std::array<std::uint8_t, Samples::capacity>& done) {
     count_ = 0;
     for (std::size_t k = first; k < samples_.count; ++k) {
@@ -223,8 +223,8 @@ class PointChunk {
     });
   }
 
-  /// From derivatives by local parameters to those by the surface's; in double, and by division, since a width or its
-  /// inverse may be out of range where the result is not.
+  /// Turns derivatives by local parameters into derivatives by the surface's. Divides in double, because a width or its
+  /// inverse may be out of T's range although the result is in range.
   void scale(const Field& field) {
     for (int c = 0; c < field.width; ++c) {
       const int by_u = field.powers.u[static_cast<std::size_t>(c)], by_v = field.powers.v[static_cast<std::size_t>(c)];
@@ -269,8 +269,8 @@ class PointChunk {
   std::array<Field, max_fields> fields_{};
   std::size_t field_count_ = 0;
   Samples samples_;
-  const std::uint32_t* list_ = nullptr;  ///< the samples at work; null: all
-  std::size_t count_ = 0;                ///< of the samples at work
+  const std::uint32_t* list_ = nullptr;  ///< the samples of the current group; null: all
+  std::size_t count_ = 0;                ///< samples of the current group
   typename Samples::template Memory<std::uint32_t> listed_patch_;
   alignas(cache_line) typename Samples::template Memory<T> listed_u_, listed_v_;
   std::array<std::uint32_t, Samples::capacity> indices_;

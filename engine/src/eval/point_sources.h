@@ -1,5 +1,5 @@
 #pragma once
-// Where scattered samples come from: by patch, or by surface. A source checks its samples, then hands them out by the
+// Two sources of scattered samples: by patch, or by surface. A source first checks its samples, then copies them chunk by
 // chunk.
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Status of one sample that can't be evaluated.
+/// Returns the status of a sample that cannot be evaluated.
 inline Status refused_sample(StatusCode code, std::size_t sample, const std::string& why) {
   return Status(code, "sample " + std::to_string(sample) + ": " + why, static_cast<std::ptrdiff_t>(sample));
 }
@@ -57,9 +57,9 @@ class SamplesByPatch {
     checks.add("v", samples_.v);
   }
 
-  /// Returns the first of samples [begin, end) that can't be evaluated.
+  /// Returns the error of the first sample in [begin, end) that cannot be evaluated.
   Status check(std::size_t begin, std::size_t end, const kernel::KernelTable& kernels) const {
-    if (lie_together() && all_pass(begin, end - begin, kernels)) return {};
+    if (is_contiguous() && all_pass(begin, end - begin, kernels)) return {};
     for (std::size_t k = begin; k < end; ++k) {
       if (samples_.patch.at(k, 0) >= patches_)
         return refused_sample(StatusCode::invalid_argument, k,
@@ -73,7 +73,7 @@ class SamplesByPatch {
 
   void fill(std::size_t begin, std::size_t count, const kernel::KernelTable&, ChunkSamples<T>& chunk) const {
     const std::size_t end = begin + count;
-    if (outside_ != OutsideDomain::clamp && lie_together() && end + ChunkSamples<T>::padding <= this->count()) {
+    if (outside_ != OutsideDomain::clamp && is_contiguous() && end + ChunkSamples<T>::padding <= this->count()) {
       chunk.patch = samples_.patch.component[0] + begin;
       chunk.u = samples_.u.component[0] + begin;
       chunk.v = samples_.v.component[0] + begin;
@@ -89,7 +89,7 @@ class SamplesByPatch {
   }
 
  private:
-  bool lie_together() const { return samples_.patch.stride == 1 && samples_.u.stride == 1 && samples_.v.stride == 1; }
+  bool is_contiguous() const { return samples_.patch.stride == 1 && samples_.u.stride == 1 && samples_.v.stride == 1; }
   bool all_pass(std::size_t begin, std::size_t count, const kernel::KernelTable& kernels) const {
     const kernel::PointCheckJob<T> job{.patch = samples_.patch.component[0] + begin,
                                        .patches = patches_,
@@ -108,7 +108,7 @@ class SamplesByPatch {
   std::uint32_t patches_;
   const PatchSamples<T>& samples_;
   OutsideDomain outside_;
-  T low_, high_;  ///< parameters from when on, and up to which, they are taken
+  T low_, high_;  ///< the range of parameters that are evaluated; others are an error
 };
 
 /// Samples by surface.

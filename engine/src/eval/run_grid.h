@@ -1,5 +1,6 @@
 #pragma once
-// The grid kernel of an instruction set; and where the CMake option TESSERA_PLANT_SLOWDOWN planted a slow-down in it.
+// Calls the grid kernel of an instruction set. The CMake option TESSERA_PLANT_SLOWDOWN makes these calls slower, for tests
+// of the tools that watch speed.
 
 #include <algorithm>
 
@@ -22,8 +23,9 @@ Isa call_grid_kernel(const kernel::KernelTable& kernels, const kernel::GridJob<T
   }
 }
 
-/// `planted_slowdown` of a hundred rows once more, to the same place: results stay what they are. Half a job's rows at
-/// a time, so that calls add little to that; what is owed before that counts for this thread's next job.
+/// Evaluates `planted_slowdown` percent of a job's rows once more, to the same place, so that results do not change.
+/// Waits until half a job's rows have come together, so that the cost of the extra calls does not count; until then the
+/// rows are owed by this thread's next jobs.
 template <class T>
 void repeat_rows(const kernel::KernelTable& kernels, const kernel::GridJob<T>& job) {
   thread_local int owed = 0;  // hundredths of a row

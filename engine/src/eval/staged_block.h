@@ -1,5 +1,5 @@
 #pragma once
-// A block's outputs on their way from lanes to patch-contiguous views.
+// Moves a block's outputs from lanes to patch-contiguous views, through a stage in the first-level cache.
 
 #include <algorithm>
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// The two precisions of the kernels that write lines.
+/// The kernels that write lines, chosen by precision.
 template <class T>
 struct LineKernels {
   const kernel::KernelTable& kernels;
@@ -44,10 +44,11 @@ struct LineKernels {
   }
 };
 
-/// How views are reached from a stage of a few samples. Where all wanted views of numbers are fields of one gapless
-/// record (positions and normals interleaved, say), the stage has that record's order, and it is one array; otherwise
-/// packed views are one array each, structures of arrays one a component. What lies value by value between others is a
-/// column.
+/// The order of the values in the stage, and how they get from there to the caller's views:
+/// - one array for all views of numbers, if these are the fields of one record without gaps (positions and normals
+///   interleaved, say);
+/// - otherwise one array for each packed view, and one for each component of a structure of arrays;
+/// - a column for each other component: it is written value by value, `stride` apart.
 template <class T>
 class StageLayout {
  public:
@@ -61,7 +62,7 @@ class StageLayout {
     std::ptrdiff_t stride = 1;
     int width = 3;
     T* kernel::GridJobOutputs<T>::*job = nullptr;
-    int first = 0;            ///< its place in the record, or in the stage, in rows of lanes
+    int first = 0;            ///< its place in the record or in the stage, in rows of lanes
     int array = -1;           ///< the first of its arrays; -1 if it goes out by columns
     std::ptrdiff_t step = 1;  ///< of its arrays
 
@@ -99,15 +100,15 @@ class StageLayout {
   std::span<const Array> columns() const { return std::span(columns_).first(column_count_); }
   bool one_record() const { return one_record_; }
   int record_width() const { return record_width_; }  ///< values of all wanted views
-  /// Samples that are staged at once, if rows of the grid come out even: enough to make up for the calls, so few that
-  /// their stores are still on their way to memory while the next ones are computed.
+  /// Samples that are staged at once, if rows of the grid divide evenly: enough that the cost of the calls is small, and
+  /// so few that their stores overlap with the next computation.
   int piece() const { return std::max(min_samples, stage_rows / std::max(record_width_, 1)); }
-  /// At the most: a row of the grid is rather not cut, since its curves would be made twice.
+  /// The most samples that are staged at once. Longer pieces avoid that a row is cut: both parts compute its curves.
   int longest_piece() const { return 2 * piece(); }
 
   /// 12 kB of floats, 18 kB of doubles: a first-level cache of 32 kB holds the net and the weights as well.
   static constexpr int min_samples = 16, stage_rows = sizeof(T) == 4 ? 192 : 144;
-  /// Rows in the stage at the most, with those that a tile may reach beyond the last.
+  /// The most rows in the stage, with those that a tile may reach beyond the last.
   static constexpr std::size_t max_rows =
       2 * std::max<std::size_t>(min_samples * max_arrays, stage_rows) + 3 * lanes * (max_fields + 1);
 
@@ -150,8 +151,8 @@ class StageLayout {
   bool one_record_ = false;
 };
 
-/// Evaluates a block piece by piece into a stage in the first-level cache, from which each piece goes to its place, one
-/// patch a lane. Lives on a task's stack, and what it holds is unset; allocates nothing.
+/// Evaluates a block piece by piece into a stage in the first-level cache, and writes each piece to the records of its
+/// patches, one patch per lane. Lives on a task's stack, where its memory begins uninitialised; allocates nothing.
 template <class T>
 class StagedBlock {
  public:
@@ -173,7 +174,7 @@ class StagedBlock {
   }
 
   /// Evaluates a job that place_outputs() has seen over rows first_u .. end_u - 1 of a grid of `count_v` columns, into
-  /// the records of each lane's patch, `samples` of each. Unused lanes repeat a patch, and write what that writes.
+  /// the records of each lane's patch; a patch has `samples` records. Unused lanes repeat a patch and write its values.
   Isa run(kernel::GridJob<T>& job, int first_u, int end_u, int count_v, const std::uint32_t* lane_patches,
           int lane_count, std::size_t samples) {
     std::ptrdiff_t records[lanes];
@@ -215,7 +216,7 @@ class StagedBlock {
     }
   }
 
-  /// Positions and normals of bicubic patches, which a kernel sends on while it computes them.
+  /// Whether one kernel can compute and write the outputs: positions and normals, interleaved, of bicubic patches.
   bool is_mesh(const kernel::GridJob<T>& job) const {
     if constexpr (sizeof(T) != 4 || planted_slowdown > 0) return false;
     return kernels_.mesh_lines_f32 && layout_.one_record() && layout_.record_width() == 6 && !out_.position.empty() &&
@@ -239,7 +240,7 @@ class StagedBlock {
     return isa;
   }
 
-  /// Behind what still waits in the stage.
+  /// Points the job at the first free row of each array, after the rows that wait in the stage.
   void place_fields(kernel::GridJob<T>& job) {
     for (const auto& field : layout_.fields()) {
       const std::ptrdiff_t waiting = field.array < 0 ? 0 : waiting_[static_cast<std::size_t>(field.array)] * field.step;
@@ -247,7 +248,7 @@ class StagedBlock {
     }
   }
 
-  /// Whole tiles of `lanes` rows; but for the last piece, the rest waits for the next one.
+  /// Writes whole tiles of `lanes` rows. The rest waits for the next piece, unless this one is the last.
   void put(std::ptrdiff_t count, int lane_count, bool last) {
     std::size_t k = 0;
     for (const auto& array : layout_.arrays()) {
@@ -296,8 +297,9 @@ class StagedBlock {
   bool streaming_;
   alignas(cache_line) std::array<T, Layout::max_rows * lanes> stage_;
   std::array<kernel::LineState<T>, Layout::max_arrays> states_;
-  std::array<std::ptrdiff_t, Layout::max_arrays> waiting_;  ///< rows of each array, the first ones in the stage
-  static constexpr std::size_t max_samples = 2 * Layout::stage_rows;  // of kinds alone: as many as of one value
+  std::array<std::ptrdiff_t, Layout::max_arrays>
+      waiting_;  ///< rows at the start of each array that are not written yet
+  static constexpr std::size_t max_samples = 2 * Layout::stage_rows;  // if only kinds are wanted: as for one value
   alignas(cache_line) std::array<std::array<std::uint8_t, max_samples * lanes>, 2> kinds_;
 };
 

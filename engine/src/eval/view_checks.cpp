@@ -4,6 +4,8 @@
 #include <numeric>
 #include <string>
 
+#include "base/text.h"
+
 namespace tessera::inline abi_0_1 {
 
 void ViewChecks::add(const Array& array, std::size_t size, std::size_t alignment) {
@@ -16,15 +18,19 @@ void ViewChecks::add(const Array& array, std::size_t size, std::size_t alignment
     return refuse(" needs " + std::to_string(array.records) + " records, not " + std::to_string(size),
                   StatusCode::buffer_too_small);
   if (array.begin == 0 || array.stride < 1)
-    return refuse(": a view needs all its components and a stride of at least 1");
-  if (array.begin % alignment != 0) return refuse(" is not aligned to its numbers");
+    return refuse(array.begin == 0 ? ": a component of the view has no memory"
+                                   : ": the stride is " + std::to_string(array.stride) + ", it must be at least 1");
+  if (array.begin % alignment != 0)
+    return refuse(": the view's memory must be aligned to " + counted(alignment, "byte"));
   if (array.records > 0 && static_cast<std::size_t>(array.stride) > most / array.element / array.records)
-    return refuse(": its stride leads out of memory");
+    return refuse(": a stride of " + std::to_string(array.stride) + " over " + counted(array.records, "record") +
+                  " reaches beyond the address space");
   arrays_.at(count_++) = array;
 }
 
-/// Whether a number of one lies in the place of a number of the other. Where the ranges meet, records of different
-/// strides are taken to go on forever: numbers then meet that do modulo the strides' common divisor.
+/// Whether a number of one array shares memory with a number of the other. Exact for arrays of equal stride. If the
+/// strides differ and the ranges overlap, the answer is that of arrays without end: two numbers then meet if their
+/// addresses agree modulo the greatest common divisor of the strides.
 bool ViewChecks::collide(const Array& a, const Array& b) const {
   const auto step = [&](const Array& array) {
     return array.records == 1 ? 0 : static_cast<std::size_t>(array.stride) * array.element;

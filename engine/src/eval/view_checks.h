@@ -1,5 +1,5 @@
 #pragma once
-// Whether the views that a call is given can be used: complete, long enough, aligned, and apart from each other.
+// Checks the views of a call: each must be complete, long enough and aligned, and an output must share no memory.
 
 #include <array>
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Takes note of the views of one call, one after the other; the first error stands.
+/// Collects the views of one call, and keeps the first error.
 class ViewChecks {
  public:
   /// `records`: how many records of a view are used, unless add() states another number.

@@ -1,4 +1,5 @@
 #include "io/rib_mesh.h"
+#include "base/text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -176,7 +177,7 @@ class Weighted {
   Status status() const {
     if (bad_ >= points.size()) return {};
     return {StatusCode::invalid_weight,
-            "weight " + std::to_string(bad_weight_) + " of control point " + std::to_string(bad_) + " is not above 0",
+            "weight " + text(bad_weight_) + " of control point " + std::to_string(bad_) + " is not above 0",
             static_cast<std::ptrdiff_t>(bad_)};
   }
 

@@ -16,8 +16,6 @@ namespace {
 
 std::array<const BorderCurve*, 4> all_of(const CoonsBorders& b) { return {&b.c1, &b.c2, &b.d1, &b.d2}; }
 
-std::string text_of(const Vec3& p) { return "(" + text(p.x) + ", " + text(p.y) + ", " + text(p.z) + ")"; }
-
 /// The ends of the four curves: [border][end].
 using Ends = std::array<std::array<Vec3, 2>, 4>;
 
@@ -53,8 +51,8 @@ Status check_closed(const Ends& ends, double share) {
       const auto verb = [](std::size_t end) { return end == 0 ? " begins at " : " ends at "; };
       return {StatusCode::invalid_argument,
               "the borders do not close at the corner r(u" + std::to_string(a) + ", v" + std::to_string(b) +
-                  "): " + coons_border_names[b] + verb(a) + text_of(c) + ", " + coons_border_names[2 + a] + verb(b) +
-                  text_of(d) + ", a gap of " + text(gap) + "; the tolerance is " + text(share * diagonal),
+                  "): " + coons_border_names[b] + verb(a) + text(c) + ", " + coons_border_names[2 + a] + verb(b) +
+                  text(d) + ", a gap of " + text(gap) + "; the tolerance is " + text(share * diagonal),
               static_cast<std::ptrdiff_t>(2 * a + b)};
     }
   return {};

@@ -17,8 +17,8 @@ constexpr double angle_margin = 1e-15;
 constexpr double border_margin = 1e-12;
 
 Status bad_range(const char* direction, double from, double to, const std::string& wanted) {
-  return {StatusCode::invalid_argument, std::string("the range of ") + direction + " from " + std::to_string(from) +
-                                            " to " + std::to_string(to) + " " + wanted};
+  return {StatusCode::invalid_argument,
+          std::string("the range of ") + direction + " from " + text(from) + " to " + text(to) + " " + wanted};
 }
 
 Status check_range(const char* direction, Profile profile, bool latitude, double from, double to) {

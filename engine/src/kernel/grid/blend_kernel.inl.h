@@ -1,5 +1,5 @@
 #pragma once
-// Kernel 3, transfinite blending, lanes = parameters v. The border curves' values for one u are broadcast, and those
+// Transfinite blending of four border curves; lanes = parameters v. The border curves' values for one u are broadcast, and those
 // for v stream through, as many columns at a time as stay in the second-level cache. (A first-level tile would shorten
 // the runs of stores, which cost more than the loads.)
 //

@@ -1,5 +1,5 @@
 #pragma once
-// Kernel 3, positions only, lanes = neighbouring numbers of a row of a patch's grid, x y z x y z .. One vector holds
+// Positions patch by patch; lanes = neighbouring numbers of a row of a patch's grid, x y z x y z .. One vector holds
 // the curves of four rows, q_j = sum_i f_i(row) c_ij. The curves of one row are spread over its vectors, r = sum_j
 // g_j(column) q_j. These are the same sums in the same order as in grid_kernel.inl.h, without a transpose and without a
 // block of sixteen patches. Results go to memory by whole aligned vectors.

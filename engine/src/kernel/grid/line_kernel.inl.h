@@ -1,5 +1,5 @@
 #pragma once
-// Kernel 2's output, patch-contiguous: values of a block, `[value][lane]`, are transposed for a few lanes at a time and
+// Patch-contiguous output of the grid kernel: values of a block, `[value][lane]`, are transposed for a few lanes at a time and
 // joined with the rest of each lane's last vector, so that memory receives only whole aligned vectors, plain or
 // streamed. Vectors in which one lane ends and the next begins are assembled at the end.
 //

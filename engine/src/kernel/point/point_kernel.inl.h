@@ -1,5 +1,5 @@
 #pragma once
-// Kernel 4, scattered samples, lanes = samples. A patch lies together, rows [component][j] one after the other.
+// Scattered samples; lanes = samples. The values of a patch are contiguous, rows `[component][j]` one after the other.
 // 1. For each sample, whole vectors of its patch's rows are summed: q = sum_i f_i(u) row_i.
 // 2. A transpose of `width` samples gives the row curves with lanes = samples.
 // 3. The rest is evaluated as in a grid.

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/impl_access.h"
+#include "base/text.h"
 #include "ray/embree/embree_api.h"
 #include "ray/embree/embree_device.h"
 #include "ray/line/ray_segment.h"
@@ -159,8 +160,11 @@ Result<const ExactSource*> usable_source(const RayScene& scene) {
     return Status(StatusCode::stale, "the patch set was edited after this ray scene was made: call refit");
   const Box3 box = scene.box();
   if (!(std::max(max_abs(box.lower), max_abs(box.upper)) <= max_ray_component && box.diagonal() >= smallest_size))
-    return Status(StatusCode::unsupported,
-                  "Embree's scenes hold models of a size from 1e-15, within 1.844e18 of zero: move or scale the model");
+    return Status(StatusCode::unsupported, "the model has the size " + text(box.diagonal()) + " and reaches " +
+                                               text(std::max(max_abs(box.lower), max_abs(box.upper))) +
+                                               " from zero; Embree needs a size of at " + "least " +
+                                               text(smallest_size) + " and at most " + text(max_ray_component) +
+                                               " from zero: move or scale the model");
   return source;
 }
 

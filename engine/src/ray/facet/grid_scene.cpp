@@ -244,7 +244,7 @@ namespace {
 
 Result<std::unique_ptr<RayScene::Impl>> scene_of(const PatchSet& set, std::unique_ptr<FacetSource> facets,
                                                  const RaySceneOptions& options) {
-  const Result<Isa> isa = options.isa ? parse_isa(name(*options.isa)) : default_isa();
+  const Result<Isa> isa = usable_isa(options.isa);
   if (!isa) return isa.status();
   Result<EmbreeScene> scene = EmbreeScene::make();
   if (!scene) return scene.status();

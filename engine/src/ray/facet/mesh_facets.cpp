@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/text.h"
 #include "ray/facet/facet_deviation.h"
 #include "ray/facet/facet_source.h"
 
@@ -84,28 +85,45 @@ class MeshFacets final : public FacetSource {
   Status check(const SetView& set) const {
     const std::size_t vertices = mesh_.vertex_count();
     if (mesh_.positions.size() != 3 * vertices || mesh_.indices.size() % 3 != 0 || mesh_.quads.size() % 4 != 0)
-      return invalid("a mesh has three numbers per position, three indices per triangle and four per quad", 0);
+      return invalid("the mesh holds " + counted(mesh_.positions.size(), "number") + " of positions, " +
+                         counted(mesh_.indices.size(), "index", "indices") + " of triangles and " +
+                         counted(mesh_.quads.size(), "index", "indices") +
+                         " of quads, they must be multiples of 3, 3 and 4",
+                     0);
     if (!mesh_.has_patches() || mesh_.parameters.size() != 2 * vertices)
       return invalid(
-          "the mesh needs the patch of each face and the parameters of each vertex: tessellate without shared "
+          "the mesh lacks the patch of each face or the parameters of each vertex: tessellate without shared "
           "vertices",
           0);
-    if (!(mesh_.origin == set.origin())) return invalid("the mesh has another origin than the set", 0);
+    if (!(mesh_.origin == set.origin()))
+      return invalid("the mesh's origin is " + text(mesh_.origin) + ", the set's is " + text(set.origin()) +
+                         ": tessellate this set",
+                     0);
     for (std::size_t k = 0; k < mesh_.positions.size(); ++k) {
-      if (!std::isfinite(mesh_.positions[k])) return invalid("a position of the mesh is not finite", k / 3);
+      if (!std::isfinite(mesh_.positions[k]))
+        return {StatusCode::non_finite,
+                "coordinate " + std::to_string(k % 3) + " of vertex " + std::to_string(k / 3) + " is " +
+                    text(mesh_.positions[k]) + ", it must be finite",
+                static_cast<std::ptrdiff_t>(k / 3)};
     }
     for (std::size_t k = 0; k < mesh_.parameters.size(); ++k) {
       if (!(mesh_.parameters[k] >= 0 && mesh_.parameters[k] <= 1))
-        return invalid("a parameter of the mesh is not in [0, 1]", k / 2);
+        return invalid(std::string(k % 2 == 0 ? "u" : "v") + " of vertex " + std::to_string(k / 2) + " is " +
+                           text(mesh_.parameters[k]) + ", it must be in [0, 1]",
+                       k / 2);
     }
     Status status;
     std::size_t count = 0;
     for_faces([&](std::span<const std::uint32_t> corners, std::uint32_t patch) {
       if (status.ok() && patch >= set.patch_count())
-        status = invalid("a face of the mesh names a patch that is not in the set", count);
+        status = invalid("face " + std::to_string(count) + " names patch " + std::to_string(patch) + ", the set has " +
+                             counted(set.patch_count(), "patch", "patches"),
+                         count);
       for (const std::uint32_t corner : corners) {
         if (status.ok() && corner >= vertices)
-          status = invalid("a face of the mesh has a corner beyond the vertices", count);
+          status = invalid("face " + std::to_string(count) + " has vertex " + std::to_string(corner) +
+                               ", the mesh has " + counted(vertices, "vertex", "vertices"),
+                           count);
       }
       ++count;
     });

@@ -13,10 +13,20 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr int max_boxes = 20000;          // for surfaces that run along the ray; others take 1 to 300
-constexpr double sure_contraction = 0.5;  // below, the clamped contraction decides at its fixed point
+// These limits bound the time of a search. No result depends on them but for RayQuery::incomplete.
+constexpr int max_boxes = 20000;  // a ray takes 1 to 300 boxes; only a surface that runs along the ray takes more
+// Each clamped contraction then halves the distance to the root at least, so 60 of them take it from 1 below 2^-53.
+constexpr double sure_contraction = 0.5;
+constexpr int max_contractions = 60;
+// Newton's method doubles the digits: 6 steps take an error of 1/2 to 2^-64. Steps that stay in the square take longer.
+constexpr int max_newton_steps = 12;
+// Cutting both ends of a box costs two halvings, each of which would leave two boxes of half the width.
 constexpr double worth_narrowing = 0.6;
-constexpr int max_newton_steps = 12, max_contractions = 60;
+// A step of fewer than 5 units of 2^-52 in [0, 1] is rounding.
+constexpr double least_step = 1e-15;
+// restrict_net() rounds the ends of a part by a few units of 2^-52. The margin, 4500 units, keeps a root at the very end
+// inside, and gives the part a width.
+constexpr double cut_margin = 1e-12;
 
 enum class Outcome { none, found, open };
 
@@ -185,7 +195,7 @@ class LeafSearch {
       const double moved = std::max(std::abs(next.u - at.u), std::abs(next.v - at.v));
       at = next, f = value(net, at);
       if (f.residual() > tolerance_ && excluded()) return Outcome::none;
-      if (moved < 1e-15) break;
+      if (moved < least_step) break;
     }
     if (is_root(f)) return Outcome::found;
     const NetValue nearest = f;
@@ -241,8 +251,7 @@ class LeafSearch {
     }
     SearchBox& box = space_.box(target);
     for (int i = 0; i < 2; ++i) {
-      // The margin keeps a root at the very end inside, and gives the part a width.
-      const double low = std::max(0.0, within.low[i] - 1e-12), high = std::min(1.0, within.high[i] + 1e-12);
+      const double low = std::max(0.0, within.low[i] - cut_margin), high = std::min(1.0, within.high[i] + cut_margin);
       if (high - low > worth_narrowing) continue;
       restrict_net(shape_, components, space_.net(target), i == 0, low, high);
       double& start = i == 0 ? box.u0 : box.v0;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/text.h"
+#include "kernel/isa/kernel_table.h"
 #include "ray/embree/embree_leaves.h"
 #include "ray/embree/embree_scene.h"
 #include "ray/leaf/leaf_nets.h"
@@ -50,12 +51,7 @@ bool holds(const Box3& box, const Box3& inside) {
   return a.x <= b.x && a.y <= b.y && a.z <= b.z && c.x <= d.x && c.y <= d.y && c.z <= d.z;
 }
 
-std::string text_of(const Box3& box) {
-  const auto text = [](const Vec3& p) {
-    return "(" + std::to_string(p.x) + ", " + std::to_string(p.y) + ", " + std::to_string(p.z) + ")";
-  };
-  return text(box.lower) + " to " + text(box.upper);
-}
+std::string text_of(const Box3& box) { return text(box.lower) + " to " + text(box.upper); }
 
 class ExactScene final : public PatchScene, private ExactSource {
  public:
@@ -375,15 +371,15 @@ Result<std::unique_ptr<RayScene::Impl>> make_exact_scene(const PatchSet& set, co
         "a patch of an exact ray scene is cut into 1, 2, 4 or 8 pieces per side, not " + std::to_string(pieces));
   }
   if (options.tolerance && !(*options.tolerance > 0 && std::isfinite(*options.tolerance))) {
-    return Status(StatusCode::invalid_argument, "the tolerance of a ray scene must be a finite length above 0, not " +
-                                                    std::to_string(*options.tolerance));
+    return Status(StatusCode::invalid_argument,
+                  "the tolerance of a ray scene must be a finite length above 0, not " + text(*options.tolerance));
   }
   if (options.rebuild_after < 0) {
     return Status(StatusCode::invalid_argument, "the number of refits until a rebuild is " +
                                                     std::to_string(options.rebuild_after) +
                                                     ", it must be at least 1, or 0 for none");
   }
-  const Result<Isa> isa = options.isa ? parse_isa(name(*options.isa)) : default_isa();
+  const Result<Isa> isa = usable_isa(options.isa);
   if (!isa) return isa.status();
   Result<EmbreeLeaves> scene = EmbreeLeaves::make(*isa);
   if (!scene) return scene.status();

@@ -377,16 +377,20 @@ Status InstanceScene::all_of(const Ray& ray, std::vector<Hit>& hits) const {
 }  // namespace
 
 Result<std::unique_ptr<RayScene::Impl>> make_instance_scene(std::span<const RayInstance> instances) {
-  if (instances.empty()) return Status(StatusCode::invalid_argument, "a scene of instances needs at least one");
+  if (instances.empty())
+    return Status(StatusCode::invalid_argument, "the list of instances is empty: a scene needs at least 1");
   if (instances.size() >= Hit::no_instance)
-    return Status(StatusCode::unsupported, "more than the 2^32 - 1 instances of one ray scene");
+    return Status(StatusCode::unsupported, "a ray scene holds at most " + std::to_string(Hit::no_instance - 1) +
+                                               " instances, not " + std::to_string(instances.size()));
   std::vector<Instance> out;
   for (std::size_t k = 0; k < instances.size(); ++k) {
     const RayScene* const scene = instances[k].scene;
     if (scene == nullptr)
-      return Status(StatusCode::invalid_argument, name_of(k) + "no scene", static_cast<std::ptrdiff_t>(k));
+      return Status(StatusCode::invalid_argument, name_of(k) + "its scene is a null pointer",
+                    static_cast<std::ptrdiff_t>(k));
     if (impl_of(*scene).exact_source() == nullptr)
-      return Status(StatusCode::unsupported, name_of(k) + "its scene must be one of patches in exact mode",
+      return Status(StatusCode::unsupported,
+                    name_of(k) + "its scene is in grid mode or holds instances; make a scene of patches in exact mode",
                     static_cast<std::ptrdiff_t>(k));
     out.push_back({&impl_of(*scene), impl_of(*scene).exact_source(), instances[k].to_world, instances[k].mask, {}});
   }

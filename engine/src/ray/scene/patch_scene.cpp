@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "base/text.h"
 #include "ray/facet/first_order.h"
 #include "ray/scene/ray_scene_impl.h"
 #include "ray/scene/surface_hit.h"
@@ -25,8 +26,8 @@ Status PatchScene::check_point(std::uint32_t patch, double u, double v) const {
                   "there is no patch " + std::to_string(patch) + " in a set of " + std::to_string(set_.patch_count()));
   // Written so that NaN fails.
   if (!(u >= 0 && u <= 1 && v >= 0 && v <= 1))
-    return Status(StatusCode::invalid_argument, "u and v of a point of a patch are " + std::to_string(u) + " and " +
-                                                    std::to_string(v) + ", they must be from 0 to 1");
+    return Status(StatusCode::invalid_argument,
+                  "u and v of a point of a patch are " + text(u) + " and " + text(v) + ", they must be from 0 to 1");
   return {};
 }
 

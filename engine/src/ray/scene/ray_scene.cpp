@@ -48,11 +48,13 @@ Status RayScene::Impl::refit(const Execution& execution) {
 }
 
 Result<Hit> RayScene::Impl::resolve(std::uint32_t, double, double) const {
-  return Status(StatusCode::unsupported, "a scene of instances resolves no points: ask the scene of the instance");
+  return Status(StatusCode::unsupported,
+                "a scene of instances cannot resolve a point of a patch: call resolve() of the instance's own scene");
 }
 
 Result<Hit> RayScene::Impl::resolve(const Ray&, std::uint32_t, double, double) const {
-  return Status(StatusCode::unsupported, "the root next to a point is known in exact mode only");
+  return Status(StatusCode::unsupported,
+                "this scene is not one of patches in exact mode, which alone finds the root next to a point");
 }
 
 Status RayScene::Impl::check(const RayBatch& batch) const {

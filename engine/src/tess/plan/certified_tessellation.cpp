@@ -184,7 +184,7 @@ Result<std::unique_ptr<CertifiedTessellation::Impl>> plan_for(const PatchSet& se
   if (!set.blocks().float_bernstein) return no_float_blocks();
   Result<PlannerOptions> planned = checked(options, set);
   if (!planned) return planned.status();
-  const Result<Isa> isa = options.isa ? parse_isa(name(*options.isa)) : default_isa();
+  const Result<Isa> isa = usable_isa(options.isa);
   if (!isa) return isa.status();
   double tolerance = std::numeric_limits<double>::infinity();
   if (options.tolerance) tolerance = *options.tolerance * (options.relative ? set.box().diagonal() : 1);

@@ -70,21 +70,22 @@ std::optional<double> CertifiedPlanner::nearest_tolerance(std::uint64_t max_tria
 
 Status CertifiedPlanner::refusal(Failure failure, std::size_t patch, const Request& request) const {
   const double tolerance = request.tolerance;
-  const std::string rounding = std::string(options_.weld > 0 ? "the displacement of welded " : "the rounding of ") +
+  const std::string rounding = text(rounded_up_shortly(roundings_[patch])) +
+                               (options_.weld > 0 ? ", the displacement of welded " : ", the rounding of ") +
                                (options_.f64_positions ? "vertices in double of patch " : "float vertices of patch ") +
-                               std::to_string(patch) + ", " + text(rounded_up_shortly(roundings_[patch])) +
-                               ", plus the fit error, " + text(fit_error_);
+                               std::to_string(patch) + ", plus " + text(fit_error_) + ", the fit error";
   const bool is_near = failure == Failure::wide && roundings_[patch] + fit_error_ > tolerance / 2;
   if (failure == Failure::rough || is_near) {
     const std::optional<double> nearest = nearest_tolerance(request.max_triangles);
-    return invalid("the tolerance " + text(tolerance) + (is_near ? " is little above " : " is not above ") + rounding +
-                       (nearest ? "; " + text(*nearest) + " would do" : ""),
+    return invalid("the tolerance " + text(tolerance) +
+                       (is_near ? " leaves too little room above " : " must be above ") + rounding +
+                       (nearest ? "; " + text(*nearest) + " is enough" : ""),
                    patch);
   }
   if (failure == Failure::rough_pixels)
-    return invalid(
-        text(options_.pixels) + " pixels so near to the eye are not above " + rounding + "; set a larger near distance",
-        patch);
+    return invalid("the tolerance of " + text(options_.pixels) + " pixels at the view's near distance must be above " +
+                       rounding + "; set a larger near distance",
+                   patch);
   constexpr int unlimited = 1 << 24;
   double triangles = 0;
   const char* about = "about ";
