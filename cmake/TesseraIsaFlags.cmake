@@ -37,10 +37,10 @@ macro(tessera_isa name units)
 endmacro()
 
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64)$")
-  set(tessera_machine ${kernel_folder}/isa/machine_aarch64.cpp)
+  set(tessera_machine ${kernel_folder}/table/machine_aarch64.cpp)
   tessera_isa(neon64 "${kernel_units}")
 else()
-  set(tessera_machine ${kernel_folder}/isa/machine_x86.cpp)
+  set(tessera_machine ${kernel_folder}/table/machine_x86.cpp)
   # Few machines lack AVX2. For these, plans and meshes are compiled at -O2: half the code, a quarter slower. Grids and
   # points stay at -O3: at -O2 they have a tenth less code, but take twice the time.
   set(mesh_units ${kernel_units})

@@ -8,6 +8,7 @@
 #include "base/impl_access.h"
 #include "sets.h"
 #include "suite.h"
+#include "support/edges_of_set.h"
 #include "support/synthetic_sets.h"
 #include "tess/edges/shared_edges.h"
 #include "tess/tolerance_search.h"
@@ -69,7 +70,7 @@ void certify(benchmark::State& state, const char* surface, int rate, int threads
   const LimitsAround around({}, out.bytes());
   const auto best = time_calls(state, threads, [&]() -> Status {
     if (timed == Timed::edges) {
-      benchmark::DoNotOptimize(SharedEdges(impl_of(set)).count());
+      benchmark::DoNotOptimize(test::edges_of_set(set).count());
       return {};
     }
     if (timed != Timed::run) {

@@ -13,7 +13,7 @@
 #include "report_arguments.h"
 #include "support/synthetic_sets.h"
 #include "support/triangle_distance.h"
-#include "tess/plan/certified_tessellation_impl.h"
+#include "tess/mesh/certified_tessellation_impl.h"
 #include "tessera/io.h"
 #include "tessera/tessellation.h"
 

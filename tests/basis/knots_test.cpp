@@ -17,6 +17,14 @@ KnotLine line_over(int degree, const std::vector<double>& knots) {
 const std::vector<KnotStyle> styles{
     {0, true, false}, {4, true, false}, {4, true, true}, {3, false, false}, {3, false, true}};
 
+/// N_{span-p+j,p}(t), j = 0..p: the blossom with all arguments t.
+std::vector<double> b_spline_values(const KnotLine& line, std::size_t span, double t) {
+  const std::vector<double> arguments(line.order(), t);
+  std::vector<double> values(line.order());
+  blossom_weights(line.degree, line.knots, span, arguments.data(), values.data());
+  return values;
+}
+
 /// check(line, span, t, the basis functions there) at many places of knots of all degrees and styles.
 template <class Check>
 void for_many_places(Random& random, Check check) {
@@ -26,9 +34,7 @@ void for_many_places(Random& random, Check check) {
       const KnotLine line = line_over(degree, knots);
       for (const double t : sample_parameters(random, knots, line.from, line.to, 5)) {
         const std::size_t span = find_span(line, t);
-        std::vector<double> values(line.order());
-        b_spline_values(line, span, t, values.data());
-        check(line, span, t, values);
+        check(line, span, t, b_spline_values(line, span, t));
       }
     }
 }

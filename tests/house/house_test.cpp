@@ -1,10 +1,12 @@
-// Rules of the house that a text search can check: the length of files, and where instruction sets may be named.
+// Rules of the house that a text search can check: the length of files and functions, and where instruction sets may be
+// named.
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <regex>
 
+#include "house/function_lengths.h"
 #include "house/tree.h"
 
 namespace tessera::house {
@@ -19,6 +21,62 @@ TEST(House, NoFileOfTheEngineIsTooLong) {
     const std::string text = read_text(path);
     EXPECT_LE(std::count(text.begin(), text.end(), '\n'), longest_file) << path;
   }
+}
+
+// "About 40 lines": a longer function does more than one thing. Test cases and benchmarks may be longer: they are read
+// from top to bottom.
+constexpr std::size_t longest_function = 44;
+
+TEST(House, NoFunctionOfTheEngineOrTheToolsIsTooLong) {
+  std::size_t checked = 0;
+  for (const char* folder : {"engine", "tools"}) {
+    for (const std::string& path : files_under(folder)) {
+      if (!path.ends_with(".h") && !path.ends_with(".cpp")) continue;
+      for (const FunctionLength& function : function_lengths(read_text(path))) {
+        ++checked;
+        EXPECT_LE(function.length, longest_function) << path << ":" << function.line << ": " << function.head;
+      }
+    }
+  }
+  EXPECT_GT(checked, 2000u) << "the search finds too few functions";
+}
+
+TEST(House, SearchForFunctionsFindsThem) {
+  const auto found = function_lengths(R"(
+namespace a {
+template <class T, int N>
+class B : public C<T (int)> {
+ public:
+  B(int x)
+      : x_(x),
+        y_(0) {
+    if (x) {
+      call([&](int) {
+        return 1;
+      });
+    }
+  }
+  int get() const { return x_; }
+  // not a function (at all) {
+};
+enum class E : int {
+  one
+};
+template <class T>
+T long_one(T a,
+           T b) {
+  return a + b;
+}
+const int table[] = {
+  1};
+}
+)");
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].line, 8u);
+  EXPECT_EQ(found[0].length, 5u);
+  EXPECT_EQ(found[0].head, "B(int x) : x_(x), y_(0)");
+  EXPECT_EQ(found[1].line, 24u);
+  EXPECT_EQ(found[1].length, 1u);
 }
 
 // A flag that chooses instructions, in a build file or a script.

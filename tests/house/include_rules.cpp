@@ -67,11 +67,18 @@ std::pair<std::string, std::string> split_at_slash(const std::string& path) {
   return {path.substr(0, slash), path.substr(slash + 1)};
 }
 
-// The floor of a file, and its name if it is a public header.
+// The floor and room of a file, and its name if it is a public header.
 struct Place {
   std::string floor;
+  std::string room;    // "floor/room"; empty on a floor without rooms
   std::string header;  // empty for a file of engine/src
 };
+
+// The room of a path "floor/room/file"; empty for "floor/file".
+std::string room_of(const std::string& path) {
+  const std::size_t last = path.rfind('/');
+  return path.find('/') == last ? "" : path.substr(0, last);
+}
 
 std::string check_outside(const Include& include, const Place& place, const FloorTable& table) {
   if (include.path.find_first_of("./") == std::string::npos) return "";  // the C++ standard library
@@ -101,6 +108,9 @@ std::string check_inside(const Include& include, const Place& place, const Floor
   if (!table.on.contains(folder)) return quoted + " does not have the form floor/file.h";
   if (!known.contains("src/" + include.path)) return quoted + " does not exist";
   if (!allowed.contains(folder)) return quoted + " is not below " + place.floor;
+  if (folder == place.floor && !place.room.empty() &&
+      !table.reachable_rooms(place.room).contains(room_of(include.path)))
+    return quoted + " is in a room that is not below " + place.room;
   return "";
 }
 
@@ -118,6 +128,9 @@ std::vector<std::string> check_includes(const SourceFile& file, const FloorTable
     const auto [top, rest] = split_at_slash(file.path);
     place.floor = split_at_slash(rest).first;
     if (top != "src" || !table.on.contains(place.floor)) return {file.path + ": this file is on no floor of the table"};
+    place.room = room_of(rest);
+    if (place.room.empty() ? table.has_rooms(place.floor) : !table.rooms.contains(place.room))
+      return {file.path + ": this file is in no room of the table"};
   }
   std::vector<std::string> faults;
   for (const Include& include : includes_of(file.text)) {

@@ -18,6 +18,9 @@ floor parallel on base
 floor eval on surface parallel
 floor ray on eval
 floor io on surface
+room ray/line
+room ray/leaf on ray/line
+room ray/scene on ray/leaf
 header status.h of base
 header patch.h of surface
 header ray_scene.h of ray
@@ -28,7 +31,8 @@ outside fcntl.h for io
 )";
 const Names sample_files{"include/tessera/status.h", "include/tessera/patch.h",      "include/tessera/ray_scene.h",
                          "src/base/guard.h",         "src/surface/casteljau.h",      "src/eval/plan.h",
-                         "src/ray/scene.h",          "include/tessera/ray_embree.h", "src/io/file.h"};
+                         "src/ray/scene/scene.h",    "include/tessera/ray_embree.h", "src/io/file.h",
+                         "src/ray/line/line.h",      "src/ray/leaf/leaf.h"};
 
 FloorTable sample() {
   std::vector<std::string> faults;
@@ -46,7 +50,9 @@ TEST(IncludeRules, AllowsWhatTheTableAllows) {
   EXPECT_EQ(faults_of("src/surface/a.cpp", plain), std::vector<std::string>());
   EXPECT_EQ(faults_of("src/eval/a.cpp", plain + "#include \"surface/casteljau.h\"\n#include \"tessera/patch.h\"\n"),
             std::vector<std::string>());
-  EXPECT_EQ(faults_of("src/ray/a.cpp", "#  include <embree3/rtcore.h>  // why\n#include \"ray/scene.h\"\n"),
+  EXPECT_EQ(faults_of("src/ray/scene/a.cpp", "#  include <embree3/rtcore.h>  // why\n#include \"ray/scene/scene.h\"\n"),
+            std::vector<std::string>());
+  EXPECT_EQ(faults_of("src/ray/scene/a.cpp", "#include \"ray/line/line.h\"\n#include \"ray/leaf/leaf.h\"\n"),
             std::vector<std::string>());
   EXPECT_EQ(faults_of("src/parallel/a.cpp", "#include <tbb/parallel_for.h>"), std::vector<std::string>());
   EXPECT_EQ(faults_of("include/tessera/ray_embree.h", "#include <embree3/rtcore.h>\n#include \"tessera/patch.h\""),
@@ -64,7 +70,9 @@ struct Breach {
 constexpr Breach breaches[] = {
     {"src/base/a.cpp", "#include \"surface/casteljau.h\"", "not below base"},             // a floor above
     {"src/surface/a.cpp", "#include \"eval/plan.h\"", "not below surface"},               // a floor above
-    {"src/io/a.cpp", "#include \"ray/scene.h\"", "not below io"},                         // the other wing
+    {"src/io/a.cpp", "#include \"ray/scene/scene.h\"", "not below io"},                   // the other wing
+    {"src/ray/leaf/a.cpp", "#include \"ray/scene/scene.h\"", "not below ray/leaf"},       // a room above
+    {"src/ray/line/a.cpp", "#include \"ray/leaf/leaf.h\"", "not below ray/line"},         // a room above
     {"src/io/a.cpp", "#include \"tessera/ray_scene.h\"", "belongs to ray"},               // its public header
     {"include/tessera/patch.h", "#include \"tessera/ray_scene.h\"", "belongs to ray"},    // a header above
     {"include/tessera/patch.h", "#include \"base/guard.h\"", "is private"},               // a private header
@@ -94,11 +102,16 @@ TEST(IncludeRules, FilesOfNoFloorAreFound) {
   EXPECT_EQ(faults_of("src/attic/a.cpp", "").size(), 1u);
   EXPECT_EQ(faults_of("src/a.cpp", "").size(), 1u);
   EXPECT_EQ(faults_of("include/tessera/unlisted.h", "").size(), 1u);
+  EXPECT_EQ(faults_of("src/ray/a.cpp", "").size(), 1u);        // beside the rooms of its floor
+  EXPECT_EQ(faults_of("src/ray/attic/a.cpp", "").size(), 1u);  // a room that is not stated
+  EXPECT_EQ(faults_of("src/io/attic/a.cpp", "").size(), 1u);
 }
 
 TEST(FloorTable, FaultsAreFound) {
-  for (const char* text : {"floor a on b", "floor a\nfloor a", "floor a on", "header x.h of a", "floor a on a",
-                           "outside tbb/ for a", "floor a\noutside tbb/", "roof a"}) {
+  for (const char* text :
+       {"floor a on b", "floor a\nfloor a", "floor a on", "header x.h of a", "floor a on a", "outside tbb/ for a",
+        "floor a\noutside tbb/", "roof a", "room a/b", "floor a\nroom a", "floor a\nroom a/b on a/c\nroom a/c",
+        "floor a\nroom a/b\nroom a/b", "floor a\nfloor b\nroom a/x\nroom b/y on a/x"}) {
     std::vector<std::string> faults;
     parse_floors(text, faults);
     EXPECT_FALSE(faults.empty()) << text;

@@ -47,7 +47,7 @@ TEST(IsaSymbols, UnitsAreKnownByTheirObjects) {
   EXPECT_EQ(isa_unit_of("engine/CMakeFiles/tessera_kernel_sse2.dir/src/kernel/net/unit_net.cpp.o")->isa, "sse2");
   EXPECT_EQ(isa_unit_of("engine/CMakeFiles/tessera_kernel_neon64.dir/src/kernel/net/unit_net.cpp.o")->isa, "neon64");
   EXPECT_EQ(isa_unit_of("engine/CMakeFiles/tessera_kernel_sse2_mesh.dir/src/kernel/mesh/unit_mesh.cpp.o")->isa, "sse2");
-  EXPECT_FALSE(isa_unit_of("engine/CMakeFiles/tessera_kernel.dir/src/kernel/isa/select_isa.cpp.o"));
+  EXPECT_FALSE(isa_unit_of("engine/CMakeFiles/tessera_kernel.dir/src/kernel/table/select_isa.cpp.o"));
 }
 
 TEST(IsaSymbols, ObjectsHoldOnlyTheirOwn) {

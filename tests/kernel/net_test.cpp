@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/aligned.h"
-#include "kernel/isa/kernel_table.h"
+#include "kernel/table/kernel_table.h"
 
 namespace tessera::test {
 namespace {

@@ -1,6 +1,6 @@
 // Compares lines through many rays at once with those of one ray.
 
-#include "kernel/isa/kernel_table.h"
+#include "kernel/table/kernel_table.h"
 #include "ray/line/ray_lines.h"
 #include "ray/line/ray_segment.h"
 #include "ray_support.h"

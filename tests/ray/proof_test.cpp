@@ -17,17 +17,17 @@ RayScene exact_scene(const PatchSet& set, int pieces = 2) {
   return value_of(RayScene::make(set, options));
 }
 
-TEST(Referee, KnowsAPlane) {
+TEST(Reference, KnowsAPlane) {
   const std::vector<BezierPatch> plane{polynomial(1, 1, {{0, 0, 1}, {0, 2, 1}, {2, 0, 1}, {2, 2, 1}})};
-  const Verdict hit = referee(plane, ray({0.5, 0.25, -3}, {0, 0, 2}));
+  const Verdict hit = reference_verdict(plane, ray({0.5, 0.25, -3}, {0, 0, 2}));
   ASSERT_TRUE(hit.hit());
   EXPECT_TRUE(hit.first().t.holds(2));
   EXPECT_TRUE(hit.first().u.holds(0.25) && hit.first().v.holds(0.125));
   EXPECT_LT(hit.first().t.width(), 1e-12);
-  EXPECT_TRUE(referee(plane, ray({0.5, 2.25, -3}, {0, 0, 2})).miss());
-  EXPECT_TRUE(referee(plane, ray({0.5, 0.25, 3}, {0, 0, 2})).miss());
-  EXPECT_FALSE(referee(plane, ray({0.5, 2, -3}, {0, 0, 2})).hit());   // at the border nothing is proven inside
-  EXPECT_FALSE(referee(plane, ray({0.5, 2, -3}, {0, 0, 2})).miss());  // nor excluded
+  EXPECT_TRUE(reference_verdict(plane, ray({0.5, 2.25, -3}, {0, 0, 2})).miss());
+  EXPECT_TRUE(reference_verdict(plane, ray({0.5, 0.25, 3}, {0, 0, 2})).miss());
+  EXPECT_FALSE(reference_verdict(plane, ray({0.5, 2, -3}, {0, 0, 2})).hit());  // at the border nothing is proven inside
+  EXPECT_FALSE(reference_verdict(plane, ray({0.5, 2, -3}, {0, 0, 2})).miss());  // nor excluded
 }
 
 TEST(ExactMode, MissesNothingThatIsProven) {

@@ -232,9 +232,9 @@ struct Verdict {
   }
 };
 
-class Referee {
+class Reference {
  public:
-  Referee(std::span<const BezierPatch> patches, const Ray& ray) : ray_(ray) {
+  Reference(std::span<const BezierPatch> patches, const Ray& ray) : ray_(ray) {
     for (patch_ = 0; patch_ < patches.size(); ++patch_) {
       if (IntervalNet::is_off(patches[patch_], ray)) continue;
       whole_ = IntervalNetHolder(patches[patch_], ray);
@@ -376,6 +376,8 @@ class Referee {
 };
 
 /// The proofs about points of the patches on the ray.
-inline Verdict referee(std::span<const BezierPatch> patches, const Ray& ray) { return Referee(patches, ray).verdict(); }
+inline Verdict reference_verdict(std::span<const BezierPatch> patches, const Ray& ray) {
+  return Reference(patches, ray).verdict();
+}
 
 }  // namespace tessera::test

@@ -6,7 +6,7 @@
 #include "base/impl_access.h"
 #include "support/true_distance.h"
 #include "tess/certificate_sets.h"
-#include "tess/plan/certified_tessellation_impl.h"
+#include "tess/mesh/certified_tessellation_impl.h"
 #include "tess/tessellate_support.h"
 #include "tessera/tessellation.h"
 

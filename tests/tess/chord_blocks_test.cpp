@@ -7,7 +7,7 @@
 #include <span>
 
 #include "base/impl_access.h"
-#include "kernel/isa/kernel_table.h"
+#include "kernel/table/kernel_table.h"
 #include "support/synthetic_sets.h"
 #include "tess/tessellate_support.h"
 

@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "base/impl_access.h"
-#include "kernel/isa/kernel_table.h"
+#include "kernel/table/kernel_table.h"
 #include "support/reference.h"
 #include "support/synthetic_sets.h"
 #include "tess/bounds/chord_blocks.h"
 #include "tess/bounds/flat_quad.h"
-#include "tess/plan/certified_tessellation_impl.h"
+#include "tess/mesh/certified_tessellation_impl.h"
 #include "tess/tessellate_support.h"
 
 namespace tessera::test {

@@ -9,9 +9,9 @@
 #include "support/crack_survey.h"
 #include "support/synthetic_sets.h"
 #include "support/true_distance.h"
-#include "tess/plan/certified_tessellation_impl.h"
+#include "tess/cells/f64_points.h"
+#include "tess/mesh/certified_tessellation_impl.h"
 #include "tess/tessellate_support.h"
-#include "tess/write/f64_points.h"
 #include "tessera/bezier_operations.h"
 #include "tessera/tessellation.h"
 

@@ -3,6 +3,7 @@
 
 #include "tess/far_parts.h"
 #include "base/impl_access.h"
+#include "support/edges_of_set.h"
 
 namespace tessera::test {
 namespace {
@@ -97,7 +98,7 @@ TEST(FarParts, MeetWithoutACrackWhereFloatsAreTheSame) {
           good(CertifiedTessellation::make(set, {.tolerance = 0.001, .share_vertices = shares}));
       ASSERT_TRUE(is_f64(plan));
       EXPECT_EQ(plan.welded_borders(), 0u);
-      EXPECT_EQ(SharedEdges(impl_of(set)).count(), 24u);
+      EXPECT_EQ(edges_of_set(set).count(), 24u);
       const Mesh mesh = mesh_of(set, plan);
       expect_closed(mesh);
       if (!shares) expect_bounds(set, mesh, plan.bounds(), 100);

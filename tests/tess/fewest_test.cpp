@@ -7,8 +7,9 @@
 #include "support/synthetic_sets.h"
 #include "support/triangle_distance.h"
 #include "support/true_distance.h"
+#include "tess/bounds/derivative_nets.h"
 #include "tess/bounds/local_chord.h"
-#include "tess/plan/certified_tessellation_impl.h"
+#include "tess/mesh/certified_tessellation_impl.h"
 #include "tess/tessellate_support.h"
 #include "tessera/tessellation.h"
 
@@ -249,7 +250,7 @@ TEST(Fewest, LocalBoundsHoldWhereverTrianglesLie) {
   for (const BezierPatch& patch : {bent_in_a_corner(), random_polynomial(random, 3, 5), random_polynomial(random, 1, 2),
                                    random_rational(random, 3, 3, 0.5, 2), random_polynomial(random, 8, 6)})
     for (const Rates rates : {Rates{2, 3}, Rates{5, 4}, Rates{12, 9}}) {
-      const LocalChord local(patch, rates, rates);
+      const LocalChord local(DerivativeNets(patch), Domain{0, 1, 0, 1}, rates, rates, LocalChord::max_pieces);
       const double bound = local.distance(rates);
       EXPECT_TRUE(local.keeps(rates, bound));
       EXPECT_FALSE(local.keeps(rates, 0.99 * bound));

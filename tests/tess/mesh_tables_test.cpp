@@ -7,7 +7,7 @@
 
 #include "base/impl_access.h"
 #include "support/synthetic_sets.h"
-#include "tess/plan/certified_tessellation_impl.h"
+#include "tess/mesh/certified_tessellation_impl.h"
 #include "tess/tessellate_support.h"
 
 namespace tessera::test {

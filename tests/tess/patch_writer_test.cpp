@@ -8,8 +8,9 @@
 #include <limits>
 
 #include "base/impl_access.h"
-#include "kernel/isa/kernel_table.h"
+#include "kernel/table/kernel_table.h"
 #include "support/synthetic_sets.h"
+#include "tess/division_parameters.h"
 #include "tess/tessellate_support.h"
 #include "tessera/tessellation.h"
 
@@ -181,7 +182,7 @@ TEST(PatchWriter, TrianglesAreThoseOfTheDivisions) {
 TEST(Division, ParametersOfAVertexAreThoseInOrder) {
   const Division division = Division::of({3, 3, {}, false}, {4, 6}, {5, 6, 4, 9});
   std::size_t vertex = 0;
-  division.for_parameters([&](double u, double v) {
+  for_parameters(division, [&](double u, double v) {
     const auto at = division.parameters(vertex++);
     EXPECT_EQ(at.u, u);
     EXPECT_EQ(at.v, v);

@@ -6,7 +6,8 @@
 #include <map>
 
 #include "base/impl_access.h"
-#include "kernel/isa/kernel_table.h"
+#include "kernel/table/kernel_table.h"
+#include "support/edges_of_set.h"
 #include "support/grids.h"
 #include "support/points.h"
 #include "support/synthetic_sets.h"
@@ -16,7 +17,7 @@ namespace {
 
 using Bits = std::vector<std::uint32_t>;
 
-std::size_t edges_of(const PatchSet& set) { return SharedEdges(impl_of(set)).count(); }
+std::size_t edges_of(const PatchSet& set) { return edges_of_set(set).count(); }
 
 /// A border's numbers, in the direction that gives the smaller ones.
 Bits bits_of(const PatchSet::Impl& set, std::size_t patch, Side side) {

@@ -1,7 +1,8 @@
 // Patches with rates of their own on every border: a triangulation of the parameter square whose triangles keep within
 // the cells that the rates promise.
 
-#include "tess/write/stitched_patch.h"
+#include "tess/cells/stitched_patch.h"
+#include "tess/division_parameters.h"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +20,7 @@ struct Place {
 
 std::vector<Place> places(const Division& division) {
   std::vector<Place> at;
-  division.for_parameters([&](double u, double v) { at.push_back({u, v}); });
+  for_parameters(division, [&](double u, double v) { at.push_back({u, v}); });
   return at;
 }
 

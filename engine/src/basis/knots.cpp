@@ -1,7 +1,6 @@
 #include "basis/knots.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -9,8 +8,6 @@
 
 namespace tessera::inline abi_0_1 {
 namespace {
-
-constexpr std::size_t max_arguments = 32;
 
 std::string knot_text(std::span<const double> knots, const std::string& name, std::size_t k) {
   return name + "[" + std::to_string(k) + "] = " + text(knots[k]);
@@ -118,12 +115,5 @@ void blossom_weights(int degree, std::span<const double> knots, std::size_t span
 
 template void blossom_weights(int, std::span<const double>, std::size_t, const double*, double*);
 template void blossom_weights(int, std::span<const double>, std::size_t, const long double*, long double*);
-
-void b_spline_values(const KnotLine& line, std::size_t span, double t, double* values) {
-  std::array<double, max_arguments> arguments;
-  assert(line.order() <= arguments.size());
-  arguments.fill(t);
-  blossom_weights(line.degree, line.knots, span, arguments.data(), values);
-}
 
 }  // namespace tessera::inline abi_0_1

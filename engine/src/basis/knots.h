@@ -50,7 +50,4 @@ std::vector<std::size_t> distinct_spans(const KnotLine& line);
 template <class Real>
 void blossom_weights(int degree, std::span<const double> knots, std::size_t span, const Real* arguments, Real* weights);
 
-/// Writes N_{span-p+j,p}(t), j = 0..p: the blossom with all arguments t.
-void b_spline_values(const KnotLine& line, std::size_t span, double t, double* values);
-
 }  // namespace tessera::inline abi_0_1

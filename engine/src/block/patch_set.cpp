@@ -11,7 +11,7 @@
 #include "base/text.h"
 #include "block/pack.h"
 #include "block/patch_set_impl.h"
-#include "kernel/isa/kernel_table.h"
+#include "kernel/table/kernel_table.h"
 #include "parallel/parallel_for.h"
 #include "surface/patch_pieces.h"
 #include "tessera/guard.h"
@@ -40,6 +40,62 @@ Result<Box3> box_of(std::span<const BezierPatch> patches) {
   return box;
 }
 
+/// Values in memory that the groups so far take.
+struct NextValues {
+  std::size_t block = 0, point = 0;
+};
+
+/// Adds the group of some patches of equal degrees and rationality: assigns them to blocks and lanes in their order.
+void add_group(PatchSet::Impl& set, std::span<const std::uint32_t> patches, NextValues& next) {
+  constexpr std::size_t lanes = PatchSet::lanes;
+  const BezierPatch& first = set.patches[patches.front()];
+  const BlockGroup group{first.degree_u(),
+                         first.degree_v(),
+                         first.is_rational(),
+                         set.lane_counts.size(),
+                         (patches.size() + lanes - 1) / lanes,
+                         next.block,
+                         block_values(first.degree_u(), first.degree_v(), first.is_rational()),
+                         next.point,
+                         point_values(first.degree_u(), first.degree_v(), first.is_rational())};
+  next.block += group.block_count * group.block_values;
+  next.point += patches.size() * group.point_values;
+  const std::size_t first_lane = group.first_block * lanes;
+  set.lane_patches.resize(first_lane + group.block_count * lanes);
+  set.lane_counts.resize(group.first_block + group.block_count, static_cast<std::uint8_t>(lanes));
+  for (std::size_t k = 0; k < patches.size(); ++k) {
+    const std::size_t lane = first_lane + k;
+    set.lane_patches[lane] = patches[k];
+    set.slots[patches[k]] = {static_cast<std::uint32_t>(lane / lanes), static_cast<std::uint32_t>(lane % lanes)};
+  }
+  if (const std::size_t used = patches.size() % lanes; used > 0) {  // unused lanes repeat the block's first patch
+    set.lane_counts.back() = static_cast<std::uint8_t>(used);
+    for (std::size_t lane = set.lane_patches.size() - lanes + used; lane < set.lane_patches.size(); ++lane)
+      set.lane_patches[lane] = set.lane_patches[set.lane_patches.size() - lanes];
+  }
+  set.groups.push_back(group);
+}
+
+/// Allocates coefficients and thresholds of the kinds that the set holds.
+void make_room(PatchSet::Impl& set, const NextValues& values) {
+  constexpr std::size_t lanes = PatchSet::lanes;
+  const auto make_blocks = [&](auto& coefficients, auto& threshold) {
+    coefficients.resize(values.block);
+    threshold.resize(2 * lanes * set.lane_counts.size());
+  };
+  if (set.kinds.float_bernstein) make_blocks(set.f32.bernstein, set.f32.bernstein_doubt);
+  if (set.kinds.float_power) make_blocks(set.f32.power, set.f32.power_doubt);
+  if (set.kinds.double_bernstein) make_blocks(set.f64.bernstein, set.f64.bernstein_doubt);
+  if (set.kinds.double_power) make_blocks(set.f64.power, set.f64.power_doubt);
+  const auto make_points = [&](auto& of) {
+    of.points.resize(values.point + lanes);
+    std::fill_n(of.points.end() - lanes, lanes, 0);
+    of.point_doubt.resize(lanes * set.lane_counts.size());
+  };
+  if (set.kinds.float_points) make_points(set.f32);
+  if (set.kinds.double_points) make_points(set.f64);
+}
+
 /// Assigns patches to groups, blocks and lanes, in the patches' order within a group.
 void lay_out(PatchSet::Impl& set) {
   std::vector<int> keys(set.patches.size());
@@ -50,55 +106,14 @@ void lay_out(PatchSet::Impl& set) {
     std::ranges::stable_sort(order, {}, [&](auto k) { return keys[k]; });
     std::ranges::sort(keys);
   }
-  constexpr std::size_t lanes = PatchSet::lanes;
   set.slots.resize(order.size());
-  std::size_t next_value = 0, next_point_value = 0;
+  NextValues next;
   for (std::size_t begin = 0; begin < order.size();) {
-    const BezierPatch& first = set.patches[order[begin]];
     const auto end = static_cast<std::size_t>(std::ranges::upper_bound(keys, keys[begin]) - keys.begin());
-    BlockGroup group{first.degree_u(),
-                     first.degree_v(),
-                     first.is_rational(),
-                     set.lane_counts.size(),
-                     (end - begin + lanes - 1) / lanes,
-                     next_value,
-                     block_values(first.degree_u(), first.degree_v(), first.is_rational()),
-                     next_point_value,
-                     point_values(first.degree_u(), first.degree_v(), first.is_rational())};
-    next_value += group.block_count * group.block_values;
-    next_point_value += (end - begin) * group.point_values;
-    const std::size_t first_lane = group.first_block * lanes;
-    set.lane_patches.resize(first_lane + group.block_count * lanes);
-    set.lane_counts.resize(group.first_block + group.block_count, static_cast<std::uint8_t>(lanes));
-    for (std::size_t k = begin; k < end; ++k) {
-      const std::size_t lane = first_lane + k - begin;
-      set.lane_patches[lane] = order[k];
-      set.slots[order[k]] = {static_cast<std::uint32_t>(lane / lanes), static_cast<std::uint32_t>(lane % lanes)};
-    }
-    if (const std::size_t used = (end - begin) % lanes; used > 0) {  // unused lanes repeat the block's first patch
-      set.lane_counts.back() = static_cast<std::uint8_t>(used);
-      for (std::size_t lane = set.lane_patches.size() - lanes + used; lane < set.lane_patches.size(); ++lane)
-        set.lane_patches[lane] = set.lane_patches[set.lane_patches.size() - lanes];
-    }
-    set.groups.push_back(group);
+    add_group(set, std::span(order).subspan(begin, end - begin), next);
     begin = end;
   }
-  const std::size_t doubts = 2 * lanes * set.lane_counts.size();
-  const auto make_room = [&](auto& coefficients, auto& doubt) {
-    coefficients.resize(next_value);
-    doubt.resize(doubts);
-  };
-  if (set.kinds.float_bernstein) make_room(set.f32.bernstein, set.f32.bernstein_doubt);
-  if (set.kinds.float_power) make_room(set.f32.power, set.f32.power_doubt);
-  if (set.kinds.double_bernstein) make_room(set.f64.bernstein, set.f64.bernstein_doubt);
-  if (set.kinds.double_power) make_room(set.f64.power, set.f64.power_doubt);
-  const auto make_points = [&](auto& of) {
-    of.points.resize(next_point_value + lanes);
-    std::fill_n(of.points.end() - lanes, lanes, 0);
-    of.point_doubt.resize(lanes * set.lane_counts.size());
-  };
-  if (set.kinds.float_points) make_points(set.f32);
-  if (set.kinds.double_points) make_points(set.f64);
+  make_room(set, next);
 }
 
 template <class T>

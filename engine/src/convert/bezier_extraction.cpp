@@ -11,7 +11,7 @@
 #include "base/aligned.h"
 #include "convert/extraction.h"
 #include "convert/spline_net.h"
-#include "kernel/isa/kernel_table.h"
+#include "kernel/table/kernel_table.h"
 #include "parallel/parallel_for.h"
 #include "surface/homogeneous.h"
 #include "surface/patch_pieces.h"

@@ -12,7 +12,7 @@
 #include "base/text.h"
 #include "eval/point_chunk.h"
 #include "eval/point_sources.h"
-#include "kernel/isa/kernel_table.h"
+#include "kernel/table/kernel_table.h"
 #include "parallel/parallel_for.h"
 #include "tessera/guard.h"
 #include "tessera/status.h"

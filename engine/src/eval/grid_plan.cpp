@@ -10,7 +10,7 @@
 #include "eval/flat_grid.h"
 #include "eval/grid_plan_impl.h"
 #include "eval/quantity_table.h"
-#include "kernel/isa/kernel_table.h"
+#include "kernel/table/kernel_table.h"
 #include "tessera/guard.h"
 #include "tessera/status.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/aligned.h"
-#include "kernel/isa/kernel_table.h"
+#include "kernel/table/kernel_table.h"
 #include "tessera/evaluate.h"
 
 namespace tessera::inline abi_0_1 {

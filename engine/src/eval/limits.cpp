@@ -4,7 +4,7 @@
 #include <chrono>
 
 #include "base/aligned.h"
-#include "kernel/isa/kernel_table.h"
+#include "kernel/table/kernel_table.h"
 #include "tessera/guard.h"
 #include "tessera/status.h"
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <string>
 
-#include "kernel/isa/kernel_table.h"
+#include "kernel/table/kernel_table.h"
 #include "parallel/least_index.h"
 #include "parallel/parallel_for.h"
 #include "surface/patch_pieces.h"

@@ -10,7 +10,7 @@
 #include "base/aligned.h"
 #include "block/patch_set_impl.h"
 #include "eval/quantity_table.h"
-#include "kernel/isa/kernel_table.h"
+#include "kernel/table/kernel_table.h"
 #include "tessera/evaluate.h"
 
 namespace tessera::inline abi_0_1 {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "kernel/isa/kernel_table.h"
+#include "kernel/table/kernel_table.h"
 
 namespace tessera::inline abi_0_1 {
 

@@ -11,7 +11,7 @@
 #include "base/aligned.h"
 #include "eval/quantity_table.h"
 #include "eval/run_grid.h"
-#include "kernel/isa/kernel_table.h"
+#include "kernel/table/kernel_table.h"
 #include "tessera/evaluate.h"
 
 namespace tessera::inline abi_0_1 {

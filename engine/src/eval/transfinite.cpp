@@ -9,7 +9,7 @@
 #include "base/aligned.h"
 #include "base/internal_export.h"
 #include "eval/parameter_grid.h"
-#include "kernel/isa/kernel_table.h"
+#include "kernel/table/kernel_table.h"
 #include "parallel/parallel_for.h"
 #include "surface/border_curve.h"
 #include "tessera/coons_patch.h"

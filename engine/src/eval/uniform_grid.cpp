@@ -8,7 +8,7 @@
 #include "block/patch_set_impl.h"
 #include "eval/border_weights.h"
 #include "eval/grid_plan_impl.h"
-#include "kernel/isa/kernel_table.h"
+#include "kernel/table/kernel_table.h"
 #include "parallel/parallel_for.h"
 
 namespace tessera::inline abi_0_1 {

@@ -10,7 +10,7 @@
 
 #include "io/mesh_formats.h"
 #include "parallel/parallel_for.h"
-#include "tess/write/mesh_parts.h"
+#include "tess/mesh/mesh_parts.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/aligned.h"
-#include "kernel/isa/kernel_table.h"
+#include "kernel/table/kernel_table.h"
 
 namespace tessera::kernel {
 namespace {

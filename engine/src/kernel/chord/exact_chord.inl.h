@@ -100,12 +100,9 @@ class ExactChords {
     return xsimd::sqrt(squared) + (L::broadcast(2.5) * skew + L::broadcast(0x1p-46)) * radius_;
   }
 
-  /// Replaces the bounds of the lanes in `where` by those of the sweep that was found last.
-  template <class Where>
-  void bound_sweep(bool along_u, const Where& where) {
-    const int count_i = (along_u ? m_ : n_) + 1, count_j = (along_u ? n_ : m_) + 1;
+  /// Finds the halves of the sweep's curves in homogeneous numbers: E and its weights, rho and its weights.
+  [[gnu::always_inline]] void cut_sweep(bool along_u, int count_i, int count_j) {
     const Batch inverse = L::broadcast(1) / weight_[0];
-    // Curves in homogeneous numbers: E and its weights, rho and its weights.
     for (int i = 0; i < count_i; ++i) {
       curve_[3][i] = weight_[index(along_u, i, 0)];
       for (int c = 0; c < 3; ++c) curve_[c][i] = curve_[3][i] * row_[c][i];
@@ -117,6 +114,34 @@ class ExactChords {
     }
     halve(rho_weight_, count_j, rho_half_[1]);
     halve(rho_point_, count_j, rho_half_[0]);
+  }
+
+  /// Finds the largest second derivative of the curves along which the points of half `a` of E move, in each half of
+  /// these curves.
+  [[gnu::always_inline]] void bound_across(bool along_u, int a, int count_i, int count_j, Batch (&across)[2]) {
+    const int first = a * (count_i - 1);
+    for (int i = 0; i < count_i; ++i) {
+      for (int c = 0; c < 3; ++c) {
+        const Batch e = half_[c][first + i] / half_[3][first + i];
+        for (int j = 0; j < count_j; ++j)
+          curve_[c][j] = rho_weight_[j] * (rho_[j] * e + point_[c][index(along_u, 0, j)]);
+        halve(curve_[c], count_j, across_half_[c]);
+      }
+      for (int b = 0; b < 2; ++b) {
+        set_curve(count_j, [&](int c, int j) {
+          const int k = b * (count_j - 1) + j;
+          return c < 3 ? across_half_[c][k] : rho_half_[1][k];
+        });
+        across[b] = xsimd::max(across[b], largest_second_derivative<L>(line_, count_j - 1));
+      }
+    }
+  }
+
+  /// Replaces the bounds of the lanes in `where` by those of the sweep that was found last.
+  template <class Where>
+  void bound_sweep(bool along_u, const Where& where) {
+    const int count_i = (along_u ? m_ : n_) + 1, count_j = (along_u ? n_ : m_) + 1;
+    cut_sweep(along_u, count_i, count_j);
     const bool is_straight = count_j == 2 && xsimd::all(rho_weight_[0] == rho_weight_[1]);
     Batch widest[2];
     for (int b = 0; b < 2; ++b) {
@@ -131,22 +156,7 @@ class ExactChords {
       set_curve(count_i, [&](int c, int i) { return half_[c][first + i]; });
       const Batch along = largest_second_derivative<L>(line_, count_i - 1);
       Batch across[2] = {L::broadcast(0), L::broadcast(0)};
-      for (int i = 0; i < count_i && !is_straight; ++i) {
-        // The curve along which this point of E moves.
-        for (int c = 0; c < 3; ++c) {
-          const Batch e = half_[c][first + i] / half_[3][first + i];
-          for (int j = 0; j < count_j; ++j)
-            curve_[c][j] = rho_weight_[j] * (rho_[j] * e + point_[c][index(along_u, 0, j)]);
-          halve(curve_[c], count_j, across_half_[c]);
-        }
-        for (int b = 0; b < 2; ++b) {
-          set_curve(count_j, [&](int c, int j) {
-            const int k = b * (count_j - 1) + j;
-            return c < 3 ? across_half_[c][k] : rho_half_[1][k];
-          });
-          across[b] = xsimd::max(across[b], largest_second_derivative<L>(line_, count_j - 1));
-        }
-      }
+      if (!is_straight) bound_across(along_u, a, count_i, count_j, across);
       for (int b = 0; b < 2; ++b) {
         const Batch bounds[2] = {sure(along * widest[b], second(count_i - 1)), sure(across[b], second(count_j - 1))};
         Batch(&piece)[3] = quarter_[along_u ? 2 * a + b : 2 * b + a];

@@ -1,5 +1,5 @@
 #pragma once
-// The triangles of one patch of a mesh (tess/write/stitched_patch.h), lanes = indices, written in whole vectors.
+// The triangles of one patch of a mesh (tess/cells/stitched_patch.h), lanes = indices, written in whole vectors.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/isa/lanes.h, kernel/mesh/mesh_kernels.h.
 

@@ -1,5 +1,5 @@
 #pragma once
-// The vertices of one patch of a mesh: an inner grid, then the ring of its border points (tess/write/stitched_patch.h).
+// The vertices of one patch of a mesh: an inner grid, then the ring of its border points (tess/cells/stitched_patch.h).
 // Lanes are samples of the patch, in tiles of eight neighbours; an AVX-512 vector holds two tiles, each of a row of its
 // own.
 //

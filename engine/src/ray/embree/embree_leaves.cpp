@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "kernel/isa/kernel_table.h"
+#include "kernel/table/kernel_table.h"
 #include "ray/embree/embree_device.h"
 #include "ray/embree/embree_ray.h"
 #include "ray/leaf/leaf_tracer.h"

@@ -8,7 +8,7 @@
 #include "ray/leaf/leaf_nets.h"
 #include "ray/leaf/leaf_search.h"
 #include "ray/leaf/leaf_tracer.h"
-#include "ray/scene/ray_query.h"
+#include "ray/line/ray_query.h"
 #include "tessera/execution.h"
 #include "tessera/status.h"
 

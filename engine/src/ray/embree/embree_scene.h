@@ -9,6 +9,7 @@
 #include <memory>
 #include <span>
 
+#include "ray/line/facet_ray.h"
 #include "tessera/execution.h"
 #include "tessera/geometry.h"
 #include "tessera/status.h"
@@ -30,12 +31,6 @@ struct FacetVertices {
   const float* data = nullptr;
   std::size_t vertices = 0;
   std::span<const std::uint32_t> triangles, quads;
-};
-
-/// A ray in Embree's form: every number finite, 0 <= tnear <= tfar, direction not zero.
-struct FacetRay {
-  std::array<float, 3> origin{}, direction{};
-  float tnear = 0, tfar = 0;
 };
 
 /// The place where a ray meets a facet. On a grid u runs along its height and v along its width, both from 0 to 1. For

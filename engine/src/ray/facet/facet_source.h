@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "ray/embree/embree_scene.h"
-#include "ray/scene/set_view.h"
+#include "ray/line/set_view.h"
 #include "tessera/mesh.h"
 #include "tessera/patch_set.h"
 #include "tessera/status.h"

@@ -83,6 +83,11 @@ class MeshFacets final : public FacetSource {
   }
 
   Status check(const SetView& set) const {
+    Status status = check_vertices(set);
+    return status.ok() ? check_faces(set) : status;
+  }
+
+  Status check_vertices(const SetView& set) const {
     const std::size_t vertices = mesh_.vertex_count();
     if (mesh_.positions.size() != 3 * vertices || mesh_.indices.size() % 3 != 0 || mesh_.quads.size() % 4 != 0)
       return invalid("the mesh holds " + counted(mesh_.positions.size(), "number") + " of positions, " +
@@ -112,6 +117,11 @@ class MeshFacets final : public FacetSource {
                            text(mesh_.parameters[k]) + ", it must be in [0, 1]",
                        k / 2);
     }
+    return {};
+  }
+
+  Status check_faces(const SetView& set) const {
+    const std::size_t vertices = mesh_.vertex_count();
     Status status;
     std::size_t count = 0;
     for_faces([&](std::span<const std::uint32_t> corners, std::uint32_t patch) {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <bit>
 
-#include "ray/leaf/orthonormal_basis.h"
 #include "ray/leaf/polished_root.h"
 #include "ray/line/lane_vectors.h"
+#include "ray/line/orthonormal_basis.h"
 
 namespace tessera::inline abi_0_1 {
 

@@ -10,7 +10,7 @@
 #include "ray/embree/embree_scene.h"
 #include "ray/facet/refine.h"
 #include "ray/line/ray_segment.h"
-#include "ray/scene/set_view.h"
+#include "ray/line/set_view.h"
 
 namespace tessera::inline abi_0_1 {
 

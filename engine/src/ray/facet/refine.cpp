@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "ray/facet/first_order.h"
-#include "ray/leaf/orthonormal_basis.h"
+#include "ray/line/first_order.h"
+#include "ray/line/orthonormal_basis.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -2,7 +2,7 @@
 // Newton's method in double, from a facet that a ray hit to the true surface.
 
 #include "ray/line/ray_segment.h"
-#include "ray/scene/set_view.h"
+#include "ray/line/set_view.h"
 #include "ray/seam/adjacency.h"
 
 namespace tessera::inline abi_0_1 {

@@ -7,7 +7,7 @@
 #include <new>
 
 #include "ray/leaf/local_leaf.h"
-#include "ray/leaf/projected_net.h"
+#include "ray/net/projected_net.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

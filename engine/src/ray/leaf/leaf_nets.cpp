@@ -8,7 +8,7 @@
 #include "parallel/parallel_for.h"
 #include "ray/leaf/leaf_cuts.h"
 #include "ray/leaf/local_leaf.h"
-#include "ray/leaf/projected_net.h"
+#include "ray/net/projected_net.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -10,7 +10,7 @@
 #include "base/aligned.h"
 #include "kernel/ray/ray_kernels.h"
 #include "ray/line/ray_line.h"
-#include "ray/scene/set_view.h"
+#include "ray/line/set_view.h"
 #include "tessera/execution.h"
 #include "tessera/status.h"
 

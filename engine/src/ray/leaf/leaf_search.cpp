@@ -5,10 +5,10 @@
 #include <cmath>
 #include <limits>
 
-#include "ray/leaf/bounded_step.h"
-#include "ray/leaf/edge_on.h"
-#include "ray/leaf/projected_net.h"
-#include "ray/leaf/root_certificate.h"
+#include "ray/net/bounded_step.h"
+#include "ray/net/edge_on.h"
+#include "ray/net/projected_net.h"
+#include "ray/net/root_certificate.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "ray/leaf/leaf_nets.h"
-#include "ray/leaf/projected_net.h"
 #include "ray/leaf/search_pool.h"
-#include "ray/scene/ray_query.h"
+#include "ray/line/ray_query.h"
+#include "ray/net/projected_net.h"
 
 namespace tessera::inline abi_0_1 {
 

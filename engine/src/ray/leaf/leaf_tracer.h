@@ -8,8 +8,8 @@
 #include "kernel/ray/ray_kernels.h"
 #include "ray/leaf/leaf_nets.h"
 #include "ray/leaf/leaf_search.h"
-#include "ray/scene/ray_query.h"
-#include "ray/scene/set_view.h"
+#include "ray/line/ray_query.h"
+#include "ray/line/set_view.h"
 #include "ray/seam/lazy_adjacency.h"
 
 namespace tessera::inline abi_0_1 {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "ray/leaf/cubic_net.h"
+#include "ray/net/cubic_net.h"
 #include "tessera/geometry.h"
 
 namespace tessera::inline abi_0_1 {

@@ -2,7 +2,7 @@
 // Makes the kernels' form of a piece of a patch: float, in coordinates of its own, with proven bounds.
 
 #include "kernel/ray/ray_kernels.h"
-#include "ray/leaf/projected_net.h"
+#include "ray/net/projected_net.h"
 
 namespace tessera::inline abi_0_1 {
 

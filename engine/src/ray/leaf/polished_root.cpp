@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ray/facet/first_order.h"
 #include "ray/leaf/leaf_search.h"
-#include "ray/leaf/projected_net.h"
-#include "ray/leaf/seen_point.h"
+#include "ray/line/first_order.h"
+#include "ray/net/projected_net.h"
+#include "ray/net/seen_point.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "kernel/ray/ray_kernels.h"
 #include "ray/leaf/leaf_nets.h"
-#include "ray/scene/ray_query.h"
+#include "ray/line/ray_query.h"
 
 namespace tessera::inline abi_0_1 {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "ray/leaf/orthonormal_basis.h"
+#include "ray/line/orthonormal_basis.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -3,7 +3,7 @@
 // double.
 
 #include "kernel/ray/ray_kernels.h"
-#include "ray/embree/embree_scene.h"
+#include "ray/line/facet_ray.h"
 #include "tessera/geometry.h"
 #include "tessera/ray_scene.h"
 

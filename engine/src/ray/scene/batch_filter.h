@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <mutex>
 
-#include "ray/scene/ray_query.h"
-#include "ray/scene/set_view.h"
+#include "ray/line/ray_query.h"
+#include "ray/line/set_view.h"
 #include "tessera/ray_scene.h"
 #include "tessera/status.h"
 

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "base/text.h"
-#include "kernel/isa/kernel_table.h"
+#include "kernel/table/kernel_table.h"
 #include "ray/embree/embree_leaves.h"
 #include "ray/embree/embree_scene.h"
 #include "ray/leaf/leaf_nets.h"

@@ -8,8 +8,8 @@
 
 #include "ray/leaf/leaf_tracer.h"
 #include "ray/line/ray_line.h"
+#include "ray/line/ray_query.h"
 #include "ray/scene/batch_layout.h"
-#include "ray/scene/ray_query.h"
 #include "tessera/ray_scene.h"
 
 namespace tessera::inline abi_0_1 {

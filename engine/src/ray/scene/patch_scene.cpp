@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/text.h"
-#include "ray/facet/first_order.h"
+#include "ray/line/first_order.h"
 #include "ray/scene/ray_scene_impl.h"
 #include "ray/scene/surface_hit.h"
 

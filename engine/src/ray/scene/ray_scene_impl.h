@@ -4,8 +4,8 @@
 #include <memory>
 #include <span>
 
+#include "ray/line/set_view.h"
 #include "ray/scene/batch_layout.h"
-#include "ray/scene/set_view.h"
 #include "tessera/ray_scene.h"
 #include "tessera/strided_view.h"
 

@@ -1,9 +1,9 @@
 #pragma once
 // Turns a point of a patch into a hit, for both modes.
 
-#include "ray/facet/first_order.h"
+#include "ray/line/first_order.h"
+#include "ray/line/set_view.h"
 #include "ray/scene/batch_layout.h"
-#include "ray/scene/set_view.h"
 #include "tessera/ray_scene.h"
 
 namespace tessera::inline abi_0_1 {

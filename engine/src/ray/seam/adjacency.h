@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "ray/scene/set_view.h"
+#include "ray/line/set_view.h"
 #include "tessera/bezier_patch.h"
 
 namespace tessera::inline abi_0_1 {

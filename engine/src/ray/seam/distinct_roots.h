@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "ray/scene/ray_query.h"
-#include "ray/scene/set_view.h"
+#include "ray/line/ray_query.h"
+#include "ray/line/set_view.h"
 #include "ray/seam/adjacency.h"
 
 namespace tessera::inline abi_0_1 {

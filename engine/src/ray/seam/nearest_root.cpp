@@ -1,7 +1,7 @@
 #include "ray/seam/nearest_root.h"
 
-#include "ray/leaf/bounded_step.h"
-#include "ray/leaf/seen_point.h"
+#include "ray/net/bounded_step.h"
+#include "ray/net/seen_point.h"
 
 namespace tessera::inline abi_0_1 {
 

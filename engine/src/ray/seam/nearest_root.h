@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "ray/scene/ray_query.h"
+#include "ray/line/ray_query.h"
 #include "tessera/bezier_patch.h"
 
 namespace tessera::inline abi_0_1 {

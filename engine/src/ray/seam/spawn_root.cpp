@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "ray/facet/first_order.h"
+#include "ray/line/first_order.h"
 #include "ray/seam/nearest_root.h"
 #include "ray/seam/root_fan.h"
 

@@ -1,8 +1,8 @@
 #pragma once
 // Secondary rays: decides whether a root of a patch stands for the point where the ray starts.
 
-#include "ray/scene/ray_query.h"
-#include "ray/scene/set_view.h"
+#include "ray/line/ray_query.h"
+#include "ray/line/set_view.h"
 #include "ray/seam/adjacency.h"
 
 namespace tessera::inline abi_0_1 {

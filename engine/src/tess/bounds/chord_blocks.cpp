@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "kernel/isa/kernel_table.h"
+#include "kernel/table/kernel_table.h"
 #include "tess/bounds/rounded_up.h"
 
 namespace tessera::inline abi_0_1 {

@@ -50,7 +50,7 @@
 #include <limits>
 #include <optional>
 
-#include "tess/plan/segments.h"
+#include "tess/cells/segments.h"
 #include "tessera/bezier_patch.h"
 
 namespace tessera::inline abi_0_1 {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "block/pack.h"
-#include "kernel/isa/kernel_table.h"
+#include "kernel/table/kernel_table.h"
 #include "tess/bounds/chord_blocks.h"
 #include "tess/bounds/flat_quad.h"
 #include "tess/bounds/rounded_up.h"

@@ -63,9 +63,6 @@ Rates shrunk(Rates rates, double share) {
 
 }  // namespace
 
-LocalChord::LocalChord(const BezierPatch& patch, Rates least, Rates about, std::size_t pieces)
-    : LocalChord(DerivativeNets(patch), whole, least, about, pieces) {}
-
 LocalChord::LocalChord(const DerivativeNets& patch, const Domain& part, Rates least, Rates about, std::size_t pieces)
     : least_(least) {
   const Widened widened(patch, part, least);

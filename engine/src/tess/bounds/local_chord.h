@@ -6,7 +6,7 @@
 
 #include "base/function_ref.h"
 #include "tess/bounds/chord_bound.h"
-#include "tess/plan/segment_choices.h"
+#include "tess/edges/segment_choices.h"
 #include "tessera/geometry.h"
 
 namespace tessera::inline abi_0_1 {
@@ -22,9 +22,8 @@ class LocalChord {
  public:
   static constexpr std::size_t max_pieces = 32;
 
-  /// Makes bounds for rates of at least `least`, over at most `pieces` rectangles that suit rates near `about`.
-  LocalChord(const BezierPatch& patch, Rates least, Rates about, std::size_t pieces = max_pieces);
-  /// Makes bounds for triangles that lie inside a part of the patch.
+  /// Makes bounds for triangles that lie inside a part of the patch, for rates of at least `least`, over at most
+  /// `pieces` rectangles that suit rates near `about`.
   LocalChord(const DerivativeNets& patch, const Domain& part, Rates least, Rates about, std::size_t pieces);
 
   Rates least() const { return least_; }

@@ -9,7 +9,7 @@
 
 #include "base/aligned.h"
 #include "base/text.h"
-#include "kernel/isa/kernel_table.h"
+#include "kernel/table/kernel_table.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

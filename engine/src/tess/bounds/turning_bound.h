@@ -8,7 +8,7 @@
 
 #include <array>
 
-#include "tess/write/patch_triangles.h"
+#include "tess/cells/patch_triangles.h"
 #include "tessera/bezier_patch.h"
 
 namespace tessera::inline abi_0_1 {

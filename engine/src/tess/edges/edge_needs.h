@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "tess/cells/segments.h"
 #include "tess/edges/shared_edges.h"
-#include "tess/plan/segments.h"
 
 namespace tessera::inline abi_0_1 {
 

@@ -4,7 +4,7 @@
 #include <bit>
 #include <utility>
 
-#include "kernel/isa/kernel_table.h"
+#include "kernel/table/kernel_table.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -206,12 +206,6 @@ SharedEdges::SharedEdges(const PatchSet::Impl& set, const BorderHashes& hashes) 
   for (const BlockGroup& group : set.groups)
     for (std::size_t block = 0; block < group.block_count; ++block) finder.add(group, group.first_block + block);
   count_ = finder.count();
-}
-
-SharedEdges::SharedEdges(const PatchSet::Impl& set) {
-  BorderHashes hashes(set);
-  for (std::size_t block = 0; block < set.lane_counts.size(); ++block) hashes.find(set, block);
-  *this = SharedEdges(set, hashes);
 }
 
 void SharedEdges::renumber(std::span<const std::uint32_t> numbers) {

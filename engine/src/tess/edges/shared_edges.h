@@ -9,19 +9,9 @@
 #include <vector>
 
 #include "block/patch_set_impl.h"
+#include "tess/cells/patch_side.h"
 
 namespace tessera::inline abi_0_1 {
-
-/// The four borders of a patch, counter-clockwise around its parameters from (0,0): v = 0, u = 1, v = 1, u = 0.
-enum class Side : std::uint8_t { v0, u1, v1, u0 };
-inline constexpr std::array<Side, 4> all_sides{Side::v0, Side::u1, Side::v1, Side::u0};
-constexpr bool runs_along_u(Side side) { return side == Side::v0 || side == Side::v1; }
-/// Whether the ring runs against the parameter along a border.
-constexpr bool is_backward(Side side) { return side == Side::v1 || side == Side::u0; }
-constexpr Edge edge_of(Side side) {
-  constexpr Edge edges[] = {Edge::v0, Edge::u1, Edge::v1, Edge::u0};
-  return edges[static_cast<int>(side)];
-}
 
 /// Where the control points of a side lie in a block, counted in floats.
 struct BorderPlaces {
@@ -101,7 +91,6 @@ class SharedEdges {
   SharedEdges() = default;
   /// Finds the edges. They are numbered in the order of their first borders: by blocks, by patches, and by `all_sides`.
   SharedEdges(const PatchSet::Impl& set, const BorderHashes& hashes);
-  explicit SharedEdges(const PatchSet::Impl& set);
   /// `edges` by 4 * patch + side, below `count` or none.
   SharedEdges(std::vector<std::uint32_t> edges, std::size_t count) : edges_(std::move(edges)), count_(count) {}
 

@@ -71,12 +71,12 @@ class Welder {
         every_edge_(every_edge),
         edges_(edges),
         joined_(edges.count()),
-        heads_(edges.count(), none),
+        leading_(edges.count(), none),
         borders_of_(edges.count(), 0),
         is_pole_(edges.count(), 0) {
     weld_.shapes.assign(shapes.begin(), shapes.end());
     for_borders([&](std::uint32_t border, std::uint32_t edge) {
-      if (heads_[edge] == none) heads_[edge] = border;
+      if (leading_[edge] == none) leading_[edge] = border;
       ++borders_of_[edge];
     });
   }
@@ -112,20 +112,20 @@ class Welder {
   void join_edges() {
     EdgeCells cells(set_.box(), tolerance_);
     const auto middle = [&](std::uint32_t edge) {
-      const SideCurve border = curve(heads_[edge]);
+      const SideCurve border = curve(leading_[edge]);
       return 0.5 * border.first() + 0.5 * border.last();
     };
-    for (std::uint32_t edge = 0; edge < heads_.size(); ++edge)
-      if (heads_[edge] != none) cells.add(middle(edge), edge);
-    for (std::uint32_t edge = 0; edge < heads_.size(); ++edge) {
-      if (heads_[edge] == none || borders_of_[edge] > 1) continue;
-      const SideCurve border = curve(heads_[edge]);
+    for (std::uint32_t edge = 0; edge < leading_.size(); ++edge)
+      if (leading_[edge] != none) cells.add(middle(edge), edge);
+    for (std::uint32_t edge = 0; edge < leading_.size(); ++edge) {
+      if (leading_[edge] == none || borders_of_[edge] > 1) continue;
+      const SideCurve border = curve(leading_[edge]);
       double least = tolerance_;
       std::uint32_t nearest = none;
       bool reversed = false;
       cells.for_near(middle(edge), [&](std::uint32_t other) {
         if (other == edge) return;
-        const SideCurve met = curve(heads_[other]);
+        const SideCurve met = curve(leading_[other]);
         for (const bool turned : {false, true}) {
           const Vec3 first = turned ? met.last() : met.first(), last = turned ? met.first() : met.last();
           if (!(length(border.first() - first) <= tolerance_ && length(border.last() - last) <= tolerance_)) continue;
@@ -143,16 +143,16 @@ class Welder {
 
   /// Whether a border runs against the leading border of its canonical edge.
   bool runs_against(std::uint32_t border, std::uint32_t edge) {
-    const std::uint32_t head = heads_[edge];
-    const bool turned = tessera::runs_against(set_, border, head);
+    const std::uint32_t lead = leading_[edge];
+    const bool turned = tessera::runs_against(set_, border, lead);
     return turned != joined_.find(edge).turned;
   }
   /// Returns the edge whose leading border gives its points to all edges joined to it.
   std::uint32_t canonical(std::uint32_t edge) { return joined_.find(edge).member; }
 
   void find_poles() {
-    for (std::uint32_t edge = 0; edge < heads_.size(); ++edge)
-      if (heads_[edge] != none && curve(heads_[edge]).box().diagonal() <= tolerance_) is_pole_[canonical(edge)] = 1;
+    for (std::uint32_t edge = 0; edge < leading_.size(); ++edge)
+      if (leading_[edge] != none && curve(leading_[edge]).box().diagonal() <= tolerance_) is_pole_[canonical(edge)] = 1;
     for_borders([&](std::uint32_t border, std::uint32_t edge) {
       if (is_pole_[canonical(edge)]) weld_.shapes[patch_of(border)].collapsed.add(tessera::edge_of(side_of(border)));
     });
@@ -166,7 +166,7 @@ class Welder {
           corners.unite(ends[0], ends[1]);
         }
     for_borders([&](std::uint32_t border, std::uint32_t edge) {
-      const auto ends = ends_of(border), met = ends_of(heads_[canonical(edge)]);
+      const auto ends = ends_of(border), met = ends_of(leading_[canonical(edge)]);
       const bool turned = runs_against(border, edge);
       corners.unite(ends[0], met[turned ? 1 : 0]);
       corners.unite(ends[1], met[turned ? 0 : 1]);
@@ -185,8 +185,8 @@ class Welder {
         if (was_point || is_pole_[canonical(edge)]) {
           if (!was_point || takes) weld_.poles.push_back({border, corner});
           if (!was_point || moves) ++weld_.joined_by_distance;
-        } else if (canonical(edge) != edge || (every_edge_ && heads_[edge] != border)) {
-          weld_.borders.push_back({border, heads_[canonical(edge)], runs_against(border, edge)});
+        } else if (canonical(edge) != edge || (every_edge_ && leading_[edge] != border)) {
+          weld_.borders.push_back({border, leading_[canonical(edge)], runs_against(border, edge)});
           if (canonical(edge) != edge) ++weld_.joined_by_distance;
         }
       }
@@ -195,8 +195,8 @@ class Welder {
   std::array<float, 3> packed(std::uint32_t corner) const { return packed_corner(set_, corner); }
 
   void renumber() {
-    std::vector<std::uint32_t> numbers(heads_.size());
-    for (std::uint32_t edge = 0; edge < heads_.size(); ++edge)
+    std::vector<std::uint32_t> numbers(leading_.size());
+    for (std::uint32_t edge = 0; edge < leading_.size(); ++edge)
       numbers[edge] = is_pole_[canonical(edge)] ? none : canonical(edge);
     edges_.renumber(numbers);
   }
@@ -206,7 +206,7 @@ class Welder {
   bool every_edge_;
   SharedEdges& edges_;
   UnionFind joined_;                       ///< sets of joined edges
-  std::vector<std::uint32_t> heads_;       ///< `[edge]`: its leading border, the first one of a patch with an area
+  std::vector<std::uint32_t> leading_;     ///< `[edge]`: its leading border, the first one of a patch with an area
   std::vector<std::uint32_t> borders_of_;  ///< `[edge]`: the number of its borders of patches with an area
   std::vector<std::uint8_t> is_pole_;      ///< `[canonical edge]`
   Weld weld_;

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/function_ref.h"
+#include "tess/cells/patch_triangles.h"
 #include "tess/edges/shared_edges.h"
-#include "tess/write/patch_triangles.h"
 
 namespace tessera::inline abi_0_1 {
 

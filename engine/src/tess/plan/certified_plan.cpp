@@ -11,8 +11,8 @@
 #include "base/text.h"
 #include "parallel/least_index.h"
 #include "parallel/parallel_for.h"
+#include "tess/cells/f64_points.h"
 #include "tess/edges/side_curve.h"
-#include "tess/write/f64_points.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -41,63 +41,68 @@ double vertex_rounding(const BezierPatch& patch, const Vec3& origin) {
 Result<CertifiedPlanner> CertifiedPlanner::make(const PatchSet::Impl& set, const PlannerOptions& options,
                                                 const Execution& execution) {
   CertifiedPlanner planner(set, options);
-  const std::size_t patches = set.patches.size();
-  planner.shapes_.resize(patches);
-  planner.roundings_.resize(patches);
-  const std::size_t blocks = set.lane_counts.size();
-  BorderHashes hashes(set);
+  if (Status status = planner.find_edges_and_bounds(execution); !status.ok()) return status;
+  for (const double rounding : planner.roundings_)
+    planner.largest_rounding_ = std::max(planner.largest_rounding_, rounding);
+  planner.find_weld();
+  if (Status status = planner.bound_turning_and_picture(set, execution); !status.ok()) return status;
+  return planner;
+}
+
+Status CertifiedPlanner::find_edges_and_bounds(const Execution& execution) {
+  shapes_.resize(set_->patches.size());
+  roundings_.resize(set_->patches.size());
+  const std::size_t blocks = set_->lane_counts.size();
+  BorderHashes hashes(*set_);
   const auto hash = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t block = begin; block < end; ++block) hashes.find(set, block);
+    for (std::size_t block = begin; block < end; ++block) hashes.find(*set_, block);
   };
   Status status = parallel_for(blocks, 4 * blocks_per_task, {.cancel = execution.cancel}, hash);
   if (!status.ok()) return status;
-  const auto bound = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t block = begin; block < end; ++block) {
-      planner.chords_.bound(set, block);
-      const BlockGroup& group = set.group_of_block(block);
-      const PatchShape whole{
-          static_cast<std::uint8_t>(group.degree_u), static_cast<std::uint8_t>(group.degree_v), {}, false};
-      const double rounding = vertex_rounding(group.degree_u, group.degree_v, group.rational, 1);
-      for (std::size_t lane = 0; lane < set.lane_counts[block]; ++lane) {
-        const std::size_t k = set.lane_patches[block * PatchSet::lanes + lane];
-        const std::optional<double> size = planner.chords_.size(block, lane);
-        planner.shapes_[k] = set.collapsed[k].any() ? PatchShape::of(set.patches[k], set.collapsed[k]) : whole;
-        const double vertices = options.f64_positions ? f64_position_rounding(set.patches[k], set.origin)
-                                : options.f64         ? f64_vertex_rounding(set.patches[k], set.origin)
-                                : size                ? rounding * *size
-                                                      : vertex_rounding(set.patches[k], set.origin);
-        planner.roundings_[k] = vertices + planner.chords_.slack(block, lane);
-      }
-    }
-  };
   // One thread finds the edges, one after the other, while the others find the bounds.
   const std::size_t pieces = 1 + (blocks + blocks_per_task - 1) / blocks_per_task;
   const auto find_or_bound = [&](std::size_t begin, std::size_t end) {
     for (std::size_t piece = begin; piece < end; ++piece) {
       if (piece == 0) {
-        planner.edges_ = SharedEdges(set, hashes);
-      } else {
-        bound((piece - 1) * blocks_per_task, std::min(blocks, piece * blocks_per_task));
+        edges_ = SharedEdges(*set_, hashes);
+        continue;
       }
+      const std::size_t last = std::min(blocks, piece * blocks_per_task);
+      for (std::size_t block = (piece - 1) * blocks_per_task; block < last; ++block) bound_block(block);
     }
   };
-  status = parallel_for(pieces, pieces > 2 ? 1 : 2, execution, find_or_bound);
-  if (!status.ok()) return status;
-  for (const double rounding : planner.roundings_)
-    planner.largest_rounding_ = std::max(planner.largest_rounding_, rounding);
-  double weld = options.weld;
-  if (options.f64_positions) {
+  return parallel_for(pieces, pieces > 2 ? 1 : 2, execution, find_or_bound);
+}
+
+void CertifiedPlanner::bound_block(std::size_t block) {
+  const PatchSet::Impl& set = *set_;
+  chords_.bound(set, block);
+  const BlockGroup& group = set.group_of_block(block);
+  const PatchShape whole{
+      static_cast<std::uint8_t>(group.degree_u), static_cast<std::uint8_t>(group.degree_v), {}, false};
+  const double rounding = vertex_rounding(group.degree_u, group.degree_v, group.rational, 1);
+  for (std::size_t lane = 0; lane < set.lane_counts[block]; ++lane) {
+    const std::size_t k = set.lane_patches[block * PatchSet::lanes + lane];
+    const std::optional<double> size = chords_.size(block, lane);
+    shapes_[k] = set.collapsed[k].any() ? PatchShape::of(set.patches[k], set.collapsed[k]) : whole;
+    const double vertices = options_.f64_positions ? f64_position_rounding(set.patches[k], set.origin)
+                            : options_.f64         ? f64_vertex_rounding(set.patches[k], set.origin)
+                            : size                 ? rounding * *size
+                                                   : vertex_rounding(set.patches[k], set.origin);
+    roundings_[k] = vertices + chords_.slack(block, lane);
+  }
+}
+
+void CertifiedPlanner::find_weld() {
+  double weld = options_.weld;
+  if (options_.f64_positions) {
     // Far from zero the last bits of doubles affect the floats of coordinates that are small relative to the origin.
-    weld = std::max(weld, 0x1p-50 * std::max(max_abs(set.box().lower), max_abs(set.box().upper)));
-    planner.edges_ = parted_by_doubles(set, planner.edges_);
+    weld = std::max(weld, 0x1p-50 * std::max(max_abs(set_->box().lower), max_abs(set_->box().upper)));
+    edges_ = parted_by_doubles(*set_, edges_);
   }
-  if (weld > 0 || options.f64) {
-    planner.weld_ = weld_borders(set, planner.shapes_, planner.roundings_, weld, planner.edges_, options.f64);
-    for (std::size_t k = 0; k < patches; ++k)
-      planner.roundings_[k] = std::max(planner.roundings_[k], planner.weld_.displacements[k]);
-  }
-  if (status = planner.bound_turning_and_picture(set, execution); !status.ok()) return status;
-  return planner;
+  if (!(weld > 0) && !options_.f64) return;
+  weld_ = weld_borders(*set_, shapes_, roundings_, weld, edges_, options_.f64);
+  for (std::size_t k = 0; k < roundings_.size(); ++k) roundings_[k] = std::max(roundings_[k], weld_.displacements[k]);
 }
 
 Status CertifiedPlanner::bound_turning_and_picture(const PatchSet::Impl& set, const Execution& execution) {
@@ -247,40 +252,44 @@ Result<std::vector<ProvenSegments>> CertifiedPlanner::find_fewest(double toleran
   return proven;
 }
 
+void CertifiedPlanner::set_segments(std::size_t patch, const ProvenSegments& proven, CertifiedPlan& plan) const {
+  plan.segments_[patch] = proven.segments;
+  plan.bounds_[patch] = rounded_up(proven.distance + (roundings_[patch] + fit_error_));
+  if (proven.anywhere) plan.straddles_[patch] = 1;
+}
+
+void CertifiedPlanner::choose_block(std::size_t block, const Request& request, std::span<SegmentChoices> choices,
+                                    CertifiedPlan& plan, LeastIndex& failed) const {
+  const std::uint32_t* patches = set_->lane_patches.data() + block * PatchSet::lanes;
+  const std::size_t count = set_->lane_counts[block];
+  ChordBlocks::Lanes<double> left;
+  left.fill(request.tolerance);
+  for (std::size_t lane = 0; lane < count; ++lane)
+    left[lane] = request.tolerance - (roundings_[patches[lane]] + fit_error_);
+  ChordBlocks::Products products;
+  ChordBlocks::Choice choice = chords_.cheapest(*set_, block, count, left, max_rate, products);
+  for (std::size_t lane = 0; lane < count; ++lane) {
+    const std::size_t k = patches[lane];
+    if (!(left[lane] > 0) || choice.rates[lane].u == 0) failed.add(k);
+    const ProvenSegments proven{choice.rates[lane], choice.distance[lane]};
+    if (!choices.empty()) {
+      choices[k] = SegmentChoices(proven);
+    } else if (request.kept.segments.empty()) {
+      set_segments(k, proven, plan);
+    } else {
+      set_segments(k, keep_by_distance(k, left[lane], request.kept, products, proven), plan);
+    }
+  }
+}
+
 Status CertifiedPlanner::choose_by_distance(const Request& request, CertifiedPlan& plan,
                                             const Execution& execution) const {
   const double tolerance = request.tolerance;
   const KeptSegments& kept = request.kept;
   LeastIndex failed;
   std::vector<SegmentChoices> choices(request.fewest ? shapes_.size() : 0);
-  const auto take = [&](std::size_t k, const ProvenSegments& proven) {
-    plan.segments_[k] = proven.segments;
-    plan.bounds_[k] = rounded_up(proven.distance + (roundings_[k] + fit_error_));
-    if (proven.anywhere) plan.straddles_[k] = 1;
-  };
   const auto choose_some = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t block = begin; block < end; ++block) {
-      const std::uint32_t* patches = set_->lane_patches.data() + block * PatchSet::lanes;
-      const std::size_t count = set_->lane_counts[block];
-      ChordBlocks::Lanes<double> left;
-      left.fill(tolerance);
-      for (std::size_t lane = 0; lane < count; ++lane)
-        left[lane] = tolerance - (roundings_[patches[lane]] + fit_error_);
-      ChordBlocks::Products products;
-      ChordBlocks::Choice choice = chords_.cheapest(*set_, block, count, left, max_rate, products);
-      for (std::size_t lane = 0; lane < count; ++lane) {
-        const std::size_t k = patches[lane];
-        if (!(left[lane] > 0) || choice.rates[lane].u == 0) failed.add(k);
-        const ProvenSegments proven{choice.rates[lane], choice.distance[lane]};
-        if (!choices.empty()) {
-          choices[k] = SegmentChoices(proven);
-        } else if (kept.segments.empty()) {
-          take(k, proven);
-        } else {
-          take(k, keep_by_distance(k, left[lane], kept, products, proven));
-        }
-      }
-    }
+    for (std::size_t block = begin; block < end; ++block) choose_block(block, request, choices, plan, failed);
   };
   const Execution quiet{.cancel = execution.cancel}, &first = choices.empty() ? execution : quiet;
   if (Status status = parallel_for(set_->lane_counts.size(), blocks_per_task, first, choose_some); !status.ok())
@@ -291,10 +300,11 @@ Status CertifiedPlanner::choose_by_distance(const Request& request, CertifiedPla
   if (!fewest) return fewest.status();
   for (std::size_t k = 0; k < fewest->size(); ++k) {
     if (kept.segments.empty()) {
-      take(k, (*fewest)[k]);
+      set_segments(k, (*fewest)[k], plan);
     } else {
       ChordBlocks::Products products;
-      take(k, keep_by_distance(k, tolerance - (roundings_[k] + fit_error_), kept, products, (*fewest)[k]));
+      const double left = tolerance - (roundings_[k] + fit_error_);
+      set_segments(k, keep_by_distance(k, left, kept, products, (*fewest)[k]), plan);
     }
   }
   return {};

@@ -14,12 +14,14 @@
 #include "tess/bounds/local_chord.h"
 #include "tess/bounds/picture.h"
 #include "tess/bounds/rounded_up.h"
+#include "tess/cells/stitched_patch.h"
 #include "tess/edges/shared_edges.h"
 #include "tess/edges/weld.h"
-#include "tess/write/stitched_patch.h"
 #include "tessera/tessellation.h"
 
 namespace tessera::inline abi_0_1 {
+
+class LeastIndex;
 
 /// Returns the largest distance between a float vertex, relative to the set's origin, and the surface's point.
 ///
@@ -163,11 +165,21 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   };
   /// Makes a plan without a limit on its triangles.
   Result<CertifiedPlan> plan(const Request& request, const Execution& execution) const;
+  /// Finds edges, shapes, bounds and roundings.
+  Status find_edges_and_bounds(const Execution& execution);
+  /// Finds shapes, bounds and roundings of the patches of one block.
+  void bound_block(std::size_t block);
+  /// Finds the borders to weld, and adds the displacements to the roundings.
+  void find_weld();
   Status bound_turning_and_picture(const PatchSet::Impl& set, const Execution& execution);
   Choice choose(std::size_t patch, const Request& request, int most) const;
   std::optional<Rates> rates_for(const CellLimits& limits, int most) const;
   /// Chooses rates and bounds of all patches.
   Status choose_rates(const Request& request, CertifiedPlan& plan, const Execution& execution) const;
+  void set_segments(std::size_t patch, const ProvenSegments& proven, CertifiedPlan& plan) const;
+  /// Chooses rates of one block's patches. They go to `choices` if there are any, otherwise to the plan.
+  void choose_block(std::size_t block, const Request& request, std::span<SegmentChoices> choices, CertifiedPlan& plan,
+                    LeastIndex& failed) const;
   /// Chooses rates and bounds, block by block, if a distance is the only limit.
   Status choose_by_distance(const Request& request, CertifiedPlan& plan, const Execution& execution) const;
   /// Replaces rates that keep the limits by segments with the fewest cells, if requested, or by kept ones where

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "basis/bernstein.h"
-#include "kernel/isa/kernel_table.h"
+#include "kernel/table/kernel_table.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

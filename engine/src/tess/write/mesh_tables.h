@@ -11,7 +11,7 @@
 #include "base/aligned.h"
 #include "block/patch_set_impl.h"
 #include "kernel/mesh/mesh_kernels.h"
-#include "tess/write/stitched_patch.h"
+#include "tess/cells/stitched_patch.h"
 #include "tessera/bezier_patch.h"
 
 namespace tessera::inline abi_0_1 {

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "tess/write/patch_triangles.h"
+#include "tess/cells/patch_triangles.h"
 #include "tessera/mesh.h"
 #include "tessera/patch_set.h"
 

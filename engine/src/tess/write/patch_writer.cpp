@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "eval/streaming_threshold.h"
-#include "kernel/isa/kernel_table.h"
-#include "tess/write/f64_points.h"
+#include "kernel/table/kernel_table.h"
+#include "tess/cells/f64_points.h"
 #include "tess/write/vertex_job.h"
 
 namespace tessera::inline abi_0_1 {

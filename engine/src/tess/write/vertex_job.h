@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 
-#include "kernel/isa/kernel_table.h"
-#include "tess/write/stitched_patch.h"
+#include "kernel/table/kernel_table.h"
+#include "tess/cells/stitched_patch.h"
 #include "tessera/mesh.h"
 
 namespace tessera::inline abi_0_1 {

@@ -4,7 +4,7 @@
 
 #include "parallel/parallel_for.h"
 #include "tess/edges/side_curve.h"
-#include "tess/write/ring_vertices.h"
+#include "tess/plan/ring_vertices.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

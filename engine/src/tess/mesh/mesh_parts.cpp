@@ -1,0 +1,103 @@
+#include <string>
+
+#include "base/text.h"
+#include "tess/mesh/mesh_parts.h"
+#include "tessera/guard.h"
+#include "tessera/model.h"
+#include "tessera/status.h"
+#include "tessera/tessellation.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+Status no_such(const char* what, std::size_t index, std::size_t count, const char* face, std::size_t place) {
+  return {StatusCode::invalid_argument,
+          std::string(face) + " " + std::to_string(place) + " is of " + what + " " + std::to_string(index) +
+              ", there are " + std::to_string(count),
+          static_cast<std::ptrdiff_t>(place)};
+}
+
+Status check_patches(const char* face, std::size_t patches, std::size_t count) {
+  if (patches == count) return {};
+  return {StatusCode::count_mismatch, counted(patches, "patch", "patches") + " for " + counted(count, face)};
+}
+
+std::string name_of(const Model& model, std::size_t surface) {
+  const std::string& name = model.surfaces[surface].name;
+  return name.empty() ? "surface " + std::to_string(surface) : name;
+}
+
+/// Builds parts face by face.
+class PartList {
+ public:
+  PartList(const PatchSet& set, const Model& model) : set_(set), model_(model) {}
+
+  /// Adds a face: triangle `t`, or quad `q`, which comes after `t` triangles. Errors: invalid_argument (no such patch
+  /// or surface).
+  Status add(std::uint32_t patch, bool is_quad, std::size_t t, std::size_t q) {
+    if (parts_.empty() || patch != patch_) {
+      const char* const face = is_quad ? "quad" : "triangle";
+      const std::size_t place = is_quad ? q : t;
+      if (patch >= set_.patch_count()) return no_such("patch", patch, set_.patch_count(), face, place);
+      const std::size_t surface = set_.source(patch).surface;
+      if (surface >= model_.surfaces.size()) return no_such("surface", surface, model_.surfaces.size(), face, place);
+      if (parts_.empty() || surface != surface_) parts_.push_back({name_of(model_, surface), t, 0, q, 0});
+      patch_ = patch;
+      surface_ = surface;
+    }
+    ++(is_quad ? parts_.back().quad_count : parts_.back().triangle_count);
+    return {};
+  }
+
+  std::vector<MeshPart> take() && { return std::move(parts_); }
+
+ private:
+  const PatchSet& set_;
+  const Model& model_;
+  std::vector<MeshPart> parts_;
+  std::uint32_t patch_ = 0;  ///< that of the last face
+  std::size_t surface_ = 0;
+};
+
+}  // namespace
+
+Status check_parts(const Mesh& mesh) {
+  std::size_t triangle = 0, quad = 0;
+  for (std::size_t k = 0; k < mesh.parts.size(); ++k) {
+    const MeshPart& part = mesh.parts[k];
+    if (part.first_triangle != triangle || part.triangle_count > mesh.triangle_count() - triangle ||
+        (part.quad_count > 0 && part.first_quad != quad) || part.quad_count > mesh.quad_count() - quad)
+      return {
+          StatusCode::invalid_argument,
+          "part " + std::to_string(k) + " of the mesh must begin where the one before ends, and stay within its faces",
+          static_cast<std::ptrdiff_t>(k)};
+    triangle += part.triangle_count;
+    quad += part.quad_count;
+  }
+  const auto check_all = [](const char* faces, std::size_t of_parts, std::size_t of_mesh) -> Status {
+    if (of_parts == of_mesh) return {};
+    return {StatusCode::count_mismatch, "the mesh's parts have " + std::to_string(of_parts) + " " + faces +
+                                            ", the mesh " + std::to_string(of_mesh)};
+  };
+  if (mesh.parts.empty()) return {};
+  const Status status = check_all("triangles", triangle, mesh.triangle_count());
+  return status.ok() ? check_all("quads", quad, mesh.quad_count()) : status;
+}
+
+Result<std::vector<MeshPart>> parts_by_surface(const Mesh& mesh, const PatchSet& set, const Model& model) {
+  return guarded([&]() -> Result<std::vector<MeshPart>> {
+    const std::size_t triangles = mesh.triangle_count(), quads = mesh.quad_count();
+    if (Status status = check_patches("triangle", mesh.patches.size(), triangles); !status.ok()) return status;
+    if (Status status = check_patches("quad", mesh.quad_patches.size(), quads); !status.ok()) return status;
+    PartList parts(set, model);
+    for (std::size_t t = 0, q = 0; t < triangles || q < quads;) {
+      const bool is_quad = t == triangles || (q < quads && mesh.quad_patches[q] < mesh.patches[t]);
+      const std::uint32_t patch = is_quad ? mesh.quad_patches[q] : mesh.patches[t];
+      if (Status status = parts.add(patch, is_quad, t, q); !status.ok()) return status;
+      ++(is_quad ? q : t);
+    }
+    return std::move(parts).take();
+  });
+}
+
+}  // namespace tessera::inline abi_0_1

@@ -1,0 +1,138 @@
+// Chooses the rates of borders: one for all patches that meet there.
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+
+#include "tess/edges/edge_needs.h"
+#include "tess/edges/side_curve.h"
+#include "tess/plan/certified_plan.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+/// At higher rates of a patch, an odd border rate instead of the next even one saves too little to look for.
+constexpr int max_to_straddle = 2;
+
+}  // namespace
+
+std::vector<std::uint8_t> CertifiedPlanner::borders_against() const {
+  constexpr std::uint32_t none = SharedEdges::none;
+  const std::size_t borders = 4 * shapes_.size();
+  std::vector<std::uint32_t> welds(borders, none), leading(edges_.count(), none);
+  for (std::uint32_t k = 0; k < weld_.borders.size(); ++k) welds[weld_.borders[k].to] = k;
+  const auto edge = [&](std::uint32_t border) { return edges_.edge(border / 4, all_sides[border % 4]); };
+  // Borders of curves are welded to none, and have no segments.
+  const auto counts = [&](std::uint32_t border) { return edge(border) != none && !shapes_[border / 4].is_curve; };
+  for (std::uint32_t border = 0; border < borders; ++border)
+    if (counts(border) && welds[border] == none && leading[edge(border)] == none) leading[edge(border)] = border;
+  std::vector<std::uint8_t> against(borders, 0);
+  for (std::uint32_t border = 0; border < borders; ++border) {
+    if (!counts(border) || leading[edge(border)] == none) continue;
+    const VertexCopies::Border weld =
+        welds[border] == none ? VertexCopies::Border{border, border, false} : weld_.borders[welds[border]];
+    against[border] = weld.reversed != runs_against(*set_, weld.from, leading[edge(border)]);
+  }
+  return against;
+}
+
+bool CertifiedPlanner::may_straddle(std::size_t patch, Side side, const std::array<Segments, 4>& borders,
+                                    double tolerance, CertifiedPlan& plan) const {
+  // If no inner points lie between them, a segment of the opposite border may cross the middle as well.
+  const auto s = static_cast<std::size_t>(side);
+  const Segments border = borders[s], opposite = borders[(s + 2) % 4];
+  const int rate = opposite.parts_halves() ? border.rate() : std::min(border.rate(), opposite.rate());
+  assert(plan.segments_[patch].are_uniform());  // only patches of at most max_to_straddle segments come here
+  const auto [piece, rates] = ChordBound::straddling(plan.segments_[patch].rates(), edge_of(side), rate);
+  const PatchSet::Slot slot = set_->slots[patch];
+  const double given = roundings_[patch] + fit_error_,
+               distance = chords_.piece(slot.block, slot.lane, piece).chord(rates) + given;
+  if (!(distance <= tolerance)) return false;
+  plan.bounds_[patch] = std::max(plan.bounds_[patch], rounded_up(distance));
+  return true;
+}
+
+namespace {
+
+/// Chooses the segments of all borders from those that the patches need for themselves.
+class BorderSegments {
+ public:
+  BorderSegments(std::span<const PatchSegments> segments, std::span<const PatchShape> shapes, const SharedEdges& edges)
+      : segments_(segments), shapes_(shapes), edges_(edges), needs_(edges.count()) {}
+
+  /// Adds the needs of a patch. `never`: 1 if its borders must be even where it has an even rate.
+  void add(std::size_t patch, std::uint16_t never) {
+    for (const Side side : all_sides) {
+      const std::uint32_t edge = edges_.edge(patch, side);
+      if (edge != SharedEdges::none) needs_[edge].add(along(segments_[patch], side), never);
+    }
+  }
+  /// Counts the needs of each edge in its halves, for segments that are not uniform. `against`: for each border, whether
+  /// it runs against the edge.
+  void part_halves(std::vector<std::uint8_t> against) {
+    against_ = std::move(against);
+    halves_.resize(edges_.count());
+    for (std::size_t k = 0; k < segments_.size(); ++k)
+      for (const Side side : all_sides)
+        if (const std::uint32_t edge = edges_.edge(k, side); edge != SharedEdges::none && !shapes_[k].is_curve)
+          halves_[edge].add(along(segments_[k], side), is_against(k, side));
+  }
+  /// Whether a patch has an even rate along a border that other patches may share.
+  bool is_even_edge(std::size_t patch, Side side) const {
+    return along(segments_[patch], side).parts_halves() && edges_.edge(patch, side) != SharedEdges::none;
+  }
+  void make_even(std::size_t patch, Side side) { needs_[edges_.edge(patch, side)].is_even = 1; }
+
+  /// Returns the segments of a patch's four borders.
+  std::array<Segments, 4> of(std::size_t patch) const {
+    return {border(patch, Side::v0), border(patch, Side::u1), border(patch, Side::v1), border(patch, Side::u0)};
+  }
+
+ private:
+  bool is_against(std::size_t patch, Side side) const { return against_[4 * patch + static_cast<std::size_t>(side)]; }
+  Segments border(std::size_t patch, Side side) const {
+    const std::uint32_t edge = edges_.edge(patch, side);
+    if (edge == SharedEdges::none) return along(segments_[patch], side);
+    if (halves_.empty()) return needs_[edge].segments();
+    return halves_[edge].segments(is_against(patch, side), needs_[edge].is_even);
+  }
+
+  std::span<const PatchSegments> segments_;
+  std::span<const PatchShape> shapes_;
+  const SharedEdges& edges_;
+  std::vector<EdgeNeeds> needs_;       ///< `[edge]`
+  std::vector<HalfNeeds> halves_;      ///< `[edge]`; empty if all segments are uniform
+  std::vector<std::uint8_t> against_;  ///< `[border]`; empty if all segments are uniform
+};
+
+}  // namespace
+
+void CertifiedPlanner::divide(double tolerance, CertifiedPlan& plan) const {
+  const std::span<const PatchShape> shapes = divided_shapes();
+  const std::span<const PatchSegments> segments = plan.segments_;
+  // Only distances are known for triangles that cross the middle; angles and pixels hold for halves.
+  const bool by_distance = !options_.angle && !options_.camera;
+  const auto is_coarse = [&](std::size_t k) {
+    return by_distance && std::max(segments[k].u.rate(), segments[k].v.rate()) <= max_to_straddle;
+  };
+  const auto always_straddles = [&](std::size_t k) { return !plan.straddles_.empty() && plan.straddles_[k]; };
+  BorderSegments borders(segments, shapes, edges_);
+  for (std::size_t k = 0; k < segments.size(); ++k)
+    if (!shapes[k].is_curve) borders.add(k, static_cast<std::uint16_t>(!is_coarse(k) && !always_straddles(k)));
+  if (options_.fewest && !std::all_of(segments.begin(), segments.end(), [](auto s) { return s.are_uniform(); }))
+    borders.part_halves(borders_against());
+  for (std::size_t k = 0; k < segments.size(); ++k) {
+    if (!is_coarse(k) || shapes[k].is_curve || always_straddles(k)) continue;
+    for (const Side side : all_sides) {
+      if (!borders.is_even_edge(k, side)) continue;
+      const std::array<Segments, 4> around = borders.of(k);
+      if (!around[static_cast<std::size_t>(side)].parts_halves() && !may_straddle(k, side, around, tolerance, plan))
+        borders.make_even(k, side);
+    }
+  }
+  plan.divisions_.reserve(segments.size());
+  for (std::size_t k = 0; k < segments.size(); ++k)
+    plan.divisions_.emplace_back().set(shapes[k], segments[k], borders.of(k));
+}
+
+}  // namespace tessera::inline abi_0_1

@@ -1,0 +1,114 @@
+#include "tess/plan/joins.h"
+
+#include <cmath>
+
+#include "tess/edges/side_curve.h"
+#include "tess/edges/union_find.h"
+#include "tess/plan/ring_vertices.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+constexpr std::uint32_t none = SharedEdges::none;
+/// The largest distance between two float normals of one direction.
+constexpr double normal_rounding = 1e-5;
+
+class Joiner {
+ public:
+  Joiner(const PatchSet::Impl& set, const CertifiedPlan& plan, const SharedEdges& edges, const Weld& weld,
+         const View3<float>* normals, double angle)
+      : set_(set),
+        plan_(plan),
+        edges_(edges),
+        normals_(normals),
+        apart_(2 * std::sin(angle / 2) + normal_rounding),
+        welded_(4 * plan.patch_count(), none),
+        corners_(4 * plan.patch_count()) {
+    for (std::uint32_t k = 0; k < weld.borders.size(); ++k) welded_[weld.borders[k].to] = k;
+    join_borders(weld);
+    join_poles();
+    list_corners();
+  }
+  VertexCopies take() { return std::move(joins_); }
+
+ private:
+  template <class Visit>
+  void for_borders(Visit visit) const {
+    for (std::uint32_t border = 0; border < welded_.size(); ++border)
+      if (!plan_.division(border / 4).empty) visit(border, edges_.edge(border / 4, all_sides[border % 4]));
+  }
+
+  void join_borders(const Weld& weld) {
+    std::vector<std::uint32_t> leading(edges_.count(), none);
+    for_borders([&](std::uint32_t border, std::uint32_t edge) {
+      if (edge != none && leading[edge] == none && welded_[border] == none) leading[edge] = border;
+    });
+    for_borders([&](std::uint32_t border, std::uint32_t edge) {
+      if (edge == none || leading[edge] == border) return;
+      const std::uint32_t weld_at = welded_[border],
+                          lead = weld_at == none ? leading[edge] : weld.borders[weld_at].from;
+      const bool reversed = weld_at == none ? runs_against(set_, border, lead) : weld.borders[weld_at].reversed;
+      if (!is_smooth(border, lead, reversed)) return;
+      joins_.borders.push_back({border, lead, reversed});
+      const auto ends = ends_of(border), met = ends_of(lead);
+      corners_.unite(ends[0], met[reversed ? 1 : 0]);
+      corners_.unite(ends[1], met[reversed ? 0 : 1]);
+    });
+  }
+
+  void join_poles() {
+    for_borders([&](std::uint32_t border, std::uint32_t) {
+      if (!plan_.division(border / 4).collapsed.has(edge_of(all_sides[border % 4]))) return;
+      const RingVertices ring(plan_, border);
+      for (int k = 1; k <= ring.rate(); ++k)
+        if (!agree(ring(k), ring(0))) return;
+      const auto ends = ends_of(border);
+      corners_.unite(ends[0], ends[1]);
+      joins_.poles.push_back({border, border});
+    });
+  }
+
+  void list_corners() {
+    for_borders([&](std::uint32_t corner, std::uint32_t) {
+      const std::uint32_t first = corners_.find(corner).member;
+      if (first != corner) joins_.corners.push_back({corner, first});
+    });
+    for (VertexCopies::Corner& pole : joins_.poles) pole.from = corners_.find(pole.to).member;
+  }
+
+  bool is_smooth(std::uint32_t border, std::uint32_t lead, bool reversed) const {
+    if (!normals_) return true;
+    const RingVertices to(plan_, border), from(plan_, lead);
+    const bool opposite = (is_backward(border) != is_backward(lead)) != reversed;
+    for (int k = 0; k <= to.rate(); ++k)
+      if (!agree(to(k), from(opposite ? to.rate() - k : k))) return false;
+    return true;
+  }
+  /// Whether two vertices may share a normal. A normal of zero agrees with none.
+  bool agree(std::size_t a, std::size_t b) const {
+    if (!normals_) return true;
+    const auto at = [&](std::size_t k) {
+      return Vec3{double(normals_->at(k, 0)), double(normals_->at(k, 1)), double(normals_->at(k, 2))};
+    };
+    const Vec3 x = at(a), y = at(b), zero{};
+    return !(x == zero) && !(y == zero) && length(x - y) <= apart_;
+  }
+
+  const PatchSet::Impl& set_;
+  const CertifiedPlan& plan_;
+  const SharedEdges& edges_;
+  const View3<float>* normals_;
+  double apart_;                       ///< how far the tips of two normals may lie apart
+  std::vector<std::uint32_t> welded_;  ///< `[border]`: its place in the weld's list, or none
+  UnionFind corners_;
+  VertexCopies joins_;
+};
+
+}  // namespace
+
+VertexCopies find_joins(const PatchSet::Impl& set, const CertifiedPlan& plan, const SharedEdges& edges,
+                        const Weld& weld, const View3<float>* normals, double angle) {
+  return Joiner(set, plan, edges, weld, normals, angle).take();
+}
+
+}  // namespace tessera::inline abi_0_1
