@@ -29,7 +29,7 @@ bool same_bytes(const T& a, const T& b) {
 template <class T>
 bool same_bytes(const Coefficients<T>& a, const Coefficients<T>& b) {
   return same_bytes(a.bernstein, b.bernstein) && same_bytes(a.power, b.power) &&
-         same_bytes(a.bernstein_doubt, b.bernstein_doubt) && same_bytes(a.power_doubt, b.power_doubt);
+         same_bytes(a.bernstein_threshold, b.bernstein_threshold) && same_bytes(a.power_threshold, b.power_threshold);
 }
 
 TEST(Packing, TheSameBytesForAnyNumberOfThreads) {

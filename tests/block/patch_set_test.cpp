@@ -97,10 +97,10 @@ TEST(PatchSet, AnEditIsSeenAndCounted) {
     EXPECT_TRUE(impl_of(fresh).f32.power == impl_of(set).f32.power);
     EXPECT_TRUE(impl_of(fresh).f64.bernstein == impl_of(set).f64.bernstein);
     EXPECT_TRUE(impl_of(fresh).f64.power == impl_of(set).f64.power);
-    EXPECT_TRUE(impl_of(fresh).f32.bernstein_doubt == impl_of(set).f32.bernstein_doubt);
-    EXPECT_TRUE(impl_of(fresh).f32.power_doubt == impl_of(set).f32.power_doubt);
-    EXPECT_TRUE(impl_of(fresh).f64.bernstein_doubt == impl_of(set).f64.bernstein_doubt);
-    EXPECT_TRUE(impl_of(fresh).f64.power_doubt == impl_of(set).f64.power_doubt);
+    EXPECT_TRUE(impl_of(fresh).f32.bernstein_threshold == impl_of(set).f32.bernstein_threshold);
+    EXPECT_TRUE(impl_of(fresh).f32.power_threshold == impl_of(set).f32.power_threshold);
+    EXPECT_TRUE(impl_of(fresh).f64.bernstein_threshold == impl_of(set).f64.bernstein_threshold);
+    EXPECT_TRUE(impl_of(fresh).f64.power_threshold == impl_of(set).f64.power_threshold);
   }
 }
 

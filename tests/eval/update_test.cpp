@@ -65,11 +65,11 @@ template <class T>
 void expect_same_coefficients(const Coefficients<T>& a, const Coefficients<T>& b) {
   EXPECT_TRUE(a.bernstein == b.bernstein);
   EXPECT_TRUE(a.power == b.power);
-  EXPECT_TRUE(a.bernstein_doubt == b.bernstein_doubt);
-  EXPECT_TRUE(a.power_doubt == b.power_doubt);
+  EXPECT_TRUE(a.bernstein_threshold == b.bernstein_threshold);
+  EXPECT_TRUE(a.power_threshold == b.power_threshold);
   EXPECT_TRUE(a.points == b.points);
-  EXPECT_TRUE(a.point_doubt == b.point_doubt);
-  EXPECT_EQ(a.largest_doubt, b.largest_doubt);
+  EXPECT_TRUE(a.point_threshold == b.point_threshold);
+  EXPECT_EQ(a.largest_threshold, b.largest_threshold);
 }
 void expect_same_sets(const PatchSet& a, const PatchSet& b) {
   expect_same_coefficients(impl_of(a).f32, impl_of(b).f32);

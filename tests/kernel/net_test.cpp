@@ -62,7 +62,7 @@ using Pack = void (*)(const kernel::PackJob<T>&, kernel::PackedNets&);
 template <class T>
 struct Packing {
   explicit Packing(const Nets& of)
-      : nets(of), out((nets.size + 1) * lanes, T(-1)), doubts(2 * lanes, T(-1)), memory(nets.memory.size(), -1) {
+      : nets(of), out((nets.size + 1) * lanes, T(-1)), thresholds(2 * lanes, T(-1)), memory(nets.memory.size(), -1) {
     for (std::size_t l = 0; l < lanes; ++l) copies[l] = &memory[l * (nets.size + 1)];
   }
   kernel::PackJob<T> job(bool copying) {
@@ -72,21 +72,21 @@ struct Packing {
             .origin = {origin[0], origin[1], origin[2]},
             .out = out.data(),
             .copies = copying ? copies.data() : nullptr,
-            .doubts = doubts.data(),
+            .thresholds = thresholds.data(),
             .noise = 1e-4,
             .longest = 3,
-            .min_doubt = 1e-3};
+            .min_threshold = 1e-3};
   }
 
   static constexpr double origin[] = {-1e-3, 7, -0.1};
   const Nets& nets;
-  AlignedVector<T> out, doubts;
+  AlignedVector<T> out, thresholds;
   std::vector<double> memory;
   std::array<double*, lanes> copies;
 };
 
 template <class T>
-void expect_doubts(const Packing<T>& packing, const kernel::PackedNets& found) {
+void expect_thresholds(const Packing<T>& packing, const kernel::PackedNets& found) {
   for (std::size_t l = 0; l < lanes; ++l) {
     double largest = 0, squared[3];
     for (std::size_t c = 0; c < 3; ++c) {
@@ -96,8 +96,8 @@ void expect_doubts(const Packing<T>& packing, const kernel::PackedNets& found) {
     }
     const double noise = 1e-4 * largest, length = 4 * noise * (3 * std::sqrt(squared[0] + squared[1] + squared[2]));
     EXPECT_EQ(found.largest[l], largest);
-    EXPECT_EQ(packing.doubts[l], static_cast<T>(std::max(length * length, 1e-3)));
-    EXPECT_EQ(packing.doubts[lanes + l], static_cast<T>(noise));
+    EXPECT_EQ(packing.thresholds[l], static_cast<T>(std::max(length * length, 1e-3)));
+    EXPECT_EQ(packing.thresholds[lanes + l], static_cast<T>(noise));
   }
 }
 
@@ -117,7 +117,7 @@ void check_packing(Pack<T> pack, const Nets& nets) {
         ASSERT_EQ(packing.copies[l][k], inside && copying ? nets.lane[l][k] : -1);
       }
     expect_boxes(nets, found.boxes);
-    expect_doubts(packing, found);
+    expect_thresholds(packing, found);
   }
 }
 

@@ -30,7 +30,7 @@ void surface_grid(Table& table, const Surface& surface) {
   };
   refused("no parameters", invalid_argument, {}, t, sound);
   refused("a parameter outside the domain", invalid_argument, {0, 0.5, 1.5}, t, sound);
-  refused("a parameter of NaN", invalid_argument, t, {0, not_a_number, 1}, sound);
+  refused("a parameter of NaN", non_finite, t, {0, not_a_number, 1}, sound);
   refused("an infinite parameter", invalid_argument, t, {-infinity}, sound);
   refused("no view", invalid_argument, t, t, {});
   bad_view(
@@ -147,7 +147,7 @@ void grid_updates(Table& table) {
   PatchSet other = set_of(wavy_field(2, 2));
   const GridPlan others = value_of(GridPlan::make(other, t, t));
   AllBuffers<float> more(others);
-  table.row("another set than the update's", invalid_argument,
+  table.row("another set than the update's", stale,
             update.run(other, others, {edited.patch, edited.points}, more.views()));
 }
 

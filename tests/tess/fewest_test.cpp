@@ -4,6 +4,7 @@
 
 #include "base/impl_access.h"
 #include "support/crack_survey.h"
+#include "support/edges_of_set.h"
 #include "support/synthetic_sets.h"
 #include "support/triangle_distance.h"
 #include "support/true_distance.h"
@@ -70,7 +71,7 @@ std::vector<BezierPatch> turned(std::vector<BezierPatch> patches) {
 
 /// Segments of borders that one patch has.
 std::size_t lone_segments(const PatchSet& set, const CertifiedTessellation& plan) {
-  const SharedEdges edges(impl_of(set));
+  const SharedEdges edges = edges_of_set(set);
   std::vector<std::size_t> patches(edges.count(), 0), segments(edges.count(), 0);
   for (std::size_t k = 0; k < set.patch_count(); ++k)
     for (const Side side : all_sides) {
@@ -114,7 +115,7 @@ TEST(Fewest, PatchesChooseTogether) {
   const PatchSet field = set_of(wavy_field(8, 8));
   const PatchShape shape{3, 3, {}, false};
   std::vector<PatchShape> shapes(field.patch_count(), shape);
-  const SharedEdges edges(impl_of(field));
+  const SharedEdges edges = edges_of_set(field);
   const std::vector<std::uint8_t> against(4 * shapes.size(), 0);
   std::vector<SegmentChoices> choices;
   for (std::size_t k = 0; k < shapes.size(); ++k) {
@@ -134,7 +135,7 @@ TEST(Fewest, PatchesChooseTogether) {
 TEST(Fewest, ChoosingTogetherCanBeCancelled) {
   const PatchSet set = set_of(std::vector<BezierPatch>(20, bent_in_a_corner()));  // of as many as meet at an edge
   const std::vector<PatchShape> shapes(set.patch_count(), PatchShape{3, 3, {}, false});
-  const SharedEdges edges(impl_of(set));
+  const SharedEdges edges = edges_of_set(set);
   const std::vector<std::uint8_t> against(4 * shapes.size(), 0);
   SegmentChoices some(ProvenSegments{Rates{3, 4}, 1, true});
   some.add({Rates{4, 3}, 1, true});

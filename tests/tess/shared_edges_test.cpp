@@ -32,7 +32,7 @@ Bits bits_of(const PatchSet::Impl& set, std::size_t patch, Side side) {
 }
 
 void expect_edges_by_bits(const PatchSet& set, const char* what) {
-  const SharedEdges edges(impl_of(set));
+  const SharedEdges edges = edges_of_set(set);
   std::map<Bits, std::uint32_t> known;
   std::vector<bool> seen(edges.count(), false);
   for (std::size_t patch = 0; patch < set.patch_count(); ++patch)

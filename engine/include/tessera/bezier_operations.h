@@ -1,6 +1,8 @@
 #pragma once
 // Operations on Bezier patches, polynomial and rational: curves on them, derivatives, subdivision, degree elevation,
 // reorientation, makers of simple patches; measuring and making smooth joins of two patches along an edge.
+//
+// Memory: results own theirs; arguments are not kept. Threads: any number of calls at once.
 
 #include <array>
 #include <cstdint>
@@ -26,7 +28,7 @@ struct BezierPolygon {
 // operation.
 
 /// Returns the isocurve v = const along u, 0 <= v <= 1: W_i = sum_j V_ij B_j(v), in homogeneous form if the patch is
-/// rational. Errors: invalid_argument (the parameter, also NaN), out_of_memory.
+/// rational. Errors: invalid_argument or non_finite (the parameter), out_of_memory.
 Result<BezierPolygon> u_line(const BezierPatch& patch, double v);
 /// Returns the isocurve u = const along v, 0 <= u <= 1: Q_j = sum_i V_ij B_i(u). Errors: as for u_line().
 Result<BezierPolygon> v_line(const BezierPatch& patch, double u);
@@ -45,21 +47,21 @@ Result<BezierPatch> derivative_patch(const BezierPatch& patch, int order_u, int 
 std::array<Vec3, 4> corner_twists(const BezierPatch& patch);
 
 /// Splits a patch at the parameter t, 0 <= t <= 1, into the parts over [0, t] and [t, 1], each on [0,1]^2 again. They
-/// share their common border by ==. At t = 0 and t = 1 one part is only a curve. Errors: invalid_argument (the
-/// parameter).
+/// share their common border by ==. At t = 0 and t = 1 one part is only a curve. Errors: invalid_argument or
+/// non_finite (the parameter).
 Result<std::pair<BezierPatch, BezierPatch>> split_u(const BezierPatch& patch, double t);
-/// Splits along v, like split_u().
+/// Splits along v, like split_u(). Errors: invalid_argument or non_finite (the parameter).
 Result<std::pair<BezierPatch, BezierPatch>> split_v(const BezierPatch& patch, double t);
-/// Returns the part over a rectangle within [0,1]^2, on [0,1]^2. Errors: invalid_argument (the rectangle).
+/// Returns the part over a rectangle within [0,1]^2, on [0,1]^2. Errors: invalid_argument or non_finite (the rectangle).
 Result<BezierPatch> sub_patch(const BezierPatch& patch, const Domain& rectangle);
 /// Returns the same patch with the given degrees. Errors: unsupported_degree (below the patch's, or above max_degree).
 Result<BezierPatch> elevate_degree(const BezierPatch& patch, int degree_u, int degree_v);
 
 /// Returns r(v,u), exactly. The normal turns over. Errors: out_of_memory.
 Result<BezierPatch> transpose(const BezierPatch& patch);
-/// Returns r(1-u,v), like transpose().
+/// Returns r(1-u,v), like transpose(). Errors: out_of_memory.
 Result<BezierPatch> reverse_u(const BezierPatch& patch);
-/// Returns r(u,1-v), like transpose().
+/// Returns r(u,1-v), like transpose(). Errors: out_of_memory.
 Result<BezierPatch> reverse_v(const BezierPatch& patch);
 
 // Makers of patches of degree (1,n), straight along u, with a curve of degree n along v. Errors of all: those of
@@ -71,9 +73,10 @@ Result<BezierPatch> reverse_v(const BezierPatch& patch);
 Result<BezierPatch> make_ruled(const BezierPolygon& c0, const BezierPolygon& c1);
 /// Makes the generalised cylinder C(v) + u d. Errors: invalid_argument (d is zero).
 Result<BezierPatch> make_cylinder(const BezierPolygon& curve, const Vec3& direction);
-/// Makes the generalised cone with the apex at u = 0 and the curve at u = 1.
+/// Makes the generalised cone with the apex at u = 0 and the curve at u = 1. Errors: those of all makers.
 Result<BezierPatch> make_cone(const Vec3& apex, const BezierPolygon& curve);
-/// Makes the bilinear patch of four corners, a hyperbolic paraboloid unless they lie in a plane.
+/// Makes the bilinear patch of four corners, a hyperbolic paraboloid unless they lie in a plane. Errors: those of all
+/// makers.
 Result<BezierPatch> make_hyperbolic_paraboloid(const Vec3& r00, const Vec3& r01, const Vec3& r10, const Vec3& r11);
 
 /// One side of a join: a patch, one of its edges, and the rectangle of parameters that the patch covers.
@@ -121,7 +124,8 @@ struct JoinReport {
 /// with p's or against it: the nearer is taken. A normal that vanishes at an end of the border (a pole) is divided out
 /// there: its limit along the border counts.
 ///
-/// Errors: invalid_argument (no such edge, a domain that is empty or not finite, a tolerance that is negative or NaN).
+/// Errors: invalid_argument (no such edge, a domain that is empty, a tolerance that is negative or NaN), non_finite (a
+/// domain).
 Result<JoinReport> measure_join(const JoinSide& p, const JoinSide& q, const JoinTolerances& tolerances = {});
 
 /// Returns q with its first two rows along the edge replaced so that p_c = k q_c, k > 0 (k = 1: C1): W_0j = V_mj,
@@ -129,7 +133,7 @@ Result<JoinReport> measure_join(const JoinSide& p, const JoinSide& q, const Join
 /// rational patches in homogeneous form. If the degrees along the edge differ, the lower one is raised first. If q has
 /// degree 1 across the edge, its far border moves. `reversed`: whether q's edge runs the other way.
 ///
-/// Errors: invalid_argument (as for measure_join(), or k), invalid_weight (a new weight is not positive: k is too
+/// Errors: as for measure_join(); invalid_argument or non_finite (k), invalid_weight (a new weight is not positive: k is too
 /// small).
 Result<BezierPatch> make_join(const JoinSide& p, const JoinSide& q, double k = 1, bool reversed = false);
 

@@ -50,18 +50,8 @@ class RuledSurface {
 
 /// The reference evaluator, by the formula above. Errors: those of functions, non_finite (too large a point; (u, v)).
 Result<SurfaceJet> evaluate_jet(const RuledSurface& surface, double u, double v);
-/// Returns the position alone, with one call of each function.
+/// Returns the position alone, with one call of each function. Errors: as above.
 Result<Vec3> position(const RuledSurface& surface, double u, double v);
-
-/// Converts to Bezier patches.
-///
-/// - Exact borders give an exact result (FitError 0): curves are made compatible, rational ones with different weight
-///   functions over a common denominator, with numerators (1 - t) N1 w2 + t N2 w1 over w1 w2, of degree p1 + p2.
-/// - Other borders are fitted by `options`, with breakpoints at inner knots of a border that is a curve.
-///
-/// Errors: unsupported_degree (above max_degree), non_finite, invalid_weight (products of weights below 1e-100 of their
-/// patch's largest), those of a fit.
-Result<PatchGrid> to_bezier(const RuledSurface& surface, const FitOptions& options = {});
 
 /// The two blending functions of a direction, on [0,1]: f1 + f2 = 1, f1(0) = 1, f1(1) = 0. Immutable except for
 /// assignment.
@@ -143,19 +133,8 @@ class CoonsPatch {
 
 /// The reference evaluator, by the formula above. Errors: those of functions, non_finite (too large a point; (u, v)).
 Result<SurfaceJet> evaluate_jet(const CoonsPatch& patch, double u, double v);
-/// Returns the position alone, with one call of each function.
+/// Returns the position alone, with one call of each function. Errors: as above.
 Result<Vec3> position(const CoonsPatch& patch, double u, double v);
-
-/// Converts to Bezier patches, with blends of degree a in u and b in v.
-///
-/// - If is_exact(), the result is exact (FitError 0). Polynomial borders give bidegree (max(n_C, a), max(n_D, b)) over
-///   merged knots; rational ones by clearing denominators, in general (p_C1 + p_C2 + a, p_D1 + p_D2 + b).
-/// - Otherwise it is a fit by `options`, certified if all borders have bounds and the blends are polynomials, with
-///   breakpoints at inner knots of borders that are curves.
-///
-/// Errors: unsupported_degree (above max_degree: says which), non_finite, invalid_weight (products of weights below
-/// 1e-100 of their patch's largest), those of a fit.
-Result<PatchGrid> to_bezier(const CoonsPatch& patch, const FitOptions& options = {});
 
 }  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

@@ -110,14 +110,15 @@ using QuantityBlocks = Quantities<std::span<T>, std::span<T>, std::span<NormalKi
 /// Execution::stores says, to packed views, to structures of arrays, and to views that fill one record together; other
 /// views are written value by value, at a small part of the speed.
 ///
-/// Errors, with nothing written: buffer_too_small; invalid_argument (no output; a plan of other precision, or for other
-/// patches; a view that lacks a component, has a stride below 1, is misaligned, or overlaps another). cancelled leaves
-/// outputs partly written.
+/// Errors, with nothing written: buffer_too_small; stale (a plan for a set with other patches or blocks);
+/// invalid_argument (no output; a plan of other precision; a view that lacks a component, has a stride below 1, is
+/// misaligned, or overlaps another). cancelled leaves outputs partly written.
 /// Memory: allocates nothing. Threads: the same bytes for any number of threads, and on AVX2, AVX-512 and NEON; a
 /// quantity has the same bytes alone and together with others.
 ///
-/// Error bounds of each component for the Bernstein representation, in units of 2^-23 (2^-52 in double), with
-/// d, the higher degree; `size`, the largest |V - origin| of the patch; `ratio`, the largest weight over the weight at
+/// Error bounds of each component for the Bernstein representation, in units of 2^-23 (2^-52 in double). Roundings are
+/// taken as independent; the tests hold the bounds for random nets of all degrees and for steep weights. The proven
+/// worst case of positions is (d + 3) size, twice that for rational patches. Terms: d, the higher degree; `size`, the largest |V - origin| of the patch; `ratio`, the largest weight over the weight at
 /// the point (1 for polynomial patches); h = |r_u x r_v| / max(|r_u|, |r_v|), the sine of the tangents' angle times the
 /// shorter tangent; D, the largest second derivative:
 /// - positions: 2 size; rational (4 + d / 4) size
@@ -131,11 +132,15 @@ using QuantityBlocks = Quantities<std::span<T>, std::span<T>, std::span<NormalKi
 /// - Gaussian curvature: |k1| + |k2| times the bound of curvatures, and the square of that bound
 /// - principal directions: 2 / (k1 - k2) times the bound of curvatures, and the bound of normals
 ///
-/// The ratio enters by the quotient rule, r_u = (A_u - w_u r) / w: errors of w_u grow with the largest weight, errors
-/// of r with the size, and both are divided by the weight at the point. Bounds over h hold to first order, where the
-/// errors of the tangents are small against h. Positions in double, which are absolute, round once more, to 2^-53 of
-/// their own size. In the power representation the bounds of positions and first derivatives are (1 + 2u)^m (1 + 2v)^n
-/// ratio times as large, m and n the degrees: random bicubic patches lose 34 units, degrees 5 and 7 lose 1,200 and
+/// Where the bounds come from: engine/src/kernel/sample/sample_kernel.inl.h derives those of positions and derivatives
+/// (Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., sec. 3.1; the quotient rule, Piegl and Tiller, The
+/// NURBS Book, eq. 4.20). The others follow to first order in the errors of the tangents, which must be small against
+/// h, from the formulas of normal and curvatures (do Carmo, Differential Geometry of Curves and Surfaces, sec. 3.3).
+///
+/// Positions in double, which are absolute, round once more, to 2^-53 of their own size. In the power representation
+/// the bounds of positions and first derivatives are (1 + 2u)^m (1 + 2v)^n ratio times as large, m and n the degrees,
+/// because coefficient k is C(m,k) times a k-th difference, at most 2^k size (Farouki and Rajan 1987, On the numerical
+/// condition of polynomials in Bernstein form): random bicubic patches lose 34 units, degrees 5 and 7 lose 1,200 and
 /// 140,000.
 template <class T>
 Status evaluate(const PatchSet& set, const GridPlan& plan, const QuantityViews<T>& out,
@@ -222,8 +227,8 @@ struct SurfaceSamples {
 /// Evaluates all samples. Finds each sample's patch, on a breakpoint the one with larger parameters. Derivatives and
 /// the two forms are by the surface's parameters.
 ///
-/// Errors: as for samples on patches, and invalid_argument (a map of another set; index = the sample: no such surface,
-/// a parameter outside of its domain).
+/// Errors: as for samples on patches, stale (a map of another set), and invalid_argument (index = the sample: no such
+/// surface, a parameter outside of its domain).
 ///
 /// Error bounds: parameters within the patch are found in double and rounded to T. Results in float are further off, in
 /// the units and terms of grids: positions by d / 2 size ratio, first derivatives by d^2 size, rational ones by 2 d^2
@@ -253,12 +258,12 @@ class GridUpdate {
   /// Sets the control points of each edit, as PatchSet::set_control_points(), and evaluates these patches alone. `out`
   /// are views of all patches, as evaluate() takes them; records of other patches are neither written nor read.
   ///
-  /// The set and the views get the bytes of those calls, for any number of threads. The revision grows by one, unless
-  /// there is no edit. A patch's first update gives its points memory of their own, if other patches share it; later
-  /// ones allocate nothing.
+  /// The result has the same bytes as calls of these two functions, for any number of threads. The revision grows by
+  /// one, unless there is no edit. The first update of a patch copies its control points, if other patches share their
+  /// memory; later updates allocate nothing.
   ///
-  /// Errors, with nothing written: those of evaluate(); unsupported (a plan with parameters of each patch's own);
-  /// invalid_argument (a set other than that of make(); index = the edit: no such patch, or one that an earlier edit
+  /// Errors, with nothing written: those of evaluate(); unsupported (a plan with parameters of each patch's own); stale
+  /// (a set other than that of make()); invalid_argument (index = the edit: no such patch, or one that an earlier edit
   /// names); count_mismatch (points); non_finite (index = the edit: a point is not finite, or does not fit the set's
   /// numbers relative to its origin); out_of_memory. cancelled: each patch has its new control points and its new grid,
   /// or neither.
@@ -266,7 +271,7 @@ class GridUpdate {
   Status run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const QuantityViews<T>& out,
              const Execution& execution = {});
   /// Does so in block-interleaved memory of all patches. A block with an edited patch is evaluated whole: its other
-  /// lanes are written again, with the same bytes.
+  /// lanes are written again, with the same bytes. Errors: as above.
   template <class T>
   Status run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const QuantityBlocks<T>& out,
              const Execution& execution = {});
@@ -290,8 +295,8 @@ enum class Calls : std::uint8_t {
 ///
 /// The bytes are the same for any number of threads.
 ///
-/// Errors, with nothing written: invalid_argument (no parameters; one outside the domain or NaN: index; a view that
-/// lacks a component or a stride, is misaligned, or shares memory with another), buffer_too_small. Errors, with the
+/// Errors, with nothing written: non_finite and invalid_argument (index = a parameter that is not finite, or outside
+/// the domain), invalid_argument (no parameters; a view that lacks a component or a stride, is misaligned, or shares memory with another), buffer_too_small. Errors, with the
 /// output partly written: those of the function (of the first record that has one), non_finite (a position too large
 /// for float), cancelled.
 template <class T>

@@ -22,8 +22,9 @@ std::string_view name(Isa isa);  ///< "sse2", "avx2" (with FMA), "avx512" (F, CD
 std::span<const Isa> available_isas();
 
 /// Returns the instruction set of options that leave it open: the one in the environment variable TESSERA_ISA if that
-/// is not empty, otherwise the fastest available one. Errors: isa_unavailable (TESSERA_ISA names one that is unknown or
-/// missing).
+/// is not empty, otherwise the fastest available one. This call alone reads the variable, each time that it runs; plans
+/// and scenes keep what it returned when they were made. Errors: isa_unavailable (TESSERA_ISA names one that is unknown
+/// or missing). Threads: any number, while none changes the environment.
 Result<Isa> default_isa();
 
 /// Returns the instruction set with this name(). Errors: isa_unavailable (it is unknown or missing on this machine).

@@ -55,10 +55,11 @@ class HermitePatch {
   /// Makes a patch from corners with twists. Errors: as for make().
   static Result<HermitePatch> from_corners(const Corners& corners, const Domain& domain = {});
   /// Makes a patch from 12 vectors with zero twists (Ferguson, Multivariable curve interpolation, 1964).
+  /// Errors: as for all makers.
   static Result<HermitePatch> ferguson(const OpenCorners& corners, const Domain& domain = {});
   /// Makes a patch from 12 vectors with Adini's twists, those of the bilinearly blended Coons patch of the four
   /// borders: r_uv(i,j) = (r_u(i,1) - r_u(i,0)) / dv + (r_v(1,j) - r_v(0,j)) / du - (r00 - r10 - r01 + r11) / (du dv)
-  /// (Farin, Curves and Surfaces for CAGD, 5th ed., ch. 15).
+  /// (Farin, Curves and Surfaces for CAGD, 5th ed., ch. 15). Errors: as for all makers.
   static Result<HermitePatch> adini(const OpenCorners& corners, const Domain& domain = {});
   /// Makes a patch from 16 coefficients a_ij of s^i t^j, s and t over [0,1]. Errors: count_mismatch.
   static Result<HermitePatch> from_algebraic(std::span<const Vec3> coefficients, const Domain& domain = {});
@@ -107,9 +108,6 @@ class HermitePatch {
 /// Evaluates the sum over the products of blends: the reference evaluator, for any finite (u,v). Derivatives are by u
 /// and v of the domain.
 SurfaceJet evaluate_jet(const HermitePatch& patch, double u, double v);
-
-/// Converts to one bicubic Bezier patch over the patch's domain; exact up to rounding. Errors: non_finite (too large).
-Result<PatchGrid> to_bezier(const HermitePatch& patch);
 
 /// How the twists of a network's nodes are estimated.
 enum class TwistEstimate : std::uint8_t {
@@ -188,9 +186,6 @@ class HermiteNetwork {
 /// Evaluates the patch that contains (u,v): the reference evaluator. At an inner knot it takes the patch on the right;
 /// outside the domain the nearest patch continues. Derivatives are by u and v.
 SurfaceJet evaluate_jet(const HermiteNetwork& network, double u, double v);
-
-/// Converts to one bicubic Bezier patch per cell, over the knots; exact up to rounding. Errors: non_finite (too large).
-Result<PatchGrid> to_bezier(const HermiteNetwork& network);
 
 }  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

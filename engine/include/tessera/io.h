@@ -41,11 +41,11 @@ Result<Model> read_model(const std::filesystem::path& path);
 /// Parses the text of a .bpt file; `name` stands for the file in messages. Errors: as read_model(), without io_error.
 Result<Model> parse_bpt(std::string_view text, std::string_view name);
 /// Parses the text of a .bv file: kinds 4, 5 and 8 (weights above 0). Triangles, polyhedra and PN patches are skipped.
-/// Group lines name surfaces.
+/// Group lines name surfaces. Errors: as parse_bpt().
 Result<Model> parse_bv(std::string_view text, std::string_view name);
 /// Parses the text of a .g2 file: spline surfaces, and bounded planes, cylinders, spheres, cones and tori. Plane
 /// surfaces lie in z = 0. Parameters are the file's, except a cone's v (counted from the apex) and a torus' (rational
-/// arcs within [0,1]^2).
+/// arcs within [0,1]^2). Errors: as parse_bpt().
 Result<Model> parse_g2(std::string_view text, std::string_view name);
 /// Parses the text of a .rib file, which must not be compressed.
 ///
@@ -56,13 +56,16 @@ Result<Model> parse_g2(std::string_view text, std::string_view name);
 /// - Attribute "identifier" "name" names surfaces. TrimCurves are kept as trims.
 /// - A moving surface is read at its first moment.
 /// - Copies by ObjectInstance are limited to 4 times the file plus 1 MiB.
+///
+/// Errors: as parse_bpt().
 Result<Model> parse_rib(std::string_view text, std::string_view name);
 /// Parses the text of a .json file. Messages have a line, and the place as a JSON pointer (RFC 6901): "m.json:17:
 /// /surfaces/3/points/2/1: expected 3 numbers [x, y, z], found an array of 2". Threads: the expressions of its surfaces
-/// may be evaluated from any number of threads.
+/// may be evaluated from any number of threads. Errors: as parse_bpt(), and those of the surfaces.
 Result<Model> parse_json_model(std::string_view text, std::string_view name);
 /// Parses the text of a free-form Wavefront OBJ file: bezier, bspline, cardinal, taylor and bmatrix, rational or not,
 /// and the patches of release 2.11. Trims and holes are kept as ModelSurface::trims. Object and group name surfaces.
+/// Errors: as parse_bpt(), and those of the surfaces.
 Result<Model> parse_obj_freeform(std::string_view text, std::string_view name);
 
 /// A summary of the file that write_model() has written.

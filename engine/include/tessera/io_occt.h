@@ -36,11 +36,12 @@
 #pragma GCC visibility push(default)
 namespace tessera::inline abi_0_1 {
 
-/// Reads a STEP file: AP203, AP214 or AP242 (ISO 10303-21).
+/// Reads a STEP file: AP203, AP214 or AP242 (ISO 10303-21). Errors: as above.
 Result<Model> read_step(const std::filesystem::path& path);
-/// Reads an IGES 5.x file in its fixed form, columns of 80 characters.
+/// Reads an IGES 5.x file in its fixed form, columns of 80 characters. Errors: as above.
 Result<Model> read_iges(const std::filesystem::path& path);
-/// Reads either, by the extension in any case of letters: .step, .stp, .iges, .igs.
+/// Reads either, by the extension in any case of letters: .step, .stp, .iges, .igs. Errors: as above, unsupported
+/// (another extension).
 Result<Model> read_cad(const std::filesystem::path& path);
 /// Whether read_cad() knows the extension.
 bool is_cad_file(const std::filesystem::path& path);

@@ -46,7 +46,8 @@ struct LocalGeometryOptions {
 
 /// Returns the local geometry of a jet. The shape operator is taken in an orthonormal basis of the tangent plane, where
 /// it is symmetric: k1 and k2 suffer neither from H^2 - K nor from skew or unequal tangents. Undefined: parallel or
-/// vanishing tangents, figures out of range.
+/// vanishing tangents, figures out of range. (Weingarten equations: do Carmo, Differential Geometry of Curves and
+/// Surfaces, sec. 3.3.)
 LocalGeometry local_geometry(const SurfaceJet& jet, const LocalGeometryOptions& options = {});
 
 /// Returns the local geometry at (u,v) in [0,1]^2 of a patch. Where r_u x r_v vanishes, `normal` is the limit normal if

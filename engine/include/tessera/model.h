@@ -1,5 +1,8 @@
 #pragma once
 // A model: the named, placed and trimmed surfaces of a file.
+//
+// Memory: sets and grids own theirs; a model is not kept by what is made of it. Threads: const calls on a model from any
+// number of threads, if the functions of its surfaces allow it; make_patch_set() runs in the caller's TBB arena.
 
 #include <span>
 #include <string>
@@ -40,7 +43,8 @@ struct Model {
   std::vector<std::string> warnings = {};
 };
 
-/// Returns `status` with the message "surface 3 (rim): ..." and the index 3; surface < model.surfaces.size().
+/// Returns `status`, an error, with the message "surface 3 (rim): ..." and the index 3. `surface` is below
+/// model.surfaces.size().
 Status in_surface(const Model& model, std::size_t surface, const Status& status);
 
 /// Returns position and derivatives in the model, by the surface's own parameters. Errors: those of the kind,
@@ -61,7 +65,8 @@ Result<PatchSet> make_patch_set(const Model& model, const PatchSetOptions& optio
 /// Makes one set of the patches of several surfaces. source(k).surface is the index into `grids`, and source(k).domain
 /// the patch's rectangle. Errors: those of PatchSet::from().
 Result<PatchSet> make_patch_set(std::span<const PatchGrid> grids, const PatchSetOptions& options = {});
-/// Makes a set of the patches of one surface. A grid that is moved here gives up its patches without a copy.
+/// Makes a set of the patches of one surface. A grid that is moved here gives up its patches without a copy. Errors:
+/// those of PatchSet::from().
 Result<PatchSet> make_patch_set(PatchGrid grid, const PatchSetOptions& options = {});
 
 }  // namespace tessera::inline abi_0_1

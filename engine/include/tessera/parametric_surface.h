@@ -17,8 +17,6 @@
 #pragma GCC visibility push(default)
 namespace tessera::inline abi_0_1 {
 
-class PatchGrid;  // tessera/convert.h
-
 /// The caller's functions for a surface p(u,v). Threads: functions are called from one thread at a time, or from
 /// several if const calls on the surface are. An exception becomes a Status; if a bound throws one, there is no bound.
 struct SurfaceFunctions {
@@ -104,38 +102,12 @@ class ParametricSurface {
 /// - within three steps of them p_u: h^6 F_70 / 7 + 2^-39 F / L; p_uu: 0.7 h^5 F_70 + 2^-29 F / L^2;
 ///   p_uv: h^6 F_71 / 7 + 9 k^6 F_17 + 2^-25 F / (L_u L_v).
 ///
+/// The terms with F_ab are the truncation errors of the sextic through 7 values, central or one-sided; the others are
+/// the rounding of values times the sum of the weights' sizes (Fornberg 1988, Generation of finite difference formulas
+/// on arbitrarily spaced grids, Mathematics of Computation 51).
+///
 /// Errors: those of position(), non_finite (a derivative: names it and (u,v)).
 Result<SurfaceJet> evaluate_jet(const ParametricSurface& surface, double u, double v);
-
-/// Options of a fit.
-struct FitOptions {
-  /// The largest distance from the surface at equal parameters, in the model's unit; 0 for 1e-6 of the diagonal of the
-  /// box of 17 x 17 points.
-  double tolerance = 0;
-  int degree = 3;                      ///< degree of the patches in each direction, 2 to max_degree
-  std::size_t max_patches = 1u << 16;  ///< more are an error
-  /// Whether to use the surface's bounds, if any. Sampled fits take fewer patches and more calls.
-  bool certify = true;
-  /// Inner parameters where the surface is not smooth: breakpoints from the start, so that no patch crosses them.
-  /// Finite, increasing, within the open range of u (or v).
-  std::vector<double> breaks_u = {}, breaks_v = {};
-};
-
-/// Fits a surface by patches that interpolate it at Chebyshev-Lobatto parameters. Intervals between breakpoints are
-/// halved where the tolerance is not reached, as often as needed next to a border with infinite derivatives. Only
-/// positions are evaluated. Neighbours share their borders by ==, and edges on which all positions are equal by == are
-/// collapsed.
-///
-/// PatchGrid::fit_error() of the result is one of two:
-///
-/// - a proven bound, where the surface has bounds on its derivatives that suffice, taking the function's values as
-///   exact. The function is called once for each of (n cu + 1)(n cv + 1) points of cu x cv patches of degree n.
-/// - otherwise the largest deviation found at (3 n + 1)^2 points of every patch, with about fifteen to forty times as
-///   many calls. Features narrower than the gaps between these points can be missed; fit sub-rectangles around them.
-///
-/// Errors: invalid_argument (options; a tolerance below what rounding leaves; one that is not reached with the largest
-/// number of patches, or at a jump: says what was reached, and where), those of position().
-Result<PatchGrid> to_bezier(const ParametricSurface& surface, const FitOptions& options = {});
 
 /// The caller's functions for a curve c(t). Threads: functions are called from one thread at a time, or from several if
 /// const calls on the curve are. An exception becomes a Status; if a bound throws one, there is no bound.

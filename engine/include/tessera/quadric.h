@@ -1,6 +1,5 @@
 #pragma once
 // Quadrics: classification, canonical frame, pieces between ranges of the canonical parameters, and ray intersection.
-// The conversion of a piece also needs tessera/convert.h.
 
 #include <array>
 #include <cstdint>
@@ -14,8 +13,6 @@
 
 #pragma GCC visibility push(default)
 namespace tessera::inline abi_0_1 {
-
-class PatchGrid;
 
 /// The quadric a x^2 + b y^2 + c z^2 + 2 d xy + 2 e yz + 2 f xz + 2 g x + 2 h y + 2 j z + k = 0, that is P Q P^T = 0
 /// with P = [x y z 1] and Q = [[a,d,f,g],[d,b,e,h],[f,e,c,j],[g,h,j,k]].
@@ -90,7 +87,8 @@ class Quadric {
   /// ratio of the largest eigenvalue to their own.
   ///
   /// Errors: non_finite (index = the coefficient, 0..9 for a..k; or the canonical form overflows), invalid_argument
-  /// (all coefficients are 0; tolerance not in (0, 0.01]; length negative or not finite).
+  /// (all coefficients are 0; tolerance not in (0, 0.01]; length negative or not finite). Source: the principal axis
+  /// theorem (Farin and Hansford, Practical Linear Algebra, on quadratic forms), and completing squares.
   static Result<Quadric> make(const QuadricCoefficients& coefficients, const QuadricOptions& options = {});
 
   const QuadricCoefficients& coefficients() const { return coefficients_; }  ///< the argument of make()
@@ -125,6 +123,8 @@ struct QuadricHits {
 /// Result: every t of origin + t direction on the quadric; none for a zero or non-finite ray. Each t is a root of a
 /// quadratic that is within a few units of rounding of the true one about the line's point nearest to the centre (no
 /// cancellation for far origins); near tangency t itself has half the digits. A hit whose t overflows is left out.
+/// Source: the quadratic formula without cancellation (Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed.,
+/// sec. 1.8).
 QuadricHits intersect(const Quadric& quadric, const Vec3& origin, const Vec3& direction);
 
 /// The canonical parameters of a point, and its sheet.
@@ -169,14 +169,10 @@ SurfaceJet evaluate_jet(const QuadricPiece& piece, double u, double v);
 /// Returns the hits of the whole quadric that lie in the piece. Contained lines are not cut.
 QuadricHits intersect(const QuadricPiece& piece, const Vec3& origin, const Vec3& direction);
 
-/// Converts a piece exactly to rational patches: degree 2 along circles, hyperbolas and parabolas, degree 1 along
-/// straight lines. Angular ranges are split into arcs of at most 90 degrees, ranges of cosh into pieces of at most 2.
-/// Breakpoints are canonical parameters; between two of them, the patch covers the same strip at another pace, which
-/// grid_parameters() undoes.
-Result<PatchGrid> to_bezier(const QuadricPiece& piece);
 /// Returns the canonical parameters of the point that to_bezier(piece) has at its own parameters (u, v) in the range:
 /// on an arc about m of half-width h, m + 2 atan(tan(h/2) s) with s from -1 to 1 (atanh and tanh for cosh); otherwise
-/// u, v themselves.
+/// u, v themselves. Source: the standard form of a conic's arc is its rational parametrisation by the tangent of half
+/// the angle (Farin, Curves and Surfaces for CAGD, 5th ed., sec. 12.4).
 QuadricParameters canonical_parameters(const QuadricPiece& piece, double u, double v);
 /// Returns the parameters in the grid of the point with these canonical parameters: the inverse of
 /// canonical_parameters().

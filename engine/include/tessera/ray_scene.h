@@ -193,8 +193,9 @@ class RayScene {
   /// Errors: those of grid mode, and:
   /// - invalid_argument (no patch for each face, or no parameters for each vertex, as where vertices are shared;
   ///   another origin than the set's)
-  /// - invalid_argument (index = the vertex or the face: numbers that are not finite, parameters outside of [0, 1], an
-  ///   index that is no vertex, a patch that the set does not have)
+  /// - non_finite (index = the vertex: a position or a parameter)
+  /// - invalid_argument (index = the vertex or the face: parameters outside of [0, 1], an index that is no vertex, a
+  ///   patch that the set does not have)
   static Result<RayScene> make(const PatchSet& set, const Mesh& mesh, const RaySceneOptions& options = {},
                                const Execution& execution = {});
   /// Deleted: the set and the mesh must outlive the scene.
@@ -220,7 +221,7 @@ class RayScene {
   /// After a refit of one of the scenes, this scene is stale until its own refit(), which is always a rebuild, but only
   /// of the boxes of instances.
   ///
-  /// Errors, index = the first such instance: invalid_argument (no scene; a map that is not finite or nearly singular),
+  /// Errors, index = the first such instance: invalid_argument (no scene; a map that is nearly singular), non_finite (a map),
   /// unsupported (a scene in grid mode or of instances; sizes outside of 1e-140 to 1e140), stale (a scene). Without
   /// index: invalid_argument (no instance), cancelled, out_of_memory, internal (Embree's own).
   static Result<RayScene> make(std::span<const RayInstance> instances, const Execution& execution = {});
@@ -269,17 +270,19 @@ class RayScene {
   /// rays. It does not hold for hits with `unrefined` or with flags of grid mode.
   double spawn_offset() const;
   /// Returns the curvatures at a hit of this scene, by the parameters of the patch; in a scene of instances those of
-  /// the surface as placed in the world. Errors: stale, invalid_argument (not a hit; no such patch, point or instance).
+  /// the surface as placed in the world. Errors: stale, invalid_argument (not a hit; no such patch, point or instance),
+  /// non_finite (the point).
   Result<LocalGeometry> local_geometry(const Hit& hit) const;
   /// Returns the point (u,v) in [0,1]^2 of a patch as a hit with t and residual 0: completes a hit that came through
-  /// the user's own Embree scene. Errors: stale, invalid_argument (no such patch or point), unsupported (instances).
+  /// the user's own Embree scene. Errors: stale, invalid_argument (no such patch or point), non_finite (the point),
+  /// unsupported (instances).
   Result<Hit> resolve(std::uint32_t patch, double u, double v) const;
   /// Returns the root next to (u,v), with all the digits of double, for a ray that is known to meet the patch near
   /// there, for example in float.
   ///
   /// If there is no root within the tolerance, the hit is unrefined: the point nearest to the ray that was found. tnear
-  /// and tfar are ignored. Errors: stale, invalid_argument (no such patch or point; the ray), unsupported (instances;
-  /// grid mode).
+  /// and tfar are ignored. Errors: stale, invalid_argument (no such patch or point; the ray), non_finite (the point),
+  /// unsupported (instances; grid mode).
   Result<Hit> resolve(const Ray& ray, std::uint32_t patch, double u, double v) const;
 
   /// Returns the box of the facets or of the pieces' nets, tighter than that of all control points; empty while stale.

@@ -14,15 +14,15 @@ namespace tessera::inline abi_0_1 {
 /// Kind of an error. The message gives the details.
 enum class StatusCode : std::uint8_t {
   ok,                  ///< success
-  invalid_argument,    ///< a value outside its stated range
-  non_finite,          ///< NaN or infinity where a finite number is required
-  invalid_weight,      ///< a rational weight that is not positive
+  invalid_argument,    ///< a value outside its stated range; in options and tolerances NaN and infinity as well
+  non_finite,          ///< NaN or infinity in a point, a parameter, a domain, a map or another number of a surface
+  invalid_weight,      ///< a rational weight that is not finite and positive
   unsupported_degree,  ///< a degree below 1 or above max_degree
   count_mismatch,      ///< a list whose length does not fit the others
   buffer_too_small,    ///< an output view with less room than the call needs
   unsupported,         ///< valid, but not available here (a kind of block, a file format)
   isa_unavailable,     ///< an instruction set that is unknown or that this machine lacks
-  stale,               ///< an object made from a state of the patch set that has since changed
+  stale,               ///< an object made for an earlier state of the patch set, or for another set
   parse_error,         ///< a file whose content does not follow its format
   io_error,            ///< a file that cannot be opened, read or written
   out_of_memory,       ///< an allocation failed

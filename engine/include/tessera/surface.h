@@ -1,5 +1,5 @@
 #pragma once
-// A surface of any kind. The conversion also needs tessera/convert.h.
+// A surface of any kind. tessera/convert.h converts it.
 
 #include <array>
 #include <string_view>
@@ -32,9 +32,6 @@ std::array<double, 2> own_parameters(const Surface& surface, double u, double v)
 /// Returns the parameters in to_bezier()'s grid of the point at the surface's own (u,v): the inverse of
 /// own_parameters().
 std::array<double, 2> grid_parameters(const Surface& surface, double u, double v);
-
-/// Converts by the kind's own conversion, exactly; only callables are fitted by `options`. Errors: those of the kind.
-Result<PatchGrid> to_bezier(const Surface& surface, const FitOptions& options = {});
 
 }  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

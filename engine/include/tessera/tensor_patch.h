@@ -13,8 +13,6 @@
 #pragma GCC visibility push(default)
 namespace tessera::inline abi_0_1 {
 
-class PatchGrid;  // tessera/convert.h
-
 /// A basis of the polynomials of one degree on [0,1], given by the matrix M that turns the geometry of a curve into its
 /// power coefficients: r(t) = [1 t .. t^n] M G, with the blending functions f_i(t) = sum_k t^k M_ki. Immutable except
 /// for assignment; copies share the matrix.
@@ -22,16 +20,16 @@ class BasisMatrix {
  public:
   /// Makes the Bernstein polynomials. Errors: unsupported_degree, as for all makers with a degree.
   static Result<BasisMatrix> bezier(int degree);
-  /// Makes the monomials: M is the identity.
+  /// Makes the monomials: M is the identity. Errors: unsupported_degree.
   static Result<BasisMatrix> power(int degree);
   /// Makes the cubic Hermite polynomials in the order position 0, tangent 0, tangent 1, position 1. Tangents are
-  /// derivatives by the local parameter, which runs over [0,1].
+  /// derivatives by the local parameter, which runs over [0,1]. Errors: out_of_memory.
   static Result<BasisMatrix> hermite();
   /// Makes one span of the uniform B-spline; f_0 is the function that ends with the span (cubic: (1-t)^3/6 first, t^3/6
-  /// last).
+  /// last). Errors: unsupported_degree.
   static Result<BasisMatrix> uniform_b_spline(int degree);
   /// Makes the Catmull-Rom cubics of four points, from the second to the third; a tangent is half the chord of its
-  /// neighbours (Catmull and Rom, A class of local interpolating splines, 1974).
+  /// neighbours (Catmull and Rom, A class of local interpolating splines, 1974). Errors: out_of_memory.
   static Result<BasisMatrix> catmull_rom();
   /// Makes a basis from a matrix. A singular matrix serves to evaluate and to convert from, not to convert to.
   ///
@@ -109,10 +107,6 @@ SurfaceJet evaluate_jet(const TensorPatch& patch, double u, double v);
 ///
 /// Errors: unsupported_degree (a degree below the patch's), invalid_argument (a singular basis), non_finite.
 Result<TensorPatch> change_basis(const TensorPatch& patch, const BasisMatrix& basis_u, const BasisMatrix& basis_v);
-/// Converts to one Bezier patch over the patch's domain; exact up to rounding. Errors: non_finite (points too large).
-Result<PatchGrid> to_bezier(const TensorPatch& patch);
-
-class PatchGrid;
 
 /// The graph (x, y, sum a_ij x^i y^j) with x = u and y = v over a rectangle. Immutable except for assignment; copies
 /// share everything.
@@ -149,11 +143,6 @@ class ExplicitPolynomial {
 /// Returns position and derivatives at x = u, y = v, inside the rectangle or not: the reference evaluator. Sums carry
 /// 106 bits, so powers that cancel far from zero lose nothing while they are below 2^50 times the result.
 SurfaceJet evaluate_jet(const ExplicitPolynomial& surface, double u, double v);
-
-/// Converts to one polynomial patch of the same degrees (1 for degree 0), exactly: control heights are the polar forms
-/// of the polynomial at the rectangle's ends, summed with 106 bits. Errors: non_finite (a height is out of the range of
-/// doubles).
-Result<PatchGrid> to_bezier(const ExplicitPolynomial& surface);
 
 }  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

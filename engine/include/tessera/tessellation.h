@@ -50,9 +50,9 @@ class TessellationPlan {
   MeshCapacity quad_capacity() const;
   int rate_u() const;  ///< segments along u of every patch
   int rate_v() const;  ///< segments along v of every patch
-  /// Returns a mesh of capacity() with all attributes.
+  /// Returns a mesh of capacity() with all attributes. Errors: out_of_memory.
   Result<Mesh> allocate() const;
-  /// Returns a mesh of quad_capacity() with all attributes.
+  /// Returns a mesh of quad_capacity() with all attributes. Errors: out_of_memory.
   Result<Mesh> allocate_quads() const;
 
   /// Writes the mesh; with quads if `out.quads` is not empty.
@@ -61,8 +61,8 @@ class TessellationPlan {
   /// the set itself: a run on another set of equal shape (patch count, degrees, rationality, collapsed edges) writes
   /// that set's mesh, relative to that set's origin.
   ///
-  /// Errors: buffer_too_small, stale (another number of patches, other degrees or collapsed edges), invalid_argument
-  /// (views; another set), cancelled. Nothing is written on any error but cancelled.
+  /// Errors: buffer_too_small, stale (a set of another shape), invalid_argument (views), cancelled. Nothing is written
+  /// on any error but cancelled.
   ///
   /// The bytes are the same for any number of threads. Allocates nothing after the first call.
   Status run(const PatchSet& set, const MeshViews& out, const Execution& execution = {}) const;
@@ -76,9 +76,10 @@ class TessellationPlan {
 
 /// Returns Mesh::parts by surfaces: one part for each run of triangles and quads whose patches come from one surface.
 ///
-/// `set` is the one that mesh.patches refers to, made of `model`. Triangles and quads are merged in the order of their
-/// patches: the next face is always the one of the lower patch. A part has its surface's name in the model, or "surface
-/// 3" if that is empty.
+/// - `set`: the set that mesh.patches refers to, made of `model`.
+///
+/// Runs are counted in the order of the patches: the next triangle or quad is the one with the lower patch. A part has
+/// the name of its surface in the model, or "surface 3" if that name is empty.
 ///
 /// Errors: count_mismatch (not one patch per triangle and per quad), invalid_argument (no such patch in the set, or no
 /// such surface in the model; index = the triangle or quad).
@@ -256,9 +257,9 @@ class CertifiedTessellation {
   /// take all cells. The corners of a quad are those of a box of the patch's parameters, in which both of its triangles
   /// lie: all that is proven of the mesh holds for both, by either diagonal.
   MeshCapacity quad_capacity() const;
-  /// Returns a mesh of capacity() with all attributes that the plan has.
+  /// Returns a mesh of capacity() with all attributes that the plan has. Errors: out_of_memory.
   Result<Mesh> allocate() const;
-  /// Returns a mesh of quad_capacity() with all attributes that the plan has.
+  /// Returns a mesh of quad_capacity() with all attributes that the plan has. Errors: out_of_memory.
   Result<Mesh> allocate_quads() const;
 
   /// Writes the mesh; with quads if `out.quads` is not empty.

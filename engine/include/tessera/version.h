@@ -8,6 +8,8 @@
 #define TESSERA_VERSION_MINOR 1
 #define TESSERA_VERSION_PATCH 0
 #define TESSERA_VERSION "0.1.0"
+/// The version as one number for comparisons: 10000 * major + 100 * minor + patch.
+#define TESSERA_VERSION_NUMBER (TESSERA_VERSION_MAJOR * 10000 + TESSERA_VERSION_MINOR * 100 + TESSERA_VERSION_PATCH)
 
 // The public interface is in an inline namespace named after the binary interface, abi_MAJOR_MINOR, so that a program
 // compiled with the headers of another interface does not link.

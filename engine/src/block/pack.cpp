@@ -39,17 +39,17 @@ struct Place {
   bool curve;
   double diameter;
 
-  /// Writes the patch's lane, and those that repeat it, by write_coefficients(lane). `size`: see normal_doubt().
+  /// Writes the patch's lane, and those that repeat it, by write_coefficients(lane). `size`: see normal_threshold().
   template <class T, class Write>
-  void write(UnsetVector<T>& coefficients, UnsetVector<T>& doubts, double size, Write write_coefficients) const {
+  void write(UnsetVector<T>& coefficients, UnsetVector<T>& thresholds, double size, Write write_coefficients) const {
     constexpr std::size_t lanes = PatchSet::lanes;
-    const std::array<T, 2> doubt = doubt_in<T>(curve ? no_normal : regular_doubt<T>(size));
+    const std::array<T, 2> threshold = threshold_in<T>(curve ? no_normal : regular_threshold<T>(size));
     T* block = coefficients.data() + group.first_value + (slot.block - group.first_block) * group.block_values;
-    T* rows = doubts.data() + 2 * lanes * slot.block;
+    T* rows = thresholds.data() + 2 * lanes * slot.block;
     const auto write_to = [&](std::uint32_t lane) {
       write_coefficients(block + lane);
-      rows[lane] = doubt[0];
-      rows[lanes + lane] = doubt[1];
+      rows[lane] = threshold[0];
+      rows[lanes + lane] = threshold[1];
     };
     write_to(slot.lane);
     if (slot.lane == 0)
@@ -60,15 +60,15 @@ struct Place {
   template <class T>
   void write_points(Coefficients<T>& to, double size) const {
     net.write_rows(to.points.data() + group.point_value(slot), group.point_values);
-    DegenerateNormalThreshold doubt = regular_doubt<T>(size);
-    if (curve) doubt.noise = no_normal.noise;
-    to.point_doubt[slot.block * std::size_t{PatchSet::lanes} + slot.lane] = doubt_in<T>(doubt);
+    DegenerateNormalThreshold threshold = regular_threshold<T>(size);
+    if (curve) threshold.noise = no_normal.noise;
+    to.point_threshold[slot.block * std::size_t{PatchSet::lanes} + slot.lane] = threshold_in<T>(threshold);
   }
 
   template <class T>
-  DegenerateNormalThreshold regular_doubt(double size) const {
-    return normal_doubt<T>(std::max(group.degree_u, group.degree_v), size, diameter, net.lightest(),
-                           net.weight_spread());
+  DegenerateNormalThreshold regular_threshold(double size) const {
+    return normal_threshold<T>(std::max(group.degree_u, group.degree_v), size, diameter, net.lightest(),
+                               net.weight_spread());
   }
 };
 
@@ -118,8 +118,8 @@ bool PatchSet::Impl::pack_bernstein(std::size_t index, const BlockGroup& group, 
   if (!fits(net, kinds.float_bernstein, net.largest(hull))) return false;
   const double size = net.tangent_size(hull);
   const auto coefficients = [&](auto* lane) { net.write(lane); };
-  if (kinds.float_bernstein) place.write(f32.bernstein, f32.bernstein_doubt, size, coefficients);
-  if (kinds.double_bernstein) place.write(f64.bernstein, f64.bernstein_doubt, size, coefficients);
+  if (kinds.float_bernstein) place.write(f32.bernstein, f32.bernstein_threshold, size, coefficients);
+  if (kinds.double_bernstein) place.write(f64.bernstein, f64.bernstein_threshold, size, coefficients);
   return true;
 }
 
@@ -153,8 +153,8 @@ bool PatchSet::Impl::pack_power(std::size_t index, const BlockGroup& group, cons
   const auto coefficients = [&]<class T>(T* lane) {
     for (std::size_t k = 0; k < power.size(); ++k) lane[k * lanes] = static_cast<T>(power[k]);
   };
-  if (kinds.float_power) place.write(f32.power, f32.power_doubt, size, coefficients);
-  if (kinds.double_power) place.write(f64.power, f64.power_doubt, size, coefficients);
+  if (kinds.float_power) place.write(f32.power, f32.power_threshold, size, coefficients);
+  if (kinds.double_power) place.write(f64.power, f64.power_threshold, size, coefficients);
   return true;
 }
 
@@ -165,15 +165,15 @@ bool PatchSet::Impl::pack_lanes(std::size_t index) {
   return pack_bernstein(index, group, hull) && pack_points(index, group, hull) && pack_power(index, group, hull);
 }
 
-void PatchSet::Impl::note_doubt(std::size_t index) {
+void PatchSet::Impl::note_threshold(std::size_t index) {
   const std::size_t at = slots[index].block * std::size_t{lanes} + slots[index].lane;
-  if (kinds.float_points) f32.largest_doubt = std::max(f32.largest_doubt, f32.point_doubt[at][0]);
-  if (kinds.double_points) f64.largest_doubt = std::max(f64.largest_doubt, f64.point_doubt[at][0]);
+  if (kinds.float_points) f32.largest_threshold = std::max(f32.largest_threshold, f32.point_threshold[at][0]);
+  if (kinds.double_points) f64.largest_threshold = std::max(f64.largest_threshold, f64.point_threshold[at][0]);
 }
 
 bool PatchSet::Impl::pack(std::size_t index) {
   if (!pack_lanes(index)) return false;
-  note_doubt(index);
+  note_threshold(index);
   return true;
 }
 

@@ -133,6 +133,10 @@ inline constexpr DegenerateNormalThreshold no_normal{.squared_length = std::nume
                                                      .noise = -1};
 
 /// The largest error of a tangent where RelativeNet::tangent_size() is 1; `degree` = max(m, n).
+///
+/// The factor 6: a tangent is a sum of n differences times n, and random nets of all degrees reach 4 n units, tangents
+/// that vanish 1.6 n; half as much again is the margin. (The worst case is (m + n + 6) n, see
+/// kernel/sample/sample_kernel.inl.h. A lane between the two costs time at most: its normal is computed exactly.)
 template <class T>
 constexpr double tangent_noise(int degree) {
   return 6 * degree * double{std::numeric_limits<T>::epsilon()};
@@ -140,32 +144,32 @@ constexpr double tangent_noise(int degree) {
 /// The largest |r_u| or |r_v| where the hull's box has the diameter 1.
 constexpr double longest_tangent(int degree, double weight_spread = 1) { return degree * weight_spread; }
 
-/// The least squared length that a kernel reads: smaller ones, below 2^-80 or 2^-600, are out of the range of a float's
-/// or a double's squares.
+/// The least squared length that a kernel reads. Of smaller ones the smallest products would be subnormal and lose
+/// digits: 2^-80 is 2^46 times the smallest normal float, 2^-600 is 2^422 times the smallest normal double.
 template <class T>
-inline constexpr double min_doubt = sizeof(T) == 4 ? 0x1p-80 : 0x1p-600;
+inline constexpr double min_threshold = sizeof(T) == 4 ? 0x1p-80 : 0x1p-600;
 
 /// The threshold of a patch that is no curve, in blocks of T.
 ///
 /// `degree` = max(m, n); `size`: RelativeNet::tangent_size(); `diameter`: that of the hull's box. The error of a
-/// tangent counts as 6 max(m, n) units of `size`, over the weight for rational patches: random nets of all degrees
-/// reach 4, tangents that vanish 1.6. The lengths |r_u|, |r_v| are at most max(m, n) (largest weight / smallest)
-/// diameter (Floater 1992, Derivatives of rational Bezier curves, eq. 10).
+/// tangent is tangent_noise() times `size`, over the weight for rational patches. The lengths |r_u|, |r_v| are at most
+/// max(m, n) (largest weight / smallest) diameter (Floater 1992, Derivatives of rational Bezier curves, eq. 10). If each
+/// component of two tangents is off by e, r_u x r_v is off by at most sqrt(3) e (|r_u| + |r_v|).
 template <class T>
-DegenerateNormalThreshold normal_doubt(int degree, double size, double diameter, double lightest,
-                                       double weight_spread) {
+DegenerateNormalThreshold normal_threshold(int degree, double size, double diameter, double lightest,
+                                           double weight_spread) {
   const double noise = tangent_noise<T>(degree) * size;
   const double longest = longest_tangent(degree, weight_spread) * diameter;
-  const double length = 4 * (noise / lightest) * longest;  // 2 sqrt(3) noise |r_u|
+  const double length = 4 * (noise / lightest) * longest;  // 2 sqrt(3) noise |r_u|, rounded up
   return {.squared_length = length * length, .noise = noise};
 }
 
 /// The threshold as a kernel reads it: squared length, noise.
 template <class T>
-std::array<T, 2> doubt_in(const DegenerateNormalThreshold& doubt) {
+std::array<T, 2> threshold_in(const DegenerateNormalThreshold& threshold) {
   const double largest = std::numeric_limits<T>::max();
-  return {static_cast<T>(std::clamp(doubt.squared_length, min_doubt<T>, largest)),
-          static_cast<T>(std::min(doubt.noise, largest))};
+  return {static_cast<T>(std::clamp(threshold.squared_length, min_threshold<T>, largest)),
+          static_cast<T>(std::min(threshold.noise, largest))};
 }
 
 }  // namespace tessera::inline abi_0_1

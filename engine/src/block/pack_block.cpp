@@ -19,7 +19,7 @@ Box3 box_of_lane(const kernel::NetBoxes& boxes, std::size_t lane) {
 }  // namespace
 
 /// The kernel's job that packs one kind of a block's Bernstein coefficients: it writes what RelativeNet and
-/// normal_doubt() give patch by patch. `copies`: where the nets are copied to unchanged, or null.
+/// normal_threshold() give patch by patch. `copies`: where the nets are copied to unchanged, or null.
 template <class T>
 kernel::PackJob<T> PatchSet::Impl::pack_job(const BlockGroup& group, std::size_t block, const double* const* nets,
                                             double* const* copies, Coefficients<T>& to) const {
@@ -30,10 +30,10 @@ kernel::PackJob<T> PatchSet::Impl::pack_job(const BlockGroup& group, std::size_t
           .origin = {origin.x, origin.y, origin.z},
           .out = to.bernstein.data() + group.first_value + (block - group.first_block) * group.block_values,
           .copies = copies,
-          .doubts = to.bernstein_doubt.data() + 2 * lanes * block,
+          .thresholds = to.bernstein_threshold.data() + 2 * lanes * block,
           .noise = tangent_noise<T>(degree),
           .longest = longest_tangent(degree),
-          .min_doubt = min_doubt<T>};
+          .min_threshold = min_threshold<T>};
 }
 
 std::size_t PatchSet::Impl::pack_polynomials(std::size_t block, const kernel::KernelTable& kernels,

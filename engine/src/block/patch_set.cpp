@@ -83,14 +83,14 @@ void make_room(PatchSet::Impl& set, const NextValues& values) {
     coefficients.resize(values.block);
     threshold.resize(2 * lanes * set.lane_counts.size());
   };
-  if (set.kinds.float_bernstein) make_blocks(set.f32.bernstein, set.f32.bernstein_doubt);
-  if (set.kinds.float_power) make_blocks(set.f32.power, set.f32.power_doubt);
-  if (set.kinds.double_bernstein) make_blocks(set.f64.bernstein, set.f64.bernstein_doubt);
-  if (set.kinds.double_power) make_blocks(set.f64.power, set.f64.power_doubt);
+  if (set.kinds.float_bernstein) make_blocks(set.f32.bernstein, set.f32.bernstein_threshold);
+  if (set.kinds.float_power) make_blocks(set.f32.power, set.f32.power_threshold);
+  if (set.kinds.double_bernstein) make_blocks(set.f64.bernstein, set.f64.bernstein_threshold);
+  if (set.kinds.double_power) make_blocks(set.f64.power, set.f64.power_threshold);
   const auto make_points = [&](auto& of) {
     of.points.resize(values.point + lanes);
     std::fill_n(of.points.end() - lanes, lanes, 0);
-    of.point_doubt.resize(lanes * set.lane_counts.size());
+    of.point_threshold.resize(lanes * set.lane_counts.size());
   };
   if (set.kinds.float_points) make_points(set.f32);
   if (set.kinds.double_points) make_points(set.f64);
@@ -117,8 +117,8 @@ void lay_out(PatchSet::Impl& set) {
 }
 
 template <class T>
-void find_largest_doubt(Coefficients<T>& of) {
-  for (const auto& doubt : of.point_doubt) of.largest_doubt = std::max(of.largest_doubt, doubt[0]);
+void find_largest_threshold(Coefficients<T>& of) {
+  for (const auto& threshold : of.point_threshold) of.largest_threshold = std::max(of.largest_threshold, threshold[0]);
 }
 
 Status too_large(std::size_t patch) {
@@ -204,8 +204,8 @@ Result<PatchSet> PatchSet::Impl::make(std::vector<BezierPatch> patches, std::vec
   set->edited.resize(set->patches.size());
   lay_out(*set);
   if (Status status = set->pack_all(); !status.ok()) return status;
-  find_largest_doubt(set->f32);
-  find_largest_doubt(set->f64);
+  find_largest_threshold(set->f32);
+  find_largest_threshold(set->f64);
   return PatchSet(std::move(set));
 }
 
@@ -243,8 +243,8 @@ std::uint64_t PatchSet::revision() const { return impl_->revision; }
 std::size_t PatchSet::memory_bytes() const {
   const auto bytes = [](const auto& vector) { return vector.capacity() * sizeof(vector[0]); };
   const auto all_bytes = [&](const auto& of) {
-    return bytes(of.bernstein) + bytes(of.power) + bytes(of.bernstein_doubt) + bytes(of.power_doubt) +
-           bytes(of.points) + bytes(of.point_doubt);
+    return bytes(of.bernstein) + bytes(of.power) + bytes(of.bernstein_threshold) + bytes(of.power_threshold) +
+           bytes(of.points) + bytes(of.point_threshold);
   };
   std::size_t total = sizeof(Impl) + bytes(impl_->patches) + bytes(impl_->sources) + bytes(impl_->slots) +
                       bytes(impl_->collapsed) + bytes(impl_->groups) + bytes(impl_->edited) +

@@ -42,19 +42,19 @@ template <class T>
 struct Coefficients {
   UnsetVector<T> bernstein, power;
   /// `[block][squared length, noise][lane]`: see DegenerateNormalThreshold.
-  UnsetVector<T> bernstein_doubt, power_doubt;
+  UnsetVector<T> bernstein_threshold, power_threshold;
   /// Bernstein coefficients `[patch][i][component][j]`, patches in the order of slots, zeros in between. Room behind
   /// the last patch lets it be read by whole vectors too.
   UnsetVector<T> points;
   /// `[block * lanes + lane]`: squared length and noise, see DegenerateNormalThreshold. The squared length of a curve
   /// is finite, and its noise negative.
-  std::vector<std::array<T, 2>> point_doubt;
-  T largest_doubt = 0;  ///< the largest squared length in point_doubt, or more
+  std::vector<std::array<T, 2>> point_threshold;
+  T largest_threshold = 0;  ///< the largest squared length in point_threshold, or more
   const UnsetVector<T>& of(Representation representation) const {
     return representation == Representation::bernstein ? bernstein : power;
   }
-  const UnsetVector<T>& doubt_of(Representation representation) const {
-    return representation == Representation::bernstein ? bernstein_doubt : power_doubt;
+  const UnsetVector<T>& threshold_of(Representation representation) const {
+    return representation == Representation::bernstein ? bernstein_threshold : power_threshold;
   }
 };
 
@@ -112,10 +112,10 @@ class PatchSet::Impl {
   /// false, with the lanes half-written, if a coefficient does not fit. Allocates nothing.
   bool pack(std::size_t index);
   /// Does what pack() does, except for the value that all patches share, so that threads may pack different patches;
-  /// note_doubt() completes it.
+  /// note_threshold() completes it.
   bool pack_lanes(std::size_t index);
-  void note_doubt(std::size_t index);
-  /// Writes the lanes of all patches of a block, with the same bits as pack_lanes(); note_doubt() completes each of
+  void note_threshold(std::size_t index);
+  /// Writes the lanes of all patches of a block, with the same bits as pack_lanes(); note_threshold() completes each of
   /// them. Returns the first lane that doesn't fit, or `lanes` if all do. `edits`: new points for every lane, which
   /// first become the patches' own (each patch must have memory of its own); null: packs the patches' present points.
   std::size_t pack_block(std::size_t block, const kernel::KernelTable& kernels, const Vec3* const* edits = nullptr);

@@ -13,13 +13,15 @@ namespace {
 
 Status check_parameter(double t, const char* name) {
   if (t >= 0 && t <= 1) return {};
-  return {StatusCode::invalid_argument, std::string("parameter ") + name + " = " + text(t) + " is not in [0, 1]"};
+  return {std::isfinite(t) ? StatusCode::invalid_argument : StatusCode::non_finite,
+          std::string("parameter ") + name + " = " + text(t) + " is not in [0, 1]"};
 }
 
 Status check_range(double from, double to, const char* name) {
   if (from >= 0 && from < to && to <= 1) return {};
-  return {StatusCode::invalid_argument, std::string("the range of ") + name + ", [" + text(from) + ", " + text(to) +
-                                            "], is not an interval within [0, 1]"};
+  return {std::isfinite(from) && std::isfinite(to) ? StatusCode::invalid_argument : StatusCode::non_finite,
+          std::string("the range of ") + name + ", [" + text(from) + ", " + text(to) +
+              "], is not an interval within [0, 1]"};
 }
 
 Status check_elevation(int from, int to, const char* direction) {

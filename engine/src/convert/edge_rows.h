@@ -1,9 +1,10 @@
 #pragma once
 // Rows of control points counted from an edge of a patch, for making and measuring joins.
 
-#include <limits>
+#include <cmath>
 #include <string>
 
+#include "base/text.h"
 #include "tessera/bezier_operations.h"
 #include "tessera/bezier_patch.h"
 #include "tessera/geometry.h"
@@ -46,10 +47,11 @@ inline Status check_side(const JoinSide& side, const char* which) {
   if (!is_edge(side.edge))
     return {StatusCode::invalid_argument, std::string("the edge of patch ") + which + " must be u0, u1, v0 or v1"};
   const double width = side.domain.u1 - side.domain.u0, height = side.domain.v1 - side.domain.v0;
-  if (width > 0 && height > 0 && width < std::numeric_limits<double>::infinity() &&
-      height < std::numeric_limits<double>::infinity())
-    return {};
-  return {StatusCode::invalid_argument, std::string("the domain of patch ") + which + " is empty or not finite"};
+  if (!std::isfinite(width) || !std::isfinite(height))
+    return {StatusCode::non_finite, std::string("the domain of patch ") + which + " is not finite"};
+  if (width > 0 && height > 0) return {};
+  return {StatusCode::invalid_argument,
+          std::string("the domain of patch ") + which + " is empty or reversed: " + text(width) + " x " + text(height)};
 }
 
 }  // namespace tessera::inline abi_0_1

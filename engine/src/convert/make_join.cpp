@@ -75,7 +75,8 @@ Result<BezierPatch> make_join(const JoinSide& p, const JoinSide& q, double k, bo
     if (Status status = check_side(p, "p"); !status.ok()) return status;
     if (Status status = check_side(q, "q"); !status.ok()) return status;
     if (!(k > 0) || !std::isfinite(k))
-      return Status(StatusCode::invalid_argument, "the factor k of a join must be finite and greater than 0");
+      return Status(std::isfinite(k) ? StatusCode::invalid_argument : StatusCode::non_finite,
+                    "the factor k of a join is " + text(k) + ", it must be finite and greater than 0");
     return joined(p, q, k, reversed);
   });
 }

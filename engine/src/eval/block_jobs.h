@@ -41,10 +41,10 @@ class BlockJobs {
     if (has_normals_) normals_.prepare(block, job_);
   }
   /// Makes the job that of 16 patches of a group that are gathered from several blocks; see BlockNormals::prepare.
-  void turn_to(const BlockGroup& group, const T* net, const std::uint32_t* lane_patches, const T* doubts) {
+  void turn_to(const BlockGroup& group, const T* net, const std::uint32_t* lane_patches, const T* thresholds) {
     set_group(group);
     job_.net = net;
-    if (has_normals_) normals_.prepare(lane_patches, doubts, job_);
+    if (has_normals_) normals_.prepare(lane_patches, thresholds, job_);
   }
 
  private:

@@ -29,17 +29,18 @@ class BlockNormals {
   /// Completes the job of a block, until the next call.
   void prepare(std::size_t block, kernel::GridJob<T>& job) {
     prepare(set_.lane_patches.data() + block * PatchSet::lanes,
-            set_.coefficients<T>().doubt_of(plan_.options.representation).data() + block * 2 * PatchSet::lanes, job);
+            set_.coefficients<T>().threshold_of(plan_.options.representation).data() + block * 2 * PatchSet::lanes,
+            job);
     if (!plan_.by_patch) return;
     job.u_edges = plan_.u_edges.data() + block * PatchSet::lanes * plan_.count_u;
     job.v_edges = plan_.v_edges.data() + block * PatchSet::lanes * plan_.count_v;
   }
   /// Prepares 16 patches that are in no block together, of a plan with parameters for all.
-  /// `doubts`: `[doubt, noise][lane]`.
-  void prepare(const std::uint32_t* lane_patches, const T* doubts, kernel::GridJob<T>& job) {
+  /// `thresholds`: `[threshold, noise][lane]`.
+  void prepare(const std::uint32_t* lane_patches, const T* thresholds, kernel::GridJob<T>& job) {
     lane_patches_ = lane_patches;
-    job.doubt = doubts;
-    job.noise = doubts + PatchSet::lanes;
+    job.threshold = thresholds;
+    job.noise = thresholds + PatchSet::lanes;
     job.collapsed = find_collapsed() ? collapsed_.data() : nullptr;
   }
 

@@ -115,9 +115,9 @@ class EditedGrids {
     const T* from =
         all.of(representation).data() + group.first_value + (block_ - group.first_block) * group.block_values + lane;
     for (std::size_t k = 0; k < group.block_values; k += lanes) net_[k + gathered_] = from[k];
-    const T* doubts = all.doubt_of(representation).data() + block_ * 2 * lanes + lane;
-    doubts_[gathered_] = doubts[0];
-    doubts_[lanes + gathered_] = doubts[lanes];
+    const T* thresholds = all.threshold_of(representation).data() + block_ * 2 * lanes + lane;
+    thresholds_[gathered_] = thresholds[0];
+    thresholds_[lanes + gathered_] = thresholds[lanes];
   }
 
   void flush() {
@@ -125,10 +125,10 @@ class EditedGrids {
     const BlockGroup& group = call_.set.group_of_block(block_);
     const auto repeat_first = [&](auto* row) { std::fill(row + gathered_, row + lanes, row[0]); };
     for (std::size_t k = 0; k < group.block_values; k += lanes) repeat_first(net_.data() + k);
-    repeat_first(doubts_.data());
-    repeat_first(doubts_.data() + lanes);
+    repeat_first(thresholds_.data());
+    repeat_first(thresholds_.data() + lanes);
     repeat_first(patches_.data());
-    jobs_.turn_to(group, net_.data(), patches_.data(), doubts_.data());
+    jobs_.turn_to(group, net_.data(), patches_.data(), thresholds_.data());
     evaluate(patches_.data(), static_cast<int>(gathered_));
     gathered_ = 0;
   }
@@ -146,7 +146,7 @@ class EditedGrids {
   std::size_t gathered_ = 0;  ///< patches in the net
   std::uint32_t block_ = 0;   ///< the last one that they came from
   std::array<std::uint32_t, lanes> patches_;
-  alignas(cache_line) std::array<T, 2 * lanes> doubts_;
+  alignas(cache_line) std::array<T, 2 * lanes> thresholds_;
   alignas(cache_line) std::array<T, max_coefficients * lanes> net_;
 };
 

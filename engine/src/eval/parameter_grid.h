@@ -1,6 +1,7 @@
 #pragma once
 // Checks of arguments for every evaluation over a grid of a surface's own parameters.
 
+#include <cmath>
 #include <span>
 #include <string>
 
@@ -11,20 +12,21 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// At least one, each within [from, to]. Errors: invalid_argument (index = the parameter).
+/// Checks that there is at least one parameter and that each lies within [from, to]. Errors: invalid_argument, non_finite
+/// (index = the parameter).
 inline Status check_parameters(std::span<const double> parameters, const char* name, double from, double to) {
   if (parameters.empty()) return {StatusCode::invalid_argument, std::string("there are no parameters ") + name};
   for (std::size_t k = 0; k < parameters.size(); ++k)
     if (!(parameters[k] >= from && parameters[k] <= to))
-      return {StatusCode::invalid_argument,
+      return {std::isfinite(parameters[k]) ? StatusCode::invalid_argument : StatusCode::non_finite,
               std::string("parameter ") + name + "[" + std::to_string(k) + "] = " + text(parameters[k]) +
                   " is not within [" + text(from) + ", " + text(to) + "]",
               static_cast<std::ptrdiff_t>(k)};
   return {};
 }
 
-/// Room for u.size() * v.size() records, aligned, and apart from each other and the parameters. Errors:
-/// invalid_argument, buffer_too_small.
+/// Checks that the view has room for u.size() * v.size() records, is aligned, and shares no memory with the parameters.
+/// Errors: invalid_argument, buffer_too_small.
 template <class T>
 Status check_view(const View3<T>& out, std::span<const double> u, std::span<const double> v) {
   if (out.empty() || out.component[1] == nullptr || out.component[2] == nullptr || out.stride < 1)

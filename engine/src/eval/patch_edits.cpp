@@ -96,7 +96,7 @@ void pack_edits(PatchSet::Impl& set, const PatchEdits& edits, const TouchedBlock
 
 void finish_edits(PatchSet::Impl& set, const PatchEdits& edits) {
   if (set.kinds.float_points || set.kinds.double_points)
-    for (const std::uint32_t patch : edits.patch) set.note_doubt(patch);
+    for (const std::uint32_t patch : edits.patch) set.note_threshold(patch);
   if (!edits.patch.empty()) set.note_edits(edits.patch);
 }
 

@@ -125,9 +125,9 @@ class PointChunk {
       grid.offset[1] = call_.set.origin.y;
       grid.offset[2] = call_.set.origin.z;
     }
-    doubts_.fill(coefficients_.largest_doubt);
-    grid.doubt = doubts_.data();
-    grid.lane_doubt = lane_doubt;
+    thresholds_.fill(coefficients_.largest_threshold);
+    grid.threshold = thresholds_.data();
+    grid.lane_threshold = lane_threshold;
     grid.exact_normal = exact_normal;
     grid.exact_context = this;
     const double min_sine = sizeof(T) == 4 ? 1e-6 : 0, smallest_tolerance = sizeof(T) == 4 ? 1e-4 : 0;
@@ -242,12 +242,12 @@ class PointChunk {
     }
   }
 
-  /// See kernel::LaneDoubt.
-  static void lane_doubt(void* context, int slot, int lane, T* doubt, T* noise) {
+  /// See kernel::LaneThreshold.
+  static void lane_threshold(void* context, int slot, int lane, T* threshold, T* noise) {
     const auto& self = *static_cast<PointChunk*>(context);
     const PatchSet::Slot at = self.call_.set.slots[self.samples_.patch[self.sample_of(slot, lane)]];
-    const auto& own = self.coefficients_.point_doubt[at.block * std::size_t{lanes} + at.lane];
-    *doubt = own[1] < 0 ? std::numeric_limits<T>::max() : own[0];
+    const auto& own = self.coefficients_.point_threshold[at.block * std::size_t{lanes} + at.lane];
+    *threshold = own[1] < 0 ? std::numeric_limits<T>::max() : own[0];
     *noise = own[1];
   }
 
@@ -274,7 +274,7 @@ class PointChunk {
   typename Samples::template Memory<std::uint32_t> listed_patch_;
   alignas(cache_line) typename Samples::template Memory<T> listed_u_, listed_v_;
   std::array<std::uint32_t, Samples::capacity> indices_;
-  alignas(cache_line) std::array<T, lanes> doubts_;
+  alignas(cache_line) std::array<T, lanes> thresholds_;
   alignas(cache_line) std::array<T, stage_rows * lanes * batch> stage_;
   alignas(cache_line) std::array<std::array<std::uint8_t, static_cast<std::size_t>(lanes) * batch>, 2> kinds_;
 };

@@ -136,14 +136,14 @@ void run_grid(const KernelTable& table, const Net& net, int order, bool streamin
   const std::uint8_t v_edges[] = {edge_start, edge_inside, edge_inside, edge_end};
   Random random(static_cast<std::uint64_t>(100 * net.degree_u + net.degree_v));
   const AlignedVector<T> block = coefficients<T>(net, random);
-  AlignedVector<T> u_weights, v_weights, doubt(block_lanes), noise(block_lanes), collapsed(4 * block_lanes);
+  AlignedVector<T> u_weights, v_weights, threshold(block_lanes), noise(block_lanes), collapsed(4 * block_lanes);
   const auto append = by_lane ? append_lane_weights<T> : append_weights<T>;
   for (const double t : u) append(net.degree_u, t, u_weights);
   for (const double t : v) append(net.degree_v, t, v_weights);
   for (int lane = 0; lane < block_lanes; ++lane) {
     const auto l = static_cast<std::size_t>(lane);
     noise[l] = lane == 9 ? T(-1) : static_cast<T>(std::ldexp(lane == 7 ? 1.0 : 0x1p-20, net.exponent));
-    doubt[l] = noise[l] * noise[l];
+    threshold[l] = noise[l] * noise[l];
     collapsed[2 * block_lanes + l] = T(net.collapsed && lane % 2 == 0);
   }
   GridJob<T> job;
@@ -156,7 +156,7 @@ void run_grid(const KernelTable& table, const Net& net, int order, bool streamin
   job.u_end = count_u;
   job.v_end = count_v;
   job.streaming = streaming;
-  job.doubt = doubt.data();
+  job.threshold = threshold.data();
   job.noise = noise.data();
   job.collapsed = net.collapsed ? collapsed.data() : nullptr;
   std::vector<std::uint8_t> u_lane_edges, v_lane_edges;  // half of 1 is no edge

@@ -18,9 +18,9 @@ inline constexpr std::uint8_t edge_inside = 0, edge_start = 1, edge_end = 2;
 template <class T>
 using ExactNormal = int (*)(void* context, int iu, int iv, int lane, T* normal);
 
-/// Writes the doubt and noise of the patch under one lane.
+/// Writes the threshold and noise of the patch under one lane.
 template <class T>
-using LaneDoubt = void (*)(void* context, int iu, int lane, T* doubt, T* noise);
+using LaneThreshold = void (*)(void* context, int iu, int lane, T* threshold, T* noise);
 
 /// The memory of a job's outputs; null if a quantity is not wanted. Vectors are `[sample][component][lane]`, scalars
 /// and kinds `[sample][lane]`, samples in the order of the job's part of the grid, v fastest. Aligned to 64 bytes.
@@ -50,7 +50,7 @@ struct GridJob : GridJobOutputs<T> {
   int prefetched_lines = 0;
 
   // The inputs that decide where r_u x r_v is the normal; read if normals or curvatures are wanted.
-  const T* doubt = nullptr;  ///< `[lane]`: at or below this |r_u x r_v|^2 the tangents' rounding errors count
+  const T* threshold = nullptr;  ///< `[lane]`: at or below this |r_u x r_v|^2 the tangents' rounding errors count
   /// `[lane]`: error of a tangent's component, times the weight at the point; negative: no normal anywhere.
   const T* noise = nullptr;
   const T* collapsed = nullptr;  ///< `[edge u0, u1, v0, v1][lane]`: 1 where that edge is one point; null if none is
@@ -58,8 +58,8 @@ struct GridJob : GridJobOutputs<T> {
   const std::uint8_t* v_edges = nullptr;  ///< `[iv]`
   ExactNormal<T> exact_normal = nullptr;
   void* exact_context = nullptr;
-  /// If lanes are samples of many patches, `doubt` holds an upper bound of all, and this writes that of one lane.
-  LaneDoubt<T> lane_doubt = nullptr;
+  /// If lanes are samples of many patches, `threshold` holds an upper bound of all, and this writes that of one lane.
+  LaneThreshold<T> lane_threshold = nullptr;
   T min_sine = 0;           ///< sine of the tangents' angle below which curvatures are undefined
   T umbilic_tolerance = 0;  ///< a point is umbilic if (k1 - k2) / (|k1| + |k2|) is at most this
 };

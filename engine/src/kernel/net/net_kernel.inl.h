@@ -92,15 +92,15 @@ inline bool may_have_pointed_edge(const PackJob<T>& job) {
   return false;
 }
 
-/// Writes PackJob::doubts.
+/// Writes PackJob::thresholds.
 template <class T, class L>
-inline void write_doubts(const PackJob<T>& job, typename L::Batch largest, typename L::Batch diagonal, int lane) {
+inline void write_thresholds(const PackJob<T>& job, typename L::Batch largest, typename L::Batch diagonal, int lane) {
   const auto most = L::broadcast(double{std::numeric_limits<T>::max()});
   const auto noise = L::broadcast(job.noise) * largest, longest = L::broadcast(job.longest) * diagonal;
   const auto length = L::broadcast(4) * noise * longest;
-  const auto doubt = xsimd::max(length * length, L::broadcast(job.min_doubt));
-  L::store_as(job.doubts + lane, xsimd::min(doubt, most));
-  L::store_as(job.doubts + block_lanes + lane, xsimd::min(noise, most));
+  const auto threshold = xsimd::max(length * length, L::broadcast(job.min_threshold));
+  L::store_as(job.thresholds + lane, xsimd::min(threshold, most));
+  L::store_as(job.thresholds + block_lanes + lane, xsimd::min(noise, most));
 }
 
 /// Gives the same bits on every ISA: a sum of doubles, rounded to T.
@@ -120,7 +120,7 @@ void pack_nets(const PackJob<T>& job, PackedNets& found) {
     box.store(found.boxes, lane);
     const auto largest = box.largest(job.origin);
     L::store(found.largest + lane, largest);
-    write_doubts<T, L>(job, largest, box.diagonal(), lane);
+    write_thresholds<T, L>(job, largest, box.diagonal(), lane);
   }
   found.edges_may_be_points = may_have_pointed_edge(job);
 }

@@ -263,21 +263,21 @@ struct NormalExchange {
   alignas(64) Vector uncertain;          ///< out
 };
 
-/// For lanes that are samples of many patches: returns the lanes that are safe by their own patch's doubt, and the
+/// For lanes that are samples of many patches: returns the lanes that are safe by their own patch's threshold, and the
 /// patches' noise.
 template <class L>
-inline typename L::Batch own_doubts(const GridJob<typename L::Scalar>& job, const Place& place,
-                                    const typename L::Batch& safe, const NormalExchange<L>& exchange,
-                                    typename L::Batch& noise) {
+inline typename L::Batch own_thresholds(const GridJob<typename L::Scalar>& job, const Place& place,
+                                        const typename L::Batch& safe, const NormalExchange<L>& exchange,
+                                        typename L::Batch& noise) {
   using T = typename L::Scalar;
   const auto zero = L::broadcast(0), one = L::broadcast(1);
-  alignas(64) T trusted[L::width], doubts[L::width], noises[L::width];
+  alignas(64) T trusted[L::width], thresholds[L::width], noises[L::width];
   L::store(trusted, safe);
-  L::store(doubts, zero);
+  L::store(thresholds, zero);
   L::store(noises, zero);
   for (int lane = 0; lane < L::width; ++lane)
     if (!(trusted[lane] > 0))
-      job.lane_doubt(job.exact_context, place.iu, place.lane + lane, doubts + lane, noises + lane);
+      job.lane_threshold(job.exact_context, place.iu, place.lane + lane, thresholds + lane, noises + lane);
   noise = L::load(noises);
   typename L::Batch du[3], dv[3], n[3];
   for (int c = 0; c < 3; ++c) {
@@ -285,7 +285,7 @@ inline typename L::Batch own_doubts(const GridJob<typename L::Scalar>& job, cons
     dv[c] = L::load(exchange.dv[c]);
   }
   const auto squared = cross<L>(du, dv, n);
-  const auto own = (squared > L::load(doubts)) & (squared <= L::broadcast(SafeRange<T>::highest));
+  const auto own = (squared > L::load(thresholds)) & (squared <= L::broadcast(SafeRange<T>::highest));
   return xsimd::select((safe > zero) | own, one, zero);
 }
 
@@ -297,8 +297,8 @@ template <class L>
                                                      NormalExchange<L>& exchange) {
   const auto zero = L::broadcast(0), one = L::broadcast(1);
   typename L::Batch safe = assumed_safe, noise;
-  if (job.lane_doubt) {
-    safe = own_doubts<L>(job, place, safe, exchange, noise);
+  if (job.lane_threshold) {
+    safe = own_thresholds<L>(job, place, safe, exchange, noise);
   } else {
     noise = L::load(job.noise + place.lane);
   }
@@ -329,7 +329,7 @@ template <class L>
   normal.kind = L::broadcast(regular_normal);
   normal.uncertain = L::broadcast(0);
   for (int c = 0; c < 3; ++c) normal.direction[c] = normal.direction[c] * normal.reciprocal;
-  return (normal.squared > L::load(job.doubt + lane)) &
+  return (normal.squared > L::load(job.threshold + lane)) &
          (normal.squared <= L::broadcast(SafeRange<typename L::Scalar>::highest));
 }
 

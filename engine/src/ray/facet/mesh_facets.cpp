@@ -113,9 +113,10 @@ class MeshFacets final : public FacetSource {
     }
     for (std::size_t k = 0; k < mesh_.parameters.size(); ++k) {
       if (!(mesh_.parameters[k] >= 0 && mesh_.parameters[k] <= 1))
-        return invalid(std::string(k % 2 == 0 ? "u" : "v") + " of vertex " + std::to_string(k / 2) + " is " +
-                           text(mesh_.parameters[k]) + ", it must be in [0, 1]",
-                       k / 2);
+        return {std::isfinite(mesh_.parameters[k]) ? StatusCode::invalid_argument : StatusCode::non_finite,
+                std::string(k % 2 == 0 ? "u" : "v") + " of vertex " + std::to_string(k / 2) + " is " +
+                    text(mesh_.parameters[k]) + ", it must be in [0, 1]",
+                static_cast<std::ptrdiff_t>(k / 2)};
     }
     return {};
   }

@@ -165,8 +165,8 @@ Status InstanceScene::build(const Execution& execution) {
       boxes[k] = placed_box(instance.to_world, condition, instance.scene->box());
     }
     if (!placement || !is_finite(boxes[k].lower) || !is_finite(boxes[k].upper))
-      return Status(StatusCode::invalid_argument, name_of(k) + "the map must be finite and not nearly singular",
-                    static_cast<std::ptrdiff_t>(k));
+      return Status(is_finite(instance.to_world) ? StatusCode::invalid_argument : StatusCode::non_finite,
+                    name_of(k) + "the map must be finite and not nearly singular", static_cast<std::ptrdiff_t>(k));
     instance.placement = *placement;
     box_.extend(boxes[k]);
     spawn_offset_ =

@@ -26,7 +26,7 @@ Status PatchScene::check_point(std::uint32_t patch, double u, double v) const {
                   "there is no patch " + std::to_string(patch) + " in a set of " + std::to_string(set_.patch_count()));
   // Written so that NaN fails.
   if (!(u >= 0 && u <= 1 && v >= 0 && v <= 1))
-    return Status(StatusCode::invalid_argument,
+    return Status(std::isfinite(u) && std::isfinite(v) ? StatusCode::invalid_argument : StatusCode::non_finite,
                   "u and v of a point of a patch are " + text(u) + " and " + text(v) + ", they must be from 0 to 1");
   return {};
 }

@@ -71,7 +71,7 @@ struct Vectors {
   using Numbers = double[capacity];
   Numbers x, y, z, radius, size;  // the first `count`
   std::size_t count = 0;
-  double doubt = 0;  ///< NaN if one of them is not finite, else 0
+  double invalid = 0;  ///< NaN if one of them is not finite, else 0
 
   Vectors(const DerivativePiece& piece, const DerivativePiece::Nets& nets, const Place& place) {
     for_vectors(piece, nets, [&](const Homogeneous& a) {
@@ -81,7 +81,7 @@ struct Vectors {
       z[count] = centre.z;
       radius[count] = place.radius * std::abs(a.w) / place.lightest;
       size[count] = place.radius != 0 ? length(centre) : 0;
-      doubt += 0 * (centre.x + centre.y + centre.z + radius[count] + size[count]);
+      invalid += 0 * (centre.x + centre.y + centre.z + radius[count] + size[count]);
       ++count;
     });
   }
@@ -100,7 +100,7 @@ double largest_product(const Vectors& a, const Vectors& b) {
       if constexpr (Balls) product += a.size[p] * b.radius[q] + b.size[q] * a.radius[p] + a.radius[p] * b.radius[q];
       most = std::max(most, product);
     }
-  return most + (a.doubt + b.doubt);
+  return most + (a.invalid + b.invalid);
 }
 template <bool Size>
 double largest_product(const Vectors& a, const Vectors& b, bool balls) {

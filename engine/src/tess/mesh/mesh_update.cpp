@@ -40,7 +40,9 @@ class MeshUpdate::Impl {
   Status run(PatchSet::Impl& set, const PatchEdits& edits, const MeshViews& out, const Execution& execution) {
     const CertifiedTessellation::Impl& plan = impl_of(plan_);
     if (plan.shapes().size() != set.patches.size() || touched_.block_count() != set.lane_counts.size())
-      return {StatusCode::invalid_argument, "the update was made for another patch set"};
+      return {StatusCode::stale, "the update was made for a set of " +
+                                     counted(plan.shapes().size(), "patch", "patches") + ", this set has " +
+                                     std::to_string(set.patches.size()) + "; make a new update"};
     if (set.revision != revision_) return edited_otherwise(set.revision, revision_);
     if (Status status = check_vertex_views(out, plan.plan().capacity(), plan.plan().has_f64_positions()); !status.ok())
       return status;

@@ -25,10 +25,8 @@ class LeastIndex;
 
 /// Returns the largest distance between a float vertex, relative to the set's origin, and the surface's point.
 ///
-/// Each term of a sum of B_i B_j V_ij, or of B_i B_j w_ij V_ij and of B_i B_j w_ij, goes through at most m + n + 6
-/// roundings: of the packed coefficient, of the weights, and of the sums (Higham, Accuracy and Stability of Numerical
-/// Algorithms, 2nd ed., sec. 3.1). The terms' sizes add up to at most the largest |V|; for rational patches they do so
-/// over the sum of weights.
+/// Each component is off by (m + n + 6) u times the largest |V|, twice that for rational patches: steps 1 to 4 of
+/// kernel/sample/sample_kernel.inl.h.
 double vertex_rounding(const BezierPatch& patch, const Vec3& origin);
 /// vertex_rounding() by `size`, the largest |x|, |y| or |z| of the control points relative to the origin.
 double vertex_rounding(int degree_u, int degree_v, bool rational, double size);

@@ -128,9 +128,10 @@ void PatchWriter::prepare(std::size_t k, VertexJob& vertices) const {
   job.grid.degree_u = group.degree_u;
   job.grid.degree_v = group.degree_v;
   job.grid.rational = group.rational;
-  const float* doubts = set_.f32.bernstein_doubt.data() + 2 * std::size_t{PatchSet::lanes} * slot.block + slot.lane;
-  std::fill(vertices.doubt.begin(), vertices.doubt.end(), doubts[0]);
-  std::fill(vertices.noise.begin(), vertices.noise.end(), doubts[PatchSet::lanes]);
+  const float* thresholds =
+      set_.f32.bernstein_threshold.data() + 2 * std::size_t{PatchSet::lanes} * slot.block + slot.lane;
+  std::fill(vertices.threshold.begin(), vertices.threshold.end(), thresholds[0]);
+  std::fill(vertices.noise.begin(), vertices.noise.end(), thresholds[PatchSet::lanes]);
   vertices.exact = {&set_.patches[k], &division};
   job.inner_u = division.inner.u.rate();
   job.inner_v = division.inner.v.rate();

@@ -35,7 +35,7 @@ inline kernel::StreamState stream_from(float* memory) { return {.first = memory,
 struct VertexJob {
   kernel::MeshVertexJob job;
   std::array<kernel::StreamState, 2> lines;  ///< cache lines of positions and of normals
-  alignas(cache_line) std::array<float, kernel::block_lanes> doubt, noise;
+  alignas(cache_line) std::array<float, kernel::block_lanes> threshold, noise;
   std::array<std::array<float, 3>, 4> starts;
   ExactPatch exact;
   /// The points of a block's patches, patch by patch: see kernel::MeshKernels::mesh_points.
@@ -44,7 +44,7 @@ struct VertexJob {
   alignas(cache_line) std::array<float, std::size_t{kernel::mesh_patch_points} * kernel::block_lanes> points;
 
   VertexJob() {
-    job.grid.doubt = doubt.data();
+    job.grid.threshold = threshold.data();
     job.grid.noise = noise.data();
     job.grid.exact_normal = exact_normal;
     job.grid.exact_context = &exact;

@@ -1,0 +1,123 @@
+// The contracts of the public interface: which errors a function returns stands in its comment; the version has one
+// value.
+
+#include <gtest/gtest.h>
+
+#include <regex>
+#include <sstream>
+#include <vector>
+
+#include "house/tree.h"
+#include "tessera/version.h"
+
+namespace tessera::house {
+namespace {
+
+// Functions that make the Status of an error which the caller has found.
+const std::vector<std::string> error_makers{"in_surface", "expected", "failure", "refused_element"};
+
+struct PublicFunction {
+  std::string name;
+  std::string comment;  // of the declaration, or of the overload above it
+};
+
+/// The functions outside of private parts that return a Status or a Result, without friends and deleted ones.
+std::vector<PublicFunction> fallible_functions(const std::string& text) {
+  static const std::regex declaration(R"(^ *(?:static |inline |virtual )*(?:Status|Result<.*>) (\w+)\(.*$)");
+  std::vector<PublicFunction> functions;
+  std::istringstream stream(text);
+  std::string comment, made_of;
+  bool is_private = false, in_declaration = false, ends_comment = false;
+  for (std::string line; std::getline(stream, line);) {
+    std::smatch found;
+    if (line == " private:") is_private = true;
+    if (line == "};") is_private = false;
+    const std::size_t begin = line.find_first_not_of(' ');
+    if (begin != std::string::npos && line.compare(begin, 2, "//") == 0) {
+      if (ends_comment) comment.clear();
+      ends_comment = false;
+      comment += line.substr(begin) + ' ';
+    } else if (begin == std::string::npos) {
+      comment.clear();
+    } else if (std::regex_match(line, found, declaration) && !is_private) {
+      functions.push_back({found[1], comment});
+      in_declaration = true;
+    } else if (!in_declaration && line.compare(begin, 8, "template") != 0) {
+      comment.clear();
+    }
+    if (in_declaration && line.find("= delete") != std::string::npos) functions.pop_back();
+    if (begin != std::string::npos && line.ends_with(';')) ends_comment = true, in_declaration = false;
+  }
+  return functions;
+}
+
+bool states_errors(const PublicFunction& function) {
+  for (const std::string& maker : error_makers)
+    if (function.name == maker) return true;
+  return std::regex_search(function.comment, std::regex("Errors[:,]|Errors that"));
+}
+
+TEST(Contracts, SearchForFalliblePublicFunctionsFindsThem) {
+  const auto found = fallible_functions(R"(
+/// Makes it. Errors: none.
+Result<int> make(int a,
+                 int b);
+Result<int> make(double a);
+/// Says nothing.
+Status run() const;
+/// Gone.
+static Result<A> make(A&&) = delete;
+
+class B {
+ public:
+  template <class T>
+  static Result<std::pair<T, T>> pair(T t);
+ private:
+  Status hidden();
+};
+)");
+  ASSERT_EQ(found.size(), 4u);
+  EXPECT_TRUE(states_errors(found[0]));
+  EXPECT_TRUE(states_errors(found[1]));
+  EXPECT_EQ(found[2].name, "run");
+  EXPECT_FALSE(states_errors(found[2]));
+  EXPECT_EQ(found[3].name, "pair");
+  EXPECT_FALSE(states_errors(found[3]));
+}
+
+TEST(Contracts, FunctionsThatMayFailStateTheirErrors) {
+  std::size_t checked = 0;
+  for (const std::string& path : files_under("engine/include/tessera")) {
+    if (path.find("/detail/") != std::string::npos || path.ends_with("/status.h") || path.ends_with("/guard.h"))
+      continue;
+    for (const PublicFunction& function : fallible_functions(read_text(path))) {
+      ++checked;
+      EXPECT_TRUE(states_errors(function)) << path << ": " << function.name << "() does not say \"Errors: ...\"";
+    }
+  }
+  EXPECT_GT(checked, 150u) << "the search finds too few functions";
+}
+
+TEST(Version, HasOneValue) {
+  const std::string numbers[] = {std::to_string(TESSERA_VERSION_MAJOR), std::to_string(TESSERA_VERSION_MINOR),
+                                 std::to_string(TESSERA_VERSION_PATCH)};
+  EXPECT_EQ(TESSERA_VERSION, numbers[0] + "." + numbers[1] + "." + numbers[2]);
+  EXPECT_EQ(TESSERA_VERSION_NUMBER,
+            10000 * std::stoi(numbers[0]) + 100 * std::stoi(numbers[1]) + std::stoi(numbers[2]));
+  const std::string name = "abi_" + numbers[0] + "_" + numbers[1];
+  std::size_t checked = 0;
+  for (const char* folder : {"engine/include", "engine/src"}) {
+    for (const std::string& path : files_under(folder)) {
+      const std::string text = read_text(path);
+      static const std::regex abi(R"(\babi_\d+_\d+\b)");
+      for (auto found = std::sregex_iterator(text.begin(), text.end(), abi); found != std::sregex_iterator(); ++found) {
+        ++checked;
+        ASSERT_EQ(found->str(), name) << path << ": the inline namespace is not that of the version";
+      }
+    }
+  }
+  EXPECT_GT(checked, 400u);
+}
+
+}  // namespace
+}  // namespace tessera::house
