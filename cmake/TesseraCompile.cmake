@@ -31,9 +31,9 @@ endif()
 # Makes the target tessera_NAME of sources in engine/src/NAME. They include the public headers, their own folder and the
 # floors below, all as <folder>/<file>; tests/house checks every #include.
 #
-# Optimisation in Release: SOURCES at -O3; BALANCED sources, which hand batches to kernels, at -O2; SIZE_OPTIMIZED sources,
-# which run once per surface, at -Os. Move a source to a smaller level only if that does not change the instructions that
-# tools/perf count reports.
+# Optimisation in Release: SOURCES at -O3; BALANCED sources, which hand batches to kernels, at -O2; SIZE_OPTIMIZED
+# sources, which run once per surface, at -Os. Move a source to a smaller level only if that does not change the
+# instructions that tools/perf count reports.
 function(tessera_floor name)
   get_filename_component(engine ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../engine ABSOLUTE)
   cmake_parse_arguments(FLOOR "" "" "SOURCES;BALANCED;SIZE_OPTIMIZED;BELOW" ${ARGN})

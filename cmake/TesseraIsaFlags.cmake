@@ -4,8 +4,8 @@
 # - tessera_machine is the source that finds out at run time which instruction sets the machine has.
 #
 # No other file sets flags of instruction sets. The units are optimised in every configuration: otherwise small inline
-# functions would remain as symbols, which the linker could merge into the baseline. Sanitized builds use -O1, because at
-# -O3 the compiler takes minutes for their checks.
+# functions would remain as symbols, which the linker could merge into the baseline. Sanitized builds use -O1, because
+# at -O3 the compiler takes minutes for their checks.
 set(TESSERA_KERNEL_LEVEL "-O3" CACHE STRING "How the kernels are optimised: another level than -O3 is for tests of compilers alone")
 mark_as_advanced(TESSERA_KERNEL_LEVEL)
 set(kernel_flags ${TESSERA_KERNEL_LEVEL} -fno-trapping-math -fno-exceptions)

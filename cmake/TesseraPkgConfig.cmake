@@ -1,5 +1,5 @@
-# Writes one file per component for pkg-config: tessera.pc, tessera-ray.pc, tessera-io.pc, tessera-io_occt.pc. Users of a
-# static library link its dependencies too, so its file lists them; a shared library links them itself.
+# Writes one file per component for pkg-config: tessera.pc, tessera-ray.pc, tessera-io.pc, tessera-io_occt.pc. Users of
+# a static library link its dependencies too, so its file lists them; a shared library links them itself.
 
 # tessera_names_of(OUT TARGETS...): -l of imported libraries, and of those of their project that they are linked with.
 function(tessera_names_of out)

@@ -153,7 +153,7 @@ TEST_F(EvaluateErrors, PlanOfAnotherPrecisionOrSet) {
   GridBuffers<double> doubles(plan);
   EXPECT_EQ(evaluate(set, plan, doubles.views()).code(), StatusCode::invalid_argument);
   const PatchSet other = set_of({random_polynomial(random, 3, 3)});
-  EXPECT_EQ(evaluate(other, plan, out.views()).code(), StatusCode::invalid_argument);
+  EXPECT_EQ(evaluate(other, plan, out.views()).code(), StatusCode::stale);
 }
 
 TEST_F(EvaluateErrors, Parameters) {

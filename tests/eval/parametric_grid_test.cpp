@@ -81,7 +81,7 @@ TEST(ParametricGrid, RefusesBadInput) {
   refused({}, two, view, StatusCode::invalid_argument, -1);
   refused(two, {}, view, StatusCode::invalid_argument, -1);
   refused(outside, two, view, StatusCode::invalid_argument, 1);
-  refused(two, no_number, view, StatusCode::invalid_argument, 0);
+  refused(two, no_number, view, StatusCode::non_finite, 0);
   refused(two, three, view, StatusCode::buffer_too_small, -1);
   refused(two, two, {}, StatusCode::invalid_argument, -1);
   auto unstrided = view;

@@ -252,7 +252,7 @@ TEST(Transfinite, RefusesArgumentsAndWritesNothing) {
   refused(patch, {}, {1}, invalid, -1, "no parameters u");
   refused(patch, {0}, {}, invalid, -1, "no parameters v");
   refused(patch, {0, 2.5}, {1}, invalid, 1, "parameter u[1] = 2.5 is not within [-1, 2]");
-  refused(patch, {0}, {1, 2, not_a_number}, invalid, 2, "parameter v[2]");
+  refused(patch, {0}, {1, 2, not_a_number}, StatusCode::non_finite, 2, "parameter v[2]");
   refused(wavy_ruled(Direction::u), {0}, {0}, invalid, 0, "parameter u[0]");
   refused(patch, {0, 1}, {1, 2, 3}, StatusCode::buffer_too_small, -1, "2 * 3 records, not 5", 5);
   std::vector<double> memory(30);

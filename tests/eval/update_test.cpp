@@ -234,7 +234,7 @@ TEST(Update, BadEditsAreRefusedBeforeAnythingIsWritten) {
   EXPECT_EQ(update.run(set, plan, good, QuantityViews<double>{}).code(), StatusCode::invalid_argument);
   PatchSet other = set_of({patches.begin(), patches.begin() + 3});
   const GridPlan its = value_of(GridPlan::make(other, t, t));
-  EXPECT_EQ(update.run(other, its, {}, grids.views()).code(), StatusCode::invalid_argument);
+  EXPECT_EQ(update.run(other, its, {}, grids.views()).code(), StatusCode::stale);
   refused(edits, StatusCode::count_mismatch, -1);
   ASSERT_TRUE(update.run(set, plan, good, grids.views()).ok());
   ASSERT_TRUE(update.run(set, plan, {}, grids.views()).ok());

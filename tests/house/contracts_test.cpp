@@ -37,7 +37,9 @@ std::vector<PublicFunction> fallible_functions(const std::string& text) {
       if (ends_comment) comment.clear();
       ends_comment = false;
       comment += line.substr(begin) + ' ';
-    } else if (begin == std::string::npos) {
+      continue;
+    }
+    if (begin == std::string::npos) {
       comment.clear();
     } else if (std::regex_match(line, found, declaration) && !is_private) {
       functions.push_back({found[1], comment});
@@ -54,7 +56,7 @@ std::vector<PublicFunction> fallible_functions(const std::string& text) {
 bool states_errors(const PublicFunction& function) {
   for (const std::string& maker : error_makers)
     if (function.name == maker) return true;
-  return std::regex_search(function.comment, std::regex("Errors[:,]|Errors that"));
+  return std::regex_search(function.comment, std::regex("Errors[:,]"));
 }
 
 TEST(Contracts, SearchForFalliblePublicFunctionsFindsThem) {

@@ -27,8 +27,8 @@ bool ends_statement(const std::string& line) {
 
 /// Whether what begins with this text, without its template parameters, is a scope of functions.
 bool is_scope(const std::string& head) {
-  static const std::regex scope(
-      R"re(^(template <.*> )?(inline )?(namespace|class|struct|union|enum|extern)\b(?!.*\) (const )?(noexcept )?(override )?$))re");
+  static const std::regex scope(R"re(^(template <.*> )?(inline )?(namespace|class|struct|union|enum|extern)\b)re"
+                                R"re((?!.*\) (const )?(noexcept )?(override )?$))re");
   return std::regex_search(head, scope);
 }
 

@@ -144,7 +144,7 @@ TEST(Engine, EveryIncludeStaysOnOrBelowItsFloor) {
   for (const std::string& path : files_under("engine")) known.insert(path.substr(std::string("engine/").size()));
   std::size_t checked = 0;
   for (const std::string& path : known) {
-    if (path == "CMakeLists.txt" || path == front_door || path.starts_with("docs/")) continue;
+    if (path == front_door || !(path.ends_with(".h") || path.ends_with(".cpp"))) continue;
     ++checked;
     for (const std::string& fault : check_includes({path, read_text("engine/" + path)}, table, known)) {
       ADD_FAILURE() << "engine/" << fault;

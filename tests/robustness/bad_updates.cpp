@@ -31,7 +31,7 @@ void surface_grid(Table& table, const Surface& surface) {
   refused("no parameters", invalid_argument, {}, t, sound);
   refused("a parameter outside the domain", invalid_argument, {0, 0.5, 1.5}, t, sound);
   refused("a parameter of NaN", non_finite, t, {0, not_a_number, 1}, sound);
-  refused("an infinite parameter", invalid_argument, t, {-infinity}, sound);
+  refused("an infinite parameter", non_finite, t, {-infinity}, sound);
   refused("no view", invalid_argument, t, t, {});
   bad_view(
       "positions", sound, 9, [](auto& view) -> auto& { return view; },

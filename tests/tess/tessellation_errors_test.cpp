@@ -154,10 +154,12 @@ TEST_F(BadViews, MisalignedOrInOnePlace) {
   views = mesh_.views();
   for (float*& component : views.position.component)
     component = reinterpret_cast<float*>(reinterpret_cast<char*>(component) + 1);
-  expect_refused(views, StatusCode::invalid_argument, "position is not aligned to its numbers");
+  expect_refused(views, StatusCode::invalid_argument, "position: the view's memory must be aligned to 4 bytes");
   views = mesh_.views();
   views.parameter.stride = std::numeric_limits<std::ptrdiff_t>::max();
-  expect_refused(views, StatusCode::invalid_argument, "parameter: its stride leads out of memory");
+  expect_refused(views, StatusCode::invalid_argument,
+                 "parameter: a stride of 9223372036854775807 over " + std::to_string(plan_.capacity().vertices) +
+                     " records reaches beyond the address space");
 }
 
 TEST(TessellationErrors, StaleAfterAnEditOfThePoles) {

@@ -52,7 +52,8 @@ std::array<Vec3, 4> corner_twists(const BezierPatch& patch);
 Result<std::pair<BezierPatch, BezierPatch>> split_u(const BezierPatch& patch, double t);
 /// Splits along v, like split_u(). Errors: invalid_argument or non_finite (the parameter).
 Result<std::pair<BezierPatch, BezierPatch>> split_v(const BezierPatch& patch, double t);
-/// Returns the part over a rectangle within [0,1]^2, on [0,1]^2. Errors: invalid_argument or non_finite (the rectangle).
+/// Returns the part over a rectangle within [0,1]^2, on [0,1]^2. Errors: invalid_argument or non_finite (the
+/// rectangle).
 Result<BezierPatch> sub_patch(const BezierPatch& patch, const Domain& rectangle);
 /// Returns the same patch with the given degrees. Errors: unsupported_degree (below the patch's, or above max_degree).
 Result<BezierPatch> elevate_degree(const BezierPatch& patch, int degree_u, int degree_v);
@@ -133,8 +134,8 @@ Result<JoinReport> measure_join(const JoinSide& p, const JoinSide& q, const Join
 /// rational patches in homogeneous form. If the degrees along the edge differ, the lower one is raised first. If q has
 /// degree 1 across the edge, its far border moves. `reversed`: whether q's edge runs the other way.
 ///
-/// Errors: as for measure_join(); invalid_argument or non_finite (k), invalid_weight (a new weight is not positive: k is too
-/// small).
+/// Errors: as for measure_join(); invalid_argument or non_finite (k), invalid_weight (a new weight is not positive: k
+/// is too small).
 Result<BezierPatch> make_join(const JoinSide& p, const JoinSide& q, double k = 1, bool reversed = false);
 
 }  // namespace tessera::inline abi_0_1

@@ -150,18 +150,21 @@ Result<PatchRange> touched_patches(const BSplineSurface& surface, std::size_t i,
 // Conversions of the other kinds of surfaces. Neighbours in a grid share their borders by ==. Memory: O(output); the
 // surface is not kept. Threads: any number of calls at once; functions of the caller are called as their surface says.
 
-/// Converts a tensor patch to one Bezier patch over the patch's domain; exact up to rounding. Errors: non_finite (points too large).
+/// Converts a tensor patch to one Bezier patch over the patch's domain; exact up to rounding. Errors: non_finite
+/// (points too large).
 Result<PatchGrid> to_bezier(const TensorPatch& patch);
 
-/// Converts a Hermite patch to one bicubic patch over the patch's domain; exact up to rounding. Errors: non_finite (too large).
+/// Converts a Hermite patch to one bicubic patch over the patch's domain; exact up to rounding. Errors: non_finite (too
+/// large).
 Result<PatchGrid> to_bezier(const HermitePatch& patch);
 
-/// Converts a Hermite network to one bicubic patch per cell, over the knots; exact up to rounding. Errors: non_finite (too large).
+/// Converts a Hermite network to one bicubic patch per cell, over the knots; exact up to rounding. Errors: non_finite
+/// (too large).
 Result<PatchGrid> to_bezier(const HermiteNetwork& network);
 
-/// Converts an explicit polynomial to one polynomial patch of the same degrees (1 for degree 0), exactly: control heights are the polar forms
-/// of the polynomial at the rectangle's ends, summed with 106 bits. Errors: non_finite (a height is out of the range of
-/// doubles).
+/// Converts an explicit polynomial to one polynomial patch of the same degrees (1 for degree 0), exactly: control
+/// heights are the polar forms of the polynomial at the rectangle's ends, summed with 106 bits. Errors: non_finite (a
+/// height is out of the range of doubles).
 Result<PatchGrid> to_bezier(const ExplicitPolynomial& surface);
 
 /// Converts a piece exactly to rational patches: degree 2 along circles, hyperbolas and parabolas, degree 1 along

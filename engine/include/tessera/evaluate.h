@@ -118,9 +118,10 @@ using QuantityBlocks = Quantities<std::span<T>, std::span<T>, std::span<NormalKi
 ///
 /// Error bounds of each component for the Bernstein representation, in units of 2^-23 (2^-52 in double). Roundings are
 /// taken as independent; the tests hold the bounds for random nets of all degrees and for steep weights. The proven
-/// worst case of positions is (d + 3) size, twice that for rational patches. Terms: d, the higher degree; `size`, the largest |V - origin| of the patch; `ratio`, the largest weight over the weight at
-/// the point (1 for polynomial patches); h = |r_u x r_v| / max(|r_u|, |r_v|), the sine of the tangents' angle times the
-/// shorter tangent; D, the largest second derivative:
+/// worst case of positions is (d + 3) size, twice that for rational patches. Terms: d, the higher degree; `size`, the
+/// largest |V - origin| of the patch; `ratio`, the largest weight over the weight at the point (1 for polynomial
+/// patches); h = |r_u x r_v| / max(|r_u|, |r_v|), the sine of the tangents' angle times the shorter tangent; D, the
+/// largest second derivative:
 /// - positions: 2 size; rational (4 + d / 4) size
 /// - first derivatives: 16 d size ratio
 /// - second derivatives: 16 d^2 size; rational 48 d^2 size ratio^2
@@ -145,8 +146,8 @@ using QuantityBlocks = Quantities<std::span<T>, std::span<T>, std::span<NormalKi
 template <class T>
 Status evaluate(const PatchSet& set, const GridPlan& plan, const QuantityViews<T>& out,
                 const Execution& execution = {});
-/// Evaluates all patches on the grid, into blocks: errors, threads and bounds as for views. Plans with parameters of
-/// each patch's own write plain stores.
+/// Evaluates all patches on the grid, into blocks. Plans with parameters that differ from patch to patch write plain
+/// stores. Errors, threads and bounds: as for views.
 template <class T>
 Status evaluate(const PatchSet& set, const GridPlan& plan, const QuantityBlocks<T>& out,
                 const Execution& execution = {});
@@ -296,9 +297,9 @@ enum class Calls : std::uint8_t {
 /// The bytes are the same for any number of threads.
 ///
 /// Errors, with nothing written: non_finite and invalid_argument (index = a parameter that is not finite, or outside
-/// the domain), invalid_argument (no parameters; a view that lacks a component or a stride, is misaligned, or shares memory with another), buffer_too_small. Errors, with the
-/// output partly written: those of the function (of the first record that has one), non_finite (a position too large
-/// for float), cancelled.
+/// the domain), invalid_argument (no parameters; a view that lacks a component or a stride, is misaligned, or shares
+/// memory with another), buffer_too_small. Errors, with the output partly written: those of the function (of the first
+/// record that has one), non_finite (a position too large for float), cancelled.
 template <class T>
 Status evaluate(const ParametricSurface& surface, std::span<const double> u, std::span<const double> v,
                 const View3<T>& out, const Execution& execution = {}, Calls calls = Calls::one_thread);

@@ -1,8 +1,8 @@
 #pragma once
 // A model: the named, placed and trimmed surfaces of a file.
 //
-// Memory: sets and grids own theirs; a model is not kept by what is made of it. Threads: const calls on a model from any
-// number of threads, if the functions of its surfaces allow it; make_patch_set() runs in the caller's TBB arena.
+// Memory: sets and grids own theirs; a model is not kept by what is made of it. Threads: const calls on a model from
+// any number of threads, if the functions of its surfaces allow it; make_patch_set() runs in the caller's TBB arena.
 
 #include <span>
 #include <string>

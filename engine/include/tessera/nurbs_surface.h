@@ -110,8 +110,8 @@ enum class CircleArcs : std::uint8_t { three = 3, four = 4 };
 /// Makes a circle about the axis's origin, from the direction of angle zero. Errors: those of all makers.
 Result<Curve> nurbs_circle(const Axis& axis, double radius, CircleArcs arcs = CircleArcs::four);
 /// Revolves `profile` about the axis: u is the turn, and v the profile's parameter with its degree and knots. Weights
-/// are products. Points of the profile on the axis make poles. Errors: those of all makers. (The NURBS Book, sec. 8.5, in
-/// closed form.)
+/// are products. Points of the profile on the axis make poles. Errors: those of all makers. (The NURBS Book, sec. 8.5,
+/// in closed form.)
 Result<BSplineSurface> surface_of_revolution(const Curve& profile, const Axis& axis,
                                              CircleArcs arcs = CircleArcs::four);
 /// Makes a sphere about the axis's origin. v in [0, 1] runs from the pole at -direction to the pole at +direction, over

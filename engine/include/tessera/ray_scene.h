@@ -221,9 +221,9 @@ class RayScene {
   /// After a refit of one of the scenes, this scene is stale until its own refit(), which is always a rebuild, but only
   /// of the boxes of instances.
   ///
-  /// Errors, index = the first such instance: invalid_argument (no scene; a map that is nearly singular), non_finite (a map),
-  /// unsupported (a scene in grid mode or of instances; sizes outside of 1e-140 to 1e140), stale (a scene). Without
-  /// index: invalid_argument (no instance), cancelled, out_of_memory, internal (Embree's own).
+  /// Errors, index = the first such instance: invalid_argument (no scene; a map that is nearly singular), non_finite (a
+  /// map), unsupported (a scene in grid mode or of instances; sizes outside of 1e-140 to 1e140), stale (a scene).
+  /// Without index: invalid_argument (no instance), cancelled, out_of_memory, internal (Embree's own).
   static Result<RayScene> make(std::span<const RayInstance> instances, const Execution& execution = {});
 
   RayScene(RayScene&&) noexcept;

@@ -153,8 +153,8 @@ inline constexpr double min_threshold = sizeof(T) == 4 ? 0x1p-80 : 0x1p-600;
 ///
 /// `degree` = max(m, n); `size`: RelativeNet::tangent_size(); `diameter`: that of the hull's box. The error of a
 /// tangent is tangent_noise() times `size`, over the weight for rational patches. The lengths |r_u|, |r_v| are at most
-/// max(m, n) (largest weight / smallest) diameter (Floater 1992, Derivatives of rational Bezier curves, eq. 10). If each
-/// component of two tangents is off by e, r_u x r_v is off by at most sqrt(3) e (|r_u| + |r_v|).
+/// max(m, n) (largest weight / smallest) diameter (Floater 1992, Derivatives of rational Bezier curves, eq. 10). If
+/// each component of two tangents is off by e, r_u x r_v is off by at most sqrt(3) e (|r_u| + |r_v|).
 template <class T>
 DegenerateNormalThreshold normal_threshold(int degree, double size, double diameter, double lightest,
                                            double weight_spread) {

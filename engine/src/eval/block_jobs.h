@@ -65,7 +65,7 @@ class BlockJobs {
   const GridPlan::Impl& plan_;
   bool has_normals_;
   const BlockGroup* group_ = nullptr;
-  const T* net_ = nullptr;  ///< of the group's first block
+  const T* net_ = nullptr;  ///< coefficients of the group's first block
   BlockNormals<T> normals_;
   kernel::GridJob<T> job_;
 };

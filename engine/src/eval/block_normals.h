@@ -1,6 +1,6 @@
 #pragma once
-// Data by which a block's kernel tells regular normals from limits: collapsed edges by lane, and the exact normal of a
-// point.
+// Gives the grid kernel what it needs to tell regular normals from limits: the collapsed edges of each lane, and a
+// function for exact normals.
 
 #include <array>
 
@@ -26,7 +26,7 @@ class BlockNormals {
     job.min_sine = static_cast<T>(std::max(plan_.options.geometry.min_sine, min_sine));
     job.umbilic_tolerance = static_cast<T>(std::max(plan_.options.geometry.umbilic_tolerance, smallest_tolerance));
   }
-  /// Completes the job of a block, until the next call.
+  /// Completes the job for a block. It holds until the next call.
   void prepare(std::size_t block, kernel::GridJob<T>& job) {
     prepare(set_.lane_patches.data() + block * PatchSet::lanes,
             set_.coefficients<T>().threshold_of(plan_.options.representation).data() + block * 2 * PatchSet::lanes,
@@ -35,7 +35,7 @@ class BlockNormals {
     job.u_edges = plan_.u_edges.data() + block * PatchSet::lanes * plan_.count_u;
     job.v_edges = plan_.v_edges.data() + block * PatchSet::lanes * plan_.count_v;
   }
-  /// Prepares 16 patches that are in no block together, of a plan with parameters for all.
+  /// Completes the job for 16 patches of several blocks, of a plan whose parameters are the same for all patches.
   /// `thresholds`: `[threshold, noise][lane]`.
   void prepare(const std::uint32_t* lane_patches, const T* thresholds, kernel::GridJob<T>& job) {
     lane_patches_ = lane_patches;
@@ -78,7 +78,7 @@ class BlockNormals {
   const PatchSet::Impl& set_;
   const GridPlan::Impl& plan_;
   const std::uint32_t* lane_patches_ = nullptr;
-  std::uint32_t patch_ = 0;  ///< of the last point asked for
+  std::uint32_t patch_ = 0;  ///< the patch of the last exact normal
   int iu_ = -1, iv_ = -1;
   UnitNormal last_;
   alignas(cache_line) std::array<T, 4 * lanes> collapsed_{};

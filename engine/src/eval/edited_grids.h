@@ -23,15 +23,15 @@ struct UpdateCall {
   const kernel::KernelTable& kernels;
   const PatchEdits& edits;
   const TouchedBlocks& touched;
-  int order;  ///< of the derivatives that the outputs are made of
+  int order;  ///< the highest order of the derivatives that the outputs need
   bool streaming;
 
   /// Whether all patches of a block are edited.
   bool is_whole(std::uint32_t block) const { return touched.count(block) == set.lane_counts[block]; }
 };
 
-/// Takes block after block into block-interleaved memory. A touched block is evaluated whole: the lanes of other
-/// patches get what they had. Lives on a task's stack; allocates nothing.
+/// Packs and evaluates block after block into block-interleaved memory. A touched block is evaluated whole: lanes of
+/// patches without edits get the same values again. Lives on a task's stack; allocates nothing.
 template <class T>
 class EditedBlocks {
  public:
@@ -46,7 +46,7 @@ class EditedBlocks {
     out_.place(block * call_.plan.samples() * PatchSet::lanes, jobs_.job());
     isa_ = run_grid(call_.kernels, jobs_.job());
   }
-  /// The ISA that ran last.
+  /// Returns the instruction set that ran last.
   Isa finish() {
     if (call_.streaming) call_.kernels.finish_streaming();
     return isa_;
@@ -59,9 +59,9 @@ class EditedBlocks {
   Isa isa_ = Isa::sse2;
 };
 
-/// Takes block after block to patch-contiguous views. Those whose patches are all edited are evaluated where they lie;
-/// the edited patches of others are gathered, 16 at a time, so that no lane goes idle. Lives on a task's stack;
-/// allocates nothing.
+/// Packs and evaluates block after block into patch-contiguous views. A block whose patches are all edited is evaluated
+/// in place. The edited patches of other blocks are gathered, 16 at a time, so that no lane is idle. Lives on a task's
+/// stack; allocates nothing.
 template <class T>
 class EditedGrids {
  public:
@@ -78,7 +78,7 @@ class EditedGrids {
       add_lanes(block);
     }
   }
-  /// Evaluates what is still gathered. The ISA that ran last.
+  /// Evaluates the gathered patches. Returns the instruction set that ran last.
   Isa finish() {
     flush();
     if (call_.streaming) call_.kernels.finish_streaming();
@@ -108,7 +108,7 @@ class EditedGrids {
     }
   }
 
-  /// A lane of block_ into the next lane of the net.
+  /// Copies a lane of block_ into the next lane of the net.
   void gather(const BlockGroup& group, std::size_t lane) {
     const Coefficients<T>& all = call_.set.template coefficients<T>();
     const Representation representation = call_.plan.options.representation;
@@ -144,7 +144,7 @@ class EditedGrids {
   BlockJobs<T> jobs_;
   Isa isa_ = Isa::sse2;
   std::size_t gathered_ = 0;  ///< patches in the net
-  std::uint32_t block_ = 0;   ///< the last one that they came from
+  std::uint32_t block_ = 0;   ///< the block of the last gathered patch
   std::array<std::uint32_t, lanes> patches_;
   alignas(cache_line) std::array<T, 2 * lanes> thresholds_;
   alignas(cache_line) std::array<T, max_coefficients * lanes> net_;

@@ -102,7 +102,8 @@ bool is_wanted(const std::span<T>& memory) {
   return memory.data() != nullptr;
 }
 
-/// Returns the highest order of the derivatives that the wanted outputs need. Errors: invalid_argument (none is wanted).
+/// Returns the highest order of the derivatives that the wanted outputs need. Errors: invalid_argument (none is
+/// wanted).
 template <class All>
 Result<int> order_of_outputs(const All& out) {
   int order = -1;

@@ -30,9 +30,9 @@ AlignedVector<float> weights_of_columns(std::span<const float> weights, std::siz
   return table;
 }
 
-/// Whether the flat kernel is faster than the grid kernel. Each row begins with a new vector, so the last vector of a row
-/// is partly empty; a last block is partly empty too. The flat kernel pays if it wastes at most 15% of its lanes, about
-/// what the grid kernel's transpose costs, or less than the blocks do.
+/// Whether the flat kernel is faster than the grid kernel. Each row begins with a new vector, so the last vector of a
+/// row is partly empty; a last block is partly empty too. The flat kernel pays if it wastes at most 15%, by timings of
+/// rows of all lengths, or less than the blocks do. Results do not depend on the choice.
 bool pays(const GridPlan::Impl& plan) {
   constexpr double max_waste = 1.15;
   const std::size_t values = 3 * plan.count_v, vectors = (values + lanes - 1) / lanes;

@@ -6,8 +6,8 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Fills plan.flat if the flat kernel can evaluate the plan's grids and is faster: in float, for polynomial patches that
-/// share their parameters, with long rows, on an instruction set that has this kernel.
+/// Fills plan.flat if the flat kernel can evaluate the plan's grids and is faster: in float, for polynomial patches
+/// that share their parameters, with long rows, on an instruction set that has this kernel.
 void tabulate_flat(const PatchSet::Impl& set, GridPlan::Impl& plan);
 
 /// Records x y z of all patches from `out` on, for a plan that has flat tables. The same bytes as by blocks.

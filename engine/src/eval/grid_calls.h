@@ -13,13 +13,13 @@ Result<int> check_grids(const PatchSet::Impl& set, const GridPlan& plan, const Q
 template <class T>
 Result<int> check_grids(const PatchSet::Impl& set, const GridPlan& plan, const QuantityBlocks<T>& out);
 
-/// Whether so many records go out by streaming stores.
+/// Whether this many records are written by streaming stores.
 template <class T>
 bool views_stream(const StageLayout<T>& layout, std::size_t records, Stores stores);
 template <class T>
 bool blocks_stream(const QuantityBlocks<T>& out, std::size_t records, Stores stores);
 
-/// How many blocks a task takes; all where one thread is faster than two.
+/// Returns how many blocks a task takes: all of them if one thread is faster than two.
 std::size_t blocks_per_task(const GridPlan::Impl& plan, std::size_t blocks, bool derivatives);
 
 }  // namespace tessera::inline abi_0_1

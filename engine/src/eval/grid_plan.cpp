@@ -158,15 +158,15 @@ Status check_geometry(const LocalGeometryOptions& options) {
 
 /// Returns lane operations per point, as GridPlan::work() counts them: fused multiply-adds and the like, one per lane.
 ///
-/// The figures of a bicubic polynomial patch. A sum over 4 coefficients of 3 components takes 12 operations. The rows of
-/// u are shared by all points of a row and do not count.
+/// The figures of a bicubic polynomial patch. A sum over 4 coefficients of 3 components takes 12 operations. The rows
+/// of u are shared by all points of a row and do not count.
 /// - positions: one sum: 12
 /// - du and dv: two sums more: 36
 /// - the normal: 9 for the cross product, 3 for the squared length, 2 for the root and the check: 50
 /// - second derivatives: three sums more: 72
-/// Sums grow with the order, so figures of other degrees are in proportion. A rational patch has a fourth component, and
-/// divides: 4/3 and 4 more. Curvatures take 30 more (forms 6 x 3, then 12 for their quotients), and the normal besides
-/// second derivatives its 14.
+/// Sums grow with the order, so figures of other degrees are in proportion. A rational patch has a fourth component,
+/// and divides: 4/3 and 4 more. Curvatures take 30 more (forms 6 x 3, then 12 for their quotients), and the normal
+/// besides second derivatives its 14.
 double operations_per_point(const PlannedGroup& group, const QuantityFlags& outputs) {
   const bool second = outputs.duu || outputs.duv || outputs.dvv;
   const bool curvatures = outputs.first_form || outputs.second_form || outputs.gaussian || outputs.mean ||

@@ -11,12 +11,12 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// `[k][order][i]` for parameter k: values, first and second derivatives, degree + 1 of each; one table a degree in
-/// use.
+/// `[k][order][i]` for parameter k: values, first and second derivatives, degree + 1 of each. One table per degree
+/// in use.
 template <class T>
 using WeightTables = std::array<AlignedVector<T>, max_degree + 1>;
 
-/// Weights of parameters that differ from patch to patch: a table `[k][order][i][lane]` a block, and where each begins.
+/// Weights of parameters that differ from patch to patch: one table per block, `[k][order][i][lane]`.
 template <class T>
 struct LaneTables {
   UnsetVector<T> values;
@@ -36,7 +36,7 @@ struct FlatTables {
   WeightTables<float> u, v;
 };
 
-/// Degrees and rationality of a group, and its patches: what a plan must find again in the set that it runs over.
+/// Degrees, rationality and patches of a group. A set that the plan runs over must have the same groups.
 struct PlannedGroup {
   int degree_u, degree_v;
   bool rational;
@@ -74,7 +74,7 @@ class GridPlan::Impl {
   }
 };
 
-/// The public evaluate() for those who keep a set's inner state, which stays in place when the set is moved.
+/// The public evaluate() for callers that keep a set's inner state, which stays in place when the set is moved.
 Status evaluate(const PatchSet::Impl& set, const GridPlan& plan, const QuantityViews<float>& out,
                 const Execution& execution);
 

@@ -41,7 +41,8 @@ class GridUpdate::Impl {
   }
 
  private:
-  /// Makes all checks and allocations that can fail. Returns the highest order of the derivatives that the outputs need.
+  /// Makes all checks and allocations that can fail. Returns the highest order of the derivatives that the outputs
+  /// need.
   template <class Outputs>
   Result<int> start(PatchSet::Impl& set, const GridPlan& plan, const PatchEdits& edits, const Outputs& out,
                     const Execution& execution) {

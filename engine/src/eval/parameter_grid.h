@@ -12,8 +12,8 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Checks that there is at least one parameter and that each lies within [from, to]. Errors: invalid_argument, non_finite
-/// (index = the parameter).
+/// Checks that there is at least one parameter and that each lies within [from, to]. Errors: invalid_argument,
+/// non_finite (index = the parameter).
 inline Status check_parameters(std::span<const double> parameters, const char* name, double from, double to) {
   if (parameters.empty()) return {StatusCode::invalid_argument, std::string("there are no parameters ") + name};
   for (std::size_t k = 0; k < parameters.size(); ++k)

@@ -14,7 +14,8 @@ namespace tessera::inline abi_0_1 {
 using KeepsShape = FunctionRef<bool(std::uint32_t patch, std::span<const Vec3> points)>;
 
 /// Checks all new points, and gives each edited patch memory that no other patch shares. Errors, which leave the set's
-/// values as they were: non_finite, stale (a patch that does not keep its shape), index = the first such edit; cancelled.
+/// values as they were: non_finite, stale (a patch that does not keep its shape), index = the first such edit;
+/// cancelled.
 Status prepare_edits(PatchSet::Impl& set, const PatchEdits& edits, const TouchedBlocks& touched,
                      const Execution& execution, const KeepsShape* keeps_shape = nullptr);
 

@@ -33,7 +33,7 @@ struct ChunkSamples {
   template <class Value>
   using Memory = std::array<Value, capacity + padding>;
 
-  std::size_t begin = 0, count = 0;  ///< of the call's samples
+  std::size_t begin = 0, count = 0;  ///< which samples of the call
   const std::uint32_t* patch = nullptr;
   const T* u = nullptr;
   const T* v = nullptr;

@@ -1,6 +1,6 @@
 #pragma once
-// Two sources of scattered samples: by patch, or by surface. A source first checks its samples, then copies them chunk by
-// chunk.
+// Two sources of scattered samples: by patch, or by surface. A source first checks its samples, then copies them chunk
+// by chunk.
 
 #include <algorithm>
 #include <array>

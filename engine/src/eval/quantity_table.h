@@ -9,7 +9,8 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// How often each component is divided by the widths of a patch along u and v, to be by the surface's parameters.
+/// How often each component is divided by the widths of its patch along u and v. It is then by the surface's
+/// parameters.
 struct ParameterPowers {
   std::array<int, 3> u{}, v{};
 };

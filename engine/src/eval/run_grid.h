@@ -1,6 +1,6 @@
 #pragma once
-// Calls the grid kernel of an instruction set. The CMake option TESSERA_PLANT_SLOWDOWN makes these calls slower, for tests
-// of the tools that watch speed.
+// Calls the grid kernel of an instruction set. The CMake option TESSERA_PLANT_SLOWDOWN makes these calls slower, for
+// tests of the tools that watch speed.
 
 #include <algorithm>
 

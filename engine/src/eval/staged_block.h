@@ -64,7 +64,7 @@ class StageLayout {
     T* kernel::GridJobOutputs<T>::*job = nullptr;
     int first = 0;            ///< its place in the record or in the stage, in rows of lanes
     int array = -1;           ///< the first of its arrays; -1 if it goes out by columns
-    std::ptrdiff_t step = 1;  ///< of its arrays
+    std::ptrdiff_t step = 1;  ///< rows of lanes between the values of an array
 
     bool packed() const { return width == 1 || (component[1] == component[0] + 1 && component[2] == component[0] + 2); }
   };
@@ -100,8 +100,8 @@ class StageLayout {
   std::span<const Array> columns() const { return std::span(columns_).first(column_count_); }
   bool one_record() const { return one_record_; }
   int record_width() const { return record_width_; }  ///< values of all wanted views
-  /// Samples that are staged at once, if rows of the grid divide evenly: enough that the cost of the calls is small, and
-  /// so few that their stores overlap with the next computation.
+  /// Samples that are staged at once, if rows of the grid divide evenly: enough that the cost of the calls is small,
+  /// and so few that their stores overlap with the next computation.
   int piece() const { return std::max(min_samples, stage_rows / std::max(record_width_, 1)); }
   /// The most samples that are staged at once. Longer pieces avoid that a row is cut: both parts compute its curves.
   int longest_piece() const { return 2 * piece(); }

@@ -16,9 +16,9 @@ inline constexpr std::size_t items_per_task(std::size_t items, std::size_t point
   const std::size_t tasks = 2 * ((items * points + pair - 1) / pair);
   return (items + tasks - 1) / tasks;
 }
-/// Up to this many points, about ten microseconds of work, one thread evaluates all. A second thread that is awake saves
-/// time in calls longer than 3 to 5 microseconds. One that sleeps must be woken: calls shorter than 150 microseconds then
-/// take 5 microseconds longer (measured by tessera_break_even_report).
+/// Up to this many points, about ten microseconds of work, one thread evaluates all. A second thread that is awake
+/// saves time in calls longer than 3 to 5 microseconds. One that sleeps must be woken: calls shorter than 150
+/// microseconds then take 5 microseconds longer (measured by tessera_break_even_report).
 inline constexpr std::size_t serial_positions = 32768, serial_normals = 10240;
 
 /// Reports the ISA of the kernel that ran; an empty run reports that of the plan.

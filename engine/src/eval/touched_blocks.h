@@ -14,12 +14,12 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Status of one edit that is refused.
+/// Returns the status of an edit that cannot be made.
 inline Status refused_edit(StatusCode code, std::size_t edit, const std::string& why) {
   return Status(code, "edit " + std::to_string(edit) + ": " + why, static_cast<std::ptrdiff_t>(edit));
 }
 
-/// The edits of one call, block by block. Memory for all patches of a set, so that no call allocates.
+/// The edits of one call, block by block. Holds memory for all patches of a set, so that no call allocates.
 class TouchedBlocks {
  public:
   static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
@@ -30,8 +30,8 @@ class TouchedBlocks {
     first_points_.reserve(set.patches.size());
   }
 
-  /// Takes the edits of a call. Errors: invalid_argument (no such patch, one named twice), count_mismatch; then, as
-  /// after clear(), there is none.
+  /// Takes the edits of a call. Errors: invalid_argument (no such patch, one named twice), count_mismatch; there are
+  /// then no edits, as after clear().
   Status add(const PatchSet::Impl& set, const PatchEdits& edits) {
     clear();
     std::size_t next = 0;
@@ -67,10 +67,10 @@ class TouchedBlocks {
     first_points_.clear();
   }
 
-  std::size_t block_count() const { return counts_.size(); }                                ///< of the set
-  std::span<const std::uint32_t> blocks() const { return blocks_; }                         ///< those with edits
-  int count(std::uint32_t block) const { return counts_[block]; }                           ///< of its edits
-  const std::uint32_t* edits(std::uint32_t block) const { return &edits_[block * lanes]; }  ///< of its lanes, or none
+  std::size_t block_count() const { return counts_.size(); }                                ///< blocks of the set
+  std::span<const std::uint32_t> blocks() const { return blocks_; }                         ///< blocks with edits
+  int count(std::uint32_t block) const { return counts_[block]; }                           ///< edits of the block
+  const std::uint32_t* edits(std::uint32_t block) const { return &edits_[block * lanes]; }  ///< by lane; or none
   std::size_t first_point(std::size_t edit) const { return first_points_[edit]; }
 
  private:
@@ -82,9 +82,9 @@ class TouchedBlocks {
   }
 
   std::vector<std::uint32_t> edits_;  ///< `[block][lane]`
-  std::vector<std::uint8_t> counts_;  ///< of each block's edits
+  std::vector<std::uint8_t> counts_;  ///< `[block]`: its edits
   std::vector<std::uint32_t> blocks_;
-  std::vector<std::size_t> first_points_;  ///< of each edit
+  std::vector<std::size_t> first_points_;  ///< `[edit]`
 };
 
 }  // namespace tessera::inline abi_0_1

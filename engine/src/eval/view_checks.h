@@ -31,7 +31,7 @@ class ViewChecks {
           view.size, alignof(T));
   }
 
-  /// The first error of all views, or invalid_argument if one that is written shares memory with another.
+  /// Returns the first error of all views; or invalid_argument if an output shares memory with another view.
   TESSERA_INTERNAL_EXPORT Status status() const;
 
  private:

@@ -1,7 +1,7 @@
 #pragma once
-// Transfinite blending of four border curves; lanes = parameters v. The border curves' values for one u are broadcast, and those
-// for v stream through, as many columns at a time as stay in the second-level cache. (A first-level tile would shorten
-// the runs of stores, which cost more than the loads.)
+// Transfinite blending of four border curves; lanes = parameters v. The border curves' values for one u are broadcast,
+// and those for v stream through, as many columns at a time as stay in the second-level cache. (A first-level tile
+// would shorten the runs of stores, which cost more than the loads.)
 //
 // Needs before it, outside of the instruction set's namespace: kernel/grid/line_kernels.h, kernel/isa/lanes.h.
 

@@ -1,7 +1,8 @@
 #pragma once
-// A block over a grid of parameters; lanes = patches: each vector holds one coefficient of 4, 8 or 16 patches of a block. For each u the row
-// curves q_j = sum_i f_i(u) c_ij stay in registers while v runs: r = sum_j g_j(v) q_j. The weights f, g are tabulated,
-// so the same code evaluates Bernstein and power coefficients. One pass writes any subset of the outputs.
+// A block over a grid of parameters; lanes = patches: each vector holds one coefficient of 4, 8 or 16 patches of a
+// block. For each u the row curves q_j = sum_i f_i(u) c_ij stay in registers while v runs: r = sum_j g_j(v) q_j. The
+// weights f, g are tabulated, so the same code evaluates Bernstein and power coefficients. One pass writes any subset
+// of the outputs.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/grid/grid_kernels.h, kernel/isa/lanes.h.
 

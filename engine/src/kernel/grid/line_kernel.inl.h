@@ -1,7 +1,7 @@
 #pragma once
-// Patch-contiguous output of the grid kernel: values of a block, `[value][lane]`, are transposed for a few lanes at a time and
-// joined with the rest of each lane's last vector, so that memory receives only whole aligned vectors, plain or
-// streamed. Vectors in which one lane ends and the next begins are assembled at the end.
+// Patch-contiguous output of the grid kernel: values of a block, `[value][lane]`, are transposed for a few lanes at a
+// time and joined with the rest of each lane's last vector, so that memory receives only whole aligned vectors, plain
+// or streamed. Vectors in which one lane ends and the next begins are assembled at the end.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/grid/line_kernels.h, kernel/isa/lanes.h.
 

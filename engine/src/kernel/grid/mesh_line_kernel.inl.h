@@ -1,7 +1,7 @@
 #pragma once
-// Kernels 1 and 2 in one loop, for positions and normals of bicubic patches where a vector holds a block,
-// lanes = patches. Samples go to a ring of rows in the first-level cache. After each sample a few earlier rows leave
-// it, so that their shuffles run beside the next sample's multiply-adds.
+// The grid kernel and the line kernel in one loop, for positions and normals of bicubic patches where a vector holds a
+// block, lanes = patches. Samples go to a ring of rows in the first-level cache. After each sample a few earlier rows
+// leave it, so that their shuffles run beside the next sample's multiply-adds.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/grid/grid_kernels.h, kernel/grid/line_kernels.h,
 // kernel/isa/lanes.h.

@@ -53,8 +53,8 @@ struct MeshRecords {
 
 /// The vertices of one patch: inner points at (iu / inner_u, iv / inner_v), v fastest, then the border points.
 struct MeshVertexJob {
-  /// Degrees, rationality, `threshold` and `noise` (sixteen copies of the patch's), and exact_normal, which is called for
-  /// vertex lane < 8 ? iu + lane : iv + lane - 8. Results of lanes beyond the last vertex are ignored.
+  /// Degrees, rationality, `threshold` and `noise` (sixteen copies of the patch's), and exact_normal, which is called
+  /// for vertex lane < 8 ? iu + lane : iv + lane - 8. Results of lanes beyond the last vertex are ignored.
   GridJob<float> grid;
   const float* net = nullptr;    ///< `[i][j][component]`, block_lanes apart
   int inner_u = 1, inner_v = 1;  ///< both 1, or both at least 2

@@ -16,9 +16,9 @@ struct PackJob {
   T* out = nullptr;              ///< `[number][lane]`, 64-byte aligned
   /// Where the nets are copied unchanged in the same pass, one per lane; null: nowhere.
   double* const* copies = nullptr;
-  /// `[threshold, noise][lane]`, 64-byte aligned: the threshold is (4 n l)^2, at least min_threshold, and the noise is n, where n
-  /// is `noise` times the lane's largest coefficient and l is `longest` times its box's diagonal. Limited to T's
-  /// largest value.
+  /// `[threshold, noise][lane]`, 64-byte aligned: the threshold is (4 n l)^2, at least min_threshold, and the noise is
+  /// n, where n is `noise` times the lane's largest coefficient and l is `longest` times its box's diagonal. Limited to
+  /// T's largest value.
   T* thresholds = nullptr;
   double noise = 0, longest = 0, min_threshold = 0;
 };

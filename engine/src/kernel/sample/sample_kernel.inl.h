@@ -70,8 +70,8 @@ inline const typename L::Batch& in_lanes(const typename L::Batch& weight) {
 // largest |V - o| of the control points V and the origin o.
 // 1. A coefficient is rounded once when it is packed, and the weights f_i, g_j are once each when they are tabulated
 //    (computed for scattered samples: once, by kernel/point/lane_weights.inl.h).
-// 2. A term f_i g_j c_ij goes through at most m + 1 roundings in the row's sum, 1 product and m fused multiply-adds, and
-//    n + 1 in the column's. That is m + n + 5 with those of 1, and 6 with terms of second order.
+// 2. A term f_i g_j c_ij goes through at most m + 1 roundings in the row's sum, 1 product and m fused multiply-adds,
+//    and n + 1 in the column's. That is m + n + 5 with those of 1, and 6 with terms of second order.
 // 3. So a sum errs by at most (m + n + 6) u sum f_i g_j |c_ij| (Higham, Accuracy and Stability of Numerical Algorithms,
 //    2nd ed., sec. 3.1). Bernstein weights are not negative and add up to 1: this is (m + n + 6) u R, or d + 3 units of
 //    2 u with d, the higher degree.
@@ -147,7 +147,8 @@ template <class L, int DegreeV, int Order, class Weights, int Components, int Ca
 //   r = P q,  r_u = (P_u - w_u r) q,
 //   r_uu = (P_uu - 2 w_u r_u - w_uu r) q,  r_uv = (P_uv - w_u r_v - w_v r_u - w_uv r) q.
 //
-// Rounding errors of derivatives, to first order. W is the largest weight, w the weight at the point, e a few roundings.
+// Rounding errors of derivatives, to first order. W is the largest weight, w the weight at the point, e a few
+// roundings.
 // 1. Sums of Bernstein weights err by e w in w and by e R in r.
 // 2. The weights of a derivative add up to at most 2 d, so P_u errs by 2 d e W R and w_u by 2 d e W.
 // 3. With |r| <= R, |w_u| <= d W and |r_u| <= 2 d R W / w the error of r_u is at most (2 + 2 + 1 + 2) e d R W / w: from

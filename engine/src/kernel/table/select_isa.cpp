@@ -81,7 +81,7 @@ Result<Isa> default_isa() {
 
 Result<Isa> usable_isa(std::optional<Isa> wanted) {
   if (!wanted) return default_isa();
-  return is_available(*wanted) ? Result<Isa>(*wanted) : missing(*wanted);
+  return is_available(*wanted) ? Result<Isa>(*wanted) : parse_isa(name(*wanted));
 }
 
 namespace kernel {

@@ -24,8 +24,8 @@ constexpr int max_newton_steps = 12;
 constexpr double worth_narrowing = 0.6;
 // A step of fewer than 5 units of 2^-52 in [0, 1] is rounding.
 constexpr double least_step = 1e-15;
-// restrict_net() rounds the ends of a part by a few units of 2^-52. The margin, 4500 units, keeps a root at the very end
-// inside, and gives the part a width.
+// restrict_net() rounds the ends of a part by a few units of 2^-52. The margin, 4500 units, keeps a root at the very
+// end inside, and gives the part a width.
 constexpr double cut_margin = 1e-12;
 
 enum class Outcome { none, found, open };

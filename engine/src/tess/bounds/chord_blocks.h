@@ -28,7 +28,7 @@ class ChordBlocks {
     packed,  ///< the block's kernel
     alone,   ///< the homogeneous patch, in double
     exact,   ///< exact numerators; without products
-    sweep,   ///< as `packed`, for a scaled sweep: uv is 0, and so are its products
+    sweep,   ///< like `packed`, for a scaled sweep: uv is 0, and so are its products
   };
   /// `by_doubles`: bounds all patches one by one, from double, for sets that reach so far that the rounding of packed
   /// coefficients would be most of the bounds.

@@ -19,7 +19,7 @@ class CertifiedTessellation::Impl {
   const CertifiedOptions& options() const { return options_; }
   double tolerance() const { return tolerance_; }
   const CertifiedPlan& plan() const { return plan_; }
-  std::span<const PatchShape> shapes() const { return shapes_; }  ///< those before welding
+  std::span<const PatchShape> shapes() const { return shapes_; }  ///< shapes before welding
   const Weld& weld() const { return weld_; }
   const VertexCopies& joins() const { return joins_; }  ///< vertices with a common normal, or stored once
   const MeshTables& tables() const { return *tables_; }

@@ -37,7 +37,7 @@ class PresentBounds {
 
   bool is_f64_, has_f64_positions_;
   ChordBlocks chords_;
-  std::vector<double> roundings_;      ///< `[patch]`: those of its vertices, before welding
+  std::vector<double> roundings_;      ///< `[patch]`: roundings of its vertices, before welding
   std::vector<double> displacements_;  ///< `[patch]`: how far copies move its vertices; empty where there are no copies
   std::vector<float> bounds_;          ///< `[patch]`
   std::vector<std::uint8_t> moved_;    ///< `[patch]`: 1 if it copies vertices, and it or their source is touched

@@ -38,7 +38,7 @@ class CertifiedPlan {
   std::size_t patch_count() const { return divisions_.size(); }
   const Division& division(std::size_t patch) const { return divisions_[patch]; }
   std::span<const Division> divisions() const { return divisions_; }
-  std::span<const PatchSegments> segments() const { return segments_; }  ///< those that each patch needs for itself
+  std::span<const PatchSegments> segments() const { return segments_; }  ///< segments that each patch needs for itself
   std::size_t first_vertex(std::size_t patch) const { return first_vertex_[patch]; }
   std::size_t first_triangle(std::size_t patch) const { return first_triangle_[patch]; }
   MeshCapacity capacity() const { return {first_vertex_.back(), first_triangle_.back(), 0}; }
@@ -209,7 +209,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   double fit_error_;
   std::vector<PatchShape> shapes_;
   Weld weld_;
-  double largest_rounding_ = 0;    ///< that of vertices before welding
+  double largest_rounding_ = 0;    ///< the largest rounding of vertices before welding
   std::vector<double> roundings_;  ///< `[patch]`: the largest error of its vertices, by rounding or by welding
   ChordBlocks chords_;
   std::vector<TurningBound> turnings_;      ///< `[patch]`, if there is an angle

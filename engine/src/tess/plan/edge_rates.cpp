@@ -67,8 +67,8 @@ class BorderSegments {
       if (edge != SharedEdges::none) needs_[edge].add(along(segments_[patch], side), never);
     }
   }
-  /// Counts the needs of each edge in its halves, for segments that are not uniform. `against`: for each border, whether
-  /// it runs against the edge.
+  /// Counts the needs of each edge in its halves, for segments that are not uniform. `against`: for each border,
+  /// whether it runs against the edge.
   void part_halves(std::vector<std::uint8_t> against) {
     against_ = std::move(against);
     halves_.resize(edges_.count());

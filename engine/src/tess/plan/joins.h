@@ -6,9 +6,9 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Joins borders of one edge, the corners at their ends, and borders that are a point to those of the patch that comes
-/// first. `normals`: those of the plan's mesh before vertices are shared; then only borders are joined along which no
-/// two normals differ by more than `angle`, in radians. Null: all are joined.
+/// Joins each border to the first border of its edge, with the corners at their ends, and each border that is a point.
+/// `normals`: the normals of the plan's mesh before vertices are shared. A border is joined only if no two normals
+/// along it differ by more than `angle`, in radians. Null: all borders are joined.
 VertexCopies find_joins(const PatchSet::Impl& set, const CertifiedPlan& plan, const SharedEdges& edges,
                         const Weld& weld, const View3<float>* normals, double angle);
 

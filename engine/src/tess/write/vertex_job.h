@@ -52,8 +52,8 @@ struct VertexJob {
   VertexJob(const VertexJob&) = delete;
   VertexJob& operator=(const VertexJob&) = delete;
 
-  /// From now on writes vertices past the caches, beginning with this one of a mesh; each patch must follow the one
-  /// before.
+  /// Writes vertices past the caches from now on, beginning with this one of a mesh. Each patch must follow the one
+  /// before it.
   void start_lines(const MeshViews& out, std::size_t vertex) {
     lines[0] = stream_from(out.position.component[0] + 3 * vertex);
     job.position.lines = &lines[0];
