@@ -180,6 +180,21 @@ TEST_P(FloatingPointModes, AreLeftAsFoundAndResultsAreDefined) {
 #endif
 }
 
+#ifdef TESSERA_HAS_RAY
+/// Large enough for Embree to build with several threads, which must not round as this thread does.
+TEST_P(FloatingPointModes, LargeScenesAreBuilt) {
+  const PatchSet set = set_of(wavy_field(40, 40));
+  const WithModes modes(GetParam().rounding, GetParam().bits);
+  const Modes before;
+  for (const RayMode mode : {RayMode::exact, RayMode::grid}) {
+    const RayScene scene = value_of(RayScene::make(set, {.mode = mode}));
+    EXPECT_EQ(Modes(), before);
+    for (double x = 0.25; x < 40; x += 1.5)
+      EXPECT_EQ(scene.closest({.origin = {x, 40 - x, 9}, .direction = {0, 0, -1}}).kind, HitKind::hit) << x;
+  }
+}
+#endif
+
 INSTANTIATE_TEST_SUITE_P(
     Modes, FloatingPointModes,
     ::testing::Values(Setting{"nearest", FE_TONEAREST, 0}, Setting{"upward", FE_UPWARD, 0},

@@ -1,6 +1,7 @@
 #include "ray/embree/embree_device.h"
 
 #include <algorithm>
+#include <cfenv>
 #include <utility>
 
 namespace tessera::inline abi_0_1 {
@@ -22,6 +23,23 @@ StatusCode status_code(RTCError error) {
 bool not_cancelled(void* cancel, double) {
   return !static_cast<const std::atomic<bool>*>(cancel)->load(std::memory_order_relaxed);
 }
+
+/// Rounds to nearest for its lifetime, without floating-point exceptions; then restores the caller's modes. Embree's
+/// SSE2 builder turns floats into bins by the current rounding. Rounding up or down gives bins that don't exist, and an
+/// assertion of Embree ends the process. Embree hands this thread's modes to the threads that build.
+class RoundToNearest {
+ public:
+  RoundToNearest() {
+    std::feholdexcept(&caller_);
+    std::fesetround(FE_TONEAREST);
+  }
+  RoundToNearest(const RoundToNearest&) = delete;
+  RoundToNearest& operator=(const RoundToNearest&) = delete;
+  ~RoundToNearest() { std::fesetenv(&caller_); }
+
+ private:
+  std::fenv_t caller_;
+};
 
 }  // namespace
 
@@ -69,7 +87,10 @@ Status commit(RTCScene scene, EmbreeMonitor& monitor, const Execution& execution
     rtcSetSceneProgressMonitorFunction(scene, &not_cancelled, const_cast<std::atomic<bool>*>(execution.cancel));
   }
   // With TBB rtcJoinCommitScene would work in an arena of Embree's own; this call works in the caller's.
-  rtcCommitScene(scene);
+  {
+    const RoundToNearest nearest;
+    rtcCommitScene(scene);
+  }
   rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
   return monitor.take();
 }
