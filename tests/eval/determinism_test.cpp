@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "support/grids.h"
+#include "support/suite_isa.h"
 
 namespace tessera::test {
 namespace {
@@ -59,7 +60,7 @@ TEST(Determinism, Sse2RoundsDifferently) {
 
 TEST(Isa, EnvironmentForcesOne) {
   for (const Isa isa : available_isas()) {
-    setenv("TESSERA_ISA", std::string(name(isa)).c_str(), 1);
+    const ForcedIsa forced(isa);
     EXPECT_EQ(value_of(default_isa()), isa);
     Random random(23);
     const PatchSet set = set_of({random_polynomial(random, 3, 3)});
@@ -72,17 +73,17 @@ TEST(Isa, EnvironmentForcesOne) {
     ASSERT_TRUE(evaluate(set, plan, out.views(), execution).ok());
     EXPECT_EQ(report.isa, isa);
   }
-  setenv("TESSERA_ISA", "mmx", 1);
+  const ForcedIsa unknown("mmx");
   EXPECT_EQ(default_isa().status().code(), StatusCode::isa_unavailable);
   EXPECT_NE(default_isa().status().message().find("mmx"), std::string::npos);
   Random random(24);
   const PatchSet set = set_of({random_polynomial(random, 3, 3)});
   const auto t = uniform_parameters(3);
   EXPECT_EQ(GridPlan::make(set, t, t).status().code(), StatusCode::isa_unavailable);
-  setenv("TESSERA_ISA", "", 1);
-  EXPECT_EQ(value_of(default_isa()), available_isas().back());
-  unsetenv("TESSERA_ISA");
-  EXPECT_EQ(value_of(default_isa()), available_isas().back());
+  for (const char* const none : {"", static_cast<const char*>(nullptr)}) {
+    const ForcedIsa open(none);
+    EXPECT_EQ(value_of(default_isa()), available_isas().back());
+  }
 }
 
 }  // namespace

@@ -14,19 +14,11 @@
 
 #include "support/borders.h"
 #include "support/errors.h"
+#include "support/suite_isa.h"
 #include "support/ulp.h"
 
 namespace tessera::test {
 namespace {
-
-/// Sets TESSERA_ISA for its lifetime.
-class ForcedIsa {
- public:
-  explicit ForcedIsa(Isa isa) { setenv("TESSERA_ISA", std::string(name(isa)).c_str(), 1); }
-  ~ForcedIsa() { unsetenv("TESSERA_ISA"); }
-  ForcedIsa(const ForcedIsa&) = delete;
-  ForcedIsa& operator=(const ForcedIsa&) = delete;
-};
 
 std::vector<double> parameters(double from, double to, std::size_t count) {
   std::vector<double> t;

@@ -5,6 +5,7 @@
 #include "robustness/bad_input.h"
 #include "robustness/bad_views.h"
 #include "support/grids.h"
+#include "support/suite_isa.h"
 #include "tessera/limits.h"
 #include "tessera/model.h"
 #include "tessera/tessellation.h"
@@ -239,12 +240,10 @@ void fill_machine(Table& table) {
   table.of("parse_isa(text), default_isa()");
   table.row("an empty name", isa_unavailable, parse_isa(""));
   table.row("\"mmx\"", isa_unavailable, parse_isa("mmx"));
-  const char* const before = std::getenv("TESSERA_ISA");
-  const std::string kept = before ? before : "";
-  ::setenv("TESSERA_ISA", "mmx", 1);
-  table.row("TESSERA_ISA=mmx in the environment", isa_unavailable, default_isa());
-  ::setenv("TESSERA_ISA", kept.c_str(), 1);
-  if (!before) ::unsetenv("TESSERA_ISA");
+  {
+    const ForcedIsa unknown("mmx");
+    table.row("TESSERA_ISA=mmx in the environment", isa_unavailable, default_isa());
+  }
   table.of("measure_limits(options)");
   table.row("an unknown instruction set", isa_unavailable, measure_limits({.isa = Isa{9}}));
   table.row("a buffer of 2^63 bytes", out_of_memory, measure_limits({.store_bytes = std::size_t{1} << 63}));
