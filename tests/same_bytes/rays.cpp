@@ -4,12 +4,9 @@
 #include "hash.h"
 #include "models.h"
 
-namespace {
-
-std::uint64_t rays(tessera::Isa isa, tessera::RayMode mode) {
-  const tessera::PatchSet set = some_set();
+std::uint64_t hits_hash(const tessera::PatchSet& set, std::size_t count, bool exact, tessera::Isa isa) {
   tessera::RaySceneOptions options;
-  options.mode = mode;
+  options.mode = exact ? tessera::RayMode::exact : tessera::RayMode::grid;
   options.isa = isa;
   const auto scene = value_of(tessera::RayScene::make(set, options));
   const tessera::Box3 box = set.box();
@@ -18,7 +15,7 @@ std::uint64_t rays(tessera::Isa isa, tessera::RayMode mode) {
     return tessera::Vec3{seeded.between(box.lower.x, box.upper.x), seeded.between(box.lower.y, box.upper.y),
                          seeded.between(box.lower.z, box.upper.z)};
   };
-  std::vector<tessera::Ray> rays(4000);
+  std::vector<tessera::Ray> rays(count);
   for (tessera::Ray& ray : rays) {
     ray.origin = point();  // one draw after the other: operands have no order
     ray.origin.z += seeded.between(0, 5);
@@ -41,9 +38,7 @@ std::uint64_t rays(tessera::Isa isa, tessera::RayMode mode) {
   return hash.value();
 }
 
-}  // namespace
-
 std::vector<Family> ray_families() {
-  return {{"rays_exact", [](tessera::Isa isa) { return rays(isa, tessera::RayMode::exact); }},
-          {"rays_grid", [](tessera::Isa isa) { return rays(isa, tessera::RayMode::grid); }}};
+  return {{"rays_exact", [](tessera::Isa isa) { return hits_hash(some_set(), 4000, true, isa); }},
+          {"rays_grid", [](tessera::Isa isa) { return hits_hash(some_set(), 4000, false, isa); }}};
 }

@@ -138,29 +138,31 @@ std::uint64_t mesh(Isa isa) {
   return hash.value();
 }
 
-std::uint64_t certified(Isa isa) {
-  Hash hash;
+/// Fits and circles among them, which use sines.
+tessera::PatchSet fitted_set() {
   std::vector<tessera::PatchGrid> grids;
   for (const tessera::Surface& surface : some_surfaces())
     grids.push_back(value_of(tessera::to_bezier(surface, {.tolerance = 1e-5})));
-  const tessera::PatchSet surfaces = value_of(tessera::make_patch_set(grids)), patches = some_set();
-  for (const tessera::PatchSet* set : {&surfaces, &patches}) {
-    tessera::CertifiedOptions options;
-    options.tolerance = 3e-3;
-    options.angle = 0.3;
-    options.weld = 1e-6;
-    options.isa = isa;
-    const auto plan = value_of(tessera::CertifiedTessellation::make(*set, options));
-    tessera::Mesh out = value_of(plan.allocate());
-    require(plan.run(*set, out.views()));
-    add(hash, out);
-    for (const float bound : plan.bounds()) hash.add(bound);
-    for (const float angle : plan.angles()) hash.add(angle);
-  }
-  return hash.value();
+  return value_of(tessera::make_patch_set(grids));
 }
 
 }  // namespace
+
+std::uint64_t certified_hash(const tessera::PatchSet& set, double tolerance, Isa isa) {
+  tessera::CertifiedOptions options;
+  options.tolerance = tolerance;
+  options.angle = 0.3;
+  options.weld = 1e-6;
+  options.isa = isa;
+  const auto plan = value_of(tessera::CertifiedTessellation::make(set, options));
+  tessera::Mesh out = value_of(plan.allocate());
+  require(plan.run(set, out.views()));
+  Hash hash;
+  add(hash, out);
+  for (const float bound : plan.bounds()) hash.add(bound);
+  for (const float angle : plan.angles()) hash.add(angle);
+  return hash.value();
+}
 
 std::vector<Family> set_families() {
   using enum tessera::Representation;
@@ -173,5 +175,6 @@ std::vector<Family> set_families() {
           {"points_float", points<float>},
           {"points_double", points<double>},
           {"mesh", mesh},
-          {"certified_mesh", certified}};
+          {"certified_patches", [](Isa isa) { return certified_hash(some_set(), 3e-3, isa); }},
+          {"certified_fits", [](Isa isa) { return certified_hash(fitted_set(), 3e-3, isa); }}};
 }
