@@ -8,8 +8,7 @@ if (($#)); then
 tools/demo.sh
 
 Installs missing packages (tools/setup.sh --for demo), builds the command line in build/demo, prints a summary of the
-Utah teapot and writes out/teapot.ply and out/teapot.png. Prints the time of each step. The first run compiles the
-library, which takes minutes; later runs take seconds.
+Utah teapot and writes out/teapot.ply and out/teapot.png. Prints the time of each step, and how long a first run takes.
 TEXT
     exit 0
   fi
@@ -43,7 +42,8 @@ build() {
     export CMAKE_CXX_COMPILER_LAUNCHER=ccache
   fi
   cmake --preset demo
-  cmake --build --preset demo
+  # Ninja shows the steps done, their number and the seconds.
+  NINJA_STATUS='[%f/%t, %e s] ' cmake --build --preset demo
 }
 
 write_mesh() {
@@ -51,6 +51,7 @@ write_mesh() {
   "$tessera" check "$mesh"
 }
 
+echo "demo: the first run compiles the library, 10 to 30 minutes on two cores; later runs take seconds."
 step "set-up" tools/setup.sh --for demo
 step "build" build
 mkdir -p out

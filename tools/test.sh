@@ -16,9 +16,11 @@ ctest on all cores.
   --fuzz SECONDS    build the preset fuzz instead, and run each fuzz target for SECONDS (60) from its corpus
   --                pass all following arguments to ctest, for example: tools/test.sh -- -R PatchSet
 
-The preset tsan uses an instrumented oneTBB (tools/instrumented_tbb.sh), if its source can be fetched. If TESSERA_TEST_DATA
-names a folder of real models, they are tested too. The tests perf.counts_avx2 and perf.counts_sse2 compare the instructions
-of the preset dev with bench/baselines. They take minutes each, and are skipped if the compiler or the libraries differ.
+The preset tsan builds oneTBB with the thread sanitizer too (tools/instrumented_tbb.sh), if its source can be fetched.
+If TESSERA_TEST_DATA names a folder of real models, they are tested too. Tests of instruction sets that the machine lacks are
+skipped, unless TESSERA_REQUIRE_ISAS names them, for example "sse2;avx2". The tests perf.counts_avx2 and perf.counts_sse2
+compare the instructions of the preset dev with bench/baselines. They take minutes each, and are skipped if the compiler or
+the libraries differ.
 TEXT
 }
 
@@ -68,6 +70,8 @@ while (($#)); do
 done
 cd "$(dirname -- "${BASH_SOURCE[0]}")/.."
 
+echo "test: the first build and all tests take about an hour on two cores, and longer with sanitizers. Later builds compile only"
+echo "test: what changed. --help says how to build and run some of the tests."
 tools/setup.sh --for test
 if [[ -z ${CMAKE_CXX_COMPILER_LAUNCHER:-} ]] && command -v ccache >/dev/null; then
   export CMAKE_CXX_COMPILER_LAUNCHER=ccache
@@ -77,12 +81,14 @@ if [[ $preset == tsan ]]; then
   if tools/instrumented_tbb.sh; then
     options=("-DTBB_DIR=$PWD/build/tbb_tsan/install/lib/cmake/TBB" -DTESSERA_TBB_IS_INSTRUMENTED=ON)
   else
-    echo "test: oneTBB is not instrumented: that its tasks are ordered as it promises is taken on trust" >&2
+    echo "test: oneTBB is built without the thread sanitizer, because its source could not be fetched. The tests check Tessera's" >&2
+    echo "test: own code, and assume that oneTBB runs no task before its call begins or after it ends." >&2
   fi
 fi
 cmake --preset "$preset" "${options[@]}"
 [[ $fuzz_seconds ]] && targets=(--target tessera_fuzz)
-cmake --build --preset "$preset" "${targets[@]}"
+# Ninja shows the steps done, their number and the seconds.
+NINJA_STATUS='[%f/%t, %e s] ' cmake --build --preset "$preset" "${targets[@]}"
 
 # Each target keeps new inputs outside its corpus, and fails on the first input that breaks a rule.
 fuzz() {
