@@ -5,15 +5,14 @@
 #include <set>
 #include <span>
 
+#include "tessera/cad.h"
 #include "tessera/io.h"
-#ifdef TESSERA_HAS_IO_OCCT
-#include "tessera/io_occt.h"
-#endif
 
 namespace tessera::bench {
 
+/// Whether it is a CAD file, and these are read.
 inline bool is_cad(const std::filesystem::path& path) {
-#ifdef TESSERA_HAS_IO_OCCT
+#ifdef TESSERA_HAS_CAD_READER
   return is_cad_file(path);
 #else
   (void)path;
@@ -25,13 +24,6 @@ inline bool is_cad(const std::filesystem::path& path) {
 inline bool is_model(const std::filesystem::path& path) {
   static const std::set<std::string> known{".bpt", ".bv", ".g2", ".json", ".obj", ".rib"};
   return known.contains(path.extension().string()) || is_cad(path);
-}
-
-inline Result<Model> read(const std::filesystem::path& path) {
-#ifdef TESSERA_HAS_IO_OCCT
-  if (is_cad_file(path)) return read_cad(path);
-#endif
-  return read_model(path);
 }
 
 /// The files in the order of their names; the project's own models if none is named.

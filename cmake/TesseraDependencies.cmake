@@ -2,7 +2,7 @@
 #   oneTBB            libtbb-dev 2021.8           the core: threads (engine/src/parallel alone includes it)
 #   xsimd             libxsimd-dev 8.1            the core: SIMD batches (engine/src/kernel alone; headers only)
 #   Embree            libembree-dev 3.13          tessera::ray (engine/src/ray alone, and ray_embree.h); 4 will do
-#   OpenCASCADE       libocct-data-exchange-dev 7.6  tessera::io_occt (engine/src/io_occt alone); optional
+#   OpenCASCADE       libocct-data-exchange-dev 7.6  tessera-cad-reader (engine/src/io_occt alone); optional
 #   CLI11             libcli11-dev 2.1            the command line
 #   nlohmann-json     nlohmann-json3-dev 3.11     tessera::io: models (headers only, within engine/src/io);
 #                                               the command line: --json; tests: values of peers
@@ -44,15 +44,16 @@ if(TESSERA_BUILD_IO)
   find_package(muparser 2 REQUIRED)
   find_package(TinyGLTF CONFIG REQUIRED)
 endif()
-# Whether tessera::io_occt is built.
-set(TESSERA_HAS_IO_OCCT OFF)
-if(TESSERA_BUILD_IO AND TESSERA_BUILD_IO_OCCT)
+# Whether tessera-cad-reader is built.
+set(TESSERA_HAS_CAD_READER OFF)
+if(TESSERA_BUILD_IO AND TESSERA_BUILD_CAD_READER)
   include(TesseraOpenCascade)
-  set(TESSERA_HAS_IO_OCCT ${tessera_OpenCASCADE_FOUND})
-  if(NOT TESSERA_HAS_IO_OCCT AND TESSERA_BUILD_IO_OCCT STREQUAL "AUTO")
-    message(STATUS "tessera::io_occt (STEP, IGES) is left out: OpenCASCADE is not found (libocct-data-exchange-dev)")
-  elseif(NOT TESSERA_HAS_IO_OCCT)
-    message(FATAL_ERROR "TESSERA_BUILD_IO_OCCT is ON, but OpenCASCADE 7.5 or later with its data exchange is not found. "
+  set(TESSERA_HAS_CAD_READER ${tessera_OpenCASCADE_FOUND})
+  if(NOT TESSERA_HAS_CAD_READER AND TESSERA_BUILD_CAD_READER STREQUAL "AUTO")
+    message(STATUS "tessera-cad-reader (STEP, IGES, BREP) is left out: OpenCASCADE is not found "
+      "(tools/cad_reader.sh installs it)")
+  elseif(NOT TESSERA_HAS_CAD_READER)
+    message(FATAL_ERROR "TESSERA_BUILD_CAD_READER is ON, but OpenCASCADE 7.5 or later with its data exchange is not found. "
       "On Debian it is libocct-data-exchange-dev.")
   endif()
 endif()

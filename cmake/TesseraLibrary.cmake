@@ -58,3 +58,13 @@ function(tessera_library name)
     endif()
   endforeach()
 endfunction()
+
+# tessera_uses_cad_reader(TARGET): a program of the tests or the benchmarks that reads CAD files, where they can be read.
+function(tessera_uses_cad_reader target)
+  if(TESSERA_HAS_CAD_READER)
+    target_sources(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests/support/cad_reader.cpp)
+    target_compile_definitions(${target} PRIVATE TESSERA_HAS_CAD_READER
+      TESSERA_CAD_READER_FILE="$<TARGET_FILE:tessera_cad_reader>")
+    add_dependencies(${target} tessera_cad_reader)
+  endif()
+endfunction()

@@ -1,24 +1,5 @@
-# Writes one file per component for pkg-config: tessera.pc, tessera-ray.pc, tessera-io.pc, tessera-io_occt.pc. Users of
+# Writes one file per component for pkg-config: tessera.pc, tessera-ray.pc, tessera-io.pc. Users of
 # a static library link its dependencies too, so its file lists them; a shared library links them itself.
-
-# tessera_names_of(OUT TARGETS...): -l of imported libraries, and of those of their project that they are linked with.
-function(tessera_names_of out)
-  set(waiting ${ARGN})
-  set(seen)
-  while(waiting)
-    list(POP_FRONT waiting next)
-    if(TARGET ${next} AND NOT next IN_LIST seen)
-      list(APPEND seen ${next})
-      get_target_property(others ${next} INTERFACE_LINK_LIBRARIES)
-      if(others)
-        list(APPEND waiting ${others})
-      endif()
-    endif()
-  endwhile()
-  list(TRANSFORM seen PREPEND "-l")
-  list(JOIN seen " " seen)
-  set(${out} "${seen}" PARENT_SCOPE)
-endfunction()
 
 # tessera_install_pkg_config(NAME TARGET DESCRIPTION [ON names...] [REQUIRES names...] [LIBS "-l..."] [CFLAGS "-D..."]):
 # REQUIRES and LIBS are what the library itself needs.

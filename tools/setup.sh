@@ -4,13 +4,14 @@ set -euo pipefail
 
 usage() {
   cat <<'TEXT'
-tools/setup.sh [--for demo|test|neon|peers|gallery|docs]
+tools/setup.sh [--for demo|cad|test|neon|peers|gallery|docs]
 
 Lists and installs the missing Debian packages that Tessera is built with, by apt-get, with sudo unless it runs as root.
 If nothing is missing, it does nothing and needs neither network nor rights.
 
   --for demo      the libraries and the command line
-  --for test      these, and the tests (the default)
+  --for cad       the demo, and OpenCASCADE for CAD files
+  --for test      the demo, OpenCASCADE, and the tests (the default)
   --for neon      these, and the test of the NEON kernels: 300 MB of a cross compiler and an emulator; without them that
                   test is skipped
   --for peers     the demo, and the programs that Tessera is compared with
@@ -27,8 +28,8 @@ fail() {
 # cmake/TesseraDependencies.cmake says what each package is for.
 demo_packages=(g++ cmake ninja-build libtbb-dev libxsimd-dev libembree-dev libcli11-dev nlohmann-json3-dev libmuparser-dev
   libtinygltf-dev libpng-dev libopenexr-dev)
-test_packages=(binutils libgtest-dev libgmock-dev libbenchmark-dev libocct-data-exchange-dev python3
-  python3-yaml valgrind)
+cad_packages=(libocct-data-exchange-dev)
+test_packages=("${cad_packages[@]}" binutils libgtest-dev libgmock-dev libbenchmark-dev python3 python3-yaml valgrind)
 neon_packages=(g++-aarch64-linux-gnu qemu-user)
 peer_packages=(libocct-modeling-data-dev libocct-modeling-algorithms-dev libocct-data-exchange-dev libosd-dev
   libsisl-dev povray python3)
@@ -39,7 +40,7 @@ purpose='test'
 while (($#)); do
   case $1 in
     --for)
-      (($# >= 2)) || fail "--for wants a word after it: demo, test, neon, peers, gallery or docs"
+      (($# >= 2)) || fail "--for wants a word after it: demo, cad, test, neon, peers, gallery or docs"
       purpose=$2
       shift 2
       ;;
@@ -56,12 +57,13 @@ while (($#)); do
 done
 case $purpose in
   demo) packages=("${demo_packages[@]}") ;;
+  cad) packages=("${demo_packages[@]}" "${cad_packages[@]}") ;;
   test) packages=("${demo_packages[@]}" "${test_packages[@]}") ;;
   neon) packages=("${demo_packages[@]}" "${test_packages[@]}" "${neon_packages[@]}") ;;
   peers) packages=("${demo_packages[@]}" "${peer_packages[@]}") ;;
   gallery) packages=("${demo_packages[@]}" "${gallery_packages[@]}") ;;
   docs) packages=("${demo_packages[@]}" "${docs_packages[@]}") ;;
-  *) fail "--for $purpose: no such purpose; there are demo, test, neon, peers, gallery and docs" ;;
+  *) fail "--for $purpose: no such purpose; there are demo, cad, test, neon, peers, gallery and docs" ;;
 esac
 
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then

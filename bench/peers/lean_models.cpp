@@ -142,13 +142,13 @@ std::vector<LeanCase> model_cases(const std::string& only) {
     find_models(data, only, files);
   else
     skip("models of other programs", "TESSERA_TEST_DATA is not set");
-#ifndef TESSERA_HAS_IO_OCCT
-  skip("STEP and IGES files", "tessera::io_occt is not built");
+#ifndef TESSERA_HAS_CAD_READER
+  skip("CAD files", "tessera-cad-reader is not built");
 #endif
   std::vector<LeanCase> cases;
   for (const fs::path& file : files) {
     const std::string name = file.parent_path().filename().string() + "/" + file.filename().string();
-    const Result<Model> model = read(file);
+    const Result<Model> model = read_model(file);
     if (model)
       add_cases(name, *model, cases);
     else

@@ -132,7 +132,7 @@ class Report {
  public:
   void survey(const std::filesystem::path& path) {
     const std::string name = bench::short_name(path);
-    const Result<Model> model = bench::read(path);
+    const Result<Model> model = read_model(path);
     const Result<PatchSet> set = model ? make_patch_set(*model) : Result<PatchSet>(model.status());
     if (!set) return skip(name, set.status());
     RaySceneOptions options;

@@ -14,4 +14,7 @@ std::size_t step_faces(const std::string& text);
 /// Trimmed surfaces of an IGES file, and others of which nothing else is made, by the directory's columns.
 std::size_t iges_surfaces(const std::string& text);
 
+/// Faces of a BREP text file in which each is used once.
+std::size_t brep_faces(const std::string& text);
+
 }  // namespace tessera::test

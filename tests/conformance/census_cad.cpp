@@ -116,4 +116,11 @@ std::size_t iges_surfaces(const std::string& text) {
   return surfaces;
 }
 
+std::size_t brep_faces(const std::string& text) {
+  std::istringstream stream(text);
+  Count faces = 0;
+  for (std::string line; std::getline(stream, line);) faces += line == "Fa";
+  return faces;
+}
+
 }  // namespace tessera::test

@@ -129,12 +129,11 @@ FloorTable real_table() {
 
 constexpr const char* front_door = "include/tessera/tessera.h";
 
-/// Headers that bring Embree or OpenCASCADE are included by name.
+/// Headers that bring Embree are included by name.
 TEST(Engine, TheFrontDoorIncludesEveryPublicHeaderButTwo) {
   Names expected;
   for (const auto& [header, floor] : real_table().floor_of)
-    if (!header.starts_with("detail/") && header != "ray_embree.h" && header != "io_occt.h")
-      expected.insert("tessera/" + header);
+    if (!header.starts_with("detail/") && header != "ray_embree.h") expected.insert("tessera/" + header);
   EXPECT_EQ(quoted_includes(read_text(std::string("engine/") + front_door)), expected);
 }
 

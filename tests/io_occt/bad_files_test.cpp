@@ -9,7 +9,7 @@
 #include "support/errors.h"
 #include "support/privileges.h"
 #include "support/scratch_folder.h"
-#include "tessera/io_occt.h"
+#include "tessera/cad.h"
 
 namespace tessera::test {
 namespace {
@@ -40,7 +40,7 @@ class BadCadFile : public testing::TestWithParam<const char*> {
   ScratchFolder folder_;
   std::string text_;
 };
-INSTANTIATE_TEST_SUITE_P(Formats, BadCadFile, testing::Values(".step", ".stp", ".iges", ".igs"),
+INSTANTIATE_TEST_SUITE_P(Formats, BadCadFile, testing::Values(".step", ".stp", ".iges", ".igs", ".brep", ".brp"),
                          [](const auto& format) { return std::string(format.param + 1); });
 
 TEST_P(BadCadFile, LayoutDoesNotMatter) {
@@ -88,9 +88,9 @@ TEST_P(BadCadFile, WhatIsNoFileIsNamed) {
   expect_error(folder_.file(name("empty"), ""), StatusCode::parse_error, ": the file is empty");
   // Nobody writes to this pipe: opening it would block.
   ASSERT_EQ(::mkfifo((folder_ / name("pipe")).c_str(), 0600), 0);
-  expect_error(folder_ / name("pipe"), StatusCode::unsupported, ": STEP and IGES are read from regular files only");
+  expect_error(folder_ / name("pipe"), StatusCode::unsupported, ": CAD files are read from regular files only");
   std::filesystem::create_symlink("/dev/zero", folder_ / name("zero"));
-  expect_error(folder_ / name("zero"), StatusCode::unsupported, ": STEP and IGES are read from regular files only");
+  expect_error(folder_ / name("zero"), StatusCode::unsupported, ": CAD files are read from regular files only");
 }
 
 TEST_P(BadCadFile, NoPermissionIsSaid) {

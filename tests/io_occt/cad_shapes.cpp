@@ -1,5 +1,7 @@
 #include "io_occt/cad_shapes.h"
 
+#include <opencascade/BRepTools.hxx>
+#include <opencascade/BinTools.hxx>
 #include <opencascade/IGESControl_Writer.hxx>
 #include <opencascade/STEPControl_Writer.hxx>
 #include <opencascade/TopExp_Explorer.hxx>
@@ -9,12 +11,13 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "tessera/io_occt.h"
+#include "tessera/cad.h"
 
 namespace tessera::test {
 namespace {
 
 bool is_step(const std::filesystem::path& path) { return path.extension().string().starts_with(".st"); }
+bool is_brep(const std::filesystem::path& path) { return path.extension().string().starts_with(".br"); }
 
 }  // namespace
 
@@ -22,7 +25,11 @@ void write_cad(const TopoDS_Shape& shape, const std::string& path) {
   std::string ignored;
   take_messages(ignored);
   bool written = false;
-  if (is_step(path)) {
+  if (path.ends_with(".binary.brep")) {
+    written = BinTools::Write(shape, path.c_str());
+  } else if (is_brep(path)) {
+    written = BRepTools::Write(shape, path.c_str());
+  } else if (is_step(path)) {
     STEPControl_Writer writer;
     take_messages(ignored);
     written =
@@ -34,7 +41,9 @@ void write_cad(const TopoDS_Shape& shape, const std::string& path) {
   if (!written) throw std::runtime_error("OpenCASCADE cannot write " + path);
 }
 
-Result<CadFile> load_cad(const std::string& path) { return is_step(path) ? load_step(path) : load_iges(path); }
+Result<CadFile> load_cad(const std::string& path) {
+  return is_step(path) ? load_step(path) : is_brep(path) ? load_brep(path) : load_iges(path);
+}
 
 std::vector<TopoDS_Face> faces_of(const TopoDS_Shape& shape) {
   std::vector<TopoDS_Face> faces;

@@ -11,14 +11,14 @@
 
 namespace tessera::test {
 
-/// Writes `shape` to a STEP or an IGES file, by the extension.
+/// Writes `shape` to a STEP, an IGES or a BREP file, by the extension; .binary.brep is BREP in its binary form.
 void write_cad(const TopoDS_Shape& shape, const std::string& path);
 /// The file as OpenCASCADE reads it, in this process.
 Result<CadFile> load_cad(const std::string& path);
 /// In the order of models.
 std::vector<TopoDS_Face> faces_of(const TopoDS_Shape& shape);
 
-/// The files of TESSERA_TEST_DATA with extensions of STEP and IGES, sorted; empty if the variable is not set.
+/// The files of TESSERA_TEST_DATA with extensions of CAD files, sorted; empty if the variable is not set.
 std::vector<std::filesystem::path> real_cad_files();
 
 }  // namespace tessera::test

@@ -7,7 +7,7 @@
 
 #include "io_occt/cad_shapes.h"
 #include "support/scratch_folder.h"
-#include "tessera/io_occt.h"
+#include "tessera/cad.h"
 
 namespace tessera::test {
 namespace {

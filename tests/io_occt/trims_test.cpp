@@ -12,7 +12,7 @@
 
 #include "io_occt/cad_shapes.h"
 #include "support/scratch_folder.h"
-#include "tessera/io_occt.h"
+#include "tessera/cad.h"
 
 namespace tessera::test {
 namespace {
@@ -40,7 +40,7 @@ double area(const std::vector<TrimLoop>& loops) {
   return sum;
 }
 
-/// A box with a round hole and a bite out of a corner, in both formats.
+/// A box with a round hole and a bite out of a corner, in every format.
 std::vector<Model> drilled_box() {
   const TopoDS_Shape box = BRepPrimAPI_MakeBox(gp_Pnt(0, 0, 0), 10, 8, 3).Shape();
   const TopoDS_Shape drill = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(4, 4, -1), gp_Dir(0, 0, 1)), 1.5, 9).Shape();
@@ -48,7 +48,7 @@ std::vector<Model> drilled_box() {
   const TopoDS_Shape part = BRepAlgoAPI_Cut(BRepAlgoAPI_Cut(box, drill).Shape(), bite).Shape();
   const ScratchFolder folder;
   std::vector<Model> models;
-  for (const char* const name : {"part.step", "part.igs"}) {
+  for (const char* const name : {"part.step", "part.igs", "part.brep"}) {
     write_cad(part, folder / name);
     Result<Model> model = read_cad(folder / name);
     EXPECT_TRUE(model.ok()) << model.status().message();
@@ -59,7 +59,7 @@ std::vector<Model> drilled_box() {
 
 TEST(Trims, AreWhereAFaceIsLessThanItsRectangle) {
   const std::vector<Model> models = drilled_box();
-  ASSERT_EQ(models.size(), 2u);
+  ASSERT_EQ(models.size(), 3u);
   constexpr double pi = std::numbers::pi;
   for (const Model& model : models) {
     ASSERT_EQ(model.surfaces.size(), 8u);

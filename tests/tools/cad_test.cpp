@@ -1,6 +1,8 @@
-// STEP and IGES parts through the command line.
+// STEP, IGES and BREP parts through the command line.
 
+#include <chrono>
 #include <cstdlib>
+#include <thread>
 
 #include "tools/tool_test.h"
 
@@ -10,7 +12,7 @@ namespace {
 using nlohmann::json;
 using CadTool = ToolTest;
 
-#ifdef TESSERA_HAS_IO_OCCT
+#ifdef TESSERA_HAS_CAD_READER
 
 /// Runs a command that must succeed with only warnings on standard error.
 void expect_warnings(const ToolRun& result, const std::string& path) {
@@ -23,9 +25,9 @@ void expect_warnings(const ToolRun& result, const std::string& path) {
 TEST_F(CadTool, RealPartsAreMeshedAndDrawn) {
   const char* const data = std::getenv("TESSERA_TEST_DATA");
   if (!data) GTEST_SKIP() << "TESSERA_TEST_DATA is not set";
-  for (const char* const part :
-       {"step_cad/as1-oc-214.stp", "step_cad/face_recognition_sample_part.stp", "step_cad/screw.step",
-        "iges_cad/occt_hammer.iges", "iges_cad/brlcad_wing128.igs", "iges_cad/igesio_input.igs"}) {
+  for (const char* const part : {"step_cad/as1-oc-214.stp", "step_cad/face_recognition_sample_part.stp",
+                                 "step_cad/screw.step", "iges_cad/occt_hammer.iges", "iges_cad/brlcad_wing128.igs",
+                                 "iges_cad/igesio_input.igs", "brep_occt/bottle.brep"}) {
     const std::string path = (std::filesystem::path(data) / part).string();
     const ToolRun info = run({"info", path, "--json"});
     expect_warnings(info, path);
@@ -52,10 +54,47 @@ TEST_F(CadTool, BrokenPartsAreRefused) {
 TEST_F(CadTool, SaysWhatIsMissing) {
   folder_.file("part.step", "ISO-10303-21;");
   expect_failure({"info", "part.step"}, 1,
-                 "STEP needs a Tessera that was built with OpenCASCADE (libocct-data-exchange-dev)");
+                 "tessera: part.step: STEP files are read by the program tessera-cad-reader, which is neither");
 }
 
 #endif
+
+TEST_F(CadTool, TheReaderIsNamedByOptionOrVariable) {
+  folder_.file("part.step", "ISO-10303-21;");
+  const auto reader = [&](const std::string& name, const std::string& script) {
+    std::filesystem::permissions(folder_.file(name, "#!/bin/sh\n" + script), std::filesystem::perms::owner_all);
+  };
+  reader("one", "exit 11");
+  reader("two", "exit 12");
+  const std::string named = "tessera: part.step: the CAD reader ./one ended without a greeting (exit status 11)\n";
+  EXPECT_EQ(run({"info", "part.step"}, {"TESSERA_CAD_READER=./one"}).errors, named);
+  EXPECT_EQ(run({"info", "part.step", "--cad-reader", "./one"}, {"TESSERA_CAD_READER=./two"}).errors, named);
+  expect_failure({"info", "part.step", "--cad-reader", "none"}, 1,
+                 "part.step: the CAD reader none cannot be started: No such file or directory");
+  expect_failure({"info", "part.step", "--cad-reader", ""}, 2, "--cad-reader: ");
+}
+
+TEST_F(CadTool, AnInterruptEndsTheReader) {
+  folder_.file("part.step", "ISO-10303-21;");
+  std::filesystem::permissions(folder_.file("slow", "#!/bin/sh\necho $$ > pid; mv pid started; exec sleep 60"),
+                               std::filesystem::perms::owner_all);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    RunningProgram tool(
+        folder_, {TESSERA_TOOL, "tessellate", "part.step", "-o", "a.ply", "--grid", "2x2", "--cad-reader", "./slow"});
+    const std::string started = folder_ / "started";
+    for (int k = 0; k < 20000 && !std::filesystem::exists(started); ++k)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    const pid_t reader = std::stoi(content_of(started));
+    EXPECT_EQ(::kill(reader, 0), 0);
+    tool.signal(signal);
+    const ToolRun result = tool.wait();
+    EXPECT_EQ(result.status, 128 + signal);
+    EXPECT_EQ(result.output + result.errors, "");
+    EXPECT_EQ(::kill(reader, 0), -1) << "the reader still runs";
+    std::filesystem::remove(started);
+    EXPECT_EQ(folder_.names(), (Names{"part.step", "slow"}));
+  }
+}
 
 }  // namespace
 }  // namespace tessera::test

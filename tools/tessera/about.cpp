@@ -11,7 +11,7 @@ void describe(Command& tool) {
       "Files read: surfaces as " + model_formats() +
       ";\n"
       "meshes as .obj, .ply, .stl. Surfaces are Bezier patches (.bpt), BezierView (.bv), GoTools (.g2), RenderMan\n"
-      "(.rib), free-form OBJ, CAD parts (if OpenCASCADE was there at the build), and surfaces of every kind (.json;\n"
+      "(.rib), free-form OBJ, CAD parts (by the program tessera-cad-reader), and surfaces of every kind (.json;\n"
       "share/doc/tessera/FORMAT.md describes the format). A warning names each part of a file that is skipped.\n"
       "\nFiles written: meshes as .obj, .ply, .stl, .glb and .gltf; surfaces as .obj and .bpt; pictures as .png, and "
       "as\n"
@@ -23,7 +23,8 @@ void describe(Command& tool) {
       "name without folder and extension), each file gets its own result. If a file fails, the others go on.\n"
       "Surfaces, patches and rays are counted from 0. Surfaces are counted on from file to file.\n"
       "\nReports: --json prints objects, whose keys share/doc/tessera/JSON.md lists.\n"
-      "\nEnvironment: TESSERA_ISA=sse2|avx2|avx512 does the same as --isa; NO_COLOR turns colours off.\n"
+      "\nEnvironment: TESSERA_ISA=sse2|avx2|avx512 does the same as --isa, TESSERA_CAD_READER=FILE as --cad-reader;\n"
+      "NO_COLOR turns colours off.\n"
       "\nExit status: 0 done, 1 an input is bad or an output cannot be written, 2 the command line is bad.\n"
       "\nExamples:\n"
       "  tessera info 'models/*.json'\n"

@@ -80,7 +80,7 @@ void add_convert(Command& tool, Session& session) {
       .require()
       .check(fault_of_output);
   add_stream_format(command, {"bpt", "obj"}, options->format);
-  add_fit(command, options->models);
+  add_reading(command, options->models);
   add_common(command, session.common);
   command.footer = footer;
   command.choose = [options, &session] {

@@ -292,7 +292,7 @@ void add_eval(Command& tool, Session& session) {
                     [options](std::size_t order) { options->derivatives = static_cast<int>(order); });
   command.add_choice("--format", {"csv", "json"}, "Format of the rows [csv]",
                      [options](const std::string& name) { options->format = name; });
-  add_fit(command, options->models);
+  add_reading(command, options->models);
   add_common(command, session.common);
   command.footer = footer;
   command.choose = [options, &session] {

@@ -158,7 +158,7 @@ void add_info(Command& tool, Session& session) {
   add_models(command, options->models);
   command.add_count("--joins", "COUNT", "Measure at most this many joins; 0 leaves them out [20000]", 0, 1'000'000'000,
                     [options](std::size_t count) { options->max_joins = count; });
-  add_fit(command, options->models);
+  add_reading(command, options->models);
   add_common(command, session.common);
   command.footer = footer;
   command.choose = [options, &session] {

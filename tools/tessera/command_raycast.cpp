@@ -178,7 +178,7 @@ void add_raycast(Command& tool, Session& session) {
   add_error_options(command, options->error, command.option("--shade"));
   add_ray_options(command, *options, of_pictures);
   add_mode(command, *options);
-  add_fit(command, options->models);
+  add_reading(command, options->models);
   add_common(command, session.common);
   command.footer = raycast_footer;
   command.choose = [options, &command, &session] {

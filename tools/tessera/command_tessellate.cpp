@@ -373,7 +373,7 @@ void add_tessellate(Command& tool, Session& session) {
   add_sharing(command, *options);
   command.add_flag("--quads", "Write whole cells as quads, in .obj and .ply [triangles only]", options->quads);
   add_precision(command, *options);
-  add_fit(command, options->models);
+  add_reading(command, options->models);
   add_view(command, *options);
   add_common(command, session.common);
   command.footer = footer;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <iterator>
 #include <mutex>
 #include <optional>
@@ -13,24 +14,16 @@
 #include "output.h"
 #include "progress.h"
 #include "standard_input.h"
+#include "tessera/cad.h"
 #include "tessera/io.h"
-#ifdef TESSERA_HAS_IO_OCCT
-#include "tessera/io_occt.h"
-#endif
 
 namespace tessera::cli {
 namespace {
 
-#ifdef TESSERA_HAS_IO_OCCT
-constexpr const char* cad_formats = ", .step, .stp, .iges, .igs";
-
-/// Reads a model by the component that knows its format.
-Result<Model> read_file_model(const std::string& path) { return is_cad_file(path) ? read_cad(path) : read_model(path); }
-#else
-constexpr const char* cad_formats = "";
-
-Result<Model> read_file_model(const std::string& path) { return read_model(path); }
-#endif
+/// As read_model(), and an interrupt ends the reader of CAD files.
+Result<Model> read_file_model(const std::string& path) {
+  return is_cad_file(path) ? read_cad(path, {.cancel = &interrupted()}) : read_model(path);
+}
 
 /// Reads a file, or standard input, whose messages then name it instead of its copy.
 Result<Model> read_any_model(const std::string& path, const std::string& input_format) {
@@ -121,7 +114,7 @@ std::vector<std::string> model_format_names() {
   return names;
 }
 
-std::string model_formats() { return std::string(".bpt, .bv, .g2, .json, .obj, .rib") + cad_formats; }
+std::string model_formats() { return ".bpt, .bv, .g2, .json, .obj, .rib, .step, .stp, .iges, .igs, .brep, .brp"; }
 
 void add_models(Command& command, ModelOptions& options) {
   command
@@ -141,11 +134,15 @@ void check_input(const ModelOptions& options) {
     throw UsageError("--input-format", "is for MODEL - only; the extension of a file decides its format");
 }
 
-void add_fit(Command& command, ModelOptions& options) {
+void add_reading(Command& command, ModelOptions& options) {
   command.add_length("--fit-tolerance", "LENGTH",
                      "Largest distance of patches from surfaces that are written as expressions, in the model's unit "
                      "[1e-6 of the surface's size]",
                      [&options](double length) { options.fit.tolerance = length; });
+  command
+      .add("--cad-reader", "FILE", "Program that reads CAD files [the tessera-cad-reader beside tessera]",
+           [](const std::string& file) { ::setenv("TESSERA_CAD_READER", file.c_str(), 1); })
+      .check(fault_of_name);
 }
 
 std::size_t Loaded::trimmed() const { return count_trimmed(model.surfaces); }

@@ -19,8 +19,8 @@ struct ModelOptions {
 void check_input(const ModelOptions& options);
 /// Adds MODEL... and --input-format.
 void add_models(Command& command, ModelOptions& options);
-/// Adds --fit-tolerance.
-void add_fit(Command& command, ModelOptions& options);
+/// Adds --fit-tolerance and --cad-reader.
+void add_reading(Command& command, ModelOptions& options);
 
 /// The extensions of files that can be read: ".bpt, .bv, ...".
 std::string model_formats();

@@ -23,6 +23,7 @@ namespace tessera::inline abi_0_1 {
 /// - .json: surfaces of every kind; share/doc/tessera/FORMAT.md describes the format
 /// - .obj: free-form surfaces
 /// - .rib: RenderMan, Patch, PatchMesh and NuPatch
+/// - .step, .stp, .iges, .igs, .brep, .brp: as read_cad() of cad.h, which runs the program tessera-cad-reader
 ///
 /// Model::warnings reports each part of the file that is skipped. A file with a wrong element gives no model.
 ///

@@ -1,5 +1,5 @@
 #pragma once
-// Every public header but ray_embree.h and io_occt.h, whose libraries bring Embree and OpenCASCADE into sight.
+// Every public header but ray_embree.h, which brings Embree into sight.
 
 #include "tessera/bezier_operations.h"
 #include "tessera/bezier_patch.h"
@@ -32,6 +32,7 @@
 #include "tessera/ray_scene.h"
 #endif
 #if __has_include("tessera/io.h")
+#include "tessera/cad.h"
 #include "tessera/files.h"
 #include "tessera/io.h"
 #endif

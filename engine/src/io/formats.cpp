@@ -3,11 +3,14 @@
 #include <array>
 #include <string>
 #include <system_error>
+#include <type_traits>
 
+#include "io/cad_reader.h"
 #include "io/file.h"
 #include "io/mesh_formats.h"
 #include "io/model_formats.h"
 #include "io/valid_mesh.h"
+#include "tessera/cad.h"
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
@@ -54,6 +57,7 @@ Result<const Format*> find_format(const fs::path& path, Ability Format::*member,
     if (format.extension == extension) return &format;
     able += (able.empty() ? "" : ", ") + std::string(format.extension);
   }
+  if constexpr (std::is_same_v<decltype(member), decltype(&Format::read_model)>) able += listed_cad_extensions();
   return Status(StatusCode::unsupported,
                 path.string() + ": unsupported format \"" + extension + "\": " + std::string(what) + " as " + able);
 }
@@ -69,17 +73,6 @@ Result<Content> read_as(const fs::path& path, Ability Format::*member, std::stri
   if (!bytes) return bytes.status();
   if (!format) return format.status();
   return ((*format)->*member)(*bytes, path.string(), options...);
-}
-
-/// An error that points to tessera::io_occt if it reads these files; otherwise `status`.
-Status or_read_elsewhere(const fs::path& path, const Status& status) {
-  const std::string extension = lower_extension(path);
-  const bool step = extension == ".step" || extension == ".stp", iges = extension == ".iges" || extension == ".igs";
-  if (status.code() != StatusCode::unsupported || (!step && !iges)) return status;
-  return Status(StatusCode::unsupported,
-                path.string() + ": unsupported format \"" + extension + "\": " + (step ? "STEP" : "IGES") +
-                    " needs a Tessera that was built with OpenCASCADE (libocct-data-exchange-dev), and read_cad of "
-                    "tessera/io_occt.h");
 }
 
 }  // namespace
@@ -104,8 +97,9 @@ Result<SurfaceWriter> surface_writer(const fs::path& path) {
 
 Result<Model> read_model(const fs::path& path) {
   return guarded([&]() -> Result<Model> {
+    if (is_cad_file(path)) return read_cad(path);
     Result<Model> model = read_as<Model>(path, &Format::read_model, "surfaces are read");
-    if (!model) return or_read_elsewhere(path, model.status());
+    if (!model) return model;
     model->name = path.stem().string();
     return model;
   });

@@ -22,11 +22,12 @@ struct CadFile {
 };
 
 // Loads a file. Messages begin with `path`. Changes OpenCASCADE's settings and diverts its messages. Errors:
-// parse_error. May throw Standard_Failure.
+// parse_error, io_error. May throw Standard_Failure.
 Result<CadFile> load_step(const std::string& path);
 Result<CadFile> load_iges(const std::string& path);
+Result<CadFile> load_brep(const std::string& path);
 
-// Shared by both loaders.
+// Shared by the loaders.
 
 /// Diverts OpenCASCADE's messages from standard output; `last_failure` keeps the last that reports a failure.
 void take_messages(std::string& last_failure);

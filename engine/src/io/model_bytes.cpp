@@ -1,4 +1,4 @@
-#include "io_occt/model_bytes.h"
+#include "io/model_bytes.h"
 
 #include <cstdint>
 #include <cstring>
@@ -198,7 +198,7 @@ Result<Model> model_from_bytes(std::string_view bytes) {
     if (code != StatusCode::ok) return Status(code, message, index);
     if (take_model(in, model)) return model;
   }
-  return Status(StatusCode::internal, "the result was damaged on its way");
+  return Status(StatusCode::internal, std::string(damaged_model));
 }
 
 }  // namespace tessera::inline abi_0_1

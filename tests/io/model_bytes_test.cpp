@@ -1,6 +1,6 @@
 // Models survive the way to bytes and back; other bytes do no harm.
 
-#include "io_occt/model_bytes.h"
+#include "io/model_bytes.h"
 
 #include <gtest/gtest.h>
 

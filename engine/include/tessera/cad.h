@@ -1,0 +1,67 @@
+#pragma once
+// Reads STEP, IGES and BREP files by the program tessera-cad-reader, which alone uses OpenCASCADE. The program is built
+// and installed with Tessera where OpenCASCADE is found; tools/cad_reader.sh installs OpenCASCADE and builds it.
+//
+// Surfaces: every face becomes a B-spline or NURBS surface, in millimetres whatever the file's unit. BREP files have no
+// unit; their numbers are kept.
+//
+// - Exact up to rounding: splines and Bezier surfaces with their own points, knots and parameters (periodic ones on
+//   unclamped knots); planes, cylinders, cones, spheres, tori, surfaces of revolution and of extrusion.
+// - Fitted, with a warning that states how well: offset surfaces, and those swept along hyperbolas and offset curves.
+// - Parameters are the file's, except along circles and ellipses: there they are those of rational arcs of at most 90
+//   degrees, with the angle's value at their ends.
+// - The domain is the face's rectangle of parameters, which may be a part of the knots' domain.
+// - A face whose edges run inside that rectangle is trimmed. Its trims hold its loops: the edges' own splines wherever
+//   the parameters are the file's, else curves within 1e-9 of the range. Trims are not honoured yet, which a warning
+//   says.
+// - A face that the file reverses has u and v swapped, so that normals of solids point outwards.
+// - `placement` is the face's place in the assembly; `name` is the product's (STEP), the entity's (IGES) or empty
+//   (BREP).
+// - A face that can't be read is left out, and a warning says why: degrees above max_degree, an unbounded plane, input
+//   that OpenCASCADE rejects (such as weights that are not positive).
+//
+// Process: OpenCASCADE may crash on damaged files and keeps global state, so each call runs the program as a child
+// process, with bounds on memory (512 MiB plus 256 times the file) and on computing time (120 seconds plus one for
+// every 20 kB). Its damage ends with it, it ends with this process, and calls from any number of threads are
+// independent.
+
+#include <atomic>
+#include <filesystem>
+
+#include "tessera/model.h"
+#include "tessera/status.h"
+
+#pragma GCC visibility push(default)
+namespace tessera::inline abi_0_1 {
+
+enum class CadFormat {
+  by_extension,  ///< .step, .stp, .iges, .igs, .brep, .brp in any case of letters
+  step,          ///< AP203, AP214 or AP242 (ISO 10303-21)
+  iges,          ///< IGES 5.x in its fixed form, columns of 80 characters
+  brep,          ///< OpenCASCADE's own format, as text or binary
+};
+
+/// Options of read_cad().
+struct CadOptions {
+  CadFormat format = CadFormat::by_extension;
+  /// The program that reads. If empty: the file that the environment variable TESSERA_CAD_READER names, or else the
+  /// first tessera-cad-reader beside this program or library, in their ../libexec/tessera, in that of the installation,
+  /// or on PATH.
+  std::filesystem::path reader = {};
+  const std::atomic<bool>* cancel = nullptr;  ///< polled; the call then ends the program and returns cancelled
+};
+
+/// Reads a CAD file.
+///
+/// Errors: the first warning's reason (no face is left), io_error (the file; the program cannot be started),
+/// parse_error (the reason is OpenCASCADE's), invalid_weight (IGES: OpenCASCADE would read another surface),
+/// unsupported (the extension; not a regular file; there is no program, or one of another version), out_of_memory,
+/// cancelled, internal (OpenCASCADE crashed; the program sent something else than a model).
+///
+/// Threads: any. Signals and other children of the process are left alone.
+Result<Model> read_cad(const std::filesystem::path& path, const CadOptions& options = {});
+/// Whether read_cad() knows the extension.
+bool is_cad_file(const std::filesystem::path& path);
+
+}  // namespace tessera::inline abi_0_1
+#pragma GCC visibility pop

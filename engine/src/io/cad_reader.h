@@ -1,0 +1,61 @@
+#pragma once
+// The program tessera-cad-reader, which reads CAD files by OpenCASCADE: its arguments are a format, a file and the
+// process that it serves. It prints a greeting, the number of bytes of a model, and these bytes.
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "tessera/model.h"
+#include "tessera/status.h"
+
+namespace tessera::inline abi_0_1 {
+
+struct CadExtension {
+  std::string_view extension;  ///< ".stp"
+  std::string_view format;     ///< "STEP", the reader's first argument
+};
+inline constexpr std::array<CadExtension, 6> cad_extensions{
+    {{".brep", "BREP"}, {".brp", "BREP"}, {".iges", "IGES"}, {".igs", "IGES"}, {".step", "STEP"}, {".stp", "STEP"}}};
+
+/// ", .brep, .brp, ...": the end of a list of formats.
+std::string listed_cad_extensions();
+
+constexpr std::size_t greeting_size = 64;
+/// The first bytes that a reader prints: its version and that of model_bytes.h, padded with blanks.
+std::string cad_reader_greeting();
+
+/// Bounds on one file. They end a reader that a damaged file sends astray.
+struct CadReaderLimits {
+  std::uint64_t memory_bytes = 0;
+  unsigned cpu_seconds = 0;
+};
+inline CadReaderLimits cad_reader_limits(std::uint64_t file_bytes) {
+  return {(std::uint64_t{512} << 20) + 256 * file_bytes, static_cast<unsigned>(120 + file_bytes / 20000)};
+}
+
+/// Exit statuses; as in <sysexits.h>.
+enum CadReaderExit { cad_reader_done = 0, cad_reader_misused = 64, cad_reader_failed = 70, cad_reader_out_of_memory };
+
+/// Finds the reader: `named`, or the environment's, or the first that lies beside this program or library, in a
+/// libexec folder or on PATH. Errors: unsupported (there is none).
+Result<std::string> find_cad_reader(const std::filesystem::path& named, std::string_view format);
+
+struct CadReaderRun {
+  std::string reader;  ///< the program
+  std::string_view format;
+  std::string file;
+  std::uint64_t file_bytes = 0;
+  const std::atomic<bool>* cancel = nullptr;
+  std::chrono::milliseconds startup = std::chrono::minutes(1);  ///< for the greeting, which comes before any work
+};
+/// Reads the file. Messages begin with its path. Errors: those of the file, io_error (not started), unsupported
+/// (another version), out_of_memory, cancelled, internal.
+Result<Model> run_cad_reader(const CadReaderRun& run);
+
+}  // namespace tessera::inline abi_0_1
