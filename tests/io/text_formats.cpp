@@ -128,14 +128,17 @@ const std::vector<TextFormat>& text_formats() {
       {"rib", ".rib", parsed<parse_rib>, opened_model},
       {"obj_mesh", ".obj", parsed_faces<parse_obj>, opened_mesh},
       {"ply", ".ply", parsed_faces<parse_ply>, opened_mesh},
+      {"gltf", ".gltf", parsed_faces<parse_gltf>, opened_mesh},
   };
   return formats;
 }
 
-bool is_binary(const std::string& sample) { return sample.find("format binary") != std::string::npos; }
+bool is_binary(const std::string& sample) {
+  return sample.find("format binary") != std::string::npos || sample.starts_with("glTF");
+}
 
 std::string with_blanks(const TextFormat& format, const std::string& text, std::string_view blank) {
-  const bool has_strings = format.name == "json" || format.name == "rib";
+  const bool has_strings = format.name == "json" || format.name == "gltf" || format.name == "rib";
   std::string result;
   bool in_string = false;
   for (std::size_t k = 0; k < text.size(); ++k) {

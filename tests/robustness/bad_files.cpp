@@ -115,6 +115,20 @@ void mesh_texts(Table& table) {
   Texts stl(table, parse_faces<parse_stl>, "read_mesh(\"m.stl\")");
   stl.row("4,000,000,000 triangles", std::string(80, ' ') + "\xff\xff\xff\xee" + std::string(50, '\0'), parse_error);
   stl.row("a facet that is cut", "solid m\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n", parse_error);
+  Texts gltf(table, parse_faces<parse_gltf>, "read_mesh(\"m.gltf\"), read_mesh(\"m.glb\")");
+  gltf.row("a container that is cut", std::string("glTF\2\0\0\0\xff\0\0\0", 12), parse_error);
+  gltf.row("a scene without meshes", R"({"asset": {"version": "2.0"}})", parse_error);
+  gltf.row("glTF 1.0", R"({"asset": {"version": "1.0"}})", unsupported);
+  const auto mesh = [](const std::string& buffer) {
+    return R"({"asset": {"version": "2.0"}, "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": )"
+           R"({"POSITION": 0}}]}], "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4000000000, )"
+           R"("type": "VEC3"}], "bufferViews": [{"buffer": 0, "byteLength": 3}], "buffers": [{"byteLength": 3, )"
+           R"("uri": ")" +
+           buffer + "\"}]}";
+  };
+  gltf.row("4,000,000,000 vertices", mesh("data:application/octet-stream;base64,AAAA"), parse_error);
+  gltf.row("a buffer in a folder above", mesh("../m.bin"), unsupported);
+  gltf.row("a buffer that is not there", mesh("missing.bin"), io_error);
 }
 
 /// In a folder of its own, so that messages name files by relative paths.

@@ -231,7 +231,8 @@ TEST(MemoryFails, WhereFilesAreReadAndWritten) {
         models + "quadric_ellipsoid.json"})
     survives("read_model " + path.filename().string(), [&] { return read_model(path); });
   for (const std::filesystem::path path :
-       {corpus + "obj_mesh/quad.obj", corpus + "ply/binary.ply", corpus + "stl/ascii.stl"})
+       {corpus + "obj_mesh/quad.obj", corpus + "ply/binary.ply", corpus + "stl/ascii.stl",
+        corpus + "gltf/embedded.gltf", corpus + "gltf/strip.glb"})
     survives("read_mesh " + path.filename().string(), [&] { return read_mesh(path); });
   const ScratchFolder folder;
   const PatchSet set = set_of(various_patches(1));

@@ -66,6 +66,10 @@ TEST_F(ConvertTool, MeshesOfEveryFormatAreWritten) {
   output_of({"tessellate", teapot, "-o", "a.stl", "--grid", "4x4"});
   const json obj = json::parse(output_of({"check", "a.obj", "--json"}));
   const json stl = json::parse(output_of({"check", "a.stl", "--json"}));
+  for (const char* const name : {"a.glb", "a.gltf"}) {
+    output_of({"tessellate", teapot, "-o", name, "--grid", "4x4"});
+    EXPECT_EQ(json::parse(output_of({"check", name, "--json"}))["triangles"], stl["triangles"]);
+  }
   for (const char* fact : {"distinct_positions", "triangles", "open_edges", "non_manifold_edges"})
     EXPECT_EQ(obj[fact], stl[fact]) << fact;
   EXPECT_EQ(stl["vertices"], stl["distinct_positions"]);

@@ -188,7 +188,7 @@ TEST_F(MeshTools, CheckRefusesNaNAndBadIndices) {
                  "tessera: index.obj:4: expected an index into the vertices above, 1 to 3 or -3 to -1, found \"4\"");
   folder_.file("empty.ply", "");
   expect_failure({"check", "empty.ply"}, 1, "tessera: empty.ply: the file is empty");
-  expect_failure({"check", teapot}, 1, "meshes are read as .obj, .ply, .stl");
+  expect_failure({"check", teapot}, 1, "meshes are read as .obj, .ply, .stl, .glb, .gltf");
   expect_failure({"check", "missing.ply"}, 1, "tessera: missing.ply: cannot be opened");
 }
 

@@ -10,9 +10,10 @@ void describe(Command& tool) {
 
       "Files read: surfaces as " + model_formats() +
       ";\n"
-      "meshes as .obj, .ply, .stl. Surfaces are Bezier patches (.bpt), BezierView (.bv), GoTools (.g2), RenderMan\n"
-      "(.rib), free-form OBJ, CAD parts (by the program tessera-cad-reader), and surfaces of every kind (.json;\n"
-      "share/doc/tessera/FORMAT.md describes the format). A warning names each part of a file that is skipped.\n"
+      "meshes as .obj, .ply, .stl, .glb, .gltf. Surfaces are Bezier patches (.bpt), BezierView (.bv), GoTools (.g2),\n"
+      "RenderMan (.rib), free-form OBJ, CAD parts (by the program tessera-cad-reader), and surfaces of every kind\n"
+      "(.json; share/doc/tessera/FORMAT.md describes the format). A warning names each part of a file that is "
+      "skipped.\n"
       "\nFiles written: meshes as .obj, .ply, .stl, .glb and .gltf; surfaces as .obj and .bpt; pictures as .png, and "
       "as\n"
       ".exr (numbers: depth, normals, parameters); tables as text. A file appears whole or not at all.\n"

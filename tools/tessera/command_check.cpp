@@ -49,10 +49,12 @@ std::string as_text(const std::string& mesh, const MeshReport& report) {
 }
 
 Status run_check(const std::string& file, const Options& options, const CommonOptions& common, Timings& timings) {
+  std::vector<std::string> warnings;
   const Result<Mesh> mesh = [&] {
     const auto phase = timings.phase("read");
-    return read_mesh(file, {.keep_quads = true});
+    return read_mesh(file, {.keep_quads = true, .warnings = &warnings});
   }();
+  for (const std::string& warning : warnings) warn(warning);
   if (!mesh) return mesh.status();
   const Result<MeshReport> report = [&] {
     const auto phase = timings.phase("check");
@@ -85,7 +87,9 @@ constexpr const char* footer =
 void add_check(Command& tool, Session& session) {
   Command& command = tool.add_command("check", "Check meshes for cracks, flipped triangles and NaN");
   const auto options = std::make_shared<Options>();
-  command.add_words("MESH", "FILE", "Files with meshes (.obj, .ply, .stl), or patterns of their names", options->meshes)
+  command
+      .add_words("MESH", "FILE", "Files with meshes (.obj, .ply, .stl, .glb, .gltf), or patterns of their names",
+                 options->meshes)
       .check(fault_of_name);
   command.add_flag("--require-closed", "Exit with 1 if a mesh is not closed", options->require_closed);
   add_common(command, session.common);

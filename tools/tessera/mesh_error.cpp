@@ -54,7 +54,8 @@ void add_error_options(Command& command, MeshErrorOptions& options, const Option
   const Option& mesh =
       command
           .add_text("--mesh", "FILE",
-                    "The mesh whose distance --shade error shows (.obj, .ply, .stl) [a certified mesh]", options.mesh)
+                    "The mesh whose distance --shade error shows (.obj, .ply, .stl, .glb, .gltf) [a certified mesh]",
+                    options.mesh)
           .check(fault_of_name)
           .need(shade);
   command
@@ -72,7 +73,10 @@ void check_error_options(Command& command, render::Shade shade) {
 
 Result<MeshError> measure_error(const MeshErrorOptions& options, const PatchSet& set) {
   MeshError error;
-  const Result<Mesh> mesh = options.mesh.empty() ? made(set, options.relative, error) : read_mesh(options.mesh);
+  std::vector<std::string> warnings;
+  const Result<Mesh> mesh =
+      options.mesh.empty() ? made(set, options.relative, error) : read_mesh(options.mesh, {.warnings = &warnings});
+  for (const std::string& warning : warnings) warn(warning);
   if (!mesh) return mesh.status();
   Result<render::MeshDistance> distance = render::MeshDistance::make(*mesh);
   if (!distance) return options.mesh.empty() ? distance.status() : in_file(options.mesh, distance.status());

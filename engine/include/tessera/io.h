@@ -112,12 +112,22 @@ Status write_model(const PatchSet& set, const std::filesystem::path& path);
 /// count_mismatch, non_finite.
 Status write_mesh(const Mesh& mesh, const std::filesystem::path& path);
 
-/// How read_mesh() treats polygons.
+/// How read_mesh() treats polygons, and where it reports what it skips.
 struct MeshReadOptions {
-  bool keep_quads = false;  ///< polygons of four corners become Mesh::quads
+  bool keep_quads = false;                       ///< polygons of four corners become Mesh::quads
+  std::vector<std::string>* warnings = nullptr;  ///< gets one sentence for each kind of thing that is skipped
 };
-/// Reads a mesh from .obj, .ply or .stl (binary or ascii). Polygons are split as fans. Corners of triangles in .stl
-/// become one vertex where their bits are equal. Errors: io_error, parse_error, unsupported.
+/// Reads a mesh from a file.
+///
+/// - .obj, .ply and .stl (binary or ascii). Polygons are split as fans. Corners of triangles in .stl become one vertex
+///   where their bits are equal.
+/// - .glb and .gltf: glTF 2.0, all triangles of the default scene, placed by its nodes; the translation of the first
+///   mesh is the origin. Normals and texture coordinates are kept if all triangles have them. Buffers may lie in files
+///   beside the file or below. Sparse and compressed accessors are errors; points, lines, skins, morph targets and
+///   animations are skipped with a warning.
+///
+/// Errors: io_error, parse_error, unsupported. Memory: for glTF at most 64 times the file and its buffers plus 16 MiB,
+/// however often nodes place a mesh.
 Result<Mesh> read_mesh(const std::filesystem::path& path, const MeshReadOptions& options = {});
 
 // These calls serve programs that check and open their output before they compute what it will hold.

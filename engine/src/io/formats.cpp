@@ -40,8 +40,8 @@ constexpr std::array<Format, 10> formats{{
     {.extension = ".rib", .read_model = parse_rib},
     {.extension = ".ply", .read_mesh = parse_ply, .write_mesh = write_ply},
     {.extension = ".stl", .read_mesh = parse_stl, .write_mesh = write_stl},
-    {.extension = ".glb", .write_mesh = write_glb},
-    {.extension = ".gltf", .write_mesh = write_gltf},
+    {.extension = ".glb", .read_mesh = parse_gltf, .write_mesh = write_glb},
+    {.extension = ".gltf", .read_mesh = parse_gltf, .write_mesh = write_gltf},
 }};
 
 constexpr std::string_view mesh_writers = "meshes are written", model_writers = "surfaces are written";

@@ -72,6 +72,8 @@ class JsonValue {
   double number() const { return node().content.number; }
   const std::string& string() const { return document_->strings_[node().content.string]; }
   std::size_t size() const { return node().content.children.count; }  ///< elements or members
+  /// Tells values of a document apart.
+  std::size_t place() const { return at_; }
   /// The number of values within this one, itself included.
   std::size_t span() const { return document_->behind(at_) - at_; }
 

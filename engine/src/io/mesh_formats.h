@@ -39,6 +39,11 @@ Result<Mesh> parse_stl(std::string_view bytes, std::string_view name, const Mesh
 /// TEXCOORD_0. Errors: invalid_argument (no triangles), unsupported (more than 2 GiB). Memory: three times the file.
 Status write_glb(const Mesh& mesh, OutputFile& out);
 Status write_gltf(const Mesh& mesh, OutputFile& out);
+/// Reads glTF 2.0 in either form: the meshes of the default scene, each placed by its nodes, with triangles, strips and
+/// fans. One part per placed mesh. The first mesh's translation is the origin. Keeps normals and TEXCOORD_0 if every
+/// primitive has them. Buffers lie in the file, or in files beside it or below, which `name` as a path finds. Memory:
+/// the buffers, three times data within JSON, and at most 64 times the file and its buffers plus 16 MiB for the mesh.
+Result<Mesh> parse_gltf(std::string_view bytes, std::string_view name, const MeshReadOptions& options = {});
 
 /// A coordinate in the model's space, as files hold it: adds the origin in double and rounds the sum to float.
 inline float file_coordinate(double origin, float relative) {
