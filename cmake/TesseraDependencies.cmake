@@ -8,6 +8,7 @@
 #                                               the command line: --json; tests: values of peers
 #   muParser          libmuparser-dev 2.3         tessera::io: expressions in models (engine/src/io alone)
 #   tinygltf          libtinygltf-dev 2.7         tessera::io: glTF (engine/src/io alone); tests: its reader
+#   zlib              zlib1g-dev 1.2              tessera::io: files packed by gzip (engine/src/io alone); optional
 #   libpng            libpng-dev 1.6              the command line and the benchmarks: pictures
 #   OpenEXR           libopenexr-dev 3.1          the command line: float pictures; tests: its reader
 #   GoogleTest        libgtest-dev 1.12           tests (and libgmock-dev: its matchers); bench: two reports
@@ -43,6 +44,18 @@ if(TESSERA_BUILD_IO)
   find_package(nlohmann_json 3 REQUIRED)
   find_package(muparser 2 REQUIRED)
   find_package(TinyGLTF CONFIG REQUIRED)
+endif()
+# Whether tessera::io unpacks files of gzip, and what it links for that.
+set(TESSERA_HAS_ZLIB OFF)
+set(tessera_zlib)
+if(TESSERA_BUILD_IO)
+  find_package(ZLIB QUIET)
+  if(ZLIB_FOUND)
+    set(TESSERA_HAS_ZLIB ON)
+    set(tessera_zlib ZLIB::ZLIB)
+  else()
+    message(STATUS "Packed files (.gz) are not read: zlib is not found (zlib1g-dev)")
+  endif()
 endif()
 # Whether tessera-cad-reader is built.
 set(TESSERA_HAS_CAD_READER OFF)

@@ -27,7 +27,7 @@ fail() {
 
 # cmake/TesseraDependencies.cmake says what each package is for.
 demo_packages=(g++ cmake ninja-build libtbb-dev libxsimd-dev libembree-dev libcli11-dev nlohmann-json3-dev libmuparser-dev
-  libtinygltf-dev libpng-dev libopenexr-dev)
+  libtinygltf-dev zlib1g-dev libpng-dev libopenexr-dev)
 cad_packages=(libocct-data-exchange-dev)
 test_packages=("${cad_packages[@]}" binutils libgtest-dev libgmock-dev libbenchmark-dev python3 python3-yaml valgrind)
 neon_packages=(g++-aarch64-linux-gnu qemu-user)

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "io/gzip.h"
 #include "io/mesh_formats.h"
 #include "tessera/io.h"
 
@@ -37,6 +38,8 @@ bool may_have_functions(const Surface& surface) {
 [[maybe_unused]] void use(const Mesh& mesh) {
   for (const auto index : mesh.indices) require(index < mesh.vertex_count());
 }
+
+[[maybe_unused]] void use(const std::string& text) { require(!text.empty()); }
 
 }  // namespace
 

@@ -286,7 +286,7 @@ TEST(Formats, UnknownOnesAreNamedWithThoseThatAreKnown) {
   EXPECT_EQ(read_model(none).status().message(),
             none + ": unsupported format \"\": surfaces are read as .bpt, .bv, .g2, .json, .obj, .rib");
   EXPECT_EQ(read_mesh(mesh).status().message(),
-            mesh + ": unsupported format \".off\": meshes are read as .obj, .ply, .stl");
+            mesh + ": unsupported format \".off\": meshes are read as .obj, .ply, .stl, .glb, .gltf");
   EXPECT_EQ(write_mesh(random_mesh(3, 1), mesh).message(),
             mesh + ": unsupported format \".off\": meshes are written as .obj, .ply, .stl, .glb, .gltf");
   EXPECT_EQ(write_model(Model{}, mesh).status().message(),

@@ -87,6 +87,10 @@ void scene_texts(Table& table) {
   rib.row("a point too few", "Patch \"bilinear\" \"P\" [0 0 0 0 1 0 1 0 0]\n", parse_error);
   rib.row("an order of 99", "NuPatch 2 99 [0 0 1 1] 0 1 2 2 [0 0 1 1] 0 1 \"P\" [0 0 0 0 1 0 1 0 0 1 1 0]\n",
           parse_error);
+  rib.row("a sphere of radius 0", "Sphere 0 -1 1 360\n", parse_error);
+  rib.row("an angle beyond a full turn", "Disk 0 1 400\n", parse_error);
+  rib.row("an archive in a folder above", "ReadArchive \"../a.rib\"\n", unsupported);
+  rib.row("an archive that is not there", "ReadArchive \"missing.rib\"\n", unsupported);
   Texts json(table, parse<parse_json_model>, "parse_json_model(text, name)");
   const auto surface = [](const std::string& members) {
     return "{\"format\": \"tessera\", \"version\": 1, \"surfaces\": [\n{" + members + "}]}";
@@ -159,6 +163,12 @@ void reading(Table& table) {
   table.row("a link to itself", io_error, read_mesh("loop.ply"));
   table.row("an extension that is not known", unsupported, read_model("scene.k3d"));
   table.row("no extension", unsupported, read_mesh("mesh"));
+  here.folder.file("plain.obj.gz", "v 0 0 0\n");
+  here.folder.file("cut.obj.gz", std::string_view("\x1f\x8b\x08\0\0\0\0\0\0\3", 10));
+  here.folder.file("packed.off.gz", "\x1f\x8b");
+  table.row("a file .gz that is not packed", parse_error, read_model("plain.obj.gz"));
+  table.row("a packed file that is cut", parse_error, read_mesh("cut.obj.gz"));
+  table.row("an extension that is not known below .gz", unsupported, read_mesh("packed.off.gz"));
   table.row("a name of 5,000 letters", io_error, [] {
     const Status status = read_model(std::string(5000, 'x') + ".bpt").status();
     return Status(status.code(), "x..." + status.message().substr(5000));

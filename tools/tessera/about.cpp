@@ -14,6 +14,7 @@ void describe(Command& tool) {
       "RenderMan (.rib), free-form OBJ, CAD parts (by the program tessera-cad-reader), and surfaces of every kind\n"
       "(.json; share/doc/tessera/FORMAT.md describes the format). A warning names each part of a file that is "
       "skipped.\n"
+      "Files may be packed by gzip (.obj.gz).\n"
       "\nFiles written: meshes as .obj, .ply, .stl, .glb and .gltf; surfaces as .obj and .bpt; pictures as .png, and "
       "as\n"
       ".exr (numbers: depth, normals, parameters); tables as text. A file appears whole or not at all.\n"

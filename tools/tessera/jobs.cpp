@@ -8,7 +8,7 @@
 
 #include "arguments.h"
 #include "progress.h"
-#include "tessera/files.h"
+#include "tessera/io.h"
 
 namespace tessera::cli {
 namespace {
@@ -50,7 +50,9 @@ std::vector<std::string> expand(const std::vector<std::string>& words, std::vect
 }
 
 std::string output_of(const std::string& input, std::string output, const OutputRule& rule) {
-  const std::string name = fs::path(input).stem().string();
+  fs::path path = input;
+  if (lower_extension(path) == ".gz") path = path.stem();
+  const std::string name = path.stem().string();
   if (is_folder(output)) return (fs::path(output) / (name + rule.extension)).string();
   for (std::size_t at = output.find(placeholder); at != std::string::npos; at = output.find(placeholder, at)) {
     output.replace(at, placeholder.size(), name);

@@ -22,15 +22,18 @@ namespace tessera::inline abi_0_1 {
 /// - .g2: GoTools, spline and elementary surfaces
 /// - .json: surfaces of every kind; share/doc/tessera/FORMAT.md describes the format
 /// - .obj: free-form surfaces
-/// - .rib: RenderMan, Patch, PatchMesh and NuPatch
+/// - .rib: RenderMan, Patch, PatchMesh, NuPatch and quadrics, and the archives that it reads
 /// - .step, .stp, .iges, .igs, .brep, .brp: as read_cad() of cad.h, which runs the program tessera-cad-reader
+///
+/// All but the formats of read_cad() may be packed by gzip: "teapot.bpt.gz"; .rib also without the extension .gz. A packed file may unpack
+/// to 200 times its size and 1 MiB, and to 1 GiB at the most.
 ///
 /// Model::warnings reports each part of the file that is skipped. A file with a wrong element gives no model.
 ///
-/// Errors: io_error, parse_error, unsupported (no reader for the extension; nothing in the file that it reads); for
-/// .json and .obj also those of the surfaces.
+/// Errors: io_error, parse_error, unsupported (no reader for the extension; nothing in the file that it reads; a
+/// packed file beyond the limits, or a build without zlib); for .json and .obj also those of the surfaces.
 ///
-/// Memory, including the file's bytes: at most 8 times the file plus 64 KiB for numbers of a few digits, commonly 2 to
+/// Memory, including the file's bytes (of a packed file the unpacked ones, and its own): at most 8 times the file plus 64 KiB for numbers of a few digits, commonly 2 to
 /// 4 times. Counts that a file states never make it more. Files of numbers with one digit and a blank take more:
 ///
 /// - .json: 13 times the file
@@ -48,7 +51,7 @@ Result<Model> parse_bv(std::string_view text, std::string_view name);
 /// surfaces lie in z = 0. Parameters are the file's, except a cone's v (counted from the apex) and a torus' (rational
 /// arcs within [0,1]^2). Errors: as parse_bpt().
 Result<Model> parse_g2(std::string_view text, std::string_view name);
-/// Parses the text of a .rib file, which must not be compressed.
+/// Parses the text of a .rib file, which must not be packed.
 ///
 /// - A patch or mesh has RenderMan's parameters over [0,1]^2, a NuPatch those of its knots.
 /// - A mesh is one B-spline surface if its bases are bezier, b-spline, catmull-rom or hermite with their usual steps.
@@ -56,9 +59,15 @@ Result<Model> parse_g2(std::string_view text, std::string_view name);
 /// - Placements lead to world space as at WorldBegin; coordinates are unchanged (left-handed).
 /// - Attribute "identifier" "name" names surfaces. TrimCurves are kept as trims.
 /// - A moving surface is read at its first moment.
-/// - Copies by ObjectInstance are limited to 4 times the file plus 1 MiB.
+/// - Quadrics (Sphere, Cone, Cylinder, Hyperboloid, Paraboloid, Disk, Torus) are exact. u runs with the angle and v as
+///   RenderMan's, so normals point to the same side; on rational arcs and on a paraboloid they keep another pace.
+/// - ReadArchive reads files beside the file that names them, beside the first file, or below; `name` as a path finds
+///   them. An absolute path, a part "..", an archive that reads itself and more than 32 levels are errors; a file that
+///   is missing is a warning.
+/// - Copies by ObjectInstance are limited to 4 times the files plus 1 MiB, and archives that are read again to 64 times
+///   the files plus 1 MiB.
 ///
-/// Errors: as parse_bpt().
+/// Errors: as parse_bpt(); from archives also io_error.
 Result<Model> parse_rib(std::string_view text, std::string_view name);
 /// Parses the text of a .json file. Messages have a line, and the place as a JSON pointer (RFC 6901): "m.json:17:
 /// /surfaces/3/points/2/1: expected 3 numbers [x, y, z], found an array of 2". Threads: the expressions of its surfaces
@@ -117,7 +126,7 @@ struct MeshReadOptions {
   bool keep_quads = false;                       ///< polygons of four corners become Mesh::quads
   std::vector<std::string>* warnings = nullptr;  ///< gets one sentence for each kind of thing that is skipped
 };
-/// Reads a mesh from a file.
+/// Reads a mesh from a file, which may be packed by gzip as for read_model().
 ///
 /// - .obj, .ply and .stl (binary or ascii). Polygons are split as fans. Corners of triangles in .stl become one vertex
 ///   where their bits are equal.

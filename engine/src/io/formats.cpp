@@ -7,6 +7,7 @@
 
 #include "io/cad_reader.h"
 #include "io/file.h"
+#include "io/gzip.h"
 #include "io/mesh_formats.h"
 #include "io/model_formats.h"
 #include "io/valid_mesh.h"
@@ -46,11 +47,11 @@ constexpr std::array<Format, 10> formats{{
 
 constexpr std::string_view mesh_writers = "meshes are written", model_writers = "surfaces are written";
 
-/// The format that `path` names, if it has the ability `member`; otherwise an error that lists the formats that have
-/// it.
+/// The format of this extension, if it has the ability `member`; otherwise an error for the file `path` that lists the
+/// formats that have it.
 template <class Ability>
-Result<const Format*> find_format(const fs::path& path, Ability Format::*member, std::string_view what) {
-  const std::string extension = lower_extension(path);
+Result<const Format*> find_format(const fs::path& path, const std::string& extension, Ability Format::*member,
+                                  std::string_view what) {
   std::string able;
   for (const Format& format : formats) {
     if (!(format.*member)) continue;
@@ -62,16 +63,19 @@ Result<const Format*> find_format(const fs::path& path, Ability Format::*member,
                 path.string() + ": unsupported format \"" + extension + "\": " + std::string(what) + " as " + able);
 }
 
-/// The file's bytes and its format. A file that cannot be opened is reported before an unknown format.
+/// The content of the file, unpacked if it is packed. A file that cannot be opened is reported before an unknown
+/// format.
 template <class Content, class Ability, class... Options>
 Result<Content> read_as(const fs::path& path, Ability Format::*member, std::string_view what,
                         const Options&... options) {
-  const Result<const Format*> format = find_format(path, member, what);
+  const Result<const Format*> format = find_format(path, lower_extension(without_gz(path)), member, what);
   std::error_code error;
   if (!format && fs::exists(path, error) && !fs::is_directory(path, error)) return format.status();
-  const Result<std::string> bytes = read_file(path);
+  Result<std::string> bytes = read_file(path);
   if (!bytes) return bytes.status();
   if (!format) return format.status();
+  if (is_gzip(path, *bytes)) bytes = unpack_gzip(*bytes, path.string());
+  if (!bytes) return bytes.status();
   return ((*format)->*member)(*bytes, path.string(), options...);
 }
 
@@ -85,12 +89,14 @@ std::string lower_extension(const fs::path& path) {
   return extension;
 }
 
-Status check_mesh_format(const fs::path& path) { return find_format(path, &Format::write_mesh, mesh_writers).status(); }
+Status check_mesh_format(const fs::path& path) {
+  return find_format(path, lower_extension(path), &Format::write_mesh, mesh_writers).status();
+}
 
 Status check_model_format(const fs::path& path) { return surface_writer(path).status(); }
 
 Result<SurfaceWriter> surface_writer(const fs::path& path) {
-  const Result<const Format*> format = find_format(path, &Format::write_model, model_writers);
+  const Result<const Format*> format = find_format(path, lower_extension(path), &Format::write_model, model_writers);
   if (!format) return format.status();
   return SurfaceWriter{(*format)->write_model};
 }
@@ -100,7 +106,7 @@ Result<Model> read_model(const fs::path& path) {
     if (is_cad_file(path)) return read_cad(path);
     Result<Model> model = read_as<Model>(path, &Format::read_model, "surfaces are read");
     if (!model) return model;
-    model->name = path.stem().string();
+    model->name = without_gz(path).stem().string();
     return model;
   });
 }
@@ -111,7 +117,7 @@ Result<Mesh> read_mesh(const fs::path& path, const MeshReadOptions& options) {
 
 Status write_mesh(const Mesh& mesh, const fs::path& path, OutputFile& out) {
   return guarded([&]() -> Status {
-    const Result<const Format*> format = find_format(path, &Format::write_mesh, mesh_writers);
+    const Result<const Format*> format = find_format(path, lower_extension(path), &Format::write_mesh, mesh_writers);
     if (!format) return format.status();
     Status status = validate(mesh);
     if (!status.ok()) return Status(status.code(), path.string() + ": " + status.message(), status.index());
