@@ -114,18 +114,18 @@ TEST(RibScene, OtherRequestsArePassedOverAndCounted) {
   const Model model = model_of(parse_rib,
                                "##RenderMan RIB\nversion 3.03\nDeclare \"P\" \"vertex point\"\n# Patch\n"
                                "Display \"a ] # \\\" b.tif\" \"file\" \"rgb\" \"list\" [\"x[\" \"]y\"]\n"
-                               "Color [1 .5 0] Color 1 1 1 Sphere 1 -1 1 360 Skew 45 0 1 0 1 0 0\n"
-                               "Polygon \"P\"[0 0 0 1 0 0 0 1 0] Sphere [1 -1 1 360]" +
+                               "Color [1 .5 0] Color 1 1 1 Curves 1 -1 1 360 Skew 45 0 1 0 1 0 0\n"
+                               "Polygon \"P\"[0 0 0 1 0 0 0 1 0] Curves [1 -1 1 360]" +
                                    quad);
   EXPECT_EQ(model.surfaces.size(), 1u);
   EXPECT_EQ(model.warnings, (std::vector<std::string>{
-                                "m:6: shapes that are not read: Polygon 1, Sphere 2",
+                                "m:6: shapes that are not read: Curves 2, Polygon 1",
                                 "m:6: transformations that are not read, surfaces after them are misplaced: Skew 1",
                                 "m:5: requests that are skipped: Color 2, Display 1"}));
-  EXPECT_EQ(error_of(parse_rib, "Sphere 1 -1 1 360\n", StatusCode::unsupported),
-            "m: no surface that can be read, but Sphere 1");
+  EXPECT_EQ(error_of(parse_rib, "Points 1 -1 1 360\n", StatusCode::unsupported),
+            "m: no surface that can be read, but Points 1");
   EXPECT_EQ(error_of(parse_rib, "Color 1 1 1\n"),
-            "m: no surface that can be read: expected Patch, PatchMesh or NuPatch, found none");
+            "m: no surface that can be read: expected Patch, PatchMesh, NuPatch or a quadric, found none");
 }
 
 TEST(RibScene, OpenBlocksAtTheEndAreAWarning) {
@@ -200,7 +200,7 @@ TEST(RibScene, ErrorsSayWhereWhatAndWhatWasWanted) {
 
 TEST(RibScene, CompressedAndBinaryFilesAreSaidToBeSo) {
   EXPECT_EQ(error_of(parse_rib, std::string("\x1f\x8b\x08\0\0", 5), StatusCode::unsupported),
-            "m: compressed RIB is not read: unpack it first (gunzip)");
+            "m: this text is packed by gzip; read_model() unpacks files");
   EXPECT_EQ(error_of(parse_rib, "version 3.03\n\xCC\x01\x02"), "m:2: binary RIB is not read: convert it to text first");
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "io/elementary.h"
 #include "io/g2.h"
 #include "tessera/nurbs_surface.h"
 
@@ -20,22 +21,10 @@ std::optional<Affine> frame(const Vec3& location, const Vec3& z_axis, const Vec3
   return Affine{.columns = {normalized(cross(y, z)), y, z}, .translation = location};
 }
 
-/// Files print angles with 15 digits or fewer: an angle within this of a full turn or a pole is taken as one.
+/// Files print angles with 15 digits or fewer: a latitude within this of a pole is taken as one.
 constexpr double printed = 1e-9;
-void snap_turn(double from, double& to) {
-  if (std::abs(to - from - 2 * pi) <= printed) to = from + 2 * pi;
-}
 void snap_pole(double& latitude) {
   if (std::abs(std::abs(latitude) - pi / 2) <= printed) latitude = std::copysign(pi / 2, latitude);
-}
-
-/// The parameter of an angle in [0, 2 pi] on a circle of four rational arcs over [0,1]. On the arc with middle angle m
-/// and half-width h, the angle is m + 2 atan(tan(h/2) s), s from -1 to 1.
-double circle_parameter(double angle) {
-  const double arc = std::min(3.0, std::floor(angle / (pi / 2)));
-  const double off_middle = angle - (arc + 0.5) * (pi / 2);
-  const double s = std::tan(off_middle / 2) / std::tan(pi / 8);
-  return std::clamp((arc + (1 + s) / 2) / 4, 0.0, 1.0);
 }
 
 struct Elementary {
@@ -75,54 +64,16 @@ Result<Surface> plane(const Elementary& e) {
   return Surface(*std::move(surface));
 }
 
-/// A quadric in the canonical frame, where its parameters are the file's.
-Result<Surface> quadric(QuadricKind kind, const QuadricCoefficients& coefficients, Domain range) {
-  snap_turn(range.u0, range.u1);
-  const Result<Quadric> whole = Quadric::make(coefficients);
-  if (!whole) return whole.status();
-  if (whole->kind() != kind)
-    return Status(StatusCode::invalid_argument,
-                  "its sizes are too far from 1 for double: it is classified as the kind '" +
-                      std::string(name(whole->kind())) + "'");
-  Result<QuadricPiece> piece = QuadricPiece::make(*whole, range);
-  if (!piece) return piece.status();
-  return Surface(*std::move(piece));
-}
-
 Result<Surface> cylinder(double radius, const Domain& range) {
-  return quadric(QuadricKind::elliptic_cylinder, {.a = 1 / radius / radius, .b = 1 / radius / radius, .k = -1}, range);
+  return quadric_part(QuadricKind::elliptic_cylinder, {.a = 1 / radius / radius, .b = 1 / radius / radius, .k = -1},
+                      range);
 }
 
 Result<Surface> sphere(double radius, Domain range) {
   snap_pole(range.v0);
   snap_pole(range.v1);
   const double square = 1 / radius / radius;
-  return quadric(QuadricKind::ellipsoid, {.a = square, .b = square, .c = square, .k = -1}, range);
-}
-
-/// A torus about the origin. The turn begins at u0 and the tube at v0, so that ranges are the first parts of full
-/// circles.
-Result<Surface> torus(const Elementary& e) {
-  Domain range = e.range;
-  snap_turn(range.u0, range.u1);
-  snap_turn(range.v0, range.v1);
-  const double turn_u = range.u1 - range.u0, turn_v = range.v1 - range.v0;
-  if (!(turn_u > 0 && turn_u <= 2 * pi + printed && turn_v > 0 && turn_v <= 2 * pi + printed)) {
-    return Status(StatusCode::invalid_argument, "its ranges must be above 0 and at most a full turn");
-  }
-  const Vec3 outwards{std::cos(range.u0), std::sin(range.u0), 0}, up{0, 0, 1};
-  const Result<Curve> tube = nurbs_circle({.origin = e.radius * outwards,
-                                           .direction = cross(outwards, up),
-                                           .zero = std::cos(range.v0) * outwards + std::sin(range.v0) * up},
-                                          e.minor_radius);
-  if (!tube) return tube.status();
-  const Result<BSplineSurface> full = surface_of_revolution(*tube, {.zero = outwards});
-  if (!full) return full.status();
-  Result<BSplineSurface> part =
-      BSplineSurface::rational(full->degree_u(), full->knots_u(), full->degree_v(), full->knots_v(), full->points(),
-                               full->weights(), Domain{0, circle_parameter(turn_u), 0, circle_parameter(turn_v)});
-  if (!part) return part.status();
-  return Surface(*std::move(part));
+  return quadric_part(QuadricKind::ellipsoid, {.a = square, .b = square, .c = square, .k = -1}, range);
 }
 
 /// The radius at v is R + v tan(angle). The apex lies at v = -R / tan(angle), where the canonical cone has v = 0.
@@ -136,7 +87,7 @@ Result<Surface> cone(const Elementary& e, Affine& placement) {
   if (slope < 0) {
     placement = placement * Affine::scaled({-1, -1, 1});
   }
-  return quadric(QuadricKind::elliptic_cone, {.a = 1, .b = 1, .c = -1}, range);  // slope 1, then scaled
+  return quadric_part(QuadricKind::elliptic_cone, {.a = 1, .b = 1, .c = -1}, range);  // slope 1, then scaled
 }
 
 Result<Surface> make_surface(std::int64_t kind, const Elementary& e, Affine& placement) {
@@ -154,7 +105,7 @@ Result<Surface> make_surface(std::int64_t kind, const Elementary& e, Affine& pla
     case g2_cone:
       return cone(e, placement);
     default:
-      return torus(e);
+      return torus_part(e.radius, e.minor_radius, e.range);
   }
 }
 

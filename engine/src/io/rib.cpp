@@ -1,5 +1,5 @@
-// RIB, the RenderMan Interface Bytestream as text: Patch, PatchMesh and NuPatch, their bases, trims and
-// transformations, objects and their instances (The RenderMan Interface Specification 3.2, sec. 4, 5 and appendix C).
+// RIB, the RenderMan Interface Bytestream as text: Patch, PatchMesh, NuPatch and quadrics, their bases, trims and
+// transformations, objects and their instances, archives (The RenderMan Interface Specification 3.2, sec. 4, 5 and appendix C).
 // Points and transformations act on row vectors, as the Interface writes them; the model's space is the world as it
 // is at WorldBegin, left-handed as the Interface's is, coordinates unchanged.
 
@@ -11,9 +11,12 @@
 
 #include "io/make_room.h"
 #include "io/passed_over.h"
+#include "io/rib_archives.h"
 #include "io/rib_lexer.h"
+#include "io/rib_quadrics.h"
 #include "io/rib_state.h"
 #include "io/rib_surfaces.h"
+#include "io/rib_tally.h"
 #include "io/rib_trims.h"
 #include "tessera/guard.h"
 #include "tessera/io.h"
@@ -23,27 +26,13 @@ namespace tessera::inline abi_0_1 {
 namespace {
 
 /// Requests that draw shapes that are not read. All other requests say how, and from where, the scene is drawn.
-constexpr std::string_view shapes[] = {"Sphere",
-                                       "Cone",
-                                       "Cylinder",
-                                       "Torus",
-                                       "Paraboloid",
-                                       "Hyperboloid",
-                                       "Disk",
-                                       "Polygon",
-                                       "GeneralPolygon",
-                                       "PointsPolygons",
-                                       "PointsGeneralPolygons",
-                                       "SubdivisionMesh",
-                                       "HierarchicalSubdivisionMesh",
-                                       "Curves",
-                                       "Points",
-                                       "Blobby",
-                                       "Volume",
-                                       "Geometry",
-                                       "Procedural",
-                                       "Procedural2",
-                                       "ReadArchive"};
+constexpr std::string_view shapes[] = {"Polygon",         "GeneralPolygon",
+                                       "PointsPolygons",  "PointsGeneralPolygons",
+                                       "SubdivisionMesh", "HierarchicalSubdivisionMesh",
+                                       "Curves",          "Points",
+                                       "Blobby",          "Volume",
+                                       "Geometry",        "Procedural",
+                                       "Procedural2",     "ReadArchive"};
 /// Requests that move later shapes in ways that are not read.
 constexpr std::string_view other_transforms[] = {"Skew", "Perspective", "Deformation", "CoordSysTransform"};
 
@@ -51,34 +40,6 @@ template <class Names>
 bool contains(const Names& names, std::string_view name) {
   return std::find(std::begin(names), std::end(names), name) != std::end(names);
 }
-
-/// Counts occurrences by name, and keeps the line of the first.
-class Tally {
- public:
-  void add(std::string_view name, const TextCursor& at) {
-    if (counts_.empty()) line_ = at.line();
-    ++counts_[name];
-    ++total_;
-  }
-  bool empty() const { return counts_.empty(); }
-  std::size_t total() const { return total_; }
-  std::size_t line() const { return line_; }
-  /// "Color 6, Display 4".
-  std::string words() const {
-    constexpr std::size_t limit = 40;
-    std::string words;
-    std::size_t listed = 0;
-    for (const auto& [name, count] : counts_) {
-      if (listed++ == limit) return words + " and " + std::to_string(counts_.size() - limit) + " more";
-      words += (words.empty() ? "" : ", ") + surface_name(name) + ' ' + std::to_string(count);
-    }
-    return words;
-  }
-
- private:
-  std::map<std::string_view, std::size_t> counts_;
-  std::size_t total_ = 0, line_ = 0;
-};
 
 /// The surfaces between ObjectBegin and ObjectEnd.
 using Object = std::vector<ModelSurface>;
@@ -90,6 +51,7 @@ class RibReader {
         size_(text.size()),
         lexer_(text, name),
         start_(lexer_.place()),
+        archives_(text, name),
         copies_left_(4 * text.size() + (1 << 20)) {}
 
   Result<Model> read() {
@@ -257,6 +219,16 @@ class RibReader {
     return lexer_.skip_values();
   }
 
+  Status quadric() {
+    Result<RibQuadric> read = read_quadric(surface_text());
+    if (!read) return read.status();
+    const Affine placement = *stack_.state().transform * read->placement;
+    if (!is_finite(placement)) return failure("the transformation is too large for double");
+    make_room(surfaces(), size_ - lexer_.place().remaining(), size_);
+    surfaces().push_back({stack_.state().name, std::move(read->surface), placement});
+    return lexer_.skip_values();
+  }
+
   Status trim_curve() {
     Result<std::vector<TrimLoop>> loops = read_trim_loops(lexer_);
     if (!loops) return loops.status();
@@ -293,19 +265,43 @@ class RibReader {
     return {};
   }
 
+  // Archives.
+
+  /// Reads the requests of another file as if they stood here. A file that is missing is counted as a shape.
+  Status read_archive() {
+    std::string_view name;
+    Status status = lexer_.take_string("the name of a file", name);
+    if (!status.ok()) return status;
+    const Result<const RibArchive*> archive = archives_.open(start_, name);
+    if (!archive) return archive.status();
+    if (!*archive) unread_shapes_.add(request_, start_);
+    status = lexer_.skip_values();
+    if (!status.ok() || !*archive) return status;
+    copies_left_ += 4 * (*archive)->text.size();
+    const RibLexer after = lexer_;
+    const std::size_t size = size_;
+    lexer_ = RibLexer((*archive)->text, (*archive)->name);
+    size_ = (*archive)->text.size();
+    while (status.ok() && !lexer_.at_end()) status = read_request();
+    archives_.close();
+    lexer_ = after;
+    size_ = size;
+    return status;
+  }
+
   // Warnings.
 
   Status nothing_read() const {
     const std::string begin = std::string(name_) + ": no surface that can be read";
     if (unread_shapes_.empty()) {
-      return Status(StatusCode::parse_error, begin + ": expected Patch, PatchMesh or NuPatch, found none");
+      return Status(StatusCode::parse_error, begin + ": expected Patch, PatchMesh, NuPatch or a quadric, found none");
     }
     return Status(StatusCode::unsupported, begin + ", but " + unread_shapes_.words());
   }
 
   void warn() {
     const auto say = [&](const Tally& tally, const std::string& words) {
-      model_.warnings.push_back(std::string(name_) + ':' + std::to_string(tally.line()) + ": " + words);
+      model_.warnings.push_back(tally.place() + ": " + words);
     };
     const auto number = [](const Tally& tally) { return std::to_string(tally.total()); };
     if (!unread_shapes_.empty()) say(unread_shapes_, "shapes that are not read: " + unread_shapes_.words());
@@ -336,11 +332,19 @@ class RibReader {
     return contains(other_transforms, request_) ? unread_transforms_ : others_;
   }
 
-  static constexpr std::array<std::pair<std::string_view, Handler>, 15> handlers{{
+  static constexpr std::array<std::pair<std::string_view, Handler>, 23> handlers{{
       {"Patch", &RibReader::patch},
       {"PatchMesh", &RibReader::patch_mesh},
       {"NuPatch", &RibReader::nu_patch},
       {"TrimCurve", &RibReader::trim_curve},
+      {"Sphere", &RibReader::quadric},
+      {"Cone", &RibReader::quadric},
+      {"Cylinder", &RibReader::quadric},
+      {"Hyperboloid", &RibReader::quadric},
+      {"Paraboloid", &RibReader::quadric},
+      {"Disk", &RibReader::quadric},
+      {"Torus", &RibReader::quadric},
+      {"ReadArchive", &RibReader::read_archive},
       {"Basis", &RibReader::basis},
       {"Attribute", &RibReader::attribute},
       {"ObjectInstance", &RibReader::instance},
@@ -358,6 +362,7 @@ class RibReader {
   std::size_t size_;
   RibLexer lexer_;
   TextCursor start_;  // of the current request
+  RibArchives archives_;
   std::string_view request_;
   RibStack stack_;
   Model model_;
@@ -376,7 +381,7 @@ Result<Model> parse_rib(std::string_view text, std::string_view name) {
   return guarded([&]() -> Result<Model> {
     if (text.starts_with("\x1f\x8b")) {
       return Status(StatusCode::unsupported,
-                    std::string(name) + ": compressed RIB is not read: unpack it first (gunzip)");
+                    std::string(name) + ": this text is packed by gzip; read_model() unpacks files");
     }
     return RibReader(text, name).read();
   });

@@ -1,0 +1,27 @@
+#pragma once
+// Elementary surfaces of files: parts of quadrics, and of surfaces of revolution about the z axis.
+
+#include "tessera/curve.h"
+#include "tessera/geometry.h"
+#include "tessera/quadric.h"
+#include "tessera/status.h"
+#include "tessera/surface.h"
+
+namespace tessera::inline abi_0_1 {
+
+/// A part of a quadric in the canonical frame, by its canonical parameters. Errors: invalid_argument (another kind than
+/// `kind`, an empty range).
+Result<Surface> quadric_part(QuadricKind kind, const QuadricCoefficients& coefficients, const Domain& range);
+
+/// Revolves a profile about the z axis by `turn` radians, above 0 and at most a full turn. u and the profile's parameter
+/// are v; u is 0 to circle_parameter(turn). Errors: invalid_argument.
+Result<Surface> revolved_part(const Curve& profile, double turn);
+
+/// A torus about the z axis. `range` holds the angles of the turn (u) and of the tube (v), in radians; u and v of the
+/// surface begin at 0, on rational arcs. Errors: invalid_argument (a range that is empty or above a full turn).
+Result<Surface> torus_part(double major, double minor, const Domain& range);
+
+/// Tells whether `turn` radians are above 0 and at most a full turn, up to the rounding of angles in files.
+bool is_turn(double turn);
+
+}  // namespace tessera::inline abi_0_1
