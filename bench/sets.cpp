@@ -44,7 +44,7 @@ const PatchSet& set_named(std::string_view name) {
   PatchSetOptions options;
   options.blocks.double_bernstein = !rational && (patches == 20000 || patches == 100000);
   const std::vector<BezierPatch> field = test::wavy_field(patches / columns, columns);
-  return fields.emplace(name, test::value_of(PatchSet::from(rational ? with_weights(field) : field, options)))
+  return fields.emplace(name, test::value_of(PatchSet::make(rational ? with_weights(field) : field, options)))
       .first->second;
 }
 

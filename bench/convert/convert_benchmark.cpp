@@ -78,7 +78,7 @@ void elevate_patches(benchmark::State& state) {
 void elevate_spline(benchmark::State& state) {
   const BSplineSurface surface = value_of(wavy_surface(50, 3, false));
   run(state, surface, 1e-11, [&]() -> Result<PatchGrid> {
-    const Result<BSplineSurface> higher = degree_elevated(surface, 1, 1);
+    const Result<BSplineSurface> higher = elevate_degree(surface, 1, 1);
     if (!higher) return higher.status();
     return to_bezier(*higher);
   });

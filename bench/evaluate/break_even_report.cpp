@@ -49,7 +49,7 @@ class Part {
  public:
   Part(const Kind& kind, std::span<const BezierPatch> patches)
       : kind_(kind),
-        set_(test::value_of(PatchSet::from(patches, {.blocks = {.float_points = kind.points}}))),
+        set_(test::value_of(PatchSet::make(patches, {.blocks = {.float_points = kind.points}}))),
         plan_(test::value_of(GridPlan::make(set_, uniform_parameters(size), uniform_parameters(size)))) {
     const std::size_t width = kind.normals ? 6 : 3;
     memory_.resize(kind.blocks ? plan_.block_capacity() : plan_.capacity() * width);

@@ -47,7 +47,7 @@ const PatchSet& field_of(std::size_t patches) {
   PatchSetOptions options;
   options.blocks = {.float_bernstein = false, .float_points = true};
   const int rows = patches < 1000 ? 10 : patches < 50'000 ? 50 : 250, columns = static_cast<int>(patches) / rows;
-  return sets.emplace(patches, test::value_of(PatchSet::from(test::wavy_field(rows, columns), options))).first->second;
+  return sets.emplace(patches, test::value_of(PatchSet::make(test::wavy_field(rows, columns), options))).first->second;
 }
 
 /// Runs of samples, in random order of patches.

@@ -86,14 +86,14 @@ class Outputs {
 bool check_values(const PatchSet& set, const GridPlan& plan, const Case& c, const Outputs& outputs) {
   std::vector<BezierPatch> patches;
   for (std::size_t k = 0; k < set.patch_count(); ++k) patches.push_back(set.patch(k));
-  const auto fresh = PatchSet::from(patches, {.origin = set.origin()});
+  const auto fresh = PatchSet::make(patches, {.origin = set.origin()});
   Outputs expected(plan, c);
   return fresh && expected.evaluate(*fresh, plan).ok() && expected == outputs;
 }
 
 void run(benchmark::State& state, const Case& c) {
   const std::vector<BezierPatch> patches = test::wavy_field(rows, columns);
-  PatchSet set = test::value_of(PatchSet::from(patches));
+  PatchSet set = test::value_of(PatchSet::make(patches));
   const std::vector<double> t = uniform_parameters(size);
   const GridPlan plan = test::value_of(GridPlan::make(set, t, t, {.isa = c.isa}));
   GridUpdate update = test::value_of(GridUpdate::make(set));

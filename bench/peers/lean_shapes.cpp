@@ -57,7 +57,7 @@ class Shapes {
 
 void add_cylinders(Shapes& shapes) {
   for (const double height : {1.0, 4.0, 10.0, 100.0, 1000.0}) {
-    const BSplineSurface nurbs = value_of(nurbs_cylinder({}, 1, height));
+    const BSplineSurface nurbs = value_of(make_nurbs_cylinder({}, 1, height));
     const std::string name = "cylinder, height " + std::to_string(static_cast<int>(height));
     shapes.add(name, nurbs, {1e-2, 1e-3});
     shapes.add(name + ", analytic", nurbs,
@@ -68,8 +68,8 @@ void add_cylinders(Shapes& shapes) {
 
 void add_round_shapes(Shapes& shapes) {
   const std::vector<double> tolerances{1e-2, 1e-3, 1e-4};
-  const BSplineSurface cone = value_of(nurbs_cone({}, 1, 0, 2)), sphere = value_of(nurbs_sphere({}, 1)),
-                       torus = value_of(nurbs_torus({}, 2, 0.5));
+  const BSplineSurface cone = value_of(make_nurbs_cone({}, 1, 0, 2)), sphere = value_of(make_nurbs_sphere({}, 1)),
+                       torus = value_of(make_nurbs_torus({}, 2, 0.5));
   shapes.add("cone", cone, tolerances);
   const double half_angle = std::atan2(1, 2), side = std::hypot(1, 2);
   shapes.add("cone, analytic", cone,
@@ -100,7 +100,7 @@ BSplineSurface fillet() {
 BSplineSurface revolved() {
   const std::vector<Vec3> points{{1, 0, 0}, {1.6, 0, 0.5}, {0.4, 0, 1.2}, {0.7, 0, 2}, {1.2, 0, 2.4}, {0.9, 0, 3}};
   const std::vector<double> weights{1, 0.7, 2, 1, 0.5, 1}, knots{0, 0, 0, 0, 1, 2, 3, 3, 3, 3};
-  return value_of(surface_of_revolution(value_of(Curve::nurbs(3, points, weights, knots)), {}));
+  return value_of(make_surface_of_revolution(value_of(Curve::nurbs(3, points, weights, knots)), {}));
 }
 
 /// Ruled between an arc and a flatter conic, whose weights differ.

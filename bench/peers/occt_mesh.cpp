@@ -44,7 +44,7 @@ Subject spline_subject(int spans) {
 Subject patches_subject(const std::string& name, const std::vector<BezierPatch>& patches) {
   std::vector<Handle(Geom_Surface)> surfaces;
   for (const BezierPatch& patch : patches) surfaces.push_back(occt_surface(patch));
-  return {name, test::value_of(PatchSet::from(patches)), OcctShape(surfaces)};
+  return {name, test::value_of(PatchSet::make(patches)), OcctShape(surfaces)};
 }
 
 /// A mesh's figures.

@@ -63,7 +63,7 @@ class TimeLimit final : public Message_ProgressIndicator {
 }  // namespace
 
 Handle(Geom_BSplineSurface) occt_surface(const BSplineSurface& surface) {
-  const BSplineSurface own = test::value_of(clamped(surface));
+  const BSplineSurface own = test::value_of(clamp_ends(surface));
   const Poles<BSplineSurface, std::size_t> poles(own, static_cast<int>(own.count_u()), static_cast<int>(own.count_v()));
   const Knots u(own.knots_u()), v(own.knots_v());
   if (!own.is_rational())

@@ -116,7 +116,7 @@ bool report(const Case& body, int rate) {
 }
 
 bool report(const char* name, const std::vector<BezierPatch>& patches) {
-  Case body{patches, test::value_of(PatchSet::from(patches)), {}, {}};
+  Case body{patches, test::value_of(PatchSet::make(patches)), {}, {}};
   body.rays = rays_from_inside(ray_count, 1, [](Random& random, const Vec3&) { return in_ball(random, 1); });
   for (std::size_t k = 0; k < reference_count; ++k)
     body.expected.push_back(test::reference_closest(patches, body.rays[k]).t);

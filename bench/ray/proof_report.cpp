@@ -91,7 +91,7 @@ double bound_of_none(std::size_t n) { return n == 0 ? 1 : -std::expm1(std::log(0
 
 bool report(const test::RayClass& rays, const Wish& wish) {
   const auto begin = std::chrono::steady_clock::now();
-  const PatchSet set = test::value_of(PatchSet::from(rays.patches));
+  const PatchSet set = test::value_of(PatchSet::make(rays.patches));
   const double size = set.box().diagonal();
   ProofTally tally = judged(rays, exact_scene(set), wish, size);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
@@ -108,7 +108,7 @@ bool report(const test::RayClass& rays, const Wish& wish) {
 /// Counts rays from inside a closed body that miss.
 bool report_leaks(const char* name, const std::vector<BezierPatch>& patches, const Wish& wish,
                   const std::function<Ray(test::Random&)>& draw) {
-  const PatchSet set = test::value_of(PatchSet::from(patches));
+  const PatchSet set = test::value_of(PatchSet::make(patches));
   const RayScene scene = exact_scene(set);
   const std::size_t threads = std::max(1u, std::thread::hardware_concurrency());
   std::vector<std::size_t> leaks(threads), cast(threads);
@@ -130,7 +130,7 @@ bool report_leaks(const char* name, const std::vector<BezierPatch>& patches, con
 /// Compares rays beside seams with their neighbours, and counts rays that leave the body there: if it has no creases,
 /// none of these may hit it within a millionth.
 bool report_seams(const char* name, const std::vector<BezierPatch>& patches, bool smooth, const Wish& wish) {
-  const PatchSet set = test::value_of(PatchSet::from(patches));
+  const PatchSet set = test::value_of(PatchSet::make(patches));
   const double size = set.box().diagonal();
   const RayScene scene = exact_scene(set);
   const std::size_t threads = std::max(1u, std::thread::hardware_concurrency());
@@ -165,7 +165,7 @@ bool report_seams(const char* name, const std::vector<BezierPatch>& patches, boo
 
 /// Counts lines that cross a closed body an odd number of times without a flagged hit.
 bool report_parity(const char* name, const std::vector<BezierPatch>& patches, const Wish& wish) {
-  const PatchSet set = test::value_of(PatchSet::from(patches));
+  const PatchSet set = test::value_of(PatchSet::make(patches));
   const double size = set.box().diagonal();
   const RayScene scene = exact_scene(set);
   const std::size_t threads = std::max(1u, std::thread::hardware_concurrency());

@@ -25,7 +25,7 @@ class Moving {
  public:
   Moving()
       : patches_(test::Torus(side).patches(false)),
-        set_(test::value_of(PatchSet::from(patches_))),
+        set_(test::value_of(PatchSet::make(patches_))),
         scene_(test::value_of(RayScene::make(set_, {.editable = true}))) {}
 
   /// Moves each `step`th patch, by 0 or 1/100 in turn.

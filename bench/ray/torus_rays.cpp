@@ -61,7 +61,7 @@ std::vector<Ray> grazing_rays(const std::vector<BezierPatch>& patches) {
 PatchSet make_set(const std::vector<BezierPatch>& patches) {
   PatchSetOptions options;
   options.origin = Vec3{};  // gives triangles and rays the same coordinates
-  return test::value_of(PatchSet::from(patches, options));
+  return test::value_of(PatchSet::make(patches, options));
 }
 
 }  // namespace

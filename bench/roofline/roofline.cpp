@@ -112,7 +112,7 @@ Result<Roofline> measure_roofline() {
   auto cache = measure_limits({.isa = available_isas().back(), .store_bytes = static_cast<std::size_t>(cache_bytes)});
   if (!cache) return cache.status();
   out.cache_store = cache->store_bytes_per_second;
-  auto few = PatchSet::from(test::wavy_field(16, 16));
+  auto few = PatchSet::make(test::wavy_field(16, 16));
   if (!few) return few.status();
   for (const bool in_cache : {true, false})
     for (const Case& c : cases) {

@@ -57,7 +57,7 @@ class Work {
     std::vector<BezierPatch> patches = test::wavy_field(size, size);
     const auto balls = test::placed(test::sphere(), 0.4, {1, 1, 2});
     patches.insert(patches.end(), balls.begin(), balls.end());
-    PatchSet set = value_of(PatchSet::from(patches, {.blocks = {.float_points = true}}));
+    PatchSet set = value_of(PatchSet::make(patches, {.blocks = {.float_points = true}}));
     evaluate_set(set);
     mesh(set);
     cast(set);

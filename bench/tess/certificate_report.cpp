@@ -91,7 +91,7 @@ int main(int argc, char** argv) {
               "median", "p99");
   for (const test::CertificateSet& set : test::certificate_sets())
     for (const double relative : {3e-3, 3e-4})
-      good = report(set.name, test::value_of(PatchSet::from(set.patches)), relative, set.bicubic, asked.fewest) && good;
+      good = report(set.name, test::value_of(PatchSet::make(set.patches)), relative, set.bicubic, asked.fewest) && good;
   for (const char* const path : asked.models) {
     const Result<Model> model = read_model(path);
     const Result<PatchSet> set = model ? make_patch_set(*model) : Result<PatchSet>(model.status());

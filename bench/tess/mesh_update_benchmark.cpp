@@ -66,7 +66,7 @@ struct Animation {
 
 void run(benchmark::State& state, const Case& c) {
   const std::vector<BezierPatch> patches = test::wavy_field(rows, columns);
-  PatchSet set = test::value_of(PatchSet::from(patches));
+  PatchSet set = test::value_of(PatchSet::make(patches));
   CertifiedTessellation plan = plan_for(set, tolerance_for(set, rate));
   const MeshCapacity size = plan.capacity();
   Mesh mesh = test::value_of(plan.allocate());

@@ -197,7 +197,7 @@ int main(int argc, char** argv) {
       patches.push_back(patch_of(random_net(random, of.back(), m, n), shift + 3 * scale * uniform_vector(random, -1, 1),
                                  scale, turned));
     }
-    const PatchSet set = test::value_of(PatchSet::from(patches));
+    const PatchSet set = test::value_of(PatchSet::make(patches));
     const auto plan = CertifiedTessellation::make(
         set, {.tolerance = std::pow(10.0, uniform(random, -2.5, -0.5)), .relative = true, .max_triangles = 300000});
     done += patches_per_set;

@@ -92,9 +92,9 @@ int main(int argc, char** argv) {
   const auto report_all = [fewest = asked.fewest](const std::string& name, const PatchSet& set) {
     for (const double relative : {3e-3, 1e-3, 3e-4, 1e-4}) report(name, set, relative, fewest);
   };
-  report_all("waves", test::value_of(PatchSet::from(test::wavy_field(12, 12))));
-  report_all("closed body", test::value_of(PatchSet::from(test::closed_body())));
-  report_all("sphere, rational", test::value_of(PatchSet::from(test::sphere())));
+  report_all("waves", test::value_of(PatchSet::make(test::wavy_field(12, 12))));
+  report_all("closed body", test::value_of(PatchSet::make(test::closed_body())));
+  report_all("sphere, rational", test::value_of(PatchSet::make(test::sphere())));
   for (const char* const path : asked.models) {
     const Result<Model> model = read_model(path);
     const Result<PatchSet> set = model ? make_patch_set(*model) : Result<PatchSet>(model.status());

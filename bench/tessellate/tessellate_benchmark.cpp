@@ -128,10 +128,10 @@ void pack(benchmark::State& state, const Packing& packing, int threads) {
   const double bytes = static_cast<double>(patches.size()) * packing.bytes_per_patch();
   const LimitsAround around({}, bytes);
   const PatchSetOptions options{.blocks = packing.kinds};
-  const auto best = time_calls(state, threads, [&] { return PatchSet::from(patches, options).status(); });
+  const auto best = time_calls(state, threads, [&] { return PatchSet::make(patches, options).status(); });
   const auto limits = around.best(state);
   if (!best || !limits) return;
-  if (!holds(value_of(PatchSet::from(patches, options))))
+  if (!holds(value_of(PatchSet::make(patches, options))))
     return state.SkipWithError("the blocks don't hold the patches");
   report_rates(state, *best, static_cast<double>(patches.size()), bytes);
   if (threads == 1) report_limit(state, *best, *limits, {.bytes_written = bytes});

@@ -156,8 +156,8 @@ TEST(Model, PlacementsOfAnySizeAreTaken) {
 }
 
 TEST(Model, MapsKeepSharedBordersAndPoles) {
-  const BSplineSurface sphere = value_of(nurbs_sphere({}, 1));
-  const PatchGrid grid = value_of(transformed(value_of(to_bezier(sphere)), askew()));
+  const BSplineSurface sphere = value_of(make_nurbs_sphere({}, 1));
+  const PatchGrid grid = value_of(transform(value_of(to_bezier(sphere)), askew()));
   for (std::size_t a = 1; a < grid.count_u(); ++a)
     for (std::size_t b = 0; b < grid.count_v(); ++b)
       for (int j = 0; j <= 2; ++j) EXPECT_EQ(grid.patch(a - 1, b).point(2, j), grid.patch(a, b).point(0, j));

@@ -66,7 +66,7 @@ TEST(Packing, RefusesTheFirstPatchThatDoesNotFit) {
   for (const std::size_t bad : {3900, 2500, 1203}) patches[bad] = random_polynomial(random, 2, 2, {}, 1e200);
   tbb::task_arena crowd(7);
   for (int round = 0; round < 20; ++round) {
-    const Status status = crowd.execute([&] { return PatchSet::from(patches, {.origin = Vec3{}}).status(); });
+    const Status status = crowd.execute([&] { return PatchSet::make(patches, {.origin = Vec3{}}).status(); });
     ASSERT_EQ(status.code(), StatusCode::non_finite);
     ASSERT_EQ(status.index(), 1203);
   }
@@ -107,7 +107,7 @@ TEST(Packing, ASplineGivesTheSetOfItsPatches) {
     for (std::size_t k = 0; k < grid.patches().size(); ++k) sources.push_back({0, grid.patch_domain(k)});
     PatchSetOptions with_sources = options;
     with_sources.sources = sources;
-    const PatchSet patches = value_of(PatchSet::from(grid.patches(), with_sources));
+    const PatchSet patches = value_of(PatchSet::make(grid.patches(), with_sources));
     for (const PatchSet* set : {&more, &patches}) {
       EXPECT_TRUE(same_bytes(impl_of(one).f32, impl_of(*set).f32));
       EXPECT_TRUE(same_bytes(impl_of(one).f64, impl_of(*set).f64));

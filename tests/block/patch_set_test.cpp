@@ -125,19 +125,19 @@ TEST(PatchSet, ARefusedEditChangesNothing) {
 
 TEST(PatchSet, RefusesWhatItCannotHold) {
   Random random(76);
-  EXPECT_EQ(PatchSet::from({}).status().code(), StatusCode::invalid_argument);
+  EXPECT_EQ(PatchSet::make({}).status().code(), StatusCode::invalid_argument);
   std::vector<BezierPatch> patches = {random_polynomial(random, 1, 1), random_polynomial(random, 1, 1, {}, 1e200)};
-  const Status huge = PatchSet::from(patches).status();
+  const Status huge = PatchSet::make(patches).status();
   EXPECT_EQ(huge.code(), StatusCode::non_finite);
   EXPECT_EQ(huge.index(), 0);  // the origin is the centre of a box of 1e200: the small patch does not fit float either
-  EXPECT_TRUE(PatchSet::from(patches, {.blocks = {false, true, false, false}}).ok());  // doubles hold it
-  EXPECT_EQ(PatchSet::from(patches, {.origin = Vec3{0, std::numeric_limits<double>::infinity(), 0}}).status().code(),
+  EXPECT_TRUE(PatchSet::make(patches, {.blocks = {false, true, false, false}}).ok());  // doubles hold it
+  EXPECT_EQ(PatchSet::make(patches, {.origin = Vec3{0, std::numeric_limits<double>::infinity(), 0}}).status().code(),
             StatusCode::non_finite);
   const std::vector<PatchSource> one(1);
-  EXPECT_EQ(PatchSet::from(patches, {.sources = one}).status().code(), StatusCode::count_mismatch);
+  EXPECT_EQ(PatchSet::make(patches, {.sources = one}).status().code(), StatusCode::count_mismatch);
   std::vector<PatchSource> flat(2);
   flat[1].domain = {0, 0, 0, 1};
-  EXPECT_EQ(PatchSet::from(patches, {.sources = flat}).status().index(), 1);
+  EXPECT_EQ(PatchSet::make(patches, {.sources = flat}).status().index(), 1);
 }
 
 /// Alternating signs give the largest power coefficients: 3^15 in each direction.
@@ -177,7 +177,7 @@ TEST(PatchSet, DerivativesOfWhatIsHeldAreNumbers) {
                                            {1e30, 1e-2, false},
                                            {5e15, 1e-9, true},
                                            {1e16, 1e-9, false}}) {
-    const auto set = PatchSet::from(std::vector{patch(size, weight)}, {.origin = Vec3{}});
+    const auto set = PatchSet::make(std::vector{patch(size, weight)}, {.origin = Vec3{}});
     ASSERT_EQ(set.ok(), held) << size << ' ' << weight;
     if (!held) continue;
     const auto t = uniform_parameters(7);

@@ -32,5 +32,5 @@ inline tessera::PatchSet make_dome() {
   // x = 2u - 1 is (-1, 0, 1) in Bernstein form of degree 2, and 1 - x^2 is (0, 2, 0).
   const std::array<tessera::Vec3, 6> points{{{-1, -1, 0}, {-1, 1, 0}, {0, -1, 2}, {0, 1, 2}, {1, -1, 0}, {1, 1, 0}}};
   const std::array patches{value_of(tessera::BezierPatch::polynomial(2, 1, points))};
-  return value_of(tessera::PatchSet::from(patches));
+  return value_of(tessera::PatchSet::make(patches));
 }

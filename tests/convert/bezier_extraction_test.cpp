@@ -108,7 +108,7 @@ TEST(BezierExtraction, NeighboursShareBordersByBits) {
 }
 
 TEST(BezierExtraction, FullMultiplicityKeepsTheBits) {
-  const BSplineSurface s = value_of(nurbs_torus({{0.1, 0.2, 0.3}, {1, 1, 3}, {1, 0, 0}}, 3, 1.1));
+  const BSplineSurface s = value_of(make_nurbs_torus({{0.1, 0.2, 0.3}, {1, 1, 3}, {1, 0, 0}}, 3, 1.1));
   const PatchGrid grid = value_of(to_bezier(s));
   ASSERT_EQ(grid.patches().size(), 16u);
   for (std::size_t a = 0; a < 4; ++a)
@@ -134,7 +134,7 @@ TEST(BezierExtraction, RationalIsDecidedOnceASurface) {
 
 TEST(BezierExtraction, SpheresStayRound) {
   for (const CircleArcs arcs : {CircleArcs::three, CircleArcs::four}) {
-    const PatchGrid grid = value_of(to_bezier(value_of(nurbs_sphere({}, 1, arcs))));
+    const PatchGrid grid = value_of(to_bezier(value_of(make_nurbs_sphere({}, 1, arcs))));
     for (int i = 0; i <= 60; ++i)
       for (int j = 0; j <= 60; ++j)
         EXPECT_NEAR(length(grid.evaluate_jet(i / 60.0, j / 60.0)->position), 1, 4 * double_unit) << i << " " << j;

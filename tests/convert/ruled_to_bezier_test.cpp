@@ -76,7 +76,7 @@ TEST(RuledToBezier, EqualWeightFunctionsAreLoftedAsTheyStand) {
       EXPECT_NEAR(std::hypot(p.x, p.y), 1, 4 * double_unit);
     }
   // An arc raised to a higher degree is recognised as having the same weights.
-  const Curve higher = value_of(degree_elevated(arc(2), 1));
+  const Curve higher = value_of(elevate_degree(arc(2), 1));
   const RuledSurface mixed = value_of(RuledSurface::make(arc(0), higher));
   const PatchGrid cubic = value_of(to_bezier(mixed));
   EXPECT_EQ(cubic.patches()[0].degree_u(), 3);

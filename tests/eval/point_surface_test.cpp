@@ -178,7 +178,7 @@ TEST(PointsOfSurfaces, BadInput) {
   const std::vector<PatchSource> sources{{0, {0, 1, 0, 1}}, {0, {0, 1, 1, 2}}, {0, {1, 2, 0, 1}}};
   PatchSetOptions with_sources = with_points();
   with_sources.sources = sources;
-  const PatchSet holes = value_of(PatchSet::from(patches, with_sources));
+  const PatchSet holes = value_of(PatchSet::make(patches, with_sources));
   EXPECT_EQ(SurfaceMap::make(holes).status().code(), StatusCode::unsupported);
   EXPECT_EQ(SurfaceMap::make(holes).status().index(), 0);
 }

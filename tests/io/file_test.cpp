@@ -22,7 +22,7 @@ using test::WithoutPrivileges;
 using Names = std::vector<std::string>;
 
 Status write_text(const std::string& path, std::string_view text) {
-  Result<OutputFile> out = OutputFile::create(path);
+  Result<OutputFile> out = OutputFile::make(path);
   if (!out) return out.status();
   out->write(text);
   return out->commit();
@@ -68,7 +68,7 @@ TEST(ReadFile, FilesThatStateNoSizeAreRead) {
 TEST(OutputFile, AppearsAtCommitAndNotBefore) {
   const ScratchFolder folder;
   {
-    Result<OutputFile> out = OutputFile::create(folder / "a.txt");
+    Result<OutputFile> out = OutputFile::make(folder / "a.txt");
     ASSERT_TRUE(out.ok());
     out->write("text");
     EXPECT_FALSE(std::filesystem::exists(folder / "a.txt"));
@@ -82,7 +82,7 @@ TEST(OutputFile, WithoutCommitNothingStaysBehind) {
   const ScratchFolder folder;
   folder.file("a.txt", "before");
   {
-    Result<OutputFile> out = OutputFile::create(folder / "a.txt");
+    Result<OutputFile> out = OutputFile::make(folder / "a.txt");
     ASSERT_TRUE(out.ok());
     out->write(std::string(3 << 20, 'x'));
     EXPECT_EQ(folder.names().size(), 2u);
@@ -94,7 +94,7 @@ TEST(OutputFile, WithoutCommitNothingStaysBehind) {
 TEST(OutputFile, PiecesOfEverySizeArriveInOrder) {
   const ScratchFolder folder;
   std::string expected;
-  Result<OutputFile> out = OutputFile::create(folder / "a");
+  Result<OutputFile> out = OutputFile::make(folder / "a");
   ASSERT_TRUE(out.ok());
   for (const std::size_t size : {1u, 1000u, 1048575u, 1u, 1048576u, 0u, 1048577u, 3000000u, 17u}) {
     const std::string piece(size, static_cast<char>('a' + size % 26));
@@ -177,7 +177,7 @@ TEST(OutputFile, AFailureInTheMiddleLeavesNothing) {
   ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
   Status status;
   {
-    Result<OutputFile> out = OutputFile::create(folder / "a");
+    Result<OutputFile> out = OutputFile::make(folder / "a");
     ASSERT_TRUE(out.ok());
     for (int k = 0; k < 100 && !out->failed(); ++k) out->write(std::string(100000, 'x'));
     EXPECT_TRUE(out->failed());

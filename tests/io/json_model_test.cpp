@@ -147,19 +147,19 @@ TEST(JsonModel, ShapesOfRevolution) {
   const auto read = [](const std::string& kind, const std::string& fields) {
     return read_as<BSplineSurface>(kind, fields);
   };
-  expect_same(read("sphere", field("radius", "2")), value_of(nurbs_sphere({}, 2)));
+  expect_same(read("sphere", field("radius", "2")), value_of(make_nurbs_sphere({}, 2)));
   expect_same(read("sphere", field("radius", "2") + ", " + field("arcs", "3") + with_axis),
-              value_of(nurbs_sphere(axis, 2, CircleArcs::three)));
+              value_of(make_nurbs_sphere(axis, 2, CircleArcs::three)));
   expect_same(read("torus", field("major", "3") + ", " + field("minor", "0.5") + with_axis),
-              value_of(nurbs_torus(axis, 3, 0.5)));
+              value_of(make_nurbs_torus(axis, 3, 0.5)));
   expect_same(read("cylinder", field("radius", "2") + ", " + field("height", "5") + with_axis),
-              value_of(nurbs_cylinder(axis, 2, 5)));
+              value_of(make_nurbs_cylinder(axis, 2, 5)));
   expect_same(read("cone", field("bottom", "2") + ", " + field("top", "0") + ", " + field("height", "5") + with_axis),
-              value_of(nurbs_cone(axis, 2, 0, 5)));
+              value_of(make_nurbs_cone(axis, 2, 0, 5)));
   Random random(4);
   const Curve profile = random_curve(random, 3, {}, true);
   expect_same(read("revolution", field("profile", json(profile)) + with_axis),
-              value_of(surface_of_revolution(profile, axis)));
+              value_of(make_surface_of_revolution(profile, axis)));
 }
 
 TEST(JsonModel, HermitePatchesInEveryForm) {
@@ -298,7 +298,7 @@ TEST(JsonModel, CurvesOfEveryKind) {
   const auto one = read_as<RuledSurface>("ruled", field("first", arc) + ", " + field("second", circle));
   expect_same(std::get<Curve>(one.first()), value_of(Curve::bezier(std::vector<Vec3>{{1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
                                                                    std::vector<double>{1, std::sqrt(2.0) / 2, 1})));
-  expect_same(std::get<Curve>(one.second()), value_of(nurbs_circle({.origin = {0, 0, 1}}, 2, CircleArcs::three)));
+  expect_same(std::get<Curve>(one.second()), value_of(make_nurbs_circle({.origin = {0, 0, 1}}, 2, CircleArcs::three)));
   const auto two = read_as<RuledSurface>("ruled", field("first", wave) + ", " + field("second", arc));
   EXPECT_EQ(value_of(position(two.first(), 0.25)), (Vec3{0.25, 2, std::sin(std::acos(-1.0) * 0.25)}));
   const auto three = read_as<RuledSurface>("ruled", field("first", ring) + ", " + field("second", ring));

@@ -14,9 +14,9 @@ namespace {
 
 Model sample() {
   Model model{"part", {}, {"one warning", "another"}};
-  const Result<BSplineSurface> sphere = nurbs_sphere({}, 2);
+  const Result<BSplineSurface> sphere = make_nurbs_sphere({}, 2);
   const std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0.5, 0}};
-  const Result<Curve> curve = Curve::bezier(points), arc = nurbs_circle({}, 1);
+  const Result<Curve> curve = Curve::bezier(points), arc = make_nurbs_circle({}, 1);
   TrimLoop loop{{*curve, *arc}, true};
   model.surfaces.push_back({"ball", *sphere, Affine::translated({1, 2, 3}), std::vector<TrimLoop>{loop, {}}});
   const std::vector<double> knots{0, 0, 1, 1};

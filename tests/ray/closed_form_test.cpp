@@ -62,7 +62,7 @@ TEST(ClosedForm, HyperbolicParaboloid) {
 TEST(ClosedForm, SourceDomains) {
   const BezierPatch patch = polynomial(1, 1, {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}});
   const PatchSource source{5, {2, 4, -1, 3}};
-  const PatchSet set = value_of(PatchSet::from(std::span(&patch, 1), {.sources = std::span(&source, 1)}));
+  const PatchSet set = value_of(PatchSet::make(std::span(&patch, 1), {.sources = std::span(&source, 1)}));
   const Hit hit = scene_of(set).closest(ray({0.25, 0.75, 1}, {0, 0, -1}));
   ASSERT_EQ(hit.kind, HitKind::hit);
   EXPECT_EQ(hit.surface, 5u);
@@ -126,7 +126,7 @@ TEST(ClosedForm, LightWeightsDoNotMoveTheRaysAway) {
     std::vector<double> weights(16, 1.0);
     weights[5] = weight;
     const BezierPatch patch = value_of(BezierPatch::rational(3, 3, points, weights));
-    const PatchSet set = value_of(PatchSet::from(std::span(&patch, 1)));
+    const PatchSet set = value_of(PatchSet::make(std::span(&patch, 1)));
     const RayScene scene = value_of(RayScene::make(set));
     for (int k = 0; k < 400; ++k) {
       const double u = 0.02 + 0.96 * (k % 20) / 19, v = 0.02 + 0.96 * (k / 20) / 19;

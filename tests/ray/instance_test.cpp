@@ -57,7 +57,7 @@ TEST(Instances, HitsOfMappedPatches) {
       for (const BezierPatch& patch : patches) moved.push_back(mapped(patch, map));
       PatchSetOptions options;
       options.blocks = {.float_bernstein = false, .double_bernstein = true};
-      const PatchSet reference_set = value_of(PatchSet::from(moved, options));
+      const PatchSet reference_set = value_of(PatchSet::make(moved, options));
       const RayScene reference = value_of(RayScene::make(reference_set));
       const Box3 box = reference_set.box();
       const double tolerance = 1e-11 * box.diagonal() + 1e-15 * max_abs(map.translation);

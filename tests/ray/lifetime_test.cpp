@@ -89,7 +89,7 @@ TEST(Lifetime, MemoryIsTold) {
 
 /// A control point that goes far away and comes back leaves no trace.
 TEST(Lifetime, AnOutlierThatIsTakenBackIsForgotten) {
-  PatchSet set = value_of(PatchSet::from(closed_body()));
+  PatchSet set = value_of(PatchSet::make(closed_body()));
   RayScene scene = scene_of(set);
   const Ray ray{.origin = {}, .direction = {0.1, 0.2, 1}};
   const Hit before = scene.closest(ray);

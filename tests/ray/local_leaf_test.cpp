@@ -168,7 +168,7 @@ TEST(LocalLeaf, CoefficientsKeepTheirBoundsAtEveryDegree) {
 /// The mean of `Hit::steps` of rays through a patch from random directions.
 double mean_steps(const BezierPatch& patch, Random& random) {
   const std::vector<BezierPatch> patches{patch};
-  const PatchSet set = test::value_of(PatchSet::from(patches));
+  const PatchSet set = test::value_of(PatchSet::make(patches));
   const RayScene scene = test::value_of(RayScene::make(set));
   constexpr int count = 400;
   double steps = 0;
@@ -200,7 +200,7 @@ TEST(LocalLeaf, HitsNextToHeavyCornersAreOnTheRay) {
   const auto heavy = std::find_if(classes.begin(), classes.end(),
                                   [](const test::RayClass& of) { return of.name == "weights 1e-3 to 1e3"; });
   ASSERT_NE(heavy, classes.end());
-  const PatchSet set = test::value_of(PatchSet::from(heavy->patches));
+  const PatchSet set = test::value_of(PatchSet::make(heavy->patches));
   const RayScene scene = test::value_of(RayScene::make(set));
   const double size = set.box().diagonal();
   Random random(13);

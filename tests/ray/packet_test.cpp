@@ -11,7 +11,7 @@ namespace {
 
 PatchSet torus_set() {
   Model model;
-  model.surfaces.push_back({.name = std::string("torus"), .surface = value_of(nurbs_torus({}, 2, 0.8))});
+  model.surfaces.push_back({.name = std::string("torus"), .surface = value_of(make_nurbs_torus({}, 2, 0.8))});
   return value_of(make_patch_set(model));
 }
 
@@ -59,7 +59,7 @@ TEST(Packets, HaveTheBitsOfEachRay) {
   std::vector<BezierPatch> quartic;
   for (const BezierPatch& patch : Torus(5).patches(false)) quartic.push_back(value_of(elevate_degree(patch, 4, 4)));
   for (const auto& patches : {Torus(7).patches(false), Torus(7).patches(true), quartic}) {
-    const PatchSet set = value_of(PatchSet::from(patches));
+    const PatchSet set = value_of(PatchSet::make(patches));
     for (const Isa isa : available_isas()) {
       RaySceneOptions options;
       options.isa = isa;

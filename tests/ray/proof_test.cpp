@@ -57,7 +57,7 @@ TEST(ExactMode, MissesNothingThatIsProven) {
 /// and hits the neighbour on the seam itself, a root by all proofs.
 TEST(ExactMode, NoProvenRootHidesWhatBeginsBeforeIt) {
   const std::vector<BezierPatch> torus = Torus(5).patches(true);
-  const PatchSet set = value_of(PatchSet::from(torus));
+  const PatchSet set = value_of(PatchSet::make(torus));
   RaySceneOptions options;
   options.mode = RayMode::exact;
   const RayScene scene = value_of(RayScene::make(set, options));

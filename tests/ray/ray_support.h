@@ -12,7 +12,7 @@
 
 namespace tessera::test {
 
-inline PatchSet set_of(const std::vector<BezierPatch>& patches) { return value_of(PatchSet::from(patches)); }
+inline PatchSet set_of(const std::vector<BezierPatch>& patches) { return value_of(PatchSet::make(patches)); }
 
 inline RayScene scene_of(const PatchSet& set, int rate = 8, bool refine = true) {
   RaySceneOptions options;

@@ -17,7 +17,7 @@ std::vector<Hit> all_hits(const RayScene& scene, const Ray& ray) {
   return lists.hits;
 }
 
-PatchSet unit_sphere() { return set_of(value_of(to_bezier(value_of(nurbs_sphere({}, 1)))).take_patches()); }
+PatchSet unit_sphere() { return set_of(value_of(to_bezier(value_of(make_nurbs_sphere({}, 1)))).take_patches()); }
 
 /// The second root is 3e-11 from a seam; the neighbour sees it too, from beyond the seam.
 TEST(Seams, ARootBesideAnotherIsKept) {

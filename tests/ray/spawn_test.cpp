@@ -148,7 +148,7 @@ TEST(Spawn, BadOffsets) {
 TEST(HitFacts, DerivativesAreThoseOfTheSurface) {
   const std::vector<BezierPatch> patches = Torus(6).patches(true);
   std::vector<PatchSource> sources(patches.size(), {3, {.u0 = 1, .u1 = 1.5, .v0 = -2, .v1 = 6}});
-  const PatchSet set = value_of(PatchSet::from(patches, {.sources = sources}));
+  const PatchSet set = value_of(PatchSet::make(patches, {.sources = sources}));
   const Affine map = Affine::rotated({1, 1, 0}, 1) * Affine::scaled({-2, 1, 3});
   for (const RayMode mode : {RayMode::exact, RayMode::grid}) {
     const RayScene scene = value_of(RayScene::make(set, {.mode = mode}));

@@ -23,7 +23,7 @@ struct Drawn {
   PatchSet set;
   RayScene scene;
   explicit Drawn(const std::vector<BezierPatch>& patches)
-      : set(value_of(PatchSet::from(patches))), scene(value_of(RayScene::make(set))) {}
+      : set(value_of(PatchSet::make(patches))), scene(value_of(RayScene::make(set))) {}
   Image image(const Settings& settings) const { return value_of(render(scene, set.box(), settings)); }
 };
 

@@ -176,7 +176,7 @@ void samples_by_surface(Table& table, const PatchSet& set) {
   const std::vector<BezierPatch> patches = wavy_field(1, 2);
   PatchSetOptions with_sources = with_points();
   with_sources.sources = sources;
-  const PatchSet torn = value_of(PatchSet::from(patches, with_sources));
+  const PatchSet torn = value_of(PatchSet::make(patches, with_sources));
   table.row("patches of a surface that are no grid", unsupported, SurfaceMap::make(torn));
 
   table.of("evaluate(set, map, SurfaceSamples, QuantityViews, options, execution)");

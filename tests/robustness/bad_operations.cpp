@@ -53,17 +53,17 @@ void spline_operations(Table& table) {
   const Curve curve = random_curve(random, 3, {}, false);
   const BSplineSurface surface = random_surface(random, 3, 2, {}, {}, true);
   const double inside = 0.5 * (surface.domain().u0 + surface.domain().u1);
-  table.of("refined(curve, knots), refined(surface, knots_u, knots_v)");
-  table.row("a knot at an end of the domain", invalid_argument, refined(curve, Numbers{curve.domain().from}));
-  table.row("a knot of NaN", non_finite, refined(curve, Numbers{not_a_number}));
-  table.row("a knot too often", invalid_argument, refined(surface, Numbers(4, inside), {}));
-  table.of("degree_elevated(curve, by), degree_elevated(surface, by_u, by_v)");
-  table.row("by -1", invalid_argument, degree_elevated(curve, -1));
-  table.row("by 13, from degree 3", unsupported_degree, degree_elevated(surface, 13, 0));
-  table.row("by 2147483647", unsupported_degree, degree_elevated(curve, std::numeric_limits<int>::max()));
-  table.of("compatible(a, b)");
+  table.of("insert_knots(curve, knots), insert_knots(surface, knots_u, knots_v)");
+  table.row("a knot at an end of the domain", invalid_argument, insert_knots(curve, Numbers{curve.domain().from}));
+  table.row("a knot of NaN", non_finite, insert_knots(curve, Numbers{not_a_number}));
+  table.row("a knot too often", invalid_argument, insert_knots(surface, Numbers(4, inside), {}));
+  table.of("elevate_degree(curve, by), elevate_degree(surface, by_u, by_v)");
+  table.row("by -1", invalid_argument, elevate_degree(curve, -1));
+  table.row("by 13, from degree 3", unsupported_degree, elevate_degree(surface, 13, 0));
+  table.row("by 2147483647", unsupported_degree, elevate_degree(curve, std::numeric_limits<int>::max()));
+  table.of("make_compatible(a, b)");
   const Curve other = *Curve::bezier(std::vector<Vec3>(3), {}, {100, 101});
-  table.row("curves of other domains", invalid_argument, compatible(curve, other));
+  table.row("curves of other domains", invalid_argument, make_compatible(curve, other));
   table.of("touched_patches(surface, i, j)");
   table.row("an unknown point", invalid_argument, touched_patches(surface, 1000, 0));
 }
@@ -91,10 +91,10 @@ void grids_of_patches(Table& table, const BezierPatch& patch) {
   table.of("PatchGrid::locate(u, v), evaluate_jet(u, v)");
   table.gives("parameters of NaN", "nothing", !grid->locate(not_a_number, 0) && !grid->evaluate_jet(0, not_a_number));
   table.gives("parameters outside the domain", "nothing", !grid->locate(1.5, 0) && !grid->evaluate_jet(0, -1));
-  table.of("transformed(grid, map)");
-  table.row("a map with NaN", non_finite, transformed(*grid, Affine::translated({0, not_a_number, 0})));
+  table.of("transform(grid, map)");
+  table.row("a map with NaN", non_finite, transform(*grid, Affine::translated({0, not_a_number, 0})));
   table.row("a map by which points overflow", non_finite,
-            transformed(*grid, Affine{{Vec3{1.7e308, 0, 0}, {1.7e308, 0, 0}, {1.7e308, 0, 0}}, {}}));
+            transform(*grid, Affine{{Vec3{1.7e308, 0, 0}, {1.7e308, 0, 0}, {1.7e308, 0, 0}}, {}}));
 }
 
 /// Two sound surfaces and a wrong one between them.
@@ -140,23 +140,23 @@ void fill_sets(Table& table) {
     list[1] = *list[1].with_points(points);
     return list;
   };
-  table.of("PatchSet::from(patches, options)");
-  table.row("no patches", invalid_argument, PatchSet::from({}));
-  table.row("a point of 1e300", non_finite, PatchSet::from(huge(1e300)));
-  table.row("a point of 1e39", non_finite, PatchSet::from(huge(1e39)));
+  table.of("PatchSet::make(patches, options)");
+  table.row("no patches", invalid_argument, PatchSet::make({}));
+  table.row("a point of 1e300", non_finite, PatchSet::make(huge(1e300)));
+  table.row("a point of 1e39", non_finite, PatchSet::make(huge(1e39)));
   const PatchSetOptions doubles{.blocks = {.float_bernstein = false, .double_bernstein = true}};
-  table.gives("a point of 1e39, double blocks alone", "accepted", PatchSet::from(huge(1e39), doubles).ok());
-  table.gives("a subnormal point", "accepted", PatchSet::from(huge(5e-324)).ok());
-  table.row("an origin of NaN", non_finite, PatchSet::from(patches, {.origin = Vec3{0, not_a_number, 0}}));
-  table.row("an origin of 1e300", non_finite, PatchSet::from(patches, {.origin = Vec3{1e300, 0, 0}}));
+  table.gives("a point of 1e39, double blocks alone", "accepted", PatchSet::make(huge(1e39), doubles).ok());
+  table.gives("a subnormal point", "accepted", PatchSet::make(huge(5e-324)).ok());
+  table.row("an origin of NaN", non_finite, PatchSet::make(patches, {.origin = Vec3{0, not_a_number, 0}}));
+  table.row("an origin of 1e300", non_finite, PatchSet::make(patches, {.origin = Vec3{1e300, 0, 0}}));
   std::vector<double> weights(16, 1.0);
   weights[5] = 1e-12;
   const BezierPatch light = *BezierPatch::rational(3, 3, patches[0].points(), weights);
-  table.row("a weight of 1e-12 of the largest", non_finite, PatchSet::from(std::vector{patches[0], light}));
-  table.row("a source too few", count_mismatch, PatchSet::from(patches, {.sources = std::vector<PatchSource>(1)}));
+  table.row("a weight of 1e-12 of the largest", non_finite, PatchSet::make(std::vector{patches[0], light}));
+  table.row("a source too few", count_mismatch, PatchSet::make(patches, {.sources = std::vector<PatchSource>(1)}));
 
   table.of("PatchSet::set_control_points(index, points)");
-  PatchSet set = value_of(PatchSet::from(patches));
+  PatchSet set = value_of(PatchSet::make(patches));
   const auto refused = [&](const std::string& input, StatusCode code, std::size_t index,
                            const std::vector<Vec3>& points) {
     const std::uint64_t revision = set.revision();

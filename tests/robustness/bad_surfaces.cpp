@@ -93,12 +93,12 @@ void fill_curves(Table& table) {
 
   table.of("Curve::nurbs(degree, points, weights, knots, domain)");
   bad_weights(table, 4, [&](const Numbers& w) { return Curve::nurbs(2, points(4), w, knots); });
-  table.of("nurbs_circle(axis, radius, arcs)");
-  table.row("an axis without a direction", invalid_argument, nurbs_circle({.direction = {}}, 1));
-  table.row("a zero angle along the axis", invalid_argument, nurbs_circle({.zero = {0, 0, 2}}, 1));
-  table.row("NaN in the axis", non_finite, nurbs_circle({.direction = {0, not_a_number, 1}}, 1));
-  table.row("radius 0", invalid_argument, nurbs_circle({}, 0));
-  table.row("radius NaN", non_finite, nurbs_circle({}, not_a_number));
+  table.of("make_nurbs_circle(axis, radius, arcs)");
+  table.row("an axis without a direction", invalid_argument, make_nurbs_circle({.direction = {}}, 1));
+  table.row("a zero angle along the axis", invalid_argument, make_nurbs_circle({.zero = {0, 0, 2}}, 1));
+  table.row("NaN in the axis", non_finite, make_nurbs_circle({.direction = {0, not_a_number, 1}}, 1));
+  table.row("radius 0", invalid_argument, make_nurbs_circle({}, 0));
+  table.row("radius NaN", non_finite, make_nurbs_circle({}, not_a_number));
 }
 
 void fill_patches(Table& table) {
@@ -153,16 +153,16 @@ void fill_splines(Table& table) {
   });
 
   const Axis axis;
-  table.of("nurbs_sphere, nurbs_torus, nurbs_cylinder, nurbs_cone(axis, ...)");
-  table.row("a sphere of radius -1", invalid_argument, nurbs_sphere(axis, -1));
-  table.row("a sphere of infinite radius", non_finite, nurbs_sphere(axis, infinity));
-  table.row("a torus whose tube is as thick as its ring", invalid_argument, nurbs_torus(axis, 1, 1));
-  table.row("a cylinder of height 0", invalid_argument, nurbs_cylinder(axis, 1, 0));
-  table.row("a cone with two apices", invalid_argument, nurbs_cone(axis, 0, 0, 1));
-  table.row("NaN in the axis", non_finite, nurbs_cone({.origin = {not_a_number, 0, 0}}, 1, 0, 1));
-  table.of("surface_of_revolution(profile, axis, arcs)");
+  table.of("nurbs_sphere, nurbs_torus, nurbs_cylinder, make_nurbs_cone(axis, ...)");
+  table.row("a sphere of radius -1", invalid_argument, make_nurbs_sphere(axis, -1));
+  table.row("a sphere of infinite radius", non_finite, make_nurbs_sphere(axis, infinity));
+  table.row("a torus whose tube is as thick as its ring", invalid_argument, make_nurbs_torus(axis, 1, 1));
+  table.row("a cylinder of height 0", invalid_argument, make_nurbs_cylinder(axis, 1, 0));
+  table.row("a cone with two apices", invalid_argument, make_nurbs_cone(axis, 0, 0, 1));
+  table.row("NaN in the axis", non_finite, make_nurbs_cone({.origin = {not_a_number, 0, 0}}, 1, 0, 1));
+  table.of("make_surface_of_revolution(profile, axis, arcs)");
   const Result<Curve> profile = Curve::bezier(points(3));
-  table.row("an axis without a direction", invalid_argument, surface_of_revolution(*profile, {.direction = {}}));
+  table.row("an axis without a direction", invalid_argument, make_surface_of_revolution(*profile, {.direction = {}}));
 }
 
 }  // namespace tessera::test

@@ -73,10 +73,10 @@ TEST(MemoryFails, WhereCurvesAndPatchesAreMade) {
     return BSplineSurface::rational(3, surface.knots_u(), 2, surface.knots_v(), surface.points(), surface.weights());
   });
   survives("to_bezier(BSplineSurface)", [&] { return to_bezier(surface); });
-  survives("degree_elevated(BSplineSurface)", [&] { return degree_elevated(surface, 1, 2); });
+  survives("elevate_degree(BSplineSurface)", [&] { return elevate_degree(surface, 1, 2); });
   const double inside = 0.5 * (surface.domain().u0 + surface.domain().u1);
-  survives("refined(BSplineSurface)", [&] { return refined(surface, std::span(&inside, 1), {}); });
-  survives("nurbs_torus", [&] { return nurbs_torus({}, 3, 1); });
+  survives("insert_knots(BSplineSurface)", [&] { return insert_knots(surface, std::span(&inside, 1), {}); });
+  survives("nurbs_torus", [&] { return make_nurbs_torus({}, 3, 1); });
   survives("HermitePatch, to_bezier", [&]() -> Result<PatchGrid> {
     const auto made = HermitePatch::make(points);
     return made ? to_bezier(*made) : made.status();
@@ -121,7 +121,7 @@ TEST(MemoryFails, WhereSurfacesAreConverted) {
 
 TEST(MemoryFails, WhereSetsAreEvaluated) {
   const std::vector<BezierPatch> patches = various_patches(3);
-  survives("PatchSet::from", [&] { return PatchSet::from(patches, with_points()); });
+  survives("PatchSet::make", [&] { return PatchSet::make(patches, with_points()); });
   PatchSet set = set_of(patches, with_points());
   const std::vector<double> t = uniform_parameters(5);
   survives("GridPlan::make", [&] { return GridPlan::make(set, t, t); });
@@ -137,7 +137,7 @@ TEST(MemoryFails, WhereSetsAreEvaluated) {
   const std::vector<Vec3> net(set.patch(2).points().begin(), set.patch(2).points().end());
   const std::vector<std::uint32_t> edited{2};
   survives("GridUpdate::run, all of it", [&]() -> Status {
-    Result<PatchSet> own = PatchSet::from(patches);
+    Result<PatchSet> own = PatchSet::make(patches);
     if (!own) return own.status();
     Result<GridUpdate> update = GridUpdate::make(*own);
     if (!update) return update.status();
@@ -176,7 +176,7 @@ TEST(MemoryFails, WhereMeshesAreMade) {
   const std::vector<Vec3> net(set.patch(2).points().begin(), set.patch(2).points().end());
   const std::vector<std::uint32_t> edited{2};
   survives("MeshUpdate, all of it", [&]() -> Status {
-    Result<PatchSet> own = PatchSet::from(patches);
+    Result<PatchSet> own = PatchSet::make(patches);
     if (!own) return own.status();
     auto made = CertifiedTessellation::make(*own, {.tolerance = 0.02});
     if (!made) return made.status();

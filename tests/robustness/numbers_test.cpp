@@ -93,7 +93,7 @@ TEST(Scales, RaysMeetTheSamePoints) {
 
 TEST(Subnormals, AreNumbers) {
   for (const double scale : {1e-38, 1e-42, 1e-45, 1e-60, 1e-310, 5e-324}) {
-    const auto made = PatchSet::from(placed(wavy_field(2, 2), scale, {}), {.blocks = {.double_bernstein = true}});
+    const auto made = PatchSet::make(placed(wavy_field(2, 2), scale, {}), {.blocks = {.double_bernstein = true}});
     ASSERT_TRUE(made.ok()) << made.status().message();
     const AllBuffers<float> out = grid_of(*made);
     for (const auto& values : out.values)

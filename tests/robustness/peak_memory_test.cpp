@@ -32,10 +32,10 @@ class PeakMemory : public ::testing::Test {
 };
 
 TEST_F(PeakMemory, Sets) {
-  expect_at_most("PatchSet::from", 64, count_, [&] { return set_of(patches_); });
+  expect_at_most("PatchSet::make", 64, count_, [&] { return set_of(patches_); });
   PatchSetOptions with;
   with.blocks.float_points = true;
-  expect_at_most("PatchSet::from, with points", 64, count_, [&] { return set_of(patches_, with); });
+  expect_at_most("PatchSet::make, with points", 64, count_, [&] { return set_of(patches_, with); });
   const BSplineSurface surface = [&] {
     Random random(3);
     return random_surface(random, 3, 3, {.inner = 50}, {.inner = 50}, false);

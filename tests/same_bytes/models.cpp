@@ -74,8 +74,8 @@ std::vector<tessera::Surface> some_surfaces() {
   surfaces.push_back(coons_patch(seeded));
   tessera::Axis axis;
   axis.direction = {0.3, -0.2, 0.9};
-  surfaces.push_back(value_of(tessera::nurbs_torus(axis, 2, 0.7)));
-  surfaces.push_back(value_of(tessera::nurbs_sphere(axis, 1.3, tessera::CircleArcs::three)));
+  surfaces.push_back(value_of(tessera::make_nurbs_torus(axis, 2, 0.7)));
+  surfaces.push_back(value_of(tessera::make_nurbs_sphere(axis, 1.3, tessera::CircleArcs::three)));
   const auto quadric = value_of(tessera::Quadric::make({2, 3, 1.5, 0.3, -0.2, 0.1, 0.4, 0.1, -0.3, -2}));
   surfaces.push_back(value_of(tessera::QuadricPiece::make(quadric, {0, 2 * std::numbers::pi, -1.2, 1.5})));
   const auto hyperboloid = value_of(tessera::Quadric::make({1, 1.7, -1, 0.1, 0, 0.2, 0, 0, 0, -1}));
@@ -92,5 +92,5 @@ std::vector<tessera::Surface> some_surfaces() {
 tessera::PatchSet some_set() {
   tessera::PatchSetOptions options;
   options.blocks = {true, true, true, true, true, true};
-  return value_of(tessera::PatchSet::from(some_patches(), options));
+  return value_of(tessera::PatchSet::make(some_patches(), options));
 }

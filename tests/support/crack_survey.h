@@ -134,7 +134,7 @@ inline void count_edges(const Mesh& mesh, const MeetingBorders& borders, CrackCo
 /// Whether a patch lies upon itself, according to a uniform mesh of it alone.
 inline bool is_folded(const PatchSet& set) {
   for (std::size_t k = 0; k < set.patch_count(); ++k) {
-    const Result<PatchSet> alone = PatchSet::from(std::span(&set.patch(k), 1));
+    const Result<PatchSet> alone = PatchSet::make(std::span(&set.patch(k), 1));
     const auto plan = alone ? TessellationPlan::make(*alone, {.rate_u = 8, .rate_v = 8, .isa = {}})
                             : Result<TessellationPlan>(alone.status());
     Result<Mesh> mesh = plan ? plan->allocate() : Result<Mesh>(plan.status());

@@ -20,7 +20,7 @@ template <class T>
 constexpr Precision precision_of = sizeof(T) == 4 ? Precision::single_precision : Precision::double_precision;
 
 inline PatchSet set_of(const std::vector<BezierPatch>& patches, PatchSetOptions options = {}) {
-  return value_of(PatchSet::from(patches, options));
+  return value_of(PatchSet::make(patches, options));
 }
 
 /// Patches of every mix of degrees up to `degree`, polynomial and rational, in shuffled order: several groups, partial

@@ -55,7 +55,7 @@ TEST(Curve, AtAKnotOfFullMultiplicityTheRightCountsAtTheEndTheLeft) {
 TEST(Curve, CirclesAreRound) {
   for (const CircleArcs arcs : {CircleArcs::three, CircleArcs::four})
     for (const double radius : {1.0, 0.37, 1234.5}) {
-      const Curve curve = value_of(nurbs_circle({}, radius, arcs));
+      const Curve curve = value_of(make_nurbs_circle({}, radius, arcs));
       for (int k = 0; k <= 3000; ++k)
         EXPECT_NEAR(length(evaluate_jet(curve, k / 3000.0).position), radius, 4 * 0x1p-52 * radius) << k;
       EXPECT_EQ(evaluate_jet(curve, 0).position, evaluate_jet(curve, 1).position);

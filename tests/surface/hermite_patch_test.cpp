@@ -172,7 +172,7 @@ TEST(HermitePatch, ReparametrizedIsTheSameSurface) {
   Random random(6);
   const Domain from{-1, 3, 2, 2.5}, to{10, 12, -3, 5};
   const HermitePatch patch = random_hermite(random, from);
-  const HermitePatch other = value_of(patch.reparametrized(to));
+  const HermitePatch other = value_of(patch.reparametrize(to));
   EXPECT_EQ(other.domain(), to);
   EXPECT_EQ(other.corner(1, 0).du, 2 * patch.corner(1, 0).du);
   EXPECT_EQ(other.corner(1, 0).dv, 0.0625 * patch.corner(1, 0).dv);
@@ -212,7 +212,7 @@ TEST(HermitePatch, RefusesWhatIsNotAPatch) {
   expect_refused(HermitePatch::from_algebraic(grid, {0, 1, 1, 0}), StatusCode::invalid_argument, -1,
                  "the domain along v");
   expect_refused(HermitePatch::adini(unit_square(), {0, not_a_number, 0, 1}), StatusCode::non_finite, -1, "along u");
-  expect_refused(random_hermite(random).reparametrized({0, 0, 0, 1}), StatusCode::invalid_argument, -1, "along u");
+  expect_refused(random_hermite(random).reparametrize({0, 0, 0, 1}), StatusCode::invalid_argument, -1, "along u");
   Corners corners = unit_square();
   corners[1].dv.z = infinity;
   expect_refused(HermitePatch::ferguson(corners), StatusCode::non_finite, 2, "geometry element [0][2] is (0, 1, inf)");

@@ -187,7 +187,7 @@ TEST(CertifiedTessellation, RefusesWhatItCannotKeep) {
   ASSERT_FALSE(many.ok());
   EXPECT_NE(many.status().message().find("the limits are 1000 and 4294967296"), std::string::npos)
       << many.status().message();
-  const auto fitted = PatchSet::from(closed_body(), PatchSetOptions{.fit_error = {0.01, true}});
+  const auto fitted = PatchSet::make(closed_body(), PatchSetOptions{.fit_error = {0.01, true}});
   EXPECT_FALSE(CertifiedTessellation::make(*fitted, {.tolerance = 0.01}).ok());
   EXPECT_GT(good(CertifiedTessellation::make(*fitted, {.tolerance = 0.011})).bound(), 0.01);
 }

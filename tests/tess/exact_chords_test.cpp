@@ -316,7 +316,7 @@ TEST(ExactChords, HardPatchesAreBoundedOrRefused) {
       if (kind % 4 == 3) p = 1e12 * p;
     }
     patch = rational(m, n, points, {patch.weights().begin(), patch.weights().end()});
-    const Result<PatchSet> set = PatchSet::from(std::vector<BezierPatch>{patch});
+    const Result<PatchSet> set = PatchSet::make(std::vector<BezierPatch>{patch});
     if (!set) continue;
     const double tolerance = 1e-2 * set->box().diagonal();
     const auto plan = CertifiedTessellation::make(*set, {.tolerance = tolerance, .max_triangles = 1000000});

@@ -59,7 +59,7 @@ TEST(FarPartsInDouble, PatchesWithinOneFloatMeetAsTheirDoublesDo) {
   patches.insert(patches.end(), other.begin(), other.end());
   for (const bool shares : {false, true})
     for (std::uint64_t seed = 1; seed < 4; ++seed) {
-      const PatchSet set = good(PatchSet::from(shaken_bits(patches, seed, 1e-16), {.origin = Vec3{}}));
+      const PatchSet set = good(PatchSet::make(shaken_bits(patches, seed, 1e-16), {.origin = Vec3{}}));
       CertifiedOptions options = in_double(1e-7);
       options.share_vertices = shares;
       const CertifiedTessellation plan = good(CertifiedTessellation::make(set, options));
@@ -67,7 +67,7 @@ TEST(FarPartsInDouble, PatchesWithinOneFloatMeetAsTheirDoublesDo) {
       expect_closed(mesh);
       if (!shares) expect_f64_bounds(set, mesh, plan.bounds(), 60);
     }
-  const PatchSet set = good(PatchSet::from(field, {.origin = Vec3{}}));
+  const PatchSet set = good(PatchSet::make(field, {.origin = Vec3{}}));
   const CertifiedTessellation plan = good(CertifiedTessellation::make(set, in_double(1e-7)));
   EXPECT_EQ(impl_of(plan).plan().patch_count(), 36u);
   const MeshReport report = good(check(mesh_of(set, plan)));

@@ -93,7 +93,7 @@ TEST(FarParts, MeetWithoutACrackWhereFloatsAreTheSame) {
   for (std::uint64_t seed = 1; seed < 6; ++seed)
     for (const bool shares : {false, true}) {
       const PatchSet set =
-          good(PatchSet::from(shaken_within_floats(far_apart(closed_body(), 1000), seed), {.origin = Vec3{}}));
+          good(PatchSet::make(shaken_within_floats(far_apart(closed_body(), 1000), seed), {.origin = Vec3{}}));
       const CertifiedTessellation plan =
           good(CertifiedTessellation::make(set, {.tolerance = 0.001, .share_vertices = shares}));
       ASSERT_TRUE(is_f64(plan));

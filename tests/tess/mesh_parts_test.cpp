@@ -50,7 +50,7 @@ TEST(MeshParts, PatchesOfOneSurfaceAreOnePart) {
   const std::vector<BezierPatch> patches = test::wavy_field(2, 3);
   std::vector<PatchSource> sources(6);
   for (std::size_t k : {2, 3, 4}) sources[k].surface = 3;
-  const PatchSet set = value_of(PatchSet::from(patches, {.sources = sources}));
+  const PatchSet set = value_of(PatchSet::make(patches, {.sources = sources}));
   const std::vector<MeshPart> parts = value_of(parts_by_surface(mesh_of(set), set, surfaces));
   ASSERT_EQ(parts.size(), 3u);
   for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(parts[k].name, k == 1 ? "back" : "front");
@@ -63,7 +63,7 @@ TEST(MeshParts, QuadsGoWithTheTrianglesOfTheirPatch) {
   // Patches 0 to 3 belong to surface 0, 4 to 7 to surface 3.
   std::vector<PatchSource> sources(8);
   for (std::size_t k = 4; k < 8; ++k) sources[k].surface = 3;
-  const PatchSet two = value_of(PatchSet::from(test::sphere(), {.sources = sources}));
+  const PatchSet two = value_of(PatchSet::make(test::sphere(), {.sources = sources}));
   const TessellationPlan plan = value_of(TessellationPlan::make(two, {.rate_u = 3, .rate_v = 2, .isa = {}}));
   Mesh mesh = value_of(plan.allocate_quads());
   ASSERT_TRUE(plan.run(two, mesh.views()).ok());

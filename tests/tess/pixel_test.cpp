@@ -271,7 +271,7 @@ TEST(Pixels, WrongOnesAreRefused) {
   // Floats far away move by more than the pixels allow: an error, not silence.
   const PatchSet far = set_of(placed(closed_body(), 1, {1e7, 0, 0}));
   const auto rough = CertifiedTessellation::make(
-      *PatchSet::from(placed(closed_body(), 1, {1e7, 0, 0}), PatchSetOptions{.origin = Vec3{}}),
+      *PatchSet::make(placed(closed_body(), 1, {1e7, 0, 0}), PatchSetOptions{.origin = Vec3{}}),
       {.pixels = PixelTolerance{0.5, views_of(far)[0]}});
   ASSERT_FALSE(rough.ok());
   EXPECT_NE(rough.status().message().find("the tolerance of 0.5 pixels at the view's near distance must be above "),

@@ -16,7 +16,7 @@ T good(Result<T> result) {
   return *std::move(result);
 }
 
-inline PatchSet set_of(const std::vector<BezierPatch>& patches) { return good(PatchSet::from(patches)); }
+inline PatchSet set_of(const std::vector<BezierPatch>& patches) { return good(PatchSet::make(patches)); }
 
 inline Mesh mesh_of(const PatchSet& set, const CertifiedTessellation& plan) {
   Mesh mesh = good(plan.allocate());

@@ -46,7 +46,7 @@ TEST(TessellationErrors, NoFloatBlocks) {
   const std::vector<BezierPatch> patches = {random_polynomial(random, 3, 3)};
   PatchSetOptions options;
   options.blocks = {.float_bernstein = false, .double_bernstein = true};
-  const auto plan = TessellationPlan::make(good(PatchSet::from(patches, options)));
+  const auto plan = TessellationPlan::make(good(PatchSet::make(patches, options)));
   ASSERT_FALSE(plan.ok());
   EXPECT_EQ(plan.status().code(), StatusCode::unsupported);
 }

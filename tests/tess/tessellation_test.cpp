@@ -167,7 +167,7 @@ TEST(Tessellation, WeightsOfAnySize) {
   }
   std::vector<double> far_apart = weights;
   far_apart[0] = 1e-10;  // float cannot hold its fourth power beside the others
-  const Result<PatchSet> set = PatchSet::from(std::vector{rational(3, 3, points, far_apart)});
+  const Result<PatchSet> set = PatchSet::make(std::vector{rational(3, 3, points, far_apart)});
   EXPECT_EQ(set.status().code(), StatusCode::non_finite);
   far_apart[0] = 3e-9;
   const BezierPatch patch = rational(3, 3, points, far_apart);

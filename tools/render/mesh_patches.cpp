@@ -81,7 +81,7 @@ Result<PatchSet> MeshPatches::pack() const {
     if (!patch) return patch.status();
     patches.push_back(*std::move(patch));
   }
-  return PatchSet::from(patches);
+  return PatchSet::make(patches);
 }
 
 Vec3 MeshPatches::normal(const Hit& hit) const {

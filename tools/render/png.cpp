@@ -97,7 +97,7 @@ Status write_png(const Image& image, OutputFile& out, const PngTexts& texts) {
 
 Status write_png(const Image& image, const std::filesystem::path& path) {
   return guarded([&]() -> Status {
-    Result<OutputFile> out = OutputFile::create(path);
+    Result<OutputFile> out = OutputFile::make(path);
     if (!out) return out.status();
     Status status = write_png(image, *out);
     return status.ok() ? out->commit() : status;

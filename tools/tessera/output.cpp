@@ -33,7 +33,7 @@ Result<OutputFile> open_output(const std::string& path) {
   if (path.empty() || is_stream(path)) return OutputFile::standard_output(&interrupted());
   if (Status status = make_folders(fs::path(path).parent_path()); !status.ok())
     return Status(status.code(), path + ": cannot be written: " + status.message());
-  return OutputFile::create(path, &interrupted());
+  return OutputFile::make(path, &interrupted());
 }
 
 void remove_empty_folders() {

@@ -25,7 +25,7 @@ Result<StandardInput> StandardInput::make(const std::string& format) {
   StandardInput made;
   made.folder_ = folder;
   made.path_ = folder + "/" + stem + "." + format;
-  Result<OutputFile> copy = OutputFile::create(made.path_);
+  Result<OutputFile> copy = OutputFile::make(made.path_);
   if (!copy) return copy.status();
   copy->write(*bytes);
   if (Status status = copy->commit(); !status.ok()) return status;

@@ -87,7 +87,7 @@ class PatchGrid {
 /// and by the rounding of the points. A map with a negative determinant turns normals over.
 ///
 /// Errors: non_finite (the map, or a point too large; index = the patch).
-Result<PatchGrid> transformed(const PatchGrid& grid, const Affine& map);
+Result<PatchGrid> transform(const PatchGrid& grid, const Affine& map);
 
 // Operations on splines. Results are the same curve or surface on the same domain, right up to rounding. Unchanged
 // control points keep their bits. Rational splines remain rational. Errors of all: out_of_memory, and those stated.
@@ -98,27 +98,27 @@ Result<PatchGrid> transformed(const PatchGrid& grid, const Affine& map);
 ///   each is at most the degree.
 ///
 /// Errors: non_finite, invalid_argument (index = the knot).
-Result<Curve> refined(const Curve& curve, std::span<const double> knots);
+Result<Curve> insert_knots(const Curve& curve, std::span<const double> knots);
 /// Inserts knots in both directions. Errors: as above.
-Result<BSplineSurface> refined(const BSplineSurface& surface, std::span<const double> knots_u,
-                               std::span<const double> knots_v);
+Result<BSplineSurface> insert_knots(const BSplineSurface& surface, std::span<const double> knots_u,
+                                    std::span<const double> knots_v);
 
 /// Clamps: knots end where the domain ends, (degree + 1)-fold. An unclamped spline, or one with a smaller domain than
 /// its knots, becomes clamped, and the border points become control points of its border curves. Errors: out_of_memory.
-Result<Curve> clamped(const Curve& curve);
+Result<Curve> clamp_ends(const Curve& curve);
 /// Clamps both directions. Errors: out_of_memory.
-Result<BSplineSurface> clamped(const BSplineSurface& surface);
+Result<BSplineSurface> clamp_ends(const BSplineSurface& surface);
 
 /// Clamps, and raises the degree by `by` >= 0 (by blossoms: Farin, Curves and Surfaces for CAGD, 5th ed., sec. 8.7).
 /// Each knot's multiplicity rises by as much. Errors: invalid_argument, unsupported_degree.
-Result<Curve> degree_elevated(const Curve& curve, int by);
+Result<Curve> elevate_degree(const Curve& curve, int by);
 /// Raises both degrees. Errors: as above.
-Result<BSplineSurface> degree_elevated(const BSplineSurface& surface, int by_u, int by_v);
+Result<BSplineSurface> elevate_degree(const BSplineSurface& surface, int by_u, int by_v);
 
 /// Returns both curves clamped, of the higher degree of the two, and on the union of their knots (by ==: knots that
 /// differ by rounding are both kept). One may be rational and the other not. Errors: invalid_argument (different
 /// domains).
-Result<std::pair<Curve, Curve>> compatible(const Curve& a, const Curve& b);
+Result<std::pair<Curve, Curve>> make_compatible(const Curve& a, const Curve& b);
 
 /// A curve as Bezier pieces that share their end points: piece k has the points k * degree .. (k + 1) * degree and
 /// covers [breaks[k], breaks[k+1]].

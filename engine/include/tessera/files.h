@@ -26,7 +26,7 @@ class OutputFile {
  public:
   /// Opens the file. Once `cancel` is true, writes fail with cancelled, and the file does not appear. Errors: io_error
   /// (a directory, a missing folder, no permission).
-  static Result<OutputFile> create(const std::filesystem::path& path, const std::atomic<bool>* cancel = nullptr);
+  static Result<OutputFile> make(const std::filesystem::path& path, const std::atomic<bool>* cancel = nullptr);
   /// The process's standard output.
   static OutputFile standard_output(const std::atomic<bool>* cancel = nullptr);
 

@@ -87,7 +87,7 @@ class HermitePatch {
 
   /// Returns the same surface over another rectangle [s0, s1] x [t0, t1]: q_s = (u1 - u0) / (s1 - s0) p_u, q_t
   /// likewise, and q_st with the product of both factors. Errors: as for the makers.
-  Result<HermitePatch> reparametrized(const Domain& domain) const;
+  Result<HermitePatch> reparametrize(const Domain& domain) const;
 
  private:
   struct Data {

@@ -59,14 +59,14 @@ Result<PatchGrid> to_bezier(const ModelSurface& surface, const FitOptions& optio
 /// source(k).domain the patch's rectangle of the surface's parameters. PatchSet::fit_error() is the largest of all,
 /// certified if all are.
 ///
-/// Errors: those of the conversions and of PatchSet::from(), as "surface 3 (rim): ..." (index = the surface).
+/// Errors: those of the conversions and of PatchSet::make(), as "surface 3 (rim): ..." (index = the surface).
 Result<PatchSet> make_patch_set(const Model& model, const PatchSetOptions& options = {}, const FitOptions& fit = {});
 
 /// Makes one set of the patches of several surfaces. source(k).surface is the index into `grids`, and source(k).domain
-/// the patch's rectangle. Errors: those of PatchSet::from().
+/// the patch's rectangle. Errors: those of PatchSet::make().
 Result<PatchSet> make_patch_set(std::span<const PatchGrid> grids, const PatchSetOptions& options = {});
 /// Makes a set of the patches of one surface. A grid that is moved here gives up its patches without a copy. Errors:
-/// those of PatchSet::from().
+/// those of PatchSet::make().
 Result<PatchSet> make_patch_set(PatchGrid grid, const PatchSetOptions& options = {});
 
 }  // namespace tessera::inline abi_0_1

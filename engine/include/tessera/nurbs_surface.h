@@ -108,26 +108,27 @@ enum class CircleArcs : std::uint8_t { three = 3, four = 4 };
 // radius, a height, the axis), those of the curve or surface.
 
 /// Makes a circle about the axis's origin, from the direction of angle zero. Errors: those of all makers.
-Result<Curve> nurbs_circle(const Axis& axis, double radius, CircleArcs arcs = CircleArcs::four);
+Result<Curve> make_nurbs_circle(const Axis& axis, double radius, CircleArcs arcs = CircleArcs::four);
 /// Revolves `profile` about the axis: u is the turn, and v the profile's parameter with its degree and knots. Weights
 /// are products. Points of the profile on the axis make poles. Errors: those of all makers. (The NURBS Book, sec. 8.5,
 /// in closed form.)
-Result<BSplineSurface> surface_of_revolution(const Curve& profile, const Axis& axis,
-                                             CircleArcs arcs = CircleArcs::four);
+Result<BSplineSurface> make_surface_of_revolution(const Curve& profile, const Axis& axis,
+                                                  CircleArcs arcs = CircleArcs::four);
 /// Makes a sphere about the axis's origin. v in [0, 1] runs from the pole at -direction to the pole at +direction, over
 /// two arcs. The normal points outwards. Errors: those of all makers.
-Result<BSplineSurface> nurbs_sphere(const Axis& axis, double radius, CircleArcs arcs = CircleArcs::four);
+Result<BSplineSurface> make_nurbs_sphere(const Axis& axis, double radius, CircleArcs arcs = CircleArcs::four);
 /// Makes a torus: the tube of radius `minor` about the circle of radius `major` > minor. v in [0, 1] runs around the
 /// tube from its outermost circle towards +direction. The normal points outwards. Errors: those of all makers.
-Result<BSplineSurface> nurbs_torus(const Axis& axis, double major, double minor, CircleArcs arcs = CircleArcs::four);
+Result<BSplineSurface> make_nurbs_torus(const Axis& axis, double major, double minor,
+                                        CircleArcs arcs = CircleArcs::four);
 /// Makes a cylinder from the origin to origin + height * direction / |direction|, with v in [0, 1] along it. Errors:
 /// those of all makers.
-Result<BSplineSurface> nurbs_cylinder(const Axis& axis, double radius, double height,
-                                      CircleArcs arcs = CircleArcs::four);
-/// Makes a cone like nurbs_cylinder(), with radius `bottom` at the origin and `top` at the height. One of the radii may
-/// be zero: an apex. Errors: those of all makers.
-Result<BSplineSurface> nurbs_cone(const Axis& axis, double bottom, double top, double height,
-                                  CircleArcs arcs = CircleArcs::four);
+Result<BSplineSurface> make_nurbs_cylinder(const Axis& axis, double radius, double height,
+                                           CircleArcs arcs = CircleArcs::four);
+/// Makes a cone like make_nurbs_cylinder(), with radius `bottom` at the origin and `top` at the height. One of the
+/// radii may be zero: an apex. Errors: those of all makers.
+Result<BSplineSurface> make_nurbs_cone(const Axis& axis, double bottom, double top, double height,
+                                       CircleArcs arcs = CircleArcs::four);
 
 }  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

@@ -75,7 +75,7 @@ class PatchSet {
   /// Range: the smallest weight of a patch is at least 1e-9 of the largest (1e-70 if there are only double blocks). A
   /// coordinate relative to the origin is at most 5e33 (2.7e303) times the square of that ratio. So derivatives are
   /// finite.
-  static Result<PatchSet> from(std::span<const BezierPatch> patches, const PatchSetOptions& options = {});
+  static Result<PatchSet> make(std::span<const BezierPatch> patches, const PatchSetOptions& options = {});
 
   PatchSet(PatchSet&&) noexcept;
   PatchSet& operator=(PatchSet&&) noexcept;

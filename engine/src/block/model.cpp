@@ -88,7 +88,7 @@ Result<PatchGrid> to_bezier(const ModelSurface& surface, const FitOptions& optio
   if (norm > 0)
     before.tolerance = std::min(share_for_fits * options.tolerance / norm, std::numeric_limits<double>::max());
   Result<PatchGrid> grid = to_bezier(surface.surface, before);
-  if (grid) grid = transformed(*grid, surface.placement);
+  if (grid) grid = transform(*grid, surface.placement);
   if (grid && options.tolerance > 0 && grid->fit_error().distance > options.tolerance)
     return Status(StatusCode::invalid_argument,
                   "the tolerance " + text(options.tolerance) +

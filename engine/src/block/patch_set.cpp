@@ -209,7 +209,7 @@ Result<PatchSet> PatchSet::Impl::make(std::vector<BezierPatch> patches, std::vec
   return PatchSet(std::move(set));
 }
 
-Result<PatchSet> PatchSet::from(std::span<const BezierPatch> patches, const PatchSetOptions& options) {
+Result<PatchSet> PatchSet::make(std::span<const BezierPatch> patches, const PatchSetOptions& options) {
   return guarded([&]() -> Result<PatchSet> {
     std::vector<PatchSource> sources(options.sources.begin(), options.sources.end());
     if (sources.empty()) {

@@ -120,7 +120,7 @@ class PatchSet::Impl {
   /// first become the patches' own (each patch must have memory of its own); null: packs the patches' present points.
   std::size_t pack_block(std::size_t block, const kernel::KernelTable& kernels, const Vec3* const* edits = nullptr);
 
-  /// PatchSet::from() without a copy; the sources must be valid. `box`: of all control points, if known.
+  /// PatchSet::make() without a copy; the sources must be valid. `box`: of all control points, if known.
   static Result<PatchSet> make(std::vector<BezierPatch> patches, std::vector<PatchSource> sources,
                                std::size_t surface_count, const std::optional<Box3>& box,
                                const PatchSetOptions& options);

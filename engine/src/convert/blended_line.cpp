@@ -46,7 +46,7 @@ std::vector<double> missing_breaks(const Curve& curve, const Curve& other) {
 class HomogeneousPieces {
  public:
   static Result<HomogeneousPieces> make(const Curve& curve, const Curve& other) {
-    const auto finer = refined(curve, missing_breaks(curve, other));
+    const auto finer = insert_knots(curve, missing_breaks(curve, other));
     if (!finer) return finer.status();
     auto pieces = to_bezier(*finer);
     if (!pieces) return pieces.status();

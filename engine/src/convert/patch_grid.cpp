@@ -73,7 +73,7 @@ std::optional<SurfaceJet> PatchGrid::evaluate_jet(double u, double v) const {
   return jet;
 }
 
-Result<PatchGrid> transformed(const PatchGrid& grid, const Affine& map) {
+Result<PatchGrid> transform(const PatchGrid& grid, const Affine& map) {
   return guarded([&]() -> Result<PatchGrid> {
     if (!is_finite(map)) return Status(StatusCode::non_finite, "an affine map must be finite");
     std::vector<BezierPatch> patches;

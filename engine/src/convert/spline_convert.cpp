@@ -103,7 +103,7 @@ auto clamping(double from, double to) {
 auto elevating(double from, double to, int by) {
   return [=](SplineNet& net) {
     clamp(net, from, to);
-    for (int k = 0; k < by; ++k) net = degree_elevated(net);
+    for (int k = 0; k < by; ++k) net = elevate_degree(net);
   };
 }
 
@@ -114,7 +114,7 @@ void merge_knots(SplineNet& net, const SplineNet& other) {
 
 }  // namespace
 
-Result<Curve> refined(const Curve& curve, std::span<const double> knots) {
+Result<Curve> insert_knots(const Curve& curve, std::span<const double> knots) {
   return guarded([&]() -> Result<Curve> {
     if (Status status = check_new_knots(line_of(curve), knots, "new knots"); !status.ok()) return status;
     SplineNet net = net_of(curve);
@@ -123,8 +123,8 @@ Result<Curve> refined(const Curve& curve, std::span<const double> knots) {
   });
 }
 
-Result<BSplineSurface> refined(const BSplineSurface& surface, std::span<const double> knots_u,
-                               std::span<const double> knots_v) {
+Result<BSplineSurface> insert_knots(const BSplineSurface& surface, std::span<const double> knots_u,
+                                    std::span<const double> knots_v) {
   return guarded([&]() -> Result<BSplineSurface> {
     if (Status status = check_new_knots(line_u(surface), knots_u, "new knots u"); !status.ok()) return status;
     if (Status status = check_new_knots(line_v(surface), knots_v, "new knots v"); !status.ok()) return status;
@@ -132,7 +132,7 @@ Result<BSplineSurface> refined(const BSplineSurface& surface, std::span<const do
   });
 }
 
-Result<Curve> clamped(const Curve& curve) {
+Result<Curve> clamp_ends(const Curve& curve) {
   return guarded([&]() -> Result<Curve> {
     SplineNet net = net_of(curve);
     clamp(net, curve.domain().from, curve.domain().to);
@@ -140,14 +140,14 @@ Result<Curve> clamped(const Curve& curve) {
   });
 }
 
-Result<BSplineSurface> clamped(const BSplineSurface& surface) {
+Result<BSplineSurface> clamp_ends(const BSplineSurface& surface) {
   return guarded([&] {
     const Domain& d = surface.domain();
     return changed(surface, clamping(d.u0, d.u1), clamping(d.v0, d.v1));
   });
 }
 
-Result<Curve> degree_elevated(const Curve& curve, int by) {
+Result<Curve> elevate_degree(const Curve& curve, int by) {
   return guarded([&]() -> Result<Curve> {
     if (Status status = check_elevation(curve.degree(), by, "the degree"); !status.ok()) return status;
     SplineNet net = net_of(curve);
@@ -156,7 +156,7 @@ Result<Curve> degree_elevated(const Curve& curve, int by) {
   });
 }
 
-Result<BSplineSurface> degree_elevated(const BSplineSurface& surface, int by_u, int by_v) {
+Result<BSplineSurface> elevate_degree(const BSplineSurface& surface, int by_u, int by_v) {
   return guarded([&]() -> Result<BSplineSurface> {
     if (Status status = check_elevation(surface.degree_u(), by_u, "degree u"); !status.ok()) return status;
     if (Status status = check_elevation(surface.degree_v(), by_v, "degree v"); !status.ok()) return status;
@@ -165,7 +165,7 @@ Result<BSplineSurface> degree_elevated(const BSplineSurface& surface, int by_u, 
   });
 }
 
-Result<std::pair<Curve, Curve>> compatible(const Curve& a, const Curve& b) {
+Result<std::pair<Curve, Curve>> make_compatible(const Curve& a, const Curve& b) {
   return guarded([&]() -> Result<std::pair<Curve, Curve>> {
     const Interval d = a.domain(), e = b.domain();
     if (!(d == e))

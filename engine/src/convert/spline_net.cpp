@@ -102,7 +102,7 @@ void clamp(SplineNet& net, double from, double to) {
   net.points = std::vector<NetPoint>(row(first_point), row(end_point));
 }
 
-SplineNet degree_elevated(const SplineNet& net) {
+SplineNet elevate_degree(const SplineNet& net) {
   const std::size_t p = static_cast<std::size_t>(net.degree);
   SplineNet result{net.degree + 1, net.rational, net.width, raised_knots(net.knots), {}};
   const std::size_t count = result.knots.size() - p - 2;

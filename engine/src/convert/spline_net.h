@@ -34,7 +34,7 @@ void raise_multiplicity(SplineNet& net, double t, std::size_t times);
 /// Makes `from` and `to` the ends, (degree + 1)-fold; from < to within the domain of the knots.
 void clamp(SplineNet& net, double from, double to);
 /// Returns the net with one degree more; `net` must be clamped.
-SplineNet degree_elevated(const SplineNet& net);
+SplineNet elevate_degree(const SplineNet& net);
 /// Returns the points with rows and curves exchanged. The caller keeps the knots.
 std::vector<NetPoint> transposed(const std::vector<NetPoint>& points, std::size_t width);
 

@@ -25,7 +25,7 @@ bool all_plain(std::span<const Vec3> points) {
 /// Whether a patch with these points could be in a set of its own.
 bool fits(const PatchSet::Impl& set, const BezierPatch& patch, std::span<const Vec3> points) {
   const Result<BezierPatch> edited = patch.with_points(points);
-  return edited && PatchSet::from(std::span(&*edited, 1), {.blocks = set.kinds, .origin = set.origin}).ok();
+  return edited && PatchSet::make(std::span(&*edited, 1), {.blocks = set.kinds, .origin = set.origin}).ok();
 }
 
 std::span<const Vec3> points_of(const PatchSet::Impl& set, const PatchEdits& edits, const TouchedBlocks& touched,

@@ -46,7 +46,7 @@ Result<Surface> quadric_part(QuadricKind kind, const QuadricCoefficients& coeffi
 
 Result<Surface> revolved_part(const Curve& profile, double turn) {
   if (!is_turn(turn)) return Status(StatusCode::invalid_argument, "its turn must be above 0 and at most a full turn");
-  const Result<BSplineSurface> full = surface_of_revolution(profile, {});
+  const Result<BSplineSurface> full = make_surface_of_revolution(profile, {});
   if (!full) return full.status();
   const Interval v = profile.domain();
   Result<BSplineSurface> part =
@@ -62,10 +62,10 @@ Result<Surface> torus_part(double major, double minor, const Domain& range) {
     return Status(StatusCode::invalid_argument, "its ranges must be above 0 and at most a full turn");
   // The turn begins at u0 and the tube at v0, so that ranges are the first parts of full circles.
   const Vec3 outwards{std::cos(range.u0), std::sin(range.u0), 0}, up{0, 0, 1};
-  const Result<Curve> tube = nurbs_circle({.origin = major * outwards,
-                                           .direction = cross(outwards, up),
-                                           .zero = std::cos(range.v0) * outwards + std::sin(range.v0) * up},
-                                          minor);
+  const Result<Curve> tube = make_nurbs_circle({.origin = major * outwards,
+                                                .direction = cross(outwards, up),
+                                                .zero = std::cos(range.v0) * outwards + std::sin(range.v0) * up},
+                                               minor);
   if (!tube) return tube.status();
   const Result<Curve> arc = Curve::nurbs(tube->degree(), tube->points(), tube->weights(), tube->knots(),
                                          Interval{0, circle_parameter(snapped(turn_v))});

@@ -130,7 +130,7 @@ Status write_mesh(const Mesh& mesh, const fs::path& path) {
   return guarded([&]() -> Status {
     Status status = check_mesh_format(path);
     if (!status.ok()) return status;
-    Result<OutputFile> out = OutputFile::create(path);
+    Result<OutputFile> out = OutputFile::make(path);
     if (!out) return out.status();
     status = write_mesh(mesh, path, *out);
     return status.ok() ? out->commit() : status;

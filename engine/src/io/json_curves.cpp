@@ -62,8 +62,8 @@ Curve read_nurbs_curve(const JsonValue& value) {
 
 Curve read_circle(const JsonValue& value) {
   const Fields fields(value, {"kind", "axis", "radius", "arcs"});
-  return made(value, nurbs_circle(fields.get("axis", Axis{}, read_axis), read_number(fields.at("radius")),
-                                  fields.get("arcs", CircleArcs::four, read_arcs)));
+  return made(value, make_nurbs_circle(fields.get("axis", Axis{}, read_axis), read_number(fields.at("radius")),
+                                       fields.get("arcs", CircleArcs::four, read_arcs)));
 }
 
 const JsonValue& object(const JsonValue& value, std::string_view what) {

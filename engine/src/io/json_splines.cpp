@@ -86,30 +86,30 @@ Surface read_nurbs_surface(const JsonValue& value) {
 
 Surface read_sphere(const JsonValue& value) {
   const SurfaceFields fields(value, {"radius", "axis", "arcs"});
-  return made(value, nurbs_sphere(axis_of(fields), read_number(fields.at("radius")), arcs_of(fields)));
+  return made(value, make_nurbs_sphere(axis_of(fields), read_number(fields.at("radius")), arcs_of(fields)));
 }
 
 Surface read_torus(const JsonValue& value) {
   const SurfaceFields fields(value, {"major", "minor", "axis", "arcs"});
-  return made(value, nurbs_torus(axis_of(fields), read_number(fields.at("major")), read_number(fields.at("minor")),
-                                 arcs_of(fields)));
+  return made(value, make_nurbs_torus(axis_of(fields), read_number(fields.at("major")), read_number(fields.at("minor")),
+                                      arcs_of(fields)));
 }
 
 Surface read_cylinder(const JsonValue& value) {
   const SurfaceFields fields(value, {"radius", "height", "axis", "arcs"});
-  return made(value, nurbs_cylinder(axis_of(fields), read_number(fields.at("radius")), read_number(fields.at("height")),
-                                    arcs_of(fields)));
+  return made(value, make_nurbs_cylinder(axis_of(fields), read_number(fields.at("radius")),
+                                         read_number(fields.at("height")), arcs_of(fields)));
 }
 
 Surface read_cone(const JsonValue& value) {
   const SurfaceFields fields(value, {"bottom", "top", "height", "axis", "arcs"});
-  return made(value, nurbs_cone(axis_of(fields), read_number(fields.at("bottom")), read_number(fields.at("top")),
-                                read_number(fields.at("height")), arcs_of(fields)));
+  return made(value, make_nurbs_cone(axis_of(fields), read_number(fields.at("bottom")), read_number(fields.at("top")),
+                                     read_number(fields.at("height")), arcs_of(fields)));
 }
 
 Surface read_revolution(const JsonValue& value) {
   const SurfaceFields fields(value, {"profile", "axis", "arcs"});
-  return made(value, surface_of_revolution(read_curve(fields.at("profile")), axis_of(fields), arcs_of(fields)));
+  return made(value, make_surface_of_revolution(read_curve(fields.at("profile")), axis_of(fields), arcs_of(fields)));
 }
 
 }  // namespace tessera::inline abi_0_1

@@ -152,7 +152,7 @@ OutputFile::OutputFile(std::unique_ptr<Destination> destination, fs::path target
 OutputFile::OutputFile(OutputFile&&) noexcept = default;
 OutputFile::~OutputFile() = default;
 
-Result<OutputFile> OutputFile::create(const fs::path& path, const std::atomic<bool>* cancel) {
+Result<OutputFile> OutputFile::make(const fs::path& path, const std::atomic<bool>* cancel) {
   const Result<fs::path> place = behind_links(path);
   if (!place) return place.status();
   const fs::path& target = *place;

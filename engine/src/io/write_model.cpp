@@ -85,7 +85,7 @@ Result<WrittenModel> write_model(const Model& model, const fs::path& path, const
 Result<WrittenModel> write_model(const Model& model, const fs::path& path, const FitOptions& fit) {
   return guarded([&]() -> Result<WrittenModel> {
     if (Status status = check_model_format(path); !status.ok()) return status;
-    Result<OutputFile> out = OutputFile::create(path);
+    Result<OutputFile> out = OutputFile::make(path);
     if (!out) return out.status();
     Result<WrittenModel> facts = write(model, path, fit, *out);
     if (!facts) return facts;
@@ -97,7 +97,7 @@ Result<WrittenModel> write_model(const Model& model, const fs::path& path, const
 Status write_model(const PatchSet& set, const fs::path& path) {
   return guarded([&]() -> Status {
     if (Status status = check_model_format(path); !status.ok()) return status;
-    Result<OutputFile> out = OutputFile::create(path);
+    Result<OutputFile> out = OutputFile::make(path);
     if (!out) return out.status();
     Status status = write(set, path, *out);
     return status.ok() ? out->commit() : status;

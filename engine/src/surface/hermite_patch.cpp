@@ -27,7 +27,7 @@ constexpr Matrix4 power_of_hermite = {{1, 0, 0, 0}, {0, 1, 0, 0}, {-3, -2, -1, 3
 constexpr Matrix4 hermite_of_power = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 1, 2, 3}, {1, 1, 1, 1}};
 
 /// Returns M G M^T.
-Grid transformed(const Matrix4& m, const Grid& g) {
+Grid transform(const Matrix4& m, const Grid& g) {
   Grid along, result;
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j)
@@ -174,7 +174,7 @@ Result<HermitePatch> HermitePatch::from_algebraic(std::span<const Vec3> coeffici
     if (Status status = check_vectors(coefficients, 4, "coefficient"); !status.ok()) return status;
     Grid a;
     std::copy(coefficients.begin(), coefficients.end(), a.begin());
-    return from_local(transformed(hermite_of_power, a), domain);
+    return from_local(transform(hermite_of_power, a), domain);
   });
 }
 
@@ -194,7 +194,7 @@ Result<HermitePatch> HermitePatch::through_points(std::span<const Vec3> points, 
     for (const Vec3& coefficient : a)
       if (!is_finite(coefficient))
         return Status(StatusCode::non_finite, "the parameters of the 16 points are too close to each other");
-    return from_local(transformed(hermite_of_power, a), domain);
+    return from_local(transform(hermite_of_power, a), domain);
   });
 }
 
@@ -235,7 +235,7 @@ HermitePatch::Grid HermitePatch::local_geometry() const {
   return scaled(data_->geometry, d.u1 - d.u0, d.v1 - d.v0);
 }
 
-HermitePatch::Grid HermitePatch::algebraic_form() const { return transformed(power_of_hermite, local_geometry()); }
+HermitePatch::Grid HermitePatch::algebraic_form() const { return transform(power_of_hermite, local_geometry()); }
 
 HermitePatch::Grid HermitePatch::points_at(const std::array<double, 4>& u, const std::array<double, 4>& v) const {
   Grid points;
@@ -245,7 +245,7 @@ HermitePatch::Grid HermitePatch::points_at(const std::array<double, 4>& u, const
   return points;
 }
 
-Result<HermitePatch> HermitePatch::reparametrized(const Domain& domain) const {
+Result<HermitePatch> HermitePatch::reparametrize(const Domain& domain) const {
   return guarded([&]() -> Result<HermitePatch> {
     if (Status status = check_domain(domain); !status.ok()) return status;
     const Domain& own = data_->domain;

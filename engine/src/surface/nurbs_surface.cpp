@@ -95,7 +95,7 @@ Result<BSplineSurface> revolve_line(const Axis& axis, double bottom, double top,
 
 }  // namespace
 
-Result<Curve> nurbs_circle(const Axis& axis, double radius, CircleArcs arcs) {
+Result<Curve> make_nurbs_circle(const Axis& axis, double radius, CircleArcs arcs) {
   return guarded([&]() -> Result<Curve> {
     const Result<Frame> frame = frame_of(axis);
     if (!frame) return frame.status();
@@ -106,7 +106,7 @@ Result<Curve> nurbs_circle(const Axis& axis, double radius, CircleArcs arcs) {
   });
 }
 
-Result<BSplineSurface> surface_of_revolution(const Curve& profile, const Axis& axis, CircleArcs arcs) {
+Result<BSplineSurface> make_surface_of_revolution(const Curve& profile, const Axis& axis, CircleArcs arcs) {
   return guarded([&]() -> Result<BSplineSurface> {
     const Result<Frame> frame = frame_of(axis);
     if (!frame) return frame.status();
@@ -120,7 +120,7 @@ Result<BSplineSurface> surface_of_revolution(const Curve& profile, const Axis& a
   });
 }
 
-Result<BSplineSurface> nurbs_sphere(const Axis& axis, double radius, CircleArcs arcs) {
+Result<BSplineSurface> make_nurbs_sphere(const Axis& axis, double radius, CircleArcs arcs) {
   return guarded([&]() -> Result<BSplineSurface> {
     const Result<Frame> frame = frame_of(axis);
     if (!frame) return frame.status();
@@ -131,7 +131,7 @@ Result<BSplineSurface> nurbs_sphere(const Axis& axis, double radius, CircleArcs 
   });
 }
 
-Result<BSplineSurface> nurbs_torus(const Axis& axis, double major, double minor, CircleArcs arcs) {
+Result<BSplineSurface> make_nurbs_torus(const Axis& axis, double major, double minor, CircleArcs arcs) {
   return guarded([&]() -> Result<BSplineSurface> {
     const Result<Frame> frame = frame_of(axis);
     if (!frame) return frame.status();
@@ -147,14 +147,14 @@ Result<BSplineSurface> nurbs_torus(const Axis& axis, double major, double minor,
   });
 }
 
-Result<BSplineSurface> nurbs_cylinder(const Axis& axis, double radius, double height, CircleArcs arcs) {
+Result<BSplineSurface> make_nurbs_cylinder(const Axis& axis, double radius, double height, CircleArcs arcs) {
   return guarded([&]() -> Result<BSplineSurface> {
     if (Status status = check_positive(radius, "the radius"); !status.ok()) return status;
     return revolve_line(axis, radius, radius, height, arcs);
   });
 }
 
-Result<BSplineSurface> nurbs_cone(const Axis& axis, double bottom, double top, double height, CircleArcs arcs) {
+Result<BSplineSurface> make_nurbs_cone(const Axis& axis, double bottom, double top, double height, CircleArcs arcs) {
   return guarded([&]() -> Result<BSplineSurface> {
     // A radius of 0 at one end is an apex; every other radius must be positive.
     if (bottom != 0 || top == 0)

@@ -52,7 +52,7 @@ tessera::PatchSet make_saddle(int n) {
       check(patch.status());
       patches.push_back(*patch);
     }
-  auto set = tessera::PatchSet::from(patches);
+  auto set = tessera::PatchSet::make(patches);
   check(set.status());
   return *std::move(set);
 }
