@@ -75,6 +75,7 @@ echo "test: what changed. --help says how to build and run some of the tests."
 tools/setup.sh --for test
 if [[ -z ${CMAKE_CXX_COMPILER_LAUNCHER:-} ]] && command -v ccache >/dev/null; then
   export CMAKE_CXX_COMPILER_LAUNCHER=ccache
+  export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros}  # it caches nothing of precompiled headers otherwise
 fi
 options=()
 if [[ $preset == tsan ]]; then
