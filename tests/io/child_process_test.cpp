@@ -117,7 +117,7 @@ TEST(ChildProcess, InheritsNeitherDescriptorsNorBlockedSignals) {
   sigset_t blocked, old;
   sigfillset(&blocked);
   ::pthread_sigmask(SIG_SETMASK, &blocked, &old);
-  const std::string status = printed("ls /proc/self/fd | wc -l; grep SigBlk /proc/$$/status");
+  const std::string status = printed("ls /proc/self/fd | wc -l; exec grep SigBlk /proc/self/status");
   ::pthread_sigmask(SIG_SETMASK, &old, nullptr);
   ::close(before);
   EXPECT_EQ(status, "4\nSigBlk:\t0000000000000000\n");  // the streams, and the folder that ls reads

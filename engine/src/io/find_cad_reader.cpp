@@ -23,9 +23,10 @@ std::vector<fs::path> own_folders() {
   std::error_code error;
   if (const fs::path self = fs::read_symlink("/proc/self/exe", error); !error) folders.push_back(self.parent_path());
   Dl_info facts{};
+  // A static library lies in the program, which is named as its caller called it: never a reason to look around here.
   if (::dladdr(reinterpret_cast<const void*>(&cad_reader_greeting), &facts) != 0 && facts.dli_fname) {
-    const fs::path library = fs::canonical(facts.dli_fname, error);
-    if (!error && library.parent_path() != folders.front()) folders.push_back(library.parent_path());
+    const fs::path library = fs::path(facts.dli_fname).is_absolute() ? fs::canonical(facts.dli_fname, error) : "";
+    if (!library.empty()) folders.push_back(library.parent_path());
   }
   return folders;
 }
