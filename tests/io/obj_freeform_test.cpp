@@ -355,7 +355,7 @@ TEST(ObjFreeform, WhatIsNotKeptIsCountedInOneWarning) {
   EXPECT_EQ(model.warnings[0],
             "m.obj:1: 8 statements are not kept, the first here: 1 mtllib, 1 vt, 2 f, 1 usemtl, 1 sp, 1 curv, 1 con");
   std::string strange;
-  for (char c = 'a'; c <= 'z'; ++c) strange += std::string(30, c) + " 1\n";
+  for (char c = 'a'; c <= 'z'; ++c) strange.append(30, c).append(" 1\n");
   const std::string warning = model_of(strange + four_vertices + bilinear).warnings.at(0);
   EXPECT_NE(warning.find("26 statements are not kept"), std::string::npos);
   EXPECT_NE(warning.find(", 10 others"), std::string::npos);
