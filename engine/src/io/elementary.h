@@ -13,8 +13,8 @@ namespace tessera::inline abi_0_1 {
 /// `kind`, an empty range).
 Result<Surface> quadric_part(QuadricKind kind, const QuadricCoefficients& coefficients, const Domain& range);
 
-/// Revolves a profile about the z axis by `turn` radians, above 0 and at most a full turn. u and the profile's parameter
-/// are v; u is 0 to circle_parameter(turn). Errors: invalid_argument.
+/// Revolves a profile about the z axis by `turn` radians, above 0 and at most a full turn. u begins at 0 and runs along
+/// the arcs of a circle over [0,1]; v is the profile's parameter. Errors: invalid_argument.
 Result<Surface> revolved_part(const Curve& profile, double turn);
 
 /// A torus about the z axis. `range` holds the angles of the turn (u) and of the tube (v), in radians; u and v of the

@@ -20,9 +20,9 @@ bool is_gzip(const std::filesystem::path& path, std::string_view bytes);
 /// `path` without the extension .gz, if it has it.
 std::filesystem::path without_gz(const std::filesystem::path& path);
 
-/// Unpacks all members of a gzip file (RFC 1952); `name` stands for the file in messages. Errors: parse_error (not gzip,
-/// cut, damaged, bytes after the end, nothing inside), unsupported (beyond the limits; no zlib). Memory: the unpacked
-/// bytes, which are counted before any are kept.
+/// Unpacks all members of a gzip file (RFC 1952); `name` stands for the file in messages. Errors: parse_error (not
+/// gzip, cut, damaged, bytes after the end, nothing inside), unsupported (beyond the limits; no zlib). Memory: the
+/// unpacked bytes, which are counted before any are kept.
 Result<std::string> unpack_gzip(std::string_view bytes, std::string_view name);
 
 }  // namespace tessera::inline abi_0_1

@@ -1,7 +1,7 @@
 // RIB, the RenderMan Interface Bytestream as text: Patch, PatchMesh, NuPatch and quadrics, their bases, trims and
-// transformations, objects and their instances, archives (The RenderMan Interface Specification 3.2, sec. 4, 5 and appendix C).
-// Points and transformations act on row vectors, as the Interface writes them; the model's space is the world as it
-// is at WorldBegin, left-handed as the Interface's is, coordinates unchanged.
+// transformations, objects and their instances, archives (The RenderMan Interface Specification 3.2, sec. 4, 5 and
+// appendix C). Points and transformations act on row vectors, as the Interface writes them; the model's space is the
+// world as it is at WorldBegin, left-handed as the Interface's is, coordinates unchanged.
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
-// The RenderMan Interface Specification 3.2, section 5.2: theta = u thetamax, and v runs along the profile. Each quadric
-// is made in a frame in which its sizes are 1 and its angles grow, so that no size is out of the range of double.
+// The RenderMan Interface Specification 3.2, section 5.2: theta = u thetamax, and v runs along the profile. Sphere,
+// Cylinder, Cone and Paraboloid are made in a frame where their sizes are 1, so that squares of sizes cannot overflow.
 
 #include "io/rib_quadrics.h"
 
