@@ -98,7 +98,10 @@ TEST(ReadCad, OtherFilesAreRefused) {
          "text.step: OpenCASCADE cannot read it as STEP: Line 2: Incorrect syntax");
   expect(folder.file("text.igs", "A letter,\nnot a part.\n"), StatusCode::parse_error,
          "text.igs:1: this is not IGES: the first line has no S in column 73");
-  expect(folder.file("noise.iges", std::string(72, ' ') + "B" + std::string(3000, '\0')), StatusCode::unsupported,
+  std::string binary(73, ' ');
+  binary.back() = 'B';
+  binary.resize(3073);
+  expect(folder.file("noise.iges", binary), StatusCode::unsupported,
          "IGES in its binary form");
   expect(folder.file("text.brep", "A letter,\nnot a part.\n"), StatusCode::parse_error,
          "text.brep: this is not BREP: it does not begin with \"CASCADE Topology V\"");
