@@ -27,7 +27,7 @@ struct Scenes {
   RayScene refined;
   Rival grids;
 
-  Scenes() : insert_knots(scene_of(work.set)), grids(Rival::grids(work.set, cells, available_isas().back())) {}
+  Scenes() : refined(scene_of(work.set)), grids(Rival::grids(work.set, cells, available_isas().back())) {}
   static RayScene scene_of(const PatchSet& set) {
     RaySceneOptions options;
     options.mode = RayMode::grid;
