@@ -3,6 +3,7 @@
 #include <cctype>
 #include <iterator>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
@@ -46,14 +47,16 @@ Count patches_of_bv(const std::string& text) {
   return patches;
 }
 
-/// Counts the words Patch, PatchMesh and NuPatch outside of comments and strings; of a motion only the first moment.
+/// Counts the words that make a surface outside of comments and strings; of a motion only the first moment.
 Count patches_of_rib(const std::string& text) {
+  const std::set<std::string> surfaces{"Patch", "PatchMesh", "NuPatch",    "Sphere",      "Cylinder",
+                                       "Cone",  "Disk",      "Paraboloid", "Hyperboloid", "Torus"};
   std::istringstream words(std::regex_replace(text, std::regex(R"re(#.*|"[^"]*"|\[[^\]]*\])re"), " "));
   Count patches = 0;
   bool moves = false, first = true;
   for (std::string word; words >> word;) {
     if (word == "MotionBegin" || word == "MotionEnd") moves = word == "MotionBegin", first = true;
-    if (word != "Patch" && word != "PatchMesh" && word != "NuPatch") continue;
+    if (!surfaces.contains(word)) continue;
     patches += !moves || first;
     first = false;
   }

@@ -101,8 +101,7 @@ TEST(ReadCad, OtherFilesAreRefused) {
   std::string binary(73, ' ');
   binary.back() = 'B';
   binary.resize(3073);
-  expect(folder.file("noise.iges", binary), StatusCode::unsupported,
-         "IGES in its binary form");
+  expect(folder.file("noise.iges", binary), StatusCode::unsupported, "IGES in its binary form");
   expect(folder.file("text.brep", "A letter,\nnot a part.\n"), StatusCode::parse_error,
          "text.brep: this is not BREP: it does not begin with \"CASCADE Topology V\"");
   expect(folder.file("new.brep", "\nCASCADE Topology V9, (c) Nobody\n"), StatusCode::parse_error,

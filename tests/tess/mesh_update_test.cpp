@@ -310,7 +310,7 @@ TEST(MeshUpdate, BadEditsAreRefusedBeforeAnythingIsWritten) {
   EXPECT_EQ(body.update.run(body.set, fine, views).code(), StatusCode::buffer_too_small);
   EXPECT_EQ(body.update.run(body.set, fine, {}).code(), StatusCode::invalid_argument);
   PatchSet other = set_of(wavy_field(2, 2));
-  EXPECT_EQ(body.update.run(other, {}, body.mesh.views()).code(), StatusCode::invalid_argument);
+  EXPECT_EQ(body.update.run(other, {}, body.mesh.views()).code(), StatusCode::stale);
   body.run(fine);
   body.run({});
   EXPECT_EQ(body.set.revision(), 1u);
