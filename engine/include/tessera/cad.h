@@ -1,6 +1,7 @@
 #pragma once
 // Reads STEP, IGES and BREP files by the program tessera-cad-reader, which alone uses OpenCASCADE. The program is built
-// and installed with Tessera where OpenCASCADE is found. Where it is missing, the error names the command that builds it.
+// and installed with Tessera where OpenCASCADE is found. Where it is missing, the error names the command that builds
+// it.
 //
 // Surfaces: every face becomes a B-spline or NURBS surface, in millimetres whatever the file's unit. BREP files have no
 // unit; their numbers are kept.

@@ -133,7 +133,7 @@ using QuantityBlocks = Quantities<std::span<T>, std::span<T>, std::span<NormalKi
 /// - Gaussian curvature: |k1| + |k2| times the bound of curvatures, and the square of that bound
 /// - principal directions: 2 / (k1 - k2) times the bound of curvatures, and the bound of normals
 ///
-/// Where the bounds come from: engine/src/kernel/sample/sample_kernel.inl.h derives those of positions and derivatives
+/// Where the bounds come from: sample_kernel.inl.h of the sources derives those of positions and derivatives
 /// (Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., sec. 3.1; the quotient rule, Piegl and Tiller, The
 /// NURBS Book, eq. 4.20). The others follow to first order in the errors of the tangents, which must be small against
 /// h, from the formulas of normal and curvatures (do Carmo, Differential Geometry of Curves and Surfaces, sec. 3.3).

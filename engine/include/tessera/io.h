@@ -25,16 +25,17 @@ namespace tessera::inline abi_0_1 {
 /// - .rib: RenderMan, Patch, PatchMesh, NuPatch and quadrics, and the archives that it reads
 /// - .step, .stp, .iges, .igs, .brep, .brp: as read_cad() of cad.h, which runs the program tessera-cad-reader
 ///
-/// All but the formats of read_cad() may be packed by gzip: "teapot.bpt.gz"; .rib also without the extension .gz. A packed file may unpack
-/// to 200 times its size and 1 MiB, and to 1 GiB at the most.
+/// All but the formats of read_cad() may be packed by gzip: "teapot.bpt.gz"; .rib also without the extension .gz. A
+/// packed file may unpack to 200 times its size and 1 MiB, and to 1 GiB at the most.
 ///
 /// Model::warnings reports each part of the file that is skipped. A file with a wrong element gives no model.
 ///
 /// Errors: io_error, parse_error, unsupported (no reader for the extension; nothing in the file that it reads; a
 /// packed file beyond the limits, or a build without zlib); for .json and .obj also those of the surfaces.
 ///
-/// Memory, including the file's bytes (of a packed file the unpacked ones, and its own): at most 8 times the file plus 64 KiB for numbers of a few digits, commonly 2 to
-/// 4 times. Counts that a file states never make it more. Files of numbers with one digit and a blank take more:
+/// Memory, including the file's bytes (of a packed file the unpacked ones, and its own): at most 8 times the file plus
+/// 64 KiB for numbers of a few digits, commonly 2 to 4 times. Counts that a file states never make it more. Files of
+/// numbers with one digit and a blank take more:
 ///
 /// - .json: 13 times the file
 /// - .g2: 9 times
