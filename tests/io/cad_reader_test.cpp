@@ -131,7 +131,7 @@ TEST_F(CadReader, OneOfAnotherVersionIsNamed) {
 TEST_F(CadReader, OtherOutputIsQuoted) {
   expect(printing("Hello \x1b[31mworld\nand more"), StatusCode::internal,
          "the CAD reader " + folder_ / "reader" + " printed \"Hello ?[31mworld\", it must begin with \"tessera-cad");
-  // As the loader says it of a library that is gone.
+  // The words of the loader for a missing library.
   expect(reader("echo reader: libTKSTEP.so.7: cannot open shared object file: No such file or directory >&2; exit 127"),
          StatusCode::internal,
          "printed \"reader: libTKSTEP.so.7: cannot open shared object file: No such file or directory\"");

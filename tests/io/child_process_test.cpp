@@ -102,7 +102,7 @@ TEST(ChildProcess, NeedsNoStatus) {
   EXPECT_FALSE(status);
 }
 
-/// As for a daemon, whose streams are closed: the pipe then takes their places.
+/// A daemon has closed its streams: the pipe then takes their places.
 TEST(ChildProcess, NeedsNoStreamsOfItsParent) {
   EXPECT_EXIT(
       {

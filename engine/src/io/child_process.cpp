@@ -23,7 +23,7 @@ Status failure(const char* what, int error) {
   return Status(StatusCode::io_error, std::string(what) + ": " + std::generic_category().message(error));
 }
 
-/// What a child is started with.
+/// The settings of a child when it starts.
 class SpawnSettings {
  public:
   explicit SpawnSettings(int output) {
