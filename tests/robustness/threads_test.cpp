@@ -2,6 +2,7 @@
 // caller's, and the results of cancelled calls.
 
 #include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
 #include <tbb/task_group.h>
 
 #include <future>
@@ -56,6 +57,38 @@ TEST(CallersThreads, TasksOfTheCallersMayCall) {
   for (int k = 0; k < 4; ++k) group.run([&] { same += everything(3) == expected; });
   group.wait();
   EXPECT_EQ(same, 10);
+}
+
+TEST(CallersThreads, ACancelledTaskGroupLosesNoPieces) {
+  const Bits expected = everything(3);
+  std::atomic<bool> is_same = false;
+  tbb::task_group group;
+  group.run([&] {
+    group.cancel();  // this task runs on, and so must all that it calls
+    is_same = everything(3) == expected;
+  });
+  EXPECT_EQ(group.wait(), tbb::canceled);
+  EXPECT_TRUE(is_same);
+}
+
+/// Would block if the thread that reports took another piece of the call while it waits for the tasks of the report.
+TEST(CallersThreads, ReportsOfProgressMayStartTasks) {
+  const auto surface = value_of(ParametricSurface::make({.position = [](double u, double v) {
+    return Vec3{u, v, u * v};
+  }}));
+  const std::vector<double> u = uniform_parameters(4000), v = uniform_parameters(20);
+  std::vector<double> memory(3 * u.size() * v.size());
+  std::atomic<std::size_t> reports = 0, done = 0;
+  const auto report = [&](double) {
+    ++reports;
+    tbb::parallel_for(0, 100, [&](int) { ++done; });
+  };
+  with_workers(8, [&] {
+    EXPECT_TRUE(
+        evaluate(surface, u, v, View3<double>::interleaved(memory), {.progress = report}, Calls::concurrent).ok());
+  });
+  EXPECT_GT(reports, 1u);
+  EXPECT_EQ(done, 100 * reports);
 }
 
 TEST(CallersThreads, ArenasOfOneMayCall) {

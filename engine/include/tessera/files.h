@@ -16,7 +16,8 @@
 #pragma GCC visibility push(default)
 namespace tessera::inline abi_0_1 {
 
-/// Unlinks the temporaries of all open OutputFiles. For signal handlers that end the process: async-signal-safe.
+/// Unlinks the temporaries of open OutputFiles, of at most eight at once. For signal handlers that end the process:
+/// async-signal-safe.
 void remove_temporaries() noexcept;
 
 /// Writes beside the place of a file, then renames. The file appears at `commit`; without it nothing remains. Anything
@@ -63,6 +64,7 @@ class OutputFile {
  private:
   class Destination;
   OutputFile(std::unique_ptr<Destination> destination, std::filesystem::path target, const std::atomic<bool>* cancel);
+  static Result<OutputFile> open(const std::filesystem::path& path, const std::atomic<bool>* cancel);
   char* room(std::size_t bytes) {
     if (buffer_.size() - used_ < bytes) flush();
     return buffer_.data() + used_;

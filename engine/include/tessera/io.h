@@ -156,7 +156,8 @@ Status write_mesh(const Mesh& mesh, const std::filesystem::path& path, OutputFil
 Result<WrittenModel> write_model(const Model& model, const std::filesystem::path& path, const FitOptions& fit,
                                  OutputFile& out);
 /// Reads the bytes of a file; of a pipe or a terminal up to its end, at most 1 GiB. Errors: io_error (missing, a
-/// directory, no permission, a failed read), parse_error (no bytes). Messages begin with the path.
+/// directory, no permission, a failed read), parse_error (no bytes), out_of_memory (a file larger than the machine's
+/// memory). Messages begin with the path.
 Result<std::string> read_file(const std::filesystem::path& path);
 
 }  // namespace tessera::inline abi_0_1

@@ -2,12 +2,15 @@
 
 #include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <system_error>
 
+#include "base/text.h"
 #include "io/descriptor.h"
+#include "tessera/guard.h"
 #include "tessera/io.h"
 
 namespace tessera::inline abi_0_1 {
@@ -32,6 +35,27 @@ int read_to_end(int descriptor, std::string& bytes, std::size_t used, std::size_
   return 0;
 }
 
+/// Does what read_file() says, but may throw.
+Result<std::string> read_whole(const std::filesystem::path& path) {
+  Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!file.is_open()) return io_failure(path, "cannot be opened", errno);
+  struct stat facts {};
+  if (::fstat(file.number(), &facts) != 0) return io_failure(path, "cannot be read", errno);
+  if (S_ISDIR(facts.st_mode)) return Status(StatusCode::io_error, path.string() + ": is a directory, not a file");
+  const bool regular = S_ISREG(facts.st_mode);
+  const double memory = double(::sysconf(_SC_PHYS_PAGES)) * double(::sysconf(_SC_PAGESIZE));
+  if (regular && double(facts.st_size) > memory)
+    return Status(StatusCode::out_of_memory, path.string() + ": has " + std::to_string(facts.st_size) +
+                                                 " bytes, the memory of this machine " + text(memory));
+  std::string bytes;
+  // One byte more than the file has: the read that finds the end then needs no more memory.
+  if (regular) bytes.resize(static_cast<std::size_t>(facts.st_size) + 1);
+  const int error = read_to_end(file.number(), bytes, 0, regular ? bytes.max_size() : pipe_limit);
+  if (error != 0) return io_failure(path, "cannot be read", error);
+  if (bytes.empty()) return Status(StatusCode::parse_error, path.string() + ": the file is empty");
+  return bytes;
+}
+
 }  // namespace
 
 Status io_failure(const std::filesystem::path& path, std::string_view what, int error_number) {
@@ -40,19 +64,7 @@ Status io_failure(const std::filesystem::path& path, std::string_view what, int 
 }
 
 Result<std::string> read_file(const std::filesystem::path& path) {
-  Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (!file.is_open()) return io_failure(path, "cannot be opened", errno);
-  struct stat facts {};
-  if (::fstat(file.number(), &facts) != 0) return io_failure(path, "cannot be read", errno);
-  if (S_ISDIR(facts.st_mode)) return Status(StatusCode::io_error, path.string() + ": is a directory, not a file");
-  const bool regular = S_ISREG(facts.st_mode);
-  std::string bytes;
-  // One byte more than the file has: the read that finds the end then needs no more memory.
-  if (regular) bytes.resize(static_cast<std::size_t>(facts.st_size) + 1);
-  const int error = read_to_end(file.number(), bytes, 0, regular ? bytes.max_size() : pipe_limit);
-  if (error != 0) return io_failure(path, "cannot be read", error);
-  if (bytes.empty()) return Status(StatusCode::parse_error, path.string() + ": the file is empty");
-  return bytes;
+  return guarded([&] { return read_whole(path); });
 }
 
 }  // namespace tessera::inline abi_0_1

@@ -13,6 +13,7 @@
 
 #include "io/descriptor.h"
 #include "io/file.h"
+#include "tessera/guard.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -26,7 +27,8 @@ struct NamePlace {
   std::atomic<bool> taken = false, readable = false;
   std::array<char, PATH_MAX> name{};
 };
-std::array<NamePlace, 8> name_places;  // more files at once are removed only at their normal end
+// The one state of the process: a signal handler has no other way to the names.
+std::array<NamePlace, 8> name_places;
 
 /// The file's real place. Follows symbolic links, even dangling ones, so that they stay links.
 Result<fs::path> behind_links(const fs::path& path) {
@@ -153,6 +155,10 @@ OutputFile::OutputFile(OutputFile&&) noexcept = default;
 OutputFile::~OutputFile() = default;
 
 Result<OutputFile> OutputFile::make(const fs::path& path, const std::atomic<bool>* cancel) {
+  return guarded([&] { return open(path, cancel); });
+}
+
+Result<OutputFile> OutputFile::open(const fs::path& path, const std::atomic<bool>* cancel) {
   const Result<fs::path> place = behind_links(path);
   if (!place) return place.status();
   const fs::path& target = *place;

@@ -21,16 +21,17 @@ class Progress {
     const std::size_t done = ++done_;
     if (done != pieces_ && done * 100 / pieces_ == (done - 1) * 100 / pieces_) return;
     const std::lock_guard lock(mutex_);
-    if (done <= told_) return;  // a later piece has reported first
-    told_ = done;
-    execution_.progress(static_cast<double>(done) / static_cast<double>(pieces_));
+    if (done <= reported_) return;  // a later piece has reported first
+    reported_ = done;
+    // Another piece on this thread would wait for the lock that this thread holds.
+    without_other_tasks([&] { execution_.progress(static_cast<double>(done) / static_cast<double>(pieces_)); });
   }
 
  private:
   const Execution& execution_;
   std::size_t pieces_;
   std::atomic<std::size_t> done_{0};
-  std::size_t told_ = 0;
+  std::size_t reported_ = 0;
   std::mutex mutex_;
 };
 

@@ -2,6 +2,8 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 
 #ifdef TESSERA_THREAD_SANITIZER
 #include <sanitizer/tsan_interface.h>
@@ -35,12 +37,19 @@ class Order {
 void tbb_loop(std::size_t pieces, FunctionRef<void(std::size_t)> body) {
   Order order;
   order.call_begins();
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pieces, 1), [&](const tbb::blocked_range<std::size_t>& range) {
+  // oneTBB would skip pieces without a word once a task group around this call is cancelled.
+  tbb::task_group_context context(tbb::task_group_context::isolated);
+  const auto run = [&](const tbb::blocked_range<std::size_t>& range) {
     order.piece_begins();
     for (std::size_t piece = range.begin(); piece != range.end(); ++piece) body(piece);
     order.piece_ends();
-  });
+  };
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pieces, 1), run, context);
   order.call_ends();
+}
+
+void without_other_tasks(FunctionRef<void()> call) {
+  tbb::this_task_arena::isolate([&] { call(); });
 }
 
 }  // namespace tessera::inline abi_0_1

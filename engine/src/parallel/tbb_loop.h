@@ -9,7 +9,10 @@
 namespace tessera::inline abi_0_1 {
 
 /// Calls body(piece) once for each piece in [0, pieces), in the caller's arena, in any order. Exceptions of the body
-/// propagate.
+/// propagate. All pieces run, even if the caller's own task group is cancelled meanwhile.
 void tbb_loop(std::size_t pieces, FunctionRef<void(std::size_t)> body);
+
+/// Calls a function of the user's. If it starts tasks and waits for them, this thread runs none of ours meanwhile.
+void without_other_tasks(FunctionRef<void()> call);
 
 }  // namespace tessera::inline abi_0_1

@@ -18,8 +18,8 @@ class BatchFilter {
   /// Refers to the filter, which must not be empty.
   explicit BatchFilter(const HitFilter& filter) : filter_(filter) {}
 
-  /// Asks the filter, with denormal numbers as in the thread's own environment. An exception is kept, and stops the
-  /// batch.
+  /// Asks the filter, with denormal numbers counted and not flushed to zero. An exception is kept, and stops
+  /// the batch.
   HitVerdict ask(const HitCandidate& candidate) noexcept;
   bool stopped() const { return stopped_.load(std::memory_order_relaxed); }
   /// Returns why the batch stopped. Call it once all threads are done.
