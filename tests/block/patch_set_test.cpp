@@ -10,7 +10,7 @@
 #include "block/patch_set_impl.h"
 #include "support/grids.h"
 #include "support/reference.h"
-#include "surface/homogeneous.h"
+#include "surface/net/homogeneous.h"
 #include "tessera/model.h"
 
 namespace tessera::test {

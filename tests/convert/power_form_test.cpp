@@ -1,4 +1,4 @@
-#include "convert/power_form.h"
+#include "convert/basis/power_form.h"
 
 #include "support/random_patches.h"
 #include "support/reference.h"

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "io/gzip.h"
-#include "io/mesh_formats.h"
+#include "io/file/gzip.h"
+#include "io/mesh/mesh_formats.h"
 #include "tessera/io.h"
 
 namespace {

@@ -15,7 +15,7 @@ struct SourceFile {
   std::string text;
 };
 
-/// The breaches of the rules, a sentence each: "src/io/ply.cpp:7: <tbb/...> is not for io". `known` holds the paths of
+/// The breaches of the rules, a sentence each: "src/io/mesh/ply.cpp:7: <tbb/...> is not for io". `known` holds the paths of
 /// all files, against which "floor/file.h" and "tessera/file.h" are resolved.
 std::vector<std::string> check_includes(const SourceFile& file, const FloorTable& table, const Names& known);
 

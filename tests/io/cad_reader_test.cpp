@@ -1,6 +1,6 @@
 // Programs in the place of tessera-cad-reader that break their word, in every way: a message each, and no harm.
 
-#include "io/cad_reader.h"
+#include "io/cad/cad_reader.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -10,7 +10,7 @@
 #include <optional>
 #include <thread>
 
-#include "io/model_bytes.h"
+#include "io/cad/model_bytes.h"
 #include "support/errors.h"
 #include "support/scratch_folder.h"
 #include "tessera/cad.h"

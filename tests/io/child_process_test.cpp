@@ -1,6 +1,6 @@
 // Programs as child processes.
 
-#include "io/child_process.h"
+#include "io/cad/child_process.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>

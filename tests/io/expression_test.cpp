@@ -1,6 +1,6 @@
 // Expressions: values, errors, and independence of threads.
 
-#include "io/expression.h"
+#include "io/json/expression.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Reads whole files; writes files that appear whole or not at all.
 
-#include "io/file.h"
+#include "io/file/file.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "io/mesh_formats.h"
+#include "io/mesh/mesh_formats.h"
 #include "io/mesh_samples.h"
 #include "support/scratch_folder.h"
 #include "support/synthetic_sets.h"

@@ -1,6 +1,6 @@
 // Files packed by gzip: every text format, and files that are cut, damaged, or larger than they should be.
 
-#include "io/gzip.h"
+#include "io/file/gzip.h"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@
 #include <limits>
 #include <sstream>
 
-#include "io/mesh_formats.h"
+#include "io/mesh/mesh_formats.h"
 #include "io/mesh_samples.h"
 #include "support/scratch_folder.h"
 #include "support/synthetic_sets.h"

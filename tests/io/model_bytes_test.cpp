@@ -1,6 +1,6 @@
 // Models survive the way to bytes and back; other bytes do no harm.
 
-#include "io/model_bytes.h"
+#include "io/cad/model_bytes.h"
 
 #include <gtest/gtest.h>
 

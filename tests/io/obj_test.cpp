@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "io/mesh_formats.h"
+#include "io/mesh/mesh_formats.h"
 
 namespace tessera {
 namespace {

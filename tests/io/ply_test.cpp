@@ -6,7 +6,7 @@
 #include <cstring>
 #include <random>
 
-#include "io/mesh_formats.h"
+#include "io/mesh/mesh_formats.h"
 #include "io/mesh_samples.h"
 #include "support/scratch_folder.h"
 #include "tessera/io.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "io/mesh_formats.h"
+#include "io/mesh/mesh_formats.h"
 #include "io/mesh_samples.h"
 #include "support/scratch_folder.h"
 #include "tessera/io.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "io/mesh_formats.h"
+#include "io/mesh/mesh_formats.h"
 #include "support/scratch_folder.h"
 #include "tessera/io.h"
 

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "io/mesh_formats.h"
+#include "io/mesh/mesh_formats.h"
 #include "robustness/bad_input.h"
 #include "support/random_patches.h"
 #include "support/scratch_folder.h"

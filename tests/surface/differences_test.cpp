@@ -1,4 +1,4 @@
-#include "surface/differences.h"
+#include "surface/callable/differences.h"
 
 #include <gtest/gtest.h>
 

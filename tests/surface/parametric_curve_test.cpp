@@ -9,7 +9,7 @@
 #include "support/borders.h"
 #include "support/errors.h"
 #include "support/ulp.h"
-#include "surface/border_curve.h"
+#include "surface/callable/border_curve.h"
 
 namespace tessera::test {
 namespace {
@@ -26,7 +26,7 @@ TEST(ParametricCurve, GivesTheCallersDerivatives) {
   EXPECT_EQ(jet.second, expected.second);
 }
 
-// F = 2, L = 5 and F_k <= 1: bounds of surface/differences.h.
+// F = 2, L = 5 and F_k <= 1: bounds of surface/callable/differences.h.
 TEST(ParametricCurve, TakesDifferencesWithinItsInterval) {
   const Interval interval{-1, 4};
   const auto guarded_helix = [&](double t) {

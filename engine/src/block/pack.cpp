@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "block/patch_set_impl.h"
-#include "convert/power_form.h"
-#include "surface/homogeneous.h"
+#include "convert/basis/power_form.h"
+#include "surface/net/homogeneous.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -6,7 +6,7 @@
 #include "block/pack.h"
 #include "block/patch_set_impl.h"
 #include "kernel/table/kernel_table.h"
-#include "surface/patch_pieces.h"
+#include "surface/net/patch_pieces.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -13,7 +13,7 @@
 #include "block/patch_set_impl.h"
 #include "kernel/table/kernel_table.h"
 #include "parallel/parallel_for.h"
-#include "surface/patch_pieces.h"
+#include "surface/net/patch_pieces.h"
 #include "tessera/guard.h"
 #include "tessera/status.h"
 

@@ -6,7 +6,7 @@
 #include "kernel/table/kernel_table.h"
 #include "parallel/least_index.h"
 #include "parallel/parallel_for.h"
-#include "surface/patch_pieces.h"
+#include "surface/net/patch_pieces.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -11,7 +11,7 @@
 #include "eval/parameter_grid.h"
 #include "kernel/table/kernel_table.h"
 #include "parallel/parallel_for.h"
-#include "surface/border_curve.h"
+#include "surface/callable/border_curve.h"
 #include "tessera/coons_patch.h"
 #include "tessera/guard.h"
 #include "tessera/status.h"

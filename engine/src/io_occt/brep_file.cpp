@@ -9,7 +9,7 @@
 #include <fstream>
 #include <string_view>
 
-#include "io/file.h"
+#include "io/file/file.h"
 #include "io_occt/cad_file.h"
 
 namespace tessera::inline abi_0_1 {

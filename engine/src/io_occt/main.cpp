@@ -15,8 +15,8 @@
 #include <new>
 #include <system_error>
 
-#include "io/cad_reader.h"
-#include "io/model_bytes.h"
+#include "io/cad/cad_reader.h"
+#include "io/cad/model_bytes.h"
 #include "io_occt/load_model.h"
 
 namespace tessera::inline abi_0_1 {

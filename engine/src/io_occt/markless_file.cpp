@@ -8,7 +8,7 @@
 #include <fstream>
 #include <string_view>
 
-#include "io/file.h"
+#include "io/file/file.h"
 #include "tessera/io.h"
 
 namespace tessera::inline abi_0_1 {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "io/descriptor.h"
+#include "io/file/descriptor.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {

@@ -1,5 +1,5 @@
 #pragma once
-// Fundamental forms, curvatures and principal directions, lanes = patches, as surface/local_geometry.cpp defines them.
+// Fundamental forms, curvatures and principal directions, lanes = patches, as surface/net/local_geometry.cpp defines them.
 // With e1 = r_u / |r_u|, e2 = N x e1 the second form is the symmetric matrix (s11, s12; s12, s22), so k1 and k2 do not
 // suffer from H^2 - K (do Carmo, Differential Geometry of Curves and Surfaces, sec. 3.3). With E = r_u.r_u,
 // F = r_u.r_v, L = r_uu.N, ...:

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-#include "surface/homogeneous.h"
+#include "surface/net/homogeneous.h"
 #include "tess/bounds/chord_bound.h"
 
 namespace tessera::inline abi_0_1 {

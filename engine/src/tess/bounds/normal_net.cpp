@@ -5,7 +5,7 @@
 #include <type_traits>
 
 #include "basis/bernstein.h"
-#include "surface/homogeneous.h"
+#include "surface/net/homogeneous.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

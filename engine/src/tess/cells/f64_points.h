@@ -1,7 +1,7 @@
 #pragma once
 // Computes vertices in double, from the set's double control points, for tolerances that float sums do not keep.
 
-#include "surface/homogeneous.h"
+#include "surface/net/homogeneous.h"
 #include "tess/cells/stitched_patch.h"
 
 namespace tessera::inline abi_0_1 {

@@ -1,6 +1,6 @@
 #include "tess/cells/patch_triangles.h"
 
-#include "surface/collapsed_edges.h"
+#include "surface/net/collapsed_edges.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

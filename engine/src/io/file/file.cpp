@@ -1,0 +1,70 @@
+#include "io/file/file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
+
+#include "base/text.h"
+#include "io/file/descriptor.h"
+#include "tessera/guard.h"
+#include "tessera/io.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+constexpr std::size_t pipe_limit = std::size_t{1} << 30;  // an endless device must not use all memory
+
+/// Fills `bytes` from its size `used` on to the end of the file, at most `limit` bytes in all. Returns 0 or an errno.
+int read_to_end(int descriptor, std::string& bytes, std::size_t used, std::size_t limit) {
+  for (;;) {
+    if (used == bytes.size()) {
+      if (used >= limit) return EFBIG;
+      bytes.resize(std::min(limit, std::max<std::size_t>(2 * used, std::size_t{1} << 16)));
+    }
+    const ssize_t got = ::read(descriptor, bytes.data() + used, bytes.size() - used);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return errno;
+    if (got == 0) break;
+    used += static_cast<std::size_t>(got);
+  }
+  bytes.resize(used);
+  return 0;
+}
+
+/// Does what read_file() says, but may throw.
+Result<std::string> read_whole(const std::filesystem::path& path) {
+  Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!file.is_open()) return io_failure(path, "cannot be opened", errno);
+  struct stat facts {};
+  if (::fstat(file.number(), &facts) != 0) return io_failure(path, "cannot be read", errno);
+  if (S_ISDIR(facts.st_mode)) return Status(StatusCode::io_error, path.string() + ": is a directory, not a file");
+  const bool regular = S_ISREG(facts.st_mode);
+  const double memory = double(::sysconf(_SC_PHYS_PAGES)) * double(::sysconf(_SC_PAGESIZE));
+  if (regular && double(facts.st_size) > memory)
+    return Status(StatusCode::out_of_memory, path.string() + ": has " + std::to_string(facts.st_size) +
+                                                 " bytes, the memory of this machine " + text(memory));
+  std::string bytes;
+  // One byte more than the file has: the read that finds the end then needs no more memory.
+  if (regular) bytes.resize(static_cast<std::size_t>(facts.st_size) + 1);
+  const int error = read_to_end(file.number(), bytes, 0, regular ? bytes.max_size() : pipe_limit);
+  if (error != 0) return io_failure(path, "cannot be read", error);
+  if (bytes.empty()) return Status(StatusCode::parse_error, path.string() + ": the file is empty");
+  return bytes;
+}
+
+}  // namespace
+
+Status io_failure(const std::filesystem::path& path, std::string_view what, int error_number) {
+  return Status(StatusCode::io_error,
+                path.string() + ": " + std::string(what) + ": " + std::generic_category().message(error_number));
+}
+
+Result<std::string> read_file(const std::filesystem::path& path) {
+  return guarded([&] { return read_whole(path); });
+}
+
+}  // namespace tessera::inline abi_0_1

@@ -1,0 +1,244 @@
+#include "tessera/files.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+
+#include <array>
+#include <cerrno>
+#include <climits>
+#include <cstring>
+#include <system_error>
+#include <utility>
+
+#include "io/file/descriptor.h"
+#include "io/file/file.h"
+#include "tessera/guard.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t buffer_bytes = std::size_t{1} << 20;
+
+/// The name of a temporary, where a signal handler can read it: in memory that is never freed, without a lock.
+struct NamePlace {
+  std::atomic<bool> taken = false, readable = false;
+  std::array<char, PATH_MAX> name{};
+};
+// The one state of the process: a signal handler has no other way to the names.
+std::array<NamePlace, 8> name_places;
+
+/// The file's real place. Follows symbolic links, even dangling ones, so that they stay links.
+Result<fs::path> behind_links(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_symlink(path, error)) return path;
+  fs::path target = fs::canonical(path, error);
+  if (!error) return target;
+  // An object that exists under no path, such as the pipe behind /dev/stdout, is opened by the caller's path.
+  if (fs::exists(path, error)) return path;
+  constexpr int max_links = 40;  // the system's own limit (path_resolution(7))
+  target = path;
+  for (int link = 0; link < max_links; ++link) {
+    const fs::path next = fs::read_symlink(target, error);
+    if (error) return target;  // not a link
+    target = target.parent_path() / next;
+  }
+  return io_failure(path, "cannot be written", ELOOP);
+}
+
+/// The name of a file that is removed at the end, unless it is released; remove_temporaries knows it as long.
+class TemporaryName {
+ public:
+  TemporaryName() = default;
+  explicit TemporaryName(fs::path path);
+  TemporaryName(TemporaryName&& other) noexcept
+      : path_(std::exchange(other.path_, fs::path())), place_(std::exchange(other.place_, no_place)) {}
+  TemporaryName& operator=(TemporaryName&&) = delete;
+  ~TemporaryName();
+
+  bool empty() const { return path_.empty(); }
+  const char* c_str() const { return path_.c_str(); }
+  void release();
+
+ private:
+  static constexpr std::size_t no_place = ~std::size_t{0};
+  fs::path path_;
+  std::size_t place_ = no_place;  // among those that remove_temporaries sees
+};
+
+TemporaryName::TemporaryName(fs::path path) : path_(std::move(path)) {
+  const std::string& name = path_.native();
+  for (std::size_t k = 0; k < name_places.size() && name.size() < PATH_MAX; ++k) {
+    if (name_places[k].taken.exchange(true)) continue;
+    std::memcpy(name_places[k].name.data(), name.c_str(), name.size() + 1);
+    name_places[k].readable = true;
+    place_ = k;
+    return;
+  }
+}
+
+TemporaryName::~TemporaryName() {
+  if (!empty()) ::unlink(c_str());
+  release();
+}
+
+void TemporaryName::release() {
+  path_.clear();
+  if (place_ == no_place) return;
+  name_places[place_].readable = false;
+  name_places[place_].taken = false;
+  place_ = no_place;
+}
+
+bool is_same_file(int descriptor, const char* path) {
+  struct stat opened {
+  }, named{};
+  return ::fstat(descriptor, &opened) == 0 && ::lstat(path, &named) == 0 && opened.st_dev == named.st_dev &&
+         opened.st_ino == named.st_ino;
+}
+
+/// Removes a temporary that nobody holds locked: its writer was killed.
+bool remove_abandoned(const char* path) {
+  const Descriptor file(::open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+  return file.is_open() && ::flock(file.number(), LOCK_EX | LOCK_NB) == 0 && is_same_file(file.number(), path) &&
+         ::unlink(path) == 0;
+}
+
+/// A temporary beside its target.
+struct Temporary {
+  TemporaryName name;
+  Descriptor file;
+  int error = 0;  ///< errno of a failure
+};
+
+/// Creates `target`.tessera-0.tmp, or the next one that no living writer has, and locks it as long as it is open.
+Temporary open_temporary(const fs::path& target) {
+  constexpr int max_writers = 1000;  // of one target at once
+  for (int number = 0, tries = 0; number < max_writers && tries < 2 * max_writers; ++tries) {
+    fs::path path = target;
+    path += ".tessera-" + std::to_string(number) + ".tmp";
+    Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    if (file.is_open()) {
+      // Another writer may have taken the file for abandoned before it was locked: then this name is not ours.
+      if (::flock(file.number(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) continue;
+      if (!is_same_file(file.number(), path.c_str())) continue;
+      return {TemporaryName(std::move(path)), std::move(file), 0};
+    }
+    if (errno != EEXIST) return {{}, {}, errno};
+    if (!remove_abandoned(path.c_str())) ++number;
+  }
+  return {{}, {}, EEXIST};
+}
+
+}  // namespace
+
+void remove_temporaries() noexcept {
+  for (const NamePlace& place : name_places) {
+    if (place.readable.load()) ::unlink(place.name.data());
+  }
+}
+
+/// Where the bytes go.
+class OutputFile::Destination {
+ public:
+  explicit Destination(Descriptor to, TemporaryName name = {}) : file(std::move(to)), temporary(std::move(name)) {}
+
+  Descriptor file;
+  TemporaryName temporary;  ///< empty: written directly
+};
+
+OutputFile::OutputFile(std::unique_ptr<Destination> destination, fs::path target, const std::atomic<bool>* cancel)
+    : destination_(std::move(destination)), target_(std::move(target)), cancel_(cancel), buffer_(buffer_bytes) {}
+OutputFile::OutputFile(OutputFile&&) noexcept = default;
+OutputFile::~OutputFile() = default;
+
+Result<OutputFile> OutputFile::make(const fs::path& path, const std::atomic<bool>* cancel) {
+  return guarded([&] { return open(path, cancel); });
+}
+
+Result<OutputFile> OutputFile::open(const fs::path& path, const std::atomic<bool>* cancel) {
+  const Result<fs::path> place = behind_links(path);
+  if (!place) return place.status();
+  const fs::path& target = *place;
+  struct stat facts {};
+  const bool exists = ::stat(target.c_str(), &facts) == 0;
+  if (exists && S_ISDIR(facts.st_mode)) {
+    return Status(StatusCode::io_error, path.string() + ": cannot be written: it is a directory");
+  }
+  if (exists && !S_ISREG(facts.st_mode)) {
+    Descriptor file(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
+    if (!file.is_open()) return io_failure(path, "cannot be written", errno);
+    return OutputFile(std::make_unique<Destination>(std::move(file)), path, cancel);
+  }
+  // A rename would replace a file that its owner has write-protected.
+  if (exists && ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0)
+    return io_failure(path, "cannot be written", errno);
+  Temporary temporary = open_temporary(target);
+  if (!temporary.file.is_open()) {
+    const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+    if (temporary.error == ENOENT) {
+      return Status(StatusCode::io_error, path.string() + ": cannot be written: there is no folder " + folder.string());
+    }
+    return io_failure(path, "cannot be written in " + folder.string(), temporary.error);
+  }
+  if (exists) ::fchmod(temporary.file.number(), facts.st_mode & 07777);  // if it fails, the file has the usual mode
+  return OutputFile(std::make_unique<Destination>(std::move(temporary.file), std::move(temporary.name)), target,
+                    cancel);
+}
+
+OutputFile OutputFile::standard_output(const std::atomic<bool>* cancel) {
+  return OutputFile(std::make_unique<Destination>(Descriptor(::dup(STDOUT_FILENO))), "standard output", cancel);
+}
+
+void OutputFile::write(std::string_view bytes) {
+  if (bytes.size() > buffer_.size() - used_) {
+    flush();
+    if (bytes.size() >= buffer_.size() / 2) return send(bytes);
+  }
+  if (bytes.empty()) return;
+  std::memcpy(buffer_.data() + used_, bytes.data(), bytes.size());
+  used_ += bytes.size();
+}
+
+void OutputFile::flush() {
+  send({buffer_.data(), used_});
+  used_ = 0;
+}
+
+void OutputFile::send(std::string_view bytes) {
+  see_cancel();
+  while (!bytes.empty() && status_.ok()) {
+    const ssize_t sent = ::write(destination_->file.number(), bytes.data(), bytes.size());
+    if (sent < 0 && errno == EINTR) {
+      see_cancel();
+    } else if (sent < 0) {
+      status_ = io_failure(target_, "cannot be written", errno);
+    } else {
+      bytes.remove_prefix(static_cast<std::size_t>(sent));
+    }
+  }
+}
+
+void OutputFile::see_cancel() {
+  if (status_.ok() && cancel_ && cancel_->load()) status_ = Status(StatusCode::cancelled, "cancelled by the caller");
+}
+
+Status OutputFile::commit() {
+  flush();
+  see_cancel();
+  const Descriptor lock(::dup(destination_->file.number()));  // until the file has its name
+  const int error = destination_->file.close();
+  if (error != 0 && status_.ok()) status_ = io_failure(target_, "cannot be written", error);
+  if (status_.ok() && !destination_->temporary.empty()) {
+    if (::rename(destination_->temporary.c_str(), target_.c_str()) == 0) {
+      destination_->temporary.release();
+    } else {
+      status_ = io_failure(target_, "cannot be written", errno);
+    }
+  }
+  return std::move(status_);
+}
+
+}  // namespace tessera::inline abi_0_1

@@ -1,0 +1,140 @@
+#include "tessera/io.h"
+
+#include <array>
+#include <string>
+#include <system_error>
+#include <type_traits>
+
+#include "io/cad/cad_reader.h"
+#include "io/file/file.h"
+#include "io/file/gzip.h"
+#include "io/mesh/mesh_formats.h"
+#include "io/mesh/valid_mesh.h"
+#include "io/spline/model_formats.h"
+#include "tessera/cad.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Format {
+  std::string_view extension;
+  Result<Model> (*read_model)(std::string_view, std::string_view) = nullptr;
+  Result<Mesh> (*read_mesh)(std::string_view, std::string_view, const MeshReadOptions&) = nullptr;
+  Status (*write_mesh)(const Mesh&, OutputFile&) = nullptr;
+  decltype(&write_bpt) write_model = nullptr;
+};
+
+constexpr std::array<Format, 10> formats{{
+    {.extension = ".bpt", .read_model = parse_bpt, .write_model = write_bpt},
+    {.extension = ".bv", .read_model = parse_bv},
+    {.extension = ".g2", .read_model = parse_g2},
+    {.extension = ".json", .read_model = parse_json_model},
+    {.extension = ".obj",
+     .read_model = parse_obj_freeform,
+     .read_mesh = parse_obj,
+     .write_mesh = write_obj,
+     .write_model = write_obj_freeform},
+    {.extension = ".rib", .read_model = parse_rib},
+    {.extension = ".ply", .read_mesh = parse_ply, .write_mesh = write_ply},
+    {.extension = ".stl", .read_mesh = parse_stl, .write_mesh = write_stl},
+    {.extension = ".glb", .read_mesh = parse_gltf, .write_mesh = write_glb},
+    {.extension = ".gltf", .read_mesh = parse_gltf, .write_mesh = write_gltf},
+}};
+
+constexpr std::string_view mesh_writers = "meshes are written", model_writers = "surfaces are written";
+
+/// The format of this extension, if it has the ability `member`; otherwise an error for the file `path` that lists the
+/// formats that have it.
+template <class Ability>
+Result<const Format*> find_format(const fs::path& path, const std::string& extension, Ability Format::*member,
+                                  std::string_view what) {
+  std::string able;
+  for (const Format& format : formats) {
+    if (!(format.*member)) continue;
+    if (format.extension == extension) return &format;
+    able += (able.empty() ? "" : ", ") + std::string(format.extension);
+  }
+  if constexpr (std::is_same_v<decltype(member), decltype(&Format::read_model)>) able += listed_cad_extensions();
+  return Status(StatusCode::unsupported,
+                path.string() + ": unsupported format \"" + extension + "\": " + std::string(what) + " as " + able);
+}
+
+/// The content of the file, unpacked if it is packed. A file that cannot be opened is reported before an unknown
+/// format.
+template <class Content, class Ability, class... Options>
+Result<Content> read_as(const fs::path& path, Ability Format::*member, std::string_view what,
+                        const Options&... options) {
+  const Result<const Format*> format = find_format(path, lower_extension(without_gz(path)), member, what);
+  std::error_code error;
+  if (!format && fs::exists(path, error) && !fs::is_directory(path, error)) return format.status();
+  Result<std::string> bytes = read_file(path);
+  if (!bytes) return bytes.status();
+  if (!format) return format.status();
+  if (is_gzip(path, *bytes)) bytes = unpack_gzip(*bytes, path.string());
+  if (!bytes) return bytes.status();
+  return ((*format)->*member)(*bytes, path.string(), options...);
+}
+
+}  // namespace
+
+std::string lower_extension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return extension;
+}
+
+Status check_mesh_format(const fs::path& path) {
+  return find_format(path, lower_extension(path), &Format::write_mesh, mesh_writers).status();
+}
+
+Status check_model_format(const fs::path& path) { return surface_writer(path).status(); }
+
+Result<SurfaceWriter> surface_writer(const fs::path& path) {
+  const Result<const Format*> format = find_format(path, lower_extension(path), &Format::write_model, model_writers);
+  if (!format) return format.status();
+  return SurfaceWriter{(*format)->write_model};
+}
+
+Result<Model> read_model(const fs::path& path) {
+  return guarded([&]() -> Result<Model> {
+    if (is_cad_file(path)) return read_cad(path);
+    Result<Model> model = read_as<Model>(path, &Format::read_model, "surfaces are read");
+    if (!model) return model;
+    model->name = without_gz(path).stem().string();
+    return model;
+  });
+}
+
+Result<Mesh> read_mesh(const fs::path& path, const MeshReadOptions& options) {
+  return guarded([&] { return read_as<Mesh>(path, &Format::read_mesh, "meshes are read", options); });
+}
+
+Status write_mesh(const Mesh& mesh, const fs::path& path, OutputFile& out) {
+  return guarded([&]() -> Status {
+    const Result<const Format*> format = find_format(path, lower_extension(path), &Format::write_mesh, mesh_writers);
+    if (!format) return format.status();
+    Status status = validate(mesh);
+    if (!status.ok()) return Status(status.code(), path.string() + ": " + status.message(), status.index());
+    status = (*format)->write_mesh(mesh, out);
+    return status.ok() ? status : Status(status.code(), path.string() + ": " + status.message(), status.index());
+  });
+}
+
+Status write_mesh(const Mesh& mesh, const fs::path& path) {
+  return guarded([&]() -> Status {
+    Status status = check_mesh_format(path);
+    if (!status.ok()) return status;
+    Result<OutputFile> out = OutputFile::make(path);
+    if (!out) return out.status();
+    status = write_mesh(mesh, path, *out);
+    return status.ok() ? out->commit() : status;
+  });
+}
+
+}  // namespace tessera::inline abi_0_1

@@ -1,0 +1,107 @@
+// Converts surfaces to patches and writes them.
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <utility>
+
+#include "io/spline/model_formats.h"
+#include "tessera/guard.h"
+#include "tessera/io.h"
+#include "tessera/status.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+namespace fs = std::filesystem;
+
+void add(WrittenModel& facts, const PatchGrid& grid) {
+  facts.patches += grid.patches().size();
+  facts.fit_error.distance = std::max(facts.fit_error.distance, grid.fit_error().distance);
+  facts.fit_error.certified = facts.fit_error.certified && grid.fit_error().certified;
+}
+
+Result<WrittenModel> write(const Model& model, const fs::path& path, const FitOptions& fit, OutputFile& out) {
+  const Result<SurfaceWriter> writer = surface_writer(path);
+  if (!writer) return writer.status();
+  if (model.surfaces.empty())
+    return Status(StatusCode::invalid_argument, path.string() + ": the model has no surfaces");
+  WrittenModel facts;
+  std::vector<PatchGrid> grids;
+  grids.reserve(model.surfaces.size());
+  std::vector<WrittenSurface> surfaces;
+  for (std::size_t k = 0; k < model.surfaces.size(); ++k) {
+    const ModelSurface& surface = model.surfaces[k];
+    Result<PatchGrid> converted = to_bezier(surface, fit);
+    if (!converted) return in_surface(model, k, converted.status());
+    const PatchGrid& grid = grids.emplace_back(*std::move(converted));
+    add(facts, grid);
+    WrittenSurface written{*surface.name, grid.breaks_u(), grid.breaks_v(), grid.patches(), *surface.trims};
+    if (!written.trims.empty() && std::holds_alternative<QuadricPiece>(surface.surface)) {
+      facts.warnings.push_back(trims_left_out(k, written, "their parameters are not those of its patches"));
+      written.trims = {};
+    }
+    surfaces.push_back(written);
+  }
+  if (Status status = writer->write(surfaces, out, facts.warnings); !status.ok()) {
+    const Status named = in_surface(model, static_cast<std::size_t>(status.index()), status);
+    return Status(named.code(), path.string() + ": " + named.message(), named.index());
+  }
+  facts.surfaces = surfaces.size();
+  return facts;
+}
+
+Status write(const PatchSet& set, const fs::path& path, OutputFile& out) {
+  const Result<SurfaceWriter> writer = surface_writer(path);
+  if (!writer) return writer.status();
+  std::vector<std::array<double, 4>> breaks(set.patch_count());
+  std::vector<std::string> names(set.patch_count());
+  std::vector<WrittenSurface> patches(set.patch_count());
+  for (std::size_t k = 0; k < set.patch_count(); ++k) {
+    const auto& [surface, domain] = set.source(k);
+    breaks[k] = {domain.u0, domain.u1, domain.v0, domain.v1};
+    names[k] = "surface " + std::to_string(surface);
+    patches[k] = {names[k], std::span(breaks[k]).first(2), std::span(breaks[k]).last(2), {&set.patch(k), 1}, {}};
+  }
+  std::vector<std::string> no_warnings;
+  Status status = writer->write(patches, out, no_warnings);
+  if (status.ok()) return status;
+  return Status(status.code(), path.string() + ": patch " + std::to_string(status.index()) + ": " + status.message(),
+                status.index());
+}
+
+}  // namespace
+
+std::string trims_left_out(std::size_t surface, const WrittenSurface& written, std::string_view why) {
+  const std::size_t loops = written.trims.size();
+  return "surface " + std::to_string(surface) + (written.name.empty() ? "" : " (" + std::string(written.name) + ")") +
+         ": " + std::to_string(loops) + (loops == 1 ? " trim is" : " trims are") + " not written: " + std::string(why);
+}
+
+Result<WrittenModel> write_model(const Model& model, const fs::path& path, const FitOptions& fit, OutputFile& out) {
+  return guarded([&] { return write(model, path, fit, out); });
+}
+
+Result<WrittenModel> write_model(const Model& model, const fs::path& path, const FitOptions& fit) {
+  return guarded([&]() -> Result<WrittenModel> {
+    if (Status status = check_model_format(path); !status.ok()) return status;
+    Result<OutputFile> out = OutputFile::make(path);
+    if (!out) return out.status();
+    Result<WrittenModel> facts = write(model, path, fit, *out);
+    if (!facts) return facts;
+    if (Status status = out->commit(); !status.ok()) return status;
+    return facts;
+  });
+}
+
+Status write_model(const PatchSet& set, const fs::path& path) {
+  return guarded([&]() -> Status {
+    if (Status status = check_model_format(path); !status.ok()) return status;
+    Result<OutputFile> out = OutputFile::make(path);
+    if (!out) return out.status();
+    Status status = write(set, path, *out);
+    return status.ok() ? out->commit() : status;
+  });
+}
+
+}  // namespace tessera::inline abi_0_1

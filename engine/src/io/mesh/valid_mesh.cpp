@@ -1,0 +1,129 @@
+#include "io/mesh/valid_mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <string>
+
+#include "io/mesh/mesh_formats.h"
+#include "parallel/parallel_for.h"
+#include "tess/mesh/mesh_parts.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+constexpr std::size_t values_per_piece = std::size_t{1} << 16;
+
+Status invalid(std::string message, std::size_t index) {
+  return {StatusCode::invalid_argument, std::move(message), static_cast<std::ptrdiff_t>(index)};
+}
+
+/// The least k below `count` that find(begin, end) finds in the pieces of [0, count), or `count` if there is none.
+/// `find` returns `end` if it finds none.
+template <class Find>
+Result<std::size_t> first_of(std::size_t count, const Find& find) {
+  std::atomic<std::size_t> found = count;
+  Status status = parallel_for(count, values_per_piece, {}, [&](std::size_t begin, std::size_t end) {
+    const std::size_t k = find(begin, end);
+    if (k == end) return;
+    for (std::size_t least = found; k < least && !found.compare_exchange_weak(least, k);) {
+    }
+  });
+  if (!status.ok()) return status;
+  return found.load();
+}
+
+/// The first of [begin, end) for which `bad` holds, or `end`. Searches only if there is one: the test whether there is
+/// any takes no branches.
+template <class Bad>
+std::size_t first_bad(std::size_t begin, std::size_t end, const Bad& bad) {
+  unsigned any = 0;
+  for (std::size_t k = begin; k < end; ++k) any |= bad(k) ? 1u : 0u;
+  if (any == 0) return end;
+  while (!bad(begin)) ++begin;
+  return begin;
+}
+
+/// The first value that is not finite, or whose magnitude is above `bound`.
+Result<std::size_t> first_beyond(std::span<const float> values, float bound) {
+  return first_of(values.size(), [&](std::size_t begin, std::size_t end) {
+    return first_bad(begin, end, [&](std::size_t k) { return !(std::abs(values[k]) <= bound); });
+  });
+}
+Result<std::size_t> first_not_finite(std::span<const float> values) {
+  return first_beyond(values, std::numeric_limits<float>::max());
+}
+
+/// The first vertex whose coordinates in the model's space exceed the range of float.
+Result<std::size_t> first_misplaced(const Mesh& mesh) {
+  const std::array<double, 3> origin{mesh.origin.x, mesh.origin.y, mesh.origin.z};
+  constexpr float ample = 1e38f;  // the sum of two such numbers fits float
+  const auto is_small = [](double x) { return std::abs(x) <= double{ample}; };
+  Result<std::size_t> large = first_beyond(mesh.positions, ample);
+  if (!large) return large;
+  const bool all_small = std::all_of(origin.begin(), origin.end(), is_small);
+  if (all_small && *large == mesh.positions.size()) return mesh.vertex_count();
+  for (std::size_t k = 0; k < mesh.positions.size(); ++k)
+    if (!std::isfinite(file_coordinate(origin[k % 3], mesh.positions[k]))) return k / 3;
+  return mesh.vertex_count();
+}
+
+Status check_lengths(const Mesh& mesh) {
+  const std::size_t vertices = mesh.vertex_count(), triangles = mesh.triangle_count();
+  const bool lengths_fit = mesh.positions.size() == 3 * vertices && mesh.indices.size() == 3 * triangles &&
+                           (mesh.positions_f64.empty() || mesh.positions_f64.size() == 3 * vertices) &&
+                           (mesh.normals.empty() || mesh.normals.size() == 3 * vertices) &&
+                           (mesh.parameters.empty() || mesh.parameters.size() == 2 * vertices) &&
+                           (mesh.patches.empty() || mesh.patches.size() == triangles) &&
+                           mesh.quads.size() == 4 * mesh.quad_count() &&
+                           (mesh.quad_patches.empty() || mesh.quad_patches.size() == mesh.quad_count());
+  if (!lengths_fit) return {StatusCode::count_mismatch, "the mesh's arrays have lengths that do not fit each other"};
+  if (vertices == 0) return {StatusCode::invalid_argument, "the mesh has no vertices"};
+  if (vertices > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
+    return {StatusCode::invalid_argument, "the mesh has more vertices than files can index (2147483647)"};
+  return {};
+}
+
+Status check_indices(const Mesh& mesh) {
+  const auto vertices = static_cast<std::uint32_t>(mesh.vertex_count());
+  for (const std::span<const std::uint32_t> indices : {std::span(mesh.indices), std::span(mesh.quads)}) {
+    const Result<std::size_t> bad = first_of(indices.size(), [&](std::size_t begin, std::size_t end) {
+      return first_bad(begin, end, [&](std::size_t k) { return indices[k] >= vertices; });
+    });
+    if (!bad) return bad.status();
+    if (*bad != indices.size()) return invalid("an index of the mesh is beyond its vertices", *bad);
+  }
+  return {};
+}
+
+Status check_numbers(const Mesh& mesh) {
+  const Result<std::size_t> vertex = first_misplaced(mesh), normal = first_not_finite(mesh.normals),
+                            parameter = first_not_finite(mesh.parameters);
+  for (const Result<std::size_t>* found : {&vertex, &normal, &parameter})
+    if (!*found) return found->status();
+  const auto not_finite =
+      std::find_if_not(mesh.positions_f64.begin(), mesh.positions_f64.end(), [](double x) { return std::isfinite(x); });
+  if (not_finite != mesh.positions_f64.end())
+    return {StatusCode::non_finite, "a position in double of the mesh is not finite",
+            (not_finite - mesh.positions_f64.begin()) / 3};
+  const std::size_t bad = std::min(*vertex, mesh.normals.empty() ? *vertex : *normal / 3);
+  if (bad < mesh.vertex_count())
+    return {StatusCode::non_finite, "a vertex of the mesh is not finite in float", static_cast<std::ptrdiff_t>(bad)};
+  if (*parameter < mesh.parameters.size())
+    return {StatusCode::non_finite, "a parameter of the mesh is not finite",
+            static_cast<std::ptrdiff_t>(*parameter / 2)};
+  return {};
+}
+
+}  // namespace
+
+Status validate(const Mesh& mesh) {
+  for (Status (*const check)(const Mesh&) : {check_lengths, check_indices, check_numbers, check_parts})
+    if (Status status = check(mesh); !status.ok()) return status;
+  return {};
+}
+
+}  // namespace tessera::inline abi_0_1

@@ -1,0 +1,241 @@
+// .g2, the files of GoTools (SINTEF): objects one after the other. A spline surface (class 200) holds the dimension and
+// whether it is rational; for u and v the number of points, the order and the knots; then the points, u running
+// fastest, rational ones as w x, w y, w z, w. An object of a class that is not read ends at the next line that is a
+// header.
+
+#include "io/spline/g2.h"
+#include "base/text.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "io/file/make_room.h"
+#include "io/file/passed_over.h"
+#include "tessera/guard.h"
+#include "tessera/io.h"
+#include "tessera/status.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+constexpr std::pair<std::int64_t, PartName> unread_classes[] = {
+    {100, {"spline curve", "spline curves"}},
+    {110, {"curve on a surface", "curves on surfaces"}},
+    {120, {"line", "lines"}},
+    {130, {"circle", "circles"}},
+    {140, {"ellipse", "ellipses"}},
+    {150, {"bounded curve", "bounded curves"}},
+    {160, {"hyperbola", "hyperbolas"}},
+    {170, {"parabola", "parabolas"}},
+    {210, {"trimmed surface", "trimmed surfaces"}},
+    {291, {"surface of revolution", "surfaces of revolution"}},
+    {292, {"disc", "discs"}},
+    {293, {"LR spline surface", "LR spline surfaces"}},
+    {294, {"T-spline surface", "T-spline surfaces"}},
+    {295, {"surface of linear sweep", "surfaces of linear sweep"}},
+    {400, {"cloud of points", "clouds of points"}},
+    {410, {"cloud of lines", "clouds of lines"}},
+    {700, {"spline volume", "spline volumes"}}};
+constexpr PartName others{"object of another class", "objects of other classes"},
+    unbounded{"unbounded surface", "unbounded surfaces"},
+    flat{"surface that is not in space", "surfaces that are not in space"};
+
+PartName unread_name(std::int64_t kind) {
+  const auto known = std::find_if(std::begin(unread_classes), std::end(unread_classes),
+                                  [&](const auto& entry) { return entry.first == kind; });
+  return known == std::end(unread_classes) ? others : known->second;
+}
+
+/// Takes a header and returns its class, or returns 0 with the cursor anywhere in it. `alone`: the header must fill its
+/// line.
+std::int64_t take_header(TextCursor& cursor, bool alone) {
+  const auto take = [&](std::int64_t& value) {
+    alone ? cursor.skip_blanks() : cursor.skip_space();
+    return cursor.take_number(value);
+  };
+  std::int64_t kind = 0, major = 0, minor = 0, auxiliary = 0, ignored = 0;
+  if (!take(kind) || !take(major) || !take(minor) || !take(auxiliary)) return 0;
+  if (kind < 100 || kind > 999 || major < 0 || major > 9 || minor < 0 || minor > 9) return 0;
+  if (auxiliary < 0 || auxiliary > 16) return 0;
+  for (std::int64_t k = 0; k < auxiliary; ++k) {  // usually a colour
+    if (!take(ignored)) return 0;
+  }
+  return !alone || cursor.take_line_end() ? kind : 0;
+}
+
+class G2Reader {
+ public:
+  G2Reader(std::string_view text, std::string_view name)
+      : name_(name), cursor_(text, name), size_(text.size()), passed_over_(name) {}
+
+  Result<Model> read() {
+    for (cursor_.skip_space(); !cursor_.at_end(); cursor_.skip_space()) {
+      header_ = cursor_;
+      const std::int64_t kind = take_header(cursor_, false);
+      if (kind == 0) return header_.expected("the header of an object (class, version 1 0, auxiliary numbers)");
+      ++object_;
+      const Status status = read_object(kind);
+      if (!status.ok()) return status;
+    }
+    if (model_.surfaces.empty()) {
+      return passed_over_.empty() ? cursor_.expected("an object") : passed_over_.nothing_else();
+    }
+    model_.warnings = passed_over_.warnings();
+    if (swapped_ > 0) {
+      model_.warnings.push_back(std::string(name_) + ": " + counted(swapped_, "elementary surface") +
+                                (swapped_ == 1 ? " has" : " have") + " u and v swapped in the file, but not here");
+    }
+    return std::move(model_);
+  }
+
+ private:
+  Status read_object(std::int64_t kind) {
+    G2Numbers numbers(cursor_, header_, "object " + std::to_string(object_) + " (class " + std::to_string(kind) + ")");
+    switch (kind) {
+      case g2_spline_surface:
+        return read_spline(numbers);
+      case g2_plane:
+      case g2_cylinder:
+      case g2_sphere:
+      case g2_cone:
+      case g2_torus:
+        return read_elementary(kind, numbers);
+      default:
+        pass_over(unread_name(kind));
+        return {};
+    }
+  }
+
+  /// Skips to the next line that is a header.
+  void pass_over(const PartName& name) {
+    passed_over_.add(name, header_);
+    for (cursor_.skip_space(); !cursor_.at_end(); cursor_.skip_space()) {
+      TextCursor ahead = cursor_;
+      if (take_header(ahead, true) != 0) return;
+      for (cursor_.skip_blanks(); !cursor_.at_line_end(); cursor_.skip_blanks()) cursor_.skip(cursor_.peek_token());
+    }
+  }
+
+  Status read_elementary(std::int64_t kind, G2Numbers& numbers) {
+    Result<G2Object> object = read_g2_elementary(kind, numbers);
+    if (!object) return object.status();
+    if (!object->surface) {
+      pass_over(unbounded);
+      return {};
+    }
+    swapped_ += object->swapped;
+    add({{}, *std::move(object->surface), object->placement});
+    return {};
+  }
+
+  void add(ModelSurface surface) {
+    make_room(model_.surfaces, size_ - cursor_.remaining(), size_);
+    model_.surfaces.push_back(std::move(surface));
+  }
+
+  struct Line {
+    std::int64_t points = 0, order = 0;
+    std::vector<double> knots;
+    int degree() const { return static_cast<int>(order) - 1; }
+  };
+
+  static void read_line(G2Numbers& numbers, Line& line) {
+    constexpr std::int64_t limit = std::int64_t{1} << 30;
+    line.points = numbers.integer("the number of points along a direction", 1, limit);
+    line.order = numbers.integer("the order along a direction", 2, max_degree + 1);
+    const std::int64_t count = line.points + line.order;
+    // Bounded by the text that is left, whatever count the file states: a number takes two bytes.
+    line.knots.reserve(std::min(static_cast<std::size_t>(count), numbers.cursor().remaining() / 2 + 1));
+    for (std::int64_t k = 0; k < count && numbers.ok(); ++k) line.knots.push_back(numbers.number("a knot"));
+  }
+
+  Status read_spline(G2Numbers& numbers) {
+    const std::int64_t dimension = numbers.integer("the dimension", 1, 3);
+    const bool rational = numbers.integer("the flag of a rational surface", 0, 1) == 1;
+    Line u, v;
+    read_line(numbers, u);
+    read_line(numbers, v);
+    if (!numbers.ok()) return numbers.status();
+    if (dimension < 2) {
+      pass_over(flat);
+      return {};
+    }
+    const auto count_u = static_cast<std::size_t>(u.points), count_v = static_cast<std::size_t>(v.points);
+    const auto bytes = static_cast<std::size_t>(2 * (dimension + rational));  // the least that a point takes
+    if (count_u * count_v > cursor_.remaining() / bytes + 1) {
+      return numbers.failure("the file is shorter than its " + std::to_string(count_u) + " x " +
+                             std::to_string(count_v) + " points");
+    }
+    std::vector<Vec3> points(count_u * count_v);
+    std::vector<double> weights(rational ? points.size() : 0);
+    for (std::size_t j = 0; j < count_v && numbers.ok(); ++j)  // u runs fastest in the file, v here
+      for (std::size_t i = 0; i < count_u && numbers.ok(); ++i) {
+        const std::size_t at = i * count_v + j;
+        points[at] = read_point(numbers, dimension, rational ? &weights[at] : nullptr);
+      }
+    if (!numbers.ok()) return numbers.status();
+    Result<BSplineSurface> surface =
+        rational
+            ? BSplineSurface::rational(u.degree(), u.knots, v.degree(), v.knots, std::move(points), std::move(weights))
+            : BSplineSurface::polynomial(u.degree(), u.knots, v.degree(), v.knots, std::move(points));
+    if (!surface) return refused_element(numbers, surface.status());
+    add({{}, *std::move(surface)});
+    return {};
+  }
+
+  /// Divides by the weight. Surfaces of the plane lie in z = 0.
+  static Vec3 read_point(G2Numbers& numbers, std::int64_t dimension, double* weight) {
+    Vec3 point;
+    point.x = numbers.number("a coordinate");
+    point.y = numbers.number("a coordinate");
+    if (dimension == 3) point.z = numbers.number("a coordinate");
+    if (!weight) return point;
+    *weight = numbers.positive("a weight");
+    return {point.x / *weight, point.y / *weight, point.z / *weight};
+  }
+
+  std::string_view name_;
+  TextCursor cursor_;
+  std::size_t size_;
+  TextCursor header_ = cursor_;  // of the object being read
+  PassedOver passed_over_;
+  Model model_;
+  std::size_t object_ = 0, swapped_ = 0;
+};
+
+}  // namespace
+
+void G2Numbers::fail(std::string_view what) { status_ = cursor_.expected(std::string(what) + " of " + object_); }
+
+double G2Numbers::positive(std::string_view what) {
+  if (!ok()) return 1;
+  cursor_.skip_space();
+  const TextCursor before = cursor_;
+  double value = 0;
+  if (cursor_.take_finite(value) && value > 0) return value;
+  status_ = before.expected(std::string(what) + " above 0 of " + object_);
+  return 1;
+}
+
+std::int64_t G2Numbers::integer(std::string_view what, std::int64_t low, std::int64_t high) {
+  std::int64_t value = low;
+  if (!ok()) return value;
+  cursor_.skip_space();
+  const TextCursor before = cursor_;
+  if (cursor_.take_number(value) && value >= low && value <= high) return value;
+  const std::string range = low == high ? "" : ", from " + std::to_string(low) + " to " + std::to_string(high);
+  status_ = before.expected(std::string(what) + " of " + object_ + range);
+  return low;
+}
+
+Vec3 G2Numbers::vector(std::string_view what) {
+  Vec3 v;
+  for (double* const coordinate : {&v.x, &v.y, &v.z}) *coordinate = number(what);
+  return v;
+}
+
+Result<Model> parse_g2(std::string_view text, std::string_view name) {
+  return guarded([&] { return G2Reader(text, name).read(); });
+}
+
+}  // namespace tessera::inline abi_0_1

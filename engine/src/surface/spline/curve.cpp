@@ -1,0 +1,121 @@
+#include "tessera/curve.h"
+
+#include <algorithm>
+#include <string>
+
+#include "base/text.h"
+#include "surface/net/validate.h"
+#include "surface/spline/spline_lines.h"
+#include "surface/spline/spline_window.h"
+#include "tessera/guard.h"
+#include "tessera/status.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+constexpr auto place = [](std::size_t k) { return "[" + std::to_string(k) + "]"; };
+
+Status check_size(int degree, std::size_t points, std::size_t knots) {
+  const std::size_t wanted = points + static_cast<std::size_t>(degree) + 1;
+  if (knots == wanted) return {};
+  return {StatusCode::count_mismatch, "degree " + std::to_string(degree) + " and " + counted(points, "point") +
+                                          " need " + std::to_string(wanted) + " knots, found " + std::to_string(knots)};
+}
+
+/// Checks the requirements of both kinds, and sets an empty domain to that of the knots.
+Status check_b_spline(int degree, std::span<const Vec3> points, std::span<const double> knots,
+                      std::optional<Interval>& domain) {
+  if (Status status = check_degree(degree, "the degree"); !status.ok()) return status;
+  if (Status status = check_size(degree, points.size(), knots.size()); !status.ok()) return status;
+  if (Status status = check_knots(degree, knots, "knots"); !status.ok()) return status;
+  if (Status status = check_points(points, place); !status.ok()) return status;
+  if (!domain) domain = Interval{knots[static_cast<std::size_t>(degree)], knots[points.size()]};
+  return check_range(degree, knots, domain->from, domain->to, "the domain");
+}
+
+template <class T>
+std::vector<T> copy(std::span<const T> values) {
+  return {values.begin(), values.end()};
+}
+
+/// The points that act at t, in a frame that keeps their sums in range.
+struct ActingPoints {
+  ActingPoints(const Curve& curve, double t)
+      : line(line_of(curve)), span(find_span(line, t)), frame(frame_of(curve, first(), span, t)) {
+    for (std::size_t k = 0; k < line.order(); ++k)
+      window[k] = frame.homogeneous(curve.points()[first() + k], curve.weight(first() + k));
+  }
+
+  const double* knots() const { return &line.knots[span]; }
+  std::size_t first() const { return span - static_cast<std::size_t>(line.degree); }
+
+  KnotLine line;
+  std::size_t span;
+  WindowFrame frame;
+  SplineWindow window;
+
+ private:
+  static WindowFrame frame_of(const Curve& curve, std::size_t first, std::size_t span, double t) {
+    double largest = 0, largest_weight = 0;
+    for (std::size_t k = first; k <= span; ++k) {
+      largest = std::max(largest, max_abs(curve.points()[k]));
+      if (curve.is_rational()) largest_weight = std::max(largest_weight, curve.weight(k));
+    }
+    const std::size_t nearer = first + nearer_end(curve.degree(), &curve.knots()[span], t);
+    return WindowFrame(largest, largest_weight, curve.is_rational() ? curve.points()[nearer] : Vec3{});
+  }
+};
+
+}  // namespace
+
+Result<Curve> Curve::bezier(std::span<const Vec3> points, std::span<const double> weights, const Interval& domain) {
+  return guarded([&]() -> Result<Curve> {
+    const int degree = static_cast<int>(std::min<std::size_t>(points.size(), 1000)) - 1;
+    if (Status status = check_degree(degree, "the degree"); !status.ok()) return status;
+    std::vector<double> knots(points.size(), domain.from);
+    knots.resize(2 * points.size(), domain.to);
+    if (weights.empty()) return b_spline(degree, points, knots);
+    return nurbs(degree, points, weights, knots);
+  });
+}
+
+Result<Curve> Curve::b_spline(int degree, std::span<const Vec3> points, std::span<const double> knots,
+                              std::optional<Interval> domain) {
+  return guarded([&]() -> Result<Curve> {
+    if (Status status = check_b_spline(degree, points, knots, domain); !status.ok()) return status;
+    return Curve({degree, copy(points), {}, copy(knots), *domain});
+  });
+}
+
+Result<Curve> Curve::nurbs(int degree, std::span<const Vec3> points, std::span<const double> weights,
+                           std::span<const double> knots, std::optional<Interval> domain) {
+  return guarded([&]() -> Result<Curve> {
+    if (Status status = check_b_spline(degree, points, knots, domain); !status.ok()) return status;
+    if (weights.size() != points.size())
+      return Status(StatusCode::count_mismatch, std::to_string(points.size()) + " points need " +
+                                                    std::to_string(points.size()) + " weights, found " +
+                                                    std::to_string(weights.size()));
+    if (Status status = check_weights(weights, place); !status.ok()) return status;
+    if (all_equal(weights)) weights = {};
+    return Curve({degree, copy(points), copy(weights), copy(knots), *domain});
+  });
+}
+
+CurveJet evaluate_jet(const Curve& curve, double t) {
+  const ActingPoints acting(curve, t);
+  const WindowFrame& frame = acting.frame;
+  const SplineJet a = spline_jet(curve.degree(), acting.knots(), t, acting.window);
+  if (!curve.is_rational())
+    return {frame.position(a[0].vector()), frame.vector(a[1].vector()), frame.vector(a[2].vector())};
+  const Homogeneous none{0, 0, 0, 0};
+  const SurfaceJet jet = project(a[0], a[1], none, a[2], none, none);
+  return {frame.position(jet.position), frame.vector(jet.du), frame.vector(jet.duu)};
+}
+
+Vec3 position(const Curve& curve, double t) {
+  const ActingPoints acting(curve, t);
+  const Homogeneous a = de_boor(curve.degree(), acting.knots(), t, acting.window);
+  return acting.frame.position(curve.is_rational() ? a.project() : a.vector());
+}
+
+}  // namespace tessera::inline abi_0_1
