@@ -48,6 +48,12 @@ TEST(ReadFile, WhatCannotBeReadIsNamed) {
   EXPECT_EQ(no_bytes.status().code(), StatusCode::parse_error);
   EXPECT_EQ(no_text.status().message(), folder.path().string() + ": is a directory, not a file");
   EXPECT_EQ(no_text.status().code(), StatusCode::io_error);
+  const std::string sparse = folder.file("sparse", "");
+  std::filesystem::resize_file(sparse, std::uintmax_t{1} << 42);
+  const Result<std::string> too_large = read_file(sparse);
+  EXPECT_EQ(too_large.status().code(), StatusCode::out_of_memory);
+  EXPECT_NE(too_large.status().message().find(": has 4398046511104 bytes, the memory of this machine "),
+            std::string::npos);
 }
 
 TEST(ReadFile, NoPermissionIsSaid) {

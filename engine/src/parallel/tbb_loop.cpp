@@ -48,6 +48,10 @@ void tbb_loop(std::size_t pieces, FunctionRef<void(std::size_t)> body) {
   order.call_ends();
 }
 
+void run_apart(FunctionRef<void()> call) {
+  tbb_loop(1, [&](std::size_t) { call(); });
+}
+
 void without_other_tasks(FunctionRef<void()> call) {
   tbb::this_task_arena::isolate([&] { call(); });
 }

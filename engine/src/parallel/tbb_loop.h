@@ -5,12 +5,16 @@
 #include <cstddef>
 
 #include "base/function_ref.h"
+#include "base/internal_export.h"
 
 namespace tessera::inline abi_0_1 {
 
 /// Calls body(piece) once for each piece in [0, pieces), in the caller's arena, in any order. Exceptions of the body
 /// propagate. All pieces run, even if the caller's own task group is cancelled meanwhile.
 void tbb_loop(std::size_t pieces, FunctionRef<void(std::size_t)> body);
+
+/// Runs a call whose tasks must not be skipped if the caller's own task group is cancelled meanwhile.
+TESSERA_INTERNAL_EXPORT void run_apart(FunctionRef<void()> call);
 
 /// Calls a function of the user's. If it starts tasks and waits for them, this thread runs none of ours meanwhile.
 void without_other_tasks(FunctionRef<void()> call);
