@@ -31,7 +31,7 @@ std::string answer_of(const Status& status) {
 
 void Table::of(const std::string& call) {
   call_ = call;
-  text_ += "\n### `" + call + "`\n\n| given | comes back |\n| --- | --- |\n";
+  text_ += "\n### `" + call + "`\n\n| input | comes back |\n| --- | --- |\n";
 }
 
 void Table::line(const std::string& input, const std::string& answer) {

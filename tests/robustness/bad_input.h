@@ -51,7 +51,6 @@ struct Section {
   void (*fill)(Table& table) = nullptr;  ///< null if this build lacks the part
 };
 
-/// For googletest.
 inline void PrintTo(const Section& section, std::ostream* out) { *out << section.title; }
 
 void fill_curves(Table& table);

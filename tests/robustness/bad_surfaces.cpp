@@ -153,7 +153,7 @@ void fill_splines(Table& table) {
   });
 
   const Axis axis;
-  table.of("nurbs_sphere, nurbs_torus, nurbs_cylinder, make_nurbs_cone(axis, ...)");
+  table.of("make_nurbs_sphere, make_nurbs_torus, make_nurbs_cylinder, make_nurbs_cone(axis, ...)");
   table.row("a sphere of radius -1", invalid_argument, make_nurbs_sphere(axis, -1));
   table.row("a sphere of infinite radius", non_finite, make_nurbs_sphere(axis, infinity));
   table.row("a torus whose tube is as thick as its ring", invalid_argument, make_nurbs_torus(axis, 1, 1));

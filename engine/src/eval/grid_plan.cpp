@@ -192,14 +192,24 @@ std::vector<double> uniform_parameters(int count) {
 
 namespace {
 
+/// The error of a set without the blocks that a plan needs. Names the member of BlockKinds that makes them.
+Status missing_blocks(const GridPlanOptions& options) {
+  const bool is_double = options.precision == Precision::double_precision;
+  const bool is_power = options.representation == Representation::power;
+  if ((!is_double && options.precision != Precision::single_precision) ||
+      (!is_power && options.representation != Representation::bernstein))
+    return {StatusCode::unsupported, "the plan's precision and representation must be values of their enumerations"};
+  const std::string number = is_double ? "double" : "float", basis = is_power ? "power" : "Bernstein";
+  return {StatusCode::unsupported, "the plan needs " + basis + " blocks in " + number +
+                                       ", the patch set has none; set BlockKinds::" + number + "_" +
+                                       (is_power ? "power" : "bernstein") + " in PatchSetOptions::blocks"};
+}
+
 /// Completes a plan whose parameters are checked and counted.
 Result<std::unique_ptr<GridPlan::Impl>> make_plan(const PatchSet::Impl& set, std::unique_ptr<GridPlan::Impl> plan) {
   const GridPlanOptions& options = plan->options;
   if (Status status = check_geometry(options.geometry); !status.ok()) return status;
-  if (!set.has(options.precision, options.representation))
-    return Status(
-        StatusCode::unsupported,
-        "the patch set holds no blocks of the precision and representation asked for; see PatchSetOptions::blocks");
+  if (!set.has(options.precision, options.representation)) return missing_blocks(options);
   const Result<Isa> isa = usable_isa(options.isa);
   if (!isa) return isa.status();
   if (Status status = check_size(set, plan->count_u, plan->count_v); !status.ok()) return status;

@@ -44,9 +44,11 @@ Status check_options(const FitOptions& options) {
   if (options.degree < 2 || options.degree > max_degree)
     return {StatusCode::invalid_argument, "the degree of the patches is " + std::to_string(options.degree) +
                                               ", it must be 2 to " + std::to_string(max_degree)};
-  if (options.max_patches / (options.breaks_u.size() + 1) < options.breaks_v.size() + 1)
-    return {StatusCode::invalid_argument,
-            "the largest count of patches is " + std::to_string(options.max_patches) + ", the breakpoints make more"};
+  const std::size_t along_u = options.breaks_u.size() + 1, along_v = options.breaks_v.size() + 1;
+  if (options.max_patches / along_u < along_v)
+    return {StatusCode::invalid_argument, "max_patches is " + std::to_string(options.max_patches) +
+                                              ", the breakpoints alone make " +
+                                              counted(along_u * along_v, "patch", "patches")};
   return {};
 }
 

@@ -69,7 +69,7 @@ class GridScene final : public PatchScene {
   void occluded_piece(const RayBatch& batch, const View1<std::uint8_t>& occluded, std::size_t begin,
                       std::size_t end) const override;
   Status all_of(const Ray&, std::vector<Hit>&) const override {
-    return Status(StatusCode::unsupported, "all hits of a ray are known in exact mode only");
+    return Status(StatusCode::unsupported, "all() needs a scene in exact mode, this one is in grid mode");
   }
 
   void measure();
