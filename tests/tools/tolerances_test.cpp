@@ -63,8 +63,8 @@ TEST_F(Tolerances, PixelsOfACamera) {
 TEST_F(Tolerances, ACapSaysHowManyItWouldTake) {
   const json free = made({"--relative", "0.003"});
   const std::string count = free["triangles"].dump();
-  EXPECT_EQ(made({"--relative", "0.003", "--most-triangles", count})["triangles"], free["triangles"]);
-  expect_refusal({"--relative", "0.003", "--most-triangles", std::to_string(free["triangles"].get<int>() - 1)}, 1,
+  EXPECT_EQ(made({"--relative", "0.003", "--max-triangles", count})["triangles"], free["triangles"]);
+  expect_refusal({"--relative", "0.003", "--max-triangles", std::to_string(free["triangles"].get<int>() - 1)}, 1,
                  " takes " + count + " triangles");
   expect_refusal({"--angle", "0.01"}, 1, "segments along a parameter of patch");
   expect_refusal({"--angle", "0.01"}, 1, "triangles in all");
@@ -142,7 +142,7 @@ TEST_F(Tolerances, WrongOnesAreRefused) {
   expect_refusal({"--pixels", "1", camera, "--size", "0x5"}, 2, "--size");
   expect_refusal({"--tolerance", "1", "--relative", "1"}, 2, "");
   expect_refusal({"--grid", "2x2", "--angle", "5"}, 2, "");
-  expect_refusal({"--triangles", "99", "--most-triangles", "9"}, 2, "");
+  expect_refusal({"--triangles", "99", "--max-triangles", "9"}, 2, "");
 }
 
 }  // namespace

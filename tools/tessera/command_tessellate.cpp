@@ -276,7 +276,7 @@ void add_view(Command& command, Options& options) {
 /// Adds a budget: a limit of the triangles, not a target.
 void add_cap(Command& command, Options& options) {
   command
-      .add_count("--most-triangles", "COUNT",
+      .add_count("--max-triangles", "COUNT",
                  "Limit on triangles, not for --grid; an error says how many are needed [1073741824]", 1, max_triangles,
                  [&options](std::size_t count) { options.certified.max_triangles = count; })
       .exclude(command.option("--triangles"));
