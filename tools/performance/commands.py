@@ -9,7 +9,7 @@ DESCRIPTION = """\
 Catches what makes Tessera slower, on machines that do other things as well.
 
   tools/perf compare main .                  is this tree slower than main? Builds both, runs them in turns
-  tools/perf count --check                   has any counted case come to take more instructions?
+  tools/perf count --check                   does a counted case take more instructions?
   tools/perf record --roofline               this build's figures, kept in build/perf/records
   tools/perf track ./my_bench                the figures of a program that is not Tessera's, kept in perf-records
   tools/perf list                            what was recorded: date, commit, machine, cases
@@ -44,7 +44,7 @@ def option(text):
 
 def add_build_options(parser):
     parser.add_argument("--preset", default="release", help="CMake preset to build (default: release)")
-    parser.add_argument("--jobs", type=number(1, 1024, True), metavar="N", help="compile so many files at a time")
+    parser.add_argument("--jobs", type=number(1, 1024, True), metavar="N", help="number of parallel compilations")
 
 
 def add_compare(commands):
@@ -67,7 +67,7 @@ def add_compare(commands):
     for who in ("base", "head"):
         parser.add_argument(f"--{who}-option", action="append", default=[], type=option, metavar="NAME=VALUE",
                             help=f"for CMake, of {who} alone")
-    parser.add_argument("--rebuild", action="store_true", help="build again what is kept")
+    parser.add_argument("--rebuild", action="store_true", help="rebuild kept builds")
     parser.add_argument("--json", metavar="FILE", help="the ratios as JSON too")
     add_build_options(parser)
     parser.set_defaults(run=compare.command)
@@ -84,7 +84,7 @@ def add_count(commands):
     parser.add_argument("--isa", action="append", choices=count.ISAS, help="on this one alone")
     parser.add_argument("--filter", metavar="REGEX", help="cases whose name it finds")
     parser.add_argument("--repeat", type=number(1, 100, True), default=1, metavar="N",
-                        help="in so many processes, and print by how much they differ")
+                        help="number of processes; prints how much they differ")
     parser.add_argument("--check", action="store_true", help="exit status 1 where a count is above the baseline's")
     parser.add_argument("--threshold", type=number(0, 1000), default=1.0, metavar="PERCENT",
                         help="that a count may grow by (default: 1)")

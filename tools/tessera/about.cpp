@@ -7,7 +7,6 @@ void describe(Command& tool) {
   tool.name = "tessera";
   tool.text = "Tessera turns parametric surfaces into points, meshes, pictures and ray hits";
   tool.footer =
-
       "Files read: surfaces as " + model_formats() +
       ";\n"
       "meshes as .obj, .ply, .stl, .glb, .gltf. Surfaces are Bezier patches (.bpt), BezierView (.bv), GoTools (.g2),\n"

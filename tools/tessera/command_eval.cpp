@@ -267,7 +267,7 @@ constexpr const char* footer =
 
 /// Adds --grid and --params.
 void add_places(Command& command, Options& options) {
-  command.begin_group("Where, one of");
+  command.begin_group("Places (one of)");
   Option& grid =
       command.add("--grid", "NxM", "N x M points on every surface, from border to border, 2 to 65536 each",
                   [&options](const std::string& text) { options.grid = parse_extent("--grid", text, 2, 65536); });

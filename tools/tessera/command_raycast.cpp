@@ -58,7 +58,7 @@ std::string fault_of_picture(const std::string& path) {
 const std::map<std::string, render::Shade> shades{
     {"lambert", render::Shade::lambert}, {"normals", render::Shade::normals}, {"uv", render::Shade::uv},
     {"patch", render::Shade::patch},     {"error", render::Shade::error},     {"curvature", render::Shade::curvature},
-    {"clay", render::Shade::clay},       {"clay", render::Shade::clay},       {"steps", render::Shade::steps}};
+    {"clay", render::Shade::clay},       {"steps", render::Shade::steps}};
 
 /// Adds the options that make sense only with a picture, and returns them.
 std::vector<const Option*> add_picture_options(Command& command, RaycastOptions& options) {
