@@ -58,7 +58,7 @@ Result<BezierPatch> sub_patch(const BezierPatch& patch, const Domain& rectangle)
 /// Returns the same patch with the given degrees. Errors: unsupported_degree (below the patch's, or above max_degree).
 Result<BezierPatch> elevate_degree(const BezierPatch& patch, int degree_u, int degree_v);
 
-/// Returns r(v,u), exactly. The normal turns over. Errors: out_of_memory.
+/// Returns r(v,u), exactly. Flips normals. Errors: out_of_memory.
 Result<BezierPatch> transpose(const BezierPatch& patch);
 /// Returns r(1-u,v), like transpose(). Errors: out_of_memory.
 Result<BezierPatch> reverse_u(const BezierPatch& patch);

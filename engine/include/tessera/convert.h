@@ -84,7 +84,7 @@ class PatchGrid {
 
 /// Returns the image of a grid under an affine map, exact up to rounding: control points are mapped, and weights are
 /// unchanged (affine invariance). Points that are shared or collapsed remain so. A fit error grows with the map's norm,
-/// and by the rounding of the points. A map with a negative determinant turns normals over.
+/// and by the rounding of the points. A map with a negative determinant flips normals.
 ///
 /// Errors: non_finite (the map, or a point too large; index = the patch).
 Result<PatchGrid> transform(const PatchGrid& grid, const Affine& map);

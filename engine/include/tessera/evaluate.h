@@ -51,8 +51,7 @@ class GridPlan {
   /// [0,1)), non_finite (a parameter: index), unsupported (the set lacks the blocks), isa_unavailable, out_of_memory.
   static Result<GridPlan> make(const PatchSet& set, std::span<const double> u, std::span<const double> v,
                                const GridPlanOptions& options = {});
-  /// Makes a grid of its own for each patch. The results of a patch have the bits that they have when its parameters
-  /// are those of all patches.
+  /// Makes one grid per patch. A patch gets the bits that it gets from a plan with its parameters for all patches.
   ///
   /// Errors: as above, and invalid_argument (the number of parameters is no multiple of the number of patches).
   /// Memory: 3 (degree + 1) values per parameter and patch.
@@ -133,10 +132,10 @@ using QuantityBlocks = Quantities<std::span<T>, std::span<T>, std::span<NormalKi
 /// - Gaussian curvature: |k1| + |k2| times the bound of curvatures, and the square of that bound
 /// - principal directions: 2 / (k1 - k2) times the bound of curvatures, and the bound of normals
 ///
-/// Where the bounds come from: sample_kernel.inl.h of the sources derives those of positions and derivatives
-/// (Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., sec. 3.1; the quotient rule, Piegl and Tiller, The
-/// NURBS Book, eq. 4.20). The others follow to first order in the errors of the tangents, which must be small against
-/// h, from the formulas of normal and curvatures (do Carmo, Differential Geometry of Curves and Surfaces, sec. 3.3).
+/// Source: the bounds of positions and derivatives follow from Higham, Accuracy and Stability of Numerical Algorithms,
+/// 2nd ed., sec. 3.1, and the quotient rule (Piegl and Tiller, The NURBS Book, eq. 4.20). The other bounds follow to
+/// first order in the errors of the tangents, which must be small against h, from the formulas of normal and curvatures
+/// (do Carmo, Differential Geometry of Curves and Surfaces, sec. 3.3).
 ///
 /// Positions in double, which are absolute, round once more, to 2^-53 of their own size. In the power representation
 /// the bounds of positions and first derivatives are (1 + 2u)^m (1 + 2v)^n ratio times as large, m and n the degrees,
@@ -197,8 +196,8 @@ Status evaluate(const PatchSet& set, const PatchSamples<T>& samples, const Quant
 /// PatchSet::source(). Immutable; edits of control points keep it valid. Memory: 128 bytes per patch.
 class SurfaceMap {
  public:
-  /// The patches of each surface must be those of a PatchGrid, in its order and without a gap, as make_patch_set()
-  /// leaves them. Errors: unsupported (a surface whose patches are not; index = the surface), out_of_memory.
+  /// The patches of each surface must be those of a PatchGrid, in its order and without gaps. make_patch_set() makes
+  /// such sets. Errors: unsupported (a surface whose patches are not; index = the surface), out_of_memory.
   static Result<SurfaceMap> make(const PatchSet& set);
 
   SurfaceMap(SurfaceMap&&) noexcept;
@@ -271,8 +270,8 @@ class GridUpdate {
   template <class T>
   Status run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const QuantityViews<T>& out,
              const Execution& execution = {});
-  /// Does so in block-interleaved memory of all patches. A block with an edited patch is evaluated whole: its other
-  /// lanes are written again, with the same bytes. Errors: as above.
+  /// Like the call above, into block-interleaved memory of all patches. A block with an edited patch is evaluated
+  /// whole: its other lanes are written again, with the same bytes. Errors: as above.
   template <class T>
   Status run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const QuantityBlocks<T>& out,
              const Execution& execution = {});

@@ -1,5 +1,5 @@
 #pragma once
-// Files: written whole or not at all, and text in memory that is read token by token, with errors that name the line.
+// Writes files whole or not at all. Reads text token by token, with the line in each error.
 
 #include <atomic>
 #include <charconv>

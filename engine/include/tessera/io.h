@@ -25,8 +25,8 @@ namespace tessera::inline abi_0_1 {
 /// - .rib: RenderMan, Patch, PatchMesh, NuPatch and quadrics, and the archives that it reads
 /// - .step, .stp, .iges, .igs, .brep, .brp: as read_cad() of cad.h, which runs the program tessera-cad-reader
 ///
-/// All but the formats of read_cad() may be packed by gzip: "teapot.bpt.gz"; .rib also without the extension .gz. A
-/// packed file may unpack to 200 times its size and 1 MiB, and to 1 GiB at the most.
+/// Files of all formats but those of read_cad() may be gzip files, such as teapot.bpt.gz. A gzip .rib needs no
+/// extension .gz. The unpacked size is limited to 200 times the file plus 1 MiB, and to 1 GiB.
 ///
 /// Model::warnings reports each part of the file that is skipped. A file with a wrong element gives no model.
 ///
@@ -40,8 +40,8 @@ namespace tessera::inline abi_0_1 {
 /// - .json: 13 times the file
 /// - .g2: 9 times
 /// - .rib: 11 times for a mesh, 28 times for a Catmull-Rom mesh
-/// - .obj: up to 20 times, because an index becomes a point; and as often as pieces of a bmatrix share it, each of
-///   which is a surface
+/// - .obj: up to 20 times, because an index becomes a point. A point that several pieces of a bmatrix share counts once
+///   per piece.
 Result<Model> read_model(const std::filesystem::path& path);
 /// Parses the text of a .bpt file; `name` stands for the file in messages. Errors: as read_model(), without io_error.
 Result<Model> parse_bpt(std::string_view text, std::string_view name);

@@ -80,18 +80,19 @@ Result<Mesh> split_quads(const Mesh& mesh);
 /// The faults of a mesh, counted. Vertices at bit-equal positions count as one, by positions_f64 if there are any. A
 /// quad counts as the two triangles that split_quads() makes of it.
 struct MeshReport {
-  std::size_t vertices = 0;              ///< as stored
-  std::size_t distinct_positions = 0;    ///< vertices of equal position counted once
-  std::size_t triangles = 0;             ///< as stored, and two per quad
-  std::size_t quads = 0;                 ///< as stored
-  std::size_t open_edges = 0;            ///< edges of one triangle
-  std::size_t non_manifold_edges = 0;    ///< edges of three triangles or more
-  std::size_t inconsistent_edges = 0;    ///< edges whose two triangles run along it the same way
-  std::size_t t_junctions = 0;           ///< vertices of open edges that lie inside another open edge
-  std::size_t flipped_triangles = 0;     ///< sound ones that face away from the sum of the normals at their corners
-  std::size_t degenerate_triangles = 0;  ///< not sound: two corners in one place, or no area; not counted in edges
+  std::size_t vertices = 0;            ///< as stored
+  std::size_t distinct_positions = 0;  ///< vertices of equal position counted once
+  std::size_t triangles = 0;           ///< as stored, and two per quad
+  std::size_t quads = 0;               ///< as stored
+  std::size_t open_edges = 0;          ///< edges of one triangle
+  std::size_t non_manifold_edges = 0;  ///< edges of three triangles or more
+  std::size_t inconsistent_edges = 0;  ///< edges whose two triangles run along it the same way
+  std::size_t t_junctions = 0;         ///< vertices of open edges that lie inside another open edge
+  /// Non-degenerate triangles that face away from the sum of their corners' normals.
+  std::size_t flipped_triangles = 0;
+  std::size_t degenerate_triangles = 0;  ///< two corners in one place, or no area; not counted in edges
   std::size_t non_finite_vertices = 0;   ///< NaN or infinity in a position or a normal
-  /// Whether there are sound triangles, and they leave no border.
+  /// Whether there are non-degenerate triangles, and they leave no border.
   bool closed() const { return triangles > degenerate_triangles && open_edges == 0 && non_manifold_edges == 0; }
 };
 

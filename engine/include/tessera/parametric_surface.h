@@ -17,8 +17,9 @@
 #pragma GCC visibility push(default)
 namespace tessera::inline abi_0_1 {
 
-/// The caller's functions for a surface p(u,v). Threads: functions are called from one thread at a time, or from
-/// several if const calls on the surface are. An exception becomes a Status; if a bound throws one, there is no bound.
+/// The caller's functions for a surface p(u,v). Threads: one thread calls the functions at a time, unless you make
+/// const calls on the surface from several threads. An exception becomes a Status; if a bound throws one, there is no
+/// bound.
 struct SurfaceFunctions {
   std::function<Vec3(double u, double v)> position;  ///< p(u,v); required
   /// Position and derivatives up to the second order. If empty, derivatives are computed by differences.
@@ -109,8 +110,8 @@ class ParametricSurface {
 /// Errors: those of position(), non_finite (a derivative: names it and (u,v)).
 Result<SurfaceJet> evaluate_jet(const ParametricSurface& surface, double u, double v);
 
-/// The caller's functions for a curve c(t). Threads: functions are called from one thread at a time, or from several if
-/// const calls on the curve are. An exception becomes a Status; if a bound throws one, there is no bound.
+/// The caller's functions for a curve c(t). Threads: one thread calls the functions at a time, unless you make const
+/// calls on the curve from several threads. An exception becomes a Status; if a bound throws one, there is no bound.
 struct CurveFunctions {
   std::function<Vec3(double t)> position;  ///< c(t); required
   /// Position, first and second derivative. If empty, derivatives are computed by differences.

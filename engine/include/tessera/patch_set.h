@@ -96,13 +96,13 @@ class PatchSet {
     std::uint32_t lane = 0;   ///< below lanes
   };
   Slot slot(std::size_t index) const;  ///< index < patch_count()
-  std::size_t memory_bytes() const;    ///< those of patches and blocks
+  std::size_t memory_bytes() const;    ///< bytes of the patches and the blocks
 
-  /// Returns a number that grows by one with each edit. What was made from another revision is stale.
+  /// Returns a number that grows by one with each edit. Objects that were made at another revision may be stale.
   std::uint64_t revision() const;
   /// Sets the control points of one patch, as many as before; weights are kept. Repacks its lane of each block. Errors,
   /// with the set unchanged: invalid_argument (no such patch), count_mismatch (points), non_finite (a point; numbers
-  /// out of the range of from()).
+  /// out of the range of make()).
   Status set_control_points(std::size_t index, std::span<const Vec3> points);
 
   class [[gnu::visibility("hidden")]] Impl;

@@ -41,7 +41,7 @@ enum class QuadricKind : std::uint8_t {
   imaginary_ellipsoid,     ///< x2/a2 + y2/b2 + z2/c2 = -1: empty
   imaginary_cylinder,      ///< x2/a2 + y2/b2 = -1: empty
   imaginary_planes,        ///< x2 = -a2: empty
-  empty,                   ///< k = 0 with k other than 0
+  empty,                   ///< no solution: all coefficients but the constant k are 0, and k is not
 };
 /// Returns the kind's name for messages, such as "elliptic cone".
 std::string_view name(QuadricKind kind);

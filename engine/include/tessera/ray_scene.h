@@ -23,7 +23,7 @@ namespace tessera::inline abi_0_1 {
 
 /// The points origin + t * direction with tnear <= t <= tfar, in the model's coordinates.
 ///
-/// A ray is valid under these conditions; the interval includes both ends, which hold for the refined t, in double.
+/// The interval includes both ends. The refined t, in double, lies in it. A ray is valid under these conditions:
 ///
 /// - origin and direction are finite, with components of at most 1.844e18
 /// - the direction is not zero; it need not be a unit vector
@@ -33,7 +33,7 @@ struct Ray {
   Vec3 origin = {}, direction = {};                       ///< in the model
   double tnear = 0;                                       ///< at least 0
   double tfar = std::numeric_limits<double>::infinity();  ///< at least tnear
-  /// Exact mode: how far from its origin a surface may lie that the ray starts on; 0: no root is left out.
+  /// Exact mode: the largest distance from the origin to a surface that the ray starts on. 0: every root is a hit.
   ///
   /// Each surface that passes the origin at no more than this distance has one root that stands for the origin. That
   /// root is no hit, wherever rounding has moved it. For an origin that is a hit's position, use
@@ -105,12 +105,12 @@ enum class RayMode : std::uint8_t {
   /// Facets of evaluated grids in an Embree BVH, then Newton on the surface: every hit that is not flagged lies on the
   /// surface. It shows what the tessellation shows, with true t, u, v and normals.
   ///
-  /// The facets decide what is met and in which order. A silhouette may be missed or flagged. Of two surfaces nearer to
-  /// each other than to their facets, the farther one may come first.
+  /// The facets decide what is met and in which order. A silhouette may be missed or flagged. If two surfaces lie
+  /// nearer to each other than to their facets, the farther one may be returned.
   grid,
-  /// The surface itself, of the control points in double. Whatever the ray meets is hit, also at shared borders and
-  /// poles, silhouettes down to the tolerance. A returned hit lies within the tolerance of the ray; hits that are not
-  /// flagged uncertified are roots up to rounding.
+  /// The surface itself, of the control points in double. Every intersection is found, also at shared borders and
+  /// poles. Silhouettes are found down to the tolerance. A returned hit lies within the tolerance of the ray; hits that
+  /// are not flagged uncertified are roots up to rounding.
   ///
   /// Pieces of patches lie in an Embree BVH. Interval Newton steps in float search each piece; where these prove
   /// nothing, branch and bound in double does. Every rounding is bounded, also for far origins.
@@ -123,13 +123,13 @@ struct RaySceneOptions {
   int rate = 8;                   ///< grid mode: grid segments per patch and direction, 1 to 4096
   bool refine = true;             ///< grid mode: false leaves hits on the facets (for comparison)
   std::optional<Isa> isa = {};    ///< default_isa() if empty; hits of exact mode are equal on all, up to rounding
-  /// Exact mode: the least number of pieces per patch and direction, 1, 2, 4 or 8. Patches that are bent, twisted or
+  /// Exact mode: the minimum number of pieces per patch and direction, 1, 2, 4 or 8. Patches that are bent, twisted or
   /// much longer than wide are cut into more, up to 64 per direction, by their own shape alone.
   int pieces = 1;
   /// Exact mode: how far a returned point may lie from the ray, in the model's unit, above 0.
   ///
   /// It matters where the ray touches the surface or passes a border: there, points within the tolerance may be hits.
-  /// By default 2e-12 of the set's size. The least is twice the bound on rounding; smaller values are raised to it.
+  /// By default 2e-12 of the set's size. The minimum is twice the bound on rounding; smaller values are raised to it.
   /// That is at most 2e-12 of the size for bicubic patches and 9e-12 at degree 15; a third more after edits.
   std::optional<double> tolerance = {};
   /// Exact mode: replaces the set's box wherever the scene's size and centre matter. It must contain the set's box,

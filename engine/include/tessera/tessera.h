@@ -1,5 +1,5 @@
 #pragma once
-// Every public header but ray_embree.h, which brings Embree into sight.
+// Every public header but ray_embree.h, which includes Embree's headers.
 
 #include "tessera/bezier_operations.h"
 #include "tessera/bezier_patch.h"
