@@ -3,6 +3,8 @@
 //   -> BlockJobs::turn_to() (eval/block_jobs.h): the block's control points and the plan's weights
 //   -> run_grid() (eval/run_grid.h) -> the kernel of the instruction set (kernel/grid/grid_kernel.inl.h)
 //   -> evaluate_sample() (kernel/sample/sample_kernel.inl.h): the sums, and what their rounding is.
+// Positions alone into packed float records, polynomial patches: evaluate_views() -> evaluate_flat() (eval/flat_grid.h)
+//   -> kernel/grid/flat_kernel.inl.h: the same sums in the same order.
 // The kernels write block-interleaved outputs themselves. Patch-contiguous outputs pass a stage in the first-level
 // cache (eval/staged_block.h).
 
