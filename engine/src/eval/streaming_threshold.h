@@ -1,5 +1,5 @@
 #pragma once
-// When output is large enough to go past the caches.
+// The output size above which stores bypass the caches.
 
 #include <unistd.h>
 

@@ -9,8 +9,8 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Makes the model that tessera/io_occt.h describes, face by face in the order of the shape. Messages begin with
-/// `path`. Errors: parse_error; if no face remains, the error of the first one.
+/// Makes the model that tessera/cad.h describes, face by face in the order of the shape. Messages begin with `path`.
+/// Errors: parse_error; if no face remains, the error of the first one.
 Result<Model> model_of(const CadFile& file, const std::string& path);
 
 }  // namespace tessera::inline abi_0_1

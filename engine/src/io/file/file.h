@@ -1,5 +1,5 @@
 #pragma once
-// Failures of files, in words.
+// Reads files, and makes the messages of failed file operations.
 
 #include <filesystem>
 #include <string>

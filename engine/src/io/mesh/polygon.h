@@ -1,5 +1,5 @@
 #pragma once
-// Polygons of files, which are read as fans of triangles.
+// Splits polygons of files into fans of triangles.
 
 #include "tessera/mesh.h"
 

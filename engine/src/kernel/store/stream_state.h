@@ -1,5 +1,5 @@
 #pragma once
-// The state of output that goes past the caches in whole lines, though it is made in pieces of any length.
+// The state of an output that is streamed in whole cache lines but computed in pieces.
 
 namespace tessera::inline abi_0_1::kernel {
 

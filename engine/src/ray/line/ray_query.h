@@ -22,7 +22,7 @@ struct LeafRoot {
   std::uint32_t patch = 0;
   double u = 0, v = 0;            ///< in the patch
   double s = 0;                   ///< along the line
-  double from = no_part;          ///< of a part that is taken as one root: a lower bound of its s
+  double from = no_part;          ///< lower bound of s, for a part that counts as one root
   double residual = 0;            ///< distance from the line, in the scene's coordinates
   double noise = 0;               ///< bound on the rounding of the residual
   double gain_u = 0, gain_v = 0;  ///< how far a parameter moves if the point moves by 1 across the line
