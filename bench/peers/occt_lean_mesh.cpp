@@ -90,7 +90,7 @@ class Report {
     for (std::size_t k = 0; k < one.tolerances.size(); ++k) {
       const Result<CertifiedTessellation> plan = mesher.plan(one.tolerances[k]);
       if (!plan || plan->capacity().triangles > max_triangles) {
-        std::printf(" %8s %5s", plan ? "many" : "refused", "");
+        std::printf(" %8s %5s", plan ? "many" : "failed", "");
         continue;
       }
       const std::size_t triangles = plan->capacity().triangles;

@@ -56,7 +56,7 @@ struct Wish {
 };
 
 /// Casts rays of a class, in rounds on all cores, until enough hits are proven; at most 40 rays per hit.
-ProofTally judged(const test::RayClass& rays, const RayScene& scene, const Wish& wish, double size) {
+ProofTally checked(const test::RayClass& rays, const RayScene& scene, const Wish& wish, double size) {
   constexpr std::size_t round = 500;
   const std::size_t threads = std::max(1u, std::thread::hardware_concurrency());
   std::vector<ProofTally> parts(threads);
@@ -67,7 +67,7 @@ ProofTally judged(const test::RayClass& rays, const RayScene& scene, const Wish&
     while (hits < wish.hits && cast < 40 * wish.hits) {
       const std::size_t before = part.hits;
       for (std::size_t k = 0; k < round; ++k)
-        test::judge_ray(rays.patches, scene, rays.draw(random), 5e-12 * size, size, part);
+        test::check_ray(rays.patches, scene, rays.draw(random), 5e-12 * size, size, part);
       hits += part.hits - before;
       cast += round;
     }
@@ -93,7 +93,7 @@ bool report(const test::RayClass& rays, const Wish& wish) {
   const auto begin = std::chrono::steady_clock::now();
   const PatchSet set = test::value_of(PatchSet::make(rays.patches));
   const double size = set.box().diagonal();
-  ProofTally tally = judged(rays, exact_scene(set), wish, size);
+  ProofTally tally = checked(rays, exact_scene(set), wish, size);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
   const bool good = tally.missed == 0 && tally.false_hits == 0 && tally.wrong_patch == 0;
   std::printf("| %s | %zu | %zu | %zu | %zu | %zu | %zu | %zu | %zu | %zu | %s | %s | %.1e |\n", rays.name.c_str(),
@@ -140,7 +140,7 @@ bool report_seams(const char* name, const std::vector<BezierPatch>& patches, boo
     test::Random random(wish.seed * 1000 + 400 + thread);
     for (std::size_t k = thread; k < wish.seams; k += threads) {
       const test::SeamPlace place = test::beside_seam(patches, random, test::rays::power(random, 1e-15, 1e-6));
-      test::judge_count(scene, test::through(place, random, size), size, smooth, tallies[thread]);
+      test::check_count(scene, test::through(place, random, size), size, smooth, tallies[thread]);
       Ray out = test::leaving(scene, place, random);
       out.tfar = 1e-6;
       const Hit hit = scene.closest(out);

@@ -32,7 +32,7 @@ void axes(Canvas& canvas, double minutes, double highest) {
 
 }  // namespace
 
-double growth_an_hour(const std::vector<SoakSample>& samples) {
+double growth_per_hour(const std::vector<SoakSample>& samples) {
   double count = 0, t = 0, y = 0, tt = 0, ty = 0;
   for (std::size_t k = samples.size() / 2; k < samples.size(); ++k) {
     const double hours = samples[k].seconds / 3600;
@@ -52,7 +52,7 @@ Status draw_soak(const std::vector<SoakSample>& samples, const std::string& path
   for (const SoakSample& sample : samples) highest = std::max(highest, 1.25 * sample.resident);
   const double minutes = samples.empty() ? 1 : std::max(1.0 / 60, samples.back().seconds / 60);
   canvas.text(20, 16,
-              "resident memory, MiB: " + number(growth_an_hour(samples), "%+.2f") + " MiB an hour in the second half",
+              "resident memory, MiB: " + number(growth_per_hour(samples), "%+.2f") + " MiB per hour in the second half",
               ink);
   axes(canvas, minutes, highest);
   const auto x = [&](const SoakSample& s) { return left + (right - left) * s.seconds / 60 / minutes; };

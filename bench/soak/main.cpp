@@ -182,7 +182,7 @@ int run(const Options& options) {
   if (!options.png.empty()) need(draw_soak(samples, options.png));
   const auto [least, most] =
       std::ranges::minmax(std::span(samples).subspan(samples.size() / 2), {}, &SoakSample::resident);
-  const double growth = growth_an_hour(samples);
+  const double growth = growth_per_hour(samples);
   std::printf("%zu rounds in %.0f s; second half: %.1f to %.1f MiB resident, %+.2f MiB an hour\n", rounds,
               samples.back().seconds, least.resident, most.resident, growth);
   return growth <= options.max_growth ? 0 : 1;

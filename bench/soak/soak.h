@@ -15,7 +15,7 @@ struct SoakSample {
 };
 
 /// The growth of the resident memory in MiB per hour: the slope of the line through the samples of the second half.
-double growth_an_hour(const std::vector<SoakSample>& samples);
+double growth_per_hour(const std::vector<SoakSample>& samples);
 
 /// Draws a chart of the resident memory over time, as PNG. Errors: those of write_png.
 Status draw_soak(const std::vector<SoakSample>& samples, const std::string& path);

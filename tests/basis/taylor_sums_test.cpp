@@ -27,16 +27,16 @@ double in_order(std::initializer_list<double> terms) {
 
 TEST(TaylorSums, AreTakenInTheOrderStated) {
   Random random(71);
-  int told_apart = 0;
+  int distinguished = 0;
   for (int k = 0; k < 1000; ++k) {
     const double u = uniform(random, -1, 1), v = uniform(random, -1, 1), x = u * v;
     // cos x = f0 + f1 d + f2 d^2, d = v du + u dv + du dv; by Horner's scheme (f1 + f2 d) d: the term in du dv
     const double f1 = -std::sin(x), f2 = -std::cos(x) / 2;
     const double a = f1, b = f2 * v * u, c = f2 * u * v;
     EXPECT_EQ(cosine_of_product(u, v).coefficient(1, 1), in_order({a, b, c})) << u << " " << v;
-    told_apart += in_order({a, b, c}) != in_order({a, c, b}) || in_order({a, b, c}) != in_order({c, b, a});
+    distinguished += in_order({a, b, c}) != in_order({a, c, b}) || in_order({a, b, c}) != in_order({c, b, a});
   }
-  EXPECT_GT(told_apart, 100);
+  EXPECT_GT(distinguished, 100);
 }
 
 }  // namespace

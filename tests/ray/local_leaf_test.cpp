@@ -80,7 +80,7 @@ Point point_of(int m, int n, const std::vector<long double>& net, long double u,
 }
 
 /// A component of the piece by the coefficients in float.
-Point told_by(const kernel::RayLeaf& leaf, std::size_t step, std::size_t component, long double u, long double v) {
+Point value_of(const kernel::RayLeaf& leaf, std::size_t step, std::size_t component, long double u, long double v) {
   Point out;
   for (std::size_t i = 0; i < 4; ++i) {
     for (std::size_t j = 0; j < 4; ++j) {
@@ -139,7 +139,7 @@ double share_of_bounds(const BezierPatch& patch, Random& random) {
     for (int draw = 0; draw < 20; ++draw) {
       constexpr double reach = kernel::RayLeaf::reach;
       const double u = draw == 0 ? reach : uniform(random, -reach, reach), v = uniform(random, -reach, reach);
-      const Point a = point_of(m, n, exact, u + 0.5L, v + 0.5L), b = told_by(leaf, step, c, u, v);
+      const Point a = point_of(m, n, exact, u + 0.5L, v + 0.5L), b = value_of(leaf, step, c, u, v);
       share = std::max({share, std::abs(a.value - b.value) / leaf.noise, std::abs(a.du - b.du) / leaf.slope_noise,
                         std::abs(a.dv - b.dv) / leaf.slope_noise});
     }

@@ -41,7 +41,7 @@ TEST(ExactMode, MissesNothingThatIsProven) {
     Random random(31);
     ProofTally tally;
     for (int k = 0; k < rays_per_class; ++k)
-      judge_ray(rays.patches, scene, rays.draw(random), 5e-12 * size, size, tally);
+      check_ray(rays.patches, scene, rays.draw(random), 5e-12 * size, size, tally);
     EXPECT_EQ(tally.missed, 0u);
     EXPECT_EQ(tally.false_hits, 0u);
     EXPECT_EQ(tally.incomplete, 0u);
@@ -71,7 +71,7 @@ TEST(ExactMode, NoProvenRootHidesWhatBeginsBeforeIt) {
   for (const auto& line : lines) {
     const Ray ray = rays::from_to(line[0], line[1]);
     ProofTally tally;
-    judge_ray(torus, scene, ray, 5e-12 * size, size, tally);
+    check_ray(torus, scene, ray, 5e-12 * size, size, tally);
     EXPECT_EQ(tally.hits, 1u);
     EXPECT_EQ(tally.missed, 0u);
     EXPECT_EQ(tally.false_hits, 0u);

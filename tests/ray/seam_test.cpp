@@ -83,7 +83,7 @@ TEST(Seams, EachRootIsCountedOnce) {
     SeamTally tally;
     for (int power = 6; power <= 15; ++power) {
       for (int k = 0; k < 300; ++k)
-        judge_count(scene, through(beside_seam(body.patches, random, std::pow(10.0, -power)), random, size), size,
+        check_count(scene, through(beside_seam(body.patches, random, std::pow(10.0, -power)), random, size), size,
                     body.smooth, tally);
     }
     EXPECT_GT(tally.decided, tally.rays / 2) << body.name;

@@ -239,7 +239,7 @@ class Reference {
       if (IntervalNet::is_off(patches[patch_], ray)) continue;
       whole_ = IntervalNetHolder(patches[patch_], ray);
       scale_ = whole_.net().magnitude();
-      judge(whole_.net(), {{0, 1}, {0, 1}});
+      decide(whole_.net(), {{0, 1}, {0, 1}});
     }
   }
   const Verdict& verdict() const { return verdict_; }
@@ -304,7 +304,7 @@ class Reference {
 
   static double point(Interval range, double at) { return range.lo + at * (range.hi - range.lo); }
 
-  void judge(const IntervalNet& net, const Place& place) {
+  void decide(const IntervalNet& net, const Place& place) {
     if (excluded(net)) return;
     Interval u, v;
     const Test test = krawczyk(net, u, v);
@@ -328,7 +328,7 @@ class Reference {
     for (int half = 0; half < 2; ++half) {
       Place part = place;
       (by_u ? part.u : part.v) = half == 0 ? Interval{whole.lo, middle} : Interval{middle, whole.hi};
-      judge(net.part(by_u, half * 0.5, 0.5 + half * 0.5), part);
+      decide(net.part(by_u, half * 0.5, 0.5 + half * 0.5), part);
     }
   }
 

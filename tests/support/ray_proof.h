@@ -46,7 +46,7 @@ inline double distance_from_line(const Vec3& p, const Ray& ray) {
 }
 
 /// Checks one ray. `tolerance`: the scene's; `size`: the model's. The point is that of the patch by another evaluator.
-inline void judge_ray(std::span<const BezierPatch> patches, const RayScene& scene, const Ray& ray, double tolerance,
+inline void check_ray(std::span<const BezierPatch> patches, const RayScene& scene, const Ray& ray, double tolerance,
                       double size, ProofTally& tally) {
   const Verdict verdict = reference_verdict(patches, ray);
   const Hit hit = scene.closest(ray);

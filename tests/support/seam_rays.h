@@ -41,7 +41,7 @@ struct SeamTally {
 
 /// Checks that a ray has as many hits as its neighbours, and that the first of them is the closest. On a body with
 /// creases a ray may cross one that its neighbours miss: it then hits the surface twice more, to the last digits.
-inline void judge_count(const RayScene& scene, const Ray& ray, double size, bool smooth, SeamTally& tally) {
+inline void check_count(const RayScene& scene, const Ray& ray, double size, bool smooth, SeamTally& tally) {
   ++tally.rays;
   HitLists lists;
   const std::array<Ray, 7> rays = with_neighbours(ray, size);

@@ -59,7 +59,7 @@ void add_text_output(Command& command, std::string& output) {
   command.add_help();
 }
 
-void refuse_overwriting(const std::string& option, const std::string& output, const std::vector<std::string>& inputs) {
+void check_overwriting(const std::string& option, const std::string& output, const std::vector<std::string>& inputs) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(output, error)) return;
   for (const std::string& input : inputs) {

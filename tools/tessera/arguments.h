@@ -27,6 +27,6 @@ void add_text_output(Command& command, std::string& output);
 
 /// Throws if `output` is one of `inputs`, under any name: it would be overwritten. Empty names stand for no file; a
 /// pipe or a terminal may be both.
-void refuse_overwriting(const std::string& option, const std::string& output, const std::vector<std::string>& inputs);
+void check_overwriting(const std::string& option, const std::string& output, const std::vector<std::string>& inputs);
 
 }  // namespace tessera::cli

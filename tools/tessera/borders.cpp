@@ -87,16 +87,16 @@ Candidate candidate(const BezierPatch& patch, const Border& border) {
 
 /// Splits groups of borders with the same ends by the middles of the borders.
 void split(const std::vector<Candidate>& all, std::vector<std::vector<Border>>& groups) {
-  constexpr double near = 0.05;                                 // of the length
-  std::vector<std::pair<const Candidate*, std::size_t>> heads;  // the first border of each new group, and the group
+  constexpr double near = 0.05;                                   // of the length
+  std::vector<std::pair<const Candidate*, std::size_t>> leaders;  // the first border of each new group, and the group
   for (const Candidate& one : all) {
-    const auto head = std::find_if(heads.begin(), heads.end(), [&](const auto& of) {
+    const auto leader = std::find_if(leaders.begin(), leaders.end(), [&](const auto& of) {
       return length(of.first->middle - one.middle) <= near * std::max(of.first->length, one.length);
     });
-    if (head != heads.end()) {
-      groups[head->second].push_back(one.border);
+    if (leader != leaders.end()) {
+      groups[leader->second].push_back(one.border);
     } else {
-      heads.emplace_back(&one, groups.size());
+      leaders.emplace_back(&one, groups.size());
       groups.push_back({one.border});
     }
   }

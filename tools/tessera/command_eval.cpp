@@ -299,7 +299,7 @@ void add_eval(Command& tool, Session& session) {
     check_input(options->models);
     const std::string extension = "." + options->format;
     const Plan plan = plan_jobs(options->models.files, options->output, {"--output", extension});
-    for (const Job& job : plan.jobs) refuse_overwriting("--output", job.output, {options->places});
+    for (const Job& job : plan.jobs) check_overwriting("--output", job.output, {options->places});
     session.command = [options, plan, &session] {
       return run_jobs(plan, session.common, [&](const Job& job, Timings& timings) {
         return run_eval(job, *options, session.common, timings);

@@ -65,7 +65,7 @@ std::string fault_of_word(const Command& tool, const Command& command, const std
 }
 
 /// Throws for the first word that nothing takes, options first.
-void refuse_unknown_words(const Command& tool, const Command& command, const std::vector<std::string>& words) {
+void check_no_words_left(const Command& tool, const Command& command, const std::vector<std::string>& words) {
   const auto option = std::find_if(words.begin(), words.end(),
                                    [](const std::string& word) { return word.size() > 1 && word[0] == '-'; });
   if (!words.empty()) throw UsageError(fault_of_word(tool, command, option == words.end() ? words[0] : *option));
@@ -234,8 +234,8 @@ Parsed parse(Command& tool, int argc, const char* const* argv) {
     if (app.get_subcommand(command.name)->parsed()) chosen = &command;
   for (Command* const command : {&tool, chosen})
     if (command && !values.at(&command->option("--help")).empty()) return {chosen, true};
-  if (chosen) refuse_unknown_words(tool, *chosen, app.get_subcommand(chosen->name)->remaining());
-  refuse_unknown_words(tool, tool, app.remaining());
+  if (chosen) check_no_words_left(tool, *chosen, app.get_subcommand(chosen->name)->remaining());
+  check_no_words_left(tool, tool, app.remaining());
   if (!fault.empty()) throw UsageError(fault_of_syntax(chosen ? *chosen : tool, fault));
   use(tool, values);
   if (!chosen) return {};

@@ -61,7 +61,7 @@ std::string output_of(const std::string& input, std::string output, const Output
   return output;
 }
 
-void refuse_shared_outputs(const std::vector<Job>& jobs, const OutputRule& rule) {
+void check_outputs_differ(const std::vector<Job>& jobs, const OutputRule& rule) {
   std::map<std::string, std::string> inputs;  // by output
   for (const Job& job : jobs) {
     const auto [place, is_new] = inputs.emplace(fs::path(job.output).lexically_normal().string(), job.inputs[0]);
@@ -95,8 +95,8 @@ Plan plan_jobs(const std::vector<std::string>& words, const std::string& output,
       plan.jobs[0].inputs.push_back(file);
     }
   }
-  refuse_shared_outputs(plan.jobs, rule);
-  for (const Job& job : plan.jobs) refuse_overwriting(rule.option, job.output, files);
+  check_outputs_differ(plan.jobs, rule);
+  for (const Job& job : plan.jobs) check_overwriting(rule.option, job.output, files);
   return plan;
 }
 

@@ -163,19 +163,18 @@ Box3 PatchSet::Impl::box() const {
 Status PatchSet::Impl::pack_all() {
   constexpr std::size_t blocks_in_piece = 32;
   const kernel::KernelTable& kernels = kernel::default_kernels();
-  std::atomic<std::size_t> refused{lane_patches.size()};  // the first lane that doesn't fit
+  std::atomic<std::size_t> failed{lane_patches.size()};  // the first lane that doesn't fit
   const auto pack_blocks = [&](std::size_t begin, std::size_t end) {
     for (std::size_t block = begin; block < end; ++block) {
       const std::size_t fitting = pack_block(block, kernels);
       if (fitting == lanes) continue;
-      std::size_t first = refused;
-      while (block * lanes + fitting < first && !refused.compare_exchange_weak(first, block * lanes + fitting))
-        continue;
+      std::size_t first = failed;
+      while (block * lanes + fitting < first && !failed.compare_exchange_weak(first, block * lanes + fitting)) continue;
       return;
     }
   };
   Status status = parallel_for(lane_counts.size(), blocks_in_piece, {}, pack_blocks);
-  return status.ok() && refused < lane_patches.size() ? too_large(lane_patches[refused]) : status;
+  return status.ok() && failed < lane_patches.size() ? too_large(lane_patches[failed]) : status;
 }
 
 Result<PatchSet> PatchSet::Impl::make(std::vector<BezierPatch> patches, std::vector<PatchSource> sources,

@@ -59,18 +59,18 @@ Status check_call(const PatchSet::Impl& set, const Source& source, const Quantit
 template <class Source>
 Status check_samples(const Source& source, const kernel::KernelTable& kernels, std::size_t grain,
                      const Execution& execution) {
-  std::atomic<std::size_t> refused{source.count()};
+  std::atomic<std::size_t> failed{source.count()};
   const Execution checking{.cancel = execution.cancel};
   Status status = parallel_for(source.count(), grain, checking, [&](std::size_t begin, std::size_t end) {
-    if (begin >= refused.load(std::memory_order_relaxed)) return;
+    if (begin >= failed.load(std::memory_order_relaxed)) return;
     const Status found = source.check(begin, end, kernels);
     if (found.ok()) return;
     const auto sample = static_cast<std::size_t>(found.index());
-    std::size_t first = refused;
-    while (sample < first && !refused.compare_exchange_weak(first, sample)) continue;
+    std::size_t first = failed;
+    while (sample < first && !failed.compare_exchange_weak(first, sample)) continue;
   });
-  if (!status.ok() || refused == source.count()) return status;
-  return source.check(refused, refused + 1, kernels);
+  if (!status.ok() || failed == source.count()) return status;
+  return source.check(failed, failed + 1, kernels);
 }
 
 template <class T, class Source>

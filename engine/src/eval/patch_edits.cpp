@@ -33,15 +33,14 @@ std::span<const Vec3> points_of(const PatchSet::Impl& set, const PatchEdits& edi
   return edits.points.subspan(touched.first_point(edit), set.patches[edits.patch[edit]].points().size());
 }
 
-Status refused_points(std::size_t edit, std::uint32_t patch, std::span<const Vec3> points) {
+Status points_error(std::size_t edit, std::uint32_t patch, std::span<const Vec3> points) {
   for (std::size_t k = 0; k < points.size(); ++k)
     if (!is_finite(points[k]))
-      return refused_edit(
-          StatusCode::non_finite, edit,
-          "control point " + std::to_string(k) + " of patch " + std::to_string(patch) + " is not finite");
-  return refused_edit(StatusCode::non_finite, edit,
-                      "a control point of patch " + std::to_string(patch) +
-                          ", relative to the set's origin, is outside the range of its blocks' numbers");
+      return edit_error(StatusCode::non_finite, edit,
+                        "control point " + std::to_string(k) + " of patch " + std::to_string(patch) + " is not finite");
+  return edit_error(StatusCode::non_finite, edit,
+                    "a control point of patch " + std::to_string(patch) +
+                        ", relative to the set's origin, is outside the range of its blocks' numbers");
 }
 
 }  // namespace
@@ -49,7 +48,7 @@ Status refused_points(std::size_t edit, std::uint32_t patch, std::span<const Vec
 Status prepare_edits(PatchSet::Impl& set, const PatchEdits& edits, const TouchedBlocks& touched,
                      const Execution& execution, const KeepsShape* keeps_shape) {
   const bool near = max_abs(set.origin) <= plain_size;
-  LeastIndex refused, reshaped;
+  LeastIndex failed, reshaped;
   const Execution checking{.cancel = execution.cancel};
   Status status = parallel_for(edits.patch.size(), edits_per_task, checking, [&](std::size_t begin, std::size_t end) {
     const auto last = points_of(set, edits, touched, end - 1);
@@ -58,16 +57,16 @@ Status prepare_edits(PatchSet::Impl& set, const PatchEdits& edits, const Touched
     for (std::size_t k = begin; k < end; ++k) {
       BezierPatch& patch = set.patches[edits.patch[k]];
       const auto points = points_of(set, edits, touched, k);
-      if (!plain && !(near && all_plain(points)) && !fits(set, patch, points)) return refused.add(k);
+      if (!plain && !(near && all_plain(points)) && !fits(set, patch, points)) return failed.add(k);
       if (keeps_shape && !(*keeps_shape)(edits.patch[k], points)) return reshaped.add(k);
       PatchPieces::make_sole(patch);
     }
   });
   if (!status.ok()) return status;
-  if (const std::size_t k = refused.index(); refused.found())
-    return refused_points(k, edits.patch[k], points_of(set, edits, touched, k));
+  if (const std::size_t k = failed.index(); failed.found())
+    return points_error(k, edits.patch[k], points_of(set, edits, touched, k));
   if (const std::size_t k = reshaped.index(); reshaped.found())
-    return refused_edit(
+    return edit_error(
         StatusCode::stale, k,
         "the edit changes which edges of patch " + std::to_string(edits.patch[k]) + " are collapsed; make a new plan");
   return {};

@@ -17,14 +17,14 @@
 namespace tessera::inline abi_0_1 {
 
 /// Returns the status of a sample that cannot be evaluated.
-inline Status refused_sample(StatusCode code, std::size_t sample, const std::string& why) {
+inline Status sample_error(StatusCode code, std::size_t sample, const std::string& why) {
   return Status(code, "sample " + std::to_string(sample) + ": " + why, static_cast<std::ptrdiff_t>(sample));
 }
-inline Status refused_parameter(const char* direction, std::size_t sample, double t, double from, double to) {
+inline Status parameter_error(const char* direction, std::size_t sample, double t, double from, double to) {
   const std::string what = std::string(direction) + " = " + text(t);
-  if (!std::isfinite(t)) return refused_sample(StatusCode::non_finite, sample, what + " is not finite");
-  return refused_sample(StatusCode::invalid_argument, sample,
-                        what + " is outside [" + text(from) + ", " + text(to) + "]");
+  if (!std::isfinite(t)) return sample_error(StatusCode::non_finite, sample, what + " is not finite");
+  return sample_error(StatusCode::invalid_argument, sample,
+                      what + " is outside [" + text(from) + ", " + text(to) + "]");
 }
 
 /// Copies values [begin, begin + count) of a view.
@@ -62,11 +62,11 @@ class SamplesByPatch {
     if (is_contiguous() && all_pass(begin, end - begin, kernels)) return {};
     for (std::size_t k = begin; k < end; ++k) {
       if (samples_.patch.at(k, 0) >= patches_)
-        return refused_sample(StatusCode::invalid_argument, k,
-                              "there is no patch " + std::to_string(samples_.patch.at(k, 0)) + " in a set of " +
-                                  std::to_string(patches_));
+        return sample_error(StatusCode::invalid_argument, k,
+                            "there is no patch " + std::to_string(samples_.patch.at(k, 0)) + " in a set of " +
+                                std::to_string(patches_));
       for (const auto& [name, t] : {std::pair{"u", samples_.u.at(k, 0)}, {"v", samples_.v.at(k, 0)}})
-        if (!(t >= low_ && t <= high_)) return refused_parameter(name, k, t, 0, 1);
+        if (!(t >= low_ && t <= high_)) return parameter_error(name, k, t, 0, 1);
     }
     return {};
   }
@@ -132,13 +132,13 @@ class SamplesBySurface {
     for (std::size_t k = begin; k < end; ++k) {
       const std::uint32_t surface = surface_of(k);
       if (surface >= map_.surfaces.size() || map_.surfaces[surface].breaks_u.empty())
-        return refused_sample(StatusCode::invalid_argument, k,
-                              "there is no surface " + std::to_string(surface) + " in the set");
+        return sample_error(StatusCode::invalid_argument, k,
+                            "there is no surface " + std::to_string(surface) + " in the set");
       const auto& breaks_u = map_.surfaces[surface].breaks_u;
       const auto& breaks_v = map_.surfaces[surface].breaks_v;
       const double u = samples_.u.at(k, 0), v = samples_.v.at(k, 0);
-      if (!passes(u, breaks_u)) return refused_parameter("u", k, u, breaks_u.front(), breaks_u.back());
-      if (!passes(v, breaks_v)) return refused_parameter("v", k, v, breaks_v.front(), breaks_v.back());
+      if (!passes(u, breaks_u)) return parameter_error("u", k, u, breaks_u.front(), breaks_u.back());
+      if (!passes(v, breaks_v)) return parameter_error("v", k, v, breaks_v.front(), breaks_v.back());
     }
     return {};
   }

@@ -15,7 +15,7 @@
 namespace tessera::inline abi_0_1 {
 
 /// Returns the status of an edit that cannot be made.
-inline Status refused_edit(StatusCode code, std::size_t edit, const std::string& why) {
+inline Status edit_error(StatusCode code, std::size_t edit, const std::string& why) {
   return Status(code, "edit " + std::to_string(edit) + ": " + why, static_cast<std::ptrdiff_t>(edit));
 }
 
@@ -38,24 +38,23 @@ class TouchedBlocks {
     for (std::size_t k = 0; k < edits.patch.size(); ++k) {
       const std::uint32_t patch = edits.patch[k];
       if (patch >= set.patches.size())
-        return refuse(refused_edit(
+        return cleared(edit_error(
             StatusCode::invalid_argument, k,
             "there is no patch " + std::to_string(patch) + " in a set of " + std::to_string(set.patches.size())));
       const PatchSet::Slot slot = set.slots[patch];
       std::uint32_t& edit = edits_[slot.block * lanes + slot.lane];
       if (edit != none)
-        return refuse(
-            refused_edit(StatusCode::invalid_argument, k,
-                         "patch " + std::to_string(patch) + " has edit " + std::to_string(edit) + " already"));
+        return cleared(edit_error(StatusCode::invalid_argument, k,
+                                  "patch " + std::to_string(patch) + " has edit " + std::to_string(edit) + " already"));
       edit = static_cast<std::uint32_t>(k);
       if (counts_[slot.block]++ == 0) blocks_.push_back(slot.block);
       first_points_.push_back(next);
       next += set.patches[patch].points().size();
     }
     if (next == edits.points.size()) return {};
-    return refuse(Status(StatusCode::count_mismatch, counted(edits.patch.size(), "edit") + " must bring " +
-                                                         counted(next, "control point") + ", found " +
-                                                         std::to_string(edits.points.size())));
+    return cleared(Status(StatusCode::count_mismatch, counted(edits.patch.size(), "edit") + " must bring " +
+                                                          counted(next, "control point") + ", found " +
+                                                          std::to_string(edits.points.size())));
   }
 
   void clear() {
@@ -76,7 +75,7 @@ class TouchedBlocks {
  private:
   static constexpr std::size_t lanes = PatchSet::lanes;
 
-  Status refuse(Status status) {
+  Status cleared(Status status) {
     clear();
     return status;
   }

@@ -30,7 +30,7 @@ class RateSearch {
 
   void run() {
     search();
-    const auto found = least_ < L::broadcast(std::numeric_limits<float>::infinity());
+    const auto found = min_cells_ < L::broadcast(std::numeric_limits<float>::infinity());
     Batch chord = chord_of(best_first_, best_second_);
     const auto kept = found & (L::broadcast(8) * chord <= wanted_);
     Batch first = best_first_, second = best_second_;
@@ -91,7 +91,7 @@ class RateSearch {
     const Batch start = xsimd::sqrt((first_[0] + mixed_[0] * ratio) * two / xsimd::max(wanted_, tiny()));
     const Batch middle = two * xsimd::floor(half * xsimd::min(start, most_));
     best_first_ = best_second_ = zero;
-    least_ = L::broadcast(std::numeric_limits<float>::infinity());
+    min_cells_ = L::broadcast(std::numeric_limits<float>::infinity());
     for (int step = -2; step <= 3; ++step) {
       const Batch rate = middle + L::broadcast(static_cast<float>(step));
       step % 2 == 0 ? attempt<true>(rate) : attempt<false>(rate);
@@ -131,8 +131,8 @@ class RateSearch {
     const Batch even = two * xsimd::ceil(half * needed(Even ? 3 : 2, h));
     const Batch second = xsimd::min(xsimd::max(odd, one), xsimd::max(even, two));
     const Batch cells = first * second;
-    const auto better = (second <= most_) & (first <= most_) & (cells < least_);
-    least_ = xsimd::select(better, cells, least_);
+    const auto better = (second <= most_) & (first <= most_) & (cells < min_cells_);
+    min_cells_ = xsimd::select(better, cells, min_cells_);
     best_first_ = xsimd::select(better, first, best_first_);
     best_second_ = xsimd::select(better, second, best_second_);
   }
@@ -214,7 +214,7 @@ class RateSearch {
 
   Batch first_[9], mixed_[9], second_[9], most_, is_u_;
   Batch wanted_, room_[4];  ///< eight times the distance; the part for the plain bound, by parity
-  Batch best_first_, best_second_, least_;
+  Batch best_first_, best_second_, min_cells_;
 };
 
 template <class L>

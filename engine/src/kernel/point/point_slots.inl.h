@@ -6,16 +6,16 @@
 
 template <class T>
 inline bool all_within(const T* values, std::size_t count, T low, T high) {
-  unsigned refused = 0;
-  for (std::size_t k = 0; k < count; ++k) refused |= !((values[k] >= low) & (values[k] <= high));
-  return refused == 0;
+  unsigned outside = 0;
+  for (std::size_t k = 0; k < count; ++k) outside |= !((values[k] >= low) & (values[k] <= high));
+  return outside == 0;
 }
 
 template <class T>
 bool check_points(const PointCheckJob<T>& job) {
-  unsigned refused = 0;
-  for (std::size_t k = 0; k < job.count; ++k) refused |= job.patch[k] >= job.patches;
-  return refused == 0 && all_within(job.u, job.count, job.low, job.high) &&
+  unsigned outside = 0;
+  for (std::size_t k = 0; k < job.count; ++k) outside |= job.patch[k] >= job.patches;
+  return outside == 0 && all_within(job.u, job.count, job.low, job.high) &&
          all_within(job.v, job.count, job.low, job.high);
 }
 

@@ -12,7 +12,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr int max_halvings_a_side = 6, max_halvings_by_bend = 3, max_halvings_by_certificate = 5;
+constexpr int max_halvings_per_side = 6, max_halvings_by_bend = 3, max_halvings_by_certificate = 5;
 constexpr int max_halvings_of_folds = 4;  // for patches that look folded everywhere, such as those without an area
 constexpr double max_net_bend = 0.12;     // share of a piece's length: an arc of nearly a radian
 
@@ -74,8 +74,8 @@ Cuts cuts_by_net(const NetShapes& net, int halvings) {
             by_v = std::max(halvings, halvings_by_bend(net.bend_v, net.length_v));
   const auto more = [&](double longer, double shorter, int already) {
     if (!(longer > 2 * shorter)) return 0;
-    const int extra = shorter > 0 ? std::ilogb(longer / shorter) : max_halvings_a_side;
-    return std::min(extra, max_halvings_a_side - already);
+    const int extra = shorter > 0 ? std::ilogb(longer / shorter) : max_halvings_per_side;
+    return std::min(extra, max_halvings_per_side - already);
   };
   const double piece_u = std::ldexp(net.length_u, -by_u), piece_v = std::ldexp(net.length_v, -by_v);
   return {by_u + more(piece_u, piece_v, by_u), by_v + more(piece_v, piece_u, by_v)};

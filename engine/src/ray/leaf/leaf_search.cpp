@@ -23,7 +23,7 @@ constexpr int max_newton_steps = 12;
 // Cutting both ends of a box costs two halvings, each of which would leave two boxes of half the width.
 constexpr double worth_narrowing = 0.6;
 // A step of fewer than 5 units of 2^-52 in [0, 1] is rounding.
-constexpr double least_step = 1e-15;
+constexpr double min_step = 1e-15;
 // restrict_net() rounds the ends of a part by a few units of 2^-52. The margin, 4500 units, keeps a root at the very
 // end inside, and gives the part a width.
 constexpr double cut_margin = 1e-12;
@@ -195,7 +195,7 @@ class LeafSearch {
       const double moved = std::max(std::abs(next.u - at.u), std::abs(next.v - at.v));
       at = next, f = value(net, at);
       if (f.residual() > tolerance_ && excluded()) return Outcome::none;
-      if (moved < least_step) break;
+      if (moved < min_step) break;
     }
     if (is_root(f)) return Outcome::found;
     const NetValue nearest = f;

@@ -179,8 +179,8 @@ unsigned LeafTracer::take_each_root(const Leaf& leaf, QueryPacket& packet, unsig
   return open;
 }
 
-OriginRoot LeafTracer::judge(const RayLine& line, const LeafRoot& root) const {
-  return judge_origin(*set, borders->found(), nets->frame(), line, root);
+OriginRoot LeafTracer::decide_root(const RayLine& line, const LeafRoot& root) const {
+  return decide_origin(*set, borders->found(), nets->frame(), line, root);
 }
 
 /// Decides in float, if that proves which roots there are, and then finds these in double.
@@ -188,7 +188,7 @@ bool LeafTracer::decide(const Leaf& leaf, unsigned leaf_index, kernel::RayProbe&
   const auto trace = leaf.rational ? kernels->trace_rational_leaf : kernels->trace_polynomial_leaf;
   const kernel::RayLeaf& local = nets->local(leaf_index);
   kernel::RayRoots roots;
-  probe.any = query.wanted == RootsWanted::any && !query.judges();
+  probe.any = query.wanted == RootsWanted::any && !query.decides_each_root();
   if (!probe.any) fetch_patch(*set, leaf);
   if (!trace(local, probe, roots)) return false;
   if (roots.count == 0) return true;

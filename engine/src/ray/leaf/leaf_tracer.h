@@ -56,7 +56,7 @@ struct LeafTracer final : OriginTest, TracedLeaves {
   void search(unsigned leaf, QueryPacket& packet, unsigned lanes, SearchSpace& space) const;
 
   /// See spawn_root.h.
-  OriginRoot judge(const RayLine& line, const LeafRoot& root) const override;
+  OriginRoot decide_root(const RayLine& line, const LeafRoot& root) const override;
 
  private:
   unsigned decide(unsigned leaf_index, QueryPacket& packet, unsigned lanes) const;

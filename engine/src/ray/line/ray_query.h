@@ -67,7 +67,7 @@ enum class OriginRoot : std::uint8_t {
 /// The test that decides this: see spawn_root.h.
 class OriginTest {
  public:
-  virtual OriginRoot judge(const RayLine& line, const LeafRoot& root) const = 0;
+  virtual OriginRoot decide_root(const RayLine& line, const LeafRoot& root) const = 0;
 
  protected:
   ~OriginTest() = default;
@@ -91,7 +91,7 @@ struct RayQuery;
 /// The caller's filter of roots: see batch_filter.h.
 class RootFilter {
  public:
-  virtual HitVerdict judge(const RayQuery& query, const LeafRoot& root) const noexcept = 0;
+  virtual HitVerdict decide(const RayQuery& query, const LeafRoot& root) const noexcept = 0;
 
  protected:
   ~RootFilter() = default;
@@ -127,13 +127,13 @@ struct RayQuery {
   double t_of(const LeafRoot& root) const { return std::clamp(line.t_at(root.s), ray.tnear, ray.tfar); }
   bool done() const { return (found && wanted == RootsWanted::any) || overflow || stopped; }
   /// Returns whether each root must be known to its last digits, one by one.
-  bool judges() const { return origin != nullptr || filter != nullptr; }
+  bool decides_each_root() const { return origin != nullptr || filter != nullptr; }
 
   /// Takes a root. Returns false if its t is outside of [tnear, tfar], or if it stands for the origin that the ray
   /// leaves: there may be others beside it.
   bool take(const LeafRoot& root) {
     if (origin != nullptr) {  // first: rounding may put the origin itself before tnear
-      const OriginRoot is = origin->judge(line, root);
+      const OriginRoot is = origin->decide_root(line, root);
       if (is != OriginRoot::other) return is == OriginRoot::indistinct;
     }
     const double t = line.t_at(root.s);
@@ -157,7 +157,7 @@ struct RayQuery {
 
  private:
   bool counts(const LeafRoot& root) {
-    const HitVerdict verdict = filter->judge(*this, root);
+    const HitVerdict verdict = filter->decide(*this, root);
     if (verdict != HitVerdict::accept && verdict != HitVerdict::reject) {
       stopped = true;
       far = -std::numeric_limits<double>::infinity();

@@ -39,11 +39,11 @@ class EdgeOn {
     length_ = std::sqrt(squared(xp, yp));
     if (!(length_ > 0)) return;
     a_ = xp.centre() / length_, b_ = yp.centre() / length_;
-    least_ = length_ - (std::abs(a_) * xp.radius() + std::abs(b_) * yp.radius() + slope_noise_);
+    min_length_ = length_ - (std::abs(a_) * xp.radius() + std::abs(b_) * yp.radius() + slope_noise_);
   }
 
   /// Returns whether g grows along p in the whole box. If not, nothing else is known.
-  bool grows() const { return least_ > 0.01 * length_; }
+  bool grows() const { return min_length_ > 0.01 * length_; }
 
   /// Bounds the roots. `value` returns the net's value and derivatives at a point.
   template <class Shape, class Value>
@@ -56,7 +56,7 @@ class EdgeOn {
     const double xp = by_u_ ? f.xu : f.xv, yp = by_u_ ? f.yu : f.yv, xq = by_u_ ? f.xv : f.xu, yq = by_u_ ? f.yv : f.yu;
     const double g = std::abs(a_ * f.x + b_ * f.y) + noise_, s = (a_ * xq + b_ * yq) / (a_ * xp + b_ * yp);
     const double turn = turn_of(s);
-    const double hp = a_ * yp - b_ * xp, e = (g + 0.5 * turn) / least_;
+    const double hp = a_ * yp - b_ * xp, e = (g + 0.5 * turn) / min_length_;
     double h = a_ * f.y - b_ * f.x, slope = a_ * yq - b_ * xq - s * hp;
     const Bends bends = bends_of(shape, net);
     const Hull aslant = sum(bends.pq, -s, bends.pp);
@@ -74,7 +74,7 @@ class EdgeOn {
       first = std::max(first, (-slope - root) / least), last = std::min(last, (-slope + root) / least);
       if (first > last) return nothing();
     }
-    const double off = (g + turn * std::max(-first, last)) / least_;
+    const double off = (g + turn * std::max(-first, last)) / min_length_;
     RootBox out;
     set(out, by_u_ ? 1 : 0, 0.5 + first, 0.5 + last);
     set(out, by_u_ ? 0 : 1, p0 + std::min(-s * first, -s * last) - off, p0 + std::max(-s * first, -s * last) + off);
@@ -136,7 +136,7 @@ class EdgeOn {
   double noise_, slope_noise_, bend_noise_;
   bool by_u_ = true;
   double a_ = 0, b_ = 0;
-  double length_ = 0, least_ = 0;  ///< of g_p: mean, lower bound
+  double length_ = 0, min_length_ = 0;  ///< of g_p: mean, lower bound
 };
 
 }  // namespace tessera::inline abi_0_1

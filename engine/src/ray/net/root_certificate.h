@@ -69,12 +69,12 @@ inline RootCertificate certify(const DerivativeHulls& x, const DerivativeHulls& 
   constexpr double epsilon = 4 * std::numeric_limits<double>::epsilon();
   // The determinant errs by 2^-52 of its products. Above this share of them, that adds less than 1e-3 to `row`. A
   // smaller determinant is treated as zero to save time: A may be any matrix, so the proof does not depend on it.
-  constexpr double least_determinant = 1e-12;
+  constexpr double min_determinant = 1e-12;
   RootCertificate out;
   const double j[2][2] = {{x.u.centre(), x.v.centre()}, {y.u.centre(), y.v.centre()}};
   const double determinant = j[0][0] * j[1][1] - j[0][1] * j[1][0];
   const double products = std::abs(j[0][0] * j[1][1]) + std::abs(j[0][1] * j[1][0]);
-  if (!(std::abs(determinant) > least_determinant * products)) return out;
+  if (!(std::abs(determinant) > min_determinant * products)) return out;
   out.regular = true;
   out.a[0][0] = j[1][1] / determinant, out.a[0][1] = -j[0][1] / determinant;
   out.a[1][0] = -j[1][0] / determinant, out.a[1][1] = j[0][0] / determinant;

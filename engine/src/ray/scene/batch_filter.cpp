@@ -29,7 +29,7 @@ void BatchFilter::stop(Status status) noexcept {
   status_ = std::move(status);
 }
 
-HitVerdict SceneFilter::judge(const RayQuery& query, const LeafRoot& root) const noexcept {
+HitVerdict SceneFilter::decide(const RayQuery& query, const LeafRoot& root) const noexcept {
   const CountDenormals count;
   const PatchSource& source = set_.source(root.patch);
   return filter_->ask({.ray = query.index,

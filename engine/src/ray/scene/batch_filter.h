@@ -42,7 +42,7 @@ class SceneFilter final : public RootFilter {
 
   /// Returns the filter of a query: null if the batch has none.
   const RootFilter* if_any() const { return filter_ == nullptr ? nullptr : this; }
-  HitVerdict judge(const RayQuery& query, const LeafRoot& root) const noexcept override;
+  HitVerdict decide(const RayQuery& query, const LeafRoot& root) const noexcept override;
 
  private:
   BatchFilter* filter_;

@@ -105,8 +105,8 @@ bool is_near_along(const BezierPatch& patch, const RayLine& line, const LeafRoot
   return std::abs(root.s - line.s_of_origin()) <= std::min(1e-6, 8 * offset / std::max(sine, 1e-12));
 }
 
-OriginRoot judge_on_patch(const BezierPatch& patch, const SceneFrame& frame, const RayLine& line,
-                          const LeafRoot& root) {
+OriginRoot decide_on_patch(const BezierPatch& patch, const SceneFrame& frame, const RayLine& line,
+                           const LeafRoot& root) {
   constexpr double clearly = 1e3, touching = 1e-5;
   const double offset = line.spawn + noise, ahead = std::abs(root.s - line.s_of_origin());
   if (root.has_point) {
@@ -168,10 +168,10 @@ LeafRoot place_on_border(const BezierPatch& patch, const SceneFrame& frame, cons
 
 }  // namespace
 
-OriginRoot judge_origin(const SetView& set, const Adjacency* borders, const SceneFrame& frame, const RayLine& line,
-                        const LeafRoot& root) {
+OriginRoot decide_origin(const SetView& set, const Adjacency* borders, const SceneFrame& frame, const RayLine& line,
+                         const LeafRoot& root) {
   constexpr double beside = 1e-3;  // along the ray: no root further away is the origin's
-  const OriginRoot here = judge_on_patch(set.patch(root.patch), frame, line, root);
+  const OriginRoot here = decide_on_patch(set.patch(root.patch), frame, line, root);
   if (here != OriginRoot::other || borders == nullptr || std::abs(root.s - line.s_of_origin()) > beside) return here;
   const std::optional<LeafRoot> pole = pole_beside(set, frame, root);
   const LeafRoot on_border = pole ? *pole : place_on_border(set.patch(root.patch), frame, line, root);
@@ -182,7 +182,7 @@ OriginRoot judge_origin(const SetView& set, const Adjacency* borders, const Scen
       place.certified = true;
       place.residual = distance_from(line, scene_point(patch, frame, place.u, place.v).position);
     }
-    const OriginRoot there = judge_on_patch(patch, frame, line, place);
+    const OriginRoot there = decide_on_patch(patch, frame, line, place);
     if (there != OriginRoot::other) return there;
   }
   return OriginRoot::other;

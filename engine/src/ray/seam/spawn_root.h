@@ -23,7 +23,7 @@ namespace tessera::inline abi_0_1 {
 /// A root that is not the origin's on its own patch may be a neighbour's, met again from beyond their border. If it
 /// reaches a border (root_places.h) of `borders`, and these are given, its place there is decided on the patch beyond,
 /// and on the others around a vertex or pole, by its distance from the ray there.
-OriginRoot judge_origin(const SetView& set, const Adjacency* borders, const SceneFrame& frame, const RayLine& line,
-                        const LeafRoot& root);
+OriginRoot decide_origin(const SetView& set, const Adjacency* borders, const SceneFrame& frame, const RayLine& line,
+                         const LeafRoot& root);
 
 }  // namespace tessera::inline abi_0_1
