@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <queue>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -128,7 +129,7 @@ test::DistanceRange distance_to_patch(const BezierPatch& patch, const Vec3& p, d
 }
 
 struct Row {
-  std::size_t patches = 0, refused = 0, triangles = 0, points = 0, exceeded = 0, unresolved = 0;
+  std::size_t patches = 0, failed = 0, triangles = 0, points = 0, exceeded = 0, unresolved = 0;
   double nearest = 0;  ///< the largest ratio of distance and bound
 };
 
@@ -167,6 +168,32 @@ void measure(const BezierPatch& patch, const Mesh& mesh, std::size_t begin, std:
   }
 }
 
+/// Measures the triangles of each patch, which follow those of the patch before.
+void measure_all(const std::vector<BezierPatch>& patches, const std::vector<Kind>& of, const Mesh& mesh,
+                 std::span<const float> bounds, Random& random, std::array<Row, kinds>& rows) {
+  std::size_t begin = 0;
+  for (std::size_t k = 0; k < patches.size(); ++k) {
+    std::size_t end = begin;
+    while (end < mesh.triangle_count() && mesh.patches[end] == k) ++end;
+    measure(patches[k], mesh, begin, end, bounds[k], random, rows[of[k]]);
+    begin = end;
+  }
+}
+
+/// Prints the table, and returns the number of distances that exceed their bound.
+std::size_t print(const std::array<Row, kinds>& rows) {
+  std::printf("%-16s %9s %9s %10s %10s %9s %10s %14s\n", "kind", "patches", "failed", "triangles", "distances",
+              "exceeded", "unresolved", "largest share");
+  std::size_t exceeded = 0;
+  for (std::size_t k = 0; k < kinds; ++k) {
+    const Row& row = rows[k];
+    std::printf("%-16s %9zu %9zu %10zu %10zu %9zu %10zu %14.4f\n", names[k], row.patches, row.failed, row.triangles,
+                row.points, row.exceeded, row.unresolved, row.nearest);
+    exceeded += row.exceeded;
+  }
+  return exceeded;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -201,28 +228,13 @@ int main(int argc, char** argv) {
     const auto plan = CertifiedTessellation::make(
         set, {.tolerance = std::pow(10.0, uniform(random, -2.5, -0.5)), .relative = true, .max_triangles = 300000});
     done += patches_per_set;
-    for (const Kind kind : of) ++rows[kind].patches, rows[kind].refused += !plan;
+    for (const Kind kind : of) ++rows[kind].patches, rows[kind].failed += !plan;
     if (!plan) continue;
     Mesh mesh = test::value_of(plan->allocate());
     if (!plan->run(set, mesh.views()).ok()) return 1;
-    std::size_t begin = 0;
-    for (std::size_t k = 0; k < patches_per_set; ++k) {
-      std::size_t end = begin;
-      while (end < mesh.triangle_count() && mesh.patches[end] == k) ++end;
-      measure(patches[k], mesh, begin, end, plan->bounds()[k], random, rows[of[k]]);
-      begin = end;
-    }
+    measure_all(patches, of, mesh, plan->bounds(), random, rows);
     if (done * 10 / wanted != shown)
       std::fprintf(stderr, "%zu of %zu patches\n", done, wanted), shown = done * 10 / wanted;
   }
-  std::printf("%-16s %9s %9s %10s %10s %9s %10s %14s\n", "kind", "patches", "refused", "triangles", "distances",
-              "exceeded", "unresolved", "largest share");
-  std::size_t exceeded = 0;
-  for (std::size_t k = 0; k < kinds; ++k) {
-    const Row& row = rows[k];
-    std::printf("%-16s %9zu %9zu %10zu %10zu %9zu %10zu %14.4f\n", names[k], row.patches, row.refused, row.triangles,
-                row.points, row.exceeded, row.unresolved, row.nearest);
-    exceeded += row.exceeded;
-  }
-  return exceeded == 0 ? 0 : 1;
+  return print(rows) == 0 ? 0 : 1;
 }
