@@ -191,6 +191,14 @@ TEST(Update, OtherRecordsAreNotTouched) {
   }
 }
 
+void expect_bad_views(GridUpdate& update, PatchSet& set, const GridPlan& plan, const Edits& edits,
+                      QuantityViews<float> views) {
+  views.position.size = plan.capacity() - 1;
+  EXPECT_EQ(update.run(set, plan, edits, views).code(), StatusCode::buffer_too_small);
+  EXPECT_EQ(update.run(set, plan, edits, QuantityViews<float>{}).code(), StatusCode::invalid_argument);
+  EXPECT_EQ(update.run(set, plan, edits, QuantityViews<double>{}).code(), StatusCode::invalid_argument);
+}
+
 TEST(Update, BadEditsAreRefusedBeforeAnythingIsWritten) {
   Random random(904);
   const std::vector<BezierPatch> patches = mixed_patches(random, 3, 2);
@@ -227,11 +235,7 @@ TEST(Update, BadEditsAreRefusedBeforeAnythingIsWritten) {
   refused(edits, StatusCode::count_mismatch, -1);
   edits.points.resize(good.points.size() + 1);
   refused(edits, StatusCode::count_mismatch, -1);
-  QuantityViews<float> views = grids.views();
-  views.position.size = plan.capacity() - 1;
-  EXPECT_EQ(update.run(set, plan, good, views).code(), StatusCode::buffer_too_small);
-  EXPECT_EQ(update.run(set, plan, good, QuantityViews<float>{}).code(), StatusCode::invalid_argument);
-  EXPECT_EQ(update.run(set, plan, good, QuantityViews<double>{}).code(), StatusCode::invalid_argument);
+  expect_bad_views(update, set, plan, good, grids.views());
   PatchSet other = set_of({patches.begin(), patches.begin() + 3});
   const GridPlan its = value_of(GridPlan::make(other, t, t));
   EXPECT_EQ(update.run(other, its, {}, grids.views()).code(), StatusCode::stale);

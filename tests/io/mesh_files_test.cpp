@@ -161,7 +161,8 @@ class MeshWriters : public MeshFiles {};
 INSTANTIATE_TEST_SUITE_P(Formats, MeshWriters, testing::Values(".obj", ".ply", ".stl", ".glb", ".gltf"),
                          [](const auto& format) { return format.param.substr(1); });
 
-TEST_P(MeshWriters, BadMeshesAreRefusedAndNothingAppears) {
+/// Meshes that no file can hold, with their errors.
+std::vector<std::pair<StatusCode, Mesh>> bad_meshes() {
   std::vector<std::pair<StatusCode, Mesh>> cases;
   const Mesh good = random_mesh(5, 4);
   for (int k = 0; k < 19; ++k) cases.emplace_back(StatusCode::count_mismatch, good);
@@ -195,6 +196,11 @@ TEST_P(MeshWriters, BadMeshesAreRefusedAndNothingAppears) {
   cases[17].second.parts = {{"a", 0, 4, 0, 1}};
   cases[18].second.parts = {{"a", 0, 4, 0, 1}, {"b", 4, 0, 2, 1}};
   cases[18].first = StatusCode::invalid_argument;
+  return cases;
+}
+
+TEST_P(MeshWriters, BadMeshesAreRefusedAndNothingAppears) {
+  const auto cases = bad_meshes();
   for (const auto& [code, mesh] : cases) {
     const Status status = write_mesh(mesh, path());
     EXPECT_EQ(status.code(), code) << status.message();

@@ -5,75 +5,15 @@
 #include <array>
 #include <cstddef>
 #include <limits>
-#include <memory>
+#include <span>
 #include <string>
-#include <type_traits>
 
-#include "ray/embree/embree_api.h"
+#include "embree_world.h"
 #include "ray_support.h"
 #include "support/torus.h"
 
 namespace tessera::test {
 namespace {
-
-constexpr unsigned nothing = RTC_INVALID_GEOMETRY_ID;
-
-struct Release {
-  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-  void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
-};
-template <class Handle>
-using Held = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
-
-/// A device and a robust scene of it. `options`: further options of Embree, such as the instruction set.
-struct World {
-  explicit World(const std::string& options = {}) : device(rtcNewDevice(("start_threads=0" + options).c_str())) {}
-
-  Held<RTCDevice> device;
-  Held<RTCScene> scene = make_scene();
-
-  Held<RTCScene> make_scene() const {
-    Held<RTCScene> made(rtcNewScene(device.get()));
-    rtcSetSceneFlags(made.get(), RTC_SCENE_FLAG_ROBUST);
-    return made;
-  }
-};
-
-RTCRayHit embree_ray(const Ray& ray) {
-  RTCRayHit out{};
-  const auto narrow = [](double x) { return static_cast<float>(x); };
-  out.ray.org_x = narrow(ray.origin.x), out.ray.org_y = narrow(ray.origin.y), out.ray.org_z = narrow(ray.origin.z);
-  out.ray.dir_x = narrow(ray.direction.x), out.ray.dir_y = narrow(ray.direction.y);
-  out.ray.dir_z = narrow(ray.direction.z);
-  out.ray.tnear = narrow(ray.tnear), out.ray.tfar = narrow(ray.tfar), out.ray.mask = ~0u;
-  out.hit.geomID = out.hit.primID = out.hit.instID[0] = nothing;
-  return out;
-}
-
-/// The ray as Embree has it.
-Ray in_float(const Ray& ray) {
-  const auto narrow = [](const Vec3& a) {
-    return Vec3{static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
-  };
-  Ray out = ray;
-  out.origin = narrow(ray.origin), out.direction = narrow(ray.direction);
-  return out;
-}
-
-RTCRayHit trace(RTCScene scene, const Ray& ray) {
-  RTCRayHit out = embree_ray(ray);
-  EmbreeContext context = embree_context();
-  intersect(scene, context, Coherence::incoherent, out);
-  return out;
-}
-
-bool is_occluded(RTCScene scene, const Ray& ray) {
-  RTCRayHit out = embree_ray(ray);
-  EmbreeContext context = embree_context();
-  occluded(scene, context, Coherence::incoherent, out.ray);
-  return out.ray.tfar < 0;
-}
 
 std::vector<Ray> rays_at_torus(std::size_t count) {
   Random random(51);
@@ -302,23 +242,21 @@ TEST(EmbreeGeometry, FilterOfTheContext) {
 }
 #endif
 
-TEST(EmbreeGeometry, InstancesBesideTriangles) {
-  const PatchSet set = set_of(Torus(8).patches(false));
-  const RayScene scene = value_of(RayScene::make(set));
-  const World world;
-  const Held<RTCScene> torus = world.make_scene();
-  (void)value_of(attach(scene, torus.get()));
-  rtcCommitScene(torus.get());
-  // One long and thin, one mirrored, columns first; and a floor of two triangles.
-  const std::array<std::array<float, 12>, 2> maps{
-      {{2, 0, 0, 0, 0.5f, 0, 0, 0, 1, 3, 0, 0}, {-1, 0, 0, 0, 1, 0, 0, 0, 1, -3, 0, 0.25f}}};
+/// A map as Embree has it: three columns, and the translation.
+using ColumnMap = std::array<float, 12>;
+
+void add_instances(const World& world, RTCScene scene, std::span<const ColumnMap> maps) {
   for (const auto& map : maps) {
     const Held<RTCGeometry> instance(rtcNewGeometry(world.device.get(), RTC_GEOMETRY_TYPE_INSTANCE));
-    rtcSetGeometryInstancedScene(instance.get(), torus.get());
+    rtcSetGeometryInstancedScene(instance.get(), scene);
     rtcSetGeometryTransform(instance.get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, map.data());
     rtcCommitGeometry(instance.get());
     rtcAttachGeometry(world.scene.get(), instance.get());
   }
+}
+
+/// Adds a floor of two triangles at z = -2, and returns its id.
+unsigned add_floor(const World& world) {
   const Held<RTCGeometry> floor(rtcNewGeometry(world.device.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
   const std::array<float, 12> corners{-9, -9, -2, 9, -9, -2, 9, 9, -2, -9, 9, -2};
   const std::array<unsigned, 6> indices{0, 1, 2, 0, 2, 3};
@@ -329,7 +267,21 @@ TEST(EmbreeGeometry, InstancesBesideTriangles) {
       indices.begin(), indices.end(),
       static_cast<unsigned*>(rtcSetNewGeometryBuffer(floor.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, 2)));
   rtcCommitGeometry(floor.get());
-  const unsigned floor_id = rtcAttachGeometry(world.scene.get(), floor.get());
+  return rtcAttachGeometry(world.scene.get(), floor.get());
+}
+
+TEST(EmbreeGeometry, InstancesBesideTriangles) {
+  const PatchSet set = set_of(Torus(8).patches(false));
+  const RayScene scene = value_of(RayScene::make(set));
+  const World world;
+  const Held<RTCScene> torus = world.make_scene();
+  (void)value_of(attach(scene, torus.get()));
+  rtcCommitScene(torus.get());
+  // One long and thin, one mirrored, columns first; and a floor of two triangles.
+  const std::array<ColumnMap, 2> maps{
+      {{2, 0, 0, 0, 0.5f, 0, 0, 0, 1, 3, 0, 0}, {-1, 0, 0, 0, 1, 0, 0, 0, 1, -3, 0, 0.25f}}};
+  add_instances(world, torus.get(), maps);
+  const unsigned floor_id = add_floor(world);
   rtcCommitScene(world.scene.get());
 
   Random random(53);

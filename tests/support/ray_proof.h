@@ -45,7 +45,28 @@ inline double distance_from_line(const Vec3& p, const Ray& ray) {
   return static_cast<double>(std::sqrt(a * a + b * b + c * c) / std::sqrt(dx * dx + dy * dy + dz * dz));
 }
 
-/// Checks one ray. `tolerance`: the scene's; `size`: the model's. The point is that of the patch by another evaluator.
+/// Whether a hit lies on its ray within the tolerance. The point is that of the patch by another evaluator.
+inline bool is_on_ray(std::span<const BezierPatch> patches, const Ray& ray, const Hit& hit, double tolerance) {
+  const Vec3 p = de_casteljau(patches[hit.patch], hit.patch_u, hit.patch_v);
+  const double reach = std::max({max_abs(p), max_abs(ray.origin), max_abs(p - ray.origin)});
+  const double rounding = 64 * 0x1p-53 * max_abs(p) + 0x1p-58 * reach;
+  return distance_from_line(p, ray) <= tolerance + rounding && hit.t >= ray.tnear && hit.t <= ray.tfar;
+}
+
+/// Whether a hit lies inside a patch that the ray provably misses.
+inline bool is_on_wrong_patch(const Verdict& verdict, const Hit& hit, double tolerance, double size) {
+  const auto on_hit_patch = [&](const Verdict::Root& root) { return root.patch == hit.patch; };
+  // Like t in check_ray(), parameters along the ray within the tolerance differ by up to its square root.
+  const double near_border = hit.flags.uncertified ? 4 * std::sqrt(tolerance / size) : 1e-9;
+  const double aside_u = std::min(hit.patch_u, 1 - hit.patch_u), aside_v = std::min(hit.patch_v, 1 - hit.patch_v);
+  // Next to a pole parameters that differ by 1e-7 are one place: there the distance from the border counts.
+  const double off_border = std::min(aside_u * length(hit.du), aside_v * length(hit.dv));
+  const bool on_border = std::min(aside_u, aside_v) < near_border || off_border < 64 * 0x1p-53 * size;
+  return !on_border && std::none_of(verdict.hits.begin(), verdict.hits.end(), on_hit_patch) &&
+         std::none_of(verdict.undecided.begin(), verdict.undecided.end(), on_hit_patch);
+}
+
+/// Checks one ray. `tolerance`: the scene's; `size`: the model's.
 inline void check_ray(std::span<const BezierPatch> patches, const RayScene& scene, const Ray& ray, double tolerance,
                       double size, ProofTally& tally) {
   const Verdict verdict = reference_verdict(patches, ray);
@@ -55,13 +76,7 @@ inline void check_ray(std::span<const BezierPatch> patches, const RayScene& scen
   ++tally.rays;
   tally.contradicted += scene.occluded(ray) != met;
   tally.incomplete += hit.flags.incomplete;
-  if (met) {
-    const Vec3 p = de_casteljau(patches[hit.patch], hit.patch_u, hit.patch_v);
-    const double reach = std::max({max_abs(p), max_abs(ray.origin), max_abs(p - ray.origin)});
-    const double rounding = 64 * 0x1p-53 * max_abs(p) + 0x1p-58 * reach;
-    const bool on_ray = distance_from_line(p, ray) <= tolerance + rounding && hit.t >= ray.tnear && hit.t <= ray.tfar;
-    tally.false_hits += !on_ray;
-  }
+  tally.false_hits += met && !is_on_ray(patches, ray, hit, tolerance);
   tally.undecidable += !verdict.hit() && !verdict.miss();
   if (verdict.miss()) {
     ++tally.misses;
@@ -69,15 +84,7 @@ inline void check_ray(std::span<const BezierPatch> patches, const RayScene& scen
   }
   if (!verdict.hit()) return;
   ++tally.hits;
-  const auto on_hit_patch = [&](const Verdict::Root& root) { return root.patch == hit.patch; };
-  // Like t below, parameters along the ray within the tolerance differ by up to its square root.
-  const double near_border = hit.flags.uncertified ? 4 * std::sqrt(tolerance / size) : 1e-9;
-  const double aside_u = std::min(hit.patch_u, 1 - hit.patch_u), aside_v = std::min(hit.patch_v, 1 - hit.patch_v);
-  // Next to a pole parameters that differ by 1e-7 are one place: there the distance from the border counts.
-  const double off_border = std::min(aside_u * length(hit.du), aside_v * length(hit.dv));
-  const bool on_border = std::min(aside_u, aside_v) < near_border || off_border < 64 * 0x1p-53 * size;
-  tally.wrong_patch += met && !on_border && std::none_of(verdict.hits.begin(), verdict.hits.end(), on_hit_patch) &&
-                       std::none_of(verdict.undecided.begin(), verdict.undecided.end(), on_hit_patch);
+  tally.wrong_patch += met && is_on_wrong_patch(verdict, hit, tolerance, size);
   const Verdict::Root& first = verdict.first();
   // Within the tolerance of a tangent the surface is hit earlier or later by up to its square root. Elsewhere t is
   // known as precisely as the surface's height over the ray, to a rounding of the coordinates, and the slope determine

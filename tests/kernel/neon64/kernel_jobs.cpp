@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <initializer_list>
 #include <random>
 #include <string>
 #include <vector>
@@ -125,55 +126,83 @@ constexpr Output<T> scalar_outputs[] = {{"gaussian", &GridJob<T>::gaussian, 2},
                                         {"first_curvature", &GridJob<T>::first_curvature, 2},
                                         {"second_curvature", &GridJob<T>::second_curvature, 2}};
 
-/// A block over 3 x 4 parameters, all outputs up to `order`.
+/// A block over 3 x 4 parameters, as the memory of a job.
+template <class T>
+class GridInput {
+ public:
+  static constexpr int count_u = 3, count_v = 4;
+  static constexpr std::size_t samples = count_u * count_v, vectors = samples * 3 * block_lanes,
+                               scalars = samples * block_lanes;
+
+  GridInput(const Net& net, bool by_lane) : net_(net), by_lane_(by_lane) {
+    Random random(static_cast<std::uint64_t>(100 * net.degree_u + net.degree_v));
+    block_ = coefficients<T>(net, random);
+    const auto append = by_lane ? append_lane_weights<T> : append_weights<T>;
+    for (const double t : {0.0, 0.3125, 1.0}) append(net.degree_u, t, u_weights_);
+    for (const double t : {0.0, 0.1, 0.75, 1.0}) append(net.degree_v, t, v_weights_);
+    for (int lane = 0; lane < block_lanes; ++lane) {
+      const auto l = static_cast<std::size_t>(lane);
+      noise_[l] = lane == 9 ? T(-1) : static_cast<T>(std::ldexp(lane == 7 ? 1.0 : 0x1p-20, net.exponent));
+      threshold_[l] = noise_[l] * noise_[l];
+      collapsed_[2 * block_lanes + l] = T(net.collapsed && lane % 2 == 0);
+    }
+    append_edges({edge_start, edge_inside, edge_end}, u_edges_);
+    append_edges({edge_start, edge_inside, edge_inside, edge_end}, v_edges_);
+  }
+
+  /// A job without outputs. Refers to this object.
+  GridJob<T> job() {
+    GridJob<T> job;
+    job.net = block_.data();
+    job.degree_u = net_.degree_u;
+    job.degree_v = net_.degree_v;
+    job.rational = net_.rational;
+    job.u_weights = u_weights_.data();
+    job.v_weights = v_weights_.data();
+    job.u_end = count_u;
+    job.v_end = count_v;
+    job.threshold = threshold_.data();
+    job.noise = noise_.data();
+    job.collapsed = net_.collapsed ? collapsed_.data() : nullptr;
+    job.by_lane = by_lane_;
+    job.u_edges = u_edges_.data();
+    job.v_edges = v_edges_.data();
+    job.exact_normal = exact_normal<T>;
+    job.min_sine = T(1e-6);
+    job.umbilic_tolerance = T(1e-4);
+    job.offset[0] = T(0.1), job.offset[1] = T(-7.3), job.offset[2] = T(1e5);
+    return job;
+  }
+
+ private:
+  void append_edges(std::initializer_list<std::uint8_t> edges, std::vector<std::uint8_t>& out) const {
+    for (const std::uint8_t edge : edges)
+      for (int lane = 0; lane < (by_lane_ ? block_lanes : 1); ++lane)
+        out.push_back(lane % 2 == 1 && edge == edge_end ? edge_inside : edge);  // half of 1 is no edge
+  }
+
+  Net net_;
+  bool by_lane_;
+  AlignedVector<T> block_, u_weights_, v_weights_;
+  AlignedVector<T> threshold_ = AlignedVector<T>(block_lanes), noise_ = AlignedVector<T>(block_lanes);
+  AlignedVector<T> collapsed_ = AlignedVector<T>(4 * block_lanes);
+  std::vector<std::uint8_t> u_edges_, v_edges_;
+};
+
+std::string grid_name(const char* type, const Net& net, int order, bool streaming, bool by_lane) {
+  return std::string("grid/") + type + "/" + std::to_string(net.degree_u) + "x" + std::to_string(net.degree_v) +
+         (net.rational ? "/rational" : "/polynomial") + "/2^" + std::to_string(net.exponent) +
+         (net.collapsed ? "/collapsed" : "") + "/order" + std::to_string(order) + (streaming ? "/streaming" : "") +
+         (by_lane ? "/by lane" : "");
+}
+
+/// Runs a block with all outputs up to `order`, and prints their hashes.
 template <class T>
 void run_grid(const KernelTable& table, const Net& net, int order, bool streaming, bool by_lane = false) {
-  const double u[] = {0, 0.3125, 1}, v[] = {0, 0.1, 0.75, 1};
-  constexpr int count_u = 3, count_v = 4;
-  constexpr std::size_t samples = count_u * count_v, vectors = samples * 3 * block_lanes,
-                        scalars = samples * block_lanes;
-  const std::uint8_t u_edges[] = {edge_start, edge_inside, edge_end};
-  const std::uint8_t v_edges[] = {edge_start, edge_inside, edge_inside, edge_end};
-  Random random(static_cast<std::uint64_t>(100 * net.degree_u + net.degree_v));
-  const AlignedVector<T> block = coefficients<T>(net, random);
-  AlignedVector<T> u_weights, v_weights, threshold(block_lanes), noise(block_lanes), collapsed(4 * block_lanes);
-  const auto append = by_lane ? append_lane_weights<T> : append_weights<T>;
-  for (const double t : u) append(net.degree_u, t, u_weights);
-  for (const double t : v) append(net.degree_v, t, v_weights);
-  for (int lane = 0; lane < block_lanes; ++lane) {
-    const auto l = static_cast<std::size_t>(lane);
-    noise[l] = lane == 9 ? T(-1) : static_cast<T>(std::ldexp(lane == 7 ? 1.0 : 0x1p-20, net.exponent));
-    threshold[l] = noise[l] * noise[l];
-    collapsed[2 * block_lanes + l] = T(net.collapsed && lane % 2 == 0);
-  }
-  GridJob<T> job;
-  job.net = block.data();
-  job.degree_u = net.degree_u;
-  job.degree_v = net.degree_v;
-  job.rational = net.rational;
-  job.u_weights = u_weights.data();
-  job.v_weights = v_weights.data();
-  job.u_end = count_u;
-  job.v_end = count_v;
+  constexpr std::size_t vectors = GridInput<T>::vectors, scalars = GridInput<T>::scalars;
+  GridInput<T> input(net, by_lane);
+  GridJob<T> job = input.job();
   job.streaming = streaming;
-  job.threshold = threshold.data();
-  job.noise = noise.data();
-  job.collapsed = net.collapsed ? collapsed.data() : nullptr;
-  std::vector<std::uint8_t> u_lane_edges, v_lane_edges;  // half of 1 is no edge
-  for (const std::uint8_t edge : u_edges)
-    for (int lane = 0; lane < block_lanes; ++lane)
-      u_lane_edges.push_back(lane % 2 == 1 && edge == edge_end ? edge_inside : edge);
-  for (const std::uint8_t edge : v_edges)
-    for (int lane = 0; lane < block_lanes; ++lane)
-      v_lane_edges.push_back(lane % 2 == 1 && edge == edge_end ? edge_inside : edge);
-  job.by_lane = by_lane;
-  job.u_edges = by_lane ? u_lane_edges.data() : u_edges;
-  job.v_edges = by_lane ? v_lane_edges.data() : v_edges;
-  job.exact_normal = exact_normal<T>;
-  job.min_sine = T(1e-6);
-  job.umbilic_tolerance = T(1e-4);
-  job.offset[0] = T(0.1), job.offset[1] = T(-7.3), job.offset[2] = T(1e5);
-
   std::vector<AlignedVector<T>> memory;
   memory.reserve(std::size(vector_outputs<T>) + std::size(scalar_outputs<T>));
   for (const auto& output : vector_outputs<T>)
@@ -189,10 +218,7 @@ void run_grid(const KernelTable& table, const Net& net, int order, bool streamin
     table.grid_f64(job);
   }
 
-  const std::string name = std::string("grid/") + type_name<T> + "/" + std::to_string(net.degree_u) + "x" +
-                           std::to_string(net.degree_v) + (net.rational ? "/rational" : "/polynomial") + "/2^" +
-                           std::to_string(net.exponent) + (net.collapsed ? "/collapsed" : "") + "/order" +
-                           std::to_string(order) + (streaming ? "/streaming" : "") + (by_lane ? "/by lane" : "");
+  const std::string name = grid_name(type_name<T>, net, order, streaming, by_lane);
   std::size_t next = 0;
   for (const auto& output : vector_outputs<T>)
     if (output.order <= order) print_hash(name, output.name, memory[next++].data(), vectors);
