@@ -46,8 +46,8 @@ class BezierPatch {
   /// non_finite (index = the offending point).
   Result<BezierPatch> with_points(std::span<const Vec3> points) const;
 
-  int degree_u() const { return degree_u_; }                           ///< degree along u
-  int degree_v() const { return degree_v_; }                           ///< degree along v
+  int degree_u() const { return degree_u_; }
+  int degree_v() const { return degree_v_; }
   bool is_rational() const { return weights_ != nullptr; }             ///< whether it has weights
   std::span<const Vec3> points() const { return {points_, count()}; }  ///< `[i][j]`, not premultiplied
   /// The weights `[i][j]`; empty for a polynomial patch. All pieces of a rational surface are rational, even those with

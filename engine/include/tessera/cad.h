@@ -44,7 +44,7 @@ enum class CadFormat {
 
 /// Options of read_cad().
 struct CadOptions {
-  CadFormat format = CadFormat::by_extension;
+  CadFormat format = CadFormat::by_extension;  ///< of the file, whatever its extension, unless by_extension
   /// The program that reads. If empty: the file that the environment variable TESSERA_CAD_READER names, or else the
   /// first tessera-cad-reader beside this program or library, in their ../libexec/tessera, in that of the installation,
   /// or on PATH.

@@ -139,9 +139,9 @@ Result<PatchGrid> to_bezier(const BSplineSurface& surface);
 
 /// The patches (a, b) of a grid with a0 <= a < a1, b0 <= b < b1.
 struct PatchRange {
-  std::size_t a0 = 0, a1 = 0, b0 = 0, b1 = 0;                              ///< [a0, a1) x [b0, b1)
-  bool empty() const { return a0 >= a1 || b0 >= b1; }                      ///< whether the range has no patch
-  friend bool operator==(const PatchRange&, const PatchRange&) = default;  ///< compares all four bounds
+  std::size_t a0 = 0, a1 = 0, b0 = 0, b1 = 0;          ///< [a0, a1) x [b0, b1)
+  bool empty() const { return a0 >= a1 || b0 >= b1; }  ///< whether the range has no patch
+  friend bool operator==(const PatchRange&, const PatchRange&) = default;
 };
 /// Returns the patches of to_bezier(surface) that control point [i][j] affects: at most (degree_u + 1) (degree_v + 1).
 /// The range is empty for a point that acts only outside the domain. Errors: invalid_argument (no such point).
@@ -174,7 +174,7 @@ Result<PatchGrid> to_bezier(const ExplicitPolynomial& surface);
 /// standard form (Farin, Curves and Surfaces for CAGD, 5th ed., sec. 12.2 to 12.4).
 Result<PatchGrid> to_bezier(const QuadricPiece& piece);
 
-/// Options of a fit.
+/// How to_bezier() fits surfaces that it cannot convert exactly.
 struct FitOptions {
   /// The largest distance from the surface at equal parameters, in the model's unit; 0 for 1e-6 of the diagonal of the
   /// box of 17 x 17 points.

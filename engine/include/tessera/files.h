@@ -35,8 +35,7 @@ class OutputFile {
   OutputFile& operator=(OutputFile&&) = delete;
   ~OutputFile();  ///< without commit(), removes what was written
 
-  void write(std::string_view bytes);  ///< writes bytes
-  /// Writes a byte.
+  void write(std::string_view bytes);
   void write(char c) {
     if (buffer_.size() - used_ < 1) flush();
     buffer_[used_++] = c;

@@ -14,8 +14,8 @@ namespace tessera::inline abi_0_1 {
 struct Vec3 {
   double x = 0, y = 0, z = 0;  ///< in the model's unit
 
-  friend bool operator==(const Vec3&, const Vec3&) = default;                      ///< compares the components
-  Vec3& operator+=(const Vec3& b) { return *this = {x + b.x, y + b.y, z + b.z}; }  ///< adds the components
+  friend bool operator==(const Vec3&, const Vec3&) = default;
+  Vec3& operator+=(const Vec3& b) { return *this = {x + b.x, y + b.y, z + b.z}; }
 };
 
 inline Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
@@ -111,7 +111,7 @@ struct Affine {
     return {.columns = {a.vector(b.columns[0]), a.vector(b.columns[1]), a.vector(b.columns[2])},
             .translation = a.point(b.translation)};
   }
-  friend bool operator==(const Affine&, const Affine&) = default;  ///< compares all twelve numbers
+  friend bool operator==(const Affine&, const Affine&) = default;
 };
 
 /// Tells whether all numbers of the map are finite.
@@ -132,7 +132,7 @@ struct Domain {
   double local_v(double v) const { return v == v1 ? 1 : (v - v0) / (v1 - v0); }                 ///< like local_u, for v
   bool contains(double u, double v) const { return u >= u0 && u <= u1 && v >= v0 && v <= v1; }  ///< borders included
 
-  friend bool operator==(const Domain&, const Domain&) = default;  ///< compares all four bounds
+  friend bool operator==(const Domain&, const Domain&) = default;
 };
 
 /// An edge of a patch; also a bit of EdgeMask.
@@ -147,7 +147,7 @@ struct EdgeMask {
   void add(Edge edge) { bits = static_cast<std::uint8_t>(bits | static_cast<std::uint8_t>(edge)); }
   bool any() const { return bits != 0; }  ///< whether the set contains an edge
 
-  friend bool operator==(const EdgeMask&, const EdgeMask&) = default;  ///< compares the sets
+  friend bool operator==(const EdgeMask&, const EdgeMask&) = default;
 };
 
 }  // namespace tessera::inline abi_0_1

@@ -28,7 +28,7 @@ enum class HermiteOrder : std::uint8_t {
 struct HermiteNode {
   Vec3 position, du, dv, duv;  ///< r, r_u, r_v, r_uv
 
-  friend bool operator==(const HermiteNode&, const HermiteNode&) = default;  ///< compares all four vectors
+  friend bool operator==(const HermiteNode&, const HermiteNode&) = default;
 };
 /// Position and derivatives at a corner whose twist is open.
 struct CornerTangents {

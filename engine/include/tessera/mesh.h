@@ -56,9 +56,9 @@ struct Mesh {
   std::vector<MeshPart> parts;              ///< empty, or runs one after the other that together are all faces
   std::vector<double> positions_f64;        ///< empty, or as long as positions: positions in the model's coordinates
 
-  std::size_t vertex_count() const { return positions.size() / 3; }  ///< by positions
-  std::size_t triangle_count() const { return indices.size() / 3; }  ///< by indices
-  std::size_t quad_count() const { return quads.size() / 4; }        ///< by quads
+  std::size_t vertex_count() const { return positions.size() / 3; }
+  std::size_t triangle_count() const { return indices.size() / 3; }
+  std::size_t quad_count() const { return quads.size() / 4; }
   /// Whether there are faces, and a patch for each.
   bool has_patches() const {
     return !(patches.empty() && quad_patches.empty()) && patches.size() == triangle_count() &&

@@ -55,8 +55,8 @@ class BSplineSurface {
                                          std::span<const double> knots_v, std::vector<Vec3>&& points,
                                          std::vector<double>&& weights, std::optional<Domain> domain = {});
 
-  int degree_u() const { return data_->degree_u; }  ///< degree along u
-  int degree_v() const { return data_->degree_v; }  ///< degree along v
+  int degree_u() const { return data_->degree_u; }
+  int degree_v() const { return data_->degree_v; }
   /// Number of points along u.
   std::size_t count_u() const { return knots_u().size() - static_cast<std::size_t>(degree_u()) - 1; }
   /// Number of points along v.

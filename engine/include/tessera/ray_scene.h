@@ -359,7 +359,7 @@ enum class HitVerdict : std::uint8_t {
 /// Threads: called from any thread, also from several at once. A filter may trace rays and may throw; see closest().
 using HitFilter = std::function<HitVerdict(const HitCandidate&)>;
 
-/// Options of a batch. Everything is optional.
+/// How closest() and occluded() treat arrays of rays.
 struct BatchOptions {
   HitFilter filter = {};  ///< exact mode only; empty: all points count
 };

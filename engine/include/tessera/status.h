@@ -39,13 +39,13 @@ class [[nodiscard]] Status {
   static constexpr std::ptrdiff_t no_index = -1;  ///< index() of a status that names no element
 
   Status() = default;  ///< success; never allocates
-  /// An error. The message is a sentence. Cold: code that leads to a call is compiled for size.
+  /// Makes an error. The message is a sentence. Cold: code that leads to a call is compiled for size.
   [[gnu::cold]] Status(StatusCode code, std::string message, std::ptrdiff_t index = no_index);
 
-  bool ok() const { return code_ == StatusCode::ok; }      ///< whether it is success
-  StatusCode code() const { return code_; }                ///< kind of the error, or ok
+  bool ok() const { return code_ == StatusCode::ok; }
+  StatusCode code() const { return code_; }                ///< ok for success
   const std::string& message() const { return message_; }  ///< empty for success
-  std::ptrdiff_t index() const { return index_; }          ///< index of the offending element, or no_index
+  std::ptrdiff_t index() const { return index_; }          ///< of the offending element, or no_index
 
  private:
   StatusCode code_ = StatusCode::ok;
@@ -58,21 +58,21 @@ class [[nodiscard]] Status {
 template <class T>
 class [[nodiscard]] Result {
  public:
-  Result(T value) : value_(std::move(value)) {}          ///< a value
-  Result(Status status) : status_(std::move(status)) {}  ///< an error
+  Result(T value) : value_(std::move(value)) {}          ///< success
+  Result(Status status) : status_(std::move(status)) {}  ///< failure; `status` must not be ok
 
-  bool ok() const { return value_.has_value(); }    ///< whether there is a value
-  explicit operator bool() const { return ok(); }   ///< whether there is a value
-  const Status& status() const { return status_; }  ///< success where there is a value
+  bool ok() const { return value_.has_value(); }
+  explicit operator bool() const { return ok(); }
+  const Status& status() const { return status_; }  ///< success if there is a value
 
-  T& value() & { return *value_; }                   ///< the value
-  const T& value() const& { return *value_; }        ///< the value
-  T&& value() && { return *std::move(value_); }      ///< the value, moved out
-  T& operator*() & { return *value_; }               ///< the value
-  const T& operator*() const& { return *value_; }    ///< the value
-  T&& operator*() && { return *std::move(value_); }  ///< the value, moved out
-  T* operator->() { return &*value_; }               ///< the value's members
-  const T* operator->() const { return &*value_; }   ///< the value's members
+  T& value() & { return *value_; }
+  const T& value() const& { return *value_; }
+  T&& value() && { return *std::move(value_); }
+  T& operator*() & { return *value_; }
+  const T& operator*() const& { return *value_; }
+  T&& operator*() && { return *std::move(value_); }
+  T* operator->() { return &*value_; }
+  const T* operator->() const { return &*value_; }
 
  private:
   std::optional<T> value_;

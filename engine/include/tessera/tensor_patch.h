@@ -122,8 +122,8 @@ class ExplicitPolynomial {
   static Result<ExplicitPolynomial> make(int degree_x, int degree_y, std::span<const double> coefficients,
                                          const Domain& rectangle);
 
-  int degree_x() const { return data_->degree_x; }              ///< degree in x
-  int degree_y() const { return data_->degree_y; }              ///< degree in y
+  int degree_x() const { return data_->degree_x; }
+  int degree_y() const { return data_->degree_y; }
   const Domain& rectangle() const { return data_->rectangle; }  ///< range of x and y
   /// Returns the coefficient of x^i y^j.
   double coefficient(int i, int j) const {

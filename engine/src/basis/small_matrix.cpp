@@ -24,7 +24,6 @@ void swap_rows(Matrix& matrix, int a, int b) {
   for (int j = 0; j < matrix.columns(); ++j) std::swap(matrix(a, j), matrix(b, j));
 }
 
-/// Adds factor * row b to row a.
 void add_row(Matrix& matrix, int a, long double factor, int b) {
   for (int j = 0; j < matrix.columns(); ++j) matrix(a, j) += factor * matrix(b, j);
 }

@@ -74,10 +74,10 @@ class IntervalNumber {
     if (b == 1.0) return a;
     return around(a.lower_ / b.lower_, a.lower_ / b.upper_, a.upper_ / b.lower_, a.upper_ / b.upper_);
   }
-  IntervalNumber& operator+=(const IntervalNumber& b) { return *this = *this + b; }  ///< like +
-  IntervalNumber& operator-=(const IntervalNumber& b) { return *this = *this - b; }  ///< like -
-  IntervalNumber& operator*=(const IntervalNumber& b) { return *this = *this * b; }  ///< like *
-  IntervalNumber& operator/=(const IntervalNumber& b) { return *this = *this / b; }  ///< like /
+  IntervalNumber& operator+=(const IntervalNumber& b) { return *this = *this + b; }
+  IntervalNumber& operator-=(const IntervalNumber& b) { return *this = *this - b; }
+  IntervalNumber& operator*=(const IntervalNumber& b) { return *this = *this * b; }
+  IntervalNumber& operator/=(const IntervalNumber& b) { return *this = *this / b; }
 
   /// Contains every |x|.
   friend IntervalNumber abs(const IntervalNumber& a) {

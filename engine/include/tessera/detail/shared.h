@@ -13,9 +13,7 @@ namespace tessera::inline abi_0_1 {
 template <class T>
 class Shared {
  public:
-  /// The default value.
   Shared() = default;
-  /// Holds the value.
   template <class U>
   // NOLINTNEXTLINE(bugprone-forwarding-reference-overload): the constraint lets copies be copies
   requires(std::convertible_to<U&&, T> && !std::same_as<std::remove_cvref_t<U>, Shared>) Shared(U&& value) {
@@ -23,12 +21,11 @@ class Shared {
     if (!is_default(own)) value_ = std::make_shared<const T>(std::move(own));
   }
 
-  const T& operator*() const { return value_ ? *value_ : default_value(); }  ///< the value
-  const T* operator->() const { return &**this; }                            ///< the value's members
-  operator const T&() const { return **this; }                               ///< the value
+  const T& operator*() const { return value_ ? *value_ : default_value(); }
+  const T* operator->() const { return &**this; }
+  operator const T&() const { return **this; }
 
-  friend bool operator==(const Shared& a, const Shared& b) { return a.value_ == b.value_ || *a == *b; }  ///< by value
-  /// Compares the values.
+  friend bool operator==(const Shared& a, const Shared& b) { return a.value_ == b.value_ || *a == *b; }
   template <class U>
   requires(!std::same_as<U, Shared> && requires(const T& a, const U& b) { a == b; }) friend bool operator==(
       const Shared& a, const U& b) {

@@ -29,8 +29,7 @@ class Taylor {
 
   /// The constant 0.
   Taylor() : Taylor(0.0) {}
-  Taylor(double constant) : Taylor(Scalar(constant), Filled{}) {}  ///< a constant
-  /// A constant.
+  Taylor(double constant) : Taylor(Scalar(constant), Filled{}) {}
   explicit Taylor(const Scalar& constant) requires(!std::is_same_v<Scalar, double>) : Taylor(constant, Filled{}) {}
   /// Makes the variable u (0) or v (1) at `value`.
   static Taylor variable(const Scalar& value, int which = 0) {

@@ -52,11 +52,9 @@ int read_integer(const JsonValue& value, int least, int largest);
 const std::string& read_text(const JsonValue& value);
 /// Reads a string; returns its index in `words`.
 std::size_t read_word(const JsonValue& value, std::initializer_list<std::string_view> words);
-/// Reads [x, y, z].
 Vec3 read_vector(const JsonValue& value);
 std::vector<double> read_numbers(const JsonValue& value);
 std::vector<Vec3> read_vectors(const JsonValue& value);
-/// Reads [from, to].
 Interval read_interval(const JsonValue& value);
 /// Reads [[u0, u1], [v0, v1]].
 Domain read_domain(const JsonValue& value);

@@ -90,7 +90,6 @@ class EdgeOn {
   static double squared(const Hull& a, const Hull& b) { return a.centre() * a.centre() + b.centre() * b.centre(); }
   static RootBox nothing() { return {{1, 1}, {0, 0}}; }
 
-  /// Returns a + factor b.
   static Hull sum(const Hull& a, double factor, const Hull& b) {
     return {a.low + factor * (factor < 0 ? b.high : b.low), a.high + factor * (factor < 0 ? b.low : b.high)};
   }

@@ -42,7 +42,6 @@ struct SegmentedRange {
  private:
   double from_, to_;
 };
-/// Returns whether [from, to] is a full turn.
 bool is_full_turn(double from, double to);
 /// Convert the fraction s of the Bezier segment over [from, to] to the canonical parameter, and back.
 double profile_parameter(Profile profile, double from, double to, double s);
