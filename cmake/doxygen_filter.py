@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Shows a public header to Doxygen the way people read it: a comment on a line of several variables is that of each, and
-functions whose name says everything need no words. In a guide, a link out of the guides' folder becomes its text. Lines
-keep their numbers."""
+"""Shows a public header to Doxygen the way people read it: its first comment is that of the file, the inline namespace
+has no name, a comment on a line of several variables is that of each, an overload without a comment is as the one above
+it, and functions whose name says everything need no words. In a guide, a link out of the guides' folder becomes its
+text. Lines keep their numbers."""
 
 import re
 import sys
@@ -20,7 +21,10 @@ TRIVIAL = [
     (re.compile(r'^  friend bool operator==\(.*' + ENDS), 'compares all members'),
     (re.compile(r'^  void write\((?:std::string_view bytes|char c)\)(?: \{|;)$'), 'writes it'),
     (re.compile(r'^  \w+& operator([-+*/])=\(.*\)'), r'like \1'),
+    (re.compile(r'^inline Vec3 operator[-+*]\(.*'), 'by components'),
+    (re.compile(r'^inline \w+ (dot|cross)\(.*'), r'\1 product'),
 ]
+FUNCTION = re.compile(r'^(?:inline )?[\w:]+(?:<.*>)? (\w+)\(')
 
 
 def words_for(line):
@@ -32,18 +36,32 @@ def words_for(line):
 
 def shown(lines):
     above = ''  # the comment that stands above
-    for line in lines:
+    documented = ''  # the function whose comment was the last
+    for line, after in zip(lines, lines[1:] + ['']):
         several = SEVERAL.match(line)
+        function = FUNCTION.match(after if line.startswith('template <') else line)
+        if function and above:
+            documented = function[1]
         if several:
             indent, kind, names, beside = several.groups()
             text = f' /**< {beside or above} */' if beside or above else ''
             yield indent + ' '.join(f'{kind} {name.strip()};{text}' for name in names.split(','))
         elif not above and '///' not in line and (words := words_for(line)):
-            yield f'{line}  ///< {words}'
+            yield f'{line}  ///< {words}' if line.endswith(';') else f'/** {words} */ {line}'
+        elif function and not above and function[1] == documented:
+            yield f'/** As above. */ {line}'
         else:
             yield line
         comment = re.match(r'\s*/// ?(.*)', line)
         above = (above + ' ' + comment[1]).strip() if comment else ''
+
+
+def with_file_comment(lines):
+    """Turns the comment below #pragma once into one that Doxygen shows."""
+    if lines[:1] != ['#pragma once'] or len(lines) < 2 or not lines[1].startswith('// '):
+        return lines
+    end = next(k for k in range(1, len(lines)) if not lines[k].startswith('//'))
+    return ['/// @file'] + ['/' + line for line in lines[1:end]] + lines[end:]
 
 
 def without_outer_links(text):
@@ -55,4 +73,5 @@ with open(sys.argv[1], encoding='utf-8') as file:
 if sys.argv[1].endswith('.md'):
     print(without_outer_links(content), end='')
 else:
-    print('\n'.join(shown(content.split('\n'))), end='')
+    content = re.sub(r'::inline \w+ \{', ' {', content)
+    print('\n'.join(shown(with_file_comment(content.split('\n')))), end='')

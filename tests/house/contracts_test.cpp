@@ -1,5 +1,5 @@
-// The contracts of the public interface: which errors a function returns stands in its comment; the version has one
-// value.
+// The contracts of the public interface: which errors a function returns, and which memory its result takes, stands in
+// its comment; the version has one value.
 
 #include <gtest/gtest.h>
 
@@ -21,9 +21,12 @@ struct PublicFunction {
   std::string comment;  // of the declaration, or of the overload above it
 };
 
-/// The functions outside of private parts that return a Status or a Result, without friends and deleted ones.
-std::vector<PublicFunction> fallible_functions(const std::string& text) {
-  static const std::regex declaration(R"(^ *(?:static |inline |virtual )*(?:Status|Result<.*>) (\w+)\(.*$)");
+constexpr const char* fallible = "Status|Result<.*>";
+constexpr const char* allocating = "std::vector<.*>|std::string";
+
+/// The functions outside of private parts that return one of these types, without friends and deleted ones.
+std::vector<PublicFunction> functions_that_return(const std::string& types, const std::string& text) {
+  const std::regex declaration(R"(^ *(?:static |inline |virtual )*(?:)" + types + R"() (\w+)\(.*$)");
   std::vector<PublicFunction> functions;
   std::istringstream stream(text);
   std::string comment, made_of;
@@ -48,7 +51,8 @@ std::vector<PublicFunction> fallible_functions(const std::string& text) {
       comment.clear();
     }
     if (in_declaration && line.find("= delete") != std::string::npos) functions.pop_back();
-    if (begin != std::string::npos && line.ends_with(';')) ends_comment = true, in_declaration = false;
+    if (begin != std::string::npos && (line.ends_with(';') || line.ends_with('}')))
+      ends_comment = true, in_declaration = false;
   }
   return functions;
 }
@@ -59,8 +63,10 @@ bool states_errors(const PublicFunction& function) {
   return std::regex_search(function.comment, std::regex("Errors[:,]"));
 }
 
+bool states_memory(const PublicFunction& function) { return function.comment.find("Memory: ") != std::string::npos; }
+
 TEST(Contracts, SearchForFalliblePublicFunctionsFindsThem) {
-  const auto found = fallible_functions(R"(
+  const auto found = functions_that_return(fallible, R"(
 /// Makes it. Errors: none.
 Result<int> make(int a,
                  int b);
@@ -92,12 +98,47 @@ TEST(Contracts, FunctionsThatMayFailStateTheirErrors) {
   for (const std::string& path : files_under("engine/include/tessera")) {
     if (path.find("/detail/") != std::string::npos || path.ends_with("/status.h") || path.ends_with("/guard.h"))
       continue;
-    for (const PublicFunction& function : fallible_functions(read_text(path))) {
+    for (const PublicFunction& function : functions_that_return(fallible, read_text(path))) {
       ++checked;
       EXPECT_TRUE(states_errors(function)) << path << ": " << function.name << "() does not say \"Errors: ...\"";
     }
   }
   EXPECT_GT(checked, 150u) << "the search finds too few functions";
+}
+
+TEST(Contracts, SearchForFunctionsThatAllocateFindsThem) {
+  const auto found = functions_that_return(allocating, R"(
+/// Makes it. Errors: none. Memory: the result.
+std::vector<double> make(int count);
+class B {
+ public:
+  /// Its name.
+  std::string name() const { return {}; }
+  /// A view. Memory: none.
+  std::string_view view() const;
+  /// Takes it.
+  std::vector<std::pair<int, int>> take() && { return {}; }
+};
+)");
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_TRUE(states_errors(found[0]) && states_memory(found[0]));
+  EXPECT_EQ(found[1].name, "name");
+  EXPECT_FALSE(states_errors(found[1]) || states_memory(found[1]));
+  EXPECT_EQ(found[2].name, "take");
+  EXPECT_FALSE(states_errors(found[2]) || states_memory(found[2]));
+}
+
+TEST(Contracts, FunctionsThatReturnMemoryStateItAndTheirErrors) {
+  std::size_t checked = 0;
+  for (const std::string& path : files_under("engine/include/tessera")) {
+    if (path.find("/detail/") != std::string::npos) continue;
+    for (const PublicFunction& function : functions_that_return(allocating, read_text(path))) {
+      ++checked;
+      EXPECT_TRUE(states_errors(function) && states_memory(function))
+          << path << ": " << function.name << "() does not say \"Errors: ... Memory: ...\"";
+    }
+  }
+  EXPECT_GE(checked, 5u) << "the search finds too few functions";
 }
 
 TEST(Version, HasOneValue) {

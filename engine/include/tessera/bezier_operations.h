@@ -23,9 +23,10 @@ struct BezierPolygon {
   std::vector<double> weights;  ///< one per point; empty for a polynomial curve
 };
 
-// Accuracy of results: each coordinate is within 2 units of 2^-52 times the largest coordinate of the patch. Points
-// that coincide by == still coincide, so poles remain poles. Patches that share a border by == share it after the same
-// operation.
+/// @name Curves, derivatives and pieces of a patch
+/// Accuracy: each coordinate is within 2 units of 2^-52 times the largest coordinate of the patch. Points that coincide
+/// by == still coincide, so poles remain poles. Patches that share a border by == share it after the same operation.
+/// @{
 
 /// Returns the isocurve v = const along u, 0 <= v <= 1: W_i = sum_j V_ij B_j(v), in homogeneous form if the patch is
 /// rational. Errors: invalid_argument or non_finite (the parameter), out_of_memory.
@@ -65,20 +66,27 @@ Result<BezierPatch> reverse_u(const BezierPatch& patch);
 /// Returns r(u,1-v), like transpose(). Errors: out_of_memory.
 Result<BezierPatch> reverse_v(const BezierPatch& patch);
 
-// Makers of patches of degree (1,n), straight along u, with a curve of degree n along v. Errors of all: those of
-// BezierPatch for the resulting net, whose rows are the curves.
+/// @}
+
+/// @name Makers of patches of degree (1,n)
+/// The patches are straight along u and have a curve of degree n along v: the rows of the net are curves.
+/// @{
 
 /// Makes the ruled patch (1-u) C0(v) + u C1(v). The curve of lower degree is elevated. Rational curves must have the
 /// same weights by == at the same degree; otherwise the surface is of a higher degree. Errors: unsupported (other
-/// weights).
+/// weights), those of BezierPatch::rational() for the net.
 Result<BezierPatch> make_ruled(const BezierPolygon& c0, const BezierPolygon& c1);
-/// Makes the generalised cylinder C(v) + u d. Errors: invalid_argument (d is zero).
+/// Makes the generalised cylinder C(v) + u d. Errors: invalid_argument (d is zero), those of BezierPatch::rational()
+/// for the net.
 Result<BezierPatch> make_cylinder(const BezierPolygon& curve, const Vec3& direction);
-/// Makes the generalised cone with the apex at u = 0 and the curve at u = 1. Errors: those of all makers.
+/// Makes the generalised cone with the apex at u = 0 and the curve at u = 1. Errors: those of BezierPatch::rational()
+/// for the net.
 Result<BezierPatch> make_cone(const Vec3& apex, const BezierPolygon& curve);
-/// Makes the bilinear patch of four corners, a hyperbolic paraboloid unless they lie in a plane. Errors: those of all
-/// makers.
+/// Makes the bilinear patch of four corners, a hyperbolic paraboloid unless they lie in a plane. Errors: non_finite
+/// (index = the corner).
 Result<BezierPatch> make_hyperbolic_paraboloid(const Vec3& r00, const Vec3& r01, const Vec3& r10, const Vec3& r11);
+
+/// @}
 
 /// One side of a join: a patch, one of its edges, and the rectangle of parameters that the patch covers.
 struct JoinSide {

@@ -80,7 +80,9 @@ struct SurfaceJet {
   Vec3 position, du, dv, duu, duv, dvv;  ///< r and its derivatives by u and v
 };
 
-// Reference evaluators: slow and plain, one point at a time, in double, for any finite (u,v), inside [0,1]^2 or not.
+/// @name Reference evaluators
+/// Slow and plain, one point at a time, in double, for any finite (u,v), inside [0,1]^2 or not.
+/// @{
 
 /// Evaluates by de Casteljau's algorithm along u, then along v; rational patches in homogeneous form (Farin, sec.
 /// 14.3).
@@ -94,6 +96,8 @@ Vec3 de_casteljau_rational(const BezierPatch& patch, double u, double v);
 /// Returns position, first and second derivatives; rational ones by the quotient rule (Piegl and Tiller, The NURBS
 /// Book, eq. 4.20).
 SurfaceJet evaluate_jet(const BezierPatch& patch, double u, double v);
+
+/// @}
 
 /// How a unit normal was found.
 enum class NormalKind : std::uint8_t {

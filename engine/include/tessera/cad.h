@@ -35,6 +35,7 @@
 #pragma GCC visibility push(default)
 namespace tessera::inline abi_0_1 {
 
+/// Formats of read_cad().
 enum class CadFormat {
   by_extension,  ///< .step, .stp, .iges, .igs, .brep, .brp in any case of letters
   step,          ///< AP203, AP214 or AP242 (ISO 10303-21)

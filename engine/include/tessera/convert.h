@@ -51,7 +51,7 @@ class PatchGrid {
   std::span<const double> breaks_u() const { return breaks_u_; }     ///< strictly increasing, count_u() + 1
   std::span<const double> breaks_v() const { return breaks_v_; }     ///< strictly increasing, count_v() + 1
   std::span<const BezierPatch> patches() const { return patches_; }  ///< `[a][b]`
-  /// Moves the patches out of a grid that is no longer used.
+  /// Moves the patches out of a grid that is no longer used. Errors: none. Memory: allocates nothing.
   std::vector<BezierPatch> take_patches() && { return std::move(patches_); }
   /// Returns patch (a, b); a < count_u(), b < count_v().
   const BezierPatch& patch(std::size_t a, std::size_t b) const { return patches_[a * count_v() + b]; }
@@ -89,15 +89,17 @@ class PatchGrid {
 /// Errors: non_finite (the map, or a point too large; index = the patch).
 Result<PatchGrid> transform(const PatchGrid& grid, const Affine& map);
 
-// Operations on splines. Results are the same curve or surface on the same domain, right up to rounding. Unchanged
-// control points keep their bits. Rational splines remain rational. Errors of all: out_of_memory, and those stated.
+/// @name Operations on splines
+/// Results are the same curve or surface on the same domain, right up to rounding. Unchanged control points keep their
+/// bits. Rational splines remain rational.
+/// @{
 
 /// Inserts knots (Boehm 1980; The NURBS Book, sec. 5.2, 5.3).
 ///
 /// - `knots`: each as often as listed, strictly inside the domain. With the knots already there, the multiplicity of
 ///   each is at most the degree.
 ///
-/// Errors: non_finite, invalid_argument (index = the knot).
+/// Errors: non_finite, invalid_argument (index = the knot), out_of_memory.
 Result<Curve> insert_knots(const Curve& curve, std::span<const double> knots);
 /// Inserts knots in both directions. Errors: as above.
 Result<BSplineSurface> insert_knots(const BSplineSurface& surface, std::span<const double> knots_u,
@@ -117,8 +119,10 @@ Result<BSplineSurface> elevate_degree(const BSplineSurface& surface, int by_u, i
 
 /// Returns both curves clamped, of the higher degree of the two, and on the union of their knots (by ==: knots that
 /// differ by rounding are both kept). One may be rational and the other not. Errors: invalid_argument (different
-/// domains).
+/// domains), out_of_memory.
 Result<std::pair<Curve, Curve>> make_compatible(const Curve& a, const Curve& b);
+
+/// @}
 
 /// A curve as Bezier pieces that share their end points: piece k has the points k * degree .. (k + 1) * degree and
 /// covers [breaks[k], breaks[k+1]].
@@ -147,8 +151,10 @@ struct PatchRange {
 /// The range is empty for a point that acts only outside the domain. Errors: invalid_argument (no such point).
 Result<PatchRange> touched_patches(const BSplineSurface& surface, std::size_t i, std::size_t j);
 
-// Conversions of the other kinds of surfaces. Neighbours in a grid share their borders by ==. Memory: O(output); the
-// surface is not kept. Threads: any number of calls at once; functions of the caller are called as their surface says.
+/// @name Conversions of the other kinds of surfaces
+/// Neighbours in a grid share their borders by ==. Memory: O(output); the surface is not kept. Threads: any number of
+/// calls at once; functions of the caller are called as their surface says.
+/// @{
 
 /// Converts a tensor patch to one Bezier patch over the patch's domain; exact up to rounding. Errors: non_finite
 /// (points too large).
@@ -227,6 +233,8 @@ Result<PatchGrid> to_bezier(const ParametricSurface& surface, const FitOptions& 
 
 /// Converts by the kind's own conversion, exactly; only callables are fitted by `options`. Errors: those of the kind.
 Result<PatchGrid> to_bezier(const Surface& surface, const FitOptions& options = {});
+
+/// @}
 
 }  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

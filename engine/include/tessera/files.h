@@ -28,7 +28,7 @@ class OutputFile {
   /// Opens the file. Once `cancel` is true, writes fail with cancelled, and the file does not appear. Errors: io_error
   /// (a directory, a missing folder, no permission).
   static Result<OutputFile> make(const std::filesystem::path& path, const std::atomic<bool>* cancel = nullptr);
-  /// The process's standard output.
+  /// Writes to the process's standard output. Errors of writes come from commit().
   static OutputFile standard_output(const std::atomic<bool>* cancel = nullptr);
 
   OutputFile(OutputFile&&) noexcept;
@@ -153,7 +153,7 @@ class TextCursor {
   Status expected(std::string_view what) const;
   /// The error `name:line: SENTENCE` for this line.
   Status failure(std::string_view sentence) const;
-  /// "name:line" of this place.
+  /// "name:line" of this place. Errors: none. Memory: the result.
   std::string place() const { return std::string(name_) + ":" + std::to_string(line()); }
   std::size_t line() const;                                                       ///< counted from 1
   std::string_view name() const { return name_; }                                 ///< as given
@@ -190,7 +190,8 @@ class TextCursor {
   TextSyntax syntax_;
 };
 
-/// `text` in quotes for a message: at most 40 bytes, unprintable ones as \xNN.
+/// Returns `text` in quotes for a message: at most 40 bytes, unprintable ones in hexadecimal. Errors: none. Memory: the
+/// result.
 std::string quote(std::string_view text);
 
 /// Turns `status` of an element in `text` into a parse_error at that place; out_of_memory is unchanged. `text` is a

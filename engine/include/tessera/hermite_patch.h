@@ -46,33 +46,33 @@ class HermitePatch {
   /// 16 vectors [i][j], i along u.
   using Grid = std::array<Vec3, 16>;
 
-  // Errors of all makers: non_finite (a vector; index = the element), invalid_argument (the domain).
-
   /// Makes a patch from the geometry matrix: 16 vectors [i][j], in order by_end [[r, r_v, r_v, r], [r_u, r_uv, r_uv,
-  /// r_u], [r_u, r_uv, r_uv, r_u], [r, r_v, r_v, r]]. Errors: count_mismatch.
+  /// r_u], [r_u, r_uv, r_uv, r_u], [r, r_v, r_v, r]]. Errors: count_mismatch, non_finite (a vector; index = the
+  /// element), invalid_argument (the domain).
   static Result<HermitePatch> make(std::span<const Vec3> geometry, const Domain& domain = {},
                                    HermiteOrder order = HermiteOrder::by_end);
-  /// Makes a patch from corners with twists. Errors: as for make().
+  /// Makes a patch from corners with twists. Errors: non_finite (a vector; index = the element), invalid_argument (the
+  /// domain).
   static Result<HermitePatch> from_corners(const Corners& corners, const Domain& domain = {});
-  /// Makes a patch from 12 vectors with zero twists (Ferguson, Multivariable curve interpolation, 1964).
-  /// Errors: as for all makers.
+  /// Makes a patch from 12 vectors with zero twists (Ferguson, Multivariable curve interpolation, 1964). Errors: as for
+  /// from_corners().
   static Result<HermitePatch> ferguson(const OpenCorners& corners, const Domain& domain = {});
   /// Makes a patch from 12 vectors with Adini's twists, those of the bilinearly blended Coons patch of the four
   /// borders: r_uv(i,j) = (r_u(i,1) - r_u(i,0)) / dv + (r_v(1,j) - r_v(0,j)) / du - (r00 - r10 - r01 + r11) / (du dv)
-  /// (Farin, Curves and Surfaces for CAGD, 5th ed., ch. 15). Errors: as for all makers.
+  /// (Farin, Curves and Surfaces for CAGD, 5th ed., ch. 15). Errors: as for from_corners().
   static Result<HermitePatch> adini(const OpenCorners& corners, const Domain& domain = {});
-  /// Makes a patch from 16 coefficients a_ij of s^i t^j, s and t over [0,1]. Errors: count_mismatch.
+  /// Makes a patch from 16 coefficients a_ij of s^i t^j, s and t over [0,1]. Errors: as for make().
   static Result<HermitePatch> from_algebraic(std::span<const Vec3> coefficients, const Domain& domain = {});
   /// Makes the patch through 16 points [i][j] at the parameters (u[i], v[j]) of the domain.
   ///
   /// - `u`, `v`: four distinct parameters each, within the domain or not.
   ///
   /// Errors: count_mismatch, invalid_argument (two equal parameters, which make the system singular; index = the
-  /// second), non_finite.
+  /// second; the domain), non_finite (index = the point or the parameter).
   static Result<HermitePatch> through_points(std::span<const Vec3> points, std::span<const double> u,
                                              std::span<const double> v, const Domain& domain = {});
   /// Makes a patch from a polynomial Bezier patch of degrees 1 to 3 in each direction; exact. Errors: unsupported
-  /// (rational), unsupported_degree.
+  /// (rational), unsupported_degree, non_finite (a vector too large), invalid_argument (the domain).
   static Result<HermitePatch> from_bezier(const BezierPatch& patch, const Domain& domain = {});
 
   const Domain& domain() const { return data_->domain; }  ///< derivatives are by its parameters
@@ -86,7 +86,7 @@ class HermitePatch {
   Grid points_at(const std::array<double, 4>& u, const std::array<double, 4>& v) const;
 
   /// Returns the same surface over another rectangle [s0, s1] x [t0, t1]: q_s = (u1 - u0) / (s1 - s0) p_u, q_t
-  /// likewise, and q_st with the product of both factors. Errors: as for the makers.
+  /// likewise, and q_st with the product of both factors. Errors: as for from_corners().
   Result<HermitePatch> reparametrize(const Domain& domain) const;
 
  private:

@@ -140,9 +140,12 @@ struct MeshReadOptions {
 /// however often nodes place a mesh.
 Result<Mesh> read_mesh(const std::filesystem::path& path, const MeshReadOptions& options = {});
 
-// These calls serve programs that check and open their output before they compute what it will hold.
+/// @name Parts of reading and writing
+/// For programs that check and open their output before they compute its content.
+/// @{
 
-/// The extension of `path`, in small letters: ".obj".
+/// Returns the extension of `path` with letters from A to Z made small: ".obj", or nothing if there is none. Errors:
+/// none. Memory: the result.
 std::string lower_extension(const std::filesystem::path& path);
 /// Checks that write_mesh() writes the format of `path`'s extension. Errors: unsupported, with a list of those.
 Status check_mesh_format(const std::filesystem::path& path);
@@ -159,6 +162,8 @@ Result<WrittenModel> write_model(const Model& model, const std::filesystem::path
 /// directory, no permission, a failed read), parse_error (no bytes), out_of_memory (a file larger than the machine's
 /// memory). Messages begin with the path.
 Result<std::string> read_file(const std::filesystem::path& path);
+
+/// @}
 
 }  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

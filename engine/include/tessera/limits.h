@@ -38,7 +38,9 @@ struct LimitsOptions {
 /// isa_unavailable, out_of_memory. Memory: `store_bytes` during the call.
 Result<Limits> measure_limits(const LimitsOptions& options = {});
 
-/// Returns the larger of the operations over their rate and the larger byte count over the store rate.
+/// Returns the larger of the operations over their rate and the larger byte count over the store rate, in seconds.
+/// Needs rates above 0, as measure_limits() returns them; otherwise the result may be infinite or NaN. Allocates
+/// nothing.
 double seconds_at_limit(const Limits& limits, const Work& work);
 
 }  // namespace tessera::inline abi_0_1

@@ -102,33 +102,39 @@ struct Axis {
 /// weights 1/2.
 enum class CircleArcs : std::uint8_t { three = 3, four = 4 };
 
-// Makers of circles and surfaces of revolution. u in [0, 1] is the full turn, and arc k of n is on [k/n, (k+1)/n].
-// Inner knots are double: the point set is C1, but the parametrisation is only C0. Errors of all: invalid_argument (a
-// radius that is not positive, a height of 0, an axis without a direction or parallel to its `zero`), non_finite (a
-// radius, a height, the axis), those of the curve or surface.
+/// @name Makers of circles and surfaces of revolution
+/// u in [0, 1] is the full turn, and arc k of n is on [k/n, (k+1)/n]. Inner knots are double: the point set is C1, but
+/// the parametrisation is only C0.
+/// @{
 
-/// Makes a circle about the axis's origin, from the direction of angle zero. Errors: those of all makers.
+/// Makes a circle about the axis's origin, from the direction of angle zero. Errors: invalid_argument (a radius that is
+/// not positive, an axis without a direction or parallel to its `zero`), non_finite (the radius, the axis, a point too
+/// large).
 Result<Curve> make_nurbs_circle(const Axis& axis, double radius, CircleArcs arcs = CircleArcs::four);
 /// Revolves `profile` about the axis: u is the turn, and v the profile's parameter with its degree and knots. Weights
-/// are products. Points of the profile on the axis make poles. Errors: those of all makers. (The NURBS Book, sec. 8.5,
-/// in closed form.)
+/// are products. Points of the profile on the axis make poles. Errors: invalid_argument (the axis, as above),
+/// non_finite (the axis, a point too large). Source: The NURBS Book, sec. 8.5, in closed form.
 Result<BSplineSurface> make_surface_of_revolution(const Curve& profile, const Axis& axis,
                                                   CircleArcs arcs = CircleArcs::four);
 /// Makes a sphere about the axis's origin. v in [0, 1] runs from the pole at -direction to the pole at +direction, over
-/// two arcs. The normal points outwards. Errors: those of all makers.
+/// two arcs. The normal points outwards. Errors: as for make_nurbs_circle().
 Result<BSplineSurface> make_nurbs_sphere(const Axis& axis, double radius, CircleArcs arcs = CircleArcs::four);
 /// Makes a torus: the tube of radius `minor` about the circle of radius `major` > minor. v in [0, 1] runs around the
-/// tube from its outermost circle towards +direction. The normal points outwards. Errors: those of all makers.
+/// tube from its outermost circle towards +direction. The normal points outwards. Errors: as for make_nurbs_circle(),
+/// and invalid_argument (a tube as thick as its ring).
 Result<BSplineSurface> make_nurbs_torus(const Axis& axis, double major, double minor,
                                         CircleArcs arcs = CircleArcs::four);
-/// Makes a cylinder from the origin to origin + height * direction / |direction|, with v in [0, 1] along it. Errors:
-/// those of all makers.
+/// Makes a cylinder from the origin to origin + height * direction / |direction|, with v in [0, 1] along it. Errors: as
+/// for make_nurbs_circle(), invalid_argument (a height of 0), non_finite (the height).
 Result<BSplineSurface> make_nurbs_cylinder(const Axis& axis, double radius, double height,
                                            CircleArcs arcs = CircleArcs::four);
 /// Makes a cone like make_nurbs_cylinder(), with radius `bottom` at the origin and `top` at the height. One of the
-/// radii may be zero: an apex. Errors: those of all makers.
+/// radii may be zero: an apex. Errors: as for make_nurbs_cylinder(), and invalid_argument (two radii of 0, one below
+/// 0).
 Result<BSplineSurface> make_nurbs_cone(const Axis& axis, double bottom, double top, double height,
                                        CircleArcs arcs = CircleArcs::four);
+
+/// @}
 
 }  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

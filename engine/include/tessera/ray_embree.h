@@ -2,8 +2,8 @@
 // Puts the patches of a ray scene into the user's own Embree scene, beside other geometry. The only header that names
 // Embree's types: for programs that link Embree themselves.
 
-// The major version that tessera::ray was built with; its CMake target defines it.
 #ifndef TESSERA_EMBREE_MAJOR
+/// The major version that tessera::ray was built with; its CMake target defines it.
 #define TESSERA_EMBREE_MAJOR 3
 #endif
 #if TESSERA_EMBREE_MAJOR == 4

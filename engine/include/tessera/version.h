@@ -5,9 +5,9 @@
 
 /// Version of these headers. While the major version is 0, each change of the interface raises the minor version.
 #define TESSERA_VERSION_MAJOR 0
-#define TESSERA_VERSION_MINOR 1
-#define TESSERA_VERSION_PATCH 0
-#define TESSERA_VERSION "0.1.0"
+#define TESSERA_VERSION_MINOR 1  ///< grows with each change of the interface
+#define TESSERA_VERSION_PATCH 0  ///< grows with each other change
+#define TESSERA_VERSION "0.1.0"  ///< all three, as text
 /// The version as one number for comparisons: 10000 * major + 100 * minor + patch.
 #define TESSERA_VERSION_NUMBER (TESSERA_VERSION_MAJOR * 10000 + TESSERA_VERSION_MINOR * 100 + TESSERA_VERSION_PATCH)
 
