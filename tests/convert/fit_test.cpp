@@ -261,8 +261,8 @@ TEST(Fit, RefusesBadInput) {
   refused({.tolerance = 1e-300}, "below");
   refused({.degree = 1}, "degree of the patches is 1");
   refused({.degree = 16}, "degree of the patches is 16");
-  refused({.max_patches = 0}, "count of patches is 0");
-  refused({.max_patches = 3, .breaks_u = {1}, .breaks_v = {1}}, "count of patches is 3");
+  refused({.max_patches = 0}, "max_patches is 0, the breakpoints alone make 1 patch");
+  refused({.max_patches = 3, .breaks_u = {1}, .breaks_v = {1}}, "max_patches is 3, the breakpoints alone make 4 patches");
   refused({.tolerance = 1e-6, .max_patches = 10}, "not kept by 10 patches, the largest count: the error is");
 }
 

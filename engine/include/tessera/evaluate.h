@@ -24,8 +24,8 @@ class CoonsPatch;
 class ParametricSurface;
 class RuledSurface;
 
-/// Returns `count` equidistant parameters from 0 to 1: i / (count - 1). A count below 2 counts as 2. Errors: the vector
-/// is empty if memory ran out. Memory: 8 bytes per parameter.
+/// Returns `count` equidistant parameters from 0 to 1: i / (count - 1). A count below 2 counts as 2. Errors: throws
+/// std::bad_alloc if memory runs out. Memory: 8 bytes per parameter.
 std::vector<double> uniform_parameters(int count);
 
 /// How a grid is evaluated.

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <new>
 #include <string>
 
 #include "base/impl_access.h"
@@ -185,12 +184,7 @@ double operations_per_point(const PlannedGroup& group, const QuantityFlags& outp
 }  // namespace
 
 std::vector<double> uniform_parameters(int count) {
-  std::vector<double> parameters;
-  try {
-    parameters.resize(static_cast<std::size_t>(std::max(count, 2)));
-  } catch (const std::bad_alloc&) {
-    return {};
-  }
+  std::vector<double> parameters(static_cast<std::size_t>(std::max(count, 2)));
   const double last = static_cast<double>(parameters.size() - 1);
   for (std::size_t k = 0; k < parameters.size(); ++k) parameters[k] = static_cast<double>(k) / last;
   return parameters;

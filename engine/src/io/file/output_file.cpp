@@ -1,6 +1,7 @@
 #include "tessera/files.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 
@@ -113,12 +114,30 @@ struct Temporary {
   int error = 0;  ///< errno of a failure
 };
 
+/// Holds signals back on this thread: a handler that calls remove_temporaries() comes before a file is created, or after
+/// its name is known. One that runs on another thread meanwhile leaves the file to the next writer.
+class HeldSignals {
+ public:
+  HeldSignals() {
+    sigset_t all;
+    sigfillset(&all);
+    ::pthread_sigmask(SIG_SETMASK, &all, &before_);
+  }
+  HeldSignals(const HeldSignals&) = delete;
+  HeldSignals& operator=(const HeldSignals&) = delete;
+  ~HeldSignals() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+
+ private:
+  sigset_t before_;
+};
+
 /// Creates `target`.tessera-0.tmp, or the next one that no living writer has, and locks it as long as it is open.
 Temporary open_temporary(const fs::path& target) {
   constexpr int max_writers = 1000;  // of one target at once
   for (int number = 0, tries = 0; number < max_writers && tries < 2 * max_writers; ++tries) {
     fs::path path = target;
     path += ".tessera-" + std::to_string(number) + ".tmp";
+    const HeldSignals held;
     Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
     if (file.is_open()) {
       // Another writer may have taken the file for abandoned before it was locked: then this name is not ours.
