@@ -64,7 +64,7 @@ TEST(Cracks, AreFoundWhereVerticesPart) {
   ASSERT_TRUE(model.ok());
   const Result<PatchSet> set = make_patch_set(*model);
   ASSERT_TRUE(set.ok());
-  const MeetingBorders borders(*set, 0);
+  const MeetingBorders borders(*set, {});
   const Result<CertifiedTessellation> plan = CertifiedTessellation::make(*set, {.tolerance = 0.05});
   ASSERT_TRUE(plan.ok());
   Mesh mesh = plan->allocate().value();

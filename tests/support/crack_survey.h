@@ -39,7 +39,7 @@ struct CrackCount {
 /// The number of borders that meet on each border of a patch, by 4 * patch + side; 0 for a border that is a point.
 class [[gnu::visibility("hidden")]] MeetingBorders {
  public:
-  MeetingBorders(const PatchSet& set, double weld) : counts_(4 * set.patch_count(), 0) {
+  MeetingBorders(const PatchSet& set, const WeldRules& weld) : counts_(4 * set.patch_count(), 0) {
     const Result<CertifiedPlanner> planner =
         CertifiedPlanner::make(impl_of(set), {.weld = weld, .angle = {}, .camera = {}}, {});
     if (!planner) return;
@@ -144,12 +144,12 @@ inline bool is_folded(const PatchSet& set) {
   return false;
 }
 
-/// The mesh that keeps a share of the model's size; welds borders that lie within a millionth of the size. Errors:
-/// those of CertifiedTessellation::make.
+/// The mesh that keeps a share of the model's size; welds borders as it does by default. Errors: those of
+/// CertifiedTessellation::make.
 inline Result<CrackCount> count_cracks(const PatchSet& set, double relative, std::uint64_t max_triangles,
                                        bool fewest = false) {
   const double size = set.box().diagonal();
-  CertifiedOptions options{.tolerance = relative * size, .weld = 1e-6 * size, .max_triangles = max_triangles};
+  CertifiedOptions options{.tolerance = relative * size, .max_triangles = max_triangles};
   options.fewest = fewest;
   Result<CertifiedTessellation> plan = CertifiedTessellation::make(set, options);
   CrackCount count;
@@ -167,7 +167,7 @@ inline Result<CrackCount> count_cracks(const PatchSet& set, double relative, std
   if (const Status status = plan->run(set, mesh->views()); !status.ok()) return status;
   const Result<MeshReport> report = check(*mesh);
   if (!report) return report.status();
-  const MeetingBorders borders(set, options.weld);
+  const MeetingBorders borders(set, {count.capped ? 1e-6 * size : relative * size / 8, true});
   count.report = *report;
   count.bound = plan->bound();
   count.own_borders = borders.lone();

@@ -226,7 +226,7 @@ TEST(Fewest, CurvesBesideWeldedBordersOpenNoCrack) {
   EXPECT_GT(plan.welded_borders(), 0u);
   EXPECT_FALSE(impl_of(plan).plan().division(2).border[3].is_uniform());
   CrackCount cracks;
-  count_edges(mesh_of(set, plan), MeetingBorders(set, 1e-4), cracks);
+  count_edges(mesh_of(set, plan), MeetingBorders(set, {1e-4}), cracks);
   EXPECT_EQ(cracks.cracks, 0u);
 }
 

@@ -108,9 +108,10 @@ TEST_F(MeshTools, WeldingClosesPolesAndSeamsOfRealFiles) {
   if (!data) GTEST_SKIP() << "TESSERA_TEST_DATA is not set";
   const std::string file = std::string(data) + "/rib_nupatch/trimmed_nupatch_sphere.rib";
   for (const char* const relative : {"0.03", "0.01", "0.003", "0.001", "0.0003"}) {
-    const ToolRun made = run({"tessellate", file, "-o", "a.ply", "--relative", relative, "--weld", "auto", "--json"});
+    const ToolRun made = run({"tessellate", file, "-o", "a.ply", "--relative", relative, "--json"});
     ASSERT_EQ(made.status, 0) << made.errors;
     EXPECT_EQ(json::parse(made.output)["welded_borders"], 8);  // at its poles
+    EXPECT_EQ(json::parse(made.output)["open_edges"], 0);
     const json mesh = json::parse(output_of({"check", "a.ply", "--json"}));
     EXPECT_EQ(mesh["closed"], true) << relative;
     EXPECT_EQ(mesh["degenerate_triangles"], 0) << relative;
@@ -123,12 +124,12 @@ TEST_F(MeshTools, WeldingClosesRealBodiesWhosePatchesAreRounded) {
   for (const char* const name : {"/bezierview_bv/SurfLab__cubeg2.bv", "/bezierview_bv/SurfLab__twg2.bv"})
     for (const std::string relative : {"0.03", "0.01", "0.003"}) {
       const Names command{"tessellate", data + std::string(name), "-o", "a.ply", "--relative", relative};
-      output_of(command);
-      const json open_edges = json::parse(output_of({"check", "a.ply", "--json"}))["open_edges"];
+      Names apart = command;
+      apart.insert(apart.end(), {"--weld", "0", "--json"});
+      const json open_edges = json::parse(output_of(apart))["open_edges"];
+      EXPECT_EQ(open_edges, json::parse(output_of({"check", "a.ply", "--json"}))["open_edges"]);
       EXPECT_TRUE(relative != "0.003" || open_edges > 0);  // coarse borders have corners alone, which do meet
-      Names welded = command;
-      welded.insert(welded.end(), {"--weld", "auto"});
-      output_of(welded);
+      EXPECT_NE(output_of(command).find(", closed\n"), std::string::npos);
       const json mesh = json::parse(output_of({"check", "a.ply", "--json"}));
       EXPECT_EQ(mesh["closed"], true) << name << ' ' << relative;
       EXPECT_EQ(mesh["degenerate_triangles"], 0) << name << ' ' << relative;
@@ -136,8 +137,8 @@ TEST_F(MeshTools, WeldingClosesRealBodiesWhosePatchesAreRounded) {
     }
 }
 
-TEST_F(MeshTools, WeldsAreLengthsOrAuto) {
-  for (const char* const wrong : {"-1", "nan", "inf", "x", "1,2", ""})
+TEST_F(MeshTools, WeldsAreLengths) {
+  for (const char* const wrong : {"-1", "nan", "inf", "x", "auto", "1,2", ""})
     expect_failure({"tessellate", teapot, "-o", "d.ply", "--tolerance", "1", "--weld", wrong}, 2, "--weld");
   const json made =
       json::parse(output_of({"tessellate", teapot, "-o", "a.ply", "--tolerance", "0.01", "--weld", "1e-5", "--json"}));

@@ -55,7 +55,7 @@ TEST_F(Tolerances, PixelsOfACamera) {
   const json inside = made({"--pixels", "1", "--camera=0,0,1,1,0.3,1,60", "--near", "0.05"});
   EXPECT_LE(inside["pixels"], 1.000001);
   EXPECT_EQ(checked()["t_junctions"], 0);
-  const json all = made({"--pixels", "2", camera, "--relative", "0.01", "--angle", "15", "--weld", "auto"});
+  const json all = made({"--pixels", "2", camera, "--relative", "0.01", "--angle", "15"});
   EXPECT_LE(all["angle"], 15.0001);
   EXPECT_LE(all["pixels"], 2.00001);
 }

@@ -27,13 +27,10 @@ struct Options {
   bool is_default = false;       ///< whether no density is on the command line
   std::uint64_t max_memory = 0;  ///< bytes of the mesh; 0: a share of what is free
   bool quads = false;
-  bool weld_rounding = false;  ///< whether the weld is a share of the size
-  double pixels = 0;           ///< above 0 if requested
+  double pixels = 0;  ///< above 0 if requested
   View view;
 };
 
-/// Numbers of six or seven digits in files, and surfaces that programs have rotated into place, differ by about this.
-constexpr double rounding_share = 1e-6;
 constexpr double default_share = 1e-3;
 constexpr double degree = std::numbers::pi / 180;
 constexpr int max_segments = 4096;
@@ -41,8 +38,8 @@ constexpr std::size_t max_triangles = std::size_t{1} << 40;
 
 struct Tessellated {
   Mesh mesh;
-  double weld = 0;
-  std::size_t welded_borders = 0;
+  double tolerance = 0;
+  std::size_t welded_borders = 0, open_edges = 0;
   double angle = 0;  ///< degrees
   std::size_t patches_without_angle = 0;
   double pixels = 0;
@@ -86,10 +83,10 @@ Result<Tessellated> tessellate(const Options& options, const Model& model, const
           options);
     CertifiedOptions certified = options.certified;
     if (options.pixels > 0) certified.pixels = PixelTolerance{options.pixels, options.view};
-    if (options.weld_rounding) certified.weld = rounding_share * set.box().diagonal();
     const Result<CertifiedTessellation> plan = CertifiedTessellation::make(set, certified);
     if (plan) {
-      made.weld = certified.weld;
+      made.tolerance = plan->tolerance();
+      made.open_edges = plan->open_edges();
       made.welded_borders = plan->welded_borders();
       made.angle = plan->angle() / degree;
       made.patches_without_angle = plan->patches_without_angle();
@@ -119,7 +116,11 @@ std::string kept(const Options& options, const Tessellated& made) {
   if (options.pixels > 0) said += ", within " + readable(made.pixels, 3) + " pixels in the picture";
   said += made.proven ? ", proven" : ", proven except for fits that are sampled";
   if (options.is_default) said += " (--relative " + readable(default_share) + ", the default)";
-  return said + (made.welded_borders ? ", " + counted(made.welded_borders, "border") + " welded" : "");
+  if (options.certified.smallest)
+    said += ", the smallest tolerance for " + counted(options.certified.max_triangles, "triangle") + " is " +
+            readable(made.tolerance);
+  if (made.welded_borders) said += ", " + counted(made.welded_borders, "border") + " welded";
+  return said + (made.open_edges ? ", " + counted(made.open_edges, "open edge") : ", closed");
 }
 
 Status report(const Job& job, const Options& options, const CommonOptions& common, const Loaded& loaded,
@@ -146,8 +147,10 @@ Status report(const Job& job, const Options& options, const CommonOptions& commo
     object["angle"] = options.certified.angle ? Json(made.angle) : Json();
     object["patches_without_angle"] = made.patches_without_angle;
     object["pixels"] = options.pixels > 0 ? Json(made.pixels) : Json();
-    object["weld"] = made.weld;
+    object["tolerance"] = std::isinf(made.tolerance) ? Json() : Json(made.tolerance);
+    object["weld"] = options.certified.weld ? Json(*options.certified.weld) : Json();
     object["welded_borders"] = made.welded_borders;
+    object["open_edges"] = made.open_edges;
   }
   add_model_facts(object, loaded, set);
   add_seconds(object, common, timings);
@@ -293,15 +296,13 @@ void add_memory(Command& command, Options& options) {
 
 void add_weld(Command& command, Options& options) {
   const auto set_weld = [&options](const std::string& text) {
-    options.weld_rounding = text == "auto";
-    if (options.weld_rounding) return;
-    options.certified.weld = parse_numbers("--weld", text, 1, "of at least 0, or auto")[0];
-    if (!(options.certified.weld >= 0))
-      throw UsageError("--weld", "expected a length of at least 0, or auto, found " + quote(text));
+    options.certified.weld = parse_numbers("--weld", text, 1, "of at least 0")[0];
+    if (!(*options.certified.weld >= 0))
+      throw UsageError("--weld", "expected a length of at least 0, found " + quote(text));
   };
   command.add("--weld", "LENGTH",
-              "Join borders within this distance of each other, not for --grid; auto: 1e-6 of the model's size "
-              "[0: borders with equal bits]",
+              "Join borders within this distance of each other, not for --grid; 0: only borders with equal bits "
+              "[an eighth of the tolerance]",
               set_weld);
 }
 

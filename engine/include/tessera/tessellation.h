@@ -131,10 +131,12 @@ struct CertifiedOptions {
   std::optional<double> angle = {};
   int angle_rate = 64;                        ///< segments of patches without an angle bound, 1 to 4096
   std::optional<PixelTolerance> pixels = {};  ///< a tolerance in a camera's picture
-  /// Borders that lie within this length of each other are joined: 0 to a twentieth of the set's size. 0 joins only
-  /// borders of the same bits. About 1e-6 of the set's size suits files whose neighbours differ by rounding. Keep it
-  /// below the width of the smallest patch: thinner patches lose their area.
-  double weld = 0;
+  /// The largest distance of borders that are joined: 0 to a twentieth of the set's size. 0 joins only borders of the
+  /// same bits. Borders shorter than it become points.
+  ///
+  /// If empty: an eighth of the tolerance, or 1e-6 of the set's size without a tolerance, but no more than an eighth of
+  /// either border's size; and borders become points only if they are no longer than 2^-18 of their patch.
+  std::optional<double> weld = {};
   /// The largest angle between normals that are joined, radians, 0 to pi. If empty, each patch has its own normals.
   ///
   /// Where the normals of two patches lie within this angle all along their common border, and point the same way, the
@@ -148,13 +150,13 @@ struct CertifiedOptions {
   /// patch has its own vertices, whose positions are the same bits.
   ///
   /// With a crease angle, vertices are shared where normals are joined. Without a crease angle, vertices are shared
-  /// everywhere and the mesh has no normals. A shared vertex belongs to the patch that comes first: its parameters are
-  /// those of that patch.
+  /// everywhere and the mesh has no normals. A shared vertex belongs to the patch that comes first, or to that
+  /// which the others are welded to: its parameters are those of that patch.
   bool share_vertices = false;
   /// The largest number of triangles; a mesh that takes more is an error.
   std::uint64_t max_triangles = std::uint64_t{1} << 30;
-  /// Finds the tolerance: the smallest, within 1 percent, for which max_triangles suffice. Angle and pixels are kept as
-  /// well.
+  /// Finds the tolerance: the smallest of the lengths 2^(k/128), 0.54 percent apart, for which max_triangles suffice,
+  /// down to 1e-6 of the tolerance that one cell per patch keeps. Angle and pixels are kept as well.
   bool smallest = false;
   /// Looks for fewer triangles and takes more time. It never adds triangles and saves a twentieth to a third of them,
   /// most on rational patches and on those that bend along u in one place and along v in another. The means are:
@@ -196,14 +198,16 @@ struct CertifiedOptions {
 /// vertices are the same bits in both patches. Each patch has an inner grid at its own rates, and strips of triangles
 /// between that grid and its borders. A collapsed border is one point without triangles on it.
 ///
-/// Welding: a border that equals no other by its bits is joined to the nearest one within the weld tolerance.
+/// Welding: a border that equals no other by its bits is joined to the nearest one within CertifiedOptions::weld.
 ///
+/// - The border that moves depends on the two alone. Of three or more that are joined, all take the vertices of one. A
+///   slit narrower than the weld closes. A patch thinner than the weld keeps its own borders apart.
 /// - The two may run in either direction and have any degrees, polynomial or rational. Their points at equal parameters
 ///   lie within the tolerance, proven by their control points raised to one degree.
 /// - Not joined: rational curves of one shape whose parameters run at different speeds; one long border and two short
 ///   ones.
-/// - The border takes the other's vertices, and corners of joined borders become one corner.
-/// - Borders whose control points lie in a box of at most the tolerance become points, as collapsed ones are.
+/// - Corners of joined borders become one corner.
+/// - Borders whose control points lie in a box no larger than the weld become points, as collapsed ones are.
 /// - The bounds include how far vertices are moved.
 ///
 /// Layout of the vertices, patch after patch: the inner points, then the border points counter-clockwise from (0,0),
@@ -232,6 +236,8 @@ class CertifiedTessellation {
   CertifiedTessellation& operator=(CertifiedTessellation&&) noexcept;
   ~CertifiedTessellation();
 
+  /// Returns the tolerance as a length, also that which was found for a number of triangles; infinite if there is none.
+  double tolerance() const;
   /// Returns the distance that the mesh is proven to keep: the largest of bounds(), at most the tolerance. Like all
   /// bounds of a plan it holds for the set and the revision that the plan was made for.
   double bound() const;
@@ -251,6 +257,8 @@ class CertifiedTessellation {
   /// Returns how many borders were joined by welding and not by their bits: those with the vertices of another border,
   /// and those made points.
   std::size_t welded_borders() const;
+  /// Returns how many edges of the mesh have one triangle alone: those on borders that are joined to no other.
+  std::size_t open_edges() const;
   /// Returns the exact sizes of a mesh of triangles alone.
   MeshCapacity capacity() const;
   /// Returns the exact sizes of a mesh with quads: one quad for each cell that is not in a strip, so none where strips

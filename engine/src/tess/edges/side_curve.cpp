@@ -56,6 +56,27 @@ double distance_bound(SideCurve a, SideCurve b, bool reversed) {
   return std::isnan(bound) ? std::numeric_limits<double>::infinity() : bound;
 }
 
+namespace {
+
+/// Compares curves of one degree point by point: -1, 0 or 1 if a is less, the same or greater.
+int compare(const SideCurve& a, bool a_turned, const SideCurve& b, bool b_turned) {
+  const int last = a.degree();
+  for (int k = 0; k <= last; ++k) {
+    const int i = a_turned ? last - k : k, j = b_turned ? last - k : k;
+    const Vec3 p = a.point(i), q = b.point(j);
+    const auto x = std::tuple(p.x, p.y, p.z, a.weight(i)), y = std::tuple(q.x, q.y, q.z, b.weight(j));
+    if (x != y) return x < y ? -1 : 1;
+  }
+  return 0;
+}
+
+}  // namespace
+
+bool comes_before(const SideCurve& a, const SideCurve& b) {
+  if (a.degree() != b.degree()) return a.degree() < b.degree();
+  return compare(a, compare(a, true, a, false) < 0, b, compare(b, true, b, false) < 0) < 0;
+}
+
 bool runs_against(const PatchSet::Impl& set, std::uint32_t border, std::uint32_t other) {
   if (border == other) return false;
   const Side side = all_sides[border % 4], other_side = all_sides[other % 4];

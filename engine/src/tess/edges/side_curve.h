@@ -36,6 +36,10 @@ class SideCurve {
 ///                <= max |p_k - q_k| + max(|w_k - v_k| / w_k) D,   D the diagonal of the box of the q_k.
 double distance_bound(SideCurve a, SideCurve b, bool reversed);
 
+/// Whether a curve comes before another in an order that does not depend on their directions: by degrees, then by the
+/// points and weights from that end which has the lesser ones. Curves neither of which comes first are the same.
+bool comes_before(const SideCurve& a, const SideCurve& b);
+
 /// Whether a border runs against another of its edge, both as 4 * patch + side. If their float bits are the same in
 /// both directions, the control points in double decide.
 bool runs_against(const PatchSet::Impl& set, std::uint32_t border, std::uint32_t other);

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <unordered_map>
 
 #include "tess/edges/side_curve.h"
@@ -27,30 +29,45 @@ std::array<float, 3> packed_corner(const PatchSet::Impl& set, std::uint32_t corn
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
 
-/// Edges in cells by the middle of their ends; finds the edges whose middle lies within the tolerance of a point.
+/// Edges in cells by the middle of their ends.
 class EdgeCells {
  public:
-  EdgeCells(const Box3& box, double tolerance)
-      : origin_(box.lower), tolerance_(tolerance), size_(std::max(2 * tolerance, 0x1p-20 * box.diagonal())) {}
+  /// `count`: how many edges are added.
+  EdgeCells(const Box3& box, double reach, std::size_t count)
+      : origin_(box.lower),
+        size_(std::max(2 * reach, 0x1p-20 * box.diagonal())),
+        is_filled_(std::bit_ceil(cells_per_edge * slots_per_cell * count)) {}
 
-  void add(const Vec3& middle, std::uint32_t edge) { cells_[key(index(middle, 0))].push_back(edge); }
-  template <class Visit>
-  void for_near(const Vec3& middle, Visit visit) const {
-    const Index low = index(middle, -tolerance_), high = index(middle, tolerance_);
+  /// Adds an edge to all cells within `reach` of its middle.
+  void add(const Vec3& middle, double reach, std::uint32_t edge) {
+    const Index low = index(middle, -reach), high = index(middle, reach);
     for (std::int64_t x = low[0]; x <= high[0]; ++x)
       for (std::int64_t y = low[1]; y <= high[1]; ++y)
-        for (std::int64_t z = low[2]; z <= high[2]; ++z)
-          if (const auto cell = cells_.find(key({x, y, z})); cell != cells_.end())
-            for (const std::uint32_t edge : cell->second) visit(edge);
+        for (std::int64_t z = low[2]; z <= high[2]; ++z) {
+          const std::uint64_t cell = key({x, y, z});
+          cells_[cell].push_back(edge);
+          is_filled_[slot(cell)] = true;
+        }
+  }
+  /// Calls visit(edge) for the edges whose middle may lie within their reach of a point.
+  template <class Visit>
+  void for_near(const Vec3& middle, Visit visit) const {
+    const std::uint64_t cell = key(index(middle, 0));
+    if (!is_filled_[slot(cell)]) return;
+    if (const auto found = cells_.find(cell); found != cells_.end())
+      for (const std::uint32_t edge : found->second) visit(edge);
   }
 
  private:
   using Index = std::array<std::int64_t, 3>;
+  static constexpr std::size_t cells_per_edge = 8, slots_per_cell = 8;
   /// Packs a cell's index. 21 bits per axis suffice: a box has at most 2^20 cells along an axis.
   static std::uint64_t key(const Index& at) {
     const auto part = [&](std::size_t c) { return static_cast<std::uint64_t>(at[c] + 1) & 0x1fffff; };
     return part(0) << 42 | part(1) << 21 | part(2);
   }
+  /// Spreads keys (Knuth, The Art of Computer Programming, vol. 3, 2nd ed., sec. 6.4).
+  std::size_t slot(std::uint64_t key) const { return ((key * 0x9e3779b97f4a7c15) >> 20) & (is_filled_.size() - 1); }
   Index index(const Vec3& p, double shift) const {
     const Vec3 from = p - origin_;
     const auto cell = [&](double x) { return static_cast<std::int64_t>(std::floor((x + shift) / size_)); };
@@ -58,23 +75,24 @@ class EdgeCells {
   }
 
   Vec3 origin_;
-  double tolerance_, size_;
+  double size_;
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;
+  std::vector<bool> is_filled_;  ///< by the hash of a cell; most are not
 };
 
 class Welder {
  public:
-  Welder(const PatchSet::Impl& set, std::span<const PatchShape> shapes, double tolerance, SharedEdges& edges,
-         bool every_edge)
+  Welder(const PatchSet::Impl& set, std::span<const PatchShape> shapes, const WeldRules& rules, SharedEdges& edges)
       : set_(set),
-        tolerance_(tolerance),
-        every_edge_(every_edge),
+        shapes_(shapes),
+        rules_(rules),
         edges_(edges),
         joined_(edges.count()),
         leading_(edges.count(), none),
+        givers_(edges.count()),
         borders_of_(edges.count(), 0),
         is_pole_(edges.count(), 0) {
-    weld_.shapes.assign(shapes.begin(), shapes.end());
+    std::iota(givers_.begin(), givers_.end(), std::uint32_t{0});
     for_borders([&](std::uint32_t border, std::uint32_t edge) {
       if (leading_[edge] == none) leading_[edge] = border;
       ++borders_of_[edge];
@@ -82,10 +100,11 @@ class Welder {
   }
 
   Weld run(std::span<const double> roundings) {
-    if (tolerance_ > 0) {
-      join_edges();
-      find_poles();
-    }
+    const bool joins = rules_.reach > 0 && join_edges();
+    if (joins) choose_givers();
+    const bool makes_points = rules_.reach > 0 && find_poles();
+    if (!joins && !makes_points && !rules_.every_edge) return {};
+    find_shapes();
     UnionFind corners(4 * set_.patches.size());
     join_corners(corners);
     list_copies(corners);
@@ -104,55 +123,118 @@ class Welder {
   template <class Visit>
   void for_borders(Visit visit) const {
     for (std::size_t patch = 0; patch < set_.patches.size(); ++patch)
-      for (std::uint32_t side = 0; side < 4 && !weld_.shapes[patch].is_curve; ++side)
+      for (std::uint32_t side = 0; side < 4 && !shapes_[patch].is_curve; ++side)
         if (const std::uint32_t edge = edges_.edge(patch, all_sides[side]); edge != none)
           visit(static_cast<std::uint32_t>(4 * patch) + side, edge);
   }
 
-  void join_edges() {
-    EdgeCells cells(set_.box(), tolerance_);
-    const auto middle = [&](std::uint32_t edge) {
-      const SideCurve border = curve(leading_[edge]);
-      return 0.5 * border.first() + 0.5 * border.last();
-    };
-    for (std::uint32_t edge = 0; edge < leading_.size(); ++edge)
-      if (leading_[edge] != none) cells.add(middle(edge), edge);
-    for (std::uint32_t edge = 0; edge < leading_.size(); ++edge) {
-      if (leading_[edge] == none || borders_of_[edge] > 1) continue;
-      const SideCurve border = curve(leading_[edge]);
-      double least = tolerance_;
-      std::uint32_t nearest = none;
-      bool reversed = false;
-      cells.for_near(middle(edge), [&](std::uint32_t other) {
-        if (other == edge) return;
-        const SideCurve met = curve(leading_[other]);
-        for (const bool turned : {false, true}) {
-          const Vec3 first = turned ? met.last() : met.first(), last = turned ? met.first() : met.last();
-          if (!(length(border.first() - first) <= tolerance_ && length(border.last() - last) <= tolerance_)) continue;
-          const double distance = distance_bound(border, met, turned);
-          if (distance < least || (distance == least && other < nearest)) {
-            least = distance;
-            nearest = other;
-            reversed = turned;
-          }
-        }
-      });
-      if (nearest != none) joined_.unite(edge, nearest, reversed);
+  /// The nearest edge to one with a single border.
+  struct Nearest {
+    std::uint32_t edge, other = none;
+    bool reversed = false;
+    double distance = 0;
+  };
+
+  /// Returns how far apart an edge and another that is joined to it may be.
+  double reach(std::uint32_t edge) const {
+    return rules_.is_relative ? std::min(rules_.reach, curve(leading_[edge]).box().diagonal() / 8) : rules_.reach;
+  }
+  /// Whether two borders are opposite ones of a patch none of whose rows between them lies farther than the reach.
+  bool is_thin(std::uint32_t a, std::uint32_t b) const {
+    if (patch_of(a) != patch_of(b) || runs_along_u(side_of(a)) != runs_along_u(side_of(b))) return false;
+    const BezierPatch& patch = set_.patches[patch_of(a)];
+    const bool along_u = runs_along_u(side_of(a));
+    for (int i = 0; i <= patch.degree_u(); ++i)
+      for (int j = 0; j <= patch.degree_v(); ++j)
+        if (!(length(patch.point(i, j) - patch.point(along_u ? i : 0, along_u ? 0 : j)) <= rules_.reach)) return false;
+    return true;
+  }
+
+  /// Compares an edge with another, and keeps the other if it is nearer than those before.
+  void compare(std::uint32_t other, Nearest& nearest) const {
+    const std::uint32_t a = leading_[nearest.edge], b = leading_[other];
+    const SideCurve border = curve(a), met = curve(b);
+    const double reach = std::min(this->reach(nearest.edge), this->reach(other));
+    for (const bool turned : {false, true}) {
+      const Vec3 first = turned ? met.last() : met.first(), last = turned ? met.first() : met.last();
+      if (!(length(border.first() - first) <= reach && length(border.last() - last) <= reach)) continue;
+      const double distance = distance_bound(border, met, turned);
+      if (!(distance <= reach)) continue;
+      const bool is_nearer = nearest.other == none || distance < nearest.distance ||
+                             (distance == nearest.distance && comes_before(met, curve(leading_[nearest.other])));
+      if (is_nearer && !is_thin(a, b)) nearest = {nearest.edge, other, turned, distance};
     }
   }
 
+  /// Joins each edge with a single border to the nearest edge. Returns whether there are any.
+  bool join_edges() {
+    const auto middle = [&](std::uint32_t edge) {
+      const auto [first, last] = ends_of(leading_[edge]);
+      const BezierPatch& patch = set_.patches[patch_of(first)];
+      return 0.5 * corner_of(patch, first) + 0.5 * corner_of(patch, last);
+    };
+    std::vector<Nearest> open;
+    for (std::uint32_t edge = 0; edge < leading_.size(); ++edge)
+      if (leading_[edge] != none && borders_of_[edge] == 1) open.push_back({edge});
+    if (open.empty()) return false;
+    EdgeCells cells(set_.box(), rules_.reach, open.size());
+    for (std::uint32_t k = 0; k < open.size(); ++k) cells.add(middle(open[k].edge), reach(open[k].edge), k);
+    for (std::uint32_t edge = 0; edge < leading_.size(); ++edge)
+      if (leading_[edge] != none)
+        cells.for_near(middle(edge), [&](std::uint32_t k) {
+          if (open[k].edge != edge) compare(edge, open[k]);
+        });
+    bool any = false;
+    for (const Nearest& nearest : open) {
+      if (nearest.other == none) continue;
+      joined_.unite(nearest.edge, nearest.other, nearest.reversed);
+      any = true;
+    }
+    return any;
+  }
+
+  /// Finds the edge of each joined set whose leading border gives its points to all others.
+  void choose_givers() {
+    for (std::uint32_t edge = 0; edge < leading_.size(); ++edge) {
+      std::uint32_t& giver = givers_[joined_.find(edge).member];
+      if (giver != edge && leading_[edge] != none && comes_before(curve(leading_[edge]), curve(leading_[giver])))
+        giver = edge;
+    }
+  }
+
+  /// Returns the edge whose leading border gives its points to all edges joined to it.
+  std::uint32_t canonical(std::uint32_t edge) { return givers_[joined_.find(edge).member]; }
   /// Whether a border runs against the leading border of its canonical edge.
   bool runs_against(std::uint32_t border, std::uint32_t edge) {
-    const std::uint32_t lead = leading_[edge];
-    const bool turned = tessera::runs_against(set_, border, lead);
-    return turned != joined_.find(edge).turned;
+    const bool turned = tessera::runs_against(set_, border, leading_[edge]);
+    return turned != (joined_.find(edge).turned != joined_.find(canonical(edge)).turned);
   }
-  /// Returns the edge whose leading border gives its points to all edges joined to it.
-  std::uint32_t canonical(std::uint32_t edge) { return joined_.find(edge).member; }
 
-  void find_poles() {
-    for (std::uint32_t edge = 0; edge < leading_.size(); ++edge)
-      if (leading_[edge] != none && curve(leading_[edge]).box().diagonal() <= tolerance_) is_pole_[canonical(edge)] = 1;
+  /// Whether a border becomes a point.
+  bool is_point(std::uint32_t border) const {
+    const BezierPatch& patch = set_.patches[patch_of(border)];
+    const auto [first, last] = ends_of(border);
+    if (!(length(corner_of(patch, first) - corner_of(patch, last)) <= rules_.reach)) return false;
+    double most = rules_.reach;
+    if (rules_.is_relative) {
+      Box3 box;
+      for (const Vec3& p : patch.points()) box.extend(p);
+      most = std::min(most, WeldRules::point_share * box.diagonal());
+    }
+    return curve(border).box().diagonal() <= most;
+  }
+  /// Finds the edges that become points. Returns whether there are any.
+  bool find_poles() {
+    bool any = false;
+    for_borders([&](std::uint32_t border, std::uint32_t edge) {
+      if (!is_point(border)) return;
+      is_pole_[canonical(edge)] = 1;
+      any = true;
+    });
+    return any;
+  }
+  void find_shapes() {
+    weld_.shapes.assign(shapes_.begin(), shapes_.end());
     for_borders([&](std::uint32_t border, std::uint32_t edge) {
       if (is_pole_[canonical(edge)]) weld_.shapes[patch_of(border)].collapsed.add(tessera::edge_of(side_of(border)));
     });
@@ -173,19 +255,40 @@ class Welder {
     });
   }
 
+  /// Returns for each corner the one that gives it its point: of those that meet, that with the least coordinates.
+  std::vector<std::uint32_t> corner_givers(UnionFind& corners) const {
+    const auto point = [&](std::uint32_t corner) {
+      const Vec3 p = corner_of(set_.patches[patch_of(corner)], corner);
+      return std::array{p.x, p.y, p.z};
+    };
+    std::vector<std::uint32_t> givers(4 * set_.patches.size());
+    std::iota(givers.begin(), givers.end(), std::uint32_t{0});
+    for (std::uint32_t corner = 0; corner < givers.size(); ++corner) {
+      std::uint32_t& giver = givers[corners.find(corner).member];
+      if (giver != corner && point(corner) < point(giver)) giver = corner;
+    }
+    for (std::uint32_t corner = 0; corner < givers.size(); ++corner) {
+      const std::uint32_t root = corners.find(corner).member;
+      if (root != corner) givers[corner] = givers[root];
+    }
+    return givers;
+  }
+
   void list_copies(UnionFind& corners) {
+    const std::vector<std::uint32_t> givers = corner_givers(corners);
     for (std::size_t patch = 0; patch < set_.patches.size(); ++patch) {
-      if (weld_.shapes[patch].is_curve) continue;
+      if (shapes_[patch].is_curve) continue;
       for (std::uint32_t side = 0; side < 4; ++side) {
         const std::uint32_t border = static_cast<std::uint32_t>(4 * patch) + side, edge = edge_of_border(border);
-        const std::uint32_t corner = corners.find(border).member;
-        const bool moves = !(packed(corner) == packed(border)), takes = moves || (every_edge_ && corner != border);
+        const std::uint32_t corner = givers[border];
+        const bool moves = !(packed(corner) == packed(border)),
+                   takes = moves || (rules_.every_edge && corner != border);
         if (takes) weld_.corners.push_back({border, corner});
         const bool was_point = edge == none;
         if (was_point || is_pole_[canonical(edge)]) {
           if (!was_point || takes) weld_.poles.push_back({border, corner});
           if (!was_point || moves) ++weld_.joined_by_distance;
-        } else if (canonical(edge) != edge || (every_edge_ && leading_[edge] != border)) {
+        } else if (canonical(edge) != edge || (rules_.every_edge && leading_[edge] != border)) {
           weld_.borders.push_back({border, leading_[canonical(edge)], runs_against(border, edge)});
           if (canonical(edge) != edge) ++weld_.joined_by_distance;
         }
@@ -202,11 +305,12 @@ class Welder {
   }
 
   const PatchSet::Impl& set_;
-  double tolerance_;
-  bool every_edge_;
+  std::span<const PatchShape> shapes_;  ///< before welding
+  WeldRules rules_;
   SharedEdges& edges_;
-  UnionFind joined_;                       ///< sets of joined edges
-  std::vector<std::uint32_t> leading_;     ///< `[edge]`: its leading border, the first one of a patch with an area
+  UnionFind joined_;                    ///< sets of joined edges
+  std::vector<std::uint32_t> leading_;  ///< `[edge]`: its leading border, the first one of a patch with an area
+  std::vector<std::uint32_t> givers_;   ///< `[edge]`: for the member that stands for a joined set, its canonical edge
   std::vector<std::uint32_t> borders_of_;  ///< `[edge]`: the number of its borders of patches with an area
   std::vector<std::uint8_t> is_pole_;      ///< `[canonical edge]`
   Weld weld_;
@@ -215,8 +319,8 @@ class Welder {
 }  // namespace
 
 Weld weld_borders(const PatchSet::Impl& set, std::span<const PatchShape> shapes, std::span<const double> roundings,
-                  double tolerance, SharedEdges& edges, bool every_edge) {
-  return Welder(set, shapes, tolerance, edges, every_edge).run(roundings);
+                  const WeldRules& rules, SharedEdges& edges) {
+  return Welder(set, shapes, rules, edges).run(roundings);
 }
 
 std::array<std::uint32_t, 2> ends_of(std::uint32_t border) {

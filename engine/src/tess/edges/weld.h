@@ -36,9 +36,10 @@ struct VertexCopies {
 struct Weld : VertexCopies {
   /// The number of borders joined by their distance and not by their bits, and of those made points.
   std::size_t joined_by_distance = 0;
-  /// `[patch]`: its shape, in which borders made points are collapsed.
+  /// `[patch]`: its shape, in which borders made points are collapsed; empty if nothing is welded.
   std::vector<PatchShape> shapes;
-  /// `[patch]`: how far its vertices lie from its surface at most, including rounding; 0 where none is moved.
+  /// `[patch]`: how far its vertices lie from its surface at most, including rounding; 0 where none is moved; empty if
+  /// nothing is welded.
   std::vector<double> displacements;
 };
 
@@ -47,22 +48,33 @@ std::array<std::uint32_t, 2> ends_of(std::uint32_t border);
 /// Returns a corner's control point.
 Vec3 corner_of(const BezierPatch& patch, std::uint32_t corner);
 
-/// Welds borders within the tolerance.
+/// The borders that are welded.
+///
+/// Borders whose control points lie in a box no larger than `reach` become points, with all borders joined to them; if
+/// is_relative, only if the box is also no larger than point_share of that of their patch.
+struct WeldRules {
+  static constexpr double point_share = 0x1p-18;  ///< above the rounding of numbers of six digits
+  double reach = 0;  ///< the largest distance of borders that are joined; finite, at least 0
+  /// Whether borders must also be eight times as long as they are apart.
+  bool is_relative = false;
+  /// Also all borders of an edge take the points of its first one, and all corners that meet there those of one. Their
+  /// packed control points are the same bits, but vertices made from doubles may differ.
+  bool every_edge = false;
+};
+
+/// Welds borders.
 ///
 /// - Each edge with a single border is joined to the nearest edge whose distance_bound(), at the same parameters in
-///   either direction, is within the tolerance. Joined edges get one number in `edges`, and their borders take the
-///   points of the first.
-/// - Borders whose control points lie in a box no larger than the tolerance become points, with all borders joined to
-///   them, and are removed from `edges`.
-/// - Corners that meet at any of these edges become one.
+///   either direction, is within reach. Opposite borders of a patch are not joined if it is thinner than the reach.
+///   Joined edges get one number in `edges`, and their borders take the points of that which comes_before() all others.
+/// - Borders made points are removed from `edges`.
+/// - Corners that meet at any of these edges become one, that with the least coordinates.
 ///
-/// `every_edge`: also all borders of an edge take the points of its first one, and all corners that meet there those of
-/// one. Their packed control points are the same bits, but vertices made from doubles may differ.
-///
-/// The set must have float Bernstein blocks. `shapes` and `roundings` (of vertices) are those of its patches. The
-/// tolerance is finite and at least 0, and above 0 unless `every_edge`.
+/// Which borders are joined, and which of them moves, depends on their control points alone: not on other borders that
+/// are farther away, nor on the order of patches. The set must have float Bernstein blocks. `shapes` and `roundings`
+/// (of vertices) are those of its patches. Returns nothing to copy, and no shapes, if nothing is welded.
 Weld weld_borders(const PatchSet::Impl& set, std::span<const PatchShape> shapes, std::span<const double> roundings,
-                  double tolerance, SharedEdges& edges, bool every_edge = false);
+                  const WeldRules& rules, SharedEdges& edges);
 
 /// Raises `displacements` of the `wanted` patches to how far their vertices are moved at most, including rounding, in
 /// the set as it is now. `same_bits_stay`: a copy from a border of the same bits moves nothing. Allocates nothing.

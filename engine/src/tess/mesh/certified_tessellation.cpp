@@ -144,14 +144,20 @@ Result<PlannerOptions> checked(const CertifiedOptions& options, const PatchSet& 
                std::to_string(max_rate));
   if (options.pixels && !(options.pixels->pixels > 0 && std::isfinite(options.pixels->pixels)))
     return bad("the tolerance is " + text(options.pixels->pixels) + " pixels, it must be finite and above 0");
-  if (!(options.weld >= 0 && std::isfinite(options.weld)))
-    return bad("the weld is " + text(options.weld) + ", it must be finite and at least 0");
-  if (const double size = options.weld > 0 ? set.box().diagonal() : 0; options.weld > max_weld * size)
-    return bad("the weld is " + text(options.weld) + ", more than a twentieth of the model's size, " + text(size));
+  const double weld = options.weld.value_or(0), size = set.box().diagonal();
+  if (!(weld >= 0 && std::isfinite(weld)))
+    return bad("the weld is " + text(weld) + ", it must be finite and at least 0");
+  if (weld > max_weld * size && weld > 0)
+    return bad("the weld is " + text(weld) + ", more than a twentieth of the model's size, " + text(size));
   if (options.crease_angle && !(*options.crease_angle >= 0 && *options.crease_angle <= std::numbers::pi))
     return bad("the crease angle is " + text(*options.crease_angle) + " radians, it must be from 0 to pi");
   PlannerOptions planner;
-  planner.weld = options.weld;
+  if (options.weld) {
+    planner.weld.reach = weld;
+  } else {
+    const double tolerance = options.tolerance.value_or(0) * (options.relative ? size : 1);
+    planner.weld = {options.tolerance ? std::min(tolerance / 8, max_weld * size) : 1e-6 * size, true};
+  }
   planner.angle = options.angle;
   planner.angle_rate = options.angle_rate;
   planner.fewest = options.fewest;
@@ -254,6 +260,7 @@ CertifiedTessellation::CertifiedTessellation(CertifiedTessellation&&) noexcept =
 CertifiedTessellation& CertifiedTessellation::operator=(CertifiedTessellation&&) noexcept = default;
 CertifiedTessellation::~CertifiedTessellation() = default;
 
+double CertifiedTessellation::tolerance() const { return impl_->tolerance(); }
 double CertifiedTessellation::bound() const { return impl_->bound(); }
 bool CertifiedTessellation::certified() const { return impl_->certified(); }
 std::span<const float> CertifiedTessellation::bounds() const { return impl_->plan().bounds(); }
@@ -263,6 +270,7 @@ std::span<const float> CertifiedTessellation::angles() const { return impl_->pla
 double CertifiedTessellation::pixels() const { return impl_->pixels(); }
 std::span<const float> CertifiedTessellation::pixel_bounds() const { return impl_->plan().pixels(); }
 std::size_t CertifiedTessellation::welded_borders() const { return impl_->welded_borders(); }
+std::size_t CertifiedTessellation::open_edges() const { return impl_->plan().open_edges(); }
 MeshCapacity CertifiedTessellation::capacity() const { return impl_->plan().capacity(); }
 MeshCapacity CertifiedTessellation::quad_capacity() const { return impl_->plan().quad_capacity(); }
 

@@ -18,7 +18,6 @@ namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr std::size_t patches_per_task = 64, blocks_per_task = 8;
-constexpr std::uint64_t max_vertices = std::uint64_t{1} << 32;  // the limit of 32-bit indices
 
 /// Whether the kept segments of a patch are few enough compared with the best.
 bool is_spared(const KeptSegments& kept, std::size_t patch, PatchSegments best) {
@@ -94,15 +93,17 @@ void CertifiedPlanner::bound_block(std::size_t block) {
 }
 
 void CertifiedPlanner::find_weld() {
-  double weld = options_.weld;
+  WeldRules rules = options_.weld;
+  rules.every_edge = options_.f64;
   if (options_.f64_positions) {
     // Far from zero the last bits of doubles affect the floats of coordinates that are small relative to the origin.
-    weld = std::max(weld, 0x1p-50 * std::max(max_abs(set_->box().lower), max_abs(set_->box().upper)));
+    rules.reach = std::max(rules.reach, 0x1p-50 * std::max(max_abs(set_->box().lower), max_abs(set_->box().upper)));
     edges_ = parted_by_doubles(*set_, edges_);
   }
-  if (!(weld > 0) && !options_.f64) return;
-  weld_ = weld_borders(*set_, shapes_, roundings_, weld, edges_, options_.f64);
-  for (std::size_t k = 0; k < roundings_.size(); ++k) roundings_[k] = std::max(roundings_[k], weld_.displacements[k]);
+  if (!(rules.reach > 0) && !rules.every_edge) return;
+  weld_ = weld_borders(*set_, shapes_, roundings_, rules, edges_);
+  for (std::size_t k = 0; k < weld_.displacements.size(); ++k)
+    roundings_[k] = std::max(roundings_[k], weld_.displacements[k]);
 }
 
 Status CertifiedPlanner::bound_turning_and_picture(const PatchSet::Impl& set, const Execution& execution) {
@@ -341,45 +342,29 @@ Result<CertifiedPlan> CertifiedPlanner::plan(const Request& request, const Execu
   if (Status status = choose_rates(request, plan, execution); !status.ok()) return status;
   divide(request.tolerance, plan);
   plan.lay_out();
+  plan.count_open_edges(edges_);
   return plan;
+}
+
+Result<CertifiedPlan> CertifiedPlanner::leaner_plan(const Request& request, const Execution& execution) const {
+  Result<CertifiedPlan> best = plan(request, execution);
+  if (!best || !request.fewest || !request.kept.segments.empty()) return best;
+  // Segments are chosen by an estimate of their neighbours' costs: rarely, the plain ones have fewer triangles.
+  Result<CertifiedPlan> plain = plan({request.tolerance}, {.cancel = execution.cancel});
+  if (!plain || plain->capacity().triangles < best->capacity().triangles) return plain;
+  return best;
 }
 
 Result<CertifiedPlan> CertifiedPlanner::plan(double tolerance, std::uint64_t max_triangles, const Execution& execution,
                                              const KeptSegments& kept) const {
-  Result<CertifiedPlan> best = plan({tolerance, options_.fewest, kept, max_triangles}, execution);
+  Result<CertifiedPlan> best = leaner_plan({tolerance, options_.fewest, kept, max_triangles}, execution);
   if (!best) return best;
-  if (options_.fewest && kept.segments.empty()) {
-    // Segments are chosen by an estimate of their neighbours' costs: rarely, the plain ones have fewer triangles.
-    Result<CertifiedPlan> plain = plan({tolerance}, {.cancel = execution.cancel});
-    if (!plain) return plain;
-    if (plain->capacity().triangles < best->capacity().triangles) best = std::move(plain);
-  }
   const auto [vertices, triangles, quads] = best->capacity();
   if (triangles <= max_triangles && vertices <= max_vertices) return best;
   return Status(StatusCode::invalid_argument, wanted(tolerance) + " takes " + std::to_string(triangles) +
                                                   " triangles and " + std::to_string(vertices) +
                                                   " vertices, the limits are " + std::to_string(max_triangles) +
                                                   " and " + std::to_string(max_vertices));
-}
-
-Result<double> CertifiedPlanner::smallest_tolerance(std::uint64_t max_triangles, const Execution& execution) const {
-  // One cell per patch keeps `high`; float vertices cannot keep less than `low`.
-  double low = 0, high = 0;
-  for (std::size_t k = 0; k < shapes_.size(); ++k) {
-    const double given = roundings_[k] + fit_error_;
-    low = std::max(low, given);
-    high = std::max(high, 1.001 * (given + chord(k).distance({1, 1})));
-  }
-  high = std::max(high, 1.001 * low);
-  if (Result<CertifiedPlan> plan = this->plan(high, max_triangles, execution); !plan) return plan.status();
-  low = std::max(low, 1e-6 * high);
-  while (high > 1.01 * low) {
-    const double middle = std::sqrt(low * high);
-    Result<CertifiedPlan> plan = this->plan(middle, max_triangles, execution);
-    if (!plan && plan.status().code() != StatusCode::invalid_argument) return plan.status();
-    (plan ? high : low) = middle;
-  }
-  return high;
 }
 
 }  // namespace tessera::inline abi_0_1

@@ -23,6 +23,8 @@ namespace tessera::inline abi_0_1 {
 
 class LeastIndex;
 
+inline constexpr std::uint64_t max_vertices = std::uint64_t{1} << 32;  ///< the limit of 32-bit indices
+
 /// Returns the largest distance between a float vertex, relative to the set's origin, and the surface's point.
 ///
 /// Each component is off by (m + n + 6) u times the largest |V|, twice that for rational patches: steps 1 to 4 of
@@ -42,6 +44,8 @@ class CertifiedPlan {
   std::size_t first_vertex(std::size_t patch) const { return first_vertex_[patch]; }
   std::size_t first_triangle(std::size_t patch) const { return first_triangle_[patch]; }
   MeshCapacity capacity() const { return {first_vertex_.back(), first_triangle_.back(), 0}; }
+  /// Returns how many edges of the triangles lie on borders that no other border is joined to.
+  std::size_t open_edges() const { return open_edges_; }
   /// In a mesh with quads, cells between inner points are quads, and first_strip() counts triangles without theirs.
   std::size_t first_quad(std::size_t patch) const { return first_quad_[patch]; }
   std::size_t first_strip(std::size_t patch) const { return first_triangle_[patch] - 2 * first_quad_[patch]; }
@@ -73,6 +77,8 @@ class CertifiedPlan {
     bool reversed = false, is_point = false;  ///< a point: `from` is a corner
   };
   void lay_out();
+  /// Counts open_edges(). `edges`: those of the planner, after welding.
+  void count_open_edges(const SharedEdges& edges);
   std::size_t owned_ring_count(std::size_t patch, std::uint32_t sides = 4) const;
 
   std::vector<PatchSegments> segments_;
@@ -80,6 +86,7 @@ class CertifiedPlan {
   /// `[patch]`, and the number of all at the end.
   std::vector<std::size_t> first_vertex_, first_triangle_, first_quad_;
   std::vector<float> bounds_, angles_, pixels_;
+  std::size_t open_edges_ = 0;
   bool is_f64_ = false, has_f64_positions_ = false;
   std::vector<std::uint8_t> straddles_;  ///< `[patch]`: 1 if its bound holds wherever triangles lie; empty if for none
   std::vector<std::uint32_t> corner_sources_;  ///< `[corner]`: itself if it owns its vertex; empty if nothing is shared
@@ -90,7 +97,7 @@ constexpr bool is_backward(std::uint32_t border) { return is_backward(all_sides[
 
 /// The limits to keep besides a distance, and how borders are joined.
 struct PlannerOptions {
-  double weld = 0;              ///< finite, at least 0
+  WeldRules weld = {};
   bool f64 = false;             ///< vertices come from double control points
   bool f64_positions = false;   ///< the mesh has positions in double; needs f64
   std::optional<double> angle;  ///< radians, above 0, at most pi / 2
@@ -130,8 +137,8 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   /// CertifiedTessellation::make), cancelled.
   Result<CertifiedPlan> plan(double tolerance, std::uint64_t max_triangles, const Execution& execution,
                              const KeptSegments& kept = {}) const;
-  /// Returns the smallest tolerance, within 1 percent, whose mesh has at most max_triangles. Errors: invalid_argument
-  /// (one cell per patch exceeds max_triangles), cancelled.
+  /// Returns the smallest tolerance 2^(k/128), for whole k, whose mesh has at most max_triangles, and at least 1e-6 of
+  /// what one cell per patch keeps. Errors: invalid_argument (one cell per patch exceeds max_triangles), cancelled.
   Result<double> smallest_tolerance(std::uint64_t max_triangles, const Execution& execution) const;
 
  private:
@@ -163,6 +170,8 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   };
   /// Makes a plan without a limit on its triangles.
   Result<CertifiedPlan> plan(const Request& request, const Execution& execution) const;
+  /// Makes the plan with the fewer triangles, by fewest segments or by plain ones, without a limit on its triangles.
+  Result<CertifiedPlan> leaner_plan(const Request& request, const Execution& execution) const;
   /// Finds edges, shapes, bounds and roundings.
   Status find_edges_and_bounds(const Execution& execution);
   /// Finds shapes, bounds and roundings of the patches of one block.
@@ -194,11 +203,12 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   double local_distance(std::size_t patch, PatchSegments segments) const;
   Status refusal(Failure failure, std::size_t patch, const Request& request) const;
   std::string wanted(double tolerance) const;
+  bool is_displaced(std::size_t patch) const { return !weld_.displacements.empty() && weld_.displacements[patch] > 0; }
   void divide(double tolerance, CertifiedPlan& plan) const;
-  /// Whether a border may have an odd rate where its patch, whose bound is that of halves, has an even one. If so,
-  /// raises the patch's bound to that of the triangle that crosses the middle there.
-  bool may_straddle(std::size_t patch, Side side, const std::array<Segments, 4>& borders, double tolerance,
-                    CertifiedPlan& plan) const;
+  /// Returns the distance of the triangle that crosses the middle of an odd border, for a patch whose even rate along it
+  /// has a bound of halves.
+  double straddling_distance(std::size_t patch, Side side, const std::array<Segments, 4>& borders,
+                             const CertifiedPlan& plan) const;
   /// Returns for each border whether it runs against the leading border of its edge.
   std::vector<std::uint8_t> borders_against() const;
   std::span<const PatchShape> divided_shapes() const { return weld_.shapes.empty() ? shapes_ : weld_.shapes; }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <utility>
+#include <vector>
 
 #include "tess/edges/edge_needs.h"
 #include "tess/edges/side_curve.h"
@@ -36,8 +38,8 @@ std::vector<std::uint8_t> CertifiedPlanner::borders_against() const {
   return against;
 }
 
-bool CertifiedPlanner::may_straddle(std::size_t patch, Side side, const std::array<Segments, 4>& borders,
-                                    double tolerance, CertifiedPlan& plan) const {
+double CertifiedPlanner::straddling_distance(std::size_t patch, Side side, const std::array<Segments, 4>& borders,
+                                             const CertifiedPlan& plan) const {
   // If no inner points lie between them, a segment of the opposite border may cross the middle as well.
   const auto s = static_cast<std::size_t>(side);
   const Segments border = borders[s], opposite = borders[(s + 2) % 4];
@@ -45,11 +47,7 @@ bool CertifiedPlanner::may_straddle(std::size_t patch, Side side, const std::arr
   assert(plan.segments_[patch].are_uniform());  // only patches of at most max_to_straddle segments come here
   const auto [piece, rates] = ChordBound::straddling(plan.segments_[patch].rates(), edge_of(side), rate);
   const PatchSet::Slot slot = set_->slots[patch];
-  const double given = roundings_[patch] + fit_error_,
-               distance = chords_.piece(slot.block, slot.lane, piece).chord(rates) + given;
-  if (!(distance <= tolerance)) return false;
-  plan.bounds_[patch] = std::max(plan.bounds_[patch], rounded_up(distance));
-  return true;
+  return chords_.piece(slot.block, slot.lane, piece).chord(rates) + (roundings_[patch] + fit_error_);
 }
 
 namespace {
@@ -121,15 +119,28 @@ void CertifiedPlanner::divide(double tolerance, CertifiedPlan& plan) const {
     if (!shapes[k].is_curve) borders.add(k, static_cast<std::uint16_t>(!is_coarse(k) && !always_straddles(k)));
   if (options_.fewest && !std::all_of(segments.begin(), segments.end(), [](auto s) { return s.are_uniform(); }))
     borders.part_halves(borders_against());
-  for (std::size_t k = 0; k < segments.size(); ++k) {
-    if (!is_coarse(k) || shapes[k].is_curve || always_straddles(k)) continue;
-    for (const Side side : all_sides) {
-      if (!borders.is_even_edge(k, side)) continue;
-      const std::array<Segments, 4> around = borders.of(k);
-      if (!around[static_cast<std::size_t>(side)].parts_halves() && !may_straddle(k, side, around, tolerance, plan))
-        borders.make_even(k, side);
+  // The borders that patches refuse are made even together: a refusal must not depend on an earlier one. Each raises
+  // rates, which lowers the distances of those that were accepted.
+  const auto for_odd_borders = [&](const auto& visit) {
+    for (std::size_t k = 0; k < segments.size(); ++k) {
+      if (!is_coarse(k) || shapes[k].is_curve || always_straddles(k)) continue;
+      for (const Side side : all_sides) {
+        if (!borders.is_even_edge(k, side)) continue;
+        const std::array<Segments, 4> around = borders.of(k);
+        if (!around[static_cast<std::size_t>(side)].parts_halves())
+          visit(k, side, straddling_distance(k, side, around, plan));
+      }
     }
-  }
+  };
+  std::vector<std::pair<std::size_t, Side>> refused;
+  for_odd_borders([&](std::size_t k, Side side, double distance) {
+    if (!(distance <= tolerance)) refused.emplace_back(k, side);
+  });
+  for (const auto& [k, side] : refused) borders.make_even(k, side);
+  for_odd_borders([&](std::size_t k, Side, double distance) {
+    assert(distance <= tolerance);
+    plan.bounds_[k] = std::max(plan.bounds_[k], rounded_up(distance));
+  });
   plan.divisions_.reserve(segments.size());
   for (std::size_t k = 0; k < segments.size(); ++k)
     plan.divisions_.emplace_back().set(shapes[k], segments[k], borders.of(k));

@@ -23,8 +23,10 @@ class Joiner {
         normals_(normals),
         apart_(2 * std::sin(angle / 2) + normal_rounding),
         welded_(4 * plan.patch_count(), none),
+        is_moved_(4 * plan.patch_count(), 0),
         corners_(4 * plan.patch_count()) {
     for (std::uint32_t k = 0; k < weld.borders.size(); ++k) welded_[weld.borders[k].to] = k;
+    for (const VertexCopies::Corner& copy : weld.corners) is_moved_[copy.to] = 1;
     join_borders(weld);
     join_poles();
     list_corners();
@@ -68,12 +70,19 @@ class Joiner {
     });
   }
 
+  /// Lists corners that are one. The vertex is that of the first one whose point welding does not move, else the first.
   void list_corners() {
+    std::vector<std::uint32_t> owners(is_moved_.size(), none);  // `[member that stands for a set]`
+    for (const bool moved : {false, true})
+      for_borders([&](std::uint32_t corner, std::uint32_t) {
+        std::uint32_t& owner = owners[corners_.find(corner).member];
+        if (owner == none && (is_moved_[corner] != 0) == moved) owner = corner;
+      });
+    const auto owner_of = [&](std::uint32_t corner) { return owners[corners_.find(corner).member]; };
     for_borders([&](std::uint32_t corner, std::uint32_t) {
-      const std::uint32_t first = corners_.find(corner).member;
-      if (first != corner) joins_.corners.push_back({corner, first});
+      if (owner_of(corner) != corner) joins_.corners.push_back({corner, owner_of(corner)});
     });
-    for (VertexCopies::Corner& pole : joins_.poles) pole.from = corners_.find(pole.to).member;
+    for (VertexCopies::Corner& pole : joins_.poles) pole.from = owner_of(pole.to);
   }
 
   bool is_smooth(std::uint32_t border, std::uint32_t lead, bool reversed) const {
@@ -98,8 +107,9 @@ class Joiner {
   const CertifiedPlan& plan_;
   const SharedEdges& edges_;
   const View3<float>* normals_;
-  double apart_;                       ///< how far the tips of two normals may lie apart
-  std::vector<std::uint32_t> welded_;  ///< `[border]`: its place in the weld's list, or none
+  double apart_;                        ///< how far the tips of two normals may lie apart
+  std::vector<std::uint32_t> welded_;   ///< `[border]`: its place in the weld's list, or none
+  std::vector<std::uint8_t> is_moved_;  ///< `[corner]`: whether it takes the point of another by welding
   UnionFind corners_;
   VertexCopies joins_;
 };

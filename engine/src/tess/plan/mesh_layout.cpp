@@ -1,5 +1,8 @@
 // Lays out the vertices and triangles of a certified plan.
 
+#include <cstdint>
+#include <vector>
+
 #include "tess/plan/certified_plan.h"
 
 namespace tessera::inline abi_0_1 {
@@ -21,6 +24,21 @@ void CertifiedPlan::lay_out() {
   first_vertex_[patches] = vertices;
   first_triangle_[patches] = triangles;
   first_quad_[patches] = quads;
+}
+
+void CertifiedPlan::count_open_edges(const SharedEdges& edges) {
+  std::vector<std::uint32_t> borders(edges.count(), 0);
+  const auto for_borders = [&](const auto& visit) {
+    for (std::size_t patch = 0; patch < divisions_.size(); ++patch)
+      for (const Side side : all_sides)
+        if (const std::uint32_t edge = edges.edge(patch, side); edge != SharedEdges::none && !divisions_[patch].empty)
+          visit(edge, divisions_[patch].border[static_cast<std::size_t>(side)].rate());
+  };
+  for_borders([&](std::uint32_t edge, int) { ++borders[edge]; });
+  open_edges_ = 0;
+  for_borders([&](std::uint32_t edge, int rate) {
+    if (borders[edge] == 1) open_edges_ += static_cast<std::size_t>(rate);
+  });
 }
 
 void CertifiedPlan::share(const VertexCopies& copies) {

@@ -13,8 +13,6 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr std::uint64_t max_vertices = std::uint64_t{1} << 32;  // the limit of 32-bit indices
-
 Status invalid(std::string message, std::size_t patch) {
   return {StatusCode::invalid_argument, std::move(message), static_cast<std::ptrdiff_t>(patch)};
 }
@@ -71,7 +69,7 @@ std::optional<double> CertifiedPlanner::nearest_tolerance(std::uint64_t max_tria
 Status CertifiedPlanner::refusal(Failure failure, std::size_t patch, const Request& request) const {
   const double tolerance = request.tolerance;
   const std::string rounding = text(rounded_up_shortly(roundings_[patch])) +
-                               (options_.weld > 0 ? ", the displacement of welded " : ", the rounding of ") +
+                               (is_displaced(patch) ? ", the displacement of welded " : ", the rounding of ") +
                                (options_.f64_positions ? "vertices in double of patch " : "float vertices of patch ") +
                                std::to_string(patch) + ", plus " + text(fit_error_) + ", the fit error";
   const bool is_near = failure == Failure::wide && roundings_[patch] + fit_error_ > tolerance / 2;

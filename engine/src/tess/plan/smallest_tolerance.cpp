@@ -1,0 +1,76 @@
+// Finds the smallest tolerance that a number of triangles keeps.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+#include "tess/plan/certified_plan.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+constexpr double steps_per_octave = 128;  // tolerances 0.54 percent apart
+
+double tolerance_of(int step) { return std::exp2(step / steps_per_octave); }
+
+/// Whether a tolerance's mesh has few enough triangles, and whether that of a smaller tolerance can have.
+struct Fit {
+  bool fits = false, may_fit_below = false;
+};
+
+/// Returns fewer triangles than any division has in which each patch has its segments and no fewer along its borders.
+std::uint64_t least_triangles(const CertifiedPlan& plan) {
+  std::uint64_t least = 0;
+  for (std::size_t k = 0; k < plan.patch_count(); ++k) {
+    if (plan.division(k).triangle_count() == 0) continue;
+    const auto [u, v] = plan.segments()[k].rates();
+    const auto cells = std::uint64_t(u) * std::uint64_t(v);
+    // Each of two poles turns the cells beside it into triangles; a flat quadrilateral takes two triangles in all.
+    const std::uint64_t lost = 2 * std::uint64_t(std::max(u, v));
+    least += std::min<std::uint64_t>(plan.division(k).triangle_count(), 2 * cells > lost ? 2 * cells - lost : 1);
+  }
+  return least;
+}
+
+}  // namespace
+
+Result<double> CertifiedPlanner::smallest_tolerance(std::uint64_t max_triangles, const Execution& execution) const {
+  // One cell per patch keeps `high`; vertices cannot keep less than `low`.
+  double low = 0, high = 0;
+  for (std::size_t k = 0; k < shapes_.size(); ++k) {
+    const double given = roundings_[k] + fit_error_;
+    low = std::max(low, given);
+    high = std::max(high, 1.001 * (given + chord(k).distance({1, 1})));
+  }
+  high = std::max(high, 1.001 * low);
+  if (Result<CertifiedPlan> plan = this->plan(high, max_triangles, execution); !plan) return plan.status();
+
+  const auto fit = [&](int step) -> Result<Fit> {
+    const Result<CertifiedPlan> plan = leaner_plan({tolerance_of(step), options_.fewest}, execution);
+    if (!plan && plan.status().code() != StatusCode::invalid_argument) return plan.status();
+    if (!plan) return Fit{};
+    const MeshCapacity size = plan->capacity();
+    return Fit{size.triangles <= max_triangles && size.vertices <= max_vertices,
+               least_triangles(*plan) <= max_triangles};
+  };
+  const int least = int(std::floor(steps_per_octave * std::log2(std::max(low, 1e-6 * high))));
+  int best = int(std::ceil(steps_per_octave * std::log2(high)));
+  for (int below = least; best - below > 1;) {
+    const int middle = below + (best - below) / 2;
+    const Result<Fit> at_middle = fit(middle);
+    if (!at_middle) return at_middle.status();
+    (at_middle->fits ? best : below) = middle;
+  }
+  // Rates are whole numbers, so that a smaller tolerance may take fewer triangles.
+  bool may_fit = true;
+  for (int step = best - 1; may_fit && step > least; --step) {
+    const Result<Fit> at_step = fit(step);
+    if (!at_step) return at_step.status();
+    if (at_step->fits) best = step;
+    may_fit = at_step->may_fit_below;
+  }
+  return std::min(tolerance_of(best), high);
+}
+
+}  // namespace tessera::inline abi_0_1
