@@ -19,8 +19,8 @@ ctest on all cores.
 The preset tsan builds oneTBB with the thread sanitizer too (tools/instrumented_tbb.sh), if its source can be fetched.
 If TESSERA_TEST_DATA names a folder of real models, they are tested too. Tests of instruction sets that the machine lacks are
 skipped, unless TESSERA_REQUIRE_ISAS names them, for example "sse2;avx2". The tests perf.counts_avx2 and perf.counts_sse2
-compare the instructions of the preset dev with bench/baselines. They take minutes each, and are skipped if the compiler or
-the libraries differ.
+compare the instructions of the preset dev with bench/baselines. They take minutes each, and are skipped if valgrind is
+missing or if the compiler, the flags or the libraries differ. With TESSERA_REQUIRE_COUNTS=1 they fail instead.
 TEXT
 }
 

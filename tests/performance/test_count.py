@@ -36,6 +36,15 @@ class Comparing(unittest.TestCase):
                          ["compiler gcc 13.2.0 (baseline: gcc 12.2.0)", "glibc 2.38 (baseline: 2.36)",
                           "oneTBB 2021.8 (baseline: None)"])
 
+    def test_flags_of_debug_information_change_no_count(self):
+        def unlike(flags, others):
+            return count.differences(dict(FACTS, flags=flags), dict(FACTS, flags=others))
+        for flags in ("-O2 -g1", "-g -O2", "-O2 -ggdb3 -gdwarf-4 -gz=zlib", "-O2"):
+            self.assertEqual(unlike(flags, "-O2 -g"), [], flags)
+        self.assertEqual(unlike("-O2 -g1", "-O3 -g"), ["flags -O2 (baseline: -O3)"])
+        self.assertEqual(len(unlike("-O2 -g1 -fno-gcse", "-O2 -g")), 1)
+        self.assertEqual(len(unlike("-D_GLIBCXX_ASSERTIONS -O2 -g", "-O2 -g")), 1)
+
 
 class Reading(unittest.TestCase):
     def test_dumps_of_callgrind(self):
@@ -61,7 +70,7 @@ class Reading(unittest.TestCase):
                 json_file.read(file)
 
 
-def checked(content, counts, facts=None):
+def checked(content, counts, facts=None, required=""):
     """The result of check() for a baseline with this content: (status, output)."""
     program = ("import sys; sys.path.insert(0, sys.argv[1]); import json; from performance import count\n"
                "path, counts, facts = sys.argv[2], json.loads(sys.argv[3]), json.loads(sys.argv[4])\n"
@@ -71,7 +80,8 @@ def checked(content, counts, facts=None):
         if content is not None:
             json_file.write(file, content)
         done = subprocess.run([sys.executable, "-c", program, str(PERF.parent), str(file), json.dumps(counts),
-                               json.dumps(facts or FACTS)], capture_output=True, text=True, check=False)
+                               json.dumps(facts or FACTS)], capture_output=True, text=True, check=False,
+                              env=dict(os.environ, TESSERA_REQUIRE_COUNTS=required))
     return done.returncode, done.stdout + done.stderr
 
 
@@ -90,10 +100,21 @@ class Checking(unittest.TestCase):
         self.assertIn("compiler clang 14", said)
         self.assertEqual(checked(None, {"a": 1})[0], 77)
 
+    def test_counts_that_are_required_are_not_skipped(self):
+        base = dict(FACTS, counts={"a": 1000})
+        status, said = checked(base, {"a": 1000}, dict(FACTS, compiler="clang 14"), "1")
+        self.assertEqual(status, 3)
+        self.assertIn("compiler clang 14 (baseline: gcc 12.2.0); TESSERA_REQUIRE_COUNTS is set", said)
+        self.assertEqual(checked(None, {"a": 1}, required="1")[0], 3)
+        self.assertEqual(checked(base, {"a": 1000}, required="1")[0], 0)
+        self.assertEqual(checked(base, {"a": 1030}, required="1")[0], 1)
+
     def test_without_valgrind(self):
         with tempfile.TemporaryDirectory() as empty:
-            status, out, err = perf("count", "--check", "--program", FAKE, PATH=empty)
-            self.assertEqual((status, "valgrind is not installed" in out), (77, True), out + err)
+            for required, wanted in (("", 77), ("0", 77), ("1", 3)):
+                status, out, err = perf("count", "--check", "--program", FAKE, PATH=empty,
+                                        TESSERA_REQUIRE_COUNTS=required)
+                self.assertEqual((status, "valgrind is not installed" in out), (wanted, True), out + err)
             status, out, err = perf("count", "--program", FAKE, PATH=empty)
             self.assertEqual((status, "valgrind is not installed" in err), (3, True), out + err)
 

@@ -17,6 +17,7 @@ from .repository import ROOT, git
 
 ISAS = ("avx2", "sse2")
 KEYS = ("compiler", "build_type", "flags", "libraries", "valgrind")
+REQUIRED = "TESSERA_REQUIRE_COUNTS"
 
 
 def valgrind_version():
@@ -77,11 +78,17 @@ def facts_of(program):
     return dict({key: found.get(key) for key in KEYS}, valgrind=valgrind_version()), found.get("planted_slowdown", 0)
 
 
+def comparable(facts, key):
+    """A fact, without what changes no instruction: -g and its variants write debug information alone."""
+    found = facts.get(key)
+    return re.sub(r"(^|\s)-g\S*", "", found).strip() if key == "flags" and isinstance(found, str) else found
+
+
 def differences(facts, others):
     """The differences, in words, that prevent a comparison of two builds' counts."""
     out = []
     for key in KEYS:
-        mine, theirs = facts.get(key), others.get(key)
+        mine, theirs = comparable(facts, key), comparable(others, key)
         if isinstance(mine, dict) and isinstance(theirs, dict):
             out += [f"{name} {mine.get(name)} (baseline: {theirs.get(name)})" for name in sorted({*mine, *theirs})
                     if mine.get(name) != theirs.get(name)]
@@ -137,16 +144,23 @@ def raised_without_reason(path, threshold, root=ROOT):
     return [case for case in sorted(new) if case in old and new[case] > (1 + threshold) * old[case]]
 
 
+def skipped(reason):
+    """Prints why counts are not compared. Returns the exit status: SKIPPED, or FAILED on a machine that must compare."""
+    if os.environ.get(REQUIRED, "0") not in ("", "0"):
+        print(f"{reason}; {REQUIRED} is set, so this is a failure")
+        return FAILED
+    print(f"skipped: {reason}")
+    return SKIPPED
+
+
 def check(isa, counts, facts, path, threshold, filtered):
     """Compares counts with the baseline and prints the result; returns the exit status."""
     baseline = json_file.read(path, ("counts", *KEYS))
     if baseline is None:
-        print(f"{isa}: skipped: there is no baseline {path}")
-        return SKIPPED
+        return skipped(f"{isa}: there is no baseline {path}")
     unlike = differences(facts, baseline)
     if unlike:
-        print(f"{isa}: skipped: the baseline's counts are not this build's: " + ", ".join(unlike))
-        return SKIPPED
+        return skipped(f"{isa}: the baseline's counts are not this build's: " + ", ".join(unlike))
     comparison = Comparison(counts, baseline["counts"], threshold, filtered)
     print(f"{isa}: instructions, against {path}\n{comparison.text()}")
     unexplained = raised_without_reason(path, threshold)
@@ -172,8 +186,7 @@ def command(arguments):
     if valgrind_version() is None:
         message = "valgrind is not installed (Debian's package valgrind; tools/setup.sh)"
         if arguments.check:
-            print(f"skipped: {message}")
-            return SKIPPED
+            return skipped(message)
         raise Failure(message)
     program = arguments.program or builds.default_program(arguments.preset)
     facts, planted = facts_of(program)
