@@ -1,7 +1,7 @@
 # Builds and runs tests/consumer as its users would:
 #   cmake -D WAY=package      against the package that the build in BUILD installs into a fresh prefix
 #   cmake -D WAY=subdirectory with the sources in SOURCE as a subdirectory: shared libraries, which are then installed
-#                             and found as a package too, and static ones of the same objects
+#                             and found as a package too, static ones of the same objects, and the core alone
 # with -D SOURCE= BUILD= WORK= READELF= GENERATOR= COMPILER= [CONFIG= PYTHON= PKG_CONFIG=] -P consumer.cmake. WORK is
 # emptied first.
 
@@ -194,6 +194,10 @@ elseif(WAY STREQUAL "subdirectory")
   file(RENAME ${WORK}/away ${WORK}/subdirectory)
   build_consumer(subdirectory ${options} -D BUILD_SHARED_LIBS=OFF)
   run_programs(subdirectory static)
+  # The core alone, as a project gets it that sets no option. Its objects are those of the build before.
+  set(TARGETS tessellate_only)
+  build_consumer(subdirectory ${options} -D BUILD_SHARED_LIBS=OFF -D CONSUMER_RAYS=OFF)
+  run_in(subdirectory tessellate_only)
 else()
   message(FATAL_ERROR "WAY is '${WAY}'; there are package and subdirectory")
 endif()
