@@ -1,5 +1,5 @@
 #pragma once
-// Points, boxes and affine maps of space; rectangles of parameters and their edges.
+// Points, boxes and affine maps of space; points and rectangles of parameters, and their edges.
 
 #include <algorithm>
 #include <array>
@@ -119,6 +119,15 @@ inline bool is_finite(const Affine& map) {
   return is_finite(map.columns[0]) && is_finite(map.columns[1]) && is_finite(map.columns[2]) &&
          is_finite(map.translation);
 }
+
+/// A point in the plane of a surface's parameters.
+struct ParameterPoint {
+  double u = 0, v = 0;  ///< in the surface's own parameters
+
+  friend bool operator==(const ParameterPoint&, const ParameterPoint&) = default;  ///< by both coordinates
+};
+/// Tells whether both parameters are finite.
+inline bool is_finite(const ParameterPoint& p) { return std::isfinite(p.u) && std::isfinite(p.v); }
 
 /// The rectangle [u0, u1] x [v0, v1] of parameters, u0 < u1 and v0 < v1.
 struct Domain {
