@@ -34,7 +34,8 @@ void ChordMarks::clear(std::size_t points) {
   chords_.clear();
   met_.assign(cells, 0);
   cells_inside_.assign(cells, 0);
-  vertices_inside_.assign(vertices, 0);
+  inside_along_v_.assign(vertices, 0);
+  inside_along_u_.assign(vertices, 0);
   on_line_u_.assign(vertices, 0);
   on_line_v_.assign(vertices, 0);
   points_at_.assign(vertices, no_place);
@@ -82,10 +83,12 @@ void ChordMarks::set(const CellGrid& grid, std::span<const ParameterPoint> point
       mark_near(chord);
     }
     cross_u(chord, is_side);
-    if (!is_side) cross_v(chord);
+    cross_v(chord, is_side);
   }
   accumulate(cells_inside_, grid_.columns(), grid_.rows());
-  accumulate(vertices_inside_, grid_.columns() + 1, grid_.rows() + 1);
+  accumulate(inside_along_v_, grid_.columns() + 1, grid_.rows() + 1);
+  for (std::size_t vertex = grid_.rows() + 1; vertex < inside_along_u_.size(); ++vertex)
+    inside_along_u_[vertex] ^= inside_along_u_[vertex - grid_.rows() - 1];
 }
 
 // A chord that is a side of cells cuts none of them.
@@ -132,7 +135,7 @@ void ChordMarks::cross_u(const PlaneSegment& chord, bool is_side) {
   for (std::uint32_t i = std::min(a.i, b.i); i <= std::max(a.i, b.i) + 1; ++i) {
     if (const double u = grid_.u(i); (p.u <= u) != (q.u <= u)) {
       const std::uint32_t row = row_at(u, v);
-      vertices_inside_[grid_.vertex(i, row + 1)] ^= 1;
+      inside_along_v_[grid_.vertex(i, row + 1)] ^= 1;
       if (!is_side) across_v_.add(grid_.vertex(i, row), static_cast<std::uint32_t>(chords_.size() - 1));
     }
     if (i == grid_.columns()) break;
@@ -144,7 +147,7 @@ void ChordMarks::cross_u(const PlaneSegment& chord, bool is_side) {
   }
 }
 
-void ChordMarks::cross_v(const PlaneSegment& chord) {
+void ChordMarks::cross_v(const PlaneSegment& chord, bool is_side) {
   const ParameterPoint &p = points_[chord.start], &q = points_[chord.end];
   const GridPlace a = cell_of(chord.start), b = cell_of(chord.end);
   const double slope = (q.u - p.u) / (q.v - p.v);
@@ -152,7 +155,8 @@ void ChordMarks::cross_v(const PlaneSegment& chord) {
     const double v = grid_.v(j);
     if ((p.v <= v) == (q.v <= v)) continue;
     const std::uint32_t column = grid_.find_column(p.u + (v - p.v) * slope, a.i);
-    across_u_.add(grid_.vertex(column, j), static_cast<std::uint32_t>(chords_.size() - 1));
+    inside_along_u_[grid_.vertex(column + 1, j)] ^= 1;
+    if (!is_side) across_u_.add(grid_.vertex(column, j), static_cast<std::uint32_t>(chords_.size() - 1));
   }
 }
 

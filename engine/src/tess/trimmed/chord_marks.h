@@ -59,7 +59,10 @@ class ChordMarks {
   bool is_met(std::uint32_t cell) const { return met_[cell] != 0; }
   /// Whether a cell that is not met lies inside.
   bool is_cell_inside(std::uint32_t cell) const { return cells_inside_[cell] != 0; }
-  bool is_vertex_inside(std::uint32_t vertex) const { return vertices_inside_[vertex] != 0; }
+  /// Whether a vertex lies inside, seen along the line through it that runs along v, or u. Both are right unless a chord
+  /// comes within rounding; then each fits the crossings on its line.
+  bool is_inside_along_v(std::uint32_t vertex) const { return inside_along_v_[vertex] != 0; }
+  bool is_inside_along_u(std::uint32_t vertex) const { return inside_along_u_[vertex] != 0; }
   /// The end of a chord near a vertex; no_place if no chord is near.
   std::uint32_t near_point(std::uint32_t vertex) const { return near_points_[vertex]; }
   /// Whether an odd number of chords are the side of a cell that runs along u, or v, from a vertex on.
@@ -82,7 +85,7 @@ class ChordMarks {
   void mark_near(const PlaneSegment& chord);
   void mark_crossings(const PlaneSegment& chord, bool is_side);
   void cross_u(const PlaneSegment& chord, bool is_side);
-  void cross_v(const PlaneSegment& chord);
+  void cross_v(const PlaneSegment& chord, bool is_side);
   std::uint32_t vertex_at(std::uint32_t point) const { return vertices_of_points_[point]; }
 
   CellGrid grid_;
@@ -90,7 +93,7 @@ class ChordMarks {
   std::vector<GridPlace> cells_of_points_;
   std::vector<std::uint32_t> vertices_of_points_;
   std::vector<PlaneSegment> chords_;
-  std::vector<std::uint8_t> met_, cells_inside_, vertices_inside_, on_line_u_, on_line_v_;
+  std::vector<std::uint8_t> met_, cells_inside_, inside_along_v_, inside_along_u_, on_line_u_, on_line_v_;
   std::vector<std::uint32_t> points_at_, near_points_;
   std::vector<double> near_squares_;       ///< by vertex, the squared distance of the nearest chord, in shares
   std::vector<double> scale_u_, scale_v_;  ///< by line, one over the smaller cell beside it

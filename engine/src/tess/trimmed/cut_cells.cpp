@@ -46,7 +46,7 @@ void CutCells::number_vertices() {
   for (std::uint32_t vertex = 0; vertex < corners_.size(); ++vertex) {
     corners_[vertex] = marks_.point_at(vertex);
     if (corners_[vertex] != no_place || !(beside_[vertex] & beside_cut)) continue;
-    const bool is_free = marks_.is_vertex_inside(vertex) && marks_.near_point(vertex) == no_place;
+    const bool is_free = marks_.is_inside_along_v(vertex) && marks_.near_point(vertex) == no_place;
     if (is_free || (beside_[vertex] & beside_whole)) add_vertex(vertex);
   }
   band_vertices_ = vertices_.size();
