@@ -262,7 +262,8 @@ TEST(Fit, RefusesBadInput) {
   refused({.degree = 1}, "degree of the patches is 1");
   refused({.degree = 16}, "degree of the patches is 16");
   refused({.max_patches = 0}, "max_patches is 0, the breakpoints alone make 1 patch");
-  refused({.max_patches = 3, .breaks_u = {1}, .breaks_v = {1}}, "max_patches is 3, the breakpoints alone make 4 patches");
+  refused({.max_patches = 3, .breaks_u = {1}, .breaks_v = {1}},
+          "max_patches is 3, the breakpoints alone make 4 patches");
   refused({.tolerance = 1e-6, .max_patches = 10}, "not kept by 10 patches, the largest count: the error is");
 }
 
