@@ -82,6 +82,13 @@ class CadReader : public testing::Test {
   const std::string greeting_ = cad_reader_greeting();
 };
 
+TEST(IsCadFile, LooksAtTheExtensionAlone) {
+  for (const char* path : {"a.step", "b.STP", "c.d/e.IgEs", "f.igs", "g.brep", "..brp"})
+    EXPECT_TRUE(is_cad_file(path)) << path;
+  for (const char* path : {"", "step", ".step", "a/.step", "a.step/b", "a.step.gz", "a.step ", "a.ste", "..", "a."})
+    EXPECT_FALSE(is_cad_file(path)) << path;
+}
+
 TEST_F(CadReader, AnyProgramThatKeepsItsWordWillDo) {
   const std::string program = printing(greeting_ + as_size(model().size()) + model());
   const Result<Model> read = read_cad(part_, {.reader = program});

@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <csignal>
+#include <cstdio>
 
 #include "support/privileges.h"
 #include "support/scratch_folder.h"
@@ -171,6 +173,18 @@ TEST(OutputFile, AFullDeviceIsAnError) {
   const Status status = write_text("/dev/full", "text");
   EXPECT_EQ(status.code(), StatusCode::io_error);
   EXPECT_EQ(status.message(), "/dev/full: cannot be written: No space left on device");
+}
+
+TEST(OutputFile, StandardOutputThatIsClosedIsAnError) {
+  std::fflush(stdout);
+  const int kept = ::dup(STDOUT_FILENO);
+  ::close(STDOUT_FILENO);
+  const Result<OutputFile> out = OutputFile::standard_output();
+  ::dup2(kept, STDOUT_FILENO);
+  ::close(kept);
+  ASSERT_FALSE(out.ok());
+  EXPECT_EQ(out.status().code(), StatusCode::io_error);
+  EXPECT_EQ(out.status().message(), "standard output: cannot be written: Bad file descriptor");
 }
 
 TEST(OutputFile, AFailureInTheMiddleLeavesNothing) {

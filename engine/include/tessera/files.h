@@ -1,5 +1,8 @@
 #pragma once
 // Writes files whole or not at all. Reads text token by token, with the line in each error.
+//
+// Memory: cursors refer to the text and its name, which must outlive them. Threads: one at a time for each object, any
+// number for different ones.
 
 #include <atomic>
 #include <charconv>
@@ -11,6 +14,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
@@ -20,23 +24,23 @@ namespace tessera::inline abi_0_1 {
 /// async-signal-safe.
 void remove_temporaries() noexcept;
 
-/// Writes beside the place of a file, then renames. The file appears at `commit`; without it nothing remains. Anything
-/// but a regular file (a pipe, a terminal, /dev/stdout) is written directly. Memory: 1 MiB, whatever is written. After
-/// a failed write later ones are dropped, and commit reports the first failure.
+/// Writes beside the place of a file, then renames. The file appears at commit(); without it nothing remains. Anything
+/// but a regular file (a pipe, a terminal, /dev/stdout) is written directly. Errors: after a failed write later ones
+/// are dropped, and commit() reports the first failure. Memory: 1 MiB, whatever is written.
 class OutputFile {
  public:
   /// Opens the file. Once `cancel` is true, writes fail with cancelled, and the file does not appear. Errors: io_error
-  /// (a directory, a missing folder, no permission).
+  /// (a directory, a missing folder, no permission), out_of_memory.
   static Result<OutputFile> make(const std::filesystem::path& path, const std::atomic<bool>* cancel = nullptr);
-  /// Writes to the process's standard output. Errors of writes come from commit().
-  static OutputFile standard_output(const std::atomic<bool>* cancel = nullptr);
+  /// Writes to the process's standard output, directly. Errors: io_error (it is closed), out_of_memory.
+  static Result<OutputFile> standard_output(const std::atomic<bool>* cancel = nullptr);
 
   OutputFile(OutputFile&&) noexcept;
   OutputFile& operator=(OutputFile&&) = delete;
   ~OutputFile();  ///< without commit(), removes what was written
 
-  void write(std::string_view bytes);
-  void write(char c) {
+  void write(std::string_view bytes);  ///< writes the bytes as they are
+  void write(char c) {                 ///< writes one byte
     if (buffer_.size() - used_ < 1) flush();
     buffer_[used_++] = c;
   }
@@ -70,6 +74,7 @@ class OutputFile {
   }
   void flush();
   void send(std::string_view bytes);
+  void fail(int error_number);
   void see_cancel();
 
   std::unique_ptr<Destination> destination_;
@@ -153,7 +158,7 @@ class TextCursor {
   Status expected(std::string_view what) const;
   /// The error `name:line: SENTENCE` for this line.
   Status failure(std::string_view sentence) const;
-  /// "name:line" of this place. Errors: none. Memory: the result.
+  /// "name:line" of this place. Errors: none; throws std::bad_alloc if memory runs out. Memory: the result.
   std::string place() const { return std::string(name_) + ":" + std::to_string(line()); }
   std::size_t line() const;                                                       ///< counted from 1
   std::string_view name() const { return name_; }                                 ///< as given
@@ -190,15 +195,17 @@ class TextCursor {
   TextSyntax syntax_;
 };
 
-/// Returns `text` in quotes for a message: at most 40 bytes, unprintable ones in hexadecimal. Errors: none. Memory: the
-/// result.
+/// Returns `text` in quotes for a message: at most 40 bytes, unprintable ones in hexadecimal. Errors: none; throws
+/// std::bad_alloc if memory runs out. Memory: the result.
 std::string quote(std::string_view text);
 
 /// Turns `status` of an element in `text` into a parse_error at that place; out_of_memory is unchanged. `text` is a
 /// cursor, or has a failure() as cursors have.
 template <class Text>
 Status refused_element(const Text& text, const Status& status, const std::string& element = {}) {
-  return status.code() == StatusCode::out_of_memory ? status : text.failure(element + status.message());
+  return guarded([&]() -> Status {
+    return status.code() == StatusCode::out_of_memory ? status : text.failure(element + status.message());
+  });
 }
 
 }  // namespace tessera::inline abi_0_1

@@ -7,6 +7,9 @@
 //     const auto r = 3 + cos(v);
 //     return std::array{r * cos(u), r * sin(u), sin(v)};
 //   }, {0, 6, 0, 6});
+//
+// Memory: a curve or surface keeps copies of the expression. Threads: any number of calls at once, if the expression
+// allows it.
 
 #include <array>
 #include <cmath>
@@ -15,6 +18,7 @@
 
 #include "tessera/detail/interval_number.h"
 #include "tessera/detail/taylor.h"
+#include "tessera/guard.h"
 #include "tessera/parametric_surface.h"
 
 #pragma GCC visibility push(default)
@@ -111,7 +115,7 @@ SurfaceFunctions surface_functions(const F& f) {
 /// Errors: those of ParametricCurve::make().
 template <class F>
 Result<ParametricCurve> generic_curve(const F& f, const Interval& domain = {}) {
-  return ParametricCurve::make(generic::curve_functions(f), domain);
+  return guarded([&] { return ParametricCurve::make(generic::curve_functions(f), domain); });
 }
 
 /// Makes the surface p(u,v) = f(u,v).
@@ -121,28 +125,30 @@ Result<ParametricCurve> generic_curve(const F& f, const Interval& domain = {}) {
 /// Errors: those of ParametricSurface::make().
 template <class F>
 Result<ParametricSurface> generic_surface(const F& f, const Domain& domain = {}) {
-  return ParametricSurface::make(generic::surface_functions(f), domain);
+  return guarded([&] { return ParametricSurface::make(generic::surface_functions(f), domain); });
 }
 
 /// Makes the surface p(x,y) = f(x,y) over a disc by its polar map, to which the series apply too. Positions are those
 /// of ParametricSurface::over_disc(). Errors: those of over_disc().
 template <class F>
 Result<ParametricSurface> generic_surface_over_disc(const F& f, const Disc& disc = {}) {
-  const Result<PolarMap> map = PolarMap::make(disc);
-  if (!map) return map.status();
-  const auto polar = [f, map = *map](const auto& rho, const auto& theta) {
-    using std::cos;
-    using std::sin;
-    using T = std::remove_cvref_t<decltype(rho)>;
-    if constexpr (std::is_same_v<T, double>) {
-      const auto [x, y] = map(rho, theta);
-      return f(x, y);
-    } else {
-      const T r = map.scale() * rho;
-      return f(map.disc().x + r * cos(theta), map.disc().y + r * sin(theta));
-    }
-  };
-  return ParametricSurface::make(generic::surface_functions(polar), map->domain());
+  return guarded([&]() -> Result<ParametricSurface> {
+    const Result<PolarMap> map = PolarMap::make(disc);
+    if (!map) return map.status();
+    const auto polar = [f, map = *map](const auto& rho, const auto& theta) {
+      using std::cos;
+      using std::sin;
+      using T = std::remove_cvref_t<decltype(rho)>;
+      if constexpr (std::is_same_v<T, double>) {
+        const auto [x, y] = map(rho, theta);
+        return f(x, y);
+      } else {
+        const T r = map.scale() * rho;
+        return f(map.disc().x + r * cos(theta), map.disc().y + r * sin(theta));
+      }
+    };
+    return ParametricSurface::make(generic::surface_functions(polar), map->domain());
+  });
 }
 
 }  // namespace tessera::inline abi_0_1

@@ -57,44 +57,50 @@ constexpr double share_for_fits = 0.99;
 }  // namespace
 
 Status in_surface(const Model& model, std::size_t surface, const Status& status) {
-  const std::string& name = model.surfaces[surface].name;
-  return Status(
-      status.code(),
-      "surface " + std::to_string(surface) + (name.empty() ? "" : " (" + name + ")") + ": " + status.message(),
-      static_cast<std::ptrdiff_t>(surface));
+  return guarded([&] {
+    const std::string& name = model.surfaces[surface].name;
+    return Status(
+        status.code(),
+        "surface " + std::to_string(surface) + (name.empty() ? "" : " (" + name + ")") + ": " + status.message(),
+        static_cast<std::ptrdiff_t>(surface));
+  });
 }
 
 Result<SurfaceJet> evaluate_jet(const ModelSurface& surface, double u, double v) {
-  Result<SurfaceJet> jet = evaluate_jet(surface.surface, u, v);
-  if (!jet) return jet;
-  const Affine& map = surface.placement;
-  const Vec3 position = map.point(jet->position);
-  if (!is_finite(position))
-    return Status(StatusCode::non_finite, "the surface's point at (" + text(u) + ", " + text(v) + ") is (" +
-                                              text(position.x) + ", " + text(position.y) + ", " + text(position.z) +
-                                              ") after its placement, beyond the range of double");
-  return SurfaceJet{position,
-                    map.vector(jet->du),
-                    map.vector(jet->dv),
-                    map.vector(jet->duu),
-                    map.vector(jet->duv),
-                    map.vector(jet->dvv)};
+  return guarded([&]() -> Result<SurfaceJet> {
+    Result<SurfaceJet> jet = evaluate_jet(surface.surface, u, v);
+    if (!jet) return jet;
+    const Affine& map = surface.placement;
+    const Vec3 position = map.point(jet->position);
+    if (!is_finite(position))
+      return Status(StatusCode::non_finite, "the surface's point at (" + text(u) + ", " + text(v) + ") is (" +
+                                                text(position.x) + ", " + text(position.y) + ", " + text(position.z) +
+                                                ") after its placement, beyond the range of double");
+    return SurfaceJet{position,
+                      map.vector(jet->du),
+                      map.vector(jet->dv),
+                      map.vector(jet->duu),
+                      map.vector(jet->duv),
+                      map.vector(jet->dvv)};
+  });
 }
 
 Result<PatchGrid> to_bezier(const ModelSurface& surface, const FitOptions& options) {
-  if (surface.placement == Affine{}) return to_bezier(surface.surface, options);
-  FitOptions before = options;  // lengths before the placement
-  const double norm = surface.placement->norm_bound();
-  if (norm > 0)
-    before.tolerance = std::min(share_for_fits * options.tolerance / norm, std::numeric_limits<double>::max());
-  Result<PatchGrid> grid = to_bezier(surface.surface, before);
-  if (grid) grid = transform(*grid, surface.placement);
-  if (grid && options.tolerance > 0 && grid->fit_error().distance > options.tolerance)
-    return Status(StatusCode::invalid_argument,
-                  "the tolerance " + text(options.tolerance) +
-                      " is below the rounding of the placed surface; the error reached is " +
-                      text(grid->fit_error().distance));
-  return grid;
+  return guarded([&]() -> Result<PatchGrid> {
+    if (surface.placement == Affine{}) return to_bezier(surface.surface, options);
+    FitOptions before = options;  // lengths before the placement
+    const double norm = surface.placement->norm_bound();
+    if (norm > 0)
+      before.tolerance = std::min(share_for_fits * options.tolerance / norm, std::numeric_limits<double>::max());
+    Result<PatchGrid> grid = to_bezier(surface.surface, before);
+    if (grid) grid = transform(*grid, surface.placement);
+    if (grid && options.tolerance > 0 && grid->fit_error().distance > options.tolerance)
+      return Status(StatusCode::invalid_argument,
+                    "the tolerance " + text(options.tolerance) +
+                        " is below the rounding of the placed surface; the error reached is " +
+                        text(grid->fit_error().distance));
+    return grid;
+  });
 }
 
 Result<PatchSet> make_patch_set(const Model& model, const PatchSetOptions& options, const FitOptions& fit) {

@@ -1,5 +1,6 @@
 // CAD files, by the program tessera-cad-reader.
 
+#include <algorithm>
 #include <cerrno>
 #include <fstream>
 #include <string_view>
@@ -17,14 +18,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The part of path.native() that path.extension() copies, which takes memory.
+std::string_view extension_of(const fs::path& path) {
+  std::string_view name = path.native();
+  name.remove_prefix(name.rfind('/') + 1);  // 0 if there is no '/'
+  const std::size_t dot = name.rfind('.');
+  return dot == 0 || dot == std::string_view::npos ? std::string_view() : name.substr(dot);
+}
+
 /// The reader's name of the format; empty if the extension is of no CAD file.
 std::string_view format_of(const fs::path& path, CadFormat stated) {
   if (stated == CadFormat::step) return "STEP";
   if (stated == CadFormat::iges) return "IGES";
   if (stated == CadFormat::brep) return "BREP";
-  const std::string extension = lower_extension(path);
+  const std::string_view extension = extension_of(path);
+  const auto same = [](char c, char small) { return c == small || (c >= 'A' && c <= 'Z' && c - 'A' + 'a' == small); };
   for (const CadExtension& known : cad_extensions)
-    if (known.extension == extension) return known.format;
+    if (std::ranges::equal(extension, known.extension, same)) return known.format;
   return {};
 }
 

@@ -207,8 +207,17 @@ Result<OutputFile> OutputFile::open(const fs::path& path, const std::atomic<bool
                     cancel);
 }
 
-OutputFile OutputFile::standard_output(const std::atomic<bool>* cancel) {
-  return OutputFile(std::make_unique<Destination>(Descriptor(::dup(STDOUT_FILENO))), "standard output", cancel);
+Result<OutputFile> OutputFile::standard_output(const std::atomic<bool>* cancel) {
+  return guarded([&]() -> Result<OutputFile> {
+    const fs::path name = "standard output";
+    Descriptor file(::dup(STDOUT_FILENO));
+    if (!file.is_open()) return io_failure(name, "cannot be written", errno);
+    return OutputFile(std::make_unique<Destination>(std::move(file)), name, cancel);
+  });
+}
+
+void OutputFile::fail(int error_number) {
+  status_ = guarded([&] { return io_failure(target_, "cannot be written", error_number); });
 }
 
 void OutputFile::write(std::string_view bytes) {
@@ -233,7 +242,7 @@ void OutputFile::send(std::string_view bytes) {
     if (sent < 0 && errno == EINTR) {
       see_cancel();
     } else if (sent < 0) {
-      status_ = io_failure(target_, "cannot be written", errno);
+      fail(errno);
     } else {
       bytes.remove_prefix(static_cast<std::size_t>(sent));
     }
@@ -241,7 +250,8 @@ void OutputFile::send(std::string_view bytes) {
 }
 
 void OutputFile::see_cancel() {
-  if (status_.ok() && cancel_ && cancel_->load()) status_ = Status(StatusCode::cancelled, "cancelled by the caller");
+  if (status_.ok() && cancel_ && cancel_->load())
+    status_ = guarded([] { return Status(StatusCode::cancelled, "cancelled by the caller"); });
 }
 
 Status OutputFile::commit() {
@@ -249,12 +259,12 @@ Status OutputFile::commit() {
   see_cancel();
   const Descriptor lock(::dup(destination_->file.number()));  // until the file has its name
   const int error = destination_->file.close();
-  if (error != 0 && status_.ok()) status_ = io_failure(target_, "cannot be written", error);
+  if (error != 0 && status_.ok()) fail(error);
   if (status_.ok() && !destination_->temporary.empty()) {
     if (::rename(destination_->temporary.c_str(), target_.c_str()) == 0) {
       destination_->temporary.release();
     } else {
-      status_ = io_failure(target_, "cannot be written", errno);
+      fail(errno);
     }
   }
   return std::move(status_);

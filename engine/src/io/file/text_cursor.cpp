@@ -102,19 +102,21 @@ bool TextCursor::take_signed(std::int64_t& value) {
 }
 
 Status TextCursor::expected(std::string_view what) const {
-  std::string sentence = "expected " + std::string(what) + ", found ";
-  std::string_view token = peek_token();
-  if (token.empty() && at_ != end_ && is_separator(*at_)) token = {at_, 1};
-  if (!token.empty()) {
-    sentence += quote(token);
-  } else {
-    sentence += at_ == end_ ? "the end of the file" : "the end of the line";
-  }
-  return failure(sentence);
+  return guarded([&]() -> Status {
+    std::string sentence = "expected " + std::string(what) + ", found ";
+    std::string_view token = peek_token();
+    if (token.empty() && at_ != end_ && is_separator(*at_)) token = {at_, 1};
+    if (!token.empty()) {
+      sentence += quote(token);
+    } else {
+      sentence += at_ == end_ ? "the end of the file" : "the end of the line";
+    }
+    return failure(sentence);
+  });
 }
 
 Status TextCursor::failure(std::string_view sentence) const {
-  return Status(StatusCode::parse_error, place() + ": " + std::string(sentence));
+  return guarded([&] { return Status(StatusCode::parse_error, place() + ": " + std::string(sentence)); });
 }
 
 std::size_t TextCursor::line() const {

@@ -90,10 +90,12 @@ std::string lower_extension(const fs::path& path) {
 }
 
 Status check_mesh_format(const fs::path& path) {
-  return find_format(path, lower_extension(path), &Format::write_mesh, mesh_writers).status();
+  return guarded([&] { return find_format(path, lower_extension(path), &Format::write_mesh, mesh_writers).status(); });
 }
 
-Status check_model_format(const fs::path& path) { return surface_writer(path).status(); }
+Status check_model_format(const fs::path& path) {
+  return guarded([&] { return surface_writer(path).status(); });
+}
 
 Result<SurfaceWriter> surface_writer(const fs::path& path) {
   const Result<const Format*> format = find_format(path, lower_extension(path), &Format::write_model, model_writers);

@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "surface/spline/spline_lines.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
@@ -100,13 +101,13 @@ const Interval& domain(const BorderCurve& border) {
 }
 
 Result<Vec3> position(const BorderCurve& border, double t) {
-  if (!std::isfinite(t)) return not_finite(t);
+  if (!std::isfinite(t)) return guarded([&] { return not_finite(t); });
   if (const auto* curve = std::get_if<Curve>(&border)) return position(*curve, t);
   return std::get<ParametricCurve>(border).position(t);
 }
 
 Result<CurveJet> evaluate_jet(const BorderCurve& border, double t) {
-  if (!std::isfinite(t)) return not_finite(t);
+  if (!std::isfinite(t)) return guarded([&] { return not_finite(t); });
   if (const auto* curve = std::get_if<Curve>(&border)) return evaluate_jet(*curve, t);
   return evaluate_jet(std::get<ParametricCurve>(border), t);
 }
