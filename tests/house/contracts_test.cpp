@@ -1,10 +1,14 @@
-// The contracts of the public interface: which errors a function returns, and which memory its result takes, stands in
-// its comment; the version has one value.
+// The contracts of the public interface: a function's comment states its errors, and the memory of its result; clauses
+// stand in one order; each header states its threads; the version has one value.
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <regex>
 #include <sstream>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "house/tree.h"
@@ -65,6 +69,11 @@ bool states_errors(const PublicFunction& function) {
 
 bool states_memory(const PublicFunction& function) { return function.comment.find("Memory: ") != std::string::npos; }
 
+bool states_exception(const PublicFunction& function) {
+  return function.name == "take_patches" ||  // moves
+         std::regex_search(function.comment, std::regex("throws (/// )?std::bad_alloc"));
+}
+
 TEST(Contracts, SearchForFalliblePublicFunctionsFindsThem) {
   const auto found = functions_that_return(fallible, R"(
 /// Makes it. Errors: none.
@@ -108,7 +117,7 @@ TEST(Contracts, FunctionsThatMayFailStateTheirErrors) {
 
 TEST(Contracts, SearchForFunctionsThatAllocateFindsThem) {
   const auto found = functions_that_return(allocating, R"(
-/// Makes it. Errors: none. Memory: the result.
+/// Makes it. Errors: none; throws std::bad_alloc if memory runs out. Memory: the result.
 std::vector<double> make(int count);
 class B {
  public:
@@ -121,9 +130,9 @@ class B {
 };
 )");
   ASSERT_EQ(found.size(), 3u);
-  EXPECT_TRUE(states_errors(found[0]) && states_memory(found[0]));
+  EXPECT_TRUE(states_errors(found[0]) && states_memory(found[0]) && states_exception(found[0]));
   EXPECT_EQ(found[1].name, "name");
-  EXPECT_FALSE(states_errors(found[1]) || states_memory(found[1]));
+  EXPECT_FALSE(states_errors(found[1]) || states_memory(found[1]) || states_exception(found[1]));
   EXPECT_EQ(found[2].name, "take");
   EXPECT_FALSE(states_errors(found[2]) || states_memory(found[2]));
 }
@@ -136,9 +145,89 @@ TEST(Contracts, FunctionsThatReturnMemoryStateItAndTheirErrors) {
       ++checked;
       EXPECT_TRUE(states_errors(function) && states_memory(function))
           << path << ": " << function.name << "() does not say \"Errors: ... Memory: ...\"";
+      EXPECT_TRUE(states_exception(function)) << path << ": " << function.name << "() does not say that it may throw";
     }
   }
   EXPECT_GE(checked, 5u) << "the search finds too few functions";
+}
+
+/// The clauses of a contract in their order. A clause is found by its first word.
+const std::vector<std::pair<std::string, std::regex>> clauses{
+    {"errors", std::regex("\\bErrors[,:]")},
+    {"memory or threads", std::regex("\\b(Memory|Threads)[,:]|\\bMemory beyond|\\bMemory and t")},
+    {"source", std::regex("\\bSource:")}};
+
+/// Which clause stands too early in a comment, in words; nothing if all are in order.
+std::string disorder(const std::string& comment) {
+  std::ptrdiff_t last = -1;
+  std::string before;
+  for (const auto& [name, begins] : clauses) {
+    const std::sregex_iterator first(comment.begin(), comment.end(), begins), end;
+    for (auto found = first; found != end; ++found) {
+      if (found == first && found->position() < last) return name + " after " + before;
+      if (found->position() > last) last = found->position(), before = name;
+    }
+  }
+  // A book or a paper in brackets is a source, too.
+  static const std::regex citation("\\([^()]*(\\bch\\.|\\bsec\\.|\\beq\\.|\\bed\\.|\\b(19|20)\\d\\d)[^()]*\\)");
+  std::smatch cited, errors;
+  if (std::regex_search(comment, cited, citation) && std::regex_search(comment, errors, clauses[0].second) &&
+      cited.position() < errors.position())
+    return "errors after the source " + cited.str();
+  return {};
+}
+
+/// Calls use(line, comment) for each comment of a declaration, its lines joined.
+template <class Use>
+void for_each_comment(const std::string& text, Use use) {
+  std::istringstream stream(text);
+  std::string comment;
+  int number = 0, first = 0;
+  for (std::string line; std::getline(stream, line);) {
+    ++number;
+    const std::size_t begin = line.find_first_not_of(' ');
+    const bool belongs =
+        begin != std::string::npos && line.compare(begin, 3, "///") == 0 && line.compare(begin, 4, "///<") != 0;
+    if (belongs && comment.empty()) first = number;
+    if (belongs) comment += line.substr(std::min(begin + 3, line.size())) + ' ';
+    if (!belongs && !comment.empty()) use(first, std::exchange(comment, {}));
+  }
+}
+
+TEST(Contracts, SearchForDisorderFindsIt) {
+  EXPECT_EQ(disorder("Makes it. Errors: none. Memory: none. Threads: any. Source: Farin."), "");
+  EXPECT_EQ(disorder("Makes it. Errors, with nothing written: stale. Errors that leave some: cancelled."), "");
+  EXPECT_EQ(disorder("Makes it. Memory: none. Errors: none."), "memory or threads after errors");
+  EXPECT_EQ(disorder("Threads: any. Errors: none."), "memory or threads after errors");
+  EXPECT_EQ(disorder("Source: Farin. Threads: any."), "source after memory or threads");
+  EXPECT_EQ(disorder("Source: Farin. Errors: none."), "source after errors");
+  EXPECT_EQ(disorder("Makes it (Farin, 5th ed., ch. 15). Errors: none."),
+            "errors after the source (Farin, 5th ed., ch. 15)");
+  std::vector<std::pair<int, std::string>> found;
+  for_each_comment("// No.\n/// One\n///\n/// two.\nint a;  ///< No.\n  /// Three.\n  int b;\n",
+                   [&](int line, const std::string& comment) { found.emplace_back(line, comment); });
+  EXPECT_EQ(found, (std::vector<std::pair<int, std::string>>{{2, " One   two. "}, {6, " Three. "}}));
+}
+
+TEST(Contracts, ClausesStandInTheirOrder) {
+  std::size_t checked = 0;
+  for (const std::string& path : files_under("engine/include/tessera"))
+    for_each_comment(read_text(path), [&](int line, const std::string& comment) {
+      ++checked;
+      EXPECT_EQ(disorder(comment), "") << path << ":" << line;
+    });
+  EXPECT_GT(checked, 500u) << "the search finds too few comments";
+}
+
+TEST(Contracts, HeadersStateTheirThreads) {
+  std::size_t checked = 0;
+  for (const std::string& path : files_under("engine/include/tessera")) {
+    const std::string text = read_text(path);
+    if (path.find("/detail/") != std::string::npos || functions_that_return(fallible, text).empty()) continue;
+    ++checked;
+    EXPECT_NE(text.find("Threads: "), std::string::npos) << path;
+  }
+  EXPECT_GT(checked, 15u) << "the search finds too few headers";
 }
 
 TEST(Version, HasOneValue) {

@@ -1,6 +1,8 @@
 #pragma once
 // Tensor-product Bezier patches in double, polynomial and rational: every surface is converted to them. Also the scalar
 // reference evaluators that the fast kernels are tested against.
+//
+// Memory: results own theirs; arguments are not kept. Threads: any number of calls at once.
 
 #include <span>
 

@@ -94,12 +94,14 @@ Result<PatchGrid> transform(const PatchGrid& grid, const Affine& map);
 /// bits. Rational splines remain rational.
 /// @{
 
-/// Inserts knots (Boehm 1980; The NURBS Book, sec. 5.2, 5.3).
+/// Inserts knots.
 ///
 /// - `knots`: each as often as listed, strictly inside the domain. With the knots already there, the multiplicity of
 ///   each is at most the degree.
 ///
 /// Errors: non_finite, invalid_argument (index = the knot), out_of_memory.
+///
+/// Source: Boehm 1980; Piegl and Tiller, The NURBS Book, sec. 5.2, 5.3.
 Result<Curve> insert_knots(const Curve& curve, std::span<const double> knots);
 /// Inserts knots in both directions. Errors: as above.
 Result<BSplineSurface> insert_knots(const BSplineSurface& surface, std::span<const double> knots_u,
@@ -111,8 +113,8 @@ Result<Curve> clamp_ends(const Curve& curve);
 /// Clamps both directions. Errors: out_of_memory.
 Result<BSplineSurface> clamp_ends(const BSplineSurface& surface);
 
-/// Clamps, and raises the degree by `by` >= 0 (by blossoms: Farin, Curves and Surfaces for CAGD, 5th ed., sec. 8.7).
-/// Each knot's multiplicity rises by as much. Errors: invalid_argument, unsupported_degree.
+/// Clamps, and raises the degree by `by` >= 0. Each knot's multiplicity rises by as much. Errors: invalid_argument,
+/// unsupported_degree. Source: blossoms (Farin, Curves and Surfaces for CAGD, 5th ed., sec. 8.7).
 Result<Curve> elevate_degree(const Curve& curve, int by);
 /// Raises both degrees. Errors: as above.
 Result<BSplineSurface> elevate_degree(const BSplineSurface& surface, int by_u, int by_v);
@@ -137,8 +139,8 @@ Result<BezierPieces> to_bezier(const Curve& curve);
 
 /// Converts a surface to one patch per rectangle between distinct knots, within the domain. All patches are rational if
 /// the surface is, otherwise none. Control points are convex combinations of the surface's; a control point of full
-/// multiplicity keeps its bits. Time and memory: O(output). Errors: out_of_memory. (Borden, Scott, Evans, Hughes 2011,
-/// Isogeometric finite element data structures based on Bezier extraction.)
+/// multiplicity keeps its bits. Errors: out_of_memory. Memory and time: O(output). Source: Borden, Scott, Evans, Hughes
+/// 2011, Isogeometric finite element data structures based on Bezier extraction.
 Result<PatchGrid> to_bezier(const BSplineSurface& surface);
 
 /// The patches (a, b) of a grid with a0 <= a < a1, b0 <= b < b1.

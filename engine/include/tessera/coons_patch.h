@@ -1,5 +1,8 @@
 #pragma once
 // Surfaces spanned by their borders: ruled surfaces between two curves, Coons patches between four.
+//
+// Memory: results own theirs or share it with their copies; arguments are not kept. Threads: any number of calls at
+// once on const objects, if the functions of their borders allow it.
 
 #include <array>
 #include <cstdint>

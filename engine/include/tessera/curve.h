@@ -1,5 +1,7 @@
 #pragma once
 // Bezier, B-spline and NURBS curves in double: profiles of revolution, borders of ruled surfaces and Coons patches.
+//
+// Memory: results own theirs; arguments are not kept. Threads: any number of calls at once.
 
 #include <memory>
 #include <optional>

@@ -1,6 +1,9 @@
 #pragma once
 // Evaluation of patches: all patches over one grid of parameters, samples scattered over patches or surfaces, and grids
 // that follow edits of control points. Callable, ruled and Coons surfaces over a grid, without patches.
+//
+// Memory: plans and maps own theirs and keep no argument; outputs go to the caller's memory. Threads: any number of
+// calls at once on const objects, into memory that does not overlap; they run in the caller's TBB arena.
 
 #include <cstddef>
 #include <cstdint>
@@ -24,8 +27,8 @@ class CoonsPatch;
 class ParametricSurface;
 class RuledSurface;
 
-/// Returns `count` equidistant parameters from 0 to 1: i / (count - 1). A count below 2 counts as 2. Errors: throws
-/// std::bad_alloc if memory runs out. Memory: 8 bytes per parameter.
+/// Returns `count` equidistant parameters from 0 to 1: i / (count - 1). A count below 2 counts as 2. Errors: none;
+/// throws std::bad_alloc if memory runs out. Memory: 8 bytes per parameter.
 std::vector<double> uniform_parameters(int count);
 
 /// How a grid is evaluated.
@@ -133,21 +136,21 @@ using QuantityBlocks = Quantities<std::span<T>, std::span<T>, std::span<NormalKi
 /// - Gaussian curvature: |k1| + |k2| times the bound of curvatures, and the square of that bound
 /// - principal directions: 2 / (k1 - k2) times the bound of curvatures, and the bound of normals
 ///
+/// Positions in double, which are absolute, round once more, to 2^-53 of their own size. In the power representation
+/// the bounds of positions and first derivatives are (1 + 2u)^m (1 + 2v)^n ratio times as large, m and n the degrees,
+/// because coefficient k is C(m,k) times a k-th difference, at most 2^k size: random bicubic patches lose 34 units,
+/// degrees 5 and 7 lose 1,200 and 140,000.
+///
 /// Source: the bounds of positions and derivatives follow from Higham, Accuracy and Stability of Numerical Algorithms,
 /// 2nd ed., sec. 3.1, and the quotient rule (Piegl and Tiller, The NURBS Book, eq. 4.20). The other bounds follow to
 /// first order in the errors of the tangents, which must be small against h, from the formulas of normal and curvatures
-/// (do Carmo, Differential Geometry of Curves and Surfaces, sec. 3.3).
-///
-/// Positions in double, which are absolute, round once more, to 2^-53 of their own size. In the power representation
-/// the bounds of positions and first derivatives are (1 + 2u)^m (1 + 2v)^n ratio times as large, m and n the degrees,
-/// because coefficient k is C(m,k) times a k-th difference, at most 2^k size (Farouki and Rajan 1987, On the numerical
-/// condition of polynomials in Bernstein form): random bicubic patches lose 34 units, degrees 5 and 7 lose 1,200 and
-/// 140,000.
+/// (do Carmo, Differential Geometry of Curves and Surfaces, sec. 3.3). The loss of the power representation: Farouki
+/// and Rajan 1987, On the numerical condition of polynomials in Bernstein form.
 template <class T>
 Status evaluate(const PatchSet& set, const GridPlan& plan, const QuantityViews<T>& out,
                 const Execution& execution = {});
 /// Evaluates all patches on the grid, into blocks. Plans with parameters that differ from patch to patch write plain
-/// stores. Errors, threads and bounds: as for views.
+/// stores. Errors, memory, threads and bounds: as for views.
 template <class T>
 Status evaluate(const PatchSet& set, const GridPlan& plan, const QuantityBlocks<T>& out,
                 const Execution& execution = {});
@@ -185,7 +188,7 @@ struct PatchSamples {
 /// 1, or overlaps another; index = the sample: no such patch, a parameter outside [0,1]), non_finite (index = the
 /// sample), isa_unavailable. cancelled leaves outputs partly written.
 /// Memory: allocates nothing. Threads: the same bytes for any number of threads, any order of the samples, any choice
-/// of outputs, and on AVX2 and AVX-512.
+/// of outputs, and on AVX2 and AVX-512 (NEON is not tested).
 ///
 /// Error bounds: as for grids, with exact parameters. On SSE2, where weights are made without fused multiply-adds:
 /// positions 2 + d / 2, rational ones 4 + d.
@@ -229,7 +232,7 @@ struct SurfaceSamples {
 /// the two forms are by the surface's parameters.
 ///
 /// Errors: as for samples on patches, stale (a map of another set), and invalid_argument (index = the sample: no such
-/// surface, a parameter outside of its domain).
+/// surface, a parameter outside of its domain). Memory and threads: as for samples on patches.
 ///
 /// Error bounds: parameters within the patch are found in double and rounded to T. Results in float are further off, in
 /// the units and terms of grids: positions by d / 2 size ratio, first derivatives by d^2 size, rational ones by 2 d^2
@@ -246,7 +249,7 @@ struct PatchEdits {
 };
 
 /// Grids that follow edits. Holds the memory for updates of one set, so that repeated ones allocate nothing. Memory: 16
-/// bytes per patch. Threads: one call at a time.
+/// bytes per patch. Threads: one call at a time for each object and its set.
 class GridUpdate {
  public:
   /// Errors: out_of_memory.
@@ -259,20 +262,21 @@ class GridUpdate {
   /// Sets the control points of each edit, as PatchSet::set_control_points(), and evaluates these patches alone. `out`
   /// are views of all patches, as evaluate() takes them; records of other patches are neither written nor read.
   ///
-  /// The result has the same bytes as calls of these two functions, for any number of threads. The revision grows by
-  /// one, unless there is no edit. The first update of a patch copies its control points, if other patches share their
-  /// memory; later updates allocate nothing.
+  /// The result has the same bytes as calls of these two functions. The revision grows by one, unless there is no edit.
   ///
   /// Errors, with nothing written: those of evaluate(); unsupported (a plan with parameters of each patch's own); stale
   /// (a set other than that of make()); invalid_argument (index = the edit: no such patch, or one that an earlier edit
   /// names); count_mismatch (points); non_finite (index = the edit: a point is not finite, or does not fit the set's
   /// numbers relative to its origin); out_of_memory. cancelled: each patch has its new control points and its new grid,
   /// or neither.
+  ///
+  /// Memory: the first update of a patch copies its control points, if other patches share their memory; later updates
+  /// allocate nothing. Threads: the same bytes for any number of threads of the arena.
   template <class T>
   Status run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const QuantityViews<T>& out,
              const Execution& execution = {});
   /// Like the call above, into block-interleaved memory of all patches. A block with an edited patch is evaluated
-  /// whole: its other lanes are written again, with the same bytes. Errors: as above.
+  /// whole: its other lanes are written again, with the same bytes. Errors, memory and threads: as above.
   template <class T>
   Status run(PatchSet& set, const GridPlan& plan, const PatchEdits& edits, const QuantityBlocks<T>& out,
              const Execution& execution = {});
@@ -294,12 +298,13 @@ enum class Calls : std::uint8_t {
 /// - `u`, `v`: parameters in the domain, in any order.
 /// - `out`: u.size() * v.size() records. Positions are absolute.
 ///
-/// The bytes are the same for any number of threads.
-///
 /// Errors, with nothing written: non_finite and invalid_argument (index = a parameter that is not finite, or outside
 /// the domain), invalid_argument (no parameters; a view that lacks a component or a stride, is misaligned, or shares
 /// memory with another), buffer_too_small. Errors, with the output partly written: those of the function (of the first
 /// record that has one), non_finite (a position too large for float), cancelled.
+///
+/// Memory: allocates nothing beyond what the function does. Threads: `calls` says which may call the function; the same
+/// bytes for any number of threads.
 template <class T>
 Status evaluate(const ParametricSurface& surface, std::span<const double> u, std::span<const double> v,
                 const View3<T>& out, const Execution& execution = {}, Calls calls = Calls::one_thread);
@@ -311,13 +316,14 @@ Status evaluate(const ParametricSurface& surface, std::span<const double> u, std
 /// - `u`, `v`: parameters in the domain, in any order.
 /// - `out`: u.size() * v.size() records. Positions are absolute.
 ///
-/// The bytes are the same for any number of threads, and on AVX2 and AVX-512. They differ from position(surface, u, v)
-/// by at most 5 units of 2^-23 (8 of 2^-52 in double) times the largest |g1 C1| + |g2 C2| + |f1 K1| + |f2 K2|, where
-/// K_a = D_a - r_a0 g1 - r_a1 g2; a ruled surface has no K.
+/// Errors: invalid_argument and buffer_too_small (as above), non_finite (the sum of the bound below may be too large
+/// for the precision), cancelled, isa_unavailable, those of functions. Only cancelled leaves anything written.
 ///
-/// Errors: invalid_argument and buffer_too_small (as above), non_finite (that sum may be too large for the precision),
-/// cancelled, isa_unavailable, those of functions. Only cancelled leaves anything written. Memory beyond the output:
-/// O(Nu + Nv).
+/// Memory beyond the output: O(Nu + Nv). Threads: the same bytes for any number of threads, and on AVX2, AVX-512 and
+/// NEON.
+///
+/// Error bound: positions differ from position(surface, u, v) by at most 5 units of 2^-23 (8 of 2^-52 in double) times
+/// the largest |g1 C1| + |g2 C2| + |f1 K1| + |f2 K2|, where K_a = D_a - r_a0 g1 - r_a1 g2; a ruled surface has no K.
 template <class T>
 Status evaluate(const CoonsPatch& patch, std::span<const double> u, std::span<const double> v, const View3<T>& out,
                 const Execution& execution = {});

@@ -1,6 +1,8 @@
 #pragma once
 // Bicubic Hermite patches of 16 vectors, or of 12 with the twists zero (Ferguson) or estimated (Adini); networks of
 // such patches that join smoothly along whole edges.
+//
+// Memory: results own theirs; arguments are not kept. Threads: any number of calls at once.
 
 #include <array>
 #include <cstddef>
@@ -54,12 +56,12 @@ class HermitePatch {
   /// Makes a patch from corners with twists. Errors: non_finite (a vector; index = the element), invalid_argument (the
   /// domain).
   static Result<HermitePatch> from_corners(const Corners& corners, const Domain& domain = {});
-  /// Makes a patch from 12 vectors with zero twists (Ferguson, Multivariable curve interpolation, 1964). Errors: as for
-  /// from_corners().
+  /// Makes a patch from 12 vectors with zero twists. Errors: as for from_corners(). Source: Ferguson, Multivariable
+  /// curve interpolation, 1964.
   static Result<HermitePatch> ferguson(const OpenCorners& corners, const Domain& domain = {});
   /// Makes a patch from 12 vectors with Adini's twists, those of the bilinearly blended Coons patch of the four
-  /// borders: r_uv(i,j) = (r_u(i,1) - r_u(i,0)) / dv + (r_v(1,j) - r_v(0,j)) / du - (r00 - r10 - r01 + r11) / (du dv)
-  /// (Farin, Curves and Surfaces for CAGD, 5th ed., ch. 15). Errors: as for from_corners().
+  /// borders: r_uv(i,j) = (r_u(i,1) - r_u(i,0)) / dv + (r_v(1,j) - r_v(0,j)) / du - (r00 - r10 - r01 + r11) / (du dv).
+  /// Errors: as for from_corners(). Source: Farin, Curves and Surfaces for CAGD, 5th ed., ch. 15.
   static Result<HermitePatch> adini(const OpenCorners& corners, const Domain& domain = {});
   /// Makes a patch from 16 coefficients a_ij of s^i t^j, s and t over [0,1]. Errors: as for make().
   static Result<HermitePatch> from_algebraic(std::span<const Vec3> coefficients, const Domain& domain = {});
@@ -117,7 +119,7 @@ enum class TwistEstimate : std::uint8_t {
 };
 
 /// Returns the nodes [i][j] at (u[i], v[j]) with estimated twists. Derivatives are by u and v. There is one twist per
-/// node, so patches remain G1. The estimates are (Farin, Curves and Surfaces for CAGD, 5th ed., ch. 15):
+/// node, so patches remain G1. The estimates are:
 ///
 /// - adini: [R_v(i+1,j) - R_v(i-1,j)] / Du + [R_u(i,j+1) - R_u(i,j-1)] / Dv - [P(i+1,j+1) - P(i-1,j+1) - P(i+1,j-1) +
 ///   P(i-1,j-1)] / (Du Dv), with each D over two spans.
@@ -127,6 +129,8 @@ enum class TwistEstimate : std::uint8_t {
 ///
 /// Errors: invalid_argument (fewer than two knots, or three for bessel; knots that do not increase), count_mismatch,
 /// non_finite.
+///
+/// Source: Farin, Curves and Surfaces for CAGD, 5th ed., ch. 15.
 Result<std::vector<HermiteNode>> estimate_twists(TwistEstimate estimate, std::span<const double> u,
                                                  std::span<const double> v, std::span<const HermiteNode> nodes);
 

@@ -1,6 +1,9 @@
 #pragma once
 // Reads and writes files of surfaces and meshes. The extension, in any case of letters, decides the format. Messages of
 // errors name the file and, for text, the line: "teapot.bpt:17: expected 3 numbers for a control point, found \"a b\"".
+//
+// Memory: results own theirs; arguments are not kept. Threads: any number of calls at once, for different files where
+// they write; parts that run on threads do so in the caller's TBB arena.
 
 #include <filesystem>
 #include <string>
@@ -71,8 +74,8 @@ Result<Model> parse_g2(std::string_view text, std::string_view name);
 /// Errors: as parse_bpt(); from archives also io_error.
 Result<Model> parse_rib(std::string_view text, std::string_view name);
 /// Parses the text of a .json file. Messages have a line, and the place as a JSON pointer (RFC 6901): "m.json:17:
-/// /surfaces/3/points/2/1: expected 3 numbers [x, y, z], found an array of 2". Threads: the expressions of its surfaces
-/// may be evaluated from any number of threads. Errors: as parse_bpt(), and those of the surfaces.
+/// /surfaces/3/points/2/1: expected 3 numbers [x, y, z], found an array of 2". Errors: as parse_bpt(), and those of the
+/// surfaces. Threads: the expressions of its surfaces may be evaluated from any number of threads.
 Result<Model> parse_json_model(std::string_view text, std::string_view name);
 /// Parses the text of a free-form Wavefront OBJ file: bezier, bspline, cardinal, taylor and bmatrix, rational or not,
 /// and the patches of release 2.11. Trims and holes are kept as ModelSurface::trims. Object and group name surfaces.
@@ -145,7 +148,7 @@ Result<Mesh> read_mesh(const std::filesystem::path& path, const MeshReadOptions&
 /// @{
 
 /// Returns the extension of `path` with letters from A to Z made small: ".obj", or nothing if there is none. Errors:
-/// none. Memory: the result.
+/// none; throws std::bad_alloc if memory runs out. Memory: the result.
 std::string lower_extension(const std::filesystem::path& path);
 /// Checks that write_mesh() writes the format of `path`'s extension. Errors: unsupported, with a list of those.
 Status check_mesh_format(const std::filesystem::path& path);

@@ -1,5 +1,7 @@
 #pragma once
 // The speed limits of this machine, measured in this process, and how long a piece of work takes at them.
+//
+// Threads: any number of calls at once, which then share the machine and measure less.
 
 #include <cstddef>
 #include <optional>

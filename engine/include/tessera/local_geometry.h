@@ -1,6 +1,8 @@
 #pragma once
 // Local geometry: fundamental forms, curvatures, principal directions; how far a net of isocurves is from orthogonal
 // and conjugate. One point at a time, in double.
+//
+// Memory: measure_net() allocates for the call, the others nothing. Threads: any number of calls at once.
 
 #include <array>
 #include <cstdint>

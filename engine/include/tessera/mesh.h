@@ -1,5 +1,7 @@
 #pragma once
 // Indexed meshes of triangles and quads: memory and views to write them to, their parts, and a check for faults.
+//
+// Memory: meshes own theirs; views refer to the caller's. Threads: any number of calls at once on const meshes.
 
 #include <cstdint>
 #include <span>

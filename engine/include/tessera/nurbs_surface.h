@@ -1,6 +1,8 @@
 #pragma once
 // B-spline and NURBS surfaces in double with their scalar reference evaluator; circles and surfaces of revolution as
 // exact NURBS.
+//
+// Memory: results own theirs; arguments are not kept. Threads: any number of calls at once.
 
 #include <cstdint>
 #include <memory>

@@ -1,6 +1,9 @@
 #pragma once
 // Surfaces and curves given by the caller's functions: evaluated directly, and fitted by Bezier patches to a stated
 // tolerance.
+//
+// Memory: surfaces and curves share their functions with their copies. Threads: any number of calls at once on const
+// objects, if their functions allow it.
 
 #include <array>
 #include <cstddef>
@@ -104,10 +107,12 @@ class ParametricSurface {
 ///   p_uv: h^6 F_71 / 7 + 9 k^6 F_17 + 2^-25 F / (L_u L_v).
 ///
 /// The terms with F_ab are the truncation errors of the sextic through 7 values, central or one-sided; the others are
-/// the rounding of values times the sum of the weights' sizes (Fornberg 1988, Generation of finite difference formulas
-/// on arbitrarily spaced grids, Mathematics of Computation 51).
+/// the rounding of values times the sum of the weights' sizes.
 ///
 /// Errors: those of position(), non_finite (a derivative: names it and (u,v)).
+///
+/// Source: Fornberg 1988, Generation of finite difference formulas on arbitrarily spaced grids, Mathematics of
+/// Computation 51.
 Result<SurfaceJet> evaluate_jet(const ParametricSurface& surface, double u, double v);
 
 /// The caller's functions for a curve c(t). Threads: one thread calls the functions at a time, unless you make const

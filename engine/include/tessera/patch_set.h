@@ -58,23 +58,23 @@ struct PatchSetOptions {
 /// The components are x, y, z, and w for rational patches, homogeneous and relative to the origin. Unused lanes repeat
 /// a patch. Positions in float are relative to origin(); positions in double are absolute.
 ///
-/// Threads: const calls from any number of threads; an edit excludes every other call. Memory: 64 bytes per patch more
-/// while a set is made.
+/// Memory: memory_bytes(), and 64 bytes per patch more while a set is made. Threads: const calls from any number of
+/// threads; an edit excludes every other call.
 class PatchSet {
  public:
   static constexpr int lanes = 16;  ///< patches in a block
 
   /// Copies the patches and packs them.
   ///
-  /// Errors:
-  /// - invalid_argument (no patch; index = the patch: a source's domain that is not a finite rectangle)
-  /// - count_mismatch (sources that are neither none nor one per patch)
-  /// - non_finite (the origin; index = the patch: numbers out of the range below)
-  /// - out_of_memory
-  ///
   /// Range: the smallest weight of a patch is at least 1e-9 of the largest (1e-70 if there are only double blocks). A
   /// coordinate relative to the origin is at most 5e33 (2.7e303) times the square of that ratio. So derivatives are
   /// finite.
+  ///
+  /// Errors:
+  /// - invalid_argument (no patch; index = the patch: a source's domain that is not a finite rectangle)
+  /// - count_mismatch (sources that are neither none nor one per patch)
+  /// - non_finite (the origin; index = the patch: numbers out of that range)
+  /// - out_of_memory
   static Result<PatchSet> make(std::span<const BezierPatch> patches, const PatchSetOptions& options = {});
 
   PatchSet(PatchSet&&) noexcept;
@@ -102,7 +102,8 @@ class PatchSet {
   std::uint64_t revision() const;
   /// Sets the control points of one patch, as many as before; weights are kept. Repacks its lane of each block. Errors,
   /// with the set unchanged: invalid_argument (no such patch), count_mismatch (points), non_finite (a point; numbers
-  /// out of the range of make()).
+  /// out of the range of make()), out_of_memory. Memory: copies the patch's control points, 24 bytes per point, and
+  /// frees those from before unless a copy of the patch has them.
   Status set_control_points(std::size_t index, std::span<const Vec3> points);
 
   class [[gnu::visibility("hidden")]] Impl;

@@ -1,5 +1,7 @@
 #pragma once
 // Quadrics: classification, canonical frame, pieces between ranges of the canonical parameters, and ray intersection.
+//
+// Memory: results own theirs; arguments are not kept. Threads: any number of calls at once.
 
 #include <array>
 #include <cstdint>

@@ -1,6 +1,9 @@
 #pragma once
 // Puts the patches of a ray scene into the user's own Embree scene, beside other geometry. The only header that names
 // Embree's types: for programs that link Embree themselves.
+//
+// Threads: const calls on the ray scene from any number of threads; calls that change a geometry or a scene of Embree's
+// as Embree demands, one at a time.
 
 #ifndef TESSERA_EMBREE_MAJOR
 /// The major version that tessera::ray was built with; its CMake target defines it.

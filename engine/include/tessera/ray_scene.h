@@ -1,5 +1,8 @@
 #pragma once
 // Traces rays against a patch set: single rays, and arrays of rays in float or double as renderers hold them.
+//
+// Memory: scenes refer to their set; outputs go to the caller's memory. Threads: queries of a const scene from any
+// number of threads; they run in the caller's TBB arena and give the same bytes for any number of threads.
 
 #include <cstddef>
 #include <cstdint>
@@ -165,7 +168,7 @@ struct RayInstance {
 
 /// A patch set prepared for rays.
 ///
-/// Lifetime: the set must outlive the scene (it may be moved), because the scene refers to the set's inner state. After
+/// Memory: the set must outlive the scene (it may be moved), because the scene refers to the set's inner state. After
 /// an edit of the set the scene is stale until refit() or rebuild(), and its queries fail.
 ///
 /// Threads: const calls from any number of threads; edits of the set, refit and rebuild exclude them and each other.
@@ -178,6 +181,9 @@ class RayScene {
   /// - grid mode: unsupported (no float Bernstein blocks; a box with a diagonal below 1e-9 or reaching further than
   ///   1e12 from the set's origin; more than 2^32 grid points)
   /// - exact mode: unsupported (a diagonal outside of 1e-140 to 1e140; 2^32 pieces)
+  ///
+  /// Memory: memory_bytes(), and 128 bytes per patch more while the scene is made. Threads: it is made in the caller's
+  /// TBB arena.
   static Result<RayScene> make(const PatchSet& set, const RaySceneOptions& options = {},
                                const Execution& execution = {});
   /// Deleted: the set must outlive the scene.
@@ -187,15 +193,15 @@ class RayScene {
   /// Makes a scene in grid mode whose facets are the triangles and quads of a mesh of the set, such as one that keeps a
   /// tolerance. Only the options `refine` and `isa` are used.
   ///
-  /// Memory: the mesh is used where it lies. It must stay there and may change only between an edit and the refit of
-  /// the set. Its positions are copied if their vector has no capacity for one more number.
-  ///
   /// Errors: those of grid mode, and:
   /// - invalid_argument (no patch for each face, or no parameters for each vertex, as where vertices are shared;
   ///   another origin than the set's)
   /// - non_finite (index = the vertex: a position or a parameter)
   /// - invalid_argument (index = the vertex or the face: parameters outside of [0, 1], an index that is no vertex, a
   ///   patch that the set does not have)
+  ///
+  /// Memory: the mesh is used where it lies. It must stay there and may change only between an edit and the refit of
+  /// the set. Its positions are copied if their vector has no capacity for one more number.
   static Result<RayScene> make(const PatchSet& set, const Mesh& mesh, const RaySceneOptions& options = {},
                                const Execution& execution = {});
   /// Deleted: the set and the mesh must outlive the scene.
@@ -288,8 +294,7 @@ class RayScene {
   /// Returns the box of the facets or of the pieces' nets, tighter than that of all control points; empty while stale.
   Box3 box() const;
   std::uint64_t revision() const;  ///< the set's, when the scene was made or last refitted
-  /// Returns the bytes of grids or nets, and BVH; for instances without those of their scenes. Making the scene takes
-  /// 128 bytes per patch more.
+  /// Returns the bytes of grids or nets, and BVH; for instances without those of their scenes.
   std::size_t memory_bytes() const;
 
   class [[gnu::visibility("hidden")]] Impl;
@@ -367,7 +372,7 @@ struct BatchOptions {
 /// Finds the closest hit of each ray: that of RayScene::closest() for the same numbers in double, bit for bit.
 ///
 /// Consecutive coherent rays are traced in packets. An invalid ray is a miss with HitKind::invalid_ray. Without rays no
-/// view is read, checked or written. Allocates nothing, except for borders as RayScene::closest().
+/// view is read, checked or written.
 ///
 /// Errors, with nothing written:
 /// - count_mismatch (a view of rays with fewer records than `direction`)
@@ -378,6 +383,8 @@ struct BatchOptions {
 ///
 /// Errors that leave outputs partly written: cancelled (by `execution`, or by the filter: index = the ray),
 /// out_of_memory, and the exception of a filter (internal with its message, or out_of_memory).
+///
+/// Memory: allocates nothing, except for borders as RayScene::closest(). Threads: as RayScene.
 Status closest(const RayScene& scene, const RayViews<float>& rays, const HitViews<float>& hits,
                const BatchOptions& options = {}, const Execution& execution = {});
 Status closest(const RayScene& scene, const RayViews<float>& rays, const HitViews<double>& hits,
@@ -388,7 +395,7 @@ Status closest(const RayScene& scene, const RayViews<double>& rays, const HitVie
                const BatchOptions& options = {}, const Execution& execution = {});
 
 /// Writes 1 where anything lies on the ray, and 0 where nothing does or the ray is invalid, as RayScene::occluded().
-/// The output is required. Errors: as closest().
+/// The output is required. Errors, memory and threads: as closest().
 Status occluded(const RayScene& scene, const RayViews<float>& rays, const View1<std::uint8_t>& occluded,
                 const BatchOptions& options = {}, const Execution& execution = {});
 Status occluded(const RayScene& scene, const RayViews<double>& rays, const View1<std::uint8_t>& occluded,

@@ -1,6 +1,7 @@
 #pragma once
-// Errors as values: Status, and Result for a value or an error. No exception leaves the library but std::bad_alloc where
-// memory runs out, from copies of values and from functions that return a std::vector or a std::string, which say so.
+// Errors as values: Status, and Result for a value or an error. No exception leaves the library but std::bad_alloc
+// where memory runs out, from copies of values and from functions that return a std::vector or a std::string, which say
+// so.
 //
 // Threads: any number of calls at once on const objects.
 

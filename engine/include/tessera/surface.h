@@ -1,5 +1,7 @@
 #pragma once
 // A surface of any kind. tessera/convert.h converts it.
+//
+// Threads: any number of calls at once on const surfaces, if their functions allow it.
 
 #include <array>
 #include <string_view>

@@ -1,6 +1,8 @@
 #pragma once
 // Tensor-product patches over polynomial bases, chosen per direction: Bezier, power, Hermite, uniform B-spline,
 // Catmull-Rom, or the user's matrix. Graphs z = sum a_ij x^i y^j over a rectangle.
+//
+// Memory: results own theirs; arguments are not kept. Threads: any number of calls at once.
 
 #include <memory>
 #include <span>
@@ -29,7 +31,7 @@ class BasisMatrix {
   /// last). Errors: unsupported_degree.
   static Result<BasisMatrix> uniform_b_spline(int degree);
   /// Makes the Catmull-Rom cubics of four points, from the second to the third; a tangent is half the chord of its
-  /// neighbours (Catmull and Rom, A class of local interpolating splines, 1974). Errors: out_of_memory.
+  /// neighbours. Errors: out_of_memory. Source: Catmull and Rom, A class of local interpolating splines, 1974.
   static Result<BasisMatrix> catmull_rom();
   /// Makes a basis from a matrix. A singular matrix serves to evaluate and to convert from, not to convert to.
   ///
