@@ -18,9 +18,10 @@ ctest on all cores.
 
 The preset tsan builds oneTBB with the thread sanitizer too (tools/instrumented_tbb.sh), if its source can be fetched.
 If TESSERA_TEST_DATA names a folder of real models, they are tested too. Tests of instruction sets that the machine lacks are
-skipped, unless TESSERA_REQUIRE_ISAS names them, for example "sse2;avx2". The tests perf.counts_avx2 and perf.counts_sse2
-compare the instructions of the preset dev with bench/baselines. They take minutes each, and are skipped if valgrind is
-missing or if the compiler, the flags or the libraries differ. With TESSERA_REQUIRE_COUNTS=1 they fail instead.
+skipped, unless TESSERA_REQUIRE_ISAS names them, for example "sse2;avx2". The last line says which sets were tested and which
+were skipped. The tests perf.counts_avx2 and perf.counts_sse2 compare the instructions of the preset dev with bench/baselines.
+They take minutes each, and are skipped if valgrind is missing or if the compiler, the flags or the libraries differ. With
+TESSERA_REQUIRE_COUNTS=1 they fail instead.
 TEXT
 }
 
@@ -109,4 +110,8 @@ if [[ -n $fuzz_seconds ]]; then
   fuzz
   exit 0
 fi
-ctest --preset "$preset" -j "$(nproc)" "${ctest_arguments[@]}"
+status=0
+rm -f "build/$preset/Testing/results.xml"
+ctest --preset "$preset" -j "$(nproc)" --output-junit Testing/results.xml "${ctest_arguments[@]}" || status=$?
+[[ ! -e build/$preset/Testing/results.xml ]] || tools/isa_summary.sh "build/$preset/Testing/results.xml"
+exit "$status"
