@@ -69,6 +69,8 @@ double largest_coefficient(const Vectors& net) {
 
 /// Divides by t and by 1 - t as often as the curve vanishes at its ends, within rounding.
 Vectors without_end_zeros(Vectors net) {
+  // A coefficient that is zero in exact arithmetic is a sum of products of differences, which round by 2^-52 of the
+  // largest each: 1e-13 allows for 450 of these roundings.
   const double zero = 1e-13 * largest_coefficient(net);
   for (int end = 0; end < 2; ++end) {
     while (net.degree_u > 0 && largest_coefficient(net) > zero && !(max_abs(net.values.front()) > zero)) {

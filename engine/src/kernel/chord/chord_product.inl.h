@@ -190,7 +190,8 @@ class ChordProducts {
   }
 
   /// Stores a product with the rounding of both factors, as in store_pieces(), and of the sums. The vectors in the sums
-  /// may exceed the bounds, which are those of the net after cutting, by a few times.
+  /// may exceed the bounds, which are those of the net after cutting, by a few times: a sum of three products rounds by
+  /// at most 4 * 2^-24 |x| |y|, so 2^-16 serves vectors up to 8 times as long as both bounds.
   void store(int piece, int which, const Batch& factor_a, int kind_a, const Batch& factor_b, int kind_b,
              const Batch& product) const {
     const Batch rounding =

@@ -82,7 +82,8 @@ class RationalProducts {
   }
 
   /// Stores a product with its rounding. The factors exceed the bounds, which are those of the net after cutting, by a
-  /// few times at most.
+  /// few times at most: a product and its reach take ten roundings of 2^-24 |p| |q|, so 2^-16 serves factors up to 5
+  /// times as large as both bounds.
   void store(int piece, int which, int kind_a, int kind_b, int factor, const Batch& product) const {
     const auto bound = [&](int kind) { return L::load(job_.pieces + (piece * 3 + kind) * block_lanes + lane_); };
     L::store(job_.products + (piece * 3 + which) * block_lanes + lane_,

@@ -193,6 +193,7 @@ class PacketTrace {
       error = error / Batch(leaf_.lightest);
     }
     const Batch s = shift_ + along * inverse_;
+    // The last term is that of LeafTrace::add_root().
     const Batch s_error = Batch(1.01f) * error * size(inverse_) + Batch(2e-6f);
     const Where root = where & (s - s_error <= load(rays_.far)) & (s + s_error >= load(rays_.near));
     state_ = xsimd::select(root, Batch(RayPacket::root), state_);
