@@ -1,8 +1,5 @@
 #pragma once
 // Traces rays against a patch set: single rays, and arrays of rays in float or double as renderers hold them.
-//
-// Memory: scenes refer to their set; outputs go to the caller's memory. Threads: queries of a const scene from any
-// number of threads; they run in the caller's TBB arena and give the same bytes for any number of threads.
 
 #include <cstddef>
 #include <cstdint>
@@ -182,8 +179,7 @@ class RayScene {
   ///   1e12 from the set's origin; more than 2^32 grid points)
   /// - exact mode: unsupported (a diagonal outside of 1e-140 to 1e140; 2^32 pieces)
   ///
-  /// Memory: memory_bytes(), and 128 bytes per patch more while the scene is made. Threads: it is made in the caller's
-  /// TBB arena.
+  /// Memory: memory_bytes(), and 128 bytes per patch more while the scene is made.
   static Result<RayScene> make(const PatchSet& set, const RaySceneOptions& options = {},
                                const Execution& execution = {});
   /// Deleted: the set must outlive the scene.
@@ -383,7 +379,6 @@ struct BatchOptions {
 ///
 /// Errors that leave outputs partly written: cancelled (by `execution`, or by the filter: index = the ray),
 /// out_of_memory, and the exception of a filter (internal with its message, or out_of_memory).
-///
 /// Memory: allocates nothing, except for borders as RayScene::closest(). Threads: as RayScene.
 Status closest(const RayScene& scene, const RayViews<float>& rays, const HitViews<float>& hits,
                const BatchOptions& options = {}, const Execution& execution = {});
