@@ -9,22 +9,15 @@
 #include <vector>
 
 #include "tessera/convert.h"
-#include "tessera/curve.h"
 #include "tessera/detail/shared.h"
 #include "tessera/geometry.h"
 #include "tessera/patch_set.h"
 #include "tessera/status.h"
 #include "tessera/surface.h"
+#include "tessera/trim_loop.h"
 
 #pragma GCC visibility push(default)
 namespace tessera::inline abi_0_1 {
-
-/// A closed chain of curves in the surface's parameters (x = u, y = v, z = 0). The inside of a hole is cut away, and so
-/// is the outside of all other loops.
-struct TrimLoop {
-  std::vector<Curve> curves;  ///< each begins where the one before it ends
-  bool hole = false;          ///< if false, the outside is cut away
-};
 
 /// A named surface, and its placement in the model. Trims are kept for callers; patches, meshes and rays ignore them so
 /// far. Copies share everything.

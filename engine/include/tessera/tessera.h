@@ -28,6 +28,7 @@
 #include "tessera/surface.h"
 #include "tessera/tensor_patch.h"
 #include "tessera/tessellation.h"
+#include "tessera/trim_loop.h"
 #include "tessera/version.h"
 
 // Headers of the libraries tessera::ray and tessera::io are installed with these.

@@ -1,0 +1,39 @@
+#pragma once
+// The lines between patches, by which loops are cut.
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "tessera/geometry.h"
+
+namespace tessera::inline abi_0_1 {
+
+/// The lines of one direction, strictly increasing, at least two: the first and the last are sides of the domain.
+struct CutAxis {
+  std::vector<double> lines;
+  bool periodic = false;
+  double snap = 0;  ///< coordinates this near to a line are moved onto it
+
+  double from() const { return lines.front(); }
+  double to() const { return lines.back(); }
+  double period() const { return to() - from(); }
+
+  /// The line within `snap` of x, or x.
+  double snapped(double x) const {
+    const auto above = std::lower_bound(lines.begin(), lines.end(), x);
+    if (above != lines.end() && *above - x <= snap) return *above;
+    if (above != lines.begin() && x - *(above - 1) <= snap) return *(above - 1);
+    return x;
+  }
+  bool is_line(double x) const { return std::binary_search(lines.begin(), lines.end(), x); }
+};
+
+/// The lines of both directions.
+struct CutLines {
+  CutAxis u, v;
+  ParameterPoint snapped(const ParameterPoint& p) const { return {u.snapped(p.u), v.snapped(p.v)}; }
+};
+
+}  // namespace tessera::inline abi_0_1

@@ -1,0 +1,217 @@
+#include "trim/loop_pieces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "base/text.h"
+#include "tessera/convert.h"
+#include "trim/monotone_pieces.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+constexpr double max_coordinate = 1e100;
+constexpr double max_periods = 64;
+
+using Coordinate = double ParameterPoint::*;
+
+/// The lines of an axis repeated by its period over [from, to].
+CutAxis repeated(const CutAxis& axis, double from, double to) {
+  if (!axis.periodic || (from >= axis.from() && to <= axis.to())) return axis;
+  CutAxis all = axis;
+  all.lines.clear();
+  const double first = std::floor((from - axis.from()) / axis.period()) - 1;
+  const double last = std::ceil((to - axis.from()) / axis.period()) + 1;
+  for (double k = first; k < last; ++k)
+    for (std::size_t i = 0; i + 1 < axis.lines.size(); ++i)
+      all.lines.push_back(k == 0 ? axis.lines[i] : k == 1 && i == 0 ? axis.to() : axis.lines[i] + k * axis.period());
+  return all;
+}
+
+/// Moves a piece by whole periods into the domain. Returns the rounding.
+double shift_into_domain(TrimPiece& piece, const CutAxis& axis, const CutAxis& all, Coordinate x) {
+  const double lower = std::min(piece.start().*x, piece.end().*x), upper = std::max(piece.start().*x, piece.end().*x);
+  if (!axis.periodic || (lower >= axis.from() && upper <= axis.to())) return 0;
+  // The copy of the domain: the cell of lines that the piece lies in tells it without rounding.
+  const double middle = 0.5 * lower + 0.5 * upper;
+  const auto above = std::upper_bound(all.lines.begin(), all.lines.end(), middle) - all.lines.begin();
+  const auto cells = static_cast<std::ptrdiff_t>(axis.lines.size()) - 1;
+  const double turns =
+      std::floor((all.lines.front() - axis.from()) / axis.period() + 0.5) + static_cast<double>((above - 1) / cells);
+  double largest = 0;
+  for (ParameterPoint& p : piece.curve.points) {
+    largest = std::max(largest, std::abs(p.*x));
+    const auto line = std::lower_bound(all.lines.begin(), all.lines.end(), p.*x);
+    if (line != all.lines.end() && *line == p.*x) {
+      const auto cell = (line - all.lines.begin()) - (above - 1) / cells * cells;
+      p.*x = axis.lines[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(cell, 0, cells))];
+    } else {
+      p.*x = std::clamp(p.*x - turns * axis.period(), axis.from(), axis.to());
+    }
+  }
+  piece.exact_line = false;
+  return 0x1p-52 * (largest + std::max(std::abs(axis.from()), std::abs(axis.to())));
+}
+
+class LoopBuilder {
+ public:
+  LoopBuilder(const TrimLoop& loop, std::uint32_t index, const CutLines& lines)
+      : loop_(loop), index_(index), lines_(lines) {}
+
+  Result<LoopPieces> build() {
+    for (std::size_t k = 0; k < loop_.curves.size(); ++k)
+      if (Status status = append_curve(k); !status.ok()) return status;
+    join();
+    return std::move(made_);
+  }
+
+ private:
+  Status append_curve(std::size_t k) {
+    const Curve& curve = loop_.curves[k];
+    if (Status status = set_lines(curve); !status.ok()) return status;
+    const Result<BezierPieces> spans = to_bezier(curve);
+    if (!spans) return spans.status();
+    const auto degree = static_cast<std::size_t>(spans->degree);
+    ParameterPoint largest;
+    for (const Vec3& p : curve.points()) largest = larger(largest, distance({p.x, p.y}, {}));
+    // Knot insertion takes convex combinations, in `degree` levels of at most 4 roundings each.
+    const ParameterPoint inserted = 4 * static_cast<double>(degree + 1) * 0x1p-53 * largest;
+    for (std::size_t span = 0; span + 1 < spans->breaks.size(); ++span) {
+      PlaneBezier bezier;
+      for (std::size_t i = span * degree; i <= (span + 1) * degree; ++i) {
+        bezier.points.push_back({spans->points[i].x, spans->points[i].y});
+        if (!spans->weights.empty()) bezier.weights.push_back(spans->weights[i]);
+      }
+      const Interval range{spans->breaks[span], spans->breaks[span + 1]};
+      const ParameterPoint error = keeps_points(curve, range) ? ParameterPoint{} : inserted;
+      append(std::move(bezier), error, static_cast<std::uint32_t>(k), range);
+    }
+    return {};
+  }
+
+  /// Whether the span's control points are the curve's own, so that they were not computed: both knots have full
+  /// multiplicity.
+  static bool keeps_points(const Curve& curve, const Interval& span) {
+    const auto knots = curve.knots();
+    const auto degree = static_cast<std::ptrdiff_t>(curve.degree());
+    const auto above = std::upper_bound(knots.begin(), knots.end(), span.from);
+    return above - knots.begin() >= degree && knots.end() - above >= degree && *(above - degree) == span.from &&
+           *(above + degree - 1) == span.to;
+  }
+
+  /// Sets the lines that the curve may cross.
+  Status set_lines(const Curve& curve) {
+    double u0 = lines_.u.from(), u1 = lines_.u.to(), v0 = lines_.v.from(), v1 = lines_.v.to();
+    for (const Vec3& p : curve.points()) {
+      u0 = std::min(u0, p.x), u1 = std::max(u1, p.x);
+      v0 = std::min(v0, p.y), v1 = std::max(v1, p.y);
+    }
+    const double largest = std::max({std::abs(u0), std::abs(u1), std::abs(v0), std::abs(v1)});
+    if (!(largest <= max_coordinate))
+      return unsupported("has a coordinate of " + text(largest) + "; the largest is limited to " +
+                         text(max_coordinate));
+    if ((lines_.u.periodic && u1 - u0 > max_periods * lines_.u.period()) ||
+        (lines_.v.periodic && v1 - v0 > max_periods * lines_.v.period()))
+      return unsupported("runs over more than 64 periods of the surface");
+    all_ = {repeated(lines_.u, u0, u1), repeated(lines_.v, v0, v1)};
+    return {};
+  }
+
+  Status unsupported(const std::string& what) const {
+    return Status(StatusCode::unsupported, "loop " + std::to_string(index_) + " " + what, index_);
+  }
+
+  void append(PlaneBezier bezier, const ParameterPoint& error, std::uint32_t curve, const Interval& range) {
+    TrimPiece like;
+    like.loop = index_;
+    like.curve_index = curve;
+    like.range = range;
+    const std::size_t begin = made_.pieces.size();
+    append_monotone_pieces(std::move(bezier), error, like, all_, made_.pieces);
+    for (std::size_t k = begin; k < made_.pieces.size(); ++k) {
+      TrimPiece& piece = made_.pieces[k];
+      piece.error.u += shift_into_domain(piece, lines_.u, all_.u, &ParameterPoint::u);
+      piece.error.v += shift_into_domain(piece, lines_.v, all_.v, &ParameterPoint::v);
+    }
+  }
+
+  /// One coordinate of the way from the end of a piece to the start of the next, without whole periods.
+  static double gap(const CutAxis& axis, double from, double to) {
+    const double distance = to - from;
+    if (!axis.periodic || std::abs(distance) <= 0.5 * axis.period()) return distance;
+    const double sides =
+        distance > 0 ? (to - axis.to()) - (from - axis.from()) : (to - axis.from()) - (from - axis.to());
+    return sides;
+  }
+
+  /// Where two coordinates that differ by rounding meet: on a line, if one of them lies there.
+  static void meet(const CutAxis& axis, double& from, double& to) {
+    if (axis.periodic && std::abs(to - from) > 0.5 * axis.period()) {
+      const bool up = to > from;
+      from = up ? axis.from() : axis.to();
+      to = up ? axis.to() : axis.from();
+    } else {
+      from = to = axis.is_line(to) ? to : from;
+    }
+  }
+
+  void join() {
+    std::vector<TrimPiece> given;
+    given.swap(made_.pieces);
+    double way_u = 0, way_v = 0;
+    for (std::size_t k = 0; k < given.size(); ++k) {
+      way_u += given[k].end().u - given[k].start().u;
+      way_v += given[k].end().v - given[k].start().v;
+      TrimPiece& next = given[(k + 1) % given.size()];
+      const ParameterPoint end = given[k].end(), start = next.start();
+      const double du = gap(lines_.u, end.u, start.u), dv = gap(lines_.v, end.v, start.v);
+      way_u += du;
+      way_v += dv;
+      const bool rounding = std::abs(du) <= lines_.u.snap && std::abs(dv) <= lines_.v.snap;
+      if (rounding && (du != 0 || dv != 0)) {
+        ParameterPoint from = end, to = start;
+        if (du != 0) meet(lines_.u, from.u, to.u);
+        if (dv != 0) meet(lines_.v, from.v, to.v);
+        move_ends(given[k], given[k].start(), from);
+        move_ends(next, to, next.end());
+      }
+      made_.pieces.push_back(given[k]);
+      if (!rounding) close_gap(given[k], next, du, dv);
+    }
+    if (!given.empty()) made_.pieces.front() = given.front();  // the last joint may have moved its start
+    if (lines_.u.periodic) made_.turns_u = static_cast<int>(std::lround(way_u / lines_.u.period()));
+    if (lines_.v.periodic) made_.turns_v = static_cast<int>(std::lround(way_v / lines_.v.period()));
+  }
+
+  void close_gap(const TrimPiece& before, const TrimPiece& after, double du, double dv) {
+    const ParameterPoint from = before.end(), to = after.start();
+    const double size = std::max(std::abs(du), std::abs(dv));
+    ++made_.gaps;
+    if (size > made_.largest_gap) {
+      made_.largest_gap = size;
+      made_.gap_curve = before.curve_index;
+    }
+    const bool wraps = du != to.u - from.u || dv != to.v - from.v;
+    const ParameterPoint target = wraps ? ParameterPoint{from.u + du, from.v + dv} : to;
+    all_ = {repeated(lines_.u, std::min(from.u, target.u), std::max(from.u, target.u)),
+            repeated(lines_.v, std::min(from.v, target.v), std::max(from.v, target.v))};
+    append({{from, target}, {}}, {}, TrimPiece::none, {0, 1});
+    if (wraps) move_ends(made_.pieces.back(), made_.pieces.back().start(), to);
+  }
+
+  const TrimLoop& loop_;
+  std::uint32_t index_;
+  const CutLines& lines_;
+  CutLines all_;  ///< the lines of all copies of the domain that the curve meets
+  LoopPieces made_;
+};
+
+}  // namespace
+
+Result<LoopPieces> loop_pieces(const TrimLoop& loop, std::uint32_t index, const CutLines& lines) {
+  return LoopBuilder(loop, index, lines).build();
+}
+
+}  // namespace tessera::inline abi_0_1

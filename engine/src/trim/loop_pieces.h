@@ -1,0 +1,28 @@
+#pragma once
+// The pieces of one loop: its curves cut into monotone pieces, moved into the domain of a periodic surface, and joined.
+
+#include <cstdint>
+#include <vector>
+
+#include "tessera/status.h"
+#include "tessera/trim_loop.h"
+#include "trim/cut_lines.h"
+#include "trim/trim_piece.h"
+
+namespace tessera::inline abi_0_1 {
+
+/// A loop as a closed chain of pieces. On a periodic surface, a piece that ends on one side of the domain may be
+/// followed by one that starts at the same place of the opposite side.
+struct LoopPieces {
+  std::vector<TrimPiece> pieces;
+  std::size_t gaps = 0;  ///< how many gaps wider than rounding were closed by a line
+  double largest_gap = 0;
+  std::size_t gap_curve = 0;     ///< the curve before the largest gap
+  int turns_u = 0, turns_v = 0;  ///< how often it runs around the surface along u and along v
+};
+
+/// Makes the pieces of a loop. Errors: unsupported (coordinates beyond 1e100; more than 64 periods), those of
+/// to_bezier(Curve).
+Result<LoopPieces> loop_pieces(const TrimLoop& loop, std::uint32_t index, const CutLines& lines);
+
+}  // namespace tessera::inline abi_0_1

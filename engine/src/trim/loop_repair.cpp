@@ -1,0 +1,205 @@
+#include "trim/loop_repair.h"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <string>
+#include <utility>
+
+#include "base/text.h"
+#include "trim/loop_pieces.h"
+#include "trim/monotone_pieces.h"
+#include "trim/retraced.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+using Coordinate = double ParameterPoint::*;
+
+bool is_less(const ParameterPoint& a, const ParameterPoint& b) { return a.u != b.u ? a.u < b.u : a.v < b.v; }
+
+/// The points in which an odd number of ends meet, in order.
+std::vector<ParameterPoint> odd_ends(const std::vector<TrimPiece>& pieces) {
+  std::vector<ParameterPoint> ends;
+  for (const TrimPiece& piece : pieces) {
+    ends.push_back(piece.start());
+    ends.push_back(piece.end());
+  }
+  std::sort(ends.begin(), ends.end(), is_less);
+  std::vector<ParameterPoint> odd;
+  for (const ParameterPoint& end : ends) {
+    if (!odd.empty() && odd.back() == end)
+      odd.pop_back();
+    else
+      odd.push_back(end);
+  }
+  return odd;
+}
+
+/// One direction of the domain, and the other one.
+struct Direction {
+  const CutAxis& axis;
+  const CutAxis& other;
+  Coordinate x, y;
+
+  ParameterPoint point(double along, double across) const {
+    ParameterPoint p;
+    p.*x = along;
+    p.*y = across;
+    return p;
+  }
+};
+
+class LoopRepair {
+ public:
+  LoopRepair(std::span<const TrimLoop> loops, const CutLines& lines) : loops_(loops), lines_(lines) {}
+
+  Result<RepairedLoops> repair() {
+    bool all_holes = true;
+    for (std::size_t k = 0; k < loops_.size(); ++k) {
+      Result<LoopPieces> loop = loop_pieces(loops_[k], static_cast<std::uint32_t>(k), lines_);
+      if (!loop) return named(loop.status(), k);
+      tell_gaps(k, *loop);
+      std::erase_if(loop->pieces, [](const TrimPiece& piece) { return piece.start() == piece.end(); });
+      if (!encloses(k, *loop)) continue;
+      all_holes = all_holes && loops_[k].hole;
+      tell_excursion(k, loop->pieces);
+      if ((loop->turns_u != 0 || loop->turns_v != 0) && turning_loop_ == none) turning_loop_ = k;
+      turns_u_ += loop->turns_u;
+      turns_v_ += loop->turns_v;
+      std::move(loop->pieces.begin(), loop->pieces.end(), std::back_inserter(made_.pieces));
+    }
+    made_.starts_inside = all_holes;
+    const Direction u{lines_.u, lines_.v, &ParameterPoint::u, &ParameterPoint::v};
+    const Direction v{lines_.v, lines_.u, &ParameterPoint::v, &ParameterPoint::u};
+    // Left of a loop that runs towards larger u is larger v; left of one towards larger v is smaller u.
+    clip(u, turns_u_ > 0);
+    clip(v, turns_v_ < 0);
+    if (!odd_ends(made_.pieces).empty())
+      return Status(StatusCode::internal, "the trimming loops could not be closed within the surface's domain");
+    return std::move(made_);
+  }
+
+ private:
+  static constexpr std::size_t none = static_cast<std::size_t>(-1);
+
+  static Status named(const Status& status, std::size_t k) {
+    if (status.index() == static_cast<std::ptrdiff_t>(k)) return status;
+    return Status(status.code(), "loop " + std::to_string(k) + ": " + status.message(), static_cast<std::ptrdiff_t>(k));
+  }
+
+  void tell(std::size_t k, LoopFault fault, double size, const std::string& what) {
+    made_.remarks.push_back({k, fault, size, "loop " + std::to_string(k) + ": " + what});
+  }
+
+  void tell_gaps(std::size_t k, const LoopPieces& loop) {
+    if (loop.gaps == 0) return;
+    const std::size_t next = (loop.gap_curve + 1) % loops_[k].curves.size();
+    const std::string where = " between curves " + std::to_string(loop.gap_curve) + " and " + std::to_string(next);
+    tell(k, LoopFault::gap, loop.largest_gap,
+         loop.gaps == 1 ? "a straight line closes a gap of " + text(loop.largest_gap) + where
+                        : "straight lines close " + std::to_string(loop.gaps) + " gaps, the largest of " +
+                              text(loop.largest_gap) + where);
+  }
+
+  /// Drops what bounds nothing. Whether anything is left.
+  bool encloses(std::size_t k, LoopPieces& loop) {
+    if (loop.pieces.empty()) {
+      tell(k, LoopFault::empty, 0, loops_[k].curves.empty() ? "it has no curves" : "all of its curves are points");
+      return false;
+    }
+    const std::size_t dropped = drop_retraced(loop.pieces, lines_.u.snap, lines_.v.snap);
+    drop_seams(loop, lines_.u, &ParameterPoint::u);
+    drop_seams(loop, lines_.v, &ParameterPoint::v);
+    if (loop.pieces.empty()) {
+      tell(k, LoopFault::retraced, 0, "it runs back over itself and encloses nothing, so it is ignored");
+      return false;
+    }
+    if (dropped > 0)
+      tell(k, LoopFault::retraced, 0,
+           counted(dropped, "piece") + " of it that run over each other bound nothing and are dropped");
+    return true;
+  }
+
+  static bool on_side(const TrimPiece& piece, const CutAxis& axis, Coordinate x) {
+    return piece.start().*x == piece.end().*x && (piece.start().*x == axis.from() || piece.start().*x == axis.to());
+  }
+
+  /// Empties a loop that runs along a seam alone.
+  static void drop_seams(LoopPieces& loop, const CutAxis& axis, Coordinate x) {
+    if (!axis.periodic) return;
+    if (std::all_of(loop.pieces.begin(), loop.pieces.end(), [&](const TrimPiece& p) { return on_side(p, axis, x); }))
+      loop.pieces.clear();
+  }
+
+  void tell_excursion(std::size_t k, const std::vector<TrimPiece>& pieces) {
+    double size = 0;
+    for (const TrimPiece& piece : pieces) {
+      if (!lines_.u.periodic)
+        size = std::max({size, lines_.u.from() - piece.lower_u(), piece.upper_u() - lines_.u.to()});
+      if (!lines_.v.periodic)
+        size = std::max({size, lines_.v.from() - piece.lower_v(), piece.upper_v() - lines_.v.to()});
+    }
+    if (size > std::max(lines_.u.snap, lines_.v.snap))
+      tell(k, LoopFault::outside, size, "it leaves the surface's domain by " + text(size) + " and is cut off there");
+  }
+
+  /// Cuts off what lies beyond the sides of one direction, or on the seam of a periodic one, and closes the rest along
+  /// the sides. `towards_upper`: where a loop runs around the surface alone, the part towards the upper side of the
+  /// other direction is kept.
+  void clip(const Direction& d, bool towards_upper) {
+    const auto is_outside = [&](const TrimPiece& piece) {
+      return std::min(piece.start().*d.x, piece.end().*d.x) < d.axis.from() ||
+             std::max(piece.start().*d.x, piece.end().*d.x) > d.axis.to();
+    };
+    std::vector<TrimPiece>& pieces = made_.pieces;
+    if (!d.axis.periodic && std::none_of(pieces.begin(), pieces.end(), is_outside)) return;
+    std::erase_if(pieces, [&](const TrimPiece& piece) { return is_outside(piece) || on_side(piece, d.axis, d.x); });
+    const std::vector<ParameterPoint> odd = odd_ends(pieces);
+    const double sides[] = {d.axis.from(), d.axis.to()};
+    std::array<std::vector<double>, 2> heights;
+    for (const ParameterPoint& p : odd)
+      for (std::size_t side = 0; side < 2; ++side)
+        if (p.*d.x == sides[side]) heights[side].push_back(p.*d.y);
+    for (std::vector<double>& list : heights) std::sort(list.begin(), list.end());
+    if (heights[0].size() % 2 != 0 && heights[1].size() % 2 != 0) close_at_far_side(d, towards_upper, heights);
+    for (std::size_t side = 0; side < 2; ++side)
+      for (std::size_t k = 0; k + 1 < heights[side].size(); k += 2)
+        append_line(d.point(sides[side], heights[side][k]), d.point(sides[side], heights[side][k + 1]));
+  }
+
+  /// A loop that runs around the surface alone: one of the domain's sides across closes it.
+  void close_at_far_side(const Direction& d, bool towards_upper, std::array<std::vector<double>, 2>& heights) {
+    for (const std::vector<double>& list : heights) {  // not where the loop itself runs along that side
+      if (list.front() == d.other.from()) towards_upper = true;
+      if (list.back() == d.other.to()) towards_upper = false;
+    }
+    const double far = towards_upper ? d.other.to() : d.other.from();
+    for (std::vector<double>& list : heights) list.insert(towards_upper ? list.end() : list.begin(), far);
+    append_line(d.point(d.axis.from(), far), d.point(d.axis.to(), far));
+    if (turning_loop_ != none)
+      tell(turning_loop_, LoopFault::open, 0,
+           "it runs around the surface and no other loop closes it, so the part on its left is kept");
+  }
+
+  void append_line(const ParameterPoint& from, const ParameterPoint& to) {
+    if (from == to) return;
+    CutLines exact = lines_;  // the ends stay as they are
+    exact.u.snap = exact.v.snap = 0;
+    append_monotone_pieces({{from, to}, {}}, {}, {}, exact, made_.pieces);
+  }
+
+  std::span<const TrimLoop> loops_;
+  const CutLines& lines_;
+  RepairedLoops made_;
+  int turns_u_ = 0, turns_v_ = 0;
+  std::size_t turning_loop_ = none;
+};
+
+}  // namespace
+
+Result<RepairedLoops> repair_loops(std::span<const TrimLoop> loops, const CutLines& lines) {
+  return LoopRepair(loops, lines).repair();
+}
+
+}  // namespace tessera::inline abi_0_1

@@ -1,0 +1,25 @@
+#pragma once
+// All loops of a face as one closed set of pieces within the domain.
+
+#include <span>
+#include <vector>
+
+#include "tessera/status.h"
+#include "tessera/trim_loop.h"
+#include "trim/cut_lines.h"
+#include "trim/trim_piece.h"
+
+namespace tessera::inline abi_0_1 {
+
+/// Pieces in which an even number of ends meet at every point, so that the parity of crossings is a property of a
+/// point alone.
+struct RepairedLoops {
+  std::vector<TrimPiece> pieces;
+  bool starts_inside = false;  ///< whether points that no loop encloses are kept
+  std::vector<LoopRemark> remarks;
+};
+
+/// Cuts, joins and repairs the loops; see TrimRegion. Errors: those of loop_pieces().
+Result<RepairedLoops> repair_loops(std::span<const TrimLoop> loops, const CutLines& lines);
+
+}  // namespace tessera::inline abi_0_1
