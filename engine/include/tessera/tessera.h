@@ -29,6 +29,7 @@
 #include "tessera/tensor_patch.h"
 #include "tessera/tessellation.h"
 #include "tessera/trim_loop.h"
+#include "tessera/trim_region.h"
 #include "tessera/version.h"
 
 // Headers of the libraries tessera::ray and tessera::io are installed with these.

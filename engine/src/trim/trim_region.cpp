@@ -1,0 +1,125 @@
+#include "tessera/trim_region.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "base/text.h"
+#include "tessera/guard.h"
+#include "trim/loop_repair.h"
+#include "trim/trim_region_impl.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+constexpr double max_snap = 1e-3;
+
+Status check_breaks(std::span<const double> breaks, const char* name) {
+  const auto failure = [&](StatusCode code, const std::string& what, std::size_t k) {
+    return Status(code, std::string(name) + "[" + std::to_string(k) + "] " + what, static_cast<std::ptrdiff_t>(k));
+  };
+  if (breaks.size() < 2)
+    return Status(StatusCode::invalid_argument,
+                  std::string(name) + " must have at least 2 values, found " + std::to_string(breaks.size()));
+  for (std::size_t k = 0; k < breaks.size(); ++k) {
+    if (!std::isfinite(breaks[k])) return failure(StatusCode::non_finite, "is " + text(breaks[k]), k);
+    if (!(std::abs(breaks[k]) <= 1e100))
+      return failure(StatusCode::invalid_argument, "is " + text(breaks[k]) + "; the largest is limited to 1e+100", k);
+    if (k > 0 && !(breaks[k - 1] < breaks[k]))
+      return failure(StatusCode::invalid_argument, "does not increase: " + text(breaks[k]), k);
+  }
+  if (!(breaks.back() - breaks.front() >= 1e-100))
+    return Status(StatusCode::invalid_argument, std::string(name) + " must span at least 1e-100");
+  return {};
+}
+
+/// The distance for snapping: a share of the domain, and less than a third of the narrowest patch.
+CutAxis axis_of(std::span<const double> breaks, bool periodic, double snap) {
+  CutAxis axis{{breaks.begin(), breaks.end()}, periodic, snap * (breaks.back() - breaks.front())};
+  for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
+    axis.snap = std::min(axis.snap, 0.3 * (breaks[k + 1] - breaks[k]));
+  return axis;
+}
+
+/// The interval that holds x, which lies within the lines.
+std::size_t interval(const std::vector<double>& lines, double x) {
+  const auto above = std::upper_bound(lines.begin(), lines.end(), x) - lines.begin();
+  return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(above - 1, 0, std::ssize(lines) - 2));
+}
+
+/// Marks the patches that pieces cut, and locates the centres of the others.
+void sort_patches(TrimRegion::Impl& region) {
+  const std::vector<double>&u = region.lines.u.lines, &v = region.lines.v.lines;
+  region.patches.assign((u.size() - 1) * (v.size() - 1), TrimSide::inside);
+  for (const TrimPiece& piece : region.pieces) {
+    const bool along_u = piece.start().v == piece.end().v && region.lines.v.is_line(piece.start().v);
+    const bool along_v = piece.start().u == piece.end().u && region.lines.u.is_line(piece.start().u);
+    if (along_u || along_v) continue;
+    const std::size_t a = interval(u, 0.5 * piece.lower_u() + 0.5 * piece.upper_u());
+    const std::size_t b = interval(v, 0.5 * piece.lower_v() + 0.5 * piece.upper_v());
+    region.patches[a * region.count_v() + b] = TrimSide::border;
+  }
+  for (std::size_t a = 0; a + 1 < u.size(); ++a) {
+    for (std::size_t b = 0; b + 1 < v.size(); ++b) {
+      TrimSide& side = region.patches[a * region.count_v() + b];
+      if (side != TrimSide::border)
+        side = region.cells.locate(region.pieces, 0.5 * u[a] + 0.5 * u[a + 1], 0.5 * v[b] + 0.5 * v[b + 1]);
+      region.is_whole = region.is_whole && side == TrimSide::inside;
+    }
+  }
+}
+
+}  // namespace
+
+Result<TrimRegion> TrimRegion::make(std::span<const TrimLoop> loops, std::span<const double> breaks_u,
+                                    std::span<const double> breaks_v, const TrimOptions& options) {
+  return guarded([&]() -> Result<TrimRegion> {
+    if (Status status = check_breaks(breaks_u, "breaks_u"); !status.ok()) return status;
+    if (Status status = check_breaks(breaks_v, "breaks_v"); !status.ok()) return status;
+    if (!(options.snap >= 0 && options.snap <= max_snap))
+      return Status(StatusCode::invalid_argument,
+                    "snap must be from 0 to " + text(max_snap) + ", found " + text(options.snap));
+    auto region = std::make_shared<Impl>();
+    region->lines = {axis_of(breaks_u, options.periodic_u, options.snap),
+                     axis_of(breaks_v, options.periodic_v, options.snap)};
+    region->domain = {breaks_u.front(), breaks_u.back(), breaks_v.front(), breaks_v.back()};
+    Result<RepairedLoops> repaired = repair_loops(loops, region->lines);
+    if (!repaired) return repaired.status();
+    region->pieces = std::move(repaired->pieces);
+    region->starts_inside = repaired->starts_inside;
+    region->remarks = std::move(repaired->remarks);
+    for (const TrimPiece& piece : region->pieces) region->band = larger(region->band, reach(piece));
+    region->cells = RegionCells::make(region->pieces, region->domain, region->starts_inside);
+    sort_patches(*region);
+    return TrimRegion(std::move(region));
+  });
+}
+
+Result<TrimRegion> TrimRegion::make(std::span<const TrimLoop> loops, const Domain& domain, const TrimOptions& options) {
+  return make(loops, std::array{domain.u0, domain.u1}, std::array{domain.v0, domain.v1}, options);
+}
+
+TrimSide TrimRegion::locate(double u, double v) const {
+  if (!impl_->domain.contains(u, v)) return TrimSide::outside;
+  return impl_->cells.locate(impl_->pieces, u, v);
+}
+
+Status TrimRegion::locate(std::span<const double> u, std::span<const double> v, std::span<TrimSide> sides) const {
+  if (u.size() != v.size() || u.size() != sides.size())
+    return Status(StatusCode::count_mismatch, "there are " + counted(u.size(), "value") + " of u, " +
+                                                  std::to_string(v.size()) + " of v, and room for " +
+                                                  counted(sides.size(), "side"));
+  for (std::size_t k = 0; k < u.size(); ++k) sides[k] = locate(u[k], v[k]);
+  return {};
+}
+
+TrimSide TrimRegion::patch(std::size_t a, std::size_t b) const { return impl_->patches[a * impl_->count_v() + b]; }
+bool TrimRegion::is_whole() const { return impl_->is_whole; }
+Domain TrimRegion::domain() const { return impl_->domain; }
+ParameterPoint TrimRegion::band() const { return impl_->band; }
+std::size_t TrimRegion::piece_count() const { return impl_->pieces.size(); }
+std::span<const LoopRemark> TrimRegion::remarks() const { return impl_->remarks; }
+
+}  // namespace tessera::inline abi_0_1

@@ -1,0 +1,31 @@
+#pragma once
+// The inner state of a TrimRegion, for the floors that mesh what it keeps.
+
+#include <vector>
+
+#include "tessera/trim_region.h"
+#include "trim/cut_lines.h"
+#include "trim/region_cells.h"
+#include "trim/trim_piece.h"
+
+namespace tessera::inline abi_0_1 {
+
+class TrimRegion::Impl {
+ public:
+  CutLines lines;
+  Domain domain;
+  /// Pieces between patch borders, in which an even number of ends meet at every point. Those of a loop stand in its
+  /// order, those along the sides of the domain last.
+  std::vector<TrimPiece> pieces;
+  bool starts_inside = false;  ///< whether points that no piece encloses are kept
+  RegionCells cells;
+  std::vector<TrimSide> patches;  ///< `[a][b]`
+  bool is_whole = true;
+  ParameterPoint band;
+  std::vector<LoopRemark> remarks;
+
+  /// The patches along v.
+  std::size_t count_v() const { return lines.v.lines.size() - 1; }
+};
+
+}  // namespace tessera::inline abi_0_1
