@@ -124,7 +124,7 @@ TEST(MemoryFails, WhereErrorsAreStated) {
       "evaluate_jet(ModelSurface), far", [&] { return evaluate_jet(far, 1, 1); }, non_finite);
   survives("to_bezier(ModelSurface)", [&] { return to_bezier(placed, {.tolerance = 1e-3}); });
   survives(
-      "to_bezier(ModelSurface), far", [&] { return to_bezier(placed, {.tolerance = 5e-8}); }, invalid_argument);
+      "to_bezier(ModelSurface), far", [&] { return to_bezier(placed, {.tolerance = 1e-6}); }, invalid_argument);
   const Model model{.name = "m", .surfaces = {placed}};
   const Status error(io_error, "a sentence of more than fifteen bytes");
   survives(
