@@ -41,7 +41,7 @@ constexpr std::string_view cases[] = {
     "pack.points/bicubic20000/3/20000",
     "pack.power/bicubic20000/3/20000",
     "tessellate/bicubic20000/3/8x8",
-    "update.mesh.one_in_20/bicubic10000/3/rate8",
+    "update.mesh+bounds.one_in_20/bicubic10000/3/rate8",
     "certified.mesh/bicubic20000/3/rate8",
     "certified.mesh/bicubic25/3/rate8",
     "ray.closest.camera/teapot/3/65536",

@@ -88,7 +88,7 @@ class Report {
     const CertifiedMesher mesher(one.set, fewest_);
     std::printf("%-46.46s %7zu |", one.name.c_str(), one.set.patch_count());
     for (std::size_t k = 0; k < one.tolerances.size(); ++k) {
-      const Result<CertifiedTessellation> plan = mesher.plan(one.tolerances[k]);
+      const Result<Tessellation> plan = mesher.plan(one.tolerances[k]);
       if (!plan || plan->capacity().triangles > max_triangles) {
         std::printf(" %8s %5s", plan ? "many" : "failed", "");
         continue;
@@ -132,7 +132,7 @@ class Report {
   /// Prints the rest of a row, or returns why there is none.
   std::string compare(const LeanCase& one, OcctShape& shape, double tolerance) {
     const CertifiedMesher mesher(one.set, fewest_);
-    const Result<CertifiedTessellation> plan = mesher.plan(tolerance);
+    const Result<Tessellation> plan = mesher.plan(tolerance);
     if (!plan) return "Tessera: " + plan.status().message();
     if (plan->capacity().triangles > max_triangles)
       return "Tessera takes " + std::to_string(plan->capacity().triangles) + " triangles";
@@ -174,7 +174,7 @@ class Report {
   }
 
   /// Returns the mesh; reports a bound that does not hold.
-  MeasuredMesh checked(const MeasuredMesh& mesh, const CertifiedTessellation& plan) {
+  MeasuredMesh checked(const MeasuredMesh& mesh, const Tessellation& plan) {
     if (!mesh.holds() && plan.certified()) {
       std::fprintf(stderr, "occt_lean_mesh: measured %.9g, proven %.9g\n", mesh.error, mesh.bound);
       good_ = false;

@@ -63,15 +63,15 @@ Measured measure_occt(Subject& subject, double deflection) {
   return measured;
 }
 
-Mesh mesh_of(const Subject& subject, const CertifiedOptions& options, double& bound) {
-  const CertifiedTessellation plan = test::value_of(CertifiedTessellation::make(subject.set, options));
+Mesh mesh_of(const Subject& subject, const TessellationOptions& options, double& bound) {
+  const Tessellation plan = test::value_of(Tessellation::make(subject.set, options));
   Mesh mesh = test::value_of(plan.allocate());
   if (!plan.run(subject.set, mesh.views()).ok()) std::abort();
   bound = plan.bound();
   return mesh;
 }
 
-Measured measure_mesh(const Subject& subject, const CertifiedOptions& options) {
+Measured measure_mesh(const Subject& subject, const TessellationOptions& options) {
   Measured measured;
   const Mesh mesh = mesh_of(subject, options, measured.bound);
   measured.triangles = mesh.triangle_count();
@@ -81,7 +81,7 @@ Measured measure_mesh(const Subject& subject, const CertifiedOptions& options) {
 }
 
 /// Writes positions, normals and triangles into existing memory.
-double seconds_of_mesh(const Subject& subject, const CertifiedOptions& options) {
+double seconds_of_mesh(const Subject& subject, const TessellationOptions& options) {
   double bound = 0;
   Mesh mesh = mesh_of(subject, options, bound);
   MeshViews out = mesh.views();
@@ -89,7 +89,7 @@ double seconds_of_mesh(const Subject& subject, const CertifiedOptions& options) 
   out.patch = {};
   const auto make = [&] {
     return seconds_of([&] {
-      const auto plan = CertifiedTessellation::make(subject.set, options);
+      const auto plan = Tessellation::make(subject.set, options);
       if (!plan || !plan->run(subject.set, out).ok()) std::abort();
     });
   };
@@ -99,7 +99,7 @@ double seconds_of_mesh(const Subject& subject, const CertifiedOptions& options) 
 /// About the coarsest mesh whose measured error is at most `error`.
 Measured measure_tessera(const Subject& subject, double error, bool fewest) {
   double tolerance = 2 * error;
-  const auto options = [fewest](double within) { return CertifiedOptions{.tolerance = within, .fewest = fewest}; };
+  const auto options = [fewest](double within) { return TessellationOptions{.tolerance = within, .fewest = fewest}; };
   std::optional<std::pair<double, Measured>> best;
   for (int step = 0; step < 12; ++step) {
     const Measured found = measure_mesh(subject, options(tolerance));

@@ -26,12 +26,12 @@ class CertifiedMesher {
  public:
   CertifiedMesher(const PatchSet& set, bool fewest) : set_(set), fewest_(fewest) {}
 
-  Result<CertifiedTessellation> plan(double tolerance) const {
-    return CertifiedTessellation::make(set_, {.tolerance = tolerance, .fewest = fewest_});
+  Result<Tessellation> plan(double tolerance) const {
+    return Tessellation::make(set_, {.tolerance = tolerance, .fewest = fewest_});
   }
 
   /// Throws std::runtime_error if the mesh is not valid.
-  MeasuredMesh measure(const CertifiedTessellation& plan, double tolerance, int steps) const {
+  MeasuredMesh measure(const Tessellation& plan, double tolerance, int steps) const {
     Result<Mesh> mesh = plan.allocate();
     if (!mesh || !plan.run(set_, mesh->views()).ok()) throw std::runtime_error("a plan makes no mesh");
     const Result<MeshReport> report = check(*mesh);
@@ -44,7 +44,7 @@ class CertifiedMesher {
   /// About the coarsest mesh whose measured error is at most `error`, within `rounding`. Empty if there is no plan for
   /// that tolerance.
   std::optional<MeasuredMesh> coarsest(double error, int steps) const {
-    const Result<CertifiedTessellation> proven = plan(error);
+    const Result<Tessellation> proven = plan(error);
     if (!proven) return {};
     MeasuredMesh good = measure(*proven, error, steps);
     const double limit = 1e6 * error;
@@ -53,7 +53,7 @@ class CertifiedMesher {
       const double scaled = known * std::clamp(error / good.error, 1.02, 20.0);
       const double next = scaled < bad ? scaled : std::sqrt(known * bad);
       if (next > limit) break;
-      const Result<CertifiedTessellation> coarser = plan(next);
+      const Result<Tessellation> coarser = plan(next);
       if (!coarser) break;
       const bool saves = coarser->capacity().triangles < good.triangles;
       const MeasuredMesh found = saves ? measure(*coarser, next, steps) : good;
@@ -86,7 +86,7 @@ class CertifiedMesher {
   MeasuredMesh scanned(const MeasuredMesh& good, double error, int steps) const {
     std::size_t tried = 0;
     for (double tolerance = 30 * good.tolerance; tolerance > 1.02 * good.tolerance; tolerance *= 0.96) {
-      const Result<CertifiedTessellation> coarser = plan(tolerance);
+      const Result<Tessellation> coarser = plan(tolerance);
       if (!coarser || coarser->capacity().triangles == tried) continue;
       tried = coarser->capacity().triangles;
       if (tried >= good.triangles) break;

@@ -86,22 +86,20 @@ class Work {
   }
 
   void mesh(PatchSet& set) {
-    CertifiedOptions options{.tolerance = 1e-3 * (1 + static_cast<double>(random_() % 9))};
+    TessellationOptions options{.tolerance = 1e-3 * (1 + static_cast<double>(random_() % 9))};
     options.share_vertices = random_() % 2 == 0;
     options.weld = random_() % 2 == 0 ? 1e-6 : 0;
-    MeshUpdate update = value_of(MeshUpdate::make(set, value_of(CertifiedTessellation::make(set, options))));
-    Mesh mesh = value_of(update.plan().allocate());
-    MeshViews views = mesh.views();
-    if (options.share_vertices) views.normal = {};
-    need(update.plan().run(set, views));
+    Tessellation plan = value_of(Tessellation::make(set, options));
+    Mesh mesh = value_of(plan.allocate());
+    need(plan.run(set, mesh.views()));
     for (int frame = 0; frame < 5; ++frame) {
       const std::vector<std::uint32_t> patch{static_cast<std::uint32_t>(random_() % 16)};
       std::vector<Vec3> points(set.patch(patch[0]).points().begin(), set.patch(patch[0]).points().end());
       for (Vec3& p : points) p.z += 1e-3;
-      need(update.run(set, {patch, points}, views));
-      need(update.restate(set));
+      if (!value_of(plan.update(set, {patch, points}, mesh.views())).topology) continue;
+      mesh = value_of(plan.allocate());
+      need(plan.run(set, mesh.views()));
     }
-    (void)value_of(update.retessellate(set));
     (void)value_of(check(mesh));
   }
 

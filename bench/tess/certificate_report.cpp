@@ -35,8 +35,7 @@ struct Looseness {
 };
 
 Looseness measure(const PatchSet& set, double tolerance, bool fewest) {
-  const CertifiedTessellation plan =
-      test::value_of(CertifiedTessellation::make(set, {.tolerance = tolerance, .fewest = fewest}));
+  const Tessellation plan = test::value_of(Tessellation::make(set, {.tolerance = tolerance, .fewest = fewest}));
   Mesh mesh = test::value_of(plan.allocate());
   if (const Status status = plan.run(set, mesh.views()); !status.ok()) {
     std::fprintf(stderr, "%s\n", status.message().c_str());

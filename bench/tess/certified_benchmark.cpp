@@ -64,7 +64,7 @@ enum class Timed { plan, run, mesh, edges };
 void certify(benchmark::State& state, const char* surface, int rate, int threads, Timed timed) {
   const PatchSet& set = set_named(surface);
   const double tolerance = tolerance_for(set, rate);
-  CertifiedTessellation plan = plan_for(set, tolerance);
+  Tessellation plan = plan_for(set, tolerance);
   Output out(plan.capacity());
   const double bytes = timed == Timed::run || timed == Timed::mesh ? out.bytes() : 0;
   const LimitsAround around({}, out.bytes());
@@ -74,7 +74,7 @@ void certify(benchmark::State& state, const char* surface, int rate, int threads
       return {};
     }
     if (timed != Timed::run) {
-      Result<CertifiedTessellation> made = CertifiedTessellation::make(set, {.tolerance = tolerance});
+      Result<Tessellation> made = Tessellation::make(set, {.tolerance = tolerance});
       if (!made) return made.status();
       plan = std::move(*made);
     }

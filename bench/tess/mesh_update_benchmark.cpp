@@ -1,6 +1,6 @@
-// Certified meshes of animated patches: control points in, positions and normals of the touched patches out:
-// update.mesh.SHARE, and with update.mesh+bounds their new bounds. Each case checks what it timed against a new mesh.
-// The limit is the time that the stores of the touched vertices take.
+// Meshes of animated patches that keep a tolerance: control points in, positions, normals and new bounds of the touched
+// patches out: update.mesh+bounds.SHARE. Each case checks what it timed against a new mesh. The limit is the time that
+// the stores of the touched vertices take.
 
 #include <benchmark/benchmark.h>
 
@@ -22,17 +22,11 @@ constexpr int rows = 100, columns = 100, rate = 8;
 
 struct Case {
   std::size_t step;  ///< every step-th patch is touched
-  bool bounds;
   int threads;
 
   CaseName name() const {
     const std::string share = step == 1 ? "all" : "one_in_" + std::to_string(step);
-    return {std::string("update.mesh") + (bounds ? "+bounds." : ".") + share,
-            "bicubic10000",
-            "3",
-            "rate" + std::to_string(rate),
-            "-",
-            threads};
+    return {"update.mesh+bounds." + share, "bicubic10000", "3", "rate" + std::to_string(rate), "-", threads};
   }
 };
 
@@ -67,7 +61,7 @@ struct Animation {
 void run(benchmark::State& state, const Case& c) {
   const std::vector<BezierPatch> patches = test::wavy_field(rows, columns);
   PatchSet set = test::value_of(PatchSet::make(patches));
-  CertifiedTessellation plan = plan_for(set, tolerance_for(set, rate));
+  Tessellation plan = plan_for(set, tolerance_for(set, rate));
   const MeshCapacity size = plan.capacity();
   Mesh mesh = test::value_of(plan.allocate());
   std::vector<std::uint8_t> is_touched(size.vertices, 0);
@@ -78,19 +72,17 @@ void run(benchmark::State& state, const Case& c) {
   Vertices vertices(size.vertices);
   std::copy(mesh.positions.begin(), mesh.positions.end(), vertices.positions.begin());
   std::copy(mesh.normals.begin(), mesh.normals.end(), vertices.normals.begin());
-  MeshUpdate update = test::value_of(MeshUpdate::make(set, std::move(plan)));
   const Animation animation(c, patches);
   const Work work{.bytes_written = 6 * sizeof(float) * touched};
   const LimitsAround around({}, work.bytes_written);
   std::size_t turn = 0;
   const auto best = time_calls(state, c.threads, [&] {
-    const Status status = update.run(set, animation.edits(turn++), vertices.views());
-    return status.ok() && c.bounds ? update.restate(set) : status;
+    const auto change = plan.update(set, animation.edits(turn++), vertices.views());
+    return change && change->topology ? Status(StatusCode::internal, "the topology has changed") : change.status();
   });
   const auto limits = around.best(state);
   if (!best || !limits) return;
-  mesh = test::value_of(update.plan().allocate());
-  if (!update.plan().run(set, mesh.views()).ok() ||
+  if (!plan.run(set, mesh.views()).ok() ||
       !std::equal(mesh.positions.begin(), mesh.positions.end(), vertices.positions.begin()) ||
       !std::equal(mesh.normals.begin(), mesh.normals.end(), vertices.normals.begin()))
     return state.SkipWithError("the timed values differ from a new mesh's");
@@ -100,15 +92,13 @@ void run(benchmark::State& state, const Case& c) {
 }
 
 void add(const Case& c) {
-  add_case(c.name(), c.step == 1 && c.threads == 1 && !c.bounds ? Part::quick : Part::full,
+  add_case(c.name(), c.step == 1 && c.threads == 1 ? Part::quick : Part::full,
            [c](benchmark::State& state) { run(state, c); });
 }
 
 const bool registered = [] {
-  for (const bool bounds : {false, true}) {
-    for (const std::size_t step : {1, 2, 20, 500}) add({step, bounds, 1});
-    add({1, bounds, 2});
-  }
+  for (const std::size_t step : {1, 2, 20, 500, rows * columns}) add({step, 1});
+  add({1, 2});
   return true;
 }();
 

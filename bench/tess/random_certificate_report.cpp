@@ -225,7 +225,7 @@ int main(int argc, char** argv) {
                                  scale, turned));
     }
     const PatchSet set = test::value_of(PatchSet::make(patches));
-    const auto plan = CertifiedTessellation::make(
+    const auto plan = Tessellation::make(
         set, {.tolerance = std::pow(10.0, uniform(random, -2.5, -0.5)), .relative = true, .max_triangles = 300000});
     done += patches_per_set;
     for (const Kind kind : of) ++rows[kind].patches, rows[kind].failed += !plan;

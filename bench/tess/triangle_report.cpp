@@ -13,7 +13,7 @@
 #include "report_arguments.h"
 #include "support/synthetic_sets.h"
 #include "support/triangle_distance.h"
-#include "tess/mesh/certified_tessellation_impl.h"
+#include "tess/mesh/proven_mesh.h"
 #include "tessera/io.h"
 #include "tessera/tessellation.h"
 
@@ -65,8 +65,8 @@ Rates best_rates(const BezierPatch& patch, Rates known, double tolerance) {
 
 void report(const std::string& name, const PatchSet& set, double relative, bool fewest) {
   const double tolerance = relative * set.box().diagonal();
-  const auto plan = test::value_of(CertifiedTessellation::make(set, {.tolerance = tolerance, .fewest = fewest}));
-  const CertifiedPlan& inside = impl_of(plan).plan();
+  const auto plan = test::value_of(Tessellation::make(set, {.tolerance = tolerance, .fewest = fewest}));
+  const CertifiedPlan& inside = dynamic_cast<const ProvenMesh&>(impl_of(plan)).plan();
   const std::size_t step = 1 + (set.patch_count() - 1) / max_patches;
   double mesh = 0, rates = 0, best = 0;
   for (std::size_t k = 0; k < set.patch_count(); k += step) {

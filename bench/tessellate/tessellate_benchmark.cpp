@@ -42,7 +42,7 @@ bool lies_on(const PatchSet& set, const Mesh& mesh) {
 
 void tessellate(benchmark::State& state, const char* surface, int threads) {
   const PatchSet& set = set_named(surface);
-  const TessellationPlan plan = value_of(TessellationPlan::make(set, {.rate_u = rate, .rate_v = rate}));
+  const Tessellation plan = value_of(Tessellation::make(set, {.rates = UniformRates{rate, rate}}));
   Mesh mesh = value_of(plan.allocate());
   const auto bytes =
       static_cast<double>(sizeof(float) * (mesh.positions.size() + mesh.normals.size() + mesh.parameters.size()) +

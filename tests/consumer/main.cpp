@@ -9,7 +9,7 @@
 namespace {
 
 void write_and_read_mesh(const tessera::PatchSet& set) {
-  const auto plan = value_of(tessera::TessellationPlan::make(set));
+  const auto plan = value_of(tessera::Tessellation::make(set, {.rates = tessera::UniformRates{}}));
   tessera::Mesh mesh = value_of(plan.allocate());
   require(plan.run(set, mesh.views()));
   require(tessera::write_mesh(mesh, "dome.ply"));

@@ -24,7 +24,7 @@ void evaluate_grid(const tessera::PatchSet& set) {
 }
 
 void tessellate(const tessera::PatchSet& set) {
-  const auto plan = value_of(tessera::TessellationPlan::make(set, {.rate_u = 4, .rate_v = 3}));
+  const auto plan = value_of(tessera::Tessellation::make(set, {.rates = tessera::UniformRates{4, 3}}));
   tessera::Mesh mesh = value_of(plan.allocate());
   require(plan.run(set, mesh.views()));
   const tessera::MeshReport report = value_of(tessera::check(mesh));

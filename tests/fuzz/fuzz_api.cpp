@@ -175,20 +175,33 @@ class Program {
     for (const float x : memory) require(!std::isnan(x));
   }
 
-  void tessellate(const PatchSet& set) {
-    CertifiedOptions options{.tolerance = number()};
+  void tessellate(PatchSet& set) {
+    TessellationOptions options{.tolerance = number()};
     options.relative = data_.ConsumeBool();
     if (data_.ConsumeBool()) options.angle = number();
     options.weld = number();
     options.share_vertices = data_.ConsumeBool();
     options.smallest = data_.ConsumeBool();
     options.fewest = data_.ConsumeBool();
+    options.quads = data_.ConsumeBool();
+    options.spare = data_.ConsumeBool() ? 0.25 : number();
     options.max_triangles = 2000;
-    const auto plan = CertifiedTessellation::make(set, options);
+    auto plan = Tessellation::make(set, options);
     if (!sound(plan)) return;
-    Result<Mesh> mesh = data_.ConsumeBool() ? plan->allocate_quads() : plan->allocate();
+    Result<Mesh> mesh = plan->allocate();
     if (!sound(mesh) || !sound(plan->run(set, mesh->views()))) return;
-    const Result<MeshReport> report = check(*mesh);
+    require_finite(*mesh);
+    const std::vector<std::uint32_t> patch{data_.ConsumeIntegralInRange<std::uint32_t>(0, 4)};
+    const Result<MeshChange> change = plan->update(set, {patch, points(set.patch(0).points().size())}, mesh->views());
+    if (!sound(change)) return;
+    if (change->topology) {
+      mesh = plan->allocate();
+      if (!sound(mesh) || !sound(plan->run(set, mesh->views()))) return;
+    }
+    require_finite(*mesh);
+  }
+  void require_finite(const Mesh& mesh) {
+    const Result<MeshReport> report = check(mesh);
     require(report.ok() && report->non_finite_vertices == 0);
   }
 

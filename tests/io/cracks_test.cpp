@@ -65,7 +65,7 @@ TEST(Cracks, AreFoundWhereVerticesPart) {
   const Result<PatchSet> set = make_patch_set(*model);
   ASSERT_TRUE(set.ok());
   const MeetingBorders borders(*set, {});
-  const Result<CertifiedTessellation> plan = CertifiedTessellation::make(*set, {.tolerance = 0.05});
+  const Result<Tessellation> plan = Tessellation::make(*set, {.tolerance = 0.05});
   ASSERT_TRUE(plan.ok());
   Mesh mesh = plan->allocate().value();
   ASSERT_TRUE(plan->run(*set, mesh.views()).ok());

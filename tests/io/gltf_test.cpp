@@ -178,7 +178,7 @@ TEST_P(Gltf, EachSurfaceOfAModelIsAMeshWithItsOwnVertices) {
   const Result<Model> model = read_model(TESSERA_SOURCE_DIR "/tools/models/sphere_of_octants.json");
   ASSERT_TRUE(model.ok());
   const PatchSet set = test::value_of(make_patch_set(*model));
-  const TessellationPlan plan = test::value_of(TessellationPlan::make(set, {.rate_u = 5, .rate_v = 4, .isa = {}}));
+  const Tessellation plan = test::value_of(Tessellation::make(set, {.rates = UniformRates{5, 4}}));
   Mesh mesh = test::value_of(plan.allocate());
   ASSERT_TRUE(plan.run(set, mesh.views()).ok());
   mesh.parts = test::value_of(parts_by_surface(mesh, set, *model));

@@ -9,8 +9,8 @@ namespace tessera::test {
 namespace {
 
 Mesh certified_mesh(const PatchSet& set, double tolerance, bool quads) {
-  const auto plan = value_of(CertifiedTessellation::make(set, {.tolerance = tolerance}));
-  Mesh mesh = value_of(quads ? plan.allocate_quads() : plan.allocate());
+  const auto plan = value_of(Tessellation::make(set, {.tolerance = tolerance, .quads = quads}));
+  Mesh mesh = value_of(plan.allocate());
   const Status status = plan.run(set, mesh.views());
   EXPECT_TRUE(status.ok()) << status.message();
   return mesh;
@@ -55,7 +55,7 @@ TEST(MeshScene, MeetsTheSurfaceOverTrianglesAndQuads) {
 TEST(MeshScene, FollowsTheMeshAfterAnEdit) {
   const std::vector<BezierPatch> patches = Torus(6).patches(false);
   PatchSet set = set_of(patches);
-  const auto plan = value_of(CertifiedTessellation::make(set, {.tolerance = 1e-3}));
+  const auto plan = value_of(Tessellation::make(set, {.tolerance = 1e-3}));
   Mesh mesh = value_of(plan.allocate());
   ASSERT_TRUE(plan.run(set, mesh.views()).ok());
   RayScene scene = value_of(RayScene::make(set, mesh));

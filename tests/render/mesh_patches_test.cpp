@@ -48,7 +48,7 @@ Image picture(const RayScene& scene, const Box3& box, const MeshPatches* mesh, b
 
 TEST(MeshPatches, APictureOfAMeshIsThatOfItsSurface) {
   const PatchSet set = value_of(PatchSet::make(test::sphere()));
-  const CertifiedTessellation plan = value_of(CertifiedTessellation::make(set, {.tolerance = 1e-4, .relative = true}));
+  const Tessellation plan = value_of(Tessellation::make(set, {.tolerance = 1e-4, .relative = true}));
   Mesh mesh = value_of(plan.allocate());
   ASSERT_TRUE(plan.run(set, mesh.views()).ok());
   const MeshPatches patches = patches_of(mesh);

@@ -67,7 +67,6 @@ void fill_points(Table& table);
 void fill_functions(Table& table);
 void fill_updates(Table& table);
 void fill_tessellations(Table& table);
-void fill_certified(Table& table);
 void fill_meshes(Table& table);
 void fill_rays(Table& table);
 void fill_batches(Table& table);

@@ -26,8 +26,7 @@ bool same(const Mesh& a, const Mesh& b) {
 }
 
 /// The rows of a plan's run().
-template <class Plan>
-void bad_mesh_views(Table& table, const PatchSet& set, const Plan& plan) {
+void bad_mesh_views(Table& table, const PatchSet& set, const Tessellation& plan) {
   Mesh mesh = filled(value_of(plan.allocate()));
   const Mesh clean = mesh;
   const auto refused = [&](const std::string& input, StatusCode code, const MeshViews& views) {
@@ -50,15 +49,17 @@ void bad_mesh_views(Table& table, const PatchSet& set, const Plan& plan) {
        [](MeshViews& v) { v.indices = v.indices.first(v.indices.size() - 1); });
   with("patches short by one", buffer_too_small, [](MeshViews& v) { v.patch = v.patch.first(v.patch.size() - 1); });
   with("patches in the place of indices", invalid_argument, [](MeshViews& v) { v.patch = v.indices; });
+  std::vector<std::uint32_t> quads(100000);
+  with("quads of a plan without quads", invalid_argument, [&](MeshViews& v) { v.quads = quads; });
   const std::atomic<bool> cancel = true;
   table.row("a cancellation before the first task", cancelled, plan.run(set, mesh.views(), {.cancel = &cancel}));
 }
 
-void certified_options(Table& table, const PatchSet& set) {
-  const auto row = [&](const std::string& input, StatusCode code, const CertifiedOptions& options) {
-    table.row(input, code, CertifiedTessellation::make(set, options));
+void tolerance_options(Table& table, const PatchSet& set) {
+  const auto row = [&](const std::string& input, StatusCode code, const TessellationOptions& options) {
+    table.row(input, code, Tessellation::make(set, options));
   };
-  row("no tolerance of any kind", invalid_argument, {});
+  row("neither rates nor a tolerance of any kind", invalid_argument, {});
   for (const auto& [tolerance, name] :
        {std::pair{0.0, "0"}, {-1.0, "-1"}, {not_a_number, "NaN"}, {infinity, "infinity"}})
     row(std::string("a tolerance of ") + name, invalid_argument, {.tolerance = tolerance});
@@ -76,10 +77,16 @@ void certified_options(Table& table, const PatchSet& set) {
   row("a crease angle of 4", invalid_argument, {.tolerance = 0.01, .crease_angle = 4.0});
   row("a crease angle of NaN", invalid_argument, {.tolerance = 0.01, .crease_angle = not_a_number});
   row("the smallest tolerance for no triangle", invalid_argument, {.max_triangles = 0, .smallest = true});
+  row("the smallest tolerance for less than one cell a patch", invalid_argument,
+      {.max_triangles = 2 * set.patch_count() - 1, .smallest = true});
+  row("a tolerance and less than one cell a patch", invalid_argument,
+      {.tolerance = 100.0, .max_triangles = 2 * set.patch_count() - 1});
+  row("a spare of -1", invalid_argument, {.tolerance = 0.01, .spare = -1});
+  row("a spare of NaN", invalid_argument, {.tolerance = 0.01, .spare = not_a_number});
   row("an unknown instruction set", isa_unavailable, {.tolerance = 0.01, .isa = Isa{9}});
   const std::atomic<bool> cancel = true;
   table.row("a cancellation before the first task", cancelled,
-            CertifiedTessellation::make(set, {.tolerance = 0.01}, {.cancel = &cancel}));
+            Tessellation::make(set, {.tolerance = 0.01}, {.cancel = &cancel}));
 }
 
 void pixel_options(Table& table, const PatchSet& set) {
@@ -87,7 +94,7 @@ void pixel_options(Table& table, const PatchSet& set) {
   const auto row = [&](const std::string& input, double pixels, auto change) {
     View view = sound;
     change(view);
-    table.row(input, invalid_argument, CertifiedTessellation::make(set, {.pixels = PixelTolerance{pixels, view}}));
+    table.row(input, invalid_argument, Tessellation::make(set, {.pixels = PixelTolerance{pixels, view}}));
   };
   const auto nothing = [](View&) {};
   row("0 pixels", 0, nothing);
@@ -106,15 +113,14 @@ void pixel_options(Table& table, const PatchSet& set) {
   });
   View inside = sound;
   inside.eye = {1, 1, 0.5};
-  const auto plan = CertifiedTessellation::make(set, {.pixels = PixelTolerance{4, inside}});
+  const auto plan = Tessellation::make(set, {.pixels = PixelTolerance{4, inside}});
   table.gives("a camera inside the model", "a plan", plan.ok());
 }
 
-template <class Make>
-void other_sets(Table& table, Make plan_for) {
+void other_sets(Table& table, const TessellationOptions& options) {
   const std::vector<BezierPatch> patches = wavy_field(1, 2);
   PatchSet set = set_of(patches);
-  const auto plan = plan_for(set);
+  const Tessellation plan = value_of(Tessellation::make(set, options));
   Mesh mesh = filled(value_of(plan.allocate()));
   const Mesh clean = mesh;
   const PatchSet longer = set_of(wavy_field(1, 3)),
@@ -129,66 +135,52 @@ void other_sets(Table& table, Make plan_for) {
             [&] { return same(mesh, clean); });
 }
 
+/// The rows of run(), of meshes from rates and from a tolerance.
+void runs(Table& table, const PatchSet& set) {
+  for (TessellationOptions options :
+       {TessellationOptions{.rates = UniformRates{3, 2}}, TessellationOptions{.tolerance = 0.01}}) {
+    table.of(options.rates ? "Tessellation::run(set, views, execution), with rates"
+                           : "Tessellation::run(set, views, execution), with a tolerance");
+    bad_mesh_views(table, set, value_of(Tessellation::make(set, options)));
+    other_sets(table, options);
+    options.quads = true;
+    const Tessellation plan = value_of(Tessellation::make(set, options));
+    Mesh mesh = value_of(plan.allocate());
+    MeshViews views = mesh.views();
+    views.quads = views.quads.first(views.quads.size() - 1);
+    table.row("quads short by one index", buffer_too_small, plan.run(set, views));
+    views.quads = {};
+    table.row("no quads for a plan of quads", buffer_too_small, plan.run(set, views));
+  }
+  const auto shared = value_of(Tessellation::make(set, {.tolerance = 0.01, .share_vertices = true}));
+  Mesh mesh = value_of(value_of(Tessellation::make(set, {.tolerance = 0.01})).allocate());
+  table.row("normals of vertices that are shared everywhere", invalid_argument, shared.run(set, mesh.views()));
+}
+
 }  // namespace
 
 void fill_tessellations(Table& table) {
-  const PatchSet set = set_of(wavy_field(1, 2));
-  table.of("TessellationPlan::make(set, options)");
+  const PatchSet set = set_of(wavy_field(2, 2));
+  table.of("Tessellation::make(set, options, execution)");
   const auto row = [&](const std::string& input, StatusCode code, const TessellationOptions& options) {
-    table.row(input, code, TessellationPlan::make(set, options));
+    table.row(input, code, Tessellation::make(set, options));
   };
-  row("rate 0", invalid_argument, {.rate_u = 0});
-  row("rate -2147483648", invalid_argument, {.rate_v = std::numeric_limits<int>::min()});
-  row("rate 4097", invalid_argument, {.rate_u = 4097});
-  row("an unknown instruction set", isa_unavailable, {.isa = Isa{9}});
+  row("rate 0", invalid_argument, {.rates = UniformRates{.u = 0}});
+  row("rate -2147483648", invalid_argument, {.rates = UniformRates{.v = std::numeric_limits<int>::min()}});
+  row("rate 4097", invalid_argument, {.rates = UniformRates{.u = 4097}});
+  row("rates and a tolerance", invalid_argument, {.rates = UniformRates{}, .tolerance = 0.01});
+  row("rates and an angle", invalid_argument, {.rates = UniformRates{}, .angle = 0.1});
+  row("rates and the smallest tolerance", invalid_argument, {.rates = UniformRates{}, .smallest = true});
+  row("rates and an unknown instruction set", isa_unavailable, {.rates = UniformRates{}, .isa = Isa{9}});
   const std::vector<BezierPatch> many(256, *BezierPatch::polynomial(1, 1, std::vector<Vec3>(4)));
   table.row("more vertices than 32 bits count", invalid_argument,
-            TessellationPlan::make(set_of(many), {.rate_u = 4096, .rate_v = 4096}));
-  table.row("a set without float blocks", unsupported,
-            TessellationPlan::make(
-                set_of(wavy_field(1, 1), {.blocks = {.float_bernstein = false, .double_bernstein = true}})));
-  const auto plan_for = [](const PatchSet& of) {
-    return value_of(TessellationPlan::make(of, {.rate_u = 3, .rate_v = 2}));
-  };
-  table.of("TessellationPlan::run(set, views, execution)");
-  const TessellationPlan plan = plan_for(set);
-  bad_mesh_views(table, set, plan);
-  Mesh mesh = value_of(plan.allocate());
-  std::vector<std::uint32_t> quads(4 * plan.quad_capacity().quads - 1);
-  MeshViews views = mesh.views();
-  views.quads = quads;
-  table.row("quads short by one index", buffer_too_small, plan.run(set, views));
-  other_sets(table, plan_for);
-}
-
-void fill_certified(Table& table) {
-  const PatchSet set = set_of(wavy_field(2, 2));
-  table.of("CertifiedTessellation::make(set, options, execution)");
-  certified_options(table, set);
+            Tessellation::make(set_of(many), {.rates = UniformRates{4096, 4096}}));
+  tolerance_options(table, set);
   pixel_options(table, set);
-  table.row("a set without float blocks", unsupported,
-            CertifiedTessellation::make(
-                set_of(wavy_field(1, 1), {.blocks = {.float_bernstein = false, .double_bernstein = true}}),
-                {.tolerance = 1.0}));
-  table.of("CertifiedTessellation::run(set, views, execution)");
-  const auto plan_for = [](const PatchSet& of) {
-    return value_of(CertifiedTessellation::make(of, {.tolerance = 0.01}));
-  };
-  const CertifiedTessellation plan = plan_for(set);
-  bad_mesh_views(table, set, plan);
-  Mesh mesh = value_of(plan.allocate());
-  std::vector<std::uint32_t> quads(4 * plan.quad_capacity().quads - 1);
-  MeshViews views = mesh.views();
-  views.quads = quads;
-  table.row("quads short by one index", buffer_too_small, plan.run(set, views));
-  other_sets(table, plan_for);
-  const auto shared = value_of(CertifiedTessellation::make(set, {.tolerance = 0.01, .share_vertices = true}));
-  mesh = value_of(plan.allocate());
-  table.row("normals of vertices that are shared everywhere", invalid_argument, shared.run(set, mesh.views()));
-  table.of("CertifiedTessellation::retessellate(set, spare, execution)");
-  table.row("a spare of -1", invalid_argument, plan.retessellate(set, -1));
-  table.row("a spare of NaN", invalid_argument, plan.retessellate(set, not_a_number));
-  table.row("a set of more patches", stale, plan.retessellate(set_of(wavy_field(1, 3))));
+  const PatchSet doubles = set_of(wavy_field(1, 1), {.blocks = {.float_bernstein = false, .double_bernstein = true}});
+  table.row("rates of a set without float blocks", unsupported, Tessellation::make(doubles, {.rates = UniformRates{}}));
+  table.row("a set without float blocks", unsupported, Tessellation::make(doubles, {.tolerance = 1.0}));
+  runs(table, set);
 }
 
 void fill_meshes(Table& table) {

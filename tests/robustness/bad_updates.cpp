@@ -8,6 +8,7 @@
 #include "support/grids.h"
 #include "tessera/coons_patch.h"
 #include "tessera/evaluate.h"
+#include "tessera/model.h"
 #include "tessera/parametric_surface.h"
 #include "tessera/tessellation.h"
 
@@ -151,45 +152,114 @@ void grid_updates(Table& table) {
             update.run(other, others, {edited.patch, edited.points}, more.views()));
 }
 
-void mesh_updates(Table& table) {
+/// The rows of a plan's update(), of a mesh from rates or from a tolerance.
+void mesh_updates(Table& table, const TessellationOptions& options) {
   Edited edited;
-  const auto plan_for = [](const PatchSet& set) {
-    return value_of(CertifiedTessellation::make(set, {.tolerance = 0.01}));
-  };
-  table.of("MeshUpdate::make(set, plan)");
-  const PatchSet other = set_of(wavy_field(3, 3));
-  table.row("a plan for another number of patches", stale, MeshUpdate::make(other, plan_for(edited.set)));
-  CertifiedTessellation early = plan_for(edited.set);
-  (void)edited.set.set_control_points(1, edited.points);
-  table.row("a plan for another revision", stale, MeshUpdate::make(edited.set, std::move(early)));
-
-  table.of("MeshUpdate::run(set, edits, views, execution)");
-  MeshUpdate update = value_of(MeshUpdate::make(edited.set, plan_for(edited.set)));
-  Mesh mesh = value_of(update.plan().allocate());
+  table.of(options.rates ? "Tessellation::update(set, edits, views, execution), with rates"
+                         : "Tessellation::update(set, edits, views, execution), with a tolerance");
+  Tessellation plan = value_of(Tessellation::make(edited.set, options));
+  Mesh mesh = value_of(plan.allocate());
   const std::vector<float> clean = mesh.positions;
   const auto untouched = [&] { return mesh.positions == clean; };
+  const auto update = [&](PatchSet& set, const MeshViews& views) {
+    return plan.update(set, {edited.patch, edited.points}, views);
+  };
   bad_edits(
-      table, edited,
-      [&](Edited& e) {
-        return update.run(e.set, {e.patch, e.points}, mesh.views());
-      },
-      untouched);
+      table, edited, [&](Edited& e) { return update(e.set, mesh.views()).status(); }, untouched);
   const auto refused = [&](const std::string& input, StatusCode code, const MeshViews& views) {
-    table.row(input, code, update.run(edited.set, {edited.patch, edited.points}, views), untouched);
+    const std::uint64_t before = edited.set.revision();
+    table.row(input, code, update(edited.set, views).status(), [&] { return untouched() && !edited.changed(before); });
   };
   refused("no positions", invalid_argument, {});
   bad_view(
       "normals", mesh.views(), mesh.vertex_count(), [](auto& views) -> auto& { return views.normal; }, refused);
-  const std::vector<Vec3> pole(16, Vec3{1, 2, 3});
-  table.row("points that collapse a border", stale, update.run(edited.set, {edited.patch, pole}, mesh.views()),
-            untouched);
-  (void)edited.set.set_control_points(0, edited.patches[0].points());
-  refused("a set that was edited by other means", stale, mesh.views());
-  table.of("MeshUpdate::restate(set), retessellate(set, spare)");
-  table.row("a set that was edited by other means", stale, update.restate(edited.set));
-  table.row("a spare of -1", invalid_argument, update.retessellate(edited.set, -1));
-  table.row("a spare of NaN", invalid_argument, update.retessellate(edited.set, not_a_number));
-  table.row("another number of patches", stale, update.retessellate(other));
+  PatchSet other = set_of(wavy_field(3, 3));
+  table.row("another number of patches", stale, update(other, mesh.views()).status(), untouched);
+  (void)value_of(plan.update(edited.set, {edited.patch, edited.points}, mesh.views()));
+  PatchSet earlier = set_of(edited.patches);
+  const std::vector<float> moved = mesh.positions;
+  table.row("another set, at an earlier revision", stale, update(earlier, mesh.views()).status(),
+            [&] { return mesh.positions == moved; });
+  std::vector<Vec3> pole = edited.points;
+  for (std::size_t j = 1; j < 4; ++j) pole[j] = pole[0];
+  const auto collapsed = plan.update(edited.set, {edited.patch, pole}, mesh.views());
+  table.gives("points that collapse a border", "another topology, nothing written",
+              collapsed.ok() && collapsed->topology && mesh.positions == moved);
+}
+
+/// The rows of a mesh whose topology has changed.
+void changed_meshes(Table& table) {
+  table.of("Tessellation::update(set, edits, views, execution), after another topology");
+  Edited edited;
+  TessellationOptions options{.tolerance = 0.01};
+  Tessellation plan = value_of(Tessellation::make(edited.set, options));
+  Mesh mesh = value_of(plan.allocate());
+  ASSERT_TRUE(plan.run(edited.set, mesh.views()).ok());
+  const auto times = [&](double by) {
+    std::vector<Vec3> points = edited.points;
+    for (Vec3& p : points) p.z *= by;
+    return points;
+  };
+  const auto row = [&](const std::string& input, StatusCode code, double by) {
+    const std::vector<float> clean = mesh.positions;
+    const std::uint64_t before = edited.set.revision();
+    table.row(input, code, plan.update(edited.set, {edited.patch, times(by)}, mesh.views()).status(),
+              [&] { return mesh.positions == clean && !edited.changed(before); });
+  };
+  const auto change_to = [&](double by) {
+    EXPECT_TRUE(value_of(plan.update(edited.set, {edited.patch, times(by)}, mesh.views())).topology);
+  };
+  change_to(9);
+  row("views of the old size, which is smaller", buffer_too_small, 8);
+  table.row("a run into views of the old size", buffer_too_small, plan.run(edited.set, mesh.views()));
+  mesh = value_of(plan.allocate());
+  ASSERT_TRUE(plan.run(edited.set, mesh.views()).ok());
+  change_to(0.1);
+  row("views of the old size, which is larger", count_mismatch, 0.2);
+  options.max_triangles = value_of(Tessellation::make(edited.set, options)).capacity().triangles;
+  plan = value_of(Tessellation::make(edited.set, options));
+  mesh = value_of(plan.allocate());
+  const std::vector<float> clean = mesh.positions;
+  table.row("points that take more triangles than the limit", invalid_argument,
+            plan.update(edited.set, {edited.patch, times(9)}, mesh.views()).status(),
+            [&] { return mesh.positions == clean; });
+}
+
+/// The rows of edits of a spline surface.
+void spline_updates(Table& table) {
+  table.of("Tessellation::update(set, surface edits, views, execution)");
+  const std::vector<double> knots{0, 0, 0, 0, 1, 2, 2, 2, 2};
+  std::vector<Vec3> points;
+  for (int k = 0; k < 25; ++k) points.push_back({double(k / 5), double(k % 5), double(k % 3)});
+  const BSplineSurface spline = value_of(BSplineSurface::polynomial(3, knots, 3, knots, std::span(points)));
+  PatchSet set = value_of(make_patch_set(value_of(to_bezier(spline))));
+  Tessellation plan = value_of(Tessellation::make(set, {.tolerance = 0.01}));
+  Mesh mesh = value_of(plan.allocate());
+  const Mesh clean = mesh;
+  const auto row = [&](const std::string& input, StatusCode code, auto change) {
+    std::vector<SurfaceEdits> edits;
+    edits.reserve(2);
+    edits.push_back({.spline = spline, .points = points});
+    change(edits);
+    table.row(input, code, plan.update(set, edits, mesh.views()).status(),
+              [&] { return mesh.positions == clean.positions && set.revision() == 0; });
+  };
+  using Edits = std::vector<SurfaceEdits>;
+  const std::vector<std::uint32_t> beyond{25};
+  row("a control point too few", count_mismatch, [&](Edits& e) { e[0].points = std::span(points).first(24); });
+  row("a control point beyond the last", invalid_argument, [&](Edits& e) { e[0].moved = beyond; });
+  row("a surface that the set has not", invalid_argument, [](Edits& e) { e[0].surface = 1; });
+  row("a surface named twice", invalid_argument, [](Edits& e) { e.push_back(e[0]); });
+  const BSplineSurface other = value_of(BSplineSurface::polynomial(3, std::vector<double>{0, 0, 0, 0, 1, 1, 1, 1}, 3,
+                                                                   knots, std::span(points).first(20)));
+  row("a spline of other knots", invalid_argument, [&](Edits& e) {
+    e[0].spline = other;
+    e[0].points = std::span(points).first(20);
+  });
+  std::vector<Vec3> bad = points;
+  bad[12].x = not_a_number;
+  row("NaN in a control point", non_finite, [&](Edits& e) { e[0].points = bad; });
+  row("a placement of infinity", non_finite, [](Edits& e) { e[0].placement.translation.z = infinity; });
 }
 
 }  // namespace
@@ -201,7 +271,11 @@ void fill_functions(Table& table) {
 
 void fill_updates(Table& table) {
   grid_updates(table);
-  mesh_updates(table);
+  for (const TessellationOptions& options :
+       {TessellationOptions{.rates = UniformRates{3, 2}}, TessellationOptions{.tolerance = 0.01}})
+    mesh_updates(table, options);
+  changed_meshes(table);
+  spline_updates(table);
 }
 
 }  // namespace tessera::test

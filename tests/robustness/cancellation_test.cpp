@@ -104,10 +104,8 @@ void check_meshes(const PatchSet& set, const Plan& plan) {
                            });
 }
 
-TEST_F(Cancelled, UniformMeshes) { check_meshes(set_, value_of(TessellationPlan::make(set_))); }
-TEST_F(Cancelled, CertifiedMeshes) {
-  check_meshes(set_, value_of(CertifiedTessellation::make(set_, {.tolerance = 2e-3})));
-}
+TEST_F(Cancelled, UniformMeshes) { check_meshes(set_, value_of(Tessellation::make(set_, {.rates = UniformRates{}}))); }
+TEST_F(Cancelled, CertifiedMeshes) { check_meshes(set_, value_of(Tessellation::make(set_, {.tolerance = 2e-3}))); }
 
 /// Patches have their new points and their new vertices, or neither.
 TEST_F(Cancelled, Updates) {

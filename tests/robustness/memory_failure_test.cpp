@@ -194,43 +194,44 @@ TEST(MemoryFails, WhereSetsAreEvaluated) {
 TEST(MemoryFails, WhereMeshesAreMade) {
   const std::vector<BezierPatch> patches = various_patches(2);
   PatchSet set = set_of(various_patches(3));
-  survives("TessellationPlan::make", [&] { return TessellationPlan::make(set); });
-  const TessellationPlan uniform = value_of(TessellationPlan::make(set));
-  survives("TessellationPlan::allocate", [&] { return uniform.allocate(); });
+  survives("Tessellation::make", [&] { return Tessellation::make(set, {.rates = UniformRates{}}); });
+  const Tessellation uniform = value_of(Tessellation::make(set, {.rates = UniformRates{}}));
+  survives("Tessellation::allocate", [&] { return uniform.allocate(); });
   Mesh mesh = value_of(uniform.allocate());
-  survives("TessellationPlan::run", [&] { return uniform.run(set, mesh.views()); });
+  survives("Tessellation::run", [&] { return uniform.run(set, mesh.views()); });
   survives("check(mesh)", [&] { return check(mesh); });
-  CertifiedOptions options{.tolerance = 0.01};
-  survives("CertifiedTessellation::make", [&] { return CertifiedTessellation::make(set, options); });
+  TessellationOptions options{.tolerance = 0.01};
+  survives("Tessellation::make", [&] { return Tessellation::make(set, options); });
   options.weld = 1e-4;
   options.crease_angle = 0.1;
   options.share_vertices = true;
   options.angle = 0.3;
   options.fewest = true;
-  survives("CertifiedTessellation::make, welded", [&] { return CertifiedTessellation::make(set, options); });
-  const auto plan = value_of(CertifiedTessellation::make(set, options));
+  survives("Tessellation::make, welded", [&] { return Tessellation::make(set, options); });
+  const auto plan = value_of(Tessellation::make(set, options));
   Mesh certified = value_of(plan.allocate());
-  survives("CertifiedTessellation::run", [&] { return plan.run(set, certified.views()); });
-  survives("CertifiedTessellation::allocate_quads", [&] { return plan.allocate_quads(); });
-  Mesh quads = value_of(plan.allocate_quads());
-  survives("CertifiedTessellation::run, quads", [&] { return plan.run(set, quads.views()); });
+  survives("Tessellation::run", [&] { return plan.run(set, certified.views()); });
+  options.quads = true;
+  const auto of_quads = value_of(Tessellation::make(set, options));
+  Mesh quads = value_of(of_quads.allocate());
+  survives("Tessellation::run, quads", [&] { return of_quads.run(set, quads.views()); });
   survives("split_quads", [&] { return split_quads(quads); });
-  survives("retessellate", [&] { return plan.retessellate(set); });
   const std::vector<Vec3> net(set.patch(2).points().begin(), set.patch(2).points().end());
   const std::vector<std::uint32_t> edited{2};
-  survives("MeshUpdate, all of it", [&]() -> Status {
-    Result<PatchSet> own = PatchSet::make(patches);
-    if (!own) return own.status();
-    auto made = CertifiedTessellation::make(*own, {.tolerance = 0.02});
-    if (!made) return made.status();
-    Result<MeshUpdate> update = MeshUpdate::make(*own, *std::move(made));
-    if (!update) return update.status();
-    Result<Mesh> own_mesh = update->plan().allocate();
-    if (!own_mesh) return own_mesh.status();
-    if (Status status = update->run(*own, {edited, net}, own_mesh->views()); !status.ok()) return status;
-    if (Status status = update->restate(*own); !status.ok()) return status;
-    return update->retessellate(*own).status();
-  });
+  std::vector<Vec3> bulging = net;
+  for (std::size_t k = 5; k < 11; ++k) bulging[k].z += 3;
+  for (const bool other_topology : {false, true})
+    for (const TessellationOptions& how :
+         {TessellationOptions{.rates = UniformRates{}}, TessellationOptions{.tolerance = 0.02}, options})
+      survives("Tessellation::update", [&]() -> Status {
+        Result<PatchSet> own = PatchSet::make(patches);
+        if (!own) return own.status();
+        auto own_plan = Tessellation::make(*own, how);
+        if (!own_plan) return own_plan.status();
+        Result<Mesh> own_mesh = own_plan->allocate();
+        if (!own_mesh) return own_mesh.status();
+        return own_plan->update(*own, {edited, other_topology ? bulging : net}, own_mesh->views()).status();
+      });
 }
 
 #ifdef TESSERA_HAS_RAY
@@ -279,7 +280,7 @@ TEST(MemoryFails, WhereFilesAreReadAndWritten) {
     survives("read_mesh " + path.filename().string(), [&] { return read_mesh(path); });
   const ScratchFolder folder;
   const PatchSet set = set_of(various_patches(1));
-  const TessellationPlan plan = value_of(TessellationPlan::make(set, {.rate_u = 2, .rate_v = 2}));
+  const Tessellation plan = value_of(Tessellation::make(set, {.rates = UniformRates{2, 2}}));
   Mesh mesh = value_of(plan.allocate());
   ASSERT_TRUE(plan.run(set, mesh.views()).ok());
   for (const char* const name : {"m.obj", "m.ply", "m.stl", "m.glb", "m.gltf"}) {

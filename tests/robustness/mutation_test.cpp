@@ -121,10 +121,9 @@ class Case {
     for_each_value_quantity([&](const auto& output) { expect_numbers(out.values[k++], output.name); });
   }
 
-  template <class Plan>
-  void write(const PatchSet& set, const Result<Plan>& plan) {
+  void write(const PatchSet& set, const Result<Tessellation>& plan) {
     if (!sound(plan)) return;
-    Result<Mesh> mesh = m_.chance(0.2) ? plan->allocate_quads() : plan->allocate();
+    Result<Mesh> mesh = plan->allocate();
     if (!sound(mesh) || !sound(plan->run(set, mesh->views()))) return;
     expect_numbers(mesh->positions, "a mesh's positions");
     expect_numbers(mesh->normals, "a mesh's normals");
@@ -134,9 +133,9 @@ class Case {
   }
   void tessellate(const PatchSet& set) {
     const int rate = m_.integer(2);
-    if (rate <= 16) write(set, TessellationPlan::make(set, {.rate_u = rate, .rate_v = m_.chance(0.5) ? 1 : rate}));
+    if (rate <= 16) write(set, Tessellation::make(set, {.rates = UniformRates{rate, m_.chance(0.5) ? 1 : rate}}));
     const double size = set.box().diagonal();
-    CertifiedOptions how{.tolerance = m_.number(0.05 * size), .weld = m_.number(m_.chance(0.5) ? 0.0 : 1e-6 * size)};
+    TessellationOptions how{.tolerance = m_.number(0.05 * size), .weld = m_.number(m_.chance(0.5) ? 0.0 : 1e-6 * size)};
     how.max_triangles = 5000;
     if (m_.chance(0.2)) how.angle = m_.number(0.5);
     if (m_.chance(0.1)) how.smallest = true;
@@ -146,7 +145,8 @@ class Case {
     how.share_vertices = m_.chance(0.2);
     if (m_.chance(0.2)) how.crease_angle = m_.number(0.1);
     how.relative = m_.chance(0.1);
-    write(set, CertifiedTessellation::make(set, how));
+    how.quads = m_.chance(0.2);
+    write(set, Tessellation::make(set, how));
   }
 
 #ifdef TESSERA_HAS_RAY

@@ -60,7 +60,7 @@ TEST(Scales, PowersOfTwoGiveTheSameBits) {
     for (std::size_t k = 0; k < one.values[3].size(); ++k)
       ASSERT_NEAR(one.values[3][k], other.values[3][k], 1e-5) << power;
     const auto triangles = [&](const PatchSet& of, double tolerance) {
-      return value_of(CertifiedTessellation::make(of, {.tolerance = tolerance})).capacity().triangles;
+      return value_of(Tessellation::make(of, {.tolerance = tolerance})).capacity().triangles;
     };
     EXPECT_EQ(triangles(set_of(model), 1e-3), triangles(set, 1e-3 * scale));
   }
@@ -98,7 +98,7 @@ TEST(Subnormals, AreNumbers) {
     const AllBuffers<float> out = grid_of(*made);
     for (const auto& values : out.values)
       for (const float x : values) ASSERT_TRUE(std::isfinite(x)) << scale;
-    const auto plan = CertifiedTessellation::make(*made, {.tolerance = 0.01, .relative = true});
+    const auto plan = Tessellation::make(*made, {.tolerance = 0.01, .relative = true});
     EXPECT_TRUE(plan.ok() || !plan.status().message().empty());
 #ifdef TESSERA_HAS_RAY
     for (const RayMode mode : {RayMode::exact, RayMode::grid}) {
@@ -151,7 +151,7 @@ class FloatingPointModes : public ::testing::TestWithParam<Setting> {};
 TEST_P(FloatingPointModes, AreLeftAsFoundAndResultsAreDefined) {
   const PatchSet set = set_of(various_patches(4), with_points());
   const AllBuffers<float> expected = grid_of(set);
-  const auto plan = value_of(CertifiedTessellation::make(set, {.tolerance = 1e-2}));
+  const auto plan = value_of(Tessellation::make(set, {.tolerance = 1e-2}));
   const WithModes modes(GetParam().rounding, GetParam().bits);
   const Modes before;
   const AllBuffers<float> out = grid_of(set);
@@ -161,7 +161,7 @@ TEST_P(FloatingPointModes, AreLeftAsFoundAndResultsAreDefined) {
   const Bits bits = everything(3);
   EXPECT_GT(bits.size(), 100000u);
   EXPECT_EQ(Modes(), before);
-  const auto again = value_of(CertifiedTessellation::make(set, {.tolerance = 1e-2}));
+  const auto again = value_of(Tessellation::make(set, {.tolerance = 1e-2}));
   EXPECT_LE(again.bound(), 1e-2);
   EXPECT_EQ(Modes(), before);
 #ifdef TESSERA_HAS_RAY

@@ -61,22 +61,28 @@ TEST_F(PeakMemory, Evaluation) {
 }
 
 TEST_F(PeakMemory, Meshes) {
-  const auto uniform = [&] { return value_of(TessellationPlan::make(set_)); };
+  const auto uniform = [&] { return value_of(Tessellation::make(set_, {.rates = UniformRates{}})); };
   expect_at_most(
-      "TessellationPlan::make", 8, count_, [&] { return uniform(); }, 24);
-  const TessellationPlan plan = uniform();
+      "Tessellation::make", 8, count_, [&] { return uniform(); }, 24);
+  const Tessellation plan = uniform();
   Mesh mesh = value_of(plan.allocate());
-  expect_at_most("TessellationPlan::run", 0, 1, [&] { return plan.run(set_, mesh.views()); });
+  expect_at_most("Tessellation::run", 0, 1, [&] { return plan.run(set_, mesh.views()); });
   expect_at_most("check(mesh)", 40, mesh.triangle_count(), [&] { return value_of(check(mesh)); });
-  const auto certified = value_of(CertifiedTessellation::make(set_, {.tolerance = 0.01}));
+  const auto certified = [&] { return value_of(Tessellation::make(set_, {.tolerance = 0.01})); };
   expect_at_most(
-      "retessellate", 1024, count_, [&] { return value_of(certified.retessellate(set_)); }, 256);
+      "Tessellation::make, from a tolerance", 1024, count_, [&] { return certified(); }, 256);
+  Mesh fine = value_of(certified().allocate());
+  const std::vector<Vec3> points(set_.patch(7).points().begin(), set_.patch(7).points().end());
+  const std::uint32_t patch = 7;
   expect_at_most(
-      "MeshUpdate::make", 1024, count_,
+      "Tessellation::update", 1024, count_,
       [&] {
-        return value_of(MeshUpdate::make(set_, value_of(CertifiedTessellation::make(set_, {.tolerance = 0.01}))));
+        PatchSet set = set_of(patches_);
+        Tessellation followed = certified();
+        EXPECT_FALSE(value_of(followed.update(set_, {std::span(&patch, 1), points}, fine.views())).topology);
+        return followed;
       },
-      256);
+      512);
 }
 
 #ifdef TESSERA_HAS_RAY

@@ -47,41 +47,45 @@ TEST_F(Progress, Evaluation) {
 }
 
 TEST_F(Progress, Meshes) {
-  const TessellationPlan uniform = value_of(TessellationPlan::make(set_));
+  const Tessellation uniform = value_of(Tessellation::make(set_, {.rates = UniformRates{}}));
   Mesh mesh = value_of(uniform.allocate());
   rises_once("uniform mesh", [&](const Execution& execution) { return uniform.run(set_, mesh.views(), execution); });
-  const auto plans = [&](const char* name, const CertifiedOptions& options) {
-    rises_once(name, [&](const Execution& execution) {
-      return CertifiedTessellation::make(set_, options, execution).status();
-    });
+  const auto plans = [&](const char* name, const TessellationOptions& options) {
+    rises_once(name, [&](const Execution& execution) { return Tessellation::make(set_, options, execution).status(); });
   };
   plans("plan by length", {.tolerance = 2e-3});
   plans("plan by angle", {.angle = 0.3});
   plans("plan by both", {.tolerance = 2e-3, .angle = 0.3});
   plans("fewest", {.tolerance = 2e-3, .fewest = true});
   plans("finest for a budget", {.max_triangles = 100000, .smallest = true});
-  CertifiedTessellation certified = value_of(CertifiedTessellation::make(set_, {.tolerance = 2e-3}));
+  Tessellation certified = value_of(Tessellation::make(set_, {.tolerance = 2e-3}));
   Mesh fine = value_of(certified.allocate());
   rises_once("mesh", [&](const Execution& execution) { return certified.run(set_, fine.views(), execution); });
-  rises_once("plan anew",
-             [&](const Execution& execution) { return certified.retessellate(set_, 0.5, execution).status(); });
 }
 
 TEST_F(Progress, Updates) {
-  CertifiedTessellation plan = value_of(CertifiedTessellation::make(set_, {.tolerance = 2e-3}));
+  Tessellation plan = value_of(Tessellation::make(set_, {.tolerance = 2e-3}));
   Mesh mesh = value_of(plan.allocate());
   ASSERT_TRUE(plan.run(set_, mesh.views()).ok());
-  MeshUpdate update = value_of(MeshUpdate::make(set_, std::move(plan)));
   std::vector<std::uint32_t> patches(set_.patch_count());
   std::iota(patches.begin(), patches.end(), 0u);
   std::vector<Vec3> points;
   for (const std::uint32_t k : patches)
     for (const Vec3& p : set_.patch(k).points()) points.push_back(p + Vec3{0, 0, 1e-4});
-  rises_once("mesh update", [&](const Execution& execution) {
-    return update.run(set_, {patches, points}, mesh.views(), execution);
+  const auto follow = [&](const char* name, bool topology) {
+    rises_once(name, [&](const Execution& execution) {
+      const auto change = plan.update(set_, {patches, points}, mesh.views(), execution);
+      EXPECT_EQ(change.ok() && change->topology, topology) << name;
+      return change.status();
+    });
+  };
+  follow("mesh update", false);
+  for (Vec3& p : points) p.z *= 3;
+  follow("other topology", true);
+  mesh = value_of(plan.allocate());
+  rises_once("nothing to follow", [&](const Execution& execution) {
+    return plan.update(set_, PatchEdits{}, mesh.views(), execution).status();
   });
-  rises_once("bounds anew", [&](const Execution& execution) { return update.restate(set_, execution); });
-  rises_once("bounds that are known", [&](const Execution& execution) { return update.restate(set_, execution); });
 }
 
 #ifdef TESSERA_HAS_RAY

@@ -78,11 +78,11 @@ inline void evaluate_into(Bits& bits, const PatchSet& set) {
 }
 
 inline void tessellate_into(Bits& bits, const PatchSet& set) {
-  const TessellationPlan uniform = value_of(TessellationPlan::make(set));
+  const Tessellation uniform = value_of(Tessellation::make(set, {.rates = UniformRates{}}));
   Mesh mesh = value_of(uniform.allocate());
   EXPECT_TRUE(uniform.run(set, mesh.views()).ok());
   bits.add(mesh);
-  const auto plan = value_of(CertifiedTessellation::make(set, {.tolerance = 2e-3, .angle = 0.3, .weld = 1e-6}));
+  const auto plan = value_of(Tessellation::make(set, {.tolerance = 2e-3, .angle = 0.3, .weld = 1e-6}));
   mesh = value_of(plan.allocate());
   EXPECT_TRUE(plan.run(set, mesh.views()).ok());
   bits.add(mesh);
@@ -91,19 +91,18 @@ inline void tessellate_into(Bits& bits, const PatchSet& set) {
 
 /// New control points for every third patch, and back.
 inline void edit_into(Bits& bits, PatchSet& set) {
-  MeshUpdate update = value_of(MeshUpdate::make(set, value_of(CertifiedTessellation::make(set, {.tolerance = 2e-3}))));
-  Mesh mesh = value_of(update.plan().allocate());
-  EXPECT_TRUE(update.plan().run(set, mesh.views()).ok());
+  Tessellation plan = value_of(Tessellation::make(set, {.tolerance = 2e-3}));
+  Mesh mesh = value_of(plan.allocate());
+  EXPECT_TRUE(plan.run(set, mesh.views()).ok());
   std::vector<std::uint32_t> patches;
   std::vector<Vec3> points;
   for (std::size_t k = 0; k < set.patch_count(); k += 3) {
     patches.push_back(static_cast<std::uint32_t>(k));
     for (const Vec3& p : set.patch(k).points()) points.push_back(p + Vec3{0, 0, 0.01});
   }
-  EXPECT_TRUE(update.run(set, {patches, points}, mesh.views()).ok());
-  EXPECT_TRUE(update.restate(set).ok());
+  EXPECT_FALSE(value_of(plan.update(set, {patches, points}, mesh.views())).topology);
   bits.add(mesh);
-  bits.add(std::vector<float>(update.bounds().begin(), update.bounds().end()));
+  bits.add(std::vector<float>(plan.bounds().begin(), plan.bounds().end()));
 }
 
 #ifdef TESSERA_HAS_RAY

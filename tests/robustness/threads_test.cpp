@@ -127,7 +127,7 @@ TEST(CallersThreads, MayShareConstObjects) {
   const std::vector<Vec3> before(set.patch(5).points().begin(), set.patch(5).points().end());
   std::vector<Vec3> after = before;
   for (Vec3& p : after) p.z += 0.25;
-  const auto plan = value_of(CertifiedTessellation::make(set, {.tolerance = 2e-3}));
+  const auto plan = value_of(Tessellation::make(set, {.tolerance = 2e-3}));
 #ifdef TESSERA_HAS_RAY
   RayScene scene = value_of(built([&] { return RayScene::make(set); }));
   const std::vector<Ray> rays = rays_at(set, 600);

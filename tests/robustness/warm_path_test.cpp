@@ -54,18 +54,17 @@ TEST_F(WarmPath, Updates) {
     for (const Vec3& p : set_.patch(k).points()) points.push_back(p);
   }
   expect_no_allocation("grids that follow", [&] { return update.run(set_, plan, {patches, points}, out.views()); });
-  MeshUpdate mesh_update =
-      value_of(MeshUpdate::make(set_, value_of(CertifiedTessellation::make(set_, {.tolerance = 0.01}))));
-  Mesh mesh = value_of(mesh_update.plan().allocate());
-  ASSERT_TRUE(mesh_update.plan().run(set_, mesh.views()).ok());
-  expect_no_allocation("meshes that follow", [&] {
-    const Status status = mesh_update.run(set_, {patches, points}, mesh.views());
-    return status.ok() ? mesh_update.restate(set_) : status;
-  });
+  for (const TessellationOptions& options :
+       {TessellationOptions{.tolerance = 0.01}, TessellationOptions{.rates = UniformRates{}}}) {
+    Tessellation mesh_plan = value_of(Tessellation::make(set_, options));
+    Mesh mesh = value_of(mesh_plan.allocate());
+    ASSERT_TRUE(mesh_plan.run(set_, mesh.views()).ok());
+    expect_no_allocation("meshes that follow", [&] { return mesh_plan.update(set_, {patches, points}, mesh.views()); });
+  }
 }
 
 TEST_F(WarmPath, Meshes) {
-  const auto plan = value_of(CertifiedTessellation::make(set_, {.tolerance = 0.01}));
+  const auto plan = value_of(Tessellation::make(set_, {.tolerance = 0.01}));
   Mesh mesh = value_of(plan.allocate());
   expect_no_allocation("certified meshes", [&] { return plan.run(set_, mesh.views()); });
 }

@@ -130,7 +130,7 @@ void add(Hash& hash, const tessera::Mesh& mesh) {
 
 std::uint64_t mesh(Isa isa) {
   const tessera::PatchSet set = some_set();
-  const auto plan = value_of(tessera::TessellationPlan::make(set, {.rate_u = 5, .rate_v = 11, .isa = isa}));
+  const auto plan = value_of(tessera::Tessellation::make(set, {.rates = tessera::UniformRates{5, 11}, .isa = isa}));
   tessera::Mesh out = value_of(plan.allocate());
   require(plan.run(set, out.views()));
   Hash hash;
@@ -149,12 +149,12 @@ tessera::PatchSet fitted_set() {
 }  // namespace
 
 std::uint64_t certified_hash(const tessera::PatchSet& set, double tolerance, Isa isa) {
-  tessera::CertifiedOptions options;
+  tessera::TessellationOptions options;
   options.tolerance = tolerance;
   options.angle = 0.3;
   options.weld = 1e-6;
   options.isa = isa;
-  const auto plan = value_of(tessera::CertifiedTessellation::make(set, options));
+  const auto plan = value_of(tessera::Tessellation::make(set, options));
   tessera::Mesh out = value_of(plan.allocate());
   require(plan.run(set, out.views()));
   Hash hash;

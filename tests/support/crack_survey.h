@@ -135,8 +135,8 @@ inline void count_edges(const Mesh& mesh, const MeetingBorders& borders, CrackCo
 inline bool is_folded(const PatchSet& set) {
   for (std::size_t k = 0; k < set.patch_count(); ++k) {
     const Result<PatchSet> alone = PatchSet::make(std::span(&set.patch(k), 1));
-    const auto plan = alone ? TessellationPlan::make(*alone, {.rate_u = 8, .rate_v = 8, .isa = {}})
-                            : Result<TessellationPlan>(alone.status());
+    const auto plan =
+        alone ? Tessellation::make(*alone, {.rates = UniformRates{8, 8}}) : Result<Tessellation>(alone.status());
     Result<Mesh> mesh = plan ? plan->allocate() : Result<Mesh>(plan.status());
     if (!mesh || !plan->run(*alone, mesh->views()).ok()) continue;
     if (const Result<MeshReport> report = check(*mesh); report && report->non_manifold_edges > 0) return true;
@@ -145,18 +145,18 @@ inline bool is_folded(const PatchSet& set) {
 }
 
 /// The mesh that keeps a share of the model's size; welds borders as it does by default. Errors: those of
-/// CertifiedTessellation::make.
+/// Tessellation::make.
 inline Result<CrackCount> count_cracks(const PatchSet& set, double relative, std::uint64_t max_triangles,
                                        bool fewest = false) {
   const double size = set.box().diagonal();
-  CertifiedOptions options{.tolerance = relative * size, .max_triangles = max_triangles};
+  TessellationOptions options{.tolerance = relative * size, .max_triangles = max_triangles};
   options.fewest = fewest;
-  Result<CertifiedTessellation> plan = CertifiedTessellation::make(set, options);
+  Result<Tessellation> plan = Tessellation::make(set, options);
   CrackCount count;
   if (!plan && plan.status().code() == StatusCode::invalid_argument) {
     options.tolerance.reset();
     options.smallest = true;
-    if (Result<CertifiedTessellation> finest = CertifiedTessellation::make(set, options)) {
+    if (Result<Tessellation> finest = Tessellation::make(set, options)) {
       count.capped = true;
       plan = std::move(finest);
     }

@@ -24,7 +24,7 @@ TEST(SuiteIsa, RunsGridsAndMeshes) {
   EXPECT_EQ(name(report.isa), wanted);
 
   report = {};
-  const auto plan = value_of(CertifiedTessellation::make(set, {.tolerance = 1e-2}));
+  const auto plan = value_of(Tessellation::make(set, {.tolerance = 1e-2}));
   Mesh mesh = value_of(plan.allocate());
   ASSERT_TRUE(plan.run(set, mesh.views(), execution).ok());
   EXPECT_EQ(name(report.isa), wanted);

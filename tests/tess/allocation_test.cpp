@@ -10,7 +10,7 @@ namespace {
 
 TEST(TessellationAllocation, NoneAfterTheFirstRuns) {
   const PatchSet set = set_of(mixed_patches(1, 400));
-  const TessellationPlan plan = good(TessellationPlan::make(set, {.rate_u = 6, .rate_v = 5, .isa = {}}));
+  const Tessellation plan = good(Tessellation::make(set, {.rates = UniformRates{6, 5}}));
   Mesh mesh = good(plan.allocate());
   const MeshViews views = mesh.views();
   double done = 0;
@@ -34,11 +34,20 @@ double bytes_per_patch(const PatchSet& set, Make make) {
 
 TEST(TessellationMemory, PlansTakeLessThanAKilobyteAPatch) {
   const PatchSet set = set_of(wavy_field(60, 50));
-  const auto plan = [&](const CertifiedOptions& options) { return good(CertifiedTessellation::make(set, options)); };
+  const auto plan = [&](const TessellationOptions& options) { return good(Tessellation::make(set, options)); };
   const View view{.eye = {30, -40, 30}, .target = {30, 25, 0}};
-  CertifiedOptions options{.tolerance = 0.01};
+  TessellationOptions options{.tolerance = 0.01};
   EXPECT_LE(bytes_per_patch(set, [&] { (void)plan(options); }), 1024);
-  EXPECT_LE(bytes_per_patch(set, [&] { (void)good(MeshUpdate::make(set, plan(options))); }), 1024);
+  PatchSet edited = set_of(wavy_field(60, 50));
+  const std::vector<Vec3> points(edited.patch(7).points().begin(), edited.patch(7).points().end());
+  const std::uint32_t patch = 7;
+  Mesh mesh = good(plan(options).allocate());
+  EXPECT_LE(bytes_per_patch(edited,
+                            [&] {
+                              Tessellation followed = plan(options);
+                              (void)good(followed.update(edited, {std::span(&patch, 1), points}, mesh.views()));
+                            }),
+            1024);
   options.weld = 1e-4;
   options.share_vertices = true;
   EXPECT_LE(bytes_per_patch(set, [&] { (void)plan(options); }), 1024);
@@ -48,9 +57,9 @@ TEST(TessellationMemory, PlansTakeLessThanAKilobyteAPatch) {
 
 TEST(TessellationMemory, PlansOfOneFaceAreSmallBesideOthers) {
   const PatchSet set = set_of({closed_body().front()});
-  const auto plan = [&] { return good(CertifiedTessellation::make(set, {.tolerance = 0.01})); };
+  const auto plan = [&] { return good(Tessellation::make(set, {.tolerance = 0.01})); };
   (void)plan();
-  std::vector<CertifiedTessellation> many;
+  std::vector<Tessellation> many;
   many.reserve(100);
   EXPECT_LE(bytes_per_patch(set,
                             [&] {
@@ -62,7 +71,7 @@ TEST(TessellationMemory, PlansOfOneFaceAreSmallBesideOthers) {
 TEST(TessellationMemory, MeshesAreWrittenWithNextToNothingBeside) {
   const PatchSet set = set_of(wavy_field(60, 50));
   for (const bool share : {false, true}) {
-    const auto plan = good(CertifiedTessellation::make(set, {.tolerance = 0.01, .share_vertices = share}));
+    const auto plan = good(Tessellation::make(set, {.tolerance = 0.01, .share_vertices = share}));
     Mesh mesh = good(plan.allocate());
     const MeshViews views = mesh.views();
     EXPECT_LE(bytes_per_patch(set, [&] { ASSERT_TRUE(plan.run(set, views).ok()); }), 10);

@@ -19,7 +19,7 @@ constexpr double degree = std::numbers::pi / 180;
 double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(length(cross(a, b)), dot(a, b)); }
 
 /// The largest angle found, over the patch's bound, at random points of random triangles of patches that have one.
-double found_over_bound(const PatchSet& set, const CertifiedTessellation& plan, const Mesh& mesh, Random& random) {
+double found_over_bound(const PatchSet& set, const Tessellation& plan, const Mesh& mesh, Random& random) {
   double most = 0;
   const std::size_t step = std::max<std::size_t>(mesh.triangle_count() / 2000, 1);
   for (std::size_t t = random() % step; t < mesh.triangle_count(); t += step) {
@@ -56,7 +56,7 @@ TEST(Angle, IsNeverExceeded) {
   for (const CertificateSet& chosen : certificate_sets()) {
     const PatchSet set = set_of(chosen.patches);
     for (const double angle : {30 * degree, 8 * degree}) {
-      const auto plan = CertifiedTessellation::make(set, {.angle = angle, .angle_rate = 8});
+      const auto plan = Tessellation::make(set, {.angle = angle, .angle_rate = 8});
       ASSERT_TRUE(plan.ok()) << chosen.name << ": " << plan.status().message();
       EXPECT_LE(plan->angle(), angle * (1 + 1e-6));
       if (plan->capacity().triangles > 500'000) continue;
@@ -75,7 +75,7 @@ TEST(Angle, IsNeverExceeded) {
 TEST(Angle, ASphereTakesWhatItMust) {
   const PatchSet set = set_of(sphere());
   for (const double angle : {20 * degree, 5 * degree, 1 * degree}) {
-    const CertifiedTessellation plan = good(CertifiedTessellation::make(set, {.angle = angle}));
+    const Tessellation plan = good(Tessellation::make(set, {.angle = angle}));
     EXPECT_EQ(plan.patches_without_angle(), 0u);  // poles have limits
     const Mesh mesh = mesh_of(set, plan);
     const MeshReport report = good(check(mesh));
@@ -91,8 +91,8 @@ TEST(Angle, ASphereTakesWhatItMust) {
 
 TEST(Angle, CombinesWithADistance) {
   const PatchSet set = set_of(closed_body());
-  const auto count = [&](const CertifiedOptions& options) {
-    const CertifiedTessellation plan = good(CertifiedTessellation::make(set, options));
+  const auto count = [&](const TessellationOptions& options) {
+    const Tessellation plan = good(Tessellation::make(set, options));
     EXPECT_TRUE(good(check(mesh_of(set, plan))).closed());
     EXPECT_LE(plan.bound(), options.tolerance.value_or(1e9) * (1 + 1e-6));
     EXPECT_LE(plan.angle(), options.angle.value_or(0) * (1 + 1e-6));
@@ -103,8 +103,8 @@ TEST(Angle, CombinesWithADistance) {
   EXPECT_GE(both, std::max(distance, angle));
   EXPECT_LE(both, 2 * std::max(distance, angle));
   EXPECT_NEAR(count({.tolerance = 0.01, .angle = 90 * degree}), distance, 0.1 * distance);
-  const CertifiedTessellation budget =
-      good(CertifiedTessellation::make(set, {.angle = 10 * degree, .max_triangles = 5000, .smallest = true}));
+  const Tessellation budget =
+      good(Tessellation::make(set, {.angle = 10 * degree, .max_triangles = 5000, .smallest = true}));
   EXPECT_LE(budget.angle(), 10 * degree * (1 + 1e-6));
   EXPECT_LE(budget.capacity().triangles, 5000u);
 }
@@ -113,7 +113,7 @@ TEST(Angle, CombinesWithADistance) {
 TEST(Angle, CuspsHaveNoBoundAndAreCounted) {
   const std::vector<Vec3> cusp{{0, 0, 0}, {0, 1, 0}, {1, 0, 1}, {1, 1, 1}, {0, 0, 1}, {0, 1, 1}, {1, 0, 0}, {1, 1, 0}};
   const PatchSet set = set_of({polynomial(3, 1, cusp), wavy_field(1, 1)[0]});
-  const CertifiedTessellation plan = good(CertifiedTessellation::make(set, {.angle = 10 * degree, .angle_rate = 10}));
+  const Tessellation plan = good(Tessellation::make(set, {.angle = 10 * degree, .angle_rate = 10}));
   EXPECT_EQ(plan.patches_without_angle(), 1u);
   EXPECT_TRUE(std::isinf(plan.angles()[0]));
   EXPECT_LE(plan.angles()[1], 10.001 * degree);
@@ -125,16 +125,13 @@ TEST(Angle, CuspsHaveNoBoundAndAreCounted) {
 TEST(Angle, WrongOnesAreRefused) {
   const PatchSet set = set_of(closed_body());
   for (const double angle : {0.0, -1.0, std::nan(""), 1.6, std::numeric_limits<double>::infinity()}) {
-    const auto plan = CertifiedTessellation::make(set, {.angle = angle});
+    const auto plan = Tessellation::make(set, {.angle = angle});
     ASSERT_FALSE(plan.ok());
     EXPECT_NE(plan.status().message().find("it must be above 0 and at most pi / 2"), std::string::npos);
   }
-  for (const int rate : {0, -3, 5000})
-    EXPECT_FALSE(CertifiedTessellation::make(set, {.angle = 0.1, .angle_rate = rate}).ok());
-  EXPECT_FALSE(CertifiedTessellation::make(set, {}).ok());
-  const auto refusal = [&](double angle) {
-    return CertifiedTessellation::make(set, {.angle = angle}).status().message();
-  };
+  for (const int rate : {0, -3, 5000}) EXPECT_FALSE(Tessellation::make(set, {.angle = 0.1, .angle_rate = rate}).ok());
+  EXPECT_FALSE(Tessellation::make(set, {}).ok());
+  const auto refusal = [&](double angle) { return Tessellation::make(set, {.angle = angle}).status().message(); };
   const auto triangles = [&](double angle) {
     const std::string said = refusal(angle), before = "segments along a parameter of patch 0, and about ";
     EXPECT_NE(said.find(before), std::string::npos) << said;
@@ -144,7 +141,7 @@ TEST(Angle, WrongOnesAreRefused) {
   EXPECT_NE(refusal(1e-5).find("of patch 0, and more than "), std::string::npos) << refusal(1e-5);
   // A flat patch does not turn.
   const PatchSet flat = set_of({polynomial(1, 1, {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}})});
-  EXPECT_EQ(good(CertifiedTessellation::make(flat, {.angle = 0.01})).capacity().triangles, 2u);
+  EXPECT_EQ(good(Tessellation::make(flat, {.angle = 0.01})).capacity().triangles, 2u);
 }
 
 /// Compares the net with the cross product of the derivatives, and its division at poles with limits.

@@ -29,13 +29,12 @@ std::vector<BezierPatch> field_of_saddles(Random& random, int columns, int rows)
 }
 
 bool suffice(const PatchSet& set, double tolerance, std::uint64_t budget) {
-  return CertifiedTessellation::make(set, {.tolerance = tolerance, .max_triangles = budget}).ok();
+  return Tessellation::make(set, {.tolerance = tolerance, .max_triangles = budget}).ok();
 }
 
 /// The step k whose tolerance 2^(k/128) is the largest that is no smaller than the plan's bound, and that it takes.
 void expect_no_smaller_tolerance(const PatchSet& set, std::uint64_t budget) {
-  const CertifiedTessellation plan =
-      good(CertifiedTessellation::make(set, {.max_triangles = budget, .smallest = true}));
+  const Tessellation plan = good(Tessellation::make(set, {.max_triangles = budget, .smallest = true}));
   EXPECT_LE(plan.capacity().triangles, budget);
   if (plan.bound() < 1e-6) return;  // flat
   // The plan's bound may lie below its own tolerance, never above it.
@@ -47,7 +46,7 @@ void expect_no_smaller_tolerance(const PatchSet& set, std::uint64_t budget) {
 
 TEST(Budgets, ASmallerToleranceThatTakesFewerTrianglesIsFound) {
   const PatchSet set = set_of({saddle(0, 0, 0, 0.25, 0, 0.75), saddle(1, 0, 0, 0.75, 0.5, 0)});
-  const CertifiedTessellation plan = good(CertifiedTessellation::make(set, {.max_triangles = 500, .smallest = true}));
+  const Tessellation plan = good(Tessellation::make(set, {.max_triangles = 500, .smallest = true}));
   EXPECT_LE(plan.capacity().triangles, 500u);
   EXPECT_LE(plan.bound(), 0.00182 * 1.0055);
   expect_no_smaller_tolerance(set, 500);

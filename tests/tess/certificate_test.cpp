@@ -6,7 +6,7 @@
 #include "base/impl_access.h"
 #include "support/true_distance.h"
 #include "tess/certificate_sets.h"
-#include "tess/mesh/certified_tessellation_impl.h"
+#include "tess/proven_mesh_of.h"
 #include "tess/tessellate_support.h"
 #include "tessera/tessellation.h"
 
@@ -28,9 +28,9 @@ TEST(TrueDistance, OfAParaboloid) {
 }
 
 /// Thirty triangles of a set's mesh.
-void expect_certificates(const CertificateSet& chosen, const CertifiedOptions& options, Random& random) {
+void expect_certificates(const CertificateSet& chosen, const TessellationOptions& options, Random& random) {
   const PatchSet set = set_of(chosen.patches);
-  const CertifiedTessellation plan = good(CertifiedTessellation::make(set, options));
+  const Tessellation plan = good(Tessellation::make(set, options));
   Mesh mesh = good(plan.allocate());
   ASSERT_TRUE(plan.run(set, mesh.views()).ok());
   double tightest = 0;
@@ -60,12 +60,11 @@ TEST(Certificate, HoldsAcrossTheMiddleOfEvenRates) {
   std::size_t straddling = 0;
   for (const double relative : {2e-2, 1e-2, 5e-3, 3e-3, 2e-3}) {
     const PatchSet set = set_of(wavy_field(9, 9));
-    const CertifiedTessellation plan =
-        good(CertifiedTessellation::make(set, {.tolerance = relative, .relative = true}));
+    const Tessellation plan = good(Tessellation::make(set, {.tolerance = relative, .relative = true}));
     const Mesh mesh = mesh_of(set, plan);
     for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
       const std::uint32_t patch = mesh.patches[t];
-      const Rates rates = impl_of(plan).plan().segments()[patch].rates();
+      const Rates rates = proven_mesh_of(plan).plan().segments()[patch].rates();
       const MeshTriangle triangle = triangle_of(mesh, t);
       const auto straddles = [&](std::size_t along) {
         const auto at = [&](std::size_t c) { return triangle.parameters[c][along]; };

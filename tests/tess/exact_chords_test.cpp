@@ -13,7 +13,7 @@
 #include "support/synthetic_sets.h"
 #include "tess/bounds/chord_blocks.h"
 #include "tess/bounds/flat_quad.h"
-#include "tess/mesh/certified_tessellation_impl.h"
+#include "tess/proven_mesh_of.h"
 #include "tess/tessellate_support.h"
 
 namespace tessera::test {
@@ -127,8 +127,8 @@ TEST(ExactChords, AreLookedForWhereThereIsMuchToGain) {
   // A quarter of a cylinder with an elliptic end: no sweep.
   patches.push_back(rational(2, 1, {{1, 0, 0}, {1, 0, 1000}, {1, 1, 0}, {1, 1.5, 1000}, {0, 1, 0}, {0, 1.5, 1000}},
                              {1, 1, w, w, 1, 1}));
-  const auto plan = good(CertifiedTessellation::make(set_of(patches), {.tolerance = 0.01}));
-  EXPECT_LT(impl_of(plan).plan().division(15).triangle_count(), 200u);
+  const auto plan = good(Tessellation::make(set_of(patches), {.tolerance = 0.01}));
+  EXPECT_LT(proven_mesh_of(plan).plan().division(15).triangle_count(), 200u);
 }
 
 /// rho_j E_i + T_j with weights a_i b_j. `to_zero`: rho falls to 0.
@@ -249,9 +249,7 @@ std::vector<BezierPatch> cylinder(double height, const Vec3& shift) {
 
 TEST(ScaledSweeps, ACylinderTakesAsManyTrianglesAtAnyHeightAndPlace) {
   const auto triangles = [](double height, const Vec3& shift, double tolerance) {
-    return good(CertifiedTessellation::make(set_of(cylinder(height, shift)), {.tolerance = tolerance}))
-        .capacity()
-        .triangles;
+    return good(Tessellation::make(set_of(cylinder(height, shift)), {.tolerance = tolerance})).capacity().triangles;
   };
   for (const double height : {1.0, 4.0, 100.0}) {
     EXPECT_EQ(triangles(height, {}, 0.01), 48u) << height;
@@ -274,7 +272,7 @@ TEST(FlatQuads, TakeTwoTriangles) {
                                                        {2, .3, 0},
                                                        {2, 1, 0}})}) {
     EXPECT_TRUE(flat_quad_deviation(patch));
-    const auto plan = good(CertifiedTessellation::make(set_of({patch}), {.tolerance = 1e-4}));
+    const auto plan = good(Tessellation::make(set_of({patch}), {.tolerance = 1e-4}));
     EXPECT_EQ(plan.capacity().triangles, 2u);
   }
   EXPECT_FALSE(flat_quad_deviation(slanted));  // not flat
@@ -319,7 +317,7 @@ TEST(ExactChords, HardPatchesAreBoundedOrRefused) {
     const Result<PatchSet> set = PatchSet::make(std::vector<BezierPatch>{patch});
     if (!set) continue;
     const double tolerance = 1e-2 * set->box().diagonal();
-    const auto plan = CertifiedTessellation::make(*set, {.tolerance = tolerance, .max_triangles = 1000000});
+    const auto plan = Tessellation::make(*set, {.tolerance = tolerance, .max_triangles = 1000000});
     if (!plan) {
       EXPECT_EQ(plan.status().code(), StatusCode::invalid_argument) << plan.status().message();
       continue;

@@ -10,7 +10,7 @@
 #include "support/synthetic_sets.h"
 #include "support/true_distance.h"
 #include "tess/cells/f64_points.h"
-#include "tess/mesh/certified_tessellation_impl.h"
+#include "tess/proven_mesh_of.h"
 #include "tess/tessellate_support.h"
 #include "tessera/bezier_operations.h"
 #include "tessera/tessellation.h"
@@ -96,6 +96,6 @@ inline void expect_closed(const Mesh& mesh) {
   EXPECT_EQ(report.degenerate_triangles, 0u);
 }
 
-inline bool is_f64(const CertifiedTessellation& plan) { return impl_of(plan).plan().is_f64(); }
+inline bool is_f64(const Tessellation& plan) { return proven_mesh_of(plan).plan().is_f64(); }
 
 }  // namespace tessera::test

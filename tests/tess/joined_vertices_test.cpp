@@ -15,8 +15,8 @@
 namespace tessera::test {
 namespace {
 
-CertifiedTessellation plan_of(const PatchSet& set, const CertifiedOptions& options) {
-  return good(CertifiedTessellation::make(set, options));
+Tessellation plan_of(const PatchSet& set, const TessellationOptions& options) {
+  return good(Tessellation::make(set, options));
 }
 
 std::vector<BezierPatch> turned(std::vector<BezierPatch> patches, std::uint64_t seed) {
@@ -105,10 +105,10 @@ TEST(SharedVertices, TheSameTrianglesWithEachPlaceOnce) {
   for (const Case& c : cases())
     for (const double relative : {0.3, 0.03, 0.003, 3e-4}) {
       const PatchSet set = set_of(c.patches);
-      CertifiedOptions options{.tolerance = relative, .relative = true, .weld = c.weld};
+      TessellationOptions options{.tolerance = relative, .relative = true, .weld = c.weld};
       const Mesh apart = mesh_of(set, plan_of(set, options));
       options.share_vertices = true;
-      const CertifiedTessellation plan = plan_of(set, options);
+      const Tessellation plan = plan_of(set, options);
       const Mesh mesh = mesh_of(set, plan);
       EXPECT_TRUE(mesh.normals.empty());
       EXPECT_EQ(corners(mesh, mesh.positions), corners(apart, apart.positions)) << c.name << " " << relative;
@@ -136,14 +136,14 @@ TEST(SharedVertices, TheSameTrianglesWithEachPlaceOnce) {
 
 TEST(SharedVertices, NormalsNeedACreaseAngle) {
   const PatchSet set = set_of(closed_body());
-  const CertifiedTessellation plan = plan_of(set, {.tolerance = 0.01, .share_vertices = true});
+  const Tessellation plan = plan_of(set, {.tolerance = 0.01, .share_vertices = true});
   Mesh mesh = good(plan.allocate());
   mesh.normals.resize(mesh.positions.size());
   const Status status = plan.run(set, mesh.views());
   EXPECT_EQ(status.code(), StatusCode::invalid_argument);
   EXPECT_NE(status.message().find("need a crease angle"), std::string::npos);
   for (const double angle : {-0.1, 4.0, std::nan("")})
-    EXPECT_EQ(CertifiedTessellation::make(set, {.tolerance = 0.01, .crease_angle = angle}).status().code(),
+    EXPECT_EQ(Tessellation::make(set, {.tolerance = 0.01, .crease_angle = angle}).status().code(),
               StatusCode::invalid_argument);
 }
 
@@ -162,7 +162,7 @@ std::size_t creased_places(const Mesh& mesh) {
 TEST(JoinedNormals, OneNormalAcrossSmoothJoinsAndAllAroundPoles) {
   for (const auto& patches : {smooth_field(), round_sphere(), torn(round_sphere(), 1e-7)}) {
     const PatchSet set = set_of(patches);
-    CertifiedOptions options{.tolerance = 0.003, .weld = 1e-5};
+    TessellationOptions options{.tolerance = 0.003, .weld = 1e-5};
     const Mesh plain = mesh_of(set, plan_of(set, options));
     EXPECT_GT(creased_places(plain), 0u);
     options.crease_angle = 0.01;
@@ -185,7 +185,7 @@ TEST(JoinedNormals, OneNormalAcrossSmoothJoinsAndAllAroundPoles) {
 
 TEST(JoinedNormals, CreasesStay) {
   const PatchSet set = set_of(roof());
-  CertifiedOptions options{.tolerance = 0.001};
+  TessellationOptions options{.tolerance = 0.001};
   const Mesh plain = mesh_of(set, plan_of(set, options));
   const std::size_t border = creased_places(plain);
   EXPECT_GT(border, 2u);
@@ -242,7 +242,7 @@ TEST(SharedVertices, LongRings) {
   for (int i = 0; i < 16; ++i)
     for (int j = 0; j < 2; ++j) points.push_back({i / 15.0, double(j), i % 2 == 0 ? -0.5 : 0.5});
   const PatchSet set = set_of({polynomial(15, 1, points)});
-  CertifiedOptions options{.tolerance = 5e-6};
+  TessellationOptions options{.tolerance = 5e-6};
   const Mesh plain = mesh_of(set, plan_of(set, options));
   ASSERT_GT(plain.vertex_count(), 6200u);  // two thirds in the ring: more than 4096
   options.crease_angle = 0.1;
@@ -258,16 +258,16 @@ TEST(Quads, CellsAreQuadsAndTheRestIsStrips) {
   for (const Case& c : cases())
     for (const bool share : {false, true}) {
       const PatchSet set = set_of(c.patches);
-      const CertifiedTessellation plan =
-          plan_of(set, {.tolerance = 0.003, .relative = true, .weld = c.weld, .share_vertices = share});
-      const Mesh mesh = mesh_of(set, plan);
-      const MeshCapacity size = plan.quad_capacity();
+      TessellationOptions options{.tolerance = 0.003, .relative = true, .weld = c.weld, .share_vertices = share};
+      const Tessellation plain = plan_of(set, options);
+      const Mesh mesh = mesh_of(set, plain);
+      options.quads = true;
+      const Tessellation plan = plan_of(set, options);
+      const MeshCapacity size = plan.capacity();
       EXPECT_GT(size.quads, 0u);
-      EXPECT_EQ(size.triangles + 2 * size.quads, plan.capacity().triangles);
-      EXPECT_EQ(size.vertices, plan.capacity().vertices);
+      EXPECT_EQ(size.triangles + 2 * size.quads, plain.capacity().triangles);
+      EXPECT_EQ(size.vertices, plain.capacity().vertices);
       Mesh strips = good(plan.allocate());
-      strips.indices.resize(3 * size.triangles);
-      strips.patches.resize(size.triangles);
       std::vector<std::uint32_t> quads(4 * size.quads), quad_patch(size.quads);
       MeshViews views = strips.views();
       views.quads = quads;

@@ -25,7 +25,7 @@ Model model() {
 }
 
 Mesh mesh_of(const PatchSet& set) {
-  const TessellationPlan plan = value_of(TessellationPlan::make(set, {.rate_u = 3, .rate_v = 2, .isa = {}}));
+  const Tessellation plan = value_of(Tessellation::make(set, {.rates = UniformRates{3, 2}}));
   Mesh mesh = value_of(plan.allocate());
   EXPECT_TRUE(plan.run(set, mesh.views()).ok());
   return mesh;
@@ -64,8 +64,8 @@ TEST(MeshParts, QuadsGoWithTheTrianglesOfTheirPatch) {
   std::vector<PatchSource> sources(8);
   for (std::size_t k = 4; k < 8; ++k) sources[k].surface = 3;
   const PatchSet two = value_of(PatchSet::make(test::sphere(), {.sources = sources}));
-  const TessellationPlan plan = value_of(TessellationPlan::make(two, {.rate_u = 3, .rate_v = 2, .isa = {}}));
-  Mesh mesh = value_of(plan.allocate_quads());
+  const Tessellation plan = value_of(Tessellation::make(two, {.rates = UniformRates{3, 2}, .quads = true}));
+  Mesh mesh = value_of(plan.allocate());
   ASSERT_TRUE(plan.run(two, mesh.views()).ok());
   ASSERT_GT(mesh.triangle_count(), 0u);  // at the poles
   const std::vector<MeshPart> parts = value_of(parts_by_surface(mesh, two, surfaces));

@@ -7,21 +7,21 @@
 
 #include "base/impl_access.h"
 #include "support/synthetic_sets.h"
-#include "tess/mesh/certified_tessellation_impl.h"
+#include "tess/proven_mesh_of.h"
 #include "tess/tessellate_support.h"
 
 namespace tessera::test {
 namespace {
 
-CertifiedTessellation plan_of(const PatchSet& set, double tolerance) {
-  return good(CertifiedTessellation::make(set, {.tolerance = tolerance}));
+Tessellation plan_of(const PatchSet& set, double tolerance) {
+  return good(Tessellation::make(set, {.tolerance = tolerance}));
 }
-const MeshTables& tables_of(const CertifiedTessellation& plan) { return impl_of(plan).tables(); }
+const MeshTables& tables_of(const Tessellation& plan) { return proven_mesh_of(plan).tables(); }
 
 TEST(MeshTables, PlansThatNeedTheSameShareThem) {
   const PatchSet body = set_of(closed_body()), ball = set_of(sphere());
-  const CertifiedTessellation before = plan_of(body, 0.01), coarse = plan_of(body, 0.02), after = plan_of(body, 0.01),
-                              other = plan_of(ball, 0.01);
+  const Tessellation before = plan_of(body, 0.01), coarse = plan_of(body, 0.02), after = plan_of(body, 0.01),
+                     other = plan_of(ball, 0.01);
   EXPECT_EQ(&tables_of(after), &tables_of(coarse));  // to which the coarse ones were added
   EXPECT_NE(&tables_of(after), &tables_of(other));
 }
@@ -30,14 +30,14 @@ TEST(MeshTables, PlansOutliveTheSet) {
   const PatchSet body = set_of(closed_body());
   const Mesh wanted = mesh_of(body, plan_of(body, 0.01));
   auto first = std::make_unique<PatchSet>(set_of(closed_body()));
-  const CertifiedTessellation plan = plan_of(*first, 0.01);
+  const Tessellation plan = plan_of(*first, 0.01);
   first.reset();
   EXPECT_EQ(mesh_of(body, plan).positions, wanted.positions);
 }
 
 TEST(MeshTables, LargeOnesAreOfTheirPlanAlone) {
   const PatchSet body = set_of(closed_body());
-  const CertifiedTessellation large = plan_of(body, 1.5e-6), next = plan_of(body, 0.01);
+  const Tessellation large = plan_of(body, 1.5e-6), next = plan_of(body, 0.01);
   EXPECT_GT(tables_of(large).bytes(), MeshTables::max_common_bytes);
   EXPECT_LE(tables_of(next).bytes(), MeshTables::max_common_bytes);
 }
@@ -47,7 +47,7 @@ TEST(MeshTables, CommonOnesStaySmall) {
   std::size_t largest = 0, times_anew = 0, last = 0;
   for (int step = 0; step < 300; ++step) {
     (void)plan_of(body, 0.3 * std::pow(0.97, step));
-    const CertifiedTessellation plan = plan_of(body, 0.01);
+    const Tessellation plan = plan_of(body, 0.01);
     const std::size_t bytes = tables_of(plan).bytes();
     EXPECT_LE(bytes, MeshTables::max_common_bytes);
     times_anew += bytes < last;

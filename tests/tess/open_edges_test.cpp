@@ -28,8 +28,8 @@ BezierPatch rectangle(const Vec3& corner, const Vec3& along_u, const Vec3& along
   return polynomial(1, 1, {corner, corner + along_v, corner + along_u, corner + along_u + along_v});
 }
 
-MeshReport report_of(const PatchSet& set, const CertifiedOptions& options) {
-  const CertifiedTessellation plan = good(CertifiedTessellation::make(set, options));
+MeshReport report_of(const PatchSet& set, const TessellationOptions& options) {
+  const Tessellation plan = good(Tessellation::make(set, options));
   const MeshReport report = good(check(mesh_of(set, plan)));
   EXPECT_EQ(plan.open_edges(), report.open_edges);
   EXPECT_LE(plan.bound(), plan.tolerance());
@@ -86,7 +86,7 @@ TEST(OpenEdges, OfThreeBordersThatNearlyCoincideAreJoinedToOne) {
   const double d = 1e-5;
   const PatchSet set = set_of({rectangle({0, 0, 0}, {-1, 0, 0}, {0, 1, 0}), rectangle({d, 0, 0}, {1, 0, 0}, {0, 1, 0}),
                                rectangle({0, 0, d}, {0, 0, 1}, {0, 1, 0})});
-  const CertifiedTessellation plan = good(CertifiedTessellation::make(set, {.tolerance = 0.01}));
+  const Tessellation plan = good(Tessellation::make(set, {.tolerance = 0.01}));
   EXPECT_EQ(plan.welded_borders(), 2u);
   const MeshReport report = good(check(mesh_of(set, plan)));
   EXPECT_EQ(report.open_edges, 9u);
@@ -118,7 +118,7 @@ TEST(Weld, DependsOnTheBordersAlone) {
     for (const std::size_t k : order) others.push_back(patches[k]);
     const auto vertices = [](const std::vector<BezierPatch>& all) {
       const PatchSet set = good(PatchSet::make(all, {.origin = Vec3{}}));
-      const Mesh mesh = mesh_of(set, good(CertifiedTessellation::make(set, {.tolerance = 0.02})));
+      const Mesh mesh = mesh_of(set, good(Tessellation::make(set, {.tolerance = 0.02})));
       std::vector<std::vector<std::array<float, 3>>> of_patch(all.size());
       for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
         for (std::size_t c = 0; c < 3; ++c) {

@@ -18,7 +18,7 @@ namespace tessera::test {
 namespace {
 
 Mesh mesh_of(const PatchSet& set, double tolerance, std::optional<Isa> isa = {}, Stores stores = Stores::automatic) {
-  const CertifiedTessellation plan = good(CertifiedTessellation::make(set, {.tolerance = tolerance, .isa = isa}));
+  const Tessellation plan = good(Tessellation::make(set, {.tolerance = tolerance, .isa = isa}));
   Mesh mesh = good(plan.allocate());
   ExecutionReport report;
   const Status status = plan.run(set, mesh.views(), {.stores = stores, .report = &report});
@@ -72,7 +72,7 @@ TEST(PatchWriter, StreamingAndPlainStoresGiveTheSameBytes) {
 
 TEST(PatchWriter, EveryLayoutHoldsTheSameNumbersAndNothingElseIsTouched) {
   const PatchSet set = set_of(wavy_field(9, 7));
-  const CertifiedTessellation plan = good(CertifiedTessellation::make(set, {.tolerance = 2e-3}));
+  const Tessellation plan = good(Tessellation::make(set, {.tolerance = 2e-3}));
   const Mesh mesh = mesh_of(set, 2e-3);
   const std::size_t vertices = plan.capacity().vertices, indices = 3 * plan.capacity().triangles;
   const float untouched = -1.5e33f;
@@ -106,7 +106,7 @@ TEST(PatchWriter, EveryLayoutHoldsTheSameNumbersAndNothingElseIsTouched) {
 
 TEST(PatchWriter, PositionsAloneAreThoseWithNormals) {
   for (const auto& [set, tolerance] : cases()) {
-    const CertifiedTessellation plan = good(CertifiedTessellation::make(set, {.tolerance = tolerance}));
+    const Tessellation plan = good(Tessellation::make(set, {.tolerance = tolerance}));
     Mesh mesh = good(plan.allocate());
     MeshViews views = mesh.views();
     views.normal = {};

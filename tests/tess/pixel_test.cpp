@@ -69,7 +69,7 @@ struct Found {
   std::size_t seen = 0;  ///< points in the frame
 };
 
-Found found_over_bound(const PatchSet& set, const CertifiedTessellation& plan, const Mesh& mesh, const View& view,
+Found found_over_bound(const PatchSet& set, const Tessellation& plan, const Mesh& mesh, const View& view,
                        Random& random) {
   const Pinhole camera(view);
   Found found;
@@ -135,8 +135,7 @@ TEST(Pixels, AreNeverExceeded) {
     const PatchSet set = set_of(chosen.patches);
     double most = 0;
     for (const View& view : views_of(set)) {
-      const auto plan =
-          CertifiedTessellation::make(set, {.pixels = PixelTolerance{2, view}, .max_triangles = 20'000'000});
+      const auto plan = Tessellation::make(set, {.pixels = PixelTolerance{2, view}, .max_triangles = 20'000'000});
       if (!plan) {  // patches that all but touch the eye
         EXPECT_NE(plan.status().message().find("ixels"), std::string::npos) << plan.status().message();
         RecordProperty(chosen.name, plan.status().message());
@@ -190,8 +189,7 @@ TEST(Pixels, ClosedBodiesStayClosedFromAnywhere) {
     const PatchSet set = set_of(body);
     for (const View& view : views_of(set))
       for (const double pixels : {20.0, 3.0, 0.5}) {
-        const CertifiedTessellation plan =
-            good(CertifiedTessellation::make(set, {.pixels = PixelTolerance{pixels, view}}));
+        const Tessellation plan = good(Tessellation::make(set, {.pixels = PixelTolerance{pixels, view}}));
         const Mesh mesh = mesh_of(set, plan);
         const MeshReport report = good(check(mesh));
         EXPECT_TRUE(report.closed()) << pixels;
@@ -205,7 +203,7 @@ TEST(Pixels, ClosedBodiesStayClosedFromAnywhere) {
 TEST(Pixels, FarPatchesTakeFewerTriangles) {
   const PatchSet set = set_of(wavy_field(16, 4));
   const View view{.eye = {-3, 2, 2}, .target = {8, 2, 0}, .near_distance = 0.01};
-  const CertifiedTessellation plan = good(CertifiedTessellation::make(set, {.pixels = PixelTolerance{0.5, view}}));
+  const Tessellation plan = good(Tessellation::make(set, {.pixels = PixelTolerance{0.5, view}}));
   const Mesh mesh = mesh_of(set, plan);
   const auto of_column = [&](std::uint32_t column) {
     return std::count_if(mesh.patches.begin(), mesh.patches.end(), [&](std::uint32_t k) { return k / 4 == column; });
@@ -215,7 +213,7 @@ TEST(Pixels, FarPatchesTakeFewerTriangles) {
   EXPECT_EQ(2 * report.distinct_positions, report.triangles + report.open_edges + 2);  // a disc: no crack
   // The camera is turned away and sees nothing of it.
   const View away{.eye = {-3, 2, 2}, .target = {-8, 2, 2}};
-  const CertifiedTessellation unseen = good(CertifiedTessellation::make(set, {.pixels = PixelTolerance{0.5, away}}));
+  const Tessellation unseen = good(Tessellation::make(set, {.pixels = PixelTolerance{0.5, away}}));
   EXPECT_EQ(unseen.capacity().triangles, 2u * 64);
   EXPECT_EQ(unseen.pixels(), 0);
 }
@@ -226,7 +224,7 @@ TEST(Pixels, AFloorBelowTheEye) {
   for (const BezierPatch& patch : wavy_field(1, 1)) floor.push_back(placed({patch}, 20, {-10, -10, -10})[0]);
   const PatchSet set = set_of(floor);
   const View view{.eye = {0, 0, 12}, .target = {6, 0, 8}};
-  const CertifiedTessellation plan = good(CertifiedTessellation::make(set, {.pixels = PixelTolerance{0.5, view}}));
+  const Tessellation plan = good(Tessellation::make(set, {.pixels = PixelTolerance{0.5, view}}));
   EXPECT_LE(plan.pixels(), 0.5 * (1 + 1e-6));
   EXPECT_LT(plan.capacity().triangles, 200'000u);
   Random random(2);
@@ -238,8 +236,8 @@ TEST(Pixels, AFloorBelowTheEye) {
 TEST(Pixels, CombineWithTheOthers) {
   const PatchSet set = set_of(closed_body());
   const View view = views_of(set)[0];
-  const CertifiedTessellation plan = good(CertifiedTessellation::make(
-      set, {.tolerance = 0.01, .angle = 0.2, .pixels = PixelTolerance{1, view}, .weld = 1e-6}));
+  const Tessellation plan =
+      good(Tessellation::make(set, {.tolerance = 0.01, .angle = 0.2, .pixels = PixelTolerance{1, view}, .weld = 1e-6}));
   EXPECT_LE(plan.bound(), 0.01 * (1 + 1e-6));
   EXPECT_LE(plan.angle(), 0.2 * (1 + 1e-6));
   EXPECT_LE(plan.pixels(), 1 + 1e-6);
@@ -250,7 +248,7 @@ TEST(Pixels, WrongOnesAreRefused) {
   const PatchSet set = set_of(closed_body());
   const View good_view = views_of(set)[0];
   const auto message = [&](double pixels, const View& view) {
-    const auto plan = CertifiedTessellation::make(set, {.pixels = PixelTolerance{pixels, view}});
+    const auto plan = Tessellation::make(set, {.pixels = PixelTolerance{pixels, view}});
     EXPECT_FALSE(plan.ok());
     return plan.ok() ? "" : plan.status().message();
   };
@@ -270,9 +268,9 @@ TEST(Pixels, WrongOnesAreRefused) {
   EXPECT_NE(changed([](View& v) { v.near_distance = -1; }).find("near distance"), std::string::npos);
   // Floats far away move by more than the pixels allow: an error, not silence.
   const PatchSet far = set_of(placed(closed_body(), 1, {1e7, 0, 0}));
-  const auto rough = CertifiedTessellation::make(
-      *PatchSet::make(placed(closed_body(), 1, {1e7, 0, 0}), PatchSetOptions{.origin = Vec3{}}),
-      {.pixels = PixelTolerance{0.5, views_of(far)[0]}});
+  const auto rough =
+      Tessellation::make(*PatchSet::make(placed(closed_body(), 1, {1e7, 0, 0}), PatchSetOptions{.origin = Vec3{}}),
+                         {.pixels = PixelTolerance{0.5, views_of(far)[0]}});
   ASSERT_FALSE(rough.ok());
   EXPECT_NE(rough.status().message().find("the tolerance of 0.5 pixels at the view's near distance must be above "),
             std::string::npos)

@@ -12,9 +12,8 @@
 namespace tessera::test {
 namespace {
 
-template <class Plan>
-Mesh quads_of(const PatchSet& set, const Plan& plan, const Execution& execution = {}) {
-  Mesh mesh = good(plan.allocate_quads());
+Mesh quads_of(const PatchSet& set, const Tessellation& plan, const Execution& execution = {}) {
+  Mesh mesh = good(plan.allocate());
   const Status status = plan.run(set, mesh.views(), execution);
   EXPECT_TRUE(status.ok()) << status.message();
   return mesh;
@@ -29,15 +28,20 @@ std::vector<std::array<std::uint32_t, 4>> triangles_of(const Mesh& mesh) {
   return triangles;
 }
 
-/// Expects that the faces of `plan` are those of its triangles.
-template <class Plan>
-void expect_the_same(const PatchSet& set, const Plan& plan, const Mesh& triangles) {
+/// Expects that the faces of a plan with these options and quads are those of its triangles.
+void expect_the_same(const PatchSet& set, TessellationOptions options) {
+  options.quads = false;
+  const Tessellation plain = good(Tessellation::make(set, options));
+  const Mesh triangles = mesh_of(set, plain);
+  options.quads = true;
+  const Tessellation plan = good(Tessellation::make(set, options));
   const Mesh mesh = quads_of(set, plan);
-  const MeshCapacity size = plan.quad_capacity();
+  const MeshCapacity size = plan.capacity();
+  EXPECT_EQ(plain.capacity().quads, 0u);
   EXPECT_EQ(mesh.quad_count(), size.quads);
   EXPECT_EQ(mesh.quad_patches.size(), size.quads);
   EXPECT_EQ(mesh.triangle_count(), size.triangles);
-  EXPECT_EQ(size.triangles + 2 * size.quads, plan.capacity().triangles);
+  EXPECT_EQ(size.triangles + 2 * size.quads, plain.capacity().triangles);
   EXPECT_EQ(mesh.positions, triangles.positions);
   EXPECT_EQ(mesh.normals, triangles.normals);
   EXPECT_EQ(mesh.parameters, triangles.parameters);
@@ -57,10 +61,9 @@ TEST(Quads, OfCertifiedMeshesAreTheirInnerCells) {
   for (const auto& patches : {closed_body(), sphere(), wavy_field(3, 4), mixed_patches(2, 40)})
     for (const bool share : {false, true}) {
       const PatchSet set = set_of(patches);
-      const auto plan =
-          good(CertifiedTessellation::make(set, {.tolerance = 0.003, .relative = true, .share_vertices = share}));
-      EXPECT_GT(plan.quad_capacity().quads, 0u);
-      expect_the_same(set, plan, mesh_of(set, plan));
+      const TessellationOptions options{.tolerance = 0.003, .relative = true, .share_vertices = share, .quads = true};
+      EXPECT_GT(good(Tessellation::make(set, options)).capacity().quads, 0u);
+      expect_the_same(set, options);
     }
 }
 
@@ -68,27 +71,26 @@ TEST(Quads, OfUniformMeshesAreAllCellsButThoseAtPoles) {
   for (const auto& patches : {closed_body(), sphere(), mixed_patches(2, 40)})
     for (const auto& [u, v] : {std::pair{1, 1}, {1, 5}, {4, 1}, {2, 2}, {6, 3}}) {
       const PatchSet set = set_of(patches);
-      const auto plan = good(TessellationPlan::make(set, {.rate_u = u, .rate_v = v, .isa = {}}));
-      expect_the_same(set, plan, tessellate(set, u, v));
+      expect_the_same(set, {.rates = UniformRates{u, v}});
     }
   const PatchSet set = set_of(closed_body());
-  const auto plan = good(TessellationPlan::make(set, {.rate_u = 4, .rate_v = 4, .isa = {}}));
-  EXPECT_EQ(plan.quad_capacity().quads, 6u * 16u);
-  EXPECT_EQ(plan.quad_capacity().triangles, 0u);
+  const auto plan = good(Tessellation::make(set, {.rates = UniformRates{4, 4}, .quads = true}));
+  EXPECT_EQ(plan.capacity().quads, 6u * 16u);
+  EXPECT_EQ(plan.capacity().triangles, 0u);
   EXPECT_TRUE(good(check(quads_of(set, plan))).closed());
 }
 
 TEST(Quads, NoneWhereAllCellsAreInStrips) {
   const PatchSet set = set_of(closed_body());
-  const auto plan = good(CertifiedTessellation::make(set, {.tolerance = 5}));
-  EXPECT_EQ(plan.quad_capacity().quads, 0u);
-  EXPECT_EQ(quads_of(set, plan).indices, mesh_of(set, plan).indices);
+  const auto plan = good(Tessellation::make(set, {.tolerance = 5, .quads = true}));
+  EXPECT_EQ(plan.capacity().quads, 0u);
+  EXPECT_EQ(quads_of(set, plan).indices, mesh_of(set, good(Tessellation::make(set, {.tolerance = 5}))).indices);
 }
 
 /// Corners go around a box of the parameters, and the patch's bound holds for the halves by either diagonal.
 TEST(Quads, KeepTheBoundByEitherDiagonal) {
   const PatchSet set = set_of(closed_body());
-  const auto plan = good(CertifiedTessellation::make(set, {.tolerance = 0.01}));
+  const auto plan = good(Tessellation::make(set, {.tolerance = 0.01, .quads = true}));
   const Mesh mesh = quads_of(set, plan);
   ASSERT_GT(mesh.quad_count(), 100u);
   double most = 0;
@@ -118,8 +120,8 @@ TEST(Quads, KeepTheBoundByEitherDiagonal) {
 
 TEST(Quads, TheSameBytesForAnyNumberOfThreads) {
   const PatchSet set = set_of(mixed_patches(4, 300));
-  const auto plan = good(CertifiedTessellation::make(set, {.tolerance = 0.01, .relative = true}));
-  const auto uniform = good(TessellationPlan::make(set, {.rate_u = 5, .rate_v = 4, .isa = {}}));
+  const auto plan = good(Tessellation::make(set, {.tolerance = 0.01, .relative = true, .quads = true}));
+  const auto uniform = good(Tessellation::make(set, {.rates = UniformRates{5, 4}, .quads = true}));
   const Mesh certified_mesh = quads_of(set, plan), uniform_mesh = quads_of(set, uniform);
   for (const std::size_t threads : {1u, 2u, 5u})
     for (const Stores stores : {Stores::plain, Stores::streaming}) {
@@ -137,9 +139,8 @@ TEST(Quads, TheSameBytesForAnyNumberOfThreads) {
     }
 }
 
-template <class Plan>
-void expect_bad_views_are_refused(const PatchSet& set, const Plan& plan) {
-  Mesh mesh = good(plan.allocate_quads());
+void expect_bad_views_are_refused(const PatchSet& set, const Tessellation& plan) {
+  Mesh mesh = good(plan.allocate());
   std::fill(mesh.quads.begin(), mesh.quads.end(), 7u);
   std::fill(mesh.positions.begin(), mesh.positions.end(), 7.0f);
   const Mesh clean = mesh;
@@ -152,22 +153,37 @@ void expect_bad_views_are_refused(const PatchSet& set, const Plan& plan) {
     EXPECT_EQ(mesh.quads, clean.quads);
     EXPECT_EQ(mesh.positions, clean.positions);
   };
-  const std::string wanted = std::to_string(4 * plan.quad_capacity().quads);
+  const std::string wanted = std::to_string(4 * plan.capacity().quads);
   refused(StatusCode::buffer_too_small, wanted + " are needed",
           [](MeshViews& views) { views.quads = views.quads.first(views.quads.size() - 1); });
   refused(StatusCode::buffer_too_small, "the quads view holds 1 indices",
           [](MeshViews& views) { views.quads = views.quads.first(1); });
   refused(StatusCode::buffer_too_small, "quad patch",
           [](MeshViews& views) { views.quad_patch = views.quad_patch.first(views.quad_patch.size() - 1); });
-  refused(StatusCode::buffer_too_small, "indices",
-          [](MeshViews& views) { views.quads = {}; });  // all are triangles then
+  refused(StatusCode::buffer_too_small, wanted + " are needed", [](MeshViews& views) { views.quads = {}; });
   refused(StatusCode::invalid_argument, "quad", [](MeshViews& views) { views.quad_patch = views.quads; });
 }
 
 TEST(Quads, BadViewsAreRefused) {
   const PatchSet set = set_of(sphere());
-  expect_bad_views_are_refused(set, good(CertifiedTessellation::make(set, {.tolerance = 0.01})));
-  expect_bad_views_are_refused(set, good(TessellationPlan::make(set, {.rate_u = 4, .rate_v = 4, .isa = {}})));
+  expect_bad_views_are_refused(set, good(Tessellation::make(set, {.tolerance = 0.01, .quads = true})));
+  expect_bad_views_are_refused(set, good(Tessellation::make(set, {.rates = UniformRates{4, 4}, .quads = true})));
+}
+
+TEST(Quads, ViewsOfQuadsNeedAPlanOfQuads) {
+  const PatchSet set = set_of(sphere());
+  std::vector<std::uint32_t> quads(100000, 7u);
+  for (const TessellationOptions& options :
+       {TessellationOptions{.tolerance = 0.01}, TessellationOptions{.rates = UniformRates{4, 4}}}) {
+    const Tessellation plan = good(Tessellation::make(set, options));
+    Mesh mesh = good(plan.allocate());
+    const Mesh clean = mesh;
+    MeshViews views = mesh.views();
+    views.quads = quads;
+    EXPECT_EQ(plan.run(set, views).code(), StatusCode::invalid_argument);
+    EXPECT_EQ(mesh.positions, clean.positions);
+    EXPECT_EQ(quads, std::vector<std::uint32_t>(100000, 7u));
+  }
 }
 
 Mesh cube() {

@@ -18,7 +18,7 @@ T good(Result<T> result) {
 
 inline PatchSet set_of(const std::vector<BezierPatch>& patches) { return good(PatchSet::make(patches)); }
 
-inline Mesh mesh_of(const PatchSet& set, const CertifiedTessellation& plan) {
+inline Mesh mesh_of(const PatchSet& set, const Tessellation& plan) {
   Mesh mesh = good(plan.allocate());
   const Status status = plan.run(set, mesh.views());
   EXPECT_TRUE(status.ok()) << status.message();
@@ -26,11 +26,7 @@ inline Mesh mesh_of(const PatchSet& set, const CertifiedTessellation& plan) {
 }
 
 inline Mesh tessellate(const PatchSet& set, int rate_u, int rate_v) {
-  const TessellationPlan plan = good(TessellationPlan::make(set, {.rate_u = rate_u, .rate_v = rate_v, .isa = {}}));
-  Mesh mesh = good(plan.allocate());
-  const Status status = plan.run(set, mesh.views());
-  EXPECT_TRUE(status.ok()) << status.message();
-  return mesh;
+  return mesh_of(set, good(Tessellation::make(set, {.rates = UniformRates{rate_u, rate_v}})));
 }
 inline Mesh tessellate(const std::vector<BezierPatch>& patches, int rate_u, int rate_v) {
   return tessellate(set_of(patches), rate_u, rate_v);

@@ -20,7 +20,7 @@ TEST(TessellationErrors, RatesOutOfRange) {
                                       {8, 0, "rate v is 0, it must be 1 to 4096"},
                                       {-5, 8, "rate u is -5, it must be 1 to 4096"},
                                       {8, 4097, "rate v is 4097, it must be 1 to 4096"}}) {
-    const auto plan = TessellationPlan::make(set, {.rate_u = u, .rate_v = v, .isa = {}});
+    const auto plan = Tessellation::make(set, {.rates = UniformRates{u, v}});
     ASSERT_FALSE(plan.ok());
     EXPECT_EQ(plan.status().code(), StatusCode::invalid_argument);
     EXPECT_EQ(plan.status().message(), message);
@@ -30,15 +30,14 @@ TEST(TessellationErrors, RatesOutOfRange) {
 TEST(TessellationErrors, VerticesBeyond32Bits) {
   Random random(2);
   const std::vector<BezierPatch> patches(256, random_polynomial(random, 1, 1));
-  const auto plan = TessellationPlan::make(set_of(patches), {.rate_u = 4096, .rate_v = 4096, .isa = {}});
+  const auto plan = Tessellation::make(set_of(patches), {.rates = UniformRates{4096, 4096}});
   ASSERT_FALSE(plan.ok());
   EXPECT_EQ(plan.status().code(), StatusCode::invalid_argument);
   EXPECT_EQ(plan.status().message(),
             "256 patches at rates 4096 x 4096 have 4297064704 vertices, 32-bit indices reach 4294967296");
   const std::vector<BezierPatch> fewer(patches.begin(), patches.end() - 1);
-  EXPECT_EQ(
-      good(TessellationPlan::make(set_of(fewer), {.rate_u = 4096, .rate_v = 4096, .isa = {}})).capacity().vertices,
-      4280279295u);
+  EXPECT_EQ(good(Tessellation::make(set_of(fewer), {.rates = UniformRates{4096, 4096}})).capacity().vertices,
+            4280279295u);
 }
 
 TEST(TessellationErrors, NoFloatBlocks) {
@@ -46,7 +45,7 @@ TEST(TessellationErrors, NoFloatBlocks) {
   const std::vector<BezierPatch> patches = {random_polynomial(random, 3, 3)};
   PatchSetOptions options;
   options.blocks = {.float_bernstein = false, .double_bernstein = true};
-  const auto plan = TessellationPlan::make(good(PatchSet::make(patches, options)));
+  const auto plan = Tessellation::make(good(PatchSet::make(patches, options)), {.rates = UniformRates{}});
   ASSERT_FALSE(plan.ok());
   EXPECT_EQ(plan.status().code(), StatusCode::unsupported);
 }
@@ -54,7 +53,7 @@ TEST(TessellationErrors, NoFloatBlocks) {
 /// A mesh full of a pattern, to see whether anything was written.
 class Untouched {
  public:
-  explicit Untouched(const TessellationPlan& plan) : mesh_(good(plan.allocate())) {
+  explicit Untouched(const Tessellation& plan) : mesh_(good(plan.allocate())) {
     for (auto* floats : {&mesh_.positions, &mesh_.normals, &mesh_.parameters})
       std::fill(floats->begin(), floats->end(), -77.0f);
     for (auto* integers : {&mesh_.patches, &mesh_.indices}) std::fill(integers->begin(), integers->end(), 77777777u);
@@ -76,7 +75,7 @@ class BadViews : public ::testing::Test {
  protected:
   BadViews()
       : set_(set_of(mixed_patches(4, 30))),
-        plan_(good(TessellationPlan::make(set_, {.rate_u = 3, .rate_v = 2, .isa = {}}))),
+        plan_(good(Tessellation::make(set_, {.rates = UniformRates{3, 2}}))),
         mesh_(plan_) {}
 
   void expect_refused(const MeshViews& views, StatusCode code, const std::string& message) {
@@ -87,7 +86,7 @@ class BadViews : public ::testing::Test {
   }
 
   PatchSet set_;
-  TessellationPlan plan_;
+  Tessellation plan_;
   Untouched mesh_;
 };
 
@@ -167,7 +166,7 @@ TEST(TessellationErrors, StaleAfterAnEditOfThePoles) {
   std::vector<BezierPatch> patches;
   for (int k = 0; k < 40; ++k) patches.push_back(random_polynomial(random, 2, 2));
   PatchSet set = set_of(patches);
-  const TessellationPlan plan = good(TessellationPlan::make(set));
+  const Tessellation plan = good(Tessellation::make(set, {.rates = UniformRates{}}));
   Untouched mesh(plan);
   std::vector<Vec3> points(patches[33].points().begin(), patches[33].points().end());
   points[1] = points[2] = points[0];
@@ -186,7 +185,7 @@ TEST(TessellationErrors, AnotherSet) {
   const BezierPatch patch = random_polynomial(random, 3, 3);
   const PatchSet set = set_of({patch, patch}), longer = set_of({patch, patch, patch});
   const PatchSet other_degrees = set_of({patch, random_polynomial(random, 3, 2)});
-  const TessellationPlan plan = good(TessellationPlan::make(set));
+  const Tessellation plan = good(Tessellation::make(set, {.rates = UniformRates{}}));
   Untouched mesh(plan);
   for (const PatchSet* other : {&longer, &other_degrees}) {
     EXPECT_EQ(plan.run(*other, mesh.views()).code(), StatusCode::stale);
@@ -196,7 +195,7 @@ TEST(TessellationErrors, AnotherSet) {
 
 TEST(TessellationErrors, Cancelled) {
   const PatchSet set = set_of(mixed_patches(7, 10));
-  const TessellationPlan plan = good(TessellationPlan::make(set));
+  const Tessellation plan = good(Tessellation::make(set, {.rates = UniformRates{}}));
   Mesh mesh = good(plan.allocate());
   const std::atomic<bool> cancel = true;
   Execution execution;

@@ -32,9 +32,7 @@ TEST(Tessellation, CountsFollowTheFormula) {
   const std::vector<BezierPatch> patches = random_patches(1, 20);
   const PatchSet set = set_of(patches);
   for (const auto& [u, v] : {std::pair{1, 1}, {1, 2}, {2, 1}, {2, 3}, {3, 5}, {4, 4}, {5, 1}, {7, 33}, {31, 2}}) {
-    const TessellationPlan plan = good(TessellationPlan::make(set, {.rate_u = u, .rate_v = v, .isa = {}}));
-    EXPECT_EQ(plan.rate_u(), u);
-    EXPECT_EQ(plan.rate_v(), v);
+    const Tessellation plan = good(Tessellation::make(set, {.rates = UniformRates{u, v}}));
     EXPECT_EQ(plan.capacity().vertices, 20u * static_cast<std::size_t>((u + 1) * (v + 1)));
     EXPECT_EQ(plan.capacity().triangles, 20u * static_cast<std::size_t>(2 * u * v));
     const Mesh mesh = good(plan.allocate());
@@ -105,7 +103,7 @@ TEST(Tessellation, FacesLookWhereNormalsPoint) {
 
 TEST(Tessellation, WritesToAnyLayout) {
   const PatchSet set = set_of(mixed_patches(4, 37));
-  const TessellationPlan plan = good(TessellationPlan::make(set, {.rate_u = 3, .rate_v = 4, .isa = {}}));
+  const Tessellation plan = good(Tessellation::make(set, {.rates = UniformRates{3, 4}}));
   Mesh expected = good(plan.allocate());
   ASSERT_TRUE(plan.run(set, expected.views()).ok());
   const std::size_t vertices = plan.capacity().vertices;
@@ -180,7 +178,7 @@ TEST(Tessellation, WeightsOfAnySize) {
 TEST(Tessellation, EditsThatKeepThePolesNeedNoNewPlan) {
   std::vector<BezierPatch> patches = random_patches(6, 20);
   PatchSet set = set_of(patches);
-  const TessellationPlan plan = good(TessellationPlan::make(set, {.rate_u = 4, .rate_v = 4, .isa = {}}));
+  const Tessellation plan = good(Tessellation::make(set, {.rates = UniformRates{4, 4}}));
   Mesh mesh = good(plan.allocate());
   Random random(7);
   const std::vector<Vec3> points = random_points(random, patches[3].degree_u(), patches[3].degree_v(), {}, 0.5);
@@ -191,7 +189,7 @@ TEST(Tessellation, EditsThatKeepThePolesNeedNoNewPlan) {
 
 TEST(Tessellation, TellsProgressAndWhatItDid) {
   const PatchSet set = set_of(mixed_patches(8, 500));
-  const TessellationPlan plan = good(TessellationPlan::make(set));
+  const Tessellation plan = good(Tessellation::make(set, {.rates = UniformRates{}}));
   Mesh mesh = good(plan.allocate());
   std::vector<double> told;
   ExecutionReport report;

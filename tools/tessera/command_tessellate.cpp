@@ -23,9 +23,9 @@ struct Options {
   ModelOptions models;
   std::string output, format;
   std::optional<Extent> grid;
-  CertifiedOptions certified;    ///< used if there is no grid
-  bool is_default = false;       ///< whether no density is on the command line
-  std::uint64_t max_memory = 0;  ///< bytes of the mesh; 0: a share of what is free
+  TessellationOptions certified;  ///< used if there is no grid
+  bool is_default = false;        ///< whether no density is on the command line
+  std::uint64_t max_memory = 0;   ///< bytes of the mesh; 0: a share of what is free
   bool quads = false;
   double pixels = 0;  ///< above 0 if requested
   View view;
@@ -49,24 +49,23 @@ struct Tessellated {
 
 /// Refuses a mesh that takes more memory than `max_bytes`, or than most of what is free.
 Status check_memory(const MeshCapacity& mesh, std::uint64_t max_bytes) {
-  // Position, normal and parameters of a vertex in float; the indices and the patch of a triangle; and writing takes
-  // about as much again as the vertices.
+  // Position, normal and parameters of a vertex in float; the indices and the patch of a triangle, or of half a quad;
+  // and writing takes about as much again as the vertices.
   constexpr std::uint64_t vertex_bytes = 2 * 32, triangle_bytes = 16;
-  const std::uint64_t needed = mesh.vertices * vertex_bytes + mesh.triangles * triangle_bytes;
+  const std::uint64_t triangles = mesh.triangles + 2 * mesh.quads;
+  const std::uint64_t needed = mesh.vertices * vertex_bytes + triangles * triangle_bytes;
   const std::uint64_t limit = max_bytes > 0 ? max_bytes : available_memory() / 4 * 3;
   if (needed <= limit) return {};
-  return {StatusCode::out_of_memory, "a mesh of " + counted(mesh.triangles, "triangle") + " needs " +
+  return {StatusCode::out_of_memory, "a mesh of " + counted(triangles, "triangle") + " needs " +
                                          readable_bytes(needed) + " of memory, the limit is " + readable_bytes(limit) +
                                          (max_bytes > 0 ? "" : ", three quarters of what is free") +
                                          "; use fewer segments, a tolerance, or --max-memory"};
 }
 
-/// Runs a plan of either kind.
-template <class Plan>
-Result<Mesh> run_plan(const Result<Plan>& plan, const PatchSet& set, const Options& options) {
+Result<Mesh> run_plan(const Result<Tessellation>& plan, const PatchSet& set, const Options& options) {
   if (!plan) return plan.status();
   if (Status status = check_memory(plan->capacity(), options.max_memory); !status.ok()) return status;
-  Result<Mesh> mesh = options.quads ? plan->allocate_quads() : plan->allocate();
+  Result<Mesh> mesh = plan->allocate();
   if (!mesh) return mesh;
   Progress progress("tessellating");
   const Status status = plan->run(set, mesh->views(), progress.execution());
@@ -77,13 +76,14 @@ Result<Mesh> run_plan(const Result<Plan>& plan, const PatchSet& set, const Optio
 Result<Tessellated> tessellate(const Options& options, const Model& model, const PatchSet& set) {
   Tessellated made;
   Result<Mesh> mesh = [&] {
-    if (options.grid)
-      return run_plan(
-          TessellationPlan::make(set, {.rate_u = options.grid->first, .rate_v = options.grid->second, .isa = {}}), set,
-          options);
-    CertifiedOptions certified = options.certified;
+    if (options.grid) {
+      const UniformRates rates{options.grid->first, options.grid->second};
+      return run_plan(Tessellation::make(set, {.rates = rates, .quads = options.quads}), set, options);
+    }
+    TessellationOptions certified = options.certified;
+    certified.quads = options.quads;
     if (options.pixels > 0) certified.pixels = PixelTolerance{options.pixels, options.view};
-    const Result<CertifiedTessellation> plan = CertifiedTessellation::make(set, certified);
+    const Result<Tessellation> plan = Tessellation::make(set, certified);
     if (plan) {
       made.tolerance = plan->tolerance();
       made.open_edges = plan->open_edges();
@@ -204,7 +204,7 @@ constexpr const char* footer =
 
 /// Adds the options for how fine the mesh is, and returns them. Without any, a relative tolerance is used.
 std::vector<const Option*> add_density(Command& command, Options& options) {
-  CertifiedOptions& certified = options.certified;
+  TessellationOptions& certified = options.certified;
   command.begin_group("Density [--relative 0.001]");
   Option& grid = command.add(
       "--grid", "NxM", "Segments of every patch, along u and along v, 1 to 4096 each",

@@ -29,12 +29,12 @@ struct MeshViews {
   View2<float> parameter = {};            ///< (u,v) of the patch, in [0,1]^2
   std::span<std::uint32_t> patch = {};    ///< the patch of each triangle
   std::span<std::uint32_t> indices = {};  ///< three per triangle, counter-clockwise seen from where r_u x r_v points
-  /// Four per quad, the same way around. If this is not empty, whole cells are written here, and `patch` and `indices`
-  /// hold only the other triangles, those of strips and at poles. The plan's quad_capacity() gives both numbers.
+  /// Four per quad, the same way around. Required by plans with quads, and must be empty for all others. With quads,
+  /// `patch` and `indices` hold only the other triangles, those of strips and at poles.
   std::span<std::uint32_t> quads = {};
   std::span<std::uint32_t> quad_patch = {};  ///< the patch of each quad
   /// Positions in double, in the model's coordinates. Required by plans with positions in double, and must be empty for
-  /// all others: see CertifiedOptions::precision.
+  /// all others: see TessellationOptions::precision.
   View3<double> position_f64 = {};
 };
 

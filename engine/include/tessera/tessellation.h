@@ -1,6 +1,6 @@
 #pragma once
 // Turns patches into triangles and quads: at uniform rates, or so that a tolerance in length, angle or pixels provably
-// holds without cracks. Updates such meshes after edits of control points.
+// holds without cracks. Meshes follow edits of control points.
 
 #include <cstddef>
 #include <cstdint>
@@ -14,6 +14,7 @@
 #include "tessera/execution.h"
 #include "tessera/geometry.h"
 #include "tessera/mesh.h"
+#include "tessera/nurbs_surface.h"
 #include "tessera/patch_set.h"
 #include "tessera/status.h"
 
@@ -21,69 +22,6 @@
 namespace tessera::inline abi_0_1 {
 
 struct Model;
-
-/// How finely patches are divided.
-struct TessellationOptions {
-  int rate_u = 8;               ///< segments along u of every patch, 1 to 4096
-  int rate_v = 8;               ///< segments along v of every patch, 1 to 4096
-  std::optional<Isa> isa = {};  ///< default_isa() if empty
-};
-
-/// Divides every patch at the same rates.
-///
-/// Layout of the vertices: `[patch][iu][iv]`, so vertex (patch * (rate_u + 1) + iu) * (rate_v + 1) + iv. Border
-/// vertices are stored once per patch. Where two patches share the control points of a border and run at equal rates
-/// there, these vertices are the same bits. Triangles that collapse at a pole are left out.
-class TessellationPlan {
- public:
-  /// Makes a plan. Errors: invalid_argument (a rate out of range; counts that overflow 32-bit indices),
-  /// isa_unavailable, unsupported (the set has no float Bernstein blocks). Memory: 24 bytes per patch.
-  static Result<TessellationPlan> make(const PatchSet& set, const TessellationOptions& options = {});
-
-  TessellationPlan(TessellationPlan&&) noexcept;
-  TessellationPlan& operator=(TessellationPlan&&) noexcept;
-  ~TessellationPlan();
-
-  /// Returns the exact sizes of a mesh of triangles alone.
-  MeshCapacity capacity() const;
-  /// Returns the exact sizes of a mesh with quads: whole cells are quads, cells at poles are triangles.
-  MeshCapacity quad_capacity() const;
-  int rate_u() const;  ///< segments along u of every patch
-  int rate_v() const;  ///< segments along v of every patch
-  /// Returns a mesh of capacity() with all attributes. Errors: out_of_memory.
-  Result<Mesh> allocate() const;
-  /// Returns a mesh of quad_capacity() with all attributes. Errors: out_of_memory.
-  Result<Mesh> allocate_quads() const;
-
-  /// Writes the mesh; with quads if `out.quads` is not empty.
-  ///
-  /// `set`: the set that the plan was made for, at any revision that collapses the same edges. The plan does not keep
-  /// the set itself: a run on another set of equal shape (patch count, degrees, rationality, collapsed edges) writes
-  /// that set's mesh, relative to that set's origin.
-  ///
-  /// Errors: buffer_too_small, stale (a set of another shape), invalid_argument (views), cancelled. Nothing is written
-  /// on any error but cancelled.
-  ///
-  /// The bytes are the same for any number of threads. Allocates nothing after the first call.
-  Status run(const PatchSet& set, const MeshViews& out, const Execution& execution = {}) const;
-
-  class [[gnu::visibility("hidden")]] Impl;
-
- private:
-  explicit TessellationPlan(std::unique_ptr<Impl> impl);
-  std::unique_ptr<Impl> impl_;
-};
-
-/// Returns Mesh::parts by surfaces: one part for each run of triangles and quads whose patches come from one surface.
-///
-/// - `set`: the set that mesh.patches refers to, made of `model`.
-///
-/// Runs are counted in the order of the patches: the next triangle or quad is the one with the lower patch. A part has
-/// the name of its surface in the model, or "surface 3" if that name is empty.
-///
-/// Errors: count_mismatch (not one patch per triangle and per quad), invalid_argument (no such patch in the set, or no
-/// such surface in the model; index = the triangle or quad).
-Result<std::vector<MeshPart>> parts_by_surface(const Mesh& mesh, const PatchSet& set, const Model& model);
 
 /// A picture of width x height square pixels, whose middle lies in the direction of the target.
 struct View {
@@ -112,12 +50,21 @@ struct PixelTolerance {
   View view;            ///< the camera
 };
 
-/// The tolerances and limits of a certified mesh. At least one of tolerance, angle, pixels and smallest must be set.
-struct CertifiedOptions {
+/// Equal rates for all patches.
+struct UniformRates {
+  int u = 8;  ///< segments along u of every patch, 1 to 4096
+  int v = 8;  ///< segments along v of every patch, 1 to 4096
+};
+
+/// How finely patches are divided: either `rates`, or at least one of tolerance, angle, pixels and smallest.
+struct TessellationOptions {
+  /// Divides every patch at these rates, and proves nothing. Only `quads` and `isa` count beside it: a tolerance of any
+  /// kind is an error.
+  std::optional<UniformRates> rates = {};
   /// The largest distance between surfaces and mesh, in the model's lengths, above 0: every point of either lies within
   /// this distance of the other.
   std::optional<double> tolerance = {};
-  /// Whether the tolerance is a share of the diagonal of the set's box instead of a length.
+  /// Whether the tolerance is a share of the diagonal of the set's box, as it is in make(), instead of a length.
   bool relative = false;
   /// The largest angle by which the surface's normal turns within a triangle, radians, above 0, at most pi / 2.
   ///
@@ -143,8 +90,8 @@ struct CertifiedOptions {
   /// border has one normal per vertex, that of the patch that comes first; so has a pole all around. All other borders
   /// are creases, with a normal for each patch. 0.01 takes in joins that are G1 up to rounding.
   ///
-  /// make() decides this once, from the normals of the mesh; later edits do not change it. The proven `angle` is that
-  /// of each patch's own normals.
+  /// The normals of the mesh decide this when its topology is made; edits that keep the topology do not change it. The
+  /// proven `angle` is that of each patch's own normals.
   std::optional<double> crease_angle = {};
   /// Whether patches that meet share the vertices of their border by index, and a pole is one vertex. If false, each
   /// patch has its own vertices, whose positions are the same bits.
@@ -156,7 +103,8 @@ struct CertifiedOptions {
   /// The largest number of triangles; a mesh that takes more is an error.
   std::uint64_t max_triangles = std::uint64_t{1} << 30;
   /// Finds the tolerance: the smallest of the lengths 2^(k/128), 0.54 percent apart, for which max_triangles suffice,
-  /// down to 1e-6 of the tolerance that one cell per patch keeps. Angle and pixels are kept as well.
+  /// down to 1e-6 of the tolerance that one cell per patch keeps. Angle and pixels are kept as well. Edits keep the
+  /// tolerance as long as max_triangles suffice.
   bool smallest = false;
   /// Looks for fewer triangles and takes more time. It never adds triangles and saves a twentieth to a third of them,
   /// most on rational patches and on those that bend along u in one place and along v in another. The means are:
@@ -169,6 +117,14 @@ struct CertifiedOptions {
   /// Time: about a hundred times that of a plan without it, of the order of 100 us per bicubic patch; many seconds with
   /// `smallest`, which tries many plans. Meant for meshes that are drawn, stored or updated often.
   bool fewest = false;
+  /// Whether whole cells are quads. With a tolerance, each cell that is not in a strip along a border is one quad, so
+  /// there are none where strips take all cells; with rates, each cell that is not at a pole. The corners of a quad are
+  /// those of a box of the patch's parameters, in which both of its triangles lie: all that is proven of the mesh holds
+  /// for both, by either diagonal.
+  bool quads = false;
+  /// Edits: a patch keeps its segments while they keep the tolerances and have at most (1 + spare) times the cells of
+  /// the best ones. Finite, at least 0.
+  double spare = 0.25;
   std::optional<Isa> isa = {};  ///< default_isa() if empty
   /// Double: the mesh has positions in double as well, in the model's coordinates, and the bounds hold for these.
   ///
@@ -179,13 +135,41 @@ struct CertifiedOptions {
   Precision precision = Precision::single_precision;
 };
 
-/// Divides each patch into the fewest cells of one size that keep the tolerance, without cracks between patches.
+/// New control points of a spline surface that the patches of a set were converted from by make_patch_set().
+struct SurfaceEdits {
+  /// The surface: its degrees, knots, weights and domain; its own control points do not count. A copy of the same
+  /// object each time is fastest.
+  BSplineSurface spline;
+  /// All control points `[i][j]` as they are now, as many as the spline has, not premultiplied.
+  std::span<const Vec3> points;
+  /// The points i * count_v() + j that differ from those of the last update that succeeded. Empty: any may.
+  std::span<const std::uint32_t> moved = {};
+  std::uint32_t surface = 0;  ///< PatchSource::surface of its patches
+  Affine placement = {};      ///< maps the control points into the set
+};
+
+/// What an update has changed besides the vertices.
+struct MeshChange {
+  /// Whether the mesh has other triangles or vertices than before. If so, nothing was written, and the plan is that of
+  /// the new mesh, for capacity(), allocate() and run().
+  bool topology = false;
+  std::size_t patches = 0;  ///< how many patches are divided, or joined to others, in another way than before
+};
+
+/// The plan of a mesh: how each patch is divided, and where its vertices and triangles lie.
 ///
-/// Bounds: the bound of a patch is proven. It is the sum of a bound on the chords, the rounding of float vertices and
-/// the set's fit error. The second derivatives of the patch bound the chords (Filip, Magedson, Markot 1986); for a
-/// rational patch those of its homogeneous form, or those of exact numerators. So a cylinder takes as many triangles at
-/// any height. Scaled sweeps rho(v) E(u) + T(v), such as surfaces of revolution, extrusions and cones, need no bound on
-/// the mixed derivative. A flat convex quadrilateral takes two triangles.
+///   auto plan = Tessellation::make(set, {.tolerance = 1e-3});
+///   Mesh mesh = *plan->allocate();
+///   plan->run(set, mesh.views());
+///   auto change = plan->update(set, {patches, points}, mesh.views());  // each frame
+///   if (change && change->topology) mesh = *plan->allocate(), plan->run(set, mesh.views());
+///
+/// Tolerances: each patch has the fewest cells of one size that keep them. The bound of a patch is proven. It is the
+/// sum of a bound on the chords, the rounding of float vertices and the set's fit error. The second derivatives of the
+/// patch bound the chords (Filip, Magedson, Markot 1986); for a rational patch those of its homogeneous form, or those
+/// of exact numerators. So a cylinder takes as many triangles at any height. Scaled sweeps rho(v) E(u) + T(v), such as
+/// surfaces of revolution, extrusions and cones, need no bound on the mixed derivative. A flat convex quadrilateral
+/// takes two triangles.
 ///
 /// Vertices: usually sums of floats, in SIMD. If the rounding of these sums takes more than an eighth of the tolerance,
 /// or all that pixels leave, as for parts far from each other with a small tolerance, then all vertices are sums of
@@ -198,7 +182,7 @@ struct CertifiedOptions {
 /// vertices are the same bits in both patches. Each patch has an inner grid at its own rates, and strips of triangles
 /// between that grid and its borders. A collapsed border is one point without triangles on it.
 ///
-/// Welding: a border that equals no other by its bits is joined to the nearest one within CertifiedOptions::weld.
+/// Welding: a border that equals no other by its bits is joined to the nearest one within TessellationOptions::weld.
 ///
 /// - The border that moves depends on the two alone. Of three or more that are joined, all take the vertices of one. A
 ///   slit narrower than the weld closes. A patch thinner than the weld keeps its own borders apart.
@@ -210,40 +194,43 @@ struct CertifiedOptions {
 /// - Borders whose control points lie in a box no larger than the weld become points, as collapsed ones are.
 /// - The bounds include how far vertices are moved.
 ///
-/// Layout of the vertices, patch after patch: the inner points, then the border points counter-clockwise from (0,0),
-/// each corner once; shared points that belong to another patch are left out. The inner points of patch k are
-///   first_vertex(k) + (iu - 1) * (rates v - 1) + iv - 1.
+/// Layout of the vertices, patch after patch. Tolerances: the inner points `[iu - 1][iv - 1]`, then the border points
+/// counter-clockwise from (0,0), each corner once; shared points that belong to another patch are left out. Rates: all
+/// points `[iu][iv]`, so vertex (patch * (rates.u + 1) + iu) * (rates.v + 1) + iv.
 ///
-/// Immutable. Threads: any number of const calls. Memory: 1 KiB per patch to make, 256 bytes per patch to keep; and at
-/// most about 512 KiB per set for tables that its small plans share.
-class CertifiedTessellation {
+/// Threads: any number of const calls; an update excludes every other call. Memory: with rates 24 bytes per patch. With
+/// tolerances 1 KiB per patch to make and 256 bytes per patch to keep; the first update takes another 256 bytes per
+/// patch; and at most about 512 KiB per set for tables that its small plans share.
+class Tessellation {
  public:
   /// Makes a plan.
   ///
   /// Errors:
-  /// - invalid_argument (no tolerance of any kind, or one that is not above 0)
+  /// - invalid_argument (neither rates nor a tolerance of any kind, or both; a rate out of range; a tolerance that is
+  ///   not above 0)
   /// - invalid_argument (a tolerance that a patch's rounding, welding or the fit error exceeds already, or nearly; the
   ///   message names about the smallest tolerance that has a plan)
-  /// - invalid_argument (a view without a picture; a weld or a crease angle out of range)
+  /// - invalid_argument (a view without a picture; a weld, a crease angle or `spare` out of range)
   /// - invalid_argument (more triangles or vertices than the limits, or more than 4096 segments along a parameter; the
   ///   message says how many triangles the mesh takes)
   /// - invalid_argument (max_triangles below what one cell per patch takes)
   /// - unsupported (the set has no float Bernstein blocks), isa_unavailable, cancelled
-  static Result<CertifiedTessellation> make(const PatchSet& set, const CertifiedOptions& options,
-                                            const Execution& execution = {});
+  static Result<Tessellation> make(const PatchSet& set, const TessellationOptions& options,
+                                   const Execution& execution = {});
 
-  CertifiedTessellation(CertifiedTessellation&&) noexcept;
-  CertifiedTessellation& operator=(CertifiedTessellation&&) noexcept;
-  ~CertifiedTessellation();
+  Tessellation(Tessellation&&) noexcept;
+  Tessellation& operator=(Tessellation&&) noexcept;
+  ~Tessellation();
 
-  /// Returns the tolerance as a length, also that which was found for a number of triangles; infinite if there is none.
-  double tolerance() const;
-  /// Returns the distance that the mesh is proven to keep: the largest of bounds(), at most the tolerance. Like all
-  /// bounds of a plan it holds for the set and the revision that the plan was made for.
+  /// Returns the distance that the mesh is proven to keep: the largest of bounds(), at most the tolerance; infinite
+  /// with rates. Like all bounds of a plan it holds for the set and the revision that the plan was made or updated for.
   double bound() const;
-  /// Whether the bounds are proven; false where the set's fit error is only sampled.
+  /// Whether the bounds are proven; false with rates, and where the set's fit error is only sampled.
   bool certified() const;
-  /// Returns the proven distance of each patch.
+  /// Returns the distance that the plan keeps: the tolerance, as a length, or the smallest one that make() found.
+  /// Infinite if neither was set.
+  double tolerance() const;
+  /// Returns the proven distance of each patch; empty with rates.
   std::span<const float> bounds() const;
   /// Returns the proven angle, radians: the largest of the patches that have a bound. 0 if no angle was set.
   double angle() const;
@@ -257,128 +244,90 @@ class CertifiedTessellation {
   /// Returns how many borders were joined by welding and not by their bits: those with the vertices of another border,
   /// and those made points.
   std::size_t welded_borders() const;
-  /// Returns how many edges of the mesh have one triangle alone: those on borders that are joined to no other.
+  /// Returns how many edges of the mesh have one triangle alone, those on borders that are joined to no other; 0 with
+  /// rates, where it is not known.
   std::size_t open_edges() const;
-  /// Returns the exact sizes of a mesh of triangles alone.
-  MeshCapacity capacity() const;
-  /// Returns the exact sizes of a mesh with quads: one quad for each cell that is not in a strip, so none where strips
-  /// take all cells. The corners of a quad are those of a box of the patch's parameters, in which both of its triangles
-  /// lie: all that is proven of the mesh holds for both, by either diagonal.
-  MeshCapacity quad_capacity() const;
+  MeshCapacity capacity() const;  ///< the exact sizes of the mesh
   /// Returns a mesh of capacity() with all attributes that the plan has. Errors: out_of_memory.
   Result<Mesh> allocate() const;
-  /// Returns a mesh of quad_capacity() with all attributes that the plan has. Errors: out_of_memory.
-  Result<Mesh> allocate_quads() const;
 
-  /// Writes the mesh; with quads if `out.quads` is not empty.
+  /// Writes the mesh.
   ///
-  /// `set`: the set that the plan was made for, at any revision; the triangles are the same for all control points. The
-  /// bounds hold only for the set and the revision that the plan was made for. The plan does not keep the set itself: a
-  /// run on another set of equal shape (patch count, degrees and collapsed borders) writes that set's mesh, relative to
-  /// that set's origin, for which nothing is proven.
+  /// `set`: the set that the plan was made for, at any revision that collapses the same borders; the triangles are the
+  /// same for all control points. The bounds hold only for the revision that the plan was made or updated for. The plan
+  /// does not keep the set itself: a run on another set of equal shape (patch count, degrees and collapsed borders)
+  /// writes that set's mesh, relative to that set's origin, for which nothing is proven.
   ///
   /// Errors: buffer_too_small, stale (another number of patches, other degrees or collapsed borders), unsupported (a
   /// set without float Bernstein blocks), invalid_argument (views; a view of normals where vertices are shared
-  /// everywhere), cancelled. Nothing is written on any error but cancelled.
+  /// everywhere; a view of quads if the plan has none), cancelled. Nothing is written on any error but cancelled.
   ///
   /// The bytes are the same for any number of threads, and on every instruction set that fuses multiply-adds; border
   /// positions are the same on all. Packed views (three floats per record) of large meshes are written past the caches
-  /// unless execution.stores is plain.
+  /// unless execution.stores is plain. Allocates nothing after the first call.
   Status run(const PatchSet& set, const MeshViews& out, const Execution& execution = {}) const;
 
-  /// Returns the plan for the set as it is now, with the options of this plan.
+  /// Follows edits: sets new control points, proves the tolerances again, and moves the vertices of these patches.
   ///
-  /// Bounds, edges and welds are found anew; rates change only where they must. A patch keeps its segments while they
-  /// keep the tolerances and have at most (1 + spare) times the cells of the best ones; all patches take the best ones
-  /// if the triangles would exceed the limit. `spare` is at least 0.
+  /// - `set`: the set of the plan. Patches that set_control_points() has edited since the last update are followed too.
+  /// - `out`: the views of the mesh that run() has written; positions, and normals if wanted, are enough. They hold as
+  ///   many vertices as capacity() says. Records of other patches are not touched, except vertices that welding takes
+  ///   from edited patches.
   ///
-  /// Errors: as make(); stale (another number of patches).
-  Result<CertifiedTessellation> retessellate(const PatchSet& set, double spare = 0.25,
-                                             const Execution& execution = {}) const;
-  /// Returns how many patches this plan divides, or joins to others, differently from another plan for the set. If
-  /// none, meshes of the two plans have the same triangles and vertices.
-  std::size_t divided_otherwise(const CertifiedTessellation& other) const;
+  /// A patch keeps its segments as `spare` says; if any patch does not, or collapses other borders, the topology has
+  /// changed. Borders stay joined as they were when the topology was last made: where edits move apart borders of the
+  /// same bits, so is the mesh, and borders that edits bring together are joined by a new plan only.
+  ///
+  /// The set and the views get the same bytes as from PatchSet::set_control_points() for each edit and run(), for any
+  /// number of threads. The revision grows by one, unless there is no edit.
+  ///
+  /// Errors, with nothing written and the set unchanged:
+  /// - buffer_too_small, count_mismatch (views of fewer or more vertices: of a mesh of another topology)
+  /// - invalid_argument (views; index = the edit: no such patch, or one that an edit before names)
+  /// - count_mismatch (points), stale (another set)
+  /// - non_finite (index = the edit: a point is not finite, or does not fit the set's numbers relative to its origin)
+  ///
+  /// Errors after the set was edited:
+  /// - invalid_argument (no mesh keeps the tolerances within the limits: as make()), out_of_memory. Nothing is written.
+  /// - cancelled. Some patches may have their new control points, and some of them their new vertices.
+  ///
+  /// The plan is then that of the mesh before, and the next update, without edits too, makes up for this one.
+  ///
+  /// Memory: the first update of a patch gives its points memory of their own, if it shares them with other patches.
+  /// Later updates allocate nothing if distances are the only tolerance and the topology is unchanged, except for a
+  /// patch with a border that welding made a point.
+  ///
+  /// Time: what the edited patches take, unless the topology changes or `fewest` is set and a patch cannot keep its
+  /// segments; both take up to the time of a new plan.
+  Result<MeshChange> update(PatchSet& set, const PatchEdits& edits, const MeshViews& out,
+                            const Execution& execution = {});
+  /// Follows edits of spline surfaces: converts the patches that the moved control points act on, to the same bits as
+  /// make_patch_set(), and updates as above.
+  ///
+  /// Errors, besides those above, with nothing written and the set unchanged (index = the edit): invalid_argument (the
+  /// set's patches of this surface are not those of the spline; a surface that an edit before names; no such control
+  /// point), count_mismatch (control points). Memory: the patches of these surfaces once more, kept for later calls.
+  Result<MeshChange> update(PatchSet& set, std::span<const SurfaceEdits> edits, const MeshViews& out,
+                            const Execution& execution = {});
 
   class [[gnu::visibility("hidden")]] Impl;
 
  private:
   friend struct ImplAccess;
-  explicit CertifiedTessellation(std::unique_ptr<Impl> impl);
+  explicit Tessellation(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
 
-/// A certified plan with the memory for updates of its mesh, so that repeated updates allocate nothing.
+/// Returns Mesh::parts by surfaces: one part for each run of triangles and quads whose patches come from one surface.
 ///
-/// A frame of an animated model costs the evaluation of its touched patches; the triangles are unchanged. Threads: one
-/// call at a time.
+/// - `set`: the set that mesh.patches refers to, made of `model`.
 ///
-///   auto update = MeshUpdate::make(set, std::move(plan));   // once plan.run(set, mesh.views()) has written the mesh
-///   update->run(set, {patches, points}, mesh.views());      // each frame
-///   if (update->restate(set).ok() && update->unproven() > 0)
-///     if (auto changed = update->retessellate(set); changed && *changed > 0)
-///       mesh = ...                                          // update->plan().allocate() and run()
-class MeshUpdate {
- public:
-  /// Takes over a plan of the set as it is. Errors: stale (another revision of the set, or number of patches),
-  /// out_of_memory. Memory: 256 bytes per patch, which include those of the plan.
-  static Result<MeshUpdate> make(const PatchSet& set, CertifiedTessellation plan);
-
-  MeshUpdate(MeshUpdate&&) noexcept;
-  MeshUpdate& operator=(MeshUpdate&&) noexcept;
-  ~MeshUpdate();
-
-  const CertifiedTessellation& plan() const;  ///< the plan of the mesh as it is now
-
-  /// Sets new control points and writes the positions and normals of these patches.
-  ///
-  /// `out`: the views of the mesh that the plan has written. Positions, and normals if wanted, are enough. Records of
-  /// other patches are not touched, except vertices that welding takes from edited patches.
-  ///
-  /// The set and the views get the same bytes as from PatchSet::set_control_points() for each edit and
-  /// CertifiedTessellation::run(), for any number of threads; but each task packs the patches that it evaluates while
-  /// they are in its cache. The revision grows by one, unless there is no edit. Where borders of the same bits are
-  /// moved apart, so is the mesh; retessellate() finds what still meets.
-  ///
-  /// Errors, with nothing written:
-  /// - buffer_too_small, invalid_argument (views)
-  /// - invalid_argument (another set; index = the edit: no such patch, or one that an edit before names)
-  /// - stale (the set was edited by other means; index = the edit: other collapsed borders than in the plan)
-  /// - count_mismatch (points)
-  /// - non_finite (index = the edit: a point is not finite, or does not fit the set's numbers relative to its origin)
-  ///
-  /// After cancelled, each patch has its new control points and its new vertices, or neither.
-  ///
-  /// Memory: the first update of a patch gives its points memory of their own, if it shares them with other patches.
-  /// Later updates allocate nothing, except for a patch with a border that welding made a point.
-  Status run(PatchSet& set, const PatchEdits& edits, const MeshViews& out, const Execution& execution = {});
-
-  /// Proves anew how far the mesh lies from the patches that were touched since the last call.
-  ///
-  /// Only distances are proven: a touched patch with an angle or pixels counts as unproven. Allocates nothing. Errors:
-  /// stale (the set was edited by other means), cancelled.
-  ///
-  /// Time: about a quarter of an update of these patches; for plans with `fewest` up to the order of 100 us per bicubic
-  /// patch. With `fewest`, this finds a larger bound than the plan's for one patch in a hundred, by up to 6 %.
-  Status restate(const PatchSet& set, const Execution& execution = {});
-  /// Returns the largest distance of each patch from the mesh, as of the last restate(); at first the plan's bounds().
-  std::span<const float> bounds() const;
-  double bound() const;  ///< the largest of bounds()
-  /// Returns how many patches need other rates, as of the last restate(): those whose bound exceeds the plan's
-  /// tolerance, or whose angle or pixels are no longer known.
-  std::size_t unproven() const;
-
-  /// Replaces the plan by its CertifiedTessellation::retessellate().
-  ///
-  /// Returns how many patches are divided differently. If none, the mesh is unchanged; else it is another one, for
-  /// plan().allocate() or capacity() and run(). All patches, if the set was edited by other means: run() of the plan is
-  /// then due in any case. Errors: as CertifiedTessellation::retessellate(); the plan is then unchanged.
-  Result<std::size_t> retessellate(const PatchSet& set, double spare = 0.25, const Execution& execution = {});
-
- private:
-  class [[gnu::visibility("hidden")]] Impl;
-  explicit MeshUpdate(std::unique_ptr<Impl> impl);
-  std::unique_ptr<Impl> impl_;
-};
+/// Runs are counted in the order of the patches: the next triangle or quad is the one with the lower patch. A part has
+/// the name of its surface in the model, or "surface 3" if that name is empty.
+///
+/// Errors: count_mismatch (not one patch per triangle and per quad), invalid_argument (no such patch in the set, or no
+/// such surface in the model; index = the triangle or quad).
+Result<std::vector<MeshPart>> parts_by_surface(const Mesh& mesh, const PatchSet& set, const Model& model);
 
 }  // namespace tessera::inline abi_0_1
 #pragma GCC visibility pop

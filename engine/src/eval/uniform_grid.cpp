@@ -7,7 +7,10 @@
 #include "base/impl_access.h"
 #include "block/patch_set_impl.h"
 #include "eval/border_weights.h"
+#include "eval/edited_grids.h"
 #include "eval/grid_plan_impl.h"
+#include "eval/patch_edits.h"
+#include "eval/task_size.h"
 #include "kernel/table/kernel_table.h"
 #include "parallel/parallel_for.h"
 
@@ -37,7 +40,8 @@ class BorderWriter {
         weights_u_(weights_u),
         weights_v_(weights_v) {}
 
-  void run(std::size_t block) const {
+  /// `wanted`: a bit for each lane to write.
+  void run(std::size_t block, std::uint32_t wanted = ~0u) const {
     const BlockGroup& group = set_.group_of_block(block);
     const float* net = set_.f32.bernstein.data() + group.first_value + (block - group.first_block) * group.block_values;
     const std::ptrdiff_t coefficient = (group.rational ? 4 : 3) * PatchSet::lanes;
@@ -48,16 +52,17 @@ class BorderWriter {
       job.control_step = place.along_u ? row : coefficient;
       job.control = net + (place.at_end ? (place.along_u ? coefficient * group.degree_v : row * group.degree_u) : 0);
       job.rational = group.rational;
-      evaluate_edge(block, place, job);
+      evaluate_edge(block, wanted, place, job);
     }
     for (std::size_t lane = 0; lane < set_.lane_counts[block]; ++lane)
-      write_corners(set_.lane_patches[block * PatchSet::lanes + lane]);
+      if (wanted >> lane & 1u) write_corners(set_.lane_patches[block * PatchSet::lanes + lane]);
   }
 
  private:
   static constexpr int piece = 64;  ///< points staged at once
 
-  void evaluate_edge(std::size_t block, const EdgePlace& place, kernel::BorderJob<float> job) const {
+  void evaluate_edge(std::size_t block, std::uint32_t wanted, const EdgePlace& place,
+                     kernel::BorderJob<float> job) const {
     alignas(cache_line) std::array<float, static_cast<std::size_t>(piece) * 3 * PatchSet::lanes> stage;
     const float* weights = (place.along_u ? weights_u_ : weights_v_)[static_cast<std::size_t>(job.degree)].data();
     const int count = (place.along_u ? rate_u_ : rate_v_) + 1;
@@ -67,6 +72,7 @@ class BorderWriter {
       job.count = std::min(piece, count - first);
       kernels_.border_f32(job);
       for (std::size_t lane = 0; lane < set_.lane_counts[block]; ++lane) {
+        if (!(wanted >> lane & 1u)) continue;
         const std::uint32_t patch = set_.lane_patches[block * PatchSet::lanes + lane];
         if (!set_.collapsed[patch].has(place.edge)) write(patch, place, first, job.count, stage.data() + lane);
       }
@@ -144,6 +150,33 @@ Status UniformGrid::run(const PatchSet::Impl& set, const QuantityViews<float>& o
   return parallel_for(impl_of(plan_).block_count, grain, quiet, [&](std::size_t begin, std::size_t end) {
     for (std::size_t block = begin; block < end; ++block) borders.run(block);
   });
+}
+
+Status UniformGrid::update(PatchSet::Impl& set, const PatchEdits& edits, const TouchedBlocks& touched,
+                           const QuantityViews<float>& out, const Execution& execution) const {
+  const GridPlan::Impl& plan = impl_of(plan_);
+  const kernel::KernelTable& kernels = kernel::kernels(plan.isa);
+  const StageLayout<float> layout(out);
+  const bool streaming = views_stream(layout, edits.patch.size() * plan.samples(), execution.stores);
+  const UpdateCall call{set, plan, kernels, edits, touched, out.normal.empty() ? 0 : 1, streaming};
+  const BorderWriter borders(set, kernels, rate_u_, rate_v_, out.position, border_weights_u_, border_weights_v_);
+  const auto blocks = touched.blocks();
+  const auto write = [&](std::size_t begin, std::size_t end) {
+    EditedGrids<float> task(call, layout, out);
+    for (std::size_t k = begin; k < end; ++k) task.add(blocks[k]);
+    task.finish();
+    for (std::size_t k = begin; k < end; ++k) {
+      std::uint32_t wanted = 0;
+      for (std::size_t lane = 0; lane < PatchSet::lanes; ++lane)
+        if (touched.edits(blocks[k])[lane] != TouchedBlocks::none) wanted |= 1u << lane;
+      borders.run(blocks[k], wanted);
+    }
+  };
+  const Status status =
+      parallel_for(blocks.size(), blocks_per_task(plan, blocks.size(), call.order > 0), execution, write);
+  finish_edits(set, edits);
+  report_run(execution, plan.isa, streaming);
+  return status;
 }
 
 }  // namespace tessera::inline abi_0_1

@@ -8,6 +8,7 @@
 #include "base/aligned.h"
 #include "base/impl_access.h"
 #include "base/internal_export.h"
+#include "eval/touched_blocks.h"
 #include "tessera/evaluate.h"
 
 namespace tessera::inline abi_0_1 {
@@ -32,6 +33,10 @@ class UniformGrid {
   /// For callers that keep the set's inner state, which stays in place when the set is moved.
   TESSERA_INTERNAL_EXPORT Status run(const PatchSet::Impl& set, const QuantityViews<float>& out,
                                      const Execution& execution) const;
+  /// Packs edits and evaluates the patches that they touch, which the set and prepare_edits() have checked. Errors:
+  /// cancelled; each patch then has its new control points and its new grid, or neither.
+  Status update(PatchSet::Impl& set, const PatchEdits& edits, const TouchedBlocks& touched,
+                const QuantityViews<float>& out, const Execution& execution) const;
 
  private:
   UniformGrid(GridPlan plan, int rate_u, int rate_v) : plan_(std::move(plan)), rate_u_(rate_u), rate_v_(rate_v) {}

@@ -44,7 +44,7 @@ Result<CertifiedPlanner> CertifiedPlanner::make(const PatchSet::Impl& set, const
   for (const double rounding : planner.roundings_)
     planner.largest_rounding_ = std::max(planner.largest_rounding_, rounding);
   planner.find_weld();
-  if (Status status = planner.bound_turning_and_picture(set, execution); !status.ok()) return status;
+  if (Status status = planner.bound_turning_and_picture(execution); !status.ok()) return status;
   return planner;
 }
 
@@ -79,17 +79,23 @@ void CertifiedPlanner::bound_block(std::size_t block) {
   const BlockGroup& group = set.group_of_block(block);
   const PatchShape whole{
       static_cast<std::uint8_t>(group.degree_u), static_cast<std::uint8_t>(group.degree_v), {}, false};
-  const double rounding = vertex_rounding(group.degree_u, group.degree_v, group.rational, 1);
   for (std::size_t lane = 0; lane < set.lane_counts[block]; ++lane) {
     const std::size_t k = set.lane_patches[block * PatchSet::lanes + lane];
-    const std::optional<double> size = chords_.size(block, lane);
     shapes_[k] = set.collapsed[k].any() ? PatchShape::of(set.patches[k], set.collapsed[k]) : whole;
-    const double vertices = options_.f64_positions ? f64_position_rounding(set.patches[k], set.origin)
-                            : options_.f64         ? f64_vertex_rounding(set.patches[k], set.origin)
-                            : size                 ? rounding * *size
-                                                   : vertex_rounding(set.patches[k], set.origin);
-    roundings_[k] = vertices + chords_.slack(block, lane);
+    roundings_[k] = own_rounding(group, set.slots[k]);
   }
+}
+
+double CertifiedPlanner::own_rounding(const BlockGroup& group, PatchSet::Slot slot) const {
+  const std::optional<double> size = chords_.size(slot.block, slot.lane);
+  const auto patch = [&]() -> const BezierPatch& {
+    return set_->patches[set_->lane_patches[slot.block * std::size_t{PatchSet::lanes} + slot.lane]];
+  };
+  const double vertices = options_.f64_positions ? f64_position_rounding(patch(), set_->origin)
+                          : options_.f64         ? f64_vertex_rounding(patch(), set_->origin)
+                          : size ? vertex_rounding(group.degree_u, group.degree_v, group.rational, *size)
+                                 : vertex_rounding(patch(), set_->origin);
+  return vertices + chords_.slack(slot.block, slot.lane);
 }
 
 void CertifiedPlanner::find_weld() {
@@ -106,36 +112,40 @@ void CertifiedPlanner::find_weld() {
     roundings_[k] = std::max(roundings_[k], weld_.displacements[k]);
 }
 
-Status CertifiedPlanner::bound_turning_and_picture(const PatchSet::Impl& set, const Execution& execution) {
-  if (!options_.angle && !options_.camera) return {};
-  if (options_.camera) pictures_.resize(shapes_.size());
-  if (options_.angle) turnings_.resize(shapes_.size());
-  const auto see = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t block = begin; block < end; ++block) {
-      std::array<double, PatchSet::lanes> moved{};
-      for (std::size_t lane = 0; lane < set.lane_counts[block]; ++lane)
-        moved[lane] = roundings_[set.lane_patches[block * PatchSet::lanes + lane]] + fit_error_;
-      ScreenSpaceBound::find(*options_.camera, set, block, moved, options_.pixels, pictures_.data());
-    }
-  };
-  if (options_.camera)
-    if (Status status = parallel_for(set.lane_counts.size(), blocks_per_task, execution, see); !status.ok())
+Status CertifiedPlanner::bound_turning_and_picture(const Execution& execution) {
+  if (options_.camera) {
+    pictures_.resize(shapes_.size());
+    const auto see = [&](std::size_t begin, std::size_t end) {
+      for (std::size_t block = begin; block < end; ++block) bound_pictures(block);
+    };
+    if (Status status = parallel_for(set_->lane_counts.size(), blocks_per_task, execution, see); !status.ok())
       return status;
+  }
   if (!options_.angle) return {};
+  turnings_.resize(shapes_.size());
   const auto bound = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      if (shapes_[k].is_curve) continue;
-      BezierPatch patch = set.patches[k];
-      for (const Side side : all_sides)  // borders that welding makes poles are poles
-        if (divided_shapes()[k].collapsed.has(edge_of(side)) && !shapes_[k].collapsed.has(edge_of(side))) {
-          Result<BezierPatch> pole = with_pole(patch, side);
-          if (!pole) throw std::bad_alloc();  // no other error is possible: the points are those of the patch
-          patch = *std::move(pole);
-        }
-      turnings_[k] = TurningBound(patch);
-    }
+    for (std::size_t k = begin; k < end; ++k) bound_turning(k);
   };
   return parallel_for(shapes_.size(), patches_per_task, execution, bound);
+}
+
+void CertifiedPlanner::bound_pictures(std::size_t block) {
+  std::array<double, PatchSet::lanes> moved{};
+  for (std::size_t lane = 0; lane < set_->lane_counts[block]; ++lane)
+    moved[lane] = roundings_[set_->lane_patches[block * PatchSet::lanes + lane]] + fit_error_;
+  ScreenSpaceBound::find(*options_.camera, *set_, block, moved, options_.pixels, pictures_.data());
+}
+
+void CertifiedPlanner::bound_turning(std::size_t patch) {
+  if (shapes_[patch].is_curve) return;
+  BezierPatch net = set_->patches[patch];
+  for (const Side side : all_sides)  // borders that welding makes poles are poles
+    if (divided_shapes()[patch].collapsed.has(edge_of(side)) && !shapes_[patch].collapsed.has(edge_of(side))) {
+      Result<BezierPatch> pole = with_pole(net, side);
+      if (!pole) throw std::bad_alloc();  // no other error is possible: the points are those of the patch
+      net = *std::move(pole);
+    }
+  turnings_[patch] = TurningBound(net);
 }
 
 std::optional<Rates> CertifiedPlanner::rates_for(const CellLimits& limits, int most) const {
@@ -342,7 +352,6 @@ Result<CertifiedPlan> CertifiedPlanner::plan(const Request& request, const Execu
   if (Status status = choose_rates(request, plan, execution); !status.ok()) return status;
   divide(request.tolerance, plan);
   plan.lay_out();
-  plan.count_open_edges(edges_);
   return plan;
 }
 

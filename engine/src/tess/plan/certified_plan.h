@@ -72,6 +72,7 @@ class CertifiedPlan {
 
  private:
   friend class CertifiedPlanner;
+  friend class PlanUpdate;
   struct BorderSource {
     std::uint32_t from;
     bool reversed = false, is_point = false;  ///< a point: `from` is a corner
@@ -134,7 +135,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   /// above the rounding of the vertices.
   std::optional<double> nearest_tolerance(std::uint64_t max_triangles) const;
   /// Makes a plan. `tolerance`: the distance, infinite if there is no limit. Errors: invalid_argument (as for
-  /// CertifiedTessellation::make), cancelled.
+  /// Tessellation::make), cancelled.
   Result<CertifiedPlan> plan(double tolerance, std::uint64_t max_triangles, const Execution& execution,
                              const KeptSegments& kept = {}) const;
   /// Returns the smallest tolerance 2^(k/128), for whole k, whose mesh has at most max_triangles, and at least 1e-6 of
@@ -142,6 +143,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   Result<double> smallest_tolerance(std::uint64_t max_triangles, const Execution& execution) const;
 
  private:
+  friend class PlanUpdate;
   /// Why a patch has no rates.
   enum class Failure : std::uint8_t {
     none,
@@ -164,7 +166,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   /// The demands on a plan.
   struct Request {
     double tolerance;     ///< the distance, infinite if there is no limit
-    bool fewest = false;  ///< see CertifiedOptions::fewest
+    bool fewest = false;  ///< see TessellationOptions::fewest
     KeptSegments kept = {};
     std::uint64_t max_triangles = std::numeric_limits<std::uint64_t>::max();  ///< for tolerances that messages propose
   };
@@ -176,9 +178,15 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   Status find_edges_and_bounds(const Execution& execution);
   /// Finds shapes, bounds and roundings of the patches of one block.
   void bound_block(std::size_t block);
+  /// Returns the rounding of a patch's vertices before welding, once its block is bounded.
+  double own_rounding(const BlockGroup& group, PatchSet::Slot slot) const;
   /// Finds the borders to weld, and adds the displacements to the roundings.
   void find_weld();
-  Status bound_turning_and_picture(const PatchSet::Impl& set, const Execution& execution);
+  Status bound_turning_and_picture(const Execution& execution);
+  /// Bounds the turning of a patch's normal.
+  void bound_turning(std::size_t patch);
+  /// Bounds what the camera sees of the patches of one block; needs their roundings.
+  void bound_pictures(std::size_t block);
   Choice choose(std::size_t patch, const Request& request, int most) const;
   std::optional<Rates> rates_for(const CellLimits& limits, int most) const;
   /// Chooses rates and bounds of all patches.

@@ -144,6 +144,7 @@ void CertifiedPlanner::divide(double tolerance, CertifiedPlan& plan) const {
   plan.divisions_.reserve(segments.size());
   for (std::size_t k = 0; k < segments.size(); ++k)
     plan.divisions_.emplace_back().set(shapes[k], segments[k], borders.of(k));
+  plan.count_open_edges(edges_);
 }
 
 }  // namespace tessera::inline abi_0_1

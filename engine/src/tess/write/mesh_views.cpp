@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/impl_access.h"
+#include "base/text.h"
 #include "block/patch_set_impl.h"
 #include "eval/view_checks.h"
 #include "parallel/least_index.h"
@@ -79,9 +80,23 @@ Mesh empty_mesh(const MeshCapacity& capacity, const Vec3& origin) {
   return mesh;
 }
 
-Status check_vertex_views(const MeshViews& out, const MeshCapacity& wanted, bool f64) {
+Status check_updated_views(const MeshViews& out, const MeshCapacity& wanted, bool f64) {
   if (Status status = check_lengths(out, wanted, f64); !status.ok()) return status;
+  const auto check_count = [&](const char* name, std::size_t size) -> Status {
+    if (size <= wanted.vertices) return {};
+    return {StatusCode::count_mismatch, std::string("the ") + name + " view holds " +
+                                            counted(size, "vertex", "vertices") + ", the mesh has " +
+                                            std::to_string(wanted.vertices) + ": it is that of another topology"};
+  };
+  for (const Status& status : {check_count("position", out.position.size), check_count("normal", out.normal.size),
+                               check_count("position_f64", out.position_f64.size)})
+    if (!status.ok()) return status;
   return vertex_checks(out, wanted).status();
+}
+
+Status check_no_quads(const MeshViews& out) {
+  if (out.quads.empty() && out.quad_patch.empty()) return {};
+  return invalid("there is a view of quads, the plan has none: set TessellationOptions::quads");
 }
 
 Status check_views(const MeshViews& out, const MeshCapacity& wanted, bool f64) {
@@ -110,6 +125,14 @@ Status check_count(const PatchSet& set, std::size_t planned) {
   return {StatusCode::stale,
           "the plan is for " + std::to_string(planned) + " patches, the set has " + std::to_string(set.patch_count())};
 }
+
+Status check_followed(const PatchSet& set, std::size_t planned, std::uint64_t revision) {
+  if (Status status = check_count(set, planned); !status.ok()) return status;
+  if (!set.blocks().float_bernstein) return no_float_blocks();
+  return set.revision() < revision ? other_set() : Status();
+}
+
+Status other_set() { return {StatusCode::stale, "the plan follows another set: make a new plan for this one"}; }
 
 Status no_float_blocks() {
   return {StatusCode::unsupported, "a tessellation needs float Bernstein blocks, the set has none"};

@@ -17,11 +17,19 @@ Mesh empty_mesh(const MeshCapacity& capacity, const Vec3& origin);
 /// component; a stride below 1; views that are misaligned or share memory).
 Status check_views(const MeshViews& out, const MeshCapacity& wanted, bool f64 = false);
 
-/// check_views() for positions and normals alone.
-Status check_vertex_views(const MeshViews& out, const MeshCapacity& wanted, bool f64 = false);
+/// check_views() for positions and normals alone, which must be those of a mesh of this size. Errors: as check_views(),
+/// count_mismatch (more vertices).
+Status check_updated_views(const MeshViews& out, const MeshCapacity& wanted, bool f64 = false);
+/// Checks that there are no views of quads. Errors: invalid_argument.
+Status check_no_quads(const MeshViews& out);
 
 /// Checks that a set has as many patches as a plan. Errors: stale.
 Status check_count(const PatchSet& set, std::size_t planned);
+/// Checks that a set is the one that a plan of `planned` patches follows, at its revision or a later one. Errors:
+/// stale, unsupported.
+Status check_followed(const PatchSet& set, std::size_t planned, std::uint64_t revision);
+/// The error of another set than the one that a plan follows: stale.
+Status other_set();
 /// The error of a set without float Bernstein blocks: unsupported.
 Status no_float_blocks();
 /// Checks that a set has the blocks that meshes are made from, and patches of the shapes that a plan was made for.

@@ -16,8 +16,8 @@
 namespace tessera::test {
 namespace {
 
-CertifiedTessellation plan_of(const PatchSet& set, double tolerance) {
-  return good(CertifiedTessellation::make(set, {.tolerance = tolerance}));
+Tessellation plan_of(const PatchSet& set, double tolerance) {
+  return good(Tessellation::make(set, {.tolerance = tolerance}));
 }
 
 Vec3 vertex(const Mesh& mesh, std::size_t k) {
@@ -25,7 +25,7 @@ Vec3 vertex(const Mesh& mesh, std::size_t k) {
 }
 
 /// The largest distance found, over the patch's bound: of `samples` points of the patch over each triangle.
-double found_over_bound(const PatchSet& set, const CertifiedTessellation& plan, const Mesh& mesh, int samples) {
+double found_over_bound(const PatchSet& set, const Tessellation& plan, const Mesh& mesh, int samples) {
   Random random(11);
   double most = 0;
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
@@ -54,7 +54,7 @@ std::vector<BezierPatch> turned(std::vector<BezierPatch> patches, std::uint64_t 
   return patches;
 }
 
-TEST(CertifiedTessellation, ClosedBodiesStayClosedAtEveryTolerance) {
+TEST(ProvenMesh, ClosedBodiesStayClosedAtEveryTolerance) {
   for (const auto& body :
        {closed_body(), sphere(), placed(closed_body(), 1e-6, {}), placed(sphere(), 1e5, {3e5, -1e5, 7e4})})
     for (int seed = 0; seed < 3; ++seed) {
@@ -62,7 +62,7 @@ TEST(CertifiedTessellation, ClosedBodiesStayClosedAtEveryTolerance) {
       double largest = 0;
       for (const double relative : {0.5, 0.1, 0.03, 0.01, 3e-3, 1e-3, 1e-4, 1e-5}) {
         const double tolerance = relative * set.box().diagonal();
-        const CertifiedTessellation plan = plan_of(set, tolerance);
+        const Tessellation plan = plan_of(set, tolerance);
         EXPECT_LE(plan.bound(), tolerance * (1 + 1e-6));
         EXPECT_EQ(plan.bound(), *std::max_element(plan.bounds().begin(), plan.bounds().end()));
         const Mesh mesh = mesh_of(set, plan);
@@ -79,7 +79,7 @@ TEST(CertifiedTessellation, ClosedBodiesStayClosedAtEveryTolerance) {
     }
 }
 
-TEST(CertifiedTessellation, RatesThatDifferMeetWithoutACrack) {
+TEST(ProvenMesh, RatesThatDifferMeetWithoutACrack) {
   // Waves that grow along u: each column has rates of its own.
   std::vector<BezierPatch> patches;
   for (const BezierPatch& patch : wavy_field(8, 6)) {
@@ -89,7 +89,7 @@ TEST(CertifiedTessellation, RatesThatDifferMeetWithoutACrack) {
   }
   const PatchSet set = set_of(turned(patches, 3));
   for (const double tolerance : {0.3, 0.05, 0.01, 1e-3, 1e-4}) {
-    const CertifiedTessellation plan = plan_of(set, tolerance);
+    const Tessellation plan = plan_of(set, tolerance);
     const Mesh mesh = mesh_of(set, plan);
     const MeshReport report = good(check(mesh));
     EXPECT_EQ(report.degenerate_triangles, 0u);
@@ -100,11 +100,11 @@ TEST(CertifiedTessellation, RatesThatDifferMeetWithoutACrack) {
   }
 }
 
-TEST(CertifiedTessellation, RandomSetsKeepTheirBounds) {
+TEST(ProvenMesh, RandomSetsKeepTheirBounds) {
   for (std::uint64_t seed = 1; seed < 4; ++seed) {
     const PatchSet set = set_of(mixed_patches(seed, 30));
     for (const double tolerance : {0.3, 0.03}) {
-      const CertifiedTessellation plan = plan_of(set, tolerance);
+      const Tessellation plan = plan_of(set, tolerance);
       const Mesh mesh = mesh_of(set, plan);
       EXPECT_EQ(good(check(mesh)).degenerate_triangles, 0u);
       EXPECT_LE(found_over_bound(set, plan, mesh, 5), 1);
@@ -112,9 +112,9 @@ TEST(CertifiedTessellation, RandomSetsKeepTheirBounds) {
   }
 }
 
-TEST(CertifiedTessellation, TheSameBytesForAnyNumberOfThreads) {
+TEST(ProvenMesh, TheSameBytesForAnyNumberOfThreads) {
   const PatchSet set = set_of(mixed_patches(4, 300));
-  const CertifiedTessellation plan = plan_of(set, 0.05);
+  const Tessellation plan = plan_of(set, 0.05);
   Mesh first;
   for (const std::size_t threads : {1u, 2u, 8u}) {
     const oneapi::tbb::global_control control(oneapi::tbb::global_control::max_allowed_parallelism, threads);
@@ -126,32 +126,31 @@ TEST(CertifiedTessellation, TheSameBytesForAnyNumberOfThreads) {
   }
 }
 
-TEST(CertifiedTessellation, ABudgetGivesTheSmallestTolerance) {
+TEST(ProvenMesh, ABudgetGivesTheSmallestTolerance) {
   const PatchSet set = set_of(wavy_field(6, 6));
   for (const std::uint64_t budget : {72u, 100u, 1000u, 50000u}) {
-    const CertifiedTessellation plan =
-        good(CertifiedTessellation::make(set, {.max_triangles = budget, .smallest = true}));
+    const Tessellation plan = good(Tessellation::make(set, {.max_triangles = budget, .smallest = true}));
     EXPECT_LE(plan.capacity().triangles, budget);
-    const auto finer = CertifiedTessellation::make(set, {.tolerance = plan.bound() / 1.05, .max_triangles = budget});
+    const auto finer = Tessellation::make(set, {.tolerance = plan.bound() / 1.05, .max_triangles = budget});
     EXPECT_TRUE(budget <= 100 || !finer.ok()) << budget;
   }
-  const auto few = CertifiedTessellation::make(set, {.max_triangles = 71, .smallest = true});
+  const auto few = Tessellation::make(set, {.max_triangles = 71, .smallest = true});
   ASSERT_FALSE(few.ok());
   EXPECT_NE(few.status().message().find("takes 72 triangles"), std::string::npos) << few.status().message();
 }
 
-TEST(CertifiedTessellation, ARelativeToleranceIsOfTheSize) {
+TEST(ProvenMesh, ARelativeToleranceIsOfTheSize) {
   const PatchSet small = set_of(closed_body()), large = set_of(placed(closed_body(), 0x1p20, {}));
   for (const double relative : {0.1, 1e-3}) {
-    const Mesh a = mesh_of(small, good(CertifiedTessellation::make(small, {.tolerance = relative, .relative = true})));
-    const Mesh b = mesh_of(large, good(CertifiedTessellation::make(large, {.tolerance = relative, .relative = true})));
+    const Mesh a = mesh_of(small, good(Tessellation::make(small, {.tolerance = relative, .relative = true})));
+    const Mesh b = mesh_of(large, good(Tessellation::make(large, {.tolerance = relative, .relative = true})));
     EXPECT_EQ(a.indices, b.indices);
   }
 }
 
-TEST(CertifiedTessellation, RunsAgainAfterAnEdit) {
+TEST(ProvenMesh, RunsAgainAfterAnEdit) {
   PatchSet set = set_of(closed_body());
-  const CertifiedTessellation plan = plan_of(set, 0.01);
+  const Tessellation plan = plan_of(set, 0.01);
   const Mesh before = mesh_of(set, plan);
   for (std::size_t k = 0; k < set.patch_count(); ++k) {
     std::vector<Vec3> points(set.patch(k).points().begin(), set.patch(k).points().end());
@@ -169,32 +168,32 @@ struct Refusal {
   const char* message;
 };
 
-TEST(CertifiedTessellation, RefusesWhatItCannotKeep) {
+TEST(ProvenMesh, RefusesWhatItCannotKeep) {
   const PatchSet set = set_of(closed_body());
   const double infinity = std::numeric_limits<double>::infinity();
   for (const double tolerance : {0.0, -1.0, std::nan(""), infinity}) {
-    const auto plan = CertifiedTessellation::make(set, {.tolerance = tolerance});
+    const auto plan = Tessellation::make(set, {.tolerance = tolerance});
     ASSERT_FALSE(plan.ok());
     EXPECT_EQ(plan.status().code(), StatusCode::invalid_argument);
     EXPECT_NE(plan.status().message().find("it must be finite and above 0"), std::string::npos);
   }
-  const auto rough = CertifiedTessellation::make(set, {.tolerance = 1e-9});
+  const auto rough = Tessellation::make(set, {.tolerance = 1e-9});
   ASSERT_FALSE(rough.ok());
   EXPECT_EQ(rough.status().index(), 0);
   EXPECT_NE(rough.status().message().find(", the rounding of float vertices of patch 0"), std::string::npos)
       << rough.status().message();
-  const auto many = CertifiedTessellation::make(set, {.tolerance = 1e-4, .max_triangles = 1000});
+  const auto many = Tessellation::make(set, {.tolerance = 1e-4, .max_triangles = 1000});
   ASSERT_FALSE(many.ok());
   EXPECT_NE(many.status().message().find("the limits are 1000 and 4294967296"), std::string::npos)
       << many.status().message();
   const auto fitted = PatchSet::make(closed_body(), PatchSetOptions{.fit_error = {0.01, true}});
-  EXPECT_FALSE(CertifiedTessellation::make(*fitted, {.tolerance = 0.01}).ok());
-  EXPECT_GT(good(CertifiedTessellation::make(*fitted, {.tolerance = 0.011})).bound(), 0.01);
+  EXPECT_FALSE(Tessellation::make(*fitted, {.tolerance = 0.01}).ok());
+  EXPECT_GT(good(Tessellation::make(*fitted, {.tolerance = 0.011})).bound(), 0.01);
 }
 
-TEST(CertifiedTessellation, WritesNothingIntoShortViews) {
+TEST(ProvenMesh, WritesNothingIntoShortViews) {
   const PatchSet set = set_of(closed_body());
-  const CertifiedTessellation plan = plan_of(set, 0.05);
+  const Tessellation plan = plan_of(set, 0.05);
   Mesh mesh = good(plan.allocate());
   MeshViews views = mesh.views();
   views.indices = views.indices.first(views.indices.size() - 1);

@@ -1,0 +1,181 @@
+// Meshes with tolerances that follow edits: control points are packed and proven, then vertices are written.
+
+#include <algorithm>
+#include <string>
+
+#include "base/impl_access.h"
+#include "eval/patch_edits.h"
+#include "kernel/table/kernel_table.h"
+#include "parallel/call_progress.h"
+#include "parallel/parallel_for.h"
+#include "tess/mesh/proven_mesh.h"
+#include "tess/write/mesh_views.h"
+#include "tess/write/patch_writer.h"
+#include "tess/write/vertex_pass.h"
+#include "tessera/status.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+constexpr std::size_t blocks_per_task = 8;
+constexpr double update_ends[] = {0.5, 1};  // after the proof, and after the vertices
+
+/// Notes edits when a call ends, in whichever way.
+class NotedEdits {
+ public:
+  NotedEdits(PatchSet::Impl& set, const PatchEdits& edits) : set_(set), edits_(edits) {}
+  NotedEdits(const NotedEdits&) = delete;
+  NotedEdits& operator=(const NotedEdits&) = delete;
+  ~NotedEdits() { finish_edits(set_, edits_); }
+
+ private:
+  PatchSet::Impl& set_;
+  const PatchEdits& edits_;
+};
+
+}  // namespace
+
+Status ProvenMesh::start(PatchSet& set, const PatchEdits& edits, const MeshViews& out, const Execution& execution) {
+  if (Status status = check_followed(set, plan_.patch_count(), revision_); !status.ok()) return status;
+  if (Status status = check_updated_views(out, plan_.capacity(), plan_.has_f64_positions()); !status.ok())
+    return status;
+  if (Status status = check_attributes(out); !status.ok()) return status;
+  PatchSet::Impl& inner = impl_of(set);
+  if (!edits_) edits_ = std::make_unique<TouchedBlocks>(inner);
+  if (edits_->block_count() != inner.lane_counts.size()) return other_set();
+  if (Status status = edits_->add(inner, edits); !status.ok()) return status;
+  if (Status status = prepare_edits(inner, edits, *edits_, execution); !status.ok()) return status;
+  return {};
+}
+
+Status ProvenMesh::start_proofs(const PatchSet& set, const Execution& execution) {
+  Result<PlannerOptions> planned = planner_options(options_, set);
+  if (!planned) return planned.status();
+  planned->f64 = plan_.is_f64();
+  Result<CertifiedPlanner> planner = CertifiedPlanner::make(impl_of(set), *planned, {.cancel = execution.cancel});
+  if (!planner) return planner.status();
+  update_ = std::make_unique<PlanUpdate>(*std::move(planner), of(impl_of(set)));
+  return {};
+}
+
+Result<MeshChange> ProvenMesh::update(PatchSet& set, const PatchEdits& edits, const MeshViews& out,
+                                      const Execution& execution) {
+  PatchSet::Impl& inner = impl_of(set);
+  if (Status status = start(set, edits, out, execution); !status.ok()) return status;
+  CallProgress progress(execution, update_ends);
+  // Edges and welds must be those of the plan: an update that finds edited patches has to find them anew.
+  const bool is_known = update_ || inner.revision == revision_;
+  if (!update_)
+    if (Status status = start_proofs(set, execution); !status.ok()) return status;
+  update_->begin();
+  if (inner.revision != revision_) touch_edited(inner);
+  for (const std::uint32_t patch : edits.patch) update_->touch(inner, patch);
+  const auto proven = [&]() -> Result<PlanUpdate::Outcome> {
+    const NotedEdits noted(inner, edits);
+    const auto pack = [&](std::uint32_t block) {
+      if (edits_->count(block) > 0) pack_edits(inner, edits, *edits_, kernel::kernels(isa_), block);
+    };
+    return update_->prove(of(inner), pack, progress.loops());
+  };
+  const Result<PlanUpdate::Outcome> outcome = proven();
+  if (!outcome) return outcome.status();
+  MeshChange change;
+  if (is_known && *outcome == PlanUpdate::Outcome::kept) {
+    update_->take_bounds(plan_);
+  } else {
+    const Result<std::size_t> changed =
+        redivide(set, is_known ? *outcome : PlanUpdate::Outcome::unknown, progress.loops());
+    if (!changed) return changed.status();
+    change = {*changed > 0, *changed};
+  }
+  if (!change.topology)
+    if (Status status = write_touched(inner, out, progress.loops()); !status.ok()) return status;
+  revision_ = inner.revision;
+  (void)progress.finish({});
+  return change;
+}
+
+void ProvenMesh::touch_edited(const PatchSet::Impl& set) {
+  for (std::size_t patch = 0; patch < set.edited.size(); ++patch)
+    if (set.edited[patch] > revision_) update_->touch(set, patch);
+}
+
+Result<std::size_t> ProvenMesh::redivide(const PatchSet& set, PlanUpdate::Outcome outcome, const Execution& execution) {
+  if (outcome == PlanUpdate::Outcome::redivided) {
+    CertifiedPlan plan = update_->redivided(of(impl_of(set)));
+    const MeshCapacity size = plan.capacity();
+    if (size.triangles <= options_.max_triangles && size.vertices <= max_vertices) {
+      ProvenMesh next(set, options_, tolerance_, std::move(plan), update_->planner(), isa_);
+      if (Status status = next.join(impl_of(set), update_->planner(), execution); !status.ok()) return status;
+      return replace(next);
+    }
+  }
+  const Result<std::unique_ptr<ProvenMesh>> next = make(set, options_, this, execution);
+  if (!next) return next.status();
+  const std::size_t changed = replace(**next);
+  update_->begin();
+  touch_edited(impl_of(set));
+  return changed;
+}
+
+std::size_t ProvenMesh::replace(ProvenMesh& next) {
+  const std::size_t changed = changed_patches(next);
+  tolerance_ = next.tolerance_;
+  plan_ = std::move(next.plan_);
+  shapes_ = std::move(next.shapes_);
+  weld_ = std::move(next.weld_);
+  joins_ = std::move(next.joins_);
+  tables_ = std::move(next.tables_);
+  if (next.update_) update_ = std::move(next.update_);
+  return changed;
+}
+
+std::size_t ProvenMesh::changed_patches(const ProvenMesh& other) const {
+  const std::size_t patches = plan_.patch_count();
+  if (plan_.is_f64() != other.plan_.is_f64()) return patches;
+  std::vector<std::uint8_t> changed(patches, 0);
+  for (std::size_t k = 0; k < patches; ++k) changed[k] = !(plan_.division(k) == other.plan_.division(k));
+  const auto compare = [&](const auto& ours, const auto& theirs) {
+    if (ours == theirs) return;
+    for (const auto* copies : {&ours, &theirs})
+      for (const auto& copy : *copies) changed[copy.to / 4] = 1;
+  };
+  compare(weld_.borders, other.weld_.borders);
+  compare(weld_.corners, other.weld_.corners);
+  compare(weld_.poles, other.weld_.poles);
+  compare(joins_.borders, other.joins_.borders);
+  compare(joins_.corners, other.joins_.corners);
+  compare(joins_.poles, other.joins_.poles);
+  return static_cast<std::size_t>(std::count(changed.begin(), changed.end(), 1));
+}
+
+Status ProvenMesh::write_touched(const PatchSet::Impl& set, const MeshViews& out, const Execution& execution) const {
+  const auto blocks = update_->blocks();
+  const auto for_touched = [&](std::uint32_t block, auto visit) {
+    for (std::size_t lane = 0; lane < set.lane_counts[block]; ++lane)
+      if (const std::uint32_t patch = set.lane_patches[block * std::size_t{PatchSet::lanes} + lane];
+          update_->is_touched(set, patch))
+        visit(patch);
+  };
+  std::size_t vertices = 0;
+  for (const std::uint32_t block : blocks)
+    for_touched(block,
+                [&](std::uint32_t patch) { vertices += plan_.first_vertex(patch + 1) - plan_.first_vertex(patch); });
+  const PatchWriter writer(set, plan_, *tables_, kernel::kernels(isa_), out, execution.stores,
+                           sizeof(float) * vertices * (out.normal.empty() ? 3 : 6));
+  const auto write_blocks = [&](std::size_t begin, std::size_t end) {
+    VertexPass pass(writer);
+    for (const std::uint32_t block : blocks.subspan(begin, end - begin))
+      for_touched(block, [&](std::uint32_t patch) { pass.write(patch); });
+    pass.finish();
+  };
+  if (Status status = parallel_for(blocks.size(), blocks_per_task, execution, write_blocks); !status.ok())
+    return status;
+  if (execution.report) {
+    execution.report->isa = isa_;
+    execution.report->streaming = writer.streaming();
+  }
+  return write_copies(set, out, {}, [&](std::size_t patch) { return update_->is_touched(set, patch); });
+}
+
+}  // namespace tessera::inline abi_0_1

@@ -1,0 +1,182 @@
+#include "tess/mesh/proven_mesh.h"
+
+#include <limits>
+#include <string>
+
+#include "base/impl_access.h"
+#include "base/text.h"
+#include "eval/patch_edits.h"
+#include "kernel/table/kernel_table.h"
+#include "parallel/call_progress.h"
+#include "parallel/parallel_for.h"
+#include "tess/plan/joins.h"
+#include "tess/write/mesh_views.h"
+#include "tess/write/patch_writer.h"
+#include "tess/write/welded_vertices.h"
+#include "tessera/status.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+constexpr std::size_t patches_per_task = 64;
+/// Progress after bounds and after rates; angles, pixels and searches take longer.
+constexpr double planning_ends[] = {0.5, 0.95};
+
+/// Returns the refusal, which also names the tolerance that positions in double would keep.
+Status refused_in_float(const Status& refusal, const PatchSet& set, PlannerOptions planned, double tolerance,
+                        const TessellationOptions& options) {
+  planned.f64_positions = true;
+  const Result<CertifiedPlanner> planner = CertifiedPlanner::make(impl_of(set), planned, {});
+  if (!planner) return planner.status();
+  const bool keeps = !planner->is_rough(tolerance) && planner->plan(tolerance, options.max_triangles, {});
+  const auto nearest = keeps ? std::optional<double>() : planner->nearest_tolerance(options.max_triangles);
+  if (!keeps && !nearest) return refusal;
+  return {refusal.code(), refusal.message() + "; positions in double keep " + (keeps ? "it" : text(*nearest)),
+          refusal.index()};
+}
+
+/// All that is found for a set and its options.
+struct Planned {
+  double tolerance;
+  CertifiedPlanner planner;
+  CertifiedPlan plan;
+};
+
+/// Makes a plan. `tolerance`: the distance to keep, or to begin with if the smallest is wanted. `kept`: segments that
+/// patches keep where possible; if triangles then exceed their limit, none are kept.
+Result<Planned> plan_for(const PatchSet& set, const TessellationOptions& options, double tolerance,
+                         const KeptSegments& kept, const Execution& execution) {
+  Result<PlannerOptions> planned = planner_options(options, set);
+  if (!planned) return planned.status();
+  Result<CertifiedPlanner> planner = CertifiedPlanner::make(impl_of(set), *planned, execution);
+  if (!planner) return planner.status();
+  const auto find_smallest = [&]() -> Status {
+    if (!options.smallest) return {};
+    const Result<double> found = planner->smallest_tolerance(options.max_triangles, execution);
+    if (found) tolerance = *found;
+    return found.status();
+  };
+  Status found = find_smallest();
+  if (!planned->f64 && planner->needs_f64(tolerance)) {
+    planned->f64 = true;
+    planner = CertifiedPlanner::make(impl_of(set), *planned, execution);
+    if (!planner) return planner.status();
+    found = find_smallest();
+  }
+  if (!found.ok()) return found;
+  Result<CertifiedPlan> plan = planner->plan(tolerance, options.max_triangles, execution, kept);
+  if (!plan && plan.status().code() == StatusCode::invalid_argument && !kept.segments.empty())
+    plan = planner->plan(tolerance, options.max_triangles, execution);
+  if (plan) return Planned{tolerance, *std::move(planner), *std::move(plan)};
+  const bool is_rough = plan.status().code() == StatusCode::invalid_argument && planner->is_rough(tolerance);
+  return is_rough && !planned->f64_positions ? refused_in_float(plan.status(), set, *planned, tolerance, options)
+                                             : plan.status();
+}
+
+}  // namespace
+
+Result<std::unique_ptr<ProvenMesh>> ProvenMesh::make(const PatchSet& set, const TessellationOptions& options,
+                                                     const ProvenMesh* before, const Execution& execution) {
+  if (!set.blocks().float_bernstein) return no_float_blocks();
+  const Result<Isa> isa = before ? before->isa_ : usable_isa(options.isa);
+  if (!isa) return isa.status();
+  const Result<double> tolerance = before ? before->tolerance_ : tolerance_of(options, set);
+  if (!tolerance) return tolerance.status();
+  const KeptSegments kept = before ? KeptSegments{before->plan_.segments(), options.spare} : KeptSegments{};
+  CallProgress progress(execution, planning_ends);
+  Result<Planned> made = plan_for(set, options, *tolerance, kept, progress.loops());
+  if (!made) return made.status();
+  std::unique_ptr<ProvenMesh> mesh(
+      new ProvenMesh(set, options, made->tolerance, std::move(made->plan), made->planner, *isa));
+  if (Status status = mesh->join(impl_of(set), made->planner, progress.loops()); !status.ok()) return status;
+  if (before) mesh->update_ = std::make_unique<PlanUpdate>(std::move(made->planner), mesh->of(impl_of(set)));
+  (void)progress.finish({});
+  return mesh;
+}
+
+Result<std::unique_ptr<Tessellation::Impl>> make_proven_mesh(const PatchSet& set, const TessellationOptions& options,
+                                                             const Execution& execution) {
+  Result<std::unique_ptr<ProvenMesh>> made = ProvenMesh::make(set, options, nullptr, execution);
+  if (!made) return made.status();
+  return std::unique_ptr<Tessellation::Impl>(*std::move(made));
+}
+
+ProvenMesh::ProvenMesh(const PatchSet& set, const TessellationOptions& options, double tolerance, CertifiedPlan plan,
+                       const CertifiedPlanner& planner, Isa isa)
+    : options_(options),
+      tolerance_(tolerance),
+      plan_(std::move(plan)),
+      shapes_(planner.shapes().begin(), planner.shapes().end()),
+      weld_(planner.weld()),
+      origin_(set.origin()),
+      is_certified_(set.fit_error().certified),
+      revision_(set.revision()),
+      isa_(isa),
+      tables_(MeshTables::of(impl_of(set), shapes_, plan_.divisions(), kernel::kernels(isa).mesh_points != nullptr)) {}
+
+Tessellation::Impl::Proof ProvenMesh::proof() const {
+  return {.tolerance = tolerance_,
+          .certified = is_certified_,
+          .bounds = plan_.bounds(),
+          .angles = plan_.angles(),
+          .pixels = plan_.pixels(),
+          .welded_borders = weld_.joined_by_distance,
+          .open_edges = plan_.open_edges()};
+}
+
+Status ProvenMesh::join(const PatchSet::Impl& set, const CertifiedPlanner& planner, const Execution& execution) {
+  if (!options_.crease_angle && !options_.share_vertices) return {};
+  Mesh mesh;  // written while each patch still has its own vertices
+  MeshViews views;
+  if (options_.crease_angle) {
+    mesh = empty_mesh(plan_.capacity(), origin_);
+    views = mesh.views();
+    const PatchWriter writer(set, plan_, *tables_, kernel::kernels(isa_), views, Stores::plain);
+    const Execution quiet{.cancel = execution.cancel};
+    const auto write = [&](std::size_t begin, std::size_t end) { writer.write(begin, end); };
+    Status status = parallel_for(plan_.patch_count(), patches_per_task, quiet, write);
+    if (status.ok()) status = write_welded(weld_, plan_, set, views, quiet, [](std::size_t) { return true; });
+    if (!status.ok()) return status;
+  }
+  joins_ = find_joins(set, plan_, planner.edges(), weld_, options_.crease_angle ? &views.normal : nullptr,
+                      options_.crease_angle.value_or(0));
+  if (options_.share_vertices) plan_.share(joins_);
+  return {};
+}
+
+Mesh ProvenMesh::allocate() const {
+  Mesh mesh = empty_mesh(capacity(), origin_);
+  if (!has_normals()) mesh.normals.clear();
+  if (plan_.has_f64_positions()) mesh.positions_f64.resize(mesh.positions.size());
+  return mesh;
+}
+
+Status ProvenMesh::check_attributes(const MeshViews& out) const {
+  if (!out.normal.empty() && !has_normals())
+    return {StatusCode::invalid_argument, "normals of shared vertices need a crease angle"};
+  return options_.quads ? Status() : check_no_quads(out);
+}
+
+Status ProvenMesh::write_copies(const PatchSet::Impl& set, const MeshViews& out, const Execution& execution,
+                                FunctionRef<bool(std::size_t patch)> is_written) const {
+  if (Status status = write_welded(weld_, plan_, set, out, execution, is_written); !status.ok()) return status;
+  if (plan_.shares_vertices() || out.normal.empty()) return {};
+  return write_joined_normals(joins_, plan_, out.normal, execution, is_written);
+}
+
+Status ProvenMesh::run(const PatchSet& set, const MeshViews& out, const Execution& execution) const {
+  if (Status status = check_views(out, capacity(), plan_.has_f64_positions()); !status.ok()) return status;
+  if (Status status = check_attributes(out); !status.ok()) return status;
+  if (Status status = check_shapes(set, shapes_); !status.ok()) return status;
+  const PatchWriter writer(impl_of(set), plan_, *tables_, kernel::kernels(isa_), out, execution.stores);
+  const auto write = [&](std::size_t begin, std::size_t end) { writer.write(begin, end); };
+  if (Status status = parallel_for(plan_.patch_count(), patches_per_task, execution, write); !status.ok())
+    return status;
+  if (execution.report) {
+    execution.report->isa = isa_;
+    execution.report->streaming = writer.streaming();
+  }
+  return write_copies(impl_of(set), out, execution, [](std::size_t) { return true; });
+}
+
+}  // namespace tessera::inline abi_0_1

@@ -1,0 +1,85 @@
+#pragma once
+// Meshes that keep tolerances: the plan that has been proven, and what their vertices are written from.
+
+#include <memory>
+#include <vector>
+
+#include "eval/touched_blocks.h"
+#include "tess/mesh/tessellation_impl.h"
+#include "tess/plan/certified_plan.h"
+#include "tess/plan/plan_update.h"
+#include "tess/write/mesh_tables.h"
+
+namespace tessera::inline abi_0_1 {
+
+/// Checks the options, except rates, and turns them into those of a planner. Errors: invalid_argument.
+Result<PlannerOptions> planner_options(const TessellationOptions& options, const PatchSet& set);
+/// Returns the distance that checked options ask for, infinite if there is none. Errors: invalid_argument (the set has
+/// no size that it could be a share of).
+Result<double> tolerance_of(const TessellationOptions& options, const PatchSet& set);
+
+/// A plan from tolerances.
+class [[gnu::visibility("hidden")]] ProvenMesh final : public Tessellation::Impl {
+ public:
+  /// Checks the options and plans. `before`: the plan that is replaced, or null; its patches keep their segments where
+  /// possible, and its tolerance. Errors: as Tessellation::make().
+  static Result<std::unique_ptr<ProvenMesh>> make(const PatchSet& set, const TessellationOptions& options,
+                                                  const ProvenMesh* before, const Execution& execution);
+
+  const CertifiedPlan& plan() const { return plan_; }
+  const MeshTables& tables() const { return *tables_; }
+  const Weld& weld() const { return weld_; }
+  double tolerance() const { return tolerance_; }  ///< the distance to keep, infinite if there is no limit
+
+  Proof proof() const override;
+  MeshCapacity capacity() const override { return options_.quads ? plan_.quad_capacity() : plan_.capacity(); }
+  Mesh allocate() const override;
+  Status run(const PatchSet& set, const MeshViews& out, const Execution& execution) const override;
+  Result<MeshChange> update(PatchSet & set, const PatchEdits& edits, const MeshViews& out, const Execution& execution)
+      override;
+
+ private:
+  ProvenMesh(const PatchSet& set, const TessellationOptions& options, double tolerance, CertifiedPlan plan,
+             const CertifiedPlanner& planner, Isa isa);
+
+  bool has_normals() const { return !options_.share_vertices || options_.crease_angle; }
+  /// Checks that normals and quads are only written if there are any. Errors: invalid_argument.
+  Status check_attributes(const MeshViews& out) const;
+  /// Finds what neighbours share, if anything. Errors: cancelled.
+  Status join(const PatchSet::Impl& set, const CertifiedPlanner& planner, const Execution& execution);
+  /// Writes the copies of vertices after all patches are written: for patches that are written, or that copy from such.
+  Status write_copies(const PatchSet::Impl& set, const MeshViews& out, const Execution& execution,
+                      FunctionRef<bool(std::size_t patch)> is_written) const;
+
+  PlanOfSet of(const PatchSet::Impl& set) const { return {set, plan_, joins_, tolerance_, options_.spare}; }
+  /// Checks an update; after an error the set's values and the views are as they were.
+  Status start(PatchSet & set, const PatchEdits& edits, const MeshViews& out, const Execution& execution);
+  /// Makes the memory for proofs of a set.
+  Status start_proofs(const PatchSet& set, const Execution& execution);
+  /// Touches the patches that were edited since the plan was proven.
+  void touch_edited(const PatchSet::Impl& set);
+  /// Replaces the plan by one from the edited patches, or from all, and returns how many patches changed.
+  Result<std::size_t> redivide(const PatchSet& set, PlanUpdate::Outcome outcome, const Execution& execution);
+  /// Takes the plan of another object, which is then empty. Returns how many patches changed.
+  std::size_t replace(ProvenMesh & next);
+  /// Writes the vertices of edited patches.
+  Status write_touched(const PatchSet::Impl& set, const MeshViews& out, const Execution& execution) const;
+  std::size_t changed_patches(const ProvenMesh& other) const;
+
+  TessellationOptions options_;
+  double tolerance_;
+  CertifiedPlan plan_;
+  std::vector<PatchShape> shapes_;  ///< shapes before welding
+  Weld weld_;
+  VertexCopies joins_;  ///< vertices with a common normal, or stored once
+  Vec3 origin_;
+  bool is_certified_;
+  std::uint64_t revision_;  ///< the set's, of which the plan is proven
+  Isa isa_;
+  std::shared_ptr<const MeshTables> tables_;
+  /// Made by the first update.
+  std::unique_ptr<PlanUpdate> update_;
+  std::unique_ptr<TouchedBlocks> edits_;
+};
+
+}  // namespace tessera::inline abi_0_1

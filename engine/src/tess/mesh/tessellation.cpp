@@ -1,0 +1,94 @@
+#include "tessera/tessellation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/impl_access.h"
+#include "tess/mesh/edited_surfaces.h"
+#include "tess/mesh/tessellation_impl.h"
+#include "tessera/guard.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+double largest(std::span<const float> values) {
+  float most = 0;
+  for (const float value : values) most = std::max(most, value);
+  return double(most);
+}
+
+}  // namespace
+
+Tessellation::Impl::Impl() = default;
+Tessellation::Impl::~Impl() = default;
+
+Result<Tessellation> Tessellation::make(const PatchSet& set, const TessellationOptions& options,
+                                        const Execution& execution) {
+  return guarded([&]() -> Result<Tessellation> {
+    Result<std::unique_ptr<Impl>> made =
+        options.rates ? make_uniform_mesh(set, options) : make_proven_mesh(set, options, execution);
+    if (!made) return made.status();
+    return Tessellation(*std::move(made));
+  });
+}
+
+Tessellation::Tessellation(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Tessellation::Tessellation(Tessellation&&) noexcept = default;
+Tessellation& Tessellation::operator=(Tessellation&&) noexcept = default;
+Tessellation::~Tessellation() = default;
+
+double Tessellation::bound() const {
+  const std::span<const float> bounds = impl_->proof().bounds;
+  return bounds.empty() ? std::numeric_limits<double>::infinity() : largest(bounds);
+}
+bool Tessellation::certified() const { return impl_->proof().certified; }
+double Tessellation::tolerance() const { return impl_->proof().tolerance; }
+std::span<const float> Tessellation::bounds() const { return impl_->proof().bounds; }
+
+double Tessellation::angle() const {
+  float most = 0;
+  for (const float angle : impl_->proof().angles)
+    if (!std::isinf(angle)) most = std::max(most, angle);
+  return double(most);
+}
+std::size_t Tessellation::patches_without_angle() const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(impl_->proof().angles, [](float angle) { return std::isinf(angle); }));
+}
+std::span<const float> Tessellation::angles() const { return impl_->proof().angles; }
+double Tessellation::pixels() const { return largest(impl_->proof().pixels); }
+std::span<const float> Tessellation::pixel_bounds() const { return impl_->proof().pixels; }
+std::size_t Tessellation::welded_borders() const { return impl_->proof().welded_borders; }
+std::size_t Tessellation::open_edges() const { return impl_->proof().open_edges; }
+MeshCapacity Tessellation::capacity() const { return impl_->capacity(); }
+
+Result<Mesh> Tessellation::allocate() const {
+  return guarded([&]() -> Result<Mesh> { return impl_->allocate(); });
+}
+
+Status Tessellation::run(const PatchSet& set, const MeshViews& out, const Execution& execution) const {
+  return guarded([&] { return impl_->run(set, out, execution); });
+}
+
+Result<MeshChange> Tessellation::Impl::update_surfaces(PatchSet& set, std::span<const SurfaceEdits> edits,
+                                                       const MeshViews& out, const Execution& execution) {
+  if (!surfaces_) surfaces_ = std::make_unique<EditedSurfaces>();
+  const Result<PatchEdits> patches = surfaces_->convert(set, edits, execution);
+  if (!patches) return surfaces_->finish(set, edits, patches.status());
+  Result<MeshChange> change = update(set, *patches, out, execution);
+  if (Status status = surfaces_->finish(set, edits, change.status()); !status.ok()) return status;
+  return change;
+}
+
+Result<MeshChange> Tessellation::update(PatchSet& set, const PatchEdits& edits, const MeshViews& out,
+                                        const Execution& execution) {
+  return guarded([&] { return impl_->update(set, edits, out, execution); });
+}
+
+Result<MeshChange> Tessellation::update(PatchSet& set, std::span<const SurfaceEdits> edits, const MeshViews& out,
+                                        const Execution& execution) {
+  return guarded([&] { return impl_->update_surfaces(set, edits, out, execution); });
+}
+
+}  // namespace tessera::inline abi_0_1

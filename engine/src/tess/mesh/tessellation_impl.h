@@ -1,0 +1,47 @@
+#pragma once
+// What both kinds of plans have in common: those from rates and those from tolerances.
+
+#include <limits>
+#include <memory>
+
+#include "tessera/tessellation.h"
+
+namespace tessera::inline abi_0_1 {
+
+class EditedSurfaces;
+
+class Tessellation::Impl {
+ public:
+  /// The bounds of a mesh, as the public calls return them.
+  struct Proof {
+    double tolerance = std::numeric_limits<double>::infinity();
+    bool certified = false;
+    std::span<const float> bounds = {}, angles = {}, pixels = {};
+    std::size_t welded_borders = 0, open_edges = 0;
+  };
+
+  Impl();
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  virtual ~Impl();
+
+  virtual Proof proof() const { return {}; }
+  virtual MeshCapacity capacity() const = 0;
+  virtual Mesh allocate() const = 0;
+  virtual Status run(const PatchSet& set, const MeshViews& out, const Execution& execution) const = 0;
+  virtual Result<MeshChange> update(PatchSet& set, const PatchEdits& edits, const MeshViews& out,
+                                    const Execution& execution) = 0;
+  Result<MeshChange> update_surfaces(PatchSet& set, std::span<const SurfaceEdits> edits, const MeshViews& out,
+                                     const Execution& execution);
+
+ private:
+  std::unique_ptr<EditedSurfaces> surfaces_;  ///< made by the first update of splines
+};
+
+/// Makes a plan from options.rates. Errors: as Tessellation::make().
+Result<std::unique_ptr<Tessellation::Impl>> make_uniform_mesh(const PatchSet& set, const TessellationOptions& options);
+/// Makes a plan from tolerances. Errors: as Tessellation::make().
+Result<std::unique_ptr<Tessellation::Impl>> make_proven_mesh(const PatchSet& set, const TessellationOptions& options,
+                                                             const Execution& execution);
+
+}  // namespace tessera::inline abi_0_1

@@ -1,0 +1,69 @@
+// Checks the options of plans from tolerances.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "base/text.h"
+#include "tess/mesh/proven_mesh.h"
+#include "tessera/status.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+constexpr double max_weld = 0.05;  // a share of the model's size
+
+}  // namespace
+
+Result<PlannerOptions> planner_options(const TessellationOptions& options, const PatchSet& set) {
+  const auto bad = [](const std::string& message) { return Status(StatusCode::invalid_argument, message); };
+  // The conditions are written so that NaN fails.
+  if (!options.tolerance && !options.angle && !options.pixels && !options.smallest)
+    return bad("there are neither rates nor a tolerance: set rates, a distance, an angle, pixels or the smallest");
+  if (!(options.spare >= 0 && std::isfinite(options.spare)))
+    return bad("the spare is " + text(options.spare) + ", it must be finite and at least 0");
+  if (options.tolerance && !(*options.tolerance > 0 && std::isfinite(*options.tolerance)))
+    return bad("the tolerance is " + text(*options.tolerance) + ", it must be finite and above 0");
+  if (options.angle && !(*options.angle > 0 && *options.angle <= std::numbers::pi / 2))
+    return bad("the angle is " + text(*options.angle) + " radians, it must be above 0 and at most pi / 2");
+  if (options.angle_rate < 1 || options.angle_rate > max_rate)
+    return bad("the angle's rate is " + std::to_string(options.angle_rate) + ", it must be from 1 to " +
+               std::to_string(max_rate));
+  if (options.pixels && !(options.pixels->pixels > 0 && std::isfinite(options.pixels->pixels)))
+    return bad("the tolerance is " + text(options.pixels->pixels) + " pixels, it must be finite and above 0");
+  const double weld = options.weld.value_or(0), size = set.box().diagonal();
+  if (!(weld >= 0 && std::isfinite(weld)))
+    return bad("the weld is " + text(weld) + ", it must be finite and at least 0");
+  if (weld > max_weld * size && weld > 0)
+    return bad("the weld is " + text(weld) + ", more than a twentieth of the model's size, " + text(size));
+  if (options.crease_angle && !(*options.crease_angle >= 0 && *options.crease_angle <= std::numbers::pi))
+    return bad("the crease angle is " + text(*options.crease_angle) + " radians, it must be from 0 to pi");
+  PlannerOptions planner;
+  if (options.weld) {
+    planner.weld.reach = weld;
+  } else {
+    const double tolerance = options.tolerance.value_or(0) * (options.relative ? size : 1);
+    planner.weld = {options.tolerance ? std::min(tolerance / 8, max_weld * size) : 1e-6 * size, true};
+  }
+  planner.angle = options.angle;
+  planner.angle_rate = options.angle_rate;
+  planner.fewest = options.fewest;
+  planner.f64 = planner.f64_positions = options.precision == Precision::double_precision;
+  if (!options.pixels) return planner;
+  Result<Camera> camera = Camera::make(options.pixels->view);
+  if (!camera) return camera.status();
+  planner.camera = *camera;
+  planner.pixels = options.pixels->pixels;
+  return planner;
+}
+
+Result<double> tolerance_of(const TessellationOptions& options, const PatchSet& set) {
+  double tolerance = std::numeric_limits<double>::infinity();
+  if (options.tolerance) tolerance = *options.tolerance * (options.relative ? set.box().diagonal() : 1);
+  if (tolerance > 0 || !(options.tolerance > 0.0)) return tolerance;  // planner_options() tells of others
+  return Status(StatusCode::invalid_argument, "the tolerance is " + text(tolerance) + ": the model has no size");
+}
+
+}  // namespace tessera::inline abi_0_1

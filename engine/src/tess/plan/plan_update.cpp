@@ -1,0 +1,210 @@
+#include "tess/plan/plan_update.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+
+#include "parallel/parallel_for.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+constexpr std::size_t blocks_per_task = 8;
+
+}  // namespace
+
+void PlanUpdate::Lanes::add(PatchSet::Slot slot) {
+  if (bits[slot.block] == 0) blocks.push_back(slot.block);
+  bits[slot.block] |= 1u << slot.lane;
+}
+
+void PlanUpdate::Lanes::clear() {
+  for (const std::uint32_t block : blocks) bits[block] = 0;
+  blocks.clear();
+}
+
+PlanUpdate::PlanUpdate(CertifiedPlanner planner, const PlanOfSet& of)
+    : planner_(std::move(planner)),
+      touched_(of.set.lane_counts.size()),
+      copied_(of.plan.shares_vertices() || !planner_.weld().displacements.empty() ? touched_.bits.size() : 0),
+      own_roundings_(copied_.bits.empty() ? 0 : of.set.patches.size()),
+      displacements_(own_roundings_.size(), 0.0),
+      proven_(of.set.patches.size()) {
+  std::ranges::copy(planner_.weld().displacements, displacements_.begin());
+  for (std::size_t patch = 0; patch < own_roundings_.size(); ++patch)
+    own_roundings_[patch] =
+        planner_.own_rounding(of.set.group_of_block(of.set.slots[patch].block), of.set.slots[patch]);
+}
+
+void PlanUpdate::begin() {
+  touched_.clear();
+  copied_.clear();
+}
+
+void PlanUpdate::touch(const PatchSet::Impl& set, std::size_t patch) { touched_.add(set.slots[patch]); }
+
+template <class Visit>
+void PlanUpdate::for_proven(const PatchSet::Impl& set, Visit visit) const {
+  const Lanes& proven = has_copies() ? copied_ : touched_;
+  for (const std::uint32_t block : proven.blocks)
+    for (std::uint32_t left = proven.bits[block]; left != 0; left &= left - 1)
+      visit(set.lane_patches[block * std::size_t{PatchSet::lanes} + static_cast<std::size_t>(std::countr_zero(left))]);
+}
+
+Result<PlanUpdate::Outcome> PlanUpdate::prove(const PlanOfSet& of, FunctionRef<void(std::uint32_t block)> pack,
+                                              const Execution& execution) {
+  planner_.set_ = &of.set;
+  is_redivided_ = is_unknown_ = false;
+  const auto bound = [&](std::size_t begin, std::size_t end) {
+    for (const std::uint32_t block : std::span(touched_.blocks).subspan(begin, end - begin)) {
+      pack(block);
+      bound_block(of, block);
+      if (!has_copies()) choose(of, block, touched_.bits[block]);
+    }
+  };
+  if (Status status = parallel_for(touched_.blocks.size(), blocks_per_task, execution, bound); !status.ok())
+    return status;
+  if (has_copies() && !is_unknown_) {
+    measure_copies(of);
+    const auto choose_some = [&](std::size_t begin, std::size_t end) {
+      for (const std::uint32_t block : std::span(copied_.blocks).subspan(begin, end - begin))
+        choose(of, block, copied_.bits[block]);
+    };
+    if (Status status = parallel_for(copied_.blocks.size(), blocks_per_task, execution, choose_some); !status.ok())
+      return status;
+  }
+  return is_unknown_ ? Outcome::unknown : is_redivided_ ? Outcome::redivided : Outcome::kept;
+}
+
+void PlanUpdate::bound_block(const PlanOfSet& of, std::uint32_t block) {
+  // Beyond this share of the tolerance, vertices must come from doubles: see CertifiedPlanner::needs_f64().
+  const double most = planner_.options_.f64 ? std::numeric_limits<double>::infinity() : of.tolerance / 8;
+  const BlockGroup& group = of.set.group_of_block(block);
+  planner_.chords_.bound(of.set, block, touched_.bits[block]);
+  for (std::uint32_t lane = 0; lane < of.set.lane_counts[block]; ++lane) {
+    if (!(touched_.bits[block] >> lane & 1u)) continue;
+    const std::size_t patch = of.set.lane_patches[block * std::size_t{PatchSet::lanes} + lane];
+    const double rounding = planner_.own_rounding(group, {block, lane});
+    (has_copies() ? own_roundings_ : planner_.roundings_)[patch] = rounding;
+    const bool keeps_shape = PatchShape::of(of.set.patches[patch], of.set.collapsed[patch]) == planner_.shapes_[patch];
+    if (!keeps_shape || !(rounding <= most)) is_unknown_ = true;
+    if (!planner_.turnings_.empty()) planner_.bound_turning(patch);
+  }
+}
+
+void PlanUpdate::measure_copies(const PlanOfSet& of) {
+  for (const std::uint32_t block : touched_.blocks) {
+    copied_.blocks.push_back(block);
+    copied_.bits[block] = touched_.bits[block];
+  }
+  const auto look = [&](const auto& copies) {
+    for (const auto& copy : copies)
+      if (is_touched(of.set, copy.from / 4)) copied_.add(of.set.slots[copy.to / 4]);
+  };
+  const auto look_at_all = [&](const VertexCopies& copies) {
+    look(copies.borders);
+    look(copies.corners);
+    look(copies.poles);
+  };
+  look_at_all(planner_.weld());
+  if (of.plan.shares_vertices()) look_at_all(of.joins);
+  for_proven(of.set, [&](std::size_t patch) { displacements_[patch] = 0; });
+  const auto is_copied = [&](std::size_t patch) { return copied_.has(of.set.slots[patch]); };
+  measure_displacements(of.set, planner_.weld(), own_roundings_, is_copied, displacements_);
+  // Where borders have moved apart, shared vertices follow the patch that owns them and lie beside the other's border.
+  if (of.plan.shares_vertices())
+    measure_displacements(of.set, of.joins, own_roundings_, is_copied, displacements_, true);
+  for_proven(of.set, [&](std::size_t patch) {
+    planner_.roundings_[patch] = std::max(own_roundings_[patch], displacements_[patch]);
+  });
+}
+
+void PlanUpdate::choose(const PlanOfSet& of, std::uint32_t block, std::uint32_t wanted) {
+  if (!planner_.options_.angle && !planner_.options_.camera) return choose_by_distance(of, block, wanted);
+  if (planner_.options_.camera) planner_.bound_pictures(block);
+  CertifiedPlanner::Request request{of.tolerance, planner_.options_.fewest};
+  request.kept = {of.plan.segments(), of.spare};
+  for (std::size_t lane = 0; lane < of.set.lane_counts[block]; ++lane) {
+    if (!(wanted >> lane & 1u)) continue;
+    const std::size_t patch = of.set.lane_patches[block * std::size_t{PatchSet::lanes} + lane];
+    const CertifiedPlanner::Choice choice = planner_.choose(patch, request, max_rate);
+    if (choice.failure != CertifiedPlanner::Failure::none) is_unknown_ = true;
+    set(of, patch, {choice.segments, rounded_up(choice.bound), rounded_up(choice.angle), rounded_up(choice.pixels)});
+  }
+}
+
+void PlanUpdate::choose_by_distance(const PlanOfSet& of, std::uint32_t block, std::uint32_t wanted) {
+  const std::size_t count = of.set.lane_counts[block];
+  const std::uint32_t* const patches = of.set.lane_patches.data() + block * std::size_t{PatchSet::lanes};
+  const KeptSegments kept{of.plan.segments(), of.spare};
+  ChordBlocks::Lanes<double> left;
+  left.fill(of.tolerance);
+  for (std::size_t lane = 0; lane < count; ++lane)
+    left[lane] = of.tolerance - (planner_.roundings_[patches[lane]] + planner_.fit_error_);
+  ChordBlocks::Products products;
+  const ChordBlocks::Choice best = planner_.chords_.cheapest(of.set, block, count, left, max_rate, products);
+  for (std::size_t lane = 0; lane < count; ++lane) {
+    if (!(wanted >> lane & 1u)) continue;
+    const std::size_t patch = patches[lane];
+    if (!(left[lane] > 0) || best.rates[lane].u == 0) {
+      is_unknown_ = true;
+      continue;
+    }
+    const ProvenSegments proven =
+        planner_.keep_by_distance(patch, left[lane], kept, products, {best.rates[lane], best.distance[lane]});
+    const double straddling = proven.anywhere ? 0 : straddling_distance(of, patch);
+    if (!(straddling <= left[lane])) is_redivided_ = true;
+    const double given = of.tolerance - left[lane];
+    set(of, patch, {proven.segments, rounded_up(std::max(proven.distance, straddling) + given)});
+  }
+  // The fewest segments are chosen for all patches together.
+  if (planner_.options_.fewest && is_redivided_) is_unknown_ = true;
+}
+
+double PlanUpdate::straddling_distance(const PlanOfSet& of, std::size_t patch) const {
+  const PatchSegments segments = of.plan.segments()[patch];
+  const Division& division = of.plan.division(patch);
+  double most = 0;
+  for (const Side side : all_sides) {
+    const auto s = static_cast<std::size_t>(side);
+    const Segments border = division.border[s], opposite = division.border[(s + 2) % 4];
+    if (!(runs_along_u(side) ? segments.u : segments.v).parts_halves() || border.parts_halves()) continue;
+    const int rate = opposite.parts_halves() ? border.rate() : std::min(border.rate(), opposite.rate());
+    assert(segments.are_uniform());  // if they are not, the border has a point at 1/2
+    const auto [piece, rates] = ChordBound::straddling(segments.rates(), edge_of(side), rate);
+    const PatchSet::Slot slot = of.set.slots[patch];
+    most = std::max(most, planner_.chords_.piece(slot.block, slot.lane, piece).chord(rates));
+  }
+  return most;
+}
+
+void PlanUpdate::set(const PlanOfSet& of, std::size_t patch, const Proven& proven) {
+  proven_[patch] = proven;
+  if (!(proven.segments == of.plan.segments()[patch])) is_redivided_ = true;
+}
+
+void PlanUpdate::take_bounds(CertifiedPlan& plan) const {
+  for_proven(*planner_.set_, [&](std::size_t patch) {
+    plan.bounds_[patch] = proven_[patch].bound;
+    if (!plan.angles_.empty()) plan.angles_[patch] = proven_[patch].angle;
+    if (!plan.pixels_.empty()) plan.pixels_[patch] = proven_[patch].pixels;
+  });
+}
+
+CertifiedPlan PlanUpdate::redivided(const PlanOfSet& of) const {
+  CertifiedPlan plan;
+  plan.is_f64_ = of.plan.is_f64_;
+  plan.has_f64_positions_ = of.plan.has_f64_positions_;
+  plan.segments_ = of.plan.segments_;
+  plan.bounds_ = of.plan.bounds_;
+  plan.angles_ = of.plan.angles_;
+  plan.pixels_ = of.plan.pixels_;
+  plan.straddles_ = of.plan.straddles_;
+  take_bounds(plan);
+  for_proven(of.set, [&](std::size_t patch) { plan.segments_[patch] = proven_[patch].segments; });
+  planner_.divide(of.tolerance, plan);
+  plan.lay_out();
+  return plan;
+}
+
+}  // namespace tessera::inline abi_0_1
