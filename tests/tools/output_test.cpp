@@ -96,6 +96,11 @@ TEST_F(Output, AMeshThatNeedsTooMuchMemoryIsRefusedWithTheNumbers) {
   expect_failure({"tessellate", teapot, "-o", "a.ply", "--relative", "1e-5", "--max-memory", "1M"}, 1,
                  "the limit is 1.05 MB");
   output_of({"tessellate", teapot, "-o", "a.ply", "--grid", "8x8", "--max-memory", "1M"});
+  const Names fine{"tessellate", teapot, "-o", "a.ply", "--relative", "1e-3", "--max-memory", "600K"};
+  output_of(fine);
+  Names finer = fine;
+  finer.insert(finer.end(), {"--precision", "double"});
+  expect_failure(finer, 1, "of memory, the limit is 614 kB");
   for (const char* const size : {"0", "-1", "12Q", "M", "1e9", "99999999999999999999", "20000000T", ""})
     expect_failure({"tessellate", teapot, "-o", "b.ply", "--max-memory", size}, 2,
                    "--max-memory: expected a size like 800M or 12G, found ");

@@ -47,11 +47,13 @@ struct Tessellated {
   bool proven = false;  ///< false if sampled: callables fitted without bounds on their derivatives
 };
 
-/// Refuses a mesh that takes more memory than `max_bytes`, or than most of what is free.
-Status check_memory(const MeshCapacity& mesh, std::uint64_t max_bytes) {
-  // Position, normal and parameters of a vertex in float; the indices and the patch of a triangle, or of half a quad;
-  // and writing takes about as much again as the vertices.
-  constexpr std::uint64_t vertex_bytes = 2 * 32, triangle_bytes = 16;
+/// Refuses a mesh that takes more memory than --max-memory, or than most of what is free.
+Status check_memory(const MeshCapacity& mesh, const Options& options) {
+  // Position, normal and parameters of a vertex in float, and its position in double; the indices and the patch of a
+  // triangle, or of half a quad; and writing takes about as much again as the vertices.
+  const bool has_doubles = !options.grid && options.certified.precision == Precision::double_precision;
+  const std::uint64_t vertex_bytes = 2 * (32 + (has_doubles ? 24 : 0)), max_bytes = options.max_memory;
+  constexpr std::uint64_t triangle_bytes = 16;
   const std::uint64_t triangles = mesh.triangles + 2 * mesh.quads;
   const std::uint64_t needed = mesh.vertices * vertex_bytes + triangles * triangle_bytes;
   const std::uint64_t limit = max_bytes > 0 ? max_bytes : available_memory() / 4 * 3;
@@ -64,7 +66,7 @@ Status check_memory(const MeshCapacity& mesh, std::uint64_t max_bytes) {
 
 Result<Mesh> run_plan(const Result<Tessellation>& plan, const PatchSet& set, const Options& options) {
   if (!plan) return plan.status();
-  if (Status status = check_memory(plan->capacity(), options.max_memory); !status.ok()) return status;
+  if (Status status = check_memory(plan->capacity(), options); !status.ok()) return status;
   Result<Mesh> mesh = plan->allocate();
   if (!mesh) return mesh;
   Progress progress("tessellating");
