@@ -13,7 +13,7 @@ struct Loops {
   Points points;
   std::vector<std::uint32_t> ends;
 
-  CellGrid grid() const { return {u, v}; }
+  GridLines grid() const { return {u, v}; }
   /// Ends a ring.
   void close() { ends.push_back(static_cast<std::uint32_t>(points.size())); }
   /// Adds the rectangle of the grid as a loop, with the grid's points on its sides.
@@ -42,7 +42,7 @@ struct Cut {
 Cut cut(const Loops& loops) {
   CutCells cells;
   Cut result;
-  const CellGrid grid = loops.grid();
+  const GridLines grid = loops.grid();
   result.ok = cells.run(grid, loops.points, segments_of(loops.ends));
   result.points = loops.points;
   for (const std::uint32_t vertex : cells.grid_vertices())
@@ -152,7 +152,7 @@ TEST(CutCells, JoinSidesOfAnotherDivision) {
 }
 
 /// Whether a chord comes into a cell with its sides.
-bool meets(const CellGrid& grid, std::uint32_t i, std::uint32_t j, const ParameterPoint& a, const ParameterPoint& b) {
+bool meets(const GridLines& grid, std::uint32_t i, std::uint32_t j, const ParameterPoint& a, const ParameterPoint& b) {
   if (std::max(a.u, b.u) < grid.u(i) || std::min(a.u, b.u) > grid.u(i + 1)) return false;
   if (std::max(a.v, b.v) < grid.v(j) || std::min(a.v, b.v) > grid.v(j + 1)) return false;
   int left = 0, right = 0;
@@ -164,7 +164,7 @@ bool meets(const CellGrid& grid, std::uint32_t i, std::uint32_t j, const Paramet
 }
 
 void expect_uses(const Loops& loops, const Cut& result) {
-  const CellGrid grid = loops.grid();
+  const GridLines grid = loops.grid();
   const Segments chords = segments_of(loops.ends);
   for (std::uint32_t i = 0; i < grid.columns(); ++i) {
     for (std::uint32_t j = 0; j < grid.rows(); ++j) {

@@ -171,7 +171,7 @@ TEST(PolygonTriangles, KeepLoopsAUnitInTheLastPlaceApart) {
   const auto [ok, triangles] = triangulate_rings(points, {4, 8});
   ASSERT_TRUE(ok);
   EXPECT_EQ(triangles.size(), 8u);
-  for (const auto& t : triangles) EXPECT_GT(orientation_exactly(points[t[0]], points[t[1]], points[t[2]]), 0);
+  for (const auto& t : triangles) EXPECT_GT(exact_orientation(points[t[0]], points[t[1]], points[t[2]]), 0);
 }
 
 TEST(PolygonTriangles, OfCrossingBordersAreRefused) {

@@ -26,6 +26,7 @@ inline int orientation(const ParameterPoint& a, const ParameterPoint& b, const P
   const double error = bound * (std::abs(left) + std::abs(right));
   if (determinant > error) return 1;
   if (determinant < -error) return -1;
+  if (error == 0) return 0;  // points on a line along u or v
   return exact_orientation(a, b, c);
 }
 

@@ -7,21 +7,21 @@ namespace {
 
 /// Whether two segments cross within both.
 bool cross(const ParameterPoint& a, const ParameterPoint& b, const ParameterPoint& c, const ParameterPoint& d) {
-  const double to_c = orientation(a, b, c), to_d = orientation(a, b, d);
-  if (!((to_c < 0 && to_d > 0) || (to_c > 0 && to_d < 0))) return false;
-  const double to_a = orientation(c, d, a), to_b = orientation(c, d, b);
-  return (to_a < 0 && to_b > 0) || (to_a > 0 && to_b < 0);
+  const int to_c = orientation(a, b, c), to_d = orientation(a, b, d);
+  if (to_c * to_d >= 0) return false;
+  const int to_a = orientation(c, d, a), to_b = orientation(c, d, b);
+  return to_a * to_b < 0;
 }
 
 /// Whether a segment runs through the inside of a cell.
-bool crosses_cell(const ParameterPoint& a, const ParameterPoint& b, const CellGrid& grid, std::uint32_t i,
+bool crosses_cell(const ParameterPoint& a, const ParameterPoint& b, const GridLines& grid, std::uint32_t i,
                   std::uint32_t j) {
   const double u0 = grid.u(i), u1 = grid.u(i + 1), v0 = grid.v(j), v1 = grid.v(j + 1);
   if (std::max(a.u, b.u) <= u0 || std::min(a.u, b.u) >= u1) return false;
   if (std::max(a.v, b.v) <= v0 || std::min(a.v, b.v) >= v1) return false;
   int left = 0, right = 0;
   for (const ParameterPoint& corner : {ParameterPoint{u0, v0}, {u1, v0}, {u1, v1}, {u0, v1}}) {
-    const double side = orientation(a, b, corner);
+    const int side = orientation(a, b, corner);
     left += side > 0, right += side < 0;
   }
   return left > 0 && right > 0;
@@ -33,13 +33,13 @@ constexpr double share_met = 1e-9;  // far above rounding
 
 ParameterPoint BandCuts::point(std::uint32_t index) const {
   if (index < points_) return marks_->point(index);
-  const CellGrid& grid = marks_->grid();
+  const GridLines& grid = marks_->grid();
   return grid.point(grid.place_of_vertex(vertices_[index - points_]));
 }
 
 GridPlace BandCuts::cell_of(std::uint32_t index) const {
   if (index < points_) return marks_->cell_of(index);
-  const CellGrid& grid = marks_->grid();
+  const GridLines& grid = marks_->grid();
   const GridPlace place = grid.place_of_vertex(vertices_[index - points_]);
   return {std::min(place.i, grid.columns() - 1), std::min(place.j, grid.rows() - 1)};
 }
@@ -64,7 +64,7 @@ void BandCuts::find(const ChordMarks& marks, std::size_t points, std::span<const
   corners_ = corners;
   vertices_ = vertices;
   cuts_.clear();
-  const CellGrid& grid = marks.grid();
+  const GridLines& grid = marks.grid();
   cuts_of_cells_.clear(grid.cell_count());
   for (std::uint32_t i = 0, cell = 0; i < grid.columns(); ++i) {
     for (std::uint32_t j = 0; j < grid.rows(); ++j, ++cell) {
@@ -77,7 +77,7 @@ void BandCuts::find(const ChordMarks& marks, std::size_t points, std::span<const
 
 // Goes along the side of a cell, from crossing to crossing, and cuts along each piece that lies inside.
 void BandCuts::follow_side(std::uint32_t i, std::uint32_t j, bool along_v) {
-  const CellGrid& grid = marks_->grid();
+  const GridLines& grid = marks_->grid();
   const std::uint32_t first = grid.vertex(i, j), last = along_v ? first + 1 : grid.vertex(i + 1, j);
   crossings_.clear();
   (along_v ? marks_->across_v() : marks_->across_u()).any(first, [&](std::uint32_t number) {

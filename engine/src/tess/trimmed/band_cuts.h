@@ -22,8 +22,8 @@ enum class CellUse : std::uint8_t {
 /// would cross a chord, another cut, or a whole cell is left out, by exact signs; so cuts never cross.
 class BandCuts {
  public:
-  /// Finds the cuts of `marks` with as many `points`. `uses`: by cell. `corners`: by grid vertex, the index of the point
-  /// that stands there, or no_place. `vertices`: the grid vertices that follow on the points.
+  /// Finds the cuts of `marks` with as many `points`. `uses`: by cell. `corners`: by grid vertex, the index of the
+  /// point that stands there, or no_place. `vertices`: the grid vertices that follow on the points.
   void find(const ChordMarks& marks, std::size_t points, std::span<const CellUse> uses,
             std::span<const std::uint32_t> corners, std::span<const std::uint32_t> vertices);
   /// The cuts, between points by their index.

@@ -63,7 +63,7 @@ void ChordMarks::find_points() {
   }
 }
 
-void ChordMarks::set(const CellGrid& grid, std::span<const ParameterPoint> points,
+void ChordMarks::set(const GridLines& grid, std::span<const ParameterPoint> points,
                      std::span<const PlaneSegment> chords) {
   grid_ = grid;
   points_ = points;
@@ -121,8 +121,8 @@ void ChordMarks::mark_near(const PlaneSegment& chord) {
   }
 }
 
-// Counts chords along lines u = const: through the cells' middles for cells, through vertices for these. Chords of which
-// a point lies on the line count by half-open intervals.
+// Counts chords along lines u = const: through the cells' middles for cells, through vertices for these. Chords of
+// which a point lies on the line count by half-open intervals.
 void ChordMarks::cross_u(const PlaneSegment& chord, bool is_side) {
   const ParameterPoint &p = points_[chord.start], &q = points_[chord.end];
   const GridPlace a = cell_of(chord.start), b = cell_of(chord.end);

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "tess/trimmed/cell_grid.h"
+#include "tess/trimmed/grid_lines.h"
 #include "tess/trimmed/polygon_triangles.h"
 
 namespace tessera::inline abi_0_1 {
@@ -46,10 +46,11 @@ class ChordMarks {
   /// A grid vertex is near a chord within this share of the smaller cells around it.
   static constexpr double near_share = 0.35;
 
-  /// Marks what the chords meet. `points` and `grid` must outlive the marks. Points outside of the grid are not allowed.
-  void set(const CellGrid& grid, std::span<const ParameterPoint> points, std::span<const PlaneSegment> chords);
+  /// Marks what the chords meet. `points` and `grid` must outlive the marks. Points outside of the grid are not
+  /// allowed.
+  void set(const GridLines& grid, std::span<const ParameterPoint> points, std::span<const PlaneSegment> chords);
 
-  const CellGrid& grid() const { return grid_; }
+  const GridLines& grid() const { return grid_; }
   const ParameterPoint& point(std::uint32_t index) const { return points_[index]; }
   GridPlace cell_of(std::uint32_t point) const { return cells_of_points_[point]; }
   /// The first point that is a grid vertex exactly; no_place if none is.
@@ -59,8 +60,8 @@ class ChordMarks {
   bool is_met(std::uint32_t cell) const { return met_[cell] != 0; }
   /// Whether a cell that is not met lies inside.
   bool is_cell_inside(std::uint32_t cell) const { return cells_inside_[cell] != 0; }
-  /// Whether a vertex lies inside, seen along the line through it that runs along v, or u. Both are right unless a chord
-  /// comes within rounding; then each fits the crossings on its line.
+  /// Whether a vertex lies inside, seen along the line through it that runs along v, or u. Both are right unless a
+  /// chord comes within rounding; then each fits the crossings on its line.
   bool is_inside_along_v(std::uint32_t vertex) const { return inside_along_v_[vertex] != 0; }
   bool is_inside_along_u(std::uint32_t vertex) const { return inside_along_u_[vertex] != 0; }
   /// The end of a chord near a vertex; no_place if no chord is near.
@@ -88,7 +89,7 @@ class ChordMarks {
   void cross_v(const PlaneSegment& chord, bool is_side);
   std::uint32_t vertex_at(std::uint32_t point) const { return vertices_of_points_[point]; }
 
-  CellGrid grid_;
+  GridLines grid_;
   std::span<const ParameterPoint> points_;
   std::vector<GridPlace> cells_of_points_;
   std::vector<std::uint32_t> vertices_of_points_;

@@ -4,7 +4,8 @@
 
 namespace tessera::inline abi_0_1 {
 
-bool CutCells::run(const CellGrid& grid, std::span<const ParameterPoint> points, std::span<const PlaneSegment> chords) {
+bool CutCells::run(const GridLines& grid, std::span<const ParameterPoint> points,
+                   std::span<const PlaneSegment> chords) {
   points_ = points.size();
   marks_.set(grid, points, chords);
   choose_uses();
@@ -18,7 +19,7 @@ bool CutCells::run(const CellGrid& grid, std::span<const ParameterPoint> points,
 }
 
 void CutCells::choose_uses() {
-  const CellGrid& grid = marks_.grid();
+  const GridLines& grid = marks_.grid();
   uses_.resize(grid.cell_count());
   whole_count_ = 0;
   for (std::uint32_t cell = 0; cell < uses_.size(); ++cell) {
@@ -30,7 +31,7 @@ void CutCells::choose_uses() {
 
 // Vertices of the band come first: only they are points of the sweep.
 void CutCells::number_vertices() {
-  const CellGrid& grid = marks_.grid();
+  const GridLines& grid = marks_.grid();
   beside_.assign(grid.vertex_count(), 0);
   for (std::uint32_t i = 0, cell = 0; i < grid.columns(); ++i) {
     for (std::uint32_t j = 0; j < grid.rows(); ++j, ++cell) {
@@ -61,7 +62,7 @@ void CutCells::add_vertex(std::uint32_t vertex) {
 
 // The band lies between chords and the sides of whole cells. A chord along such a side leaves nothing between.
 void CutCells::add_borders() {
-  const CellGrid& grid = marks_.grid();
+  const GridLines& grid = marks_.grid();
   borders_.assign(marks_.chords().begin(), marks_.chords().end());
   for (std::uint32_t i = 0; i <= grid.columns(); ++i) {
     for (std::uint32_t j = 0; j <= grid.rows(); ++j) {

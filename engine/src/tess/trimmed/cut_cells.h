@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "tess/trimmed/band_cuts.h"
-#include "tess/trimmed/cell_grid.h"
 #include "tess/trimmed/chord_marks.h"
+#include "tess/trimmed/grid_lines.h"
 #include "tess/trimmed/polygon_triangles.h"
 
 namespace tessera::inline abi_0_1 {
@@ -15,21 +15,21 @@ namespace tessera::inline abi_0_1 {
 /// The triangles of the part of a grid that chords bound.
 ///
 /// Cells that no chord comes close to are whole, or are left out. The others form the band between whole cells and
-/// chords. It is divided along the grid's lines as far as no chord is in the way, and triangulated; so a triangle of the
-/// band is about as large as a cell. All triangles share edges, counter-clockwise; each chord is an edge of one
+/// chords. It is divided along the grid's lines as far as no chord is in the way, and triangulated; so a triangle of
+/// the band is about as large as a cell. All triangles share edges, counter-clockwise; each chord is an edge of one
 /// triangle, if no point lies on it.
 ///
-/// Vertices: first the given points of the loops, then `grid_vertices()`. Points that are a grid vertex exactly take its
-/// place. Time: O(n log n + cells) if the box of each chord is at most a few cells. Repeated calls of one size allocate
-/// nothing. An object serves one thread at a time.
+/// Vertices: first the given points of the loops, then `grid_vertices()`. Points that are a grid vertex exactly take
+/// its place. Time: O(n log n + cells) if the box of each chord is at most a few cells. Repeated calls of one size
+/// allocate nothing. An object serves one thread at a time.
 class CutCells {
  public:
   using Triangle = PolygonTriangles::Triangle;
 
-  /// Triangulates what lies inside, by parity, as PolygonTriangles does. `chords` must be closed loops within the grid's
-  /// rectangle; where they run along its sides, these are chords as well. Returns false, and has no triangles, if chords
-  /// cross or a loop is open.
-  bool run(const CellGrid& grid, std::span<const ParameterPoint> points, std::span<const PlaneSegment> chords);
+  /// Triangulates what lies inside, by parity, as PolygonTriangles does. `chords` must be closed loops within the
+  /// grid's rectangle; where they run along its sides, these are chords as well. Returns false, and has no triangles,
+  /// if chords cross or a loop is open.
+  bool run(const GridLines& grid, std::span<const ParameterPoint> points, std::span<const PlaneSegment> chords);
 
   /// The grid vertices in use, as grid.vertex() counts them. Vertex k has the index `points` + k.
   std::span<const std::uint32_t> grid_vertices() const { return vertices_; }
@@ -42,7 +42,7 @@ class CutCells {
   /// Calls visit(i, j, a, b, c, d) for each whole cell, with the indices of its corners, counter-clockwise from (i, j).
   template <class Visit>
   void for_whole(Visit visit) const {
-    const CellGrid& grid = marks_.grid();
+    const GridLines& grid = marks_.grid();
     for (std::uint32_t i = 0, cell = 0; i < grid.columns(); ++i) {
       const std::uint32_t* left = &corners_[grid.vertex(i, 0)];
       const std::uint32_t* right = &corners_[grid.vertex(i + 1, 0)];
@@ -57,7 +57,7 @@ class CutCells {
   void add_borders();
   void add_vertex(std::uint32_t vertex);
   bool is_whole(std::uint32_t i, std::uint32_t j) const {
-    const CellGrid& grid = marks_.grid();
+    const GridLines& grid = marks_.grid();
     return i < grid.columns() && j < grid.rows() && uses_[grid.cell(i, j)] == CellUse::whole;
   }
 

@@ -2,8 +2,8 @@
 
 namespace tessera::inline abi_0_1 {
 
-// The latest point of the gap sees the new one. On both sides of the line between them lies one funnel: that of the gap,
-// and a new one with these two points.
+// The latest point of the gap sees the new one. On both sides of the line between them lies one funnel: that of the
+// gap, and a new one with these two points.
 Gap Funnels::split(const SweepPoints& points, Gap& gap, std::uint32_t rank) {
   Gap above{{}, {}, true};
   if (gap.is_double()) {

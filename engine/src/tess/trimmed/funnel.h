@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "tess/trimmed/orientation.h"
+#include "basis/exact_sign.h"
 #include "tess/trimmed/sweep_points.h"
 
 namespace tessera::inline abi_0_1 {
@@ -102,7 +102,7 @@ inline void Funnels::add(const SweepPoints& points, Funnel& funnel, std::uint32_
   const ParameterPoint& at = points.at(rank);
   for (std::uint32_t below = links_[top].below; below != no_place; top = below, below = links_[top].below) {
     const std::uint32_t first = links_[below].rank, second = links_[top].rank;
-    const double turn = orientation(points.at(first), points.at(second), at);
+    const int turn = orientation(points.at(first), points.at(second), at);
     if (bank == Bank::lower ? turn <= 0 : turn >= 0) break;
     triangles_.push_back(bank == Bank::lower ? Triangle{first, second, rank} : Triangle{second, first, rank});
   }

@@ -101,7 +101,7 @@ bool PolygonTriangles::find_ending(std::uint32_t rank, Ending& ending) {
     ending.lowest = ending.highest = edges_[ending_[rank]].place;
     --missing;
   }
-  const auto joins = [&](std::uint32_t place, double side) {
+  const auto joins = [&](std::uint32_t place, int side) {
     if (line_.at(place).end == rank) {
       --missing;
       return true;
@@ -112,7 +112,7 @@ bool PolygonTriangles::find_ending(std::uint32_t rank, Ending& ending) {
   for (;;) {
     ending.below = line_.at(ending.lowest).below;
     if (ending.below == SweepLine::bottom) break;
-    const double side = line_.side(points_, ending.below, rank);
+    const int side = line_.side(points_, ending.below, rank);
     if (!joins(ending.below, side)) {
       if (side < 0) return false;
       break;
@@ -120,7 +120,7 @@ bool PolygonTriangles::find_ending(std::uint32_t rank, Ending& ending) {
     ending.lowest = ending.below;
   }
   for (std::uint32_t above = line_.at(ending.highest).above; above != no_place; above = line_.at(above).above) {
-    const double side = line_.side(points_, above, rank);
+    const int side = line_.side(points_, above, rank);
     if (!joins(above, side)) {
       if (side > 0) return false;
       break;
@@ -143,7 +143,7 @@ void PolygonTriangles::sort_starting(std::uint32_t rank) {
   for (std::uint32_t edge = starting_[rank], next; edge != no_place; edge = next) {
     next = edges_[edge].next_start;
     std::size_t k = fan_.size();
-    double turn = 1;
+    int turn = 1;
     for (; k > 0; --k) {
       turn = orientation(points_.at(rank), points_.at(edges_[fan_[k - 1]].end), points_.at(edges_[edge].end));
       if (turn >= 0) break;

@@ -18,8 +18,8 @@ struct PlaneSegment {
   friend bool operator==(const PlaneSegment&, const PlaneSegment&) = default;
 };
 
-/// The triangles of a region between straight segments, by a sweep over its points. A point is inside if a path from far
-/// away to it crosses an odd number of border segments. So the order and the direction of segments do not count.
+/// The triangles of a region between straight segments, by a sweep over its points. A point is inside if a path from
+/// far away to it crosses an odd number of border segments. So the order and the direction of segments do not count.
 ///
 /// The triangles are counter-clockwise, with an area above zero; all signs are exact. Each border segment is an edge of
 /// one triangle, which lies inside; other edges belong to two triangles. Every point of the region is a corner. These

@@ -13,7 +13,7 @@ void SweepLine::clear() {
 SweepLine::Found SweepLine::find(const SweepPoints& points, std::uint32_t rank) const {
   std::uint32_t below = bottom;
   for (std::uint32_t place = root_; place != no_place;) {
-    const double above = side(points, place, rank);
+    const int above = side(points, place, rank);
     if (above == 0) return {place, true};
     if (above > 0) below = place;
     place = above > 0 ? nodes_[place].right : nodes_[place].left;

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "basis/exact_sign.h"
 #include "tess/trimmed/funnel.h"
-#include "tess/trimmed/orientation.h"
 #include "tess/trimmed/sweep_points.h"
 
 namespace tessera::inline abi_0_1 {
@@ -28,7 +28,7 @@ class SweepLine {
   void clear();
   Place& at(std::uint32_t place) { return places_[place]; }
   /// Positive if a point lies above the edge of a place, 0 if on it.
-  double side(const SweepPoints& points, std::uint32_t place, std::uint32_t rank) const {
+  int side(const SweepPoints& points, std::uint32_t place, std::uint32_t rank) const {
     return orientation(points.at(places_[place].start), points.at(places_[place].end), points.at(rank));
   }
   /// Returns the place of an edge through a point, if there is one, or else of the edge below it.

@@ -16,11 +16,11 @@ struct GridPlace {
 };
 
 /// Lines u = const and v = const, and the cells between them. Cells and vertices are counted along v first.
-class CellGrid {
+class GridLines {
  public:
-  CellGrid() = default;
+  GridLines() = default;
   /// Takes the parameters of the lines: at least 2 a list, each larger than the one before. They must outlive the grid.
-  CellGrid(std::span<const double> u, std::span<const double> v) : u_(u), v_(v) {
+  GridLines(std::span<const double> u, std::span<const double> v) : u_(u), v_(v) {
     assert(u.size() > 1 && v.size() > 1);
   }
 
