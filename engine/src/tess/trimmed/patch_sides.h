@@ -1,0 +1,48 @@
+#pragma once
+// The sides of a face's patches: which parts of them are kept, and where their points lie.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tessera/geometry.h"
+#include "trim/trim_piece.h"
+
+namespace tessera::inline abi_0_1 {
+
+/// A point of a side, and whether what follows it is kept on either side of the line.
+struct SidePoint {
+  double at;          ///< along the line
+  bool below, above;  ///< on the side of smaller and of larger parameters across the line
+};
+
+/// The lines of one direction between patches, as sides of the patches along them. Both neighbours of a side have the
+/// same points.
+class PatchSides {
+ public:
+  /// Finds what is kept beside the lines.
+  ///
+  /// - `pieces`: cut at all lines, an even number of ends at each point.
+  /// - `across`: the coordinate that is constant on these lines; `lines` its values, `along` those of the other lines.
+  /// - `starts_inside`: whether points that no piece encloses are kept.
+  ///
+  /// Parity beside a line: of the pieces that end on the line and lie on that side of it, those count that end before.
+  /// A piece along the line lies on neither side.
+  void set(std::span<const TrimPiece> pieces, double ParameterPoint::*across, std::span<const double> lines,
+           std::span<const double> along, bool starts_inside);
+  /// Puts `rate` even segments on a side, those parts of it that are kept. The side: line `line` from along[k] to
+  /// along[k + 1]. Points nearer to an end of a piece than a sixteenth of a segment are left out.
+  std::vector<SidePoint> points(std::size_t line, std::size_t k, int rate) const;
+
+ private:
+  struct Node {
+    double at;
+    bool below, above;  ///< whether a piece ends here on that side of the line
+  };
+  std::vector<std::vector<Node>> nodes_;  ///< by line, sorted
+  std::span<const double> along_;
+  bool starts_inside_ = false;
+};
+
+}  // namespace tessera::inline abi_0_1

@@ -1,0 +1,211 @@
+// Meshes of trimmed faces: within their bound in both directions, without cracks between patches.
+
+#include "tess/trimmed/trimmed_face.h"
+
+#include <functional>
+
+#include "support/triangle_distance.h"
+#include "tess_trim/plane_reference.h"
+#include "tessera/nurbs_surface.h"
+#include "trim/trim_shapes.h"
+
+namespace tessera::test {
+namespace {
+
+/// What loops keep, in closed form.
+struct Kept {
+  std::function<bool(const ParameterPoint&)> holds;
+  std::function<ParameterPoint(const ParameterPoint&)> nearest;  ///< a point of the border, for points beside it
+};
+/// The domain without round holes, or with a disc alone.
+Kept outside_of(std::vector<std::pair<ParameterPoint, double>> discs, bool inside = false) {
+  const auto offset = [](const ParameterPoint& p, const ParameterPoint& centre) {
+    return std::hypot(p.u - centre.u, p.v - centre.v);
+  };
+  return {[=](const ParameterPoint& p) {
+            for (const auto& [centre, radius] : discs)
+              if ((offset(p, centre) < radius) != inside) return false;
+            return true;
+          },
+          [=](const ParameterPoint& p) {
+            ParameterPoint best{};
+            double least = 1e9;
+            for (const auto& [centre, radius] : discs) {
+              const double r = offset(p, centre);
+              if (std::abs(r - radius) >= least) continue;
+              least = std::abs(r - radius);
+              best = {centre.u + (p.u - centre.u) * radius / r, centre.v + (p.v - centre.v) * radius / r};
+            }
+            return best;
+          }};
+}
+
+PatchGrid wavy_grid() {
+  std::vector<Vec3> points;
+  for (int i = 0; i < 7; ++i)
+    for (int j = 0; j < 6; ++j) points.push_back({double(i), double(j), std::sin(1.3 * i) * std::cos(0.9 * j)});
+  const std::vector<double> u{0, 0, 0, 0, 1, 2, 3, 4, 4, 4, 4}, v{0, 0, 0, 0, 1, 2, 3, 3, 3, 3};
+  return value_of(to_bezier(value_of(BSplineSurface::polynomial(3, u, 3, v, points))));
+}
+/// A quarter of a cylinder of radius 2, rational along u, over [0, 4] x [0, 3].
+PatchGrid cylinder_grid() {
+  const std::vector<Vec3> points{{2, 0, 0}, {2, 0, 6}, {2, 2, 0}, {2, 2, 6}, {0, 2, 0}, {0, 2, 6}};
+  const double w = std::sqrt(0.5);
+  const auto patch = value_of(BezierPatch::rational(2, 1, points, std::vector<double>{1, 1, w, w, 1, 1}));
+  return value_of(PatchGrid::make({0, 4}, {0, 3}, {patch}, {}));
+}
+PatchGrid plane_grid() {
+  const auto patch =
+      value_of(BezierPatch::polynomial(1, 1, std::vector<Vec3>{{0, 0, 1}, {0, 3, 1}, {4, 0, 1}, {4, 3, 1}}));
+  return value_of(PatchGrid::make({0, 4}, {0, 3}, {patch}, {}));
+}
+
+RepairedLoops repaired(const PatchGrid& grid, const std::vector<TrimLoop>& loops) {
+  const auto axis = [](std::span<const double> lines) {
+    return CutAxis{{lines.begin(), lines.end()}, false, 0x1p-44 * (lines.back() - lines.front())};
+  };
+  return value_of(repair_loops(loops, {axis(grid.breaks_u()), axis(grid.breaks_v())}));
+}
+
+Vec3 position(const Mesh& mesh, std::uint32_t vertex) {
+  const float* p = &mesh.positions[3 * std::size_t{vertex}];
+  return mesh.origin + Vec3{p[0], p[1], p[2]};
+}
+ParameterPoint parameters(const PatchGrid& grid, const Mesh& mesh, std::size_t triangle, const double (&shares)[3]) {
+  const Domain domain = grid.patch_domain(mesh.patches[triangle]);
+  ParameterPoint at{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const float* p = &mesh.parameters[2 * std::size_t{mesh.indices[3 * triangle + k]}];
+    at.u += shares[k] * (domain.u0 + p[0] * (domain.u1 - domain.u0));
+    at.v += shares[k] * (domain.v0 + p[1] * (domain.v1 - domain.v0));
+  }
+  return at;
+}
+
+/// The distance of x from the kept part, near `at`: not above the true one's upper bounds, found by Newton's method.
+double distance_to_kept(const PatchGrid& grid, const Kept& kept, const Vec3& x, ParameterPoint at) {
+  double best = 1e9;
+  for (int step = 0; step < 6; ++step) {
+    ParameterPoint inside = kept.holds(at) ? at : kept.nearest(at);
+    const Domain all = grid.domain();
+    inside = {std::clamp(inside.u, all.u0, all.u1), std::clamp(inside.v, all.v0, all.v1)};
+    const SurfaceJet jet = *grid.evaluate_jet(inside.u, inside.v);
+    const Vec3 d = x - jet.position;
+    best = std::min(best, length(d));
+    const double uu = dot(jet.du, jet.du), uv = dot(jet.du, jet.dv), vv = dot(jet.dv, jet.dv);
+    const double du = dot(jet.du, d), dv = dot(jet.dv, d), det = uu * vv - uv * uv;
+    at = {inside.u + (du * vv - dv * uv) / det, inside.v + (dv * uu - du * uv) / det};
+  }
+  return best;
+}
+
+/// The largest distance from random points of the mesh to the kept part, and from kept points to the mesh.
+std::pair<double, double> distances(const PatchGrid& grid, const Kept& kept, const Mesh& mesh) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  double of_mesh = 0, of_face = 0;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    for (int k = 0; k < 4; ++k) {
+      const double a = uniform(random), b = uniform(random) * (1 - a), shares[3] = {a, b, 1 - a - b};
+      Vec3 x{};
+      for (std::size_t c = 0; c < 3; ++c) x = x + shares[c] * position(mesh, mesh.indices[3 * t + c]);
+      of_mesh = std::max(of_mesh, distance_to_kept(grid, kept, x, parameters(grid, mesh, t, shares)));
+    }
+  }
+  struct Corners {
+    Vec3 p, q, r;
+    double size;
+  };
+  std::vector<Corners> corners;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const auto at = [&](std::size_t k) { return position(mesh, mesh.indices[3 * t + k]); };
+    corners.push_back({at(0), at(1), at(2), std::max(length(at(1) - at(0)), length(at(2) - at(0)))});
+  }
+  const Domain all = grid.domain();
+  for (int k = 0; k < 800; ++k) {
+    ParameterPoint at{all.u0 + uniform(random) * (all.u1 - all.u0), all.v0 + uniform(random) * (all.v1 - all.v0)};
+    if (!kept.holds(at)) at = kept.nearest(at);  // points of the border are kept
+    if (!all.contains(at.u, at.v)) continue;
+    const Vec3 x = grid.evaluate_jet(at.u, at.v)->position;
+    double least = 1e9;
+    for (const auto& [p, q, r, size] : corners)
+      if (length(x - p) < least + size) least = std::min(least, distance_to_triangle(x, p, q, r));
+    of_face = std::max(of_face, least);
+  }
+  return {of_mesh, of_face};
+}
+
+/// Expects a mesh within its bound, and its bound within the tolerance; with this many components less holes.
+void expect_good(const PatchGrid& grid, const std::vector<TrimLoop>& loops, const Kept& kept, double tolerance,
+                 std::ptrdiff_t euler) {
+  const auto made = mesh_trimmed_face(grid, repaired(grid, loops), tolerance, {1, 1, 0});
+  ASSERT_TRUE(made.ok()) << made.status().message();
+  const Mesh& mesh = made->mesh;
+  ASSERT_GT(mesh.triangle_count(), 0u);
+  EXPECT_LE(made->bound, tolerance);
+  const MeshReport report = value_of(check(mesh));
+  EXPECT_EQ(report.non_manifold_edges + report.inconsistent_edges + report.t_junctions + report.degenerate_triangles,
+            0u);
+  const auto edges = static_cast<std::ptrdiff_t>(3 * report.triangles + report.open_edges) / 2;
+  EXPECT_EQ(
+      static_cast<std::ptrdiff_t>(report.distinct_positions) - edges + static_cast<std::ptrdiff_t>(report.triangles),
+      euler);
+  const auto [of_mesh, of_face] = distances(grid, kept, mesh);
+  EXPECT_LE(of_mesh, made->bound);
+  EXPECT_LE(of_face, made->bound);
+  std::printf("%zu triangles, tolerance %.1e: bound %.2f, mesh to face %.2f, face to mesh %.2f of it\n",
+              mesh.triangle_count(), tolerance, made->bound / tolerance, of_mesh / tolerance, of_face / tolerance);
+}
+
+TEST(TrimmedFace, OfAPlaneWithHolesKeepsItsBound) {
+  const std::vector<TrimLoop> loops{rectangle(0, 4, 0, 3), circle({1, 1}, 0.7), circle({3, 1.7}, 0.9)};
+  for (const double tolerance : {0.3, 1e-2, 1e-4})
+    expect_good(plane_grid(), loops, outside_of({{{1, 1}, 0.7}, {{3, 1.7}, 0.9}}), tolerance, -1);
+}
+
+TEST(TrimmedFace, OfAHoleAcrossPatchesKeepsItsBound) {
+  const std::vector<TrimLoop> loops{circle({1.9, 1.4}, 1.15, true)};
+  for (const double tolerance : {0.3, 1e-2, 1e-3})
+    expect_good(wavy_grid(), loops, outside_of({{{1.9, 1.4}, 1.15}}), tolerance, 0);
+}
+
+TEST(TrimmedFace, OfADiscWithinPatchesKeepsItsBound) {
+  for (const double radius : {0.04, 0.3, 1.3})
+    expect_good(wavy_grid(), {circle({2, 1}, radius)}, outside_of({{{2, 1}, radius}}, true), 1e-2, 1);
+}
+
+TEST(TrimmedFace, OfACylinderKeepsItsBound) {
+  const std::vector<TrimLoop> loops{rectangle(0, 4, 0, 3), circle({1.5, 1.5}, 1)};
+  for (const double tolerance : {1e-1, 1e-2, 1e-3})
+    expect_good(cylinder_grid(), loops, outside_of({{{1.5, 1.5}, 1}}), tolerance, 0);
+}
+
+// The rectangle as a loop runs along the sides of patches; a smaller one along lines between them.
+TEST(TrimmedFace, OfLoopsAlongPatchBordersIsWhole) {
+  const PatchGrid grid = wavy_grid();
+  const auto whole = mesh_trimmed_face(grid, repaired(grid, {rectangle(0, 4, 0, 3)}), 1e-2, {});
+  ASSERT_TRUE(whole.ok()) << whole.status().message();
+  EXPECT_EQ(whole->whole_patches, 12u);
+  EXPECT_EQ(whole->cut_patches + whole->patches_left_out, 0u);
+  const auto part = mesh_trimmed_face(grid, repaired(grid, {rectangle(1, 3, 0, 2)}), 1e-2, {});
+  ASSERT_TRUE(part.ok()) << part.status().message();
+  EXPECT_EQ(part->whole_patches, 4u);
+  EXPECT_EQ(part->patches_left_out, 8u);
+  for (const auto* made : {&*whole, &*part}) {
+    const MeshReport report = value_of(check(made->mesh));
+    EXPECT_EQ(report.non_manifold_edges + report.inconsistent_edges + report.t_junctions, 0u);
+  }
+}
+
+TEST(TrimmedFace, OfBadInputIsRefused) {
+  const PatchGrid grid = wavy_grid();
+  for (const double tolerance : {0.0, -1.0, std::nan(""), 1e-12})
+    EXPECT_EQ(mesh_trimmed_face(grid, repaired(grid, {rectangle(0, 4, 0, 3)}), tolerance, {}).status().code(),
+              StatusCode::invalid_argument);
+  const auto crossed =
+      mesh_trimmed_face(grid, repaired(grid, {polygon({{0.1, 0.1}, {0.9, 0.83}, {0.9, 0.1}, {0.13, 0.9}})}), 1e-2, {});
+  EXPECT_EQ(crossed.status().code(), StatusCode::unsupported);
+}
+
+}  // namespace
+}  // namespace tessera::test
