@@ -1,14 +1,12 @@
 #include "tess/trimmed/trimmed_face.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
 
-#include "basis/bernstein.h"
-#include "surface/net/homogeneous.h"
 #include "tess/cells/f64_points.h"
+#include "tess/trimmed/patch_points.h"
 #include "tess/trimmed/trimmed_patch.h"
 #include "tessera/guard.h"
 
@@ -20,20 +18,7 @@ constexpr double cell_share = 0.45, sliver_share = 0.25;
 constexpr double band_share = 2.2;  // a usual bound of the band's triangles over that of cells
 constexpr int max_attempts = 6;
 
-/// A point of the patch, relative to the origin of the net. On a side, only the side's control points count, because
-/// Bernstein values at 0 and 1 are exact.
-Vec3 point_of(const HomogeneousNet& net, const ParameterPoint& at) {
-  std::array<double, max_degree + 1> of_u, of_v;
-  bernstein_values(net.degree_u, at.u, of_u.data());
-  bernstein_values(net.degree_v, at.v, of_v.data());
-  Homogeneous sum{0, 0, 0, 0};
-  for (int j = 0; j <= net.degree_v; ++j) {
-    Homogeneous row{0, 0, 0, 0};
-    for (int i = 0; i <= net.degree_u; ++i) row = row + of_u[static_cast<std::size_t>(i)] * net.at(i, j);
-    sum = sum + of_v[static_cast<std::size_t>(j)] * row;
-  }
-  return net.scale * sum.project();
-}
+class VertexTail;
 
 class FaceMesher {
  public:
@@ -55,10 +40,12 @@ class FaceMesher {
   Status bound_patches();
   Status choose_rates(std::size_t patch);
   void assign_pieces();
-  Status mesh_patch(std::size_t patch, TrimmedFaceMesh& out, double& bound);
+  Status mesh_patch(std::size_t patch, TrimmedFaceMesh& out, double& bound, bool& keeps);
   bool cut(std::size_t patch);
   int side_rate(std::size_t a, std::size_t b, bool along_u) const;
   void write(std::size_t patch, TrimmedFaceMesh& out);
+  void write_grid(PatchPoints& points, VertexTail& tail);
+  void reserve(Mesh& mesh) const;
 
   const PatchGrid& grid_;
   const RepairedLoops& loops_;
@@ -67,7 +54,8 @@ class FaceMesher {
   std::vector<Patch> patches_;
   PatchSides sides_u_, sides_v_;  ///< lines u = const; lines v = const
   PatchCutter cutter_;
-  std::vector<std::uint32_t> numbers_;  ///< by vertex of the patch, its number in the mesh
+  std::vector<double> lines_u_, lines_v_;  ///< of a patch's grid, in its own parameters
+  std::vector<std::uint32_t> numbers_;     ///< by vertex of the patch, its number in the mesh
 };
 
 Status FaceMesher::bound_patches() {
@@ -147,28 +135,89 @@ bool FaceMesher::cut(std::size_t k) {
   return false;
 }
 
+/// Vertices at the end of a mesh, with room for as many as a patch can have.
+class VertexTail {
+ public:
+  VertexTail(Mesh& mesh, std::size_t most) : mesh_(mesh), count_(mesh.vertex_count()) {
+    mesh.positions.resize(3 * (count_ + most));
+    mesh.parameters.resize(2 * (count_ + most));
+  }
+  ~VertexTail() {
+    mesh_.positions.resize(3 * count_);
+    mesh_.parameters.resize(2 * count_);
+  }
+  VertexTail(const VertexTail&) = delete;
+  VertexTail& operator=(const VertexTail&) = delete;
+
+  std::uint32_t put(const ParameterPoint& at, const Vec3& position) {
+    float* p = &mesh_.positions[3 * count_];
+    p[0] = static_cast<float>(position.x), p[1] = static_cast<float>(position.y), p[2] = static_cast<float>(position.z);
+    float* q = &mesh_.parameters[2 * count_];
+    q[0] = static_cast<float>(at.u), q[1] = static_cast<float>(at.v);
+    return static_cast<std::uint32_t>(count_++);
+  }
+
+ private:
+  Mesh& mesh_;
+  std::size_t count_;
+};
+
+// Vertices of the grid come first, line by line; then the points of loops that triangles use.
 void FaceMesher::write(std::size_t k, TrimmedFaceMesh& out) {
-  const HomogeneousNet net(grid_.patches()[k], origin_);
-  Mesh& mesh = out.mesh;
-  numbers_.assign(cutter_.vertex_count(), no_place);
+  const std::size_t old = out.mesh.triangle_count();
+  CutCells& cells = cutter_.cells();
+  const std::size_t count = cells.band().size() + 2 * cells.whole_count();
+  out.mesh.patches.resize(old + count, static_cast<std::uint32_t>(k));
+  out.mesh.indices.resize(3 * (old + count));
+  PatchPoints points(grid_.patches()[k], origin_);
+  VertexTail tail(out.mesh, cutter_.vertex_count());
+  write_grid(points, tail);
   const auto number = [&](std::uint32_t vertex) {
-    if (numbers_[vertex] != no_place) return numbers_[vertex];
+    std::uint32_t& known = numbers_[vertex];
+    if (known != no_place) [[likely]]
+      return known;
     const ParameterPoint at = cutter_.local(vertex);
-    const Vec3 position = point_of(net, at);
-    for (const double x : {position.x, position.y, position.z}) mesh.positions.push_back(static_cast<float>(x));
-    for (const double x : {at.u, at.v}) mesh.parameters.push_back(static_cast<float>(x));
-    return numbers_[vertex] = static_cast<std::uint32_t>(mesh.positions.size() / 3 - 1);
+    return known = tail.put(at, points.at(at));
   };
-  const auto add = [&](std::uint32_t p, std::uint32_t q, std::uint32_t r) {
-    for (const std::uint32_t vertex : {p, q, r}) mesh.indices.push_back(number(vertex));
-    mesh.patches.push_back(static_cast<std::uint32_t>(k));
-  };
-  cutter_.cells().for_whole([&](std::uint32_t, std::uint32_t, std::uint32_t p, std::uint32_t q, std::uint32_t r,
-                                std::uint32_t s) { add(p, q, r), add(p, r, s); });
-  for (const auto& [p, q, r] : cutter_.cells().band()) add(p, q, r);
+  std::uint32_t* index = &out.mesh.indices[3 * old];
+  cells.for_whole(
+      [&](std::uint32_t, std::uint32_t, std::uint32_t p, std::uint32_t q, std::uint32_t r, std::uint32_t s) {
+        for (const std::uint32_t vertex : {p, q, r, p, r, s}) *index++ = number(vertex);
+      });
+  for (const CutCells::Triangle& triangle : cells.band())
+    for (const std::uint32_t vertex : triangle) *index++ = number(vertex);
 }
 
-Status FaceMesher::mesh_patch(std::size_t k, TrimmedFaceMesh& out, double& bound) {
+void FaceMesher::write_grid(PatchPoints& points, VertexTail& tail) {
+  numbers_.assign(cutter_.vertex_count(), no_place);
+  const std::span<const std::uint32_t> vertices = cutter_.cells().grid_vertices();
+  const std::size_t first = cutter_.vertex_count() - vertices.size();
+  cutter_.local_lines(lines_u_, lines_v_);
+  points.set_lines(lines_v_);
+  std::uint32_t line = no_place;
+  for (std::size_t n = 0; n < vertices.size(); ++n) {
+    const GridPlace place = cutter_.grid().place_of_vertex(vertices[n]);
+    if (place.i != line) points.begin_row(lines_u_[line = place.i]);
+    numbers_[first + n] = tail.put({lines_u_[place.i], lines_v_[place.j]}, points.in_row(place.j));
+  }
+}
+
+// As many triangles as the cells of all patches have, and a tenth more.
+void FaceMesher::reserve(Mesh& mesh) const {
+  double cells = 0, vertices = 0;
+  for (const Patch& patch : patches_) {
+    cells += double(patch.rates.u) * patch.rates.v;
+    vertices += static_cast<double>(patch.rates.vertices());
+  }
+  const auto triangles = static_cast<std::size_t>(2.2 * cells), points = static_cast<std::size_t>(1.1 * vertices);
+  mesh.indices.reserve(3 * triangles);
+  mesh.patches.reserve(triangles);
+  mesh.positions.reserve(3 * points);
+  mesh.parameters.reserve(2 * points);
+}
+
+// `keeps`: whether all patches so far keep the tolerance; else nothing more is written.
+Status FaceMesher::mesh_patch(std::size_t k, TrimmedFaceMesh& out, double& bound, bool& keeps) {
   if (!cut(k))
     return Status(StatusCode::unsupported, "the loops of a face cross themselves or each other",
                   static_cast<std::ptrdiff_t>(k));
@@ -177,7 +226,8 @@ Status FaceMesher::mesh_patch(std::size_t k, TrimmedFaceMesh& out, double& bound
   ++(is_empty ? out.patches_left_out : patches_[k].pieces.empty() ? out.whole_patches : out.cut_patches);
   if (is_empty) return {};
   bound = cutter_.chord_bound() + cutter_.sliver_bound() + patches_[k].rounding;
-  write(k, out);
+  keeps = keeps && bound <= tolerance_;
+  if (keeps) write(k, out);
   return {};
 }
 
@@ -192,13 +242,13 @@ Result<TrimmedFaceMesh> FaceMesher::mesh() {
   for (int attempt = 0; attempt < max_attempts; ++attempt) {
     TrimmedFaceMesh out;
     out.mesh.origin = origin_;
+    reserve(out.mesh);
     bool keeps = true;
     for (std::size_t k = 0; k < patches_.size(); ++k) {
       double bound = 0;
-      if (Status status = mesh_patch(k, out, bound); !status.ok()) return status;
+      if (Status status = mesh_patch(k, out, bound, keeps); !status.ok()) return status;
       out.bound = std::max(out.bound, bound);
       if (bound <= tolerance_) continue;
-      keeps = false;
       patches_[k].shrink *= 0.9 * tolerance_ / bound;
       if (Status status = choose_rates(k); !status.ok()) return status;
     }

@@ -69,6 +69,12 @@ ParameterPoint PatchCutter::local(std::uint32_t vertex) const {
   return {patch_.domain.local_u(at.u), patch_.domain.local_v(at.v)};
 }
 
+void PatchCutter::local_lines(std::vector<double>& u, std::vector<double>& v) const {
+  u.clear(), v.clear();
+  for (const double line : lines_u_) u.push_back(patch_.domain.local_u(line));
+  for (const double line : lines_v_) v.push_back(patch_.domain.local_v(line));
+}
+
 // Bounds of a half or a quarter hold for triangles within it. The pieces are ordered as ChordBound::pieces() says.
 double PatchCutter::triangle_bound(const CutCells::Triangle& triangle) const {
   const ParameterPoint a = local(triangle[0]), b = local(triangle[1]), c = local(triangle[2]);

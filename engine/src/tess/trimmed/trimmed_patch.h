@@ -42,6 +42,9 @@ class PatchCutter {
   /// The parameters of a vertex, in the surface and in the patch.
   ParameterPoint point(std::uint32_t vertex) const;
   ParameterPoint local(std::uint32_t vertex) const;
+  const GridLines& grid() const { return grid_; }
+  /// The lines of the grid in the patch's own parameters.
+  void local_lines(std::vector<double>& u, std::vector<double>& v) const;
   std::size_t vertex_count() const { return points_.size() + cells_.grid_vertices().size(); }
   /// The largest distance of a triangle, and of a sliver.
   double chord_bound();
