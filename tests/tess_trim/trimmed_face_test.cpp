@@ -135,6 +135,12 @@ std::pair<double, double> distances(const PatchGrid& grid, const Kept& kept, con
   return {of_mesh, of_face};
 }
 
+/// Vertices less edges plus triangles: the number of components less that of holes.
+std::ptrdiff_t euler_number(const MeshReport& report) {
+  const auto edges = static_cast<std::ptrdiff_t>(3 * report.triangles + report.open_edges) / 2;
+  return static_cast<std::ptrdiff_t>(report.distinct_positions) - edges + static_cast<std::ptrdiff_t>(report.triangles);
+}
+
 /// Expects a mesh within its bound, and its bound within the tolerance; with this many components less holes.
 void expect_good(const PatchGrid& grid, const std::vector<TrimLoop>& loops, const Kept& kept, double tolerance,
                  std::ptrdiff_t euler) {
@@ -146,15 +152,10 @@ void expect_good(const PatchGrid& grid, const std::vector<TrimLoop>& loops, cons
   const MeshReport report = value_of(check(mesh));
   EXPECT_EQ(report.non_manifold_edges + report.inconsistent_edges + report.t_junctions + report.degenerate_triangles,
             0u);
-  const auto edges = static_cast<std::ptrdiff_t>(3 * report.triangles + report.open_edges) / 2;
-  EXPECT_EQ(
-      static_cast<std::ptrdiff_t>(report.distinct_positions) - edges + static_cast<std::ptrdiff_t>(report.triangles),
-      euler);
+  EXPECT_EQ(euler_number(report), euler);
   const auto [of_mesh, of_face] = distances(grid, kept, mesh);
   EXPECT_LE(of_mesh, made->bound);
   EXPECT_LE(of_face, made->bound);
-  std::printf("%zu triangles, tolerance %.1e: bound %.2f, mesh to face %.2f, face to mesh %.2f of it\n",
-              mesh.triangle_count(), tolerance, made->bound / tolerance, of_mesh / tolerance, of_face / tolerance);
 }
 
 TEST(TrimmedFace, OfAPlaneWithHolesKeepsItsBound) {
@@ -194,6 +195,60 @@ TEST(TrimmedFace, OfLoopsAlongPatchBordersIsWhole) {
   for (const auto* made : {&*whole, &*part}) {
     const MeshReport report = value_of(check(made->mesh));
     EXPECT_EQ(report.non_manifold_edges + report.inconsistent_edges + report.t_junctions, 0u);
+  }
+}
+
+/// The area of a mesh in the parameters of its face.
+double plane_area(const PatchGrid& grid, const Mesh& mesh) {
+  double sum = 0;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const ParameterPoint a = parameters(grid, mesh, t, {1, 0, 0}), b = parameters(grid, mesh, t, {0, 1, 0}),
+                         c = parameters(grid, mesh, t, {0, 0, 1});
+    sum += ((b.u - a.u) * (c.v - a.v) - (b.v - a.v) * (c.u - a.u)) / 2;
+  }
+  return sum;
+}
+
+// Discs apart from each other, kept or cut away: with centres on lines between patches, or touching these lines.
+TEST(TrimmedFace, OfRandomDiscsHasTheirAreaAndNoCracks) {
+  const PatchGrid grid = wavy_grid();
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (int round = 0; round < 80; ++round) {
+    std::vector<std::pair<ParameterPoint, double>> discs;
+    for (int k = 0; k < 30; ++k) {
+      ParameterPoint centre{0.2 + 3.6 * uniform(random), 0.2 + 2.6 * uniform(random)};
+      double radius = 0.02 + uniform(random) * (random() % 3 ? 0.3 : 1);
+      if (k % 4 == 0) centre.u = std::round(centre.u);
+      if (k % 4 == 1) centre.v = std::round(centre.v);
+      if (k % 4 == 2) radius = std::max(0.01, std::abs(centre.u - std::round(centre.u)));
+      const double room = std::min({centre.u, 4 - centre.u, centre.v, 3 - centre.v});
+      bool is_free = room > radius + 0.001;
+      for (const auto& [other, size] : discs)
+        is_free = is_free && std::hypot(centre.u - other.u, centre.v - other.v) > radius + size + 0.01;
+      if (is_free) discs.emplace_back(centre, radius);
+    }
+    const bool are_holes = round % 2 == 0;
+    std::vector<TrimLoop> loops;
+    double area = 0, length_of_borders = 0;
+    for (const auto& [centre, radius] : discs) {
+      loops.push_back(circle(centre, radius, are_holes));
+      area += std::numbers::pi * radius * radius;
+      length_of_borders += 2 * std::numbers::pi * radius;
+    }
+    const double tolerance = std::pow(10, -0.5 - 1.5 * uniform(random));
+    const auto made = mesh_trimmed_face(grid, repaired(grid, loops), tolerance, {1, 1, 0});
+    ASSERT_TRUE(made.ok()) << round << ": " << made.status().message();
+    ASSERT_LE(made->bound, tolerance);
+    const MeshReport report = value_of(check(made->mesh));
+    ASSERT_EQ(report.non_manifold_edges + report.inconsistent_edges + report.t_junctions + report.degenerate_triangles,
+              0u)
+        << round;
+    const auto count = static_cast<std::ptrdiff_t>(discs.size());
+    ASSERT_EQ(euler_number(report), are_holes ? 1 - count : count) << round;
+    // Lengths on the surface are at least those of the parameters: slivers are no wider than the tolerance.
+    ASSERT_NEAR(plane_area(grid, made->mesh), are_holes ? 12 - area : area, length_of_borders * tolerance + 1e-5)
+        << round;
   }
 }
 

@@ -16,7 +16,7 @@ namespace {
 // Triangles of the band may be wider than a cell, so cells take less than half of the tolerance.
 constexpr double cell_share = 0.45, sliver_share = 0.25;
 constexpr double band_share = 2.2;  // a usual bound of the band's triangles over that of cells
-constexpr int max_attempts = 6;
+constexpr int max_attempts = 16;
 
 class VertexTail;
 
@@ -249,7 +249,7 @@ Result<TrimmedFaceMesh> FaceMesher::mesh() {
       if (Status status = mesh_patch(k, out, bound, keeps); !status.ok()) return status;
       out.bound = std::max(out.bound, bound);
       if (bound <= tolerance_) continue;
-      patches_[k].shrink *= 0.9 * tolerance_ / bound;
+      patches_[k].shrink *= 0.85 * tolerance_ / bound;
       if (Status status = choose_rates(k); !status.ok()) return status;
     }
     if (keeps) return out;
