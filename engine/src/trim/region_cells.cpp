@@ -161,11 +161,12 @@ class CellsBuilder {
     const auto goes_on = [&](const ParameterPoint& end) {
       return row_of(end.v, rounding_.v) == row && column_of(end.u, rounding_.u) > column;
     };
-    const bool left_goes_on = goes_on(left);
-    if (left_goes_on) (falls ? own.to_v : own.from_v) = falls ? infinity : -infinity;
+    if (goes_on(left)) (falls ? own.to_v : own.from_v) = falls ? infinity : -infinity;
     if (goes_on(right)) (falls ? own.from_v : own.to_v) = falls ? -infinity : infinity;
+    // All of the piece is beyond the cell, and only its reach and rounding are not: it has no strip here.
+    const bool is_beyond = falls ? own.to_v == infinity : own.from_v == -infinity;
     if (own.counts_at(middle) && !item.counts_at(middle)) toggle_only(row, column);
-    CellEntry entry = strip(item.piece, column, in_row, falls, left_goes_on);
+    CellEntry entry = strip(item.piece, column, in_row, falls, is_beyond);
     entry.from_v = own.from_v;
     entry.to_v = own.to_v;
     pending_.push_back({at(row, column), entry});
