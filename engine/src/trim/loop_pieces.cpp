@@ -76,8 +76,10 @@ class LoopBuilder {
     const auto degree = static_cast<std::size_t>(spans->degree);
     ParameterPoint largest;
     for (const Vec3& p : curve.points()) largest = larger(largest, distance({p.x, p.y}, {}));
-    // Knot insertion takes convex combinations, in `degree` levels of at most 4 roundings each.
-    const ParameterPoint inserted = 4 * static_cast<double>(degree + 1) * 0x1p-53 * largest;
+    // Knot insertion takes convex combinations, in `degree` levels of at most 4 roundings each. Weights that are off by
+    // as much move a rational curve by twice that share of its size.
+    const double roundings = (curve.is_rational() ? 12 : 4) * static_cast<double>(degree + 1);
+    const ParameterPoint inserted = roundings * 0x1p-53 * largest;
     for (std::size_t span = 0; span + 1 < spans->breaks.size(); ++span) {
       PlaneBezier bezier;
       for (std::size_t i = span * degree; i <= (span + 1) * degree; ++i) {

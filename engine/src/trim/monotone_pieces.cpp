@@ -50,7 +50,7 @@ class Cutter {
         like_(like),
         lines_(lines),
         pieces_(pieces),
-        rounding_(ulp * largest_coordinates(curve)) {
+        rounding_((curve.weights.empty() ? 1 : 2) * ulp * largest_coordinates(curve)) {
     is_line_ = curve.degree() == 1 && error == ParameterPoint{};
   }
 
@@ -166,7 +166,7 @@ class Cutter {
   const TrimPiece& like_;
   const CutLines& lines_;
   std::vector<TrimPiece>& pieces_;
-  ParameterPoint rounding_;  ///< one unit in the last place of the largest coordinates
+  ParameterPoint rounding_;  ///< what rounding the points and weights of a part once moves it, at most
   bool is_line_;
 };
 

@@ -240,7 +240,7 @@ class CellsBuilder {
       for (std::int32_t column = grid_.columns; column-- > 0;) {
         const std::size_t cell = at(row, column);
         parity ^= toggles_[cell] != 0;
-        const std::span<const std::uint32_t> listed(&order[first[cell]], first[cell + 1] - first[cell]);
+        const std::span<const std::uint32_t> listed(order.data() + first[cell], first[cell + 1] - first[cell]);
         write_cell(row, column, parity, listed);
       }
     }
