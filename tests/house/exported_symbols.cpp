@@ -9,10 +9,20 @@
 namespace tessera::house {
 namespace {
 
-constexpr std::array<std::string_view, 11> internal_export{
-    "tessera::run_apart",         "tessera::allocate_aligned",   "tessera::parallel_for",        "tessera::ray_kernels",
-    "tessera::UniformGrid::make", "tessera::UniformGrid::run",   "tessera::PatchSet::Impl::box", "tessera::check_parts",
-    "tessera::ViewChecks::add",   "tessera::ViewChecks::status", "tessera::usable_isa",
+constexpr std::array<std::string_view, 13> internal_export{
+    "tessera::ApartTasks::ApartTasks",
+    "tessera::ApartTasks::run",
+    "tessera::ApartTasks::~ApartTasks",
+    "tessera::allocate_aligned",
+    "tessera::parallel_for",
+    "tessera::ray_kernels",
+    "tessera::UniformGrid::make",
+    "tessera::UniformGrid::run",
+    "tessera::PatchSet::Impl::box",
+    "tessera::check_parts",
+    "tessera::ViewChecks::add",
+    "tessera::ViewChecks::status",
+    "tessera::usable_isa",
 };
 
 bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }

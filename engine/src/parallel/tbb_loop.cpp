@@ -48,8 +48,16 @@ void tbb_loop(std::size_t pieces, FunctionRef<void(std::size_t)> body) {
   order.call_ends();
 }
 
-void run_apart(FunctionRef<void()> call) {
-  tbb_loop(1, [&](std::size_t) { call(); });
+struct ApartTasks::Group {
+  tbb::task_group_context context{tbb::task_group_context::isolated};
+};
+
+ApartTasks::ApartTasks() : group_(std::make_unique<Group>()) {}
+ApartTasks::~ApartTasks() = default;
+
+void ApartTasks::run(FunctionRef<void()> call) {
+  const auto run = [&](const tbb::blocked_range<std::size_t>&) { call(); };
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, 1, 1), run, group_->context);
 }
 
 void without_other_tasks(FunctionRef<void()> call) {

@@ -3,6 +3,7 @@
 // half of oneTBB's synchronisation, because the other half is in a library that is not instrumented.
 
 #include <cstddef>
+#include <memory>
 
 #include "base/function_ref.h"
 #include "base/internal_export.h"
@@ -13,8 +14,23 @@ namespace tessera::inline abi_0_1 {
 /// propagate. All pieces run, even if the caller's own task group is cancelled meanwhile.
 void tbb_loop(std::size_t pieces, FunctionRef<void(std::size_t)> body);
 
-/// Runs a call whose tasks must not be skipped if the caller's own task group is cancelled meanwhile.
-TESSERA_INTERNAL_EXPORT void run_apart(FunctionRef<void()> call);
+/// Runs calls whose tasks must not be skipped if the caller's own task group is cancelled meanwhile.
+///
+/// Task groups that a call makes and keeps, as Embree's scenes do, refer to that of this object: it must outlive them.
+/// Calls must not throw. Threads: any number of calls. Errors: the constructor throws std::bad_alloc.
+class TESSERA_INTERNAL_EXPORT ApartTasks {
+ public:
+  ApartTasks();
+  ApartTasks(const ApartTasks&) = delete;
+  ApartTasks& operator=(const ApartTasks&) = delete;
+  ~ApartTasks();
+
+  void run(FunctionRef<void()> call);
+
+ private:
+  struct Group;
+  std::unique_ptr<Group> group_;
+};
 
 /// Calls a function of the user's. If it starts tasks and waits for them, this thread runs none of ours meanwhile.
 void without_other_tasks(FunctionRef<void()> call);

@@ -4,8 +4,6 @@
 #include <cfenv>
 #include <utility>
 
-#include "parallel/tbb_loop.h"
-
 namespace tessera::inline abi_0_1 {
 namespace {
 
@@ -89,7 +87,7 @@ Status commit(RTCScene scene, EmbreeMonitor& monitor, const Execution& execution
     rtcSetSceneProgressMonitorFunction(scene, &not_cancelled, const_cast<std::atomic<bool>*>(execution.cancel));
   }
   // With TBB rtcJoinCommitScene would work in an arena of Embree's own; this call works in the caller's.
-  run_apart([scene] {
+  monitor.tasks_.run([scene] {
     const RoundToNearest nearest;
     rtcCommitScene(scene);
   });

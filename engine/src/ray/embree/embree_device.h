@@ -9,6 +9,7 @@
 #include <string>
 #include <type_traits>
 
+#include "parallel/tbb_loop.h"
 #include "ray/embree/embree_api.h"
 #include "tessera/execution.h"
 #include "tessera/status.h"
@@ -27,7 +28,7 @@ struct GeometryRelease {
 template <class Handle, class Release>
 using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
 
-/// Collects what Embree reports through its callbacks, from any thread.
+/// Collects what Embree reports through its callbacks, from any thread. Errors: the constructor throws std::bad_alloc.
 class EmbreeMonitor {
  public:
   /// Returns the first error since the last call, as a Status.
@@ -36,6 +37,7 @@ class EmbreeMonitor {
 
  private:
   friend Result<Owned<RTCDevice, DeviceRelease>> make_device(EmbreeMonitor& monitor, std::optional<Isa> isa);
+  friend Status commit(RTCScene scene, EmbreeMonitor& monitor, const Execution& execution);
   static void on_error(void* self, RTCError code, const char* text);
   static bool on_memory(void* self, ssize_t bytes, bool);
 
@@ -43,6 +45,7 @@ class EmbreeMonitor {
   std::mutex mutex_;
   RTCError error_ = RTC_ERROR_NONE;  // the first since it was last taken
   std::string message_;
+  ApartTasks tasks_;  ///< Embree keeps task groups below this one as long as its scenes live
 };
 
 /// Makes a device that starts no thread and binds none. `isa` limits Embree's own kernels, by default to the machine's
