@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "base/impl_access.h"
 #include "trim/trim_region_impl.h"
 #include "trim/trim_shapes.h"
 
@@ -96,9 +97,9 @@ TEST(RegionCells, AnswerAsAllPiecesTogetherDo) {
     if (k % 6 == 5) options.snap = 1e-3;
     const TrimRegion region = value_of(TrimRegion::make(loops, breaks_u, breaks_v, options));
     for (int i = 0; i < 1000; ++i) {
-      const ParameterPoint q = random_point(random, region.impl());
+      const ParameterPoint q = random_point(random, impl_of(region));
       if (!domain.contains(q.u, q.v)) continue;
-      const TrimSide expected = by_all_pieces(region.impl(), q.u, q.v);
+      const TrimSide expected = by_all_pieces(impl_of(region), q.u, q.v);
       ASSERT_EQ(region.locate(q.u, q.v), expected) << k << ": " << q.u << ' ' << q.v;
       border += expected == TrimSide::border;
       ++checked;

@@ -37,8 +37,9 @@ class TrimRegion {
   /// - `breaks_u`, `breaks_v`: borders between patches, as in PatchGrid: at least two, finite, strictly increasing.
   ///
   /// Errors: invalid_argument (breaks, snap), non_finite (breaks; index = the break), unsupported (coordinates beyond
-  /// 1e100; a loop that runs over more than 64 periods; index = the loop), out_of_memory. Time: O(n log n) for n
-  /// pieces of curves between patch borders, plus O(patches).
+  /// 1e100; a loop that runs over more than 64 periods; index = the loop), internal (a loop that repair leaves open),
+  /// out_of_memory. Time: O(n log n) for n pieces of curves between patch borders, plus O(patches); O(n^2) if the chords of
+  /// all pieces have their middles at one u.
   static Result<TrimRegion> make(std::span<const TrimLoop> loops, std::span<const double> breaks_u,
                                  std::span<const double> breaks_v, const TrimOptions& options = {});
   /// Makes the region of a face that is one patch. Errors: as above.
@@ -64,10 +65,10 @@ class TrimRegion {
   std::size_t piece_count() const;              ///< pieces between patch borders and extrema that bound the region
   std::span<const LoopRemark> remarks() const;  ///< what was repaired, in the order of the loops
 
-  class Impl;
-  const Impl& impl() const { return *impl_; }  ///< for the library's own use
+  class [[gnu::visibility("hidden")]] Impl;
 
  private:
+  friend struct ImplAccess;
   explicit TrimRegion(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
   std::shared_ptr<const Impl> impl_;
 };
