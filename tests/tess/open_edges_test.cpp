@@ -104,6 +104,10 @@ TEST(OpenEdges, OfAStripThinnerThanTheWeldStayItsOwn) {
   const MeshReport report = report_of(set, {.tolerance = 0.1});
   EXPECT_EQ(report.open_edges, 8u);
   EXPECT_EQ(report.degenerate_triangles, 0u);
+  // At the rim of a larger patch.
+  const PatchSet rim = set_of({rectangle({0, 0, 0}, {1, 0, 0}, {0, -1, 0}), strip});
+  EXPECT_EQ(report_of(rim, {.tolerance = 0.1}).open_edges, 6u);
+  EXPECT_EQ(report_of(rim, {.tolerance = 0.1, .weld = 2 * width}).degenerate_triangles, 0u);
 }
 
 /// The vertices of each patch are the same bytes whatever the order of the patches and whatever else the set has.

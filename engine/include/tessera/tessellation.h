@@ -182,7 +182,8 @@ struct MeshChange {
 /// vertices are the same bits in both patches. Each patch has an inner grid at its own rates, and strips of triangles
 /// between that grid and its borders. A collapsed border is one point without triangles on it.
 ///
-/// Welding: a border that equals no other by its bits is joined to the nearest one within TessellationOptions::weld.
+/// Welding: a border that equals no other by its bits is joined to the nearest one within TessellationOptions::weld; by
+/// default, to the nearest of those that equal no other either.
 ///
 /// - The border that moves depends on the two alone. Of three or more that are joined, all take the vertices of one. A
 ///   slit narrower than the weld closes. A patch thinner than the weld keeps its own borders apart.

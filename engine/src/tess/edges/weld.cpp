@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <unordered_map>
+#include <vector>
 
 #include "tess/edges/side_curve.h"
 #include "tess/edges/union_find.h"
@@ -29,55 +28,16 @@ std::array<float, 3> packed_corner(const PatchSet::Impl& set, std::uint32_t corn
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
 
-/// Edges in cells by the middle of their ends.
-class EdgeCells {
- public:
-  /// `count`: how many edges are added.
-  EdgeCells(const Box3& box, double reach, std::size_t count)
-      : origin_(box.lower),
-        size_(std::max(2 * reach, 0x1p-20 * box.diagonal())),
-        is_filled_(std::bit_ceil(cells_per_edge * slots_per_cell * count)) {}
+/// An edge, and where its middle lies along a direction that models hardly align with.
+struct EdgePlace {
+  static constexpr Vec3 direction{0.7548776662466927, 0.5698402909980532, 0.3247179572447561};  // a unit vector
 
-  /// Adds an edge to all cells within `reach` of its middle.
-  void add(const Vec3& middle, double reach, std::uint32_t edge) {
-    const Index low = index(middle, -reach), high = index(middle, reach);
-    for (std::int64_t x = low[0]; x <= high[0]; ++x)
-      for (std::int64_t y = low[1]; y <= high[1]; ++y)
-        for (std::int64_t z = low[2]; z <= high[2]; ++z) {
-          const std::uint64_t cell = key({x, y, z});
-          cells_[cell].push_back(edge);
-          is_filled_[slot(cell)] = true;
-        }
-  }
-  /// Calls visit(edge) for the edges whose middle may lie within their reach of a point.
-  template <class Visit>
-  void for_near(const Vec3& middle, Visit visit) const {
-    const std::uint64_t cell = key(index(middle, 0));
-    if (!is_filled_[slot(cell)]) return;
-    if (const auto found = cells_.find(cell); found != cells_.end())
-      for (const std::uint32_t edge : found->second) visit(edge);
-  }
+  EdgePlace(std::uint32_t of, const Vec3& at) : edge(of), middle(at), along(dot(direction, at)) {}
+  bool operator<(const EdgePlace& other) const { return along < other.along; }
 
- private:
-  using Index = std::array<std::int64_t, 3>;
-  static constexpr std::size_t cells_per_edge = 8, slots_per_cell = 8;
-  /// Packs a cell's index. 21 bits per axis suffice: a box has at most 2^20 cells along an axis.
-  static std::uint64_t key(const Index& at) {
-    const auto part = [&](std::size_t c) { return static_cast<std::uint64_t>(at[c] + 1) & 0x1fffff; };
-    return part(0) << 42 | part(1) << 21 | part(2);
-  }
-  /// Spreads keys (Knuth, The Art of Computer Programming, vol. 3, 2nd ed., sec. 6.4).
-  std::size_t slot(std::uint64_t key) const { return ((key * 0x9e3779b97f4a7c15) >> 20) & (is_filled_.size() - 1); }
-  Index index(const Vec3& p, double shift) const {
-    const Vec3 from = p - origin_;
-    const auto cell = [&](double x) { return static_cast<std::int64_t>(std::floor((x + shift) / size_)); };
-    return {cell(from.x), cell(from.y), cell(from.z)};
-  }
-
-  Vec3 origin_;
-  double size_;
-  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;
-  std::vector<bool> is_filled_;  ///< by the hash of a cell; most are not
+  std::uint32_t edge;
+  Vec3 middle;  ///< of the edge's ends, relative to the set's origin
+  double along;
 };
 
 class Welder {
@@ -139,11 +99,13 @@ class Welder {
   double reach(std::uint32_t edge) const {
     return rules_.is_relative ? std::min(rules_.reach, curve(leading_[edge]).box().diagonal() / 8) : rules_.reach;
   }
-  /// Whether two borders are opposite ones of a patch none of whose rows between them lies farther than the reach.
-  bool is_thin(std::uint32_t a, std::uint32_t b) const {
-    if (patch_of(a) != patch_of(b) || runs_along_u(side_of(a)) != runs_along_u(side_of(b))) return false;
-    const BezierPatch& patch = set_.patches[patch_of(a)];
-    const bool along_u = runs_along_u(side_of(a));
+  /// Whether an edge is the opposite border of a border's patch, and none of the rows between them lies farther away
+  /// than the reach.
+  bool is_thin(std::uint32_t border, std::uint32_t edge) const {
+    const std::uint32_t opposite = border / 4 * 4 + (border + 2) % 4;
+    if (edge_of_border(opposite) != edge) return false;
+    const BezierPatch& patch = set_.patches[patch_of(border)];
+    const bool along_u = runs_along_u(side_of(border));
     for (int i = 0; i <= patch.degree_u(); ++i)
       for (int j = 0; j <= patch.degree_v(); ++j)
         if (!(length(patch.point(i, j) - patch.point(along_u ? i : 0, along_u ? 0 : j)) <= rules_.reach)) return false;
@@ -162,30 +124,41 @@ class Welder {
       if (!(distance <= reach)) continue;
       const bool is_nearer = nearest.other == none || distance < nearest.distance ||
                              (distance == nearest.distance && comes_before(met, curve(leading_[nearest.other])));
-      if (is_nearer && !is_thin(a, b)) nearest = {nearest.edge, other, turned, distance};
+      if (is_nearer && !is_thin(a, other)) nearest = {nearest.edge, other, turned, distance};
     }
+  }
+
+  /// Returns the edges that may be joined, in the order of their places.
+  std::vector<EdgePlace> places() const {
+    std::vector<EdgePlace> places;
+    for (std::uint32_t edge = 0; edge < leading_.size(); ++edge) {
+      if (leading_[edge] == none || (borders_of_[edge] > 1 && rules_.is_relative)) continue;
+      const auto [first, last] = ends_of(leading_[edge]);
+      const BezierPatch& patch = set_.patches[patch_of(first)];
+      places.emplace_back(edge,
+                          0.5 * (corner_of(patch, first) - set_.origin) + 0.5 * (corner_of(patch, last) - set_.origin));
+    }
+    std::sort(places.begin(), places.end());
+    return places;
   }
 
   /// Joins each edge with a single border to the nearest edge. Returns whether there are any.
   bool join_edges() {
-    const auto middle = [&](std::uint32_t edge) {
-      const auto [first, last] = ends_of(leading_[edge]);
-      const BezierPatch& patch = set_.patches[patch_of(first)];
-      return 0.5 * corner_of(patch, first) + 0.5 * corner_of(patch, last);
-    };
-    std::vector<Nearest> open;
-    for (std::uint32_t edge = 0; edge < leading_.size(); ++edge)
-      if (leading_[edge] != none && borders_of_[edge] == 1) open.push_back({edge});
-    if (open.empty()) return false;
-    EdgeCells cells(set_.box(), rules_.reach, open.size());
-    for (std::uint32_t k = 0; k < open.size(); ++k) cells.add(middle(open[k].edge), reach(open[k].edge), k);
-    for (std::uint32_t edge = 0; edge < leading_.size(); ++edge)
-      if (leading_[edge] != none)
-        cells.for_near(middle(edge), [&](std::uint32_t k) {
-          if (open[k].edge != edge) compare(edge, open[k]);
-        });
+    const std::vector<EdgePlace> places = this->places();
+    const double reach = 1.001 * rules_.reach;  // compare() decides
     bool any = false;
-    for (const Nearest& nearest : open) {
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      if (borders_of_[places[k].edge] != 1) continue;
+      Nearest nearest{places[k].edge};
+      const auto look = [&](const EdgePlace& other) {
+        if (!(std::abs(other.along - places[k].along) <= reach)) return false;
+        if (max_abs(other.middle - places[k].middle) <= reach) compare(other.edge, nearest);
+        return true;
+      };
+      for (std::size_t n = k + 1; n < places.size() && look(places[n]); ++n) {
+      }
+      for (std::size_t n = k; n > 0 && look(places[n - 1]); --n) {
+      }
       if (nearest.other == none) continue;
       joined_.unite(nearest.edge, nearest.other, nearest.reversed);
       any = true;
@@ -214,7 +187,7 @@ class Welder {
   bool is_point(std::uint32_t border) const {
     const BezierPatch& patch = set_.patches[patch_of(border)];
     const auto [first, last] = ends_of(border);
-    if (!(length(corner_of(patch, first) - corner_of(patch, last)) <= rules_.reach)) return false;
+    if (!(max_abs(corner_of(patch, first) - corner_of(patch, last)) <= rules_.reach)) return false;
     double most = rules_.reach;
     if (rules_.is_relative) {
       Box3 box;

@@ -55,7 +55,8 @@ Vec3 corner_of(const BezierPatch& patch, std::uint32_t corner);
 struct WeldRules {
   static constexpr double point_share = 0x1p-18;  ///< above the rounding of numbers of six digits
   double reach = 0;  ///< the largest distance of borders that are joined; finite, at least 0
-  /// Whether borders must also be eight times as long as they are apart.
+  /// Whether borders must also be eight times as long as they are apart, and only edges with a single border are joined:
+  /// strips thinner than the reach stay between their neighbours.
   bool is_relative = false;
   /// Also all borders of an edge take the points of its first one, and all corners that meet there those of one. Their
   /// packed control points are the same bits, but vertices made from doubles may differ.

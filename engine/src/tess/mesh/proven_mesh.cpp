@@ -109,8 +109,8 @@ ProvenMesh::ProvenMesh(const PatchSet& set, const TessellationOptions& options, 
       shapes_(planner.shapes().begin(), planner.shapes().end()),
       weld_(planner.weld()),
       origin_(set.origin()),
-      is_certified_(set.fit_error().certified),
       revision_(set.revision()),
+      is_certified_(set.fit_error().certified),
       isa_(isa),
       tables_(MeshTables::of(impl_of(set), shapes_, plan_.divisions(), kernel::kernels(isa).mesh_points != nullptr)) {}
 

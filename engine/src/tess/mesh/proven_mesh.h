@@ -73,8 +73,8 @@ class [[gnu::visibility("hidden")]] ProvenMesh final : public Tessellation::Impl
   Weld weld_;
   VertexCopies joins_;  ///< vertices with a common normal, or stored once
   Vec3 origin_;
-  bool is_certified_;
   std::uint64_t revision_;  ///< the set's, of which the plan is proven
+  bool is_certified_;
   Isa isa_;
   std::shared_ptr<const MeshTables> tables_;
   /// Made by the first update.

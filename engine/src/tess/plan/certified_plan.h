@@ -87,7 +87,7 @@ class CertifiedPlan {
   /// `[patch]`, and the number of all at the end.
   std::vector<std::size_t> first_vertex_, first_triangle_, first_quad_;
   std::vector<float> bounds_, angles_, pixels_;
-  std::size_t open_edges_ = 0;
+  std::uint32_t open_edges_ = 0;
   bool is_f64_ = false, has_f64_positions_ = false;
   std::vector<std::uint8_t> straddles_;  ///< `[patch]`: 1 if its bound holds wherever triangles lie; empty if for none
   std::vector<std::uint32_t> corner_sources_;  ///< `[corner]`: itself if it owns its vertex; empty if nothing is shared

@@ -37,7 +37,7 @@ void CertifiedPlan::count_open_edges(const SharedEdges& edges) {
   for_borders([&](std::uint32_t edge, int) { ++borders[edge]; });
   open_edges_ = 0;
   for_borders([&](std::uint32_t edge, int rate) {
-    if (borders[edge] == 1) open_edges_ += static_cast<std::size_t>(rate);
+    if (borders[edge] == 1) open_edges_ += static_cast<std::uint32_t>(rate);
   });
 }
 
