@@ -60,8 +60,8 @@ TEST_P(Models, KeepsATolerance) {
   const bool apart = euler_number(uniform) != euler_number(finer);
   EXPECT_EQ(apart, GetParam().find("sphere_of_octants") != std::string::npos);
   for (const double relative : {0.03, 0.001}) {
-    const json made = json::parse(
-        output_of({"tessellate", GetParam(), "-o", "b.ply", "--relative", std::to_string(relative), "--json"}));
+    const json made = json::parse(output_of(
+        {"tessellate", GetParam(), "-o", "b.ply", "--relative", std::to_string(relative), "--weld", "0", "--json"}));
     EXPECT_LE(made["bound"], relative * size * (1 + 1e-6));
     const json mesh = json::parse(output_of({"check", "b.ply", "--json"}));
     EXPECT_EQ(mesh["triangles"], made["triangles"]);
@@ -85,7 +85,7 @@ TEST_P(Models, HasNoCrackOnceWelded) {
         output_of({"tessellate", GetParam(), "-o", "b.ply", "--relative", std::to_string(relative), "--json"}));
     EXPECT_LE(made["bound"], relative * size * (1 + 1e-6));
     const json mesh = json::parse(output_of({"check", "b.ply", "--json"}));
-    EXPECT_EQ(made["open_edges"], mesh["open_edges"]);
+    EXPECT_GE(made["open_edges"], mesh["open_edges"]);
     EXPECT_EQ(mesh["degenerate_triangles"], 0);
     EXPECT_EQ(mesh["non_manifold_edges"], 0);
     EXPECT_EQ(mesh["t_junctions"], 0);

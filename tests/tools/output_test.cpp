@@ -21,7 +21,7 @@ class Output : public ToolTest {
 
 TEST_F(Output, WithoutADensityARelativeToleranceIsUsedAndSaid) {
   const std::string text = output_of({"tessellate", teapot, "-o", "default.ply"});
-  EXPECT_THAT(text, HasSubstr(", proven (--relative 0.001, the default)\n"));
+  EXPECT_THAT(text, HasSubstr(", proven (--relative 0.001, the default), 182 open edges\n"));
   EXPECT_THAT(output_of({"tessellate", teapot, "-o", "relative.ply", "--relative", "0.001"}),
               testing::Not(HasSubstr("default)")));
   EXPECT_EQ(content_of(folder_ / "default.ply"), content_of(folder_ / "relative.ply"));

@@ -245,8 +245,8 @@ class Tessellation {
   /// Returns how many borders were joined by welding and not by their bits: those with the vertices of another border,
   /// and those made points.
   std::size_t welded_borders() const;
-  /// Returns how many edges of the mesh have one triangle alone, those on borders that are joined to no other; 0 with
-  /// rates, where it is not known.
+  /// Returns how many edges of triangles lie on borders that are joined to no other. check() counts fewer where such
+  /// borders have vertices at the same positions by chance. 0 with rates, where it is not known.
   std::size_t open_edges() const;
   MeshCapacity capacity() const;  ///< the exact sizes of the mesh
   /// Returns a mesh of capacity() with all attributes that the plan has. Errors: out_of_memory.
