@@ -1,5 +1,5 @@
-// What it takes to follow edits, over what a fresh set, plan and mesh take, on one thread, in processor time. Both are
-// measured in turns, and the shortest times count.
+// What it takes to follow edits, over what a fresh set, plan and run take, on one thread, in processor time. Both are
+// measured in turns and write to memory that is there already; the shortest times count, and the sums.
 
 #include <tbb/global_control.h>
 
@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <limits>
+#include <string_view>
 #include <vector>
 
 #include "support/synthetic_sets.h"
@@ -19,6 +20,9 @@ namespace {
 
 using namespace tessera;
 using test::value_of;
+
+/// The cases to measure: those whose name contains this text.
+std::string_view wanted;
 
 double now() {
   timespec time;
@@ -31,6 +35,26 @@ void need(const Status& status) {
   std::fprintf(stderr, "%s\n", status.message().c_str());
   std::exit(1);
 }
+
+/// Memory for meshes of any size.
+struct Room {
+  std::vector<float> positions, normals, parameters;
+  std::vector<std::uint32_t> patches, indices;
+
+  MeshViews views(const MeshCapacity& size) {
+    const auto fit = [](auto& values, std::size_t count) {
+      if (values.size() < count) values.resize(count + count / 2);
+      return std::span(values).first(count);
+    };
+    MeshViews views;
+    views.position = View3<float>::interleaved(fit(positions, 3 * size.vertices));
+    views.normal = View3<float>::interleaved(fit(normals, 3 * size.vertices));
+    views.parameter = View2<float>::interleaved(fit(parameters, 2 * size.vertices));
+    views.patch = fit(patches, size.triangles);
+    views.indices = fit(indices, 3 * size.triangles);
+    return views;
+  }
+};
 
 /// The shortest times, in seconds, and how often the topology changed.
 struct Times {
@@ -47,24 +71,23 @@ struct Times {
 
 /// Measures one turn: `make` makes a fresh set, `follow` updates the plan.
 template <class Make, class Follow>
-void measure(Times& times, const TessellationOptions& options, PatchSet& set, Tessellation& plan, Mesh& mesh, Make make,
+void measure(Times& times, const TessellationOptions& options, PatchSet& set, Tessellation& plan, Room& room, Make make,
              Follow follow) {
   double start = now();
   const PatchSet fresh = make();
   const double made = now();
   const Tessellation anew = value_of(Tessellation::make(fresh, options));
   const double planned = now();
-  Mesh fresh_mesh = value_of(anew.allocate());
-  need(anew.run(fresh, fresh_mesh.views()));
-  const double all = now() - start;
+  const MeshViews views = room.views(anew.capacity());
+  const double waited = now() - planned;
+  need(anew.run(fresh, views));
+  const double all = now() - start - waited;
   times.fresh = std::min(times.fresh, all);
   times.fresh_plan = std::min(times.fresh_plan, planned - made);
+  need(plan.run(set, room.views(plan.capacity())));  // the mesh that is followed
   start = now();
-  const MeshChange change = follow();
-  if (change.topology) {
-    mesh = value_of(plan.allocate());
-    need(plan.run(set, mesh.views()));
-  }
+  const MeshChange change = follow(room.views(plan.capacity()));
+  if (change.topology) need(plan.run(set, room.views(plan.capacity())));
   const double update = now() - start;
   times.update = std::min(times.update, update);
   times.sum_fresh += all;
@@ -75,12 +98,12 @@ void measure(Times& times, const TessellationOptions& options, PatchSet& set, Te
 
 /// Edits of every step-th of rows x rows patches.
 void patches(const char* name, int rows, std::size_t step, double tolerance, double by) {
+  if (std::string_view(name).find(wanted) == std::string_view::npos) return;
   std::vector<BezierPatch> all = test::wavy_field(rows, rows);
   const TessellationOptions options{.tolerance = tolerance};
   PatchSet set = value_of(PatchSet::make(all));
   Tessellation plan = value_of(Tessellation::make(set, options));
-  Mesh mesh = value_of(plan.allocate());
-  need(plan.run(set, mesh.views()));
+  Room room;
   Times times;
   for (int turn = 0; turn < 40; ++turn) {
     std::vector<std::uint32_t> edited;
@@ -92,9 +115,9 @@ void patches(const char* name, int rows, std::size_t step, double tolerance, dou
       all[k] = value_of(all[k].with_points(std::span(points).subspan(first)));
     }
     measure(
-        times, options, set, plan, mesh, [&] { return value_of(PatchSet::make(all)); },
-        [&] {
-          return value_of(plan.update(set, PatchEdits{edited, points}, mesh.views()));
+        times, options, set, plan, room, [&] { return value_of(PatchSet::make(all)); },
+        [&](const MeshViews& views) {
+          return value_of(plan.update(set, PatchEdits{edited, points}, views));
         });
   }
   times.print(name, plan.capacity().triangles);
@@ -102,6 +125,7 @@ void patches(const char* name, int rows, std::size_t step, double tolerance, dou
 
 /// A bicubic spline of count x count control points, of which all or one move each turn.
 void spline(const char* name, std::size_t count, bool all, double tolerance, double by) {
+  if (std::string_view(name).find(wanted) == std::string_view::npos) return;
   std::vector<double> knots(4, 0.0);
   for (std::size_t k = 1; k + 3 < count; ++k) knots.push_back(double(k));
   knots.insert(knots.end(), 4, double(count - 3));
@@ -118,8 +142,7 @@ void spline(const char* name, std::size_t count, bool all, double tolerance, dou
   const PatchSetOptions at{.origin = Vec3{double(count) / 2, double(count) / 2, 0}};
   PatchSet set = value_of(make_patch_set(value_of(to_bezier(surface)), at));
   Tessellation plan = value_of(Tessellation::make(set, options));
-  Mesh mesh = value_of(plan.allocate());
-  need(plan.run(set, mesh.views()));
+  Room room;
   Times times;
   for (int turn = 1; turn <= 60; ++turn) {
     std::vector<std::uint32_t> moved;
@@ -130,10 +153,10 @@ void spline(const char* name, std::size_t count, bool all, double tolerance, dou
       points[moved[0]].z += turn % 2 == 0 ? by : -by;
     }
     measure(
-        times, options, set, plan, mesh, [&] { return value_of(make_patch_set(value_of(to_bezier(made())), at)); },
-        [&] {
+        times, options, set, plan, room, [&] { return value_of(make_patch_set(value_of(to_bezier(made())), at)); },
+        [&](const MeshViews& views) {
           const SurfaceEdits edit{.spline = surface, .points = points, .moved = moved};
-          return value_of(plan.update(set, std::span(&edit, 1), mesh.views()));
+          return value_of(plan.update(set, std::span(&edit, 1), views));
         });
   }
   times.print(name, plan.capacity().triangles);
@@ -141,7 +164,8 @@ void spline(const char* name, std::size_t count, bool all, double tolerance, dou
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+  if (argc > 1) wanted = argv[1];
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   std::printf("%-34s %8s %9s %9s %9s %7s %9s %7s %s\n", "", "", "fresh us", "plan us", "update us", "/fresh", "/plan",
               "sums", "topology");
