@@ -1,4 +1,4 @@
-// What it takes to follow edits, over what a fresh set, plan and run take, on one thread, in processor time. Both are
+// Time to follow edits, over the time of a fresh set, plan and run, on one thread, in processor time. Both are
 // measured in turns and write to memory that is there already; the shortest times count, and the sums.
 
 #include <tbb/global_control.h>

@@ -157,7 +157,7 @@ const std::vector<std::pair<std::string, std::regex>> clauses{
     {"memory or threads", std::regex("\\b(Memory|Threads)[,:]|\\bMemory beyond|\\bMemory and t")},
     {"source", std::regex("\\bSource:")}};
 
-/// Which clause stands too early in a comment, in words; nothing if all are in order.
+/// Names the clause that stands too early in a comment; nothing if all are in order.
 std::string disorder(const std::string& comment) {
   std::ptrdiff_t last = -1;
   std::string before;

@@ -5,23 +5,11 @@
 #include <numeric>
 
 #include "support/synthetic_sets.h"
+#include "tess/shaken.h"
 #include "tess/tessellate_support.h"
-#include "tessera/bezier_operations.h"
 
 namespace tessera::test {
 namespace {
-
-/// Every control point of every patch moved on its own by up to `by`.
-std::vector<BezierPatch> shaken(const std::vector<BezierPatch>& patches, double by, std::uint64_t seed) {
-  Random random(seed);
-  std::vector<BezierPatch> out;
-  for (const BezierPatch& patch : patches) {
-    std::vector<Vec3> points(patch.points().begin(), patch.points().end());
-    for (Vec3& p : points) p = p + by * uniform_vector(random, -1, 1);
-    out.push_back(good(patch.with_points(points)));
-  }
-  return out;
-}
 
 /// A flat rectangle.
 BezierPatch rectangle(const Vec3& corner, const Vec3& along_u, const Vec3& along_v) {

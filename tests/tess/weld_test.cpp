@@ -7,6 +7,7 @@
 #include "support/synthetic_sets.h"
 #include "support/triangle_distance.h"
 #include "tess/edges/side_curve.h"
+#include "tess/shaken.h"
 #include "tess/tessellate_support.h"
 #include "tessera/bezier_operations.h"
 #include "tessera/tessellation.h"
@@ -16,18 +17,6 @@ namespace {
 
 Mesh welded_mesh(const PatchSet& set, double tolerance, double weld) {
   return mesh_of(set, good(Tessellation::make(set, {.tolerance = tolerance, .weld = weld})));
-}
-
-/// Every control point of every patch moved on its own by up to `by`, and the patches turned.
-std::vector<BezierPatch> shaken(const std::vector<BezierPatch>& patches, double by, std::uint64_t seed) {
-  Random random(seed);
-  std::vector<BezierPatch> out;
-  for (const BezierPatch& patch : patches) {
-    std::vector<Vec3> points(patch.points().begin(), patch.points().end());
-    for (Vec3& p : points) p = p + by * uniform_vector(random, -1, 1);
-    out.push_back(reoriented(good(patch.with_points(points)), static_cast<int>(random() % 8)));
-  }
-  return out;
 }
 
 /// Each patch raised to a degree of its own.

@@ -32,7 +32,7 @@ Loops even_grid(int cells_u, int cells_v, double size = 1000) {
   return loops;
 }
 
-/// What CutCells made of loops.
+/// The cells and triangles that CutCells made of loops.
 struct Cut {
   bool ok = false;
   Points points;  // of the loops, then of the grid

@@ -12,7 +12,7 @@
 namespace tessera::test {
 namespace {
 
-/// What loops keep, in closed form.
+/// The part that loops keep, in closed form.
 struct Kept {
   std::function<bool(const ParameterPoint&)> holds;
   std::function<ParameterPoint(const ParameterPoint&)> nearest;  ///< a point of the border, for points beside it

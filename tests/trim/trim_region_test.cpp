@@ -248,7 +248,6 @@ TEST(TrimRegion, LoopsThatTouchTheDomainAndEachOther) {
 
 TEST(TrimRegion, BadLoopsAreRepairedAndTold) {
   std::mt19937 random(8);
-  // What the repaired loops are, without their faults.
   const TrimLoop bow = test::polygon({{0.1, 0.1}, {0.9, 0.9}, {0.9, 0.1}, {0.1, 0.9}});
   const TrimLoop outside = test::rectangle(0.5, 1.5, 0.2, 0.8), clipped = test::rectangle(0.5, 1, 0.2, 0.8);
   const TrimLoop open{{test::line({0.1, 0.1}, {0.6, 0.1}), test::line({0.6, 0.1}, {0.3, 0.9})}};

@@ -148,7 +148,7 @@ struct SurfaceEdits {
   Affine placement = {};      ///< maps the control points into the set
 };
 
-/// What an update has changed besides the vertices.
+/// The changes of an update besides the vertices.
 struct MeshChange {
   /// Whether the mesh has other triangles or vertices than before. If so, nothing was written, and the plan is that of
   /// the new mesh, for capacity(), allocate() and run().

@@ -18,7 +18,7 @@ struct TrimLoop {
   bool hole = false;          ///< if false, the outside is cut away
 };
 
-/// What was found wrong with a loop, and how it was repaired.
+/// A fault of a loop, and how it was repaired.
 enum class LoopFault : std::uint8_t {
   empty,     ///< it has no curves, or all of them are points; it is ignored
   gap,       ///< the ends of curves differ; a straight line joins them

@@ -29,7 +29,7 @@ class PieceSamples {
   std::optional<SampleRange> within(double ParameterPoint::*x, double lower, double upper) const {
     return within(x, lower, upper, {0, points_.size() - 1});
   }
-  /// The same for the part of the curve within `among`.
+  /// Does so for the part of the curve within `among`.
   std::optional<SampleRange> within(double ParameterPoint::*x, double lower, double upper,
                                     const SampleRange& among) const;
 

@@ -24,7 +24,7 @@ PieceSide side_of_line(const TrimPiece& piece, const ParameterPoint& q) {
   return side > 0 ? PieceSide::left : PieceSide::right;
 }
 
-/// What a point of the curve tells about q, in directions in which u and v increase along the curve.
+/// The side of q that a point of the curve tells, in directions in which u and v increase along the curve.
 enum class Quadrant {
   near,    ///< too near for its signs to be certain
   across,  ///< ahead in one coordinate and behind in the other: the side is decided

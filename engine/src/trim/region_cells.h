@@ -44,7 +44,7 @@ struct CellGrid {
   }
 };
 
-/// What a cell holds: the kind in the lowest three bits, above them the index of its first entry or of its finer grid.
+/// The content of a cell: the kind in the lowest three bits, above them the index of its first entry or finer grid.
 struct Cell {
   enum Kind : std::uint32_t { outside = 0, inside = 1, list = 2, list_inside = 3, grid = 4 };
   std::uint32_t bits = outside;

@@ -90,9 +90,6 @@ bool runs_against(const PatchSet::Impl& set, std::uint32_t border, std::uint32_t
 SharedEdges parted_by_doubles(const PatchSet::Impl& set, const SharedEdges& edges) {
   constexpr std::uint32_t none = SharedEdges::none;
   const auto curve = [&](std::uint32_t border) { return SideCurve(set.patches[border / 4], all_sides[border % 4]); };
-  // Borders near each other have near middles along any direction; along this one, which models hardly align with, few
-  // others do.
-  constexpr Vec3 direction{0.7548776662466927, 0.5698402909980532, 0.3247179572447461};  // a unit vector
   struct Place {
     std::uint32_t edge, border;
     double middle, reach;
@@ -108,7 +105,7 @@ SharedEdges parted_by_doubles(const PatchSet::Impl& set, const SharedEdges& edge
     const SideCurve along = curve(border);
     const double rounding = 0x1p-48 * std::max(max_abs(along.box().lower), max_abs(along.box().upper));
     places.push_back({edge, border,
-                      dot(direction, 0.5 * (along.first() - set.origin) + 0.5 * (along.last() - set.origin)),
+                      dot(unaligned, 0.5 * (along.first() - set.origin) + 0.5 * (along.last() - set.origin)),
                       0x1p-20 * along.box().diagonal() + rounding});
   }
   std::sort(places.begin(), places.end());

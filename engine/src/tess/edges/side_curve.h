@@ -8,6 +8,10 @@
 
 namespace tessera::inline abi_0_1 {
 
+/// A unit vector that models hardly align with: points near each other along it are few beside those that lie so along
+/// x, y or z.
+inline constexpr Vec3 unaligned{0.7548776662466927, 0.5698402909980532, 0.3247179572447561};
+
 /// A border of a patch as points and weights, in the direction of u or v. Weights are scaled so that those of both ends
 /// add up to 2.
 class SideCurve {

@@ -28,11 +28,9 @@ std::array<float, 3> packed_corner(const PatchSet::Impl& set, std::uint32_t corn
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
 
-/// An edge, and where its middle lies along a direction that models hardly align with.
+/// An edge, and where its middle lies along `unaligned`.
 struct EdgePlace {
-  static constexpr Vec3 direction{0.7548776662466927, 0.5698402909980532, 0.3247179572447561};  // a unit vector
-
-  EdgePlace(std::uint32_t of, const Vec3& at) : edge(of), middle(at), along(dot(direction, at)) {}
+  EdgePlace(std::uint32_t of, const Vec3& at) : edge(of), middle(at), along(dot(unaligned, at)) {}
   bool operator<(const EdgePlace& other) const { return along < other.along; }
 
   std::uint32_t edge;

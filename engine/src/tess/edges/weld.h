@@ -71,7 +71,7 @@ struct WeldRules {
 /// - Borders made points are removed from `edges`.
 /// - Corners that meet at any of these edges become one, that with the least coordinates.
 ///
-/// Which borders are joined, and which of them moves, depends on their control points alone: not on other borders that
+/// The choice of borders to join, and of the one that moves, depends on their control points alone: not on others that
 /// are farther away, nor on the order of patches. The set must have float Bernstein blocks. `shapes` and `roundings`
 /// (of vertices) are those of its patches. Returns nothing to copy, and no shapes, if nothing is welded.
 Weld weld_borders(const PatchSet::Impl& set, std::span<const PatchShape> shapes, std::span<const double> roundings,

@@ -1,5 +1,5 @@
 #pragma once
-// What both kinds of plans have in common: those from rates and those from tolerances.
+// The common part of both kinds of plans: those from rates and those from tolerances.
 
 #include <limits>
 #include <memory>

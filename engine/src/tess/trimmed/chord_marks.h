@@ -37,7 +37,7 @@ class NumberLists {
   std::vector<Link> links_;
 };
 
-/// What the chords of a patch's loops meet in its grid. All but on_line() is decided in double, with margins far above
+/// The places where a patch's chords meet its grid. All but on_line() is decided in double, with margins far above
 /// its rounding: a cell may count as met that a chord only comes close to.
 class ChordMarks {
  public:

@@ -15,7 +15,7 @@ namespace tessera::inline abi_0_1 {
 
 inline constexpr std::uint32_t no_place = 0xFFFFFFFF;
 
-/// Which edge of an interval a point lies on.
+/// The edge of an interval that a point lies on.
 enum class Bank : std::uint8_t { lower, upper };
 
 /// Points of one bank that still need triangles, the latest on top. Only the lowest may be on the other bank. All turn

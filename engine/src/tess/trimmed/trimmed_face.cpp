@@ -82,7 +82,7 @@ Status FaceMesher::choose_rates(std::size_t k) {
     return Status(StatusCode::invalid_argument, "the tolerance needs more than 4096 segments across a patch",
                   static_cast<std::ptrdiff_t>(k));
   patch.rates = *rates;
-  // What flat patches leave goes to the slivers.
+  // Slivers get the rest that flat patches leave.
   const double left = 0.95 * tolerance_ - patch.rounding - band_share * patch.chord.distance(*rates);
   patch.sliver = std::max(sliver_share * tolerance_, left);
   return {};
@@ -202,7 +202,7 @@ void FaceMesher::write_grid(PatchPoints& points, VertexTail& tail) {
   }
 }
 
-// As many triangles as the cells of all patches have, and a tenth more.
+// Reserves for as many triangles as the cells of all patches have, and a tenth more.
 void FaceMesher::reserve(Mesh& mesh) const {
   double cells = 0, vertices = 0;
   for (const Patch& patch : patches_) {

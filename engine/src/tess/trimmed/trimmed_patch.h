@@ -15,7 +15,7 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// What a patch needs to be cut, in the surface's parameters.
+/// The facts that cutting a patch needs, in the surface's parameters.
 struct TrimmedPatch {
   Domain domain;
   const ChordBound* chord;
