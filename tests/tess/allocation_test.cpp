@@ -2,6 +2,7 @@
 
 #include "support/allocations.h"
 #include "support/synthetic_sets.h"
+#include "tess/proven_mesh_of.h"
 #include "tess/tessellate_support.h"
 #include "tessera/tessellation.h"
 
@@ -53,6 +54,20 @@ TEST(TessellationMemory, PlansTakeLessThanAKilobyteAPatch) {
   EXPECT_LE(bytes_per_patch(set, [&] { (void)plan(options); }), 1024);
   EXPECT_LE(bytes_per_patch(set, [&] { (void)plan({.tolerance = 0.01, .angle = 0.1}); }), 1024);
   EXPECT_LE(bytes_per_patch(set, [&] { (void)plan({.pixels = PixelTolerance{1, view}}); }), 1024);
+}
+
+TEST(TessellationMemory, GradedSegmentsTakeSixtyFourBytesEach) {
+  const PatchSet set = set_of(wavy_field(30, 20));
+  for (const double angle : {0.05, 0.02}) {
+    std::size_t segments = 0;
+    const auto count = [&] {
+      const Tessellation plan = good(Tessellation::make(set, {.angle = angle}));
+      for (const Division& division : proven_mesh_of(plan).plan().divisions())
+        segments += division.ring_count() + static_cast<std::size_t>(division.inner.u.rate() + division.inner.v.rate());
+    };
+    const double bytes = bytes_per_patch(set, count);
+    EXPECT_LE(bytes, 1024 + 64 * static_cast<double>(segments) / 600);
+  }
 }
 
 TEST(TessellationMemory, PlansOfOneFaceAreSmallBesideOthers) {

@@ -114,7 +114,8 @@ TEST(ChordBlocks, RatesKeepTheDistanceWithAboutTheFewestCells) {
         ChordBlocks::Products products;
         const ChordBlocks::Choice choice = blocks.cheapest(impl_of(set), block, count, distance, 4096, products);
         for (std::size_t lane = 0; lane < count; ++lane) {
-          const ChordBound chord = blocks.chord(block, lane, &products);
+          const bool is_sharp = bool(choice.sharpened >> lane & 1u);
+          const ChordBound chord = blocks.chord(block, lane, is_sharp ? &products : nullptr);
           const auto best = chord.cheapest(distance[lane], 4096);
           ASSERT_EQ(best.has_value(), choice.rates[lane].u > 0);
           if (!best) continue;

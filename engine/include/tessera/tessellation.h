@@ -106,12 +106,13 @@ struct TessellationOptions {
   /// down to 1e-6 of the tolerance that one cell per patch keeps. Angle and pixels are kept as well. Edits keep the
   /// tolerance as long as max_triangles suffice.
   bool smallest = false;
-  /// Looks for fewer triangles and takes more time. It never adds triangles and saves a twentieth to a third of them,
-  /// most on rational patches and on those that bend along u in one place and along v in another. The means are:
+  /// Looks for fewer triangles that keep a distance, and takes more time. It never adds triangles and saves a twentieth
+  /// to a third of them, most on rational patches and on those that bend along u in one place and along v in another.
+  /// The means are:
   ///
   /// - rates proven by bounds of many small pieces of each patch, where bounds of its halves ask for more;
   /// - where a patch bends unevenly, separate segments in the halves of its parameters and of the borders that it has
-  ///   with its neighbours;
+  ///   with its neighbours (with an angle or pixels this is done in any case);
   /// - among rates that suffice, those that suit the neighbours (not with an angle or pixels).
   ///
   /// Time: about a hundred times that of a plan without it, of the order of 100 us per bicubic patch; many seconds with
@@ -164,12 +165,20 @@ struct MeshChange {
 ///   auto change = plan->update(set, {patches, points}, mesh.views());  // each frame
 ///   if (change && change->topology) mesh = *plan->allocate(), plan->run(set, mesh.views());
 ///
-/// Tolerances: each patch has the fewest cells of one size that keep them. The bound of a patch is proven. It is the
-/// sum of a bound on the chords, the rounding of float vertices and the set's fit error. The second derivatives of the
-/// patch bound the chords (Filip, Magedson, Markot 1986); for a rational patch those of its homogeneous form, or those
-/// of exact numerators. So a cylinder takes as many triangles at any height. Scaled sweeps rho(v) E(u) + T(v), such as
-/// surfaces of revolution, extrusions and cones, need no bound on the mixed derivative. A flat convex quadrilateral
-/// takes two triangles.
+/// Cells: each patch has about the fewest that keep the tolerances. With an angle or pixels, they lie where the patch
+/// bends: each eighth of u and of v has a rate of its own where that saves cells. With a distance alone, the cells of a
+/// patch have one size, unless TessellationOptions::fewest is set. A flat convex quadrilateral takes two triangles.
+///
+/// Bounds: the bound of a patch is proven. It is the sum of a bound on the chords, the rounding of float vertices and
+/// the set's fit error. The second derivatives of the patch bound the chords (Filip, Magedson, Markot 1986); for a
+/// rational patch those of its homogeneous form, or those of exact numerators. So a cylinder takes as many triangles at
+/// any height. Scaled sweeps rho(v) E(u) + T(v), such as surfaces of revolution, extrusions and cones, need no bound on
+/// the mixed derivative.
+///
+/// Local decisions: the division of a patch depends on the patch, the options, the set's origin and the patches that it
+/// touches, or whose borders lie within the weld. Patches elsewhere and their order make no difference. Exceptions:
+/// lengths that are shares of the set's size, TessellationOptions::fewest and `smallest`, and the choice of sums of
+/// doubles:
 ///
 /// Vertices: usually sums of floats, in SIMD. If the rounding of these sums takes more than an eighth of the tolerance,
 /// or all that pixels leave, as for parts far from each other with a small tolerance, then all vertices are sums of
@@ -199,9 +208,12 @@ struct MeshChange {
 /// counter-clockwise from (0,0), each corner once; shared points that belong to another patch are left out. Rates: all
 /// points `[iu][iv]`, so vertex (patch * (rates.u + 1) + iu) * (rates.v + 1) + iv.
 ///
-/// Threads: any number of const calls; an update excludes every other call. Memory: with rates 24 bytes per patch. With
-/// tolerances 1 KiB per patch to make and 256 bytes per patch to keep; the first update takes another 256 bytes per
-/// patch; and at most about 512 KiB per set for tables that its small plans share.
+/// Threads: any number of const calls; an update excludes every other call.
+///
+/// Memory: with rates 24 bytes per patch. With tolerances 1 KiB per patch to make and 256 bytes per patch to keep; the
+/// first update takes another 256 bytes per patch. At most about 512 KiB per set for tables that its small plans share.
+/// With an angle or pixels, 8 (degree + 5) bytes for each segment along a parameter or border of patches whose cells
+/// lie where they bend: less than their triangles take. With an angle and `smallest`, half a KiB more to make it.
 class Tessellation {
  public:
   /// Makes a plan.

@@ -24,10 +24,9 @@ enum ChordHint {
   may_be_sweep = 1,  ///< two opposite sides have parallel chords
   may_be_flat = 2,   ///< the corners lie in a plane
   may_gain = 4,      ///< rational patches: exact numerators may need far fewer cells
-  will_gain = 8,     ///< rational patches: so few that they pay for this patch alone
 };
-/// Limits of the share of the cells that remain then, by the second derivatives at the corners.
-inline constexpr double likely_gain = 0.4, certain_gain = 0.1;
+/// The limit of the share of the cells that remain then, by the second derivatives at the corners.
+inline constexpr double likely_gain = 0.4;
 
 /// Rational patches up to this degree have their bounds in blocks, in float. `net` then has four components and `unit`
 /// is above the coefficients as well. `size` is negative where rounding dominates a bound or weights are too uneven.
@@ -40,6 +39,7 @@ struct ExactChordJob {
   /// most near 1.
   const double* net = nullptr;
   int degree_u = 0, degree_v = 0;
+  int lanes = block_lanes;      ///< only the first ones are meant; others may be written
   bool any_patch = false;       ///< fill pieces also of patches that are no sweeps
   double* deviation = nullptr;  ///< `[lane]`: how far the patch may lie from a scaled sweep; infinite if it is none
   /// `[piece of 9][uu, uv, vv][lane]` in lengths, of the sweep where there is one; infinite or NaN where there is no

@@ -142,7 +142,9 @@ class ExactChords {
   void bound_sweep(bool along_u, const Where& where) {
     const int count_i = (along_u ? m_ : n_) + 1, count_j = (along_u ? n_ : m_) + 1;
     cut_sweep(along_u, count_i, count_j);
-    const bool is_straight = count_j == 2 && xsimd::all(rho_weight_[0] == rho_weight_[1]);
+    // In a lane whose curves across are straight, they bend nowhere, not even by a rounding.
+    const Batch zero = L::broadcast(0);
+    const auto is_straight = count_j == 2 ? rho_weight_[0] == rho_weight_[1] : zero < zero;
     Batch widest[2];
     for (int b = 0; b < 2; ++b) {
       widest[b] = L::broadcast(0);
@@ -155,10 +157,11 @@ class ExactChords {
       const int first = a * (count_i - 1);
       set_curve(count_i, [&](int c, int i) { return half_[c][first + i]; });
       const Batch along = largest_second_derivative<L>(line_, count_i - 1);
-      Batch across[2] = {L::broadcast(0), L::broadcast(0)};
-      if (!is_straight) bound_across(along_u, a, count_i, count_j, across);
+      Batch across[2] = {zero, zero};
+      if (!xsimd::all(is_straight)) bound_across(along_u, a, count_i, count_j, across);
       for (int b = 0; b < 2; ++b) {
-        const Batch bounds[2] = {sure(along * widest[b], second(count_i - 1)), sure(across[b], second(count_j - 1))};
+        const Batch bend = xsimd::select(is_straight, zero, across[b]);
+        const Batch bounds[2] = {sure(along * widest[b], second(count_i - 1)), sure(bend, second(count_j - 1))};
         Batch(&piece)[3] = quarter_[along_u ? 2 * a + b : 2 * b + a];
         piece[0] = xsimd::select(where, bounds[along_u ? 0 : 1], piece[0]);
         piece[1] = xsimd::select(where, L::broadcast(0), piece[1]);
@@ -258,5 +261,5 @@ class ExactChords {
 
 template <class L>
 void bound_exact_chords(const ExactChordJob& job) {
-  for (int lane = 0; lane < block_lanes; lane += L::width) ExactChords<L>(job, lane).run();
+  for (int lane = 0; lane < job.lanes; lane += L::width) ExactChords<L>(job, lane).run();
 }

@@ -86,15 +86,21 @@ class RateSearch {
   /// Finds the fewest cells by the plain bound.
   void search() {
     const Batch zero = L::broadcast(0), two = L::broadcast(2), half = L::broadcast(static_cast<float>(0.5));
-    // The start has h^2 uu = k^2 vv, hence room / 2 = h^2 (uu + uv sqrt(uu / vv)).
-    const Batch ratio = xsimd::sqrt(first_[0] / xsimd::max(second_[0], tiny()));
-    const Batch start = xsimd::sqrt((first_[0] + mixed_[0] * ratio) * two / xsimd::max(wanted_, tiny()));
+    // The start has h^2 uu = k^2 vv, hence room / 2 = h^2 (uu + uv sqrt(uu / vv)), with the largest bounds of quarters,
+    // which serve most of the rates.
+    const auto largest = [](const Batch(&of)[9]) {
+      return xsimd::max(xsimd::max(of[5], of[6]), xsimd::max(of[7], of[8]));
+    };
+    const Batch uu = largest(first_), uv = largest(mixed_), vv = largest(second_);
+    const Batch ratio = xsimd::sqrt(uu / xsimd::max(vv, tiny()));
+    const Batch start = xsimd::sqrt((uu + uv * ratio) * two / xsimd::max(wanted_, tiny()));
     const Batch middle = two * xsimd::floor(half * xsimd::min(start, most_));
     best_first_ = best_second_ = zero;
     min_cells_ = L::broadcast(std::numeric_limits<float>::infinity());
+    const auto everywhere = zero <= zero;
     for (int step = -2; step <= 3; ++step) {
       const Batch rate = middle + L::broadcast(static_cast<float>(step));
-      step % 2 == 0 ? attempt<true>(rate) : attempt<false>(rate);
+      step % 2 == 0 ? attempt<true>(rate, everywhere) : attempt<false>(rate, everywhere);
     }
     widen(middle - two, middle + L::broadcast(3));
   }
@@ -121,9 +127,9 @@ class RateSearch {
     return most;
   }
 
-  /// Tries this rate along `first` with the least rates, odd and even, along the other.
-  template <bool Even>
-  void attempt(const Batch& rate) {
+  /// Tries this rate along `first` with the least rates, odd and even, along the other, in the lanes of `where`.
+  template <bool Even, class Where>
+  void attempt(const Batch& rate, const Where& where) {
     const Batch one = L::broadcast(1), two = L::broadcast(2), half = L::broadcast(static_cast<float>(0.5));
     const Batch first = xsimd::max(rate, Even ? two : one);
     const Batch h = step_of(first);
@@ -131,22 +137,23 @@ class RateSearch {
     const Batch even = two * xsimd::ceil(half * needed(Even ? 3 : 2, h));
     const Batch second = xsimd::min(xsimd::max(odd, one), xsimd::max(even, two));
     const Batch cells = first * second;
-    const auto better = (second <= most_) & (first <= most_) & (cells < min_cells_);
+    const auto better = where & (second <= most_) & (first <= most_) & (cells < min_cells_);
     min_cells_ = xsimd::select(better, cells, min_cells_);
     best_first_ = xsimd::select(better, first, best_first_);
     best_second_ = xsimd::select(better, second, best_second_);
   }
 
-  /// Continues beyond the even rate `low` and the odd rate `high` while a lane has its fewest cells at an end.
+  /// Continues beyond the even rate `low` and the odd rate `high` in the lanes that have their fewest cells at an end:
+  /// what a lane finds does not depend on the others.
   void widen(Batch low, Batch high) {
     const Batch one = L::broadcast(1), two = L::broadcast(2);
     for (int rounds = 0; rounds < 32; ++rounds) {
       const auto at_end = ((best_first_ <= low) & (low > one)) | ((best_first_ >= high) & (high < most_));
       if (!xsimd::any(at_end)) return;
-      attempt<true>(low - two);
-      attempt<false>(low - one);
-      attempt<true>(high + one);
-      attempt<false>(high + two);
+      attempt<true>(low - two, at_end);
+      attempt<false>(low - one, at_end);
+      attempt<true>(high + one, at_end);
+      attempt<false>(high + two, at_end);
       low = low - two;
       high = high + two;
     }

@@ -46,11 +46,8 @@ class RationalChords {
     const Batch one = xsimd::sqrt(L::broadcast(static_cast<float>(0x1p-6)) * nets_.parts[0].radius);
     const auto cells = [&](const Batch(&d)[3]) { return (xsimd::sqrt(d[0]) + one) * (xsimd::sqrt(d[2]) + one) + d[1]; };
     const Batch share = cells(least) / cells(most), zero = L::broadcast(0);
-    const auto hint = [&](double below, ChordHint which) {
-      return xsimd::select(share < L::broadcast(static_cast<float>(below)), L::broadcast(which), zero);
-    };
-    L::store(job_.hints + lane_,
-             L::load(job_.hints + lane_) + hint(likely_gain, may_gain) + hint(certain_gain, will_gain));
+    const auto gains = share < L::broadcast(static_cast<float>(likely_gain));
+    L::store(job_.hints + lane_, L::load(job_.hints + lane_) + xsimd::select(gains, L::broadcast(may_gain), zero));
   }
 
   void bound(int kind, int factor) {

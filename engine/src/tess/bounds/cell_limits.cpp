@@ -1,16 +1,91 @@
 #include "tess/bounds/cell_limits.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 namespace tessera::inline abi_0_1 {
 namespace {
 
+/// The bounds of a patch's rectangles that matter for uniform segments: those with no other as large both ways.
+class TurningFront {
+ public:
+  TurningFront() = default;
+  explicit TurningFront(const TurningBound& turning) {
+    for (int i = 0; i < TurningBound::parts; ++i)
+      for (int j = 0; j < TurningBound::parts; ++j) add({turning.u(i, j), turning.v(i, j)});
+  }
+
+  double angle(Rates rates) const {
+    double most = 0;
+    for (std::size_t k = 0; k < count_; ++k) most = std::max(most, at_[k].u / rates.u + at_[k].v / rates.v);
+    return most;
+  }
+  /// Returns the smallest real rate along v with this rate along u; infinite if there is none.
+  double needed(double angle, int u) const {
+    double rate = 1;
+    for (std::size_t k = 0; k < count_; ++k) {
+      const double room = angle - at_[k].u / u;
+      if (at_[k].v > 0 || !(room >= 0))
+        rate = std::max(rate, room > 0 ? at_[k].v / room : std::numeric_limits<double>::infinity());
+    }
+    return rate;
+  }
+
+ private:
+  static bool is_within(const Turning& a, const Turning& b) { return a.u <= b.u && a.v <= b.v; }
+  void add(const Turning& turning) {
+    const auto end = at_.begin() + static_cast<std::ptrdiff_t>(count_);
+    if (std::any_of(at_.begin(), end, [&](const Turning& other) { return is_within(turning, other); })) return;
+    count_ = static_cast<std::size_t>(
+        std::remove_if(at_.begin(), end, [&](const Turning& other) { return is_within(other, turning); }) -
+        at_.begin());
+    if (count_ == at_.size()) {  // the last one stands for both
+      at_.back() = {std::max(at_.back().u, turning.u), std::max(at_.back().v, turning.v)};
+    } else {
+      at_[count_++] = turning;
+    }
+  }
+
+  std::array<Turning, 12> at_;
+  std::size_t count_ = 0;
+};
+
+/// The limits as uniform segments see them.
+class UniformLimits {
+ public:
+  explicit UniformLimits(const CellLimits& limits)
+      : limits_(limits),
+        front_(limits.turning ? TurningFront(*limits.turning) : TurningFront()),
+        angle_(limits.turning ? limits.turning->without_rounding(limits.angle) : 0) {}
+
+  bool keeps(Rates rates) const {
+    return (!limits_.chord || limits_.chord->distance(rates) <= limits_.distance) &&
+           (!limits_.turning || (1 + 0x1p-40) * front_.angle(rates) <= angle_) &&
+           (!limits_.picture || limits_.picture->distance(rates) <= limits_.pixels);
+  }
+  /// Returns the smallest real rate along v that keeps all limits. `even`: by the bounds of even rates, else of odd
+  /// ones.
+  double needed(int u, bool even) const {
+    double rate = 1;
+    if (limits_.chord) rate = std::max(rate, limits_.chord->needed(limits_.distance, u, true, even));
+    if (limits_.turning) rate = std::max(rate, front_.needed(angle_, u));
+    if (limits_.picture) rate = std::max(rate, limits_.picture->needed(limits_.pixels, u, true, even));
+    return rate;
+  }
+
+ private:
+  const CellLimits& limits_;
+  TurningFront front_;
+  double angle_;
+};
+
 /// Returns the rates with this u and the smallest v that keeps the limits.
-std::optional<Rates> with_u(const CellLimits& limits, int u, int most) {
+std::optional<Rates> with_u(const UniformLimits& limits, int u, int most) {
   std::optional<Rates> best;
   for (const bool even : {false, true}) {
-    const double needed = limits.needed(u, true, even);
+    const double needed = limits.needed(u, even);
     if (!(needed <= most)) continue;
     int v = static_cast<int>(std::ceil(needed));
     if ((v % 2 == 0) != even) ++v;
@@ -22,23 +97,16 @@ std::optional<Rates> with_u(const CellLimits& limits, int u, int most) {
 
 }  // namespace
 
-bool CellLimits::keeps(Rates rates) const {
-  return (!chord || chord->distance(rates) <= distance) && (!turning || turning->angle(rates) <= angle) &&
-         (!picture || picture->distance(rates) <= pixels);
-}
-
-double CellLimits::needed(int fixed, bool fixed_u, bool even) const {
-  double rate = 1;
-  if (chord) rate = std::max(rate, chord->needed(distance, fixed, fixed_u, even));
-  if (turning) rate = std::max(rate, turning->needed(angle, fixed, fixed_u, even));
-  if (picture) rate = std::max(rate, picture->needed(pixels, fixed, fixed_u, even));
-  return rate;
+bool CellLimits::keeps(PatchSegments segments) const {
+  return (!chord || chord->distance_of(segments) <= distance) && (!turning || turning->angle(segments) <= angle) &&
+         (!picture || picture->distance_of(segments) <= pixels);
 }
 
 std::optional<Rates> cheapest(const CellLimits& limits, int most) {
+  const UniformLimits uniform(limits);
   std::optional<Rates> best;
   const auto attempt = [&](int u) {
-    const std::optional<Rates> rates = with_u(limits, u, most);
+    const std::optional<Rates> rates = with_u(uniform, u, most);
     if (!rates || (best && !(double(rates->u) * rates->v < double(best->u) * best->v))) return false;
     best = rates;
     return true;

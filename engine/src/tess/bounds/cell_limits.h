@@ -1,5 +1,5 @@
 #pragma once
-// Finds the rates of a patch that keep several tolerances at once.
+// Finds the segments of a patch that keep several tolerances at once.
 
 #include <optional>
 
@@ -17,13 +17,15 @@ struct CellLimits {
   const ChordBound* picture = nullptr;  ///< the patch in a camera's picture
   double pixels = 0;
 
-  bool keeps(Rates rates) const;
-  /// Returns the smallest real rate along the other parameter that keeps all limits, with `fixed` along u or v. `even`:
-  /// by the bounds of even rates, else of odd ones.
-  double needed(int fixed, bool fixed_u, bool even) const;
+  /// Whether there are limits that hold only for halves of the patch, so that triangles must not cross the middle where
+  /// segments do not. The limit of an angle holds wherever triangles lie.
+  bool is_for_halves() const { return chord || picture; }
+  bool is_for_more_than_distance() const { return turning || picture; }
+  bool keeps(PatchSegments segments) const;
 };
 
-/// Returns rates that keep the limits with about the fewest cells; empty if none up to `most` do.
+/// Returns the rates of uniform segments that keep the limits with about the fewest cells; empty if none up to `most`
+/// do.
 std::optional<Rates> cheapest(const CellLimits& limits, int most);
 
 }  // namespace tessera::inline abi_0_1

@@ -26,6 +26,12 @@ bool is_bounded_in_blocks(const BlockGroup& group) {
   return !group.rational || std::max(group.degree_u, group.degree_v) <= kernel::max_rational_degree;
 }
 
+/// Products are used for patches of at least so many cells per pair of control points, or of many cells, if they save
+/// at least so many cells per pair.
+constexpr double min_cells_per_pair = 0.5, many_cells = 150, min_saving = 0.03;
+
+double cells(Rates rates) { return double(rates.u) * rates.v; }
+
 /// Returns the number of pairs of control points of different second derivatives; 0 where products are not used.
 double pairs_of_products(const BlockGroup& group) {
   if (std::max(group.degree_u, group.degree_v) > max_product_degree) return 0;
@@ -159,8 +165,8 @@ ChordBlocks::Choice ChordBlocks::search(std::size_t block, std::size_t count, co
   return choice;
 }
 
-double ChordBlocks::saved_by_products(const PatchSet::Impl& set, std::size_t block, std::size_t count,
-                                      const Choice& choice) const {
+std::uint32_t ChordBlocks::gaining_by_products(const PatchSet::Impl& set, std::size_t block, const Choice& choice,
+                                               std::uint32_t asked) const {
   const BlockGroup& group = set.group_of_block(block);
   alignas(cache_line) Lanes<float> share;
   // For rational patches this would take as long as the products themselves: about a tenth is saved.
@@ -173,28 +179,36 @@ double ChordBlocks::saved_by_products(const PatchSet::Impl& set, std::size_t blo
          .pieces = pieces_.data() + block * block_pieces,
          .unit = unit_.data() + block * lanes,
          .share = share.data()});
-  double saved = 0;
-  for (std::size_t lane = 0; lane < count; ++lane)
-    if (source_[block * lanes + lane] != Source::exact)
-      saved += std::max(0.0, 1 - double(share[lane])) * choice.rates[lane].u * choice.rates[lane].v;
   // Products of rational patches take 3.5 times as long as those of polynomial ones, and their cells up to twice as
   // long.
-  return (group.rational ? 0.5 : 1) * saved / double(count);
+  const double worth = group.rational ? 0.5 : 1, least = min_saving * pairs_of_products(group);
+  std::uint32_t gaining = 0;
+  for (std::uint32_t bits = asked; bits != 0; bits &= bits - 1) {
+    const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+    const double saved = worth * std::max(0.0, 1 - double(share[lane])) * cells(choice.rates[lane]);
+    if (saved >= least) gaining |= 1u << lane;
+  }
+  return gaining;
 }
 
 ChordBlocks::Choice ChordBlocks::cheapest(const PatchSet::Impl& set, std::size_t block, std::size_t count,
                                           const Lanes<double>& distance, int most, Products& products) const {
   Choice choice = search(block, count, distance, most, nullptr);
-  const auto cells = [&](std::size_t lane) { return double(choice.rates[lane].u) * choice.rates[lane].v; };
   const double pairs = pairs_of_products(set.group_of_block(block));
-  double all = 0;
-  for (std::size_t lane = 0; lane < count; ++lane) all += cells(lane);
-  // The time of products goes by the pairs, that of a mesh by its cells: products pay where there are many cells.
-  if (pairs == 0 || !(all >= std::min(0.5 * pairs, 150.0) * double(count))) return choice;
-  if (!(saved_by_products(set, block, count, choice) >= 0.03 * pairs)) return choice;
+  if (pairs == 0) return choice;
+  // The time of products goes by the pairs, that of a mesh by its cells: products pay where there are many cells. Each
+  // patch decides for itself, so that its rates do not depend on the others of its block.
+  std::uint32_t asked = 0;
+  for (std::size_t lane = 0; lane < count; ++lane)
+    if (source_[block * lanes + lane] != Source::exact &&
+        cells(choice.rates[lane]) >= std::min(min_cells_per_pair * pairs, many_cells))
+      asked |= 1u << lane;
+  if (asked != 0) choice.sharpened = gaining_by_products(set, block, choice, asked);
+  if (choice.sharpened == 0) return choice;
   products.find(*this, set, block);
   const Choice sharper = search(block, count, distance, most, &products);
-  for (std::size_t lane = 0; lane < count; ++lane) {
+  for (std::uint32_t bits = choice.sharpened; bits != 0; bits &= bits - 1) {
+    const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
     choice.rates[lane] = sharper.rates[lane];
     choice.distance[lane] = sharper.distance[lane];
   }

@@ -72,12 +72,13 @@ class ChordBlocks {
   }
 
   struct Choice {
-    Lanes<Rates> rates;        ///< 0 where no rates up to the most keep the distance
-    Lanes<double> distance{};  ///< the distance that the rates keep
+    Lanes<Rates> rates;           ///< 0 where no rates up to the most keep the distance
+    Lanes<double> distance{};     ///< the distance that the rates keep
+    std::uint32_t sharpened = 0;  ///< the lanes whose rates are proven by products, one bit each
   };
   /// Returns rates with about the fewest cells, up to `most`, that keep a distance to each of a block's first `count`
-  /// patches. The rates are equal on every instruction set. Products are found where they save more time than they
-  /// take.
+  /// patches. The rates are equal on every instruction set, and those of a patch do not depend on the others. Products
+  /// are used for the patches for which they save more time than they take.
   Choice cheapest(const PatchSet::Impl& set, std::size_t block, std::size_t count, const Lanes<double>& distance,
                   int most, Products& products) const;
 
@@ -99,10 +100,11 @@ class ChordBlocks {
   static void find_exact(const PatchSet::Impl& set, std::size_t block, bool any_patch, Exact& exact);
   void take_sweep(const Exact& exact, std::size_t block, std::size_t lane);
   void take_flat(const BezierPatch& patch, std::size_t block, std::size_t lane);
-  void take_exact(const BezierPatch& patch, const Exact& exact, std::size_t block, std::size_t lane);
+  void take_exact(const BezierPatch& patch, const Exact& exact, bool may_gain, std::size_t block, std::size_t lane);
 
-  /// Estimates how many cells of a choice, per patch, products save.
-  double saved_by_products(const PatchSet::Impl& set, std::size_t block, std::size_t count, const Choice& choice) const;
+  /// Returns the lanes among `asked` for which products save more time than they take, one bit each.
+  std::uint32_t gaining_by_products(const PatchSet::Impl& set, std::size_t block, const Choice& choice,
+                                    std::uint32_t asked) const;
   /// Finds rates by the kernel, and one by one where it has found none.
   Choice search(std::size_t block, std::size_t count, const Lanes<double>& distance, int most,
                 const Products* products) const;

@@ -52,15 +52,65 @@ double ChordBound::distance(Rates rates) const {
   return most;
 }
 
-double ChordBound::distance_of(PatchSegments segments) const {
-  if (segments.are_uniform()) return distance(segments.rates());
-  const bool parts_u = segments.u.parts_halves(), parts_v = segments.v.parts_halves();
-  const Split split = splits[parts_u][parts_v];
-  double most = 0;
-  for (int k = 0; k < split.count; ++k) {
-    const int i = parts_v ? k / 2 : k, j = parts_v ? k % 2 : 0;
-    most = std::max(most, pieces_[static_cast<std::size_t>(split.first + k)].chord(segments.of_quarter(i, j)));
+namespace {
+
+/// The longest segments that lie in a half, 0 or 1, or anywhere.
+struct Longest {
+  int half;  ///< -1: anywhere
+  double length;
+};
+constexpr int anywhere_in_patch = -1;
+
+double longest_in(Segments segments, int begin, int end) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int e = begin; e < end; ++e) least = std::min(least, segments.rate_in(e).value());
+  return 1 / least;
+}
+
+/// Returns the length of the longest segment that crosses the middle, of these segments or of finer ones. It has a sum
+/// of (length in an eighth) x (rate there) of at most 1, so it ends in the eighths beside the middle of which one, or
+/// more together, have that sum.
+double longest_across(Segments segments) {
+  constexpr int middle = Segments::parts / 2;
+  double least = std::numeric_limits<double>::infinity();
+  for (const int step : {-1, 1}) {
+    double reached = 0;
+    for (int e = step < 0 ? middle - 1 : middle; e >= 0 && e < Segments::parts && reached < 1; e += step) {
+      const double rate = segments.rate_in(e).value();
+      least = std::min(least, rate);
+      reached += rate / Segments::parts;
+    }
   }
+  return 1 / least;
+}
+
+struct LongestOfHalves {
+  std::array<Longest, 3> at;
+  int count = 2;
+
+  /// `crosses`: segments may cross the middle even where these do not.
+  LongestOfHalves(Segments segments, bool crosses) {
+    constexpr int middle = Segments::parts / 2;
+    at[0] = {0, longest_in(segments, 0, middle)};
+    at[1] = {1, longest_in(segments, middle, Segments::parts)};
+    if (!crosses && segments.parts_halves()) return;
+    at[2] = {anywhere_in_patch, longest_across(segments)};
+    count = 3;
+  }
+};
+
+}  // namespace
+
+double ChordBound::distance_of(PatchSegments segments, bool anywhere) const {
+  if (segments.are_uniform() && !anywhere) return distance(segments.rates());
+  const LongestOfHalves along_u(segments.u, anywhere), along_v(segments.v, anywhere);
+  double most = 0;
+  for (int k = 0; k < along_u.count; ++k)
+    for (int l = 0; l < along_v.count; ++l) {
+      const Longest u = along_u.at[static_cast<std::size_t>(k)], v = along_v.at[static_cast<std::size_t>(l)];
+      const int piece = u.half < 0 ? (v.half < 0 ? 0 : 3 + v.half) : v.half < 0 ? 1 + u.half : 5 + 2 * u.half + v.half;
+      most = std::max(most, pieces_[static_cast<std::size_t>(piece)].chord(u.length + 0x1p-24, v.length + 0x1p-24));
+    }
   return most;
 }
 
@@ -82,6 +132,12 @@ double ChordBound::needed(double tolerance, int fixed, bool fixed_u, bool even) 
         needed, smallest_rate(h * h * (fixed_u ? d.uu : d.vv), 2 * h * d.uv, fixed_u ? d.vv : d.uu, 8 * tolerance));
   }
   return needed;
+}
+
+double ChordBound::needed_in_quarter(double tolerance, double fixed, bool fixed_u, int quarter) const {
+  const SecondDerivatives& d = pieces_[static_cast<std::size_t>(5 + quarter)];
+  const double h = 1 / fixed + 0x1p-24;
+  return smallest_rate(h * h * (fixed_u ? d.uu : d.vv), 2 * h * d.uv, fixed_u ? d.vv : d.uu, 8 * tolerance);
 }
 
 std::optional<Rates> ChordBound::with_rate(double tolerance, int fixed, bool fixed_u, int most) const {

@@ -103,8 +103,9 @@ class ChordBound {
   /// Returns the largest distance between the patch and a mesh of it. Each triangle of the mesh must have a parameter
   /// box of at most 1 / rates.u x 1 / rates.v; where a rate is even, none may cross the middle of that parameter.
   double distance(Rates rates) const;
-  /// Returns the largest distance for segments of any length in the halves.
-  double distance_of(PatchSegments segments) const;
+  /// Returns the largest distance for segments that may differ in length. `anywhere`: triangles may cross the middle of
+  /// a parameter even if these segments do not; each lies in one of these segments, or in a finer one of a border.
+  double distance_of(PatchSegments segments, bool anywhere = false) const;
   /// The bound of a triangle that crosses the middle of a parameter, at a border of an odd rate beside an even one. Its
   /// box is no wider than the border's segments, so it lies in this one of pieces() and keeps the piece's chord at
   /// these rates.
@@ -116,6 +117,8 @@ class ChordBound {
   /// Returns the smallest real rate along the other parameter that keeps the tolerance, with the rate `fixed` along u
   /// or v; infinite if there is none. `even`: by the bounds of even rates, else of odd ones. Products are not used.
   double needed(double tolerance, int fixed, bool fixed_u, bool even) const;
+  /// Returns the same for triangles of a quarter, 2 (u > 1/2) + (v > 1/2), with a real rate there.
+  double needed_in_quarter(double tolerance, double fixed, bool fixed_u, int quarter) const;
   /// Returns the rates with the fewest cells that keep distance() <= tolerance > 0; empty if none up to `most` do.
   std::optional<Rates> cheapest(double tolerance, int most) const;
 

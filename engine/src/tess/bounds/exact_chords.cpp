@@ -14,13 +14,19 @@
 namespace tessera::inline abi_0_1 {
 
 struct ChordBlocks::Exact {
-  alignas(cache_line) Lanes<double> deviation;
+  /// The lanes whose bounds are found, which the kernel sees side by side.
+  std::uint32_t wanted = 0;
+  alignas(cache_line) Lanes<double> deviations;
   alignas(cache_line) std::array<double, piece_count * 3 * lanes> pieces;
 
-  double bound(std::size_t piece, std::size_t kind, std::size_t lane) const {
-    return pieces[(piece * 3 + kind) * lanes + lane];
+  std::size_t place(std::size_t lane) const {
+    return static_cast<std::size_t>(std::popcount(wanted & ((1u << lane) - 1)));
   }
-  bool is_sweep(std::size_t lane) const { return deviation[lane] < std::numeric_limits<double>::infinity(); }
+  double bound(std::size_t piece, std::size_t kind, std::size_t lane) const {
+    return pieces[(piece * 3 + kind) * lanes + place(lane)];
+  }
+  double deviation(std::size_t lane) const { return deviations[place(lane)]; }
+  bool is_sweep(std::size_t lane) const { return deviation(lane) < std::numeric_limits<double>::infinity(); }
   bool is_finite(std::size_t lane) const {
     double sum = 0;
     for (std::size_t kind = 0; kind < 3; ++kind) sum += bound(0, kind, lane);
@@ -104,12 +110,13 @@ double ChordBlocks::homogeneous_cells(const BezierPatch& patch, std::size_t bloc
   });
 }
 
-void ChordBlocks::take_exact(const BezierPatch& patch, const Exact& exact, std::size_t block, std::size_t lane) {
+void ChordBlocks::take_exact(const BezierPatch& patch, const Exact& exact, bool may_gain, std::size_t block,
+                             std::size_t lane) {
   Source& source = source_[block * lanes + lane];
   const bool is_finite = exact.is_finite(lane), is_sweep = exact.is_sweep(lane) && is_finite,
              is_unknown = is_sweep && source == Source::alone;
   if (source == Source::alone && !is_sweep) bound_alone(patch, block, lane);
-  if (!is_finite) return;
+  if (!is_finite || !(is_sweep || may_gain)) return;
   const double wanted =
       cells(patch.hull_box().diagonal(), [&](std::size_t kind) { return exact.bound(0, kind, lane); });
   if (!is_unknown && !(wanted < (is_sweep ? 1 : min_gain) * homogeneous_cells(patch, block, lane))) return;
@@ -119,21 +126,28 @@ void ChordBlocks::take_exact(const BezierPatch& patch, const Exact& exact, std::
     set_unit(block, lane, most);
   }
   source = Source::exact;
-  if (is_sweep) slack_[block * lanes + lane] = rounded_up(2 * exact.deviation[lane]);
+  if (is_sweep) slack_[block * lanes + lane] = rounded_up(2 * exact.deviation(lane));
   store(block, lane, [&](std::size_t k, std::size_t kind) { return exact.bound(k, kind, lane); });
 }
 
 void ChordBlocks::find_exact(const PatchSet::Impl& set, std::size_t block, bool any_patch, Exact& exact) {
   const BlockGroup& group = set.group_of_block(block);
-  const std::size_t count = set.lane_counts[block];
   Net net;
-  for (std::size_t lane = 0; lane < lanes; ++lane)
-    pack(set.patches[set.lane_patches[block * lanes + (lane < count ? lane : 0)]], net.data() + lane);
+  const auto pack_lane = [&](std::size_t lane, std::size_t place) {
+    pack(set.patches[set.lane_patches[block * lanes + lane]], net.data() + place);
+  };
+  std::size_t count = 0;
+  for (std::uint32_t bits = exact.wanted; bits != 0; bits &= bits - 1)
+    pack_lane(static_cast<std::size_t>(std::countr_zero(bits)), count++);
+  constexpr std::size_t widest = 8;  // the most lanes of a vector of doubles
+  const auto first = static_cast<std::size_t>(std::countr_zero(exact.wanted));
+  for (std::size_t place = count; place % widest != 0; ++place) pack_lane(first, place);
   kernel::default_kernels().bound_exact_chords({.net = net.data(),
                                                 .degree_u = group.degree_u,
                                                 .degree_v = group.degree_v,
+                                                .lanes = static_cast<int>(count),
                                                 .any_patch = any_patch,
-                                                .deviation = exact.deviation.data(),
+                                                .deviation = exact.deviations.data(),
                                                 .pieces = group.rational ? exact.pieces.data() : nullptr});
 }
 
@@ -141,7 +155,7 @@ void ChordBlocks::take_sweep(const Exact& exact, std::size_t block, std::size_t 
   const std::size_t at = block * lanes + lane;
   if (!exact.is_sweep(lane) || source_[at] != Source::packed) return;
   source_[at] = Source::sweep;
-  slack_[at] = rounded_up(2 * exact.deviation[lane]);
+  slack_[at] = rounded_up(2 * exact.deviation(lane));
   for (std::size_t k = 0; k < piece_count; ++k) pieces_[block * block_pieces + (k * 3 + 1) * lanes + lane] = 0;
 }
 
@@ -165,18 +179,16 @@ void ChordBlocks::bound_exactly(const PatchSet::Impl& set, std::size_t block, co
       visit(lane, set.patches[set.lane_patches[block * lanes + lane]]);
     }
   };
-  // Numerators of a block take a microsecond or more per lane: worth it for one lane that gains much, or an eighth that
-  // may gain.
-  const auto gaining = static_cast<std::size_t>(std::popcount(hinted(kernel::may_gain)));
-  const bool any_patch = rational && (hinted(kernel::will_gain) != 0 || 8 * gaining > count);
-  // Lanes with Source::alone have every hint, so take_exact() bounds the rational ones among them.
-  if (hinted(kernel::may_be_sweep) != 0 || any_patch) {
-    Exact exact;
-    find_exact(set, block, any_patch, exact);
-    for_lanes(present, [&](std::size_t lane, const BezierPatch& patch) {
-      rational ? take_exact(patch, exact, block, lane) : take_sweep(exact, block, lane);
-    });
-  }
+  // Numerators take a microsecond or more per lane: worth it for patches that may gain. Each patch decides for itself,
+  // so that its bounds do not depend on the others of its block. Lanes with Source::alone have every hint, so
+  // take_exact() bounds the rational ones among them.
+  const std::uint32_t gaining = rational ? hinted(kernel::may_gain) : 0;
+  Exact exact;
+  exact.wanted = hinted(kernel::may_be_sweep) | gaining;
+  if (exact.wanted != 0) find_exact(set, block, gaining != 0, exact);
+  for_lanes(exact.wanted, [&](std::size_t lane, const BezierPatch& patch) {
+    rational ? take_exact(patch, exact, bool(gaining >> lane & 1u), block, lane) : take_sweep(exact, block, lane);
+  });
   for_lanes(rational ? 0 : present, [&](std::size_t lane, const BezierPatch& patch) {
     if (source(block, lane) == Source::alone) bound_alone(patch, block, lane);
   });

@@ -109,7 +109,8 @@ struct Pass {
 };
 
 /// Adds uniform segments to the choices.
-void add_uniform(const DerivativeNets& patch, double distance, FunctionRef<bool(Rates)> also, SegmentChoices& choices) {
+void add_uniform(const DerivativeNets& patch, double distance, FunctionRef<bool(PatchSegments)> also,
+                 SegmentChoices& choices) {
   for (const Pass pass : {Pass{0.65, 16}, Pass{0.85, 32}}) {
     const Rates rates = choices.fewest().segments.rates();
     if (rates.u * rates.v < 2) break;
@@ -181,7 +182,8 @@ class PartChords {
 };
 
 /// Adds segments whose lengths may differ between the halves to the choices.
-void add_halves(const PartChords& chords, double distance, FunctionRef<bool(Rates)> also, SegmentChoices& choices) {
+void add_halves(const PartChords& chords, double distance, FunctionRef<bool(PatchSegments)> also,
+                SegmentChoices& choices) {
   const PatchSegments known = choices.fewest().segments;
   const PartCounts parts = chords.parts();
   const auto max_of = [](Segments had, int count) {
@@ -198,11 +200,12 @@ void add_halves(const PartChords& chords, double distance, FunctionRef<bool(Rate
                 high_v = std::max(needs01.min_v_for(low_u), needs11.min_v_for(high_u));
       if (std::max(low_v, high_v) > most.v) continue;
       const PatchSegments found{u, joined(low_v, high_v, parts.v)};
-      if (choices.has_room_for(found) && also(found.coarsest())) choices.add({found, chords.distance(found)});
+      if (choices.has_room_for(found) && also(found)) choices.add({found, chords.distance(found)});
     }
 }
 
-void add_halves(const DerivativeNets& patch, double distance, FunctionRef<bool(Rates)> also, SegmentChoices& choices) {
+void add_halves(const DerivativeNets& patch, double distance, FunctionRef<bool(PatchSegments)> also,
+                SegmentChoices& choices) {
   constexpr int min_cells = 12;  // with fewer cells nothing is saved
   for (const Pass pass : {Pass{0.5, 12}, Pass{0.8, 24}}) {
     const PatchSegments known = choices.fewest().segments;
@@ -214,7 +217,8 @@ void add_halves(const DerivativeNets& patch, double distance, FunctionRef<bool(R
 
 }  // namespace
 
-void find_fewer(const BezierPatch& patch, double distance, FunctionRef<bool(Rates)> also, SegmentChoices& choices) {
+void find_fewer(const BezierPatch& patch, double distance, FunctionRef<bool(PatchSegments)> also,
+                SegmentChoices& choices) {
   const DerivativeNets nets(patch);
   add_uniform(nets, distance, also, choices);
   add_halves(nets, distance, also, choices);
@@ -228,7 +232,8 @@ double local_distance(const BezierPatch& patch, PatchSegments segments) {
   double most = 0;
   for (int i = 0; i < parts.u; ++i)
     for (int j = 0; j < parts.v; ++j) {
-      const Rates rates = segments.of_quarter(i, j);
+      const Rates quarter = segments.of_quarter(i, j), coarsest = segments.coarsest();
+      const Rates rates{parts.u == 2 ? quarter.u : coarsest.u, parts.v == 2 ? quarter.v : coarsest.v};
       const LocalChord local(nets, part(parts, i, j), rates, rates, LocalChord::max_pieces);
       most = std::max(most, local.distance(rates));
     }

@@ -44,8 +44,9 @@ class LocalChord {
 };
 
 /// Adds segments to `choices` that keep the distance with fewer cells than its present ones, or about as few. `also`
-/// must hold for their coarsest rates.
-void find_fewer(const BezierPatch& patch, double distance, FunctionRef<bool(Rates)> also, SegmentChoices& choices);
+/// must hold for them.
+void find_fewer(const BezierPatch& patch, double distance, FunctionRef<bool(PatchSegments)> also,
+                SegmentChoices& choices);
 /// Returns the distance that segments keep by such bounds.
 double local_distance(const BezierPatch& patch, PatchSegments segments);
 

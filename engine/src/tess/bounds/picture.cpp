@@ -317,8 +317,8 @@ void ScreenSpaceBound::bound_by_depth(const Camera& camera, const BezierPatch& p
   }
 }
 
-double ScreenSpaceBound::pixels(Rates rates, double distance) const {
-  if (projected_) return ChordBound(*projected_).distance(rates) + moved_pixels_;
+double ScreenSpaceBound::pixels(PatchSegments segments, double distance) const {
+  if (projected_) return ChordBound(*projected_).distance_of(segments) + moved_pixels_;
   return depth_ > 0 ? steepest_ * distance / (depth_ - distance) : 0;
 }
 

@@ -68,8 +68,8 @@ class ScreenSpaceBound {
   double moved_pixels() const { return moved_pixels_; }
   /// Returns the total distance in space to keep; infinite if the patch is projected, or not seen.
   double distance() const { return distance_; }
-  /// Returns the pixels that the rates keep, with the total distance `distance` in space.
-  double pixels(Rates rates, double distance) const;
+  /// Returns the pixels that segments keep, with the total distance `distance` in space.
+  double pixels(PatchSegments segments, double distance) const;
 
  private:
   void bound_by_depth(const Camera& camera, const BezierPatch& patch, double moved, double pixels);

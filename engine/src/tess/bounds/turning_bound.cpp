@@ -3,183 +3,276 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "tess/bounds/normal_net.h"
+#include "tess/bounds/rounded_up.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// A quarter is cut into up to 4^max_depth pieces. A bound is good enough within this factor of the turning at corners.
-constexpr int max_depth = 5;
-constexpr double close_enough = 1.25;
+/// Pieces of up to 2^-max_depth of each parameter are looked at; rectangles have 2^-rectangle_depth.
+constexpr int max_depth = 6, rectangle_depth = 3;
+/// A bound is good enough within this factor of the turning at corners. Pieces with corners that turn by less than a
+/// share of the bound are cut into rectangles.
+constexpr double close_enough = 1.25, varied = 0.7;
+/// Pieces that need no more cells than this along a parameter are not cut.
+constexpr double few_cells = 1.5;
 /// Turning per unit of a parameter that is below float's rounding of normals.
 constexpr double negligible = 0x1p-20;
 /// Radians per unit of a parameter beyond which the normal has nearly no direction somewhere.
 constexpr double max_turning = 32;
 
-/// Cuts each row or column of a net at 1/2 by de Casteljau; `low` becomes the lower half.
-void cut(VectorNet& high, VectorNet& low, bool along_u) {
-  low = high;
-  const int degree = along_u ? high.degree_u : high.degree_v, lines = along_u ? high.degree_v : high.degree_u;
-  const auto at = [along_u](VectorNet& net, int k, int line) -> Vec3& { return along_u ? net(k, line) : net(line, k); };
-  for (int line = 0; line <= lines; ++line)
-    for (int k = 0; k <= degree; ++k) {
-      at(low, k, line) = at(high, 0, line);
-      for (int i = 0; i < degree - k; ++i) at(high, i, line) = 0.5 * at(high, i, line) + 0.5 * at(high, i + 1, line);
+/// The control points of a piece of the normal's net, `[component][i][j]`.
+struct Net {
+  int rows, columns;
+  double* at[3];
+
+  int count() const { return rows * columns; }
+  Vec3 point(int i, int j) const {
+    const int k = i * columns + j;
+    return {at[0][k], at[1][k], at[2][k]};
+  }
+};
+
+/// Cuts each row or column of a net at 1/2 by de Casteljau: `high` becomes the upper half, `low` the lower one.
+void cut(const Net& high, const Net& low, bool along_u) {
+  const int rows = high.rows, columns = high.columns;
+  for (int c = 0; c < 3; ++c) {
+    double *const from = high.at[c], *const to = low.at[c];
+    if (along_u) {
+      for (int k = 0; k < rows; ++k) {
+        std::copy_n(from, columns, to + k * columns);
+        for (int at = 0; at < (rows - 1 - k) * columns; ++at) from[at] = 0.5 * (from[at] + from[at + columns]);
+      }
+    } else {
+      for (int i = 0; i < rows; ++i) {
+        double *const row = from + i * columns, *const lower = to + i * columns;
+        for (int k = 0; k < columns; ++k) {
+          lower[k] = row[0];
+          for (int j = 0; j + 1 < columns - k; ++j) row[j] = 0.5 * (row[j] + row[j + 1]);
+        }
+      }
     }
+  }
+}
+
+/// The largest and the least turning at the corners of a piece.
+struct AtCorners {
+  Turning most, least{infinity, infinity};
+};
+
+/// Numbers of a piece, one for each control point; with room for a few more.
+struct Scratch {
+  double *first, *second, *third;
+};
+
+/// Returns the largest of `count` numbers that are at least 0. Four at a time, because the compiler may not reorder
+/// comparisons.
+double largest(const double* numbers, int count) {
+  double most[4] = {0, 0, 0, 0};
+  int k = 0;
+  for (; k + 4 <= count; k += 4)
+    for (int lane = 0; lane < 4; ++lane) most[lane] = numbers[k + lane] > most[lane] ? numbers[k + lane] : most[lane];
+  for (; k < count; ++k) most[0] = std::max(most[0], numbers[k]);
+  return std::max(std::max(most[0], most[1]), std::max(most[2], most[3]));
 }
 
 /// One piece of the field: bounds over it, and the turning at its corners.
 class Piece {
  public:
   /// `scale`: the factor from derivatives by the piece's parameters to those by the patch's.
-  Piece(const VectorNet& net, double scale, double rounding) : net_(net), scale_(scale), rounding_(rounding) {
+  Piece(const Net& net, double scale, double rounding, const Scratch& scratch)
+      : net_(net), scratch_(scratch), scale_(scale), rounding_(rounding) {
+    const double *const x = net.at[0], *const y = net.at[1], *const z = net.at[2];
+    const int count = net.count();
     Vec3 sum;
-    for (const Vec3& n : net.at) sum += n;
+    for (int k = 0; k < count; ++k) sum += Vec3{x[k], y[k], z[k]};
     axis_ = normalized(sum);
-    least_ = infinity;
-    double steepest = 0, beside = 1;  // the sides, across and along the axis, of the widest angle with it
-    for (const Vec3& n : net.at) {
-      const double along = dot(n, axis_), across = length(n - along * axis_) + rounding;
-      least_ = std::min(least_, along - rounding);
-      if (across * beside > steepest * (along - rounding)) steepest = across, beside = along - rounding;
+    double *const squared = scratch.first, *const shortness = scratch.second;
+    for (int k = 0; k < count; ++k) {
+      const double along = axis_.x * x[k] + axis_.y * y[k] + axis_.z * z[k], inverse = 1 / along;
+      const double dx = x[k] - along * axis_.x, dy = y[k] - along * axis_.y, dz = z[k] - along * axis_.z;
+      squared[k] = (dx * dx + dy * dy + dz * dz) * (inverse * inverse);
+      shortness[k] = along > 0 ? inverse : infinity;
     }
-    sine_ = steepest / std::hypot(steepest, beside);  // bound() uses it only if all of the net lies along the axis
+    // The net's shortest part along the axis, and the tangent of its widest angle with it.
+    const double least = 1 / largest(shortness, count), tangent = std::sqrt(largest(squared, count));
+    least_ = least * (1 - 0x1p-50) - rounding;
+    const double rounded = (tangent * least + rounding) / least_;
+    sine_ = rounded / std::sqrt(1 + rounded * rounded);  // bound() uses it only if all of the net lies along the axis
   }
 
   /// Returns the bound. With N within the angle phi of the axis,
   ///   |N_u x n| <= |N_u across the axis| + |N_u along it| sin phi.
   Turning bound() const {
     if (!(least_ > 0)) return {infinity, infinity};
-    Turning most;
-    differences([&](bool along_u, const Vec3& d, double degree) {
-      const double along = dot(d, axis_), across = length(d - along * axis_);
-      const double turning =
-          degree * scale_ * ((across + 2 * rounding_) + (std::abs(along) + 2 * rounding_) * sine_) / least_;
-      double& of = along_u ? most.u : most.v;
-      of = std::max(of, turning * (1 + 0x1p-40));
-    });
-    return std::isnan(most.u + most.v) ? Turning{infinity, infinity} : most;
+    const int m = net_.rows - 1, n = net_.columns - 1;
+    const double u = m * largest_difference(net_.columns, net_.count()), v = n * largest_difference(1, net_.columns);
+    return std::isnan(u + v) ? Turning{infinity, infinity} : Turning{u * scale_ / least_, v * scale_ / least_};
   }
-  /// Returns the largest turning at the corners, a lower bound of the largest over the piece.
-  Turning at_corners() const {
-    Turning most;
-    const int m = net_.degree_u, n = net_.degree_v;
+  /// Returns the turning at the corners, a lower bound of the largest over the piece.
+  AtCorners at_corners() const {
+    AtCorners corners;
+    const int m = net_.rows - 1, n = net_.columns - 1;
     for (const int i : {0, m})
       for (const int j : {0, n}) {
-        const Vec3& normal = net_(i, j);
+        const Vec3 normal = net_.point(i, j);
         const double size = dot(normal, normal);
         if (!(size > rounding_ * rounding_)) continue;
         const int i1 = i == 0 ? std::min(1, m) : m - 1, j1 = j == 0 ? std::min(1, n) : n - 1;
-        most.u = std::max(most.u, m * scale_ * length(cross(normal, net_(i1, j))) / size);
-        most.v = std::max(most.v, n * scale_ * length(cross(normal, net_(i, j1))) / size);
+        const double u = m * scale_ * length(cross(normal, net_.point(i1, j))) / size,
+                     v = n * scale_ * length(cross(normal, net_.point(i, j1))) / size;
+        corners.most = {std::max(corners.most.u, u), std::max(corners.most.v, v)};
+        corners.least = {std::min(corners.least.u, u), std::min(corners.least.v, v)};
       }
-    return most;
+    return corners;
   }
 
  private:
-  /// Calls visit(along u, difference of neighbours, degree) for all neighbours.
-  template <class Visit>
-  void differences(Visit visit) const {
-    for (int i = 0; i <= net_.degree_u; ++i)
-      for (int j = 0; j <= net_.degree_v; ++j) {
-        if (i < net_.degree_u) visit(true, net_(i + 1, j) - net_(i, j), net_.degree_u);
-        if (j < net_.degree_v) visit(false, net_(i, j + 1) - net_(i, j), net_.degree_v);
-      }
+  /// Bounds |d across the axis| + |d along it| sin phi over the differences d of points `step` apart in rows of `row`
+  /// points. With lengths a and b and a sine s, a + s b is at most the root of (1 + s) (a^2 + s b^2), and at most the
+  /// sum of the largest of each.
+  double largest_difference(int step, int row) const {
+    const double *const x = net_.at[0], *const y = net_.at[1], *const z = net_.at[2];
+    const int count = net_.count() - step;
+    if (count <= 0) return 0;
+    double *const across = scratch_.first, *const along = scratch_.second, *const both = scratch_.third;
+    for (int k = 0; k < count; ++k) {
+      const double dx = x[k + step] - x[k], dy = y[k + step] - y[k], dz = z[k + step] - z[k];
+      const double b = axis_.x * dx + axis_.y * dy + axis_.z * dz;
+      const double px = dx - b * axis_.x, py = dy - b * axis_.y, pz = dz - b * axis_.z;
+      across[k] = px * px + py * py + pz * pz;
+      along[k] = b * b;
+      both[k] = across[k] + sine_ * along[k];
+    }
+    for (int end = row - 1; end < count; end += row) across[end] = along[end] = both[end] = 0;  // to the next row
+    const double a = std::sqrt(largest(across, count)), b = std::sqrt(largest(along, count)),
+                 most = std::min(a + sine_ * b, std::sqrt((1 + sine_) * largest(both, count)));
+    return (most + 4 * rounding_) * (1 + 0x1p-40);
   }
 
-  const VectorNet& net_;
+  const Net& net_;
+  const Scratch& scratch_;
   double scale_, rounding_;
   Vec3 axis_;
   double least_, sine_;
 };
 
-/// Finds the bounds over one quarter.
-class Search {
- public:
-  Search(const VectorNet& net, double rounding) : rounding_(rounding) { visit(net, 0); }
-  Turning bound() const { return std::max(bound_.u, bound_.v) <= max_turning ? bound_ : Turning{infinity, infinity}; }
-
- private:
-  void visit(const VectorNet& net, int depth) {
-    const Piece piece(net, std::ldexp(2.0, depth), rounding_);
-    const Turning bound = piece.bound(), corners = piece.at_corners();
-    true_.u = std::max(true_.u, corners.u);
-    true_.v = std::max(true_.v, corners.v);
-    if (std::max(true_.u, true_.v) > max_turning) bound_ = {infinity, infinity};
-    const auto enough = [](double of, double least, double known) {
-      return of <= std::max({close_enough * least, known, negligible});
-    };
-    if (depth == max_depth || (enough(bound.u, true_.u, bound_.u) && enough(bound.v, true_.v, bound_.v))) {
-      bound_.u = std::max(bound_.u, bound.u);
-      bound_.v = std::max(bound_.v, bound.v);
-      return;
-    }
-    VectorNet half[2] = {{}, net};
-    cut(half[1], half[0], true);
-    for (VectorNet& high : half) {
-      VectorNet low;
-      cut(high, low, false);
-      visit(low, depth + 1);
-      visit(high, depth + 1);
-    }
-  }
-
-  double rounding_;
-  Turning bound_, true_;
-};
-
-/// Calls visit(turning) for each part that a cell may lie in: a cell that may cross the middle takes the larger of both
-/// halves.
-template <class Visit>
-void for_pieces(const std::array<Turning, 4>& quarters, bool even_u, bool even_v, Visit visit) {
-  for (int i = 0; i < (even_u ? 2 : 1); ++i)
-    for (int j = 0; j < (even_v ? 2 : 1); ++j) {
-      Turning most;
-      for (int k = even_u ? i : 0; k <= (even_u ? i : 1); ++k)
-        for (int l = even_v ? j : 0; l <= (even_v ? j : 1); ++l) {
-          const Turning& quarter = quarters[static_cast<std::size_t>(2 * k + l)];
-          most = {std::max(most.u, quarter.u), std::max(most.v, quarter.v)};
-        }
-      visit(most);
-    }
-}
-
 }  // namespace
 
-TurningBound::TurningBound(const BezierPatch& patch) {
-  const NormalNet normal = normal_net(patch);
-  VectorNet half[2] = {{}, normal.net};
-  cut(half[1], half[0], true);
-  for (std::size_t k = 0; k < 2; ++k) {
-    VectorNet low;
-    cut(half[k], low, false);
-    quarters_[2 * k] = Search(low, normal.rounding).bound();
-    quarters_[2 * k + 1] = Search(half[k], normal.rounding).bound();
+/// Finds the bounds over all rectangles.
+class TurningSearch {
+ public:
+  TurningSearch(const NormalNet& normal, double angle, TurningBound& bound)
+      : rounding_(normal.rounding),
+        angle_(angle),
+        rows_(normal.net.degree_u + 1),
+        columns_(normal.net.degree_v + 1),
+        memory_(std::make_unique_for_overwrite<double[]>(size_of_net() * (4 * max_depth + 2))),
+        bound_(bound) {
+    double* const start = memory_.get() + size_of_net() * (4 * max_depth + 1);
+    scratch_ = {start, start + rows_ * columns_, start + 2 * rows_ * columns_};
+    const Net whole = net(0, 0);
+    for (int k = 0; k < whole.count(); ++k) {
+      const Vec3& n = normal.net.at[static_cast<std::size_t>(k)];
+      whole.at[0][k] = n.x, whole.at[1][k] = n.y, whole.at[2][k] = n.z;
+    }
+    visit(whole, 0, 0, 0);
   }
+
+ private:
+  std::size_t size_of_net() const { return 3 * static_cast<std::size_t>(rows_ * columns_); }
+  /// The memory of piece `quarter` at a depth; at depth 0 there is one piece.
+  Net net(int depth, int quarter) const {
+    const std::size_t place = depth == 0 ? 0 : static_cast<std::size_t>(4 * (depth - 1) + quarter + 1);
+    double* const start = memory_.get() + size_of_net() * place;
+    return {rows_, columns_, {start, start + rows_ * columns_, start + 2 * rows_ * columns_}};
+  }
+
+  /// `i` and `j`: the piece's place among those of its depth.
+  void visit(const Net& net, int depth, int i, int j) {
+    if (!bound_.is_finite_) return;
+    const double scale = std::ldexp(1, depth);
+    const Piece piece(net, scale, rounding_, scratch_);
+    const Turning bound = piece.bound();
+    const AtCorners corners = piece.at_corners();
+    if (std::max(corners.most.u, corners.most.v) > max_turning) bound_.is_finite_ = false;
+    const int down = std::max(depth - rectangle_depth, 0);
+    Turning& known = known_[i >> down][j >> down];
+    const bool is_small = bound.u + bound.v <= few_cells * angle_ * scale;
+    if (depth == max_depth || is_small || !is_worth_cutting(depth, bound, corners, known)) {
+      take(bound, depth, i, j);
+      return;
+    }
+    const Net quarter[4] = {this->net(depth + 1, 0), this->net(depth + 1, 1), this->net(depth + 1, 2),
+                            this->net(depth + 1, 3)};
+    std::copy_n(net.at[0], size_of_net(), quarter[3].at[0]);
+    cut(quarter[3], quarter[1], true);
+    cut(quarter[1], quarter[0], false);
+    cut(quarter[3], quarter[2], false);
+    for (int k = 0; k < 4; ++k) visit(quarter[k], depth + 1, 2 * i + k / 2, 2 * j + k % 2);
+  }
+
+  /// Whether smaller pieces may have bounds that save cells.
+  bool is_worth_cutting(int depth, const Turning& bound, const AtCorners& corners, const Turning& known) const {
+    const auto is_loose = [&](double of, double most, double had) {
+      return of > std::max({close_enough * most, had, negligible});
+    };
+    if (depth >= rectangle_depth)
+      return is_loose(bound.u, corners.most.u, known.u) || is_loose(bound.v, corners.most.v, known.v);
+    const auto is_uneven = [&](double of, double least) { return of > negligible && least < varied * of; };
+    return is_uneven(bound.u, corners.least.u) || is_uneven(bound.v, corners.least.v) ||
+           is_loose(bound.u, corners.most.u, 0) || is_loose(bound.v, corners.most.v, 0);
+  }
+
+  /// Raises the bounds of the rectangles that the piece lies in, or that lie in it.
+  void take(const Turning& bound, int depth, int i, int j) {
+    if (!(std::max(bound.u, bound.v) <= max_turning)) bound_.is_finite_ = false;
+    if (!bound_.is_finite_) return;
+    const int up = std::max(rectangle_depth - depth, 0), down = std::max(depth - rectangle_depth, 0);
+    const float u = rounded_up(bound.u), v = rounded_up(bound.v);
+    for (int k = (i << up) >> down; k <= (((i + 1) << up) - 1) >> down; ++k)
+      for (int l = (j << up) >> down; l <= (((j + 1) << up) - 1) >> down; ++l) {
+        const std::size_t at = TurningBound::at(k, l);
+        bound_.u_[at] = std::max(bound_.u_[at], u);
+        bound_.v_[at] = std::max(bound_.v_[at], v);
+        known_[k][l] = {bound_.u_[at], bound_.v_[at]};
+      }
+  }
+
+  double rounding_, angle_;
+  int rows_, columns_;
+  std::unique_ptr<double[]> memory_;
+  Scratch scratch_;
+  Turning known_[TurningBound::parts][TurningBound::parts];
+  TurningBound& bound_;
+};
+
+TurningBound::TurningBound(const BezierPatch& patch, double angle) {
+  TurningSearch(normal_net(patch), angle, *this);
+  largest_ = rounded_up(double(*std::max_element(u_.begin(), u_.end())) + *std::max_element(v_.begin(), v_.end()));
 }
 
-bool TurningBound::is_finite() const {
-  return std::all_of(quarters_.begin(), quarters_.end(), [](const Turning& t) { return std::isfinite(t.u + t.v); });
+bool TurningBound::is_even() const {
+  const auto are_equal = [](const auto& bounds) {
+    return std::all_of(bounds.begin(), bounds.end(), [&](float bound) { return bound == bounds[0]; });
+  };
+  return are_equal(u_) && are_equal(v_);
 }
 
-double TurningBound::angle(Rates rates) const {
-  double most = 0;
-  for_pieces(quarters_, rates.u % 2 == 0, rates.v % 2 == 0,
-             [&](const Turning& t) { most = std::max(most, t.angle(rates)); });
-  return most;
-}
+double TurningBound::without_rounding(double angle) const { return angle - (0x1p-24 * double(largest_) + 0x1p-21); }
 
-double TurningBound::needed(double angle, int fixed, bool fixed_u, bool even) const {
-  const bool fixed_even = fixed % 2 == 0;
-  double rate = 1;
-  for_pieces(quarters_, fixed_u ? fixed_even : even, fixed_u ? even : fixed_even, [&](const Turning& t) {
-    const double room = angle - 0x1p-21 - (1.0 / fixed + 0x1p-24) * (fixed_u ? t.u : t.v);
-    const double other = fixed_u ? t.v : t.u;
-    if (other > 0 || !(room >= 0)) rate = std::max(rate, room > 0 ? other / room : infinity);
-  });
-  return rate;
+double TurningBound::angle(PatchSegments segments) const {
+  double step[2][parts], most = 0;
+  for (int e = 0; e < parts; ++e) {
+    step[0][e] = 1 / segments.u.rate_in(e).value();
+    step[1][e] = 1 / segments.v.rate_in(e).value();
+  }
+  for (int i = 0; i < parts; ++i)
+    for (int j = 0; j < parts; ++j) most = std::max(most, step[0][i] * u(i, j) + step[1][j] * v(i, j));
+  return (1 + 0x1p-40) * most + (0x1p-24 * double(largest_) + 0x1p-21);
 }
 
 }  // namespace tessera::inline abi_0_1

@@ -3,12 +3,18 @@
 //
 // 1. Along a path of parameters the unit normal n = N / |N| moves by at most the integral of |n_u| |du| + |n_v| |dv|,
 //    where |n_u| = |N_u x n| / |N|.
-// 2. So any two normals over a box h x k are within h max |n_u| + k max |n_v| radians of each other.
-// 3. Any normalised mean of normals is as near to each of them, as long as the angle is below pi / 2: cones are convex.
+// 2. Let t_u and t_v bound |n_u| and |n_v| in each of 8 x 8 rectangles of the parameters, and let p_u and p_v be the
+//    rates there (Segments). In the coordinates U = integral of p_u du and V = integral of p_v dv, a triangle that lies
+//    between two neighbouring points along u and along v lies in a square of side 1. On the straight line between two
+//    points of it, in U and V, the normal moves by at most the mean of t_u / p_u + t_v / p_v over the rectangles on the
+//    way.
+// 3. So any two normals over the triangle are within the largest t_u / p_u + t_v / p_v of each other. It makes no
+//    difference whether a triangle crosses from one rectangle to another.
+// 4. Any normalised mean of normals is as near to each of them, as long as the angle is below pi / 2: cones are convex.
 
 #include <array>
 
-#include "tess/cells/patch_triangles.h"
+#include "tess/cells/segments.h"
 #include "tessera/bezier_patch.h"
 
 namespace tessera::inline abi_0_1 {
@@ -16,32 +22,39 @@ namespace tessera::inline abi_0_1 {
 /// Bounds on |n_u| and |n_v| over a rectangle of the patch, in radians over its own parameters.
 struct Turning {
   double u = 0, v = 0;
-
-  /// Returns the largest angle at these rates. A float parameter lies up to 2^-25 beside i / rate, and a float normal
-  /// beside the surface's.
-  double angle(Rates rates) const { return (1.0 / rates.u + 0x1p-24) * u + (1.0 / rates.v + 0x1p-24) * v + 0x1p-21; }
 };
 
-/// Bounds for the whole patch, its halves and its quarters, as in ChordBound. They follow from the net of the normal,
-/// cut into pieces until the cones of the normals there are narrow enough.
+/// Bounds over the 8 x 8 equal rectangles of a patch. They follow from the net of the normal, cut into pieces until the
+/// cones of the normals there are narrow enough.
 class TurningBound {
  public:
-  explicit TurningBound(const BezierPatch& patch);
+  static constexpr int parts = Segments::parts;
+
+  /// `angle`: the angle to keep. Rectangles over which the normal turns by less share a bound.
+  TurningBound(const BezierPatch& patch, double angle);
   TurningBound() = default;  ///< bounds a plane
 
   /// Whether there is a bound. There is none where the normal vanishes, or may: at cusps, and where edges that are not
   /// points have parallel tangents; nor where it turns by more than 32 radians over a unit of a parameter, nearly a
   /// cusp.
-  bool is_finite() const;
-  /// Returns the largest angle between normals of the surface, or means of them, within a triangle of a mesh at these
-  /// rates; conditions as for ChordBound::distance().
-  double angle(Rates rates) const;
-  /// Returns the smallest real rate along the other parameter that keeps the angle, with the rate `fixed` along u or v;
-  /// infinite if there is none. `even`: by the bounds of even rates, else of odd ones.
-  double needed(double angle, int fixed, bool fixed_u, bool even) const;
+  bool is_finite() const { return is_finite_; }
+  /// Whether all rectangles share a bound.
+  bool is_even() const;
+  /// The bounds, `[u][v]`.
+  float u(int i, int j) const { return u_[at(i, j)]; }
+  float v(int i, int j) const { return v_[at(i, j)]; }
+  /// Returns the part of an angle that float parameters, up to 2^-25 beside the exact ones, and float normals leave.
+  double without_rounding(double angle) const;
+  /// Returns the largest angle between normals of the surface, or means of them, within a triangle of a mesh.
+  double angle(PatchSegments segments) const;
 
  private:
-  std::array<Turning, 4> quarters_;  // 2 (u > 1/2) + (v > 1/2)
+  friend class TurningSearch;
+  static constexpr std::size_t at(int i, int j) { return static_cast<std::size_t>(parts * i + j); }
+
+  std::array<float, parts * parts> u_{}, v_{};
+  float largest_ = 0;  ///< the largest sum of a bound along u and one along v, of any two rectangles
+  bool is_finite_ = true;
 };
 
 }  // namespace tessera::inline abi_0_1

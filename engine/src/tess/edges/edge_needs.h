@@ -2,8 +2,10 @@
 // Collects the rates that the patches at an edge need there.
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 
+#include "tess/cells/segment_law.h"
 #include "tess/cells/segments.h"
 #include "tess/edges/shared_edges.h"
 
@@ -25,20 +27,52 @@ struct EdgeNeeds {
   Segments segments() const { return most + (most & is_even); }
 };
 
-/// The largest rates in the halves of an edge, in the direction of its first border.
-struct HalfNeeds {
-  std::uint16_t lower = 1, upper = 1;
-
+/// The largest rates in the eighths of an edge, in the direction of its first border. Needs may be added in any order.
+class PieceNeeds {
+ public:
   void add(Segments along, bool against) {
     if (against) along = along.reversed();
-    lower = std::max(lower, static_cast<std::uint16_t>(along.lower_rate()));
-    upper = std::max(upper, static_cast<std::uint16_t>(along.upper_rate()));
+    bool is_above = true, is_below = true;
+    for (int e = 0; e < Segments::parts; ++e) {
+      const Segments::Fraction rate = along.rate_in(e), had = need(e);
+      if (rate < had) is_above = false;
+      if (had < rate) is_below = false, set_need(e, rate);
+    }
+    if (is_above && is_below) {
+      leading_ = along.key() > leading_.key() ? along : leading_;
+    } else if (!is_below) {
+      leading_ = is_above ? along : Segments();
+    }
   }
   Segments segments(bool against, std::uint16_t is_even) const {
-    if (lower == upper) return EdgeNeeds{lower, is_even}.segments();
-    const Segments along = Segments::halves((lower + 1) / 2, (upper + 1) / 2);
+    if (needs_[0].numerator == 0) return 1;  // no patch with an area
+    const bool is_known = leading_.rate() > 0 && (is_even == 0 || leading_.parts_halves());
+    Segments along = leading_;
+    if (!is_known) {
+      RateNeeds needs;
+      for (int e = 0; e < Segments::parts; ++e) needs[static_cast<std::size_t>(e)] = need(e);
+      along = segments_for(needs, is_even != 0);
+    }
     return against ? along.reversed() : along;
   }
+
+ private:
+  /// A fraction in one word: numerators are at most 8 x 77 x 2047 and denominators 8 x 77.
+  struct Need {
+    std::uint32_t numerator : 21 = 0, denominator : 11 = 1;
+  };
+  Segments::Fraction need(int eighth) const {
+    const Need& need = needs_[static_cast<std::size_t>(eighth)];
+    return {static_cast<int>(need.numerator), static_cast<int>(need.denominator)};
+  }
+  void set_need(int eighth, Segments::Fraction rate) {
+    Need& need = needs_[static_cast<std::size_t>(eighth)];
+    need.numerator = static_cast<std::uint32_t>(rate.numerator) & 0x1fffff;
+    need.denominator = static_cast<std::uint32_t>(rate.denominator) & 0x7ff;
+  }
+
+  std::array<Need, Segments::parts> needs_;
+  Segments leading_;  ///< segments that have all of these rates, if a patch has such; otherwise none
 };
 
 }  // namespace tessera::inline abi_0_1

@@ -52,12 +52,12 @@ class Chooser {
   bool is_cancelled() const { return cancel_ && cancel_->load(); }
 
   struct Needs {
-    HalfNeeds halves;
+    PieceNeeds pieces;
     std::uint16_t is_even = 0;
 
     void add(const ProvenSegments& proven, Side side, bool against) {
       const Segments wanted = along(proven.segments, side);
-      halves.add(wanted, against);
+      pieces.add(wanted, against);
       is_even |= static_cast<std::uint16_t>(!proven.anywhere && wanted.parts_halves());
     }
   };
@@ -116,7 +116,7 @@ class Chooser {
     } else {
       needs = needs_with(edge, patch, choice);
     }
-    return needs.halves.segments(against_[own], needs.is_even);
+    return needs.pieces.segments(against_[own], needs.is_even);
   }
   std::size_t triangles() {
     sum_up();

@@ -124,6 +124,7 @@ std::size_t ProvenMesh::replace(ProvenMesh& next) {
   plan_ = std::move(next.plan_);
   shapes_ = std::move(next.shapes_);
   weld_ = std::move(next.weld_);
+  welded_borders_ = next.welded_borders_;
   joins_ = std::move(next.joins_);
   tables_ = std::move(next.tables_);
   if (next.update_) update_ = std::move(next.update_);

@@ -108,11 +108,12 @@ ProvenMesh::ProvenMesh(const PatchSet& set, const TessellationOptions& options, 
       plan_(std::move(plan)),
       shapes_(planner.shapes().begin(), planner.shapes().end()),
       weld_(planner.weld()),
+      welded_borders_(planner.weld().joined_by_distance),
       origin_(set.origin()),
       revision_(set.revision()),
       is_certified_(set.fit_error().certified),
       isa_(isa),
-      tables_(MeshTables::of(impl_of(set), shapes_, plan_.divisions(), kernel::kernels(isa).mesh_points != nullptr)) {}
+      tables_(MeshTables::of(impl_of(set), plan_.divisions(), kernel::kernels(isa).mesh_points != nullptr)) {}
 
 Tessellation::Impl::Proof ProvenMesh::proof() const {
   return {.tolerance = tolerance_,
@@ -120,7 +121,7 @@ Tessellation::Impl::Proof ProvenMesh::proof() const {
           .bounds = plan_.bounds(),
           .angles = plan_.angles(),
           .pixels = plan_.pixels(),
-          .welded_borders = weld_.joined_by_distance,
+          .welded_borders = welded_borders_,
           .open_edges = plan_.open_edges()};
 }
 

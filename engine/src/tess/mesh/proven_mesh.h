@@ -28,7 +28,6 @@ class [[gnu::visibility("hidden")]] ProvenMesh final : public Tessellation::Impl
 
   const CertifiedPlan& plan() const { return plan_; }
   const MeshTables& tables() const { return *tables_; }
-  const Weld& weld() const { return weld_; }
   double tolerance() const { return tolerance_; }  ///< the distance to keep, infinite if there is no limit
 
   Proof proof() const override;
@@ -70,8 +69,9 @@ class [[gnu::visibility("hidden")]] ProvenMesh final : public Tessellation::Impl
   double tolerance_;
   CertifiedPlan plan_;
   std::vector<PatchShape> shapes_;  ///< shapes before welding
-  Weld weld_;
-  VertexCopies joins_;  ///< vertices with a common normal, or stored once
+  VertexCopies weld_;               ///< vertices with a common position
+  VertexCopies joins_;              ///< vertices with a common normal, or stored once
+  std::size_t welded_borders_;
   Vec3 origin_;
   std::uint64_t revision_;  ///< the set's, of which the plan is proven
   bool is_certified_;

@@ -50,6 +50,7 @@ Result<PlannerOptions> planner_options(const TessellationOptions& options, const
   planner.angle = options.angle;
   planner.angle_rate = options.angle_rate;
   planner.fewest = options.fewest;
+  planner.keeps_bounds = options.smallest;
   planner.f64 = planner.f64_positions = options.precision == Precision::double_precision;
   if (!options.pixels) return planner;
   Result<Camera> camera = Camera::make(options.pixels->view);

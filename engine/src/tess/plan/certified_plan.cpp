@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "parallel/least_index.h"
 #include "parallel/parallel_for.h"
+#include "tess/bounds/graded_segments.h"
 #include "tess/cells/f64_points.h"
 #include "tess/edges/side_curve.h"
 
@@ -121,10 +122,11 @@ Status CertifiedPlanner::bound_turning_and_picture(const Execution& execution) {
     if (Status status = parallel_for(set_->lane_counts.size(), blocks_per_task, execution, see); !status.ok())
       return status;
   }
-  if (!options_.angle) return {};
+  if (!options_.angle || !options_.keeps_bounds) return {};
   turnings_.resize(shapes_.size());
   const auto bound = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) bound_turning(k);
+    for (std::size_t k = begin; k < end; ++k)
+      if (!shapes_[k].is_curve) turnings_[k] = turning_of(k);
   };
   return parallel_for(shapes_.size(), patches_per_task, execution, bound);
 }
@@ -136,16 +138,20 @@ void CertifiedPlanner::bound_pictures(std::size_t block) {
   ScreenSpaceBound::find(*options_.camera, *set_, block, moved, options_.pixels, pictures_.data());
 }
 
-void CertifiedPlanner::bound_turning(std::size_t patch) {
-  if (shapes_[patch].is_curve) return;
-  BezierPatch net = set_->patches[patch];
-  for (const Side side : all_sides)  // borders that welding makes poles are poles
-    if (divided_shapes()[patch].collapsed.has(edge_of(side)) && !shapes_[patch].collapsed.has(edge_of(side))) {
-      Result<BezierPatch> pole = with_pole(net, side);
-      if (!pole) throw std::bad_alloc();  // no other error is possible: the points are those of the patch
-      net = *std::move(pole);
-    }
-  turnings_[patch] = TurningBound(net);
+TurningBound CertifiedPlanner::turning_of(std::size_t patch) const {
+  const auto is_made_pole = [&](Side side) {  // by welding
+    return divided_shapes()[patch].collapsed.has(edge_of(side)) && !shapes_[patch].collapsed.has(edge_of(side));
+  };
+  if (std::none_of(all_sides.begin(), all_sides.end(), is_made_pole))
+    return TurningBound(set_->patches[patch], *options_.angle);
+  BezierPatch moved = set_->patches[patch];
+  for (const Side side : all_sides) {
+    if (!is_made_pole(side)) continue;
+    Result<BezierPatch> pole = with_pole(moved, side);
+    if (!pole) throw std::bad_alloc();  // no other error is possible: the points are those of the patch
+    moved = *std::move(pole);
+  }
+  return TurningBound(moved, *options_.angle);
 }
 
 std::optional<Rates> CertifiedPlanner::rates_for(const CellLimits& limits, int most) const {
@@ -157,7 +163,8 @@ CertifiedPlanner::Choice CertifiedPlanner::choose(std::size_t patch, const Reque
   const double tolerance = request.tolerance;
   const double given = roundings_[patch] + fit_error_;
   const ScreenSpaceBound* const picture = options_.camera ? &pictures_[patch] : nullptr;
-  const TurningBound* const turning = options_.angle && !shapes_[patch].is_curve ? &turnings_[patch] : nullptr;
+  std::optional<TurningBound> turning;
+  if (options_.angle && !shapes_[patch].is_curve) turning = turnings_.empty() ? turning_of(patch) : turnings_[patch];
   const ChordBound chord = this->chord(patch);
   Choice choice;
   CellLimits limits;
@@ -174,7 +181,7 @@ CertifiedPlanner::Choice CertifiedPlanner::choose(std::size_t patch, const Reque
   if (choice.failure != Failure::none) return choice;
   const bool bounded = turning && turning->is_finite();
   if (bounded) {
-    limits.turning = turning;
+    limits.turning = &*turning;
     limits.angle = *options_.angle;
   }
   std::optional<Rates> rates = rates_for(limits, most);
@@ -184,17 +191,17 @@ CertifiedPlanner::Choice CertifiedPlanner::choose(std::size_t patch, const Reque
     choice.failure = Failure::wide;
     return choice;
   }
-  // Raised rates may have become odd: bounds of halves may not hold for the whole.
-  if (!(limits.keeps(*rates))) rates = {rates->u + rates->u % 2, rates->v + rates->v % 2};
   choice.cells = double(rates->u) * rates->v;
   if (most > max_rate) return choice;
+  // Raised rates may have become odd: bounds of halves may not hold for the whole.
+  if (turning && !bounded && !limits.keeps(*rates)) rates = {rates->u + rates->u % 2, rates->v + rates->v % 2};
   const int min_rate = turning && !bounded ? options_.angle_rate : 1;
   const ProvenSegments proven = settle(patch, limits, chord, min_rate, request, *rates);
   choice.segments = proven.segments;
+  choice.anywhere = proven.anywhere;
   choice.bound = given + proven.distance;
-  const Rates coarsest = proven.segments.coarsest();
-  if (turning) choice.angle = bounded ? turning->angle(coarsest) : std::numeric_limits<double>::infinity();
-  if (picture) choice.pixels = picture->pixels(coarsest, choice.bound);
+  if (turning) choice.angle = bounded ? turning->angle(proven.segments) : std::numeric_limits<double>::infinity();
+  if (picture) choice.pixels = picture->pixels(proven.segments, choice.bound);
   return choice;
 }
 
@@ -203,19 +210,29 @@ ProvenSegments CertifiedPlanner::settle(std::size_t patch, const CellLimits& lim
   const KeptSegments& kept = request.kept;
   CellLimits others = limits;
   others.chord = nullptr;
-  const auto keeps_others = [&](Rates r) { return std::min(r.u, r.v) >= min_rate && others.keeps(r); };
-  ProvenSegments proven{rates, chord.distance(rates)};
+  const auto keeps_others = [&](PatchSegments segments) {
+    const Rates least = segments.coarsest();
+    return std::min(least.u, least.v) >= min_rate && others.keeps(segments);
+  };
+  const bool anywhere = !limits.is_for_halves();
+  const auto proven_for = [&](PatchSegments segments) {
+    return ProvenSegments{segments, chord.distance_of(segments, anywhere), anywhere};
+  };
+  const auto graded =
+      min_rate == 1 && limits.is_for_more_than_distance() ? graded_segments(limits, rates) : std::nullopt;
+  ProvenSegments proven = proven_for(graded ? *graded : rates);
   if (request.fewest && limits.chord) {
-    SegmentChoices choices(proven);
+    SegmentChoices choices(proven_for(rates));
     find_fewer(set_->patches[patch], limits.distance, keeps_others, choices);
-    proven = choices.fewest();
+    if (choices.fewest().segments.cells() < proven.segments.cells()) proven = choices.fewest();
+    proven.anywhere = false;
   }
-  if (!is_spared(kept, patch, proven.segments) || !keeps_others(kept.segments[patch].coarsest())) return proven;
+  if (!is_spared(kept, patch, proven.segments) || !keeps_others(kept.segments[patch])) return proven;
   const PatchSegments had = kept.segments[patch];
-  double keeps = chord.distance_of(had);
+  double keeps = chord.distance_of(had, anywhere);
   if (limits.chord && !(keeps <= limits.distance)) keeps = local_distance(patch, had);
   if (limits.chord && !(keeps <= limits.distance)) return proven;
-  return {had, keeps};
+  return {had, keeps, anywhere};
 }
 
 double CertifiedPlanner::local_distance(std::size_t patch, PatchSegments segments) const {
@@ -249,7 +266,7 @@ ProvenSegments CertifiedPlanner::keep_by_distance(std::size_t patch, double dist
 
 Result<std::vector<ProvenSegments>> CertifiedPlanner::find_fewest(double tolerance, std::vector<SegmentChoices> choices,
                                                                   const Execution& execution) const {
-  const auto no_others = [](Rates) { return true; };
+  const auto no_others = [](PatchSegments) { return true; };
   const auto find = [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
       if (!shapes_[k].is_curve)
@@ -325,7 +342,7 @@ Status CertifiedPlanner::choose_rates(const Request& request, CertifiedPlan& pla
   const std::size_t patches = shapes_.size();
   plan.segments_.resize(patches);
   plan.bounds_.resize(patches);
-  if (options_.fewest) plan.straddles_.resize(patches);
+  if (options_.fewest || options_.angle || options_.camera) plan.straddles_.resize(patches);
   if (!options_.angle && !options_.camera) return choose_by_distance(request, plan, execution);
   if (options_.angle) plan.angles_.resize(patches);
   if (options_.camera) plan.pixels_.resize(patches);
@@ -335,6 +352,7 @@ Status CertifiedPlanner::choose_rates(const Request& request, CertifiedPlan& pla
       const Choice choice = choose(k, request, max_rate);
       if (choice.failure != Failure::none) failed.add(k);
       plan.segments_[k] = choice.segments;
+      plan.straddles_[k] = choice.anywhere;
       plan.bounds_[k] = rounded_up(choice.bound);
       if (options_.angle) plan.angles_[k] = rounded_up(choice.angle);
       if (options_.camera) plan.pixels_[k] = rounded_up(choice.pixels);

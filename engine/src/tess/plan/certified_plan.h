@@ -89,7 +89,7 @@ class CertifiedPlan {
   std::vector<float> bounds_, angles_, pixels_;
   std::uint32_t open_edges_ = 0;
   bool is_f64_ = false, has_f64_positions_ = false;
-  std::vector<std::uint8_t> straddles_;  ///< `[patch]`: 1 if its bound holds wherever triangles lie; empty if for none
+  std::vector<std::uint8_t> straddles_;  ///< `[patch]`: 1 if its bounds hold wherever triangles lie; empty if for none
   std::vector<std::uint32_t> corner_sources_;  ///< `[corner]`: itself if it owns its vertex; empty if nothing is shared
   std::vector<BorderSource> border_sources_;   ///< `[border]`
 };
@@ -106,6 +106,7 @@ struct PlannerOptions {
   std::optional<Camera> camera;
   double pixels = 0;  ///< above 0 if there is a camera
   bool fewest = false;
+  bool keeps_bounds = false;  ///< keeps the bounds of angles, half a KiB per patch, for many plans of one planner
 };
 
 /// Segments that patches keep instead of the best ones, as long as they keep the tolerances and have at most (1 +
@@ -157,6 +158,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
     double cells = 0;  ///< the cells of uniform segments
     /// At most so many cells. This and the members below are set only if rates are limited to max_rate.
     PatchSegments segments;
+    bool anywhere = false;  ///< see ProvenSegments
     double bound = 0, angle = 0, pixels = 0;
   };
 
@@ -183,8 +185,8 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   /// Finds the borders to weld, and adds the displacements to the roundings.
   void find_weld();
   Status bound_turning_and_picture(const Execution& execution);
-  /// Bounds the turning of a patch's normal.
-  void bound_turning(std::size_t patch);
+  /// Bounds the turning of a patch's normal, also of one whose borders welding makes poles.
+  TurningBound turning_of(std::size_t patch) const;
   /// Bounds what the camera sees of the patches of one block; needs their roundings.
   void bound_pictures(std::size_t block);
   Choice choose(std::size_t patch, const Request& request, int most) const;
@@ -197,8 +199,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
                     LeastIndex& failed) const;
   /// Chooses rates and bounds, block by block, if a distance is the only limit.
   Status choose_by_distance(const Request& request, CertifiedPlan& plan, const Execution& execution) const;
-  /// Replaces rates that keep the limits by segments with the fewest cells, if requested, or by kept ones where
-  /// possible.
+  /// Replaces rates that keep the limits by segments with fewer cells, or by kept ones where possible.
   ProvenSegments settle(std::size_t patch, const CellLimits& limits, const ChordBound& chord, int min_rate,
                         const Request& request, Rates rates) const;
   /// Returns the kept segments where possible, else the best, if a distance is the only limit.
@@ -213,8 +214,8 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   std::string wanted(double tolerance) const;
   bool is_displaced(std::size_t patch) const { return !weld_.displacements.empty() && weld_.displacements[patch] > 0; }
   void divide(double tolerance, CertifiedPlan& plan) const;
-  /// Returns the distance of the triangle that crosses the middle of an odd border, for a patch whose even rate along it
-  /// has a bound of halves.
+  /// Returns the distance of the triangle that crosses the middle of an odd border, for a patch whose even rate along
+  /// it has a bound of halves.
   double straddling_distance(std::size_t patch, Side side, const std::array<Segments, 4>& borders,
                              const CertifiedPlan& plan) const;
   /// Returns for each border whether it runs against the leading border of its edge.
@@ -230,7 +231,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   double largest_rounding_ = 0;    ///< the largest rounding of vertices before welding
   std::vector<double> roundings_;  ///< `[patch]`: the largest error of its vertices, by rounding or by welding
   ChordBlocks chords_;
-  std::vector<TurningBound> turnings_;      ///< `[patch]`, if there is an angle
+  std::vector<TurningBound> turnings_;      ///< `[patch]`, if PlannerOptions::keeps_bounds and there is an angle
   std::vector<ScreenSpaceBound> pictures_;  ///< `[patch]`, if there is a camera
 };
 

@@ -43,7 +43,8 @@ double CertifiedPlanner::straddling_distance(std::size_t patch, Side side, const
   // If no inner points lie between them, a segment of the opposite border may cross the middle as well.
   const auto s = static_cast<std::size_t>(side);
   const Segments border = borders[s], opposite = borders[(s + 2) % 4];
-  const int rate = opposite.parts_halves() ? border.rate() : std::min(border.rate(), opposite.rate());
+  const int rate =
+      opposite.parts_halves() ? border.coarsest_rate() : std::min(border.coarsest_rate(), opposite.coarsest_rate());
   assert(plan.segments_[patch].are_uniform());  // only patches of at most max_to_straddle segments come here
   const auto [piece, rates] = ChordBound::straddling(plan.segments_[patch].rates(), edge_of(side), rate);
   const PatchSet::Slot slot = set_->slots[patch];
@@ -65,15 +66,15 @@ class BorderSegments {
       if (edge != SharedEdges::none) needs_[edge].add(along(segments_[patch], side), never);
     }
   }
-  /// Counts the needs of each edge in its halves, for segments that are not uniform. `against`: for each border,
+  /// Counts the needs of each edge in its eighths, for segments that are not uniform. `against`: for each border,
   /// whether it runs against the edge.
-  void part_halves(std::vector<std::uint8_t> against) {
+  void part(std::vector<std::uint8_t> against) {
     against_ = std::move(against);
-    halves_.resize(edges_.count());
+    pieces_.resize(edges_.count());
     for (std::size_t k = 0; k < segments_.size(); ++k)
       for (const Side side : all_sides)
         if (const std::uint32_t edge = edges_.edge(k, side); edge != SharedEdges::none && !shapes_[k].is_curve)
-          halves_[edge].add(along(segments_[k], side), is_against(k, side));
+          pieces_[edge].add(along(segments_[k], side), is_against(k, side));
   }
   /// Whether a patch has an even rate along a border that other patches may share.
   bool is_even_edge(std::size_t patch, Side side) const {
@@ -91,15 +92,15 @@ class BorderSegments {
   Segments border(std::size_t patch, Side side) const {
     const std::uint32_t edge = edges_.edge(patch, side);
     if (edge == SharedEdges::none) return along(segments_[patch], side);
-    if (halves_.empty()) return needs_[edge].segments();
-    return halves_[edge].segments(is_against(patch, side), needs_[edge].is_even);
+    if (pieces_.empty()) return needs_[edge].segments();
+    return pieces_[edge].segments(is_against(patch, side), needs_[edge].is_even);
   }
 
   std::span<const PatchSegments> segments_;
   std::span<const PatchShape> shapes_;
   const SharedEdges& edges_;
   std::vector<EdgeNeeds> needs_;       ///< `[edge]`
-  std::vector<HalfNeeds> halves_;      ///< `[edge]`; empty if all segments are uniform
+  std::vector<PieceNeeds> pieces_;     ///< `[edge]`; empty if all segments are uniform
   std::vector<std::uint8_t> against_;  ///< `[border]`; empty if all segments are uniform
 };
 
@@ -117,8 +118,8 @@ void CertifiedPlanner::divide(double tolerance, CertifiedPlan& plan) const {
   BorderSegments borders(segments, shapes, edges_);
   for (std::size_t k = 0; k < segments.size(); ++k)
     if (!shapes[k].is_curve) borders.add(k, static_cast<std::uint16_t>(!is_coarse(k) && !always_straddles(k)));
-  if (options_.fewest && !std::all_of(segments.begin(), segments.end(), [](auto s) { return s.are_uniform(); }))
-    borders.part_halves(borders_against());
+  if (!std::all_of(segments.begin(), segments.end(), [](auto s) { return s.are_uniform(); }))
+    borders.part(borders_against());
   // The borders that patches refuse are made even together: a refusal must not depend on an earlier one. Each raises
   // rates, which lowers the distances of those that were accepted.
   const auto for_odd_borders = [&](const auto& visit) {

@@ -15,7 +15,7 @@ constexpr double normal_rounding = 1e-5;
 
 class Joiner {
  public:
-  Joiner(const PatchSet::Impl& set, const CertifiedPlan& plan, const SharedEdges& edges, const Weld& weld,
+  Joiner(const PatchSet::Impl& set, const CertifiedPlan& plan, const SharedEdges& edges, const VertexCopies& weld,
          const View3<float>* normals, double angle)
       : set_(set),
         plan_(plan),
@@ -40,7 +40,7 @@ class Joiner {
       if (!plan_.division(border / 4).empty) visit(border, edges_.edge(border / 4, all_sides[border % 4]));
   }
 
-  void join_borders(const Weld& weld) {
+  void join_borders(const VertexCopies& weld) {
     std::vector<std::uint32_t> leading(edges_.count(), none);
     for_borders([&](std::uint32_t border, std::uint32_t edge) {
       if (edge != none && leading[edge] == none && welded_[border] == none) leading[edge] = border;
@@ -117,7 +117,7 @@ class Joiner {
 }  // namespace
 
 VertexCopies find_joins(const PatchSet::Impl& set, const CertifiedPlan& plan, const SharedEdges& edges,
-                        const Weld& weld, const View3<float>* normals, double angle) {
+                        const VertexCopies& weld, const View3<float>* normals, double angle) {
   return Joiner(set, plan, edges, weld, normals, angle).take();
 }
 

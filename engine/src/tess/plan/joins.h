@@ -10,6 +10,6 @@ namespace tessera::inline abi_0_1 {
 /// `normals`: the normals of the plan's mesh before vertices are shared. A border is joined only if no two normals
 /// along it differ by more than `angle`, in radians. Null: all borders are joined.
 VertexCopies find_joins(const PatchSet::Impl& set, const CertifiedPlan& plan, const SharedEdges& edges,
-                        const Weld& weld, const View3<float>* normals, double angle);
+                        const VertexCopies& weld, const View3<float>* normals, double angle);
 
 }  // namespace tessera::inline abi_0_1

@@ -30,6 +30,7 @@ PlanUpdate::PlanUpdate(CertifiedPlanner planner, const PlanOfSet& of)
       own_roundings_(copied_.bits.empty() ? 0 : of.set.patches.size()),
       displacements_(own_roundings_.size(), 0.0),
       proven_(of.set.patches.size()) {
+  planner_.turnings_ = {};  // bounds of edited patches are found anew
   std::ranges::copy(planner_.weld().displacements, displacements_.begin());
   for (std::size_t patch = 0; patch < own_roundings_.size(); ++patch)
     own_roundings_[patch] =
@@ -88,7 +89,6 @@ void PlanUpdate::bound_block(const PlanOfSet& of, std::uint32_t block) {
     (has_copies() ? own_roundings_ : planner_.roundings_)[patch] = rounding;
     const bool keeps_shape = PatchShape::of(of.set.patches[patch], of.set.collapsed[patch]) == planner_.shapes_[patch];
     if (!keeps_shape || !(rounding <= most)) is_unknown_ = true;
-    if (!planner_.turnings_.empty()) planner_.bound_turning(patch);
   }
 }
 
@@ -129,7 +129,10 @@ void PlanUpdate::choose(const PlanOfSet& of, std::uint32_t block, std::uint32_t 
     const std::size_t patch = of.set.lane_patches[block * std::size_t{PatchSet::lanes} + lane];
     const CertifiedPlanner::Choice choice = planner_.choose(patch, request, max_rate);
     if (choice.failure != CertifiedPlanner::Failure::none) is_unknown_ = true;
-    set(of, patch, {choice.segments, rounded_up(choice.bound), rounded_up(choice.angle), rounded_up(choice.pixels)});
+    if (!choice.anywhere && of.plan.straddles_[patch]) is_redivided_ = true;
+    set(of, patch,
+        {choice.segments, choice.anywhere, rounded_up(choice.bound), rounded_up(choice.angle),
+         rounded_up(choice.pixels)});
   }
 }
 
@@ -155,7 +158,7 @@ void PlanUpdate::choose_by_distance(const PlanOfSet& of, std::uint32_t block, st
     const double straddling = proven.anywhere ? 0 : straddling_distance(of, patch);
     if (!(straddling <= left[lane])) is_redivided_ = true;
     const double given = of.tolerance - left[lane];
-    set(of, patch, {proven.segments, rounded_up(std::max(proven.distance, straddling) + given)});
+    set(of, patch, {proven.segments, proven.anywhere, rounded_up(std::max(proven.distance, straddling) + given)});
   }
   // The fewest segments are chosen for all patches together.
   if (planner_.options_.fewest && is_redivided_) is_unknown_ = true;
@@ -169,7 +172,8 @@ double PlanUpdate::straddling_distance(const PlanOfSet& of, std::size_t patch) c
     const auto s = static_cast<std::size_t>(side);
     const Segments border = division.border[s], opposite = division.border[(s + 2) % 4];
     if (!(runs_along_u(side) ? segments.u : segments.v).parts_halves() || border.parts_halves()) continue;
-    const int rate = opposite.parts_halves() ? border.rate() : std::min(border.rate(), opposite.rate());
+    const int rate =
+        opposite.parts_halves() ? border.coarsest_rate() : std::min(border.coarsest_rate(), opposite.coarsest_rate());
     assert(segments.are_uniform());  // if they are not, the border has a point at 1/2
     const auto [piece, rates] = ChordBound::straddling(segments.rates(), edge_of(side), rate);
     const PatchSet::Slot slot = of.set.slots[patch];
@@ -201,7 +205,10 @@ CertifiedPlan PlanUpdate::redivided(const PlanOfSet& of) const {
   plan.pixels_ = of.plan.pixels_;
   plan.straddles_ = of.plan.straddles_;
   take_bounds(plan);
-  for_proven(of.set, [&](std::size_t patch) { plan.segments_[patch] = proven_[patch].segments; });
+  for_proven(of.set, [&](std::size_t patch) {
+    plan.segments_[patch] = proven_[patch].segments;
+    if (!plan.straddles_.empty()) plan.straddles_[patch] = proven_[patch].anywhere;
+  });
   planner_.divide(of.tolerance, plan);
   plan.lay_out();
   return plan;

@@ -61,6 +61,7 @@ class [[gnu::visibility("hidden")]] PlanUpdate {
   /// The segments and limits of a patch that has been proven.
   struct Proven {
     PatchSegments segments;
+    bool anywhere = false;  ///< see ProvenSegments
     float bound = 0, angle = 0, pixels = 0;
   };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstring>
+#include <type_traits>
 #include <utility>
 
 #include "basis/bernstein.h"
@@ -87,36 +89,65 @@ std::size_t MeshTables::other_place(Segments along) const {
 }
 
 MeshTables::Strip MeshTables::other_strip(Segments border, Segments inner, bool collapsed) const {
-  const auto found = other_strips_.find(key(border, inner, collapsed));
+  const auto found = other_strips_.find({border, inner, collapsed});
   return found == other_strips_.end() ? Strip{} : found->second;
 }
 
-bool MeshTables::has(int degree, Segments inner, Segments border, bool collapsed) const {
-  if (!found(tables(border).border[at(degree)], place(border))) return false;
+bool MeshTables::takes_points(const BlockGroup& group, const Division& division) {
+  const auto is_graded = [](Segments along) { return along.is_graded(); };
+  return group.degree_u == 3 && group.degree_v == 3 && !group.rational && !division.collapsed.any() &&
+         !is_graded(division.inner.u) && !is_graded(division.inner.v) &&
+         std::none_of(division.border.begin(), division.border.end(), is_graded);
+}
+
+bool MeshTables::has_weights(const Border& wanted) const {
+  const Segments ring = wanted.ring_border(), inner = wanted.inner;
+  const std::size_t degree = at(wanted.degree);
+  if (wanted.by_points)
+    return found(tables(ring).cubic_border, place(ring)).weights &&
+           (inner.rate() == 1 || found(tables(inner).cubic_inner, place(inner)).rows);
+  return found(tables(ring).border[degree], place(ring)) &&
+         (inner.rate() == 1 || found(tables(inner).inner[degree], place(inner)));
+}
+
+bool MeshTables::has(const Border& wanted) const {
+  const auto [inner, border] = std::pair(wanted.inner, wanted.border);
+  if (!has_weights(wanted) || !found(tables(border).parameters, place(border))) return false;
   if (inner.rate() == 1) return true;
-  if (!found(tables(inner).inner[at(degree)], place(inner))) return false;
-  if (!is_common(border, inner, collapsed)) return other_strip(border, inner, collapsed).codes != nullptr;
+  if (!is_common(border, inner, wanted.collapsed))
+    return found(tables(inner).parameters, place(inner)) &&
+           other_strip(wanted.ring_border(), wanted.ring_inner(), wanted.collapsed).codes != nullptr;
   return at(inner.rate()) < strips_.size() &&
          found(strips_[at(inner.rate())], at(border.rate() + max_missing - inner.rate())).codes != nullptr;
 }
 
-void MeshTables::add(int degree, Segments inner, Segments border, bool collapsed) {
-  for (const Segments along : {inner, inner.reversed(), border, border.reversed()}) {
+void MeshTables::add(const Border& wanted) {
+  for (const Segments along : {wanted.inner, wanted.border, wanted.ring_border()})
     if (!along.is_uniform()) other_places_.try_emplace(along.key(), other_places_.size());
-    add_parameters(along);
-  }
-  add_border(degree, border);
-  if (inner.rate() == 1) return;
-  add_inner(degree, inner);
-  add_strip(border, inner, collapsed);
+  add_parameters(wanted.inner);
+  add_parameters(wanted.border);
+  add_border(wanted);
+  if (wanted.inner.rate() == 1) return;
+  add_inner(wanted);
+  add_strip(wanted.ring_border(), wanted.ring_inner(), wanted.collapsed);
 }
 
 template <class T>
-const T* MeshTables::hold(AlignedVector<T> made) {
-  const auto kept = std::make_shared<const AlignedVector<T>>(std::move(made));
-  memory_.push_back(kept);
-  bytes_ += sizeof(T) * kept->size() + 2 * cache_line;
-  return kept->data();
+const T* MeshTables::hold(const AlignedVector<T>& made) {
+  static_assert(sizeof(T) == sizeof(float) && std::is_trivially_copyable_v<T>);
+  constexpr std::size_t line = cache_line / sizeof(float), largest_chunk = 4096;
+  const std::size_t floats = (made.size() + line - 1) / line * line;
+  if (floats > room_.floats) {
+    memory_.push_back(std::make_shared<Chunk>(std::max(floats, room_.next_chunk)));
+    room_.next_chunk = std::min(2 * room_.next_chunk, largest_chunk);
+    room_.begin = memory_.back()->data();
+    room_.floats = memory_.back()->size();
+    bytes_ += sizeof(float) * room_.floats + cache_line;
+  }
+  float* const kept = room_.begin;
+  room_.begin += floats;
+  room_.floats -= floats;
+  return static_cast<const T*>(std::memcpy(kept, made.data(), sizeof(T) * made.size()));
 }
 
 void MeshTables::add_parameters(Segments along) {
@@ -124,21 +155,29 @@ void MeshTables::add_parameters(Segments along) {
   if (made) return;
   AlignedVector<float> parameters(at(along.rate()) + 1);
   for (int k = 0; k <= along.rate(); ++k) parameters[at(k)] = static_cast<float>(along.at(k).value());
-  made = hold(std::move(parameters));
+  made = hold(parameters);
 }
 
-void MeshTables::add_inner(int degree, Segments along) {
-  const float*& made = grown(tables(along).inner[at(degree)], place(along));
-  if (made) return;
-  made = hold(tiles_of_weights(degree, along, 1));
-  if (with_cubic_ && degree == 3) grown(tables(along).cubic_inner, place(along)) = make_cubic_inner(along);
+void MeshTables::add_inner(const Border& wanted) {
+  const Segments along = wanted.inner;
+  if (wanted.by_points) {
+    kernel::MeshCubicInner& made = grown(tables(along).cubic_inner, place(along));
+    if (!made.rows) made = make_cubic_inner(along);
+  } else {
+    const float*& made = grown(tables(along).inner[at(wanted.degree)], place(along));
+    if (!made) made = hold(tiles_of_weights(wanted.degree, along, 1));
+  }
 }
 
-void MeshTables::add_border(int degree, Segments along) {
-  const float*& made = grown(tables(along).border[at(degree)], place(along));
-  if (made) return;
-  made = hold(tiles_of_weights(degree, along, 0));
-  if (with_cubic_ && degree == 3) grown(tables(along).cubic_border, place(along)) = make_cubic_border(along);
+void MeshTables::add_border(const Border& wanted) {
+  const Segments along = wanted.ring_border();
+  if (wanted.by_points) {
+    kernel::MeshCubicBorder& made = grown(tables(along).cubic_border, place(along));
+    if (!made.weights) made = make_cubic_border(along);
+  } else {
+    const float*& made = grown(tables(along).border[at(wanted.degree)], place(along));
+    if (!made) made = hold(tiles_of_weights(wanted.degree, along, 0));
+  }
 }
 
 kernel::MeshCubicInner MeshTables::make_cubic_inner(Segments along) {
@@ -163,8 +202,8 @@ kernel::MeshCubicInner MeshTables::make_cubic_inner(Segments along) {
     }
   }
   for (std::size_t x = 0; x < stride; ++x) places[x] = static_cast<std::int32_t>(4 * (x / count));
-  const float* const kept = hold(std::move(weights));
-  return {kept, kept + rows * row_weights, hold(std::move(places)), static_cast<std::ptrdiff_t>(stride)};
+  const float* const kept = hold(weights);
+  return {kept, kept + rows * row_weights, hold(places), static_cast<std::ptrdiff_t>(stride)};
 }
 
 kernel::MeshCubicBorder MeshTables::make_cubic_border(Segments along) {
@@ -180,39 +219,46 @@ kernel::MeshCubicBorder MeshTables::make_cubic_border(Segments along) {
       value[4 * stride] = at.slope(i);
     }
   }
-  return {hold(std::move(weights)), static_cast<std::ptrdiff_t>(stride)};
+  return {hold(weights), static_cast<std::ptrdiff_t>(stride)};
 }
 
 void MeshTables::add_strip(Segments border, Segments inner, bool collapsed) {
   Strip& strip = is_common(border, inner, collapsed)
                      ? grown(grown(strips_, at(inner.rate())), at(border.rate() + max_missing - inner.rate()))
-                     : other_strips_[key(border, inner, collapsed)];
+                     : other_strips_[StripKey{border, inner, collapsed}];
   if (strip.codes) return;
   const std::vector<std::uint32_t> codes = strip_codes(border, inner, collapsed, kernel::mesh_border_code);
   AlignedVector<std::uint32_t> whole((codes.size() + 15) / 16 * 16);
   std::copy(codes.begin(), codes.end(), whole.begin());
-  strip = {hold(std::move(whole)), static_cast<int>(codes.size())};
+  strip = {hold(whole), static_cast<int>(codes.size())};
 }
 
 /// Uses the common tables, or a copy of them to which it adds what they lack.
 class TableMaker {
  public:
-  TableMaker(SharedSlot<MeshTables>& kept, std::size_t patches, bool with_cubic)
-      : kept_(kept), common_(kept.load()), seen_(std::bit_ceil(std::clamp<std::size_t>(16 * patches, 64, 4096))) {
-    if (!common_) common_ = own_ = std::shared_ptr<MeshTables>(new MeshTables(with_cubic));
+  TableMaker(SharedSlot<MeshTables>& kept, std::size_t patches, bool with_points)
+      : kept_(kept),
+        common_(kept.load()),
+        with_points_(with_points),
+        seen_(std::bit_ceil(std::clamp<std::size_t>(16 * patches, 64, 4096))) {
+    if (!common_) common_ = own_ = std::shared_ptr<MeshTables>(new MeshTables());
     common_bytes_ = common_->bytes();
   }
 
-  void add(const PatchShape& shape, const Division& division) {
+  void add(const BlockGroup& group, const Division& division) {
     if (division.empty) return;
+    const bool by_points = with_points_ && MeshTables::takes_points(group, division);
     for (const Side side : all_sides) {
-      const int degree = runs_along_u(side) ? shape.degree_u : shape.degree_v;
-      const Segments inner = division.inner_along(side), border = division.border[static_cast<std::size_t>(side)];
-      const bool collapsed = division.collapsed.has(edge_of(side));
-      if (MeshTables::is_common(border, inner, collapsed)) {
-        add_common(degree, inner, border);
+      const MeshTables::Border wanted{.degree = runs_along_u(side) ? group.degree_u : group.degree_v,
+                                      .by_points = by_points,
+                                      .backward = is_backward(side),
+                                      .collapsed = division.collapsed.has(edge_of(side)),
+                                      .inner = division.inner_along(side),
+                                      .border = division.border[static_cast<std::size_t>(side)]};
+      if (MeshTables::is_common(wanted.border, wanted.inner, wanted.collapsed)) {
+        add_common(wanted);
       } else {
-        add(degree, division.inner_along_ring(side), division.along_ring(side), collapsed);
+        add(wanted);
       }
     }
   }
@@ -229,30 +275,33 @@ class TableMaker {
   }
 
  private:
-  void add_common(int degree, Segments inner, Segments border) {
-    const std::uint32_t wanted = static_cast<std::uint32_t>(degree) << 26 | inner.key() << 13 | border.key();
-    std::uint32_t& seen = seen_[(wanted * 0x9e3779b1u >> 20) & (seen_.size() - 1)];
-    if (seen == wanted) return;
-    add(degree, inner, border, false);
-    seen = wanted;
+  void add_common(const MeshTables::Border& wanted) {
+    const std::uint32_t key = static_cast<std::uint32_t>(wanted.by_points) << 30 |
+                              static_cast<std::uint32_t>(wanted.degree << 26 | wanted.inner.rate() << 13) |
+                              static_cast<std::uint32_t>(wanted.border.rate());
+    std::uint32_t& seen = seen_[(key * 0x9e3779b1u >> 20) & (seen_.size() - 1)];
+    if (seen == key) return;
+    add(wanted);
+    seen = key;
   }
-  [[gnu::cold]] void add(int degree, Segments inner, Segments border, bool collapsed) {
-    if (common_->has(degree, inner, border, collapsed)) return;
+  [[gnu::cold]] void add(const MeshTables::Border& wanted) {
+    if (common_->has(wanted)) return;
     if (!own_) common_ = own_ = std::shared_ptr<MeshTables>(new MeshTables(*common_));
-    own_->add(degree, inner, border, collapsed);
+    own_->add(wanted);
   }
 
   SharedSlot<MeshTables>& kept_;
   std::shared_ptr<const MeshTables> common_;
+  bool with_points_;
   std::size_t common_bytes_;
   std::shared_ptr<MeshTables> own_;  ///< a copy that replaces common_, if it lacked something
   std::vector<std::uint32_t> seen_;  ///< a cache of what has been added: degrees, inner and border rates
 };
 
-std::shared_ptr<const MeshTables> MeshTables::of(const PatchSet::Impl& set, std::span<const PatchShape> shapes,
-                                                 std::span<const Division> divisions, bool with_cubic) {
-  TableMaker maker(set.mesh_tables[with_cubic ? 1 : 0], shapes.size(), with_cubic);
-  for (std::size_t k = 0; k < shapes.size(); ++k) maker.add(shapes[k], divisions[k]);
+std::shared_ptr<const MeshTables> MeshTables::of(const PatchSet::Impl& set, std::span<const Division> divisions,
+                                                 bool with_points) {
+  TableMaker maker(set.mesh_tables[with_points ? 1 : 0], divisions.size(), with_points);
+  for (std::size_t k = 0; k < divisions.size(); ++k) maker.add(set.group_of_block(set.slots[k].block), divisions[k]);
   return maker.take();
 }
 

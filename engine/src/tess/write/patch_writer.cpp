@@ -136,9 +136,7 @@ void PatchWriter::prepare(std::size_t k, VertexJob& vertices) const {
   job.inner_u = division.inner.u.rate();
   job.inner_v = division.inner.v.rate();
   for (std::size_t side = 0; side < 4; ++side) job.border[side].rate = division.border[side].rate();
-  const bool by_points = kernels_.mesh_points && group.degree_u == 3 && group.degree_v == 3 && !group.rational &&
-                         !division.collapsed.any();
-  if (by_points) {
+  if (kernels_.mesh_points && MeshTables::takes_points(group, division)) {
     prepare_points(slot, job.net - slot.lane, division, vertices);
   } else {
     job.points = nullptr;

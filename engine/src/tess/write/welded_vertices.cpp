@@ -57,8 +57,8 @@ Status write_pole(const VertexCopies::Corner& pole, const CertifiedPlan& plan, c
 
 }  // namespace
 
-Status write_welded(const Weld& weld, const CertifiedPlan& plan, const PatchSet::Impl& set, const MeshViews& out,
-                    const Execution& execution, FunctionRef<bool(std::size_t patch)> is_written) {
+Status write_welded(const VertexCopies& weld, const CertifiedPlan& plan, const PatchSet::Impl& set,
+                    const MeshViews& out, const Execution& execution, FunctionRef<bool(std::size_t patch)> is_written) {
   const auto is_due = [&](const auto& copy) { return is_written(copy.to / 4) || is_written(copy.from / 4); };
   const auto borders = [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
