@@ -122,7 +122,9 @@ std::string as_text(const Findings& found) {
 Status run_info(const Job& job, const Options& options, const CommonOptions& common, Timings& timings) {
   const Result<Loaded> loaded = load(job, options.models, With::patches, timings);
   if (!loaded) return loaded.status();
-  const Result<PatchSet> set = pack(*loaded, timings);
+  ModelOptions whole = options.models;
+  whole.untrimmed = true;
+  const Result<PatchSet> set = pack(*loaded, whole, timings);
   if (!set) return set.status();
   const Result<Isa> isa = default_isa();
   if (!isa) return isa.status();

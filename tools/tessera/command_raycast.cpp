@@ -179,6 +179,7 @@ void add_raycast(Command& tool, Session& session) {
   add_ray_options(command, *options, of_pictures);
   add_mode(command, *options);
   add_reading(command, options->models);
+  add_untrimmed(command, options->models);
   add_common(command, session.common);
   command.footer = raycast_footer;
   command.choose = [options, &command, &session] {

@@ -40,6 +40,7 @@ struct Tessellated {
   Mesh mesh;
   double tolerance = 0;
   std::size_t welded_borders = 0, open_edges = 0;
+  std::vector<std::size_t> crossed;  ///< surfaces with loops that cannot be made polygons
   double angle = 0;  ///< degrees
   std::size_t patches_without_angle = 0;
   double pixels = 0;
@@ -95,6 +96,10 @@ Result<Tessellated> tessellate(const Options& options, const Model& model, const
       made.pixels = plan->pixels();
       made.bound = plan->bound();
       made.proven = plan->certified();
+      for (const std::uint32_t patch : plan->crossed_patches()) {
+        const std::size_t surface = set.source(patch).surface;
+        if (made.crossed.empty() || made.crossed.back() != surface) made.crossed.push_back(surface);
+      }
     }
     return run_plan(plan, set, options);
   }();
@@ -154,6 +159,8 @@ Status report(const Job& job, const Options& options, const CommonOptions& commo
     object["welded_borders"] = made.welded_borders;
     object["open_edges"] = made.open_edges;
   }
+  object["cut_patches"] = set.cut_count();
+  object["crossed_surfaces"] = made.crossed.size();
   add_model_facts(object, loaded, set);
   add_seconds(object, common, timings);
   return print_report(job.output, object.text() + "\n");
@@ -164,13 +171,16 @@ Status run_tessellate(const Job& job, const Options& options, const CommonOption
   if (!out) return out.status();
   const Result<Loaded> loaded = load(job, options.models, With::patches, timings);
   if (!loaded) return loaded.status();
-  const Result<PatchSet> set = pack(*loaded, timings);
+  const Result<PatchSet> set = pack(*loaded, options.models, timings);
   if (!set) return set.status();
   const Result<Tessellated> made = [&] {
     const auto phase = timings.phase("evaluate");
     return tessellate(options, loaded->model, *set);
   }();
   if (!made) return in_file(job.inputs[0], made.status());
+  for (const std::size_t surface : made->crossed)
+    warn(loaded->in_surface(surface, {StatusCode::unsupported, "its trimming loops cannot be made a polygon: parts of it are left out"})
+             .message());
   {
     const auto phase = timings.phase("write");
     Status status = write_mesh(made->mesh, format_path(job.output, options.format), *out);
@@ -377,6 +387,7 @@ void add_tessellate(Command& tool, Session& session) {
   command.add_flag("--quads", "Write whole cells as quads, in .obj and .ply [triangles only]", options->quads);
   add_precision(command, *options);
   add_reading(command, options->models);
+  add_untrimmed(command, options->models);
   add_view(command, *options);
   add_common(command, session.common);
   command.footer = footer;

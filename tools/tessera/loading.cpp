@@ -42,18 +42,11 @@ std::size_t count_trimmed(std::span<const ModelSurface> surfaces) {
 }
 
 /// Prints a warning about each part of the file that the model does not hold.
-void say_warnings(const std::string& file, const Model& model) {
+void say_warnings(const Model& model) {
   constexpr std::size_t limit = 20;  // lines; a file may hold a long list of unread parts
   const std::size_t count = model.warnings.size();
-  bool trims_said = false;
-  for (std::size_t k = 0; k < count; ++k) {
-    const bool of_trims = model.warnings[k].find("honoured yet") != std::string::npos;
-    trims_said = trims_said || of_trims;
-    if (k < limit || of_trims) warn(model.warnings[k]);
-  }
+  for (std::size_t k = 0; k < std::min(count, limit); ++k) warn(model.warnings[k]);
   if (count > limit) warn("and " + std::to_string(count - limit) + " more warnings of this file");
-  const std::string trims = trims_text(count_trimmed(model.surfaces));
-  if (!trims_said && !trims.empty()) warn(file + ": " + trims);
 }
 
 /// Converts surfaces on all threads; if several fail, reports the first one.
@@ -86,7 +79,7 @@ Status add_file(const std::string& file, const ModelOptions& options, With with,
     return read_any_model(file, options.input_format);
   }();
   if (!model) return model.status();
-  say_warnings(file, *model);
+  say_warnings(*model);
   if (with == With::patches) {
     const auto phase = timings.phase("convert");
     Result<std::vector<PatchGrid>> grids = convert(*model, options.fit);
@@ -145,6 +138,10 @@ void add_reading(Command& command, ModelOptions& options) {
       .check(fault_of_name);
 }
 
+void add_untrimmed(Command& command, ModelOptions& options) {
+  command.add_flag("--untrimmed", "Ignore trimming loops: take whole surfaces", options.untrimmed);
+}
+
 std::size_t Loaded::trimmed() const { return count_trimmed(model.surfaces); }
 
 Status Loaded::in_surface(std::size_t surface, const Status& status) const {
@@ -171,16 +168,21 @@ Result<Loaded> load(const Job& job, const ModelOptions& options, With with, Timi
                 "none of the " + std::to_string(loaded.failed.size()) + " models can be used");
 }
 
-Result<PatchSet> pack(const Loaded& loaded, Timings& timings) {
+Result<PatchSet> pack(const Loaded& loaded, const ModelOptions& options, Timings& timings) {
   const auto phase = timings.phase("pack");
-  Result<PatchSet> set = make_patch_set(loaded.grids);
-  if (set) return set;
-  const Status& status = set.status();
-  if (status.index() == Status::no_index) return in_file(loaded.files[0], status);
-  auto patch = static_cast<std::size_t>(status.index());
-  std::size_t surface = 0;
-  for (; patch >= loaded.grids[surface].patches().size(); ++surface) patch -= loaded.grids[surface].patches().size();
-  return loaded.in_surface(surface, status);
+  PatchSetOptions packing;
+  packing.trims = !options.untrimmed;
+  Result<PatchSet> set = make_patch_set(loaded.model, loaded.grids, packing);
+  // A message names the surface within the job; the user knows its place in the file.
+  const auto in_its_file = [&](const Status& status) {
+    const auto surface = static_cast<std::size_t>(status.index());
+    const std::size_t prefix = in_surface(loaded.model, surface, Status(status.code(), "")).message().size();
+    return loaded.in_surface(surface, Status(status.code(), status.message().substr(prefix)));
+  };
+  if (!set && set.status().index() == Status::no_index) return in_file(loaded.files[0], set.status());
+  if (!set) return in_its_file(set.status());
+  for (const Status& fault : set->trim_faults()) warn(in_its_file(fault).message() + "; it is kept whole");
+  return set;
 }
 
 Json files_json(const Loaded& loaded) {
@@ -207,8 +209,7 @@ Json warnings_json(const Model& model) {
 
 std::string trims_text(std::size_t trimmed) {
   if (trimmed == 0) return {};
-  return std::to_string(trimmed) + (trimmed == 1 ? " surface is" : " surfaces are") +
-         " trimmed: trims not honoured yet";
+  return std::to_string(trimmed) + (trimmed == 1 ? " surface is trimmed" : " surfaces are trimmed");
 }
 
 std::string fit_line(const PatchSet& set) { return fit_line(set.fit_error()); }

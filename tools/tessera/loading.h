@@ -14,6 +14,7 @@ struct ModelOptions {
   std::vector<std::string> files;  ///< names and patterns from the command line
   std::string input_format;        ///< of standard input, without the dot
   FitOptions fit;
+  bool untrimmed = false;  ///< whether trimming loops are ignored
 };
 /// Throws UsageError if standard input has no format, or is there twice.
 void check_input(const ModelOptions& options);
@@ -21,6 +22,8 @@ void check_input(const ModelOptions& options);
 void add_models(Command& command, ModelOptions& options);
 /// Adds --fit-tolerance and --cad-reader.
 void add_reading(Command& command, ModelOptions& options);
+/// Adds --untrimmed.
+void add_untrimmed(Command& command, ModelOptions& options);
 
 /// The extensions of files that can be read: ".bpt, .bv, ...".
 std::string model_formats();
@@ -33,7 +36,7 @@ struct Loaded {
   std::vector<PatchGrid> grids;                        ///< the patches of each surface, if requested
   std::vector<std::pair<std::string, Status>> failed;  ///< the other files, and their errors, which are already printed
 
-  std::size_t trimmed() const;  ///< number of surfaces with trims, which are ignored
+  std::size_t trimmed() const;  ///< number of surfaces with trims
   /// `status` as "part.obj: surface 3 (rim): ...", the surface counted within its file.
   Status in_surface(std::size_t surface, const Status& status) const;
   /// Ok; an error, already printed, if a file has failed.
@@ -47,8 +50,9 @@ enum class With { surfaces, patches };
 /// file, or of the last one if all of several fail.
 Result<Loaded> load(const Job& job, const ModelOptions& options, With with, Timings& timings);
 
-/// Packs all patches into a set. Errors name file and surface.
-Result<PatchSet> pack(const Loaded& loaded, Timings& timings);
+/// Packs what trimming loops keep of all patches into a set; with options.untrimmed, all of them. Prints a warning for
+/// each surface whose loops cannot be used. Errors name file and surface.
+Result<PatchSet> pack(const Loaded& loaded, const ModelOptions& options, Timings& timings);
 
 /// The beginning of every job's JSON report: the files, and the files that failed.
 Json files_json(const Loaded& loaded);
@@ -56,7 +60,7 @@ Json files_json(const Loaded& loaded);
 void add_model_facts(Json& object, const Loaded& loaded, const PatchSet& set);
 Json warnings_json(const Model& model);
 
-/// "12 surfaces are trimmed: trims not honoured yet", or an empty text.
+/// "12 surfaces are trimmed", or an empty text.
 std::string trims_text(std::size_t trimmed);
 
 /// A sentence with the error of fitted callables; empty if all is exact.

@@ -34,11 +34,15 @@ struct RaycastScene {
   RayScene rays;
   std::optional<render::MeshPatches> meshes;
   std::optional<MeshError> error;  ///< the error to shade, if any
+  double mesh_bound = 0;           ///< of the mesh that a trimmed model is drawn by; 0 if it is not
+  bool ignores_trims = false;      ///< whether trimmed surfaces are taken whole
 
   /// The options' settings, with what this scene adds.
   render::Settings settings(const RaycastOptions& options) const;
   /// Captions for the lower border of the picture, the longest first. The first that fits is drawn.
   std::vector<std::string> captions() const;
+  /// "2 surfaces are trimmed: ..." and how they are drawn; empty if all are whole.
+  std::string trims_caption() const;
   std::string counted_parts() const;  ///< "32 patches", "1 triangle"
 };
 

@@ -6,6 +6,7 @@
 #include "progress.h"
 #include "raycast.h"
 #include "tessera/io.h"
+#include "tessera/tessellation.h"
 
 namespace tessera::cli {
 namespace {
@@ -82,14 +83,59 @@ Result<RaycastScene> make_mesh_scene(const Job& job, const RaycastOptions& optio
   return RaycastScene{std::move(loaded), *std::move(set), *std::move(rays), std::move(meshes), {}};
 }
 
+/// Whether a picture shows the shape alone, so that a mesh can stand for the surfaces.
+bool shows_shape(const Job& job, const RaycastOptions& options) {
+  using enum render::Shade;
+  const render::Shade shade = options.settings.shade;
+  const bool needs_surfaces = shade == error || shade == curvature || shade == uv || shade == patch || shade == steps;
+  return !needs_surfaces && options.rays.empty() && !is_exr(format_path(job.output, options.format));
+}
+
+/// Makes a scene of the mesh of a trimmed model: exact rays see its patches whole.
+Result<RaycastScene> make_trimmed_scene(Loaded loaded, const PatchSet& surfaces, const RaycastOptions& options,
+                                        Timings& timings) {
+  constexpr double share_of_size = 2e-4;  // below a pixel in pictures of up to 2000 pixels
+  render::MeshPatches meshes;
+  double bound = 0;
+  {
+    const auto phase = timings.phase("mesh");
+    Progress progress("meshing what trims keep");
+    TessellationOptions fine;
+    fine.tolerance = share_of_size;
+    fine.relative = true;
+    const Result<Tessellation> plan = Tessellation::make(surfaces, fine, progress.execution());
+    if (!plan) return in_file(loaded.files[0], plan.status());
+    Result<Mesh> mesh = plan->allocate();
+    if (!mesh) return mesh.status();
+    if (Status status = plan->run(surfaces, mesh->views()); !status.ok()) return status;
+    if (Status status = meshes.add(*mesh); !status.ok()) return status;
+    bound = plan->bound();
+  }
+  Result<PatchSet> set = meshes.pack();
+  if (!set) return in_file(loaded.files[0], set.status());
+  Result<RayScene> rays = build(*set, options, loaded.files[0], timings);
+  if (!rays) return rays.status();
+  return RaycastScene{std::move(loaded), *std::move(set), *std::move(rays), std::move(meshes), {}, bound};
+}
+
 Result<RaycastScene> make_surface_scene(const Job& job, const RaycastOptions& options, Timings& timings) {
   Result<Loaded> loaded = load(job, options.models, With::patches, timings);
   if (!loaded) return loaded.status();
-  Result<PatchSet> set = pack(*loaded, timings);
+  Result<PatchSet> set = pack(*loaded, options.models, timings);
   if (!set) return set.status();
+  const bool is_trimmed = set->cut_count() > 0;
+  if (is_trimmed) {
+    if (shows_shape(job, options)) return make_trimmed_scene(*std::move(loaded), *set, options, timings);
+    warn(loaded->files[0] + ": " + trims_text(loaded->trimmed()) + ": taken whole");
+    ModelOptions whole = options.models;
+    whole.untrimmed = true;
+    set = pack(*loaded, whole, timings);
+    if (!set) return set.status();
+  }
   Result<RayScene> rays = build(*set, options, loaded->files[0], timings);
   if (!rays) return rays.status();
   RaycastScene scene{*std::move(loaded), *std::move(set), *std::move(rays), {}, {}};
+  scene.ignores_trims = is_trimmed;
   if (options.settings.shade == render::Shade::error) {
     const auto phase = timings.phase("measure");
     Result<MeshError> error = measure_error(options.error, scene.set);
@@ -114,11 +160,21 @@ render::Settings RaycastScene::settings(const RaycastOptions& options) const {
 }
 
 std::vector<std::string> RaycastScene::captions() const {
-  const std::string trims = trims_text(loaded.trimmed());
   std::vector<std::string> texts;
-  if (error) texts = {error->caption() + (trims.empty() ? "" : ", trims not honoured")};
-  if (!trims.empty()) texts.insert(texts.end(), {trims, "trims not honoured", "trims!"});
+  if (error) texts = {error->caption() + (ignores_trims ? ", trims ignored" : "")};
+  if (mesh_bound > 0) {
+    texts.insert(texts.end(), {trims_caption(), "trimmed, drawn by a mesh", "mesh"});
+  } else if (ignores_trims) {
+    texts.insert(texts.end(), {trims_caption(), "trims ignored", "trims!"});
+  }
   return texts;
+}
+
+std::string RaycastScene::trims_caption() const {
+  if (mesh_bound > 0)
+    return trims_text(loaded.trimmed()) + ": drawn by a mesh within " + readable(mesh_bound, 2) + " of what is kept";
+  if (ignores_trims) return trims_text(loaded.trimmed()) + ": taken whole";
+  return {};
 }
 
 std::string RaycastScene::counted_parts() const {

@@ -19,13 +19,13 @@
 #pragma GCC visibility push(default)
 namespace tessera::inline abi_0_1 {
 
-/// A named surface, and its placement in the model. Trims are kept for callers; patches, meshes and rays ignore them so
-/// far. Copies share everything.
+/// A named surface, its placement in the model, and the loops that trim it. Grids and rays ignore the loops so far:
+/// they see each patch of a set as a whole. Copies share everything.
 struct ModelSurface {
   Shared<std::string> name;                  ///< may be empty
   Surface surface;                           ///< in its own space
   Shared<Affine> placement = {};             ///< from its own space to the model's
-  Shared<std::vector<TrimLoop>> trims = {};  ///< kept, ignored so far
+  Shared<std::vector<TrimLoop>> trims = {};  ///< what is kept of it; none: all
 };
 
 /// The surfaces of a file, or those that a program makes.
@@ -50,10 +50,16 @@ Result<PatchGrid> to_bezier(const ModelSurface& surface, const FitOptions& optio
 
 /// Makes one set of the patches of all surfaces. source(k).surface is the index into model.surfaces, and
 /// source(k).domain the patch's rectangle of the surface's parameters. PatchSet::fit_error() is the largest of all,
-/// certified if all are.
+/// certified if all are. Patches that trimming loops cut away are left out: see PatchSetOptions::trims. A surface whose
+/// loops TrimRegion::make() refuses is kept whole: see PatchSet::trim_faults().
 ///
-/// Errors: those of the conversions and of PatchSet::make(), as "surface 3 (rim): ..." (index = the surface).
+/// Errors: those of the conversions and of PatchSet::make(), as "surface 3 (rim): ..." (index = the surface);
+/// invalid_argument (loops cut away every patch).
 Result<PatchSet> make_patch_set(const Model& model, const PatchSetOptions& options = {}, const FitOptions& fit = {});
+/// Makes the same set of grids that to_bezier() has made of the model's surfaces, one each. Errors: as above,
+/// count_mismatch.
+Result<PatchSet> make_patch_set(const Model& model, std::span<const PatchGrid> grids,
+                                const PatchSetOptions& options = {});
 
 /// Makes one set of the patches of several surfaces. source(k).surface is the index into `grids`, and source(k).domain
 /// the patch's rectangle. Errors: those of PatchSet::make().

@@ -50,6 +50,9 @@ struct PatchSetOptions {
   FitError fit_error = {};
   /// The source of each patch, copied. Empty: patch k is surface k on [0,1]^2.
   std::span<const PatchSource> sources = {};
+  /// Sets that are made of a model: whether trimming loops count. Patches that a face's loops cut away are then left
+  /// out, and meshes follow the loops through those that they cut. If false, every patch is whole.
+  bool trims = true;
 };
 
 /// Owns patches and their SoA blocks.
@@ -90,6 +93,11 @@ class PatchSet {
   const FitError& fit_error() const;                   ///< PatchSetOptions::fit_error; 0 for patches that are exact
   const BlockKinds& blocks() const;                    ///< PatchSetOptions::blocks
   std::size_t block_count() const;                     ///< blocks of all degrees together
+  std::size_t cut_count() const;                       ///< how many patches trimming loops cut
+  bool is_cut(std::size_t index) const;                ///< whether loops cut this one; index < patch_count()
+  /// Returns why the loops of some surfaces could not be used: "surface 3 (rim): loop 0 ..."; index = the surface. These
+  /// surfaces are kept whole.
+  std::span<const Status> trim_faults() const;
   /// The place of a patch in block-interleaved output.
   struct Slot {
     std::uint32_t block = 0;  ///< below block_count()

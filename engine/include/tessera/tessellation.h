@@ -204,9 +204,18 @@ struct MeshChange {
 /// - Borders whose control points lie in a box no larger than the weld become points, as collapsed ones are.
 /// - The bounds include how far vertices are moved.
 ///
+/// Trimming loops: of a patch that they cut, the mesh shows what an odd number of them encloses.
+///
+/// - All bounds hold between the mesh and the kept part, in both directions; those of pixels and angles too.
+/// - With an angle, the edges along loops also turn by about that angle from one to the next; this is not proven.
+/// - Patches of one face share the vertices of their common sides; whole patches are as without loops. The vertices of
+///   two faces at a common edge need not meet.
+/// - Cut patches take positions from the set's double control points. They cannot share vertices by index, have no quads,
+///   and are not for uniform rates or updates.
+///
 /// Layout of the vertices, patch after patch. Tolerances: the inner points `[iu - 1][iv - 1]`, then the border points
 /// counter-clockwise from (0,0), each corner once; shared points that belong to another patch are left out. Rates: all
-/// points `[iu][iv]`, so vertex (patch * (rates.u + 1) + iu) * (rates.v + 1) + iv.
+/// points `[iu][iv]`, so vertex (patch * (rates.u + 1) + iu) * (rates.v + 1) + iv. Cut patches: in no stated order.
 ///
 /// Threads: any number of const calls; an update excludes every other call.
 ///
@@ -227,7 +236,8 @@ class Tessellation {
   /// - invalid_argument (more triangles or vertices than the limits, or more than 4096 segments along a parameter; the
   ///   message says how many triangles the mesh takes)
   /// - invalid_argument (max_triangles below what one cell per patch takes)
-  /// - unsupported (the set has no float Bernstein blocks), isa_unavailable, cancelled
+  /// - unsupported (the set has no float Bernstein blocks; it has cut patches, and rates or shared vertices are wanted)
+  /// - isa_unavailable, cancelled
   static Result<Tessellation> make(const PatchSet& set, const TessellationOptions& options,
                                    const Execution& execution = {});
 
@@ -260,6 +270,8 @@ class Tessellation {
   /// Returns how many edges of triangles lie on borders that are joined to no other. check() counts fewer where such
   /// borders have vertices at the same positions by chance. 0 with rates, where it is not known.
   std::size_t open_edges() const;
+  /// Returns the patches that have no triangles, because their trimming loops could not be made a polygon.
+  std::span<const std::uint32_t> crossed_patches() const;
   MeshCapacity capacity() const;  ///< the exact sizes of the mesh
   /// Returns a mesh of capacity() with all attributes that the plan has. Errors: out_of_memory.
   Result<Mesh> allocate() const;
@@ -271,7 +283,7 @@ class Tessellation {
   /// does not keep the set itself: a run on another set of equal shape (patch count, degrees and collapsed borders)
   /// writes that set's mesh, relative to that set's origin, for which nothing is proven.
   ///
-  /// Errors: buffer_too_small, stale (another number of patches, other degrees or collapsed borders), unsupported (a
+  /// Errors: buffer_too_small, stale (another number of patches, other degrees, collapsed borders or loops), unsupported (a
   /// set without float Bernstein blocks), invalid_argument (views; a view of normals where vertices are shared
   /// everywhere; a view of quads if the plan has none), cancelled. Nothing is written on any error but cancelled.
   ///
@@ -297,7 +309,7 @@ class Tessellation {
   /// Errors, with nothing written and the set unchanged:
   /// - buffer_too_small, count_mismatch (views of fewer or more vertices: of a mesh of another topology)
   /// - invalid_argument (views; index = the edit: no such patch, or one that an edit before names)
-  /// - count_mismatch (points), stale (another set)
+  /// - count_mismatch (points), stale (another set), unsupported (a set with cut patches)
   /// - non_finite (index = the edit: a point is not finite, or does not fit the set's numbers relative to its origin)
   ///
   /// Errors after the set was edited:

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <memory>
 
+#include "base/impl_access.h"
 #include "base/text.h"
 #include "block/patch_set_impl.h"
+#include "block/patch_trims.h"
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
@@ -19,12 +22,12 @@ struct Gathered {
   std::size_t surface_count = 0;
   Box3 box;
   FitError fit_error;
+  PatchTrims trims;
 
   void add(std::size_t surface, PatchGrid grid) {
     const auto u = grid.breaks_u(), v = grid.breaks_v();
     box.extend(grid.box());
-    fit_error.distance = std::max(fit_error.distance, grid.fit_error().distance);
-    fit_error.certified = fit_error.certified && grid.fit_error().certified;
+    note_error(grid);
     std::vector<BezierPatch> added = std::move(grid).take_patches();
     if (patches.empty()) {
       patches = std::move(added);
@@ -45,9 +48,40 @@ struct Gathered {
     surface_count = surface + 1;
   }
 
+  /// Adds what a face keeps of its patches.
+  void add_kept(std::size_t surface, const PatchGrid& grid, TrimRegion region) {
+    const std::vector<PatchUse> uses = patch_uses(region);
+    note_error(grid);
+    surface_count = surface + 1;
+    const std::size_t cuts_before = trims.cuts.size();
+    for (std::size_t place = 0; place < uses.size(); ++place) {
+      if (uses[place] == PatchUse::out) continue;
+      if (uses[place] == PatchUse::cut)
+        trims.cuts.push_back({static_cast<std::uint32_t>(patches.size()),
+                              static_cast<std::uint32_t>(trims.regions.size()), static_cast<std::uint32_t>(place)});
+      sources.push_back({static_cast<std::uint32_t>(surface), grid.patch_domain(place)});
+      patches.push_back(grid.patches()[place]);
+      box.extend(patches.back().hull_box());
+    }
+    if (trims.cuts.size() > cuts_before) trims.regions.push_back(std::move(region));
+  }
+
+  void note_error(const PatchGrid& grid) {
+    fit_error.distance = std::max(fit_error.distance, grid.fit_error().distance);
+    fit_error.certified = fit_error.certified && grid.fit_error().certified;
+  }
+
   Result<PatchSet> packed(PatchSetOptions options) && {
     options.fit_error = fit_error;
-    return PatchSet::Impl::make(std::move(patches), std::move(sources), surface_count, box, options);
+    if (patches.empty() && surface_count > 0)
+      return Status(StatusCode::invalid_argument, "trimming loops cut away every patch");
+    Result<PatchSet> set =
+        PatchSet::Impl::make(std::move(patches), std::move(sources), surface_count, box, options);
+    if (!set || trims.cuts.empty()) return set;
+    trims.is_cut.resize(set->patch_count());
+    for (const PatchTrims::Cut& cut : trims.cuts) trims.is_cut[cut.patch] = 1;
+    impl_of(*set).trims = std::make_shared<const PatchTrims>(std::move(trims));
+    return set;
   }
 };
 
@@ -103,21 +137,73 @@ Result<PatchGrid> to_bezier(const ModelSurface& surface, const FitOptions& optio
   });
 }
 
+namespace {
+
+/// Gathers the patches of a model's surfaces one by one.
+class ModelPatches {
+ public:
+  ModelPatches(const Model& model, const PatchSetOptions& options) : model_(model), options_(options) {}
+
+  /// Adds the next surface's patches.
+  Status add(PatchGrid grid) {
+    const std::size_t k = ends_.size();
+    const std::vector<TrimLoop>& loops = model_.surfaces[k].trims;
+    if (!options_.trims || loops.empty()) {
+      all_.add(k, std::move(grid));
+    } else {
+      Result<TrimRegion> region = TrimRegion::make(loops, grid.breaks_u(), grid.breaks_v(), trim_options(grid));
+      if (!region && region.status().code() == StatusCode::out_of_memory) return region.status();
+      if (!region) faults_.push_back(in_surface(model_, k, region.status()));
+      if (!region || region->is_whole()) {
+        all_.add(k, std::move(grid));
+      } else {
+        all_.add_kept(k, grid, *std::move(region));
+      }
+    }
+    ends_.push_back(all_.patches.size());
+    return {};
+  }
+
+  Result<PatchSet> packed() && {
+    Result<PatchSet> set = std::move(all_).packed(options_);
+    if (set) impl_of(*set).trim_faults = std::move(faults_);
+    if (set || set.status().index() == Status::no_index) return set;
+    const auto patch = static_cast<std::size_t>(set.status().index());
+    const auto surface = std::upper_bound(ends_.begin(), ends_.end(), patch) - ends_.begin();
+    return in_surface(model_, static_cast<std::size_t>(surface), set.status());
+  }
+
+ private:
+  const Model& model_;
+  const PatchSetOptions& options_;
+  Gathered all_;
+  std::vector<Status> faults_;
+  std::vector<std::size_t> ends_;  ///< the end of each surface's patches
+};
+
+}  // namespace
+
 Result<PatchSet> make_patch_set(const Model& model, const PatchSetOptions& options, const FitOptions& fit) {
   return guarded([&]() -> Result<PatchSet> {
-    Gathered all;
-    std::vector<std::size_t> ends;  // the end of each surface's patches
+    ModelPatches patches(model, options);
     for (std::size_t k = 0; k < model.surfaces.size(); ++k) {
       Result<PatchGrid> grid = to_bezier(model.surfaces[k], fit);
       if (!grid) return in_surface(model, k, grid.status());
-      all.add(k, *std::move(grid));
-      ends.push_back(all.patches.size());
+      if (Status status = patches.add(*std::move(grid)); !status.ok()) return status;
     }
-    Result<PatchSet> set = std::move(all).packed(options);
-    if (set || set.status().index() == Status::no_index) return set;
-    const auto patch = static_cast<std::size_t>(set.status().index());
-    const auto surface = std::upper_bound(ends.begin(), ends.end(), patch) - ends.begin();
-    return in_surface(model, static_cast<std::size_t>(surface), set.status());
+    return std::move(patches).packed();
+  });
+}
+
+Result<PatchSet> make_patch_set(const Model& model, std::span<const PatchGrid> grids, const PatchSetOptions& options) {
+  return guarded([&]() -> Result<PatchSet> {
+    if (grids.size() != model.surfaces.size())
+      return Status(StatusCode::count_mismatch, "there are " + counted(grids.size(), "grid") + " for " +
+                                                    counted(model.surfaces.size(), "surface"));
+    ModelPatches patches(model, options);
+    for (const PatchGrid& grid : grids)
+      if (Status status = patches.add(grid); !status.ok()) return status;
+    return std::move(patches).packed();
   });
 }
 

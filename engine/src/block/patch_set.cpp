@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "block/pack.h"
 #include "block/patch_set_impl.h"
+#include "block/patch_trims.h"
 #include "kernel/table/kernel_table.h"
 #include "parallel/parallel_for.h"
 #include "surface/net/patch_pieces.h"
@@ -237,6 +238,9 @@ const FitError& PatchSet::fit_error() const { return impl_->fit_error; }
 const BlockKinds& PatchSet::blocks() const { return impl_->kinds; }
 std::size_t PatchSet::block_count() const { return impl_->lane_counts.size(); }
 PatchSet::Slot PatchSet::slot(std::size_t index) const { return impl_->slots[index]; }
+std::size_t PatchSet::cut_count() const { return impl_->trims ? impl_->trims->cuts.size() : 0; }
+bool PatchSet::is_cut(std::size_t index) const { return impl_->trims && impl_->trims->is_cut[index]; }
+std::span<const Status> PatchSet::trim_faults() const { return impl_->trim_faults; }
 std::uint64_t PatchSet::revision() const { return impl_->revision; }
 
 std::size_t PatchSet::memory_bytes() const {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -59,6 +60,7 @@ struct Coefficients {
 };
 
 class MeshTables;
+struct PatchTrims;
 
 class PatchSet::Impl {
  public:
@@ -77,6 +79,8 @@ class PatchSet::Impl {
   FitError fit_error;
   Vec3 origin;
   std::size_t surface_count = 0;
+  std::shared_ptr<const PatchTrims> trims;  ///< null if no patch is cut
+  std::vector<Status> trim_faults;          ///< one for each surface whose loops could not be used
   std::uint64_t revision = 0;
   std::vector<std::uint64_t> edited;  ///< `[patch]`: the revision that its last edit made; 0 without an edit
   /// The tables that plans of this set share (tess/write/mesh_tables.h), without and with those of bicubic points.

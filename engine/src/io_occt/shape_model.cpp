@@ -83,8 +83,6 @@ class ModelOfFaces {
     if (broken_trims_ > 0)
       warn(counted(broken_trims_, "face") + (broken_trims_ == 1 ? " has loops" : " have loops") +
            " that cannot be read: taken for untrimmed");
-    if (trimmed_ > 0)
-      warn(counted(trimmed_, "face") + (trimmed_ == 1 ? " is" : " are") + " trimmed: trims not honoured yet");
     return std::move(model_);
   }
 
@@ -139,7 +137,6 @@ class ModelOfFaces {
     }
     if (face.Orientation() == TopAbs_REVERSED)
       if (Status status = transpose(made->surface, *loops); !status.ok()) return status;
-    trimmed_ += !loops->empty();
     fitted_ += made->fit_error > 0;
     worst_fit_ = std::max(worst_fit_, made->fit_error);
     model_.surfaces.push_back({name, std::move(made->surface), affine(place.Transformation()), *std::move(loops)});
@@ -151,7 +148,7 @@ class ModelOfFaces {
   Model model_;
   std::vector<std::string> left_out_;
   StatusCode first_code_ = StatusCode::parse_error;
-  std::size_t faces_ = 0, trimmed_ = 0, fitted_ = 0, broken_trims_ = 0;
+  std::size_t faces_ = 0, fitted_ = 0, broken_trims_ = 0;
   double worst_fit_ = 0;
 };
 

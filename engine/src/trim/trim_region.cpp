@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -49,24 +50,39 @@ std::size_t interval(const std::vector<double>& lines, double x) {
   return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(above - 1, 0, std::ssize(lines) - 2));
 }
 
-/// Marks the patches that pieces cut, and locates the centres of the others.
-void sort_patches(TrimRegion::Impl& region) {
+/// Lists the pieces that cut each patch.
+void list_cutting(TrimRegion::Impl& region) {
   const std::vector<double>&u = region.lines.u.lines, &v = region.lines.v.lines;
-  region.patches.assign((u.size() - 1) * (v.size() - 1), TrimSide::inside);
-  for (const TrimPiece& piece : region.pieces) {
+  std::vector<std::pair<std::size_t, std::uint32_t>> cuts;  // place of the patch, piece
+  for (std::uint32_t k = 0; k < region.pieces.size(); ++k) {
+    const TrimPiece& piece = region.pieces[k];
     const bool along_u = piece.start().v == piece.end().v && region.lines.v.is_line(piece.start().v);
     const bool along_v = piece.start().u == piece.end().u && region.lines.u.is_line(piece.start().u);
     if (along_u || along_v) continue;
     const std::size_t a = interval(u, 0.5 * piece.lower_u() + 0.5 * piece.upper_u());
     const std::size_t b = interval(v, 0.5 * piece.lower_v() + 0.5 * piece.upper_v());
-    region.patches[a * region.count_v() + b] = TrimSide::border;
+    cuts.emplace_back(a * region.count_v() + b, k);
   }
+  std::ranges::sort(cuts);
+  region.first_cutting.assign((u.size() - 1) * (v.size() - 1) + 1, 0);
+  for (const auto& [place, piece] : cuts) {
+    ++region.first_cutting[place + 1];
+    region.cutting.push_back(piece);
+  }
+  std::partial_sum(region.first_cutting.begin(), region.first_cutting.end(), region.first_cutting.begin());
+}
+
+/// Tells which patches pieces cut, and locates the centres of the others.
+void sort_patches(TrimRegion::Impl& region) {
+  const std::vector<double>&u = region.lines.u.lines, &v = region.lines.v.lines;
+  list_cutting(region);
+  region.patches.reserve((u.size() - 1) * (v.size() - 1));
   for (std::size_t a = 0; a + 1 < u.size(); ++a) {
     for (std::size_t b = 0; b + 1 < v.size(); ++b) {
-      TrimSide& side = region.patches[a * region.count_v() + b];
-      if (side != TrimSide::border)
-        side = region.cells.locate(region.pieces, 0.5 * u[a] + 0.5 * u[a + 1], 0.5 * v[b] + 0.5 * v[b + 1]);
-      region.is_whole = region.is_whole && side == TrimSide::inside;
+      const bool is_cut = !region.pieces_of(region.patches.size()).empty();
+      const double middle_u = 0.5 * u[a] + 0.5 * u[a + 1], middle_v = 0.5 * v[b] + 0.5 * v[b + 1];
+      region.patches.push_back(is_cut ? TrimSide::border : region.cells.locate(region.pieces, middle_u, middle_v));
+      region.is_whole = region.is_whole && region.patches.back() == TrimSide::inside;
     }
   }
 }

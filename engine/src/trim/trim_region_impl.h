@@ -1,6 +1,8 @@
 #pragma once
 // The inner state of a TrimRegion, for the floors that mesh what it keeps.
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "tessera/trim_region.h"
@@ -20,12 +22,18 @@ class TrimRegion::Impl {
   bool starts_inside = false;  ///< whether points that no piece encloses are kept
   RegionCells cells;
   std::vector<TrimSide> patches;  ///< `[a][b]`
+  /// Those of patch `[a][b]`, at place k, are cutting[first_cutting[k]] to cutting[first_cutting[k + 1]].
+  std::vector<std::uint32_t> cutting, first_cutting;
   bool is_whole = true;
   ParameterPoint band;
   std::vector<LoopRemark> remarks;
 
   /// The patches along v.
   std::size_t count_v() const { return lines.v.lines.size() - 1; }
+  /// The pieces that cut a patch, as indices into `pieces`. Those along its sides do not.
+  std::span<const std::uint32_t> pieces_of(std::size_t place) const {
+    return std::span(cutting).subspan(first_cutting[place], first_cutting[place + 1] - first_cutting[place]);
+  }
 };
 
 }  // namespace tessera::inline abi_0_1

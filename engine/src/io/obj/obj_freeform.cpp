@@ -328,7 +328,6 @@ class ObjFreeformReader {
     if (!surfaces)
       return in_element(surfaces.status(),
                         "surface " + std::to_string(model_.surfaces.size()) + (name.empty() ? "" : " (" + name + ")"));
-    if (!element_.loops.empty() && trimmed_++ == 0) first_trimmed_ = element_.place;
     const Shared<std::vector<TrimLoop>> trims = std::move(element_.loops);
     for (std::size_t k = 0; k < surfaces->size(); ++k) {
       const Shared<std::string> piece =
@@ -355,10 +354,6 @@ class ObjFreeformReader {
   }
 
   void add_warnings() {
-    if (trimmed_ > 0)
-      model_.warnings.push_back(first_trimmed_->place() + ": " + std::to_string(trimmed_) +
-                                (trimmed_ == 1 ? " surface is" : " surfaces are") +
-                                " trimmed, the first here: trims not honoured yet");
     if (!notes_.empty()) model_.warnings.push_back(notes_.sentence());
   }
 
@@ -372,8 +367,6 @@ class ObjFreeformReader {
   Element element_;
   ObjTrimCurves curves_;
   Model model_;
-  std::size_t trimmed_ = 0;
-  std::optional<TextCursor> first_trimmed_;
   ObjNotes notes_;
 };
 

@@ -136,7 +136,6 @@ class RibReader {
       Status status = count_copy();
       if (!status.ok()) return status;
       surfaces().push_back({surface.name, surface.surface, placement, surface.trims});
-      if (!object_ && !surface.trims->empty()) trimmed_.add(request_, start_);
     }
     return lexer_.skip_values();
   }
@@ -248,7 +247,6 @@ class RibReader {
     const auto& trims = stack_.state().trims;
     if (!status.ok() || trims->empty()) return status;
     surfaces().back().trims = trims;
-    if (!object_) trimmed_.add(request_, start_);
     return {};
   }
 
@@ -309,10 +307,6 @@ class RibReader {
       say(unread_transforms_,
           "transformations that are not read, surfaces after them are misplaced: " + unread_transforms_.words());
     }
-    if (!trimmed_.empty()) {
-      say(trimmed_, number(trimmed_) + (trimmed_.total() == 1 ? " surface is" : " surfaces are") +
-                        " trimmed: trims are not honoured yet");
-    }
     if (!later_samples_.empty()) {
       say(later_samples_, "motions are read at their first moment only, " + number(later_samples_) +
                               (later_samples_.total() == 1 ? " other is" : " others are") + " skipped");
@@ -372,7 +366,7 @@ class RibReader {
   std::size_t copies_left_;
   bool in_motion_ = false;
   std::size_t samples_ = 0;
-  Tally unread_shapes_, unread_transforms_, others_, later_samples_, worlds_, trimmed_;
+  Tally unread_shapes_, unread_transforms_, others_, later_samples_, worlds_;
 };
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "parallel/call_progress.h"
 #include "parallel/parallel_for.h"
 #include "tess/plan/joins.h"
+#include "tess/write/cut_vertices.h"
 #include "tess/write/mesh_views.h"
 #include "tess/write/patch_writer.h"
 #include "tess/write/welded_vertices.h"
@@ -25,6 +26,7 @@ constexpr double planning_ends[] = {0.5, 0.95};
 /// Returns the refusal, which also names the tolerance that positions in double would keep.
 Status refused_in_float(const Status& refusal, const PatchSet& set, PlannerOptions planned, double tolerance,
                         const TessellationOptions& options) {
+  if (set.cut_count() > 0) return refusal;  // to try is to cut patches into millions of cells
   planned.f64_positions = true;
   const Result<CertifiedPlanner> planner = CertifiedPlanner::make(impl_of(set), planned, {});
   if (!planner) return planner.status();
@@ -78,6 +80,8 @@ Result<Planned> plan_for(const PatchSet& set, const TessellationOptions& options
 Result<std::unique_ptr<ProvenMesh>> ProvenMesh::make(const PatchSet& set, const TessellationOptions& options,
                                                      const ProvenMesh* before, const Execution& execution) {
   if (!set.blocks().float_bernstein) return no_float_blocks();
+  if (set.cut_count() > 0 && options.share_vertices)
+    return Status(StatusCode::unsupported, "patches that trimming loops cut cannot share vertices by index yet");
   const Result<Isa> isa = before ? before->isa_ : usable_isa(options.isa);
   if (!isa) return isa.status();
   const Result<double> tolerance = before ? before->tolerance_ : tolerance_of(options, set);
@@ -109,6 +113,7 @@ ProvenMesh::ProvenMesh(const PatchSet& set, const TessellationOptions& options, 
       shapes_(planner.shapes().begin(), planner.shapes().end()),
       weld_(planner.weld()),
       welded_borders_(planner.weld().joined_by_distance),
+      trims_(impl_of(set).trims),
       origin_(set.origin()),
       revision_(set.revision()),
       is_certified_(set.fit_error().certified),
@@ -122,7 +127,8 @@ Tessellation::Impl::Proof ProvenMesh::proof() const {
           .angles = plan_.angles(),
           .pixels = plan_.pixels(),
           .welded_borders = welded_borders_,
-          .open_edges = plan_.open_edges()};
+          .open_edges = plan_.open_edges(),
+          .crossed = plan_.crossed()};
 }
 
 Status ProvenMesh::join(const PatchSet::Impl& set, const CertifiedPlanner& planner, const Execution& execution) {
@@ -169,6 +175,8 @@ Status ProvenMesh::run(const PatchSet& set, const MeshViews& out, const Executio
   if (Status status = check_views(out, capacity(), plan_.has_f64_positions()); !status.ok()) return status;
   if (Status status = check_attributes(out); !status.ok()) return status;
   if (Status status = check_shapes(set, shapes_); !status.ok()) return status;
+  if (impl_of(set).trims != trims_)
+    return {StatusCode::stale, "the plan was made for a set that other trimming loops cut"};
   const PatchWriter writer(impl_of(set), plan_, *tables_, kernel::kernels(isa_), out, execution.stores);
   const auto write = [&](std::size_t begin, std::size_t end) { writer.write(begin, end); };
   if (Status status = parallel_for(plan_.patch_count(), patches_per_task, execution, write); !status.ok())
@@ -177,7 +185,9 @@ Status ProvenMesh::run(const PatchSet& set, const MeshViews& out, const Executio
     execution.report->isa = isa_;
     execution.report->streaming = writer.streaming();
   }
-  return write_copies(impl_of(set), out, execution, [](std::size_t) { return true; });
+  if (Status status = write_copies(impl_of(set), out, execution, [](std::size_t) { return true; }); !status.ok())
+    return status;
+  return write_cut(impl_of(set), plan_, options_.crease_angle, out, execution);
 }
 
 }  // namespace tessera::inline abi_0_1

@@ -61,6 +61,7 @@ double Tessellation::pixels() const { return largest(impl_->proof().pixels); }
 std::span<const float> Tessellation::pixel_bounds() const { return impl_->proof().pixels; }
 std::size_t Tessellation::welded_borders() const { return impl_->proof().welded_borders; }
 std::size_t Tessellation::open_edges() const { return impl_->proof().open_edges; }
+std::span<const std::uint32_t> Tessellation::crossed_patches() const { return impl_->proof().crossed; }
 MeshCapacity Tessellation::capacity() const { return impl_->capacity(); }
 
 Result<Mesh> Tessellation::allocate() const {

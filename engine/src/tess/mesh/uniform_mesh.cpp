@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/impl_access.h"
+#include "base/text.h"
 #include "eval/patch_edits.h"
 #include "eval/uniform_grid.h"
 #include "kernel/table/kernel_table.h"
@@ -208,6 +209,10 @@ Result<std::unique_ptr<Tessellation::Impl>> make_uniform_mesh(const PatchSet& se
   const UniformRates rates = *options.rates;
   if (options.tolerance || options.angle || options.pixels || options.smallest)
     return invalid("there are both rates and a tolerance: set one of them");
+  if (set.cut_count() > 0)
+    return Status(StatusCode::unsupported, "uniform rates need whole patches, and trimming loops cut " +
+                                               counted(set.cut_count(), "patch", "patches") +
+                                               " of this set: set a tolerance, or make the set without trims");
   if (Status status = check_rate(rates.u, "u"); !status.ok()) return status;
   if (Status status = check_rate(rates.v, "v"); !status.ok()) return status;
   if (Status status = check_vertices(set.patch_count(), {rates.u, rates.v}); !status.ok()) return status;

@@ -44,6 +44,11 @@ Result<CertifiedPlanner> CertifiedPlanner::make(const PatchSet::Impl& set, const
   if (Status status = planner.find_edges_and_bounds(execution); !status.ok()) return status;
   for (const double rounding : planner.roundings_)
     planner.largest_rounding_ = std::max(planner.largest_rounding_, rounding);
+  if (set.trims) {
+    planner.drawn_ = planner.shapes_;
+    for (const PatchTrims::Cut& cut : set.trims->cuts) planner.drawn_[cut.patch].is_curve = true;
+    for (const TrimRegion& region : set.trims->regions) planner.face_sides_.emplace_back(region);
+  }
   planner.find_weld();
   if (Status status = planner.bound_turning_and_picture(execution); !status.ok()) return status;
   return planner;
@@ -108,7 +113,7 @@ void CertifiedPlanner::find_weld() {
     edges_ = parted_by_doubles(*set_, edges_);
   }
   if (!(rules.reach > 0) && !rules.every_edge) return;
-  weld_ = weld_borders(*set_, shapes_, roundings_, rules, edges_);
+  weld_ = weld_borders(*set_, own_shapes(), roundings_, rules, edges_);
   for (std::size_t k = 0; k < weld_.displacements.size(); ++k)
     roundings_[k] = std::max(roundings_[k], weld_.displacements[k]);
 }
@@ -171,18 +176,18 @@ CertifiedPlanner::Choice CertifiedPlanner::choose(std::size_t patch, const Reque
   const double distance = picture ? std::min(tolerance, picture->distance()) : tolerance;
   if (!(given < distance)) choice.failure = given < tolerance ? Failure::rough_pixels : Failure::rough;
   if (std::isfinite(distance)) limits.chord = &chord;
-  limits.distance = distance - given;
+  limits.distance = request.share * (distance - given);
   const std::optional<ChordBound> projected = picture ? picture->projected() : std::nullopt;
   if (projected) {
     limits.picture = &*projected;
-    limits.pixels = options_.pixels - picture->moved_pixels();
+    limits.pixels = request.share * (options_.pixels - picture->moved_pixels());
     if (!(limits.pixels > 0)) choice.failure = Failure::rough_pixels;
   }
   if (choice.failure != Failure::none) return choice;
   const bool bounded = turning && turning->is_finite();
   if (bounded) {
     limits.turning = &*turning;
-    limits.angle = *options_.angle;
+    limits.angle = request.share * *options_.angle;
   }
   std::optional<Rates> rates = rates_for(limits, most);
   if (rates && turning && !bounded)
@@ -219,7 +224,7 @@ ProvenSegments CertifiedPlanner::settle(std::size_t patch, const CellLimits& lim
     return ProvenSegments{segments, chord.distance_of(segments, anywhere), anywhere};
   };
   const auto graded =
-      min_rate == 1 && limits.is_for_more_than_distance() ? graded_segments(limits, rates) : std::nullopt;
+      min_rate == 1 && limits.is_for_more_than_distance() && !request.uniform ? graded_segments(limits, rates) : std::nullopt;
   ProvenSegments proven = proven_for(graded ? *graded : rates);
   if (request.fewest && limits.chord) {
     SegmentChoices choices(proven_for(rates));
@@ -368,7 +373,11 @@ Result<CertifiedPlan> CertifiedPlanner::plan(const Request& request, const Execu
   plan.is_f64_ = options_.f64;
   plan.has_f64_positions_ = options_.f64_positions;
   if (Status status = choose_rates(request, plan, execution); !status.ok()) return status;
-  divide(request.tolerance, plan);
+  if (set_->trims) {
+    if (Status status = divide_and_cut(request, plan, execution); !status.ok()) return status;
+  } else {
+    divide(request.tolerance, plan);
+  }
   plan.lay_out();
   return plan;
 }

@@ -17,6 +17,7 @@
 #include "tess/cells/stitched_patch.h"
 #include "tess/edges/shared_edges.h"
 #include "tess/edges/weld.h"
+#include "tess/trimmed/cut_patch.h"
 #include "tessera/tessellation.h"
 
 namespace tessera::inline abi_0_1 {
@@ -40,6 +41,9 @@ class CertifiedPlan {
   std::size_t patch_count() const { return divisions_.size(); }
   const Division& division(std::size_t patch) const { return divisions_[patch]; }
   std::span<const Division> divisions() const { return divisions_; }
+  /// The patches that loops cut, by growing patch. Their divisions are empty but for the borders' segments.
+  std::span<const CutPatch> cuts() const { return cuts_; }
+  std::span<const std::uint32_t> crossed() const { return crossed_; }  ///< cut patches whose loops cross
   std::span<const PatchSegments> segments() const { return segments_; }  ///< segments that each patch needs for itself
   std::size_t first_vertex(std::size_t patch) const { return first_vertex_[patch]; }
   std::size_t first_triangle(std::size_t patch) const { return first_triangle_[patch]; }
@@ -87,6 +91,8 @@ class CertifiedPlan {
   /// `[patch]`, and the number of all at the end.
   std::vector<std::size_t> first_vertex_, first_triangle_, first_quad_;
   std::vector<float> bounds_, angles_, pixels_;
+  std::vector<CutPatch> cuts_;
+  std::vector<std::uint32_t> crossed_;
   std::uint32_t open_edges_ = 0;
   bool is_f64_ = false, has_f64_positions_ = false;
   std::vector<std::uint8_t> straddles_;  ///< `[patch]`: 1 if its bounds hold wherever triangles lie; empty if for none
@@ -171,6 +177,8 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
     bool fewest = false;  ///< see TessellationOptions::fewest
     KeptSegments kept = {};
     std::uint64_t max_triangles = std::numeric_limits<std::uint64_t>::max();  ///< for tolerances that messages propose
+    double share = 1;     ///< the part of what the limits leave that cells may take
+    bool uniform = false;  ///< whether segments are of one length
   };
   /// Makes a plan without a limit on its triangles.
   Result<CertifiedPlan> plan(const Request& request, const Execution& execution) const;
@@ -214,19 +222,36 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   std::string wanted(double tolerance) const;
   bool is_displaced(std::size_t patch) const { return !weld_.displacements.empty() && weld_.displacements[patch] > 0; }
   void divide(double tolerance, CertifiedPlan& plan) const;
+  bool is_cut(std::size_t patch) const { return set_->trims && set_->trims->is_cut[patch]; }
+  /// The room for the triangles of a cut patch, and for the slivers along its loops.
+  struct CutRoom {
+    double given = 0;  ///< the errors of its vertices and of the fit
+    double tolerance = 0;
+    TrimmedPatch limits;
+  };
+  CutRoom room_of(const CutPatch& cut, const Request& request, const CertifiedPlan& plan) const;
+  /// Chooses the segments of cut patches, divides all patches and cuts them, until every bound holds.
+  Status divide_and_cut(const Request& request, CertifiedPlan& plan, const Execution& execution) const;
+  /// Sets the bounds of a patch that has been cut. Returns the largest over its limit.
+  double bound_cut(const CutRoom& room, const CutPatch& cut, CertifiedPlan& plan) const;
+  /// Finds the borders of whole patches along the sides of cut ones.
+  void find_same_borders(CertifiedPlan& plan) const;
   /// Returns the distance of the triangle that crosses the middle of an odd border, for a patch whose even rate along
   /// it has a bound of halves.
   double straddling_distance(std::size_t patch, Side side, const std::array<Segments, 4>& borders,
                              const CertifiedPlan& plan) const;
   /// Returns for each border whether it runs against the leading border of its edge.
   std::vector<std::uint8_t> borders_against() const;
-  std::span<const PatchShape> divided_shapes() const { return weld_.shapes.empty() ? shapes_ : weld_.shapes; }
+  /// The shapes by which patches are divided and welded: cut ones have no area.
+  std::span<const PatchShape> own_shapes() const { return drawn_.empty() ? shapes_ : drawn_; }
+  std::span<const PatchShape> divided_shapes() const { return weld_.shapes.empty() ? own_shapes() : weld_.shapes; }
 
   const PatchSet::Impl* set_;
   PlannerOptions options_;
   SharedEdges edges_;
   double fit_error_;
-  std::vector<PatchShape> shapes_;
+  std::vector<PatchShape> shapes_, drawn_;  ///< drawn_: empty if no patch is cut
+  std::vector<FaceSides> face_sides_;       ///< by region of the set's trims
   Weld weld_;
   double largest_rounding_ = 0;    ///< the largest rounding of vertices before welding
   std::vector<double> roundings_;  ///< `[patch]`: the largest error of its vertices, by rounding or by welding

@@ -56,11 +56,12 @@ namespace {
 /// Chooses the segments of all borders from those that the patches need for themselves.
 class BorderSegments {
  public:
-  BorderSegments(std::span<const PatchSegments> segments, std::span<const PatchShape> shapes, const SharedEdges& edges)
-      : segments_(segments), shapes_(shapes), edges_(edges), needs_(edges.count()) {}
+  BorderSegments(std::span<const PatchSegments> segments, const SharedEdges& edges)
+      : segments_(segments), edges_(edges), has_needs_(segments.size(), 0), needs_(edges.count()) {}
 
   /// Adds the needs of a patch. `never`: 1 if its borders must be even where it has an even rate.
   void add(std::size_t patch, std::uint16_t never) {
+    has_needs_[patch] = 1;
     for (const Side side : all_sides) {
       const std::uint32_t edge = edges_.edge(patch, side);
       if (edge != SharedEdges::none) needs_[edge].add(along(segments_[patch], side), never);
@@ -73,7 +74,7 @@ class BorderSegments {
     pieces_.resize(edges_.count());
     for (std::size_t k = 0; k < segments_.size(); ++k)
       for (const Side side : all_sides)
-        if (const std::uint32_t edge = edges_.edge(k, side); edge != SharedEdges::none && !shapes_[k].is_curve)
+        if (const std::uint32_t edge = edges_.edge(k, side); edge != SharedEdges::none && has_needs_[k])
           pieces_[edge].add(along(segments_[k], side), is_against(k, side));
   }
   /// Whether a patch has an even rate along a border that other patches may share.
@@ -97,8 +98,8 @@ class BorderSegments {
   }
 
   std::span<const PatchSegments> segments_;
-  std::span<const PatchShape> shapes_;
   const SharedEdges& edges_;
+  std::vector<std::uint8_t> has_needs_;  ///< `[patch]`
   std::vector<EdgeNeeds> needs_;       ///< `[edge]`
   std::vector<PieceNeeds> pieces_;     ///< `[edge]`; empty if all segments are uniform
   std::vector<std::uint8_t> against_;  ///< `[border]`; empty if all segments are uniform
@@ -115,9 +116,10 @@ void CertifiedPlanner::divide(double tolerance, CertifiedPlan& plan) const {
     return by_distance && std::max(segments[k].u.rate(), segments[k].v.rate()) <= max_to_straddle;
   };
   const auto always_straddles = [&](std::size_t k) { return !plan.straddles_.empty() && plan.straddles_[k]; };
-  BorderSegments borders(segments, shapes, edges_);
+  BorderSegments borders(segments, edges_);
   for (std::size_t k = 0; k < segments.size(); ++k)
-    if (!shapes[k].is_curve) borders.add(k, static_cast<std::uint16_t>(!is_coarse(k) && !always_straddles(k)));
+    if (!shapes[k].is_curve || is_cut(k))
+      borders.add(k, static_cast<std::uint16_t>(!is_coarse(k) && !always_straddles(k) && !is_cut(k)));
   if (!std::all_of(segments.begin(), segments.end(), [](auto s) { return s.are_uniform(); }))
     borders.part(borders_against());
   // The borders that patches refuse are made even together: a refusal must not depend on an earlier one. Each raises

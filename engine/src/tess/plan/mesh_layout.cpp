@@ -11,6 +11,7 @@ void CertifiedPlan::lay_out() {
   const std::size_t patches = divisions_.size();
   for (auto* first : {&first_vertex_, &first_triangle_, &first_quad_}) first->resize(patches + 1);
   std::size_t vertices = 0, triangles = 0, quads = 0;
+  auto cut = cuts_.begin();
   for (std::size_t patch = 0; patch < patches; ++patch) {
     const Division& division = divisions_[patch];
     first_vertex_[patch] = vertices;
@@ -19,6 +20,11 @@ void CertifiedPlan::lay_out() {
     if (!division.empty)
       vertices += division.inner_count() + (shares_vertices() ? owned_ring_count(patch) : division.ring_count());
     triangles += division.triangle_count();
+    if (cut != cuts_.end() && cut->patch == patch) {
+      vertices += cut->vertices.size();
+      triangles += cut->triangles.size();
+      ++cut;
+    }
     quads += division.cell_count();
   }
   first_vertex_[patches] = vertices;
@@ -28,17 +34,24 @@ void CertifiedPlan::lay_out() {
 
 void CertifiedPlan::count_open_edges(const SharedEdges& edges) {
   std::vector<std::uint32_t> borders(edges.count(), 0);
+  const auto visit_border = [&](std::size_t patch, Side side, const auto& visit) {
+    if (const std::uint32_t edge = edges.edge(patch, side); edge != SharedEdges::none)
+      visit(edge, divisions_[patch].border[static_cast<std::size_t>(side)].rate());
+  };
   const auto for_borders = [&](const auto& visit) {
     for (std::size_t patch = 0; patch < divisions_.size(); ++patch)
       for (const Side side : all_sides)
-        if (const std::uint32_t edge = edges.edge(patch, side); edge != SharedEdges::none && !divisions_[patch].empty)
-          visit(edge, divisions_[patch].border[static_cast<std::size_t>(side)].rate());
+        if (!divisions_[patch].empty) visit_border(patch, side, visit);
+    for (const CutPatch& cut : cuts_)
+      for (const Side side : all_sides)
+        if (!cut.is_crossed && cut.is_full[static_cast<std::size_t>(side)]) visit_border(cut.patch, side, visit);
   };
   for_borders([&](std::uint32_t edge, int) { ++borders[edge]; });
   open_edges_ = 0;
   for_borders([&](std::uint32_t edge, int rate) {
     if (borders[edge] == 1) open_edges_ += static_cast<std::uint32_t>(rate);
   });
+  for (const CutPatch& cut : cuts_) open_edges_ += cut.open_edges;
 }
 
 void CertifiedPlan::share(const VertexCopies& copies) {

@@ -59,6 +59,12 @@ std::optional<double> CertifiedPlanner::nearest_tolerance(std::uint64_t max_tria
     std::size_t served = 0;
     while (served < shapes_.size() && serves(served)) ++served;
     if (served < shapes_.size()) continue;
+    if (set_->trims) {  // to cut patches takes long, and leaves at most so many triangles
+      double cells = 0;
+      for (std::size_t k = 0; k < shapes_.size(); ++k) cells += choose(k, {tolerance}, max_rate).cells;
+      if (4 * cells <= static_cast<double>(max_triangles)) return 2 * tolerance;
+      continue;
+    }
     const Result<CertifiedPlan> found = plan({tolerance}, {});
     if (found && found->capacity().triangles <= max_triangles && found->capacity().vertices <= max_vertices)
       return tolerance;

@@ -14,23 +14,16 @@ void PatchPoints::begin_row(double u) {
   }
 }
 
-Vec3 PatchPoints::sum(const double* of_v) const {
+Vec3 PatchPoints::at(const ParameterPoint& local) {
+  const auto is_end = [](double t) { return t == 0 || t == 1; };
+  if (is_end(local.u) && is_end(local.v))
+    return patch_.point(local.u > 0 ? net_.degree_u : 0, local.v > 0 ? net_.degree_v : 0) - origin_ + Vec3{};
+  if (local.u != row_u_) begin_row(row_u_ = local.u);
+  std::array<double, max_degree + 1> of_v;
+  bernstein_values(net_.degree_v, local.v, of_v.data());
   Homogeneous sum{0, 0, 0, 0};
   for (std::size_t j = 0; j <= static_cast<std::size_t>(net_.degree_v); ++j) sum = sum + of_v[j] * row_[j];
   return net_.scale * sum.project();
-}
-
-Vec3 PatchPoints::at(const ParameterPoint& local) {
-  std::array<double, max_degree + 1> of_v;
-  bernstein_values(net_.degree_v, local.v, of_v.data());
-  begin_row(local.u);
-  return sum(of_v.data());
-}
-
-void PatchPoints::set_lines(std::span<const double> lines) {
-  of_lines_.resize(lines.size() * values_per_line);
-  for (std::size_t j = 0; j < lines.size(); ++j)
-    bernstein_values(net_.degree_v, lines[j], &of_lines_[j * values_per_line]);
 }
 
 }  // namespace tessera::inline abi_0_1

@@ -23,22 +23,23 @@ void PatchSides::set(std::span<const TrimPiece> pieces, double ParameterPoint::*
   for (std::vector<Node>& nodes : nodes_) std::ranges::sort(nodes, {}, &Node::at);
 }
 
-std::vector<SidePoint> PatchSides::points(std::size_t line, std::size_t k, int rate) const {
-  const double from = along_[k], to = along_[k + 1], step = (to - from) / rate;
+std::vector<SidePoint> PatchSides::points(std::size_t line, std::size_t k, Segments segments) const {
+  const double from = along_[k], to = along_[k + 1];
+  std::vector<double> even;
+  for (int i = 0; i <= segments.rate(); ++i) even.push_back(line_at(from, to, segments, i));
   std::vector<SidePoint> points;
   bool below = starts_inside_, above = starts_inside_;
   auto node = nodes_[line].begin();
   const auto end = nodes_[line].end();
+  std::size_t i = 1;
   for (double at = from;;) {
     for (; node != end && node->at <= at; ++node) below ^= node->below, above ^= node->above;
     points.push_back({at, below, above});
     const double next = node != end && node->at < to ? node->at : to;
-    if (below || above) {
-      for (int i = 1; i < rate; ++i) {
-        const double even = from + (to - from) * i / rate;
-        const bool is_free = (even - at > step / 16 || at == from) && (next - even > step / 16 || next == to);
-        if (even > at && even < next && is_free) points.push_back({even, below, above});
-      }
+    for (; i + 1 < even.size() && even[i] < next; ++i) {
+      const double gap = std::min(even[i] - even[i - 1], even[i + 1] - even[i]) / 16;
+      const bool is_free = (even[i] - at > gap || at == from) && (next - even[i] > gap || next == to);
+      if ((below || above) && even[i] > at && is_free) points.push_back({even[i], below, above});
     }
     if (next == to) break;
     at = next;

@@ -6,10 +6,16 @@
 #include <span>
 #include <vector>
 
+#include "tess/cells/segments.h"
 #include "tessera/geometry.h"
 #include "trim/trim_piece.h"
 
 namespace tessera::inline abi_0_1 {
+
+/// Returns where segment k = 0 .. rate of a patch begins, in the surface's parameters; rate: the end.
+inline double line_at(double from, double to, Segments along, int k) {
+  return k == 0 ? from : k == along.rate() ? to : from + (to - from) * along.at(k).value();
+}
 
 /// A point of a side, and whether what follows it is kept on either side of the line.
 struct SidePoint {
@@ -31,9 +37,11 @@ class PatchSides {
   /// A piece along the line lies on neither side.
   void set(std::span<const TrimPiece> pieces, double ParameterPoint::*across, std::span<const double> lines,
            std::span<const double> along, bool starts_inside);
-  /// Puts `rate` even segments on a side, those parts of it that are kept. The side: line `line` from along[k] to
-  /// along[k + 1]. Points nearer to an end of a piece than a sixteenth of a segment are left out.
-  std::vector<SidePoint> points(std::size_t line, std::size_t k, int rate) const;
+  /// Puts segments on a side, on those parts of it that are kept. The side: line `line` from along[k] to along[k + 1].
+  /// Points nearer to an end of a piece than a sixteenth of a segment are left out.
+  std::vector<SidePoint> points(std::size_t line, std::size_t k, Segments segments) const;
+  /// Whether the side is the domain's.
+  bool is_outer(std::size_t line) const { return line == 0 || line + 1 == nodes_.size(); }
 
  private:
   struct Node {

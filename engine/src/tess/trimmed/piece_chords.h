@@ -2,6 +2,7 @@
 // Lays chords along the pieces of trimming loops.
 
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "tess/trimmed/speed_bound.h"
@@ -15,6 +16,9 @@ struct ChordLimits {
   double sliver = 0;   ///< the largest distance on the surface between a chord and its piece of curve
   ParameterPoint box;  ///< the largest box of a chord
   SpeedBound speed;    ///< bounds on the surface's first derivatives around the piece
+  /// The largest sliver over the length of its chord, both in these speeds: an eighth of the angle by which an arc of a
+  /// circle turns.
+  double bend = std::numeric_limits<double>::infinity();
 };
 
 /// Divides monotone pieces into chords by halving.

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "tess/bounds/chord_bound.h"
+#include "tess/trimmed/chord_crossings.h"
 #include "tess/trimmed/cut_cells.h"
 #include "tess/trimmed/patch_sides.h"
 #include "tess/trimmed/piece_chords.h"
@@ -15,14 +15,14 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// The facts that cutting a patch needs, in the surface's parameters.
+/// The facts that cutting a patch needs.
 struct TrimmedPatch {
-  Domain domain;
-  const ChordBound* chord;
-  SpeedBound speed;    ///< over the patch's own parameters
-  Rates rates;         ///< of its grid
-  double sliver;       ///< the largest distance between chords and curves
-  double chord_share;  ///< the largest length of a chord, in cells
+  Domain domain;           ///< in the surface's parameters, as those of loops and of cells
+  SpeedBound speed;        ///< over the patch's own parameters
+  PatchSegments segments;  ///< of its grid
+  double sliver;           ///< the largest distance between chords and curves
+  double bend;             ///< see ChordLimits
+  double chord_share = 1;  ///< the largest length of a chord, in cells
 };
 
 /// Cuts patches, one after the other.
@@ -31,11 +31,14 @@ class PatchCutter {
   /// Begins a polygon.
   void begin(const TrimmedPatch& patch);
   /// Adds the kept parts of a side: points at `along`, the other coordinate is `across`. `above`: the patch lies at
-  /// larger parameters across the side.
-  void add_side(std::span<const SidePoint> side, double across, bool runs_along_u, bool above);
-  void add_piece(const TrimPiece& piece);
-  /// Triangulates the polygon. False if chords cross.
+  /// larger parameters across the side. Returns the number of chords.
+  std::size_t add_side(std::span<const SidePoint> side, double across, bool runs_along_u, bool above);
+  /// Adds a piece of a loop. Returns the number of chords.
+  std::size_t add_piece(const TrimPiece& piece);
+  /// Triangulates the polygon. Returns false if chords cross.
   bool cut();
+  /// Divides chords where they cross, and triangulates the polygon. Returns false if some still cross.
+  bool cut_crossing();
 
   const CutCells& cells() const { return cells_; }
   CutCells& cells() { return cells_; }
@@ -43,19 +46,19 @@ class PatchCutter {
   ParameterPoint point(std::uint32_t vertex) const;
   ParameterPoint local(std::uint32_t vertex) const;
   const GridLines& grid() const { return grid_; }
-  /// The lines of the grid in the patch's own parameters.
-  void local_lines(std::vector<double>& u, std::vector<double>& v) const;
   std::size_t vertex_count() const { return points_.size() + cells_.grid_vertices().size(); }
-  /// The largest distance of a triangle, and of a sliver.
-  double chord_bound();
+  /// The vertices up to this one are points of loops and sides, the others those of the grid.
+  std::size_t loop_vertex_count() const { return points_.size(); }
+  /// The largest distance of a sliver, in the patch's lengths.
   double sliver_bound() const { return sliver_; }
 
  private:
-  double triangle_bound(const CutCells::Triangle& triangle) const;
   std::uint32_t add_point(const ParameterPoint& point);
 
   TrimmedPatch patch_;
+  ChordLimits limits_;
   PieceChords chords_of_pieces_;
+  ChordCrossings crossings_;
   CutCells cells_;
   std::vector<ParameterPoint> points_;
   std::vector<PlaneSegment> chords_;

@@ -1,0 +1,83 @@
+#include "block/patch_trims.h"
+
+#include <algorithm>
+
+#include "base/impl_access.h"
+#include "trim/trim_region_impl.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+/// Makes whole patches cut ones where a point lies inside one of their sides.
+class TouchedSides {
+ public:
+  TouchedSides(const TrimRegion::Impl& region, std::vector<PatchUse>& uses) : region_(region), uses_(uses) {}
+
+  void touch(const ParameterPoint& at) {
+    const std::vector<double>&u = region_.lines.u.lines, &v = region_.lines.v.lines;
+    const auto line_u = std::ranges::lower_bound(u, at.u), line_v = std::ranges::lower_bound(v, at.v);
+    const bool on_u = line_u != u.end() && *line_u == at.u, on_v = line_v != v.end() && *line_v == at.v;
+    if (on_u == on_v) return;  // inside a patch, or a corner
+    const std::ptrdiff_t a = line_u - u.begin(), b = line_v - v.begin();
+    cut(a - 1, b - 1);
+    on_u ? cut(a, b - 1) : cut(a - 1, b);
+  }
+
+ private:
+  void cut(std::ptrdiff_t a, std::ptrdiff_t b) {
+    const auto count_u = std::ssize(region_.lines.u.lines) - 1, count_v = std::ssize(region_.lines.v.lines) - 1;
+    if (a < 0 || b < 0 || a >= count_u || b >= count_v) return;
+    PatchUse& use = uses_[static_cast<std::size_t>(a * count_v + b)];
+    if (use == PatchUse::whole) use = PatchUse::cut;
+  }
+
+  const TrimRegion::Impl& region_;
+  std::vector<PatchUse>& uses_;
+};
+
+/// Whether the sides u0 and u1 of a grid, or v0 and v1, are the same points.
+bool closes(const PatchGrid& grid, bool along_u) {
+  const double near = 1e-9 * grid.box().diagonal();
+  const std::size_t last = (along_u ? grid.count_u() : grid.count_v()) - 1;
+  const std::size_t count = along_u ? grid.count_v() : grid.count_u();
+  for (std::size_t k = 0; k < count; ++k) {
+    const BezierPatch& from = along_u ? grid.patch(0, k) : grid.patch(k, 0);
+    const BezierPatch& to = along_u ? grid.patch(last, k) : grid.patch(k, last);
+    const int degree = along_u ? from.degree_v() : from.degree_u();
+    if (degree != (along_u ? to.degree_v() : to.degree_u())) return false;
+    for (int i = 0; i <= degree; ++i) {
+      const Vec3 p = along_u ? from.point(0, i) : from.point(i, 0);
+      const Vec3 q = along_u ? to.point(to.degree_u(), i) : to.point(i, to.degree_v());
+      if (!(length(p - q) <= near)) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+std::vector<PatchUse> patch_uses(const TrimRegion& region) {
+  const TrimRegion::Impl& impl = impl_of(region);
+  std::vector<PatchUse> uses;
+  uses.reserve(impl.patches.size());
+  for (const TrimSide side : impl.patches)
+    uses.push_back(side == TrimSide::inside    ? PatchUse::whole
+                   : side == TrimSide::outside ? PatchUse::out
+                                               : PatchUse::cut);
+  TouchedSides touched(impl, uses);
+  for (const TrimPiece& piece : impl.pieces) {
+    touched.touch(piece.start());
+    touched.touch(piece.end());
+  }
+  return uses;
+}
+
+TrimOptions trim_options(const PatchGrid& grid) {
+  TrimOptions options;
+  options.periodic_u = closes(grid, true);
+  options.periodic_v = closes(grid, false);
+  options.snap = 0x1p-32;  // files state ends of curves to 10 digits
+  return options;
+}
+
+}  // namespace tessera::inline abi_0_1

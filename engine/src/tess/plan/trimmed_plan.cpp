@@ -1,0 +1,152 @@
+// Plans the patches that trimming loops cut, together with their neighbours.
+//
+// Proof of the bound of a cut patch:
+// 1. A triangle with its corners on a patch lies within f of it: tess/bounds/chord_bound.h, by its own parameter box.
+//    Each point of the triangle is near a point of the patch at parameters in the triangle, and the other way round.
+// 2. The triangles cover the polygon of the chords, once: PolygonTriangles, by exact signs.
+// 3. A point of the polygon outside of the loops lies in a sliver between a chord and its curve. So does a point
+//    within the loops outside of the polygon. Both are within e of a point on the other's border: PieceChords.
+// 4. Vertices are moved by at most r: by rounding, or by taking the vertices of a whole neighbour. So the bound is
+//    f + e + r, each its largest.
+//
+// Angles and pixels hold as for whole patches, at rates whose cells are as wide as the widest triangle.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "parallel/parallel_for.h"
+#include "tess/edges/side_curve.h"
+#include "tess/plan/certified_plan.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+// Triangles of the band may be wider than a cell, so cells take less than half of the room.
+constexpr double cell_share = 0.45, sliver_share = 0.25;
+constexpr double band_share = 2.2;  // a usual bound of the band's triangles over that of cells
+constexpr int max_attempts = 16;
+constexpr std::size_t cuts_per_task = 4;
+
+}  // namespace
+
+CertifiedPlanner::CutRoom CertifiedPlanner::room_of(const CutPatch& cut, const Request& request,
+                                                    const CertifiedPlan& plan) const {
+  const std::size_t patch = cut.patch;
+  CutRoom room;
+  room.limits.speed = SpeedBound::of(set_->patches[patch]);
+  room.limits.segments = plan.segments_[patch];
+  // Parameters of a vertex in its patch are off by three roundings.
+  room.given = roundings_[patch] + 0x1p-51 * (room.limits.speed.u + room.limits.speed.v) + fit_error_;
+  for (const CutPatch::SameBorder& same : cut.same)
+    if (same.border != CutPatch::none) room.given = std::max(room.given, roundings_[same.border / 4] + fit_error_);
+  room.tolerance = request.tolerance;
+  double sliver = std::numeric_limits<double>::infinity();
+  if (options_.camera) {
+    const ScreenSpaceBound& picture = pictures_[patch];
+    room.tolerance = std::min(room.tolerance, picture.distance());
+    if (picture.projected() && picture.moved_pixels() > 0)
+      sliver = sliver_share * (options_.pixels - picture.moved_pixels()) * room.given / picture.moved_pixels();
+  }
+  if (std::isfinite(room.tolerance)) {
+    // Slivers get the rest that flat patches leave.
+    const double cells = chord(patch).distance_of(room.limits.segments);
+    const double left = 0.95 * room.tolerance - room.given - band_share * cells;
+    sliver = std::min(sliver, std::max(sliver_share * room.tolerance, left));
+  }
+  room.limits.sliver = sliver;
+  room.limits.bend = options_.angle ? *options_.angle / 8 : std::numeric_limits<double>::infinity();
+  return room;
+}
+
+double CertifiedPlanner::bound_cut(const CutRoom& room, const CutPatch& cut, CertifiedPlan& plan) const {
+  const std::size_t k = cut.patch;
+  const double bound = cut.distance + cut.sliver + room.given;
+  double excess = std::isfinite(room.tolerance) ? bound / room.tolerance : 0;
+  plan.bounds_[k] = rounded_up(bound);
+  if (options_.angle && !shapes_[k].is_curve) {
+    const TurningBound turning = turning_of(k);
+    const double angle = turning.is_finite() ? turning.angle(cut.widest) : std::numeric_limits<double>::infinity();
+    plan.angles_[k] = rounded_up(angle);
+    if (turning.is_finite()) excess = std::max(excess, angle / *options_.angle);
+  }
+  if (options_.camera && pictures_[k].projected()) {
+    const ScreenSpaceBound picture(*options_.camera, set_->patches[k], room.given + cut.sliver, options_.pixels);
+    const double pixels = picture.pixels(cut.widest, bound);
+    plan.pixels_[k] = rounded_up(pixels);
+    excess = std::max(excess, pixels / options_.pixels);
+  }
+  return excess;
+}
+
+void CertifiedPlanner::find_same_borders(CertifiedPlan& plan) const {
+  std::vector<std::uint32_t> whole(edges_.count(), CutPatch::none);  // the first border that is not copied from another
+  std::vector<std::uint8_t> is_welded(4 * shapes_.size(), 0);
+  for (const VertexCopies::Border& copy : weld_.borders) is_welded[copy.to] = 1;
+  const std::span<const PatchShape> shapes = divided_shapes();
+  for (std::uint32_t border = 0; border < is_welded.size(); ++border) {
+    if (shapes[border / 4].is_curve || is_welded[border]) continue;
+    const std::uint32_t edge = edges_.edge(border / 4, all_sides[border % 4]);
+    if (edge != SharedEdges::none && whole[edge] == CutPatch::none) whole[edge] = border;
+  }
+  for (CutPatch& cut : plan.cuts_) {
+    for (const Side side : all_sides) {
+      const std::uint32_t edge = edges_.edge(cut.patch, side);
+      if (edge == SharedEdges::none || whole[edge] == CutPatch::none) continue;
+      const std::uint32_t border = 4 * cut.patch + static_cast<std::uint32_t>(side);
+      cut.same[static_cast<std::size_t>(side)] = {whole[edge], runs_against(*set_, border, whole[edge])};
+    }
+  }
+}
+
+Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& plan, const Execution& execution) const {
+  const std::vector<PatchTrims::Cut>& cuts = set_->trims->cuts;
+  plan.cuts_.resize(cuts.size());
+  for (std::size_t c = 0; c < cuts.size(); ++c) plan.cuts_[c].patch = cuts[c].patch;
+  find_same_borders(plan);
+  std::vector<double> shares(cuts.size(), cell_share), excess(cuts.size(), 2);
+  for (int attempt = 0; attempt < max_attempts; ++attempt) {
+    for (std::size_t c = 0; c < cuts.size(); ++c) {
+      if (excess[c] <= 1) continue;
+      Request own = request;
+      own.share = shares[c];
+      own.uniform = true;  // triangles of the band may be as wide as the widest cell
+      own.fewest = false;
+      const Choice choice = choose(cuts[c].patch, own, max_rate);
+      if (choice.failure != Failure::none) return refusal(choice.failure, cuts[c].patch, request);
+      plan.segments_[cuts[c].patch] = choice.segments;
+    }
+    const std::vector<Division> before = std::move(plan.divisions_);
+    plan.divisions_.clear();
+    divide(request.tolerance, plan);
+    const auto cut_some = [&](std::size_t begin, std::size_t end) {
+      CutPatchMaker maker;
+      for (std::size_t c = begin; c < end; ++c) {
+        const std::size_t k = cuts[c].patch;
+        if (excess[c] <= 1 && before[k] == plan.divisions_[k]) continue;
+        const CutRoom room = room_of(plan.cuts_[c], request, plan);
+        maker.make(set_->trims->regions[cuts[c].region], face_sides_[cuts[c].region], cuts[c], room.limits,
+                   plan.divisions_[k].border, divided_shapes()[k].collapsed, chord(k), plan.cuts_[c]);
+        excess[c] = bound_cut(room, plan.cuts_[c], plan);
+      }
+    };
+    if (Status status = parallel_for(cuts.size(), cuts_per_task, execution, cut_some); !status.ok()) return status;
+    bool keeps = true;
+    for (std::size_t c = 0; c < cuts.size(); ++c) {
+      if (excess[c] <= 1) continue;
+      keeps = false;
+      shares[c] *= 0.85 / excess[c];
+    }
+    if (!keeps) continue;
+    plan.count_open_edges(edges_);
+    for (const CutPatch& cut : plan.cuts_)
+      if (cut.is_crossed) plan.crossed_.push_back(cut.patch);
+    return {};
+  }
+  const auto worst = static_cast<std::size_t>(std::ranges::max_element(excess) - excess.begin());
+  return {StatusCode::invalid_argument,
+          wanted(request.tolerance) + " is too small beside the rounding of the vertices at trimming loops",
+          static_cast<std::ptrdiff_t>(cuts[worst].patch)};
+}
+
+}  // namespace tessera::inline abi_0_1

@@ -1,0 +1,176 @@
+#include "tess/trimmed/cut_patch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/impl_access.h"
+#include "trim/trim_region_impl.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+/// The piece of ChordBound::pieces() in which a box of parameters lies.
+std::size_t piece_of(double u0, double u1, double v0, double v1) {
+  const std::size_t low_u = u1 <= 0.5, high_u = u0 >= 0.5, low_v = v1 <= 0.5, high_v = v0 >= 0.5;
+  const bool half_u = low_u || high_u, half_v = low_v || high_v;
+  if (half_u && half_v) return 5 + 2 * high_u + high_v;
+  if (half_u) return 1 + high_u;
+  return half_v ? 3 + high_v : 0;
+}
+
+/// The largest odd rate whose cells are no smaller than `width`. Bounds of odd rates hold wherever a cell lies.
+int rate_of(double width) {
+  const int rate = width * max_rate > 1 ? static_cast<int>(1 / width) : max_rate;
+  return std::max(1, rate - (rate % 2 == 0));
+}
+
+}  // namespace
+
+FaceSides::FaceSides(const TrimRegion& region) {
+  const TrimRegion::Impl& impl = impl_of(region);
+  const std::span<const double> lines_u = impl.lines.u.lines, lines_v = impl.lines.v.lines;
+  u.set(impl.pieces, &ParameterPoint::u, lines_u, lines_v, impl.starts_inside);
+  v.set(impl.pieces, &ParameterPoint::v, lines_v, lines_u, impl.starts_inside);
+}
+
+void CutPatchMaker::make(const TrimRegion& region, const FaceSides& sides, const PatchTrims::Cut& cut,
+                         TrimmedPatch limits, const std::array<Segments, 4>& borders, EdgeMask collapsed,
+                         const ChordBound& chord, CutPatch& out) {
+  const TrimRegion::Impl& impl = impl_of(region);
+  const std::size_t a = cut.place / impl.count_v(), b = cut.place % impl.count_v();
+  limits.domain = {impl.lines.u.lines[a], impl.lines.u.lines[a + 1], impl.lines.v.lines[b], impl.lines.v.lines[b + 1]};
+  out.vertices.clear(), out.triangles.clear(), out.on_borders.clear();
+  out.distance = out.sliver = 0;
+  out.widest = {max_rate - 1, max_rate - 1};
+  const double sliver = limits.sliver;
+  for (limits.chord_share = 1; limits.chord_share > 0.01; limits.chord_share /= 4) {
+    limits.sliver = sliver * limits.chord_share;
+    out.is_crossed = !run(region, sides, cut.place, limits, borders, out);
+    if (!out.is_crossed) break;
+  }
+  // Loops that cross themselves or each other keep what an odd number of them encloses.
+  if (out.is_crossed) out.is_crossed = !cutter_.cut_crossing();
+  if (out.is_crossed) {
+    out.open_edges = 0;
+    return;
+  }
+  number(collapsed, out);
+  measure(limits.segments, chord, out);
+  find_border_vertices(borders, limits.domain, out);
+}
+
+bool CutPatchMaker::run(const TrimRegion& region, const FaceSides& sides, std::size_t place,
+                        const TrimmedPatch& limits, const std::array<Segments, 4>& borders, CutPatch& out) {
+  const TrimRegion::Impl& impl = impl_of(region);
+  const std::size_t a = place / impl.count_v(), b = place % impl.count_v();
+  cutter_.begin(limits);
+  out.open_edges = 0;
+  for (const Side side : all_sides) {
+    const auto s = static_cast<std::size_t>(side);
+    const bool along_u = runs_along_u(side), above = side == Side::v0 || side == Side::u0;
+    const PatchSides& lines = along_u ? sides.v : sides.u;
+    const std::size_t line = (along_u ? b : a) + !above;
+    const std::vector<SidePoint> points = lines.points(line, along_u ? a : b, borders[s]);
+    const double across = side == Side::v0   ? limits.domain.v0
+                          : side == Side::v1 ? limits.domain.v1
+                          : side == Side::u0 ? limits.domain.u0
+                                             : limits.domain.u1;
+    const double from = along_u ? limits.domain.u0 : limits.domain.v0, to = along_u ? limits.domain.u1 : limits.domain.v1;
+    const auto is_even = [&](std::size_t k) {
+      return points[k].at == line_at(from, to, borders[s], static_cast<int>(k));
+    };
+    out.is_full[s] = cutter_.add_side(points, across, along_u, above) == static_cast<std::size_t>(borders[s].rate());
+    for (std::size_t k = 0; k < points.size() && out.is_full[s]; ++k) out.is_full[s] = is_even(k);
+    if (out.is_full[s]) continue;
+    for (const SidePoint& point : points) {
+      const bool is_kept = above ? point.above : point.below, has_other = above ? point.below : point.above;
+      out.open_edges += is_kept && (lines.is_outer(line) || !has_other);
+    }
+  }
+  for (const std::uint32_t piece : impl.pieces_of(place))
+    out.open_edges += static_cast<std::uint32_t>(cutter_.add_piece(impl.pieces[piece]));
+  return cutter_.cut();
+}
+
+// Vertices that no triangle uses are left out, and so are triangles without an area at a collapsed border.
+void CutPatchMaker::number(EdgeMask collapsed, CutPatch& out) {
+  CutCells& cells = cutter_.cells();
+  const std::size_t first = cutter_.loop_vertex_count(), count = cutter_.vertex_count();
+  numbers_.assign(count, CutPatch::none);
+  points_.clear();
+  std::array<std::uint32_t, 4> poles;
+  poles.fill(CutPatch::none);
+  const auto add = [&](std::uint32_t vertex) {
+    ParameterPoint at = cutter_.local(vertex);
+    for (const Side side : all_sides) {
+      const double across = runs_along_u(side) ? at.v : at.u;
+      const bool is_on = across == (side == Side::u1 || side == Side::v1 ? 1 : 0);
+      if (!is_on || !collapsed.has(edge_of(side))) continue;
+      std::uint32_t& pole = poles[static_cast<std::size_t>(side)];
+      if (pole != CutPatch::none) return pole;
+      pole = static_cast<std::uint32_t>(out.vertices.size());
+      (runs_along_u(side) ? at.u : at.v) = 0;
+      break;
+    }
+    points_.push_back(cutter_.point(vertex));
+    out.vertices.push_back(at);
+    return static_cast<std::uint32_t>(out.vertices.size() - 1);
+  };
+  for (auto vertex = static_cast<std::uint32_t>(first); vertex < count; ++vertex) numbers_[vertex] = add(vertex);
+  const auto put = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    CutPatch::Triangle triangle{a, b, c};
+    for (std::uint32_t& corner : triangle) {
+      std::uint32_t& known = numbers_[corner];
+      if (known == CutPatch::none) known = add(corner);
+      corner = known;
+    }
+    if (triangle[0] != triangle[1] && triangle[1] != triangle[2] && triangle[2] != triangle[0])
+      out.triangles.push_back(triangle);
+  };
+  out.triangles.reserve(2 * cells.whole_count() + cells.band().size());
+  cells.for_whole([&](std::uint32_t, std::uint32_t, std::uint32_t p, std::uint32_t q, std::uint32_t r,
+                      std::uint32_t s) { put(p, q, r), put(p, r, s); });
+  for (const CutPatch::Triangle& triangle : cells.band()) put(triangle[0], triangle[1], triangle[2]);
+}
+
+// Bounds of a half or a quarter hold for triangles within it. A parameter is off by three roundings.
+void CutPatchMaker::measure(PatchSegments segments, const ChordBound& chord, CutPatch& out) {
+  CutCells& cells = cutter_.cells();
+  out.sliver = cutter_.sliver_bound();
+  double width = 0, height = 0;
+  if (cells.whole_count() > 0) {
+    out.distance = chord.distance_of(segments);
+    const Rates coarsest = segments.coarsest();
+    width = 1.0 / coarsest.u, height = 1.0 / coarsest.v;
+  }
+  for (const CutPatch::Triangle& triangle : cells.band()) {
+    const ParameterPoint a = cutter_.local(triangle[0]), b = cutter_.local(triangle[1]),
+                         c = cutter_.local(triangle[2]);
+    const auto [u0, u1] = std::minmax({a.u, b.u, c.u});
+    const auto [v0, v1] = std::minmax({a.v, b.v, c.v});
+    const SecondDerivatives& piece = chord.pieces()[piece_of(u0, u1, v0, v1)];
+    out.distance = std::max(out.distance, piece.chord(u1 - u0 + 0x1p-24, v1 - v0 + 0x1p-24));
+    width = std::max(width, u1 - u0), height = std::max(height, v1 - v0);
+  }
+  out.widest = {rate_of(width), rate_of(height)};
+}
+
+void CutPatchMaker::find_border_vertices(const std::array<Segments, 4>& borders, const Domain& domain, CutPatch& out) {
+  for (const Side side : all_sides) {
+    const auto s = static_cast<std::size_t>(side);
+    const bool along_u = runs_along_u(side);
+    const double from = along_u ? domain.u0 : domain.v0, to = along_u ? domain.u1 : domain.v1;
+    const double across = side == Side::u1 || side == Side::v1 ? 1 : 0;
+    lines_.clear();
+    for (int k = 0; k <= borders[s].rate(); ++k) lines_.push_back(line_at(from, to, borders[s], k));
+    for (std::uint32_t vertex = 0; vertex < out.vertices.size(); ++vertex) {
+      if ((along_u ? out.vertices[vertex].v : out.vertices[vertex].u) != across) continue;
+      const double at = along_u ? points_[vertex].u : points_[vertex].v;
+      const auto line = std::ranges::lower_bound(lines_, at);
+      if (line != lines_.end() && *line == at)
+        out.on_borders.push_back({vertex, static_cast<std::uint16_t>(line - lines_.begin()), side});
+    }
+  }
+}
+
+}  // namespace tessera::inline abi_0_1

@@ -1,0 +1,72 @@
+#pragma once
+// One patch that trimming loops cut, as triangles.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "block/patch_trims.h"
+#include "tess/bounds/chord_bound.h"
+#include "tess/cells/stitched_patch.h"
+#include "tess/trimmed/trimmed_patch.h"
+
+namespace tessera::inline abi_0_1 {
+
+/// The triangles of a cut patch.
+struct CutPatch {
+  static constexpr std::uint32_t none = 0xffffffff;
+  using Triangle = CutCells::Triangle;
+  /// A vertex where a segment of the patch's border begins: point `at` = 0 .. rate along the border's parameter.
+  struct BorderVertex {
+    std::uint32_t vertex;
+    std::uint16_t at;
+    Side side;
+  };
+  /// The border of a whole patch that has the same points as a side.
+  struct SameBorder {
+    std::uint32_t border = none;  ///< 4 * patch + side
+    bool reversed = false;        ///< their parameters run in opposite directions
+  };
+
+  std::uint32_t patch = 0;
+  bool is_crossed = false;               ///< chords still cross after all divisions, so it has no triangles
+  std::vector<ParameterPoint> vertices;  ///< in the patch's own parameters; those of its grid come first, line by line
+  std::vector<Triangle> triangles;       ///< counter-clockwise in the parameters
+  std::vector<BorderVertex> on_borders;
+  std::array<bool, 4> is_full{};    ///< by Side: the loops keep all of it, and none ends on it
+  std::array<SameBorder, 4> same;   ///< by Side
+  std::uint32_t open_edges = 0;     ///< edges along loops, and on parts of sides that no neighbour has
+  double distance = 0, sliver = 0;  ///< the largest distance of a triangle, and of a sliver between chords and curves
+  Rates widest;                     ///< odd rates at which cells are no smaller than the box of any triangle
+};
+
+/// The sides of all patches of a face.
+struct FaceSides {
+  explicit FaceSides(const TrimRegion& region);
+  PatchSides u, v;  ///< lines u = const; lines v = const
+};
+
+/// Cuts patches, one after the other. An object serves one thread at a time.
+class CutPatchMaker {
+ public:
+  /// Cuts a patch. `cut`: the patch, of this region. `limits.domain` is set here. `borders`: the segments of its sides.
+  /// `out.patch`, `is_full` and `same` are the caller's, the rest is written.
+  ///
+  /// Where chords cross, they are made finer, to a 64th; if they still cross then, they are divided where they do.
+  void make(const TrimRegion& region, const FaceSides& sides, const PatchTrims::Cut& cut, TrimmedPatch limits,
+            const std::array<Segments, 4>& borders, EdgeMask collapsed, const ChordBound& chord, CutPatch& out);
+
+ private:
+  bool run(const TrimRegion& region, const FaceSides& sides, std::size_t place, const TrimmedPatch& limits,
+           const std::array<Segments, 4>& borders, CutPatch& out);
+  void number(EdgeMask collapsed, CutPatch& out);
+  void measure(PatchSegments segments, const ChordBound& chord, CutPatch& out);
+  void find_border_vertices(const std::array<Segments, 4>& borders, const Domain& domain, CutPatch& out);
+
+  PatchCutter cutter_;
+  std::vector<std::uint32_t> numbers_;  ///< by vertex of the cutter
+  std::vector<ParameterPoint> points_;  ///< by vertex of the patch, in the surface's parameters
+  std::vector<double> lines_;
+};
+
+}  // namespace tessera::inline abi_0_1

@@ -1,0 +1,103 @@
+#include "tess/write/cut_vertices.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "parallel/parallel_for.h"
+#include "tess/plan/ring_vertices.h"
+#include "tess/trimmed/patch_points.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+constexpr std::size_t patches_per_task = 4;
+
+template <class T>
+void put_vector(const View3<T>& view, std::size_t at, const Vec3& p) {
+  view.at(at, 0) = static_cast<T>(p.x);
+  view.at(at, 1) = static_cast<T>(p.y);
+  view.at(at, 2) = static_cast<T>(p.z);
+}
+template <class T>
+void copy(const View3<T>& vectors, std::size_t from, std::size_t to) {
+  for (int c = 0; c < 3; ++c) vectors.at(to, c) = vectors.at(from, c);
+}
+
+class CutWriter {
+ public:
+  CutWriter(const PatchSet::Impl& set, const CertifiedPlan& plan, std::optional<double> crease_angle,
+            const MeshViews& out)
+      : set_(set), plan_(plan), out_(out) {
+    if (crease_angle) apart_ = 2 * std::sin(*crease_angle / 2);
+  }
+
+  void write(const CutPatch& cut) const {
+    write_vertices(cut);
+    for (const Side side : all_sides) take_border(cut, side);
+    const auto first = static_cast<std::uint32_t>(plan_.first_vertex(cut.patch));
+    const std::size_t place = out_.quads.empty() ? plan_.first_triangle(cut.patch) : plan_.first_strip(cut.patch);
+    std::uint32_t* index = out_.indices.data() + 3 * place;
+    for (const CutPatch::Triangle& triangle : cut.triangles)
+      for (const std::uint32_t vertex : triangle) *index++ = first + vertex;
+    if (!out_.patch.empty()) std::fill_n(out_.patch.begin() + static_cast<std::ptrdiff_t>(place), cut.triangles.size(), cut.patch);
+  }
+
+ private:
+  void write_vertices(const CutPatch& cut) const {
+    const BezierPatch& patch = set_.patches[cut.patch];
+    PatchPoints points(patch, set_.origin);
+    std::size_t vertex = plan_.first_vertex(cut.patch);
+    for (const ParameterPoint& at : cut.vertices) {
+      const Vec3 p = points.at(at);
+      if (!out_.position.empty()) put_vector(out_.position, vertex, p);
+      if (!out_.position_f64.empty()) put_vector(out_.position_f64, vertex, set_.origin + p);
+      if (!out_.normal.empty()) put_vector(out_.normal, vertex, unit_normal(patch, at.u, at.v).direction);
+      if (!out_.parameter.empty()) {
+        out_.parameter.at(vertex, 0) = static_cast<float>(at.u);
+        out_.parameter.at(vertex, 1) = static_cast<float>(at.v);
+      }
+      ++vertex;
+    }
+  }
+
+  /// Takes the vertices of the whole patch along a side.
+  void take_border(const CutPatch& cut, Side side) const {
+    const CutPatch::SameBorder same = cut.same[static_cast<std::size_t>(side)];
+    if (same.border == CutPatch::none) return;
+    const RingVertices ring(plan_, same.border);
+    const bool opposite = same.reversed != is_backward(same.border);
+    const auto for_vertices = [&](const auto& visit) {
+      for (const CutPatch::BorderVertex& on : cut.on_borders)
+        if (on.side == side)
+          visit(plan_.first_vertex(cut.patch) + on.vertex, ring(opposite ? ring.rate() - on.at : on.at));
+    };
+    bool is_smooth = !out_.normal.empty() && apart_ > 0;
+    for_vertices([&](std::size_t to, std::size_t from) {
+      if (!out_.position.empty()) copy(out_.position, from, to);
+      if (!out_.position_f64.empty()) copy(out_.position_f64, from, to);
+      is_smooth = is_smooth && length(normal(to) - normal(from)) <= apart_;
+    });
+    if (is_smooth) for_vertices([&](std::size_t to, std::size_t from) { copy(out_.normal, from, to); });
+  }
+  Vec3 normal(std::size_t vertex) const {
+    return {double(out_.normal.at(vertex, 0)), double(out_.normal.at(vertex, 1)), double(out_.normal.at(vertex, 2))};
+  }
+
+  const PatchSet::Impl& set_;
+  const CertifiedPlan& plan_;
+  const MeshViews& out_;
+  double apart_ = 0;  ///< how far the tips of joined normals may lie apart
+};
+
+}  // namespace
+
+Status write_cut(const PatchSet::Impl& set, const CertifiedPlan& plan, std::optional<double> crease_angle,
+                 const MeshViews& out, const Execution& execution) {
+  const CutWriter writer(set, plan, crease_angle, out);
+  const auto write = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) writer.write(plan.cuts()[c]);
+  };
+  return parallel_for(plan.cuts().size(), patches_per_task, {.cancel = execution.cancel}, write);
+}
+
+}  // namespace tessera::inline abi_0_1
