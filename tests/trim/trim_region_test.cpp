@@ -279,6 +279,68 @@ TEST(TrimRegion, SeamsOfPeriodicSurfaces) {
   EXPECT_EQ(region.patch(1, 1), TrimSide::border);
 }
 
+/// A window of a torus may lie where both seams cross, and in any copy of the domain.
+TEST(TrimRegion, WindowsWhereBothSeamsCross) {
+  std::mt19937 random(13);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  const std::vector<double> breaks{0, 0.25, 0.5, 0.75, 1};
+  const TrimOptions torus{.periodic_u = true, .periodic_v = true};
+  const auto around = [](double u, double v) { return std::hypot(std::min(u, 1 - u), std::min(v, 1 - v)); };
+  for (const ParameterPoint center : {ParameterPoint{0, 0}, ParameterPoint{1, 0}, ParameterPoint{1, 1},
+                                      ParameterPoint{0, 1}, ParameterPoint{-2, 3}}) {
+    for (const bool hole : {false, true}) {
+      std::vector<TrimLoop> loops{test::circle(center, 0.2, hole)};
+      for (int ring = 0; ring < 2; ++ring) {
+        const TrimRegion region = value_of(TrimRegion::make(loops, breaks, breaks, torus));
+        EXPECT_TRUE(region.remarks().empty());
+        for (int k = 0; k < 5000; ++k) {
+          const double u = uniform(random), v = uniform(random), distance = around(u, v);
+          const bool within = distance < 0.2 && (ring == 0 || distance > 0.1);
+          ASSERT_EQ(region.locate(u, v), side(within != hole)) << center.u << ' ' << center.v << ": " << u << ' ' << v;
+        }
+        loops.push_back(test::circle({center.u + 1, center.v}, 0.1, hole));
+      }
+    }
+  }
+  // Beside the corner, over one seam: the corner is not enclosed.
+  const TrimRegion beside =
+      value_of(TrimRegion::make(std::vector{test::circle({1, 0.5}, 0.2, true)}, breaks, breaks, torus));
+  EXPECT_EQ(beside.locate(0, 0), TrimSide::inside);
+  EXPECT_EQ(beside.locate(0.1, 0.5), TrimSide::outside);
+}
+
+/// Windows at random places of a torus: a point is enclosed by as many copies of a loop as in the unrolled plane.
+TEST(TrimRegion, WindowsAtRandomOnATorus) {
+  std::mt19937 random(14);
+  std::uniform_real_distribution<double> uniform(-1, 2);
+  const std::vector<double> breaks{0, 0.3, 1};
+  for (int k = 0; k < 300; ++k) {
+    std::vector<TrimLoop> loops;
+    for (int i = 0; i <= k % 3; ++i) {
+      std::vector<ParameterPoint> corners;
+      const double u = uniform(random), v = uniform(random);
+      for (int c = 0; c < 5; ++c) corners.push_back({u + 0.3 * uniform(random), v + 0.3 * uniform(random)});
+      loops.push_back(test::polygon(corners));
+    }
+    const TrimRegion region =
+        value_of(TrimRegion::make(loops, breaks, breaks, {.periodic_u = true, .periodic_v = true}));
+    const TrimRegion plane = value_of(TrimRegion::make(loops, Domain{-10, 10, -10, 10}));
+    for (int i = 0; i < 100; ++i) {
+      const double u = 0.5 * std::abs(uniform(random)), v = 0.5 * std::abs(uniform(random));
+      bool inside = false, border = false;
+      for (int a = -4; a <= 4; ++a)
+        for (int b = -4; b <= 4; ++b) {
+          inside ^= plane.locate(u + a, v + b) == TrimSide::inside;
+          for (const double du : {-1e-12, 1e-12})  // rounded sums
+            for (const double dv : {-1e-12, 1e-12})
+              border = border || plane.locate(u + a + du, v + b + dv) != plane.locate(u + a, v + b);
+        }
+      if (border) continue;
+      ASSERT_EQ(region.locate(u, v), side(inside)) << k << ": " << u << ' ' << v;
+    }
+  }
+}
+
 TEST(TrimRegion, PatchesAreWholeCutOrLeftOut) {
   const std::vector<double> breaks{0, 0.2, 0.4, 0.6, 0.8, 1};
   const TrimRegion region = value_of(TrimRegion::make(

@@ -30,15 +30,16 @@ CutAxis repeated(const CutAxis& axis, double from, double to) {
   return all;
 }
 
-/// Moves a piece by whole periods into the domain. Returns the rounding.
-double shift_into_domain(TrimPiece& piece, const CutAxis& axis, const CutAxis& all, Coordinate x) {
+/// Moves a piece by whole periods into the domain; `turns` is their number. Returns the rounding.
+double shift_into_domain(TrimPiece& piece, const CutAxis& axis, const CutAxis& all, Coordinate x, double& turns) {
+  turns = 0;
   const double lower = std::min(piece.start().*x, piece.end().*x), upper = std::max(piece.start().*x, piece.end().*x);
   if (!axis.periodic || (lower >= axis.from() && upper <= axis.to())) return 0;
   // The copy of the domain: the cell of lines that the piece lies in tells it without rounding.
   const double middle = 0.5 * lower + 0.5 * upper;
   const auto above = std::upper_bound(all.lines.begin(), all.lines.end(), middle) - all.lines.begin();
   const auto cells = static_cast<std::ptrdiff_t>(axis.lines.size()) - 1;
-  const double turns =
+  turns =
       std::floor((all.lines.front() - axis.from()) / axis.period() + 0.5) + static_cast<double>((above - 1) / cells);
   double largest = 0;
   for (ParameterPoint& p : piece.curve.points) {
@@ -64,6 +65,7 @@ class LoopBuilder {
     for (std::size_t k = 0; k < loop_.curves.size(); ++k)
       if (Status status = append_curve(k); !status.ok()) return status;
     join();
+    made_.holds_corner = holds_corner();
     return std::move(made_);
   }
 
@@ -134,8 +136,10 @@ class LoopBuilder {
     append_monotone_pieces(std::move(bezier), error, like, all_, made_.pieces);
     for (std::size_t k = begin; k < made_.pieces.size(); ++k) {
       TrimPiece& piece = made_.pieces[k];
-      piece.error.u += shift_into_domain(piece, lines_.u, all_.u, &ParameterPoint::u);
-      piece.error.v += shift_into_domain(piece, lines_.v, all_.v, &ParameterPoint::v);
+      double turns_u = 0, turns_v = 0;
+      piece.error.u += shift_into_domain(piece, lines_.u, all_.u, &ParameterPoint::u, turns_u);
+      piece.error.v += shift_into_domain(piece, lines_.v, all_.v, &ParameterPoint::v, turns_v);
+      is_odd_copy_.push_back(std::fmod(turns_u, 2) != 0);
     }
   }
 
@@ -162,6 +166,8 @@ class LoopBuilder {
   void join() {
     std::vector<TrimPiece> given;
     given.swap(made_.pieces);
+    std::vector<bool> is_odd_copy;
+    is_odd_copy.swap(is_odd_copy_);
     double way_u = 0, way_v = 0;
     for (std::size_t k = 0; k < given.size(); ++k) {
       way_u += given[k].end().u - given[k].start().u;
@@ -180,6 +186,7 @@ class LoopBuilder {
         move_ends(next, to, next.end());
       }
       made_.pieces.push_back(given[k]);
+      is_odd_copy_.push_back(is_odd_copy[k]);
       if (!rounding) close_gap(given[k], next, du, dv);
     }
     if (!given.empty()) made_.pieces.front() = given.front();  // the last joint may have moved its start
@@ -203,11 +210,24 @@ class LoopBuilder {
     if (wraps) move_ends(made_.pieces.back(), made_.pieces.back().start(), to);
   }
 
+  /// Counts the corners with the crossings to their right: on each line v = v.from() + periods the loop crosses an even
+  /// number of times, and a crossing lies to the right of as many corners as there are copies of the domain to its left.
+  bool holds_corner() const {
+    if (!lines_.u.periodic || !lines_.v.periodic || made_.turns_u != 0 || made_.turns_v != 0) return false;
+    bool odd = false;
+    for (std::size_t k = 0; k < made_.pieces.size(); ++k) {
+      const TrimPiece& piece = made_.pieces[k];
+      odd ^= is_odd_copy_[k] && piece.lower_v() == lines_.v.from() && piece.upper_v() > piece.lower_v();
+    }
+    return odd;
+  }
+
   const TrimLoop& loop_;
   std::uint32_t index_;
   const CutLines& lines_;
   CutLines all_;  ///< the lines of all copies of the domain that the curve meets
   LoopPieces made_;
+  std::vector<bool> is_odd_copy_;  ///< of each piece: whether it came from a copy of the domain of odd number along u
 };
 
 }  // namespace
