@@ -82,10 +82,9 @@ TEST(JsonErrors, LinesArePlacesOfTheValue) {
 }
 
 TEST(JsonErrors, KeysAreKnownAndStandOnce) {
-  EXPECT_EQ(
-      error_in(surface_of("bezier", square + R"(, "wieghts": [])")),
-      "m.json:2: /surfaces/0: unknown key \"wieghts\"; known keys are kind, name, description, placement, degree, "
-      "points, weights");
+  EXPECT_EQ(error_in(surface_of("bezier", square + R"(, "wieghts": [])")),
+            "m.json:2: /surfaces/0: unknown key \"wieghts\"; known keys are kind, name, description, placement, trims, "
+            "degree, points, weights");
   EXPECT_EQ(error_of("{\"version\": 1,\n\"format\": 2,\n\"version\": 3}"),
             "m.json:3: the key \"version\" occurs twice in one object");
   expect_words(error_in(surface_of("bezier", square + ",\n" + square)), "m.json:3: the key \"points\" occurs twice");

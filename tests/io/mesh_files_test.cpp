@@ -298,7 +298,7 @@ TEST(Formats, UnknownOnesAreNamedWithThoseThatAreKnown) {
   EXPECT_EQ(write_mesh(random_mesh(3, 1), mesh).message(),
             mesh + ": unsupported format \".off\": meshes are written as .obj, .ply, .stl, .glb, .gltf");
   EXPECT_EQ(write_model(Model{}, mesh).status().message(),
-            mesh + ": unsupported format \".off\": surfaces are written as .bpt, .obj");
+            mesh + ": unsupported format \".off\": surfaces are written as .bpt, .json, .obj");
   EXPECT_EQ(test::content_of(mesh), "x");
 }
 

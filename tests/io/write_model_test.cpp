@@ -29,7 +29,7 @@ TEST_F(WriteModel, EveryDegreeComesBackBitForBit) {
     for (int n = 1; n <= max_degree; n += 1 + m % 3) {
       const Model polynomials = model_of({random_polynomial(random, m, n), random_polynomial(random, n, m, {}, 1e-300),
                                           random_polynomial(random, m, n, {1e15, -1e300, 1}, 1e280)});
-      for (const char* name : {"a.bpt", "a.obj"}) {
+      for (const char* name : {"a.bpt", "a.json", "a.obj"}) {
         WrittenModel facts;
         const Model read = rewritten(polynomials, folder_ / name, &facts);
         EXPECT_EQ(facts.surfaces, 3u);
@@ -41,12 +41,14 @@ TEST_F(WriteModel, EveryDegreeComesBackBitForBit) {
           EXPECT_TRUE(std::holds_alternative<BezierPatch>(surface.surface));
       }
       const Model rationals = model_of({random_rational(random, m, n), random_rational(random, n, m, 1e-3, 1e5)});
-      const Model read = rewritten(rationals, folder_ / "a.obj");
-      for (std::size_t k = 0; k < 2; ++k) {  // patches on [0,1]^2 are never multiplied by their weights
-        const auto& a = std::get<BezierPatch>(rationals.surfaces[k].surface);
-        const auto& b = std::get<BezierPatch>(read.surfaces[k].surface);
-        EXPECT_TRUE(std::equal(a.points().begin(), a.points().end(), b.points().begin(), b.points().end()));
-        EXPECT_TRUE(std::equal(a.weights().begin(), a.weights().end(), b.weights().begin(), b.weights().end()));
+      for (const char* name : {"a.json", "a.obj"}) {
+        const Model read = rewritten(rationals, folder_ / name);
+        for (std::size_t k = 0; k < 2; ++k) {  // patches on [0,1]^2 are never multiplied by their weights
+          const auto& a = std::get<BezierPatch>(rationals.surfaces[k].surface);
+          const auto& b = std::get<BezierPatch>(read.surfaces[k].surface);
+          EXPECT_TRUE(std::equal(a.points().begin(), a.points().end(), b.points().begin(), b.points().end()));
+          EXPECT_TRUE(std::equal(a.weights().begin(), a.weights().end(), b.weights().begin(), b.weights().end()));
+        }
       }
     }
 }
@@ -56,14 +58,16 @@ TEST_F(WriteModel, EveryModelComesBack) {
   for (const auto& file : files_below(models)) {
     if (file.extension() != ".json" && file.extension() != ".bpt") continue;
     const Model model = value_of(read_model(file));
-    WrittenModel facts;
-    const Model read = rewritten(model, folder_ / "a.obj", &facts);
-    EXPECT_TRUE(facts.warnings.empty()) << file;
-    expect_same_patches(model, read, file.string());
-    const PatchSet set = value_of(make_patch_set(model));
-    EXPECT_EQ(facts.patches, set.patch_count()) << file;
-    EXPECT_EQ(facts.fit_error.distance, set.fit_error().distance) << file;
-    EXPECT_EQ(facts.fit_error.certified, set.fit_error().certified) << file;
+    for (const char* name : {"a.json", "a.obj"}) {
+      WrittenModel facts;
+      const Model read = rewritten(model, folder_ / name, &facts);
+      EXPECT_TRUE(facts.warnings.empty()) << file;
+      expect_same_patches(model, read, file.string());
+      const PatchSet set = value_of(make_patch_set(model));
+      EXPECT_EQ(facts.patches, set.patch_count()) << file;
+      EXPECT_EQ(facts.fit_error.distance, set.fit_error().distance) << file;
+      EXPECT_EQ(facts.fit_error.certified, set.fit_error().certified) << file;
+    }
     ++count;
   }
   EXPECT_GE(count, 60u);
@@ -105,19 +109,21 @@ TEST_F(WriteModel, EveryFileOfOthersComesBack) {
     if (!model) continue;  // not a model, or an error: the readers' tests say which
     const Result<PatchSet> set = make_patch_set(*model);
     if (!set) continue;
-    WrittenModel facts;
-    const Model read = rewritten(*model, folder_ / "a.obj", &facts);
-    EXPECT_TRUE(facts.warnings.empty()) << file << ": " << facts.warnings.front();
-    ASSERT_EQ(read.surfaces.size(), model->surfaces.size()) << file;
-    for (std::size_t k = 0; k < read.surfaces.size(); ++k) {
-      ModelSurface named = model->surfaces[k];
-      named.name = read.surfaces[k].name;  // names have tests of their own
-      expect_same_patches(named, read.surfaces[k], file.string() + " surface " + std::to_string(k));
-      EXPECT_EQ(read.surfaces[k].trims->size(), named.trims->size()) << file;
-      trims += named.trims->size();
+    for (const char* name : {"a.json", "a.obj"}) {
+      WrittenModel facts;
+      const Model read = rewritten(*model, folder_ / name, &facts);
+      EXPECT_TRUE(facts.warnings.empty()) << file << ": " << facts.warnings.front();
+      ASSERT_EQ(read.surfaces.size(), model->surfaces.size()) << file;
+      for (std::size_t k = 0; k < read.surfaces.size(); ++k) {
+        ModelSurface named = model->surfaces[k];
+        named.name = read.surfaces[k].name;  // names have tests of their own
+        expect_same_patches(named, read.surfaces[k], file.string() + " surface " + std::to_string(k));
+        EXPECT_EQ(read.surfaces[k].trims, named.trims) << file;
+        trims += named.trims->size();
+      }
     }
     ++files;
-    surfaces += read.surfaces.size();
+    surfaces += model->surfaces.size();
   }
   std::cout << files << " files, " << surfaces << " surfaces, " << trims << " trims\n";
   EXPECT_GE(files, 30u);
@@ -171,12 +177,24 @@ TEST_F(WriteModel, NamesComeBackAsFarAsALineHoldsThem) {
   for (std::size_t k = 0; k < names.size(); ++k) EXPECT_EQ(read.surfaces[k].name, names[k].second);
 }
 
+TEST_F(WriteModel, JsonKeepsEveryNameThatIsUtf8) {
+  Random random(5);
+  Model model;
+  const std::vector<std::string> names{"", "rim", "two\nlines\tand \x01 \"quoted\" \\", "\xc3\xa4 # \xe2\x82\xac"};
+  for (const std::string& name : names) model.surfaces.push_back({name, random_polynomial(random, 1, 1)});
+  model.surfaces.push_back({"not UTF-8: \xff", random_polynomial(random, 1, 1)});
+  const Model read = rewritten(model, folder_ / "a.json");
+  ASSERT_EQ(read.surfaces.size(), names.size() + 1);
+  for (std::size_t k = 0; k < names.size(); ++k) EXPECT_EQ(read.surfaces[k].name, names[k]);
+  EXPECT_EQ(read.surfaces.back().name, "not UTF-8: \xef\xbf\xbd");
+}
+
 TEST_F(WriteModel, WhatCannotBeWrittenIsAnErrorAndLeavesWhatWasThere) {
   Random random(4);
   const Model model = model_of({random_polynomial(random, 3, 3)});
   expect_refused({}, "a.obj", StatusCode::invalid_argument, "the model has no surfaces");
   expect_refused(model, "a.ply", StatusCode::unsupported,
-                 "unsupported format \".ply\": surfaces are written as .bpt, .obj");
+                 "unsupported format \".ply\": surfaces are written as .bpt, .json, .obj");
   std::filesystem::create_directory(folder_ / "folder.obj");
   expect_refused(model, "folder.obj", StatusCode::io_error, "cannot be written: it is a directory");
   expect_refused(model, "none/a.obj", StatusCode::io_error,

@@ -5,27 +5,6 @@
 namespace tessera::test {
 namespace {
 
-template <class T>
-bool same(std::span<const T> a, std::span<const T> b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end());
-}
-
-void expect_same_loops(const std::vector<TrimLoop>& a, const std::vector<TrimLoop>& b) {
-  ASSERT_EQ(a.size(), b.size());
-  for (std::size_t k = 0; k < a.size(); ++k) {
-    EXPECT_EQ(a[k].hole, b[k].hole);
-    ASSERT_EQ(a[k].curves.size(), b[k].curves.size());
-    for (std::size_t c = 0; c < a[k].curves.size(); ++c) {
-      const Curve &p = a[k].curves[c], &q = b[k].curves[c];
-      EXPECT_EQ(p.degree(), q.degree());
-      EXPECT_EQ(p.domain(), q.domain());
-      EXPECT_TRUE(same(p.points(), q.points()));
-      EXPECT_TRUE(same(p.weights(), q.weights()));
-      EXPECT_TRUE(same(p.knots(), q.knots()));
-    }
-  }
-}
-
 /// A triangle of segments, of which one is a part of a longer one; and a circle of two rational halves.
 std::vector<TrimLoop> loops() {
   const auto segment = [](Vec3 a, Vec3 b) { return value_of(Curve::bezier(std::vector{a, b})); };
@@ -47,11 +26,46 @@ TEST(WriteModelTrims, ComeBackBitForBit) {
       model_of({random_polynomial(random, 3, 2), random_rational(random, 2, 2), random_polynomial(random, 1, 1)});
   model.surfaces[0].trims = loops();
   model.surfaces[1].trims = std::vector{loops()[1], loops()[0], loops()[1]};
-  WrittenModel facts;
-  const Model read = rewritten(model, folder / "a.obj", &facts);
-  EXPECT_TRUE(facts.warnings.empty());
-  for (std::size_t k = 0; k < 3; ++k) expect_same_loops(model.surfaces[k].trims, read.surfaces[k].trims);
-  expect_same_patches(model, read, "trimmed");
+  for (const char* name : {"a.json", "a.obj"}) {
+    WrittenModel facts;
+    const Model read = rewritten(model, folder / name, &facts);
+    EXPECT_TRUE(facts.warnings.empty());
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(model.surfaces[k].trims, read.surfaces[k].trims) << name;
+    expect_same_patches(model, read, "trimmed");
+  }
+}
+
+/// A placement moves the surface; its parameters, and so its loops, stay.
+TEST(WriteModelTrims, StayWhereTheSurfaceIsPlaced) {
+  const ScratchFolder folder;
+  Random random(3);
+  Model model = model_of({random_polynomial(random, 3, 2)});
+  model.surfaces[0].trims = loops();
+  model.surfaces[0].placement = Affine::translated({1, 2, 3}) * Affine::rotated({1, 1, 0}, 0.5);
+  const Model copy = model;
+  EXPECT_EQ(copy.surfaces[0].trims, model.surfaces[0].trims);
+  for (const char* name : {"a.json", "a.obj"}) {
+    const Model read = rewritten(model, folder / name);
+    EXPECT_EQ(read.surfaces[0].trims, model.surfaces[0].trims) << name;
+    expect_same_patches(model, read, "placed");
+  }
+}
+
+TEST(WriteModelTrims, AreComparedByTheirNumbers) {
+  const std::vector<TrimLoop> a = loops();
+  std::vector<TrimLoop> b = loops();
+  EXPECT_EQ(a, b);
+  b[1].hole = false;
+  EXPECT_NE(a, b);
+  b = loops();
+  std::swap(b[0].curves[0], b[0].curves[1]);
+  EXPECT_NE(a, b);
+  const auto arc = [](double x, double weight, double end) {
+    return value_of(Curve::bezier(std::vector<Vec3>{{0, 0, 0}, {x, 1, 0}, {1, 0, 0}}, std::vector<double>{1, weight, 1},
+                                  Interval{0, end}));
+  };
+  EXPECT_EQ(arc(0, 2, 1), arc(0, 2, 1));
+  for (const Curve& other : {arc(0.1, 2, 1), arc(0, 1, 1), arc(0, 3, 1), arc(0, 2, 2)}) EXPECT_NE(arc(0, 2, 1), other);
 }
 
 TEST(WriteModelTrims, AreSaidToBeLeftOutOfBpt) {
@@ -73,12 +87,14 @@ TEST(WriteModelTrims, AreSaidToBeLeftOutOfQuadrics) {
   ASSERT_TRUE(std::holds_alternative<QuadricPiece>(model.surfaces.at(0).surface));
   model.surfaces[0].name = "side";
   model.surfaces[0].trims = loops();
-  WrittenModel facts;
-  const Model read = rewritten(model, folder / "a.obj", &facts);
-  EXPECT_EQ(facts.warnings,
-            (std::vector<std::string>{
-                "surface 0 (side): 2 trims are not written: their parameters are not those of its patches"}));
-  EXPECT_TRUE(read.surfaces[0].trims->empty());
+  for (const char* name : {"a.json", "a.obj"}) {
+    WrittenModel facts;
+    const Model read = rewritten(model, folder / name, &facts);
+    EXPECT_EQ(facts.warnings,
+              (std::vector<std::string>{
+                  "surface 0 (side): 2 trims are not written: their parameters are not those of its patches"}));
+    EXPECT_TRUE(read.surfaces[0].trims->empty());
+  }
 }
 
 }  // namespace

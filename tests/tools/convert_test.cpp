@@ -51,7 +51,7 @@ TEST_F(ConvertTool, WhatIsLostIsAWarning) {
 
 TEST_F(ConvertTool, WhatCannotBeConverted) {
   expect_failure({"convert", teapot}, 2, "convert: expected --output FILE, found none");
-  expect_failure({"convert", teapot, "-o", "a.ply"}, 2, "surfaces are written as .bpt, .obj");
+  expect_failure({"convert", teapot, "-o", "a.ply"}, 2, "surfaces are written as .bpt, .json, .obj");
   expect_failure({"convert", models + "goblet.json", "-o", "a.bpt"}, 1,
                  "tessera: a.bpt: surface 0 (goblet): its patch 0 is rational, but .bpt has no weights: write .obj");
   expect_failure({"convert", "missing.bpt", "-o", "a.obj"}, 1, "missing.bpt: cannot be opened");

@@ -59,11 +59,10 @@ std::string fault_of_output(const std::string& path) {
 }
 
 constexpr const char* footer =
-    ".obj keeps weights, names, trims and the ranges of parameters. .bpt holds only polynomial patches. A warning "
-    "names\n"
-    "each part of a model that the file does not hold. Several models become one file, or one file each if the output "
-    "is\n"
-    "a folder (then as .obj) or contains {name}.\n"
+    ".obj and .json keep weights, names, trims and the ranges of parameters. .bpt holds only polynomial patches. A\n"
+    "warning names each part of a model that the file does not hold. Several models become one file, or one file each "
+    "if\n"
+    "the output is a folder (then as .obj) or contains {name}.\n"
     "\nExample:\n"
     "  tessera convert goblet.json -o goblet.obj";
 
@@ -75,11 +74,11 @@ void add_convert(Command& tool, Session& session) {
   add_models(command, options->models);
   command
       .add_text("-o,--output", "FILE",
-                "The file of surfaces (.bpt, .obj), a folder, a name with {name}, or - for standard output",
+                "The file of surfaces (.bpt, .json, .obj), a folder, a name with {name}, or - for standard output",
                 options->output)
       .require()
       .check(fault_of_output);
-  add_stream_format(command, {"bpt", "obj"}, options->format);
+  add_stream_format(command, {"bpt", "json", "obj"}, options->format);
   add_reading(command, options->models);
   add_common(command, session.common);
   command.footer = footer;

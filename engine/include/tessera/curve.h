@@ -60,6 +60,8 @@ class Curve {
   double weight(std::size_t i) const { return is_rational() ? data_->weights[i] : 1.0; }
   std::span<const double> knots() const { return data_->knots; }  ///< points().size() + degree() + 1
   const Interval& domain() const { return data_->domain; }        ///< interval on which it is evaluated
+  /// Compares degree, points, weights, knots and domain, by the == of numbers.
+  friend bool operator==(const Curve& a, const Curve& b) { return a.data_ == b.data_ || *a.data_ == *b.data_; }
 
  private:
   struct Data {
@@ -67,6 +69,7 @@ class Curve {
     std::vector<Vec3> points;
     std::vector<double> weights, knots;
     Interval domain;
+    friend bool operator==(const Data&, const Data&) = default;
   };
   explicit Curve(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
   std::shared_ptr<const Data> data_;

@@ -94,11 +94,13 @@ struct WrittenModel {
 ///
 /// - .obj: free-form surfaces with weights, trims, and names as groups. The patches of a surface are one `surf` over
 ///   its own ranges of parameters, which keeps (u,v).
+/// - .json: names, weights and trims. A surface is one `b_spline` or `nurbs` over its own ranges of parameters, and a
+///   patch on [0,1]^2 is a `bezier`. Bytes of a name that are not UTF-8 become U+FFFD.
 /// - .bpt: only polynomial patches; names and ranges are not kept.
 ///
 /// Polynomial surfaces read back with the same control points. The parameters of a quadric become those of its patches,
 /// and its trims are left out with a warning. So are the trims of a surface whose patches do not share their borders;
-/// it becomes one `surf` per patch.
+/// it becomes one surface of the file per patch.
 ///
 /// Errors: io_error, unsupported (the extension; a rational surface for .bpt, index = the surface), invalid_argument
 /// (no surfaces), those of to_bezier().

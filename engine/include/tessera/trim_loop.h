@@ -14,8 +14,9 @@ namespace tessera::inline abi_0_1 {
 /// A closed chain of curves in the surface's parameters (x = u, y = v; z is ignored). The inside of a hole is cut away,
 /// and so is the outside of all other loops.
 struct TrimLoop {
-  std::vector<Curve> curves;  ///< each begins where the one before it ends
-  bool hole = false;          ///< if false, the outside is cut away
+  std::vector<Curve> curves;                                           ///< each begins where the one before it ends
+  bool hole = false;                                                   ///< if false, the outside is cut away
+  friend bool operator==(const TrimLoop&, const TrimLoop&) = default;  ///< by the curves, in order, and by `hole`
 };
 
 /// A fault of a loop, and how it was repaired.

@@ -32,7 +32,7 @@ constexpr std::array<Format, 10> formats{{
     {.extension = ".bpt", .read_model = parse_bpt, .write_model = write_bpt},
     {.extension = ".bv", .read_model = parse_bv},
     {.extension = ".g2", .read_model = parse_g2},
-    {.extension = ".json", .read_model = parse_json_model},
+    {.extension = ".json", .read_model = parse_json_model, .write_model = write_json_model},
     {.extension = ".obj",
      .read_model = parse_obj_freeform,
      .read_mesh = parse_obj,

@@ -18,9 +18,26 @@ std::vector<double> weights_of(const Fields& fields, std::size_t count) {
   return weights;
 }
 
-Curve read_bezier_curve(const JsonValue& value) {
+/// Reads a point of a curve: in space, or in a surface's parameters.
+using PointReader = Vec3(const JsonValue&);
+
+Vec3 read_parameters(const JsonValue& value) {
+  auto coordinate = array_of(value, "2 numbers [u, v]", 2).begin();
+  Vec3 point{.x = read_number(*coordinate)};
+  ++coordinate;
+  point.y = read_number(*coordinate);
+  return point;
+}
+
+std::vector<Vec3> read_points(const JsonValue& value, PointReader& read) {
+  std::vector<Vec3> points;
+  for (const JsonValue point : array(value, "an array of points")) points.push_back(read(point));
+  return points;
+}
+
+Curve read_bezier_curve(const JsonValue& value, PointReader& read) {
   const Fields fields(value, {"kind", "points", "weights", "domain"});
-  const std::vector<Vec3> points = read_vectors(fields.at("points"));
+  const std::vector<Vec3> points = read_points(fields.at("points"), read);
   const Interval domain = fields.get("domain", Interval{}, read_interval);
   return made(value, Curve::bezier(points, weights_of(fields, points.size()), domain));
 }
@@ -35,8 +52,8 @@ struct CurveNet {
   std::vector<Vec3> points;
   std::vector<double> weights, knots;
 
-  explicit CurveNet(const Fields& fields)
-      : degree(read_integer(fields.at("degree"), 1, max_degree)), points(read_vectors(fields.at("points"))) {
+  CurveNet(const Fields& fields, PointReader& read_point)
+      : degree(read_integer(fields.at("degree"), 1, max_degree)), points(read_points(fields.at("points"), read_point)) {
     weights = weights_of(fields, points.size());
     const Knots read = read_knots(fields.at("knots"), degree, points.size());
     knots = read.values;
@@ -47,16 +64,16 @@ struct CurveNet {
   }
 };
 
-Curve read_b_spline_curve(const JsonValue& value) {
+Curve read_b_spline_curve(const JsonValue& value, PointReader& read) {
   const Fields fields(value, {"kind", "degree", "points", "knots", "domain"});
-  const CurveNet net(fields);
+  const CurveNet net(fields, read);
   return made(value, Curve::b_spline(net.degree, net.points, net.knots, part_of(fields)));
 }
 
-Curve read_nurbs_curve(const JsonValue& value) {
+Curve read_nurbs_curve(const JsonValue& value, PointReader& read) {
   const Fields fields(value, {"kind", "degree", "points", "weights", "knots", "domain"});
   fields.at("weights");
-  const CurveNet net(fields);
+  const CurveNet net(fields, read);
   return made(value, Curve::nurbs(net.degree, net.points, net.weights, net.knots, part_of(fields)));
 }
 
@@ -79,8 +96,16 @@ JsonValue kind_of(const JsonValue& value) {
 
 /// Reads an exact curve; `kind` is the index of its word in bezier, b_spline, nurbs, circle.
 Curve read_exact_curve(const JsonValue& value, std::size_t kind) {
-  constexpr std::array readers{read_bezier_curve, read_b_spline_curve, read_nurbs_curve, read_circle};
-  return readers[kind](value);
+  constexpr std::array readers{read_bezier_curve, read_b_spline_curve, read_nurbs_curve};
+  return kind < readers.size() ? readers[kind](value, read_vector) : read_circle(value);
+}
+
+/// Reads a circle in a surface's parameters.
+Curve read_parameter_circle(const JsonValue& value) {
+  const Fields fields(value, {"kind", "center", "radius", "arcs"});
+  const Axis axis{.origin = read_parameters(fields.at("center"))};
+  return made(value, make_nurbs_circle(axis, read_number(fields.at("radius")),
+                                       fields.get("arcs", CircleArcs::four, read_arcs)));
 }
 
 }  // namespace
@@ -93,6 +118,12 @@ BorderCurve read_border(const JsonValue& value) {
   const std::size_t kind = read_word(kind_of(value), {"bezier", "b_spline", "nurbs", "circle", "parametric"});
   if (kind == 4) return read_parametric_curve(value);
   return read_exact_curve(value, kind);
+}
+
+Curve read_parameter_curve(const JsonValue& value) {
+  constexpr std::array readers{read_bezier_curve, read_b_spline_curve, read_nurbs_curve};
+  const std::size_t kind = read_word(kind_of(value), {"bezier", "b_spline", "nurbs", "circle"});
+  return kind < readers.size() ? readers[kind](value, read_parameters) : read_parameter_circle(value);
 }
 
 Axis read_axis(const JsonValue& value) {

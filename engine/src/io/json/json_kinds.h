@@ -1,11 +1,14 @@
 #pragma once
 // The parts of a JSON model, one reader each. All throw JsonFailure. tools/models/FORMAT.md describes what each reads.
 
+#include <vector>
+
 #include "io/json/json_reader.h"
 #include "tessera/geometry.h"
 #include "tessera/nurbs_surface.h"
 #include "tessera/parametric_surface.h"
 #include "tessera/surface.h"
+#include "tessera/trim_loop.h"
 
 namespace tessera::inline abi_0_1 {
 
@@ -19,6 +22,8 @@ class SurfaceFields : public Fields {
 Surface read_surface(const JsonValue& value);
 /// Reads a list of maps, the first applied first.
 Affine read_placement(const JsonValue& value);
+/// Reads a list of trimming loops.
+std::vector<TrimLoop> read_trims(const JsonValue& value);
 
 // Readers of surfaces, by kind.
 Surface read_bezier_patch(const JsonValue& value);
@@ -45,6 +50,8 @@ Surface read_parametric_surface(const JsonValue& value);
 // Reads a curve by kind: Bezier, B-spline, NURBS, circle; as a border also a function.
 Curve read_curve(const JsonValue& value);
 BorderCurve read_border(const JsonValue& value);
+/// Reads a curve in a surface's parameters: points are [u, v].
+Curve read_parameter_curve(const JsonValue& value);
 /// Reads a parametric curve of three expressions in t.
 ParametricCurve read_parametric_curve(const JsonValue& value);
 

@@ -45,6 +45,7 @@ ModelSurface read_model_surface(const JsonValue& value) {
   ModelSurface result{.name = {}, .surface = std::move(surface)};
   if (const auto name = value.find("name")) result.name = read_text(*name);
   if (const auto placement = value.find("placement")) result.placement = read_placement(*placement);
+  if (const auto trims = value.find("trims")) result.trims = read_trims(*trims);
   return result;
 }
 
@@ -66,7 +67,7 @@ Model read_document(const JsonValue& root) {
 }  // namespace
 
 SurfaceFields::SurfaceFields(const JsonValue& value, std::initializer_list<std::string_view> own)
-    : Fields(value, {"kind", "name", "description", "placement"}, own) {
+    : Fields(value, {"kind", "name", "description", "placement", "trims"}, own) {
   if (const auto description = find("description")) read_text(*description);
 }
 

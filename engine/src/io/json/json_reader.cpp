@@ -90,12 +90,6 @@ std::vector<double> read_numbers(const JsonValue& value) {
   return numbers;
 }
 
-std::vector<Vec3> read_vectors(const JsonValue& value) {
-  std::vector<Vec3> vectors;
-  for (const JsonValue vector : array(value, "an array of points")) vectors.push_back(read_vector(vector));
-  return vectors;
-}
-
 Interval read_interval(const JsonValue& value) {
   auto end = array_of(value, "2 numbers [from, to]", 2).begin();
   Interval interval{.from = read_number(*end)};

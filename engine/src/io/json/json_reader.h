@@ -54,7 +54,6 @@ const std::string& read_text(const JsonValue& value);
 std::size_t read_word(const JsonValue& value, std::initializer_list<std::string_view> words);
 Vec3 read_vector(const JsonValue& value);
 std::vector<double> read_numbers(const JsonValue& value);
-std::vector<Vec3> read_vectors(const JsonValue& value);
 Interval read_interval(const JsonValue& value);
 /// Reads [[u0, u1], [v0, v1]].
 Domain read_domain(const JsonValue& value);

@@ -5,67 +5,12 @@
 #include <array>
 #include <string>
 
+#include "io/format/patch_net.h"
 #include "io/obj/obj_name.h"
 #include "io/spline/model_formats.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
-
-/// The patches of a surface as one net: control point (i, j) of the whole.
-class Net {
- public:
-  explicit Net(const WrittenSurface& surface)
-      : surface_(surface),
-        degree_u_(static_cast<std::size_t>(surface.patches.front().degree_u())),
-        degree_v_(static_cast<std::size_t>(surface.patches.front().degree_v())),
-        pieces_u_(surface.breaks_u.size() - 1),
-        pieces_v_(surface.breaks_v.size() - 1) {}
-
-  std::size_t count_u() const { return degree_u_ * pieces_u_ + 1; }
-  std::size_t count_v() const { return degree_v_ * pieces_v_ + 1; }
-  bool is_rational() const { return surface_.patches.front().is_rational(); }
-
-  struct Place {
-    const BezierPatch* patch;
-    int i, j;
-  };
-  /// Where (i, j) is stored. On a common border, it is the patch with the smaller index.
-  Place place(std::size_t i, std::size_t j) const {
-    const std::size_t a = i == 0 ? 0 : (i - 1) / degree_u_, b = j == 0 ? 0 : (j - 1) / degree_v_;
-    return {&surface_.patches[a * pieces_v_ + b], static_cast<int>(i - a * degree_u_),
-            static_cast<int>(j - b * degree_v_)};
-  }
-
-  /// Whether each patch is its part of the net: degrees are equal, and shared borders have equal points and weights (by
-  /// ==).
-  bool holds_all() const {
-    for (std::size_t k = 0; k < surface_.patches.size(); ++k) {
-      const BezierPatch& patch = surface_.patches[k];
-      if (static_cast<std::size_t>(patch.degree_u()) != degree_u_ ||
-          static_cast<std::size_t>(patch.degree_v()) != degree_v_ || patch.is_rational() != is_rational())
-        return false;
-      if (!holds(patch, k / pieces_v_ * degree_u_, k % pieces_v_ * degree_v_)) return false;
-    }
-    return true;
-  }
-
- private:
-  /// Checks the first row and column, which another patch may have written.
-  bool holds(const BezierPatch& patch, std::size_t first_i, std::size_t first_j) const {
-    const auto same = [&](int i, int j) {
-      const Place at = place(first_i + static_cast<std::size_t>(i), first_j + static_cast<std::size_t>(j));
-      return at.patch->point(at.i, at.j) == patch.point(i, j) && at.patch->weight(at.i, at.j) == patch.weight(i, j);
-    };
-    for (int j = 0; j <= patch.degree_v(); ++j)
-      if (!same(0, j)) return false;
-    for (int i = 0; i <= patch.degree_u(); ++i)
-      if (!same(i, 0)) return false;
-    return true;
-  }
-
-  const WrittenSurface& surface_;
-  std::size_t degree_u_, degree_v_, pieces_u_, pieces_v_;
-};
 
 class ObjSurfaceWriter {
  public:
@@ -74,7 +19,7 @@ class ObjSurfaceWriter {
   /// Returns false if the surface has trims that are left out.
   bool write(const WrittenSurface& surface) {
     write_group(surface.name);
-    if (Net(surface).holds_all()) {
+    if (PatchNet(surface).holds_all()) {
       write_surface(surface);
       return true;
     }
@@ -98,7 +43,7 @@ class ObjSurfaceWriter {
     const std::size_t first_curve = curves_;
     for (const TrimLoop& loop : surface.trims)
       for (const Curve& curve : loop.curves) write_curve(curve);
-    const Net net(surface);
+    const PatchNet net(surface);
     write_vertices(net);
     const BezierPatch& patch = surface.patches.front();
     out_.write(net.is_rational() ? "cstype rat bezier\ndeg " : "cstype bezier\ndeg ");
@@ -117,10 +62,10 @@ class ObjSurfaceWriter {
   }
 
   /// Writes vertices along u first.
-  void write_vertices(const Net& net) {
+  void write_vertices(const PatchNet& net) {
     for (std::size_t j = 0; j < net.count_v(); ++j)
       for (std::size_t i = 0; i < net.count_u(); ++i) {
-        const Net::Place at = net.place(i, j);
+        const PatchNet::Place at = net.place(i, j);
         const Vec3& p = at.patch->point(at.i, at.j);
         out_.write('v');
         for (const double value : {p.x, p.y, p.z}) write_value(value);

@@ -35,6 +35,7 @@ std::string trims_left_out(std::size_t surface, const WrittenSurface& written, s
 Status write_bpt(std::span<const WrittenSurface> surfaces, OutputFile& out, std::vector<std::string>& warnings);
 Status write_obj_freeform(std::span<const WrittenSurface> surfaces, OutputFile& out,
                           std::vector<std::string>& warnings);
+Status write_json_model(std::span<const WrittenSurface> surfaces, OutputFile& out, std::vector<std::string>& warnings);
 
 struct SurfaceWriter {
   decltype(&write_bpt) write = nullptr;
