@@ -110,6 +110,53 @@ TEST_F(Info, ParametersAndMemory) {
   EXPECT_EQ(pot["parameters"]["u"], json({0.0, 1.0}));
 }
 
+/// A torus and a plate with loops of all sorts.
+TEST_F(Info, LoopsAndTheirRemarks) {
+  folder_.file("loops.json", R"({"format": "tessera", "version": 1, "surfaces": [
+    {"kind": "torus", "name": "ring", "major": 3, "minor": 1, "trims": [
+      {"hole": true, "curves": [{"kind": "circle", "center": [1, 1], "radius": 0.1}]}]},
+    {"kind": "bezier", "points": [[[0,0,0],[0,1,0]],[[1,0,0],[1,1,0]]]},
+    {"kind": "bezier", "name": "plate", "points": [[[0,0,0],[0,1,0]],[[1,0,0],[1,1,0]]], "trims": [
+      {"hole": true, "curves": [{"kind": "circle", "center": [1, 1], "radius": 0.25}]},
+      {"hole": true, "curves": [{"kind": "bezier", "points": [[0.25, 0.25], [0.5, 0.25], [0.25, 0.5]]}]},
+      {"curves": [{"kind": "bezier", "points": [[0.25, 0.25], [0.5, 0.25]]},
+                  {"kind": "bezier", "points": [[0.5, 0.25], [0.25, 0.25]]}]}]}]})");
+  const json facts = json::parse(run({"info", "loops.json", "--json"}).output);
+  EXPECT_EQ(facts["surfaces"], 3);
+  EXPECT_EQ(facts["trimmed_surfaces"], 2);
+  EXPECT_EQ(facts["loops"], 4);
+  const json& remarks = facts["loop_remarks"];
+  ASSERT_EQ(remarks.size(), 3u) << remarks;
+  const std::array<std::string, 3> faults{"outside", "gap", "retraced"};
+  const std::array<double, 3> sizes{0.25, 0.25, 0};
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(remarks[k]["surface"], 2);
+    EXPECT_EQ(remarks[k]["loop"], k);
+    EXPECT_EQ(remarks[k]["fault"], faults[k]);
+    EXPECT_EQ(remarks[k]["size"], sizes[k]);
+    EXPECT_EQ(remarks[k]["text"].get<std::string>().rfind("loop " + std::to_string(k) + ": ", 0), 0u);
+  }
+  const std::string text = run({"info", "loops.json"}).output;
+  EXPECT_NE(text.find("\n  trims            2 of 3 faces, 4 loops, 3 remarks:\n"
+                      "    surface 2 (plate): loop 0: it leaves the surface's domain by 0.25 and is cut off there\n"
+                      "    surface 2 (plate): loop 1: a straight line closes a gap of 0.25"),
+            std::string::npos)
+      << text;
+}
+
+/// Loops that no region can be made of cost a remark.
+TEST_F(Info, LoopsThatCannotBeUsed) {
+  folder_.file("far.json", R"({"format": "tessera", "version": 1, "surfaces": [
+    {"kind": "bezier", "points": [[[0,0,0],[0,1,0]],[[1,0,0],[1,1,0]]], "trims": [
+      {"curves": [{"kind": "bezier", "points": [[0, 0], [1e200, 0], [0, 1]]}]}]}]})");
+  const json remarks = json::parse(run({"info", "far.json", "--json"}).output)["loop_remarks"];
+  ASSERT_EQ(remarks.size(), 1u);
+  EXPECT_EQ(remarks[0]["fault"], "unusable");
+  EXPECT_EQ(remarks[0]["loop"], 0);
+  EXPECT_EQ(remarks[0]["text"],
+            "its loops cannot be used: loop 0 has a coordinate of 1e+200; the largest is limited to 1e+100");
+}
+
 /// Every key of an object, as a.b.c; elements of arrays as a[].b.
 void collect(const json& value, const std::string& path, std::set<std::string>& keys) {
   if (value.is_array() && !value.empty()) return collect(value[0], path + "[]", keys);

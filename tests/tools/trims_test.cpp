@@ -77,8 +77,8 @@ TEST_F(Trims, AreInTheFacts) {
   const json facts = json::parse(run({"info", "trimmed.obj", "--json"}).output);
   EXPECT_EQ(facts["trimmed_surfaces"], 1);
   EXPECT_EQ(json::parse(output_of({"info", "plain.obj", "--json"}))["trimmed_surfaces"], 0);
-  EXPECT_NE(run({"info", "trimmed.obj"}).output.find("1 surface is trimmed: trims not honoured yet"),
-            std::string::npos);
+  EXPECT_EQ(facts["loops"], 1);
+  EXPECT_NE(run({"info", "trimmed.obj"}).output.find("\n  trims            1 of 1 face, 1 loop\n"), std::string::npos);
 }
 
 TEST_F(Trims, ThePictureSaysSo) {

@@ -10,6 +10,7 @@
 #include "loading.h"
 #include "memory.h"
 #include "tessera/execution.h"
+#include "trim_facts.h"
 
 namespace tessera::cli {
 namespace {
@@ -25,6 +26,7 @@ struct Findings {
   const Loaded& loaded;
   const PatchSet& set;
   Facts facts;
+  TrimFacts trims;
   std::optional<Joins> joins;  ///< empty if they are left out
   Isa isa;
 };
@@ -49,7 +51,9 @@ Json as_json(const Findings& found) {
           {"name", found.loaded.model.name},
           {"surfaces", found.loaded.model.surfaces.size()},
           {"kinds", kinds},
-          {"trimmed_surfaces", facts.trimmed},
+          {"trimmed_surfaces", found.trims.trimmed},
+          {"loops", found.trims.loops},
+          {"loop_remarks", remarks_json(found.trims)},
           {"parameters",
            {{"u", range_json(facts.u)}, {"v", range_json(facts.v)}, {"surfaces_on_unit_square", facts.on_unit_square}}},
           {"patches", found.set.patch_count()},
@@ -103,9 +107,8 @@ std::string as_text(const Findings& found) {
        << (bytes ? ", read from " + readable_bytes(*bytes) : "") << "\n  kinds            " << list_of_kinds(facts)
        << "\n  degrees          " << list_of_degrees(facts) << "\n  rational         " << facts.rational
        << " of the patches"
-       << "\n  parameters       " << parameters_text(facts, surfaces);
-  if (facts.trimmed > 0) text << "\n  trims            " << trims_text(facts.trimmed);
-  text << "\n  collapsed edges  " << facts.collapsed_edges << " on " << facts.patches_with_collapsed_edges
+       << "\n  parameters       " << parameters_text(facts, surfaces) << trims_lines(found.trims, found.loaded)
+       << "\n  collapsed edges  " << facts.collapsed_edges << " on " << facts.patches_with_collapsed_edges
        << " patches\n"
        << (found.joins ? joins_text(*found.joins) : "  joins            left out, as --joins 0 says\n")
        << "  control points   " << facts.control_points << ", of the patches"
@@ -128,7 +131,11 @@ Status run_info(const Job& job, const Options& options, const CommonOptions& com
   if (!set) return set.status();
   const Result<Isa> isa = default_isa();
   if (!isa) return isa.status();
-  Findings found{job.inputs[0], *loaded, *set, count_facts(loaded->model, *set), {}, *isa};
+  Findings found{job.inputs[0], *loaded, *set, count_facts(loaded->model, *set), {}, {}, *isa};
+  if (loaded->trimmed() > 0) {
+    const auto phase = timings.phase("trims");
+    found.trims = find_trims(*loaded);
+  }
   if (options.max_joins > 0) {
     const auto phase = timings.phase("joins");
     const Result<Joins> joins = find_joins(*set, options.max_joins);
@@ -147,6 +154,9 @@ constexpr const char* footer =
     "normal, to 0.11 degrees), as C0 (one border, to 1e-6 of the two patches' size; the largest angle between the\n"
     "normals is printed), or with a gap (the ends agree within 1e-4 of the model's size, the borders do not). Open\n"
     "borders have no neighbour. Contacts in the middle of a border, or along trims, are not found.\n"
+    "Trims: faces with loops, and a remark on each loop that had to be repaired: gaps that a line closes, parts "
+    "beyond\n"
+    "the domain or over each other, loops that enclose nothing.\n"
     "Memory: surfaces with their points, weights, knots and trims; patches; blocks packed for evaluation.\n"
     "\nExamples:\n"
     "  tessera info teapot.bpt\n"

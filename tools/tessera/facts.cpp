@@ -60,7 +60,6 @@ void count_surfaces(const Model& model, Facts& facts) {
   bool first = true;
   for (const ModelSurface& surface : model.surfaces) {
     ++facts.kinds[kind_name(surface.surface)];
-    facts.trimmed += !surface.trims->empty();
     facts.model_bytes += bytes_of(surface);
     const Domain d = domain(surface.surface);
     facts.on_unit_square += d == Domain{};

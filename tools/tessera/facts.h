@@ -23,8 +23,7 @@ struct Facts {
   std::map<std::pair<int, int>, std::size_t> degrees;  ///< (along u, along v) -> patches
   std::size_t rational = 0, control_points = 0;        ///< of patches
   std::size_t collapsed_edges = 0, patches_with_collapsed_edges = 0;
-  std::size_t trimmed = 0;  ///< surfaces with trims
-  Range u, v;               ///< the surfaces' own parameters
+  Range u, v;  ///< the surfaces' own parameters
   std::size_t on_unit_square = 0;
   std::size_t model_bytes = 0, patch_bytes = 0, block_bytes = 0;
 };

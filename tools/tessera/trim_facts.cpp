@@ -1,0 +1,96 @@
+#include "trim_facts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include "console.h"
+#include "tessera/trim_region.h"
+
+namespace tessera::cli {
+namespace {
+
+std::string_view name_of(LoopFault fault) {
+  constexpr std::array<std::string_view, 5> names{"empty", "gap", "retraced", "outside", "open"};
+  return names[static_cast<std::size_t>(fault)];
+}
+
+/// Whether two patches meet in these borders: control points within 1e-9 of `size`.
+bool are_one_line(const BezierPatch& first, const BezierPatch& last, bool along_u, double size) {
+  const int count = along_u ? first.degree_v() : first.degree_u();
+  if (count != (along_u ? last.degree_v() : last.degree_u())) return false;
+  for (int k = 0; k <= count; ++k) {
+    const Vec3 a = along_u ? first.point(0, k) : first.point(k, 0);
+    const Vec3 b = along_u ? last.point(last.degree_u(), k) : last.point(k, last.degree_v());
+    if (!(length(a - b) <= 1e-9 * size)) return false;
+  }
+  return true;
+}
+
+/// Whether the surface closes along u, or along v.
+bool is_closed(const PatchGrid& grid, bool along_u) {
+  const std::size_t count_u = grid.breaks_u().size() - 1, count_v = grid.breaks_v().size() - 1;
+  const double size = grid.box().diagonal();
+  for (std::size_t k = 0; k < (along_u ? count_v : count_u); ++k) {
+    const BezierPatch &first = along_u ? grid.patch(0, k) : grid.patch(k, 0),
+                      &last = along_u ? grid.patch(count_u - 1, k) : grid.patch(k, count_v - 1);
+    if (!are_one_line(first, last, along_u, size)) return false;
+  }
+  return true;
+}
+
+void add_surface(std::size_t k, const ModelSurface& surface, const PatchGrid& grid, TrimFacts& facts) {
+  ++facts.trimmed;
+  facts.loops += surface.trims->size();
+  const TrimOptions options{.periodic_u = is_closed(grid, true), .periodic_v = is_closed(grid, false)};
+  const Result<TrimRegion> region = TrimRegion::make(*surface.trims, grid.breaks_u(), grid.breaks_v(), options);
+  if (!region) {
+    const Status& status = region.status();
+    SurfaceRemark remark;
+    remark.surface = k;
+    remark.text = "its loops cannot be used: " + status.message();
+    if (status.index() != Status::no_index) remark.loop = static_cast<std::size_t>(status.index());
+    facts.remarks.push_back(std::move(remark));
+    return;
+  }
+  for (const LoopRemark& of : region->remarks()) facts.remarks.push_back({k, of.loop, of.fault, of.size, of.text});
+}
+
+}  // namespace
+
+TrimFacts find_trims(const Loaded& loaded) {
+  TrimFacts facts;
+  for (std::size_t k = 0; k < loaded.model.surfaces.size(); ++k)
+    if (!loaded.model.surfaces[k].trims->empty()) add_surface(k, loaded.model.surfaces[k], loaded.grids[k], facts);
+  return facts;
+}
+
+std::string trims_lines(const TrimFacts& facts, const Loaded& loaded) {
+  if (facts.trimmed == 0) return {};
+  constexpr std::size_t limit = 20;  // lines; --json prints all
+  std::string text = "\n  trims            " + std::to_string(facts.trimmed) + " of " +
+                     counted(loaded.model.surfaces.size(), "face") + ", " + counted(facts.loops, "loop");
+  if (!facts.remarks.empty()) text += ", " + counted(facts.remarks.size(), "remark") + ":";
+  for (std::size_t k = 0; k < std::min(limit, facts.remarks.size()); ++k) {
+    const SurfaceRemark& remark = facts.remarks[k];
+    const std::string& name = *loaded.model.surfaces[remark.surface].name;
+    text += "\n    surface " + std::to_string(remark.surface) + (name.empty() ? "" : " (" + name + ")") + ": " +
+            remark.text;
+  }
+  if (facts.remarks.size() > limit) text += "\n    and " + std::to_string(facts.remarks.size() - limit) + " more";
+  return text;
+}
+
+Json remarks_json(const TrimFacts& facts) {
+  Json list = Json::array();
+  for (const SurfaceRemark& remark : facts.remarks)
+    list.push_back({{"surface", remark.surface},
+                    {"loop", remark.loop ? Json(*remark.loop) : Json()},
+                    {"fault", remark.fault ? std::string(name_of(*remark.fault)) : "unusable"},
+                    {"size", remark.size},
+                    {"text", remark.text}});
+  return list;
+}
+
+}  // namespace tessera::cli
