@@ -16,35 +16,10 @@ std::string_view name_of(LoopFault fault) {
   return names[static_cast<std::size_t>(fault)];
 }
 
-/// Whether two patches meet in these borders: control points within 1e-9 of `size`.
-bool are_one_line(const BezierPatch& first, const BezierPatch& last, bool along_u, double size) {
-  const int count = along_u ? first.degree_v() : first.degree_u();
-  if (count != (along_u ? last.degree_v() : last.degree_u())) return false;
-  for (int k = 0; k <= count; ++k) {
-    const Vec3 a = along_u ? first.point(0, k) : first.point(k, 0);
-    const Vec3 b = along_u ? last.point(last.degree_u(), k) : last.point(k, last.degree_v());
-    if (!(length(a - b) <= 1e-9 * size)) return false;
-  }
-  return true;
-}
-
-/// Whether the surface closes along u, or along v.
-bool is_closed(const PatchGrid& grid, bool along_u) {
-  const std::size_t count_u = grid.breaks_u().size() - 1, count_v = grid.breaks_v().size() - 1;
-  const double size = grid.box().diagonal();
-  for (std::size_t k = 0; k < (along_u ? count_v : count_u); ++k) {
-    const BezierPatch &first = along_u ? grid.patch(0, k) : grid.patch(k, 0),
-                      &last = along_u ? grid.patch(count_u - 1, k) : grid.patch(k, count_v - 1);
-    if (!are_one_line(first, last, along_u, size)) return false;
-  }
-  return true;
-}
-
 void add_surface(std::size_t k, const ModelSurface& surface, const PatchGrid& grid, TrimFacts& facts) {
   ++facts.trimmed;
   facts.loops += surface.trims->size();
-  const TrimOptions options{.periodic_u = is_closed(grid, true), .periodic_v = is_closed(grid, false)};
-  const Result<TrimRegion> region = TrimRegion::make(*surface.trims, grid.breaks_u(), grid.breaks_v(), options);
+  const Result<TrimRegion> region = TrimRegion::make(*surface.trims, grid);
   if (!region) {
     const Status& status = region.status();
     SurfaceRemark remark;

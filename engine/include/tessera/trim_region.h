@@ -9,6 +9,7 @@
 #include <memory>
 #include <span>
 
+#include "tessera/convert.h"
 #include "tessera/geometry.h"
 #include "tessera/status.h"
 #include "tessera/trim_loop.h"
@@ -45,6 +46,11 @@ class TrimRegion {
   /// Makes the region of a face that is one patch. Errors: as above.
   static Result<TrimRegion> make(std::span<const TrimLoop> loops, const Domain& domain,
                                  const TrimOptions& options = {});
+
+  /// Makes the region of a face whose patches are these, as make_patch_set() of a model does: a parameter is periodic if
+  /// the first and the last line of the grid are the same points, within 1e-9 of its size; ends of curves meet within
+  /// 2^-32 of the domain. Errors: as above.
+  static Result<TrimRegion> make(std::span<const TrimLoop> loops, const PatchGrid& grid);
 
   /// Tells on which side of the loops a point lies. Exact: `inside` and `outside` are right for the loops as they were
   /// given and repaired, whatever rounding does; `border` stands for points on a loop, and beside a curve for those

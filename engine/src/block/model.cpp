@@ -151,7 +151,7 @@ class ModelPatches {
     if (!options_.trims || loops.empty()) {
       all_.add(k, std::move(grid));
     } else {
-      Result<TrimRegion> region = TrimRegion::make(loops, grid.breaks_u(), grid.breaks_v(), trim_options(grid));
+      Result<TrimRegion> region = TrimRegion::make(loops, grid);
       if (!region && region.status().code() == StatusCode::out_of_memory) return region.status();
       if (!region) faults_.push_back(in_surface(model_, k, region.status()));
       if (!region || region->is_whole()) {

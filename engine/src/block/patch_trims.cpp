@@ -35,25 +35,6 @@ class TouchedSides {
   std::vector<PatchUse>& uses_;
 };
 
-/// Whether the sides u0 and u1 of a grid, or v0 and v1, are the same points.
-bool closes(const PatchGrid& grid, bool along_u) {
-  const double near = 1e-9 * grid.box().diagonal();
-  const std::size_t last = (along_u ? grid.count_u() : grid.count_v()) - 1;
-  const std::size_t count = along_u ? grid.count_v() : grid.count_u();
-  for (std::size_t k = 0; k < count; ++k) {
-    const BezierPatch& from = along_u ? grid.patch(0, k) : grid.patch(k, 0);
-    const BezierPatch& to = along_u ? grid.patch(last, k) : grid.patch(k, last);
-    const int degree = along_u ? from.degree_v() : from.degree_u();
-    if (degree != (along_u ? to.degree_v() : to.degree_u())) return false;
-    for (int i = 0; i <= degree; ++i) {
-      const Vec3 p = along_u ? from.point(0, i) : from.point(i, 0);
-      const Vec3 q = along_u ? to.point(to.degree_u(), i) : to.point(i, to.degree_v());
-      if (!(length(p - q) <= near)) return false;
-    }
-  }
-  return true;
-}
-
 }  // namespace
 
 std::vector<PatchUse> patch_uses(const TrimRegion& region) {
@@ -70,14 +51,6 @@ std::vector<PatchUse> patch_uses(const TrimRegion& region) {
     touched.touch(piece.end());
   }
   return uses;
-}
-
-TrimOptions trim_options(const PatchGrid& grid) {
-  TrimOptions options;
-  options.periodic_u = closes(grid, true);
-  options.periodic_v = closes(grid, false);
-  options.snap = 0x1p-32;  // files state ends of curves to 10 digits
-  return options;
 }
 
 }  // namespace tessera::inline abi_0_1

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "tessera/convert.h"
 #include "tessera/patch_set.h"
 #include "tessera/trim_region.h"
 
@@ -28,9 +27,5 @@ enum class PatchUse : std::uint8_t { out, whole, cut };
 /// Returns the uses of a face's patches, `[a][b]`. A whole patch whose side a loop touches counts as cut, because its
 /// mesh must have a vertex there.
 std::vector<PatchUse> patch_uses(const TrimRegion& region);
-
-/// Returns the options for the loops of a grid: a parameter is periodic if both ends of it are the same line of the
-/// surface, within 1e-9 of its size.
-TrimOptions trim_options(const PatchGrid& grid);
 
 }  // namespace tessera::inline abi_0_1

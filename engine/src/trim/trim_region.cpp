@@ -36,6 +36,25 @@ Status check_breaks(std::span<const double> breaks, const char* name) {
   return {};
 }
 
+/// Whether the sides u0 and u1 of a grid, or v0 and v1, are the same points.
+bool closes(const PatchGrid& grid, bool along_u) {
+  const double near = 1e-9 * grid.box().diagonal();
+  const std::size_t last = (along_u ? grid.count_u() : grid.count_v()) - 1;
+  const std::size_t count = along_u ? grid.count_v() : grid.count_u();
+  for (std::size_t k = 0; k < count; ++k) {
+    const BezierPatch& from = along_u ? grid.patch(0, k) : grid.patch(k, 0);
+    const BezierPatch& to = along_u ? grid.patch(last, k) : grid.patch(k, last);
+    const int degree = along_u ? from.degree_v() : from.degree_u();
+    if (degree != (along_u ? to.degree_v() : to.degree_u())) return false;
+    for (int i = 0; i <= degree; ++i) {
+      const Vec3 p = along_u ? from.point(0, i) : from.point(i, 0);
+      const Vec3 q = along_u ? to.point(to.degree_u(), i) : to.point(i, to.degree_v());
+      if (!(length(p - q) <= near)) return false;
+    }
+  }
+  return true;
+}
+
 /// The distance for snapping: a share of the domain, and less than a third of the narrowest patch.
 CutAxis axis_of(std::span<const double> breaks, bool periodic, double snap) {
   CutAxis axis{{breaks.begin(), breaks.end()}, periodic, snap * (breaks.back() - breaks.front())};
@@ -115,6 +134,12 @@ Result<TrimRegion> TrimRegion::make(std::span<const TrimLoop> loops, std::span<c
 
 Result<TrimRegion> TrimRegion::make(std::span<const TrimLoop> loops, const Domain& domain, const TrimOptions& options) {
   return make(loops, std::array{domain.u0, domain.u1}, std::array{domain.v0, domain.v1}, options);
+}
+
+Result<TrimRegion> TrimRegion::make(std::span<const TrimLoop> loops, const PatchGrid& grid) {
+  constexpr double file_digits = 0x1p-32;  // files state the ends of curves to about 10 digits
+  const TrimOptions options{.periodic_u = closes(grid, true), .periodic_v = closes(grid, false), .snap = file_digits};
+  return make(loops, grid.breaks_u(), grid.breaks_v(), options);
 }
 
 TrimSide TrimRegion::locate(double u, double v) const {
