@@ -22,9 +22,9 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-// Triangles of the band may be wider than a cell, so cells take less than half of the room.
-constexpr double cell_share = 0.45, sliver_share = 0.25;
-constexpr double band_share = 2.2;  // a usual bound of the band's triangles over that of cells
+// Triangles of the band may be wider than a cell, so cells take a part of the room. Larger ones are halved.
+constexpr double cell_share = 0.6, sliver_share = 0.25;
+constexpr double band_share = 1.5;  // a bound of most triangles of the band over that of cells
 constexpr int max_attempts = 16;
 constexpr std::size_t cuts_per_task = 4;
 
@@ -55,6 +55,8 @@ CertifiedPlanner::CutRoom CertifiedPlanner::room_of(const CutPatch& cut, const R
     sliver = std::min(sliver, std::max(sliver_share * room.tolerance, left));
   }
   room.limits.sliver = sliver;
+  room.limits.room = std::isfinite(room.tolerance) ? room.tolerance - room.given : room.tolerance;
+  room.limits.in_cells = options_.angle || options_.camera;
   room.limits.bend = options_.angle ? *options_.angle / 8 : std::numeric_limits<double>::infinity();
   return room;
 }

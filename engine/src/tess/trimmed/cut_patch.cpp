@@ -55,6 +55,7 @@ void CutPatchMaker::make(const TrimRegion& region, const FaceSides& sides, const
     return;
   }
   number(collapsed, out);
+  refine(limits, chord, out);
   measure(limits.segments, chord, out);
   find_border_vertices(borders, limits.domain, out);
 }
@@ -98,15 +99,14 @@ void CutPatchMaker::number(EdgeMask collapsed, CutPatch& out) {
   const std::size_t first = cutter_.loop_vertex_count(), count = cutter_.vertex_count();
   numbers_.assign(count, CutPatch::none);
   points_.clear();
-  std::array<std::uint32_t, 4> poles;
-  poles.fill(CutPatch::none);
+  poles_.fill(CutPatch::none);
   const auto add = [&](std::uint32_t vertex) {
     ParameterPoint at = cutter_.local(vertex);
     for (const Side side : all_sides) {
       const double across = runs_along_u(side) ? at.v : at.u;
       const bool is_on = across == (side == Side::u1 || side == Side::v1 ? 1 : 0);
       if (!is_on || !collapsed.has(edge_of(side))) continue;
-      std::uint32_t& pole = poles[static_cast<std::size_t>(side)];
+      std::uint32_t& pole = poles_[static_cast<std::size_t>(side)];
       if (pole != CutPatch::none) return pole;
       pole = static_cast<std::uint32_t>(out.vertices.size());
       (runs_along_u(side) ? at.u : at.v) = 0;
@@ -130,27 +130,58 @@ void CutPatchMaker::number(EdgeMask collapsed, CutPatch& out) {
   out.triangles.reserve(2 * cells.whole_count() + cells.band().size());
   cells.for_whole([&](std::uint32_t, std::uint32_t, std::uint32_t p, std::uint32_t q, std::uint32_t r,
                       std::uint32_t s) { put(p, q, r), put(p, r, s); });
+  band_ = out.triangles.size();
   for (const CutPatch::Triangle& triangle : cells.band()) put(triangle[0], triangle[1], triangle[2]);
 }
 
+CutPatchMaker::Box CutPatchMaker::box_of(const CutPatch& out, const CutPatch::Triangle& triangle) const {
+  Box box;
+  const auto is_pole = [&](std::uint32_t corner, bool along_u) {
+    const auto pole = [&](Side side) { return poles_[static_cast<std::size_t>(side)] == corner; };
+    return along_u ? pole(Side::v0) || pole(Side::v1) : pole(Side::u0) || pole(Side::u1);
+  };
+  for (const std::uint32_t corner : triangle) {
+    const ParameterPoint& at = out.vertices[corner];
+    if (!is_pole(corner, true)) box.u0 = std::min(box.u0, at.u), box.u1 = std::max(box.u1, at.u);
+    if (!is_pole(corner, false)) box.v0 = std::min(box.v0, at.v), box.v1 = std::max(box.v1, at.v);
+  }
+  return box;
+}
+
 // Bounds of a half or a quarter hold for triangles within it. A parameter is off by three roundings.
+double CutPatchMaker::Box::distance(const ChordBound& chord) const {
+  return chord.pieces()[piece_of(u0, u1, v0, v1)].chord(width() + 0x1p-24, height() + 0x1p-24);
+}
+
+void CutPatchMaker::refine(const TrimmedPatch& limits, const ChordBound& chord, CutPatch& out) {
+  const double room = limits.room - cutter_.sliver_bound();
+  const double width = 1.0 / limits.segments.u.rate(), height = 1.0 / limits.segments.v.rate();
+  constexpr double rounded = 1 + 0x1p-40;
+  const auto is_large = [&](const CutPatch::Triangle& triangle) {
+    const Box box = box_of(out, triangle);
+    const bool is_wide = box.width() > rounded * width || box.height() > rounded * height;
+    return (limits.in_cells && is_wide) || (std::isfinite(room) && !(box.distance(chord) <= room));
+  };
+  const auto length = [&](std::uint32_t a, std::uint32_t b) {
+    const Box box = box_of(out, {a, b, b});
+    return std::max(box.width() / width, box.height() / height);
+  };
+  refiner_.run(out.vertices, out.triangles, band_, is_large, length);
+  points_.resize(out.vertices.size(), {std::nan(""), std::nan("")});  // new vertices lie on no border
+}
+
 void CutPatchMaker::measure(PatchSegments segments, const ChordBound& chord, CutPatch& out) {
-  CutCells& cells = cutter_.cells();
   out.sliver = cutter_.sliver_bound();
   double width = 0, height = 0;
-  if (cells.whole_count() > 0) {
+  if (band_ > 0) {
     out.distance = chord.distance_of(segments);
     const Rates coarsest = segments.coarsest();
     width = 1.0 / coarsest.u, height = 1.0 / coarsest.v;
   }
-  for (const CutPatch::Triangle& triangle : cells.band()) {
-    const ParameterPoint a = cutter_.local(triangle[0]), b = cutter_.local(triangle[1]),
-                         c = cutter_.local(triangle[2]);
-    const auto [u0, u1] = std::minmax({a.u, b.u, c.u});
-    const auto [v0, v1] = std::minmax({a.v, b.v, c.v});
-    const SecondDerivatives& piece = chord.pieces()[piece_of(u0, u1, v0, v1)];
-    out.distance = std::max(out.distance, piece.chord(u1 - u0 + 0x1p-24, v1 - v0 + 0x1p-24));
-    width = std::max(width, u1 - u0), height = std::max(height, v1 - v0);
+  for (std::size_t t = band_; t < out.triangles.size(); ++t) {
+    const Box box = box_of(out, out.triangles[t]);
+    out.distance = std::max(out.distance, box.distance(chord));
+    width = std::max(width, box.width()), height = std::max(height, box.height());
   }
   out.widest = {rate_of(width), rate_of(height)};
 }

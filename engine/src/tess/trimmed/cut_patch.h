@@ -8,6 +8,7 @@
 #include "block/patch_trims.h"
 #include "tess/bounds/chord_bound.h"
 #include "tess/cells/stitched_patch.h"
+#include "tess/trimmed/band_refiner.h"
 #include "tess/trimmed/trimmed_patch.h"
 
 namespace tessera::inline abi_0_1 {
@@ -60,13 +61,26 @@ class CutPatchMaker {
   bool run(const TrimRegion& region, const FaceSides& sides, std::size_t place, const TrimmedPatch& limits,
            const std::array<Segments, 4>& borders, CutPatch& out);
   void number(EdgeMask collapsed, CutPatch& out);
+  /// Halves the triangles of the band that are too large.
+  void refine(const TrimmedPatch& limits, const ChordBound& chord, CutPatch& out);
   void measure(PatchSegments segments, const ChordBound& chord, CutPatch& out);
+  /// The box of a triangle's parameters. A pole has every parameter along its border, so it does not count there.
+  struct Box {
+    double u0 = 1, u1 = 0, v0 = 1, v1 = 0;
+    double width() const { return u1 - u0; }
+    double height() const { return v1 - v0; }
+    double distance(const ChordBound& chord) const;
+  };
+  Box box_of(const CutPatch& out, const CutPatch::Triangle& triangle) const;
   void find_border_vertices(const std::array<Segments, 4>& borders, const Domain& domain, CutPatch& out);
 
   PatchCutter cutter_;
   std::vector<std::uint32_t> numbers_;  ///< by vertex of the cutter
   std::vector<ParameterPoint> points_;  ///< by vertex of the patch, in the surface's parameters
   std::vector<double> lines_;
+  std::array<std::uint32_t, 4> poles_{};  ///< by Side: the vertex of a collapsed border, or none
+  std::size_t band_ = 0;                  ///< the first triangle of the band
+  BandRefiner refiner_;
 };
 
 }  // namespace tessera::inline abi_0_1

@@ -21,6 +21,8 @@ struct TrimmedPatch {
   SpeedBound speed;        ///< over the patch's own parameters
   PatchSegments segments;  ///< of its grid
   double sliver;           ///< the largest distance between chords and curves
+  double room;             ///< the largest distance of a triangle, with that of the slivers; infinite: no limit
+  bool in_cells;           ///< whether triangles must be no wider than cells
   double bend;             ///< see ChordLimits
   double chord_share = 1;  ///< the largest length of a chord, in cells
 };
