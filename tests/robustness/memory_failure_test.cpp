@@ -20,6 +20,7 @@
 #include "tessera/model.h"
 #include "tessera/nurbs_surface.h"
 #include "tessera/parametric_surface.h"
+#include "tessera/trim_region.h"
 #ifdef TESSERA_HAS_IO
 #include "support/scratch_folder.h"
 #include "tessera/cad.h"
@@ -189,6 +190,31 @@ TEST(MemoryFails, WhereSetsAreEvaluated) {
   survives("set_control_points", [&] { return set.set_control_points(2, net); });
   const Model model{.name = "m", .surfaces = {{"a", patches[0], Affine::translated({1, 0, 0})}, {"b", patches[9]}}};
   survives("make_patch_set(model)", [&] { return make_patch_set(model); });
+}
+
+TEST(MemoryFails, WhereFacesAreTrimmed) {
+  Random random(5);
+  const BSplineSurface surface = random_surface(random, 3, 2, {.multiple = true}, {}, true);
+  const Domain d = surface.domain();
+  const auto square = [&](double from, double to) {  // shares of the domain
+    std::vector<Vec3> corners;
+    for (const auto& [a, b] : {std::pair(from, from), {to, from}, {to, to}, {from, to}, {from, from}})
+      corners.push_back({d.u_at(a), d.v_at(b), 0});
+    return TrimLoop{.curves = {value_of(Curve::b_spline(1, corners, std::vector<double>{0, 0, 1, 2, 3, 4, 4}))}};
+  };
+  // The second crosses the first.
+  const std::vector<TrimLoop> loops{square(0.1, 0.7), square(0.4, 0.95)};
+  const PatchGrid grid = value_of(to_bezier(surface));
+  survives("TrimRegion::make", [&] { return TrimRegion::make(loops, grid); });
+  Model model;
+  model.surfaces.push_back({"a", surface, {}, loops});
+  survives("make_patch_set(trimmed model)", [&] { return make_patch_set(model); });
+  const PatchSet set = value_of(make_patch_set(model));
+  ASSERT_GT(set.cut_count(), 0u);
+  survives("Tessellation::make, trimmed", [&] { return Tessellation::make(set, {.tolerance = 0.3}); });
+  const Tessellation plan = value_of(Tessellation::make(set, {.tolerance = 0.3}));
+  Mesh mesh = value_of(plan.allocate());
+  survives("Tessellation::run, trimmed", [&] { return plan.run(set, mesh.views()); });
 }
 
 TEST(MemoryFails, WhereMeshesAreMade) {

@@ -23,7 +23,7 @@ struct CrackCount {
   double bound = 0;
   bool capped = false;          ///< the tolerance takes too many triangles; used the smallest one that does not
   std::size_t own_borders = 0;  ///< borders of the model itself: of patches, which meet no other border
-  std::size_t own_edges = 0;    ///< open edges on those
+  std::size_t own_edges = 0;    ///< open edges on those, and of patches that loops cut
   std::size_t cracks = 0;       ///< the other open edges
   /// Edges of more than two triangles where patches meet, lie upon each other or are folded: each patch has two of
   /// them.
@@ -40,6 +40,7 @@ struct CrackCount {
 class [[gnu::visibility("hidden")]] MeetingBorders {
  public:
   MeetingBorders(const PatchSet& set, const WeldRules& weld) : counts_(4 * set.patch_count(), 0) {
+    for (std::size_t patch = 0; patch < set.patch_count(); ++patch) is_cut_.push_back(set.is_cut(patch));
     const Result<CertifiedPlanner> planner =
         CertifiedPlanner::make(impl_of(set), {.weld = weld, .angle = {}, .camera = {}}, {});
     if (!planner) return;
@@ -56,10 +57,12 @@ class [[gnu::visibility("hidden")]] MeetingBorders {
     for_borders([&](std::size_t border, std::uint32_t edge) { counts_[border] = borders[edge]; });
   }
   std::uint32_t at(std::size_t border) const { return counts_[border]; }
+  bool is_cut(std::size_t patch) const { return is_cut_[patch]; }
   std::size_t lone() const { return static_cast<std::size_t>(std::count(counts_.begin(), counts_.end(), 1u)); }
 
  private:
   std::vector<std::uint32_t> counts_;
+  std::vector<bool> is_cut_;
 };
 
 /// The side of its patch that an edge of a mesh lies on, 0 to 3; 4 if inside. A vertex of a border that is a point also
@@ -123,7 +126,8 @@ inline void count_edges(const Mesh& mesh, const MeetingBorders& borders, CrackCo
     std::uint32_t meeting = 0;
     for (; to < edges.size() && edges[to].ends == edges[from].ends; ++to)
       if (edges[to].border != inside) meeting = std::max(meeting, borders.at(edges[to].border));
-    if (to - from == 1) ++(meeting == 1 ? count.own_edges : count.cracks);
+    const bool is_own = meeting == 1 || borders.is_cut(edges[from].use[0]);
+    if (to - from == 1) ++(is_own ? count.own_edges : count.cracks);
     if (to - from <= 2) continue;
     std::vector<std::array<std::uint32_t, 3>> uses;
     for (std::size_t k = from; k < to; ++k) uses.push_back(edges[k].use);
@@ -172,6 +176,12 @@ inline Result<CrackCount> count_cracks(const PatchSet& set, double relative, std
   count.bound = plan->bound();
   count.own_borders = borders.lone();
   count_edges(*mesh, borders, count);
+  // Along loops the plan says how many edges are open.
+  if (set.cut_count() > 0 && report->open_edges > plan->open_edges()) {
+    const std::size_t torn = report->open_edges - plan->open_edges();
+    count.cracks += torn;
+    count.own_edges -= std::min(torn, count.own_edges);
+  }
   count.folded = report->degenerate_triangles > 0 && is_folded(set);
   return count;
 }

@@ -2,6 +2,7 @@
 
 #include <png.h>
 
+#include "tessera/io.h"
 #include "tools/tool_test.h"
 
 namespace tessera::test {

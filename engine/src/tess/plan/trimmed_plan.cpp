@@ -132,7 +132,8 @@ Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& p
         excess[c] = bound_cut(room, plan.cuts_[c], plan);
       }
     };
-    if (Status status = parallel_for(cuts.size(), cuts_per_task, execution, cut_some); !status.ok()) return status;
+    const Execution quiet{.cancel = execution.cancel};
+    if (Status status = parallel_for(cuts.size(), cuts_per_task, quiet, cut_some); !status.ok()) return status;
     bool keeps = true;
     for (std::size_t c = 0; c < cuts.size(); ++c) {
       if (excess[c] <= 1) continue;
