@@ -246,6 +246,19 @@ TEST(TrimRegion, LoopsThatTouchTheDomainAndEachOther) {
   compare(region, loops, random, 200);
 }
 
+/// A comb of many needles whose chords all have their middles at one u; each is compared with its neighbours alone.
+TEST(TrimRegion, ChordsWithTheirMiddlesAtOneU) {
+  std::vector<ParameterPoint> corners;
+  constexpr int needles = 20000;
+  for (int k = 0; k <= needles; ++k) corners.push_back({k % 2 == 0 ? 0.499 : 0.501, 0.1 + 0.8 * k / needles});
+  corners.push_back({0.9, 0.9});
+  corners.push_back({0.9, 0.1});
+  const TrimRegion region = value_of(TrimRegion::make(std::vector{test::polyline(corners)}, unit));
+  EXPECT_TRUE(region.remarks().empty());
+  EXPECT_EQ(region.locate(0.8, 0.5), TrimSide::inside);
+  EXPECT_EQ(region.locate(0.2, 0.5), TrimSide::outside);
+}
+
 TEST(TrimRegion, BadLoopsAreRepairedAndTold) {
   std::mt19937 random(8);
   const TrimLoop bow = test::polygon({{0.1, 0.1}, {0.9, 0.9}, {0.9, 0.1}, {0.1, 0.9}});
@@ -339,6 +352,51 @@ TEST(TrimRegion, WindowsAtRandomOnATorus) {
       ASSERT_EQ(region.locate(u, v), side(inside)) << k << ": " << u << ' ' << v;
     }
   }
+}
+
+/// Curves that end beyond a seam by more than rounding, as OpenCASCADE writes them.
+TEST(TrimRegion, GapsAcrossASeam) {
+  std::mt19937 random(15);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  const std::vector<double> breaks{0, 0.25, 0.5, 0.75, 1};
+  for (const double off : {1e-12, 1e-9, 1e-6, -1e-12, -1e-9, -1e-6})
+    for (const bool left : {false, true}) {
+      // A rectangle around the surface, bounded by the seam; one corner is off.
+      TrimLoop loop;
+      const double a = left ? off : 0, b = left ? 1 : 1 + off;
+      loop.curves = {test::line({0, 0.25}, {1, 0.25}), test::line({b, 0.25}, {b, 0.75}),
+                     test::line({b, 0.75}, {a, 0.75}), test::line({0, 0.75}, {0, 0.25})};
+      const TrimRegion region = value_of(TrimRegion::make(std::span(&loop, 1), breaks, breaks, {.periodic_u = true}));
+      for (int k = 0; k < 2000; ++k) {
+        const double u = 2e-6 + (1 - 4e-6) * uniform(random), v = uniform(random);
+        ASSERT_EQ(region.locate(u, v), side(v > 0.25 && v < 0.75)) << off << left << ": " << u << ' ' << v;
+      }
+    }
+}
+
+/// A torus cut open along both seams, with a window where they cross; parts of its outline are off by more than
+/// rounding, as OpenCASCADE writes them.
+TEST(TrimRegion, GapsWhereBothSeamsCross) {
+  std::mt19937 random(16);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  const std::vector<double> breaks{0, 0.25, 0.5, 0.75, 1};
+  for (const double off : {0.0, 1e-13, -1e-13, 1e-9, -1e-9})
+    for (int part = 0; part < 64; ++part) {
+      const auto at = [&](int bit) { return (part >> bit) % 2 == 1 ? off : 0; };
+      TrimLoop loop;
+      loop.curves = {test::line({0, at(0)}, {1, at(0)}),           test::line({1 + at(1), 0}, {0.75, 0.125}),
+                     test::line({0.75, 0.125}, {1 + at(1), 0.25}), test::line({1 + at(2), 0.25}, {1 + at(2), 1}),
+                     test::line({1, 1 + at(3)}, {0, 1 + at(3)}),   test::line({at(4), 1}, {at(4), 0.25}),
+                     test::line({at(5), 0.25}, {0.25, 0.125}),     test::line({0.25, 0.125}, {at(5), 0})};
+      const TrimRegion region =
+          value_of(TrimRegion::make(std::span(&loop, 1), breaks, breaks, {.periodic_u = true, .periodic_v = true}));
+      for (int k = 0; k < 300; ++k) {
+        const double u = uniform(random), v = uniform(random);
+        const double kept = std::min(u, 1 - u) - 2 * std::min(v, 0.25 - v);
+        if (std::abs(kept) < 1e-7 || std::min({u, v, 1 - u, 1 - v}) < 1e-7) continue;
+        ASSERT_EQ(region.locate(u, v), side(kept > 0)) << off << " in " << part << ": " << u << ' ' << v;
+      }
+    }
 }
 
 TEST(TrimRegion, PatchesAreWholeCutOrLeftOut) {

@@ -39,8 +39,8 @@ class TrimRegion {
   ///
   /// Errors: invalid_argument (breaks, snap), non_finite (breaks; index = the break), unsupported (coordinates beyond
   /// 1e100; a loop that runs over more than 64 periods; index = the loop), internal (a loop that repair leaves open),
-  /// out_of_memory. Time: O(n log n) for n pieces of curves between patch borders, plus O(patches); O(n^2) if the chords of
-  /// all pieces have their middles at one u.
+  /// out_of_memory. Time: O(n log n) for n pieces of curves between patch borders, plus O(patches); O(n^2) at worst, as
+  /// where one point is the middle of the chords of all pieces.
   static Result<TrimRegion> make(std::span<const TrimLoop> loops, std::span<const double> breaks_u,
                                  std::span<const double> breaks_v, const TrimOptions& options = {});
   /// Makes the region of a face that is one patch. Errors: as above.

@@ -65,7 +65,7 @@ class LoopBuilder {
     for (std::size_t k = 0; k < loop_.curves.size(); ++k)
       if (Status status = append_curve(k); !status.ok()) return status;
     join();
-    made_.holds_corner = holds_corner();
+    find_corners();
     return std::move(made_);
   }
 
@@ -206,20 +206,37 @@ class LoopBuilder {
     const ParameterPoint target = wraps ? ParameterPoint{from.u + du, from.v + dv} : to;
     all_ = {repeated(lines_.u, std::min(from.u, target.u), std::max(from.u, target.u)),
             repeated(lines_.v, std::min(from.v, target.v), std::max(from.v, target.v))};
+    const bool was_odd = is_odd_copy_.back();  // `from` lies in that copy
+    const std::size_t begin = is_odd_copy_.size();
     append({{from, target}, {}}, {}, TrimPiece::none, {0, 1});
-    if (wraps) move_ends(made_.pieces.back(), made_.pieces.back().start(), to);
+    for (std::size_t k = begin; k < is_odd_copy_.size(); ++k) is_odd_copy_[k] = is_odd_copy_[k] != was_odd;
+    if (!wraps) return;
+    TrimPiece& last = made_.pieces.back();
+    move_ends(last, last.start(), {beside(lines_.u, last.end().u, to.u), beside(lines_.v, last.end().v, to.v)});
   }
 
-  /// Counts the corners with the crossings to their right: on each line v = v.from() + periods the loop crosses an even
-  /// number of times, and a crossing lies to the right of as many corners as there are copies of the domain to its left.
-  bool holds_corner() const {
-    if (!lines_.u.periodic || !lines_.v.periodic || made_.turns_u != 0 || made_.turns_v != 0) return false;
-    bool odd = false;
+  /// The copy of `to` next to `from`: a line that ends on a seam may lie on the other side than the piece after it.
+  static double beside(const CutAxis& axis, double from, double to) {
+    if (!axis.periodic || std::abs(to - from) <= 0.5 * axis.period()) return to;
+    if (to == axis.from()) return axis.to();
+    if (to == axis.to()) return axis.from();
+    return to < from ? to + axis.period() : to - axis.period();
+  }
+
+  /// Counts corners by the crossings to their right: the loop crosses each line v = v.from() + periods an even number of
+  /// times, and a crossing lies to the right of as many corners as there are copies of the domain to its left. A piece
+  /// along a seam lies between the two places beside a corner.
+  void find_corners() {
+    if (!lines_.u.periodic || !lines_.v.periodic || made_.turns_u != 0 || made_.turns_v != 0) return;
     for (std::size_t k = 0; k < made_.pieces.size(); ++k) {
       const TrimPiece& piece = made_.pieces[k];
-      odd ^= is_odd_copy_[k] && piece.lower_v() == lines_.v.from() && piece.upper_v() > piece.lower_v();
+      if (piece.lower_v() != lines_.v.from() || piece.upper_v() == piece.lower_v()) continue;
+      const bool along = piece.lower_u() == piece.upper_u();
+      const bool at_from = along && piece.lower_u() == lines_.u.from();
+      const bool at_to = along && piece.lower_u() == lines_.u.to();
+      made_.holds_left ^= is_odd_copy_[k] != at_from;
+      made_.holds_right ^= is_odd_copy_[k] != at_to;
     }
-    return odd;
   }
 
   const TrimLoop& loop_;

@@ -67,15 +67,16 @@ class LoopRepair {
       if ((loop->turns_u != 0 || loop->turns_v != 0) && turning_loop_ == none) turning_loop_ = k;
       turns_u_ += loop->turns_u;
       turns_v_ += loop->turns_v;
-      holds_corner_ ^= loop->holds_corner;
+      holds_corner_[0] ^= loop->holds_left;
+      holds_corner_[1] ^= loop->holds_right;
       std::move(loop->pieces.begin(), loop->pieces.end(), std::back_inserter(made_.pieces));
     }
     made_.starts_inside = all_holes;
     const Direction u{lines_.u, lines_.v, &ParameterPoint::u, &ParameterPoint::v};
     const Direction v{lines_.v, lines_.u, &ParameterPoint::v, &ParameterPoint::u};
     // Left of a loop that runs towards larger u is larger v; left of one towards larger v is smaller u.
-    clip(u, turns_u_ > 0, holds_corner_);
-    clip(v, turns_v_ < 0, false);  // the sides of u end in the corners already
+    clip(u, turns_u_ > 0, lines_.u.periodic && lines_.v.periodic ? &holds_corner_ : nullptr);
+    clip(v, turns_v_ < 0, nullptr);  // the sides of u end in the corners already
     if (!odd_ends(made_.pieces).empty())
       return Status(StatusCode::internal, "the trimming loops could not be closed within the surface's domain");
     return std::move(made_);
@@ -147,8 +148,9 @@ class LoopRepair {
 
   /// Cuts off what lies beyond the sides of one direction, or on the seam of a periodic one, and closes the rest along
   /// the sides. `towards_upper`: where a loop runs around the surface alone, the part towards the upper side of the
-  /// other direction is kept. `from_corners`: whether the sides lie within the loops where they begin and end.
-  void clip(const Direction& d, bool towards_upper, bool from_corners) {
+  /// other direction is kept. `from_corners`: whether each side begins within the loops, if that
+  /// does not follow from their ends.
+  void clip(const Direction& d, bool towards_upper, const std::array<bool, 2>* from_corners) {
     const auto is_outside = [&](const TrimPiece& piece) {
       return std::min(piece.start().*d.x, piece.end().*d.x) < d.axis.from() ||
              std::max(piece.start().*d.x, piece.end().*d.x) > d.axis.to();
@@ -162,14 +164,20 @@ class LoopRepair {
     for (const ParameterPoint& p : odd)
       for (std::size_t side = 0; side < 2; ++side)
         if (p.*d.x == sides[side]) heights[side].push_back(p.*d.y);
-    for (std::vector<double>& list : heights) {
-      if (from_corners) list.insert(list.end(), {d.other.from(), d.other.to()});
-      std::sort(list.begin(), list.end());
-    }
+    for (std::vector<double>& list : heights) std::sort(list.begin(), list.end());
+    for (std::size_t side = 0; from_corners && side < 2; ++side) add_corners(d, (*from_corners)[side], heights[side]);
     if (heights[0].size() % 2 != 0 && heights[1].size() % 2 != 0) close_at_far_side(d, towards_upper, heights);
     for (std::size_t side = 0; side < 2; ++side)
       for (std::size_t k = 0; k + 1 < heights[side].size(); k += 2)
         append_line(d.point(sides[side], heights[side][k]), d.point(sides[side], heights[side][k + 1]));
+  }
+
+  /// Adds the ends of a side to the heights at which it enters and leaves the loops, where it begins or ends within.
+  void add_corners(const Direction& d, bool begins_within, std::vector<double>& heights) const {
+    const bool turns = turning_loop_ != none;  // then a side may stay within, or end elsewhere
+    const bool enters_at_corner = !turns && !heights.empty() && heights.front() == d.other.from();
+    if (begins_within != enters_at_corner) heights.insert(heights.begin(), d.other.from());
+    if (turns ? begins_within : heights.size() % 2 != 0) heights.push_back(d.other.to());
   }
 
   /// A loop that runs around the surface alone: one of the domain's sides across closes it.
@@ -197,7 +205,7 @@ class LoopRepair {
   const CutLines& lines_;
   RepairedLoops made_;
   int turns_u_ = 0, turns_v_ = 0;
-  bool holds_corner_ = false;  ///< whether loops enclose the corner, where both seams of the surface meet
+  std::array<bool, 2> holds_corner_{};  ///< whether loops enclose the corner where both seams meet, on either side
   std::size_t turning_loop_ = none;
 };
 

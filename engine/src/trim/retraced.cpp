@@ -14,14 +14,20 @@ class RetracedPairs {
       : pieces_(pieces), snap_u_(snap_u), snap_v_(snap_v), dropped_(pieces.size(), false) {}
 
   std::size_t drop() {
-    // Both directions of a curve have nearly the same sum of ends.
+    // Both directions of a curve have nearly the same sum of ends. Its coordinates are mixed by an irrational number, so
+    // that neither curves with their middles at one u nor those at one v share a key.
+    const double mix = 0.7548776662466927 * (snap_u_ > 0 && snap_v_ > 0 ? snap_u_ / snap_v_ : 1);
+    const double window = 4 * (snap_u_ + mix * snap_v_);
     std::vector<std::uint32_t> order(pieces_.size());
     std::iota(order.begin(), order.end(), 0u);
-    const auto key = [&](std::uint32_t k) { return pieces_[k].start().u + pieces_[k].end().u; };
+    const auto key = [&](std::uint32_t k) {
+      const ParameterPoint &a = pieces_[k].start(), &b = pieces_[k].end();
+      return (a.u + b.u) + mix * (a.v + b.v);
+    };
     std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return key(a) < key(b); });
     for (std::size_t i = 0; i < order.size(); ++i) {
       if (dropped_[order[i]]) continue;
-      for (std::size_t j = i + 1; j < order.size() && key(order[j]) - key(order[i]) <= 4 * snap_u_; ++j) {
+      for (std::size_t j = i + 1; j < order.size() && key(order[j]) - key(order[i]) <= window; ++j) {
         if (dropped_[order[j]]) continue;
         const TrimPiece &a = pieces_[order[i]], &b = pieces_[order[j]];
         const bool forward = same(a, b, false);
