@@ -35,7 +35,8 @@ void write_cad(const TopoDS_Shape& shape, const std::string& path) {
     written =
         writer.Transfer(shape, STEPControl_AsIs) == IFSelect_RetDone && writer.Write(path.c_str()) == IFSelect_RetDone;
   } else {
-    IGESControl_Writer writer;
+    const int faces = 0, solids = 1;
+    IGESControl_Writer writer("MM", path.ends_with(".solid.igs") ? solids : faces);
     written = writer.AddShape(shape) && writer.Write(path.c_str());
   }
   if (!written) throw std::runtime_error("OpenCASCADE cannot write " + path);

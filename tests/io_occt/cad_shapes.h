@@ -11,7 +11,8 @@
 
 namespace tessera::test {
 
-/// Writes `shape` to a STEP, an IGES or a BREP file, by the extension; .binary.brep is BREP in its binary form.
+/// Writes `shape` to a STEP, an IGES or a BREP file, by the extension; .binary.brep is BREP in its binary form, and
+/// .solid.igs IGES with topology: solids (186) of faces with shared edges, instead of trimmed surfaces (144).
 void write_cad(const TopoDS_Shape& shape, const std::string& path);
 /// The file as OpenCASCADE reads it, in this process.
 Result<CadFile> load_cad(const std::string& path);

@@ -43,7 +43,8 @@ std::vector<double> Arcs::knots() const {
 
 double Arcs::middle(double value) const {
   const double place = std::floor((value - from_) / (2 * half()));
-  const int k = static_cast<int>(std::clamp(place, 0.0, count_ - 1.0));
+  const bool within = value >= from_ && value <= to_;
+  const double k = within ? std::clamp(place, 0.0, count_ - 1.0) : place;
   return 0.5 * (knot(k) + knot(k + 1));
 }
 

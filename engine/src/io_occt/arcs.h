@@ -23,7 +23,8 @@ class Arcs {
   std::vector<Point> points() const;
   std::vector<double> knots() const;
 
-  /// Conversions between angle and parameter; an angle outside continues the nearest arc.
+  /// Conversions between angle and parameter; beyond the ends, more arcs of the same length follow, so that an
+  /// angle a full turn away has a parameter a full turn away.
   double parameter(double angle) const;
   double angle(double parameter) const;
   /// d parameter / d angle; continuous, because the arcs are equal.
@@ -32,7 +33,7 @@ class Arcs {
  private:
   double half() const { return (to_ - from_) / (2 * count_); }
   double middle(double value) const;
-  double knot(int k) const { return k == count_ ? to_ : from_ + (to_ - from_) * k / count_; }
+  double knot(double k) const { return k == count_ ? to_ : from_ + (to_ - from_) * k / count_; }
   double from_, to_;
   int count_;
 };
