@@ -234,6 +234,8 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   Status divide_and_cut(const Request& request, CertifiedPlan& plan, const Execution& execution) const;
   /// Sets the bounds of a patch that has been cut. Returns the largest over its limit.
   double bound_cut(const CutRoom& room, const CutPatch& cut, CertifiedPlan& plan) const;
+  /// The error of a tolerance that loops cannot keep.
+  Status too_rough(const Request& request, std::size_t patch) const;
   /// Finds the borders of whole patches along the sides of cut ones.
   void find_same_borders(CertifiedPlan& plan) const;
   /// Returns the distance of the triangle that crosses the middle of an odd border, for a patch whose even rate along

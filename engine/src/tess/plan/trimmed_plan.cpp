@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "parallel/parallel_for.h"
 #include "tess/edges/side_curve.h"
@@ -137,6 +138,7 @@ Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& p
     bool keeps = true;
     for (std::size_t c = 0; c < cuts.size(); ++c) {
       if (excess[c] <= 1) continue;
+      if (!(plan.cuts_[c].sliver < request.tolerance)) return too_rough(request, cuts[c].patch);
       keeps = false;
       shares[c] *= 0.85 / excess[c];
     }
@@ -147,9 +149,14 @@ Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& p
     return {};
   }
   const auto worst = static_cast<std::size_t>(std::ranges::max_element(excess) - excess.begin());
+  return too_rough(request, cuts[worst].patch);
+}
+
+Status CertifiedPlanner::too_rough(const Request& request, std::size_t patch) const {
   return {StatusCode::invalid_argument,
-          wanted(request.tolerance) + " is too small beside the rounding of the vertices at trimming loops",
-          static_cast<std::ptrdiff_t>(cuts[worst].patch)};
+          wanted(request.tolerance) + " is too small beside the rounding of the trimming loops of patch " +
+              std::to_string(patch),
+          static_cast<std::ptrdiff_t>(patch)};
 }
 
 }  // namespace tessera::inline abi_0_1

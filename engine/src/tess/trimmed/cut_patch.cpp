@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/impl_access.h"
 #include "trim/trim_region_impl.h"
@@ -154,7 +155,9 @@ double CutPatchMaker::Box::distance(const ChordBound& chord) const {
 }
 
 void CutPatchMaker::refine(const TrimmedPatch& limits, const ChordBound& chord, CutPatch& out) {
-  const double room = limits.room - cutter_.sliver_bound();
+  // Where slivers take more than their share, halves would not help.
+  const double left = limits.room - cutter_.sliver_bound();
+  const double room = left > 0.25 * limits.room ? left : std::numeric_limits<double>::infinity();
   const double width = 1.0 / limits.segments.u.rate(), height = 1.0 / limits.segments.v.rate();
   constexpr double rounded = 1 + 0x1p-40;
   const auto is_large = [&](const CutPatch::Triangle& triangle) {

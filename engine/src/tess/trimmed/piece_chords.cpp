@@ -35,8 +35,8 @@ void PieceChords::divide(const Net& net, int depth) {
   const double along_v = limits_->speed.v * cross / du, along_u = limits_->speed.u * cross / dv;
   const double sliver = cross == 0 ? 0 : std::min(du > 0 ? along_v : along_u, dv > 0 ? along_u : along_v);
   const bool is_straight = sliver <= limits_->bend * std::hypot(limits_->speed.u * du, limits_->speed.v * dv);
-  const bool is_fine =
-      is_straight && sliver + error_ <= limits_->sliver && du <= limits_->box.u && dv <= limits_->box.v;
+  const double room = std::max(limits_->sliver - error_, limits_->sliver / 8);  // an error cannot be divided
+  const bool is_fine = is_straight && sliver <= room && du <= limits_->box.u && dv <= limits_->box.v;
   if (is_fine || depth == 20) {
     most_ = std::max(most_, sliver + error_);
     const TrimPiece& piece = *piece_;
