@@ -9,6 +9,7 @@
 #include <TColStd_Array1OfReal.hxx>
 #include <TColStd_Array2OfReal.hxx>
 #include <TColgp_Array2OfPnt.hxx>
+#include <TopoDS_Compound.hxx>
 #include <stdexcept>
 
 #include "peers/interleaved.h"
@@ -81,16 +82,21 @@ Handle(Geom_BezierSurface) occt_surface(const BezierPatch& patch) {
 
 OcctShape::OcctShape(const std::vector<Handle(Geom_Surface)>& surfaces) {
   BRep_Builder builder;
-  builder.MakeCompound(shape_);
+  TopoDS_Compound all;
+  builder.MakeCompound(all);
   for (const Handle(Geom_Surface) & surface : surfaces) {
     BRepBuilderAPI_MakeFace face(surface, 1e-7);
     if (!face.IsDone())
       throw std::runtime_error("OpenCASCADE makes no face of surface " + std::to_string(faces_.size()));
     faces_.push_back(face.Face());
     surfaces_.emplace_back(surface);
-    builder.Add(shape_, faces_.back());
+    builder.Add(all, faces_.back());
   }
+  shape_ = all;
 }
+
+OcctShape::OcctShape(const TopoDS_Shape& shape, std::vector<TopoDS_Face> faces)
+    : faces_(std::move(faces)), shape_(shape) {}
 
 double OcctShape::mesh(double deflection, double angle, double max_seconds) {
   BRepTools::Clean(shape_);
@@ -117,7 +123,7 @@ std::vector<SurfaceTriangle> OcctShape::triangles() const {
       SurfaceTriangle t{face, {}, {}};
       for (std::size_t c = 0; c < 3; ++c) {
         const gp_Pnt2d uv = triangles->UVNode(corner[c]);
-        const gp_Pnt p = triangles->Node(corner[c]);
+        const gp_Pnt p = triangles->Node(corner[c]).Transformed(location.Transformation());
         t.parameters[c] = {uv.X(), uv.Y()};
         t.corners[c] = {p.X(), p.Y(), p.Z()};
       }

@@ -1,0 +1,28 @@
+#pragma once
+// A CAD file, read once by OpenCASCADE: as its shape, and as a model of Tessera.
+
+#include <TopoDS_Shape.hxx>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "peers/true_face.h"
+#include "tessera/model.h"
+
+namespace tessera::bench {
+
+struct TrimmedCase {
+  std::string name;
+  TopoDS_Shape as_read;                          ///< instances share faces
+  TopoDS_Shape shape;                            ///< each instance has faces of its own; as_read if none is shared
+  std::size_t distinct_faces = 0;                ///< of as_read
+  Model model;                                   ///< surface k is faces[k]
+  std::vector<std::unique_ptr<TrueFace>> faces;  ///< in `shape`
+  std::size_t trimmed_faces() const;
+};
+
+/// Reads a file and checks that surfaces and faces have the same points. Throws std::runtime_error, Standard_Failure.
+TrimmedCase read_case(const std::filesystem::path& file);
+
+}  // namespace tessera::bench
