@@ -4,9 +4,11 @@
 
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <sstream>
 
 #include "io/reader_checks.h"
+#include "tessera/trim_region.h"
 
 namespace tessera::test {
 namespace {
@@ -274,7 +276,7 @@ TEST(Rib, TrimCurvesAreKept) {
   const Model model = model_of(parse_rib, "AttributeBegin " + trims + patch + patch + "AttributeEnd" + patch);
   ASSERT_EQ(model.surfaces.size(), 3u);
   EXPECT_TRUE(model.surfaces[2].trims->empty());
-  EXPECT_EQ(model.warnings, std::vector<std::string>());
+  EXPECT_TRUE(model.warnings.empty());
   for (std::size_t k = 0; k < 2; ++k) {
     const auto& loops = *model.surfaces[k].trims;
     ASSERT_EQ(loops.size(), 2u);
@@ -285,6 +287,36 @@ TEST(Rib, TrimCurvesAreKept) {
     EXPECT_NEAR(std::hypot(arc.x, arc.y), 1, 1e-15);
     EXPECT_EQ(evaluate_jet(loops[1].curves[1], 1).position, (Vec3{1, 0, 0}));
   }
+}
+
+/// The specification's odd winding rule, on a ring and a triangle; points are homogeneous.
+TEST(Rib, TrimCurvesKeepWhatTheyEnclose) {
+  std::string u, v, w;
+  constexpr int x[] = {1, 1, 0, -1, -1, -1, 0, 1, 1}, y[] = {0, 1, 1, 1, 0, -1, -1, -1, 0};
+  for (const double radius : {0.375, 0.125})
+    for (int k = 0; k < 9; ++k) {
+      const double weight = k % 2 == 0 ? 1 : std::sqrt(0.5);
+      char numbers[3][32];
+      std::snprintf(numbers[0], 32, "%.17g ", weight * (0.5 + radius * x[k]));
+      std::snprintf(numbers[1], 32, "%.17g ", weight * (0.5 + radius * y[k]));
+      std::snprintf(numbers[2], 32, "%.17g ", weight);
+      u += numbers[0], v += numbers[1], w += numbers[2];
+    }
+  const std::string circle = "0 0 0 1 1 2 2 3 3 4 4 4 ";
+  const std::string trims = "TrimCurve [1 1 1] [3 3 2] [" + circle + circle + "0 0 1 2 3 3] [0 0 0] [4 4 3] [9 9 4] [" +
+                            u + "0 0.1 0 0] [" + v + "0 0 0.1 0] [" + w + "1 1 1 1] ";
+  const std::string patch = "NuPatch 2 2 [0 0 1 1] 0 1 2 2 [0 0 1 1] 0 1 \"P\" [0 0 0 1 0 0 0 1 0 1 1 0]";
+  const Model model = model_of(parse_rib, trims + patch);
+  ASSERT_EQ(model.surfaces.size(), 1u);
+  const Result<TrimRegion> region = TrimRegion::make(*model.surfaces[0].trims, domain(model.surfaces[0].surface));
+  ASSERT_TRUE(region.ok());
+  EXPECT_TRUE(region->remarks().empty());
+  for (int i = 0; i < 200; ++i)
+    for (int k = 0; k < 200; ++k) {
+      const double s = (i + 0.3) / 200, t = (k + 0.4) / 200, r = std::hypot(s - 0.5, t - 0.5);
+      const bool kept = (r < 0.375 && r > 0.125) || s + t < 0.1;
+      ASSERT_EQ(region->locate(s, t), kept ? TrimSide::inside : TrimSide::outside) << s << ' ' << t;
+    }
 }
 
 }  // namespace

@@ -313,7 +313,9 @@ TEST(ReadCad, PrimitivesComeBackFromEveryFormat) {
     ASSERT_TRUE(model.ok()) << model.status().message();
     ASSERT_EQ(model->surfaces.size(), 3u);
     expect_normals_outwards(*model, origin + 2.5 * z);
-    EXPECT_EQ(model->warnings, std::vector<std::string>());
+    EXPECT_TRUE(model->warnings.empty());
+    const auto is_trimmed = [](const ModelSurface& surface) { return !surface.trims->empty(); };
+    EXPECT_EQ(std::count_if(model->surfaces.begin(), model->surfaces.end(), is_trimmed), 2);
   }
 }
 

@@ -79,6 +79,7 @@ TEST(Trims, AreWhereAFaceIsLessThanItsRectangle) {
     const std::vector<double> expected{24 - bite, 24, 30 - bite, 30, 80 - drill - bite, 80 - drill};
     for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(areas[k], expected[k], 1e-3) << k;
     EXPECT_EQ(holes, 2u);
+    EXPECT_TRUE(model.warnings.empty());
   }
 }
 

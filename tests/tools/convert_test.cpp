@@ -37,7 +37,7 @@ TEST_F(ConvertTool, WhatIsLostIsAWarning) {
                "cstype bspline\ndeg 1\ncurv2 1 2 3 4\nparm u 0 0 1 2 3 3\nend\n"
                "g rim\ncstype bezier\ndeg 1 1\nsurf 0 1 0 1 1 2 3 4\nparm u 0 1\nparm v 0 1\ntrim 0 3 1\nend\n");
   const ToolRun kept = run({"convert", "m.obj", "-o", "a.obj", "--json"});
-  EXPECT_EQ(json::parse(kept.output)["warnings"].size(), 0u);
+  EXPECT_EQ(json::parse(kept.output)["warnings"], json::array());
   const Result<Model> read = read_model(folder_ / "a.obj");
   ASSERT_TRUE(read.ok());
   EXPECT_EQ(read->surfaces.at(0).trims->size(), 1u);
@@ -46,7 +46,7 @@ TEST_F(ConvertTool, WhatIsLostIsAWarning) {
   EXPECT_NE(lost.errors.find("tessera: warning: surface 0 (rim): 1 trim is not written: .bpt has none\n"),
             std::string::npos)
       << lost.errors;
-  EXPECT_EQ(json::parse(lost.output)["warnings"].size(), 2u);
+  EXPECT_EQ(json::parse(lost.output)["warnings"].size(), 1u);
 }
 
 TEST_F(ConvertTool, WhatCannotBeConverted) {

@@ -13,7 +13,8 @@
 //   degrees, with the angle's value at their ends.
 // - The domain is the face's rectangle of parameters, which may be a part of the knots' domain.
 // - A face whose edges run inside that rectangle is trimmed. Its trims hold its loops: the edges' own splines wherever
-//   the parameters are the file's, else curves within 1e-9 of the range.
+//   the parameters are the file's, else curves within 1e-9 of the range. If they can't be read, the face is taken as
+//   untrimmed, and a warning names it.
 // - A face that the file reverses has u and v swapped, so that normals of solids point outwards.
 // - `placement` is the face's place in the assembly; `name` is the product's (STEP), the entity's (IGES) or empty
 //   (BREP).

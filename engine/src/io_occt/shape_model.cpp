@@ -76,17 +76,19 @@ class ModelOfFaces {
   Result<Model> finish() {
     for (const std::string& complaint : file_.complaints) left_out_.push_back("OpenCASCADE: " + complaint);
     if (model_.surfaces.empty()) return nothing();
-    const std::size_t most = 20;
-    for (std::size_t k = 0; k < std::min(most, left_out_.size()); ++k) warn(left_out_[k]);
-    if (left_out_.size() > most) warn(counted(left_out_.size() - most, "message") + " more of this kind");
+    warn_of(left_out_);
+    warn_of(whole_);
     if (fitted_ > 0) warn(counted(fitted_, "surface") + " fitted by splines, to within " + text(worst_fit_) + " mm");
-    if (broken_trims_ > 0)
-      warn(counted(broken_trims_, "face") + (broken_trims_ == 1 ? " has loops" : " have loops") +
-           " that cannot be read: taken for untrimmed");
     return std::move(model_);
   }
 
  private:
+  void warn_of(const std::vector<std::string>& sentences) {
+    const std::size_t most = 20;
+    for (std::size_t k = 0; k < std::min(most, sentences.size()); ++k) warn(sentences[k]);
+    if (sentences.size() > most) warn(counted(sentences.size() - most, "message") + " more of this kind");
+  }
+
   void warn(const std::string& sentence) { model_.warnings.push_back(path_ + ": " + sentence); }
 
   Status nothing() {
@@ -132,7 +134,8 @@ class ModelOfFaces {
     if (!made) return made.status();
     Result<std::vector<TrimLoop>> loops = face_loops(face, *box, made->parameters);
     if (!loops) {
-      ++broken_trims_;
+      whole_.push_back(words(face, name) +
+                       " is taken as untrimmed, its loops cannot be read: " + loops.status().message());
       loops = std::vector<TrimLoop>();
     }
     if (face.Orientation() == TopAbs_REVERSED)
@@ -147,8 +150,9 @@ class ModelOfFaces {
   const std::string& path_;
   Model model_;
   std::vector<std::string> left_out_;
+  std::vector<std::string> whole_;  ///< faces whose loops are bad
   StatusCode first_code_ = StatusCode::parse_error;
-  std::size_t faces_ = 0, fitted_ = 0, broken_trims_ = 0;
+  std::size_t faces_ = 0, fitted_ = 0;
   double worst_fit_ = 0;
 };
 

@@ -55,7 +55,7 @@ class ObjFreeformReader {
     if (model_.surfaces.empty())
       return Status(StatusCode::unsupported,
                     std::string(cursor_.name()) + ": no free-form surface in it; polygon meshes are read by `check`");
-    add_warnings();
+    if (!notes_.empty()) model_.warnings.push_back(notes_.sentence());
     return std::move(model_);
   }
 
@@ -351,10 +351,6 @@ class ObjFreeformReader {
     Status status = make_surfaces({type, false, line, line});
     element_.kind = ElementKind::none;
     return status;
-  }
-
-  void add_warnings() {
-    if (!notes_.empty()) model_.warnings.push_back(notes_.sentence());
   }
 
   TextCursor cursor_, place_ = cursor_;
