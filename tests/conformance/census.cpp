@@ -71,8 +71,10 @@ std::size_t surfaces_stated(const std::filesystem::path& path) {
   if (extension == ".bv") return patches_of_bv(text);
   if (extension == ".rib") return patches_of_rib(text);
   if (extension == ".obj") return matches(text, R"(^surf\s)");
-  // Spline surfaces, planes, cylinders, spheres, cones and tori.
-  if (extension == ".g2") return matches(text, R"(^(200|250|260|270|280|290) 1 0 \d+\s*$)");
+  // Spline surfaces, planes, cylinders, spheres, cones and tori; trimmed splines and planes.
+  if (extension == ".g2")
+    return matches(text, R"(^(200|250|260|270|280|290) 1 0 \d+\s*$)") +
+           matches(text, R"(^210 1 0 \d+\s+(200|250)\s*$)");
   throw std::runtime_error("no census of " + extension);
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <set>
@@ -22,11 +23,14 @@ std::set<std::filesystem::path> models_below(const std::filesystem::path& folder
   return models;
 }
 
-/// How many models made meshes.
+bool is_trimmed(const ModelSurface& surface) { return !surface.trims->empty(); }
+
+/// How many models made meshes. Models with trimmed faces are left out: their faces do not end at borders of patches.
 std::size_t expect_no_cracks(const std::filesystem::path& folder) {
   std::size_t meshed = 0;
   for (const std::filesystem::path& path : models_below(folder)) {
     const Result<Model> model = read_model(path);
+    if (model && std::any_of(model->surfaces.begin(), model->surfaces.end(), is_trimmed)) continue;
     const Result<PatchSet> set = model ? make_patch_set(*model) : Result<PatchSet>(model.status());
     if (!set) continue;
     struct Case {

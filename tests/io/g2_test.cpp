@@ -7,6 +7,8 @@
 #include <sstream>
 
 #include "io/reader_checks.h"
+#include "support/errors.h"
+#include "tessera/trim_region.h"
 
 namespace tessera::test {
 namespace {
@@ -208,6 +210,94 @@ TEST(G2, CutsAreHarmless) {
 TEST(G2, SpoiledBytesAreHarmless) {
   expect_spoiled_bytes_are_harmless(parse_g2,
                                     bent + quarter + "270 1 0 0\n3\n1.5\n0 0 0\n0 0 1\n1 0 0\n0 6\n-1 1\n0\n");
+}
+
+/// A unit square, bilinear.
+const std::string square = "3 0\n2 2\n0 0 1 1\n2 2\n0 0 1 1\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n";
+/// A circle about (0.5, 0.5) as four rational arcs; points are homogeneous.
+std::string circle_of(double radius) {
+  constexpr int x[] = {1, 1, 0, -1, -1, -1, 0, 1, 1}, y[] = {0, 1, 1, 1, 0, -1, -1, -1, 0};
+  std::ostringstream text;
+  text.precision(17);
+  text << "0 100 0\n2 1\n9 3\n0 0 0 1 1 2 2 3 3 4 4 4\n";
+  for (int k = 0; k < 9; ++k) {
+    const double w = k % 2 == 0 ? 1 : std::sqrt(0.5);
+    text << w * (0.5 + radius * x[k]) << ' ' << w * (0.5 + radius * y[k]) << ' ' << w << '\n';
+  }
+  return text.str();
+}
+
+TEST(G2, TrimmedSplinesHaveTheirLoops) {
+  const std::string space = "3 0\n2 2\n0 0 1 1\n0 0 0\n1 0 0\n";
+  const std::string text = "210 1 0 0\n200\n" + square + "2\n1 1e-6\n" + circle_of(0.375) + "1 1e-6\n" +
+                           circle_of(0.125).replace(0, 7, "1 100 100") + space + bent;
+  const Model model = model_of(parse_g2, text);
+  ASSERT_EQ(model.surfaces.size(), 2u);
+  EXPECT_TRUE(model.warnings.empty());
+  EXPECT_TRUE(model.surfaces[1].trims->empty());
+  const std::vector<TrimLoop>& loops = model.surfaces[0].trims;
+  ASSERT_EQ(loops.size(), 2u);
+  EXPECT_FALSE(loops[0].hole);
+  EXPECT_TRUE(loops[1].hole);
+  const Result<TrimRegion> region = TrimRegion::make(loops, domain(model.surfaces[0].surface));
+  ASSERT_TRUE(region.ok());
+  EXPECT_TRUE(region->remarks().empty());
+  for (int i = 0; i <= 100; ++i)
+    for (int k = 0; k <= 100; ++k) {
+      const double u = i / 100.0, v = k / 100.0, r = std::hypot(u - 0.5, v - 0.5);
+      if (std::abs(r - 0.375) < 1e-14 || std::abs(r - 0.125) < 1e-14) continue;
+      ASSERT_EQ(region->locate(u, v), r < 0.375 && r > 0.125 ? TrimSide::inside : TrimSide::outside) << u << ' ' << v;
+    }
+}
+
+/// A triangle of lines, one of them reversed, in a plane whose parameters the file swaps or not.
+TEST(G2, TrimmedPlanesEndWhereTheirLoopsDo) {
+  const std::string lines =
+      "1\n3 0.001\n"
+      "0 120 120\n2\n0 0\n1 0\n1\n0 4\n0\n3\n0 0 0\n1 0 0\n1\n0 4\n0\n"
+      "0 120 130\n2\n0 2\n4 -2\n1\n0 1\n1\n3\n1\n0 0 0\n0 0 1\n1 0 0\n0 1\n0\n"
+      "0 1 0\n2 0\n2 2\n0 0 1 1\n0 2\n0 0\n";
+  const std::string frame = "3\n1 2 3\n0 0 1\n1 0 0\n";
+  for (const std::string& bounds : {std::string("1\n-1e8 1e8\n-1e8 1e8\n"), std::string("0\n")})
+    for (const bool swapped : {false, true}) {
+      const Model model = model_of(parse_g2, "210 1 0 0\n250\n" + frame + bounds + (swapped ? "1\n" : "0\n") + lines);
+      ASSERT_EQ(model.surfaces.size(), 1u);
+      const ModelSurface& surface = model.surfaces[0];
+      EXPECT_EQ(domain(surface.surface), swapped ? (Domain{0, 2, 0, 4}) : (Domain{0, 4, 0, 2}));
+      const Result<TrimRegion> region = TrimRegion::make(*surface.trims, domain(surface.surface));
+      ASSERT_TRUE(region.ok());
+      EXPECT_TRUE(region->remarks().empty());
+      for (const auto& [along, across] : {std::pair{1.0, 0.5}, std::pair{3.0, 0.25}, std::pair{3.0, 1.0}}) {
+        const double u = swapped ? across : along, v = swapped ? along : across;
+        EXPECT_EQ(region->locate(u, v), across < 2 - along / 2 ? TrimSide::inside : TrimSide::outside);
+        expect_near(at(model, 0, u, v), Vec3{1 + u, 2 + v, 3}, 1e-15);
+      }
+    }
+}
+
+TEST(G2, OtherTrimmedSurfacesAreSkipped) {
+  const std::string cylinder = "260\n3\n1\n0 0 0\n0 0 1\n1 0 0\n1\n0 1\n0 1\n0\n1\n1 0.01\n0 100 0\n";
+  const std::string without = "200\n" + square + "1\n1 1e-6\n0 0 100\n3 0\n2 2\n0 0 1 1\n0 0 0\n1 0 0\n";
+  const std::string conic = "200\n" + square + "1\n1 1e-6\n0 140 0\n2\n1 2 3 4\n";
+  const std::string header = "210 1 0 0\n";
+  const Model model = model_of(parse_g2, header + cylinder + header + without + header + conic + bent);
+  EXPECT_EQ(model.surfaces.size(), 1u);
+  EXPECT_EQ(model.warnings, (std::vector<std::string>{
+                                "m:1: 1 trimmed surface that is no spline and no plane is not read",
+                                "m:15: 2 trimmed surfaces without splines or lines in their parameters are not read"}));
+}
+
+TEST(G2, LoopsThatAreWrong) {
+  const std::string head = "210 1 0 0\n200\n" + square;
+  expect_refused(parse_g2(head + "0\n", "m"), StatusCode::parse_error, Status::no_index,
+                 "m:12: expected the number of loops of object 1 (class 210), from 1 to 1073741824, found \"0\"");
+  expect_refused(parse_g2(head + "1\n1 0.1\n0 100 0\n3 0\n", "m"), StatusCode::parse_error, Status::no_index,
+                 "m:15: expected the dimension 2 of a curve of object 1 (class 210), found \"3\"");
+  expect_refused(parse_g2(head + "1\n1 0.1\n0 100 0\n2 0\n2 2\n0 1 0 1\n0 0\n1 1\n", "m"), StatusCode::parse_error,
+                 Status::no_index, "m:1: object 1 (class 210): a curve of its loops: ");
+  expect_refused(
+      parse_g2("210 1 0 0\n250\n3\n0 0 0\n0 0 1\n1 0 0\n0\n0\n1\n1 0.1\n0 120 0\n2\n0 0\n1 0\n1\n0 4\n0\n", "m"),
+      StatusCode::parse_error, Status::no_index, "its loops enclose nothing, so the plane has no bounds");
 }
 
 }  // namespace

@@ -51,9 +51,9 @@ Result<Model> parse_bpt(std::string_view text, std::string_view name);
 /// Parses the text of a .bv file: kinds 4, 5 and 8 (weights above 0). Triangles, polyhedra and PN patches are skipped.
 /// Group lines name surfaces. Errors: as parse_bpt().
 Result<Model> parse_bv(std::string_view text, std::string_view name);
-/// Parses the text of a .g2 file: spline surfaces, and bounded planes, cylinders, spheres, cones and tori. Plane
-/// surfaces lie in z = 0. Parameters are the file's, except a cone's v (counted from the apex) and a torus' (rational
-/// arcs within [0,1]^2). Errors: as parse_bpt().
+/// Parses the text of a .g2 file: spline surfaces and planes, also trimmed ones, and bounded cylinders, spheres, cones
+/// and tori. Plane splines lie in z = 0. Parameters are the file's, except a cone's v (counted from the apex) and a
+/// torus' (rational arcs within [0,1]^2). A trimmed plane ends where its loops do. Errors: as parse_bpt().
 Result<Model> parse_g2(std::string_view text, std::string_view name);
 /// Parses the text of a .rib file, which must not be packed.
 ///

@@ -1,14 +1,15 @@
 // .g2, the files of GoTools (SINTEF): objects one after the other. A spline surface (class 200) holds the dimension and
 // whether it is rational; for u and v the number of points, the order and the knots; then the points, u running
-// fastest, rational ones as w x, w y, w z, w. An object of a class that is not read ends at the next line that is a
-// header.
+// fastest, rational ones as w x, w y, w z, w. A trimmed surface (class 210) is a surface and its loops. An object of a
+// class that is not read ends at the next line that is a header.
 
 #include "io/spline/g2.h"
-#include "base/text.h"
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
+#include "base/text.h"
 #include "io/file/make_room.h"
 #include "io/file/passed_over.h"
 #include "tessera/guard.h"
@@ -27,7 +28,6 @@ constexpr std::pair<std::int64_t, PartName> unread_classes[] = {
     {150, {"bounded curve", "bounded curves"}},
     {160, {"hyperbola", "hyperbolas"}},
     {170, {"parabola", "parabolas"}},
-    {210, {"trimmed surface", "trimmed surfaces"}},
     {291, {"surface of revolution", "surfaces of revolution"}},
     {292, {"disc", "discs"}},
     {293, {"LR spline surface", "LR spline surfaces"}},
@@ -38,7 +38,11 @@ constexpr std::pair<std::int64_t, PartName> unread_classes[] = {
     {700, {"spline volume", "spline volumes"}}};
 constexpr PartName others{"object of another class", "objects of other classes"},
     unbounded{"unbounded surface", "unbounded surfaces"},
-    flat{"surface that is not in space", "surfaces that are not in space"};
+    flat{"surface that is not in space", "surfaces that are not in space"},
+    trimmed_others{"trimmed surface that is no spline and no plane",
+                   "trimmed surfaces that are no splines and no planes"},
+    trimmed_otherwise{"trimmed surface without splines or lines in its parameters",
+                      "trimmed surfaces without splines or lines in their parameters"};
 
 PartName unread_name(std::int64_t kind) {
   const auto known = std::find_if(std::begin(unread_classes), std::end(unread_classes),
@@ -94,6 +98,8 @@ class G2Reader {
     switch (kind) {
       case g2_spline_surface:
         return read_spline(numbers);
+      case g2_trimmed_surface:
+        return read_trimmed(numbers);
       case g2_plane:
       case g2_cylinder:
       case g2_sphere:
@@ -133,33 +139,13 @@ class G2Reader {
     model_.surfaces.push_back(std::move(surface));
   }
 
-  struct Line {
-    std::int64_t points = 0, order = 0;
-    std::vector<double> knots;
-    int degree() const { return static_cast<int>(order) - 1; }
-  };
-
-  static void read_line(G2Numbers& numbers, Line& line) {
-    constexpr std::int64_t limit = std::int64_t{1} << 30;
-    line.points = numbers.integer("the number of points along a direction", 1, limit);
-    line.order = numbers.integer("the order along a direction", 2, max_degree + 1);
-    const std::int64_t count = line.points + line.order;
-    // Bounded by the text that is left, whatever count the file states: a number takes two bytes.
-    line.knots.reserve(std::min(static_cast<std::size_t>(count), numbers.cursor().remaining() / 2 + 1));
-    for (std::int64_t k = 0; k < count && numbers.ok(); ++k) line.knots.push_back(numbers.number("a knot"));
-  }
-
-  Status read_spline(G2Numbers& numbers) {
+  /// Reads a spline surface after its class; none if it is not in space.
+  Result<std::optional<BSplineSurface>> take_spline(G2Numbers& numbers) {
     const std::int64_t dimension = numbers.integer("the dimension", 1, 3);
     const bool rational = numbers.integer("the flag of a rational surface", 0, 1) == 1;
-    Line u, v;
-    read_line(numbers, u);
-    read_line(numbers, v);
+    const G2Line u = read_g2_line(numbers), v = read_g2_line(numbers);
     if (!numbers.ok()) return numbers.status();
-    if (dimension < 2) {
-      pass_over(flat);
-      return {};
-    }
+    if (dimension < 2) return std::optional<BSplineSurface>();
     const auto count_u = static_cast<std::size_t>(u.points), count_v = static_cast<std::size_t>(v.points);
     const auto bytes = static_cast<std::size_t>(2 * (dimension + rational));  // the least that a point takes
     if (count_u * count_v > cursor_.remaining() / bytes + 1) {
@@ -179,7 +165,82 @@ class G2Reader {
             ? BSplineSurface::rational(u.degree(), u.knots, v.degree(), v.knots, std::move(points), std::move(weights))
             : BSplineSurface::polynomial(u.degree(), u.knots, v.degree(), v.knots, std::move(points));
     if (!surface) return refused_element(numbers, surface.status());
-    add({{}, *std::move(surface)});
+    return std::optional(*std::move(surface));
+  }
+
+  Status read_spline(G2Numbers& numbers) {
+    Result<std::optional<BSplineSurface>> surface = take_spline(numbers);
+    if (!surface) return surface.status();
+    if (*surface)
+      add({{}, **std::move(surface)});
+    else
+      pass_over(flat);
+    return {};
+  }
+
+  Status read_trimmed(G2Numbers& numbers) {
+    switch (numbers.integer("the class of the trimmed surface", 100, 999)) {
+      case g2_spline_surface:
+        return read_trimmed_spline(numbers);
+      case g2_plane:
+        return read_trimmed_plane(numbers);
+      default:
+        if (numbers.ok()) pass_over(trimmed_others);
+        return numbers.status();
+    }
+  }
+
+  Status read_trimmed_spline(G2Numbers& numbers) {
+    Result<std::optional<BSplineSurface>> surface = take_spline(numbers);
+    if (!surface) return surface.status();
+    if (!*surface) {
+      pass_over(flat);
+      return {};
+    }
+    Result<G2Loops> loops = read_g2_loops(numbers);
+    if (!loops) return loops.status();
+    if (loops->unread)
+      pass_over(trimmed_otherwise);
+    else
+      add({{}, **std::move(surface), {}, std::move(loops->loops)});
+    return {};
+  }
+
+  /// Reads a plane, whose own bounds are often as good as infinite: it ends where its loops do.
+  Status read_trimmed_plane(G2Numbers& numbers) {
+    const Result<G2Plane> plane = read_g2_plane(numbers);
+    if (!plane) return plane.status();
+    Result<G2Loops> loops = read_g2_loops(numbers);
+    if (!loops) return loops.status();
+    if (loops->unread) {
+      pass_over(trimmed_otherwise);
+      return {};
+    }
+    if (plane->swapped)
+      if (Status status = swap_parameters(loops->loops); !status.ok()) return status;
+    Box3 box;
+    for (const TrimLoop& loop : loops->loops)
+      for (const Curve& curve : loop.curves)
+        for (const Vec3& p : curve.points()) box.extend(p);
+    if (!(box.lower.x < box.upper.x && box.lower.y < box.upper.y))
+      return numbers.failure("its loops enclose nothing, so the plane has no bounds");
+    Result<Surface> surface = make_g2_plane({box.lower.x, box.upper.x, box.lower.y, box.upper.y});
+    if (!surface) return refused_element(numbers, surface.status());
+    add({{}, *std::move(surface), plane->placement, std::move(loops->loops)});
+    return {};
+  }
+
+  static Status swap_parameters(std::vector<TrimLoop>& loops) {
+    for (TrimLoop& loop : loops)
+      for (Curve& curve : loop.curves) {
+        std::vector<Vec3> points(curve.points().begin(), curve.points().end());
+        for (Vec3& p : points) std::swap(p.x, p.y);
+        Result<Curve> swapped = curve.is_rational()
+                                    ? Curve::nurbs(curve.degree(), points, curve.weights(), curve.knots())
+                                    : Curve::b_spline(curve.degree(), points, curve.knots());
+        if (!swapped) return swapped.status();
+        curve = *std::move(swapped);
+      }
     return {};
   }
 

@@ -5,17 +5,23 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "tessera/files.h"
 #include "tessera/geometry.h"
 #include "tessera/status.h"
 #include "tessera/surface.h"
+#include "tessera/trim_loop.h"
 
 namespace tessera::inline abi_0_1 {
 
 /// Classes that are read (GoTools, ClassType.h).
 enum G2Class : std::int64_t {
+  g2_spline_curve = 100,
+  g2_line = 120,
+  g2_circle = 130,
   g2_spline_surface = 200,
+  g2_trimmed_surface = 210,
   g2_plane = 250,
   g2_cylinder = 260,
   g2_sphere = 270,
@@ -68,5 +74,31 @@ struct G2Object {
 /// two exceptions: a cone's v counts from the apex, and a torus has the parameters of its NURBS on [0,1]^2 or a part of
 /// it.
 Result<G2Object> read_g2_elementary(std::int64_t kind, G2Numbers& numbers);
+
+/// A plane without its bounds: where its frame lies, and whether the file has u and v swapped.
+struct G2Plane {
+  Affine placement = {};
+  bool swapped = false;
+};
+/// Reads a plane after its class, bounded or not.
+Result<G2Plane> read_g2_plane(G2Numbers& numbers);
+/// Makes the rectangle `range` of the plane z = 0, in its own frame.
+Result<Surface> make_g2_plane(const Domain& range);
+
+/// One direction of a spline: the number of points, the order, the knots.
+struct G2Line {
+  std::int64_t points = 0, order = 0;
+  std::vector<double> knots;
+  int degree() const { return static_cast<int>(order) - 1; }
+};
+G2Line read_g2_line(G2Numbers& numbers);
+
+/// The loops of a trimmed surface. They are not read if a curve is of another class, or lacks in the parameters.
+struct G2Loops {
+  std::vector<TrimLoop> loops = {};
+  bool unread = false;
+};
+/// Reads the loops after the surface that they trim.
+Result<G2Loops> read_g2_loops(G2Numbers& numbers);
 
 }  // namespace tessera::inline abi_0_1

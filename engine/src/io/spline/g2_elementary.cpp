@@ -55,14 +55,17 @@ Elementary read_numbers(std::int64_t kind, G2Numbers& numbers, bool& swapped) {
   return e;
 }
 
-Result<Surface> plane(const Elementary& e) {
-  const Domain& d = e.range;
+}  // namespace
+
+Result<Surface> make_g2_plane(const Domain& d) {
   const std::array<double, 4> u{d.u0, d.u0, d.u1, d.u1}, v{d.v0, d.v0, d.v1, d.v1};
   const std::array<Vec3, 4> corners{Vec3{d.u0, d.v0, 0}, Vec3{d.u0, d.v1, 0}, Vec3{d.u1, d.v0, 0}, Vec3{d.u1, d.v1, 0}};
   Result<BSplineSurface> surface = BSplineSurface::polynomial(1, u, 1, v, corners);
   if (!surface) return surface.status();
   return Surface(*std::move(surface));
 }
+
+namespace {
 
 Result<Surface> cylinder(double radius, const Domain& range) {
   return quadric_part(QuadricKind::elliptic_cylinder, {.a = 1 / radius / radius, .b = 1 / radius / radius, .k = -1},
@@ -97,7 +100,7 @@ Result<Surface> make_surface(std::int64_t kind, const Elementary& e, Affine& pla
   }
   switch (kind) {
     case g2_plane:
-      return plane(e);
+      return make_g2_plane(e.range);
     case g2_cylinder:
       return cylinder(e.radius, e.range);
     case g2_sphere:
@@ -109,7 +112,24 @@ Result<Surface> make_surface(std::int64_t kind, const Elementary& e, Affine& pla
   }
 }
 
+Result<Affine> placed(const Elementary& e, const G2Numbers& numbers) {
+  const std::optional<Affine> placement = frame(e.location, e.z_axis, e.x_axis);
+  if (!placement) return numbers.failure("expected a z axis and an x axis of different directions");
+  return *placement;
+}
+
 }  // namespace
+
+Result<G2Plane> read_g2_plane(G2Numbers& numbers) {
+  G2Plane plane;
+  const Elementary e = read_numbers(g2_plane, numbers, plane.swapped);
+  if (!e.bounded) plane.swapped = numbers.integer("the flag of swapped parameters", 0, 1) == 1;
+  if (!numbers.ok()) return numbers.status();
+  const Result<Affine> placement = placed(e, numbers);
+  if (!placement) return placement.status();
+  plane.placement = *placement;
+  return plane;
+}
 
 Result<G2Object> read_g2_elementary(std::int64_t kind, G2Numbers& numbers) {
   G2Object object;
@@ -119,8 +139,8 @@ Result<G2Object> read_g2_elementary(std::int64_t kind, G2Numbers& numbers) {
     object.unread = "unbounded";
     return object;
   }
-  const std::optional<Affine> placement = frame(e.location, e.z_axis, e.x_axis);
-  if (!placement) return numbers.failure("expected a z axis and an x axis of different directions");
+  const Result<Affine> placement = placed(e, numbers);
+  if (!placement) return placement.status();
   object.placement = *placement;
   Result<Surface> surface = make_surface(kind, e, object.placement);
   if (!surface) return refused_element(numbers, surface.status());
