@@ -102,6 +102,17 @@ void scene_texts(Table& table) {
   json.row("a member too many", surface("\"kind\": \"bezier\", \"colour\": 3"), parse_error);
   json.row("NaN", surface("\"kind\": \"bezier\", \"degree\": [1, 1], \"points\": [NaN]"), parse_error);
   json.row("1e400", surface("\"kind\": \"bezier\", \"degree\": [1, 1], \"points\": [[1e400, 0, 0]]"), parse_error);
+  const auto trimmed = [&](const std::string& loops) {
+    return surface("\"kind\": \"bezier\", \"points\": [[[0,0,0],[0,1,0]],[[1,0,0],[1,1,0]]], \"trims\": " + loops);
+  };
+  json.row("trims that are no list", trimmed("{}"), parse_error);
+  json.row("a loop without curves", trimmed("[{\"curves\": []}]"), parse_error);
+  json.row("a point of a loop in space",
+           trimmed("[{\"curves\": [{\"kind\": \"bezier\", \"points\": [[0,0,0],[1,0,0]]}]}]"), parse_error);
+  json.row("a function as a curve of a loop", trimmed("[{\"curves\": [{\"kind\": \"parametric\", \"x\": \"t\"}]}]"),
+           parse_error);
+  json.row("a circle of radius 0",
+           trimmed("[{\"curves\": [{\"kind\": \"circle\", \"center\": [0,0], \"radius\": 0}]}]"), invalid_argument);
   json.row("10,000 brackets", std::string(10000, '['), parse_error);
 }
 

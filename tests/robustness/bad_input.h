@@ -60,6 +60,7 @@ void fill_splines(Table& table);
 void fill_hermite(Table& table);
 void fill_quadrics(Table& table);
 void fill_borders(Table& table);
+void fill_trims(Table& table);
 void fill_operations(Table& table);
 void fill_sets(Table& table);
 void fill_grids(Table& table);

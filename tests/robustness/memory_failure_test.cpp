@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <limits>
+#include <random>
 
 #include "robustness/scene.h"
 #include "support/allocations.h"
@@ -21,6 +22,7 @@
 #include "tessera/nurbs_surface.h"
 #include "tessera/parametric_surface.h"
 #include "tessera/trim_region.h"
+#include "trim/trim_shapes.h"
 #ifdef TESSERA_HAS_IO
 #include "support/scratch_folder.h"
 #include "tessera/cad.h"
@@ -104,6 +106,23 @@ TEST(MemoryFails, WhereCurvesAndPatchesAreMade) {
     return piece ? to_bezier(*piece) : piece.status();
   });
   survives("Quadric::make", [&] { return Quadric::make({.a = 1, .b = 2, .c = 1, .k = -1}); });
+}
+
+TEST(MemoryFails, WhereLoopsBecomeRegions) {
+  std::mt19937 random(5);
+  const std::vector<double> breaks{0, 0.25, 0.5, 1};
+  std::vector<TrimLoop> loops{circle({1, 0.5}, 0.25, true), random_loop(random), {}};
+  loops.push_back({{line({0.1, 0.1}, {0.9, 0.1}), line({0.9, 0.1}, {0.9, 0.9})}, false});  // stops short
+  loops.push_back({{line({0.2, 0.2}, {0.4, 0.3}), line({0.4, 0.3}, {0.2, 0.2})}, false});  // retraced
+  loops.push_back({{line({0, 0.75}, {1, 0.75})}, false});                                  // around the surface
+  const TrimOptions around{.periodic_u = true};
+  survives("TrimRegion::make", [&] { return TrimRegion::make(loops, breaks, breaks); });
+  survives("TrimRegion::make, over a seam", [&] { return TrimRegion::make(loops, breaks, breaks, around); });
+  loops.push_back(circle({1e200, 0}, 1));
+  survives(
+      "TrimRegion::make, too far", [&] { return TrimRegion::make(loops, breaks, breaks); }, StatusCode::unsupported);
+  survives(
+      "TrimRegion::make, one break", [&] { return TrimRegion::make(loops, breaks, {}); }, StatusCode::invalid_argument);
 }
 
 TEST(MemoryFails, WhereErrorsAreStated) {
@@ -197,15 +216,9 @@ TEST(MemoryFails, WhereFacesAreTrimmed) {
   const BSplineSurface surface = random_surface(random, 3, 2, {.multiple = true}, {}, true);
   const Domain d = surface.domain();
   const auto square = [&](double from, double to) {  // shares of the domain
-    std::vector<Vec3> corners;
-    for (const auto& [a, b] : {std::pair(from, from), {to, from}, {to, to}, {from, to}, {from, from}})
-      corners.push_back({d.u_at(a), d.v_at(b), 0});
-    return TrimLoop{.curves = {value_of(Curve::b_spline(1, corners, std::vector<double>{0, 0, 1, 2, 3, 4, 4}))}};
+    return rectangle(d.u_at(from), d.u_at(to), d.v_at(from), d.v_at(to));
   };
-  // The second crosses the first.
-  const std::vector<TrimLoop> loops{square(0.1, 0.7), square(0.4, 0.95)};
-  const PatchGrid grid = value_of(to_bezier(surface));
-  survives("TrimRegion::make", [&] { return TrimRegion::make(loops, grid); });
+  const std::vector<TrimLoop> loops{square(0.1, 0.7), square(0.4, 0.95)};  // these cross
   Model model;
   model.surfaces.push_back({"a", surface, {}, loops});
   survives("make_patch_set(trimmed model)", [&] { return make_patch_set(model); });
@@ -298,7 +311,7 @@ TEST(MemoryFails, WhereFilesAreReadAndWritten) {
   for (const std::filesystem::path path :
        {corpus + "bpt/bilinear.bpt", corpus + "bv/kinds.bv", corpus + "g2/splines.g2", corpus + "obj/trimmed.obj",
         corpus + "rib/scene.rib", corpus + "json/coons_own_blends.json", models + "vase.json", models + "torus.json",
-        models + "quadric_ellipsoid.json"})
+        models + "quadric_ellipsoid.json", models + "trimmed_cylinder.json"})
     survives("read_model " + path.filename().string(), [&] { return read_model(path); });
   for (const std::filesystem::path path :
        {corpus + "obj_mesh/quad.obj", corpus + "ply/binary.ply", corpus + "stl/ascii.stl",
@@ -316,7 +329,12 @@ TEST(MemoryFails, WhereFilesAreReadAndWritten) {
   const Model model{.name = "m", .surfaces = {{"a", set.patch(0)}, {"b", set.patch(3)}}};
   const std::filesystem::path path = folder / "m.obj";
   survives("write_model m.obj", [&] { return write_model(model, path); });
-  EXPECT_LE(folder.names().size(), 6u);  // no file beside those that were to be written
+  const Model trimmed = value_of(read_model(models + "trimmed_cylinder.json"));
+  for (const char* const name : {"n.obj", "n.json"}) {
+    const std::filesystem::path trimmed_path = folder / name;
+    survives(std::string("write_model ") + name, [&] { return write_model(trimmed, trimmed_path); });
+  }
+  EXPECT_LE(folder.names().size(), 8u);  // no file beside those that were to be written
 }
 
 /// Opens `path`, writes, does `before_commit`, and commits.
