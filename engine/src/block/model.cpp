@@ -11,6 +11,7 @@
 #include "block/patch_trims.h"
 #include "tessera/guard.h"
 #include "tessera/status.h"
+#include "trim/trim_region_impl.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -151,7 +152,7 @@ class ModelPatches {
     if (!options_.trims || loops.empty()) {
       all_.add(k, std::move(grid));
     } else {
-      Result<TrimRegion> region = TrimRegion::make(loops, grid);
+      Result<TrimRegion> region = TrimRegion::Impl::make(loops, grid, TrimRegion::Impl::Use::patches);
       if (!region && region.status().code() == StatusCode::out_of_memory) return region.status();
       if (!region) faults_.push_back(in_surface(model_, k, region.status()));
       if (!region || region->is_whole()) {

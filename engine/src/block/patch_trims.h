@@ -16,7 +16,7 @@ struct PatchTrims {
     std::uint32_t region = 0;  ///< index into `regions`
     std::uint32_t place = 0;   ///< the patch of the region's grid, a * count_v + b
   };
-  std::vector<TrimRegion> regions;
+  std::vector<TrimRegion> regions;   ///< made for patches: they locate no points
   std::vector<Cut> cuts;             ///< by growing patch
   std::vector<std::uint8_t> is_cut;  ///< `[patch]`
 };

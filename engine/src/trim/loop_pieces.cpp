@@ -84,6 +84,7 @@ class LoopBuilder {
     const ParameterPoint inserted = roundings * 0x1p-53 * largest;
     for (std::size_t span = 0; span + 1 < spans->breaks.size(); ++span) {
       PlaneBezier bezier;
+      bezier.points.reserve(degree + 1);
       for (std::size_t i = span * degree; i <= (span + 1) * degree; ++i) {
         bezier.points.push_back({spans->points[i].x, spans->points[i].y});
         if (!spans->weights.empty()) bezier.weights.push_back(spans->weights[i]);
@@ -166,14 +167,18 @@ class LoopBuilder {
   void join() {
     std::vector<TrimPiece> given;
     given.swap(made_.pieces);
+    made_.pieces.reserve(given.size());
     std::vector<bool> is_odd_copy;
     is_odd_copy.swap(is_odd_copy_);
     double way_u = 0, way_v = 0;
     for (std::size_t k = 0; k < given.size(); ++k) {
-      way_u += given[k].end().u - given[k].start().u;
-      way_v += given[k].end().v - given[k].start().v;
-      TrimPiece& next = given[(k + 1) % given.size()];
-      const ParameterPoint end = given[k].end(), start = next.start();
+      made_.pieces.push_back(std::move(given[k]));
+      is_odd_copy_.push_back(is_odd_copy[k]);
+      TrimPiece& piece = made_.pieces.back();
+      TrimPiece& next = k + 1 < given.size() ? given[k + 1] : made_.pieces.front();
+      way_u += piece.end().u - piece.start().u;
+      way_v += piece.end().v - piece.start().v;
+      const ParameterPoint end = piece.end(), start = next.start();
       const double du = gap(lines_.u, end.u, start.u), dv = gap(lines_.v, end.v, start.v);
       way_u += du;
       way_v += dv;
@@ -182,14 +187,11 @@ class LoopBuilder {
         ParameterPoint from = end, to = start;
         if (du != 0) meet(lines_.u, from.u, to.u);
         if (dv != 0) meet(lines_.v, from.v, to.v);
-        move_ends(given[k], given[k].start(), from);
+        move_ends(piece, piece.start(), from);
         move_ends(next, to, next.end());
       }
-      made_.pieces.push_back(given[k]);
-      is_odd_copy_.push_back(is_odd_copy[k]);
-      if (!rounding) close_gap(given[k], next, du, dv);
+      if (!rounding) close_gap(piece, next, du, dv);  // may move the pieces in memory
     }
-    if (!given.empty()) made_.pieces.front() = given.front();  // the last joint may have moved its start
     if (lines_.u.periodic) made_.turns_u = static_cast<int>(std::lround(way_u / lines_.u.period()));
     if (lines_.v.periodic) made_.turns_v = static_cast<int>(std::lround(way_v / lines_.v.period()));
   }

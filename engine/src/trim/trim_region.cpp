@@ -91,25 +91,42 @@ void list_cutting(TrimRegion::Impl& region) {
   std::partial_sum(region.first_cutting.begin(), region.first_cutting.end(), region.first_cutting.begin());
 }
 
-/// Tells which patches pieces cut, and locates the centres of the others.
+/// Tells which patches pieces cut, and on which side the others lie: their middles, by the parity of the pieces that a
+/// ray towards larger u crosses. Each piece lies in one row of patches, and in one column or on a line before it.
 void sort_patches(TrimRegion::Impl& region) {
   const std::vector<double>&u = region.lines.u.lines, &v = region.lines.v.lines;
+  const std::size_t count_u = u.size() - 1, count_v = region.count_v();
   list_cutting(region);
-  region.patches.reserve((u.size() - 1) * (v.size() - 1));
-  for (std::size_t a = 0; a + 1 < u.size(); ++a) {
-    for (std::size_t b = 0; b + 1 < v.size(); ++b) {
-      const bool is_cut = !region.pieces_of(region.patches.size()).empty();
-      const double middle_u = 0.5 * u[a] + 0.5 * u[a + 1], middle_v = 0.5 * v[b] + 0.5 * v[b + 1];
-      region.patches.push_back(is_cut ? TrimSide::border : region.cells.locate(region.pieces, middle_u, middle_v));
-      region.is_whole = region.is_whole && region.patches.back() == TrimSide::inside;
+  std::vector<std::uint8_t> crossed((count_u + 1) * count_v, 0);  // [column or line][row]
+  for (const TrimPiece& piece : region.pieces) {
+    const double lower = piece.lower_v(), upper = piece.upper_v();
+    if (lower == upper) continue;
+    const std::size_t b = interval(v, 0.5 * lower + 0.5 * upper);
+    const double middle = 0.5 * v[b] + 0.5 * v[b + 1];
+    if (!(lower <= middle && middle < upper)) continue;
+    const bool is_on_line = piece.start().u == piece.end().u && region.lines.u.is_line(piece.start().u);
+    const std::size_t a = is_on_line
+                              ? static_cast<std::size_t>(std::ranges::lower_bound(u, piece.start().u) - u.begin())
+                              : interval(u, 0.5 * piece.lower_u() + 0.5 * piece.upper_u());
+    crossed[a * count_v + b] ^= 1;
+  }
+  region.patches.resize(count_u * count_v);
+  for (std::size_t b = 0; b < count_v; ++b) {
+    bool is_kept = region.starts_inside;
+    for (std::size_t a = count_u; a-- > 0;) {
+      is_kept ^= crossed[(a + 1) * count_v + b] != 0;
+      const std::size_t place = a * count_v + b;
+      const bool is_cut = !region.pieces_of(place).empty();
+      region.patches[place] = is_cut ? TrimSide::border : is_kept ? TrimSide::inside : TrimSide::outside;
+      region.is_whole = region.is_whole && region.patches[place] == TrimSide::inside;
     }
   }
 }
 
 }  // namespace
 
-Result<TrimRegion> TrimRegion::make(std::span<const TrimLoop> loops, std::span<const double> breaks_u,
-                                    std::span<const double> breaks_v, const TrimOptions& options) {
+Result<TrimRegion> TrimRegion::Impl::make(std::span<const TrimLoop> loops, std::span<const double> breaks_u,
+                                          std::span<const double> breaks_v, const TrimOptions& options, Use use) {
   return guarded([&]() -> Result<TrimRegion> {
     if (Status status = check_breaks(breaks_u, "breaks_u"); !status.ok()) return status;
     if (Status status = check_breaks(breaks_v, "breaks_v"); !status.ok()) return status;
@@ -126,10 +143,21 @@ Result<TrimRegion> TrimRegion::make(std::span<const TrimLoop> loops, std::span<c
     region->starts_inside = repaired->starts_inside;
     region->remarks = std::move(repaired->remarks);
     for (const TrimPiece& piece : region->pieces) region->band = larger(region->band, reach(piece));
-    region->cells = RegionCells::make(region->pieces, region->domain, region->starts_inside);
+    if (use == Use::points) region->cells = RegionCells::make(region->pieces, region->domain, region->starts_inside);
     sort_patches(*region);
     return TrimRegion(std::move(region));
   });
+}
+
+Result<TrimRegion> TrimRegion::Impl::make(std::span<const TrimLoop> loops, const PatchGrid& grid, Use use) {
+  constexpr double file_digits = 0x1p-32;  // files state the ends of curves to about 10 digits
+  const TrimOptions options{.periodic_u = closes(grid, true), .periodic_v = closes(grid, false), .snap = file_digits};
+  return make(loops, grid.breaks_u(), grid.breaks_v(), options, use);
+}
+
+Result<TrimRegion> TrimRegion::make(std::span<const TrimLoop> loops, std::span<const double> breaks_u,
+                                    std::span<const double> breaks_v, const TrimOptions& options) {
+  return Impl::make(loops, breaks_u, breaks_v, options, Impl::Use::points);
 }
 
 Result<TrimRegion> TrimRegion::make(std::span<const TrimLoop> loops, const Domain& domain, const TrimOptions& options) {
@@ -137,9 +165,7 @@ Result<TrimRegion> TrimRegion::make(std::span<const TrimLoop> loops, const Domai
 }
 
 Result<TrimRegion> TrimRegion::make(std::span<const TrimLoop> loops, const PatchGrid& grid) {
-  constexpr double file_digits = 0x1p-32;  // files state the ends of curves to about 10 digits
-  const TrimOptions options{.periodic_u = closes(grid, true), .periodic_v = closes(grid, false), .snap = file_digits};
-  return make(loops, grid.breaks_u(), grid.breaks_v(), options);
+  return Impl::make(loops, grid, Impl::Use::points);
 }
 
 TrimSide TrimRegion::locate(double u, double v) const {

@@ -14,6 +14,15 @@ namespace tessera::inline abi_0_1 {
 
 class TrimRegion::Impl {
  public:
+  /// What a region is made for. Cells take about as long as all the rest, and meshes need none.
+  enum class Use {
+    points,   ///< locate() too
+    patches,  ///< all but locate(): `cells` stays empty
+  };
+  static Result<TrimRegion> make(std::span<const TrimLoop> loops, std::span<const double> breaks_u,
+                                 std::span<const double> breaks_v, const TrimOptions& options, Use use);
+  static Result<TrimRegion> make(std::span<const TrimLoop> loops, const PatchGrid& grid, Use use);
+
   CutLines lines;
   Domain domain;
   /// Pieces between patch borders, in which an even number of ends meet at every point. Those of a loop stand in its
