@@ -225,7 +225,7 @@ class LoopBuilder {
     return to < from ? to + axis.period() : to - axis.period();
   }
 
-  /// Counts corners by the crossings to their right: the loop crosses each line v = v.from() + periods an even number of
+  /// Counts corners by the crossings to their right: the loop crosses a line v = v.from() + periods an even number of
   /// times, and a crossing lies to the right of as many corners as there are copies of the domain to its left. A piece
   /// along a seam lies between the two places beside a corner.
   void find_corners() {

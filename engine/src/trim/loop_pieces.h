@@ -20,7 +20,7 @@ struct LoopPieces {
   std::size_t gap_curve = 0;     ///< the curve before the largest gap
   int turns_u = 0, turns_v = 0;  ///< how often it runs around the surface along u and along v
   /// Whether it encloses an odd number of copies of the place above the domain's lower left corner, just right of the
-  /// seam, and above the lower right corner, just left of the seam: on a surface that is periodic in both directions, if
+  /// seam, and above the lower right corner, just left of the seam: on a surface that is periodic along u and v, if
   /// it runs around neither.
   bool holds_left = false, holds_right = false;
 };

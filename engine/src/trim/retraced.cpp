@@ -14,7 +14,7 @@ class RetracedPairs {
       : pieces_(pieces), snap_u_(snap_u), snap_v_(snap_v), dropped_(pieces.size(), false) {}
 
   std::size_t drop() {
-    // Both directions of a curve have nearly the same sum of ends. Its coordinates are mixed by an irrational number, so
+    // Both directions of a curve have nearly one sum of ends. Its coordinates are mixed by an irrational number, so
     // that neither curves with their middles at one u nor those at one v share a key.
     const double mix = 0.7548776662466927 * (snap_u_ > 0 && snap_v_ > 0 ? snap_u_ / snap_v_ : 1);
     const double window = 4 * (snap_u_ + mix * snap_v_);

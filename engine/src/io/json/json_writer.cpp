@@ -1,4 +1,4 @@
-// Writes .json models (tools/models/FORMAT.md): a surface is one spline of all its patches if these share their borders,
+// Writes .json models (tools/models/FORMAT.md): a surface is one spline of all its patches if these share borders,
 // which keeps its parameters; otherwise one per patch. A patch on [0,1]^2 is a Bezier patch.
 
 #include <array>
